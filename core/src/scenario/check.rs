@@ -1,0 +1,363 @@
+//! Judges a scenario's numbers: ranges, and the rules of DESIGN A4, A7 and A9 that join several.
+//!
+//! Motions are judged where they are planned (`motion`), because only the plan knows what they ask
+//! for; [`crate::run::Experiment`] gathers the problems of both.
+
+use super::{Bus, Cause, Distribution, Hex, Line, LineScript, Packets, Problem, Scenario, Source};
+use crate::{
+    signal::MAX_CHANNELS,
+    units::{Cycles, Instant},
+};
+use alloc::{format, string::String, vec::Vec};
+
+/// First cycle that no run reaches: 2^53, up to which a JavaScript number is exact.
+pub const END_OF_TIME: u64 = 1 << 53;
+/// Most bytes of a line script, and most packets of a packet list.
+const MOST_BYTES: usize = 4 << 20;
+/// Most glitches on a line.
+const MOST_GLITCHES: usize = 10_000;
+/// Least cycles of a receiver's bit (A4).
+const LEAST_BIT_CYCLES: u64 = 11;
+
+/// The peripheral's configuration, checked: every rule of A4 and A7 holds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Config {
+    pub(crate) clock_hz: u32,
+    pub(crate) channels: u8,
+    pub(crate) slots: u8,
+    pub(crate) step_period: u64,
+    pub(crate) pulse_width: u64,
+    pub(crate) dir_setup: u64,
+    pub(crate) distribution: Distribution,
+    pub(crate) queue_depth: u8,
+    pub(crate) boot: Instant,
+    pub(crate) bit_cycles: u64,
+    pub(crate) address: Option<u8>,
+}
+
+impl Config {
+    /// Checks the peripheral's part of a scenario.
+    ///
+    /// # Errors
+    /// Every problem, with paths as in a scenario (`bus.slots`, `line.receiver_baud`).
+    pub fn new(clock_hz: u32, bus: &Bus, line: &Line) -> Result<Self, Vec<Problem>> {
+        let mut judge = Judge::default();
+        judge.range("clock_hz", clock_hz, 1, 1_000_000_000, "Hz");
+        judge.range("bus.channels", bus.channels, 1, MAX_CHANNELS as u32, "");
+        judge.range("bus.slots", bus.slots, 1, 127, "");
+        judge.range("bus.step_period_cycles", bus.step_period_cycles, 2, 1_000_000_000, "cycles");
+        judge.range("bus.pulse_width_cycles", bus.pulse_width_cycles, 1, 1_000_000_000, "cycles");
+        judge.range("bus.dir_setup_cycles", bus.dir_setup_cycles, 0, 1_000_000_000, "cycles");
+        judge.range("bus.dir_hold_cycles", bus.dir_hold_cycles, 0, 1_000_000_000, "cycles");
+        judge.range("bus.queue_depth", bus.queue_depth, 1, 255, "ticks");
+        if let Some(address) = line.address {
+            judge.range("line.address", address, 0, 254, "");
+        }
+        let (width, setup, hold) = (
+            u64::from(bus.pulse_width_cycles),
+            u64::from(bus.dir_setup_cycles),
+            u64::from(bus.dir_hold_cycles),
+        );
+        let (needed, period) = (width + (setup + hold).max(1), u64::from(bus.step_period_cycles));
+        if needed > period {
+            judge.add("bus.step_period_cycles", Cause::PulseTooLong { width, setup, hold, needed, period });
+        }
+        let baud = line.receiver_baud.unwrap_or(line.baud);
+        let path = if line.receiver_baud.is_some() { "line.receiver_baud" } else { "line.baud" };
+        judge.range(path, baud, 1, 100_000_000, "baud");
+        let bit_cycles = bit_cycles(clock_hz, baud.max(1));
+        if bit_cycles < LEAST_BIT_CYCLES {
+            let most_baud = (2 * u64::from(clock_hz) / (2 * LEAST_BIT_CYCLES - 1)) as u32;
+            judge.add(path, Cause::BitTooShort { bit_cycles, baud, clock_hz, most_baud });
+        }
+        judge.end(Self {
+            clock_hz,
+            channels: bus.channels,
+            slots: bus.slots,
+            step_period: period,
+            pulse_width: width,
+            dir_setup: setup,
+            distribution: bus.distribution,
+            queue_depth: bus.queue_depth,
+            boot: Instant(u64::from(bus.boot_cycles)),
+            bit_cycles,
+            address: line.address,
+        })
+    }
+
+    /// Clock of the peripheral in Hz.
+    #[must_use]
+    pub const fn clock_hz(&self) -> u32 {
+        self.clock_hz
+    }
+
+    /// Channels in use, 1 to 16.
+    #[must_use]
+    pub const fn channels(&self) -> u8 {
+        self.channels
+    }
+
+    /// Slots in a tick, 1 to 127.
+    #[must_use]
+    pub const fn slots(&self) -> u8 {
+        self.slots
+    }
+
+    /// Length of a tick, M*Ts.
+    #[must_use]
+    pub const fn tick(&self) -> Cycles {
+        Cycles(self.slots as u64 * self.step_period)
+    }
+
+    /// The receiver's bit time B (A4).
+    #[must_use]
+    pub const fn bit(&self) -> Cycles {
+        Cycles(self.bit_cycles)
+    }
+
+    /// Bytes of a packet: one a channel, and the address on an addressed line.
+    #[must_use]
+    pub const fn packet_len(&self) -> usize {
+        self.channels as usize + self.address.is_some() as usize
+    }
+}
+
+/// B = floor((2*clock_hz + baud) / (2*baud)): the bit time rounded to the nearest cycle (A4).
+const fn bit_cycles(clock_hz: u32, baud: u32) -> u64 {
+    (2 * clock_hz as u64 + baud as u64) / (2 * baud as u64)
+}
+
+/// A level forced on the line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Forced {
+    /// First forced cycle.
+    pub start: Instant,
+    /// First cycle after it.
+    pub end: Instant,
+    /// The level.
+    pub level: bool,
+}
+
+/// A scenario whose numbers hold, but for its motions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checked {
+    /// The peripheral.
+    pub config: Config,
+    /// The host's bit rate.
+    pub baud: u32,
+    /// Levels forced on the line; where two overlap the later one wins.
+    pub forced: Vec<Forced>,
+    /// What the host sends; its motions are not judged yet.
+    pub source: Source,
+    /// Length of the run, if it is given.
+    pub run: Option<Cycles>,
+}
+
+impl Scenario {
+    /// Judges everything but the motions.
+    ///
+    /// # Errors
+    /// Every problem, each with its path.
+    pub fn check(&self) -> Result<Checked, Vec<Problem>> {
+        let mut judge = Judge::default();
+        if self.version > super::VERSION {
+            let given = u64::from(self.version);
+            judge.add("version", Cause::NewerVersion { given, newest: super::VERSION });
+        } else {
+            judge.range("version", self.version, 1, super::VERSION, "");
+        }
+        judge.length("title", self.title.chars().count(), 0, 120, "characters");
+        judge.length("note", self.note.chars().count(), 0, 2000, "characters");
+        let config = judge.take(Config::new(self.clock_hz, &self.bus, &self.line));
+        // Without a rate of its own the receiver has the host's, which is judged above.
+        if self.line.receiver_baud.is_some() {
+            judge.range("line.baud", self.line.baud, 1, self.clock_hz.clamp(1, 100_000_000), "baud");
+        }
+        if let Some(cycles) = self.run_cycles {
+            judge.range("run_cycles", cycles as f64, 1, END_OF_TIME as f64, "cycles");
+        }
+        let forced = self.glitches(&mut judge);
+        match &self.source {
+            Source::Motion(motion) => {
+                let most = usize::from(self.bus.channels).clamp(1, MAX_CHANNELS);
+                judge.length("source.motion.axes", motion.axes.len(), 1, most, "axes");
+            }
+            Source::Packets(packets) => self.packets(packets, &mut judge),
+            Source::Line(script) => self.script(script, &mut judge),
+        }
+        self.analysis(&mut judge);
+        judge.end(()).and_then(|()| {
+            Ok(Checked {
+                config: config.ok_or_else(Vec::new)?,
+                baud: self.line.baud,
+                forced,
+                source: self.source.clone(),
+                run: self.run_cycles.map(Cycles),
+            })
+        })
+    }
+
+    fn glitches(&self, judge: &mut Judge) -> Vec<Forced> {
+        judge.length("line.glitches", self.line.glitches.len(), 0, MOST_GLITCHES, "glitches");
+        let mut forced = Vec::new();
+        for (index, glitch) in self.line.glitches.iter().enumerate() {
+            let at = |field| format!("line.glitches[{index}].{field}");
+            judge.range(&at("start_cycle"), glitch.start_cycle as f64, 1, END_OF_TIME as f64, "cycles");
+            judge.range(&at("length_cycles"), glitch.length_cycles as f64, 1, END_OF_TIME as f64, "cycles");
+            judge.range(&at("level"), glitch.level, 0, 1, "");
+            forced.push(Forced {
+                start: Instant(glitch.start_cycle),
+                end: Instant(glitch.start_cycle.saturating_add(glitch.length_cycles)),
+                level: glitch.level != 0,
+            });
+        }
+        forced
+    }
+
+    fn packets(&self, source: &Packets, judge: &mut Judge) {
+        let len = usize::from(self.bus.channels) + usize::from(self.line.address.is_some());
+        for (index, Hex(bytes)) in source.packets.iter().enumerate() {
+            judge.length(&format!("source.packets.packets[{index}]"), bytes.len(), len, len, "bytes");
+        }
+        judge.length("source.packets.packets", source.packets.len() * len, 0, MOST_BYTES, "bytes");
+    }
+
+    fn script(&self, script: &LineScript, judge: &mut Judge) {
+        let total = script.sends.iter().map(|send| send.bytes.0.len()).sum();
+        judge.length("source.line.sends", total, 0, MOST_BYTES, "bytes");
+        let mut free_from = 1;
+        for (index, send) in script.sends.iter().enumerate() {
+            let path = format!("source.line.sends[{index}].start_cycle");
+            let start = send.start_cycle;
+            judge.range(&path, start as f64, 1, END_OF_TIME as f64, "cycles");
+            if start < free_from && start >= 1 {
+                judge.add(path, Cause::Overlap { start, free_from });
+            }
+            let bytes = send.bytes.0.len() as u64;
+            let end = start.min(END_OF_TIME) + line_time(bytes, self.clock_hz, self.line.baud.max(1));
+            free_from = free_from.max(end);
+        }
+    }
+
+    fn analysis(&self, judge: &mut Judge) {
+        let analysis = &self.analysis;
+        judge.range("analysis.axis", analysis.axis, 0, u32::from(self.bus.channels.clamp(1, 16)) - 1, "");
+        judge.range("analysis.order", analysis.order, 2, 1000, "");
+        judge.range("analysis.fft_length", analysis.fft_length, 256, 65_536, "");
+        if (256..=65_536).contains(&analysis.fft_length) && !analysis.fft_length.is_power_of_two() {
+            judge.add("analysis.fft_length", Cause::NotPowerOfTwo { given: analysis.fft_length });
+        }
+    }
+}
+
+/// Cycles that `bytes` bytes sent back to back hold the line, to the end of the last stop bit (A4).
+#[must_use]
+pub const fn line_time(bytes: u64, clock_hz: u32, baud: u32) -> u64 {
+    let (clock, baud) = (clock_hz as u64, baud as u64);
+    match bytes {
+        0 => 0,
+        _ => 10 * (bytes - 1) * clock / baud + 10 * clock / baud,
+    }
+}
+
+/// Gathers problems.
+#[derive(Default)]
+struct Judge {
+    problems: Vec<Problem>,
+}
+
+impl Judge {
+    fn add(&mut self, path: impl Into<String>, cause: Cause) {
+        self.problems.push(Problem::new(path, cause));
+    }
+
+    fn range<G: Into<f64>, L: Into<f64>>(
+        &mut self,
+        path: &str,
+        given: G,
+        least: u32,
+        most: L,
+        unit: &'static str,
+    ) {
+        let (given, least, most) = (given.into(), f64::from(least), most.into());
+        if !(least..=most).contains(&given) {
+            self.add(path, Cause::Range { given, least, most, unit });
+        }
+    }
+
+    fn length(&mut self, path: &str, given: usize, least: usize, most: usize, of: &'static str) {
+        if !(least..=most).contains(&given) {
+            self.add(path, Cause::Length { given, least, most, of });
+        }
+    }
+
+    fn take<T>(&mut self, result: Result<T, Vec<Problem>>) -> Option<T> {
+        result.map_err(|problems| self.problems.extend(problems)).ok()
+    }
+
+    fn end<T>(self, value: T) -> Result<T, Vec<Problem>> {
+        if self.problems.is_empty() { Ok(value) } else { Err(self.problems) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec;
+
+    fn paths(json: &str) -> Vec<String> {
+        let scenario = Scenario::from_json(json).expect("reads");
+        scenario.check().err().unwrap_or_default().into_iter().map(|p| p.path).collect()
+    }
+
+    #[test]
+    fn every_number_out_of_range_is_listed_with_its_path() {
+        let rows: &[(&str, &[&str])] = &[
+            ("{}", &[]),
+            (
+                r#"{"bus":{"channels":0,"slots":128,"queue_depth":0}}"#,
+                &["bus.channels", "bus.slots", "bus.queue_depth"],
+            ),
+            (r#"{"bus":{"channels":17}}"#, &["bus.channels"]),
+            (r#"{"line":{"baud":0}}"#, &["line.baud"]),
+            (r#"{"line":{"baud":0,"receiver_baud":9600}}"#, &["line.baud"]),
+            (r#"{"clock_hz":1000000,"line":{"baud":100000}}"#, &["line.baud"]),
+            (r#"{"clock_hz":1000000,"line":{"baud":95238}}"#, &[]),
+            (r#"{"clock_hz":1000000,"line":{"baud":95239}}"#, &["line.baud"]),
+            (r#"{"line":{"receiver_baud":9000000}}"#, &["line.receiver_baud"]),
+            (r#"{"bus":{"pulse_width_cycles":0}}"#, &["bus.pulse_width_cycles"]),
+            (r#"{"bus":{"pulse_width_cycles":280,"dir_setup_cycles":40}}"#, &[]),
+            (r#"{"bus":{"pulse_width_cycles":281,"dir_setup_cycles":40}}"#, &["bus.step_period_cycles"]),
+            (r#"{"bus":{"pulse_width_cycles":320,"dir_setup_cycles":0}}"#, &["bus.step_period_cycles"]),
+            (
+                r#"{"analysis":{"axis":1,"order":1,"fft_length":1000}}"#,
+                &["analysis.axis", "analysis.order", "analysis.fft_length"],
+            ),
+            (r#"{"source":{"packets":{"packets":["80","8001"]}}}"#, &["source.packets.packets[1]"]),
+            (
+                r#"{"source":{"line":{"sends":[{"start_cycle":0,"bytes":"00"}]}}}"#,
+                &["source.line.sends[0].start_cycle"],
+            ),
+            (
+                r#"{"clock_hz":1000,"line":{"baud":50},"source":{"line":{"sends":[{"start_cycle":1,"bytes":"0000"},{"start_cycle":400,"bytes":"00"},{"start_cycle":601,"bytes":"00"}]}}}"#,
+                &["source.line.sends[1].start_cycle"],
+            ),
+            (
+                r#"{"line":{"glitches":[{"start_cycle":0,"length_cycles":0,"level":2}]}}"#,
+                &["line.glitches[0].start_cycle", "line.glitches[0].length_cycles", "line.glitches[0].level"],
+            ),
+        ];
+        for (given, expected) in rows {
+            assert_eq!(paths(given), *expected, "{given}");
+        }
+    }
+
+    #[test]
+    fn the_receivers_bit_time_is_rounded_to_the_nearest_cycle() {
+        let rows =
+            vec![(16_000_000, 115_200, 139), (1000, 50, 20), (1000, 300, 3), (105, 10, 11), (104, 10, 10)];
+        for (clock_hz, baud, expected) in rows {
+            assert_eq!(bit_cycles(clock_hz, baud), expected, "{clock_hz} Hz, {baud} baud");
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! How the scenario's types are declared: once, with their defaults.
+//!
+//! [`settings!`] declares a struct and its defaults in one place; from that follow `Default`,
+//! reading with every field optional and unknown ones refused, and [`Compact`]: the canonical form
+//! that a link carries, fixed in order, with what equals its default left out.
+
+use alloc::{string::String, vec::Vec};
+use serde_json::{Map, Value};
+
+/// The canonical JSON of a value: fixed order, defaults left out.
+///
+/// Reading it back gives an equal value, and equal values have the same canonical form.
+pub trait Compact {
+    /// The canonical form.
+    fn compact(&self) -> Value;
+}
+
+macro_rules! plain {
+    ($($ty:ty),*) => {$(
+        impl Compact for $ty {
+            fn compact(&self) -> Value {
+                Value::from(self.clone())
+            }
+        }
+    )*};
+}
+plain!(u8, u16, u32, u64, f64, String, Option<u8>, Option<u32>, Option<u64>);
+
+impl<T: Compact> Compact for Vec<T> {
+    fn compact(&self) -> Value {
+        self.iter().map(Compact::compact).collect()
+    }
+}
+
+/// A map of one key: how a choice is written.
+pub(super) fn chosen(name: &str, value: Value) -> Value {
+    let mut map = Map::new();
+    map.insert(name.into(), value);
+    Value::Object(map)
+}
+
+macro_rules! settings {
+    ($(#[$meta:meta])* pub struct $name:ident {
+        $($(#[$field_meta:meta])* pub $field:ident: $ty:ty = $default:expr,)*
+    }) => {
+        $(#[$meta])*
+        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        #[serde(default, deny_unknown_fields)]
+        pub struct $name {
+            $($(#[$field_meta])* pub $field: $ty,)*
+        }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self { $($field: $default,)* }
+            }
+        }
+
+        impl $crate::scenario::Compact for $name {
+            fn compact(&self) -> serde_json::Value {
+                let default = Self::default();
+                let mut map = serde_json::Map::new();
+                $(if self.$field != default.$field {
+                    map.insert(stringify!($field).into(), self.$field.compact());
+                })*
+                serde_json::Value::Object(map)
+            }
+        }
+    };
+}
+
+macro_rules! choices {
+    ($(#[$meta:meta])* pub enum $name:ident {
+        $($(#[$variant_meta:meta])* $variant:ident($ty:ty) = $key:literal,)*
+    }) => {
+        $(#[$meta])*
+        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        pub enum $name {
+            $($(#[$variant_meta])* #[serde(rename = $key)] $variant($ty),)*
+        }
+
+        impl $crate::scenario::Compact for $name {
+            fn compact(&self) -> serde_json::Value {
+                match self {
+                    $(Self::$variant(inner) => $crate::scenario::compact::chosen($key, inner.compact()),)*
+                }
+            }
+        }
+    };
+}
+
+pub(crate) use {choices, settings};
+
+impl Compact for super::Distribution {
+    fn compact(&self) -> Value {
+        Value::from(match self {
+            Self::Burst => "burst",
+            Self::Spread => "spread",
+        })
+    }
+}
+
+impl Compact for super::TrapezoidMethod {
+    fn compact(&self) -> Value {
+        Value::from(match self {
+            Self::Table => "table",
+            Self::Exact => "exact",
+        })
+    }
+}

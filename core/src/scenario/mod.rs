@@ -1,0 +1,286 @@
+//! What a link, a file and the page's fields hold: one experiment.
+//!
+//! Every field has a default, so `{}` is a scenario. Units stand in the names. Choices are written
+//! as one key that names the choice, with its own settings inside:
+//!
+//! ```json
+//! { "source": { "motion": { "axes": [ { "moves": [
+//!     { "cosine": { "distance": { "steps": 6400 }, "duration_s": 0.4, "ramp_s": 0.2 } } ] } ] } } }
+//! ```
+//!
+//! A scenario as read is only text with types; [`Scenario::check`] makes a [`Checked`] of it or
+//! returns every problem at once, each with its path. What comes after never meets a bad number.
+
+mod check;
+mod compact;
+mod hex;
+mod problem;
+mod quantity;
+mod read;
+
+pub use check::{Checked, Config, END_OF_TIME, Forced, line_time};
+pub use compact::Compact;
+pub use hex::Hex;
+pub use problem::{Cause, Problem};
+pub use quantity::{Acceleration, Distance, Mechanics, Speed};
+
+use alloc::{string::String, vec, vec::Vec};
+use compact::{choices, settings};
+use serde::{Deserialize, Serialize};
+
+/// The scenario version that this crate writes, and the newest that it reads.
+pub const VERSION: u32 = 1;
+
+settings! {
+    /// One experiment: the peripheral, the line to it, and what is sent.
+    pub struct Scenario {
+        /// Version of this format; 1.
+        pub version: u32 = VERSION,
+        /// A name to show, up to 120 characters.
+        pub title: String = String::new(),
+        /// What to look at and where it comes from, up to 2000 characters.
+        pub note: String = String::new(),
+        /// Clock of the peripheral in Hz, 1 to 1 000 000 000. All `_cycles` count it.
+        pub clock_hz: u32 = 16_000_000,
+        /// Timing of the driver bus and its queue (DESIGN A7).
+        pub bus: Bus = Bus::default(),
+        /// The serial line between host and peripheral (DESIGN A4).
+        pub line: Line = Line::default(),
+        /// What the host sends.
+        pub source: Source = Source::default(),
+        /// Length of the run in cycles; without it the run ends when nothing can change any more.
+        pub run_cycles: Option<u64> = None,
+        /// What the spectrum is taken of.
+        pub analysis: Analysis = Analysis::default(),
+    }
+}
+
+settings! {
+    /// The tick sequencer and its driver bus (DESIGN A7).
+    pub struct Bus {
+        /// Channels in use, 1 to 16; a packet has one byte for each.
+        pub channels: u8 = 1,
+        /// Slots in a tick, 1 to 127: the most steps a channel can make in one tick.
+        pub slots: u8 = 100,
+        /// Length of a slot in cycles; a tick lasts `slots` times as long.
+        pub step_period_cycles: u32 = 320,
+        /// How long STEP stays high, in cycles.
+        pub pulse_width_cycles: u32 = 40,
+        /// From the start of a slot (DIR changes there) to the rise of STEP, in cycles.
+        pub dir_setup_cycles: u32 = 40,
+        /// How long DIR is held after STEP has fallen, in cycles.
+        pub dir_hold_cycles: u32 = 0,
+        /// Where in a tick the steps go.
+        pub distribution: Distribution = Distribution::Spread,
+        /// Ticks that the queue holds, 1 to 255.
+        pub queue_depth: u8 = 16,
+        /// Self-test after reset in cycles; packets that end within it are dropped.
+        pub boot_cycles: u32 = 1600,
+    }
+}
+
+/// Where in a tick a channel's steps go (DESIGN A7).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Distribution {
+    /// The first `count` slots of the tick, as in RU 2704486.
+    Burst,
+    /// Evenly over the tick.
+    #[default]
+    Spread,
+}
+
+settings! {
+    /// The serial line, 8N1 (DESIGN A4, A5).
+    pub struct Line {
+        /// Bit rate of the host in baud.
+        pub baud: u32 = 115_200,
+        /// Bit rate of the receiver in baud where its clock differs from the host's.
+        pub receiver_baud: Option<u32> = None,
+        /// The controller's address, 0 to 254, if packets begin with one. 255 addresses all.
+        pub address: Option<u8> = None,
+        /// Levels forced on the line whatever is sent; where two overlap the later entry wins.
+        pub glitches: Vec<Glitch> = Vec::new(),
+    }
+}
+
+settings! {
+    /// A level forced on the line: a glitch, a break, a broken bit (DESIGN A4).
+    pub struct Glitch {
+        /// First forced cycle, from 1.
+        pub start_cycle: u64 = 1,
+        /// How many cycles, from 1.
+        pub length_cycles: u64 = 1,
+        /// 0 or 1.
+        pub level: u8 = 0,
+    }
+}
+
+choices! {
+    /// What the host sends.
+    pub enum Source {
+        /// Motions of the axes, made into one packet a tick (DESIGN Part B, A9).
+        Motion(Motion) = "motion",
+        /// The packets themselves, one a tick (DESIGN A9).
+        Packets(Packets) = "packets",
+        /// Bytes at cycles: a recorded or hand-made line (DESIGN A9).
+        Line(LineScript) = "line",
+    }
+}
+
+impl Default for Source {
+    fn default() -> Self {
+        Self::Motion(Motion::default())
+    }
+}
+
+settings! {
+    /// A motion for each axis; axis i drives channel i.
+    pub struct Motion {
+        /// 1 to 16 axes, no more than `bus.channels`.
+        pub axes: Vec<Axis> = vec![Axis::default()],
+    }
+}
+
+settings! {
+    /// One axis: its mechanics and the moves that it makes one after another.
+    pub struct Axis {
+        /// What one step is (DESIGN B1).
+        pub mechanics: Mechanics = Mechanics::default(),
+        /// Up to 64 moves.
+        pub moves: Vec<Move> = vec![Move::default()],
+    }
+}
+
+choices! {
+    /// One move of an axis (DESIGN Part B).
+    pub enum Move {
+        /// Uniform acceleration by table (B2).
+        Trapezoid(Trapezoid) = "trapezoid",
+        /// Cosine S-curve with exact distance and exact time (B4).
+        Cosine(Cosine) = "cosine",
+        /// Sine as segments of fixed rate (B5).
+        SineSegments(SineSegments) = "sine_segments",
+        /// One rate from end to end (B6).
+        Constant(Constant) = "constant",
+        /// Standing still (B6).
+        Dwell(Dwell) = "dwell",
+    }
+}
+
+impl Default for Move {
+    fn default() -> Self {
+        Self::Cosine(Cosine::default())
+    }
+}
+
+settings! {
+    /// Trapezoid by acceleration table (B2, Sonobe 2011).
+    pub struct Trapezoid {
+        /// How far; negative is left.
+        pub distance: Distance = Distance::Steps(2000.0),
+        /// Speed of the first step.
+        pub start_speed: Speed = Speed::StepsPerSecond(250.0),
+        /// Speed of the plateau.
+        pub top_speed: Speed = Speed::StepsPerSecond(4000.0),
+        /// Acceleration and deceleration.
+        pub acceleration: Acceleration = Acceleration::StepsPerSecond2(9000.0),
+        /// Whose step times.
+        pub method: TrapezoidMethod = TrapezoidMethod::Table,
+        /// Clock of the timer whose reload the table holds, in Hz; only the table uses it.
+        pub timer_hz: u32 = 1_000_000,
+    }
+}
+
+/// Whose step times a trapezoid has (B2).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TrapezoidMethod {
+    /// The document's: a table of whole pulse rates, one a step, and a timer's whole reload.
+    #[default]
+    Table,
+    /// Every step where the ideal curve crosses its half-integer (B1).
+    Exact,
+}
+
+settings! {
+    /// Cosine S-curve (B4, Song, Han, Lu 2021): so many steps in so much time.
+    pub struct Cosine {
+        /// How far; negative is left.
+        pub distance: Distance = Distance::Steps(3200.0),
+        /// Time of the whole move in s.
+        pub duration_s: f64 = 0.4,
+        /// Time of each ramp in s, at most half of the duration.
+        pub ramp_s: f64 = 0.2,
+    }
+}
+
+settings! {
+    /// Sine as segments of fixed rate (B5), from the right extreme to the left one and back.
+    pub struct SineSegments {
+        /// From the middle to an extreme.
+        pub amplitude: Distance = Distance::Steps(1000.0),
+        /// Time of one period in s.
+        pub period_s: f64 = 0.5,
+        /// How many whole periods.
+        pub periods: u32 = 4,
+        /// Largest deviation of a segment from the sine, d1, in parts of the amplitude.
+        pub max_deviation: f64 = 0.006,
+    }
+}
+
+settings! {
+    /// One rate from end to end (B6).
+    pub struct Constant {
+        /// How far; negative is left.
+        pub distance: Distance = Distance::Steps(1000.0),
+        /// How fast.
+        pub speed: Speed = Speed::StepsPerSecond(1000.0),
+    }
+}
+
+settings! {
+    /// Standing still (B6).
+    pub struct Dwell {
+        /// How long, in s.
+        pub duration_s: f64 = 0.1,
+    }
+}
+
+settings! {
+    /// Packets, one a tick, as they stand on the line.
+    pub struct Packets {
+        /// Each `channels` bytes, one more (the address, first) on an addressed line.
+        pub packets: Vec<Hex> = Vec::new(),
+    }
+}
+
+settings! {
+    /// Bytes at cycles.
+    pub struct LineScript {
+        /// Rising in time, not overlapping.
+        pub sends: Vec<ScriptedSend> = Vec::new(),
+    }
+}
+
+settings! {
+    /// Bytes that are sent back to back from a cycle on (DESIGN A4's sender).
+    pub struct ScriptedSend {
+        /// Cycle in which the first start bit falls, from 1.
+        pub start_cycle: u64 = 1,
+        /// The bytes in hex.
+        pub bytes: Hex = Hex::default(),
+    }
+}
+
+settings! {
+    /// What the spectrum is taken of.
+    pub struct Analysis {
+        /// The axis (of a motion), or the channel.
+        pub axis: u8 = 0,
+        /// Highest harmonic that counts for the distortion, 2 to 1000.
+        pub order: u16 = 40,
+        /// Length of the transform a period of the motion, a power of two, 256 to 65536.
+        pub fft_length: u32 = 4096,
+    }
+}

@@ -1,0 +1,294 @@
+//! What can be wrong with a scenario: every problem with its path, what was given, what is
+//! allowed, and what to change.
+
+use alloc::string::String;
+use core::fmt;
+
+/// One problem of a scenario, at the path of the field that has to change.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Problem {
+    /// Path of the field, such as `source.motion.axes[0].moves[2].cosine.ramp_s`; empty for the
+    /// whole.
+    pub path: String,
+    /// What is wrong.
+    pub cause: Cause,
+}
+
+impl Problem {
+    /// A problem at `path`.
+    #[must_use]
+    pub fn new(path: impl Into<String>, cause: Cause) -> Self {
+        Self { path: path.into(), cause }
+    }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.path.is_empty() {
+            write!(f, "{}", self.cause)
+        } else {
+            write!(f, "{}: {}", self.path, self.cause)
+        }
+    }
+}
+
+impl core::error::Error for Problem {}
+
+/// What is wrong, with the numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cause {
+    /// Not JSON.
+    Syntax {
+        /// Where the reader stopped, from 1.
+        line: usize,
+        /// Column in that line, from 1.
+        column: usize,
+        /// What it met.
+        detail: String,
+    },
+    /// JSON of another type or name than the field's.
+    Type {
+        /// What was met and what was expected.
+        detail: String,
+    },
+    /// Written by a newer Stepscope.
+    NewerVersion {
+        /// The scenario's version.
+        given: u64,
+        /// The newest that is read here.
+        newest: u32,
+    },
+    /// A number out of its range.
+    Range {
+        /// The number.
+        given: f64,
+        /// Least allowed.
+        least: f64,
+        /// Greatest allowed.
+        most: f64,
+        /// Unit of all three, empty for a plain count.
+        unit: &'static str,
+    },
+    /// A number that is none of the allowed ones.
+    NotPowerOfTwo {
+        /// The number.
+        given: u32,
+    },
+    /// A text, list or byte string of a length that is not allowed.
+    Length {
+        /// Its length.
+        given: usize,
+        /// Least allowed.
+        least: usize,
+        /// Greatest allowed.
+        most: usize,
+        /// What is counted: `characters`, `bytes`, `axes`, …
+        of: &'static str,
+    },
+    /// A quantity in a unit that the axis's mechanics do not have.
+    NoSuchUnit {
+        /// The number.
+        given: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// The kind of the mechanics.
+        mechanics: &'static str,
+    },
+    /// The receiver's bit time is too short (A4).
+    BitTooShort {
+        /// Cycles a bit.
+        bit_cycles: u64,
+        /// Receiver's rate.
+        baud: u32,
+        /// Clock of the peripheral.
+        clock_hz: u32,
+        /// Highest rate that this clock can hear.
+        most_baud: u32,
+    },
+    /// A pulse with its times does not fit in a slot (A7).
+    PulseTooLong {
+        /// W.
+        width: u64,
+        /// D.
+        setup: u64,
+        /// H.
+        hold: u64,
+        /// L = W + max(D + H, 1).
+        needed: u64,
+        /// Ts.
+        period: u64,
+    },
+    /// A send begins before the one before it has ended (A9).
+    Overlap {
+        /// Its start.
+        start: u64,
+        /// First cycle after the send before it.
+        free_from: u64,
+    },
+    /// Ramps longer than the move (B4).
+    RampTooLong {
+        /// Ramp in s.
+        ramp_s: f64,
+        /// Move in s.
+        duration_s: f64,
+    },
+    /// A top speed under the start speed (B2).
+    TopBelowStart {
+        /// Top speed in steps/s.
+        top: f64,
+        /// Start speed in steps/s.
+        start: f64,
+    },
+    /// A rate that the table's timer cannot give (B2).
+    TimerTooSlow {
+        /// Rate in steps/s.
+        rate: f64,
+        /// Timer's clock in Hz.
+        timer_hz: u32,
+    },
+    /// A distance that is less than a step.
+    NoSteps {
+        /// The distance in steps, before rounding.
+        steps: f64,
+    },
+    /// A tick that needs more steps than it has slots (B7).
+    TooManySteps {
+        /// The first such tick, from 0.
+        tick: u64,
+        /// Steps it needs.
+        steps: u64,
+        /// Slots it has.
+        slots: u8,
+        /// The rate it needs in steps/s.
+        rate: f64,
+        /// The rate that the bus can give in steps/s.
+        limit: f64,
+    },
+    /// A line that cannot carry a packet a tick (A9).
+    LineTooSlow {
+        /// Cycles that one tick's packet takes.
+        packet_cycles: u64,
+        /// Cycles of a tick.
+        tick_cycles: u64,
+        /// The line's rate.
+        baud: u32,
+        /// The least rate that does.
+        needed_baud: u64,
+    },
+    /// More work than one run may be.
+    TooMuch {
+        /// How much.
+        given: f64,
+        /// How much is allowed.
+        most: f64,
+        /// Of what: `ticks`, `cycles`, `table rows`, …
+        of: &'static str,
+    },
+}
+
+/// Prints a number without needless digits.
+struct Short(f64);
+
+impl fmt::Display for Short {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let value = self.0;
+        let magnitude = libm::fabs(value);
+        if value == libm::trunc(value) && magnitude < 1e15 {
+            write!(f, "{value:.0}")
+        } else if (1e-3..1e6).contains(&magnitude) {
+            let text = alloc::format!("{value:.4}");
+            f.write_str(text.trim_end_matches('0').trim_end_matches('.'))
+        } else {
+            write!(f, "{value:e}")
+        }
+    }
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Syntax { line, column, detail } => {
+                write!(f, "not JSON at line {line}, column {column}: {detail}")
+            }
+            Self::Type { detail } => f.write_str(detail),
+            Self::NewerVersion { given, newest } => write!(
+                f,
+                "version {given} was made with a newer Stepscope; this one reads up to version {newest}"
+            ),
+            Self::Range { given, least, most, unit } => {
+                let space = if unit.is_empty() { "" } else { " " };
+                write!(
+                    f,
+                    "{}{space}{unit} is out of range; give {} to {}{space}{unit}",
+                    Short(*given),
+                    Short(*least),
+                    Short(*most)
+                )
+            }
+            Self::NotPowerOfTwo { given } => {
+                write!(f, "{given} is not a power of two; give 256, 512, 1024 … 65536")
+            }
+            Self::Length { given, least, most, of } if least == most => {
+                write!(f, "{given} {of}; give {least}")
+            }
+            Self::Length { given, least, most, of } => {
+                write!(f, "{given} {of}; give {least} to {most}")
+            }
+            Self::NoSuchUnit { given, unit, mechanics } => write!(
+                f,
+                "{} {unit}, but mechanics of kind {mechanics} have no such unit; give steps, or choose mechanics that have it",
+                Short(*given)
+            ),
+            Self::BitTooShort { bit_cycles, baud, clock_hz, most_baud } => write!(
+                f,
+                "{baud} baud at {clock_hz} Hz is {bit_cycles} cycles a bit, the receiver needs 11; give at most {most_baud} baud or a faster clock"
+            ),
+            Self::PulseTooLong { width, setup, hold, needed, period } => write!(
+                f,
+                "a pulse needs width {width} + max(setup {setup} + hold {hold}, 1) = {needed} cycles, the slot has {period}; give a step period of at least {needed} or shorter times"
+            ),
+            Self::Overlap { start, free_from } => write!(
+                f,
+                "starts at cycle {start} while the bytes before it last to cycle {}; start at {free_from} or later",
+                free_from - 1
+            ),
+            Self::RampTooLong { ramp_s, duration_s } => write!(
+                f,
+                "two ramps of {} s do not fit in {} s; give a ramp of at most {} s",
+                Short(*ramp_s),
+                Short(*duration_s),
+                Short(duration_s / 2.0)
+            ),
+            Self::TopBelowStart { top, start } => write!(
+                f,
+                "a top speed of {} steps/s is under the start speed of {} steps/s; give a higher top speed or a lower start speed",
+                Short(*top),
+                Short(*start)
+            ),
+            Self::TimerTooSlow { rate, timer_hz } => write!(
+                f,
+                "a timer of {timer_hz} Hz cannot make {} steps/s; give a timer of at least that rate",
+                Short(*rate)
+            ),
+            Self::NoSteps { steps } => {
+                write!(f, "{} steps is less than one step; give at least one step, or a dwell", Short(*steps))
+            }
+            Self::TooManySteps { tick, steps, slots, rate, limit } => write!(
+                f,
+                "tick {tick} needs {steps} steps ({} steps/s), its {slots} slots give at most {} steps/s; slow the motion, or give more slots or a shorter step period",
+                Short(*rate),
+                Short(*limit)
+            ),
+            Self::LineTooSlow { packet_cycles, tick_cycles, baud, needed_baud } => write!(
+                f,
+                "at {baud} baud a packet takes {packet_cycles} cycles, a tick has {tick_cycles}; give at least {needed_baud} baud, longer ticks or fewer channels"
+            ),
+            Self::TooMuch { given, most, of } => write!(
+                f,
+                "{} {of} are more than one run may have; stay under {}",
+                Short(*given),
+                Short(*most)
+            ),
+        }
+    }
+}

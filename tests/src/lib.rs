@@ -1,0 +1,5 @@
+//! What the tests of all targets share: the independent model of the contract and the strategies that feed it.
+
+/// The slow model of the contract that the core is compared with.
+#[cfg(not(target_arch = "wasm32"))]
+pub mod oracle;
