@@ -1,0 +1,61 @@
+//! The oracle against numbers worked out by hand, a table for each rule of A4, A5, A7 and A9.
+//!
+//! The base configuration divides evenly so that the numbers stay readable: B = 16, a byte is 160 cycles and is
+//! delivered 8 + 9*16 = 152 cycles after its start; the gap is 45*16 = 720. A tick is 4 slots of 10 cycles.
+
+mod line;
+mod packets;
+mod pulses;
+mod ticks;
+
+use super::*;
+
+fn base() -> Config {
+    Config {
+        clock_hz: 16_000,
+        baud: 1_000,
+        receiver_baud: 1_000,
+        channels: 1,
+        slots: 4,
+        step_period: 10,
+        pulse_width: 2,
+        dir_setup: 1,
+        dir_hold: 1,
+        settle: 0,
+        queue_depth: 2,
+        boot: 0,
+        spread: false,
+        common_dir: false,
+        staggered: false,
+        address: None,
+    }
+}
+
+/// Sends only, nothing forced.
+fn sent(sends: &[(u64, &[u8])], cycles: u64) -> Input {
+    Input {
+        sends: sends.iter().map(|(start, bytes)| (*start, bytes.to_vec())).collect(),
+        forced: Vec::new(),
+        cycles,
+    }
+}
+
+/// The changes of one signal: (cycle, new level). The level at cycle 0 is not a change.
+fn edges(run: &Run, bit: u32) -> Vec<(u64, bool)> {
+    let level = |levels: u64| levels >> bit & 1 == 1;
+    let pairs = run.trace.iter().zip(run.trace.iter().skip(1));
+    pairs
+        .filter(|(before, after)| level(before.1) != level(after.1))
+        .map(|(_, after)| (after.0, level(after.1)))
+        .collect()
+}
+
+/// The cycles in which a signal rises.
+fn rises(run: &Run, bit: u32) -> Vec<u64> {
+    edges(run, bit).into_iter().filter(|(_, level)| *level).map(|(cycle, _)| cycle).collect()
+}
+
+/// STEP rises of channel `channel`.
+fn steps(run: &Run, channel: u32) -> Vec<u64> {
+    rises(run, bits::STEP + channel)
+}
