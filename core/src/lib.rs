@@ -23,3 +23,9 @@ pub mod signal;
 pub mod units;
 
 pub mod scenario;
+
+pub mod wire;
+
+pub mod device;
+
+pub mod trace;

@@ -1,4 +1,8 @@
-//! The 36 signals of the peripheral and their place in a trace's levels (DESIGN A3).
+//! The 36 signals of the peripheral, the records of a trace, and the sink that takes them
+//! (DESIGN A3).
+
+use crate::units::Instant;
+use alloc::vec::Vec;
 
 /// Most channels that one controller drives.
 pub const MAX_CHANNELS: usize = 16;
@@ -60,5 +64,97 @@ pub fn name(bit: u32) -> Option<alloc::string::String> {
         34 => Some("TX".into()),
         35 => Some("DE".into()),
         _ => None,
+    }
+}
+
+/// The levels of all signals from a cycle on, until the next record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub struct Record {
+    /// Cycle in which at least one signal changed.
+    pub cycle: Instant,
+    /// All signals in that cycle.
+    pub levels: Levels,
+}
+
+/// Something that happened in a cycle beside the signals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// A byte was delivered; its start bit was seen at `seen`.
+    Byte {
+        /// Where its start bit was seen.
+        seen: Instant,
+        /// The byte.
+        byte: u8,
+    },
+    /// A byte's stop bit was low; its start bit was seen at `seen`.
+    FramingError {
+        /// Where its start bit was seen.
+        seen: Instant,
+    },
+    /// A gap cut a packet short, or ended the ignoring of bytes.
+    Gap {
+        /// Whether a packet was cut.
+        short: bool,
+    },
+    /// The byte just delivered completed a packet.
+    Packet(Fate),
+    /// A tick began.
+    TickStart,
+    /// A tick ended.
+    TickEnd,
+}
+
+/// What the controller did with a packet (DESIGN A5).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fate {
+    /// Its tick is in the queue.
+    Queued,
+    /// It was for another address.
+    Foreign,
+    /// It came during the self-test.
+    Booting,
+    /// A byte ordered more steps than the tick has slots.
+    TooManySteps,
+    /// The queue was full.
+    QueueFull,
+}
+
+/// Takes the records of a run, in order, and what happened between.
+pub trait Sink {
+    /// A record; cycles rise strictly.
+    fn record(&mut self, record: Record);
+
+    /// Something happened in a cycle. Sinks that only want the signals leave this out.
+    fn event(&mut self, _at: Instant, _event: Event) {}
+}
+
+/// A stored trace.
+impl Sink for Vec<Record> {
+    fn record(&mut self, record: Record) {
+        self.push(record);
+    }
+}
+
+/// Two sinks at once.
+impl<A: Sink, B: Sink> Sink for (A, B) {
+    fn record(&mut self, record: Record) {
+        self.0.record(record);
+        self.1.record(record);
+    }
+
+    fn event(&mut self, at: Instant, event: Event) {
+        self.0.event(at, event);
+        self.1.event(at, event);
+    }
+}
+
+impl<S: Sink> Sink for &mut S {
+    fn record(&mut self, record: Record) {
+        (**self).record(record);
+    }
+
+    fn event(&mut self, at: Instant, event: Event) {
+        (**self).event(at, event);
     }
 }

@@ -1,0 +1,48 @@
+//! Fault flags (DESIGN A6).
+
+/// Faults that a peripheral has seen; they stay.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Faults(u16);
+
+impl Faults {
+    /// A stop bit was low.
+    pub const FRAMING: Self = Self(1 << 0);
+    /// A gap cut a packet short.
+    pub const SHORT_PACKET: Self = Self(1 << 1);
+    /// A packet found the queue full.
+    pub const QUEUE_OVERFLOW: Self = Self(1 << 4);
+    /// A packet ordered more steps than a tick has slots.
+    pub const TOO_MANY_STEPS: Self = Self(1 << 5);
+
+    const NAMES: [&'static str; 8] = [
+        "FRAMING",
+        "SHORT_PACKET",
+        "CRC",
+        "OVERLONG",
+        "QUEUE_OVERFLOW",
+        "TOO_MANY_STEPS",
+        "BAD_SEQ",
+        "UNDERRUN",
+    ];
+
+    pub(super) const fn set(&mut self, fault: Self) {
+        self.0 |= fault.0;
+    }
+
+    /// The flags as A6 numbers their bits.
+    #[must_use]
+    pub const fn bits(self) -> u16 {
+        self.0
+    }
+
+    /// Whether all faults of `other` have been seen.
+    #[must_use]
+    pub const fn contains(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+
+    /// Names of the faults, in the order of their bits.
+    pub fn names(self) -> impl Iterator<Item = &'static str> {
+        Self::NAMES.into_iter().enumerate().filter(move |(bit, _)| self.0 >> bit & 1 != 0).map(|(_, n)| n)
+    }
+}

@@ -1,0 +1,186 @@
+//! The queue and the tick sequencer (DESIGN A7).
+//!
+//! The tick at the head of the queue starts at c0 = max(p + 1, e): p its commit cycle, e the end of
+//! the tick before. It leaves the queue at c0 and ends at e = c0 + M*Ts; ticks_done counts there.
+//! When the queue is empty at e the sequencer rests: STEP = 0, DIR keeps its level.
+
+use super::plan::{Change, Lines, Plan, STEPS};
+use crate::{
+    scenario::Config,
+    signal::{Event, Levels, MAX_CHANNELS, Record, Sink},
+    units::{Cycles, Instant},
+    wire::packet::{Order, Tick},
+};
+use alloc::collections::VecDeque;
+
+#[derive(Clone, Debug)]
+pub(super) struct Sequencer {
+    tick: Cycles,
+    depth: usize,
+    queue: VecDeque<Tick>,
+    /// When the head of the queue starts, if no tick runs.
+    start: Instant,
+    plan: Plan,
+    running: Option<Running>,
+    lines: Lines,
+    /// Positions as of the end of the last tick.
+    positions: [i32; MAX_CHANNELS],
+    ticks_done: u32,
+}
+
+/// The tick that runs: the plan's.
+#[derive(Clone, Copy, Debug)]
+struct Running {
+    c0: Instant,
+    end: Instant,
+    /// Next entry of the plan's changes.
+    next: usize,
+}
+
+impl Sequencer {
+    pub(super) fn new(config: &Config) -> Self {
+        Self {
+            tick: config.tick(),
+            depth: usize::from(config.queue_depth),
+            queue: VecDeque::with_capacity(usize::from(config.queue_depth)),
+            start: Instant::NEVER,
+            plan: Plan::new(config),
+            running: None,
+            lines: 0,
+            positions: [0; MAX_CHANNELS],
+            ticks_done: 0,
+        }
+    }
+
+    /// STEP and DIR now.
+    pub(super) const fn lines(&self) -> Lines {
+        self.lines
+    }
+
+    pub(super) const fn ticks_done(&self) -> u32 {
+        self.ticks_done
+    }
+
+    /// Positions now: those at the last tick's end and the edges of the one that runs.
+    pub(super) fn positions(&self) -> [i32; MAX_CHANNELS] {
+        let mut positions = self.positions;
+        if let Some(running) = self.running {
+            let mut before = 0;
+            for change in self.plan.changes().iter().take(running.next) {
+                let rising = change.lines & !before & STEPS;
+                count(&mut positions, self.plan.orders(), |channel| rising >> channel & 1);
+                before = change.lines;
+            }
+        }
+        positions
+    }
+
+    /// Queues a tick that was committed in cycle `now`; false if there is no place.
+    pub(super) fn push(&mut self, now: Instant, tick: Tick) -> bool {
+        if self.queue.len() >= self.depth {
+            return false;
+        }
+        if self.queue.is_empty() && self.running.is_none() {
+            self.start = now.next();
+        }
+        self.queue.push_back(tick);
+        true
+    }
+
+    /// Next cycle in which the sequencer does something; [`Instant::NEVER`] at rest.
+    pub(super) fn deadline(&self) -> Instant {
+        match self.running {
+            Some(running) => match self.plan.changes().get(running.next) {
+                Some(change) => (running.c0 + Cycles(change.offset)).min(running.end),
+                None => running.end,
+            },
+            None => self.start,
+        }
+    }
+
+    /// Cycle `now`.
+    pub(super) fn clock(&mut self, now: Instant, sink: &mut impl Sink) {
+        while self.deadline() == now {
+            match self.running {
+                Some(running) => {
+                    if !self.change(running, now) {
+                        self.end(now, sink);
+                    }
+                }
+                None => self.begin(now, sink),
+            }
+        }
+    }
+
+    /// Takes the change that falls due in cycle `now`; false if none does.
+    fn change(&mut self, running: Running, now: Instant) -> bool {
+        match self.plan.changes().get(running.next).copied() {
+            Some(change) if running.c0 + Cycles(change.offset) == now => {
+                self.lines = change.lines;
+                self.running = Some(Running { next: running.next + 1, ..running });
+                true
+            }
+            _ => false,
+        }
+    }
+
+    fn end(&mut self, now: Instant, sink: &mut impl Sink) {
+        sink.event(now, Event::TickEnd);
+        let orders = self.plan.orders();
+        count(&mut self.positions, orders, |channel| {
+            orders.get(channel).map_or(0, |&byte| u32::from(Order::parse(byte).steps))
+        });
+        self.ticks_done = self.ticks_done.wrapping_add(1);
+        self.running = None;
+        self.start = if self.queue.is_empty() { Instant::NEVER } else { now };
+    }
+
+    fn begin(&mut self, now: Instant, sink: &mut impl Sink) {
+        self.start = Instant::NEVER;
+        if let Some(tick) = self.queue.pop_front() {
+            sink.event(now, Event::TickStart);
+            self.plan.set(tick);
+            self.running = Some(Running { c0: now, end: now + self.tick, next: 0 });
+        }
+    }
+
+    /// Runs alone through the cycles before `until`, while nothing else changes: `base` are the
+    /// other signals. Gives the levels after them.
+    pub(super) fn run(&mut self, until: Instant, base: u64, sink: &mut impl Sink) -> Levels {
+        while self.deadline() < until {
+            if let Some(running) = &mut self.running {
+                let stop = until.min(running.end);
+                let ahead = self.plan.changes().get(running.next..).unwrap_or_default();
+                for Change { offset, lines } in ahead {
+                    let cycle = running.c0 + Cycles(*offset);
+                    if cycle >= stop {
+                        break;
+                    }
+                    running.next += 1;
+                    if *lines != self.lines {
+                        self.lines = *lines;
+                        sink.record(Record { cycle, levels: Levels(base | u64::from(*lines)) });
+                    }
+                }
+            }
+            let now = self.deadline();
+            if now < until {
+                let lines = self.lines;
+                self.clock(now, sink);
+                if self.lines != lines {
+                    sink.record(Record { cycle: now, levels: Levels(base | u64::from(self.lines)) });
+                }
+            }
+        }
+        Levels(base | u64::from(self.lines))
+    }
+}
+
+/// Adds `steps` of each channel in its direction.
+fn count(positions: &mut [i32; MAX_CHANNELS], orders: &Tick, steps: impl Fn(usize) -> u32) {
+    for (channel, (position, order)) in positions.iter_mut().zip(orders).enumerate() {
+        let steps = steps(channel) as i32;
+        let change = if Order::parse(*order).right { steps } else { -steps };
+        *position = position.wrapping_add(change);
+    }
+}

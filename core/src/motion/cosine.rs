@@ -1,0 +1,131 @@
+//! Cosine S-curve with exact distance and exact time (DESIGN B4, `exact`; Song, Han, Lu 2021).
+//!
+//! Given n steps, the time T of the move and the time t_s of each ramp, 0 <= t_s <= T/2:
+//!
+//! ```text
+//!  f_max |     .--------.       f_max = n/(T - t_s)
+//!        |    /          \      f(t)  = f_max/2*(1 - cos(pi*t/t_s))            in the ramp
+//!        | .-'            '-.   s(t)  = f_max/2*(t - t_s/pi*sin(pi*t/t_s))     in the ramp
+//!        +-----------------------       = f_max*(t - t_s/2)                    in the plateau
+//!         t_s           T-t_s  T         = n - s(T - t)                        from T/2 on
+//! ```
+//!
+//! The mirror makes s(T) exactly n. With t_s = 0 the speed jumps to f_max and back.
+
+use super::{Curve, Peaks, profile::greater};
+use core::f64::consts::PI;
+
+/// A cosine S-curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cosine {
+    steps: i64,
+    duration_s: f64,
+    ramp_s: f64,
+    /// f_max in steps/s.
+    top_speed: f64,
+}
+
+impl Cosine {
+    /// `steps` (left negative) in `duration_s` > 0 with ramps of `ramp_s`, 0 to half of it.
+    #[must_use]
+    pub fn new(steps: i64, duration_s: f64, ramp_s: f64) -> Self {
+        let top_speed = steps.unsigned_abs() as f64 / (duration_s - ramp_s);
+        Self { steps, duration_s, ramp_s, top_speed }
+    }
+
+    /// f_max in steps/s, the speed of the plateau.
+    #[must_use]
+    pub fn top_speed(&self) -> f64 {
+        self.top_speed
+    }
+
+    /// The longest ramp in s that keeps the top speed at or under `speed` (B4): T - n/speed, at
+    /// most T/2; `None` where even no ramp is too fast.
+    #[must_use]
+    pub fn longest_ramp_s(steps: i64, duration_s: f64, speed: f64) -> Option<f64> {
+        let ramp_s = duration_s - steps.unsigned_abs() as f64 / speed;
+        let half = duration_s / 2.0;
+        (ramp_s >= 0.0).then_some(if ramp_s > half { half } else { ramp_s })
+    }
+
+    fn signed(&self, magnitude: f64) -> f64 {
+        if self.steps < 0 { -magnitude } else { magnitude }
+    }
+
+    /// Phase of the ramp at `t` after the start or before the end, 0 to pi; `None` in the plateau.
+    fn phase(&self, t: f64) -> Option<f64> {
+        (t < self.ramp_s).then(|| PI * t / self.ramp_s)
+    }
+
+    /// s(t) of the first half, in steps without sign.
+    fn first_half(&self, t: f64) -> f64 {
+        let position = match self.phase(t) {
+            Some(phase) => self.top_speed * self.ramp_s / (2.0 * PI) * minus_sine(phase),
+            None => self.top_speed * (t - self.ramp_s / 2.0),
+        };
+        // The middle belongs to both halves; without this they could pass it by a rounding.
+        let half = self.steps.unsigned_abs() as f64 / 2.0;
+        if position > half { half } else { position }
+    }
+
+    /// Time from the nearer end, 0 at both.
+    fn from_end(&self, t: f64) -> f64 {
+        greater(0.0, if t <= self.duration_s / 2.0 { t } else { self.duration_s - t })
+    }
+}
+
+impl Curve for Cosine {
+    fn duration_s(&self) -> f64 {
+        self.duration_s
+    }
+
+    fn steps(&self) -> i64 {
+        self.steps
+    }
+
+    fn position(&self, t: f64) -> f64 {
+        let travelled = self.first_half(self.from_end(t));
+        if t <= self.duration_s / 2.0 {
+            self.signed(travelled)
+        } else {
+            self.signed(self.steps.unsigned_abs() as f64 - travelled)
+        }
+    }
+
+    fn speed(&self, t: f64) -> f64 {
+        let Some(phase) = self.phase(self.from_end(t)) else { return self.signed(self.top_speed) };
+        // (1 - cos x)/2 = sin^2(x/2), which keeps its digits near 0.
+        let sine = libm::sin(phase / 2.0);
+        self.signed(self.top_speed * sine * sine)
+    }
+
+    fn acceleration(&self, t: f64) -> f64 {
+        let Some(phase) = self.phase(self.from_end(t)) else { return 0.0 };
+        let magnitude = self.top_speed * PI / (2.0 * self.ramp_s) * libm::sin(phase);
+        self.signed(if t <= self.duration_s / 2.0 { magnitude } else { -magnitude })
+    }
+
+    fn peaks(&self) -> Peaks {
+        let speed = self.top_speed;
+        if self.ramp_s > 0.0 {
+            Peaks { speed, acceleration: speed * PI / (2.0 * self.ramp_s), jump: 0.0 }
+        } else {
+            Peaks { speed, acceleration: 0.0, jump: 0.0 }
+        }
+    }
+}
+
+/// x - sin(x) for x in 0..=pi, with all digits also where both nearly cancel.
+fn minus_sine(x: f64) -> f64 {
+    if x > 1.0 {
+        return x - libm::sin(x);
+    }
+    // x^3/3! - x^5/5! + …, eight terms; the ninth is under 2^-53 of the sum.
+    let square = x * x;
+    let mut sum = 1.0;
+    for k in (1..8).rev() {
+        let k = f64::from(k);
+        sum = 1.0 - sum * square / ((2.0 * k + 2.0) * (2.0 * k + 3.0));
+    }
+    sum * square * x / 6.0
+}

@@ -1,0 +1,50 @@
+//! Motions: what an axis is asked to do, as position, speed and acceleration over time (DESIGN
+//! Part B).
+//!
+//! [`plan_axis`] turns a scenario's axis into an [`AxisPlan`]: moves one after another, each a
+//! [`Profile`]. One file a family:
+//!
+//! ```text
+//! trapezoid        B2, exact:  / uniform \   every step where the curve crosses its half-integer
+//! trapezoid_table  B2, table:  / staircase \ whole pulse rates and a timer's whole reloads
+//! cosine           B4, exact:  ( S-curve )   so many steps in so much time
+//! sine_segments    B5          \/\/          a sine as segments of fixed rate
+//! steady           B6          ---           constant rate, dwell
+//! ```
+//!
+//! Positions are in steps, f64, and not rounded: [`round_half_up`] is the one rounding (B1's R),
+//! and `quantise` is where it decides. All mathematics that is more than + - * / comes from
+//! `libm`, so a plan has the same bits on every target.
+
+mod asked;
+pub mod cosine;
+mod plan;
+mod profile;
+pub mod sine_segments;
+pub mod steady;
+pub mod trapezoid;
+pub mod trapezoid_table;
+
+pub use plan::{AxisPlan, PlannedMove, plan_axis};
+pub use profile::{Curve, Peaks, Profile};
+
+/// Highest speed that a plan may have, in steps/s.
+pub const MOST_SPEED: f64 = 1e7;
+
+/// B1's R(x) = floor(x + 1/2), exact: the sum is not formed, so 0.49999999999999994 gives 0.
+///
+/// Beyond the range of i64 it gives the end of that range, for not-a-number 0.
+#[must_use]
+pub fn round_half_up(x: f64) -> i64 {
+    // Truncation instead of `libm::floor`: the same result, and quick on every target. Both
+    // differences are exact, because |x - truncated| < 1.
+    let truncated = x as i64;
+    let rest = x - truncated as f64;
+    if rest >= 0.5 {
+        truncated.saturating_add(1)
+    } else if rest < -0.5 {
+        truncated.saturating_sub(1)
+    } else {
+        truncated
+    }
+}

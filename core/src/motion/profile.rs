@@ -1,0 +1,118 @@
+//! What all motions share: a curve over time, in steps (DESIGN B1).
+
+use super::{
+    cosine::Cosine,
+    sine_segments::SineSegments,
+    steady::{Constant, Dwell},
+    trapezoid::Trapezoid,
+    trapezoid_table::TrapezoidTable,
+};
+
+/// The curve of one move: position, speed and acceleration over time since the move's start.
+///
+/// Times are in s, positions in steps from the move's own start, left negative. Before the start a
+/// curve stands at 0, after its end at [`Curve::steps`].
+pub trait Curve {
+    /// How long the move lasts, in s.
+    fn duration_s(&self) -> f64;
+
+    /// Where it ends, in steps from its start.
+    fn steps(&self) -> i64;
+
+    /// Position at `t`: B1's rounding of it gives the steps due by `t`, and at the end it is
+    /// exactly [`Curve::steps`].
+    fn position(&self, t: f64) -> f64;
+
+    /// Speed at `t` in steps/s: at the start the first that the move has, at the end the last.
+    fn speed(&self, t: f64) -> f64;
+
+    /// Acceleration at `t` in steps/s^2; where the speed jumps it has no value, and none is given.
+    fn acceleration(&self, t: f64) -> f64;
+
+    /// The greatest values within the move.
+    fn peaks(&self) -> Peaks;
+}
+
+/// The greatest magnitudes of a move or an axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Peaks {
+    /// Speed in steps/s.
+    pub speed: f64,
+    /// Acceleration in steps/s^2 where the speed has no jump.
+    pub acceleration: f64,
+    /// Jump of speed in steps/s: what a motor has to follow at once (its start-stop rate).
+    pub jump: f64,
+}
+
+impl Peaks {
+    /// The greater of both, each by itself.
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        Self {
+            speed: greater(self.speed, other.speed),
+            acceleration: greater(self.acceleration, other.acceleration),
+            jump: greater(self.jump, other.jump),
+        }
+    }
+}
+
+/// The greater of two magnitudes.
+pub(super) fn greater(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
+}
+
+/// The curve of one move, of any family.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Profile {
+    /// Uniform acceleration, every step where the curve crosses its half-integer (B2, B1).
+    Trapezoid(Trapezoid),
+    /// Uniform acceleration by table (B2).
+    TrapezoidTable(TrapezoidTable),
+    /// Cosine S-curve (B4, `exact`).
+    Cosine(Cosine),
+    /// Sine by segments (B5).
+    SineSegments(SineSegments),
+    /// One rate (B6).
+    Constant(Constant),
+    /// Standing still (B6).
+    Dwell(Dwell),
+}
+
+macro_rules! each {
+    ($profile:expr, $curve:ident => $what:expr) => {
+        match $profile {
+            Profile::Trapezoid($curve) => $what,
+            Profile::TrapezoidTable($curve) => $what,
+            Profile::Cosine($curve) => $what,
+            Profile::SineSegments($curve) => $what,
+            Profile::Constant($curve) => $what,
+            Profile::Dwell($curve) => $what,
+        }
+    };
+}
+
+impl Curve for Profile {
+    fn duration_s(&self) -> f64 {
+        each!(self, curve => curve.duration_s())
+    }
+
+    fn steps(&self) -> i64 {
+        each!(self, curve => curve.steps())
+    }
+
+    fn position(&self, t: f64) -> f64 {
+        each!(self, curve => curve.position(t))
+    }
+
+    fn speed(&self, t: f64) -> f64 {
+        each!(self, curve => curve.speed(t))
+    }
+
+    fn acceleration(&self, t: f64) -> f64 {
+        each!(self, curve => curve.acceleration(t))
+    }
+
+    fn peaks(&self) -> Peaks {
+        each!(self, curve => curve.peaks())
+    }
+}

@@ -1,0 +1,133 @@
+//! Trapezoid with every step in its ideal place (DESIGN B2's ideal curve, B1's rule).
+//!
+//! Uniform acceleration a from the start speed v0 to the top speed v1 and back, v^2 = v0^2 + 2*a*s;
+//! a short move turns round at its middle, a triangle:
+//!
+//! ```text
+//!  v1 |     ________               t_r = (v1 - v0)/a         time of a ramp
+//!     |   /          \             s_r = (v1^2 - v0^2)/(2a)  steps of a ramp
+//!  v0 | /              \           s(t) = v0*t + a*t^2/2     in the ramp
+//!     |                                 = s_r + v1*(t - t_r) in the plateau
+//!     +------------------              = n - s(T - t)        from T/2 on
+//!       t_r        T-t_r  T
+//! ```
+
+use super::{Curve, Peaks, profile::greater};
+
+/// A trapezoid or triangle of uniform acceleration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trapezoid {
+    pub(super) steps: i64,
+    pub(super) start_speed: f64,
+    pub(super) acceleration: f64,
+    /// Highest speed that is reached: the top speed, or that of the triangle's tip.
+    pub(super) peak_speed: f64,
+    /// Steps of a ramp, at most half of all.
+    pub(super) ramp_steps: f64,
+    pub(super) ramp_s: f64,
+    pub(super) duration_s: f64,
+}
+
+impl Trapezoid {
+    /// `steps` (left negative) from `start_speed` >= 0 to `top_speed` >= `start_speed` and back
+    /// with `acceleration` > 0, in steps, s. The top speed is above 0.
+    #[must_use]
+    pub fn new(steps: i64, start_speed: f64, top_speed: f64, acceleration: f64) -> Self {
+        let all = steps.unsigned_abs() as f64;
+        let (v0, v1, a) = (start_speed, top_speed, acceleration);
+        // (v1 - v0)*(v1 + v0) keeps the digits that v1^2 - v0^2 would lose.
+        let whole_ramp = (v1 - v0) * (v1 + v0) / (2.0 * a);
+        let (peak_speed, ramp_steps) = if 2.0 * whole_ramp <= all {
+            (v1, whole_ramp)
+        } else {
+            (libm::sqrt(v0 * v0 + a * all), all / 2.0)
+        };
+        // s = (v0 + v)/2 * t, which has no difference of nearly equal numbers in it.
+        let ramp_s = if ramp_steps > 0.0 { 2.0 * ramp_steps / (v0 + peak_speed) } else { 0.0 };
+        let plateau_s = (all - 2.0 * ramp_steps) / peak_speed;
+        let duration_s = 2.0 * ramp_s + plateau_s;
+        Self { steps, start_speed, acceleration, peak_speed, ramp_steps, ramp_s, duration_s }
+    }
+
+    /// Highest speed that is reached, in steps/s.
+    #[must_use]
+    pub fn peak_speed(&self) -> f64 {
+        self.peak_speed
+    }
+
+    /// Time of each ramp in s.
+    #[must_use]
+    pub fn ramp_s(&self) -> f64 {
+        self.ramp_s
+    }
+
+    /// Steps of each ramp, not rounded.
+    #[must_use]
+    pub fn ramp_steps(&self) -> f64 {
+        self.ramp_steps
+    }
+
+    fn signed(&self, magnitude: f64) -> f64 {
+        if self.steps < 0 { -magnitude } else { magnitude }
+    }
+
+    /// s(t) of the first half, in steps without sign.
+    fn first_half(&self, t: f64) -> f64 {
+        let position = if t < self.ramp_s {
+            (self.start_speed + self.acceleration * t / 2.0) * t
+        } else {
+            self.ramp_steps + self.peak_speed * (t - self.ramp_s)
+        };
+        // The middle belongs to both halves; without this they could pass it by a rounding.
+        let half = self.steps.unsigned_abs() as f64 / 2.0;
+        if position > half { half } else { position }
+    }
+
+    /// Time from the nearer end, 0 at both.
+    fn from_end(&self, t: f64) -> f64 {
+        greater(0.0, if t <= self.duration_s / 2.0 { t } else { self.duration_s - t })
+    }
+}
+
+impl Curve for Trapezoid {
+    fn duration_s(&self) -> f64 {
+        self.duration_s
+    }
+
+    fn steps(&self) -> i64 {
+        self.steps
+    }
+
+    fn position(&self, t: f64) -> f64 {
+        let travelled = self.first_half(self.from_end(t));
+        if t <= self.duration_s / 2.0 {
+            self.signed(travelled)
+        } else {
+            self.signed(self.steps.unsigned_abs() as f64 - travelled)
+        }
+    }
+
+    fn speed(&self, t: f64) -> f64 {
+        let t = self.from_end(t);
+        self.signed(if t < self.ramp_s {
+            self.start_speed + self.acceleration * t
+        } else {
+            self.peak_speed
+        })
+    }
+
+    fn acceleration(&self, t: f64) -> f64 {
+        if self.from_end(t) >= self.ramp_s {
+            0.0
+        } else if t <= self.duration_s / 2.0 {
+            self.signed(self.acceleration)
+        } else {
+            self.signed(-self.acceleration)
+        }
+    }
+
+    fn peaks(&self) -> Peaks {
+        let acceleration = if self.ramp_s > 0.0 { self.acceleration } else { 0.0 };
+        Peaks { speed: self.peak_speed, acceleration, jump: 0.0 }
+    }
+}

@@ -1,0 +1,270 @@
+//! Trapezoid by acceleration table (DESIGN B2, Sonobe 2011).
+//!
+//! The table has one pulse rate a step, whole pps, and a timer's whole reload for each:
+//!
+//! ```text
+//! rate[k]   = round_half_up(sqrt(v0^2 + 2*a*k))     k = 0 .. top - 1
+//! rate[top] = round_half_up(v1)                     top = first k with v0^2 + 2*a*k >= v1^2
+//! reload[k] = floor(timer_hz/rate[k])
+//! ```
+//!
+//! The timer's interrupt makes one step and loads the next interval. Of a move of n steps, interval
+//! i (from 0) has row min(i, n - 1 - i, top), so a short move is a triangle, and step k falls at
+//! the sum of the first k reloads; the move ends with its last step:
+//!
+//! ```text
+//! rate |      _______
+//!      |    _|       |_        position   k - 1/2 at step k, straight between; B1's R of it
+//!      |  _|           |_                 counts the steps. 0 at the start, n at the end, so the
+//!      |_|               |_               first interval climbs half a step and the last half
+//!       ^ ^ ^^^^^^^^^^^ ^ ^ steps         step comes with the last pulse.
+//! ```
+//!
+//! Only the ramp is kept, as sums of reloads: integers up to the last division by `timer_hz`.
+
+use super::{Curve, Peaks, profile::greater, round_half_up};
+use alloc::vec::Vec;
+
+/// How far past a step's place the curve stands at the very time of the step, in steps. With it
+/// R counts the step at its own time to the left as well as to the right.
+const PAST_THE_STEP: f64 = 1.0 / 1_048_576.0;
+
+/// A trapezoid by acceleration table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrapezoidTable {
+    steps: i64,
+    /// v0^2 in (steps/s)^2.
+    start_squared: f64,
+    acceleration: f64,
+    top_speed: f64,
+    timer_hz: u32,
+    /// The table's last row.
+    top: u64,
+    /// Intervals of the ramp; the deceleration has as many.
+    ramp: u64,
+    /// Timer ticks from the start to step k, k = 0 ..= ramp + 1.
+    ///
+    /// Invariant: at least two entries, rising.
+    sums: Vec<u64>,
+}
+
+/// Why a table cannot be made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NoTable {
+    /// The move needs more rows than allowed.
+    Rows {
+        /// Rows that it needs.
+        needed: u64,
+    },
+    /// The timer cannot make the rate of a row.
+    Timer {
+        /// The greatest rate of the move in steps/s.
+        rate: f64,
+    },
+}
+
+impl TrapezoidTable {
+    /// `steps` (left negative, not 0) from `start_speed` >= 1/2 to `top_speed` >= `start_speed` and
+    /// back with `acceleration` > 0, in steps, s; `timer_hz` counts the reloads.
+    ///
+    /// # Errors
+    /// [`NoTable`] where the move needs more than `most_rows` rows or a rate above `timer_hz`.
+    pub fn new(
+        steps: i64,
+        (start_speed, top_speed, acceleration): (f64, f64, f64),
+        timer_hz: u32,
+        most_rows: u64,
+    ) -> Result<Self, NoTable> {
+        let climb = (top_speed - start_speed) * (top_speed + start_speed);
+        let top = libm::ceil(climb / (2.0 * acceleration)) as u64;
+        let half = steps.unsigned_abs() / 2;
+        let ramp = if top < half { top } else { half };
+        if ramp >= most_rows {
+            return Err(NoTable::Rows { needed: ramp.saturating_add(1) });
+        }
+        let mut table = Self {
+            steps,
+            start_squared: start_speed * start_speed,
+            acceleration,
+            top_speed,
+            timer_hz,
+            top,
+            ramp,
+            sums: Vec::with_capacity(ramp as usize + 2),
+        };
+        let greatest = table.rate(ramp);
+        if greatest > timer_hz.into() {
+            return Err(NoTable::Timer { rate: greatest as f64 });
+        }
+        let mut sum = 0;
+        table.sums.push(0);
+        for row in 0..=ramp {
+            sum += table.reload(row);
+            table.sums.push(sum);
+        }
+        Ok(table)
+    }
+
+    /// Rows of the whole table, also of those that a short move does not reach.
+    #[must_use]
+    pub fn rows(&self) -> u64 {
+        self.top.saturating_add(1)
+    }
+
+    /// Pulse rate of a row in whole pps; rows after the last are as the last.
+    #[must_use]
+    pub fn rate(&self, row: u64) -> u64 {
+        let speed = if row < self.top {
+            libm::sqrt(self.start_squared + 2.0 * self.acceleration * row as f64)
+        } else {
+            self.top_speed
+        };
+        round_half_up(speed).unsigned_abs()
+    }
+
+    /// The timer's reload of a row.
+    #[must_use]
+    pub fn reload(&self, row: u64) -> u64 {
+        u64::from(self.timer_hz).checked_div(self.rate(row)).unwrap_or(0)
+    }
+
+    /// Steps of the move, without sign.
+    fn count(&self) -> u64 {
+        self.steps.unsigned_abs()
+    }
+
+    /// Reload of the intervals between the ramps.
+    fn plateau_reload(&self) -> u64 {
+        match self.sums.as_slice() {
+            [.., before, last] => last - before,
+            _ => 0,
+        }
+    }
+
+    fn sum(&self, steps: u64) -> u64 {
+        self.sums.get(steps as usize).copied().unwrap_or(0)
+    }
+
+    /// Timer ticks from the start to step `k` (from 1; 0 is the start, from the last step on the
+    /// end).
+    #[must_use]
+    pub fn step_ticks(&self, k: u64) -> u64 {
+        let count = self.count();
+        let k = if k > count { count } else { k };
+        let plateau = count - 2 * self.ramp;
+        if k <= self.ramp {
+            self.sum(k)
+        } else if k - self.ramp <= plateau {
+            self.sum(self.ramp) + (k - self.ramp) * self.plateau_reload()
+        } else {
+            2 * self.sum(self.ramp) + plateau * self.plateau_reload() - self.sum(count - k)
+        }
+    }
+
+    /// Time of step `k` in s, rounded once.
+    fn step_s(&self, k: u64) -> f64 {
+        self.step_ticks(k) as f64 / f64::from(self.timer_hz)
+    }
+
+    /// Steps that have fallen by `t`.
+    fn fallen(&self, t: f64) -> u64 {
+        let count = self.count();
+        // From the timer's ticks comes a guess that can be off by one; the times themselves decide.
+        let ticks = (t * f64::from(self.timer_hz)) as u64;
+        let (up, all) = (self.sum(self.ramp), self.step_ticks(count));
+        let guess = if ticks < up {
+            self.sums.partition_point(|&sum| sum <= ticks).saturating_sub(1) as u64
+        } else if ticks < all - up {
+            self.ramp + (ticks - up).checked_div(self.plateau_reload()).unwrap_or(0)
+        } else {
+            let left = all.saturating_sub(ticks);
+            count - self.sums.partition_point(|&sum| sum < left) as u64
+        };
+        let mut fallen = if guess > count { count } else { guess };
+        while fallen > 0 && self.step_s(fallen) > t {
+            fallen -= 1;
+        }
+        while fallen < count && self.step_s(fallen + 1) <= t {
+            fallen += 1;
+        }
+        fallen
+    }
+
+    /// Row of interval `i` (from 0).
+    fn row(&self, i: u64) -> u64 {
+        let from_end = self.count().saturating_sub(1).saturating_sub(i);
+        i.min(from_end).min(self.ramp)
+    }
+
+    /// Speed in interval `i` as the timer makes it, without sign.
+    fn interval_speed(&self, i: u64) -> f64 {
+        let row = self.row(i);
+        let reload = self.sum(row + 1) - self.sum(row);
+        if reload == 0 { 0.0 } else { f64::from(self.timer_hz) / reload as f64 }
+    }
+
+    /// Difference of speeds of interval `i` and the one before, over the time from middle to
+    /// middle.
+    fn acceleration_into(&self, i: u64) -> f64 {
+        let (before, after) = (self.interval_speed(i.saturating_sub(1)), self.interval_speed(i));
+        let between = (1.0 / before + 1.0 / after) / 2.0;
+        if after == before { 0.0 } else { (after - before) / between }
+    }
+
+    /// Interval at `t`, from 0.
+    fn interval(&self, t: f64) -> u64 {
+        self.fallen(t).min(self.count().saturating_sub(1))
+    }
+
+    fn signed(&self, magnitude: f64) -> f64 {
+        if self.steps < 0 { -magnitude } else { magnitude }
+    }
+}
+
+impl Curve for TrapezoidTable {
+    fn duration_s(&self) -> f64 {
+        self.step_s(self.count())
+    }
+
+    fn steps(&self) -> i64 {
+        self.steps
+    }
+
+    fn position(&self, t: f64) -> f64 {
+        let fallen = self.fallen(t);
+        if fallen >= self.count() || !(t > 0.0) {
+            return self.signed(fallen as f64);
+        }
+        let (from, to) = (self.step_s(fallen), self.step_s(fallen + 1));
+        let part = (t - from) / (to - from);
+        self.signed(if fallen == 0 {
+            // Half a step in the first interval, and short of it until the step falls.
+            part * (0.5 - PAST_THE_STEP)
+        } else {
+            fallen as f64 - 0.5 + PAST_THE_STEP + part * (1.0 - 2.0 * PAST_THE_STEP)
+        })
+    }
+
+    fn speed(&self, t: f64) -> f64 {
+        self.signed(self.interval_speed(self.interval(t)))
+    }
+
+    /// The rates are a staircase; given is the slope from the middle of this interval to the
+    /// middle of the next, so that what the table's whole numbers do to the acceleration shows.
+    fn acceleration(&self, t: f64) -> f64 {
+        let i = self.interval(t);
+        self.signed(if i + 1 < self.count() { self.acceleration_into(i + 1) } else { 0.0 })
+    }
+
+    fn peaks(&self) -> Peaks {
+        let mut peaks = Peaks::default();
+        let used = self.ramp.min(self.count().saturating_sub(1) / 2);
+        for i in 0..=used {
+            peaks.speed = greater(peaks.speed, self.interval_speed(i));
+            peaks.acceleration = greater(peaks.acceleration, libm::fabs(self.acceleration_into(i)));
+            let jump = self.interval_speed(i) - self.interval_speed(i.saturating_sub(1));
+            peaks.jump = greater(peaks.jump, libm::fabs(jump));
+        }
+        peaks
+    }
+}

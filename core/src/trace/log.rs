@@ -1,0 +1,120 @@
+//! The packets of a run, one row each: when, which bytes, what the controller did with it.
+
+use crate::{
+    signal::{Event, Fate, Record, Sink},
+    units::Instant,
+};
+use alloc::{collections::VecDeque, vec::Vec};
+
+/// How a row came to its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// A whole packet.
+    Packet(Fate),
+    /// Cut short by a gap (fault SHORT_PACKET).
+    Short,
+    /// Dropped by a framing error (fault FRAMING); its last byte was not delivered.
+    Framing,
+    /// Bytes that were ignored after a framing error.
+    Ignored,
+    /// The run ended within it.
+    Open,
+}
+
+/// One row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LoggedPacket {
+    /// Where the start bit of its first byte was seen.
+    pub start: Instant,
+    /// Where it was complete or given up.
+    pub end: Instant,
+    /// What became of it.
+    pub verdict: Verdict,
+    /// Its tick's first cycle, if it has begun.
+    pub tick_start: Option<Instant>,
+    /// First cycle after its tick, if it has ended.
+    pub tick_end: Option<Instant>,
+    bytes_end: usize,
+}
+
+/// All packets of a run.
+#[derive(Clone, Debug, Default)]
+pub struct PacketLog {
+    rows: Vec<LoggedPacket>,
+    bytes: Vec<u8>,
+    /// Where the packet that is coming began.
+    open: Option<Instant>,
+    last: Instant,
+    ignoring: bool,
+    /// Rows whose tick waits, and whose tick runs.
+    waiting: VecDeque<usize>,
+    running: Option<usize>,
+}
+
+impl PacketLog {
+    /// Rows so far, in the order of their ends.
+    #[must_use]
+    pub fn rows(&self) -> &[LoggedPacket] {
+        &self.rows
+    }
+
+    /// Bytes of a row.
+    #[must_use]
+    pub fn bytes(&self, index: usize) -> &[u8] {
+        let first = index.checked_sub(1).and_then(|i| self.rows.get(i)).map_or(0, |row| row.bytes_end);
+        self.rows.get(index).and_then(|row| self.bytes.get(first..row.bytes_end)).unwrap_or_default()
+    }
+
+    /// The run is over: what is still open becomes a row.
+    pub fn finish(&mut self) {
+        if self.open.is_some() {
+            self.close(self.last, if self.ignoring { Verdict::Ignored } else { Verdict::Open });
+        }
+    }
+
+    fn close(&mut self, end: Instant, verdict: Verdict) {
+        let start = self.open.take().unwrap_or(end);
+        if verdict == Verdict::Packet(Fate::Queued) {
+            self.waiting.push_back(self.rows.len());
+        }
+        let bytes_end = self.bytes.len();
+        self.rows.push(LoggedPacket { start, end, verdict, tick_start: None, tick_end: None, bytes_end });
+    }
+}
+
+impl Sink for PacketLog {
+    fn record(&mut self, _: Record) {}
+
+    fn event(&mut self, at: Instant, event: Event) {
+        match event {
+            Event::Byte { seen, byte } => {
+                self.open.get_or_insert(seen);
+                self.bytes.push(byte);
+                self.last = at;
+            }
+            Event::FramingError { seen } => {
+                self.open.get_or_insert(seen);
+                self.close(at, Verdict::Framing);
+                self.ignoring = true;
+            }
+            Event::Gap { short } => {
+                if self.open.is_some() {
+                    self.close(at, if short { Verdict::Short } else { Verdict::Ignored });
+                }
+                self.ignoring = false;
+            }
+            Event::Packet(fate) => self.close(at, Verdict::Packet(fate)),
+            Event::TickStart => {
+                self.running = self.waiting.pop_front();
+                if let Some(row) = self.running.and_then(|i| self.rows.get_mut(i)) {
+                    row.tick_start = Some(at);
+                }
+            }
+            Event::TickEnd => {
+                if let Some(row) = self.running.take().and_then(|i| self.rows.get_mut(i)) {
+                    row.tick_end = Some(at);
+                }
+            }
+        }
+    }
+}

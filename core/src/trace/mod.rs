@@ -1,0 +1,12 @@
+//! What a run leaves: records of the signals, what happened on the way, and their digest
+//! (DESIGN A3). The records themselves are in [`crate::signal`].
+
+mod columns;
+mod digest;
+mod log;
+mod text;
+
+pub use columns::{Columns, columns};
+pub use digest::Digest;
+pub use log::{LoggedPacket, PacketLog, Verdict};
+pub use text::{ParseError, parse_line, write_record};

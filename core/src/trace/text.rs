@@ -1,0 +1,56 @@
+//! A trace as text: one record a line, cycle and levels in hexadecimal, a space between.
+
+use crate::{
+    signal::{Levels, Record},
+    units::Instant,
+};
+use core::fmt;
+
+/// Writes one record and a line feed: `1f4a 700000001`.
+///
+/// # Errors
+/// Those of the writer.
+pub fn write_record(out: &mut impl fmt::Write, record: Record) -> fmt::Result {
+    writeln!(out, "{:x} {:x}", record.cycle.0, record.levels.0)
+}
+
+/// A line that is no record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ParseError;
+
+impl fmt::Display for ParseError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("not a record; a line has a cycle and levels in hexadecimal, a space between")
+    }
+}
+
+impl core::error::Error for ParseError {}
+
+/// Reads one line that [`write_record`] wrote.
+///
+/// # Errors
+/// [`ParseError`] if it is no record.
+pub fn parse_line(line: &str) -> Result<Record, ParseError> {
+    let (cycle, levels) = line.trim_end().split_once(' ').ok_or(ParseError)?;
+    let number = |text| u64::from_str_radix(text, 16).map_err(|_| ParseError);
+    Ok(Record { cycle: Instant(number(cycle)?), levels: Levels(number(levels)?) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::string::String;
+
+    #[test]
+    fn reading_gives_back_what_was_written() {
+        for (cycle, levels) in [(0, 0), (0x1f4a, 0x7_0000_0001), (u64::MAX, 0xf_ffff_ffff)] {
+            let record = Record { cycle: Instant(cycle), levels: Levels(levels) };
+            let mut text = String::new();
+            write_record(&mut text, record).expect("a string takes it");
+            assert_eq!(parse_line(&text), Ok(record));
+        }
+        for line in ["", "1", "1 ", "1 g", "-1 0"] {
+            assert_eq!(parse_line(line), Err(ParseError), "{line:?}");
+        }
+    }
+}
