@@ -14,6 +14,7 @@
 mod check;
 mod compact;
 mod hex;
+pub mod link;
 mod problem;
 mod quantity;
 mod read;

@@ -21,12 +21,22 @@ impl Scenario {
     /// Every field of the wrong type or name, with its path; ranges are judged by
     /// [`Scenario::check`].
     pub fn from_json(text: &str) -> Result<Self, Vec<Problem>> {
-        let value: Value = serde_json::from_str(text).map_err(|error| {
-            let (line, column) = (error.line(), error.column());
-            let detail = error.to_string();
-            let detail = detail.split(" at line ").next().unwrap_or_default().into();
-            alloc::vec![Problem::new("", Cause::Syntax { line, column, detail })]
-        })?;
+        Self::strictly(parse(text)?)
+    }
+
+    /// Reads a scenario whose version stands elsewhere, as in a link.
+    ///
+    /// # Errors
+    /// As [`Self::from_json`].
+    pub fn from_json_of(text: &str, version: u64) -> Result<Self, Vec<Problem>> {
+        let mut value = parse(text)?;
+        if let Some(map) = value.as_object_mut() {
+            map.insert("version".into(), version.into());
+        }
+        Self::strictly(value)
+    }
+
+    fn strictly(value: Value) -> Result<Self, Vec<Problem>> {
         let (scenario, problems) = read(upgrade(value)?);
         if problems.is_empty() { Ok(scenario) } else { Err(problems) }
     }
@@ -34,12 +44,9 @@ impl Scenario {
     /// Reads what can be read and lists the rest: fields that cannot be read have their defaults.
     #[must_use]
     pub fn from_json_lenient(text: &str) -> (Self, Vec<Problem>) {
-        match Self::from_json(text) {
-            Ok(scenario) => (scenario, Vec::new()),
-            Err(problems) => match serde_json::from_str(text).ok().and_then(|v| upgrade(v).ok()) {
-                Some(value) => read(value),
-                None => (Self::default(), problems),
-            },
+        match parse(text).and_then(upgrade) {
+            Ok(value) => read(value),
+            Err(problems) => (Self::default(), problems),
         }
     }
 
@@ -48,6 +55,15 @@ impl Scenario {
     pub fn to_json(&self) -> String {
         serde_json::to_string_pretty(self).unwrap_or_default()
     }
+}
+
+fn parse(text: &str) -> Result<Value, Vec<Problem>> {
+    serde_json::from_str(text).map_err(|error| {
+        let (line, column) = (error.line(), error.column());
+        let detail = error.to_string();
+        let detail = detail.split(" at line ").next().unwrap_or_default().into();
+        alloc::vec![Problem::new("", Cause::Syntax { line, column, detail })]
+    })
 }
 
 /// Brings a scenario of any older version to [`VERSION`], one version a step; a step that was
