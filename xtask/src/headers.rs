@@ -1,0 +1,134 @@
+//! `web/_headers`: the one place that says which headers go with which path.
+//!
+//! The format is that of the static hosts that read such a file: a path at the start of a line, its
+//! headers indented below it, `#` for comments. Of the path patterns only the exact path and a `*`
+//! at the end are taken; whatever else a host might know is refused, so that the file can't mean one
+//! thing there and another here.
+
+use anyhow::{Context, Result, bail};
+use axum::http::{HeaderName, HeaderValue};
+
+/// The rules of one `_headers` file, in its order.
+#[derive(Debug, Default)]
+pub(crate) struct Headers {
+    rules: Vec<Rule>,
+}
+
+#[derive(Debug)]
+struct Rule {
+    /// An exact path, or a prefix followed by `*`.
+    path: String,
+    headers: Vec<(HeaderName, HeaderValue)>,
+}
+
+impl Rule {
+    fn covers(&self, path: &str) -> bool {
+        match self.path.strip_suffix('*') {
+            Some(prefix) => path.starts_with(prefix),
+            None => path == self.path,
+        }
+    }
+}
+
+impl Headers {
+    /// Reads a `_headers` file; an error names the line.
+    pub(crate) fn parse(text: &str) -> Result<Self> {
+        let mut rules: Vec<Rule> = Vec::new();
+        for (index, line) in text.lines().enumerate() {
+            let content = line.trim();
+            if content.is_empty() || content.starts_with('#') {
+                continue;
+            }
+            let at = || format!("_headers, line {}: {content}", index + 1);
+            if !line.starts_with(char::is_whitespace) {
+                let prefix = content.strip_suffix('*').unwrap_or(content);
+                if !content.starts_with('/') || prefix.contains(['*', ':', ' ']) {
+                    bail!("{}: give a path such as /pkg/app.js, or a prefix such as /pkg/*", at());
+                }
+                rules.push(Rule { path: content.to_owned(), headers: Vec::new() });
+                continue;
+            }
+            let rule = rules.last_mut().with_context(|| format!("{}: a header before any path", at()))?;
+            let (name, value) =
+                content.split_once(':').with_context(|| format!("{}: give `Name: value`", at()))?;
+            rule.headers
+                .push((name.trim().parse().with_context(at)?, value.trim().parse().with_context(at)?));
+        }
+        Ok(Self { rules })
+    }
+
+    /// The headers of an answer for `path`, those of earlier rules first.
+    pub(crate) fn of(&self, path: &str) -> impl Iterator<Item = (&HeaderName, &HeaderValue)> {
+        let covering = self.rules.iter().filter(move |rule| rule.covers(path));
+        covering.flat_map(|rule| rule.headers.iter().map(|(name, value)| (name, value)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(text: &str, path: &str, expected: &[&str]) {
+        let headers = Headers::parse(text).unwrap();
+        let given: Vec<String> =
+            headers.of(path).map(|(name, value)| format!("{name}: {}", value.to_str().unwrap())).collect();
+        assert_eq!(given, expected, "{path} under\n{text}");
+    }
+
+    #[test]
+    fn a_rule_covers_its_path_or_its_prefix() {
+        let text = "# all\n/*\n  X-One: a; b:c\n\n/pkg/*\n\tX-Two: 2\n/a.js\n  X-Three: 3\n";
+        check(text, "/", &["x-one: a; b:c"]);
+        check(text, "/pkg/a.js", &["x-one: a; b:c", "x-two: 2"]);
+        check(text, "/a.js", &["x-one: a; b:c", "x-three: 3"]);
+        check("", "/", &[]);
+    }
+
+    #[test]
+    fn what_only_some_hosts_know_is_refused_with_its_line() {
+        for (text, expected) in [
+            ("  X: 1", "line 1: X: 1: a header before any path"),
+            ("/*\n  no colon", "line 2: no colon: give `Name: value`"),
+            ("/*\n  ! X", "line 2: ! X: give `Name: value`"),
+            ("/*\n  A b: 1", "line 2: A b: 1"),
+            ("/a/*/b\n", "line 1: /a/*/b: give a path"),
+            ("/:page\n", "line 1: /:page: give a path"),
+            ("example/*\n", "line 1: example/*: give a path"),
+        ] {
+            let error = format!("{:#}", Headers::parse(text).unwrap_err());
+            assert!(error.contains(expected), "{text:?} gave {error:?}, not {expected:?}");
+        }
+    }
+
+    /// The value of one header of the page itself, from the workspace's own file.
+    fn own(name: &str) -> String {
+        let text = std::fs::read_to_string(crate::root().join("web/_headers")).unwrap();
+        let headers = Headers::parse(&text).unwrap();
+        let values: Vec<_> = headers.of("/").filter(|(given, _)| given.as_str() == name).collect();
+        assert_eq!(values.len(), 1, "{name} must stand in web/_headers exactly once");
+        values[0].1.to_str().unwrap().to_owned()
+    }
+
+    #[test]
+    fn the_workspace_file_says_what_the_page_needs() {
+        let policy = own("content-security-policy");
+        assert!(policy.starts_with("default-src 'none'; "), "{policy}");
+        assert!(policy.contains("; script-src 'self' 'wasm-unsafe-eval'; "), "{policy}");
+        assert!(policy.ends_with("; frame-ancestors 'none'"), "{policy}");
+        assert_eq!(own("permissions-policy"), "serial=(self)");
+        assert_eq!(own("referrer-policy"), "no-referrer");
+        assert_eq!(own("x-content-type-options"), "nosniff");
+    }
+
+    #[test]
+    fn the_page_and_the_headers_state_one_policy() {
+        let Ok(page) = std::fs::read_to_string(crate::root().join("web/index.html")) else {
+            return;
+        };
+        // Browsers ignore frame-ancestors in a meta tag, and complain about it.
+        let policy = own("content-security-policy").replace("; frame-ancestors 'none'", "");
+        let tag = format!("<meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\"");
+        let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(page.contains(&tag), "web/index.html must hold, as web/_headers says:\n{tag}>");
+    }
+}

@@ -1,0 +1,139 @@
+//! `cargo xtask`: everything that is done with this workspace beyond plain cargo.
+//!
+//! | file | what it holds |
+//! | --- | --- |
+//! | `tools` | what a fresh machine lacks, installed once per user |
+//! | `page` | the optimised page, and what each of its files weighs |
+//! | `headers`, `serve` | the local server, whose headers are `web/_headers`' |
+//! | `steps`, `browser` | `cargo xtask test`, step by step |
+//! | `bench` | `cargo xtask bench` |
+//! | `run` | child processes: time limit, no input, killed as a group |
+
+mod bench;
+mod browser;
+mod headers;
+mod page;
+mod run;
+mod serve;
+mod steps;
+mod tools;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::Result;
+use clap::{Args, Parser, Subcommand};
+
+/// Builds, shows, tests and measures Stepscope.
+#[derive(Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+struct Cli {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Install what is missing, build the page, serve it on this machine and open it
+    Demo {
+        /// Port on 127.0.0.1; 0 takes any free one
+        #[arg(long, default_value_t = 8080)]
+        port: u16,
+        /// Print the address only
+        #[arg(long)]
+        no_open: bool,
+        #[command(flatten)]
+        optimising: Optimising,
+    },
+    /// Build the page and print what each of its files weighs
+    Build {
+        #[command(flatten)]
+        optimising: Optimising,
+    },
+    /// Serve the page as it lies, without building it
+    Serve {
+        /// Port on 127.0.0.1; 0 takes any free one
+        #[arg(long, default_value_t = 8080)]
+        port: u16,
+        /// Folder to serve; the workspace's web/ if not given
+        #[arg(long)]
+        web: Option<PathBuf>,
+    },
+    /// Run every check of the project: the continuous integration's whole job
+    Test {
+        /// Only this step; may be given several times
+        #[arg(long, value_enum)]
+        only: Vec<steps::Step>,
+        /// Name the steps and stop
+        #[arg(long)]
+        list: bool,
+    },
+    /// Run the benchmarks
+    Bench,
+}
+
+/// Whether wasm-opt goes over the page's wasm.
+#[derive(Args, Clone, Copy)]
+struct Optimising {
+    /// Leave wasm-opt out: a larger and slower page, but no wasm-opt is needed
+    #[arg(long)]
+    no_opt: bool,
+}
+
+impl Optimising {
+    fn wanted(self) -> tools::Optimise {
+        if self.no_opt { tools::Optimise::No } else { tools::Optimise::Yes }
+    }
+}
+
+/// The workspace's folder.
+fn root() -> &'static Path {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    here.parent().unwrap_or(here)
+}
+
+async fn perform(task: Task) -> Result<()> {
+    let web = root().join("web");
+    match task {
+        Task::Demo { port, no_open, optimising } => {
+            // The port first: nobody should wait for a build to hear that it is taken.
+            let listener = serve::bind(port)?;
+            page::build(optimising.wanted()).await?;
+            serve::serve(listener, &web, !no_open).await
+        }
+        Task::Build { optimising } => {
+            page::build(optimising.wanted()).await?;
+            print!("{}", page::weigh(&web)?);
+            Ok(())
+        }
+        Task::Serve { port, web: folder } => {
+            serve::serve(serve::bind(port)?, &folder.unwrap_or(web), false).await
+        }
+        Task::Test { only: _, list: true } => {
+            steps::list();
+            Ok(())
+        }
+        Task::Test { only, list: false } => steps::run(&only).await,
+        Task::Bench => bench::run().await,
+    }
+}
+
+#[tokio::main(flavor = "current_thread")]
+async fn main() -> ExitCode {
+    let task = Cli::parse().task;
+    // Dropping the task's future kills the process group of whatever child it was waiting for.
+    let done = tokio::select! {
+        done = perform(task) => done,
+        signal = run::interrupted() => match signal {
+            Ok(code) => return ExitCode::from(code),
+            Err(error) => Err(error),
+        },
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! The page: its optimised build, and what each of its files weighs on the way to a visitor.
+
+use std::fmt;
+use std::io::Write;
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use walkdir::{DirEntry, WalkDir};
+
+use crate::run;
+use crate::tools::{Optimise, WasmTools};
+
+/// Builds the wasm crate into `web/pkg`, installing the tools first if they are missing.
+pub(crate) async fn build(optimise: Optimise) -> Result<()> {
+    let tools = WasmTools::ready(optimise).await?;
+    let mut command = tools.wasm_pack()?;
+    command.args(["build", "--target", "web"]).args(tools.build_options());
+    // wasm-pack takes the output folder relative to the crate.
+    command.args(["wasm", "--out-dir", "../web/pkg", "--", "--locked"]);
+    run::to_end(command, run::LIMIT).await.context("the page was not built")?;
+    tools.check_optimised()
+}
+
+/// The sizes of one file, in bytes.
+#[derive(Clone, Copy, Default)]
+struct Sizes {
+    raw: usize,
+    gzip: usize,
+    brotli: usize,
+}
+
+impl Sizes {
+    /// As a static host would send it at its best settings.
+    fn of(bytes: &[u8]) -> Result<Self> {
+        let mut gzip = GzEncoder::new(Vec::new(), Compression::best());
+        gzip.write_all(bytes)?;
+        let mut brotli = Vec::new();
+        brotli::BrotliCompress(&mut &*bytes, &mut brotli, &brotli::enc::BrotliEncoderParams::default())?;
+        Ok(Self { raw: bytes.len(), gzip: gzip.finish()?.len(), brotli: brotli.len() })
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self { raw: self.raw + other.raw, gzip: self.gzip + other.gzip, brotli: self.brotli + other.brotli }
+    }
+}
+
+/// A table of all files that the page loads, with their sum; `Display` prints it.
+pub(crate) struct Weights(Vec<(String, Sizes)>);
+
+impl fmt::Display for Weights {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let sum = self.0.iter().fold(Sizes::default(), |sum, (_, sizes)| sum.plus(*sizes));
+        let width = self.0.iter().map(|(name, _)| name.len()).max().unwrap_or(0).max("all files".len());
+        writeln!(out, "{:width$} {:>10} {:>10} {:>10}  bytes", "file", "raw", "gzip", "brotli")?;
+        let rows = self.0.iter().map(|(name, sizes)| (name.as_str(), *sizes));
+        for (name, Sizes { raw, gzip, brotli }) in rows.chain([("all files", sum)]) {
+            writeln!(out, "{name:width$} {raw:>10} {gzip:>10} {brotli:>10}")?;
+        }
+        Ok(())
+    }
+}
+
+/// Weighs every file under `web` that the page loads.
+pub(crate) fn weigh(web: &Path) -> Result<Weights> {
+    let mut rows = Vec::new();
+    for entry in WalkDir::new(web)
+        .sort_by_file_name()
+        .into_iter()
+        .filter_entry(|entry| entry.depth() == 0 || loads(entry))
+    {
+        let entry = entry.with_context(|| format!("{} can't be read", web.display()))?;
+        if entry.file_type().is_file() {
+            let bytes = std::fs::read(entry.path())
+                .with_context(|| format!("{} can't be read", entry.path().display()))?;
+            let name = entry.path().strip_prefix(web).unwrap_or(entry.path()).display().to_string();
+            rows.push((name, Sizes::of(&bytes)?));
+        }
+    }
+    Ok(Weights(rows))
+}
+
+/// Whether a visitor's browser may ask for this: not what only tools, hosts and readers of the source use.
+fn loads(entry: &DirEntry) -> bool {
+    let name = entry.file_name().to_string_lossy();
+    let for_tools = ["node_modules", "package.json", "package-lock.json", "tsconfig.json", "jsconfig.json"];
+    !(name.starts_with(['.', '_'])
+        || name.ends_with(".ts")
+        || name.ends_with(".md")
+        || name.starts_with("LICENSE")
+        || for_tools.contains(&&*name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_a_browser_loads_is_weighed_and_summed() {
+        let web = std::env::temp_dir().join(format!("stepscope-weigh-{}", std::process::id()));
+        std::fs::create_dir_all(web.join("pkg")).unwrap();
+        for name in [
+            "index.html",
+            "_headers",
+            "jsconfig.json",
+            "pkg/a.js",
+            "pkg/a.d.ts",
+            "pkg/package.json",
+            "pkg/.gitignore",
+        ] {
+            std::fs::write(web.join(name), "a".repeat(1000)).unwrap();
+        }
+        let weights = weigh(&web).unwrap();
+        let names: Vec<_> = weights.0.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["index.html", "pkg/a.js"]);
+        assert!(
+            weights.0.iter().all(|(_, sizes)| sizes.raw == 1000 && sizes.gzip < 100 && sizes.brotli < 100)
+        );
+        assert!(weights.to_string().contains("all files        2000"), "{weights}");
+        std::fs::remove_dir_all(&web).unwrap();
+    }
+}

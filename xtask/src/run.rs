@@ -1,0 +1,104 @@
+//! Child processes. Each gets a process group of its own, no standard input and a time limit; when
+//! it ends, however it ends, the whole group goes with it, so that no browser or driver stays behind.
+
+use std::process::Stdio;
+use std::time::Duration;
+
+use anyhow::{Context, Result, bail};
+use process_wrap::tokio::{ChildWrapper, CommandWrap};
+use tokio::process::Command;
+
+/// No child may take longer: a hung browser or a lost network must not hold a run for ever.
+pub(crate) const LIMIT: Duration = Duration::from_secs(30 * 60);
+
+/// A running child; dropping it kills its process group.
+struct Group(Box<dyn ChildWrapper>);
+
+impl Drop for Group {
+    fn drop(&mut self) {
+        // After a tidy end the group is empty, and the refusal says only that.
+        let _ = self.0.start_kill();
+    }
+}
+
+/// Runs `command` to its end; an error if it can't be started, fails, or takes longer than `limit`.
+pub(crate) async fn to_end(mut command: Command, limit: Duration) -> Result<()> {
+    let name = command.as_std().get_program().to_string_lossy().into_owned();
+    command.stdin(Stdio::null());
+    let mut wrap = CommandWrap::from(command);
+    #[cfg(unix)]
+    wrap.wrap(process_wrap::tokio::ProcessGroup::leader());
+    #[cfg(windows)]
+    wrap.wrap(process_wrap::tokio::JobObject);
+    let mut group = Group(wrap.spawn().with_context(|| format!("{name} can't be started"))?);
+    let Ok(status) = tokio::time::timeout(limit, group.0.wait()).await else {
+        bail!("{name} was not done after {} s and was stopped", limit.as_secs_f64());
+    };
+    let status = status.with_context(|| format!("{name} was lost"))?;
+    if !status.success() {
+        bail!("{name} failed ({status})");
+    }
+    Ok(())
+}
+
+/// What `command` prints, or `None` if it can't be started or fails: for asking a tool its version.
+pub(crate) async fn output(mut command: Command) -> Option<String> {
+    command.stdin(Stdio::null()).stderr(Stdio::null()).kill_on_drop(true);
+    let output = tokio::time::timeout(Duration::from_secs(60), command.output()).await.ok()?.ok()?;
+    output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+/// Waits for the user's or the system's wish to stop; gives the exit code that says so.
+#[cfg(unix)]
+pub(crate) async fn interrupted() -> Result<u8> {
+    use tokio::signal::unix::{SignalKind, signal};
+    let mut hang_up = signal(SignalKind::hangup())?;
+    let mut terminate = signal(SignalKind::terminate())?;
+    let mut interrupt = signal(SignalKind::interrupt())?;
+    let number = tokio::select! {
+        _ = hang_up.recv() => 1,
+        _ = interrupt.recv() => 2,
+        _ = terminate.recv() => 15,
+    };
+    // Shells report a death by signal n as 128 + n.
+    Ok(128 + number)
+}
+
+/// Waits for the user's wish to stop; gives the exit code that says so.
+#[cfg(not(unix))]
+pub(crate) async fn interrupted() -> Result<u8> {
+    tokio::signal::ctrl_c().await?;
+    Ok(130)
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    fn shell(script: &str) -> Command {
+        let mut command = Command::new("sh");
+        command.args(["-c", script]);
+        command
+    }
+
+    #[tokio::test]
+    async fn a_failing_child_is_an_error_that_names_it() {
+        let error = to_end(shell("exit 3"), LIMIT).await.unwrap_err();
+        assert_eq!(error.to_string(), "sh failed (exit status: 3)");
+    }
+
+    #[tokio::test]
+    async fn a_child_beyond_its_limit_is_stopped_with_its_children() {
+        let note = std::env::temp_dir().join(format!("stepscope-run-{}", std::process::id()));
+        let script = format!("(sleep 1; echo alive > {}) & wait", note.display());
+        let error = to_end(shell(&script), Duration::from_millis(300)).await.unwrap_err();
+        assert_eq!(error.to_string(), "sh was not done after 0.3 s and was stopped");
+        tokio::time::sleep(Duration::from_millis(1500)).await;
+        assert!(!note.exists(), "the grandchild lived on");
+    }
+
+    #[tokio::test]
+    async fn a_child_reads_nothing() {
+        to_end(shell("! read line"), LIMIT).await.unwrap();
+    }
+}

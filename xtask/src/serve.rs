@@ -1,0 +1,125 @@
+//! The local server: the files of one folder on 127.0.0.1, with the headers that the folder's own
+//! `_headers` states, so that a page seen here behaves as it will on a static host.
+
+use std::io::ErrorKind;
+use std::net::{Ipv4Addr, TcpListener};
+use std::path::Path;
+use std::sync::Arc;
+
+use anyhow::{Context, Result, bail};
+use axum::Router;
+use axum::extract::{Request, State};
+use axum::http::StatusCode;
+use axum::middleware::{Next, from_fn_with_state};
+use axum::response::{IntoResponse, Response};
+use tower_http::services::ServeDir;
+
+use crate::headers::Headers;
+
+/// The file of rules, in the folder that is served. It is not served itself, nor is it on a host.
+const HEADERS: &str = "_headers";
+
+/// Takes `port` on 127.0.0.1 (0: any free one); says what to do if it is taken.
+pub(crate) fn bind(port: u16) -> Result<TcpListener> {
+    match TcpListener::bind((Ipv4Addr::LOCALHOST, port)) {
+        Ok(listener) => Ok(listener),
+        Err(error) if error.kind() == ErrorKind::AddrInUse => bail!(
+            "port {port} on 127.0.0.1 is taken; choose another with --port N, or let --port 0 take any free one"
+        ),
+        Err(error) => Err(error).with_context(|| format!("port {port} on 127.0.0.1 can't be opened")),
+    }
+}
+
+/// Serves `web` until the process is stopped. Prints the address; opens it in a browser if asked
+/// to and if there is a desktop.
+pub(crate) async fn serve(listener: TcpListener, web: &Path, open: bool) -> Result<()> {
+    let file = web.join(HEADERS);
+    let text = std::fs::read_to_string(&file).with_context(|| format!("{} can't be read", file.display()))?;
+    let router = router(web, Headers::parse(&text)?);
+    let address = format!("http://{}/", listener.local_addr()?);
+    listener.set_nonblocking(true)?;
+    let listener = tokio::net::TcpListener::from_std(listener)?;
+    println!("serving {address}");
+    if open
+        && has_desktop()
+        && let Err(error) = open::that_detached(&address)
+    {
+        eprintln!("no browser opened by itself ({error}); open {address} by hand");
+    }
+    axum::serve(listener, router).await.context("the server stopped")
+}
+
+/// Whether a browser window can appear here.
+fn has_desktop() -> bool {
+    let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    !cfg!(target_os = "linux") || set("DISPLAY") || set("WAYLAND_DISPLAY")
+}
+
+fn router(web: &Path, headers: Headers) -> Router {
+    Router::new().fallback_service(ServeDir::new(web)).layer(from_fn_with_state(Arc::new(headers), dress))
+}
+
+/// Answers `request` and puts the headers of its path on the answer.
+async fn dress(State(headers): State<Arc<Headers>>, request: Request, next: Next) -> Response {
+    let path = request.uri().path().to_owned();
+    let mut response = if path.strip_prefix('/') == Some(HEADERS) {
+        StatusCode::NOT_FOUND.into_response()
+    } else {
+        next.run(request).await
+    };
+    for (name, value) in headers.of(&path) {
+        response.headers_mut().append(name, value.clone());
+    }
+    response
+}
+
+#[cfg(test)]
+mod tests {
+    use axum::body::Body;
+    use axum::http::header::CONTENT_TYPE;
+    use tower::ServiceExt;
+
+    use super::*;
+
+    #[test]
+    fn a_taken_port_is_named_with_the_remedy() {
+        let first = bind(0).unwrap();
+        let port = first.local_addr().unwrap().port();
+        assert_eq!(
+            bind(port).unwrap_err().to_string(),
+            format!(
+                "port {port} on 127.0.0.1 is taken; choose another with --port N, or let --port 0 take any free one"
+            )
+        );
+    }
+
+    #[tokio::test]
+    async fn every_answer_has_its_type_and_the_headers_of_its_path() {
+        let web = std::env::temp_dir().join(format!("stepscope-serve-{}", std::process::id()));
+        std::fs::create_dir_all(web.join("pkg")).unwrap();
+        for name in ["index.html", "app.js", "page.css", "pkg/a.wasm", "app.webmanifest", "_headers"] {
+            std::fs::write(web.join(name), "").unwrap();
+        }
+        let router = router(&web, Headers::parse("/*\n  X-All: 1\n/pkg/*\n  X-Pkg: 2\n").unwrap());
+        for (path, status, kind, in_pkg) in [
+            ("/", 200, "text/html", false),
+            ("/app.js", 200, "text/javascript", false),
+            ("/page.css", 200, "text/css", false),
+            ("/pkg/a.wasm", 200, "application/wasm", true),
+            ("/app.webmanifest", 200, "application/manifest+json", false),
+            ("/none", 404, "", false),
+            ("/_headers", 404, "", false),
+            ("/../Cargo.toml", 404, "", false),
+            ("/%2e%2e/Cargo.toml", 404, "", false),
+        ] {
+            let request = Request::get(path).body(Body::empty()).unwrap();
+            let response = router.clone().oneshot(request).await.unwrap();
+            assert_eq!(response.status().as_u16(), status, "{path}");
+            let given = response.headers().get(CONTENT_TYPE).map_or("", |value| value.to_str().unwrap());
+            assert_eq!(given, kind, "{path}");
+            assert_eq!(response.headers()["x-all"], "1", "{path}");
+            assert_eq!(response.headers().contains_key("x-pkg"), in_pkg, "{path}");
+        }
+        std::fs::remove_dir_all(&web).unwrap();
+    }
+}

@@ -1,0 +1,170 @@
+//! `cargo xtask test`: every check of the project, one step after the other, with its time. Stops at
+//! the first that fails.
+
+use std::env;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result};
+use clap::ValueEnum;
+
+use crate::browser::{self, Browser};
+use crate::tools::{self, Optimise, WasmTools};
+use crate::{page, root, run};
+
+const BARE_METAL: &str = "thumbv7m-none-eabi";
+const WASM: &str = "wasm32-unknown-unknown";
+
+/// The steps, in the order in which they run: what fails fastest comes first.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Step {
+    /// rustfmt finds nothing to change
+    Format,
+    /// clippy is silent: native, wasm and bare metal
+    Lint,
+    /// rustdoc is silent
+    Docs,
+    /// Unit, integration and documentation tests, as native code
+    Native,
+    /// The core builds without the standard library, for a Cortex-M3
+    BareMetal,
+    /// The wasm crate's own tests, in a real browser
+    Wasm,
+    /// The built page, used in a real browser
+    Page,
+}
+
+impl Step {
+    fn name(self) -> String {
+        self.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+    }
+
+    async fn run(self) -> Result<()> {
+        match self {
+            Self::Format => {
+                tools::components().await?;
+                cargo(&["fmt", "--all", "--check"]).await
+            }
+            Self::Lint => {
+                tools::components().await?;
+                tools::target(WASM).await?;
+                tools::target(BARE_METAL).await?;
+                let deny = ["--locked", "--", "-D", "warnings"];
+                clippy(&["--workspace", "--all-targets", "--all-features"], deny).await?;
+                clippy(&["--package", "stepscope-wasm", "--all-targets", "--target", WASM], deny).await?;
+                let core = ["--package", "stepscope-core", "--no-default-features", "--target", BARE_METAL];
+                clippy(&core, deny).await
+            }
+            Self::Docs => {
+                let mut command = tools::cargo();
+                command
+                    .args(["doc", "--no-deps", "--workspace", "--locked"])
+                    .env("RUSTDOCFLAGS", "-D warnings");
+                run::to_end(command, run::LIMIT).await
+            }
+            Self::Native => cargo(&["test", "--workspace", "--locked"]).await,
+            Self::BareMetal => {
+                tools::target(BARE_METAL).await?;
+                cargo(&[
+                    "build",
+                    "--package",
+                    "stepscope-core",
+                    "--no-default-features",
+                    "--target",
+                    BARE_METAL,
+                    "--locked",
+                ])
+                .await
+            }
+            Self::Wasm => wasm().await,
+            Self::Page => page().await,
+        }
+    }
+}
+
+async fn cargo(arguments: &[&str]) -> Result<()> {
+    let mut command = tools::cargo();
+    command.args(arguments);
+    run::to_end(command, run::LIMIT).await
+}
+
+async fn clippy(what: &[&str], deny: [&str; 4]) -> Result<()> {
+    cargo(&[&["clippy"], what, &deny].concat()).await
+}
+
+/// wasm/webdriver.json holds the browser's flags.
+async fn wasm() -> Result<()> {
+    let browser = Browser::ready().await?;
+    let tools = WasmTools::ready(Optimise::No).await?;
+    let mut command = tools.wasm_pack()?;
+    command.args(["test", "--headless", "--chrome", "--chromedriver"]).arg(&browser.chromedriver);
+    command.args(["--mode", "no-install", "wasm", "--", "--locked"]);
+    run::to_end(command, run::LIMIT).await
+}
+
+/// The tests start the driver and the server themselves; the environment says where all of it is.
+async fn page() -> Result<()> {
+    let this = env::current_exe().context("this program's own path is unknown")?;
+    let browser = Browser::ready().await?;
+    page::build(Optimise::Yes).await?;
+    let mut command = tools::cargo();
+    command.args([
+        "test",
+        "--package",
+        "stepscope-tests",
+        "--features",
+        "browser",
+        "--test",
+        "page",
+        "--locked",
+    ]);
+    command
+        .env("STEPSCOPE_WEB", root().join("web"))
+        .env("STEPSCOPE_XTASK", this)
+        .env(browser::CHROMIUM, &browser.chromium)
+        .env(browser::CHROMEDRIVER, &browser.chromedriver);
+    run::to_end(command, run::LIMIT).await
+}
+
+/// Prints the steps' names and what each holds.
+pub(crate) fn list() {
+    for value in Step::value_variants().iter().filter_map(ValueEnum::to_possible_value) {
+        println!("{:12}{}", value.get_name(), value.get_help().map(ToString::to_string).unwrap_or_default());
+    }
+}
+
+/// Runs the steps named in `only`, or all if it is empty, in the steps' own order.
+pub(crate) async fn run(only: &[Step]) -> Result<()> {
+    let chosen = Step::value_variants().iter().filter(|step| only.is_empty() || only.contains(step));
+    let mut times = Vec::new();
+    let mut failure = None;
+    for step in chosen {
+        let name = step.name();
+        println!("\n=== {name}");
+        let start = Instant::now();
+        let done = step.run().await;
+        let time = start.elapsed();
+        println!(
+            "=== {name}: {} after {:.1} s",
+            if done.is_ok() { "passed" } else { "failed" },
+            time.as_secs_f64()
+        );
+        times.push((name.clone(), time));
+        if let Err(error) = done {
+            failure = Some(error.context(format!("step {name}")));
+            break;
+        }
+    }
+    println!();
+    for (name, time) in &times {
+        println!("{name:12}{:8.1} s", time.as_secs_f64());
+    }
+    let whole: Duration = times.iter().map(|(_, time)| *time).sum();
+    println!("{:12}{:8.1} s", "all", whole.as_secs_f64());
+    match failure {
+        Some(error) => Err(error),
+        None => {
+            println!("{} passed, 0 failed", times.len());
+            Ok(())
+        }
+    }
+}
