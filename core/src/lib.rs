@@ -19,13 +19,21 @@
 
 extern crate alloc;
 
-pub mod signal;
-pub mod units;
-
 pub mod scenario;
+
+pub mod motion;
+
+pub mod quantise;
 
 pub mod wire;
 
 pub mod device;
 
 pub mod trace;
+
+pub mod analysis;
+
+pub mod run;
+
+pub mod signal;
+pub mod units;

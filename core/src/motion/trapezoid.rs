@@ -109,11 +109,7 @@ impl Curve for Trapezoid {
 
     fn speed(&self, t: f64) -> f64 {
         let t = self.from_end(t);
-        self.signed(if t < self.ramp_s {
-            self.start_speed + self.acceleration * t
-        } else {
-            self.peak_speed
-        })
+        self.signed(if t < self.ramp_s { self.start_speed + self.acceleration * t } else { self.peak_speed })
     }
 
     fn acceleration(&self, t: f64) -> f64 {

@@ -92,7 +92,7 @@ impl TrapezoidTable {
             ramp,
             sums: Vec::with_capacity(ramp as usize + 2),
         };
-        let greatest = table.rate(ramp);
+        let greatest = table.rate(table.highest_row());
         if greatest > timer_hz.into() {
             return Err(NoTable::Timer { rate: greatest as f64 });
         }
@@ -111,6 +111,12 @@ impl TrapezoidTable {
         self.top.saturating_add(1)
     }
 
+    /// Rows that this move keeps in memory.
+    #[must_use]
+    pub fn kept_rows(&self) -> u64 {
+        self.ramp + 1
+    }
+
     /// Pulse rate of a row in whole pps; rows after the last are as the last.
     #[must_use]
     pub fn rate(&self, row: u64) -> u64 {
@@ -126,6 +132,11 @@ impl TrapezoidTable {
     #[must_use]
     pub fn reload(&self, row: u64) -> u64 {
         u64::from(self.timer_hz).checked_div(self.rate(row)).unwrap_or(0)
+    }
+
+    /// The highest row that the move uses.
+    fn highest_row(&self) -> u64 {
+        self.ramp.min(self.count().saturating_sub(1) / 2)
     }
 
     /// Steps of the move, without sign.
@@ -232,7 +243,7 @@ impl Curve for TrapezoidTable {
 
     fn position(&self, t: f64) -> f64 {
         let fallen = self.fallen(t);
-        if fallen >= self.count() || !(t > 0.0) {
+        if fallen >= self.count() || t <= 0.0 {
             return self.signed(fallen as f64);
         }
         let (from, to) = (self.step_s(fallen), self.step_s(fallen + 1));
@@ -258,8 +269,7 @@ impl Curve for TrapezoidTable {
 
     fn peaks(&self) -> Peaks {
         let mut peaks = Peaks::default();
-        let used = self.ramp.min(self.count().saturating_sub(1) / 2);
-        for i in 0..=used {
+        for i in 0..=self.highest_row() {
             peaks.speed = greater(peaks.speed, self.interval_speed(i));
             peaks.acceleration = greater(peaks.acceleration, libm::fabs(self.acceleration_into(i)));
             let jump = self.interval_speed(i) - self.interval_speed(i.saturating_sub(1));

@@ -146,6 +146,13 @@ pub enum Cause {
         /// Timer's clock in Hz.
         timer_hz: u32,
     },
+    /// A speed that follows from the numbers and is beyond any driver.
+    TooFast {
+        /// Rate in steps/s.
+        rate: f64,
+        /// Greatest allowed.
+        most: f64,
+    },
     /// A distance that is less than a step.
     NoSteps {
         /// The distance in steps, before rounding.
@@ -269,6 +276,12 @@ impl fmt::Display for Cause {
                 f,
                 "a timer of {timer_hz} Hz cannot make {} steps/s; give a timer of at least that rate",
                 Short(*rate)
+            ),
+            Self::TooFast { rate, most } => write!(
+                f,
+                "this needs {} steps/s, at most {} are allowed; give more time or less distance",
+                Short(*rate),
+                Short(*most)
             ),
             Self::NoSteps { steps } => {
                 write!(f, "{} steps is less than one step; give at least one step, or a dwell", Short(*steps))

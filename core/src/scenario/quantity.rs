@@ -137,20 +137,26 @@ macro_rules! quantity {
                 }
             }
 
+            /// One step (a second, a second squared) in this quantity's unit.
+            ///
+            /// # Errors
+            /// [`NoSuchUnit`] where the mechanics have no millimetres or no degrees.
+            pub fn step(&self, mechanics: &Mechanics) -> Result<f64, NoSuchUnit> {
+                let step: Option<f64> = match self {
+                    $(Self::$variant(_) => {
+                        let of: fn(&Mechanics) -> Option<f64> = $factor;
+                        of(mechanics)
+                    })*
+                };
+                step.ok_or(NoSuchUnit { unit: self.unit(), mechanics: mechanics.name() })
+            }
+
             /// The quantity in steps (a second, a second squared), not rounded.
             ///
             /// # Errors
             /// [`NoSuchUnit`] where the mechanics have no millimetres or no degrees.
             pub fn in_steps(&self, mechanics: &Mechanics) -> Result<f64, NoSuchUnit> {
-                match self {
-                    $(Self::$variant(value) => {
-                        let factor: fn(&Mechanics) -> Option<f64> = $factor;
-                        factor(mechanics).map(|step| value / step).ok_or(NoSuchUnit {
-                            unit: $key,
-                            mechanics: mechanics.name(),
-                        })
-                    })*
-                }
+                self.step(mechanics).map(|step| self.value() / step)
             }
         }
     };

@@ -1,0 +1,268 @@
+//! Sine as segments of fixed rate (DESIGN B5, SWorldJournal issue 11).
+//!
+//! On a quarter of y = cos(pi*i/1024), i = 0..=512, the breakpoints are as far apart as the largest
+//! deviation d1 lets them be. The other quarters follow by symmetry; a motion starts at the right
+//! extreme, goes left to the other one and comes back:
+//!
+//! ```text
+//!   +A |\_                _/      vertex    round_half_up(A*y), whole steps
+//!      |  \              /        time      i*T/2048
+//!    0 |---\------------/---      segment   (difference of vertices)/(difference of times),
+//!      |    \_        _/                    one rate, so one interval a segment
+//!   -A |      \______/            position  from the start: 0, down to -2*A, up to 0
+//!      0     512 1024 1536 2048 i
+//! ```
+
+use super::{Curve, Peaks, profile::greater, round_half_up};
+use alloc::vec::Vec;
+use core::f64::consts::PI;
+
+/// Points of the angle in a period; breakpoints lie on them.
+pub const POINTS: u16 = 2048;
+/// Points of the angle in a quarter.
+pub const QUARTER: u16 = POINTS / 4;
+/// In how many parts a chord is cut to find its greatest deviation; its ends count too.
+const CHORD_PARTS: u16 = 100;
+
+/// y = cos at a point of the angle, 0..=[`QUARTER`].
+#[must_use]
+pub fn cosine_at(point: u16) -> f64 {
+    // The end of the quarter is exactly 0; cos(pi/2) of the rounded pi is not.
+    if point == QUARTER { 0.0 } else { libm::cos(PI * f64::from(point) / 1024.0) }
+}
+
+/// Breakpoints of a quarter, from 0 to [`QUARTER`], for the largest deviation `d1` in parts of the
+/// amplitude (B5).
+///
+/// From a breakpoint the next point is tried as long as the chord's greatest deviation from the
+/// cosine, over the 101 points that cut it in 100, is at most `d1`; the last that holds is the next
+/// breakpoint, and at least the very next point is.
+#[must_use]
+pub fn breakpoints(d1: f64) -> Vec<u16> {
+    let mut points = Vec::from([0]);
+    let mut from = 0;
+    while from < QUARTER {
+        let mut to = from + 1;
+        while to < QUARTER && deviation(from, to + 1) <= d1 {
+            to += 1;
+        }
+        points.push(to);
+        from = to;
+    }
+    points
+}
+
+/// Greatest |chord - cosine| between two points of the angle.
+fn deviation(from: u16, to: u16) -> f64 {
+    let (y_from, y_to) = (cosine_at(from), cosine_at(to));
+    (0..=CHORD_PARTS).fold(0.0, |greatest, k| {
+        let part = f64::from(k) / f64::from(CHORD_PARTS);
+        let chord = y_from + (y_to - y_from) * part;
+        let point = f64::from(from) + f64::from(to - from) * part;
+        greater(greatest, libm::fabs(chord - libm::cos(PI * point / 1024.0)))
+    })
+}
+
+/// A point of the first quarter, and what the other quarters make of it.
+struct Folded {
+    /// 0..=512.
+    point: f64,
+    /// Right of the middle.
+    right: bool,
+    /// On the way to the left.
+    leftwards: bool,
+}
+
+/// Folds a point of a period, 0..=2048, into the first quarter.
+fn fold(point: f64) -> Folded {
+    let leftwards = point < f64::from(2 * QUARTER);
+    let half = if leftwards { point } else { f64::from(POINTS) - point };
+    let right = half <= f64::from(QUARTER);
+    let point = if right { half } else { f64::from(2 * QUARTER) - half };
+    Folded { point: greater(0.0, point), right, leftwards }
+}
+
+/// The polyline through the cosine's own values at the breakpoints, amplitude 1, at a point of a
+/// period, 0..=2048: what B5's distortion is told of.
+#[must_use]
+pub fn unit_polyline(breakpoints: &[u16], point: f64) -> f64 {
+    let folded = fold(point);
+    let after = breakpoints.partition_point(|&at| f64::from(at) <= folded.point);
+    let (Some(&from), Some(&to)) = (breakpoints.get(after.saturating_sub(1)), breakpoints.get(after)) else {
+        return 0.0;
+    };
+    let (y_from, y_to) = (cosine_at(from), cosine_at(to));
+    let y = y_from + (y_to - y_from) * (folded.point - f64::from(from)) / f64::from(to - from);
+    if folded.right { y } else { -y }
+}
+
+/// One segment of a quarter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    /// Point of the angle where it begins, of 2048 a period.
+    pub from: u16,
+    /// Point where it ends.
+    pub to: u16,
+    /// Angle of the beginning in degrees.
+    pub from_deg: f64,
+    /// Angle of the end in degrees.
+    pub to_deg: f64,
+    /// Steps.
+    pub steps: u64,
+    /// Steps a second.
+    pub rate: f64,
+    /// How long, in s.
+    pub duration_s: f64,
+    /// Distance of its beginning from the middle, in steps.
+    from_steps: u64,
+}
+
+/// Memory that a controller needs for a quarter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Memory {
+    /// Bytes of the segments: a 4-byte interval and a count of steps each, which takes 2 bytes, or
+    /// 4 where a segment has more than 65535 steps.
+    pub segments: u64,
+    /// Bytes of one 4-byte interval for each step.
+    pub intervals: u64,
+}
+
+/// A sine by segments.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SineSegments {
+    /// Distance from the middle to an extreme in whole steps.
+    amplitude: u64,
+    /// The motion starts at the right extreme; with a negative amplitude at the left one.
+    starts_right: bool,
+    period_s: f64,
+    periods: u32,
+    /// The first quarter.
+    ///
+    /// Invariant: begins at point 0, ends at [`QUARTER`], without gaps.
+    segments: Vec<Segment>,
+}
+
+impl SineSegments {
+    /// `periods` whole periods of `period_s` > 0 between `amplitude` steps on either side of the
+    /// middle; a negative amplitude starts at the left extreme. `d1` is the largest deviation in
+    /// parts of the amplitude.
+    #[must_use]
+    pub fn new(amplitude: i64, period_s: f64, periods: u32, d1: f64) -> Self {
+        let steps = amplitude.unsigned_abs();
+        let vertex = |point| round_half_up(steps as f64 * cosine_at(point)).unsigned_abs();
+        let segments = breakpoints(d1)
+            .windows(2)
+            .filter_map(|pair| {
+                let &[from, to] = pair else { return None };
+                let duration_s = f64::from(to - from) * period_s / f64::from(POINTS);
+                let count = vertex(from) - vertex(to);
+                Some(Segment {
+                    from,
+                    to,
+                    from_deg: f64::from(from) * 360.0 / f64::from(POINTS),
+                    to_deg: f64::from(to) * 360.0 / f64::from(POINTS),
+                    steps: count,
+                    rate: count as f64 / duration_s,
+                    duration_s,
+                    from_steps: vertex(from),
+                })
+            })
+            .collect();
+        Self { amplitude: steps, starts_right: amplitude >= 0, period_s, periods, segments }
+    }
+
+    /// The segments of the first quarter, from the extreme to the middle.
+    #[must_use]
+    pub fn segments(&self) -> &[Segment] {
+        &self.segments
+    }
+
+    /// Memory for a quarter, by segments and by intervals.
+    #[must_use]
+    pub fn memory(&self) -> Memory {
+        let long = self.segments.iter().any(|segment| segment.steps > u16::MAX.into());
+        let each = if long { 8 } else { 6 };
+        Memory { segments: self.segments.len() as u64 * each, intervals: self.amplitude * 4 }
+    }
+
+    /// Time of a period in s.
+    #[must_use]
+    pub fn period_s(&self) -> f64 {
+        self.period_s
+    }
+
+    /// How many periods.
+    #[must_use]
+    pub fn periods(&self) -> u32 {
+        self.periods
+    }
+
+    /// Place within a period at `t`, and the segment there.
+    fn place(&self, t: f64) -> (Folded, Option<&Segment>) {
+        let turns = t / self.period_s;
+        let part = greater(0.0, turns - libm::floor(turns));
+        let folded = fold(part * f64::from(POINTS));
+        let found = self.segments.partition_point(|segment| {
+            // A boundary belongs to the segment after it in time.
+            let end = f64::from(segment.to);
+            if folded.leftwards == folded.right { end <= folded.point } else { end < folded.point }
+        });
+        let segment = self.segments.get(found).or(self.segments.last());
+        (folded, segment)
+    }
+
+    fn signed(&self, rightwards: f64) -> f64 {
+        if self.starts_right { rightwards } else { -rightwards }
+    }
+
+    /// Speed in the segment at `t`, right positive where the start is the right extreme.
+    fn rate_at(&self, t: f64) -> f64 {
+        let (folded, segment) = self.place(t);
+        let rate = segment.map_or(0.0, |segment| segment.rate);
+        if folded.leftwards { -rate } else { rate }
+    }
+}
+
+impl Curve for SineSegments {
+    fn duration_s(&self) -> f64 {
+        self.period_s * f64::from(self.periods)
+    }
+
+    fn steps(&self) -> i64 {
+        0
+    }
+
+    fn position(&self, t: f64) -> f64 {
+        if t <= 0.0 || t >= self.duration_s() {
+            return 0.0;
+        }
+        let (folded, segment) = self.place(t);
+        let Some(segment) = segment else { return 0.0 };
+        let along = (folded.point - f64::from(segment.from)) / f64::from(segment.to - segment.from);
+        let from_middle = segment.from_steps as f64 - segment.steps as f64 * along;
+        let place = if folded.right { from_middle } else { -from_middle };
+        self.signed(place - self.amplitude as f64)
+    }
+
+    fn speed(&self, t: f64) -> f64 {
+        let last = self.segments.first().map_or(0.0, |segment| segment.rate);
+        if t >= self.duration_s() { self.signed(last) } else { self.signed(self.rate_at(t)) }
+    }
+
+    fn acceleration(&self, _: f64) -> f64 {
+        0.0
+    }
+
+    fn peaks(&self) -> Peaks {
+        let mut peaks = Peaks::default();
+        let mut before = None;
+        for &Segment { rate, .. } in &self.segments {
+            // At the extreme the first segment runs into its mirror image, the other way.
+            let jump = before.map_or(2.0 * rate, |before: f64| libm::fabs(rate - before));
+            peaks.speed = greater(peaks.speed, rate);
+            peaks.jump = greater(peaks.jump, jump);
+            before = Some(rate);
+        }
+        peaks
+    }
+}

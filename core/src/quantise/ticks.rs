@@ -1,0 +1,149 @@
+//! Quantising into ticks (DESIGN B7).
+//!
+//! ```text
+//! due[j]   = R(s(j*T)), R(x) = floor(x + 1/2)
+//! steps[j] = due[j + 1] - due[j]
+//! ```
+//!
+//! What has been ordered by the end of tick j is the rounded position there, so the error never
+//! adds up, is never above half a step, and the end is exact. The time of that end is one
+//! division of two integers, (j + 1)*tick_cycles/clock_hz.
+
+use crate::{
+    motion::AxisPlan,
+    scenario::{Cause, Problem},
+};
+use alloc::{format, vec, vec::Vec};
+
+/// Most ticks of a run.
+const MOST_TICKS: usize = 2_000_000;
+/// Bit of a byte that says right (A5).
+const RIGHT: u8 = 1 << 7;
+
+/// Ticks for the whole peripheral: one byte a channel and tick, bit 7 = right, bits 6..=0 = steps.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Ticks {
+    channels: u8,
+    /// Invariant: a whole number of ticks, at least one.
+    bytes: Vec<u8>,
+}
+
+impl Ticks {
+    /// Channels, which is also the bytes of a tick.
+    #[must_use]
+    pub fn channels(&self) -> u8 {
+        self.channels
+    }
+
+    /// How many ticks.
+    #[must_use]
+    #[allow(clippy::len_without_is_empty, reason = "there is always a tick")]
+    pub fn len(&self) -> usize {
+        self.bytes.len() / usize::from(self.channels.max(1))
+    }
+
+    /// All bytes, tick after tick.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// The ticks in order, each as its bytes.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &[u8]> {
+        self.bytes.chunks_exact(usize::from(self.channels.max(1)))
+    }
+}
+
+/// Quantises the plans, plan i for channel i, into ticks of `tick_cycles` with up to `slots` steps.
+///
+/// There are as many ticks as it takes until every axis has ended, at least one. A byte without
+/// steps keeps the direction of the one before, at first left.
+///
+/// # Errors
+/// Too many ticks, or, for each axis that needs more steps in a tick than it has slots, the first
+/// such tick.
+pub fn ticks(
+    plans: &[AxisPlan],
+    channels: u8,
+    slots: u8,
+    tick_cycles: u64,
+    clock_hz: u32,
+) -> Result<Ticks, Vec<Problem>> {
+    let clock = TickClock { tick_cycles: tick_cycles.max(1), clock_hz: f64::from(clock_hz.max(1)) };
+    let channels = channels.max(1);
+    if plans.len() > channels.into() {
+        let cause = Cause::Length { given: plans.len(), least: 1, most: channels.into(), of: "axes" };
+        return Err(vec![Problem::new("source.motion.axes", cause)]);
+    }
+    let needed = plans.iter().map(|plan| clock.ticks_until(plan.duration_s())).max().unwrap_or(1);
+    if needed > MOST_TICKS as u64 {
+        let cause = Cause::TooMuch { given: needed as f64, most: MOST_TICKS as f64, of: "ticks" };
+        return Err(vec![Problem::new("source.motion", cause)]);
+    }
+    let width = usize::from(channels);
+    let mut bytes = vec![0; needed as usize * width];
+    let mut problems = Vec::new();
+    for (channel, plan) in plans.iter().enumerate() {
+        let column = bytes.iter_mut().skip(channel).step_by(width);
+        if let Err(cause) = fill(plan, column, &clock, slots.min(!RIGHT)) {
+            problems.push(Problem::new(format!("source.motion.axes[{channel}]"), cause));
+        }
+    }
+    if problems.is_empty() { Ok(Ticks { channels, bytes }) } else { Err(problems) }
+}
+
+/// Writes one channel's bytes, or tells the first tick that has too few slots.
+fn fill<'b>(
+    plan: &AxisPlan,
+    column: impl Iterator<Item = &'b mut u8>,
+    clock: &TickClock,
+    slots: u8,
+) -> Result<(), Cause> {
+    let mut due = 0;
+    let mut direction = 0;
+    for (tick, byte) in column.enumerate() {
+        let tick = tick as u64;
+        let next = plan.steps_due(clock.end_s(tick));
+        let steps = next.abs_diff(due);
+        let count = match u8::try_from(steps) {
+            Ok(count) if count <= slots => count,
+            _ => {
+                let tick_s = clock.end_s(0);
+                let (rate, limit) = (steps as f64 / tick_s, f64::from(slots) / tick_s);
+                return Err(Cause::TooManySteps { tick, steps, slots, rate, limit });
+            }
+        };
+        if next != due {
+            direction = if next > due { RIGHT } else { 0 };
+        }
+        *byte = direction | count;
+        due = next;
+    }
+    Ok(())
+}
+
+/// The ticks' time, from integers.
+struct TickClock {
+    tick_cycles: u64,
+    clock_hz: f64,
+}
+
+impl TickClock {
+    /// End of tick `tick` (from 0) in s.
+    fn end_s(&self, tick: u64) -> f64 {
+        tick.saturating_add(1).saturating_mul(self.tick_cycles) as f64 / self.clock_hz
+    }
+
+    /// The fewest ticks, at least one, whose end is not before `duration_s`.
+    fn ticks_until(&self, duration_s: f64) -> u64 {
+        let tick_s = self.end_s(0);
+        let mut ticks = libm::ceil(duration_s / tick_s) as u64;
+        // The division can be off by a rounding; the tick's own end decides.
+        if ticks > 0 && self.end_s(ticks - 1) < duration_s {
+            ticks += 1;
+        } else if ticks > 1 && self.end_s(ticks - 2) >= duration_s {
+            ticks -= 1;
+        }
+        ticks.max(1)
+    }
+}
