@@ -127,6 +127,11 @@ pub trait Sink {
 
     /// Something happened in a cycle. Sinks that only want the signals leave this out.
     fn event(&mut self, _at: Instant, _event: Event) {}
+
+    /// Whether the run should pause here.
+    fn paused(&self) -> bool {
+        false
+    }
 }
 
 /// A stored trace.
@@ -147,6 +152,10 @@ impl<A: Sink, B: Sink> Sink for (A, B) {
         self.0.event(at, event);
         self.1.event(at, event);
     }
+
+    fn paused(&self) -> bool {
+        self.0.paused() || self.1.paused()
+    }
 }
 
 impl<S: Sink> Sink for &mut S {
@@ -156,5 +165,9 @@ impl<S: Sink> Sink for &mut S {
 
     fn event(&mut self, at: Instant, event: Event) {
         (**self).event(at, event);
+    }
+
+    fn paused(&self) -> bool {
+        (**self).paused()
     }
 }

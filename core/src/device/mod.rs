@@ -194,26 +194,27 @@ impl Device {
         self.now = target.min(self.deadline());
     }
 
-    /// Runs until cycle `until` is the next, or until nothing can change any more; as fast as the
-    /// edges allow. The line must not have changed in a cycle that has passed.
-    pub fn run(&mut self, line: &mut Line<'_>, until: Instant, sink: &mut impl Sink) {
-        while self.now < until {
-            if self.now == Instant::RESET {
-                self.clock(line.level(), sink);
-                continue;
-            }
+    /// Runs until cycle `until` is the next, as fast as the edges allow; with [`Instant::NEVER`],
+    /// until nothing can change any more: then the last cycle run is the last in which something
+    /// did. Stops early where the sink asks for a pause.
+    pub fn run(&mut self, line: &mut Line, until: Instant, sink: &mut impl Sink) {
+        if self.now == Instant::RESET && self.now < until {
+            self.clock(line.level(), sink);
+        }
+        while self.now < until && !sink.paused() {
             let quiet = self.input_deadline().min(line.next_change()).min(until);
-            let base = self.base();
-            self.levels = self.sequencer.run(quiet, base, sink);
-            if quiet == until {
-                self.now = until;
+            self.levels = self.sequencer.run(quiet, self.base(), sink);
+            if quiet == Instant::NEVER {
+                self.now = self.now.max(self.sequencer.last_active().next());
                 return;
             }
             self.now = quiet;
-            if line.next_change() == quiet {
-                line.change();
+            if quiet < until {
+                if line.next_change() == quiet {
+                    line.change();
+                }
+                self.clock(line.level(), sink);
             }
-            self.clock(line.level(), sink);
         }
     }
 

@@ -26,6 +26,8 @@ pub(super) struct Sequencer {
     /// Positions as of the end of the last tick.
     positions: [i32; MAX_CHANNELS],
     ticks_done: u32,
+    /// Where the last tick ended.
+    last_active: Instant,
 }
 
 /// The tick that runs: the plan's.
@@ -49,6 +51,7 @@ impl Sequencer {
             lines: 0,
             positions: [0; MAX_CHANNELS],
             ticks_done: 0,
+            last_active: Instant::RESET,
         }
     }
 
@@ -59,6 +62,12 @@ impl Sequencer {
 
     pub(super) const fn ticks_done(&self) -> u32 {
         self.ticks_done
+    }
+
+    /// Where the last tick ended: at rest, the last cycle in which the sequencer did
+    /// something.
+    pub(super) const fn last_active(&self) -> Instant {
+        self.last_active
     }
 
     /// Positions now: those at the last tick's end and the edges of the one that runs.
@@ -126,6 +135,7 @@ impl Sequencer {
 
     fn end(&mut self, now: Instant, sink: &mut impl Sink) {
         sink.event(now, Event::TickEnd);
+        self.last_active = now;
         let orders = self.plan.orders();
         count(&mut self.positions, orders, |channel| {
             orders.get(channel).map_or(0, |&byte| u32::from(Order::parse(byte).steps))

@@ -97,6 +97,12 @@ impl Config {
         self.channels
     }
 
+    /// The controller's address, where packets begin with one.
+    #[must_use]
+    pub const fn address(&self) -> Option<u8> {
+        self.address
+    }
+
     /// Slots in a tick, 1 to 127.
     #[must_use]
     pub const fn slots(&self) -> u8 {

@@ -147,7 +147,7 @@ impl Step {
         }
     }
 
-    fn into_value<'v>(&self, value: &'v mut Value) -> Option<&'v mut Value> {
+    fn value_in<'v>(&self, value: &'v mut Value) -> Option<&'v mut Value> {
         match self {
             Self::Key(key) => value.get_mut(key),
             Self::Index(index) => value.get_mut(index),
@@ -158,7 +158,7 @@ impl Step {
 /// Removes the value at the longest part of `path` that exists and returns that part.
 fn take_out(value: &mut Value, path: &[Step]) -> Option<Vec<Step>> {
     let (step, rest) = path.split_first()?;
-    if let Some(inner) = step.into_value(value)
+    if let Some(inner) = step.value_in(value)
         && let Some(mut gone) = take_out(inner, rest)
     {
         gone.insert(0, step.clone());

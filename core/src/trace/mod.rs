@@ -4,9 +4,13 @@
 mod columns;
 mod digest;
 mod log;
+mod recording;
+mod steps;
 mod text;
 
 pub use columns::{Columns, columns};
 pub use digest::Digest;
 pub use log::{LoggedPacket, PacketLog, Verdict};
+pub use recording::Recording;
+pub use steps::{Step, steps};
 pub use text::{ParseError, parse_line, write_record};

@@ -11,15 +11,15 @@
 
 use super::Schedule;
 use crate::{scenario::Forced, units::Instant};
-use alloc::{collections::BTreeSet, vec::Vec};
+use alloc::{collections::BTreeSet, rc::Rc, vec::Vec};
 
 /// Bits of a byte on the line: start, eight data bits, stop.
 const FRAME_BITS: usize = 10;
 
 /// The line as a run walks along it.
 #[derive(Clone, Debug)]
-pub struct Line<'a> {
-    sender: Sender<'a>,
+pub struct Line {
+    sender: Sender,
     sender_level: bool,
     /// Disjoint, rising, all later than what has passed; the last one first.
     forced: Vec<Forced>,
@@ -27,10 +27,10 @@ pub struct Line<'a> {
     next: Instant,
 }
 
-impl<'a> Line<'a> {
+impl Line {
     /// The line before cycle 1: idle.
     #[must_use]
-    pub fn new(schedule: &'a Schedule, forced: &[Forced], clock_hz: u32, baud: u32) -> Self {
+    pub fn new(schedule: Rc<Schedule>, forced: &[Forced], clock_hz: u32, baud: u32) -> Self {
         let mut forced = flatten(forced);
         forced.reverse();
         let sender = Sender::new(schedule, clock_hz, baud);
@@ -91,8 +91,8 @@ impl<'a> Line<'a> {
 
 /// The edges of the bytes of a schedule.
 #[derive(Clone, Debug)]
-struct Sender<'a> {
-    schedule: &'a Schedule,
+struct Sender {
+    schedule: Rc<Schedule>,
     clock_hz: u64,
     baud: u64,
     /// floor(k*clock_hz/baud): where bit k begins.
@@ -104,8 +104,8 @@ struct Sender<'a> {
     edges: u16,
 }
 
-impl<'a> Sender<'a> {
-    fn new(schedule: &'a Schedule, clock_hz: u32, baud: u32) -> Self {
+impl Sender {
+    fn new(schedule: Rc<Schedule>, clock_hz: u32, baud: u32) -> Self {
         let (clock_hz, baud) = (u64::from(clock_hz), u64::from(baud));
         let bit_starts = core::array::from_fn(|k| k as u64 * clock_hz / baud);
         let byte_start = Instant::NEVER;
@@ -194,7 +194,7 @@ mod tests {
                 level,
             })
             .collect();
-        let mut line = Line::new(&schedule, &forced, clock_hz, baud);
+        let mut line = Line::new(Rc::new(schedule), &forced, clock_hz, baud);
         let mut found = vec![];
         while line.next_change() != Instant::NEVER {
             found.push(line.next_change().0);

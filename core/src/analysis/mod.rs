@@ -1,0 +1,3 @@
+//! What a run and its ideal come to: curves for the eye, spectra and distortion.
+
+pub mod curves;

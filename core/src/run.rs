@@ -1,0 +1,278 @@
+//! From a scenario to its trace: the whole line in one call.
+//!
+//! ```
+//! use stepscope_core::{run::Experiment, scenario::Scenario, trace::Digest};
+//!
+//! let scenario = Scenario::from_json(r#"{ "title": "the default motion" }"#).expect("reads");
+//! let experiment = Experiment::new(&scenario).expect("has no problems");
+//! let mut digest = Digest::default();
+//! let run = experiment.run(&mut digest);
+//! assert_eq!(run.device().positions()[0], 3200);
+//! ```
+
+use crate::{
+    device::Device,
+    motion::{AxisPlan, plan_axis},
+    quantise::ticks,
+    scenario::{Cause, Checked, Config, END_OF_TIME, Problem, Scenario, Source, line_time},
+    signal::{Event, Record, Sink},
+    units::{Cycles, Instant},
+    wire::{Line, Schedule, packet::Order},
+};
+use alloc::{format, rc::Rc, vec::Vec};
+
+/// Edges of the line that a byte has at most.
+const MOST_EDGES_A_BYTE: u64 = 10;
+
+/// A scenario that has been judged in every respect, with its motions planned and its packets made.
+#[derive(Clone, Debug)]
+pub struct Experiment {
+    checked: Checked,
+    plans: Vec<AxisPlan>,
+    schedule: Rc<Schedule>,
+    cost: Cost,
+}
+
+/// What a run costs, known before it starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cost {
+    /// Records of the trace, at most.
+    pub records: u64,
+    /// Sends of the host.
+    pub sends: u64,
+    /// Bytes that the host sends.
+    pub bytes: u64,
+    /// Cycle in which the host has sent everything, or the run's given end.
+    pub end_cycle: u64,
+}
+
+impl Experiment {
+    /// Judges a scenario and prepares its run.
+    ///
+    /// # Errors
+    /// Every problem of the scenario, each with its path.
+    pub fn new(scenario: &Scenario) -> Result<Self, Vec<Problem>> {
+        let mut problems = Vec::new();
+        let checked = scenario.check().map_err(|found| problems.extend(found)).ok();
+        let mut plans = Vec::new();
+        if let Source::Motion(motion) = &scenario.source {
+            for (index, axis) in motion.axes.iter().enumerate() {
+                match plan_axis(axis, &format!("source.motion.axes[{index}]")) {
+                    Ok(plan) => plans.push(plan),
+                    Err(found) => problems.extend(found),
+                }
+            }
+        }
+        let Some(checked) = checked.filter(|_| problems.is_empty()) else { return Err(problems) };
+        let (schedule, records) = schedule(&checked, &plans)?;
+        let cost = Cost {
+            records,
+            sends: schedule.len() as u64,
+            bytes: schedule.total_bytes() as u64,
+            end_cycle: checked.run.map_or_else(|| last_cycle(&schedule, &checked), |run| run.0),
+        };
+        if cost.end_cycle > END_OF_TIME {
+            let cause =
+                Cause::TooMuch { given: cost.end_cycle as f64, most: END_OF_TIME as f64, of: "cycles" };
+            return Err(alloc::vec![Problem::new("source", cause)]);
+        }
+        Ok(Self { checked, plans, schedule: Rc::new(schedule), cost })
+    }
+
+    /// Reads, judges and prepares a scenario.
+    ///
+    /// # Errors
+    /// Every problem, those of types and those of numbers together: a field that cannot be read
+    /// stands at its default while the rest is judged.
+    pub fn from_json(text: &str) -> Result<Self, Vec<Problem>> {
+        let (scenario, mut problems) = Scenario::from_json_lenient(text);
+        match Self::new(&scenario) {
+            Ok(experiment) if problems.is_empty() => Ok(experiment),
+            judged => {
+                problems.extend(judged.err().unwrap_or_default());
+                Err(problems)
+            }
+        }
+    }
+
+    /// The peripheral's configuration.
+    #[must_use]
+    pub const fn config(&self) -> &Config {
+        &self.checked.config
+    }
+
+    /// The plan of each axis; empty where the source is no motion.
+    #[must_use]
+    pub fn plans(&self) -> &[AxisPlan] {
+        &self.plans
+    }
+
+    /// What the host sends.
+    #[must_use]
+    pub fn schedule(&self) -> &Schedule {
+        &self.schedule
+    }
+
+    /// What the run will cost.
+    #[must_use]
+    pub const fn cost(&self) -> Cost {
+        self.cost
+    }
+
+    /// The part of the line's time that the host's packets take, 0..=1; `None` where nothing paced
+    /// is sent.
+    #[must_use]
+    pub fn line_load(&self) -> Option<f64> {
+        let config = self.config();
+        let packet = line_time(config.packet_len() as u64, config.clock_hz(), self.checked.baud);
+        match self.checked.source {
+            Source::Line(_) => None,
+            _ if self.schedule.is_empty() => None,
+            _ => Some(packet as f64 / config.tick().0 as f64),
+        }
+    }
+
+    /// A run before cycle 0.
+    #[must_use]
+    pub fn start(&self) -> Run {
+        let Checked { config, baud, forced, run, .. } = &self.checked;
+        Run {
+            device: Device::new(config),
+            line: Line::new(Rc::clone(&self.schedule), forced, config.clock_hz(), *baud),
+            end: run.map(|cycles| Instant(cycles.0)),
+        }
+    }
+
+    /// The whole run, at the fast speed.
+    pub fn run(&self, sink: &mut impl Sink) -> Run {
+        let mut run = self.start();
+        while !run.advance(u64::MAX, sink) {}
+        run
+    }
+
+    /// The whole run clock by clock: slow, and the measure of the fast speed.
+    pub fn run_clock_by_clock(&self, sink: &mut impl Sink) -> Run {
+        let mut run = self.start();
+        while !run.is_done() {
+            run.clock(sink);
+        }
+        run
+    }
+}
+
+/// A run under way.
+#[derive(Clone, Debug)]
+pub struct Run {
+    device: Device,
+    line: Line,
+    /// First cycle that is not run; without it the run ends when nothing can change any more.
+    end: Option<Instant>,
+}
+
+impl Run {
+    /// The peripheral as it is now.
+    #[must_use]
+    pub const fn device(&self) -> &Device {
+        &self.device
+    }
+
+    /// Cycles that have been run.
+    #[must_use]
+    pub const fn cycles(&self) -> Cycles {
+        Cycles(self.device.now().0)
+    }
+
+    /// Whether the run is over.
+    #[must_use]
+    pub fn is_done(&self) -> bool {
+        match self.end {
+            Some(end) => self.device.now() >= end,
+            None => self.line.next_change() == Instant::NEVER && self.device.at_rest(),
+        }
+    }
+
+    /// Goes on until `records` more have been made (a few more may come) or to the end; true at the
+    /// end.
+    pub fn advance(&mut self, records: u64, sink: &mut impl Sink) -> bool {
+        let mut slice = Slice { sink, left: records };
+        self.device.run(&mut self.line, self.end.unwrap_or(Instant::NEVER), &mut slice);
+        self.is_done()
+    }
+
+    /// One cycle.
+    pub fn clock(&mut self, sink: &mut impl Sink) {
+        if self.line.next_change() == self.device.now() {
+            self.line.change();
+        }
+        self.device.clock(self.line.level(), sink);
+    }
+}
+
+/// A sink that asks for a pause after so many records.
+struct Slice<'a, S> {
+    sink: &'a mut S,
+    left: u64,
+}
+
+impl<S: Sink> Sink for Slice<'_, S> {
+    fn record(&mut self, record: Record) {
+        self.left = self.left.saturating_sub(1);
+        self.sink.record(record);
+    }
+
+    fn event(&mut self, at: Instant, event: Event) {
+        self.sink.event(at, event);
+    }
+
+    fn paused(&self) -> bool {
+        self.left == 0
+    }
+}
+
+/// What the host sends, and how many records that can make.
+fn schedule(checked: &Checked, plans: &[AxisPlan]) -> Result<(Schedule, u64), Vec<Problem>> {
+    let config = &checked.config;
+    let too_slow = |cause| alloc::vec![Problem::new("line.baud", cause)];
+    let line_edges = |schedule: &Schedule| schedule.total_bytes() as u64 * MOST_EDGES_A_BYTE + 1;
+    match &checked.source {
+        Source::Motion(_) => {
+            let ticks = ticks(plans, config.channels(), config.slots(), config.tick().0, config.clock_hz())?;
+            let packets =
+                ticks.iter().map(|tick| config.address().into_iter().chain(tick.iter().copied()).collect());
+            let packets: Vec<Vec<u8>> = packets.collect();
+            let edges = packets.iter().map(|packet| tick_records(config, packet)).sum::<u64>();
+            let schedule = Schedule::paced(config, checked.baud, packets.iter()).map_err(too_slow)?;
+            let records = line_edges(&schedule) + edges;
+            Ok((schedule, records))
+        }
+        Source::Packets(source) => {
+            let packets = source.packets.iter().map(|packet| &packet.0);
+            let edges = packets.clone().map(|packet| tick_records(config, packet)).sum::<u64>();
+            let schedule = Schedule::paced(config, checked.baud, packets).map_err(too_slow)?;
+            let records = line_edges(&schedule) + edges;
+            Ok((schedule, records))
+        }
+        Source::Line(script) => {
+            let schedule = Schedule::scripted(script);
+            let packets = (schedule.total_bytes() / config.packet_len()) as u64;
+            let records = line_edges(&schedule) + packets * (2 * u64::from(config.slots()) + 1);
+            Ok((schedule, records))
+        }
+    }
+}
+
+/// Records that a tick makes at most: two a slot that fires, one for DIR.
+fn tick_records(config: &Config, packet: &[u8]) -> u64 {
+    let steps: u64 = packet.iter().map(|&byte| u64::from(Order::parse(byte).steps)).sum();
+    2 * steps.min(u64::from(config.slots())) + 1
+}
+
+/// A cycle by which the host has sent everything and the last tick has passed.
+fn last_cycle(schedule: &Schedule, checked: &Checked) -> u64 {
+    let last = schedule.len().checked_sub(1).and_then(|index| schedule.get(index));
+    let sent = last.map_or(0, |send| {
+        send.start.0 + line_time(send.bytes.len() as u64, checked.config.clock_hz(), checked.baud)
+    });
+    let forced = checked.forced.iter().map(|forced| forced.end.0).max().unwrap_or(0);
+    sent.max(forced) + checked.config.tick().0
+}

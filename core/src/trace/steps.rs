@@ -1,0 +1,56 @@
+//! The steps that one channel really makes: when, and where they lead.
+
+use crate::signal::Record;
+use alloc::vec::Vec;
+
+/// One rising STEP edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Step {
+    /// Cycle of the edge.
+    pub cycle: u64,
+    /// Position after it, in steps from the start of the run.
+    pub position: i32,
+}
+
+impl Step {
+    /// +1 to the right, -1 to the left.
+    #[must_use]
+    pub fn direction(steps: &[Self], index: usize) -> i32 {
+        let before = index.checked_sub(1).and_then(|i| steps.get(i)).map_or(0, |step| step.position);
+        steps.get(index).map_or(0, |step| step.position - before)
+    }
+}
+
+/// All steps of `channel` in a trace (DESIGN A3's position counter, edge by edge).
+#[must_use]
+pub fn steps(trace: &[Record], channel: u8) -> Vec<Step> {
+    let mask = 1_u16 << (channel & 15);
+    let (mut before, mut position) = (0, 0_i32);
+    let mut steps = Vec::new();
+    for record in trace {
+        let step = record.levels.step();
+        if step & !before & mask != 0 {
+            position = position.wrapping_add(if record.levels.dir() & mask != 0 { 1 } else { -1 });
+            steps.push(Step { cycle: record.cycle.0, position });
+        }
+        before = step;
+    }
+    steps
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{signal::Levels, units::Instant};
+
+    #[test]
+    fn a_step_counts_by_the_direction_in_its_own_cycle() {
+        let right = 1 << 17;
+        let trace = [(0, 0), (5, right | 2), (6, right), (9, 2), (10, 0), (12, 2 | 1), (13, 2), (14, 0)]
+            .map(|(cycle, levels)| Record { cycle: Instant(cycle), levels: Levels(levels) });
+        let found: Vec<(u64, i32)> = steps(&trace, 1).iter().map(|s| (s.cycle, s.position)).collect();
+        assert_eq!(found, [(5, 1), (9, 0), (12, -1)]);
+        assert_eq!(Step::direction(&steps(&trace, 1), 0), 1);
+        assert_eq!(Step::direction(&steps(&trace, 1), 1), -1);
+    }
+}
