@@ -1,6 +1,7 @@
 //! Child processes. Each gets a process group of its own, no standard input and a time limit; when
 //! it ends, however it ends, the whole group goes with it, so that no browser or driver stays behind.
 
+use std::path::Path;
 use std::process::Stdio;
 use std::time::Duration;
 
@@ -23,7 +24,7 @@ impl Drop for Group {
 
 /// Runs `command` to its end; an error if it can't be started, fails, or takes longer than `limit`.
 pub(crate) async fn to_end(mut command: Command, limit: Duration) -> Result<()> {
-    let name = command.as_std().get_program().to_string_lossy().into_owned();
+    let name = name(&command);
     command.stdin(Stdio::null());
     let mut wrap = CommandWrap::from(command);
     #[cfg(unix)]
@@ -39,6 +40,16 @@ pub(crate) async fn to_end(mut command: Command, limit: Duration) -> Result<()> 
         bail!("{name} failed ({status})");
     }
     Ok(())
+}
+
+/// The call as one would type it, for messages.
+fn name(command: &Command) -> String {
+    let command = command.as_std();
+    let program = Path::new(command.get_program());
+    let program = program.file_stem().unwrap_or(program.as_os_str());
+    let words: Vec<_> =
+        std::iter::once(program).chain(command.get_args()).map(|it| it.to_string_lossy()).collect();
+    format!("`{}`", words.join(" "))
 }
 
 /// What `command` prints, or `None` if it can't be started or fails: for asking a tool its version.
@@ -84,7 +95,7 @@ mod tests {
     #[tokio::test]
     async fn a_failing_child_is_an_error_that_names_it() {
         let error = to_end(shell("exit 3"), LIMIT).await.unwrap_err();
-        assert_eq!(error.to_string(), "sh failed (exit status: 3)");
+        assert_eq!(error.to_string(), "`sh -c exit 3` failed (exit status: 3)");
     }
 
     #[tokio::test]
@@ -92,7 +103,7 @@ mod tests {
         let note = std::env::temp_dir().join(format!("stepscope-run-{}", std::process::id()));
         let script = format!("(sleep 1; echo alive > {}) & wait", note.display());
         let error = to_end(shell(&script), Duration::from_millis(300)).await.unwrap_err();
-        assert_eq!(error.to_string(), "sh was not done after 0.3 s and was stopped");
+        assert!(error.to_string().ends_with("` was not done after 0.3 s and was stopped"), "{error}");
         tokio::time::sleep(Duration::from_millis(1500)).await;
         assert!(!note.exists(), "the grandchild lived on");
     }

@@ -39,7 +39,7 @@ pub(crate) async fn serve(listener: TcpListener, web: &Path, open: bool) -> Resu
     let address = format!("http://{}/", listener.local_addr()?);
     listener.set_nonblocking(true)?;
     let listener = tokio::net::TcpListener::from_std(listener)?;
-    println!("serving {address}");
+    println!("serving {address}\n(Ctrl-C stops it)");
     if open
         && has_desktop()
         && let Err(error) = open::that_detached(&address)

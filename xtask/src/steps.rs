@@ -97,7 +97,9 @@ async fn wasm() -> Result<()> {
     let tools = WasmTools::ready(Optimise::No).await?;
     let mut command = tools.wasm_pack()?;
     command.args(["test", "--headless", "--chrome", "--chromedriver"]).arg(&browser.chromedriver);
-    command.args(["--mode", "no-install", "wasm", "--", "--locked"]);
+    command.args(["--mode", "no-install", "wasm", "--locked"]);
+    // Seconds for the whole run in the browser; the runner's own 20 are few on a busy machine.
+    command.env("WASM_BINDGEN_TEST_TIMEOUT", "600");
     run::to_end(command, run::LIMIT).await
 }
 
