@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 
-use crate::{run, tools};
+use crate::{run, toolchain};
 
 /// Runs every benchmark there is. One of the wasm build belongs after the native one.
 pub(crate) async fn run() -> Result<()> {
@@ -11,7 +11,7 @@ pub(crate) async fn run() -> Result<()> {
 
 /// The criterion benchmarks of the core, as native code.
 async fn native() -> Result<()> {
-    let mut command = tools::cargo();
+    let mut command = toolchain::cargo();
     command.args(["bench", "--package", "stepscope-tests", "--locked"]);
     run::to_end(command, run::LIMIT).await
 }

@@ -2,7 +2,7 @@
 //!
 //! | file | what it holds |
 //! | --- | --- |
-//! | `tools` | what a fresh machine lacks, installed once per user |
+//! | `toolchain`, `tools`, `wasm_opt` | what a fresh machine lacks, installed once per user |
 //! | `page` | the optimised page, and what each of its files weighs |
 //! | `headers`, `serve` | the local server, whose headers are `web/_headers`' |
 //! | `steps`, `browser` | `cargo xtask test`, step by step |
@@ -16,7 +16,9 @@ mod page;
 mod run;
 mod serve;
 mod steps;
+mod toolchain;
 mod tools;
+mod wasm_opt;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

@@ -8,11 +8,9 @@ use anyhow::{Context, Result};
 use clap::ValueEnum;
 
 use crate::browser::{self, Browser};
-use crate::tools::{self, Optimise, WasmTools};
+use crate::toolchain::{self, BARE_METAL, WASM};
+use crate::tools::{Optimise, WasmTools};
 use crate::{page, root, run};
-
-const BARE_METAL: &str = "thumbv7m-none-eabi";
-const WASM: &str = "wasm32-unknown-unknown";
 
 /// The steps, in the order in which they run: what fails fastest comes first.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -41,13 +39,13 @@ impl Step {
     async fn run(self) -> Result<()> {
         match self {
             Self::Format => {
-                tools::components().await?;
+                toolchain::components().await?;
                 cargo(&["fmt", "--all", "--check"]).await
             }
             Self::Lint => {
-                tools::components().await?;
-                tools::target(WASM).await?;
-                tools::target(BARE_METAL).await?;
+                toolchain::components().await?;
+                toolchain::target(WASM).await?;
+                toolchain::target(BARE_METAL).await?;
                 let deny = ["--locked", "--", "-D", "warnings"];
                 clippy(&["--workspace", "--all-targets", "--all-features"], deny).await?;
                 clippy(&["--package", "stepscope-wasm", "--all-targets", "--target", WASM], deny).await?;
@@ -55,7 +53,7 @@ impl Step {
                 clippy(&core, deny).await
             }
             Self::Docs => {
-                let mut command = tools::cargo();
+                let mut command = toolchain::cargo();
                 command
                     .args(["doc", "--no-deps", "--workspace", "--locked"])
                     .env("RUSTDOCFLAGS", "-D warnings");
@@ -63,7 +61,7 @@ impl Step {
             }
             Self::Native => cargo(&["test", "--workspace", "--locked"]).await,
             Self::BareMetal => {
-                tools::target(BARE_METAL).await?;
+                toolchain::target(BARE_METAL).await?;
                 cargo(&[
                     "build",
                     "--package",
@@ -82,7 +80,7 @@ impl Step {
 }
 
 async fn cargo(arguments: &[&str]) -> Result<()> {
-    let mut command = tools::cargo();
+    let mut command = toolchain::cargo();
     command.args(arguments);
     run::to_end(command, run::LIMIT).await
 }
@@ -108,7 +106,7 @@ async fn page() -> Result<()> {
     let this = env::current_exe().context("this program's own path is unknown")?;
     let browser = Browser::ready().await?;
     page::build(Optimise::Yes).await?;
-    let mut command = tools::cargo();
+    let mut command = toolchain::cargo();
     command.args([
         "test",
         "--package",

@@ -1,30 +1,19 @@
 //! What a fresh machine lacks. Tools are installed once per user, each version in a folder of its own
 //! under the user's cache folder, so that another clone of the project finds them; a tool of the right
 //! version on PATH is used as it is.
-//!
-//! wasm-opt is the delicate one. Up to binaryen 108 it breaks the page while saying that all went well
-//! (it exports the wrong table), and up to 116 it can't read the `table.fill` that wasm-bindgen emits,
-//! which rules out the `wasm-opt` crate. So: a recent one on PATH, else binaryen's npm package, else the
-//! one that wasm-pack fetches by itself. An old one on PATH without npm is an error, because wasm-pack
-//! would take it.
 
 use std::env;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, ensure};
 use etcetera::BaseStrategy;
 use serde::Deserialize;
 use tokio::process::Command;
 
-use crate::{root, run};
+use crate::{root, run, toolchain, wasm_opt};
 
-const WASM_TARGET: &str = "wasm32-unknown-unknown";
 const WASM_PACK: &str = "0.15.1";
-/// The binaryen of the npm registry.
-const BINARYEN: &str = "132.0.0";
-/// Oldest binaryen seen to leave the page whole.
-const BINARYEN_AT_LEAST: u32 = 130;
 
 /// Whether the page's wasm goes through wasm-opt.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -49,7 +38,7 @@ enum WasmOpt {
 /// The tools that turn the wasm crate into the page's files.
 pub(crate) struct WasmTools {
     wasm_pack: PathBuf,
-    /// Folders to stand first on PATH.
+    /// Folders of the tools that are not on PATH.
     folders: Vec<PathBuf>,
     /// wasm-pack's own cache: it must exist, or wasm-pack fails with a bare "os error 2".
     wasm_pack_cache: PathBuf,
@@ -59,35 +48,47 @@ pub(crate) struct WasmTools {
 impl WasmTools {
     /// Finds the tools, installing what is missing.
     pub(crate) async fn ready(optimise: Optimise) -> Result<Self> {
-        target(WASM_TARGET).await?;
+        toolchain::target(toolchain::WASM).await?;
         let cache = cache()?;
         let wasm_pack_cache = cache.join("wasm-pack");
         std::fs::create_dir_all(&wasm_pack_cache)
             .with_context(|| format!("{} can't be made", wasm_pack_cache.display()))?;
 
         let lock = std::fs::read_to_string(root().join("Cargo.lock")).context("Cargo.lock can't be read")?;
+        // wasm-bindgen's command and library must be equal to the last digit.
+        let wasm_bindgen = locked_version(&lock, "wasm-bindgen")?;
         let wasm_pack = Tool { package: "wasm-pack", program: "wasm-pack", version: WASM_PACK.to_owned() };
-        // The command and the library must be equal to the last digit.
-        let version = locked_version(&lock, "wasm-bindgen")?;
-        let wasm_bindgen = Tool { package: "wasm-bindgen-cli", program: "wasm-bindgen", version };
-        let mut folders = vec![wasm_pack.ready(&cache).await?, wasm_bindgen.ready(&cache).await?];
-        let build = build_folder(&cache);
-        if build.exists() {
-            std::fs::remove_dir_all(&build)
-                .with_context(|| format!("{} can't be removed", build.display()))?;
+        let wasm_bindgen =
+            Tool { package: "wasm-bindgen-cli", program: "wasm-bindgen", version: wasm_bindgen };
+        let mut programs = Vec::new();
+        let mut installed = false;
+        for tool in [wasm_pack, wasm_bindgen] {
+            programs.push(match tool.find(&cache).await {
+                Some(program) => program,
+                None => {
+                    installed = true;
+                    tool.install(&cache).await?
+                }
+            });
         }
-
+        if installed {
+            // What the two share is built by now; should it stay, only the disk is fuller.
+            let _ = std::fs::remove_dir_all(build_folder(&cache));
+        }
+        let wasm_pack = programs[0].clone();
         let wasm_opt = match optimise {
             Optimise::No => WasmOpt::LeftOut,
-            Optimise::Yes => match wasm_opt(&cache).await? {
-                Some(folder) => {
-                    folders.push(folder);
+            Optimise::Yes => match wasm_opt::ready(&cache).await? {
+                Some(program) => {
+                    programs.push(program);
                     WasmOpt::Found
                 }
                 None => WasmOpt::FetchedByWasmPack,
             },
         };
-        let wasm_pack = find("wasm-pack", &folders[0]).context("wasm-pack vanished")?;
+        // What is on PATH already stays where it is: its folder may hold another cargo, too.
+        let own = programs.iter().filter(|program| program.starts_with(&cache));
+        let folders = own.filter_map(|program| program.parent()).map(Path::to_owned).collect();
         Ok(Self { wasm_pack, folders, wasm_pack_cache, wasm_opt })
     }
 
@@ -107,17 +108,12 @@ impl WasmTools {
         }
     }
 
-    /// After a build: where wasm-pack was to fetch wasm-opt, did it? It skips it with a mere note on
-    /// platforms that it has none for.
+    /// After a build: an error if wasm-opt was wanted and yet left out.
     pub(crate) fn check_optimised(&self) -> Result<()> {
-        if self.wasm_opt != WasmOpt::FetchedByWasmPack {
-            return Ok(());
+        match self.wasm_opt {
+            WasmOpt::Found | WasmOpt::LeftOut => Ok(()),
+            WasmOpt::FetchedByWasmPack => wasm_opt::check_fetched(&self.wasm_pack_cache),
         }
-        let entries = std::fs::read_dir(&self.wasm_pack_cache).context("wasm-pack's cache can't be read")?;
-        let fetched =
-            entries.flatten().any(|entry| entry.file_name().to_string_lossy().starts_with("wasm-opt"));
-        ensure!(fetched, "wasm-pack has no wasm-opt for this platform; {}", remedy());
-        Ok(())
     }
 
     fn path(&self) -> Result<OsString> {
@@ -135,107 +131,59 @@ struct Tool {
 }
 
 impl Tool {
-    /// The folder that holds the tool, after installing it if need be.
-    async fn ready(&self, cache: &Path) -> Result<PathBuf> {
-        let home = cache.join("tools").join(format!("{}-{}", self.package, self.version));
-        let own = home.join("bin");
-        if self.fits(find(self.program, &own)).await {
-            return Ok(own);
+    fn home(&self, cache: &Path) -> PathBuf {
+        cache.join("tools").join(format!("{}-{}", self.package, self.version))
+    }
+
+    /// The tool's path, if it is there in the right version.
+    async fn find(&self, cache: &Path) -> Option<PathBuf> {
+        let own = find(self.program, &self.home(cache).join("bin"));
+        for program in [own, which::which(self.program).ok()].into_iter().flatten() {
+            if self.fits(&program).await {
+                return Some(program);
+            }
         }
-        let on_path = which::which(self.program).ok();
-        if self.fits(on_path.clone()).await
-            && let Some(folder) = on_path.as_deref().and_then(Path::parent)
-        {
-            return Ok(folder.to_owned());
-        }
+        None
+    }
+
+    async fn install(&self, cache: &Path) -> Result<PathBuf> {
+        let home = self.home(cache);
         println!("installing {} {} (once; a minute or two)", self.package, self.version);
-        let mut command = cargo();
-        command.args(["install", "--locked", self.package, "--version", &self.version, "--root"]).arg(&home);
+        let mut command = toolchain::cargo();
+        command.args(["install", "--force", "--locked", self.package]);
+        command.args(["--version", &self.version, "--root"]).arg(&home);
         // As fast in use as the full profile, and built in half its time; what the tools share is built once.
         command
             .env("CARGO_PROFILE_RELEASE_OPT_LEVEL", "1")
             .env("CARGO_PROFILE_RELEASE_LTO", "off")
             .env("CARGO_PROFILE_RELEASE_CODEGEN_UNITS", "16")
             .env("CARGO_TARGET_DIR", build_folder(cache));
-        run::to_end(command, run::LIMIT)
-            .await
-            .with_context(|| format!("{} {} was not installed", self.package, self.version))?;
+        run::to_end(command, run::LIMIT).await?;
+        let program = find(self.program, &home.join("bin")).context("cargo installed it elsewhere")?;
         ensure!(
-            self.fits(find(self.program, &own)).await,
-            "{} was installed to {} but does not answer as version {}",
-            self.program,
-            own.display(),
+            self.fits(&program).await,
+            "{} was installed but does not answer as version {}",
+            program.display(),
             self.version
         );
-        Ok(own)
+        Ok(program)
     }
 
-    async fn fits(&self, program: Option<PathBuf>) -> bool {
-        let Some(answer) = version_answer(program).await else { return false };
+    async fn fits(&self, program: &Path) -> bool {
+        let answer = version_answer(program).await.unwrap_or_default();
         answer.split_whitespace().nth(1) == Some(self.version.as_str())
     }
 }
 
-/// The folder of a wasm-opt that is recent enough, installing it by npm if need be; `None` if it is
-/// left to wasm-pack to fetch one.
-async fn wasm_opt(cache: &Path) -> Result<Option<PathBuf>> {
-    let home = cache.join("tools").join(format!("binaryen-{BINARYEN}"));
-    let own = home.join("node_modules").join(".bin");
-    if wasm_opt_fits(find("wasm-opt", &own)).await {
-        return Ok(Some(own));
-    }
-    let on_path = which::which("wasm-opt").ok();
-    if wasm_opt_fits(on_path.clone()).await {
-        return Ok(on_path.as_deref().and_then(Path::parent).map(Path::to_owned));
-    }
-    if let Ok(npm) = which::which("npm") {
-        println!("installing binaryen {BINARYEN} for its wasm-opt (once)");
-        std::fs::create_dir_all(&home).with_context(|| format!("{} can't be made", home.display()))?;
-        let mut command = Command::new(npm);
-        command.args(["install", "--no-audit", "--no-fund", "--no-update-notifier", "--prefix"]).arg(&home);
-        command.arg(format!("binaryen@{BINARYEN}"));
-        run::to_end(command, run::LIMIT).await.context("binaryen was not installed")?;
-        ensure!(
-            wasm_opt_fits(find("wasm-opt", &own)).await,
-            "wasm-opt was installed to {} but does not run there; its node may be too old",
-            own.display()
-        );
-        return Ok(Some(own));
-    }
-    if let Some(old) = on_path {
-        bail!("{} is too old and would break the page without a word; {}", old.display(), remedy());
-    }
-    println!(
-        "neither wasm-opt nor npm is here: wasm-pack will fetch wasm-opt itself; if it can't, {}",
-        remedy()
-    );
-    Ok(None)
-}
-
-fn remedy() -> String {
-    format!(
-        "install Node.js with npm, or a wasm-opt of version {BINARYEN_AT_LEAST} or later, and run this again \
-         (--no-opt does without)"
-    )
-}
-
-async fn wasm_opt_fits(program: Option<PathBuf>) -> bool {
-    version_answer(program).await.is_some_and(|answer| wasm_opt_version(&answer) >= Some(BINARYEN_AT_LEAST))
-}
-
-/// The number in `wasm-opt version 132 (version_132)`.
-fn wasm_opt_version(answer: &str) -> Option<u32> {
-    answer.split_whitespace().nth(2)?.parse().ok()
-}
-
-async fn version_answer(program: Option<PathBuf>) -> Option<String> {
-    let mut command = Command::new(program?);
+/// What `program` says to `--version`.
+pub(crate) async fn version_answer(program: &Path) -> Option<String> {
+    let mut command = Command::new(program);
     command.arg("--version");
     run::output(command).await
 }
 
 /// `program` in `folder`, with whatever ending the system gives to programs.
-fn find(program: &str, folder: &Path) -> Option<PathBuf> {
+pub(crate) fn find(program: &str, folder: &Path) -> Option<PathBuf> {
     which::which_in(program, Some(folder), root()).ok()
 }
 
@@ -266,44 +214,6 @@ fn locked_version(lock: &str, package: &str) -> Result<String> {
     let version = versions.next().with_context(|| format!("Cargo.lock has no {package}"))?;
     ensure!(versions.next().is_none(), "Cargo.lock has {package} in two versions; the page can use only one");
     Ok(version)
-}
-
-/// A cargo call in the workspace's folder, of the tool chain that runs this.
-pub(crate) fn cargo() -> Command {
-    let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    command.current_dir(root());
-    command
-}
-
-/// Makes sure that the tool chain can build for `target`.
-pub(crate) async fn target(target: &str) -> Result<()> {
-    let mut command = Command::new("rustc");
-    command.current_dir(root()).args(["--print", "target-libdir", "--target", target]);
-    let folder = run::output(command).await.context("rustc does not answer")?;
-    if Path::new(folder.trim()).exists() {
-        return Ok(());
-    }
-    rustup(&["target", "add", target]).await
-}
-
-/// Makes sure that `cargo fmt` and `cargo clippy` are there.
-pub(crate) async fn components() -> Result<()> {
-    for (subcommand, component) in [("fmt", "rustfmt"), ("clippy", "clippy")] {
-        let mut command = cargo();
-        command.args([subcommand, "--version"]);
-        if run::output(command).await.is_none() {
-            rustup(&["component", "add", component]).await?;
-        }
-    }
-    Ok(())
-}
-
-async fn rustup(arguments: &[&str]) -> Result<()> {
-    let mut command = Command::new("rustup");
-    command.current_dir(root()).args(arguments);
-    run::to_end(command, run::LIMIT).await.with_context(|| {
-        format!("`rustup {}` did not work; do it by hand, or by your Rust's own means", arguments.join(" "))
-    })
 }
 
 #[cfg(test)]
@@ -337,17 +247,5 @@ mod tests {
     fn the_workspace_lock_file_is_read() {
         let lock = std::fs::read_to_string(root().join("Cargo.lock")).unwrap();
         assert!(locked_version(&lock, "wasm-bindgen").unwrap().starts_with("0.2."));
-    }
-
-    #[test]
-    fn an_old_wasm_opt_is_told_from_a_recent_one() {
-        for (answer, expected) in [
-            ("wasm-opt version 132 (version_132)\n", Some(132)),
-            ("wasm-opt version 108\n", Some(108)),
-            ("wasm-opt", None),
-            ("something else entirely", None),
-        ] {
-            assert_eq!(wasm_opt_version(answer), expected, "{answer}");
-        }
     }
 }

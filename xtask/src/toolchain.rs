@@ -1,0 +1,52 @@
+//! The Rust tool chain that runs this: calling its cargo, and adding what it lacks.
+
+use std::env;
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use tokio::process::Command;
+
+use crate::{root, run};
+
+/// The page's target.
+pub(crate) const WASM: &str = "wasm32-unknown-unknown";
+/// A Cortex-M3, on which the core must build without an operating system.
+pub(crate) const BARE_METAL: &str = "thumbv7m-none-eabi";
+
+/// A cargo call in the workspace's folder.
+pub(crate) fn cargo() -> Command {
+    let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.current_dir(root());
+    command
+}
+
+/// Makes sure that the tool chain can build for `target`.
+pub(crate) async fn target(target: &str) -> Result<()> {
+    let mut command = Command::new("rustc");
+    command.current_dir(root()).args(["--print", "target-libdir", "--target", target]);
+    let folder = run::output(command).await.context("rustc does not answer")?;
+    if Path::new(folder.trim()).exists() {
+        return Ok(());
+    }
+    rustup(&["target", "add", target]).await
+}
+
+/// Makes sure that `cargo fmt` and `cargo clippy` are there.
+pub(crate) async fn components() -> Result<()> {
+    for (subcommand, component) in [("fmt", "rustfmt"), ("clippy", "clippy")] {
+        let mut command = cargo();
+        command.args([subcommand, "--version"]);
+        if run::output(command).await.is_none() {
+            rustup(&["component", "add", component]).await?;
+        }
+    }
+    Ok(())
+}
+
+async fn rustup(arguments: &[&str]) -> Result<()> {
+    let mut command = Command::new("rustup");
+    command.current_dir(root()).args(arguments);
+    run::to_end(command, run::LIMIT)
+        .await
+        .with_context(|| format!("add it by your Rust's own means: {}", arguments.join(" ")))
+}

@@ -1,0 +1,93 @@
+//! wasm-opt, the one tool that can break the page while saying that all went well.
+//!
+//! Up to binaryen 108 it exports the wrong table, and the page fails to start; up to 116 it can't read
+//! the `table.fill` that wasm-bindgen emits, which rules out the `wasm-opt` crate. So: a recent one on
+//! PATH, else binaryen's npm package, else the one that wasm-pack fetches by itself. An old one on PATH
+//! without npm is an error, because wasm-pack would take it.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail, ensure};
+use tokio::process::Command;
+
+use crate::run;
+use crate::tools::{find, version_answer};
+
+/// The npm package's version.
+const BINARYEN: &str = "132.0.0";
+/// The oldest that is trusted: the one that wasm-pack 0.15.1 fetches.
+const AT_LEAST: u32 = 130;
+
+/// The path of a wasm-opt that is recent enough, installed by npm into `cache` if need be; `None` if
+/// wasm-pack must fetch one.
+pub(crate) async fn ready(cache: &Path) -> Result<Option<PathBuf>> {
+    let home = cache.join("tools").join(format!("binaryen-{BINARYEN}"));
+    let own = home.join("node_modules").join(".bin");
+    let on_path = which::which("wasm-opt").ok();
+    for program in [find("wasm-opt", &own), on_path.clone()].into_iter().flatten() {
+        if fits(&program).await {
+            return Ok(Some(program));
+        }
+    }
+    if let Ok(npm) = which::which("npm") {
+        println!("installing binaryen {BINARYEN} for its wasm-opt (once)");
+        std::fs::create_dir_all(&home).with_context(|| format!("{} can't be made", home.display()))?;
+        let mut command = Command::new(npm);
+        command.args(["install", "--no-audit", "--no-fund", "--no-update-notifier", "--prefix"]).arg(&home);
+        command.arg(format!("binaryen@{BINARYEN}"));
+        run::to_end(command, run::LIMIT).await.with_context(remedy)?;
+        let program = find("wasm-opt", &own).with_context(remedy)?;
+        ensure!(fits(&program).await, "{} does not run; {}", program.display(), remedy());
+        return Ok(Some(program));
+    }
+    if let Some(old) = on_path {
+        bail!("{} is too old and would break the page without a word; {}", old.display(), remedy());
+    }
+    println!(
+        "neither wasm-opt nor npm is here, so wasm-pack will fetch wasm-opt; should it fail: {}",
+        remedy()
+    );
+    Ok(None)
+}
+
+/// After a build for which wasm-pack was to fetch wasm-opt: did it? On platforms that it has none for
+/// it goes on without, with a mere note.
+pub(crate) fn check_fetched(wasm_pack_cache: &Path) -> Result<()> {
+    let entries = std::fs::read_dir(wasm_pack_cache).context("wasm-pack's cache can't be read")?;
+    let fetched = entries.flatten().any(|entry| entry.file_name().to_string_lossy().starts_with("wasm-opt"));
+    ensure!(fetched, "wasm-pack has no wasm-opt for this platform; {}", remedy());
+    Ok(())
+}
+
+/// What the user can do about a missing wasm-opt.
+fn remedy() -> String {
+    format!(
+        "to have wasm-opt, install Node.js with npm, or binaryen {AT_LEAST} or later; or do without by --no-opt"
+    )
+}
+
+async fn fits(program: &Path) -> bool {
+    version_answer(program).await.is_some_and(|answer| version(&answer) >= Some(AT_LEAST))
+}
+
+/// The number in `wasm-opt version 132 (version_132)`.
+fn version(answer: &str) -> Option<u32> {
+    answer.split_whitespace().nth(2)?.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_old_wasm_opt_is_told_from_a_recent_one() {
+        for (answer, expected) in [
+            ("wasm-opt version 132 (version_132)\n", Some(132)),
+            ("wasm-opt version 108\n", Some(108)),
+            ("wasm-opt", None),
+            ("something else entirely", None),
+        ] {
+            assert_eq!(version(answer), expected, "{answer}");
+        }
+    }
+}
