@@ -1,1 +1,15 @@
+//! What the page calls: the core behind wasm-bindgen. Nothing is decided here.
+//!
+//! The page loads this module twice: in a worker, where [`Simulation`] runs, and on the main
+//! thread, where the charts are drawn and links are read and written.
 
+mod charts;
+mod convert;
+mod judge;
+mod link;
+mod simulation;
+mod spectrum;
+
+pub use judge::{check, default_scenario, presets, version};
+pub use link::{decode_link, encode_link};
+pub use simulation::Simulation;

@@ -69,7 +69,7 @@ impl Cosine {
     }
 
     /// Time from the nearer end, 0 at both.
-    fn from_end(&self, t: f64) -> f64 {
+    fn to_nearer_end(&self, t: f64) -> f64 {
         greater(0.0, if t <= self.duration_s / 2.0 { t } else { self.duration_s - t })
     }
 }
@@ -84,7 +84,7 @@ impl Curve for Cosine {
     }
 
     fn position(&self, t: f64) -> f64 {
-        let travelled = self.first_half(self.from_end(t));
+        let travelled = self.first_half(self.to_nearer_end(t));
         if t <= self.duration_s / 2.0 {
             self.signed(travelled)
         } else {
@@ -93,14 +93,14 @@ impl Curve for Cosine {
     }
 
     fn speed(&self, t: f64) -> f64 {
-        let Some(phase) = self.phase(self.from_end(t)) else { return self.signed(self.top_speed) };
+        let Some(phase) = self.phase(self.to_nearer_end(t)) else { return self.signed(self.top_speed) };
         // (1 - cos x)/2 = sin^2(x/2), which keeps its digits near 0.
         let sine = libm::sin(phase / 2.0);
         self.signed(self.top_speed * sine * sine)
     }
 
     fn acceleration(&self, t: f64) -> f64 {
-        let Some(phase) = self.phase(self.from_end(t)) else { return 0.0 };
+        let Some(phase) = self.phase(self.to_nearer_end(t)) else { return 0.0 };
         let magnitude = self.top_speed * PI / (2.0 * self.ramp_s) * libm::sin(phase);
         self.signed(if t <= self.duration_s / 2.0 { magnitude } else { -magnitude })
     }
@@ -128,4 +128,62 @@ fn minus_sine(x: f64) -> f64 {
         sum = 1.0 - sum * square / ((2.0 * k + 2.0) * (2.0 * k + 3.0));
     }
     sum * square * x / 6.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_documents_top_speed_and_longest_ramp_come_out() {
+        assert_eq!(Cosine::new(6400, 0.4, 0.2).top_speed(), 32_000.0);
+        let longest = Cosine::longest_ramp_s(3200, 0.4, 19_200.0).unwrap();
+        assert!((longest - 0.233_333_3).abs() < 1e-6, "{longest}");
+        assert_eq!(Cosine::longest_ramp_s(3200, 0.4, 8000.0), Some(0.0));
+        assert_eq!(Cosine::longest_ramp_s(3200, 0.4, 7999.0), None);
+        assert_eq!(Cosine::longest_ramp_s(3200, 0.4, 1e6), Some(0.2));
+    }
+
+    #[test]
+    fn position_is_the_integral_of_speed_and_speed_of_acceleration() {
+        for (steps, duration_s, ramp_s) in [(6400, 0.4, 0.2), (-6400, 0.4, 0.1), (1, 2.0, 0.5)] {
+            let curve = Cosine::new(steps, duration_s, ramp_s);
+            let slots = 20_000;
+            let dt = duration_s / f64::from(slots);
+            let (mut position, mut speed) = (0.0, 0.0);
+            let scale = f64::from(steps as i32).abs();
+            for slot in 0..slots {
+                let middle = (f64::from(slot) + 0.5) * dt;
+                position += curve.speed(middle) * dt;
+                speed += curve.acceleration(middle) * dt;
+                let end = f64::from(slot + 1) * dt;
+                assert!((position - curve.position(end)).abs() < 1e-6 * scale, "position at {end}");
+                assert!((speed - curve.speed(end)).abs() < 1e-6 * scale / duration_s, "speed at {end}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_end_is_exact_and_the_middle_is_half_of_the_way() {
+        for steps in [1, -1, 3, 6400, 999_999_999, -1_000_000_000] {
+            for ramp_s in [0.0, 0.05, 0.15] {
+                let curve = Cosine::new(steps, 0.3, ramp_s);
+                let end = curve.duration_s();
+                assert_eq!(curve.position(0.0), 0.0);
+                assert_eq!(curve.position(end), steps as f64);
+                assert_eq!(curve.position(9.0), steps as f64);
+                let middle = curve.position(end / 2.0) * 2.0 / steps as f64;
+                assert!((middle - 1.0).abs() < 1e-14, "{middle}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_series_and_the_sine_agree_where_they_meet() {
+        for x in [1e-9, 1e-3, 0.5, 0.999, 1.0] {
+            let given = minus_sine(x);
+            let expected = if x < 1e-2 { x * x * x / 6.0 * (1.0 - x * x / 20.0) } else { x - libm::sin(x) };
+            assert!((given - expected).abs() <= 2e-15 * expected.max(x), "{x}: {given} {expected}");
+        }
+    }
 }

@@ -21,12 +21,14 @@ pub mod cosine;
 mod plan;
 mod profile;
 pub mod sine_segments;
+mod step_times;
 pub mod steady;
 pub mod trapezoid;
 pub mod trapezoid_table;
 
 pub use plan::{AxisPlan, PlannedMove, plan_axis};
 pub use profile::{Curve, Peaks, Profile};
+pub use step_times::StepTimes;
 
 /// Highest speed that a plan may have, in steps/s.
 pub const MOST_SPEED: f64 = 1e7;

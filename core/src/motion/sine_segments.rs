@@ -266,3 +266,73 @@ impl Curve for SineSegments {
         peaks
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_documents_breakpoints_come_out() {
+        let rows: [(f64, &[u16]); 4] = [
+            (0.0054, &[0, 67, 136, 208, 287, 381, 512]),
+            (0.006, &[0, 71, 144, 221, 307, 413, 512]),
+            (0.015, &[0, 113, 234, 381, 512]),
+            (1.0, &[0, 512]),
+        ];
+        for (d1, expected) in rows {
+            assert_eq!(breakpoints(d1), expected, "{d1}");
+        }
+        assert_eq!(breakpoints(0.002).len() - 1, 10);
+        assert_eq!(breakpoints(0.0).len() - 1, 512);
+        assert_eq!(breakpoints(f64::NAN).len() - 1, 512);
+    }
+
+    #[test]
+    fn every_vertex_of_a_period_is_a_whole_step_in_its_time() {
+        for amplitude in [1000, -1000, 1, 70_001] {
+            let sine = SineSegments::new(amplitude, 0.5, 3, 0.006);
+            let steps = amplitude.unsigned_abs() as f64;
+            for point in [0, 71, 144, 221, 307, 413, 512_u16] {
+                let height = round_half_up(steps * cosine_at(point)) as f64;
+                for (at, y) in
+                    [(point, height), (1024 - point, -height), (1024 + point, -height), (2048 - point, height)]
+                {
+                    let t = 0.5 * (1.0 + f64::from(at) / 2048.0);
+                    let expected = (y - steps) * f64::from(amplitude.signum() as i32);
+                    let found = sine.position(t);
+                    assert!((found - expected).abs() < 1e-7, "{amplitude} at {at}: {found} {expected}");
+                }
+            }
+            assert_eq!(sine.position(1.5), 0.0);
+        }
+    }
+
+    #[test]
+    fn segments_add_up_to_the_quarter_and_fit_in_little_memory() {
+        let sine = SineSegments::new(1000, 0.5, 1, 0.006);
+        assert_eq!(sine.segments().iter().map(|s| s.steps).sum::<u64>(), 1000);
+        let whole: f64 = sine.segments().iter().map(|s| s.duration_s).sum();
+        assert!((whole - 0.125).abs() < 1e-15);
+        let first = sine.segments()[0];
+        assert_eq!((first.from, first.to, first.steps), (0, 71, 24));
+        assert!((first.to_deg - 12.480_468_75).abs() < 1e-12);
+        assert!((first.rate - 24.0 / (71.0 * 0.5 / 2048.0)).abs() < 1e-9);
+        assert_eq!(sine.memory(), Memory { segments: 36, intervals: 4000 });
+        let long = SineSegments::new(1_000_000, 10.0, 1, 0.006).memory();
+        assert_eq!(long, Memory { segments: 48, intervals: 4_000_000 });
+    }
+
+    #[test]
+    fn the_speed_is_the_slope_of_the_position() {
+        let sine = SineSegments::new(-1000, 0.5, 2, 0.006);
+        for i in 0..2048 {
+            let t = (f64::from(i) + 0.5) / 2048.0 * sine.period_s();
+            let slope = (sine.position(t + 1e-7) - sine.position(t - 1e-7)) / 2e-7;
+            assert!((slope - sine.speed(t)).abs() < 1e-2, "{i}: {slope} {}", sine.speed(t));
+        }
+        let peaks = sine.peaks();
+        assert!((peaks.speed - 1000.0 * core::f64::consts::TAU / 0.5).abs() < 200.0, "{peaks:?}");
+        // At the extremes the first segment's rate turns round.
+        assert_eq!(peaks.jump.max(2.0 * sine.segments()[0].rate), peaks.jump);
+    }
+}

@@ -84,7 +84,7 @@ impl Trapezoid {
     }
 
     /// Time from the nearer end, 0 at both.
-    fn from_end(&self, t: f64) -> f64 {
+    fn to_nearer_end(&self, t: f64) -> f64 {
         greater(0.0, if t <= self.duration_s / 2.0 { t } else { self.duration_s - t })
     }
 }
@@ -99,7 +99,7 @@ impl Curve for Trapezoid {
     }
 
     fn position(&self, t: f64) -> f64 {
-        let travelled = self.first_half(self.from_end(t));
+        let travelled = self.first_half(self.to_nearer_end(t));
         if t <= self.duration_s / 2.0 {
             self.signed(travelled)
         } else {
@@ -108,12 +108,12 @@ impl Curve for Trapezoid {
     }
 
     fn speed(&self, t: f64) -> f64 {
-        let t = self.from_end(t);
+        let t = self.to_nearer_end(t);
         self.signed(if t < self.ramp_s { self.start_speed + self.acceleration * t } else { self.peak_speed })
     }
 
     fn acceleration(&self, t: f64) -> f64 {
-        if self.from_end(t) >= self.ramp_s {
+        if self.to_nearer_end(t) >= self.ramp_s {
             0.0
         } else if t <= self.duration_s / 2.0 {
             self.signed(self.acceleration)
@@ -125,5 +125,42 @@ impl Curve for Trapezoid {
     fn peaks(&self) -> Peaks {
         let acceleration = if self.ramp_s > 0.0 { self.acceleration } else { 0.0 };
         Peaks { speed: self.peak_speed, acceleration, jump: 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_moves_have_a_plateau_and_short_ones_turn_round_in_the_middle() {
+        // (steps, start, top, acceleration), (peak speed, ramp s, duration s)
+        let rows = [
+            ((10_000, 1000.0, 5000.0, 8000.0), (5000.0, 0.5, 2.4)),
+            ((3000, 1000.0, 5000.0, 8000.0), (5000.0, 0.5, 1.0)),
+            ((800, 0.0, 5000.0, 8000.0), (2529.822_128, 0.316_227_766, 0.632_455_532)),
+            ((-4, 1000.0, 5000.0, 8000.0), (1015.874_007_9, 0.001_984_251, 0.003_968_502)),
+            ((500, 1000.0, 1000.0, 1.0), (1000.0, 0.0, 0.5)),
+        ];
+        for ((steps, start, top, acceleration), (peak, ramp_s, duration_s)) in rows {
+            let curve = Trapezoid::new(steps, start, top, acceleration);
+            let found = [curve.peak_speed(), curve.ramp_s(), curve.duration_s()];
+            for (found, expected) in found.iter().zip([peak, ramp_s, duration_s]) {
+                assert!((found - expected).abs() <= 1e-6 * expected, "{steps}: {found} {expected}");
+            }
+            assert_eq!(curve.position(curve.duration_s()), steps as f64);
+        }
+    }
+
+    #[test]
+    fn the_square_of_the_speed_grows_with_the_way() {
+        let curve = Trapezoid::new(4000, 300.0, 4000.0, 9000.0);
+        for i in 0..100 {
+            let t = curve.ramp_s() * f64::from(i) / 100.0;
+            let (v, s) = (curve.speed(t), curve.position(t));
+            assert!((v * v - (300.0 * 300.0 + 2.0 * 9000.0 * s)).abs() < 1e-6 * v * v);
+            let mirrored = 4000.0 - curve.position(curve.duration_s() - t);
+            assert!((mirrored - s).abs() < 1e-9, "{t}: {s} {mirrored}");
+        }
     }
 }

@@ -278,3 +278,72 @@ impl Curve for TrapezoidTable {
         peaks
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(steps: i64, top_speed: f64) -> TrapezoidTable {
+        TrapezoidTable::new(steps, (250.0, top_speed, 9000.0), 1_000_000, 1_000_000).unwrap()
+    }
+
+    #[test]
+    fn the_documents_rates_come_out() {
+        let step_mm = 0.393;
+        let numbers = (100.0 / step_mm, 1000.0 / step_mm, 3500.0 / step_mm);
+        let table = TrapezoidTable::new(1000, numbers, 1_000_000, 1000).unwrap();
+        let rates: Vec<u64> = (0..8).map(|row| table.rate(row)).collect();
+        assert_eq!(rates, [254, 287, 317, 344, 369, 392, 414, 435]);
+        assert_eq!(table.reload(0), 3937);
+        // The first row at or above the top speed has the top speed itself.
+        assert_eq!((table.rows(), table.rate(359), table.rate(360)), (361, 2541, 2545));
+    }
+
+    #[test]
+    fn the_steps_are_those_of_the_interrupt_program() {
+        for (count, top_speed) in (1..60).map(|n| (n, 700.0)).chain([(500, 700.0), (501, 1e5), (7, 250.0)]) {
+            let table = table(count as i64, top_speed);
+            let top = table.rows() - 1;
+            let mut ticks = 0;
+            for i in 0..count {
+                ticks += table.reload(i.min(count - 1 - i).min(top));
+                assert_eq!(table.step_ticks(i + 1), ticks, "step {} of {count}", i + 1);
+            }
+            assert_eq!(table.duration_s(), ticks as f64 / 1e6);
+        }
+    }
+
+    #[test]
+    fn a_step_is_due_at_its_time_and_not_before() {
+        for (steps, sign) in [(1, 1), (2, -1), (40, 1), (41, -1), (2000, 1), (2001, -1)] {
+            let table = table(steps * sign, 700.0);
+            for k in 1..=steps {
+                let ticks = table.step_ticks(k as u64) as f64;
+                let due = |ticks: f64| sign * round_half_up(table.position(ticks / 1e6));
+                assert_eq!((due(ticks - 1.0), due(ticks), due(ticks + 1.0)), (k - 1, k, k), "of {steps}");
+            }
+            assert_eq!(table.position(table.duration_s()), (steps * sign) as f64);
+        }
+    }
+
+    #[test]
+    fn a_table_that_cannot_be_is_refused() {
+        let new = |steps, top, timer| TrapezoidTable::new(steps, (250.0, top, 9000.0), timer, 100).err();
+        // Row 100 would be the 101st.
+        assert_eq!(new(199, 1e6, 1_000_000), None);
+        assert_eq!(new(200, 1e6, 1_000_000), Some(NoTable::Rows { needed: 101 }));
+        assert_eq!(new(50, 600.0, 600), None);
+        assert_eq!(new(50, 600.0, 599), Some(NoTable::Timer { rate: 600.0 }));
+        // Two steps use row 0 alone.
+        assert_eq!(new(2, 600.0, 250), None);
+    }
+
+    #[test]
+    fn what_whole_rates_do_to_the_acceleration_shows() {
+        let table = table(2000, 4000.0);
+        let peaks = table.peaks();
+        assert!(peaks.speed >= 4000.0 && peaks.speed < 4001.0, "{peaks:?}");
+        assert!(peaks.acceleration > 9000.0 && peaks.acceleration < 100_000.0, "{peaks:?}");
+        assert!(table.acceleration(0.01) > 0.0 && table.acceleration(table.duration_s() - 0.01) < 0.0);
+    }
+}

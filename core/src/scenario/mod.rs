@@ -15,6 +15,7 @@ mod check;
 mod compact;
 mod hex;
 pub mod link;
+pub mod presets;
 mod problem;
 mod quantity;
 mod read;

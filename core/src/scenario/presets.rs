@@ -1,0 +1,68 @@
+//! The documents' own experiments, as JSON files that tests, native tools and the page share.
+
+use super::Scenario;
+
+/// One preset.
+#[derive(Clone, Copy, Debug)]
+pub struct Preset {
+    /// Its name in files and on the command line.
+    pub id: &'static str,
+    /// The document that it comes from.
+    pub document: &'static str,
+    /// The scenario's JSON.
+    pub json: &'static str,
+}
+
+impl Preset {
+    /// The scenario. The files are tested, so it is never the default in place of one.
+    #[must_use]
+    pub fn scenario(&self) -> Scenario {
+        Scenario::from_json(self.json).unwrap_or_default()
+    }
+}
+
+const SINE: &str = "SWorldJournal, issue 11: sine by segments";
+const SONG: &str = "Song, Han, Lu 2021: exact S-curve";
+const SONOBE: &str = "Sonobe 2011: acceleration table";
+const PATENT: &str = "RU 2704486, 2019: tick packets";
+const ZHANG: &str = "Zhang 2012: fixed-length controller";
+
+macro_rules! presets {
+    ($($document:expr => $id:literal;)*) => {
+        /// All presets, in the order of the page's menu.
+        pub const PRESETS: &[Preset] = &[$(Preset {
+            id: $id,
+            document: $document,
+            json: include_str!(concat!("../../presets/", $id, ".json")),
+        }),*];
+    };
+}
+
+presets! {
+    SONG => "song-2021-one-turn";
+    SONG => "song-2021-plateau";
+    SONOBE => "sonobe-2011-table";
+    ZHANG => "zhang-2012-fixed-length";
+    SINE => "sine-2022-d00054";
+    SINE => "sine-2022-d0006";
+    PATENT => "patent-2019-four-motors";
+    PATENT => "patent-2019-sixteen-motors";
+    PATENT => "patent-2019-addressed";
+    PATENT => "glitches-and-breaks";
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::Experiment;
+
+    #[test]
+    fn every_preset_reads_and_has_no_problems() {
+        for (index, preset) in PRESETS.iter().enumerate() {
+            let scenario = Scenario::from_json(preset.json).unwrap_or_else(|p| panic!("{}: {p:?}", preset.id));
+            assert!(!scenario.title.is_empty() && !scenario.note.is_empty(), "{}", preset.id);
+            Experiment::new(&scenario).unwrap_or_else(|p| panic!("{}: {p:?}", preset.id));
+            assert!(PRESETS[..index].iter().all(|other| other.id != preset.id), "{} twice", preset.id);
+        }
+    }
+}

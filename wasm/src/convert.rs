@@ -1,0 +1,27 @@
+//! Results as JavaScript values.
+
+use js_sys::{Float64Array, Object, Reflect, Uint32Array};
+use serde::Serialize;
+use wasm_bindgen::{JsError, JsValue};
+
+/// A plain object of anything that serde knows; maps become objects.
+pub(crate) fn object(value: &impl Serialize) -> Result<JsValue, JsError> {
+    value.serialize(&serde_wasm_bindgen::Serializer::json_compatible()).map_err(JsError::from)
+}
+
+/// Adds a field to an object.
+pub(crate) fn field(object: &Object, name: &str, value: &JsValue) {
+    // Setting a field of a fresh plain object cannot fail.
+    let _ = Reflect::set(object, &name.into(), value);
+}
+
+/// Adds an array of numbers to an object.
+pub(crate) fn numbers(object: &Object, name: &str, values: &[f64]) {
+    field(object, name, &Float64Array::from(values));
+}
+
+/// Adds an array of 64-bit words to an object, each as its low and its high half.
+pub(crate) fn words(object: &Object, name: &str, values: &[u64]) {
+    let halves: Vec<u32> = values.iter().flat_map(|word| [*word as u32, (*word >> 32) as u32]).collect();
+    field(object, name, &Uint32Array::from(halves.as_slice()));
+}

@@ -1,0 +1,236 @@
+//! Scenarios on their way into the form: presets, and what is wrong with what was typed.
+
+use crate::convert::object;
+use serde::Serialize;
+use stepscope_core::{
+    motion::{AxisPlan, Curve, Profile},
+    run::{Cost, Experiment},
+    scenario::{Problem, Scenario, Source, presets as core_presets},
+};
+use wasm_bindgen::prelude::*;
+
+/// Records up to which a scenario runs without asking: what a page redraws at once.
+pub(crate) const BUDGET_RECORDS: u64 = 4_000_000;
+
+/// Version of Stepscope.
+#[wasm_bindgen]
+#[must_use]
+pub fn version() -> String {
+    env!("CARGO_PKG_VERSION").into()
+}
+
+/// The default scenario as JSON, every field written.
+#[wasm_bindgen]
+#[must_use]
+pub fn default_scenario() -> String {
+    Scenario::default().to_json()
+}
+
+#[derive(Serialize)]
+struct Preset {
+    id: &'static str,
+    document: &'static str,
+    scenario: String,
+}
+
+/// All presets: `{id, document, scenario}`, the scenario as JSON with every field written.
+///
+/// # Errors
+/// Never in practice: the presets are tested.
+#[wasm_bindgen]
+pub fn presets() -> Result<JsValue, JsError> {
+    let all: Vec<Preset> = core_presets::PRESETS
+        .iter()
+        .map(|preset| Preset {
+            id: preset.id,
+            document: preset.document,
+            scenario: preset.scenario().to_json(),
+        })
+        .collect();
+    object(&all)
+}
+
+#[derive(Serialize)]
+struct Judgement {
+    problems: Vec<Told>,
+    scenario: String,
+    derived: Option<Derived>,
+    cost: Option<Price>,
+}
+
+#[derive(Serialize)]
+struct Told {
+    path: String,
+    message: String,
+}
+
+#[derive(Serialize)]
+struct Derived {
+    tick_s: f64,
+    limit_steps_s: f64,
+    ticks: u64,
+    packets_per_s: f64,
+    line_load: Option<f64>,
+    duration_s: f64,
+    axes: Vec<DerivedAxis>,
+}
+
+#[derive(Serialize)]
+struct DerivedAxis {
+    steps: i64,
+    duration_s: f64,
+    peak_speed_steps_s: f64,
+    peak_acceleration_steps_s2: f64,
+    step_mm: Option<f64>,
+    step_deg: Option<f64>,
+    moves: Vec<DerivedMove>,
+}
+
+#[derive(Serialize)]
+struct DerivedMove {
+    kind: &'static str,
+    start_s: f64,
+    duration_s: f64,
+    steps: i64,
+    detail: String,
+}
+
+#[derive(Serialize)]
+struct Price {
+    edges: u64,
+    packets: u64,
+    bytes: u64,
+    over_budget: bool,
+    message: String,
+}
+
+/// Judges a scenario: all problems with their paths, the scenario as far as it could be read, what
+/// follows from it, and what a run will cost.
+///
+/// # Errors
+/// Never for any text: what is wrong with it is in the result.
+#[wasm_bindgen]
+pub fn check(json: &str) -> Result<JsValue, JsError> {
+    let (scenario, mut problems) = Scenario::from_json_lenient(json);
+    let experiment = match Experiment::new(&scenario) {
+        Ok(experiment) if problems.is_empty() => Some(experiment),
+        judged => {
+            problems.extend(judged.err().unwrap_or_default());
+            None
+        }
+    };
+    object(&Judgement {
+        problems: problems.iter().map(told).collect(),
+        scenario: scenario.to_json(),
+        derived: experiment.as_ref().map(|experiment| derive(&scenario, experiment)),
+        cost: experiment.as_ref().map(|experiment| price(experiment.cost())),
+    })
+}
+
+fn told(problem: &Problem) -> Told {
+    Told { path: problem.path.clone(), message: problem.cause.to_string() }
+}
+
+/// What a run costs, and whether that is more than runs unasked.
+fn price(cost: Cost) -> Price {
+    Price {
+        edges: cost.records,
+        packets: cost.sends,
+        bytes: cost.bytes,
+        over_budget: over_budget(cost),
+        message: cost_message(cost),
+    }
+}
+
+pub(crate) const fn over_budget(cost: Cost) -> bool {
+    cost.records > BUDGET_RECORDS
+}
+
+pub(crate) fn cost_message(cost: Cost) -> String {
+    if over_budget(cost) {
+        format!(
+            "up to {} edges and {} packets: more than the {BUDGET_RECORDS} edges that run unasked",
+            cost.records, cost.sends
+        )
+    } else {
+        String::new()
+    }
+}
+
+fn derive(scenario: &Scenario, experiment: &Experiment) -> Derived {
+    let config = experiment.config();
+    let clock_hz = f64::from(config.clock_hz());
+    let tick_s = config.tick().0 as f64 / clock_hz;
+    let axes = match &scenario.source {
+        Source::Motion(motion) => motion
+            .axes
+            .iter()
+            .zip(experiment.plans())
+            .map(|(axis, plan)| DerivedAxis {
+                steps: plan.steps(),
+                duration_s: plan.duration_s(),
+                peak_speed_steps_s: plan.peaks().speed,
+                peak_acceleration_steps_s2: plan.peaks().acceleration,
+                step_mm: axis.mechanics.step_mm(),
+                step_deg: axis.mechanics.step_deg(),
+                moves: moves(plan),
+            })
+            .collect(),
+        _ => Vec::new(),
+    };
+    Derived {
+        tick_s,
+        limit_steps_s: f64::from(config.slots()) / tick_s,
+        ticks: experiment.cost().sends,
+        packets_per_s: 1.0 / tick_s,
+        line_load: experiment.line_load(),
+        duration_s: experiment.cost().end_cycle as f64 / clock_hz,
+        axes,
+    }
+}
+
+fn moves(plan: &AxisPlan) -> Vec<DerivedMove> {
+    plan.moves()
+        .iter()
+        .map(|planned| DerivedMove {
+            kind: kind(&planned.profile),
+            start_s: planned.start_s,
+            duration_s: planned.profile.duration_s(),
+            steps: planned.profile.steps(),
+            detail: detail(&planned.profile),
+        })
+        .collect()
+}
+
+/// What a user wants to know of a move beside its times.
+fn detail(profile: &Profile) -> String {
+    match profile {
+        Profile::Trapezoid(_) | Profile::Cosine(_) => {
+            let peaks = profile.peaks();
+            format!("peak {:.0} steps/s, {:.0} steps/s\u{b2}", peaks.speed, peaks.acceleration)
+        }
+        Profile::TrapezoidTable(table) => {
+            format!("peak {:.0} steps/s, table of {} rows", profile.peaks().speed, table.rows())
+        }
+        Profile::SineSegments(sine) => {
+            let points: Vec<String> = sine
+                .segments()
+                .iter()
+                .map(|segment| format!("{:.2}\u{b0} {:.0}/s", segment.from_deg, segment.rate))
+                .collect();
+            format!("{} segments a quarter: {}", sine.segments().len(), points.join(", "))
+        }
+        Profile::Constant(_) | Profile::Dwell(_) => String::new(),
+    }
+}
+
+/// The move's name as in a scenario.
+const fn kind(profile: &Profile) -> &'static str {
+    match profile {
+        Profile::Trapezoid(_) | Profile::TrapezoidTable(_) => "trapezoid",
+        Profile::Cosine(_) => "cosine",
+        Profile::SineSegments(_) => "sine_segments",
+        Profile::Constant(_) => "constant",
+        Profile::Dwell(_) => "dwell",
+    }
+}

@@ -1,0 +1,52 @@
+//! Links: a scenario to a fragment and back.
+
+use crate::{
+    convert::object,
+    judge::{cost_message, over_budget},
+};
+use serde::Serialize;
+use stepscope_core::{
+    run::Experiment,
+    scenario::{
+        Scenario,
+        link::{LinkError, decode, encode},
+    },
+};
+use wasm_bindgen::prelude::*;
+
+/// The link of a scenario: what stands behind the `#`.
+///
+/// # Errors
+/// If the scenario cannot be read, or is too large for a link.
+#[wasm_bindgen]
+pub fn encode_link(json: &str) -> Result<String, JsError> {
+    let scenario =
+        Scenario::from_json(json).map_err(|problems| JsError::from(LinkError::Scenario(problems)))?;
+    Ok(encode(&scenario)?)
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Opened {
+    Scenario { scenario: String, over_budget: bool, message: String },
+    Error { error: String },
+}
+
+/// The scenario of a fragment: `{scenario, over_budget, message}`, or `{error}` with what is wrong
+/// with the link. Every step is judged before the next: length, version, check, size, types,
+/// ranges, cost.
+///
+/// # Errors
+/// Never for any text.
+#[wasm_bindgen]
+pub fn decode_link(fragment: &str) -> Result<JsValue, JsError> {
+    let opened = decode(fragment).and_then(|scenario| {
+        let cost = Experiment::new(&scenario).map_err(LinkError::Scenario)?.cost();
+        Ok(Opened::Scenario {
+            scenario: scenario.to_json(),
+            over_budget: over_budget(cost),
+            message: cost_message(cost),
+        })
+    });
+    object(&opened.unwrap_or_else(|error| Opened::Error { error: error.to_string() }))
+}

@@ -1,0 +1,77 @@
+//! Spectra as the page shows them.
+
+use crate::convert::{field, numbers, object};
+use js_sys::Object;
+use stepscope_core::{
+    analysis::spectrum::{Harmonics, Spectrum, Stretch},
+    run::Experiment,
+    scenario::Scenario,
+    trace::{Recording, Step},
+};
+use wasm_bindgen::prelude::*;
+
+/// `{axis, ideal, pulses, note}`: the ideal curve's spectrum and the one of the pulses as they come.
+pub(crate) fn spectrum(
+    scenario: &Scenario,
+    experiment: &Experiment,
+    recording: &Recording,
+    steps: &[Step],
+) -> Result<JsValue, JsError> {
+    let analysis = &scenario.analysis;
+    let result = Object::new();
+    field(&result, "axis", &analysis.axis.into());
+    let plan = experiment.plans().get(usize::from(analysis.axis));
+    let stretch = plan.and_then(Stretch::of);
+    let (Some(plan), Some(stretch)) = (plan, stretch) else {
+        field(&result, "ideal", &JsValue::NULL);
+        field(&result, "pulses", &JsValue::NULL);
+        field(&result, "note", &"A spectrum needs a motion; packets and line scripts have none.".into());
+        return Ok(result.into());
+    };
+    let ideal = Spectrum::ideal(plan, analysis.order, analysis.fft_length);
+    field(&result, "ideal", &ideal.map_or(Ok(JsValue::NULL), |spectrum| told(&spectrum))?);
+    let clock_hz = experiment.config().clock_hz();
+    let zero_s = recording.first_tick().map_or(0.0, |start| start.seconds(clock_hz));
+    let pulses: Vec<(f64, i8)> = steps
+        .iter()
+        .enumerate()
+        .map(|(index, step)| {
+            (step.cycle as f64 / f64::from(clock_hz) - zero_s, Step::direction(steps, index).signum() as i8)
+        })
+        .collect();
+    field(&result, "pulses", &told(&Spectrum::of_pulses(&pulses, stretch, analysis.order))?);
+    let note = if stretch.periodic {
+        ""
+    } else {
+        "The motion does not repeat: its lines are no harmonics, and it has no distortion."
+    };
+    field(&result, "note", &note.into());
+    Ok(result.into())
+}
+
+fn told(spectrum: &Spectrum) -> Result<JsValue, JsError> {
+    #[derive(serde::Serialize)]
+    struct Told {
+        fundamental_hz: f64,
+        periods: u32,
+        order: u16,
+        periodic: bool,
+    }
+    let told = object(&Told {
+        fundamental_hz: spectrum.stretch.fundamental_hz(),
+        periods: spectrum.stretch.periods,
+        order: spectrum.order,
+        periodic: spectrum.stretch.periodic,
+    })?;
+    let target: &Object = told.unchecked_ref();
+    for (name, harmonics) in [
+        ("position", &spectrum.position),
+        ("speed", &spectrum.speed),
+        ("acceleration", &spectrum.acceleration),
+    ] {
+        let Harmonics { amplitudes, distortion } = harmonics;
+        numbers(target, name, amplitudes);
+        field(target, &format!("thd_{name}"), &distortion.map_or(JsValue::NULL, JsValue::from));
+    }
+    Ok(told)
+}
