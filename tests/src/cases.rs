@@ -17,9 +17,23 @@ mod tests;
 /// No run is longer than this, cycles.
 const LONGEST_RUN: u64 = 30_000;
 
+/// How the DIR lines run and how the channels' pulses stand to each other (A7).
+#[derive(Debug, Clone, Copy)]
+pub struct Mode {
+    /// One DIR line for all channels, or one a channel.
+    pub common_dir: bool,
+    /// Staggered, or simultaneous.
+    pub staggered: bool,
+}
+
+/// All four modes.
+pub fn every_mode() -> impl Strategy<Value = Mode> {
+    any::<[bool; 2]>().prop_map(|[common_dir, staggered]| Mode { common_dir, staggered })
+}
+
 /// Configurations of which about one in eight just misses a rule of A4 or A7 and is refused.
-pub fn configs() -> impl Strategy<Value = Config> {
-    (link(), drive(), bus()).prop_map(|(link, drive, bus)| {
+pub fn configs(modes: impl Strategy<Value = Mode>) -> impl Strategy<Value = Config> {
+    (link(), drive(), bus(), modes).prop_map(|(link, drive, bus, mode)| {
         let mut config = Config {
             clock_hz: link.clock_hz,
             baud: link.baud,
@@ -34,8 +48,8 @@ pub fn configs() -> impl Strategy<Value = Config> {
             queue_depth: bus.queue_depth,
             boot: bus.boot,
             spread: bus.spread,
-            common_dir: bus.common_dir,
-            staggered: bus.staggered,
+            common_dir: mode.common_dir,
+            staggered: mode.staggered,
             address: bus.address,
         };
         let room = pulse_room(&config);
@@ -59,14 +73,14 @@ pub fn configs() -> impl Strategy<Value = Config> {
 }
 
 /// A configuration and something to do with it, at most 30 000 cycles long.
-pub fn cases() -> impl Strategy<Value = (Config, Input)> {
+pub fn cases(modes: impl Strategy<Value = Mode>) -> impl Strategy<Value = (Config, Input)> {
     let pieces = prop::collection::vec((pause(), piece(), split()), 0..18);
     let strikes = prop_oneof![
         3 => Just(Vec::new()),
         2 => prop::collection::vec(strike(), 1..6),
     ];
     let boot_at_commit = prop::option::weighted(0.2, (any::<Index>(), -1..=1_i64));
-    (configs(), pieces, any::<bool>(), strikes, boot_at_commit, end()).prop_map(
+    (configs(modes), pieces, any::<bool>(), strikes, boot_at_commit, end()).prop_map(
         |(mut config, pieces, in_a_hurry, strikes, boot_at_commit, end)| {
             let mut line = Line::new(&config, in_a_hurry);
             for (pause, piece, split) in &pieces {
@@ -161,8 +175,6 @@ struct Bus {
     queue_depth: usize,
     boot: u64,
     spread: bool,
-    common_dir: bool,
-    staggered: bool,
     address: Option<u8>,
 }
 
@@ -171,15 +183,13 @@ fn bus() -> impl Strategy<Value = Bus> {
     let boot = prop_oneof![2 => Just(0_u64), 1 => 0..2_000_u64];
     let address = prop::option::of(0..=254_u8);
     let queue_depth = prop_oneof![3 => Just(1_usize), 2 => Just(2), 1 => 3..=4_usize];
-    (channels, 1..=20_u64, queue_depth, boot, any::<[bool; 3]>(), address).prop_map(
-        |(channels, slots, queue_depth, boot, [spread, common_dir, staggered], address)| Bus {
+    (channels, 1..=20_u64, queue_depth, boot, any::<bool>(), address).prop_map(
+        |(channels, slots, queue_depth, boot, spread, address)| Bus {
             channels,
             slots,
             queue_depth,
             boot,
             spread,
-            common_dir,
-            staggered,
             address,
         },
     )

@@ -10,7 +10,7 @@ use crate::oracle::{FRAMING, QUEUE_OVERFLOW, SHORT_PACKET, TOO_MANY_STEPS, refus
 
 fn drawn(count: usize) -> Vec<(Config, Input)> {
     let mut runner = TestRunner::deterministic();
-    (0..count).map(|_| cases().new_tree(&mut runner).expect("a case").current()).collect()
+    (0..count).map(|_| cases(every_mode()).new_tree(&mut runner).expect("a case").current()).collect()
 }
 
 #[test]

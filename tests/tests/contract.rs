@@ -1,0 +1,231 @@
+//! DESIGN Part A, held edge by edge: for random configurations and line activity the core gives, at every one of its
+//! speeds, the trace, positions, faults and tick count of the independent model in [`stepscope_tests::oracle`].
+//!
+//! The core drives each channel's DIR line by itself and pulses all channels at once, so the cases are of that mode.
+#![cfg(not(target_arch = "wasm32"))]
+
+use std::rc::Rc;
+
+use proptest::prelude::*;
+use proptest::test_runner::FileFailurePersistence;
+use stepscope_core::{
+    device::Device,
+    run::{Experiment, Run},
+    scenario::{
+        Bus, Distribution, Glitch, Hex, Line, LineScript, Packets, Problem, Scenario, ScriptedSend, Source,
+    },
+    signal::Record,
+    trace::Digest,
+    units::Cycles,
+    wire,
+};
+use stepscope_tests::{
+    cases::{Mode, cases, configs},
+    oracle,
+};
+
+const CORES_MODE: Mode = Mode { common_dir: false, staggered: false };
+
+/// A few seconds' worth of cases, or as many as PROPTEST_CASES says.
+fn proptest_config() -> ProptestConfig {
+    let told = ProptestConfig::default();
+    ProptestConfig {
+        cases: if std::env::var_os("PROPTEST_CASES").is_some() { told.cases } else { 2_048 },
+        failure_persistence: Some(Box::new(FileFailurePersistence::WithSource("regressions"))),
+        ..told
+    }
+}
+
+/// The same configuration in the core's words.
+fn scenario(config: &oracle::Config, forced: &[(u64, u64, bool)], source: Source) -> Scenario {
+    Scenario {
+        clock_hz: config.clock_hz as u32,
+        bus: Bus {
+            channels: config.channels as u8,
+            slots: config.slots as u8,
+            step_period_cycles: config.step_period as u32,
+            pulse_width_cycles: config.pulse_width as u32,
+            dir_setup_cycles: config.dir_setup as u32,
+            dir_hold_cycles: config.dir_hold as u32,
+            distribution: if config.spread { Distribution::Spread } else { Distribution::Burst },
+            queue_depth: config.queue_depth as u8,
+            boot_cycles: config.boot as u32,
+        },
+        line: Line {
+            baud: config.baud as u32,
+            receiver_baud: Some(config.receiver_baud as u32),
+            address: config.address,
+            glitches: forced
+                .iter()
+                .map(|&(start_cycle, length_cycles, level)| Glitch {
+                    start_cycle,
+                    length_cycles,
+                    level: level.into(),
+                })
+                .collect(),
+        },
+        source,
+        ..Scenario::default()
+    }
+}
+
+fn experiment(
+    config: &oracle::Config,
+    input: &oracle::Input,
+    cycles: Option<u64>,
+) -> Result<Experiment, Vec<Problem>> {
+    let sends = input
+        .sends
+        .iter()
+        .map(|(start, bytes)| ScriptedSend { start_cycle: *start, bytes: Hex(bytes.clone()) })
+        .collect();
+    let mut scenario = scenario(config, &input.forced, Source::Line(LineScript { sends }));
+    scenario.run_cycles = cycles;
+    Experiment::new(&scenario)
+}
+
+/// What the core leaves behind, in the model's words.
+fn outcome(device: &Device, trace: &[Record]) -> oracle::Run {
+    oracle::Run {
+        trace: trace.iter().map(|record| (record.cycle.0, record.levels.0)).collect(),
+        positions: device.positions(),
+        faults: device.faults().bits(),
+        ticks_done: device.ticks_done(),
+    }
+}
+
+fn finished(run: &Run, trace: &[Record]) -> oracle::Run {
+    outcome(run.device(), trace)
+}
+
+/// The fast speed, in slices of about `records` records.
+fn in_slices(experiment: &Experiment, records: u64) -> oracle::Run {
+    let mut trace: Vec<Record> = Vec::new();
+    let mut run = experiment.start();
+    while !run.advance(records, &mut trace) {}
+    finished(&run, &trace)
+}
+
+/// `clock` in every cycle that `quiet` does not let `skip` pass.
+fn clocked_and_skipped(experiment: &Experiment, scenario_line: wire::Line, cycles: u64) -> oracle::Run {
+    let mut trace: Vec<Record> = Vec::new();
+    let mut device = Device::new(experiment.config());
+    let mut line = scenario_line;
+    while device.now().0 < cycles {
+        if line.next_change() == device.now() {
+            line.change();
+        }
+        device.clock(line.level(), &mut trace);
+        let to_line = line.next_change().0.min(cycles).saturating_sub(device.now().0);
+        let quiet = device.quiet().map_or(to_line, |quiet| quiet.0.min(to_line));
+        device.skip(Cycles(quiet));
+    }
+    outcome(&device, &trace)
+}
+
+/// The core's line for an input, as an [`Experiment`] makes it for itself.
+fn line(experiment: &Experiment, config: &oracle::Config, input: &oracle::Input) -> wire::Line {
+    let forced: Vec<_> = input
+        .forced
+        .iter()
+        .map(|&(start, length, level)| stepscope_core::scenario::Forced {
+            start: stepscope_core::units::Instant(start),
+            end: stepscope_core::units::Instant(start + length),
+            level,
+        })
+        .collect();
+    wire::Line::new(
+        Rc::new(experiment.schedule().clone()),
+        &forced,
+        config.clock_hz as u32,
+        config.baud as u32,
+    )
+}
+
+/// Two outcomes are the same; where not, the first record that differs is named.
+fn same(speed: &str, core: &oracle::Run, model: &oracle::Run) -> Result<(), TestCaseError> {
+    for index in 0..core.trace.len().max(model.trace.len()) {
+        let (core, model) = (core.trace.get(index), model.trace.get(index));
+        prop_assert!(
+            core == model,
+            "{speed}: record {index} is {} in the core and {} in the model",
+            show(core),
+            show(model)
+        );
+    }
+    prop_assert_eq!(core.positions, model.positions, "{}: positions", speed);
+    prop_assert_eq!(core.faults, model.faults, "{}: faults", speed);
+    prop_assert_eq!(core.ticks_done, model.ticks_done, "{}: ticks done", speed);
+    Ok(())
+}
+
+fn show(record: Option<&(u64, u64)>) -> String {
+    record.map_or("none".into(), |(cycle, levels)| format!("cycle {cycle} levels {levels:#011x}"))
+}
+
+proptest! {
+    #![proptest_config(proptest_config())]
+
+    #[test]
+    fn the_core_gives_the_models_run_at_every_speed((config, input) in cases(Just(CORES_MODE))) {
+        let experiment = match experiment(&config, &input, Some(input.cycles)) {
+            Ok(experiment) => experiment,
+            Err(problems) => {
+                prop_assert!(oracle::refused(&config), "the core alone refuses: {problems:?}");
+                return Ok(());
+            }
+        };
+        prop_assert!(!oracle::refused(&config), "the core does not refuse");
+
+        let model = oracle::run(&config, &input);
+        let mut slow: Vec<Record> = Vec::new();
+        let run = experiment.run_clock_by_clock(&mut slow);
+        same("clock by clock", &finished(&run, &slow), &model)?;
+        let mut fast = (Vec::<Record>::new(), Digest::default());
+        let run = experiment.run(&mut fast);
+        same("fast", &finished(&run, &fast.0), &model)?;
+        prop_assert_eq!(fast.1.value(), Digest::of(&slow));
+        same("in slices of one record", &in_slices(&experiment, 1), &model)?;
+        same("in slices of seven records", &in_slices(&experiment, 7), &model)?;
+        let line = line(&experiment, &config, &input);
+        same("clocked and skipped", &clocked_and_skipped(&experiment, line, input.cycles), &model)?;
+    }
+
+    #[test]
+    fn a_run_without_an_end_stops_where_nothing_can_change_any_more(
+        (config, input) in cases(Just(CORES_MODE))
+    ) {
+        let Ok(experiment) = experiment(&config, &input, None) else { return Ok(()) };
+        let mut trace: Vec<Record> = Vec::new();
+        let run = experiment.run(&mut trace);
+        let fast = finished(&run, &trace);
+        let cycles = run.cycles().0;
+        let model = oracle::run(&config, &oracle::Input { cycles, ..input.clone() });
+        same("to the end", &fast, &model)?;
+        let model = oracle::run(&config, &oracle::Input { cycles: cycles + 5_000, ..input });
+        same("and beyond it", &fast, &model)?;
+    }
+
+    #[test]
+    fn the_paced_host_sends_packet_j_at_boot_and_1_and_j_ticks(
+        config in configs(Just(CORES_MODE)),
+        bytes in prop::collection::vec(any::<u8>(), 0..200),
+    ) {
+        let packet_length = config.channels + usize::from(config.address.is_some());
+        let packets: Vec<Vec<u8>> = bytes.chunks_exact(packet_length).map(<[u8]>::to_vec).collect();
+        let source = Source::Packets(Packets { packets: packets.iter().cloned().map(Hex).collect() });
+        let on_the_line = oracle::byte_start(&config, 0, packet_length as u64 - 1) + oracle::byte_start(&config, 0, 1);
+        match Experiment::new(&scenario(&config, &[], source)) {
+            Ok(experiment) => {
+                prop_assert!(!oracle::refused(&config) && on_the_line <= config.slots * config.step_period);
+                let sends: Vec<_> =
+                    experiment.schedule().iter().map(|sent| (sent.start.0, sent.bytes.to_vec())).collect();
+                prop_assert_eq!(sends, oracle::packets_schedule(&config, &packets));
+            }
+            Err(problems) => prop_assert!(
+                oracle::refused(&config) || on_the_line > config.slots * config.step_period,
+                "the core alone refuses: {problems:?}"
+            ),
+        }
+    }
+}
