@@ -1,0 +1,112 @@
+/**
+ * The link: the whole scenario behind the address's '#'. It follows the scenario without a history entry,
+ * is heard when it changes, and never overwrites the visitor's own work.
+ */
+import { byId, say } from "./dom.js";
+import { Dropped } from "./engine.js";
+
+/** @typedef {import("./types.js").State} State */
+
+/** How long the scenario must stand before the address follows, in ms. */
+const SETTLE_MS = 300;
+
+/** @param {{engine: import("./engine.js").Engine} & import("./timeline.js").Page} page */
+export function createLink({ engine, dispatch, now }) {
+  /** Fragment that this page wrote or read last. */
+  let written = location.hash;
+  let timer = 0;
+  const text = /** @type {HTMLInputElement} */ (byId("link-text"));
+  const fallback = byId("copy-fallback");
+
+  byId("copy-link").addEventListener("click", copy);
+  byId("link-close").addEventListener("click", () => { fallback.hidden = true; });
+  window.addEventListener("hashchange", () => { if (location.hash !== written) read(); });
+
+  /** @returns {Promise<string>} The page's address with the scenario in it. */
+  async function address() {
+    const fragment = await engine.ask("encode_link", JSON.stringify(now().scenario));
+    return `${location.origin}${location.pathname}${location.search}#${fragment}`;
+  }
+
+  async function write() {
+    const revision = now().revision;
+    try {
+      const full = await address();
+      if (now().revision !== revision) return;
+      history.replaceState(null, "", full);
+      written = location.hash;
+    } catch {
+      // A scenario that cannot be a link yet; its problems are shown where they are.
+    }
+  }
+
+  async function copy() {
+    try {
+      const full = await address();
+      history.replaceState(null, "", full);
+      written = location.hash;
+      try {
+        await navigator.clipboard.writeText(full);
+        flash();
+      } catch {
+        fallback.hidden = false;
+        text.value = full;
+        text.focus();
+        text.select();
+      }
+    } catch (error) {
+      dispatch({ type: "notice", notice: { kind: "error", text: `No link: ${message(error)}` } });
+    }
+  }
+
+  function flash() {
+    const button = byId("copy-link");
+    say(button, "Copied");
+    setTimeout(() => say(button, "Copy link"), 1500);
+  }
+
+  /** Reads the address; shows what it holds as a shared scenario, or says why it cannot. */
+  async function read() {
+    const fragment = location.hash.replace(/^#/, "");
+    written = location.hash;
+    if (fragment === "") return;
+    try {
+      const answer = await engine.ask("decode_link", fragment);
+      if ("error" in answer) return refuse(answer.error);
+      const scenario = JSON.parse(answer.scenario);
+      if (JSON.stringify(scenario) === JSON.stringify(now().scenario)) return;
+      dispatch({ type: "replace", scenario, origin: "shared" });
+      const name = scenario.title ? `“${scenario.title}”` : "a scenario";
+      dispatch({ type: "notice", notice: { kind: "info", text: `Shared with you: ${name}. Your own work is kept; Undo brings it back.` } });
+    } catch (error) {
+      if (!(error instanceof Dropped)) refuse(message(error));
+    }
+  }
+
+  /** @param {string} why */
+  function refuse(why) {
+    dispatch({ type: "notice", notice: { kind: "error", text: `This link cannot be opened: ${why}` } });
+  }
+
+  /** @param {State} state @param {State | undefined} before */
+  function render(state, before) {
+    if (before?.notice !== state.notice) {
+      const line = byId("link-message");
+      line.hidden = state.notice === null;
+      line.classList.toggle("error", state.notice?.kind === "error");
+      say(line, state.notice?.text ?? "");
+    }
+    if (!before || before.scenario !== state.scenario) {
+      fallback.hidden = true;
+      clearTimeout(timer);
+      // Standing by until the visitor changes something: an address without a link stays as it is.
+      if (state.revision > 0) timer = window.setTimeout(write, SETTLE_MS);
+    }
+  }
+  return { render, read };
+}
+
+/** @param {unknown} error */
+function message(error) {
+  return error instanceof Error ? error.message : String(error);
+}

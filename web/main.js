@@ -1,0 +1,148 @@
+/**
+ * The page: makes the state, the engine and the views, and lets each change flow one way: message, state,
+ * judging, run, drawing.
+ */
+import { byId } from "./dom.js";
+import { Engine, Dropped } from "./engine.js";
+import { SAMPLES } from "./fields.js";
+import { createForm } from "./form.js";
+import { createHeader, createTheme } from "./header.js";
+import { createLink } from "./link.js";
+import { createMotion } from "./motion.js";
+import { createPackets } from "./packets.js";
+import { load as loadCharts } from "./plot.js";
+import { createPulses } from "./pulses.js";
+import { createSpectrum } from "./spectrum.js";
+import { held, initial, update } from "./state.js";
+import { loadScenario, saveScenario } from "./storage.js";
+import { createTabs } from "./tabs.js";
+
+/** @typedef {import("./types.js").State} State */
+/** @typedef {{render: (state: State, before: State | undefined) => any}} View */
+
+/** Rest after a change before it runs, in ms: typing a number is one run. */
+const REST_MS = 120;
+
+/** @type {State} */
+let state = initial({});
+/** @type {View[]} */
+let views = [];
+let timer = 0;
+/** Revision whose run is under way or done; none runs twice. */
+let ran = -1;
+
+const engine = new Engine({
+  progress: (revision, progress) => { if (revision === state.revision) dispatch({ type: "progress", progress }); },
+  done: (revision, summary, ms) => dispatch({ type: "done", revision, summary, ms }),
+  failed: (revision, message) => { if (revision === state.revision) dispatch({ type: "failed", message: `The run stopped: ${message}` }); },
+  crashed: (message) => {
+    ran = state.revision;
+    dispatch({ type: "failed", message: `The engine stopped and was started again; the form is as it was (${message}).` });
+  },
+});
+
+/** @param {import("./state.js").Message} message */
+function dispatch(message) {
+  const before = state;
+  state = update(state, message);
+  if (state !== before) follow(before);
+}
+
+/** What follows from a change of the state. @param {State | undefined} before */
+function follow(before) {
+  const { scenario, judgement, approved, drafts, result } = state;
+  if (before?.scenario !== scenario) {
+    document.documentElement.dataset.state = "busy";
+    judge();
+    if (state.origin === "own") saveScenario(JSON.stringify(scenario));
+  }
+  if (before?.judgement !== judgement || before?.approved !== approved || before?.drafts !== drafts) plan();
+  const drawn = views.map((view) => view.render(state, before));
+  byId("views").classList.toggle("dim", result !== null && result.revision !== state.revision && held(state) !== "unjudged" && state.run.phase !== "running");
+  if (result && before?.result !== result) settle(Promise.allSettled(drawn));
+  else if (state.run.phase === "failed") settle(Promise.resolve());
+}
+
+/** Says that nothing more is to come, once it is drawn. @param {Promise<unknown>} drawn */
+async function settle(drawn) {
+  const { revision } = state;
+  await drawn;
+  await new Promise((resolve) => requestAnimationFrame(resolve));
+  if (state.revision === revision) document.documentElement.dataset.state = "ready";
+}
+
+async function judge() {
+  const { revision, scenario } = state;
+  try {
+    const judgement = await engine.latest("check", "check", JSON.stringify(scenario));
+    dispatch({ type: "judged", revision, judgement });
+  } catch (error) {
+    if (!(error instanceof Dropped)) throw error;
+  }
+}
+
+/** Runs the scenario once it stands, if nothing holds it. */
+function plan() {
+  clearTimeout(timer);
+  const held_by = held(state);
+  if (held_by === "unjudged") return;
+  if (held_by !== null) return void settle(Promise.resolve());
+  if (ran === state.revision) return;
+  timer = window.setTimeout(run, state.result ? REST_MS : 0);
+}
+
+function run() {
+  ran = state.revision;
+  document.documentElement.dataset.state = "busy";
+  engine.run(state.revision, JSON.stringify(state.scenario));
+  dispatch({ type: "running" });
+}
+
+function cancel() {
+  engine.cancel(state.revision);
+  dispatch({ type: "failed", message: "The run was cancelled; the views show the last result." });
+}
+
+/** One of everything that can be added, with the core's own defaults. */
+async function samples() {
+  const [motion, line] = await Promise.all([SAMPLES.motion, SAMPLES.line].map(async (sample) =>
+    JSON.parse((await engine.ask("check", JSON.stringify(sample))).scenario)));
+  const { axes } = motion.source.motion;
+  return {
+    moves: Object.assign({}, ...axes[0].moves),
+    mechanics: Object.assign({}, ...axes.map((/** @type {any} */ axis) => axis.mechanics)),
+    sources: { motion: { motion: { axes: [{ mechanics: axes[0].mechanics, moves: [axes[0].moves[0]] }] } }, packets: { packets: { packets: [] } }, line: line.source },
+    glitch: motion.line.glitches[0], send: line.source.line.sends[0],
+  };
+}
+
+/** The visitor's own scenario from an earlier visit, if it can still be read. @param {string} fallback */
+async function own(fallback) {
+  const saved = loadScenario();
+  if (saved === null) return JSON.parse(fallback);
+  const { problems, scenario } = await engine.ask("check", saved);
+  return problems.length === 0 ? JSON.parse(scenario) : JSON.parse(fallback);
+}
+
+async function start() {
+  createTheme();
+  if (typeof WebAssembly !== "object") {
+    byId("no-wasm").hidden = false;
+    return;
+  }
+  const [fallback, presets, made] = await Promise.all([engine.ask("default_scenario"), engine.ask("presets"), samples(), loadCharts()]);
+  state = initial(await own(fallback));
+  const page = { engine, dispatch, now: () => state };
+  const link = createLink(page);
+  const retry = () => { ran = -1; plan(); };
+  views = [createHeader({ presets, cancel, retry, ...page }), createForm({ root: byId("fields"), samples: made, dispatch }),
+    createTabs(page), createMotion(page), createPulses(page), createPackets(page), createSpectrum(page), link];
+  await link.read();
+  if (state.revision === 0) follow(undefined);
+}
+
+start().catch((error) => {
+  byId("status").textContent = "the engine could not be started";
+  byId("engine-message").hidden = false;
+  /** @type {Element} */ (byId("engine-message").firstElementChild).textContent = `The engine could not be started: ${error instanceof Error ? error.message : error}`;
+});

@@ -1,0 +1,103 @@
+/**
+ * Numbers as people write them: SI prefixes (`1.2k`, `50 us`), units, a decimal comma; and numbers as
+ * the page prints them, always with a unit.
+ */
+
+/** @type {{[prefix: string]: number}} */
+const POWERS = { G: 9, M: 6, k: 3, "": 0, m: -3, u: -6, "µ": -6, "μ": -6, n: -9, p: -12 };
+
+const NUMBER = /^([-+−]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][-+]?\d+)?)\s*(.*)$/;
+
+/**
+ * Reads a number in `unit`. A field that counts cycles also takes a time, which `clockHz` turns into cycles.
+ * @param {string} text
+ * @param {string} unit  Unit that the number is wanted in, such as "s", "Hz", "cycles"; "" for a plain number.
+ * @param {{integer?: boolean, clockHz?: number}} [options]
+ * @returns {{value: number} | {message: string}}
+ */
+export function parseNumber(text, unit, options = {}) {
+  const plain = text.trim().replace(/(\d)[\s\u202f\u00a0](?=\d)/g, "$1");
+  const example = options.integer ? "1200 or 1.2k" : unit === "s" ? "0.4 or 400 ms" : "2.5 or 1.2k";
+  if (plain === "") return { message: `A number is missing; give one, such as ${example}.` };
+  const match = NUMBER.exec(plain);
+  if (!match) return { message: `“${text.trim()}” is not a number; give one, such as ${example}.` };
+  const mantissa = match[1].replace("−", "-").replace(",", ".");
+  const suffix = match[2].trim();
+  const shifted = shift(mantissa, suffix, unit);
+  if (shifted !== null) return whole(shifted, options, text);
+  if (unit === "cycles" && options.clockHz) {
+    const seconds = shift(mantissa, suffix, "s");
+    if (seconds !== null) return { value: Math.round(seconds * options.clockHz) };
+  }
+  const allowed = unit === "cycles" ? "cycles or a time, such as 2.5 us" : unit || "a plain number";
+  return { message: `“${suffix}” is not a unit of this field; give ${allowed}.` };
+}
+
+/**
+ * @param {string} mantissa
+ * @param {string} suffix
+ * @param {string} unit
+ * @returns {number | null}  null where the suffix is neither the unit nor a prefix.
+ */
+function shift(mantissa, suffix, unit) {
+  for (const tail of new Set([unit, ""])) {
+    if (!suffix.endsWith(tail)) continue;
+    const prefix = suffix.slice(0, suffix.length - tail.length).trim();
+    // Shifted as text, so that 50 us is the very same number as 0.00005.
+    if (Object.hasOwn(POWERS, prefix)) return Number(addExponent(mantissa, POWERS[prefix]));
+  }
+  return null;
+}
+
+/** @param {string} mantissa @param {number} power */
+function addExponent(mantissa, power) {
+  const [digits, exponent = "0"] = mantissa.split(/[eE]/);
+  return `${digits}e${Number(exponent) + power}`;
+}
+
+/**
+ * @param {number} value
+ * @param {{integer?: boolean}} options
+ * @param {string} text
+ * @returns {{value: number} | {message: string}}
+ */
+function whole(value, options, text) {
+  if (!Number.isFinite(value)) return { message: `“${text.trim()}” is too large for a number.` };
+  if (options.integer && !Number.isInteger(value)) {
+    return { message: `${value} is not a whole number; give ${Math.floor(value)} or ${Math.ceil(value)}.` };
+  }
+  return { value };
+}
+
+const PREFIXES = /** @type {const} */ ([[1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "µ"], [1e-9, "n"]]);
+
+/**
+ * A number with an SI prefix: `12.35 kHz`.
+ * @param {number} value
+ * @param {string} unit
+ * @param {number} [digits]  Significant digits.
+ */
+export function si(value, unit, digits = 4) {
+  if (!Number.isFinite(value)) return "–";
+  if (value === 0) return `0 ${unit}`.trim();
+  const magnitude = Math.abs(value);
+  const [scale, prefix] = PREFIXES.find(([scale]) => magnitude >= scale * 0.99995) ?? PREFIXES[PREFIXES.length - 1];
+  return `${trim((value / scale).toPrecision(digits))} ${prefix}${unit}`.trim();
+}
+
+/** Significant digits without needless zeros. @param {number} value @param {number} [digits] */
+export function short(value, digits = 5) {
+  if (!Number.isFinite(value)) return "–";
+  return trim(value.toPrecision(digits));
+}
+
+/** A whole number with groups of three digits. @param {number} value */
+export function count(value) {
+  return Math.round(value).toString().replace(/\B(?=(\d{3})+(?!\d))/g, "\u202f").replace("-", "−");
+}
+
+/** @param {string} text */
+function trim(text) {
+  const plain = text.includes("e") ? String(Number(text)) : text;
+  return (plain.includes(".") && !plain.includes("e") ? plain.replace(/\.?0+$/, "") : plain).replace("-", "−");
+}

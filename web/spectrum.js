@@ -1,0 +1,111 @@
+/** The spectrum view: harmonics of the ideal motion beside those of the pulses that make it, and the distortion. */
+import { byId, element, fill, say } from "./dom.js";
+import { unlessDropped } from "./engine.js";
+import { short, si } from "./number.js";
+import { GUTTER, color, draw, watch } from "./plot.js";
+
+/** @typedef {import("./types.js").State} State */
+/** @typedef {import("./types.js").Spectrum} Spectrum */
+/** @typedef {import("./types.js").Spectra} Spectra */
+/** @typedef {"position" | "speed" | "acceleration"} Quantity */
+
+/** Lowest level of the dB scale. */
+const FLOOR_DB = -120;
+const UNITS = { position: "steps", speed: "steps/s", acceleration: "steps/s²" };
+
+/** @param {{engine: import("./engine.js").Engine} & import("./timeline.js").Page} page */
+export function createSpectrum({ engine, now }) {
+  const canvas = /** @type {HTMLCanvasElement} */ (byId("spectrum-chart"));
+  const quantitySelect = /** @type {HTMLSelectElement} */ (byId("spectrum-quantity"));
+  const scaleSelect = /** @type {HTMLSelectElement} */ (byId("spectrum-scale"));
+  /** @type {Spectra | null} */
+  let spectra = null;
+
+  quantitySelect.addEventListener("change", paint);
+  scaleSelect.addEventListener("change", paint);
+  watch(canvas, paint);
+
+  /** @param {State} state */
+  async function refresh(state) {
+    if (!state.result) return;
+    const answer = await engine.latest("spectrum", "spectrum").catch(unlessDropped);
+    if (answer === undefined) return;
+    spectra = answer;
+    paint();
+  }
+
+  function paint() {
+    const quantity = /** @type {Quantity} */ (quantitySelect.value);
+    const db = scaleSelect.value === "db";
+    const some = spectra?.ideal ?? spectra?.pulses ?? null;
+    say(byId("spectrum-note"), spectra?.note ?? "");
+    say(byId("thd"), spectra && some ? distortion(spectra, quantity) : "");
+    canvas.hidden = !some;
+    if (!spectra || !some) return table([], quantity);
+    table(harmonics(spectra, quantity), quantity);
+    chart(spectra, some, quantity, db);
+  }
+
+  /** @param {Spectra} spectra @param {Spectrum} some @param {Quantity} quantity @param {boolean} db */
+  function chart({ ideal, pulses }, some, quantity, db) {
+    const shownOrder = some[quantity].length;
+    const x = Array.from({ length: shownOrder }, (_, i) => i + 1);
+    const level = (/** @type {Spectrum} */ spectrum) => (db
+      ? spectrum[quantity].map((value) => 20 * Math.log10(value / spectrum[quantity][0]))
+      : spectrum[quantity]);
+    const top = Math.max(...[ideal, pulses].flatMap((spectrum) => (spectrum ? [...spectrum[quantity]] : [])), 1e-12);
+    const width = Math.max(1.5, Math.min(5, (canvas.clientWidth - GUTTER) / shownOrder / 3));
+    const stems = [ideal ? { spectrum: ideal, ink: "--ideal", shift: -width / 2 - 0.5 } : null, pulses ? { spectrum: pulses, ink: "--made", shift: width / 2 + 0.5 } : null];
+    draw(canvas, {
+      x: { min: 0, max: shownOrder + 1, unit: "", prefix: false, label_px: 20 },
+      y: db ? { min: FLOOR_DB, max: 10, unit: "dB", prefix: false, label_px: GUTTER } : { min: 0, max: top * 1.1, unit: "", prefix: true, label_px: GUTTER },
+      series: stems.flatMap((stem) => (stem ? [{ color: color(stem.ink), opacity: 1, width, x, shape: { stems: { y: level(stem.spectrum), shift: stem.shift } } }] : [])),
+    });
+    canvas.setAttribute("aria-label", `Spectrum of ${quantity}, harmonics 1 to ${shownOrder} of ${si(some.fundamental_hz, "Hz")}; the table beside it has the numbers`);
+  }
+
+  /** @param {{n: number, hz: number, cells: string[]}[]} rows @param {Quantity} quantity */
+  function table(rows, quantity) {
+    const names = spectra?.ideal && spectra?.pulses ? ["ideal", "pulses"] : [spectra?.ideal ? "ideal" : "pulses"];
+    const head = ["n", "frequency", ...names.flatMap((name) => [`${name}, ${UNITS[quantity]}`, "%"])];
+    fill(/** @type {Element} */ (byId("harmonics").querySelector("thead")), element("tr", {}, ...head.map((text) => element("th", { scope: "col", class: "number" }, text))));
+    fill(/** @type {Element} */ (byId("harmonics").querySelector("tbody")), ...rows.map(({ n, hz, cells }) =>
+      element("tr", {}, ...[String(n), si(hz, "Hz"), ...cells].map((text) => element("td", { class: "number" }, text)))));
+  }
+
+  /** @param {State} state @param {State | undefined} before */
+  function render(state, before) {
+    if (before?.result !== state.result) return refresh(state);
+    if (before?.view !== state.view) paint();
+    return undefined;
+  }
+  return { render };
+}
+
+/** @param {Spectra} spectra @param {Quantity} quantity */
+function harmonics({ ideal, pulses }, quantity) {
+  const given = [ideal, pulses].flatMap((spectrum) => (spectrum ? [spectrum] : []));
+  const length = Math.max(...given.map((spectrum) => spectrum[quantity].length));
+  return Array.from({ length }, (_, i) => ({
+    n: i + 1,
+    hz: given[0].fundamental_hz * (i + 1),
+    cells: given.flatMap((spectrum) => {
+      const values = spectrum[quantity];
+      return [short(values[i], 4), values[0] > 0 ? short((100 * values[i]) / values[0], 3) : "–"];
+    }),
+  }));
+}
+
+/** @param {Spectra} spectra @param {Quantity} quantity */
+function distortion({ axis, ideal, pulses }, quantity) {
+  const some = /** @type {Spectrum} */ (ideal ?? pulses);
+  const thd = (/** @type {Spectrum} */ spectrum) => {
+    const value = spectrum[/** @type {const} */ (`thd_${quantity}`)];
+    return value === null ? "none" : `${short(value * 100, 5)} %`;
+  };
+  const parts = [];
+  if (ideal) parts.push(`ideal ${thd(ideal)}`);
+  if (pulses) parts.push(`pulses ${thd(pulses)}`);
+  const periods = some.periods === 1 ? "one whole period" : `${some.periods} whole periods`;
+  return `THD of ${quantity}, axis ${axis}: ${parts.join(", ")}. Harmonics 2 to ${some.order} over the fundamental of ${si(some.fundamental_hz, "Hz", 5)}; no window, ${periods}${some.periodic ? "" : " (the run taken as one period)"}.`;
+}

@@ -1,0 +1,173 @@
+/**
+ * The page's state and the one function that changes it: `update(state, message)`. No DOM, no worker,
+ * no clock: what follows from a change (judging, running, drawing) is done by who sends the message.
+ */
+
+/** @typedef {import("./types.js").State} State */
+/** @typedef {import("./types.js").Scenario} Scenario */
+/** @typedef {import("./types.js").Origin} Origin */
+/** @typedef {import("./types.js").Span} Span */
+
+/**
+ * @typedef {{type: "edit", path: string, value: any, joins?: boolean}
+ *   | {type: "draft", path: string, text: string, message: string}
+ *   | {type: "seal"}
+ *   | {type: "replace", scenario: Scenario, origin: Origin}
+ *   | {type: "undo"} | {type: "redo"}
+ *   | {type: "judged", revision: number, judgement: import("./types.js").Judgement}
+ *   | {type: "approve"}
+ *   | {type: "running"} | {type: "progress", progress: import("./types.js").Progress}
+ *   | {type: "done", revision: number, summary: import("./types.js").Summary, ms: number}
+ *   | {type: "failed", message: string}
+ *   | {type: "window", window: Span | null}
+ *   | {type: "hover", cycle: number | null}
+ *   | {type: "cursor", which: "a" | "b", cycle: number | null}
+ *   | {type: "row", row: number} | {type: "packet", packet: number | null}
+ *   | {type: "axis", axis: number} | {type: "unit", unit: State["unit"]}
+ *   | {type: "view", view: string} | {type: "notice", notice: State["notice"]}} Message
+ */
+
+/** Steps of history that are kept. */
+export const DEPTH = 50;
+/** Least cycles that the time axis shows. */
+export const LEAST_SPAN = 16;
+
+/** @param {Scenario} scenario @returns {State} */
+export function initial(scenario) {
+  return {
+    scenario, origin: "own", revision: 0, edited: null, past: [], future: [], drafts: {},
+    judgement: null, judged: -1, derived: null, approved: -1,
+    run: { phase: "idle", progress: null, message: "" }, result: null,
+    window: null, axis: 0, unit: "steps", hover: null, cursors: { a: null, b: null }, row: 0, packet: null,
+    view: "motion", notice: null,
+  };
+}
+
+/** @param {State} state @param {Message} message @returns {State} */
+export function update(state, message) {
+  switch (message.type) {
+    case "edit": return edit(state, message);
+    case "draft": {
+      const { path, text, message: said } = message;
+      return { ...state, drafts: { ...state.drafts, [path]: { text, message: said } } };
+    }
+    case "seal": return state.edited === null ? state : { ...state, edited: null };
+    case "replace":
+      return { ...changed(remember(state), message.scenario, message.origin), ...fresh };
+    case "undo": return travel(state, "past", "future");
+    case "redo": return travel(state, "future", "past");
+    case "judged": return judged(state, message);
+    case "approve": return { ...state, approved: state.revision };
+    case "running": return { ...state, run: { phase: "running", progress: null, message: "" } };
+    case "progress": return { ...state, run: { ...state.run, progress: message.progress } };
+    case "done": return done(state, message);
+    case "failed": return { ...state, run: { phase: "failed", progress: null, message: message.message } };
+    case "window": return { ...state, window: message.window && clamp(message.window, endOf(state)) };
+    case "hover": return state.hover === message.cycle ? state : { ...state, hover: message.cycle };
+    case "cursor": return { ...state, cursors: { ...state.cursors, [message.which]: message.cycle } };
+    case "row": return { ...state, row: message.row };
+    case "packet": return { ...state, packet: message.packet };
+    case "axis": return { ...state, axis: message.axis };
+    case "unit": return { ...state, unit: message.unit };
+    case "view": return { ...state, view: message.view };
+    case "notice": return { ...state, notice: message.notice };
+  }
+}
+
+/** What a wholly different scenario begins with. */
+const fresh = { window: null, packet: null, hover: null, cursors: { a: null, b: null }, axis: 0, row: 0 };
+
+/** @param {State} state @param {{path: string, value: any, joins?: boolean}} message */
+function edit(state, { path, value, joins = false }) {
+  const { [path]: _, ...drafts } = state.drafts;
+  if (Object.is(get(state.scenario, path), value)) return { ...state, drafts };
+  const joined = joins && state.edited === path;
+  const before = joined ? state : remember(state);
+  return { ...changed(before, set(state.scenario, path, value), "own"), drafts, edited: joins ? path : null };
+}
+
+/** @param {State} state @returns {State} */
+function remember(state) {
+  const now = { scenario: state.scenario, origin: state.origin };
+  return { ...state, past: [...state.past, now].slice(-DEPTH), future: [] };
+}
+
+/** @param {State} state @param {Scenario} scenario @param {Origin} origin @returns {State} */
+function changed(state, scenario, origin) {
+  const run = { .../** @type {const} */ ({ phase: "waiting", progress: null, message: "" }) };
+  return { ...state, scenario, origin, run, revision: state.revision + 1, drafts: {}, edited: null, notice: null };
+}
+
+/** @param {State} state @param {"past" | "future"} from @param {"past" | "future"} to @returns {State} */
+function travel(state, from, to) {
+  const moment = state[from][state[from].length - 1];
+  if (!moment) return state;
+  const now = { scenario: state.scenario, origin: state.origin };
+  const moved = { ...changed(state, moment.scenario, moment.origin) };
+  return { ...moved, [from]: state[from].slice(0, -1), [to]: [...state[to], now].slice(-DEPTH) };
+}
+
+/** @param {State} state @param {{revision: number, judgement: import("./types.js").Judgement}} message @returns {State} */
+function judged(state, { revision, judgement }) {
+  if (revision !== state.revision) return state;
+  return { ...state, judgement, judged: revision, derived: judgement.derived ?? state.derived };
+}
+
+/** @param {State} state @param {{revision: number, summary: import("./types.js").Summary, ms: number}} message @returns {State} */
+function done(state, { revision, summary, ms }) {
+  if (revision !== state.revision) return state;
+  const result = { revision, serial: (state.result?.serial ?? 0) + 1, summary, ms };
+  const next = { ...state, result, run: { .../** @type {const} */ ({ phase: "done", progress: null, message: "" }) } };
+  const axis = Math.min(state.axis, summary.channels - 1);
+  // An old window over a run of another length or clock would show another time.
+  const same = state.result?.summary.clock_hz === summary.clock_hz;
+  const window = state.window && same ? clamp(state.window, summary.end_cycle) : null;
+  const inside = (/** @type {number | null} */ c) => (c !== null && c <= summary.end_cycle && same ? c : null);
+  return { ...next, axis, window, packet: null, hover: null,
+    cursors: { a: inside(state.cursors.a), b: inside(state.cursors.b) } };
+}
+
+/** Last cycle of the time axis. @param {State} state */
+export function endOf(state) {
+  return Math.max(LEAST_SPAN, state.result?.summary.end_cycle ?? LEAST_SPAN);
+}
+
+/** The shown part of the time axis. @param {State} state @returns {Span} */
+export function shown(state) {
+  return state.window ?? { start: 0, end: endOf(state) };
+}
+
+/** Keeps a window inside the run and at least a few cycles long. @param {Span} window @param {number} last @returns {Span | null} */
+export function clamp({ start, end }, last) {
+  const most = Math.max(LEAST_SPAN, last);
+  const span = Math.min(most, Math.max(LEAST_SPAN, Math.round(end - start)));
+  const from = Math.min(Math.max(0, Math.round(start)), most - span);
+  return Number.isFinite(from + span) ? { start: from, end: from + span } : null;
+}
+
+/** Why nothing runs, if so. @param {State} state @returns {"unjudged" | "problems" | "budget" | null} */
+export function held(state) {
+  if (Object.keys(state.drafts).length > 0) return "problems";
+  if (state.judged !== state.revision || !state.judgement) return "unjudged";
+  if (state.judgement.problems.length > 0) return "problems";
+  return state.judgement.cost?.over_budget && state.approved !== state.revision ? "budget" : null;
+}
+
+/** `a.b[2].c` as its parts. @param {string} path @returns {string[]} */
+export function parts(path) {
+  return path.split(/[.[\]]+/).filter((part) => part !== "");
+}
+
+/** @param {any} value @param {string} path */
+export function get(value, path) {
+  return parts(path).reduce((inner, part) => inner?.[part], value);
+}
+
+/** A copy with one value replaced; what is not on the way is shared. @param {any} value @param {string} path @param {any} leaf */
+export function set(value, path, leaf) {
+  const [first, ...rest] = parts(path);
+  if (first === undefined) return leaf;
+  const copy = Array.isArray(value) ? [...value] : { ...value };
+  copy[first] = set(copy[first], rest.join("."), leaf);
+  return copy;
+}

@@ -1,0 +1,29 @@
+/** What this device keeps: the visitor's own scenario and the choice of colours. Storage may be refused; then nothing is kept. */
+
+const SCENARIO = "stepscope.scenario";
+const THEME = "stepscope.theme";
+
+/** @param {string} key @returns {string | null} */
+function load(key) {
+  try {
+    return localStorage.getItem(key);
+  } catch {
+    return null;
+  }
+}
+
+/** @param {string} key @param {string} value */
+function save(key, value) {
+  try {
+    localStorage.setItem(key, value);
+  } catch {
+    // Private windows and full disks refuse; the page works without.
+  }
+}
+
+export const loadScenario = () => load(SCENARIO);
+/** @param {string} json */
+export const saveScenario = (json) => save(SCENARIO, json);
+export const loadTheme = () => load(THEME);
+/** @param {string} theme */
+export const saveTheme = (theme) => save(THEME, theme);

@@ -1,0 +1,64 @@
+/**
+ * The shapes that the modules of the page share; no code. The core's own text (`core/src/scenario`) is
+ * the reference for what a scenario may hold.
+ *
+ * @typedef {{[key: string]: any}} Scenario  Full JSON of one experiment, every field written.
+ * @typedef {{path: string, message: string}} Problem
+ * @typedef {{kind: string, start_s: number, duration_s: number, steps: number, detail: string}} DerivedMove
+ * @typedef {{steps: number, duration_s: number, peak_speed_steps_s: number, peak_acceleration_steps_s2: number,
+ *   step_mm: number | null, step_deg: number | null, moves: DerivedMove[]}} DerivedAxis
+ * @typedef {{tick_s: number, limit_steps_s: number, ticks: number, packets_per_s: number, line_load: number,
+ *   duration_s: number, axes: DerivedAxis[]}} Derived
+ * @typedef {{edges: number, packets: number, bytes: number, over_budget: boolean, message: string}} Cost
+ * @typedef {{problems: Problem[], scenario: string, derived: Derived | null, cost: Cost | null}} Judgement
+ * @typedef {{id: string, document: string, scenario: string}} Preset
+ *
+ * @typedef {{digest: string, records: number, edges: number, end_cycle: number, end_s: number, clock_hz: number,
+ *   channels: number, positions: Int32Array, faults: {bits: number, names: string[]}, ticks_done: number}} Summary
+ * @typedef {{done: boolean, cycle: number, end_cycle: number, records: number}} Progress
+ * @typedef {{x: Float64Array, has_ideal: boolean,
+ *   position_min: Float64Array, position_max: Float64Array, speed_min: Float64Array, speed_max: Float64Array,
+ *   acceleration_min: Float64Array, acceleration_max: Float64Array,
+ *   made_position_min: Float64Array, made_position_max: Float64Array,
+ *   made_speed_min: Float64Array, made_speed_max: Float64Array}} MotionColumns
+ * @typedef {{high: Uint32Array, low: Uint32Array, last: Uint32Array}} PulseColumns
+ * @typedef {{index: number, start_cycle: number, end_cycle: number, hex: string, fields: string, outcome: string,
+ *   tick_start_cycle: number | null, tick_end_cycle: number | null}} PacketRow
+ * @typedef {{total: number, rows: PacketRow[]}} PacketPage
+ * @typedef {{fundamental_hz: number, periods: number, order: number, periodic: boolean,
+ *   position: Float64Array, speed: Float64Array, acceleration: Float64Array,
+ *   thd_position: number | null, thd_speed: number | null, thd_acceleration: number | null}} Spectrum
+ * @typedef {{axis: number, ideal: Spectrum | null, pulses: Spectrum | null, note: string}} Spectra
+ *
+ * @typedef {{start: number, end: number}} Span  Cycles, start < end.
+ * @typedef {{left: number, top: number, right: number, bottom: number}} Plot  CSS pixels in a canvas.
+ * @typedef {"own" | "shared" | `preset:${string}`} Origin  Where the scenario on show comes from.
+ * @typedef {{scenario: Scenario, origin: Origin}} Moment  One step of the history.
+ * @typedef {{revision: number, serial: number, summary: Summary, ms: number}} Result
+ * @typedef {{phase: "idle" | "waiting" | "running" | "done" | "failed", progress: Progress | null, message: string}} Run
+ *
+ * @typedef {object} State
+ * @property {Scenario} scenario
+ * @property {Origin} origin
+ * @property {number} revision      Counts the changes of the scenario.
+ * @property {string | null} edited Path of the last edit, while further edits of it join that step of the history.
+ * @property {Moment[]} past
+ * @property {Moment[]} future
+ * @property {{[path: string]: {text: string, message: string}}} drafts  Texts that are no number yet.
+ * @property {Judgement | null} judgement  Of `judged`.
+ * @property {number} judged        Revision that `judgement` is about.
+ * @property {Derived | null} derived  The last that there was.
+ * @property {number} approved      Revision that the visitor lets run although it is over the budget.
+ * @property {Run} run
+ * @property {Result | null} result The last good one.
+ * @property {Span | null} window   Shown part of the time axis; null shows the whole run.
+ * @property {number} axis          Axis of the motion view.
+ * @property {"steps" | "mm" | "deg"} unit  Unit of the motion view.
+ * @property {number | null} hover  Cycle under the pointer.
+ * @property {{a: number | null, b: number | null}} cursors  Cycles.
+ * @property {number} row           Signal bit whose edges are looked for.
+ * @property {number | null} packet Selected packet.
+ * @property {string} view          Tab on a narrow screen.
+ * @property {{text: string, kind: "info" | "error"} | null} notice  About links and the engine.
+ */
+export {};
