@@ -4,13 +4,16 @@ use std::fmt;
 use std::io::Write;
 use std::path::Path;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use walkdir::{DirEntry, WalkDir};
 
 use crate::run;
 use crate::tools::{Optimise, WasmTools};
+
+/// What all files together may weigh, in bytes, compressed by brotli as hosts do.
+const BUDGET: usize = 400_000;
 
 /// Builds the wasm crate into `web/pkg`, installing the tools first if they are missing.
 pub(crate) async fn build(optimise: Optimise) -> Result<()> {
@@ -19,8 +22,7 @@ pub(crate) async fn build(optimise: Optimise) -> Result<()> {
     command.args(["build", "--target", "web"]).args(tools.build_options());
     // wasm-pack takes the output folder relative to the crate.
     command.args(["wasm", "--out-dir", "../web/pkg", "--", "--locked"]);
-    run::to_end(command, run::LIMIT).await.context("the page was not built")?;
-    tools.check_optimised()
+    tools.judge(run::to_end(command, run::LIMIT).await)
 }
 
 /// The sizes of one file, in bytes.
@@ -49,13 +51,25 @@ impl Sizes {
 /// A table of all files that the page loads, with their sum; `Display` prints it.
 pub(crate) struct Weights(Vec<(String, Sizes)>);
 
+impl Weights {
+    fn sum(&self) -> Sizes {
+        self.0.iter().fold(Sizes::default(), |sum, (_, sizes)| sum.plus(*sizes))
+    }
+
+    /// An error if the page weighs more than it may.
+    pub(crate) fn within_budget(&self) -> Result<()> {
+        let weight = self.sum().brotli;
+        ensure!(weight <= BUDGET, "the page weighs {weight} bytes compressed; it may weigh {BUDGET}");
+        Ok(())
+    }
+}
+
 impl fmt::Display for Weights {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let sum = self.0.iter().fold(Sizes::default(), |sum, (_, sizes)| sum.plus(*sizes));
         let width = self.0.iter().map(|(name, _)| name.len()).max().unwrap_or(0).max("all files".len());
         writeln!(out, "{:width$} {:>10} {:>10} {:>10}  bytes", "file", "raw", "gzip", "brotli")?;
         let rows = self.0.iter().map(|(name, sizes)| (name.as_str(), *sizes));
-        for (name, Sizes { raw, gzip, brotli }) in rows.chain([("all files", sum)]) {
+        for (name, Sizes { raw, gzip, brotli }) in rows.chain([("all files", self.sum())]) {
             writeln!(out, "{name:width$} {raw:>10} {gzip:>10} {brotli:>10}")?;
         }
         Ok(())
@@ -95,6 +109,14 @@ fn loads(entry: &DirEntry) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_page_beyond_its_budget_is_refused_with_both_numbers() {
+        let weights = |brotli| Weights(vec![("a".to_owned(), Sizes { brotli, ..Sizes::default() })]);
+        assert!(weights(400_000).within_budget().is_ok());
+        let error = weights(400_001).within_budget().unwrap_err().to_string();
+        assert_eq!(error, "the page weighs 400001 bytes compressed; it may weigh 400000");
+    }
 
     #[test]
     fn only_what_a_browser_loads_is_weighed_and_summed() {

@@ -106,6 +106,10 @@ async fn page() -> Result<()> {
     let this = env::current_exe().context("this program's own path is unknown")?;
     let browser = Browser::ready().await?;
     page::build(Optimise::Yes).await?;
+    let web = root().join("web");
+    let weights = page::weigh(&web)?;
+    print!("{weights}");
+    weights.within_budget()?;
     let mut command = toolchain::cargo();
     command.args([
         "test",
@@ -118,7 +122,7 @@ async fn page() -> Result<()> {
         "--locked",
     ]);
     command
-        .env("STEPSCOPE_WEB", root().join("web"))
+        .env("STEPSCOPE_WEB", web)
         .env("STEPSCOPE_XTASK", this)
         .env(browser::CHROMIUM, &browser.chromium)
         .env(browser::CHROMEDRIVER, &browser.chromedriver);

@@ -108,11 +108,12 @@ impl WasmTools {
         }
     }
 
-    /// After a build: an error if wasm-opt was wanted and yet left out.
-    pub(crate) fn check_optimised(&self) -> Result<()> {
+    /// Judges a build by more than `done`, how wasm-pack ended: was the wasm optimised, if it was to be?
+    pub(crate) fn judge(&self, done: Result<()>) -> Result<()> {
+        let done = done.context("the page was not built");
         match self.wasm_opt {
-            WasmOpt::Found | WasmOpt::LeftOut => Ok(()),
-            WasmOpt::FetchedByWasmPack => wasm_opt::check_fetched(&self.wasm_pack_cache),
+            WasmOpt::Found | WasmOpt::LeftOut => done,
+            WasmOpt::FetchedByWasmPack => wasm_opt::judge_fetch(done, &self.wasm_pack_cache),
         }
     }
 

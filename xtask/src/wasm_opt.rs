@@ -7,7 +7,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use tokio::process::Command;
 
 use crate::run;
@@ -43,16 +43,14 @@ pub(crate) async fn ready(cache: &Path) -> Result<Option<PathBuf>> {
     if let Some(old) = on_path {
         bail!("{} is too old and would break the page without a word; {}", old.display(), remedy());
     }
-    println!(
-        "neither wasm-opt nor npm is here, so wasm-pack will fetch wasm-opt; should it fail: {}",
-        remedy()
-    );
+    println!("neither wasm-opt nor npm is here, so wasm-pack will fetch wasm-opt");
     Ok(None)
 }
 
 /// After a build for which wasm-pack was to fetch wasm-opt: did it? On platforms that it has none for
 /// it goes on without, with a mere note.
-pub(crate) fn check_fetched(wasm_pack_cache: &Path) -> Result<()> {
+pub(crate) fn judge_fetch(done: Result<()>, wasm_pack_cache: &Path) -> Result<()> {
+    done.map_err(|error| anyhow!("{error:#}\nif it was wasm-opt that could not be fetched: {}", remedy()))?;
     let entries = std::fs::read_dir(wasm_pack_cache).context("wasm-pack's cache can't be read")?;
     let fetched = entries.flatten().any(|entry| entry.file_name().to_string_lossy().starts_with("wasm-opt"));
     ensure!(fetched, "wasm-pack has no wasm-opt for this platform; {}", remedy());
@@ -61,9 +59,7 @@ pub(crate) fn check_fetched(wasm_pack_cache: &Path) -> Result<()> {
 
 /// What the user can do about a missing wasm-opt.
 fn remedy() -> String {
-    format!(
-        "to have wasm-opt, install Node.js with npm, or binaryen {AT_LEAST} or later; or do without by --no-opt"
-    )
+    format!("install Node.js with npm, or binaryen {AT_LEAST} or later; or do without wasm-opt by --no-opt")
 }
 
 async fn fits(program: &Path) -> bool {
