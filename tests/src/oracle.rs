@@ -1,5 +1,6 @@
-//! The contract's second reader: a slow model of the raw-framing peripheral, written from the sentences of DESIGN Part A
-//! (A1, A3, A4, A5, A7, A9) and from nothing else, so that property tests can hold the core to the text edge by edge.
+//! The contract's second reader: a slow model of the raw-framing peripheral, written from the sentences of
+//! DESIGN Part A (A1, A3, A4, A5, A7, A9) and from nothing else, so that property tests can hold the core
+//! to the text edge by edge.
 //!
 //! It is naive on purpose. Every cycle of `0..cycles` is visited one at a time; levels come straight from the
 //! contract's formulas; nothing is skipped, predicted or shared with the core. Raw framing has no reply, so
@@ -42,7 +43,8 @@ pub mod bits {
     pub const DE: u32 = 35;
 }
 
-/// Everything that the contract lets one configure, in the contract's own units: rates in hertz and baud, times in cycles.
+/// Everything that the contract lets one configure, in the contract's own units: rates in hertz and baud,
+/// times in cycles.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Config {
     /// Peripheral clock, hertz.
@@ -113,7 +115,8 @@ pub fn pulse_room(config: &Config) -> u64 {
     config.pulse_width + (config.dir_setup + config.dir_hold).max(1)
 }
 
-/// Whether a configuration is refused: A4's least bit time, A7's pulse rules, and the ranges that A3, A5 and A7 name.
+/// Whether a configuration is refused: A4's least bit time, A7's pulse rules, and the ranges that A3, A5
+/// and A7 name.
 pub fn refused(config: &Config) -> bool {
     if config.clock_hz == 0 || config.baud == 0 || config.receiver_baud == 0 || config.step_period == 0 {
         return true;
@@ -155,7 +158,8 @@ pub fn bit_start(config: &Config, start: u64, k: u64) -> u64 {
     start + k * config.clock_hz / config.baud
 }
 
-/// The cycle in which a byte that the receiver first saw at `t` is delivered, or found to have no stop bit (A4).
+/// The cycle in which a byte that the receiver first saw at `t` is delivered, or found to have no stop bit
+/// (A4).
 pub fn stop_sample(config: &Config, t: u64) -> u64 {
     t + bit_time(config) / 2 + 9 * bit_time(config)
 }
@@ -172,7 +176,8 @@ pub fn packets_schedule(config: &Config, packets: &[Vec<u8>]) -> Vec<(u64, Vec<u
     schedule
 }
 
-/// The line's level in every cycle of the run: high, then the sends' bits, then what is forced, in the entries' order.
+/// The line's level in every cycle of the run: high, then the sends' bits, then what is forced, in the
+/// entries' order.
 pub fn line_levels(config: &Config, input: &Input) -> Vec<bool> {
     let mut line = vec![true; input.cycles as usize];
     let mut hold = |from: u64, to: u64, level: bool| {
@@ -230,8 +235,8 @@ pub fn hear(config: &Config, line: &[bool]) -> Vec<(u64, Heard)> {
     let mut receiver = Receiver::Armed;
     for (cycle, &high) in line.iter().enumerate() {
         let cycle = cycle as u64;
-        // The state that a cycle leaves is the next cycle's: "arms again in the next cycle", "is armed from the next
-        // cycle on", "arms in the cycle after the first cycle … in which the line is high".
+        // The state that a cycle leaves is the next cycle's: "arms again in the next cycle", "is armed from
+        // the next cycle on", "arms in the cycle after the first cycle … in which the line is high".
         receiver = match receiver {
             Receiver::Armed if high => Receiver::Armed,
             Receiver::Armed => Receiver::InByte { t: cycle, byte: 0 },
@@ -353,8 +358,8 @@ fn start_tick(config: &Config, orders: &[u8], c0: u64) -> Tick {
     tick
 }
 
-/// Runs a configuration that is not [`refused`], cycle by cycle, in A7's order within one cycle: the sequencer, the
-/// gap timer, the byte.
+/// Runs a configuration that is not [`refused`], cycle by cycle, in A7's order within one cycle: the
+/// sequencer, the gap timer, the byte.
 pub fn run(config: &Config, input: &Input) -> Run {
     assert!(!refused(config), "a refused configuration has no run: {config:?}");
     let line = line_levels(config, input);
@@ -375,7 +380,8 @@ pub fn run(config: &Config, input: &Input) -> Run {
     let mut ignoring = false;
 
     for cycle in 0..input.cycles {
-        // The sequencer: a tick ends, a tick starts "from commits of earlier cycles only" (this cycle's byte comes later).
+        // The sequencer: a tick ends, a tick starts "from commits of earlier cycles only" (this cycle's
+        // byte comes later).
         if running.as_ref().is_some_and(|tick| tick.end == cycle) {
             result.ticks_done += 1;
             running = None;
@@ -408,8 +414,9 @@ pub fn run(config: &Config, input: &Input) -> Run {
             ignoring = false;
         }
 
-        // The byte. Reading: a framing error has a delivered byte's place in the order, after the gap timer; so in the
-        // cycle d + 45*B + 1 a partial packet is SHORT_PACKET first, and then the error is FRAMING.
+        // The byte. Reading: a framing error has a delivered byte's place in the order, after the gap
+        // timer; so in the cycle d + 45*B + 1 a partial packet is SHORT_PACKET first, and then the error is
+        // FRAMING.
         for &(_, what) in heard.iter().filter(|(heard_at, _)| *heard_at == cycle) {
             last_heard = Some(cycle);
             match what {
@@ -453,7 +460,8 @@ fn commit(config: &Config, packet: &[u8], p: u64, queue: &mut VecDeque<Vec<u8>>)
         Some(own) if packet[0] == own || packet[0] == 255 => &packet[1..],
         Some(_) => return 0,
     };
-    // Reading: "One with p < boot is dropped without a fault" holds whatever is in it, so boot is judged first.
+    // Reading: "One with p < boot is dropped without a fault" holds whatever is in it, so boot is judged
+    // first.
     if p < config.boot {
         return 0;
     }

@@ -1,7 +1,9 @@
-//! DESIGN Part A, held edge by edge: for random configurations and line activity the core gives, at every one of its
-//! speeds, the trace, positions, faults and tick count of the independent model in [`stepscope_tests::oracle`].
+//! DESIGN Part A, held edge by edge: for random configurations and line activity the core gives, at every
+//! one of its speeds, the trace, positions, faults and tick count of the independent model in
+//! [`stepscope_tests::oracle`].
 //!
-//! The core drives each channel's DIR line by itself and pulses all channels at once, so the cases are of that mode.
+//! The core drives each channel's DIR line by itself and pulses all channels at once, so the cases are of
+//! that mode.
 #![cfg(not(target_arch = "wasm32"))]
 
 use std::rc::Rc;
@@ -214,7 +216,8 @@ proptest! {
         let packet_length = config.channels + usize::from(config.address.is_some());
         let packets: Vec<Vec<u8>> = bytes.chunks_exact(packet_length).map(<[u8]>::to_vec).collect();
         let source = Source::Packets(Packets { packets: packets.iter().cloned().map(Hex).collect() });
-        let on_the_line = oracle::byte_start(&config, 0, packet_length as u64 - 1) + oracle::byte_start(&config, 0, 1);
+        let last = packet_length as u64 - 1;
+        let on_the_line = oracle::byte_start(&config, 0, last) + oracle::byte_start(&config, 0, 1);
         match Experiment::new(&scenario(&config, &[], source)) {
             Ok(experiment) => {
                 prop_assert!(!oracle::refused(&config) && on_the_line <= config.slots * config.step_period);

@@ -1,4 +1,5 @@
-//! The strategies keep their word: what they draw is legal input, and together it reaches the rules it aims at.
+//! The strategies keep their word: what they draw is legal input, and together it reaches the rules it aims
+//! at.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +7,7 @@ use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 
 use super::*;
-use crate::oracle::{FRAMING, QUEUE_OVERFLOW, SHORT_PACKET, TOO_MANY_STEPS, refused, run};
+use crate::oracle::{FRAMING, QUEUE_OVERFLOW, SHORT_PACKET, TOO_MANY_STEPS, byte_start, refused, run};
 
 fn drawn(count: usize) -> Vec<(Config, Input)> {
     let mut runner = TestRunner::deterministic();

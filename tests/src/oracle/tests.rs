@@ -1,7 +1,8 @@
 //! The oracle against numbers worked out by hand, a table for each rule of A4, A5, A7 and A9.
 //!
-//! The base configuration divides evenly so that the numbers stay readable: B = 16, a byte is 160 cycles and is
-//! delivered 8 + 9*16 = 152 cycles after its start; the gap is 45*16 = 720. A tick is 4 slots of 10 cycles.
+//! The base configuration divides evenly so that the numbers stay readable: B = 16, a byte is 160 cycles
+//! and is delivered 8 + 9*16 = 152 cycles after its start; the gap is 45*16 = 720. A tick is 4 slots of 10
+//! cycles.
 
 mod line;
 mod packets;

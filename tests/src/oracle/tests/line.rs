@@ -20,7 +20,8 @@ fn forced(entries: &[Forced], cycles: u64) -> Input {
 
 #[test]
 fn a_sender_holds_bit_k_from_floor_k_clock_over_baud() {
-    // "[t0 + floor(k*clock_hz/baud), t0 + floor((k+1)*clock_hz/baud))": floors 0 11 22 33 44 55 66 77 88 100 111.
+    // "[t0 + floor(k*clock_hz/baud), t0 + floor((k+1)*clock_hz/baud))": floors 0 11 22 33 44 55 66 77 88
+    // 100 111.
     let rx = |byte: u8| edges(&run(&uneven(), &sent(&[(1, &[byte])], 300)), bits::RX);
     let (low, high) = (false, true);
     assert_eq!(
@@ -39,7 +40,8 @@ fn a_sender_holds_bit_k_from_floor_k_clock_over_baud() {
 
 #[test]
 fn byte_j_of_a_send_starts_at_floor_10_j_clock_over_baud() {
-    // floor(10_000*j/90): 111 cycles from byte to byte, and 112 to the tenth: "the floors can leave one cycle".
+    // floor(10_000*j/90): 111 cycles from byte to byte, and 112 to the tenth: "the floors can leave one
+    // cycle".
     let input = sent(&[(1, &[0xFF; 10])], 1_200);
     let falls: Vec<u64> = edges(&run(&uneven(), &input), bits::RX)
         .into_iter()
@@ -106,7 +108,8 @@ fn the_stop_bit_is_sampled_in_one_cycle_only() {
 
 #[test]
 fn the_start_bit_is_looked_at_again_in_its_middle() {
-    // "It looks again at t + floor(B/2): if the line is high it was a glitch": t = 10, looked at again in cycle 15.
+    // "It looks again at t + floor(B/2): if the line is high it was a glitch": t = 10, looked at again in
+    // cycle 15.
     for (glitch, expected) in [(14, 1), (15, 0), (16, 1)] {
         let input = Input { forced: vec![(glitch, 1, true)], ..sent(&[(10, &[0xFF])], 400) };
         assert_eq!(heard(&uneven(), &input).len(), expected, "one cycle high at {glitch}");
@@ -115,7 +118,8 @@ fn the_start_bit_is_looked_at_again_in_its_middle() {
 
 #[test]
 fn after_a_glitch_the_receiver_arms_in_the_next_cycle() {
-    // B = 16: low at 10, looked at again at 18. A start bit from 19 on is a new t; one that covers 18 belongs to t = 10.
+    // B = 16: low at 10, looked at again at 18. A start bit from 19 on is a new t; one that covers 18
+    // belongs to t = 10.
     for (start, t) in [(14, 10), (18, 10), (19, 19), (20, 20)] {
         let input = Input { forced: vec![(10, 1, false)], ..sent(&[(start, &[0x5A])], 400) };
         assert_eq!(heard(&base(), &input), [(t + 152, Heard::Byte(0x5A))], "a byte sent at {start}");
@@ -145,7 +149,8 @@ fn after_a_delivery_the_receiver_arms_in_the_next_cycle() {
 
 #[test]
 fn after_a_framing_error_the_receiver_arms_one_cycle_after_the_line_is_high() {
-    // "arms in the cycle after the first cycle, counted from the one after the sample, in which the line is high".
+    // "arms in the cycle after the first cycle, counted from the one after the sample, in which the line is
+    // high".
     let rows: &[(&[Forced], &[u64])] = &[
         // A break from 1 to 300: high at 301, armed at 302 and low there.
         (&[(1, 300, false), (302, 100, false)], &[153, 302 + 152]),
@@ -168,14 +173,16 @@ fn after_a_framing_error_the_receiver_arms_one_cycle_after_the_line_is_high() {
 
 #[test]
 fn a_slow_receiver_takes_the_stop_bit_for_a_data_bit() {
-    // The sender's bit is 16, B = 18: data bits sampled at t + 9 + 18*(i+1) = 27 45 63 81 99 117 135 153, the stop bit at 171.
-    // The sender's data bit i is [16*(i+1), 16*(i+2)); bit 7 = [128, 144): receiver bits 0..=7 see 0 1 2 4 5 6 7 stop.
+    // The sender's bit is 16, B = 18: data bits sampled at t + 9 + 18*(i+1) = 27 45 63 81 99 117 135 153,
+    // the stop bit at 171. The sender's data bit i is [16*(i+1), 16*(i+2)); bit 7 = [128, 144): receiver
+    // bits 0..=7 see 0 1 2 4 5 6 7 stop.
     let slow = Config { receiver_baud: 889, ..base() };
     assert_eq!(bit_time(&slow), 18);
     assert_eq!(heard(&slow, &sent(&[(1, &[0b0000_0000])], 400)), [(172, Heard::Byte(0b1000_0000))]);
     assert_eq!(heard(&slow, &sent(&[(1, &[0b0000_1000])], 400)), [(172, Heard::Byte(0b1000_0000))]);
     assert_eq!(heard(&slow, &sent(&[(1, &[0b1000_0001])], 400)), [(172, Heard::Byte(0b1100_0001))]);
-    // Sent back to back, its stop sample falls into the next byte's start bit (160..=175 after the first's start).
+    // Sent back to back, its stop sample falls into the next byte's start bit (160..=175 after the first's
+    // start).
     assert_eq!(heard(&slow, &sent(&[(1, &[0, 0xFF])], 400)), [(172, Heard::FramingError)]);
 }
 

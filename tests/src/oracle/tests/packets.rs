@@ -8,7 +8,8 @@ fn outcome(config: &Config, input: &Input) -> (Vec<u64>, u16) {
     (steps(&run, 0), run.faults)
 }
 
-/// One step to the right on one channel. Committed at p, its tick starts at p + 1 and STEP rises at p + 2 (D = 1).
+/// One step to the right on one channel. Committed at p, its tick starts at p + 1 and STEP rises at p + 2
+/// (D = 1).
 const STEP_RIGHT: u8 = 0x81;
 
 fn addressed() -> Config {
@@ -58,12 +59,13 @@ fn packets_for_another_address_are_consumed_by_length_and_255_is_for_all() {
 
 #[test]
 fn a_delivery_45_bits_after_the_last_continues_the_packet_and_one_cycle_later_begins_another() {
-    // "A delivery at d + 45*B still continues the packet": d = 153, so 873 (sent at 721) does and 874 does not.
+    // "A delivery at d + 45*B still continues the packet": d = 153, so 873 (sent at 721) does and 874 does
+    // not.
     let two = Config { channels: 2, ..base() };
     let input = |second| sent(&[(1, &[STEP_RIGHT]), (second, &[0x82])], 2_000);
     assert_eq!(outcome(&two, &input(721)), (vec![875], 0));
-    // "before a byte delivered in that very cycle is looked at, a partial packet is dropped": 0x82 begins a new packet,
-    // which in its turn is short.
+    // "before a byte delivered in that very cycle is looked at, a partial packet is dropped": 0x82 begins a
+    // new packet, which in its turn is short.
     assert_eq!(outcome(&two, &input(722)), (vec![], SHORT_PACKET));
     let then_another = sent(&[(1, &[STEP_RIGHT]), (722, &[0x82, 0])], 2_000);
     // 0x82 delivered at 874, its partner at 1034.
@@ -72,7 +74,8 @@ fn a_delivery_45_bits_after_the_last_continues_the_packet_and_one_cycle_later_be
 
 #[test]
 fn the_gap_is_noticed_45_bits_and_one_cycle_after_the_delivery() {
-    // d = 153: SHORT_PACKET in cycle 153 + 720 + 1 = 874, so a run of 875 cycles has it and one of 874 has not.
+    // d = 153: SHORT_PACKET in cycle 153 + 720 + 1 = 874, so a run of 875 cycles has it and one of 874 has
+    // not.
     let two = Config { channels: 2, ..base() };
     assert_eq!(outcome(&two, &sent(&[(1, &[STEP_RIGHT])], 874)).1, 0);
     assert_eq!(outcome(&two, &sent(&[(1, &[STEP_RIGHT])], 875)).1, SHORT_PACKET);
@@ -109,18 +112,21 @@ fn a_byte_in_progress_or_a_line_held_low_does_not_hold_the_gap_off() {
 #[test]
 fn a_framing_error_drops_the_partial_packet_and_ignores_until_a_gap() {
     let two = Config { channels: 2, ..base() };
-    // Bytes at 1 and 161; the second's stop bit (sampled at 313) is broken. Ignoring ends at 313 + 721 = 1034.
+    // Bytes at 1 and 161; the second's stop bit (sampled at 313) is broken. Ignoring ends at 313 + 721 =
+    // 1034.
     let input = |third: u64, last: u64| Input {
         forced: vec![(313, 1, false)],
         ..sent(&[(1, &[STEP_RIGHT, 0]), (third, &[0x82]), (last, &[0x81, 0])], 4_000)
     };
-    // "ignores bytes until a gap has passed" and "bytes that are being ignored count too": the byte delivered at
-    // 482 + 152 = 634 is ignored and begins the gap anew, which ends at 634 + 721 = 1355: a byte sent at 1203 is heard.
+    // "ignores bytes until a gap has passed" and "bytes that are being ignored count too": the byte
+    // delivered at 482 + 152 = 634 is ignored and begins the gap anew, which ends at 634 + 721 = 1355: a
+    // byte sent at 1203 is heard.
     assert_eq!(outcome(&two, &input(482, 1_203)), (vec![1_355 + 160 + 2], FRAMING));
     // Sent one cycle earlier, its first byte is ignored too, and so is the next.
     assert_eq!(outcome(&two, &input(482, 1_202)), (vec![], FRAMING));
-    // Straight after the error: a byte delivered at 1033 is ignored, at 1034 it is not ("before a byte delivered in that
-    // very cycle is looked at … ignoring ends"), and with the next one it is a packet: 0x82, 0x81.
+    // Straight after the error: a byte delivered at 1033 is ignored, at 1034 it is not ("before a byte
+    // delivered in that very cycle is looked at … ignoring ends"), and with the next one it is a packet:
+    // 0x82, 0x81.
     assert_eq!(outcome(&two, &input(881, 2_000)), (vec![2_312 + 2], FRAMING));
     let run = run(&two, &input(882, 1_042));
     assert_eq!(steps(&run, 0), [1_034 + 160 + 2, 1_034 + 160 + 12]);
@@ -131,7 +137,8 @@ fn a_framing_error_drops_the_partial_packet_and_ignores_until_a_gap() {
 
 #[test]
 fn a_framing_error_in_the_cycle_in_which_the_gap_ends_finds_the_packet_short() {
-    // d = 153; the gap ends in 874; a byte sent at 722 has its stop sample there. One cycle earlier it is in the packet.
+    // d = 153; the gap ends in 874; a byte sent at 722 has its stop sample there. One cycle earlier it is
+    // in the packet.
     let two = Config { channels: 2, ..base() };
     for (start, expected) in [(721, FRAMING), (722, FRAMING | SHORT_PACKET)] {
         let input = Input {
@@ -159,7 +166,8 @@ fn too_many_steps_drops_the_packet_whole_and_sets_no_other_fault() {
 
 #[test]
 fn a_packet_that_finds_the_queue_full_is_dropped_whole() {
-    // Ticks of 4*200 = 800 cycles. Committed at 153: c0 = 154, e = 954. At 313 the place is taken, at 473 there is none.
+    // Ticks of 4*200 = 800 cycles. Committed at 153: c0 = 154, e = 954. At 313 the place is taken, at 473
+    // there is none.
     let config = Config { step_period: 200, queue_depth: 1, ..base() };
     let first_slot = |c0: u64| c0 + 1;
     let (steps, faults) = outcome(&config, &sent(&[(1, &[1, 1, 1])], 4_000));

@@ -1,7 +1,7 @@
 //! A7: where in a slot the pulses and DIR changes stand, in each of the four modes.
 //!
-//! Three channels, addressed by none: three bytes back to back from cycle 1 are committed at 473, so c0 = 474 for the
-//! first tick. All times below are given from c0.
+//! Three channels, addressed by none: three bytes back to back from cycle 1 are committed at 473, so c0 =
+//! 474 for the first tick. All times below are given from c0.
 
 use super::*;
 

@@ -25,7 +25,8 @@ fn the_next_tick_starts_at_the_end_of_the_one_before_or_after_its_own_commit() {
 
 #[test]
 fn queued_ticks_follow_each_other_without_a_pause() {
-    // Four packets at 153, 313, 473, 633; ticks of 400 cycles at 154, 554, 954, 1354; every slot fires, Ts = 100.
+    // Four packets at 153, 313, 473, 633; ticks of 400 cycles at 154, 554, 954, 1354; every slot fires, Ts
+    // = 100.
     let config = Config { step_period: 100, queue_depth: 3, ..base() };
     let run = run(&config, &sent(&[(1, &[4, 4, 4, 4])], 2_000));
     let expected: Vec<u64> = (0..16).map(|slot| 155 + 100 * slot).collect();

@@ -1,0 +1,172 @@
+//! What the host sends: packets whole and cut short, and noise, with pauses that aim at the gap and at
+//! ticks' ends.
+
+use proptest::prelude::*;
+use proptest::sample::Index;
+
+use crate::oracle::{Config, bit_time, byte_start, stop_sample};
+
+/// What a send follows the one before by.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Pause {
+    /// Cycles after the last stop bit's end.
+    Idle(u64),
+    /// A5's gap: the first byte starts 45 bit times and this many cycles after the last one did.
+    Gap(i64),
+    /// The last byte is delivered a whole number of ticks and this many cycles after the anchor (the last
+    /// delivery that was not placed so): where ticks run without a pause from there, within a cycle or two
+    /// of a tick's end.
+    TickEnd(i64),
+}
+
+pub(super) fn pause() -> impl Strategy<Value = Pause> {
+    prop_oneof![
+        4 => (0..4_u64).prop_map(Pause::Idle),
+        2 => (0..300_u64).prop_map(Pause::Idle),
+        2 => (300..4_000_u64).prop_map(Pause::Idle),
+        2 => (-2..=3_i64).prop_map(Pause::Gap),
+        3 => (-2..=2_i64).prop_map(Pause::TickEnd),
+    ]
+}
+
+/// Some pieces are sent in two parts: where they are cut, and the pause between.
+pub(super) fn split() -> impl Strategy<Value = Option<(Index, Pause)>> {
+    prop::option::weighted(0.15, (any::<Index>(), pause()))
+}
+
+#[derive(Debug, Clone)]
+pub(super) enum Piece {
+    Packet {
+        to: To,
+        orders: Vec<(bool, Count)>,
+        /// One order is beyond the slots.
+        too_many: Option<(Index, u64)>,
+        /// Bytes missing at the end; 0 for a whole packet.
+        missing: usize,
+    },
+    Noise(Vec<u8>),
+}
+
+/// Whom an addressed packet is for; means nothing where packets carry no address.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum To {
+    Own,
+    All,
+    /// The own address plus this, so never the own one.
+    Foreign(u8),
+}
+
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Count {
+    /// Modulo slots + 1.
+    Any(u64),
+    AllSlots,
+}
+
+pub(super) fn piece() -> impl Strategy<Value = Piece> {
+    let to = prop_oneof![6 => Just(To::Own), 1 => Just(To::All), 2 => (1..=255_u8).prop_map(To::Foreign)];
+    let count = prop_oneof![
+        2 => Just(Count::Any(0)),
+        1 => Just(Count::Any(1)),
+        4 => (0..128_u64).prop_map(Count::Any),
+        2 => Just(Count::AllSlots),
+    ];
+    let orders = prop::collection::vec((any::<bool>(), count), 16);
+    let too_many = prop::option::weighted(0.06, (any::<Index>(), 1..128_u64));
+    let missing = prop_oneof![15 => Just(0_usize), 1 => 1..4_usize];
+    prop_oneof![
+        14 => (to, orders, too_many, missing)
+            .prop_map(|(to, orders, too_many, missing)| Piece::Packet { to, orders, too_many, missing }),
+        1 => prop::collection::vec(any::<u8>(), 1..20).prop_map(Piece::Noise),
+    ]
+}
+
+impl Piece {
+    pub(super) fn bytes(&self, config: &Config) -> Vec<u8> {
+        let (to, orders, too_many, missing) = match self {
+            Piece::Noise(bytes) => return bytes.clone(),
+            Piece::Packet { to, orders, too_many, missing } => (to, orders, too_many, missing),
+        };
+        let mut counts: Vec<u64> = orders[..config.channels]
+            .iter()
+            .map(|(_, count)| match count {
+                Count::Any(count) => count % (config.slots + 1),
+                Count::AllSlots => config.slots,
+            })
+            .collect();
+        if let Some((which, excess)) = too_many {
+            counts[which.index(config.channels)] = (config.slots + excess).min(127);
+        }
+        let mut bytes = Vec::new();
+        if let Some(own) = config.address {
+            bytes.push(match to {
+                To::Own => own,
+                To::All => 255,
+                To::Foreign(offset) => own.wrapping_add(*offset),
+            });
+        }
+        for (count, (right, _)) in counts.iter().zip(orders) {
+            bytes.push(u8::from(*right) << 7 | *count as u8);
+        }
+        // At least one byte is sent.
+        bytes.truncate(bytes.len().saturating_sub(*missing).max(1));
+        bytes
+    }
+}
+
+/// The host's schedule as it grows.
+pub(super) struct Line<'a> {
+    config: &'a Config,
+    pub(super) sends: Vec<(u64, Vec<u8>)>,
+    /// Where each send's last byte is delivered, as long as nothing disturbs the line.
+    pub(super) deliveries: Vec<u64>,
+    pub(super) byte_starts: Vec<u64>,
+    /// The end of the last stop bit: no send may start before.
+    pub(super) free_from: u64,
+    /// See [`Pause::TickEnd`].
+    anchor: Option<u64>,
+    /// No idle pause is longer than a few cycles: the queue fills.
+    in_a_hurry: bool,
+}
+
+impl<'a> Line<'a> {
+    pub(super) fn new(config: &'a Config, in_a_hurry: bool) -> Self {
+        Line {
+            config,
+            in_a_hurry,
+            sends: Vec::new(),
+            deliveries: Vec::new(),
+            byte_starts: Vec::new(),
+            free_from: 1,
+            anchor: None,
+        }
+    }
+
+    pub(super) fn send(&mut self, pause: Pause, bytes: &[u8]) {
+        let config = self.config;
+        let last = bytes.len() as u64 - 1;
+        let to_delivery = stop_sample(config, byte_start(config, 0, last));
+        let wished = match (pause, self.byte_starts.last(), self.anchor) {
+            (Pause::Idle(cycles), ..) if self.in_a_hurry => self.free_from + cycles % 4,
+            (Pause::Idle(cycles), ..) => self.free_from + cycles,
+            (Pause::Gap(offset), Some(last_start), _) => {
+                (last_start + 45 * bit_time(config)).saturating_add_signed(offset)
+            }
+            (Pause::TickEnd(offset), _, Some(anchor)) => {
+                let tick = (config.slots * config.step_period).max(1);
+                let ticks = (self.free_from + to_delivery).saturating_sub(anchor).div_ceil(tick);
+                (anchor + ticks * tick).saturating_add_signed(offset).saturating_sub(to_delivery)
+            }
+            _ => self.free_from,
+        };
+        let start = wished.max(self.free_from);
+        let delivery = start + to_delivery;
+        if !matches!(pause, Pause::TickEnd(_)) || self.anchor.is_none() {
+            self.anchor = Some(delivery);
+        }
+        self.sends.push((start, bytes.to_vec()));
+        self.deliveries.push(delivery);
+        self.byte_starts.extend((0..=last).map(|j| byte_start(config, start, j)));
+        self.free_from = byte_start(config, start, last) + byte_start(config, 0, 1);
+    }
+}

@@ -1,0 +1,144 @@
+//! Random configurations at and around the limits that A4 and A7 set.
+
+use proptest::prelude::*;
+
+use crate::oracle::{Config, byte_start, pulse_room};
+
+/// How the DIR lines run and how the channels' pulses stand to each other (A7).
+#[derive(Debug, Clone, Copy)]
+pub struct Mode {
+    /// One DIR line for all channels, or one a channel.
+    pub common_dir: bool,
+    /// Staggered, or simultaneous.
+    pub staggered: bool,
+}
+
+/// All four modes.
+pub fn every_mode() -> impl Strategy<Value = Mode> {
+    any::<[bool; 2]>().prop_map(|[common_dir, staggered]| Mode { common_dir, staggered })
+}
+
+/// Configurations of which about one in eight just misses a rule of A4 or A7 and is refused.
+pub fn configs(modes: impl Strategy<Value = Mode>) -> impl Strategy<Value = Config> {
+    (link(), drive(), bus(), modes).prop_map(|(link, drive, bus, mode)| {
+        let mut config = Config {
+            clock_hz: link.clock_hz,
+            baud: link.baud,
+            receiver_baud: link.receiver_baud,
+            channels: bus.channels,
+            slots: bus.slots,
+            step_period: 0,
+            pulse_width: drive.pulse_width,
+            dir_setup: drive.dir_setup,
+            dir_hold: drive.dir_hold,
+            settle: 0,
+            queue_depth: bus.queue_depth,
+            boot: bus.boot,
+            spread: bus.spread,
+            common_dir: mode.common_dir,
+            staggered: mode.staggered,
+            address: bus.address,
+        };
+        let room = pulse_room(&config);
+        let shortest_period = match (config.common_dir, config.staggered) {
+            (false, false) => room,
+            (true, false) => 2 * room,
+            (_, true) => room * config.channels as u64,
+        };
+        config.step_period = match drive.period {
+            Period::Shortest(spare) => shortest_period.saturating_add_signed(spare),
+            Period::TickInPackets(permille) => {
+                let packet_length = config.channels as u64 + u64::from(config.address.is_some());
+                let tick = byte_start(&config, 0, packet_length) * permille / 1_000;
+                shortest_period.max(tick / config.slots)
+            }
+        };
+        let shortest_settle = if config.common_dir && config.staggered { room } else { 1 };
+        config.settle = shortest_settle.saturating_add_signed(drive.settle_to_spare);
+        config
+    })
+}
+
+#[derive(Debug, Clone)]
+struct Link {
+    clock_hz: u64,
+    baud: u64,
+    receiver_baud: u64,
+}
+
+/// Bit times of 11 to 40 cycles, seldom dividing the clock, now and then just short of A4's least; the
+/// receiver up to 8 % off.
+fn link() -> impl Strategy<Value = Link> {
+    let clock_hz = prop_oneof![1_000..10_000_u64, 10_000..1_000_000_u64];
+    let bit_hundredths = prop_oneof![1 => 1_030..1_100_u64, 12 => 1_100..1_600_u64, 12 => 1_600..4_000_u64];
+    let receiver_permille = prop_oneof![4 => Just(1_000_u64), 3 => 960..1_040_u64, 2 => 920..1_080_u64];
+    (clock_hz, bit_hundredths, receiver_permille).prop_map(|(clock_hz, hundredths, permille)| {
+        let baud = clock_hz * 100 / hundredths;
+        Link { clock_hz, baud, receiver_baud: baud * permille / 1_000 }
+    })
+}
+
+#[derive(Debug, Clone)]
+struct Drive {
+    pulse_width: u64,
+    dir_setup: u64,
+    dir_hold: u64,
+    period: Period,
+    /// Cycles beyond the shortest settling time that A7 takes.
+    settle_to_spare: i64,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Period {
+    /// Cycles beyond the shortest slot that A7 takes; below 0 it is refused.
+    Shortest(i64),
+    /// A tick lasts this many per mille of what a packet takes on the line: over 1000, queues fill.
+    TickInPackets(u64),
+}
+
+fn drive() -> impl Strategy<Value = Drive> {
+    let period = prop_oneof![
+        5 => Just(Period::Shortest(0)),
+        4 => (0..=20_i64).prop_map(Period::Shortest),
+        2 => (0..=200_i64).prop_map(Period::Shortest),
+        8 => (500..5_000_u64).prop_map(Period::TickInPackets),
+        1 => Just(Period::Shortest(-1)),
+    ];
+    let settle_to_spare = prop_oneof![10 => 0..=20_i64, 4 => 0..=200_i64, 1 => Just(-1)];
+    (1..=6_u64, 0..=5_u64, 0..=5_u64, period, settle_to_spare).prop_map(
+        |(pulse_width, dir_setup, dir_hold, period, settle_to_spare)| Drive {
+            pulse_width,
+            dir_setup,
+            dir_hold,
+            period,
+            settle_to_spare,
+        },
+    )
+}
+
+#[derive(Debug, Clone)]
+struct Bus {
+    channels: usize,
+    slots: u64,
+    queue_depth: usize,
+    boot: u64,
+    spread: bool,
+    address: Option<u8>,
+}
+
+fn bus() -> impl Strategy<Value = Bus> {
+    let channels = prop_oneof![3 => 1..=3_usize, 2 => 1..=16_usize];
+    let boot = prop_oneof![2 => Just(0_u64), 1 => 0..2_000_u64];
+    let address = prop::option::of(0..=254_u8);
+    let queue_depth = prop_oneof![3 => Just(1_usize), 2 => Just(2), 1 => 3..=4_usize];
+    (channels, 1..=20_u64, queue_depth, boot, any::<bool>(), address).prop_map(
+        |(channels, slots, queue_depth, boot, spread, address)| Bus {
+            channels,
+            slots,
+            queue_depth,
+            boot,
+            spread,
+            address,
+        },
+    )
+}
