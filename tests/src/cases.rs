@@ -17,7 +17,7 @@ mod tests;
 use proptest::prelude::*;
 use proptest::sample::Index;
 
-use crate::oracle::{Config, Input};
+use crate::oracle::{Config, Input, bit_time};
 use sends::{Line, pause, piece, split};
 use strikes::{force, strike};
 
@@ -42,10 +42,10 @@ pub fn cases(modes: impl Strategy<Value = Mode>) -> impl Strategy<Value = (Confi
                 match split {
                     Some((at, second_pause)) if bytes.len() > 1 => {
                         let (first, second) = bytes.split_at(1 + at.index(bytes.len() - 1));
-                        line.send(*pause, first);
-                        line.send(*second_pause, second);
+                        line.send(*pause, first, false);
+                        line.send(*second_pause, second, piece.orders_tick());
                     }
-                    _ => line.send(*pause, &bytes),
+                    _ => line.send(*pause, &bytes, piece.orders_tick()),
                 }
             }
             let (sends, commits, byte_starts, quiet_from) =
@@ -56,11 +56,19 @@ pub fn cases(modes: impl Strategy<Value = Mode>) -> impl Strategy<Value = (Confi
                 config.boot = which.get(&commits).saturating_add_signed(offset);
             }
             let forced = force(&config, &strikes, &byte_starts);
+            let delivery = |which: Index| if commits.is_empty() { 0 } else { *which.get(&commits) };
             let cycles = match end {
                 End::After(cycles) => quiet_from + cycles,
                 End::PartWay(permille) => 1 + quiet_from * permille / 1_000,
+                End::AfterTicks(which, ticks, offset) => {
+                    let tick = config.slots * config.step_period;
+                    (delivery(which) + 1 + ticks * tick).saturating_add_signed(offset)
+                }
+                End::Gap(which, offset) => {
+                    (delivery(which) + 45 * bit_time(&config)).saturating_add_signed(offset)
+                }
             };
-            (config, Input { sends, forced, cycles: cycles.min(LONGEST_RUN) })
+            (config, Input { sends, forced, cycles: cycles.clamp(1, LONGEST_RUN) })
         },
     )
 }
@@ -71,11 +79,19 @@ enum End {
     After(u64),
     /// In the midst of the line's activity, per mille of it.
     PartWay(u64),
+    /// Some ticks after a send's last delivery: where they run from it, in the cycle of a tick's end or
+    /// beside it.
+    AfterTicks(Index, u64, i64),
+    /// 45 bit times after a send's last delivery, and some cycles.
+    Gap(Index, i64),
 }
 
 fn end() -> impl Strategy<Value = End> {
     prop_oneof![
         5 => (0..4_000_u64).prop_map(End::After),
         1 => (0..1_000_u64).prop_map(End::PartWay),
+        2 => (any::<Index>(), 0..4_u64, -1..=2_i64)
+            .prop_map(|(which, ticks, offset)| End::AfterTicks(which, ticks, offset)),
+        1 => (any::<Index>(), 0..=3_i64).prop_map(|(which, offset)| End::Gap(which, offset)),
     ]
 }

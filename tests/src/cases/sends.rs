@@ -13,9 +13,7 @@ pub(super) enum Pause {
     Idle(u64),
     /// A5's gap: the first byte starts 45 bit times and this many cycles after the last one did.
     Gap(i64),
-    /// The last byte is delivered a whole number of ticks and this many cycles after the anchor (the last
-    /// delivery that was not placed so): where ticks run without a pause from there, within a cycle or two
-    /// of a tick's end.
+    /// The last byte is delivered this many cycles after a tick's end, as far as [`Line`] foresees the ticks.
     TickEnd(i64),
 }
 
@@ -82,6 +80,11 @@ pub(super) fn piece() -> impl Strategy<Value = Piece> {
 }
 
 impl Piece {
+    /// Whether the controller takes it for a tick, if it has a place.
+    pub(super) fn orders_tick(&self) -> bool {
+        matches!(self, Piece::Packet { to: To::Own | To::All, too_many: None, missing: 0, .. })
+    }
+
     pub(super) fn bytes(&self, config: &Config) -> Vec<u8> {
         let (to, orders, too_many, missing) = match self {
             Piece::Noise(bytes) => return bytes.clone(),
@@ -114,6 +117,12 @@ impl Piece {
     }
 }
 
+/// A tick's c0 and e.
+struct Foreseen {
+    start: u64,
+    end: u64,
+}
+
 /// The host's schedule as it grows.
 pub(super) struct Line<'a> {
     config: &'a Config,
@@ -123,8 +132,8 @@ pub(super) struct Line<'a> {
     pub(super) byte_starts: Vec<u64>,
     /// The end of the last stop bit: no send may start before.
     pub(super) free_from: u64,
-    /// See [`Pause::TickEnd`].
-    anchor: Option<u64>,
+    /// Ticks that will start if nothing disturbs the line, the later ones last.
+    ticks: Vec<Foreseen>,
     /// No idle pause is longer than a few cycles: the queue fills.
     in_a_hurry: bool,
 }
@@ -138,35 +147,44 @@ impl<'a> Line<'a> {
             deliveries: Vec::new(),
             byte_starts: Vec::new(),
             free_from: 1,
-            anchor: None,
+            ticks: Vec::new(),
         }
     }
 
-    pub(super) fn send(&mut self, pause: Pause, bytes: &[u8]) {
+    pub(super) fn send(&mut self, pause: Pause, bytes: &[u8], orders_tick: bool) {
         let config = self.config;
         let last = bytes.len() as u64 - 1;
         let to_delivery = stop_sample(config, byte_start(config, 0, last));
-        let wished = match (pause, self.byte_starts.last(), self.anchor) {
-            (Pause::Idle(cycles), ..) if self.in_a_hurry => self.free_from + cycles % 4,
-            (Pause::Idle(cycles), ..) => self.free_from + cycles,
-            (Pause::Gap(offset), Some(last_start), _) => {
+        let soonest = self.free_from + to_delivery;
+        let start = match pause {
+            Pause::Idle(cycles) if self.in_a_hurry => self.free_from + cycles % 4,
+            Pause::Idle(cycles) => self.free_from + cycles,
+            Pause::Gap(offset) => self.byte_starts.last().map_or(self.free_from, |last_start| {
                 (last_start + 45 * bit_time(config)).saturating_add_signed(offset)
-            }
-            (Pause::TickEnd(offset), _, Some(anchor)) => {
-                let tick = (config.slots * config.step_period).max(1);
-                let ticks = (self.free_from + to_delivery).saturating_sub(anchor).div_ceil(tick);
-                (anchor + ticks * tick).saturating_add_signed(offset).saturating_sub(to_delivery)
-            }
-            _ => self.free_from,
+            }),
+            Pause::TickEnd(offset) => self
+                .ticks
+                .iter()
+                .map(|tick| tick.end.saturating_add_signed(offset))
+                .find(|delivery| *delivery >= soonest)
+                .map_or(self.free_from, |delivery| delivery - to_delivery),
         };
-        let start = wished.max(self.free_from);
+        let start = start.max(self.free_from);
         let delivery = start + to_delivery;
-        if !matches!(pause, Pause::TickEnd(_)) || self.anchor.is_none() {
-            self.anchor = Some(delivery);
+        if orders_tick {
+            self.foresee(delivery);
         }
         self.sends.push((start, bytes.to_vec()));
         self.deliveries.push(delivery);
         self.byte_starts.extend((0..=last).map(|j| byte_start(config, start, j)));
         self.free_from = byte_start(config, start, last) + byte_start(config, 0, 1);
+    }
+    /// Notes the tick of a packet committed at `p`, unless it comes too early or finds the queue full.
+    fn foresee(&mut self, p: u64) {
+        let waiting = self.ticks.iter().filter(|tick| tick.start > p).count();
+        if p >= self.config.boot && waiting < self.config.queue_depth {
+            let start = self.ticks.last().map_or(0, |tick| tick.end).max(p + 1);
+            self.ticks.push(Foreseen { start, end: start + self.config.slots * self.config.step_period });
+        }
     }
 }
