@@ -17,70 +17,20 @@
 //! last point is taken off its position, for otherwise the jump back at the end would be in all
 //! three. Its lines are no harmonics of anything, so it has no distortion.
 
-use super::fourier::{amplitudes, magnitude, sums};
-use crate::motion::{AxisPlan, Profile, sine_segments};
-use alloc::{vec, vec::Vec};
+pub use super::{lines::Lines, stretch::Stretch};
+
+use super::{
+    fourier::{amplitudes, magnitude, sums},
+    stretch::sampled,
+};
+use crate::motion::{AxisPlan, polyline::unit_polyline};
+use alloc::vec::Vec;
 use core::f64::consts::{PI, TAU};
 
 /// Points of the document's transform over one period (B5).
 pub const DOCUMENT_POINTS: usize = 2048;
 /// The order that gives the document's distortions: all harmonics of [`DOCUMENT_POINTS`].
 pub const DOCUMENT_ORDER: u16 = 1023;
-/// Longest transform.
-const MOST_POINTS: usize = 1 << 20;
-
-/// The stretch of time that a spectrum is taken of.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stretch {
-    /// Its start in s.
-    pub start_s: f64,
-    /// Time of one period in s, above 0.
-    pub period_s: f64,
-    /// How many whole periods, at least 1.
-    pub periods: u32,
-    /// Whether the motion repeats; otherwise the whole of it stands as one period.
-    pub periodic: bool,
-}
-
-impl Stretch {
-    /// All periods of the first periodic move, or, where none is, the whole motion; `None` for a
-    /// motion that takes no time.
-    #[must_use]
-    pub fn of(plan: &AxisPlan) -> Option<Self> {
-        let sine = plan.moves().iter().find_map(|planned| match &planned.profile {
-            Profile::SineSegments(sine) => Some((planned.start_s, sine)),
-            _ => None,
-        });
-        let stretch = match sine {
-            Some((start_s, sine)) => {
-                Self { start_s, period_s: sine.period_s(), periods: sine.periods(), periodic: true }
-            }
-            None => Self { start_s: 0.0, period_s: plan.duration_s(), periods: 1, periodic: false },
-        };
-        (stretch.period_s > 0.0).then_some(stretch)
-    }
-
-    /// Its length in s.
-    #[must_use]
-    pub fn length_s(&self) -> f64 {
-        self.period_s * f64::from(self.periods)
-    }
-
-    /// The frequency of harmonic 1 in Hz.
-    #[must_use]
-    pub fn fundamental_hz(&self) -> f64 {
-        1.0 / self.period_s
-    }
-
-    /// Pulses within the stretch: when since its start, in s, and +1 or -1.
-    fn within<'p>(&self, pulses: &'p [(f64, i8)]) -> impl Iterator<Item = (f64, f64)> + use<'p> {
-        let (start_s, length_s) = (self.start_s, self.length_s());
-        pulses
-            .iter()
-            .map(move |&(time_s, direction)| (time_s - start_s, f64::from(direction)))
-            .filter(move |(since_s, _)| (0.0..length_s).contains(since_s))
-    }
-}
 
 /// Harmonics of one quantity.
 #[derive(Clone, Debug, PartialEq)]
@@ -164,63 +114,6 @@ impl Spectrum {
     }
 }
 
-/// Amplitudes of the position over frequency, for a plot: line i at i*`step_hz`, from 1 on.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Lines {
-    /// From line to line, in Hz: 1/length of the stretch.
-    pub step_hz: f64,
-    /// Amplitudes in steps from line 1 on.
-    pub amplitudes: Vec<f64>,
-}
-
-impl Lines {
-    /// Of the ideal curve over all periods of the stretch, by a transform of at least `points`.
-    #[must_use]
-    pub fn ideal(plan: &AxisPlan, stretch: Stretch, points: usize) -> Self {
-        Self::of(&stretch, &sampled(plan, &stretch, points))
-    }
-
-    /// Of the pulses' staircase over the stretch.
-    ///
-    /// A sample is the staircase's mean over its cell, which damps what would fold back, and the
-    /// mean's own sin(x)/x is divided out again; the distortion never comes from here.
-    #[must_use]
-    pub fn of_pulses(pulses: &[(f64, i8)], stretch: Stretch, points: usize) -> Self {
-        let points = transform_points(points);
-        let cell_s = stretch.length_s() / points as f64;
-        let (mut within_cell, mut after_cell) = (vec![0.0; points], vec![0.0; points]);
-        let mut all = 0.0;
-        for (since_s, way) in stretch.within(pulses) {
-            let place = since_s / cell_s;
-            let cell = (place as usize).min(points - 1);
-            if let (Some(within), Some(after)) = (within_cell.get_mut(cell), after_cell.get_mut(cell)) {
-                *within += way * ((cell + 1) as f64 - place);
-                *after += way;
-                all += way;
-            }
-        }
-        let mut position = 0.0;
-        let samples: Vec<f64> = (0..points)
-            .zip(within_cell.iter().zip(&after_cell))
-            .map(|(cell, (within, after))| {
-                let mean = position + within;
-                position += after;
-                mean - all * (cell as f64 + 0.5) / points as f64
-            })
-            .collect();
-        let mut lines = Self::of(&stretch, &samples);
-        for (i, amplitude) in lines.amplitudes.iter_mut().enumerate() {
-            let x = PI * (i + 1) as f64 / points as f64;
-            *amplitude *= x / libm::sin(x);
-        }
-        lines
-    }
-
-    fn of(stretch: &Stretch, samples: &[f64]) -> Self {
-        Self { step_hz: 1.0 / stretch.length_s(), amplitudes: amplitudes(samples, samples.len()) }
-    }
-}
-
 /// Harmonics of the polyline through the cosine at a quarter's `breakpoints`, with B5's figures of
 /// distortion: [`DOCUMENT_POINTS`] samples of a period, all their [`DOCUMENT_ORDER`] harmonics.
 ///
@@ -229,27 +122,128 @@ impl Lines {
 /// be 0.26369 % and 0.26078 %).
 #[must_use]
 pub fn polyline_harmonics(breakpoints: &[u16]) -> Harmonics {
-    let samples: Vec<f64> = (0..DOCUMENT_POINTS)
-        .map(|point| sine_segments::unit_polyline(breakpoints, point as f64))
-        .collect();
+    let samples: Vec<f64> =
+        (0..DOCUMENT_POINTS).map(|point| unit_polyline(breakpoints, point as f64)).collect();
     Harmonics::new(amplitudes(&samples, DOCUMENT_ORDER.into()), true)
 }
 
-/// A transform's length: a power of two, not beyond all bounds.
-fn transform_points(points: usize) -> usize {
-    points.clamp(16, MOST_POINTS).next_power_of_two()
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        motion::{plan_axis, polyline::breakpoints},
+        scenario::{Axis, Cosine, Distance, Dwell, Move, SineSegments},
+    };
+    use alloc::vec;
 
-/// The ideal position over the stretch less its straight line, at equal steps of time.
-fn sampled(plan: &AxisPlan, stretch: &Stretch, points: usize) -> Vec<f64> {
-    let points = transform_points(points);
-    let at = |part: f64| plan.position(stretch.start_s + stretch.length_s() * part);
-    let first = at(0.0);
-    let way = if stretch.periodic { 0.0 } else { at(1.0) - first };
-    (0..points)
-        .map(|i| {
-            let part = i as f64 / points as f64;
-            at(part) - first - way * part
-        })
-        .collect()
+    fn plan(moves: Vec<Move>) -> AxisPlan {
+        plan_axis(&Axis { moves, ..Axis::default() }, "axis").unwrap()
+    }
+
+    fn sine(amplitude: f64, max_deviation: f64) -> Move {
+        let amplitude = Distance::Steps(amplitude);
+        Move::SineSegments(SineSegments { amplitude, max_deviation, ..SineSegments::default() })
+    }
+
+    fn close(found: f64, expected: f64, relative: f64) {
+        assert!((found - expected).abs() <= relative * expected.abs(), "{found} is not {expected}");
+    }
+
+    #[test]
+    fn the_documents_distortions_come_out() {
+        let harmonics = |d1| polyline_harmonics(&breakpoints(d1));
+        let (first, second) = (harmonics(0.0054), harmonics(0.006));
+        assert_eq!(first.amplitudes.len(), usize::from(DOCUMENT_ORDER));
+        close(first.distortion.unwrap() * 100.0, 0.26913, 2e-5);
+        close(second.distortion.unwrap() * 100.0, 0.26710, 2e-5);
+        let power = |harmonics: &Harmonics| harmonics.amplitudes[6] * harmonics.amplitudes[6];
+        assert!(power(&first) > 22.0 * power(&second));
+        close(power(&first) / power(&second), 23.76, 1e-3);
+    }
+
+    #[test]
+    fn a_motion_of_many_steps_has_the_spectrum_of_its_polyline() {
+        let plan = plan(vec![Move::Dwell(Dwell { duration_s: 0.3 }), sine(-5e5, 0.006)]);
+        let spectrum = Spectrum::ideal(&plan, DOCUMENT_ORDER, 2048).unwrap();
+        assert_eq!((spectrum.stretch.start_s, spectrum.stretch.periods, spectrum.order), (0.3, 4, 1023));
+        close(spectrum.position.distortion.unwrap() * 100.0, 0.26710, 1e-3);
+        close(spectrum.position.amplitudes[0], 5e5, 1e-2);
+        close(spectrum.speed.amplitudes[0], spectrum.position.amplitudes[0] * TAU * 2.0, 1e-12);
+        close(spectrum.acceleration.amplitudes[2], spectrum.speed.amplitudes[2] * TAU * 6.0, 1e-12);
+        let order = Spectrum::ideal(&plan, 1000, 256).unwrap().order;
+        assert_eq!(order, 127, "there are no more harmonics than half of the points");
+    }
+
+    #[test]
+    fn a_motion_that_does_not_repeat_has_lines_but_no_distortion() {
+        let cosine = Cosine { distance: Distance::Steps(6400.0), duration_s: 0.4, ramp_s: 0.2 };
+        let plan = plan(vec![Move::Cosine(cosine)]);
+        let spectrum = Spectrum::ideal(&plan, 5, 4096).unwrap();
+        assert!(!spectrum.stretch.periodic && spectrum.position.distortion.is_none());
+        // Its speed is 16000*(1 - cos(2*pi*2.5 Hz*t)): one line.
+        close(spectrum.stretch.fundamental_hz(), 2.5, 1e-15);
+        close(spectrum.speed.amplitudes[0], 16_000.0, 1e-6);
+        assert!(spectrum.speed.amplitudes[1..].iter().all(|a| *a < 1e-3), "{spectrum:?}");
+        assert_eq!(
+            Spectrum::ideal(&super::tests::plan(vec![Move::Dwell(Dwell { duration_s: 0.0 })]), 5, 256),
+            None
+        );
+    }
+
+    #[test]
+    fn a_step_to_and_fro_is_a_square_wave() {
+        // Two periods of 1 s, height 1.
+        let stretch = Stretch { start_s: 10.0, period_s: 1.0, periods: 2, periodic: true };
+        let pulses = [(10.25, 1), (10.75, -1), (11.25, 1), (11.75, -1), (9.99, 1), (12.0, 1)];
+        let spectrum = Spectrum::of_pulses(&pulses, stretch, 101);
+        let lines = Lines::of_pulses(&pulses, stretch, 4096);
+        assert_eq!(lines.step_hz, 0.5);
+        for (k, amplitude) in (1..).zip(&spectrum.position.amplitudes) {
+            let expected = if k % 2 == 1 { 2.0 / (PI * f64::from(k)) } else { 0.0 };
+            assert!((amplitude - expected).abs() < 1e-12, "{k}: {amplitude} {expected}");
+            let line = lines.amplitudes[2 * k as usize - 1];
+            assert!((line - expected).abs() < 1e-3, "{k}: {line} {expected}");
+        }
+        close(spectrum.speed.amplitudes[6], 4.0, 1e-12);
+    }
+
+    #[test]
+    fn pulses_through_the_recurrence_weigh_as_much_as_one_by_one() {
+        let stretch = Stretch { start_s: 0.0, period_s: 0.125, periods: 3, periodic: true };
+        let pulses: Vec<(f64, i8)> = (0..1001)
+            .map(|i| (f64::from(i * i % 4099) * 0.375 / 4099.0, if i % 3 == 0 { -1 } else { 1 }))
+            .collect();
+        let found = Spectrum::of_pulses(&pulses, stretch, 1000);
+        for (k, amplitude) in (1..).zip(&found.position.amplitudes) {
+            let k = f64::from(k);
+            let (re, im) = pulses.iter().fold((0.0, 0.0), |(re, im), &(t, way)| {
+                let turns = k * (t / 0.125);
+                let (sine, cosine) = libm::sincos(TAU * (turns - libm::floor(turns)));
+                (re + f64::from(way) * cosine, im - f64::from(way) * sine)
+            });
+            let expected = libm::sqrt(re * re + im * im) / (PI * k * 3.0);
+            assert!((amplitude - expected).abs() < 1e-12 * 1001.0 / k, "{k}: {amplitude} {expected}");
+        }
+    }
+
+    #[test]
+    fn pulses_where_the_curve_asks_for_them_have_the_curves_spectrum() {
+        let plan = plan(vec![sine(2000.0, 0.006)]);
+        let mut pulses = Vec::new();
+        let (mut due, looks) = (0, 2_000_000);
+        for look in 1..=looks {
+            let t = plan.duration_s() * f64::from(look) / f64::from(looks);
+            let now = plan.steps_due(t);
+            pulses.extend((due != now).then_some((t, if now > due { 1 } else { -1 })));
+            due = now;
+        }
+        let ideal = Spectrum::ideal(&plan, 40, 4096).unwrap();
+        let made = Spectrum::of_pulses(&pulses, ideal.stretch, 40);
+        close(made.position.amplitudes[0], ideal.position.amplitudes[0], 1e-5);
+        close(made.position.distortion.unwrap(), ideal.position.distortion.unwrap(), 0.02);
+        let lines = Lines::of_pulses(&pulses, ideal.stretch, 1 << 15);
+        close(lines.amplitudes[3], ideal.position.amplitudes[0], 1e-4);
+        let smooth = Lines::ideal(&plan, ideal.stretch, 1 << 15);
+        close(smooth.amplitudes[3], ideal.position.amplitudes[0], 1e-6);
+    }
 }

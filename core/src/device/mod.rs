@@ -104,7 +104,7 @@ impl Device {
     /// 0 is reset: the line is high in it, whatever is given.
     pub fn clock(&mut self, line: bool, sink: &mut impl Sink) -> Levels {
         let now = self.now;
-        self.rx = line || now == Instant::RESET;
+        let before = core::mem::replace(&mut self.rx, line || now == Instant::RESET);
         self.sequencer.clock(now, sink);
         if now == self.unpacker.deadline() {
             let short = self.unpacker.gap();
@@ -113,7 +113,7 @@ impl Device {
                 self.faults.set(Faults::SHORT_PACKET);
             }
         }
-        match self.receiver.clock(now, self.rx) {
+        match self.receiver.clock(now, before, self.rx) {
             Some(Heard::Byte(byte)) => self.byte(byte, sink),
             Some(Heard::FramingError) => {
                 self.faults.set(Faults::FRAMING);
@@ -203,7 +203,9 @@ impl Device {
         }
         while self.now < until && !sink.paused() {
             let quiet = self.input_deadline().min(line.next_change()).min(until);
-            self.levels = self.sequencer.run(quiet, self.base(), sink);
+            if self.sequencer.deadline() < quiet {
+                self.levels = self.sequencer.run(quiet, self.base(), sink);
+            }
             if quiet == Instant::NEVER {
                 self.now = self.now.max(self.sequencer.last_active().next());
                 return;

@@ -18,10 +18,11 @@ pub(super) struct Sequencer {
     tick: Cycles,
     depth: usize,
     queue: VecDeque<Tick>,
-    /// When the head of the queue starts, if no tick runs.
-    start: Instant,
     plan: Plan,
     running: Option<Running>,
+    /// Next cycle in which the sequencer does something: the next change of the plan or the end of
+    /// the tick that runs, else the start of the queue's head; [`Instant::NEVER`] at rest.
+    deadline: Instant,
     lines: Lines,
     /// Positions as of the end of the last tick.
     positions: [i32; MAX_CHANNELS],
@@ -45,9 +46,9 @@ impl Sequencer {
             tick: config.tick(),
             depth: usize::from(config.queue_depth),
             queue: VecDeque::with_capacity(usize::from(config.queue_depth)),
-            start: Instant::NEVER,
             plan: Plan::new(config),
             running: None,
+            deadline: Instant::NEVER,
             lines: 0,
             positions: [0; MAX_CHANNELS],
             ticks_done: 0,
@@ -90,47 +91,43 @@ impl Sequencer {
             return false;
         }
         if self.queue.is_empty() && self.running.is_none() {
-            self.start = now.next();
+            self.deadline = now.next();
         }
         self.queue.push_back(tick);
         true
     }
 
     /// Next cycle in which the sequencer does something; [`Instant::NEVER`] at rest.
-    pub(super) fn deadline(&self) -> Instant {
-        match self.running {
-            Some(running) => match self.plan.changes().get(running.next) {
-                Some(change) => (running.c0 + Cycles(change.offset)).min(running.end),
-                None => running.end,
-            },
-            None => self.start,
-        }
+    pub(super) const fn deadline(&self) -> Instant {
+        self.deadline
     }
 
     /// Cycle `now`.
     pub(super) fn clock(&mut self, now: Instant, sink: &mut impl Sink) {
-        while self.deadline() == now {
+        while self.deadline == now {
             match self.running {
-                Some(running) => {
-                    if !self.change(running, now) {
-                        self.end(now, sink);
-                    }
-                }
+                Some(running) => self.follow(running, now, sink),
                 None => self.begin(now, sink),
             }
         }
     }
 
-    /// Takes the change that falls due in cycle `now`; false if none does.
-    fn change(&mut self, running: Running, now: Instant) -> bool {
-        match self.plan.changes().get(running.next).copied() {
+    /// The plan's change that falls due in cycle `now`, or the tick's end.
+    fn follow(&mut self, running: Running, now: Instant, sink: &mut impl Sink) {
+        match self.plan.changes().get(running.next) {
             Some(change) if running.c0 + Cycles(change.offset) == now => {
                 self.lines = change.lines;
-                self.running = Some(Running { next: running.next + 1, ..running });
-                true
+                self.go_on(Running { next: running.next + 1, ..running });
             }
-            _ => false,
+            _ => self.end(now, sink),
         }
+    }
+
+    fn go_on(&mut self, running: Running) {
+        let change = self.plan.changes().get(running.next);
+        self.deadline =
+            change.map_or(running.end, |change| running.c0 + Cycles(change.offset)).min(running.end);
+        self.running = Some(running);
     }
 
     fn end(&mut self, now: Instant, sink: &mut impl Sink) {
@@ -142,38 +139,24 @@ impl Sequencer {
         });
         self.ticks_done = self.ticks_done.wrapping_add(1);
         self.running = None;
-        self.start = if self.queue.is_empty() { Instant::NEVER } else { now };
+        self.deadline = if self.queue.is_empty() { Instant::NEVER } else { now };
     }
 
     fn begin(&mut self, now: Instant, sink: &mut impl Sink) {
-        self.start = Instant::NEVER;
+        self.deadline = Instant::NEVER;
         if let Some(tick) = self.queue.pop_front() {
             sink.event(now, Event::TickStart);
             self.plan.set(tick);
-            self.running = Some(Running { c0: now, end: now + self.tick, next: 0 });
+            self.go_on(Running { c0: now, end: now + self.tick, next: 0 });
         }
     }
 
     /// Runs alone through the cycles before `until`, while nothing else changes: `base` are the
     /// other signals. Gives the levels after them.
     pub(super) fn run(&mut self, until: Instant, base: u64, sink: &mut impl Sink) -> Levels {
-        while self.deadline() < until {
-            if let Some(running) = &mut self.running {
-                let stop = until.min(running.end);
-                let ahead = self.plan.changes().get(running.next..).unwrap_or_default();
-                for Change { offset, lines } in ahead {
-                    let cycle = running.c0 + Cycles(*offset);
-                    if cycle >= stop {
-                        break;
-                    }
-                    running.next += 1;
-                    if *lines != self.lines {
-                        self.lines = *lines;
-                        sink.record(Record { cycle, levels: Levels(base | u64::from(*lines)) });
-                    }
-                }
-            }
-            let now = self.deadline();
+        while self.deadline < until {
+            self.run_pulses(until, base, sink);
+            let now = self.deadline;
             if now < until {
                 let lines = self.lines;
                 self.clock(now, sink);
@@ -183,6 +166,24 @@ impl Sequencer {
             }
         }
         Levels(base | u64::from(self.lines))
+    }
+
+    /// Walks along the plan of the tick that runs: the inner loop of a long run.
+    fn run_pulses(&mut self, until: Instant, base: u64, sink: &mut impl Sink) {
+        let Some(mut running) = self.running else { return };
+        let stop = until.min(running.end);
+        for Change { offset, lines } in self.plan.changes().get(running.next..).unwrap_or_default() {
+            let cycle = running.c0 + Cycles(*offset);
+            if cycle >= stop {
+                break;
+            }
+            running.next += 1;
+            if *lines != self.lines {
+                self.lines = *lines;
+                sink.record(Record { cycle, levels: Levels(base | u64::from(*lines)) });
+            }
+        }
+        self.go_on(running);
     }
 }
 

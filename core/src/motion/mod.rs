@@ -16,17 +16,21 @@
 //! and `quantise` is where it decides. All mathematics that is more than + - * / comes from
 //! `libm`, so a plan has the same bits on every target.
 
+pub mod acceleration_table;
 mod asked;
+mod axis;
 pub mod cosine;
 mod plan;
+pub mod polyline;
 mod profile;
 pub mod sine_segments;
-mod step_times;
 pub mod steady;
+mod step_times;
 pub mod trapezoid;
 pub mod trapezoid_table;
 
-pub use plan::{AxisPlan, PlannedMove, plan_axis};
+pub use axis::{AxisPlan, PlannedMove};
+pub use plan::plan_axis;
 pub use profile::{Curve, Peaks, Profile};
 pub use step_times::StepTimes;
 
@@ -48,5 +52,35 @@ pub fn round_half_up(x: f64) -> i64 {
         truncated.saturating_sub(1)
     } else {
         truncated
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::round_half_up;
+
+    #[test]
+    fn halves_are_rounded_up_and_nothing_else_is() {
+        let below_half = 0.499_999_999_999_999_94;
+        let rows = [
+            (0.0, 0),
+            (0.5, 1),
+            (below_half, 0),
+            (-0.5, 0),
+            (-0.500_000_000_000_000_1, -1),
+            (-below_half, 0),
+            (1.5, 2),
+            (-1.5, -1),
+            (2.4, 2),
+            (-2.6, -3),
+            (4_503_599_627_370_497.5, 4_503_599_627_370_498),
+            (1e300, i64::MAX),
+            (-1e300, i64::MIN),
+            (f64::INFINITY, i64::MAX),
+            (f64::NAN, 0),
+        ];
+        for (given, expected) in rows {
+            assert_eq!(round_half_up(given), expected, "{given}");
+        }
     }
 }

@@ -1,24 +1,20 @@
-//! From a scenario's axis to its moves one after another, or to every problem that it has.
+//! From a scenario's axis to its plan, or to every problem that it has.
 //!
-//! ```text
-//! position  |        _____ _        each move begins where and when the one before has ended;
-//!           |      /       \        before the first an axis stands at 0, after the last at the
-//!           |____/          \___    sum of all
-//!            dwell cosine  constant
-//! ```
+//! A number is judged where it stands, with the path of its field; what only follows from several
+//! (a top speed, a table's length) is judged when the curve is made.
 
 use super::{
-    Curve, MOST_SPEED, Peaks, Profile,
+    AxisPlan, Curve, MOST_SPEED, Profile,
+    acceleration_table::AccelerationTable,
     asked::Asked,
     cosine::Cosine,
-    round_half_up,
     sine_segments::SineSegments,
     steady::{Constant, Dwell},
     trapezoid::Trapezoid,
     trapezoid_table::{NoTable, TrapezoidTable},
 };
 use crate::scenario::{self, Axis, Cause, Move, Problem, TrapezoidMethod};
-use alloc::{format, vec::Vec};
+use alloc::{format, string::String, vec::Vec};
 
 /// Most moves of an axis.
 const MOST_MOVES: usize = 64;
@@ -28,121 +24,6 @@ const MOST_TABLE_ROWS: u64 = 1_000_000;
 const MOST_DURATION_S: f64 = 1e6;
 /// Most periods of a sine.
 const MOST_PERIODS: f64 = 1e6;
-
-/// A move in its place on the axis.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PlannedMove {
-    /// When it starts, in s.
-    pub start_s: f64,
-    /// Where it starts, in steps.
-    pub start_steps: i64,
-    /// Its curve, from 0.
-    pub profile: Profile,
-}
-
-/// The whole motion of one axis.
-#[derive(Clone, Debug, PartialEq)]
-pub struct AxisPlan {
-    /// Invariant: at least one; each starts when and where the one before ends.
-    moves: Vec<PlannedMove>,
-    duration_s: f64,
-    steps: i64,
-}
-
-impl AxisPlan {
-    fn of(profiles: Vec<Profile>) -> Self {
-        let (mut start_s, mut start_steps) = (0.0, 0);
-        let moves = profiles
-            .into_iter()
-            .map(|profile| {
-                let planned = PlannedMove { start_s, start_steps, profile };
-                start_s += planned.profile.duration_s();
-                start_steps += planned.profile.steps();
-                planned
-            })
-            .collect();
-        Self { moves, duration_s: start_s, steps: start_steps }
-    }
-
-    /// The moves, in order.
-    #[must_use]
-    pub fn moves(&self) -> &[PlannedMove] {
-        &self.moves
-    }
-
-    /// How long all moves last, in s.
-    #[must_use]
-    pub fn duration_s(&self) -> f64 {
-        self.duration_s
-    }
-
-    /// Where the axis ends, in steps from where it began.
-    #[must_use]
-    pub fn steps(&self) -> i64 {
-        self.steps
-    }
-
-    /// The move at `t` and the time in it; of moves that begin at the same time the last.
-    fn at(&self, t: f64) -> Option<(&PlannedMove, f64)> {
-        let after = self.moves.partition_point(|planned| planned.start_s <= t);
-        let planned = self.moves.get(after.saturating_sub(1))?;
-        Some((planned, t - planned.start_s))
-    }
-
-    /// Position at `t` s in steps, not rounded.
-    #[must_use]
-    pub fn position(&self, t: f64) -> f64 {
-        if t >= self.duration_s {
-            return self.steps as f64;
-        }
-        self.at(t).map_or(0.0, |(planned, t)| planned.start_steps as f64 + planned.profile.position(t))
-    }
-
-    /// Steps due by `t` s: B1's rounding of the position.
-    ///
-    /// A move starts at a whole step, so only its own part is rounded.
-    #[must_use]
-    pub fn steps_due(&self, t: f64) -> i64 {
-        if t >= self.duration_s {
-            return self.steps;
-        }
-        self.at(t).map_or(0, |(planned, t)| {
-            planned.start_steps.saturating_add(round_half_up(planned.profile.position(t)))
-        })
-    }
-
-    /// Speed at `t` s in steps/s; 0 before the start and from the end on.
-    #[must_use]
-    pub fn speed(&self, t: f64) -> f64 {
-        self.while_moving(t, Profile::speed)
-    }
-
-    /// Acceleration at `t` s in steps/s^2; 0 before the start, from the end on, and where the
-    /// speed jumps.
-    #[must_use]
-    pub fn acceleration(&self, t: f64) -> f64 {
-        self.while_moving(t, Profile::acceleration)
-    }
-
-    fn while_moving(&self, t: f64, of: fn(&Profile, f64) -> f64) -> f64 {
-        if t < 0.0 || t >= self.duration_s {
-            return 0.0;
-        }
-        self.at(t).map_or(0.0, |(planned, t)| of(&planned.profile, t))
-    }
-
-    /// The greatest magnitudes of the whole axis, with the jumps at and between the moves' ends.
-    #[must_use]
-    pub fn peaks(&self) -> Peaks {
-        let (mut peaks, mut speed) = (Peaks::default(), 0.0);
-        for PlannedMove { profile, .. } in &self.moves {
-            let jump = libm::fabs(profile.speed(0.0) - speed);
-            peaks = peaks.or(profile.peaks()).or(Peaks { jump, ..Peaks::default() });
-            speed = profile.speed(profile.duration_s());
-        }
-        peaks.or(Peaks { jump: libm::fabs(speed), ..Peaks::default() })
-    }
-}
 
 /// Plans an axis; `path` is where it stands in the scenario, such as `source.motion.axes[0]`.
 ///
@@ -169,8 +50,8 @@ pub fn plan_axis(axis: &Axis, path: &str) -> Result<AxisPlan, Vec<Problem>> {
         }
     }
     let plan = AxisPlan::of(profiles);
-    if plan.duration_s > MOST_DURATION_S {
-        let cause = Cause::TooMuch { given: plan.duration_s, most: MOST_DURATION_S, of: "seconds" };
+    if plan.duration_s() > MOST_DURATION_S {
+        let cause = Cause::TooMuch { given: plan.duration_s(), most: MOST_DURATION_S, of: "seconds" };
         asked.refuse(moves_path, cause);
     }
     if asked.problems.is_empty() { Ok(plan) } else { Err(asked.problems) }
@@ -225,7 +106,8 @@ fn plan_trapezoid(
     if given.method == TrapezoidMethod::Exact {
         return Some(Profile::Trapezoid(Trapezoid::new(steps, start, top, acceleration)));
     }
-    match TrapezoidTable::new(steps, (start, top, acceleration), given.timer_hz, *rows_left) {
+    let table = AccelerationTable::new(start, top, acceleration, given.timer_hz);
+    match TrapezoidTable::new(steps, table, *rows_left) {
         Ok(table) => {
             *rows_left -= table.kept_rows();
             Some(Profile::TrapezoidTable(table))
@@ -271,10 +153,145 @@ fn plan_sine(asked: &mut Asked<'_>, given: &scenario::SineSegments, path: &str) 
 }
 
 /// Refuses a speed that no one gave but that follows from the numbers.
-fn hold_speed(asked: &mut Asked<'_>, path: alloc::string::String, rate: f64) -> Option<()> {
+fn hold_speed(asked: &mut Asked<'_>, path: String, rate: f64) -> Option<()> {
     if rate <= MOST_SPEED {
         return Some(());
     }
     asked.refuse(path, Cause::TooFast { rate, most: MOST_SPEED });
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::{Scenario, Source};
+    use alloc::string::ToString;
+
+    fn axis(json: &str) -> Axis {
+        let text = format!(r#"{{"source":{{"motion":{{"axes":[{json}]}}}}}}"#);
+        let Ok(Source::Motion(motion)) = Scenario::from_json(&text).map(|s| s.source) else {
+            panic!("{json} does not read");
+        };
+        motion.axes.into_iter().next().unwrap()
+    }
+
+    fn plan(json: &str) -> Result<AxisPlan, Vec<Problem>> {
+        plan_axis(&axis(json), "axis")
+    }
+
+    fn check(json: &str, expected: &[&str]) {
+        let found: Vec<String> =
+            plan(json).err().unwrap_or_default().iter().map(ToString::to_string).collect();
+        assert_eq!(found, expected, "{json}");
+    }
+
+    #[test]
+    fn every_problem_is_told_with_its_path() {
+        check("{}", &[]);
+        check(r#"{"moves":[]}"#, &["axis.moves: 0 moves; give 1 to 64"]);
+        check(
+            r#"{"moves":[{"cosine":{"distance":{"mm":3},"duration_s":0,"ramp_s":-1}},{"dwell":{"duration_s":1e300}}]}"#,
+            &[
+                "axis.moves[0].cosine.distance: 3 mm, but mechanics of kind rotary have no such unit; give steps, or choose mechanics that have it",
+                "axis.moves[0].cosine.duration_s: 0 s is out of range; give 1e-6 to 86400 s",
+                "axis.moves[0].cosine.ramp_s: -1 s is out of range; give 0 to 86400 s",
+                "axis.moves[1].dwell.duration_s: 1e300 s is out of range; give 0 to 86400 s",
+            ],
+        );
+        check(
+            r#"{"moves":[{"cosine":{"duration_s":0.3,"ramp_s":0.2}},{"cosine":{"distance":{"steps":0.4}}},{"cosine":{"distance":{"steps":1e9}}}]}"#,
+            &[
+                "axis.moves[0].cosine.ramp_s: two ramps of 0.2 s do not fit in 0.3 s; give a ramp of at most 0.15 s",
+                "axis.moves[1].cosine.distance: 0.4 steps is less than one step; give at least one step, or a dwell",
+                "axis.moves[2].cosine.duration_s: this needs 5000000000 steps/s, at most 10000000 are allowed; give more time or less distance",
+            ],
+        );
+        check(
+            r#"{"moves":[{"trapezoid":{"start_speed":{"steps_s":5000},"timer_hz":0}},{"trapezoid":{"timer_hz":3999}},{"trapezoid":{"start_speed":{"steps_s":0}}},{"trapezoid":{"start_speed":{"steps_s":0},"method":"exact"}}]}"#,
+            &[
+                "axis.moves[0].trapezoid.timer_hz: 0 Hz is out of range; give 1 to 4294967295 Hz",
+                "axis.moves[0].trapezoid.top_speed: a top speed of 4000 steps/s is under the start speed of 5000 steps/s; give a higher top speed or a lower start speed",
+                "axis.moves[1].trapezoid.timer_hz: a timer of 3999 Hz cannot make 4000 steps/s; give a timer of at least that rate",
+                "axis.moves[2].trapezoid.start_speed: 0 steps_s is out of range; give 0.5 to 10000000 steps_s",
+            ],
+        );
+        check(
+            r#"{"mechanics":{"wheel":{"microsteps":0,"radius_mm":-1}},"moves":[{"constant":{"distance":{"mm":1},"speed":{"steps_s":-2}}}]}"#,
+            &[
+                "axis.mechanics.wheel.microsteps: 0 is out of range; give 1 to 512",
+                "axis.mechanics.wheel.radius_mm: -1 mm is out of range; give 1e-6 to 1000000 mm",
+                "axis.moves[0].constant.speed: -2 steps_s is out of range; give 1e-6 to 10000000 steps_s",
+            ],
+        );
+        check(
+            r#"{"mechanics":{"direct":{"step_mm":0.5}},"moves":[{"sine_segments":{"amplitude":{"mm":1e9},"periods":0,"max_deviation":2}},{"sine_segments":{"amplitude":{"mm":50000},"period_s":0.01}}]}"#,
+            &[
+                "axis.moves[0].sine_segments.amplitude: 1000000000 mm is out of range; give -500000000 to 500000000 mm",
+                "axis.moves[0].sine_segments.periods: 0 is out of range; give 1 to 1000000",
+                "axis.moves[0].sine_segments.max_deviation: 2 is out of range; give 0 to 1",
+                "axis.moves[1].sine_segments.period_s: this needs 61870287 steps/s, at most 10000000 are allowed; give more time or less distance",
+            ],
+        );
+    }
+
+    #[test]
+    fn an_axis_has_bounds_on_time_and_tables() {
+        check(
+            r#"{"moves":[{"sine_segments":{"period_s":10,"periods":99999}},{"constant":{"speed":{"steps_s":0.01}}}]}"#,
+            &["axis.moves: 1099990 seconds are more than one run may have; stay under 1000000"],
+        );
+        let table = r#"{"trapezoid":{"distance":{"steps":1400000},"top_speed":{"steps_s":1e6},"acceleration":{"steps_s2":1}}}"#;
+        let text = format!(r#"{{"moves":[{table},{table}]}}"#);
+        check(
+            &text,
+            &[
+                "axis.moves[1].trapezoid: 1400002 table rows are more than one run may have; stay under 1000000",
+            ],
+        );
+        let moves = format!(r#"{{"moves":[{}{{"dwell":{{}}}}]}}"#, r#"{"dwell":{}},"#.repeat(64));
+        check(&moves, &["axis.moves: 65 moves; give 1 to 64"]);
+    }
+
+    #[test]
+    fn the_documents_table_comes_out_in_its_own_units() {
+        let plan = plan(
+            r#"{"mechanics":{"direct":{"step_mm":0.393}},"moves":[{"trapezoid":{"distance":{"mm":100},
+            "start_speed":{"mm_s":100},"top_speed":{"mm_s":500},"acceleration":{"mm_s2":3500}}}]}"#,
+        )
+        .unwrap();
+        let Profile::TrapezoidTable(table) = &plan.moves()[0].profile else { panic!("{plan:?}") };
+        let rates: Vec<u64> = (0..8).map(|row| table.table().rate(row)).collect();
+        assert_eq!(rates, [254, 287, 317, 344, 369, 392, 414, 435]);
+        assert_eq!(plan.steps(), 254);
+    }
+
+    #[test]
+    fn moves_follow_one_another_in_time_and_place() {
+        let plan = plan(
+            r#"{"moves":[{"dwell":{"duration_s":0.5}},{"cosine":{"distance":{"steps":600},"duration_s":1,"ramp_s":0.5}},
+            {"dwell":{"duration_s":0}},{"constant":{"distance":{"steps":-1000},"speed":{"steps_s":500}}}]}"#,
+        )
+        .unwrap();
+        let starts: Vec<(f64, i64)> = plan.moves().iter().map(|m| (m.start_s, m.start_steps)).collect();
+        assert_eq!(starts, [(0.0, 0), (0.5, 0), (1.5, 600), (1.5, 600)]);
+        assert_eq!((plan.duration_s(), plan.steps()), (3.5, -400));
+        // (t, position, speed)
+        let rows = [
+            (-1.0, 0.0, 0.0),
+            (0.25, 0.0, 0.0),
+            (1.0, 300.0, 1200.0),
+            (1.5, 600.0, -500.0),
+            (2.5, 100.0, -500.0),
+            (3.5, -400.0, 0.0),
+            (1e9, -400.0, 0.0),
+        ];
+        for (t, position, speed) in rows {
+            assert!((plan.position(t) - position).abs() < 1e-9, "position at {t}");
+            assert!((plan.speed(t) - speed).abs() < 1e-9, "speed at {t}");
+            assert_eq!(plan.steps_due(t), position as i64, "steps due at {t}");
+        }
+        let peaks = plan.peaks();
+        assert!((peaks.speed - 1200.0).abs() < 1e-9 && (peaks.jump - 500.0).abs() < 1e-9, "{peaks:?}");
+        assert!((peaks.acceleration - 1200.0 * core::f64::consts::PI).abs() < 1e-9, "{peaks:?}");
+    }
 }

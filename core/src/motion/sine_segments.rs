@@ -13,88 +13,13 @@
 //!      0     512 1024 1536 2048 i
 //! ```
 
-use super::{Curve, Peaks, profile::greater, round_half_up};
+use super::{
+    Curve, Peaks,
+    polyline::{Folded, POINTS, breakpoints, cosine_at, fold},
+    profile::greater,
+    round_half_up,
+};
 use alloc::vec::Vec;
-use core::f64::consts::PI;
-
-/// Points of the angle in a period; breakpoints lie on them.
-pub const POINTS: u16 = 2048;
-/// Points of the angle in a quarter.
-pub const QUARTER: u16 = POINTS / 4;
-/// In how many parts a chord is cut to find its greatest deviation; its ends count too.
-const CHORD_PARTS: u16 = 100;
-
-/// y = cos at a point of the angle, 0..=[`QUARTER`].
-#[must_use]
-pub fn cosine_at(point: u16) -> f64 {
-    // The end of the quarter is exactly 0; cos(pi/2) of the rounded pi is not.
-    if point == QUARTER { 0.0 } else { libm::cos(PI * f64::from(point) / 1024.0) }
-}
-
-/// Breakpoints of a quarter, from 0 to [`QUARTER`], for the largest deviation `d1` in parts of the
-/// amplitude (B5).
-///
-/// From a breakpoint the next point is tried as long as the chord's greatest deviation from the
-/// cosine, over the 101 points that cut it in 100, is at most `d1`; the last that holds is the next
-/// breakpoint, and at least the very next point is.
-#[must_use]
-pub fn breakpoints(d1: f64) -> Vec<u16> {
-    let mut points = Vec::from([0]);
-    let mut from = 0;
-    while from < QUARTER {
-        let mut to = from + 1;
-        while to < QUARTER && deviation(from, to + 1) <= d1 {
-            to += 1;
-        }
-        points.push(to);
-        from = to;
-    }
-    points
-}
-
-/// Greatest |chord - cosine| between two points of the angle.
-fn deviation(from: u16, to: u16) -> f64 {
-    let (y_from, y_to) = (cosine_at(from), cosine_at(to));
-    (0..=CHORD_PARTS).fold(0.0, |greatest, k| {
-        let part = f64::from(k) / f64::from(CHORD_PARTS);
-        let chord = y_from + (y_to - y_from) * part;
-        let point = f64::from(from) + f64::from(to - from) * part;
-        greater(greatest, libm::fabs(chord - libm::cos(PI * point / 1024.0)))
-    })
-}
-
-/// A point of the first quarter, and what the other quarters make of it.
-struct Folded {
-    /// 0..=512.
-    point: f64,
-    /// Right of the middle.
-    right: bool,
-    /// On the way to the left.
-    leftwards: bool,
-}
-
-/// Folds a point of a period, 0..=2048, into the first quarter.
-fn fold(point: f64) -> Folded {
-    let leftwards = point < f64::from(2 * QUARTER);
-    let half = if leftwards { point } else { f64::from(POINTS) - point };
-    let right = half <= f64::from(QUARTER);
-    let point = if right { half } else { f64::from(2 * QUARTER) - half };
-    Folded { point: greater(0.0, point), right, leftwards }
-}
-
-/// The polyline through the cosine's own values at the breakpoints, amplitude 1, at a point of a
-/// period, 0..=2048: what B5's distortion is told of.
-#[must_use]
-pub fn unit_polyline(breakpoints: &[u16], point: f64) -> f64 {
-    let folded = fold(point);
-    let after = breakpoints.partition_point(|&at| f64::from(at) <= folded.point);
-    let (Some(&from), Some(&to)) = (breakpoints.get(after.saturating_sub(1)), breakpoints.get(after)) else {
-        return 0.0;
-    };
-    let (y_from, y_to) = (cosine_at(from), cosine_at(to));
-    let y = y_from + (y_to - y_from) * (folded.point - f64::from(from)) / f64::from(to - from);
-    if folded.right { y } else { -y }
-}
 
 /// One segment of a quarter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -272,31 +197,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_documents_breakpoints_come_out() {
-        let rows: [(f64, &[u16]); 4] = [
-            (0.0054, &[0, 67, 136, 208, 287, 381, 512]),
-            (0.006, &[0, 71, 144, 221, 307, 413, 512]),
-            (0.015, &[0, 113, 234, 381, 512]),
-            (1.0, &[0, 512]),
-        ];
-        for (d1, expected) in rows {
-            assert_eq!(breakpoints(d1), expected, "{d1}");
-        }
-        assert_eq!(breakpoints(0.002).len() - 1, 10);
-        assert_eq!(breakpoints(0.0).len() - 1, 512);
-        assert_eq!(breakpoints(f64::NAN).len() - 1, 512);
-    }
-
-    #[test]
     fn every_vertex_of_a_period_is_a_whole_step_in_its_time() {
         for amplitude in [1000, -1000, 1, 70_001] {
             let sine = SineSegments::new(amplitude, 0.5, 3, 0.006);
             let steps = amplitude.unsigned_abs() as f64;
             for point in [0, 71, 144, 221, 307, 413, 512_u16] {
                 let height = round_half_up(steps * cosine_at(point)) as f64;
-                for (at, y) in
-                    [(point, height), (1024 - point, -height), (1024 + point, -height), (2048 - point, height)]
-                {
+                for (at, y) in [
+                    (point, height),
+                    (1024 - point, -height),
+                    (1024 + point, -height),
+                    (2048 - point, height),
+                ] {
                     let t = 0.5 * (1.0 + f64::from(at) / 2048.0);
                     let expected = (y - steps) * f64::from(amplitude.signum() as i32);
                     let found = sine.position(t);

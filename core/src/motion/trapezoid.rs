@@ -84,7 +84,7 @@ impl Trapezoid {
     }
 
     /// Time from the nearer end, 0 at both.
-    fn to_nearer_end(&self, t: f64) -> f64 {
+    fn nearer_end(&self, t: f64) -> f64 {
         greater(0.0, if t <= self.duration_s / 2.0 { t } else { self.duration_s - t })
     }
 }
@@ -99,7 +99,7 @@ impl Curve for Trapezoid {
     }
 
     fn position(&self, t: f64) -> f64 {
-        let travelled = self.first_half(self.to_nearer_end(t));
+        let travelled = self.first_half(self.nearer_end(t));
         if t <= self.duration_s / 2.0 {
             self.signed(travelled)
         } else {
@@ -108,12 +108,12 @@ impl Curve for Trapezoid {
     }
 
     fn speed(&self, t: f64) -> f64 {
-        let t = self.to_nearer_end(t);
+        let t = self.nearer_end(t);
         self.signed(if t < self.ramp_s { self.start_speed + self.acceleration * t } else { self.peak_speed })
     }
 
     fn acceleration(&self, t: f64) -> f64 {
-        if self.to_nearer_end(t) >= self.ramp_s {
+        if self.nearer_end(t) >= self.ramp_s {
             0.0
         } else if t <= self.duration_s / 2.0 {
             self.signed(self.acceleration)
@@ -138,8 +138,8 @@ mod tests {
         let rows = [
             ((10_000, 1000.0, 5000.0, 8000.0), (5000.0, 0.5, 2.4)),
             ((3000, 1000.0, 5000.0, 8000.0), (5000.0, 0.5, 1.0)),
-            ((800, 0.0, 5000.0, 8000.0), (2529.822_128, 0.316_227_766, 0.632_455_532)),
-            ((-4, 1000.0, 5000.0, 8000.0), (1015.874_007_9, 0.001_984_251, 0.003_968_502)),
+            ((800, 0.0, 5000.0, 8000.0), (2_529.822_128, 0.316_227_766, 0.632_455_532)),
+            ((-4, 1000.0, 5000.0, 8000.0), (1_015.874_007_9, 0.001_984_251, 0.003_968_502)),
             ((500, 1000.0, 1000.0, 1.0), (1000.0, 0.0, 0.5)),
         ];
         for ((steps, start, top, acceleration), (peak, ramp_s, duration_s)) in rows {

@@ -1,14 +1,6 @@
 //! Trapezoid by acceleration table (DESIGN B2, Sonobe 2011).
 //!
-//! The table has one pulse rate a step, whole pps, and a timer's whole reload for each:
-//!
-//! ```text
-//! rate[k]   = round_half_up(sqrt(v0^2 + 2*a*k))     k = 0 .. top - 1
-//! rate[top] = round_half_up(v1)                     top = first k with v0^2 + 2*a*k >= v1^2
-//! reload[k] = floor(timer_hz/rate[k])
-//! ```
-//!
-//! The timer's interrupt makes one step and loads the next interval. Of a move of n steps, interval
+//! The [`AccelerationTable`] has a reload of the timer for each row. The timer's interrupt makes one step and loads the next interval. Of a move of n steps, interval
 //! i (from 0) has row min(i, n - 1 - i, top), so a short move is a triangle, and step k falls at
 //! the sum of the first k reloads; the move ends with its last step:
 //!
@@ -22,7 +14,7 @@
 //!
 //! Only the ramp is kept, as sums of reloads: integers up to the last division by `timer_hz`.
 
-use super::{Curve, Peaks, profile::greater, round_half_up};
+use super::{Curve, Peaks, acceleration_table::AccelerationTable, profile::greater};
 use alloc::vec::Vec;
 
 /// How far past a step's place the curve stands at the very time of the step, in steps. With it
@@ -33,13 +25,7 @@ const PAST_THE_STEP: f64 = 1.0 / 1_048_576.0;
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrapezoidTable {
     steps: i64,
-    /// v0^2 in (steps/s)^2.
-    start_squared: f64,
-    acceleration: f64,
-    top_speed: f64,
-    timer_hz: u32,
-    /// The table's last row.
-    top: u64,
+    table: AccelerationTable,
     /// Intervals of the ramp; the deceleration has as many.
     ramp: u64,
     /// Timer ticks from the start to step k, k = 0 ..= ramp + 1.
@@ -64,74 +50,39 @@ pub enum NoTable {
 }
 
 impl TrapezoidTable {
-    /// `steps` (left negative, not 0) from `start_speed` >= 1/2 to `top_speed` >= `start_speed` and
-    /// back with `acceleration` > 0, in steps, s; `timer_hz` counts the reloads.
+    /// `steps` (left negative, not 0, at most 1e9) by the table.
     ///
     /// # Errors
-    /// [`NoTable`] where the move needs more than `most_rows` rows or a rate above `timer_hz`.
-    pub fn new(
-        steps: i64,
-        (start_speed, top_speed, acceleration): (f64, f64, f64),
-        timer_hz: u32,
-        most_rows: u64,
-    ) -> Result<Self, NoTable> {
-        let climb = (top_speed - start_speed) * (top_speed + start_speed);
-        let top = libm::ceil(climb / (2.0 * acceleration)) as u64;
-        let half = steps.unsigned_abs() / 2;
-        let ramp = if top < half { top } else { half };
+    /// [`NoTable`] where the move needs more than `most_rows` rows or a rate above the timer's.
+    pub fn new(steps: i64, table: AccelerationTable, most_rows: u64) -> Result<Self, NoTable> {
+        let ramp = table.top().min(steps.unsigned_abs() / 2);
         if ramp >= most_rows {
             return Err(NoTable::Rows { needed: ramp.saturating_add(1) });
         }
-        let mut table = Self {
-            steps,
-            start_squared: start_speed * start_speed,
-            acceleration,
-            top_speed,
-            timer_hz,
-            top,
-            ramp,
-            sums: Vec::with_capacity(ramp as usize + 2),
-        };
-        let greatest = table.rate(table.highest_row());
-        if greatest > timer_hz.into() {
+        let mut curve = Self { steps, table, ramp, sums: Vec::with_capacity(ramp as usize + 2) };
+        let greatest = curve.table.rate(curve.highest_row());
+        if greatest > curve.table.timer_hz().into() {
             return Err(NoTable::Timer { rate: greatest as f64 });
         }
         let mut sum = 0;
-        table.sums.push(0);
+        curve.sums.push(0);
         for row in 0..=ramp {
-            sum += table.reload(row);
-            table.sums.push(sum);
+            sum += curve.table.reload(row);
+            curve.sums.push(sum);
         }
-        Ok(table)
+        Ok(curve)
     }
 
-    /// Rows of the whole table, also of those that a short move does not reach.
+    /// The whole table, also the rows that a short move does not reach.
     #[must_use]
-    pub fn rows(&self) -> u64 {
-        self.top.saturating_add(1)
+    pub fn table(&self) -> &AccelerationTable {
+        &self.table
     }
 
     /// Rows that this move keeps in memory.
     #[must_use]
     pub fn kept_rows(&self) -> u64 {
         self.ramp + 1
-    }
-
-    /// Pulse rate of a row in whole pps; rows after the last are as the last.
-    #[must_use]
-    pub fn rate(&self, row: u64) -> u64 {
-        let speed = if row < self.top {
-            libm::sqrt(self.start_squared + 2.0 * self.acceleration * row as f64)
-        } else {
-            self.top_speed
-        };
-        round_half_up(speed).unsigned_abs()
-    }
-
-    /// The timer's reload of a row.
-    #[must_use]
-    pub fn reload(&self, row: u64) -> u64 {
-        u64::from(self.timer_hz).checked_div(self.rate(row)).unwrap_or(0)
     }
 
     /// The highest row that the move uses.
@@ -174,14 +125,14 @@ impl TrapezoidTable {
 
     /// Time of step `k` in s, rounded once.
     fn step_s(&self, k: u64) -> f64 {
-        self.step_ticks(k) as f64 / f64::from(self.timer_hz)
+        self.step_ticks(k) as f64 / f64::from(self.table.timer_hz())
     }
 
     /// Steps that have fallen by `t`.
     fn fallen(&self, t: f64) -> u64 {
         let count = self.count();
         // From the timer's ticks comes a guess that can be off by one; the times themselves decide.
-        let ticks = (t * f64::from(self.timer_hz)) as u64;
+        let ticks = (t * f64::from(self.table.timer_hz())) as u64;
         let (up, all) = (self.sum(self.ramp), self.step_ticks(count));
         let guess = if ticks < up {
             self.sums.partition_point(|&sum| sum <= ticks).saturating_sub(1) as u64
@@ -211,7 +162,7 @@ impl TrapezoidTable {
     fn interval_speed(&self, i: u64) -> f64 {
         let row = self.row(i);
         let reload = self.sum(row + 1) - self.sum(row);
-        if reload == 0 { 0.0 } else { f64::from(self.timer_hz) / reload as f64 }
+        if reload == 0 { 0.0 } else { f64::from(self.table.timer_hz()) / reload as f64 }
     }
 
     /// Difference of speeds of interval `i` and the one before, over the time from middle to
@@ -281,32 +232,21 @@ impl Curve for TrapezoidTable {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::round_half_up, *};
 
     fn table(steps: i64, top_speed: f64) -> TrapezoidTable {
-        TrapezoidTable::new(steps, (250.0, top_speed, 9000.0), 1_000_000, 1_000_000).unwrap()
-    }
-
-    #[test]
-    fn the_documents_rates_come_out() {
-        let step_mm = 0.393;
-        let numbers = (100.0 / step_mm, 1000.0 / step_mm, 3500.0 / step_mm);
-        let table = TrapezoidTable::new(1000, numbers, 1_000_000, 1000).unwrap();
-        let rates: Vec<u64> = (0..8).map(|row| table.rate(row)).collect();
-        assert_eq!(rates, [254, 287, 317, 344, 369, 392, 414, 435]);
-        assert_eq!(table.reload(0), 3937);
-        // The first row at or above the top speed has the top speed itself.
-        assert_eq!((table.rows(), table.rate(359), table.rate(360)), (361, 2541, 2545));
+        let table = AccelerationTable::new(250.0, top_speed, 9000.0, 1_000_000);
+        TrapezoidTable::new(steps, table, 1_000_000).unwrap()
     }
 
     #[test]
     fn the_steps_are_those_of_the_interrupt_program() {
         for (count, top_speed) in (1..60).map(|n| (n, 700.0)).chain([(500, 700.0), (501, 1e5), (7, 250.0)]) {
             let table = table(count as i64, top_speed);
-            let top = table.rows() - 1;
+            let top = table.table().top();
             let mut ticks = 0;
             for i in 0..count {
-                ticks += table.reload(i.min(count - 1 - i).min(top));
+                ticks += table.table().reload(i.min(count - 1 - i).min(top));
                 assert_eq!(table.step_ticks(i + 1), ticks, "step {} of {count}", i + 1);
             }
             assert_eq!(table.duration_s(), ticks as f64 / 1e6);
@@ -328,7 +268,9 @@ mod tests {
 
     #[test]
     fn a_table_that_cannot_be_is_refused() {
-        let new = |steps, top, timer| TrapezoidTable::new(steps, (250.0, top, 9000.0), timer, 100).err();
+        let new = |steps, top, timer| {
+            TrapezoidTable::new(steps, AccelerationTable::new(250.0, top, 9000.0, timer), 100).err()
+        };
         // Row 100 would be the 101st.
         assert_eq!(new(199, 1e6, 1_000_000), None);
         assert_eq!(new(200, 1e6, 1_000_000), Some(NoTable::Rows { needed: 101 }));

@@ -147,3 +147,84 @@ impl TickClock {
         ticks.max(1)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        motion::plan_axis,
+        scenario::{Axis, Constant, Distance, Dwell, Move, SineSegments, Speed},
+    };
+
+    fn constant(steps: f64, steps_s: f64) -> Move {
+        let (distance, speed) = (Distance::Steps(steps), Speed::StepsPerSecond(steps_s));
+        Move::Constant(Constant { distance, speed })
+    }
+
+    fn plan(moves: Vec<Move>) -> AxisPlan {
+        plan_axis(&Axis { moves, ..Axis::default() }, "axis").unwrap()
+    }
+
+    #[test]
+    fn each_byte_has_direction_and_steps_of_its_tick() {
+        // moves at 1 kHz in ticks of 1 ms of 1 MHz, bytes of one channel
+        let dwell = |duration_s| Move::Dwell(Dwell { duration_s });
+        let rows: [(Vec<Move>, &[u8]); 6] = [
+            (vec![dwell(0.0)], &[0x00]),
+            (vec![dwell(0.002)], &[0x00, 0x00]),
+            (vec![constant(4.0, 2000.0)], &[0x82, 0x82]),
+            (vec![constant(-4.0, 2000.0)], &[0x02, 0x02]),
+            // Without steps the direction stays.
+            (vec![constant(2.0, 2000.0), dwell(0.002), constant(-2.0, 2000.0)], &[0x82, 0x80, 0x80, 0x02]),
+            // The half step at 0.5 ms is due (R rounds it up), the one at 1.5 ms in the next tick.
+            (vec![constant(2.0, 500.0)], &[0x81, 0x80, 0x81, 0x80]),
+        ];
+        for (moves, expected) in rows {
+            let found = ticks(&[plan(moves.clone())], 1, 100, 1000, 1_000_000).unwrap();
+            assert_eq!(found.bytes(), expected, "{moves:?}");
+            assert_eq!(found.len(), expected.len());
+        }
+    }
+
+    #[test]
+    fn channels_stand_side_by_side_until_the_last_has_ended() {
+        let plans = [plan(vec![constant(4.0, 2000.0)]), plan(vec![constant(-9.0, 3000.0)])];
+        let found = ticks(&plans, 3, 100, 1000, 1_000_000).unwrap();
+        let expected: [&[u8]; 3] = [&[0x82, 0x03, 0], &[0x82, 0x03, 0], &[0x80, 0x03, 0]];
+        assert!(found.iter().eq(expected), "{found:?}");
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused_with_its_numbers() {
+        let one = [plan(vec![constant(100.0, 10_000.0)]), plan(vec![constant(100.0, 12_000.0)])];
+        assert!(ticks(&one, 2, 12, 1000, 1_000_000).is_ok());
+        let found = ticks(&one, 2, 9, 1000, 1_000_000).unwrap_err();
+        let cause = |steps, rate| Cause::TooManySteps { tick: 0, steps, slots: 9, rate, limit: 9000.0 };
+        let expected = [
+            Problem::new("source.motion.axes[0]", cause(10, 10_000.0)),
+            Problem::new("source.motion.axes[1]", cause(12, 12_000.0)),
+        ];
+        assert_eq!(found, expected);
+        let found = ticks(&one, 2, 12, 1, 1_000_000_000).unwrap_err();
+        let cause = Cause::TooMuch { given: 10_000_000.0, most: 2_000_000.0, of: "ticks" };
+        assert_eq!(found, [Problem::new("source.motion", cause)]);
+        assert!(ticks(&one, 1, 12, 1000, 1_000_000).is_err());
+        // Nothing of this is a scenario; nothing of it may panic.
+        assert_eq!(ticks(&one, 2, 255, 0, 0).map(|ticks| ticks.len()), Ok(1));
+        assert_eq!(ticks(&[], 0, 0, 0, 0).map(|ticks| ticks.len()), Ok(1));
+    }
+
+    #[test]
+    fn the_error_never_adds_up() {
+        let plan = plan(vec![Move::SineSegments(SineSegments::default()), constant(777.0, 1234.5)]);
+        let found = ticks(core::slice::from_ref(&plan), 1, 127, 5000, 1_000_000).unwrap();
+        let mut made = 0;
+        for (tick, bytes) in (1_i32..).zip(found.iter()) {
+            let steps = i64::from(bytes[0] & !RIGHT);
+            made += if bytes[0] & RIGHT == 0 { -steps } else { steps };
+            let error = plan.position(f64::from(tick) * 0.005) - made as f64;
+            assert!(error.abs() <= 0.5, "{error} after tick {tick}");
+        }
+        assert_eq!(made, 777);
+    }
+}

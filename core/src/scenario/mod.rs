@@ -24,7 +24,7 @@ pub use check::{Checked, Config, END_OF_TIME, Forced, line_time};
 pub use compact::Compact;
 pub use hex::Hex;
 pub use problem::{Cause, Problem};
-pub use quantity::{Acceleration, Distance, Mechanics, NoSuchUnit, Speed};
+pub use quantity::{Acceleration, Direct, Distance, Mechanics, NoSuchUnit, Rotary, Screw, Speed, Wheel};
 
 use alloc::{string::String, vec, vec::Vec};
 use compact::{choices, settings};

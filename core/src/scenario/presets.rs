@@ -59,7 +59,8 @@ mod tests {
     #[test]
     fn every_preset_reads_and_has_no_problems() {
         for (index, preset) in PRESETS.iter().enumerate() {
-            let scenario = Scenario::from_json(preset.json).unwrap_or_else(|p| panic!("{}: {p:?}", preset.id));
+            let scenario =
+                Scenario::from_json(preset.json).unwrap_or_else(|p| panic!("{}: {p:?}", preset.id));
             assert!(!scenario.title.is_empty() && !scenario.note.is_empty(), "{}", preset.id);
             Experiment::new(&scenario).unwrap_or_else(|p| panic!("{}: {p:?}", preset.id));
             assert!(PRESETS[..index].iter().all(|other| other.id != preset.id), "{} twice", preset.id);

@@ -206,7 +206,13 @@ impl fmt::Display for Short {
             let text = alloc::format!("{value:.4}");
             f.write_str(text.trim_end_matches('0').trim_end_matches('.'))
         } else {
-            write!(f, "{value:e}")
+            let text = alloc::format!("{value:.5e}");
+            match text.split_once('e') {
+                Some((digits, power)) => {
+                    write!(f, "{}e{power}", digits.trim_end_matches('0').trim_end_matches('.'))
+                }
+                None => f.write_str(&text),
+            }
         }
     }
 }
@@ -280,7 +286,7 @@ impl fmt::Display for Cause {
             Self::TooFast { rate, most } => write!(
                 f,
                 "this needs {} steps/s, at most {} are allowed; give more time or less distance",
-                Short(*rate),
+                Short(libm::ceil(*rate)),
                 Short(*most)
             ),
             Self::NoSteps { steps } => {

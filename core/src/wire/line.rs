@@ -59,6 +59,14 @@ impl Line {
 
     /// Finds the next cycle in which the level that is heard differs from the current one.
     fn look_ahead(&mut self) {
+        if self.forced.is_empty() && self.sender_level == self.level {
+            self.next = self.sender.next_edge();
+            if self.next != Instant::NEVER {
+                self.sender_level = !self.sender_level;
+                self.sender.pass();
+            }
+            return;
+        }
         loop {
             let edge = self.sender.next_edge();
             let force = self

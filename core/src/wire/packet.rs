@@ -61,8 +61,8 @@ pub struct Unpacker {
     foreign: bool,
     /// After a framing error, until a gap.
     ignoring: bool,
-    /// Cycle of the last byte or framing error.
-    last: Instant,
+    /// When a gap ends what is open.
+    deadline: Instant,
 }
 
 impl Unpacker {
@@ -77,14 +77,14 @@ impl Unpacker {
             have: 0,
             foreign: false,
             ignoring: false,
-            last: Instant::RESET,
+            deadline: Instant::NEVER,
         }
     }
 
     /// When a gap ends what is open; [`Instant::NEVER`] if nothing is.
     #[must_use]
-    pub fn deadline(&self) -> Instant {
-        if self.have > 0 || self.ignoring { self.last + self.gap } else { Instant::NEVER }
+    pub const fn deadline(&self) -> Instant {
+        self.deadline
     }
 
     /// The gap has come: true if it cut a packet short.
@@ -92,19 +92,20 @@ impl Unpacker {
         let short = self.have > 0;
         self.have = 0;
         self.ignoring = false;
+        self.deadline = Instant::NEVER;
         short
     }
 
     /// A framing error in cycle `now`: what has come is dropped, and bytes until a gap.
-    pub const fn framing_error(&mut self, now: Instant) {
-        self.last = now;
+    pub fn framing_error(&mut self, now: Instant) {
+        self.deadline = now + self.gap;
         self.have = 0;
         self.ignoring = true;
     }
 
     /// A byte in cycle `now`; the packet that it completes.
     pub fn byte(&mut self, now: Instant, byte: u8) -> Option<Unpacked> {
-        self.last = now;
+        self.deadline = now + self.gap;
         if self.ignoring {
             return None;
         }
@@ -123,6 +124,7 @@ impl Unpacker {
             return None;
         }
         self.have = 0;
+        self.deadline = Instant::NEVER;
         Some(if self.foreign { Unpacked::Foreign } else { Unpacked::Own(self.orders) })
     }
 }

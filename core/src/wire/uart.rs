@@ -6,8 +6,14 @@
 //! stop high: the byte is delivered in that cycle, armed from the next
 //! stop low: framing error; arms in the cycle after the first later one that is high
 //! ```
+//!
+//! The looks at data bits change nothing outside. They are made up for when the line changes or
+//! the stop bit is due, so that a byte costs as many events as it has edges, and two.
 
 use crate::units::{Cycles, Instant};
+
+/// The stop bit's place in a byte.
+const STOP: u8 = 9;
 
 /// What the receiver heard in a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,8 +28,8 @@ pub enum Heard {
 enum State {
     /// Waits for the line to be low.
     Armed,
-    /// Looks at bit `bit` (0 start, 1..=8 data, 9 stop) in cycle `at`.
-    Sampling { at: Instant, bit: u8, byte: u8 },
+    /// Within a byte.
+    Sampling,
     /// After a framing error: waits for the line to be high.
     Broken,
 }
@@ -31,17 +37,23 @@ enum State {
 /// The receiver.
 #[derive(Clone, Debug)]
 pub struct Receiver {
-    bit: Cycles,
+    bit_cycles: Cycles,
     state: State,
     /// Where the latest start bit was seen.
     seen: Instant,
+    /// While sampling: the bit that is looked at next (0 start, 1..=8 data, 9 stop), when, and the
+    /// data bits so far.
+    bit: u8,
+    at: Instant,
+    byte: u8,
 }
 
 impl Receiver {
-    /// A receiver of bit time `bit`, armed.
+    /// A receiver of bit time `bit_cycles`, armed.
     #[must_use]
-    pub const fn new(bit: Cycles) -> Self {
-        Self { bit, state: State::Armed, seen: Instant::RESET }
+    pub const fn new(bit_cycles: Cycles) -> Self {
+        let seen = Instant::RESET;
+        Self { bit_cycles, state: State::Armed, seen, bit: 0, at: Instant::NEVER, byte: 0 }
     }
 
     /// Where the latest start bit was seen.
@@ -50,46 +62,65 @@ impl Receiver {
         self.seen
     }
 
-    /// Next cycle after `now` in which the receiver does something if the line stays at `rx`.
+    /// Next cycle after `now` in which something comes of what the receiver does if the line stays
+    /// at `rx`: the look at the start bit or at the stop bit, or arming.
     #[must_use]
-    pub const fn deadline(&self, now: Instant, rx: bool) -> Instant {
+    pub fn deadline(&self, now: Instant, rx: bool) -> Instant {
         match self.state {
-            State::Sampling { at, .. } => at,
+            State::Sampling if self.bit == 0 => self.at,
+            State::Sampling => self.at + Cycles(u64::from(STOP - self.bit) * self.bit_cycles.0),
             State::Armed if !rx => now.next(),
             State::Broken if rx => now.next(),
             _ => Instant::NEVER,
         }
     }
 
-    /// Cycle `now` with the line at `rx`.
-    pub fn clock(&mut self, now: Instant, rx: bool) -> Option<Heard> {
+    /// Cycle `now` with the line at `rx`, which was at `before` in the cycles since the last call.
+    /// No cycle of [`Self::deadline`] may have been left out between.
+    pub fn clock(&mut self, now: Instant, before: bool, rx: bool) -> Option<Heard> {
         match self.state {
             State::Armed if !rx => {
                 self.seen = now;
-                self.state = State::Sampling { at: now + Cycles(self.bit.0 / 2), bit: 0, byte: 0 };
+                self.state = State::Sampling;
+                self.at = now + Cycles(self.bit_cycles.0 / 2);
+                (self.bit, self.byte) = (0, 0);
             }
             State::Broken if rx => self.state = State::Armed,
-            State::Sampling { at, bit, byte } if at == now => return self.sample(now, rx, bit, byte),
+            State::Sampling => {
+                while self.at < now {
+                    self.take(before);
+                }
+                if self.at == now {
+                    return self.look(rx);
+                }
+            }
             _ => {}
         }
         None
     }
 
-    fn sample(&mut self, now: Instant, rx: bool, bit: u8, byte: u8) -> Option<Heard> {
-        match (bit, rx) {
+    /// Takes the line's level for the bit that is due.
+    fn take(&mut self, rx: bool) {
+        if let Some(place) = self.bit.checked_sub(1) {
+            self.byte |= u8::from(rx).checked_shl(place.into()).unwrap_or(0);
+        }
+        self.bit += 1;
+        self.at += self.bit_cycles;
+    }
+
+    /// The look that is due in this cycle.
+    fn look(&mut self, rx: bool) -> Option<Heard> {
+        match (self.bit, rx) {
             (0, true) => self.state = State::Armed,
-            (9, true) => {
+            (STOP, true) => {
                 self.state = State::Armed;
-                return Some(Heard::Byte(byte));
+                return Some(Heard::Byte(self.byte));
             }
-            (9, false) => {
+            (STOP, false) => {
                 self.state = State::Broken;
                 return Some(Heard::FramingError);
             }
-            _ => {
-                let level = if bit == 0 { 0 } else { u8::from(rx) << (bit - 1) };
-                self.state = State::Sampling { at: now + self.bit, bit: bit + 1, byte: byte | level };
-            }
+            _ => self.take(rx),
         }
         None
     }
@@ -103,10 +134,11 @@ mod tests {
     /// B = 11: looks at t+5 (start), t+16+11*i (data), t+104 (stop).
     fn heard(low: &[(u64, u64)], cycles: u64) -> Vec<(u64, Heard)> {
         let mut receiver = Receiver::new(Cycles(11));
+        let level = |c| !low.iter().any(|&(from, to)| (from..to).contains(&c));
         (1..cycles)
             .filter_map(|c| {
-                let rx = !low.iter().any(|&(from, to)| (from..to).contains(&c));
-                receiver.clock(Instant(c), rx).map(|h| (c, h))
+                let (before, rx) = (level(c - 1), level(c));
+                receiver.clock(Instant(c), before, rx).map(|h| (c, h))
             })
             .collect()
     }

@@ -1,0 +1,230 @@
+//! What holds for every motion and its ticks (DESIGN B1, B7), over random axes.
+#![cfg(not(target_arch = "wasm32"))]
+#![allow(clippy::panic, reason = "a test fails by panicking")]
+
+use proptest::prelude::*;
+use stepscope_core::{
+    motion::{AxisPlan, Curve, Profile, plan_axis, round_half_up},
+    quantise::ticks,
+    scenario::{
+        Acceleration, Axis, Constant, Cosine, Direct, Distance, Dwell, Mechanics, Move, SineSegments, Speed,
+        Trapezoid, TrapezoidMethod,
+    },
+};
+
+const CLOCK_HZ: u32 = 16_000_000;
+
+/// Moves that a person could ask for, at most some thousand steps.
+fn sane_move() -> impl Strategy<Value = Move> {
+    let steps = prop_oneof![-3000_i32..=-1, 1..=3000_i32].prop_map(|n| Distance::Steps(n.into()));
+    let method = prop_oneof![Just(TrapezoidMethod::Table), Just(TrapezoidMethod::Exact)];
+    prop_oneof![
+        (steps.clone(), 0.02..2.0, 0.0..=0.5).prop_map(|(distance, duration_s, ramp)| {
+            Move::Cosine(Cosine { distance, duration_s, ramp_s: duration_s * ramp })
+        }),
+        (steps.clone(), 100.0..2000.0, 0.0..4000.0, 1.0..1e5, method).prop_map(
+            |(distance, start, climb, acceleration, method)| {
+                Move::Trapezoid(Trapezoid {
+                    distance,
+                    start_speed: Speed::StepsPerSecond(start),
+                    top_speed: Speed::StepsPerSecond(start + climb),
+                    acceleration: Acceleration::StepsPerSecond2(acceleration),
+                    method,
+                    timer_hz: 1_000_000,
+                })
+            }
+        ),
+        (steps.clone(), 0.05..2.0, 1..4_u32, 0.002..0.1).prop_map(
+            |(amplitude, period_s, periods, max_deviation)| {
+                Move::SineSegments(SineSegments { amplitude, period_s, periods, max_deviation })
+            }
+        ),
+        (steps, 100.0..1e4).prop_map(|(distance, speed)| {
+            Move::Constant(Constant { distance, speed: Speed::StepsPerSecond(speed) })
+        }),
+        (0.0..1.0).prop_map(|duration_s| Move::Dwell(Dwell { duration_s })),
+    ]
+}
+
+/// Any number, with the absurd ones often.
+fn number() -> impl Strategy<Value = f64> + Clone {
+    prop_oneof![
+        any::<f64>(),
+        prop::sample::select(vec![
+            0.0,
+            -0.0,
+            1e300,
+            -1e300,
+            5e-324,
+            1e-300,
+            f64::NAN,
+            f64::INFINITY,
+            0.5,
+            1e7,
+            1e9,
+            86_400.0,
+            1e-6
+        ]),
+        -10.0..1e4_f64,
+    ]
+}
+
+/// Anything that the types allow.
+fn wild_move() -> impl Strategy<Value = Move> {
+    let distance = number().prop_flat_map(|x| {
+        prop::sample::select(vec![Distance::Steps(x), Distance::Millimetres(x), Distance::Degrees(x)])
+    });
+    let speed = number().prop_flat_map(|x| {
+        prop::sample::select(vec![
+            Speed::StepsPerSecond(x),
+            Speed::MillimetresPerSecond(x),
+            Speed::TurnsPerMinute(x),
+        ])
+    });
+    let method = prop_oneof![Just(TrapezoidMethod::Table), Just(TrapezoidMethod::Exact)];
+    prop_oneof![
+        (distance.clone(), number(), number())
+            .prop_map(|(distance, duration_s, ramp_s)| Move::Cosine(Cosine { distance, duration_s, ramp_s })),
+        (distance.clone(), speed.clone(), speed.clone(), number(), method, any::<u32>()).prop_map(
+            |(distance, start_speed, top_speed, acceleration, method, timer_hz)| {
+                let acceleration = Acceleration::StepsPerSecond2(acceleration);
+                Move::Trapezoid(Trapezoid {
+                    distance,
+                    start_speed,
+                    top_speed,
+                    acceleration,
+                    method,
+                    timer_hz,
+                })
+            }
+        ),
+        (distance.clone(), number(), any::<u32>(), number()).prop_map(
+            |(amplitude, period_s, periods, max_deviation)| {
+                Move::SineSegments(SineSegments { amplitude, period_s, periods, max_deviation })
+            }
+        ),
+        (distance, speed).prop_map(|(distance, speed)| Move::Constant(Constant { distance, speed })),
+        number().prop_map(|duration_s| Move::Dwell(Dwell { duration_s })),
+    ]
+}
+
+fn plan(moves: Vec<Move>) -> AxisPlan {
+    let axis = Axis { moves, ..Axis::default() };
+    plan_axis(&axis, "axis").unwrap_or_else(|problems| panic!("{axis:?}: {problems:?}"))
+}
+
+/// The other way round.
+fn mirrored(given: &Move) -> Move {
+    let back = |distance: &Distance| Distance::Steps(-distance.value());
+    match given.clone() {
+        Move::Cosine(m) => Move::Cosine(Cosine { distance: back(&m.distance), ..m }),
+        Move::Trapezoid(m) => Move::Trapezoid(Trapezoid { distance: back(&m.distance), ..m }),
+        Move::SineSegments(m) => Move::SineSegments(SineSegments { amplitude: back(&m.amplitude), ..m }),
+        Move::Constant(m) => Move::Constant(Constant { distance: back(&m.distance), ..m }),
+        Move::Dwell(m) => Move::Dwell(m),
+    }
+}
+
+/// Signed steps of each tick of channel 0.
+fn counts(plan: &AxisPlan, tick_cycles: u64) -> Vec<i64> {
+    let made = ticks(std::slice::from_ref(plan), 1, 127, tick_cycles, CLOCK_HZ);
+    let made = made.unwrap_or_else(|problems| panic!("{problems:?}"));
+    made.bytes().iter().map(|byte| i64::from(byte & 127) * if byte & 128 == 0 { -1 } else { 1 }).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn the_end_is_exact_and_the_error_is_never_above_half_a_step(
+        moves in prop::collection::vec(sane_move(), 1..5), tick_cycles in 2000..4000_u64,
+    ) {
+        let plan = plan(moves);
+        let mut made = 0;
+        let counts = counts(&plan, tick_cycles);
+        for (tick, count) in (1_u64..).zip(&counts) {
+            made += count;
+            let t = (tick * tick_cycles) as f64 / f64::from(CLOCK_HZ);
+            let error = plan.position(t) - made as f64;
+            prop_assert!(error.abs() <= 0.5, "{error} after tick {tick}");
+        }
+        prop_assert_eq!(made, plan.steps());
+        // The last tick is needed: the axis has not ended before it.
+        let before = (counts.len() as u64 - 1) * tick_cycles;
+        prop_assert!(before == 0 || (before as f64 / f64::from(CLOCK_HZ)) < plan.duration_s());
+    }
+
+    #[test]
+    fn a_move_one_way_never_turns_round(
+        given in sane_move().prop_filter("goes one way", |m| !matches!(m, Move::SineSegments(_))),
+        tick_cycles in 300..4000_u64,
+    ) {
+        let plan = plan(vec![given]);
+        let way = plan.steps().signum();
+        let counts = counts(&plan, tick_cycles);
+        prop_assert!(counts.iter().all(|count| count * way >= 0));
+    }
+
+    #[test]
+    fn right_and_left_are_mirror_images(
+        moves in prop::collection::vec(sane_move(), 1..4), tick_cycles in 2000..4000_u64,
+    ) {
+        let back = plan(moves.iter().map(mirrored).collect());
+        let forth = plan(moves);
+        let (mut right, mut left) = (0, 0);
+        for (tick, (r, l)) in (1_u64..).zip(counts(&forth, tick_cycles).iter().zip(counts(&back, tick_cycles))) {
+            (right, left) = (right + r, left + l);
+            let t = (tick * tick_cycles) as f64 / f64::from(CLOCK_HZ);
+            let x = forth.position(t);
+            prop_assert_eq!(x, -back.position(t));
+            // R rounds a half up on both sides of 0, so exactly there the two differ by one.
+            let half = x - x.floor() == 0.5;
+            prop_assert_eq!(right + left, i64::from(half), "{} at tick {}", x, tick);
+        }
+    }
+
+    #[test]
+    fn steps_are_due_where_the_position_is_rounded_to(
+        moves in prop::collection::vec(sane_move(), 1..4), parts in prop::collection::vec(-0.1..1.1, 1..50),
+    ) {
+        let plan = plan(moves);
+        for part in parts {
+            let t = plan.duration_s() * part;
+            prop_assert_eq!(plan.steps_due(t), round_half_up(plan.position(t)));
+            prop_assert!(plan.speed(t).abs() <= plan.peaks().speed * (1.0 + 1e-12));
+            prop_assert!(plan.acceleration(t).abs() <= plan.peaks().acceleration * (1.0 + 1e-12));
+        }
+    }
+
+    #[test]
+    fn no_axis_panics(
+        moves in prop::collection::vec(wild_move(), 0..6), step_mm in number(), times in prop::collection::vec(number(), 8),
+        tick_cycles in any::<u64>(), clock_hz in any::<u32>(), slots in any::<u8>(),
+    ) {
+        for mechanics in [Mechanics::default(), Mechanics::Direct(Direct { step_mm })] {
+            match plan_axis(&Axis { mechanics, moves: moves.clone() }, "axis") {
+                Ok(plan) => {
+                    prop_assert!(plan.duration_s() <= 1e6 && plan.duration_s() >= 0.0);
+                    prop_assert_eq!(plan.position(plan.duration_s()), plan.steps() as f64);
+                    for &t in &times {
+                        let _ = (plan.position(t), plan.speed(t), plan.acceleration(t), plan.steps_due(t));
+                    }
+                    for planned in plan.moves() {
+                        if let Profile::Trapezoid(curve) = &planned.profile {
+                            prop_assert!(curve.step_times(clock_hz).take(9).is_sorted());
+                        }
+                        let _ = planned.profile.peaks();
+                    }
+                    let few_ticks = plan.duration_s() / 1000.0 * f64::from(clock_hz);
+                    let _ = ticks(&[plan], 1, slots, tick_cycles.max(few_ticks as u64), clock_hz);
+                }
+                Err(problems) => {
+                    prop_assert!(!problems.is_empty());
+                    for problem in problems {
+                        prop_assert!(problem.path.starts_with("axis."), "{}", problem);
+                    }
+                }
+            }
+        }
+    }
+}
