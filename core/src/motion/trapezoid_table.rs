@@ -79,6 +79,12 @@ impl TrapezoidTable {
         &self.table
     }
 
+    /// Rows of the whole table.
+    #[must_use]
+    pub fn rows(&self) -> u64 {
+        self.table.top().saturating_add(1)
+    }
+
     /// Rows that this move keeps in memory.
     #[must_use]
     pub fn kept_rows(&self) -> u64 {
