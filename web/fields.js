@@ -32,7 +32,7 @@ const cycles = (key, label, hint) => ({ key, label, unit: "cycles", hint: `${hin
 const quantity = (key, label, units, hint) => ({ key, label, units, hint, kind: "quantity" });
 
 const FULL_STEP = number("full_step_deg", "Full step", "°", "Angle of the motor's full step; 1.8° is 200 a turn.");
-const MICROSTEPS = integer("microsteps", "Microsteps", "per full step", "1 to 512.");
+const MICROSTEPS = integer("microsteps", "Microsteps", "", "In a full step, 1 to 512.");
 
 /** How an axis turns steps into millimetres and degrees. @type {{[kind: string]: Kind}} */
 export const MECHANICS = {
@@ -69,7 +69,7 @@ export const MOVES = {
       quantity("amplitude", "Amplitude", DISTANCE, "From the middle to an extreme."),
       number("period_s", "Period", "s", "Time of one period."),
       integer("periods", "Periods", "", "How many whole periods."),
-      number("max_deviation", "Deviation", "of amplitude", "Largest distance of a segment from the sine, d1; 0.002 to 0.015 in the document."),
+      number("max_deviation", "Deviation d1", "× A", "Largest distance of a segment from the sine, d1; 0.002 to 0.015 in the document."),
     ],
   },
   constant: {

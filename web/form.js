@@ -107,7 +107,7 @@ export function createForm({ root, samples, dispatch }) {
   function source(scenario) {
     const kind = Object.keys(scenario.source)[0];
     const head = element("div", { class: "item-head" },
-      kindSelect("What the host sends", "source", kind, SOURCES, (chosen) => ({ [chosen]: samples.sources[chosen] })));
+      kindSelect("What the host sends", "source", kind, SOURCES, (chosen) => ({ [chosen]: chosen === "motion" ? samples.sources.motion : example(chosen, scenario) })));
     if (kind === "packets") return [head, row("source.packets.packets", PACKET_LINES)];
     if (kind === "line") {
       return [head, ...rows("source.line.sends", scenario.source.line.sends, SEND, "Send", samples.send)];
@@ -174,6 +174,15 @@ function shapeOf(scenario) {
 /** @param {any[]} list @param {number} index */
 function swapped(list, index) {
   return list.toSpliced(index, 2, list[index + 1], list[index]);
+}
+
+/** Ten steps to the right and ten back on every channel: something to see and to change. @param {string} kind @param {Scenario} scenario */
+function example(kind, { bus, line }) {
+  const address = line.address === null ? "" : Number(line.address).toString(16).padStart(2, "0");
+  const packets = ["8a", "0a"].map((order) => address + order.repeat(Number(bus.channels) || 1));
+  if (kind === "packets") return { packets };
+  const tick = bus.slots * bus.step_period_cycles;
+  return { sends: packets.map((bytes, index) => ({ start_cycle: bus.boot_cycles + 1 + index * tick, bytes })) };
 }
 
 /** A start that lies behind a row: its bytes, or its length, have passed. @param {any} row @param {Scenario} scenario */

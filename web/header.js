@@ -41,7 +41,7 @@ export function createHeader({ presets, cancel, retry, dispatch, now }) {
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    undo.disabled = state.past.length === 0;
+    undo.disabled = state.past.length === 0 && Object.keys(state.drafts).length === 0;
     redo.disabled = state.future.length === 0;
     const id = state.origin.startsWith("preset:") ? state.origin.slice("preset:".length) : "";
     if (before?.origin !== state.origin) preset.value = id;

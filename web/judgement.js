@@ -1,6 +1,6 @@
 /** Shows what the core says about the scenario: problems beside their fields, and what follows from it. */
 import { button, byId, element, fill, say } from "./dom.js";
-import { count, short, si } from "./number.js";
+import { count, plain, short, si } from "./number.js";
 
 /** @typedef {import("./types.js").State} State */
 /** @typedef {import("./control.js").Control} Control */
@@ -82,10 +82,10 @@ export function showDerived(state, form) {
   const load = derived.line_load;
   const rows = [
     ["Duration", si(derived.duration_s, "s"), ""],
-    ["Peak rate", derived.axes.length ? `${si(peak, "steps/s")}` : "–", peak > derived.limit_steps_s ? "over" : ""],
+    ["Peak rate", derived.axes.length ? plain(peak, "steps/s") : "–", peak > derived.limit_steps_s ? "over" : ""],
     ["Tick", `${si(derived.tick_s, "s")}, ${count(derived.ticks)} in all`, ""],
-    ["Limit of the bus", si(derived.limit_steps_s, "steps/s"), ""],
-    ["Packets", `${si(derived.packets_per_s, "/s")}`, ""],
+    ["Limit of the bus", plain(derived.limit_steps_s, "steps/s"), ""],
+    ["Packets", plain(derived.packets_per_s, "/s"), ""],
     ["Line load", `${short(load * 100, 3)} %`, load > 1 ? "over" : ""],
   ];
   fill(root, element("dl", {}, ...rows.map(([name, value, mark]) =>

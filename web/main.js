@@ -111,7 +111,7 @@ async function samples() {
   return {
     moves: Object.assign({}, ...axes[0].moves),
     mechanics: Object.assign({}, ...axes.map((/** @type {any} */ axis) => axis.mechanics)),
-    sources: { motion: { motion: { axes: [{ mechanics: axes[0].mechanics, moves: [axes[0].moves[0]] }] } }, packets: { packets: { packets: [] } }, line: line.source },
+    sources: { motion: { axes: [{ mechanics: axes[0].mechanics, moves: [axes[0].moves[0]] }] }, line: line.source.line },
     glitch: motion.line.glitches[0], send: line.source.line.sends[0],
   };
 }

@@ -167,8 +167,8 @@ function rangeOf(bands, zero) {
   }
   if (low > high) [low, high] = [0, 1];
   const [from, to] = zero ? [Math.min(0, low), Math.max(0, high)] : [low, high];
-  const air = (to - from) * 0.08 || Math.max(1e-9, Math.abs(to) * 1e-3) || 1;
-  return { low, high, min: from - air, max: to + (to === 0 && from === 0 ? 1 : air * 2.2) };
+  const air = (to - from) * 0.08 || Math.abs(to) * 1e-3 || 1;
+  return { low, high, min: from - air, max: to + air };
 }
 
 /** @param {MotionColumns} columns @param {number} seconds */

@@ -85,6 +85,20 @@ export function si(value, unit, digits = 4) {
   return `${trim((value / scale).toPrecision(digits))} ${prefix}${unit}`.trim();
 }
 
+/** A rate or count of steps: grouped digits and no prefix, for nobody counts kilosteps. @param {number} value @param {string} unit */
+export function plain(value, unit) {
+  if (!Number.isFinite(value)) return "–";
+  const magnitude = Math.abs(value);
+  if (magnitude >= 1e9 || (magnitude > 0 && magnitude < 0.01)) return `${short(value)} ${unit}`;
+  const [whole, part] = trim(value.toFixed(magnitude >= 1000 ? 0 : magnitude >= 10 ? 1 : 3)).split(".");
+  return `${group(whole)}${part ? `.${part}` : ""} ${unit}`;
+}
+
+/** @param {string} digits */
+function group(digits) {
+  return digits.replace(/\B(?=(\d{3})+(?!\d))/g, "\u202f");
+}
+
 /** Significant digits without needless zeros. @param {number} value @param {number} [digits] */
 export function short(value, digits = 5) {
   if (!Number.isFinite(value)) return "–";
@@ -93,7 +107,7 @@ export function short(value, digits = 5) {
 
 /** A whole number with groups of three digits. @param {number} value */
 export function count(value) {
-  return Math.round(value).toString().replace(/\B(?=(\d{3})+(?!\d))/g, "\u202f").replace("-", "−");
+  return group(Math.round(value).toString()).replace("-", "−");
 }
 
 /** @param {string} text */

@@ -4,7 +4,6 @@
  */
 import { byId, element, fill, say } from "./dom.js";
 import { unlessDropped } from "./engine.js";
-import { time } from "./motion.js";
 import { count } from "./number.js";
 import { shown } from "./state.js";
 
@@ -105,10 +104,15 @@ export function createPackets({ engine, dispatch, now }) {
 
   /** @param {State} state */
   function paint(state) {
-    const clock = state.result?.summary.clock_hz ?? 1;
+    // One unit and one number of digits for the whole column, so that times can be compared at a glance.
+    const seconds = (state.result?.summary.end_s ?? 0) >= 10;
+    const clock = (state.result?.summary.clock_hz ?? 1) / (seconds ? 1 : 1000);
+    const column = (/** @type {number} */ cycle) => (cycle / clock).toFixed(seconds ? 6 : 4);
+    say(byId("packets-time"), seconds ? "start, s" : "start, ms");
+    say(byId("packets-tick"), seconds ? "tick at, s" : "tick at, ms");
     fill(body, ...rows.map((row) => {
-      const tick = row.tick_start_cycle === null ? "–" : time(row.tick_start_cycle / clock);
-      const cells = [count(row.index), time(row.start_cycle / clock), row.hex, row.fields, row.outcome, tick];
+      const tick = row.tick_start_cycle === null ? "–" : column(row.tick_start_cycle);
+      const cells = [count(row.index), column(row.start_cycle), row.hex, row.fields, row.outcome, tick];
       const line = element("tr", {
         id: `packet-${row.index}`, "data-index": String(row.index), "aria-rowindex": String(row.index + 2),
         "aria-selected": String(row.index === state.packet),

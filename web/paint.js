@@ -9,7 +9,7 @@ import { color } from "./plot.js";
 /** @typedef {{name: string, bit: number, ink: string, kind: "signal"} | {name: string, kind: "packets" | "ticks", ink: string}} Row */
 
 /** Height of a row in CSS pixels. */
-export const ROW_PX = 21;
+export const ROW_PX = 19;
 /** Consecutive busy columns from which on they count as a block. */
 const BLOCK = 4;
 

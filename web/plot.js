@@ -10,7 +10,7 @@ import init, { draw_chart } from "./pkg/stepscope_wasm.js";
 /** Width of the tick labels' column in CSS pixels; the pulses keep the same, so that all time axes line up. */
 export const GUTTER = 68;
 /** Free space at the right of a plotting area, as the charts draw it. */
-export const MARGIN = 14;
+export const MARGIN = 26;
 
 let loaded = /** @type {Promise<unknown> | null} */ (null);
 

@@ -117,7 +117,6 @@ export function createPulses({ engine, dispatch, now }) {
 
   /** @param {State} state */
   async function refresh(state) {
-    stack.style.height = `${rows().length * ROW_PX + 4}px`;
     plot = { left: GUTTER, right: Math.max(GUTTER + 1, stack.clientWidth - MARGIN) };
     if (!state.result || stack.clientWidth < 60) return;
     const { start, end } = shown(state);
@@ -143,7 +142,7 @@ export function createPulses({ engine, dispatch, now }) {
     context.font = `${11 * scale}px ${getComputedStyle(document.body).fontFamily}`;
     for (const [index, row] of rows().entries()) {
       const top = Math.round((index * ROW_PX + 4) * scale);
-      const height = Math.round((ROW_PX - 7) * scale);
+      const height = Math.round((ROW_PX - 6) * scale);
       const chosen = row.kind === "signal" && row.bit === state.row;
       if (chosen) {
         context.fillStyle = color("--chosen");
@@ -195,7 +194,7 @@ export function createPulses({ engine, dispatch, now }) {
     if (a !== null) texts.push(`A ${time(a / clock)}`);
     if (b !== null) texts.push(`B ${time(b / clock)}`);
     if (a !== null && b !== null) texts.push(`B−A ${time((b - a) / clock)}${a === b ? "" : ` = ${si(clock / Math.abs(b - a), "Hz", 6)}`}`);
-    else texts.push(a === null ? "click: cursor A" : "shift-click: cursor B");
+    else texts.push(a === null ? "click sets cursor A" : "shift-click sets B");
     say(byId("cursor-readings"), texts.join("   "));
   }
 
@@ -228,7 +227,7 @@ export function createPulses({ engine, dispatch, now }) {
       } else if (begin === undefined && end === undefined) parts.push(`${name} never changes`);
       else parts.push(`${name} ${end === undefined ? "stays so to the end" : `first changes at ${time(end / clock)}`}`);
     }
-    say(byId("hover-reading"), parts.length ? parts.join("  ·  ") : "wheel: zoom · drag: move · double click: whole run · click a row's name: choose it for edges");
+    say(byId("hover-reading"), parts.length ? parts.join(" · ") : "wheel zooms, dragging moves, double click shows the whole run");
   }
 
   /** @param {State} state */
@@ -311,6 +310,12 @@ export function createPulses({ engine, dispatch, now }) {
       options(rowSelect, signals().map(({ name, bit }) => [String(bit), name]), String(state.row));
     }
     const moved = before?.window !== state.window || before?.result !== state.result;
+    if (before?.result !== state.result) {
+      const tall = rows().length * ROW_PX + 6;
+      stack.style.height = `${tall}px`;
+      // On a wide screen this view takes what its rows need, and the curves the rest.
+      byId("views").style.setProperty("--rows-px", `${tall}px`);
+    }
     if (moved) fields(state);
     if (moved) {
       paintStrip(state);

@@ -2,7 +2,7 @@
 import { byId, element, fill, say } from "./dom.js";
 import { unlessDropped } from "./engine.js";
 import { short, si } from "./number.js";
-import { GUTTER, color, draw, watch } from "./plot.js";
+import { color, draw, watch } from "./plot.js";
 
 /** @typedef {import("./types.js").State} State */
 /** @typedef {import("./types.js").Spectrum} Spectrum */
@@ -11,7 +11,10 @@ import { GUTTER, color, draw, watch } from "./plot.js";
 
 /** Lowest level of the dB scale. */
 const FLOOR_DB = -120;
-const UNITS = { position: "steps", speed: "steps/s", acceleration: "steps/s²" };
+/** Width of the tick labels in CSS pixels. */
+const GUTTER = 44;
+/** Below this part of the fundamental a harmonic is the arithmetic's own noise. */
+const NOISE = 1e-11;
 
 /** @param {{engine: import("./engine.js").Engine} & import("./timeline.js").Page} page */
 export function createSpectrum({ engine, now }) {
@@ -38,11 +41,11 @@ export function createSpectrum({ engine, now }) {
     const quantity = /** @type {Quantity} */ (quantitySelect.value);
     const db = scaleSelect.value === "db";
     const some = spectra?.ideal ?? spectra?.pulses ?? null;
-    say(byId("spectrum-note"), spectra?.note ?? "");
-    say(byId("thd"), spectra && some ? distortion(spectra, quantity) : "");
+    say(byId("thd"), spectra && some?.periodic ? distortion(spectra, quantity) : "");
+    say(byId("spectrum-note"), spectra && some ? `${method(some)} ${spectra.note}`.trim() : spectra?.note ?? "");
     canvas.hidden = !some;
-    if (!spectra || !some) return table([], quantity);
-    table(harmonics(spectra, quantity), quantity);
+    if (!spectra || !some) return table([]);
+    table(harmonics(spectra, quantity));
     chart(spectra, some, quantity, db);
   }
 
@@ -51,7 +54,7 @@ export function createSpectrum({ engine, now }) {
     const shownOrder = some[quantity].length;
     const x = Array.from({ length: shownOrder }, (_, i) => i + 1);
     const level = (/** @type {Spectrum} */ spectrum) => (db
-      ? spectrum[quantity].map((value) => 20 * Math.log10(value / spectrum[quantity][0]))
+      ? spectrum[quantity].map((value) => 20 * Math.log10(value / reference(spectrum, quantity)))
       : spectrum[quantity]);
     const top = Math.max(...[ideal, pulses].flatMap((spectrum) => (spectrum ? [...spectrum[quantity]] : [])), 1e-12);
     const width = Math.max(1.5, Math.min(5, (canvas.clientWidth - GUTTER) / shownOrder / 3));
@@ -64,10 +67,11 @@ export function createSpectrum({ engine, now }) {
     canvas.setAttribute("aria-label", `Spectrum of ${quantity}, harmonics 1 to ${shownOrder} of ${si(some.fundamental_hz, "Hz")}; the table beside it has the numbers`);
   }
 
-  /** @param {{n: number, hz: number, cells: string[]}[]} rows @param {Quantity} quantity */
-  function table(rows, quantity) {
+  /** @param {{n: number, hz: number, cells: string[]}[]} rows */
+  function table(rows) {
+    byId("harmonics").hidden = rows.length === 0;
     const names = spectra?.ideal && spectra?.pulses ? ["ideal", "pulses"] : [spectra?.ideal ? "ideal" : "pulses"];
-    const head = ["n", "frequency", ...names.flatMap((name) => [`${name}, ${UNITS[quantity]}`, "%"])];
+    const head = ["n", "frequency", ...names.flatMap((name) => [name, "%"])];
     fill(/** @type {Element} */ (byId("harmonics").querySelector("thead")), element("tr", {}, ...head.map((text) => element("th", { scope: "col", class: "number" }, text))));
     fill(/** @type {Element} */ (byId("harmonics").querySelector("tbody")), ...rows.map(({ n, hz, cells }) =>
       element("tr", {}, ...[String(n), si(hz, "Hz"), ...cells].map((text) => element("td", { class: "number" }, text)))));
@@ -82,6 +86,11 @@ export function createSpectrum({ engine, now }) {
   return { render };
 }
 
+/** What the parts are parts of: the fundamental, or the greatest line where there is no fundamental. @param {Spectrum} spectrum @param {Quantity} quantity */
+function reference(spectrum, quantity) {
+  return spectrum.periodic ? spectrum[quantity][0] : Math.max(...spectrum[quantity]);
+}
+
 /** @param {Spectra} spectra @param {Quantity} quantity */
 function harmonics({ ideal, pulses }, quantity) {
   const given = [ideal, pulses].flatMap((spectrum) => (spectrum ? [spectrum] : []));
@@ -91,14 +100,14 @@ function harmonics({ ideal, pulses }, quantity) {
     hz: given[0].fundamental_hz * (i + 1),
     cells: given.flatMap((spectrum) => {
       const values = spectrum[quantity];
-      return [short(values[i], 4), values[0] > 0 ? short((100 * values[i]) / values[0], 3) : "–"];
+      const part = values[i] / reference(spectrum, quantity);
+      return !(part >= NOISE) ? ["0", "0"] : [short(values[i], 4), short(100 * part, 3)];
     }),
   }));
 }
 
 /** @param {Spectra} spectra @param {Quantity} quantity */
 function distortion({ axis, ideal, pulses }, quantity) {
-  const some = /** @type {Spectrum} */ (ideal ?? pulses);
   const thd = (/** @type {Spectrum} */ spectrum) => {
     const value = spectrum[/** @type {const} */ (`thd_${quantity}`)];
     return value === null ? "none" : `${short(value * 100, 5)} %`;
@@ -106,6 +115,12 @@ function distortion({ axis, ideal, pulses }, quantity) {
   const parts = [];
   if (ideal) parts.push(`ideal ${thd(ideal)}`);
   if (pulses) parts.push(`pulses ${thd(pulses)}`);
+  return `THD of ${quantity}, axis ${axis}: ${parts.join(", ")}`;
+}
+
+/** How the distortion is defined. @param {Spectrum} some */
+function method(some) {
+  if (!some.periodic) return `Lines at multiples of ${si(some.fundamental_hz, "Hz", 5)}, the run taken as one period, no window.`;
   const periods = some.periods === 1 ? "one whole period" : `${some.periods} whole periods`;
-  return `THD of ${quantity}, axis ${axis}: ${parts.join(", ")}. Harmonics 2 to ${some.order} over the fundamental of ${si(some.fundamental_hz, "Hz", 5)}; no window, ${periods}${some.periodic ? "" : " (the run taken as one period)"}.`;
+  return `Harmonics 2 to ${some.order} over the fundamental of ${si(some.fundamental_hz, "Hz", 5)}; no window, ${periods}.`;
 }

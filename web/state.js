@@ -100,6 +100,8 @@ function changed(state, scenario, origin) {
 
 /** @param {State} state @param {"past" | "future"} from @param {"past" | "future"} to @returns {State} */
 function travel(state, from, to) {
+  // A text that is no number yet was never a step of the history: going back takes it away first.
+  if (from === "past" && Object.keys(state.drafts).length > 0) return { ...state, drafts: {}, edited: null };
   const moment = state[from][state[from].length - 1];
   if (!moment) return state;
   const now = { scenario: state.scenario, origin: state.origin };

@@ -129,7 +129,7 @@ pub fn draw<DB: DrawingBackend>(root: &DrawingArea<DB, Shift>, spec: &Spec) -> R
     let (width, height) = root.dim_in_pixel();
     let mut chart = ChartBuilder::on(root)
         .margin_top(px(6.0))
-        .margin_right(px(14.0))
+        .margin_right(px(26.0))
         .margin_bottom(px(if spec.x.label_px > 0.0 { 2.0 } else { 6.0 }))
         .x_label_area_size(px(spec.x.label_px))
         .y_label_area_size(px(spec.y.label_px))
@@ -138,7 +138,7 @@ pub fn draw<DB: DrawingBackend>(root: &DrawingArea<DB, Shift>, spec: &Spec) -> R
 
     let css = |pixels: u32| f64::from(pixels) / spec.ratio;
     let x_ticks = ((css(width) / 110.0) as usize).clamp(2, 12);
-    let y_ticks = ((css(height) / 26.0) as usize).clamp(2, 10);
+    let y_ticks = ((css(height) / 22.0) as usize).clamp(4, 10);
     let x_format = Ticks::new(&spec.x, x_ticks);
     let y_format = Ticks::new(&spec.y, y_ticks);
     let font = (spec.font.as_str(), spec.font_px * spec.ratio, FontStyle::Normal);
