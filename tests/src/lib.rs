@@ -1,4 +1,7 @@
-//! What the tests of all targets share: the independent model of the contract and the strategies that feed it.
+//! What the tests of all targets share: the golden cases, and natively the independent model of the contract and the
+//! strategies that feed it.
+
+pub mod golden;
 
 /// The slow model of the contract that the core is compared with.
 #[cfg(not(target_arch = "wasm32"))]
@@ -7,3 +10,8 @@ pub mod oracle;
 /// Random configurations and line activity for the property tests.
 #[cfg(not(target_arch = "wasm32"))]
 pub mod cases;
+
+/// The README's examples, compiled and run as documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+pub struct Readme;

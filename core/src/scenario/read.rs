@@ -94,7 +94,8 @@ fn read(mut value: Value) -> (Scenario, Vec<Problem>) {
                 // What is left of a choice or a list whose value was taken out is no new problem.
                 if !taken.iter().any(|gone| gone.len() > path.len() && gone.starts_with(&path)) {
                     let at = print(&original(&path, &taken));
-                    problems.push(Problem::new(at, Cause::Type { detail: error.inner().to_string() }));
+                    problems
+                        .push(Problem::new(at, Cause::Type { detail: in_words(&error.inner().to_string()) }));
                 }
                 match take_out(&mut value, &path) {
                     Some(gone) if problems.len() < MOST_PROBLEMS => taken.push(gone),
@@ -102,6 +103,22 @@ fn read(mut value: Value) -> (Scenario, Vec<Problem>) {
                 }
             }
         }
+    }
+}
+
+/// serde's message without Rust's names for types.
+fn in_words(message: &str) -> String {
+    const WORDS: [(&str, &str); 6] = [
+        ("expected u8", "expected a whole number from 0 to 255"),
+        ("expected u16", "expected a whole number from 0 to 65535"),
+        ("expected u32", "expected a whole number from 0 to 4294967295"),
+        ("expected u64", "expected a whole number from 0 on"),
+        ("expected f64", "expected a number"),
+        ("expected struct ", "expected a map of names and values for "),
+    ];
+    match WORDS.iter().find(|(rust, _)| message.contains(rust)) {
+        Some((rust, words)) => message.replace(rust, words),
+        None => message.into(),
     }
 }
 
