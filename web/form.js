@@ -91,7 +91,7 @@ export function createForm({ root, samples, dispatch }) {
     const fields = (MECHANICS[kind]?.fields ?? []).map((field) => row(`${path}.mechanics.${kind}.${field.key}`, field));
     const moves = axis.moves.map((/** @type {any} */ move, /** @type {number} */ i) => moveItem(move, `${list}[${i}]`, i, axis.moves, list));
     const last = axis.moves[axis.moves.length - 1];
-    const add = button("Add move", `Add a move to axis ${index}`, () => put(list, [...axis.moves, structuredClone(last ?? { cosine: samples.moves.cosine })]), axis.moves.length >= 64);
+    const add = button("Add move", `Add move to axis ${index}`, () => put(list, [...axis.moves, structuredClone(last ?? { cosine: samples.moves.cosine })]), axis.moves.length >= 64);
     return item(`Axis ${index} · channel ${index}`, path, [head, ...fields, ...moves, add]);
   }
 
@@ -115,7 +115,7 @@ export function createForm({ root, samples, dispatch }) {
     const { axes } = scenario.source.motion;
     const fresh = () => ({ mechanics: { rotary: samples.mechanics.rotary }, moves: [{ cosine: samples.moves.cosine }] });
     return [head, ...axes.map((/** @type {any} */ axis, /** @type {number} */ i) => axisItem(axis, i, axes)),
-      button("Add axis", "Add an axis", () => addAxis(axes, structuredClone(axes[axes.length - 1] ?? fresh())), axes.length >= MOST_CHANNELS)];
+      button("Add axis", "Add axis", () => addAxis(axes, structuredClone(axes[axes.length - 1] ?? fresh())), axes.length >= MOST_CHANNELS)];
   }
 
   /** A list of equal rows. @param {string} path @param {any[]} values @param {Field[]} fields @param {string} name @param {any} sample */
@@ -125,7 +125,7 @@ export function createForm({ root, samples, dispatch }) {
       button("Remove", `Remove ${name.toLowerCase()} ${index + 1}`, () => put(path, values.toSpliced(index, 1))),
     ]));
     const fresh = () => (values.length ? { ...values[values.length - 1], start_cycle: after(values[values.length - 1], state.scenario) } : structuredClone(sample));
-    return [...items, button(`Add ${name.toLowerCase()}`, `Add a ${name.toLowerCase()}`, () => put(path, [...values, fresh()]))];
+    return [...items, button(`Add ${name.toLowerCase()}`, `Add ${name.toLowerCase()}`, () => put(path, [...values, fresh()]))];
   }
 
   /** @param {Scenario} scenario */

@@ -70,6 +70,8 @@ export function createLink({ engine, dispatch, now }) {
     const fragment = location.hash.replace(/^#/, "");
     written = location.hash;
     if (fragment === "") return;
+    // A place in the page is no link; the address takes the scenario back.
+    if (document.getElementById(fragment)) return write();
     try {
       const answer = await engine.ask("decode_link", fragment);
       if ("error" in answer) return refuse(answer.error);

@@ -58,6 +58,7 @@ function follow(before) {
   }
   if (before?.judgement !== judgement || before?.approved !== approved || before?.drafts !== drafts) plan();
   const drawn = views.map((view) => view.render(state, before));
+  byId("views").classList.toggle("empty", result === null);
   byId("views").classList.toggle("dim", result !== null && result.revision !== state.revision && held(state) !== "unjudged" && state.run.phase !== "running");
   if (result && before?.result !== result) settle(Promise.allSettled(drawn));
   else if (state.run.phase === "failed") settle(Promise.resolve());
@@ -133,8 +134,10 @@ async function start() {
   const [fallback, presets, made] = await Promise.all([engine.ask("default_scenario"), engine.ask("presets"), samples(), loadCharts()]);
   state = initial(await own(fallback));
   const page = { engine, dispatch, now: () => state };
+  // Nothing is ever sent; Enter in a field must not try to.
+  byId("form").addEventListener("submit", (event) => event.preventDefault());
   const link = createLink(page);
-  const retry = () => { ran = -1; plan(); };
+  const retry = () => { ran = -1; judge(); };
   views = [createHeader({ presets, cancel, retry, ...page }), createForm({ root: byId("fields"), samples: made, dispatch }),
     createTabs(page), createMotion(page), createPulses(page), createPackets(page), createSpectrum(page), link];
   await link.read();

@@ -12,7 +12,7 @@ import { color, draw, watch } from "./plot.js";
 /** Lowest level of the dB scale. */
 const FLOOR_DB = -120;
 /** Width of the tick labels in CSS pixels. */
-const GUTTER = 44;
+const GUTTER = 58;
 /** Below this part of the fundamental a harmonic is the arithmetic's own noise. */
 const NOISE = 1e-11;
 
@@ -43,7 +43,7 @@ export function createSpectrum({ engine, now }) {
     const some = spectra?.ideal ?? spectra?.pulses ?? null;
     say(byId("thd"), spectra && some?.periodic ? distortion(spectra, quantity) : "");
     say(byId("spectrum-note"), spectra && some ? `${method(some)} ${spectra.note}`.trim() : spectra?.note ?? "");
-    canvas.hidden = !some;
+    /** @type {HTMLElement} */ (canvas.parentElement).hidden = !some;
     if (!spectra || !some) return table([]);
     table(harmonics(spectra, quantity));
     chart(spectra, some, quantity, db);
