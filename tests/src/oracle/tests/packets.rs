@@ -32,11 +32,11 @@ fn byte_i_is_for_channel_i() {
     let run = run(&Config { channels: 3, ..base() }, &sent(&[(1, &[0x81, 0x00, 0x02])], 600));
     // Delivered at 473, c0 = 474.
     assert_eq!(steps(&run, 0), [475]);
-    assert_eq!(steps(&run, 1), []);
+    assert_eq!(steps(&run, 1), [0; 0]);
     assert_eq!(steps(&run, 2), [475, 485]);
     assert_eq!(run.positions[..4], [1, 0, -2, 0]);
     assert_eq!(rises(&run, bits::DIR), [474]);
-    assert_eq!(rises(&run, bits::DIR + 2), []);
+    assert_eq!(rises(&run, bits::DIR + 2), [0; 0]);
 }
 
 #[test]

@@ -1,0 +1,236 @@
+//! Golden cases: folders of `tests/golden/`, run by every target from the same files.
+//!
+//! | file | what it is |
+//! | --- | --- |
+//! | `scenario.json` or `preset` | the experiment, or the id of the preset that it is |
+//! | `why` | the sentence of the contract that the case pins, and whether its trace was checked by hand |
+//! | `digest` | XXH64 of the trace, 16 hexadecimal digits |
+//! | `status` | what `stepscope run --status` prints below the digest |
+//! | `expect.trace` | the trace, where it is short: a record a line, cycle and levels in hexadecimal |
+//!
+//! The last three are written by `STEPSCOPE_BLESS=1 cargo test -p stepscope-tests --test golden`
+//! and by nothing else.
+
+use std::fmt::Write as _;
+use stepscope_core::{
+    run::{Experiment, Run},
+    scenario::presets::PRESETS,
+    signal::{self, Record, Sink},
+    trace::{Digest, parse_line, write_record},
+};
+
+/// Most records of a trace that is kept as text.
+pub const MOST_RECORDS: u64 = 400;
+
+/// All cases, by name.
+pub const CASES: &[Case] = include!(concat!(env!("OUT_DIR"), "/golden.rs"));
+
+/// One case.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    /// Its folder's name.
+    pub name: &'static str,
+    /// Name and text of each file.
+    pub files: &'static [(&'static str, &'static str)],
+}
+
+/// What a run leaves, in the words of the case's files.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Outcome {
+    /// 16 hexadecimal digits.
+    pub digest: String,
+    /// One `name value` a line.
+    pub status: String,
+    /// The first records, up to one more than a case keeps.
+    pub trace: Vec<Record>,
+}
+
+impl Case {
+    /// Text of a file, if the case has it.
+    #[must_use]
+    pub fn file(&self, name: &str) -> Option<&'static str> {
+        self.files.iter().find(|(each, _)| *each == name).map(|(_, text)| *text)
+    }
+
+    /// The scenario's JSON.
+    ///
+    /// # Errors
+    /// A sentence, if the case has none, two, or the id of no preset.
+    pub fn json(&self) -> Result<&'static str, String> {
+        match (self.file("scenario.json"), self.file("preset").map(str::trim)) {
+            (Some(json), None) => Ok(json),
+            (None, Some(id)) => {
+                let preset = PRESETS.iter().find(|preset| preset.id == id);
+                preset
+                    .map(|preset| preset.json)
+                    .ok_or_else(|| format!("{}: no preset is called {id}", self.name))
+            }
+            _ => Err(format!("{}: give either scenario.json or preset", self.name)),
+        }
+    }
+
+    /// The experiment.
+    ///
+    /// # Errors
+    /// A sentence with every problem of the scenario.
+    pub fn experiment(&self) -> Result<Experiment, String> {
+        Experiment::from_json(self.json()?).map_err(|problems| {
+            problems.iter().fold(format!("{}:", self.name), |text, problem| format!("{text}\n  {problem}"))
+        })
+    }
+
+    /// Compares a run with the case's files.
+    ///
+    /// # Errors
+    /// Every difference; of the trace's only the first, with the names of the signals.
+    pub fn compare(&self, found: &Outcome) -> Result<(), String> {
+        let mut differences = String::new();
+        let file = |name| self.file(name).unwrap_or_default();
+        if let Some(trace) = self.file("expect.trace") {
+            differences += &first_difference(trace, &found.trace).unwrap_or_default();
+        }
+        for (name, found) in [("digest", &found.digest), ("status", &found.status)] {
+            let mut expected = file(name).lines();
+            for line in found.lines() {
+                let expected = expected.next().unwrap_or("nothing");
+                if line != expected {
+                    let _ = writeln!(differences, "  {name}: expected `{expected}`, found `{line}`");
+                }
+            }
+            for expected in expected {
+                let _ = writeln!(differences, "  {name}: expected `{expected}`, found nothing");
+            }
+        }
+        if differences.is_empty() { Ok(()) } else { Err(format!("{}:\n{differences}", self.name)) }
+    }
+}
+
+impl Outcome {
+    /// Makes a run by `go`, which takes the sink of its records.
+    pub fn of(go: impl FnOnce(&mut Keep) -> Run, channels: u8) -> Self {
+        let mut keep = Keep::default();
+        let run = go(&mut keep);
+        let device = run.device();
+        let positions: Vec<String> =
+            device.positions().iter().take(channels.into()).map(i32::to_string).collect();
+        let faults: Vec<&str> = device.faults().names().collect();
+        let faults = if faults.is_empty() { "none".into() } else { faults.join(" ") };
+        let status = format!(
+            "cycles {}\nrecords {}\nticks_done {}\npositions {}\nfaults {:#06x} {faults}\n",
+            run.cycles().0,
+            keep.digest.records(),
+            device.ticks_done(),
+            positions.join(" "),
+            device.faults().bits()
+        );
+        Self { digest: format!("{:016x}", keep.digest.value()), status, trace: keep.first }
+    }
+
+    /// The trace as text, if it is short enough to be kept.
+    #[must_use]
+    pub fn trace_text(&self) -> Option<String> {
+        let mut text = String::new();
+        for record in &self.trace {
+            write_record(&mut text, *record).ok()?;
+        }
+        (self.trace.len() as u64 <= MOST_RECORDS).then_some(text)
+    }
+}
+
+/// Takes a run's records: the digest of all, and the first ones.
+#[derive(Default)]
+pub struct Keep {
+    digest: Digest,
+    first: Vec<Record>,
+}
+
+impl Sink for Keep {
+    fn record(&mut self, record: Record) {
+        if self.digest.records() <= MOST_RECORDS {
+            self.first.push(record);
+        }
+        self.digest.record(record);
+    }
+}
+
+/// The first record that differs from the text's, with the one before it and the signals' names.
+fn first_difference(expected: &str, found: &[Record]) -> Option<String> {
+    let lines: Vec<&str> = expected.lines().collect();
+    let records: Vec<_> = lines.iter().map(|line| parse_line(line).ok()).collect();
+    let index = (0..lines.len().max(found.len())).find(|&index| {
+        let expected = records.get(index).copied().flatten();
+        expected.is_none() || expected != found.get(index).copied()
+    })?;
+    let before = index.checked_sub(1).and_then(|before| found.get(before));
+    let expected = match (lines.get(index), records.get(index).copied().flatten()) {
+        (Some(line), None) => format!("`{line}`, which is no record"),
+        (_, record) => describe(record, before),
+    };
+    Some(format!(
+        "  expect.trace line {}, after {}\n    expected {expected}\n    found    {}\n",
+        index + 1,
+        describe(before.copied(), None),
+        describe(found.get(index).copied(), before)
+    ))
+}
+
+/// A record in words: the cycle, what has changed since the record before, and what is high.
+fn describe(record: Option<Record>, before: Option<&Record>) -> String {
+    let Some(Record { cycle, levels }) = record else { return "no record".into() };
+    let names = |mask: u64, mark: &str| {
+        let bits = (0..64).filter(|bit| mask >> bit & 1 != 0);
+        bits.map(|bit| format!(" {mark}{}", signal::name(bit).unwrap_or_else(|| format!("bit{bit}"))))
+            .collect::<String>()
+    };
+    let mut text = format!("cycle {:#x} ({})", cycle.0, cycle.0);
+    if let Some(before) = before {
+        let (rise, fall) = (levels.0 & !before.levels.0, !levels.0 & before.levels.0);
+        text += &format!(":{}{}", names(rise, "+"), names(fall, "-"));
+    }
+    format!("{text} [{:x} ={}]", levels.0, names(levels.0, ""))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stepscope_core::{signal::Levels, units::Instant};
+
+    fn record(cycle: u64, levels: u64) -> Record {
+        Record { cycle: Instant(cycle), levels: Levels(levels) }
+    }
+
+    #[test]
+    fn the_first_record_that_differs_is_named_with_its_signals() {
+        let found = [record(0, 0x7_0000_0000), record(0x10, 0x7_0001_0000), record(0x18, 0x7_0001_0001)];
+        let rows = [
+            ("0 700000000\n10 700010000\n18 700010001\n", None),
+            (
+                "0 700000000\r\n10 700010000\r\n19 700010001\r\n",
+                Some(
+                    "  expect.trace line 3, after cycle 0x10 (16) [700010000 = DIR0 EN RX TX]\n    \
+                     expected cycle 0x19 (25): +STEP0 [700010001 = STEP0 DIR0 EN RX TX]\n    \
+                     found    cycle 0x18 (24): +STEP0 [700010001 = STEP0 DIR0 EN RX TX]\n",
+                ),
+            ),
+            (
+                "0 700000000\n10 700010000\n",
+                Some(
+                    "  expect.trace line 3, after cycle 0x10 (16) [700010000 = DIR0 EN RX TX]\n    \
+                     expected no record\n    \
+                     found    cycle 0x18 (24): +STEP0 [700010001 = STEP0 DIR0 EN RX TX]\n",
+                ),
+            ),
+            (
+                "0 700000000\nten\n",
+                Some(
+                    "  expect.trace line 2, after cycle 0x0 (0) [700000000 = EN RX TX]\n    \
+                     expected `ten`, which is no record\n    \
+                     found    cycle 0x10 (16): +DIR0 [700010000 = DIR0 EN RX TX]\n",
+                ),
+            ),
+        ];
+        for (expected, difference) in rows {
+            assert_eq!(first_difference(expected, &found).as_deref(), difference, "{expected}");
+        }
+    }
+}
