@@ -40,37 +40,27 @@ impl Step {
         match self {
             Self::Format => {
                 toolchain::components().await?;
-                cargo(&["fmt", "--all", "--check"]).await
+                cargo("fmt --all --check").await
             }
             Self::Lint => {
                 toolchain::components().await?;
                 toolchain::target(WASM).await?;
                 toolchain::target(BARE_METAL).await?;
-                let deny = ["--locked", "--", "-D", "warnings"];
-                clippy(&["--workspace", "--all-targets", "--all-features"], deny).await?;
-                clippy(&["--package", "stepscope-wasm", "--all-targets", "--target", WASM], deny).await?;
-                let core = ["--package", "stepscope-core", "--no-default-features", "--target", BARE_METAL];
-                clippy(&core, deny).await
+                clippy("--workspace --all-targets --all-features").await?;
+                clippy(&format!("--package stepscope-wasm --all-targets --target {WASM}")).await?;
+                clippy(&format!("--package stepscope-core --no-default-features --target {BARE_METAL}")).await
             }
             Self::Docs => {
                 let mut command = toolchain::cargo();
-                command
-                    .args(["doc", "--no-deps", "--workspace", "--locked"])
-                    .env("RUSTDOCFLAGS", "-D warnings");
+                command.args(words("doc --no-deps --workspace --locked")).env("RUSTDOCFLAGS", "-D warnings");
                 run::to_end(command, run::LIMIT).await
             }
-            Self::Native => cargo(&["test", "--workspace", "--locked"]).await,
+            Self::Native => cargo("test --workspace --locked").await,
             Self::BareMetal => {
                 toolchain::target(BARE_METAL).await?;
-                cargo(&[
-                    "build",
-                    "--package",
-                    "stepscope-core",
-                    "--no-default-features",
-                    "--target",
-                    BARE_METAL,
-                    "--locked",
-                ])
+                cargo(&format!(
+                    "build --package stepscope-core --no-default-features --target {BARE_METAL} --locked"
+                ))
                 .await
             }
             Self::Wasm => wasm().await,
@@ -79,14 +69,19 @@ impl Step {
     }
 }
 
-async fn cargo(arguments: &[&str]) -> Result<()> {
+/// The arguments in a line as one would type it, where none holds a space.
+fn words(line: &str) -> impl Iterator<Item = &str> {
+    line.split_whitespace()
+}
+
+async fn cargo(line: &str) -> Result<()> {
     let mut command = toolchain::cargo();
-    command.args(arguments);
+    command.args(words(line));
     run::to_end(command, run::LIMIT).await
 }
 
-async fn clippy(what: &[&str], deny: [&str; 4]) -> Result<()> {
-    cargo(&[&["clippy"], what, &deny].concat()).await
+async fn clippy(what: &str) -> Result<()> {
+    cargo(&format!("clippy {what} --locked -- -D warnings")).await
 }
 
 /// wasm/webdriver.json holds the browser's flags.
@@ -111,16 +106,8 @@ async fn page() -> Result<()> {
     print!("{weights}");
     weights.within_budget()?;
     let mut command = toolchain::cargo();
-    command.args([
-        "test",
-        "--package",
-        "stepscope-tests",
-        "--features",
-        "browser",
-        "--test",
-        "page",
-        "--locked",
-    ]);
+    // The whole workspace, so that its packages keep the features, and with them the builds, of the native step.
+    command.args(words("test --workspace --features stepscope-tests/browser --test page --locked"));
     command
         .env("STEPSCOPE_WEB", web)
         .env("STEPSCOPE_XTASK", this)
