@@ -14,7 +14,7 @@ use crate::{
     device::Device,
     motion::{AxisPlan, plan_axis},
     quantise::ticks,
-    scenario::{Cause, Checked, Config, END_OF_TIME, Problem, Scenario, Source, line_time},
+    scenario::{Cause, Checked, Config, DirLine, END_OF_TIME, Problem, Pulses, Scenario, Source, line_time},
     signal::{Event, Record, Sink},
     units::{Cycles, Instant},
     wire::{Line, Schedule, packet::Order},
@@ -255,16 +255,28 @@ fn schedule(checked: &Checked, plans: &[AxisPlan]) -> Result<(Schedule, u64), Ve
         Source::Line(script) => {
             let schedule = Schedule::scripted(script);
             let packets = (schedule.total_bytes() / config.packet_len()) as u64;
-            let records = line_edges(&schedule) + packets * (2 * u64::from(config.slots()) + 1);
+            let most = u64::from(config.slots()) * u64::from(config.channels());
+            let records = line_edges(&schedule) + packets * records_of(config, most);
             Ok((schedule, records))
         }
     }
 }
 
-/// Records that a tick makes at most: two a slot that fires, one for DIR.
+/// Records that the tick of a packet makes at most.
 fn tick_records(config: &Config, packet: &[u8]) -> u64 {
-    let steps: u64 = packet.iter().map(|&byte| u64::from(Order::parse(byte).steps)).sum();
-    2 * steps.min(u64::from(config.slots())) + 1
+    records_of(config, packet.iter().map(|&byte| u64::from(Order::parse(byte).steps)).sum())
+}
+
+/// Records that a tick of `pulses` pulses makes at most: two edges a pulse, or a slot where they
+/// come together, and the changes of DIR.
+fn records_of(config: &Config, pulses: u64) -> u64 {
+    let slots = pulses.min(u64::from(config.slots()));
+    match (config.pulses, config.dir_line) {
+        (Pulses::Simultaneous, DirLine::PerChannel) => 2 * slots + 1,
+        (Pulses::Simultaneous, DirLine::Common) => 6 * slots,
+        (Pulses::Staggered, DirLine::PerChannel) => 2 * pulses + 1,
+        (Pulses::Staggered, DirLine::Common) => 2 * pulses + 2 * slots,
+    }
 }
 
 /// A cycle by which the host has sent everything and the last tick has passed.

@@ -1,9 +1,6 @@
 //! DESIGN Part A, held edge by edge: for random configurations and line activity the core gives, at every
 //! one of its speeds, the trace, positions, faults and tick count of the independent model in
-//! [`stepscope_tests::oracle`].
-//!
-//! The core drives each channel's DIR line by itself and pulses all channels at once, so the cases are of
-//! that mode.
+//! [`stepscope_tests::oracle`], in every mode of the driver bus.
 #![cfg(not(target_arch = "wasm32"))]
 
 use std::rc::Rc;
@@ -14,7 +11,8 @@ use stepscope_core::{
     device::Device,
     run::{Experiment, Run},
     scenario::{
-        Bus, Distribution, Glitch, Hex, Line, LineScript, Packets, Problem, Scenario, ScriptedSend, Source,
+        Bus, DirLine, Distribution, Glitch, Hex, Line, LineScript, Packets, Problem, Pulses, Scenario,
+        ScriptedSend, Source,
     },
     signal::Record,
     trace::Digest,
@@ -22,11 +20,9 @@ use stepscope_core::{
     wire,
 };
 use stepscope_tests::{
-    cases::{Mode, cases, configs},
+    cases::{cases, configs, every_mode},
     oracle,
 };
-
-const CORES_MODE: Mode = Mode { common_dir: false, staggered: false };
 
 /// A few seconds' worth of cases, or as many as PROPTEST_CASES says.
 fn proptest_config() -> ProptestConfig {
@@ -50,6 +46,9 @@ fn scenario(config: &oracle::Config, forced: &[(u64, u64, bool)], source: Source
             dir_setup_cycles: config.dir_setup as u32,
             dir_hold_cycles: config.dir_hold as u32,
             distribution: if config.spread { Distribution::Spread } else { Distribution::Burst },
+            dir_line: if config.common_dir { DirLine::Common } else { DirLine::PerChannel },
+            pulses: if config.staggered { Pulses::Staggered } else { Pulses::Simultaneous },
+            settle_cycles: config.settle as u32,
             queue_depth: config.queue_depth as u8,
             boot_cycles: config.boot as u32,
         },
@@ -169,7 +168,7 @@ proptest! {
     #![proptest_config(proptest_config())]
 
     #[test]
-    fn the_core_gives_the_models_run_at_every_speed((config, input) in cases(Just(CORES_MODE))) {
+    fn the_core_gives_the_models_run_at_every_speed((config, input) in cases(every_mode())) {
         let experiment = match experiment(&config, &input, Some(input.cycles)) {
             Ok(experiment) => experiment,
             Err(problems) => {
@@ -195,7 +194,7 @@ proptest! {
 
     #[test]
     fn a_run_without_an_end_stops_where_nothing_can_change_any_more(
-        (config, input) in cases(Just(CORES_MODE))
+        (config, input) in cases(every_mode())
     ) {
         let Ok(experiment) = experiment(&config, &input, None) else { return Ok(()) };
         let mut trace: Vec<Record> = Vec::new();
@@ -210,7 +209,7 @@ proptest! {
 
     #[test]
     fn the_paced_host_sends_packet_j_at_boot_and_1_and_j_ticks(
-        config in configs(Just(CORES_MODE)),
+        config in configs(every_mode()),
         bytes in prop::collection::vec(any::<u8>(), 0..200),
     ) {
         let packet_length = config.channels + usize::from(config.address.is_some());

@@ -1,18 +1,22 @@
 //! The STEP and DIR lines of one tick, worked out when it starts (DESIGN A7).
 //!
 //! ```text
-//! slot k starts at s = c0 + k*Ts      per-channel DIR, simultaneous pulses:
+//! slot k starts at s = c0 + k*Ts
 //!
-//! DIR   ═╳══════════════════════════  at c0 only
-//! STEP  ────────┐        ┌─────────   rise at s + D, fall at s + D + W
-//!               └ D ┘ W  ┘
+//! per-channel DIR, simultaneous         common DIR, simultaneous
+//! DIR   ═╳═══════════════  at c0        DIR   ─┐_________________┌────────
+//! STEP  ─────┌────┐______               left  ─┼───┌────┐________│________
+//!        | D |  W |                     right ─┼───│────│────────│───┌────┐
+//!        s   rise fall                         s D   W       H     D    W
+//!
+//! staggered: the j-th pulse rises at s + D + j*d, d = min(dp, floor(Ts/nd)), nd firing channels
 //! ```
 //!
 //! The plan is a list of (offset from c0, lines after it), so that running a tick is only walking
 //! along it. Successive ticks with the same orders share it.
 
 use crate::{
-    scenario::{Config, Distribution},
+    scenario::{Config, DirLine, Distribution, Pulses},
     signal::{Levels, MAX_CHANNELS},
     wire::packet::{Order, Tick},
 };
@@ -34,28 +38,18 @@ pub(super) struct Change {
 /// The changes of one tick.
 #[derive(Clone, Debug)]
 pub(super) struct Plan {
-    channels: u8,
-    slots: u8,
-    step_period: u64,
-    pulse_width: u64,
-    dir_setup: u64,
-    distribution: Distribution,
+    config: Config,
+    /// DIR of the channels in use, all right.
+    all_right: Lines,
     orders: Tick,
     changes: Vec<Change>,
 }
 
 impl Plan {
     pub(super) fn new(config: &Config) -> Self {
-        let mut plan = Self {
-            channels: config.channels,
-            slots: config.slots,
-            step_period: config.step_period,
-            pulse_width: config.pulse_width,
-            dir_setup: config.dir_setup,
-            distribution: config.distribution,
-            orders: [0; MAX_CHANNELS],
-            changes: Vec::new(),
-        };
+        let all_right = !(!0 << config.channels) << Levels::DIR_SHIFT;
+        let orders = [0; MAX_CHANNELS];
+        let mut plan = Self { config: config.clone(), all_right, orders, changes: Vec::new() };
         plan.rebuild();
         plan
     }
@@ -65,7 +59,8 @@ impl Plan {
         &self.orders
     }
 
-    /// Rising offsets; the first is 0.
+    /// Rising offsets. With a common DIR line the first change sets DIR: what it was before the
+    /// tick does not matter.
     pub(super) fn changes(&self) -> &[Change] {
         &self.changes
     }
@@ -80,27 +75,94 @@ impl Plan {
 
     fn rebuild(&mut self) {
         let counts = self.orders.map(|byte| Order::parse(byte).steps);
-        let mut dir: Lines = 0;
-        for (channel, byte) in self.orders.iter().enumerate().take(usize::from(self.channels)) {
-            dir |= Lines::from(Order::parse(*byte).right) << channel << Levels::DIR_SHIFT;
-        }
+        let right = pack(self.orders.map(|byte| u8::from(Order::parse(byte).right)));
+        let dir = Lines::from(right) << Levels::DIR_SHIFT & self.all_right;
         self.changes.clear();
-        self.changes.push(Change { offset: 0, lines: dir });
-        let mut firing = Firing::new(counts, self.slots, self.distribution);
-        let mut slot_start = 0;
-        for slot in 0..self.slots {
-            let steps = Lines::from(firing.slot(slot));
-            if steps != 0 {
-                let rise = slot_start + self.dir_setup;
-                if rise == 0 {
-                    self.changes.clear();
+        if self.config.dir_line == DirLine::PerChannel {
+            self.push(0, dir);
+        }
+        let mut firing = Firing::new(counts, self.config.slots, self.config.distribution);
+        for slot in 0..self.config.slots {
+            let start = u64::from(slot) * self.config.step_period;
+            match (firing.slot(slot), self.config.dir_line, self.config.pulses) {
+                (0, ..) => {}
+                (fires, DirLine::PerChannel, Pulses::Simultaneous) => {
+                    self.pulse(start + self.config.dir_setup, fires, dir);
                 }
-                self.changes.push(Change { offset: rise, lines: dir | steps });
-                self.changes.push(Change { offset: rise + self.pulse_width, lines: dir });
+                (fires, DirLine::PerChannel, Pulses::Staggered) => self.staggered(start, fires, dir),
+                (fires, DirLine::Common, Pulses::Simultaneous) => {
+                    let second =
+                        start + self.config.dir_setup + self.config.pulse_width + self.config.dir_hold;
+                    self.push(start, 0);
+                    self.pulse(start + self.config.dir_setup, fires & !right, 0);
+                    self.push(second, self.all_right);
+                    self.pulse(second + self.config.dir_setup, fires & right, self.all_right);
+                }
+                (fires, DirLine::Common, Pulses::Staggered) => self.common_staggered(start, fires, right),
             }
-            slot_start += self.step_period;
         }
     }
+
+    /// All of `fires` from `rise` on, for W cycles; DIR stays at `dir`.
+    fn pulse(&mut self, rise: u64, fires: u16, dir: Lines) {
+        if fires != 0 {
+            self.push(rise, dir | Lines::from(fires));
+            self.push(rise + self.config.pulse_width, dir);
+        }
+    }
+
+    /// From pulse to pulse of a slot: d = min(dp, floor(Ts/nd)).
+    fn distance(&self, fires: u16) -> u64 {
+        self.config.settle.min(self.config.step_period / u64::from(fires.count_ones().max(1)))
+    }
+
+    /// One channel after another, ascending; pulses that are closer than W overlap.
+    fn staggered(&mut self, start: u64, fires: u16, dir: Lines) {
+        let (distance, width) = (self.distance(fires), self.config.pulse_width);
+        let first = start + self.config.dir_setup;
+        let pulses = || channels(fires).zip(0_u64..).map(|(bit, j)| (bit, first + j * distance));
+        let (mut rises, mut falls) = (pulses().peekable(), pulses().peekable());
+        let mut lines = dir;
+        while let Some(&(bit, rise)) = falls.peek() {
+            match rises.next_if(|&(_, next)| next <= rise + width) {
+                Some((bit, rise)) => {
+                    lines |= bit;
+                    self.push(rise, lines);
+                }
+                None => {
+                    lines &= !bit;
+                    falls.next();
+                    self.push(rise + width, lines);
+                }
+            }
+        }
+    }
+
+    /// The left ones ascending, then the right ones ascending; L <= d, so no two pulses meet.
+    fn common_staggered(&mut self, start: u64, fires: u16, right: u16) {
+        let distance = self.distance(fires);
+        let order = channels(fires & !right).zip([0].into_iter().cycle());
+        let order = order.chain(channels(fires & right).zip([self.all_right].into_iter().cycle()));
+        for ((bit, dir), j) in order.zip(0_u64..) {
+            let at = start + j * distance;
+            self.push(at, dir);
+            self.push(at + self.config.dir_setup, dir | bit);
+            self.push(at + self.config.dir_setup + self.config.pulse_width, dir);
+        }
+    }
+
+    /// Adds a change; of several at the same offset the last counts.
+    fn push(&mut self, offset: u64, lines: Lines) {
+        match self.changes.last_mut() {
+            Some(last) if last.offset == offset => last.lines = lines,
+            _ => self.changes.push(Change { offset, lines }),
+        }
+    }
+}
+
+/// The STEP bits of `fires` one by one, ascending.
+fn channels(fires: u16) -> impl Iterator<Item = Lines> {
+    (0..MAX_CHANNELS).map(|channel| 1 << channel).filter(move |bit| Lines::from(fires) & bit != 0)
 }
 
 /// Which channels fire in a slot.

@@ -3,7 +3,9 @@
 //! Motions are judged where they are planned (`motion`), because only the plan knows what they ask
 //! for; [`crate::run::Experiment`] gathers the problems of both.
 
-use super::{Bus, Cause, Distribution, Hex, Line, LineScript, Packets, Problem, Scenario, Source};
+use super::{
+    Bus, Cause, DirLine, Distribution, Hex, Line, LineScript, Packets, Problem, Pulses, Scenario, Source,
+};
 use crate::{
     signal::MAX_CHANNELS,
     units::{Cycles, Instant},
@@ -28,6 +30,10 @@ pub struct Config {
     pub(crate) step_period: u64,
     pub(crate) pulse_width: u64,
     pub(crate) dir_setup: u64,
+    pub(crate) dir_hold: u64,
+    pub(crate) settle: u64,
+    pub(crate) dir_line: DirLine,
+    pub(crate) pulses: Pulses,
     pub(crate) distribution: Distribution,
     pub(crate) queue_depth: u8,
     pub(crate) boot: Instant,
@@ -53,15 +59,8 @@ impl Config {
         if let Some(address) = line.address {
             judge.range("line.address", address, 0, 254, "");
         }
-        let (width, setup, hold) = (
-            u64::from(bus.pulse_width_cycles),
-            u64::from(bus.dir_setup_cycles),
-            u64::from(bus.dir_hold_cycles),
-        );
-        let (needed, period) = (width + (setup + hold).max(1), u64::from(bus.step_period_cycles));
-        if needed > period {
-            judge.add("bus.step_period_cycles", Cause::PulseTooLong { width, setup, hold, needed, period });
-        }
+        judge.range("bus.settle_cycles", bus.settle_cycles, 0, 1_000_000_000, "cycles");
+        pulses_fit(bus, &mut judge);
         let baud = line.receiver_baud.unwrap_or(line.baud);
         let path = if line.receiver_baud.is_some() { "line.receiver_baud" } else { "line.baud" };
         judge.range(path, baud, 1, 100_000_000, "baud");
@@ -74,9 +73,13 @@ impl Config {
             clock_hz,
             channels: bus.channels,
             slots: bus.slots,
-            step_period: period,
-            pulse_width: width,
-            dir_setup: setup,
+            step_period: u64::from(bus.step_period_cycles),
+            pulse_width: u64::from(bus.pulse_width_cycles),
+            dir_setup: u64::from(bus.dir_setup_cycles),
+            dir_hold: u64::from(bus.dir_hold_cycles),
+            settle: u64::from(bus.settle_cycles),
+            dir_line: bus.dir_line,
+            pulses: bus.pulses,
             distribution: bus.distribution,
             queue_depth: bus.queue_depth,
             boot: Instant(u64::from(bus.boot_cycles)),
@@ -125,6 +128,33 @@ impl Config {
     #[must_use]
     pub const fn packet_len(&self) -> usize {
         self.channels as usize + self.address.is_some() as usize
+    }
+}
+
+/// A7's rules: with L = W + max(D + H, 1), simultaneous L <= Ts, with a common DIR line 2*L <= Ts;
+/// staggered L <= floor(Ts/channels), with a common DIR line also dp >= L.
+fn pulses_fit(bus: &Bus, judge: &mut Judge) {
+    let (width, setup, hold, period, settle) = (
+        u64::from(bus.pulse_width_cycles),
+        u64::from(bus.dir_setup_cycles),
+        u64::from(bus.dir_hold_cycles),
+        u64::from(bus.step_period_cycles),
+        u64::from(bus.settle_cycles),
+    );
+    let needed = width + (setup + hold).max(1);
+    let (pulses, of) = match (bus.pulses, bus.dir_line) {
+        (Pulses::Simultaneous, DirLine::PerChannel) => (1, "all channels at once"),
+        (Pulses::Simultaneous, DirLine::Common) => (2, "left, then right, on a common DIR line"),
+        (Pulses::Staggered, _) => (u64::from(bus.channels.max(1)), "one channel after another"),
+    };
+    if needed > period / pulses {
+        judge.add(
+            "bus.step_period_cycles",
+            Cause::PulseTooLong { width, setup, hold, needed, pulses, of, period },
+        );
+    }
+    if bus.pulses == Pulses::Staggered && bus.dir_line == DirLine::Common && settle < needed {
+        judge.add("bus.settle_cycles", Cause::SettleTooShort { settle, width, setup, hold, needed });
     }
 }
 

@@ -91,20 +91,21 @@ macro_rules! choices {
 
 pub(crate) use {choices, settings};
 
-impl Compact for super::Distribution {
-    fn compact(&self) -> Value {
-        Value::from(match self {
-            Self::Burst => "burst",
-            Self::Spread => "spread",
-        })
-    }
+macro_rules! words {
+    ($($ty:ty { $($variant:ident = $word:literal,)* })*) => {$(
+        impl Compact for $ty {
+            fn compact(&self) -> Value {
+                Value::from(match self {
+                    $(Self::$variant => $word,)*
+                })
+            }
+        }
+    )*};
 }
 
-impl Compact for super::TrapezoidMethod {
-    fn compact(&self) -> Value {
-        Value::from(match self {
-            Self::Table => "table",
-            Self::Exact => "exact",
-        })
-    }
+words! {
+    super::Distribution { Burst = "burst", Spread = "spread", }
+    super::DirLine { PerChannel = "per_channel", Common = "common", }
+    super::Pulses { Simultaneous = "simultaneous", Staggered = "staggered", }
+    super::TrapezoidMethod { Table = "table", Exact = "exact", }
 }

@@ -74,6 +74,13 @@ settings! {
         pub dir_hold_cycles: u32 = 0,
         /// Where in a tick the steps go.
         pub distribution: Distribution = Distribution::Spread,
+        /// How many DIR lines the controller has.
+        pub dir_line: DirLine = DirLine::PerChannel,
+        /// When the pulses of one slot come.
+        pub pulses: Pulses = Pulses::Simultaneous,
+        /// Settling time of the drivers' supply current after a step, in cycles (the patent's
+        /// delta t_p): staggered pulses are at most so far apart.
+        pub settle_cycles: u32 = 0,
         /// Ticks that the queue holds, 1 to 255.
         pub queue_depth: u8 = 16,
         /// Self-test after reset in cycles; packets that end within it are dropped.
@@ -90,6 +97,28 @@ pub enum Distribution {
     /// Evenly over the tick.
     #[default]
     Spread,
+}
+
+/// How many DIR lines the controller has (DESIGN A7).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DirLine {
+    /// One a channel; they change when a tick starts.
+    #[default]
+    PerChannel,
+    /// One for all channels; it changes within each slot.
+    Common,
+}
+
+/// When the pulses of one slot come (DESIGN A7).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Pulses {
+    /// All at once.
+    #[default]
+    Simultaneous,
+    /// One after another, so that the drivers' current peaks do not meet.
+    Staggered,
 }
 
 settings! {

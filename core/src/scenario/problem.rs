@@ -105,8 +105,27 @@ pub enum Cause {
         /// Highest rate that this clock can hear.
         most_baud: u32,
     },
-    /// A pulse with its times does not fit in a slot (A7).
+    /// The pulses of a slot do not fit in it (A7).
     PulseTooLong {
+        /// W.
+        width: u64,
+        /// D.
+        setup: u64,
+        /// H.
+        hold: u64,
+        /// L = W + max(D + H, 1), of one pulse.
+        needed: u64,
+        /// Pulses that have to follow each other in a slot.
+        pulses: u64,
+        /// Which these are.
+        of: &'static str,
+        /// Ts.
+        period: u64,
+    },
+    /// Staggered pulses with a common DIR line are closer than one lasts (A7).
+    SettleTooShort {
+        /// dp.
+        settle: u64,
         /// W.
         width: u64,
         /// D.
@@ -115,8 +134,6 @@ pub enum Cause {
         hold: u64,
         /// L = W + max(D + H, 1).
         needed: u64,
-        /// Ts.
-        period: u64,
     },
     /// A send begins before the one before it has ended (A9).
     Overlap {
@@ -256,9 +273,14 @@ impl fmt::Display for Cause {
                 f,
                 "{baud} baud at {clock_hz} Hz is {bit_cycles} cycles a bit, the receiver needs 11; give at most {most_baud} baud or a faster clock"
             ),
-            Self::PulseTooLong { width, setup, hold, needed, period } => write!(
+            Self::PulseTooLong { width, setup, hold, needed, pulses, of, period } => write!(
                 f,
-                "a pulse needs width {width} + max(setup {setup} + hold {hold}, 1) = {needed} cycles, the slot has {period}; give a step period of at least {needed} or shorter times"
+                "a pulse needs width {width} + max(setup {setup} + hold {hold}, 1) = {needed} cycles, {pulses} in a slot ({of}), the slot has {period}; give a step period of at least {} or shorter times",
+                needed * pulses
+            ),
+            Self::SettleTooShort { settle, width, setup, hold, needed } => write!(
+                f,
+                "{settle} cycles from pulse to pulse, but one needs width {width} + max(setup {setup} + hold {hold}, 1) = {needed} on a common DIR line; give at least {needed} or shorter times"
             ),
             Self::Overlap { start, free_from } => write!(
                 f,
