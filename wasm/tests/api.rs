@@ -1,0 +1,195 @@
+//! What the page may rely on: the shape of each answer, and that no text makes the module fail.
+#![cfg(target_arch = "wasm32")]
+
+mod js;
+
+use js::{get, list, number, text};
+use js_sys::{Float64Array, Int32Array, Uint32Array};
+use stepscope_wasm::{Simulation, check, decode_link, default_scenario, encode_link, presets, version};
+use wasm_bindgen::{JsCast, JsValue};
+use wasm_bindgen_test::{wasm_bindgen_test, wasm_bindgen_test_configure};
+
+wasm_bindgen_test_configure!(run_in_dedicated_worker);
+
+/// The value of a call that no text and no scenario of the tests may make fail.
+fn sure<T, E>(result: Result<T, E>) -> T {
+    result.unwrap_or_else(|_| unreachable!("the call failed"))
+}
+
+/// A finished run.
+fn finished(json: &str) -> Simulation {
+    let mut simulation = sure(Simulation::new(json));
+    while !get(&sure(simulation.advance(100_000)), "done").is_truthy() {}
+    simulation
+}
+
+fn paths(judgement: &JsValue) -> Vec<String> {
+    list(judgement, "problems").iter().map(|problem| text(problem, "path")).collect()
+}
+
+/// Numbers of a typed array.
+fn numbers(object: &JsValue, name: &str) -> Vec<f64> {
+    get(object, name).unchecked_into::<Float64Array>().to_vec()
+}
+
+#[wasm_bindgen_test]
+fn a_good_scenario_is_judged_with_what_follows_from_it() {
+    let judgement = sure(check(&default_scenario()));
+    assert_eq!(paths(&judgement), [""; 0]);
+    assert_eq!(text(&judgement, "scenario"), default_scenario());
+    let derived = get(&judgement, "derived");
+    assert_eq!(number(&derived, "tick_s"), 0.002);
+    assert_eq!(number(&derived, "limit_steps_s"), 50_000.0);
+    assert_eq!(number(&list(&derived, "axes")[0], "steps"), 3200.0);
+    assert_eq!(number(&list(&derived, "axes")[0], "peak_speed_steps_s"), 16_000.0);
+    let cost = get(&judgement, "cost");
+    assert!(!get(&cost, "over_budget").is_truthy() && text(&cost, "message").is_empty());
+    assert!(number(&cost, "edges") > 6400.0);
+    assert!(!version().is_empty());
+}
+
+#[wasm_bindgen_test]
+fn all_problems_of_a_bad_text_are_listed_with_their_paths() {
+    let rows: [(&str, &[&str]); 7] = [
+        ("", &[""]),
+        ("{", &[""]),
+        ("[]", &[""]),
+        ("null", &[""]),
+        (r#"{"bus":{"slots":0,"channels":"x"}}"#, &["bus.channels", "bus.slots"]),
+        (r#"{"version":7}"#, &["version"]),
+        (
+            r#"{"source":{"motion":{"axes":[{"moves":[{"cosine":{"ramp_s":0.3}}]}]}}}"#,
+            &["source.motion.axes[0].moves[0].cosine.ramp_s"],
+        ),
+    ];
+    for (given, expected) in rows {
+        let judgement = sure(check(given));
+        let mut found = paths(&judgement);
+        found.sort();
+        assert_eq!(found, expected, "{given}");
+        assert!(list(&judgement, "problems").iter().all(|problem| !text(problem, "message").is_empty()));
+        assert!(get(&judgement, "derived").is_null() && get(&judgement, "cost").is_null(), "{given}");
+        assert!(paths(&sure(check(&text(&judgement, "scenario")))).len() <= expected.len(), "{given}");
+        assert!(Simulation::new(given).is_err(), "{given}");
+    }
+}
+
+#[wasm_bindgen_test]
+fn links_go_there_and_back_and_bad_ones_say_why() {
+    let all = sure(presets()).unchecked_into::<js_sys::Array>().to_vec();
+    assert!(!all.is_empty());
+    for preset in &all {
+        let scenario = text(preset, "scenario");
+        let link = sure(encode_link(&scenario));
+        let opened = sure(decode_link(&format!("#{link}&v=views")));
+        assert_eq!(text(&opened, "scenario"), scenario, "{}", text(preset, "id"));
+        assert!(!get(&opened, "over_budget").is_truthy(), "{}", text(preset, "id"));
+        assert!(!text(preset, "document").is_empty());
+    }
+    let link = sure(encode_link(&default_scenario()));
+    for (given, why) in [
+        (String::new(), "no scenario"),
+        ("v=1".into(), "no scenario"),
+        (link[..link.len() - 1].into(), "cut short"),
+        (link.replacen("c=1.", "c=2.", 1), "newer version"),
+        ("c=1".repeat(10_000), "too long"),
+        ("c=1.z.__proto__.00000000".into(), "cut short"),
+    ] {
+        let error = text(&sure(decode_link(&given)), "error");
+        assert!(error.contains(why), "{why}: {error}");
+    }
+    assert!(encode_link("{").is_err());
+    let long = format!(r#"{{"source":{{"packets":{{"packets":[{}"00"]}}}}}}"#, r#""00","#.repeat(20_000));
+    assert!(encode_link(&long).is_err(), "more than a link carries");
+}
+
+#[wasm_bindgen_test]
+fn a_link_beyond_the_budget_says_so() {
+    // Ten million edges of STEP.
+    let scenario = r#"{"bus":{"channels":1,"slots":127,"step_period_cycles":100},"line":{"baud":1000000},
+        "source":{"motion":{"axes":[{"moves":[{"constant":{"distance":{"steps":5000000},"speed":{"steps_s":150000}}}]}]}}}"#;
+    let opened = sure(decode_link(&sure(encode_link(scenario))));
+    assert!(get(&opened, "over_budget").is_truthy());
+    assert!(text(&opened, "message").contains("edges"));
+}
+
+#[wasm_bindgen_test]
+fn the_default_motion_is_there_from_curve_to_packet() {
+    let mut simulation = finished(&default_scenario());
+    let summary = sure(simulation.summary());
+    let positions: Int32Array = get(&summary, "positions").unchecked_into();
+    assert_eq!(positions.to_vec(), [3200]);
+    assert_eq!(number(&summary, "ticks_done"), 200.0);
+    assert_eq!(list(&get(&summary, "faults"), "names").len(), 0);
+    assert_eq!(text(&summary, "digest").len(), 16);
+
+    let end_s = number(&summary, "end_s");
+    let motion = simulation.motion(0, 0.0, end_s, 50);
+    assert!(get(&motion, "has_ideal").is_truthy());
+    for name in ["position", "speed", "acceleration", "made_position", "made_speed"] {
+        let (least, most) =
+            (numbers(&motion, &format!("{name}_min")), numbers(&motion, &format!("{name}_max")));
+        assert_eq!((least.len(), most.len()), (50, 50), "{name}");
+        assert!(
+            least.iter().zip(&most).all(|(a, b)| a <= b || a.is_nan() && b.is_nan()),
+            "{name}: {least:?} {most:?}"
+        );
+    }
+    assert_eq!(numbers(&motion, "made_position_max").last(), Some(&3200.0));
+
+    let packets = sure(simulation.packets(100, 3));
+    assert_eq!(number(&packets, "total"), 200.0);
+    let rows = list(&packets, "rows");
+    assert_eq!(rows.len(), 3);
+    assert_eq!((number(&rows[0], "index"), text(&rows[0], "outcome").as_str()), (100.0, "queued"));
+    assert!(text(&rows[0], "fields").starts_with("ch0 +") && text(&rows[0], "hex").len() == 2);
+    assert!(number(&rows[0], "tick_start_cycle") > number(&rows[0], "end_cycle"));
+    assert_eq!(list(&sure(simulation.packets(200, 5)), "rows").len(), 0);
+
+    let spectrum = sure(simulation.spectrum());
+    for name in ["ideal", "pulses"] {
+        let lines = numbers(&get(&spectrum, name), "position");
+        assert_eq!(lines.len(), 40, "{name}");
+        assert!(
+            lines.iter().all(|amplitude| amplitude.is_finite() && *amplitude >= 0.0),
+            "{name}: {lines:?}"
+        );
+        assert!(get(&get(&spectrum, name), "thd_position").is_null(), "the motion does not repeat");
+    }
+    assert!(!text(&spectrum, "note").is_empty());
+}
+
+#[wasm_bindgen_test]
+fn edges_are_found_in_both_directions_and_columns_hold_them() {
+    // The golden case `tick`: STEP rises at 0x108 and 0x188, falls at 0x118 and 0x198.
+    let case = stepscope_tests::golden::CASES.iter().find(|case| case.name == "tick");
+    let simulation = finished(case.and_then(|case| case.json().ok()).unwrap_or_default());
+    let rows = [
+        (0.0, true, "any", Some(0x108)),
+        (264.0, true, "any", Some(0x118)),
+        (264.0, true, "rise", Some(0x188)),
+        (0x198.into(), true, "any", None),
+        (1e15, false, "any", Some(0x198)),
+        (f64::from(0x198), false, "fall", Some(0x118)),
+        (f64::from(0x108), false, "any", None),
+        (-1.0, true, "rise", Some(0x108)),
+        (f64::NAN, true, "rise", Some(0x108)),
+    ];
+    for (cycle, forward, kind, expected) in rows {
+        let found = simulation.next_edge(0, cycle, forward, kind);
+        assert_eq!(found, expected.map(f64::from), "{kind} from {cycle}, forward {forward}");
+    }
+    assert_eq!(simulation.next_edge(200, 0.0, true, "any"), None);
+
+    // Four columns of 0x40 cycles from 0x100 on: STEP and DIR are bits 0 and 16.
+    let pulses = simulation.pulses(256.0, 512.0, 4);
+    let low_words = |name: &str| -> Vec<u32> {
+        let words: Uint32Array = get(&pulses, name).unchecked_into();
+        words.to_vec().into_iter().step_by(2).map(|word| word & 0x1_0001).collect()
+    };
+    assert_eq!(low_words("high"), [0x1_0001, 0x1_0000, 0x1_0001, 0x1_0000]);
+    assert_eq!(low_words("low"), [1, 1, 1, 1]);
+    assert_eq!(low_words("last"), [0x1_0000; 4]);
+    let empty: Uint32Array = get(&simulation.pulses(5.0, 1.0, 0), "high").unchecked_into();
+    assert_eq!(empty.length(), 2, "at least one column");
+}
