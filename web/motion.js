@@ -81,7 +81,8 @@ export function createMotion({ engine, dispatch, now }) {
 
   /** Values under the pointer, else at cursor A. @param {State} state */
   function read(state) {
-    const cycle = state.hover ?? state.cursors.a;
+    const { start, end } = shown(state);
+    const cycle = [state.hover, state.cursors.a].find((at) => at !== null && at >= start && at <= end) ?? null;
     const { scale, unit } = unitOf(state);
     const clock = state.result?.summary.clock_hz ?? 1;
     const at = columns && cycle !== null ? columnAt(columns, cycle / clock) : -1;

@@ -15,6 +15,9 @@ import { cycleAt, gestures, pixelOf, reveal, zoom } from "./timeline.js";
 /** Packets that are drawn one by one; more than that are too narrow to be told apart. */
 const MOST_SPANS = 400;
 
+/** A cursor that is set this near to an edge is set on it, in CSS pixels. */
+const SNAP_PX = 6;
+
 /** @param {{engine: import("./engine.js").Engine} & import("./timeline.js").Page} page */
 export function createPulses({ engine, dispatch, now }) {
   const page = { dispatch, now };
@@ -35,7 +38,7 @@ export function createPulses({ engine, dispatch, now }) {
   const rows = () => rowsOf(now().result?.summary.channels ?? 1);
   const signals = () => rows().flatMap((row) => (row.kind === "signal" ? [row] : []));
 
-  gestures(canvas, () => plot, { ...page, click: (event) => pick(event) });
+  gestures(canvas, () => plot, { ...page, click: pick });
   watch(stack, () => refresh(now()));
   watch(overview, () => refreshOverview(now()));
   byId("zoom-in").addEventListener("click", () => zoom(page, 0.5, now().cursors.a ?? undefined));
@@ -69,13 +72,24 @@ export function createPulses({ engine, dispatch, now }) {
     return rows()[Math.floor((event.clientY - canvas.getBoundingClientRect().top) / ROW_PX)];
   }
 
-  /** A click on a row chooses it; on a packet, the packet. @param {PointerEvent} event */
-  function pick(event) {
+  /** The edge of a row within a few pixels of a cycle, else the cycle. @param {number} bit @param {number} cycle */
+  async function snapped(bit, cycle) {
+    const { start, end } = shown(now());
+    const reach = (SNAP_PX * (end - start)) / (plot.right - plot.left);
+    const edges = await Promise.all([true, false].map((forward) =>
+      engine.ask("next_edge", bit, forward ? cycle - 1 : cycle + 1, forward, "any").catch(unlessDropped)));
+    const near = edges.filter((edge) => typeof edge === "number" && Math.abs(edge - cycle) <= reach);
+    return near.sort((a, b) => Math.abs(a - cycle) - Math.abs(b - cycle))[0] ?? cycle;
+  }
+
+  /** A click on a row chooses it and sets a cursor, on an edge if one is near; on a packet, chooses it. @param {PointerEvent} event @param {number} at */
+  function pick(event, at) {
     const row = rowAt(event);
     if (!row) return false;
     const x = event.clientX - canvas.getBoundingClientRect().left;
     if (row.kind === "signal") dispatch({ type: "row", row: row.bit });
-    if (row.kind === "signal" || x < plot.left) return x < plot.left;
+    if (x < plot.left) return true;
+    if (row.kind === "signal") return snapped(row.bit, at);
     const cycle = cycleAt(now(), plot, x);
     const found = shownColumns?.packets.rows.find((packet) => row.kind === "packets"
       ? packet.start_cycle <= cycle && cycle < packet.end_cycle
@@ -167,7 +181,8 @@ export function createPulses({ engine, dispatch, now }) {
     const spans = list.flatMap((packet) => {
       const [from, to] = kind === "packets" ? [packet.start_cycle, packet.end_cycle] : [packet.tick_start_cycle, packet.tick_end_cycle];
       if (from === null || to === null) return [];
-      const texts = kind === "packets" ? [`${packet.hex} · ${packet.fields}`, packet.hex, `#${packet.index}`] : [`tick ${packet.index} · ${packet.fields}`, packet.fields, `${packet.index}`];
+      const said = [packet.hex, packet.fields, packet.outcome === "queued" ? "" : packet.outcome].filter(Boolean);
+      const texts = kind === "packets" ? [said.join(" · "), said[0] ?? "", `#${packet.index}`] : [`tick ${packet.index} · ${packet.fields}`, packet.fields, `${packet.index}`];
       return [{ from: x(from), to: x(to), texts, marked: packet.index === state.packet, bad: kind === "packets" && packet.outcome !== "queued" }];
     });
     if (!more || list.length === 0) return spans;
@@ -195,7 +210,7 @@ export function createPulses({ engine, dispatch, now }) {
     if (b !== null) texts.push(`B ${time(b / clock)}`);
     if (a !== null && b !== null) texts.push(`B−A ${time((b - a) / clock)}${a === b ? "" : ` = ${si(clock / Math.abs(b - a), "Hz", 6)}`}`);
     else texts.push(a === null ? "click sets cursor A" : "shift-click sets B");
-    say(byId("cursor-readings"), texts.join("   "));
+    say(byId("cursor-readings"), texts.join(" · "));
   }
 
   /** Width and period of the pulse under the pointer. @param {PointerEvent} event */

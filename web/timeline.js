@@ -7,6 +7,7 @@ import { endOf, shown } from "./state.js";
 /** @typedef {import("./types.js").State} State */
 /** @typedef {import("./types.js").Span} Span */
 /** @typedef {{dispatch: (message: import("./state.js").Message) => void, now: () => State}} Page */
+/** @typedef {(event: PointerEvent, cycle: number) => boolean | Promise<number>} Click  Whether it used the click, or the cycle to take instead. */
 
 /** A press that moves less than this many CSS pixels is a click. */
 const CLICK_PX = 4;
@@ -54,7 +55,7 @@ export function pixelOf(state, plot, cycle) {
  * Makes an element a part of the time axis.
  * @param {HTMLElement} target
  * @param {() => {left: number, right: number}} plot  Plotting area in the element's CSS pixels.
- * @param {Page & {click?: (event: PointerEvent, cycle: number) => boolean}} page  `click` returns whether it used the click.
+ * @param {Page & {click?: Click}} page
  */
 export function gestures(target, plot, page) {
   const { dispatch, now } = page;
@@ -122,12 +123,13 @@ export function gestures(target, plot, page) {
   target.addEventListener("pointerleave", () => dispatch({ type: "hover", cycle: null }));
 
   /** @param {PointerEvent} event */
-  function click(event) {
+  async function click(event) {
     const area = plot();
     const x = xOf(event);
     const cycle = cycleAt(now(), area, x);
-    if (page.click?.(event, cycle) || x < area.left || x > area.right) return;
-    dispatch({ type: "cursor", which: event.shiftKey ? "b" : "a", cycle });
+    const used = page.click?.(event, cycle) ?? false;
+    if (used === true || x < area.left || x > area.right) return;
+    dispatch({ type: "cursor", which: event.shiftKey ? "b" : "a", cycle: used === false ? cycle : await used });
   }
 
   target.addEventListener("dblclick", (event) => {

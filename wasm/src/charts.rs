@@ -8,78 +8,85 @@
 //! It is drawn as an oscilloscope draws it, as one line that visits both values of every column;
 //! so a smooth curve looks like a line and a dense one like a filled block.
 
+// Natively there is nothing to draw on but the tests' SVG.
+#![cfg(any(test, target_arch = "wasm32"))]
+
+mod curve;
+mod ticks;
+
 use plotters::{
     coord::Shift,
     prelude::*,
     style::{FontStyle, RGBColor, ShapeStyle, TextStyle},
 };
 use serde::{Deserialize, Serialize};
+use ticks::Ticks;
 
 /// What to draw, and with which colours.
 #[derive(Deserialize)]
-pub struct Spec {
+pub(crate) struct Spec {
     /// Device pixels to a CSS pixel.
-    pub ratio: f64,
+    pub(crate) ratio: f64,
     /// Font family of all labels.
-    pub font: String,
+    pub(crate) font: String,
     /// Size of the labels in CSS pixels.
-    pub font_px: f64,
+    pub(crate) font_px: f64,
     /// The time or frequency axis.
-    pub x: Axis,
+    pub(crate) x: Axis,
     /// The axis of values.
-    pub y: Axis,
+    pub(crate) y: Axis,
     /// Colours of the page, as `#rrggbb`.
-    pub colors: Colors,
+    pub(crate) colors: Colors,
     /// From the back to the front.
-    pub series: Vec<Series>,
+    pub(crate) series: Vec<Series>,
 }
 
 /// Range and labels of one axis.
 #[derive(Deserialize)]
-pub struct Axis {
+pub(crate) struct Axis {
     /// Least value shown.
-    pub min: f64,
+    pub(crate) min: f64,
     /// Greatest value shown.
-    pub max: f64,
+    pub(crate) max: f64,
     /// Unit behind the tick labels; takes an SI prefix. Empty for a plain number, which takes the
     /// prefix alone.
-    pub unit: String,
+    pub(crate) unit: String,
     /// False for units that take no prefix, such as dB, and for counts.
-    pub prefix: bool,
+    pub(crate) prefix: bool,
     /// Space for the tick labels in CSS pixels; 0 for none.
-    pub label_px: f64,
+    pub(crate) label_px: f64,
 }
 
 /// Colours of what is no series, as `#rrggbb`.
 #[derive(Deserialize)]
-pub struct Colors {
+pub(crate) struct Colors {
     /// Labels.
-    pub label: String,
+    pub(crate) label: String,
     /// Axes.
-    pub axis: String,
+    pub(crate) axis: String,
     /// Grid at the tick labels.
-    pub grid: String,
+    pub(crate) grid: String,
 }
 
 /// One series.
 #[derive(Deserialize)]
-pub struct Series {
+pub(crate) struct Series {
     /// Colour as `#rrggbb`.
-    pub color: String,
+    pub(crate) color: String,
     /// From 0 (invisible) to 1.
-    pub opacity: f64,
+    pub(crate) opacity: f64,
     /// Width of the stroke in CSS pixels.
-    pub width: f64,
+    pub(crate) width: f64,
     /// Positions on the x axis.
-    pub x: Vec<f64>,
+    pub(crate) x: Vec<f64>,
     /// The values, such as `{"line": {"y": […]}}`.
-    pub shape: Shape,
+    pub(crate) shape: Shape,
 }
 
 /// The values of a series, one or two at each x. A value that is no number leaves a gap.
 #[derive(Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Shape {
+pub(crate) enum Shape {
     /// A line through all points.
     Line {
         /// Values.
@@ -103,22 +110,22 @@ pub enum Shape {
 
 /// Where the plotting area lies in its canvas, in CSS pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Plot {
+pub(crate) struct Plot {
     /// Left edge, at `x.min`.
-    pub left: f64,
+    pub(crate) left: f64,
     /// Upper edge, at `y.max`.
-    pub top: f64,
+    pub(crate) top: f64,
     /// Right edge, at `x.max`.
-    pub right: f64,
+    pub(crate) right: f64,
     /// Lower edge, at `y.min`.
-    pub bottom: f64,
+    pub(crate) bottom: f64,
 }
 
 /// Draws one chart and tells where its plotting area lies.
 ///
 /// # Errors
 /// The backend's own message, or that an axis has no length.
-pub fn draw<DB: DrawingBackend>(root: &DrawingArea<DB, Shift>, spec: &Spec) -> Result<Plot, String> {
+pub(crate) fn draw<DB: DrawingBackend>(root: &DrawingArea<DB, Shift>, spec: &Spec) -> Result<Plot, String> {
     for (name, axis) in [("x", &spec.x), ("y", &spec.y)] {
         // Also refuses what is not a number.
         if !(axis.max - axis.min).is_normal() || axis.max < axis.min {
@@ -162,99 +169,30 @@ pub fn draw<DB: DrawingBackend>(root: &DrawingArea<DB, Shift>, spec: &Spec) -> R
         .draw()
         .map_err(|error| error.to_string())?;
 
+    let (across, down) = chart.plotting_area().get_pixel_range();
+    let frame = curve::Frame {
+        x: (spec.x.min, spec.x.max),
+        y: (spec.y.min, spec.y.max),
+        width: f64::from(across.end - across.start),
+        height: f64::from(down.end - down.start),
+    };
     for series in &spec.series {
         let style = ShapeStyle {
             color: color(&series.color).mix(series.opacity),
             filled: false,
             stroke_width: px(series.width).max(1) as u32,
         };
-        let y = |value: f64| value.clamp(spec.y.min, spec.y.max);
         let lines = match &series.shape {
-            Shape::Line { y: values } => runs(&series.x, values, values, |x, value, _| vec![(x, y(value))]),
-            Shape::Band { min, max } => {
-                let mut last = 0.0;
-                runs(&series.x, min, max, |x, min, max| {
-                    let rising = (last - min).abs() <= (last - max).abs();
-                    let (first, second) = if rising { (min, max) } else { (max, min) };
-                    last = second;
-                    vec![(x, y(first)), (x, y(second))]
-                })
-            }
-            Shape::Stems { y: values, shift } => {
-                let shift = shift * spec.ratio * (spec.x.max - spec.x.min) / f64::from(width.max(1));
-                stems(&series.x, values, shift, spec.y.min)
-                    .map(|(x, top)| vec![(x, spec.y.min), (x, y(top))])
-                    .collect()
-            }
+            Shape::Line { y } => curve::band(&frame, &series.x, y, y),
+            Shape::Band { min, max } => curve::band(&frame, &series.x, min, max),
+            Shape::Stems { y, shift } => curve::stems(&frame, &series.x, y, shift * spec.ratio),
         };
         let paths = lines.into_iter().map(|line| PathElement::new(line, style));
         chart.draw_series(paths).map_err(|error| error.to_string())?;
     }
 
-    let (across, down) = chart.plotting_area().get_pixel_range();
     let css = |pixels: i32| f64::from(pixels) / spec.ratio;
     Ok(Plot { left: css(across.start), top: css(down.start), right: css(across.end), bottom: css(down.end) })
-}
-
-/// Splits a series at its gaps into lines of at least one point.
-fn runs(
-    x: &[f64],
-    first: &[f64],
-    second: &[f64],
-    mut points: impl FnMut(f64, f64, f64) -> Vec<(f64, f64)>,
-) -> Vec<Vec<(f64, f64)>> {
-    let mut lines = vec![Vec::new()];
-    for ((x, first), second) in x.iter().zip(first).zip(second) {
-        if first.is_finite() && second.is_finite() {
-            if let Some(line) = lines.last_mut() {
-                line.extend(points(*x, *first, *second));
-            }
-        } else if lines.last().is_some_and(|line| !line.is_empty()) {
-            lines.push(Vec::new());
-        }
-    }
-    lines.retain(|line| !line.is_empty());
-    lines
-}
-
-fn stems(x: &[f64], y: &[f64], shift: f64, floor: f64) -> impl Iterator<Item = (f64, f64)> {
-    x.iter().zip(y).filter(move |(_, y)| **y > floor).map(move |(x, y)| (x + shift, *y))
-}
-
-/// How the labels of one axis print their numbers: one prefix and one number of digits for all.
-struct Ticks<'a> {
-    scale: f64,
-    digits: usize,
-    space: &'static str,
-    prefix: &'static str,
-    unit: &'a str,
-}
-
-impl<'a> Ticks<'a> {
-    fn new(axis: &'a Axis, count: usize) -> Self {
-        const PREFIXES: [(f64, &str); 7] =
-            [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n")];
-        let largest = axis.min.abs().max(axis.max.abs());
-        let (scale, prefix) = PREFIXES
-            .into_iter()
-            .find(|(scale, _)| axis.prefix && largest >= *scale * 0.9999)
-            .unwrap_or((1.0, ""));
-        // Ticks lie the next 1, 2 or 5 times a power of ten apart.
-        let step = (axis.max - axis.min) / scale / count as f64;
-        let digits = (0..9).find(|digits| step * 10_f64.powi(*digits) > 0.5001).unwrap_or(9) as usize;
-        let space = if axis.unit.is_empty() { "" } else { " " };
-        Self { scale, digits, space, prefix, unit: &axis.unit }
-    }
-
-    fn print(&self, value: f64) -> String {
-        // Adding zero makes a plain zero of a negative one.
-        let number = value / self.scale + 0.0;
-        let text = format!("{number:.*}", self.digits);
-        let zero = text.chars().all(|c| matches!(c, '0' | '.' | '-'));
-        let text = if zero { "0" } else { &text };
-        let prefix = if zero && self.unit.is_empty() { "" } else { self.prefix };
-        format!("{text}{}{prefix}{}", self.space, self.unit).replace('-', "\u{2212}")
-    }
 }
 
 /// Reads `#rrggbb`; what it cannot read is a middle grey, visible on light and dark.
@@ -281,6 +219,7 @@ mod page {
     /// # Errors
     /// A spec that cannot be read, an axis without length, or a canvas without a 2D context.
     #[wasm_bindgen]
+    #[allow(unreachable_pub, reason = "wasm-bindgen exports public functions only")]
     pub fn draw_chart(canvas: HtmlCanvasElement, spec: JsValue) -> Result<JsValue, JsError> {
         let spec: Spec = serde_wasm_bindgen::from_value(spec)?;
         let backend = CanvasBackend::with_canvas_object(canvas)
@@ -309,24 +248,6 @@ mod tests {
         let mut text = String::new();
         let plot = draw(&SVGBackend::with_string(&mut text, (800, 400)).into_drawing_area(), spec);
         (text, plot)
-    }
-
-    #[test]
-    fn tick_labels_share_one_prefix_and_one_number_of_digits() {
-        let rows = [
-            (0.0, 32_000.0, "", 10_000.0, "10k"),
-            (0.0, 32_000.0, "", 0.0, "0"),
-            (0.0, 0.4, "s", 0.05, "50 ms"),
-            (0.4, 0.4001, "s", 0.40005, "400.05 ms"),
-            (-1.0, 1.0, "", -0.5, "\u{2212}0.5"),
-            (0.0, 1e-6, "s", 5e-7, "0.5 µs"),
-            (0.0, 0.4, "", 0.1, "100m"),
-        ];
-        for (min, max, unit, value, expected) in rows {
-            let axis = axis(min, max, unit);
-            let printed = Ticks::new(&axis, 5).print(value);
-            assert_eq!(printed, expected, "{min}..{max} {unit}: {value}");
-        }
     }
 
     #[test]

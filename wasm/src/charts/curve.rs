@@ -1,0 +1,172 @@
+//! From the values of a series to the lines that are drawn.
+//!
+//! plotters draws at whole pixels, so a smooth curve with a point in each column becomes a staircase.
+//! A curve is therefore thinned first: a stretch that stays within half a pixel of a straight line is
+//! that line, which the canvas then draws smoothly.
+
+/// Greatest distance of a thinned curve from the given one, in pixels.
+const TOLERANCE_PX: f64 = 0.5;
+
+/// The plotting area: what it shows and how many pixels it has.
+pub(super) struct Frame {
+    /// Shown part of the x axis.
+    pub(super) x: (f64, f64),
+    /// Shown part of the y axis.
+    pub(super) y: (f64, f64),
+    /// Pixels across.
+    pub(super) width: f64,
+    /// Pixels down.
+    pub(super) height: f64,
+}
+
+type Point = (f64, f64);
+
+impl Frame {
+    /// Into pixels from the lower left corner; what lies outside is brought to the edge.
+    fn pixels(&self, x: f64, y: f64) -> Point {
+        let y = y.clamp(self.y.0, self.y.1);
+        (
+            (x - self.x.0) / (self.x.1 - self.x.0) * self.width,
+            (y - self.y.0) / (self.y.1 - self.y.0) * self.height,
+        )
+    }
+
+    fn values(&self, (x, y): Point) -> Point {
+        (
+            self.x.0 + x / self.width * (self.x.1 - self.x.0),
+            self.y.0 + y / self.height * (self.y.1 - self.y.0),
+        )
+    }
+}
+
+/// Lines through the least and greatest values of each column, one for each stretch without a gap.
+/// A column whose two values are less than a pixel apart is one point.
+pub(super) fn band(frame: &Frame, x: &[f64], min: &[f64], max: &[f64]) -> Vec<Vec<Point>> {
+    let mut lines: Vec<Vec<Point>> = vec![Vec::new()];
+    for ((x, min), max) in x.iter().zip(min).zip(max) {
+        let Some(line) = lines.last_mut() else { break };
+        if !min.is_finite() || !max.is_finite() {
+            if !line.is_empty() {
+                lines.push(Vec::new());
+            }
+            continue;
+        }
+        let (low, high) = (frame.pixels(*x, *min), frame.pixels(*x, *max));
+        if high.1 - low.1 <= 1.0 {
+            line.push((low.0, f64::midpoint(low.1, high.1)));
+        } else {
+            let before = line.last().map_or(low.1, |point| point.1);
+            let rising = (before - low.1).abs() <= (before - high.1).abs();
+            line.extend(if rising { [low, high] } else { [high, low] });
+        }
+    }
+    lines.retain(|line| !line.is_empty());
+    lines.iter().map(|line| thin(line).into_iter().map(|point| frame.values(point)).collect()).collect()
+}
+
+/// A line from the bottom to each value that lies above it, `shift` pixels to the right.
+pub(super) fn stems(frame: &Frame, x: &[f64], y: &[f64], shift: f64) -> Vec<Vec<Point>> {
+    x.iter()
+        .zip(y)
+        .filter(|(_, y)| **y > frame.y.0)
+        .map(|(x, y)| {
+            let (across, up) = frame.pixels(*x, *y);
+            vec![frame.values((across + shift, 0.0)), frame.values((across + shift, up))]
+        })
+        .collect()
+}
+
+/// Leaves out every point that lies within the tolerance of the line between its neighbours that
+/// stay: from an anchor, the slopes that pass all points so far form a cone; the first point outside
+/// of it makes the one before it the next anchor.
+fn thin(points: &[Point]) -> Vec<Point> {
+    let mut kept: Vec<Point> = points.first().copied().into_iter().collect();
+    let Some(mut anchor) = kept.first().copied() else { return kept };
+    let mut last = anchor;
+    let mut cone = (f64::NEG_INFINITY, f64::INFINITY);
+    for &point in &points[1..] {
+        let inside = |anchor: Point, cone: (f64, f64)| {
+            let slope = (point.1 - anchor.1) / (point.0 - anchor.0);
+            point.0 > anchor.0 && cone.0 <= slope && slope <= cone.1
+        };
+        if !inside(anchor, cone) {
+            if last != anchor {
+                kept.push(last);
+            }
+            anchor = last;
+            cone = (f64::NEG_INFINITY, f64::INFINITY);
+            // Straight up or down: no line through the column's middle can stand for it.
+            if !inside(anchor, cone) {
+                kept.push(point);
+                anchor = point;
+            }
+        }
+        if point.0 > anchor.0 {
+            let slope = |y: f64| (y - anchor.1) / (point.0 - anchor.0);
+            cone = (cone.0.max(slope(point.1 - TOLERANCE_PX)), cone.1.min(slope(point.1 + TOLERANCE_PX)));
+        }
+        last = point;
+    }
+    if last != anchor {
+        kept.push(last);
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Height of a line at x, where it does not stand upright.
+    fn height(line: &[Point], x: f64) -> f64 {
+        let after = line.iter().position(|point| point.0 >= x).unwrap_or(line.len() - 1).max(1);
+        let (a, b) = (line[after - 1], line[after]);
+        a.1 + (b.1 - a.1) * (x - a.0) / (b.0 - a.0)
+    }
+
+    #[test]
+    fn a_thinned_curve_stays_within_the_tolerance_and_needs_few_points() {
+        let curve: Vec<Point> =
+            (0..1000).map(|i| (f64::from(i), 80.0 + 80.0 * wave(f64::from(i) / 150.0))).collect();
+        let thinned = thin(&curve);
+        assert!(thinned.len() < 60, "{}", thinned.len());
+        assert_eq!((thinned.first(), thinned.last()), (curve.first(), curve.last()));
+        for &(x, y) in &curve {
+            assert!((height(&thinned, x) - y).abs() <= TOLERANCE_PX + 1e-9, "at {x}");
+        }
+    }
+
+    /// Parabolas in a row: smooth but for their joints, and without transcendental functions.
+    fn wave(x: f64) -> f64 {
+        let turn = (x / core::f64::consts::TAU).fract() * 2.0 - 1.0;
+        4.0 * turn * (1.0 - turn.abs())
+    }
+
+    #[test]
+    fn a_staircase_keeps_every_corner_and_a_spike_its_tip() {
+        let rows: &[(&[Point], &[Point])] = &[
+            (&[], &[]),
+            (&[(0.0, 1.0)], &[(0.0, 1.0)]),
+            (
+                &[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (2.0, 9.0), (3.0, 9.0), (4.0, 9.0)],
+                &[(0.0, 0.0), (2.0, 0.0), (2.0, 9.0), (4.0, 9.0)],
+            ),
+            (
+                &[(0.0, 0.0), (1.0, 0.0), (1.0, 9.0), (2.0, 0.0), (3.0, 0.0)],
+                &[(0.0, 0.0), (1.0, 0.0), (1.0, 9.0), (2.0, 0.0), (3.0, 0.0)],
+            ),
+            (&[(0.0, 0.0), (0.0, 5.0), (0.0, 2.0)], &[(0.0, 0.0), (0.0, 5.0), (0.0, 2.0)]),
+        ];
+        for (given, expected) in rows {
+            assert_eq!(thin(given), *expected, "{given:?}");
+        }
+    }
+
+    #[test]
+    fn a_column_that_holds_much_is_visited_twice_and_a_gap_ends_the_line() {
+        let frame = Frame { x: (0.0, 4.0), y: (0.0, 128.0), width: 40.0, height: 128.0 };
+        let (x, nan) = ([0.0, 1.0, 2.0, 3.0], f64::NAN);
+        let lines = band(&frame, &x, &[5.0, 10.0, nan, 7.0], &[5.0, 90.0, 1.0, 7.5]);
+        assert_eq!(lines, [vec![(0.0, 5.0), (1.0, 10.0), (1.0, 90.0)], vec![(3.0, 7.25)]]);
+    }
+}
