@@ -67,7 +67,8 @@ impl fmt::Display for Failure {
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
     let text = read(path).map_err(|error| Failure::File(path.clone(), error))?;
-    let experiment = Experiment::from_json(&text).map_err(|problems| Failure::Scenario(path.clone(), problems))?;
+    let experiment =
+        Experiment::from_json(&text).map_err(|problems| Failure::Scenario(path.clone(), problems))?;
 
     let mut digest = Digest::default();
     let finished = match &arguments.trace {

@@ -228,7 +228,8 @@ mod tests {
 
     #[test]
     fn the_later_of_two_overlapping_glitches_wins() {
-        let rows: &[(&[(u64, u64, bool)], &[u64])] = &[
+        type Row<'a> = (&'a [(u64, u64, bool)], &'a [u64]);
+        let rows: &[Row<'_>] = &[
             (&[(5, 10, false)], &[5, 15]),
             (&[(5, 10, false), (8, 2, true)], &[5, 8, 10, 15]),
             (&[(8, 2, true), (5, 10, false)], &[5, 15]),
