@@ -6,7 +6,7 @@ import { GLITCH, MECHANICS, MOVES, PACKET_LINES, SECTIONS, SEND, SOURCES } from 
 import { button, element, fill } from "./dom.js";
 import { control } from "./control.js";
 import { get, held } from "./state.js";
-import { showDerived, showProblems } from "./judgement.js";
+import { showAbout, showDerived, showProblems } from "./judgement.js";
 
 /** @typedef {import("./types.js").State} State */
 /** @typedef {import("./types.js").Scenario} Scenario */
@@ -153,6 +153,7 @@ export function createForm({ root, samples, dispatch }) {
     if (before?.scenario !== next.scenario || before?.drafts !== next.drafts || before?.derived !== next.derived) {
       for (const [path, made] of controls) made.show(get(next.scenario, path), next);
     }
+    if (before?.scenario !== next.scenario) showAbout(next);
     const judged = held(next) !== "unjudged";
     if (judged && (before?.judgement !== next.judgement || before?.drafts !== next.drafts)) {
       showProblems(next, controls, groups);

@@ -60,6 +60,14 @@ function add(map, path, message) {
   map.set(path, before ? `${before} ${message}` : message);
 }
 
+/** Name and note of the scenario: what to look at. @param {State} state */
+export function showAbout({ scenario }) {
+  const root = byId("about");
+  root.hidden = !scenario.title && !scenario.note;
+  say(/** @type {Element} */ (root.querySelector("h2")), String(scenario.title ?? ""));
+  say(/** @type {Element} */ (root.querySelector("p")), String(scenario.note ?? ""));
+}
+
 /** A folded section tells that something in it is wrong. */
 function markSections() {
   for (const part of document.querySelectorAll("details.part")) {

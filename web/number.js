@@ -40,11 +40,14 @@ export function parseNumber(text, unit, options = {}) {
  * @returns {number | null}  null where the suffix is neither the unit nor a prefix.
  */
 function shift(mantissa, suffix, unit) {
-  for (const tail of new Set([unit, ""])) {
+  // A millimetre is a metre with a prefix: "3 m" is 3000 mm, never 3 thousandths of one.
+  const [base, own] = unit.startsWith("mm") ? [unit.slice(1), 3] : [unit, 0];
+  if (suffix === "") return Number(mantissa);
+  for (const tail of new Set([base, own ? base : ""])) {
     if (!suffix.endsWith(tail)) continue;
     const prefix = suffix.slice(0, suffix.length - tail.length).trim();
     // Shifted as text, so that 50 us is the very same number as 0.00005.
-    if (Object.hasOwn(POWERS, prefix)) return Number(addExponent(mantissa, POWERS[prefix]));
+    if (Object.hasOwn(POWERS, prefix)) return Number(addExponent(mantissa, POWERS[prefix] + own));
   }
   return null;
 }

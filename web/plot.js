@@ -12,6 +12,9 @@ export const GUTTER = 68;
 /** Free space at the right of a plotting area, as the charts draw it. */
 export const MARGIN = 26;
 
+/** Charts are always drawn at double size: they know whole pixels only, and half a pixel of a curve can be seen. */
+const CHART_RATIO = 2;
+
 let loaded = /** @type {Promise<unknown> | null} */ (null);
 
 /** Loads the charts. */
@@ -28,10 +31,10 @@ export function ratio() {
 /**
  * Gives a canvas the device size of its box and clears it.
  * @param {HTMLCanvasElement} canvas
+ * @param {number} [scale]  Device pixels to a CSS pixel.
  * @returns {{width: number, height: number, ratio: number}}  CSS pixels.
  */
-export function fit(canvas) {
-  const scale = ratio();
+export function fit(canvas, scale = ratio()) {
   const width = canvas.clientWidth;
   const height = canvas.clientHeight;
   canvas.width = Math.max(1, Math.round(width * scale));
@@ -80,7 +83,7 @@ export function recolor() {
  * @returns {Plot | null}  null where the canvas is not on show or the chart cannot be drawn.
  */
 export function draw(canvas, { x, y, series }) {
-  const size = fit(canvas);
+  const size = fit(canvas, CHART_RATIO);
   if (size.width < GUTTER + 40 || size.height < 30) return null;
   return draw_chart(canvas, {
     ratio: size.ratio, font: getComputedStyle(document.body).fontFamily, font_px: 11, x, y, series,
