@@ -154,6 +154,8 @@ export function createForm({ root, samples, dispatch }) {
       for (const [path, made] of controls) made.show(get(next.scenario, path), next);
     }
     if (before?.scenario !== next.scenario) showAbout(next);
+    // Another experiment begins with what it is about.
+    if (before && before.origin !== next.origin && next.origin !== "own") /** @type {Element} */ (root.closest(".sheet")).scrollTop = 0;
     const judged = held(next) !== "unjudged";
     if (judged && (before?.judgement !== next.judgement || before?.drafts !== next.drafts)) {
       showProblems(next, controls, groups);

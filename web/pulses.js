@@ -103,7 +103,8 @@ export function createPulses({ engine, dispatch, now }) {
     const state = now();
     if (!state.result) return;
     const { start, end } = shown(state);
-    const from = state.cursors.a ?? (forward ? start : end);
+    const { a } = state.cursors;
+    const from = a !== null && a >= start && a <= end ? a : forward ? start : end;
     const edge = await engine.ask("next_edge", state.row, from, forward, kindSelect.value).catch(unlessDropped);
     const name = signals().find(({ bit }) => bit === state.row)?.name ?? "";
     if (edge === undefined || edge === null) return say(byId("pulses-sentence"), `${name}: no ${forward ? "later" : "earlier"} edge.`);
@@ -331,7 +332,10 @@ export function createPulses({ engine, dispatch, now }) {
       // On a wide screen this view takes what its rows need, and the curves the rest.
       byId("views").style.setProperty("--rows-px", `${tall}px`);
     }
-    if (moved) fields(state);
+    if (moved) {
+      fields(state);
+      say(byId("window-error"), "");
+    }
     if (moved) {
       paintStrip(state);
       const strip = before?.result !== state.result ? refreshOverview(state) : undefined;
