@@ -10,7 +10,7 @@ use std::process::ExitCode;
 
 /// A stepper-motion laboratory: runs scenarios to the clock cycle.
 #[derive(Parser)]
-#[command(version, arg_required_else_help = true)]
+#[command(name = "stepscope", version, arg_required_else_help = true)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,

@@ -1,0 +1,177 @@
+//! The `stepscope` command, as a script sees it: what it prints where, and its exit codes.
+#![cfg(not(target_arch = "wasm32"))]
+#![allow(clippy::expect_used, reason = "what is missing fails the test")]
+
+use std::{
+    env, fs,
+    io::{self, Write},
+    path::PathBuf,
+    process::{Command, Stdio},
+};
+use stepscope_tests::golden::{CASES, Case};
+
+/// What a call gave.
+#[derive(Debug)]
+struct Answer {
+    code: Option<i32>,
+    out: String,
+    err: String,
+}
+
+impl Answer {
+    /// Exit code, standard output, standard error.
+    fn parts(&self) -> (Option<i32>, &str, &str) {
+        (self.code, &self.out, &self.err)
+    }
+}
+
+/// Calls the command with `input` as its standard input.
+fn stepscope(arguments: &[&str], input: &str) -> io::Result<Answer> {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_stepscope"))
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()?;
+    if let Some(mut stdin) = child.stdin.take() {
+        // A command that does not read it may be gone already.
+        let _ = stdin.write_all(input.as_bytes());
+    }
+    let output = child.wait_with_output()?;
+    let text = |bytes| String::from_utf8(bytes).map_err(io::Error::other);
+    Ok(Answer { code: output.status.code(), out: text(output.stdout)?, err: text(output.stderr)? })
+}
+
+/// A folder of its own for a test, gone with it.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> io::Result<Self> {
+        let path = env::temp_dir().join(format!("stepscope-command-{name}-{}", std::process::id()));
+        fs::create_dir_all(&path)?;
+        Ok(Self(path))
+    }
+
+    fn file(&self, name: &str) -> String {
+        self.0.join(name).display().to_string()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        // What is left behind in the system's folder for such files harms nobody.
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// The scenario, digest, status and trace of the golden case `tick`.
+fn tick() -> (&'static str, &'static str, &'static str, &'static str) {
+    let case = CASES.iter().find(|case| case.name == "tick").expect("it is there");
+    let file = |name| case.file(name).expect("it has one");
+    (file("scenario.json"), file("digest"), file("status"), file("expect.trace"))
+}
+
+#[test]
+fn each_option_prints_its_part() {
+    let (scenario, digest, status, trace) = tick();
+    let all = format!("digest {digest}{status}");
+    let rows: [(&[&str], String); 6] = [
+        (&[], all.clone()),
+        (&["--status"], all.clone()),
+        (&["--digest"], digest.to_owned()),
+        (&["--digest", "--status"], all.clone()),
+        (&["--trace", "-"], trace.to_owned()),
+        (&["--trace", "-", "--digest"], format!("{trace}{digest}")),
+    ];
+    let folder = Folder::new("options").expect("there is room");
+    let file = folder.file("tick.json");
+    fs::write(&file, scenario).expect("there is room");
+    for (options, expected) in rows {
+        for (scenario, input) in [(file.as_str(), ""), ("-", scenario)] {
+            let answer = stepscope(&[&["run", scenario], options].concat(), input).expect("it runs");
+            assert_eq!(answer.parts(), (Some(0), expected.as_str(), ""), "{options:?} {scenario}");
+        }
+    }
+}
+
+#[test]
+fn a_trace_goes_into_its_file_and_nothing_to_the_screen() {
+    let (scenario, digest, _, trace) = tick();
+    let folder = Folder::new("trace").expect("there is room");
+    let file = folder.file("tick.trace");
+    let answer = stepscope(&["run", "-", "--trace", &file], scenario).expect("it runs");
+    assert_eq!(answer.parts(), (Some(0), "", ""));
+    assert_eq!(fs::read_to_string(&file).expect("it is there"), trace);
+    let answer = stepscope(&["run", "-", "--digest", "--trace", &file], scenario).expect("it runs");
+    assert_eq!(answer.parts(), (Some(0), digest, ""));
+}
+
+/// Also the presets, as whole programs: what the tests and a user see is the same.
+#[test]
+fn every_golden_case_comes_out_of_the_command() {
+    let comes_out = |case: &Case| {
+        let answer = stepscope(&["run", "-"], case.json().ok()?).ok()?;
+        let expected = format!("digest {}{}", case.file("digest")?, case.file("status")?);
+        Some(answer.parts() == (Some(0), expected.as_str(), ""))
+    };
+    let failures: Vec<&str> =
+        CASES.iter().filter(|case| comes_out(case) != Some(true)).map(|case| case.name).collect();
+    assert_eq!(failures, [""; 0]);
+}
+
+#[test]
+fn a_bad_scenario_ends_with_2_and_all_its_problems() {
+    let rows: [(&str, &[&str]); 4] = [
+        ("", &["not JSON at line 1, column 0: "]),
+        (r#"{"clock_hz": 0}"#, &["clock_hz: 0 Hz is out of range; give 1 to 1000000000 Hz", "line.baud: "]),
+        (
+            r#"{"clok_hz": 1, "bus": {"slots": 200, "channels": "four"}, "line": {"baud": 0}}"#,
+            &["bus.channels: ", "clok_hz: ", "bus.slots: ", "line.baud: "],
+        ),
+        (
+            r#"{"source": {"motion": {"axes": [{"moves": [
+                {"cosine": {"ramp_s": 1}}, {"constant": {"distance": {"mm": 1}}}]}]}}}"#,
+            &[
+                "source.motion.axes[0].moves[0].cosine.ramp_s: ",
+                "source.motion.axes[0].moves[1].constant.distance: ",
+            ],
+        ),
+    ];
+    for (scenario, problems) in rows {
+        let answer = stepscope(&["run", "-"], scenario).expect("it runs");
+        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{scenario}");
+        let mut lines = answer.err.lines();
+        let s = if problems.len() == 1 { "" } else { "s" };
+        assert_eq!(lines.next(), Some(format!("-: {} problem{s}", problems.len()).as_str()), "{scenario}");
+        let mut found: Vec<&str> = lines.collect();
+        for problem in problems {
+            let at = found.iter().position(|line| line.starts_with(&format!("  {problem}")));
+            found.remove(at.unwrap_or_else(|| panic!("no {problem} in {answer:?}")));
+        }
+        assert_eq!(found, [""; 0], "{scenario}");
+    }
+}
+
+#[test]
+fn a_file_that_is_not_there_ends_with_1_and_its_name() {
+    let folder = Folder::new("missing").expect("there is room");
+    let (missing, unwritable) = (folder.file("missing.json"), folder.file("no-folder/tick.trace"));
+    let rows: [(&[&str], &str); 2] =
+        [(&["run", &missing], &missing), (&["run", "-", "--trace", &unwritable], &unwritable)];
+    for (arguments, name) in rows {
+        let answer = stepscope(arguments, tick().0).expect("it runs");
+        assert_eq!((answer.code, answer.out.as_str()), (Some(1), ""), "{arguments:?}");
+        assert!(answer.err.starts_with(&format!("{name}: ")), "{answer:?}");
+    }
+}
+
+#[test]
+fn a_bad_command_line_ends_with_2_and_the_usage() {
+    for arguments in [&[] as &[&str], &["run"], &["walk"], &["run", "-", "--trase", "x"]] {
+        let answer = stepscope(arguments, "").expect("it runs");
+        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{arguments:?}");
+        assert!(answer.err.contains("Usage: stepscope"), "{answer:?}");
+    }
+    let answer = stepscope(&["--version"], "").expect("it runs");
+    assert_eq!(answer.parts(), (Some(0), concat!("stepscope ", env!("CARGO_PKG_VERSION"), "\n"), ""));
+}
