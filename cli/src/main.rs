@@ -1,9 +1,12 @@
 //! The `stepscope` command: the native front of the model.
 //!
 //! Results go to standard output, errors to standard error. Exit codes: 0 the run was made, 1 a
-//! file could not be read or written, 2 the scenario (or the command line) is wrong.
+//! file could not be read or written, 2 the scenario, link or command line is wrong.
 
+mod failure;
+mod files;
 mod run;
+mod scenarios;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -18,13 +21,27 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Runs a scenario and prints its digest and status.
+    /// Runs a scenario: digest, status, trace and other files.
     Run(run::Arguments),
+    /// Writes the scenario of a share link as JSON.
+    Open {
+        /// The link, or what stands behind its `#`.
+        link: String,
+    },
+    /// Lists the presets, or writes one as JSON.
+    Presets {
+        /// The preset to write.
+        id: Option<String>,
+    },
 }
 
 fn main() -> ExitCode {
-    let Arguments { command: Command::Run(arguments) } = Arguments::parse();
-    match run::run(&arguments) {
+    let result = match Arguments::parse().command {
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Open { link } => scenarios::open(&link),
+        Command::Presets { id } => scenarios::presets(id.as_deref()),
+    };
+    match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             eprintln!("{failure}");

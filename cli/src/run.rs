@@ -1,17 +1,19 @@
-//! `stepscope run`: one scenario, from its file to digest, trace and status.
+//! `stepscope run`: one scenario, from its file to digest, status and files.
 
+use crate::{
+    failure::Failure,
+    files::{self, Files, Out, Output, Outputs},
+};
 use clap::Args;
 use std::{
-    fmt, fs,
-    io::{self, BufWriter, Read, Write},
+    fs,
+    io::{self, Read, Write},
     path::{Path, PathBuf},
-    process::ExitCode,
 };
 use stepscope_core::{
     run::{Experiment, Run},
-    scenario::Problem,
-    signal::{Record, Sink},
-    trace::{Digest, write_record},
+    scenario::{Hex, LineScript, Scenario, ScriptedSend, Source, link},
+    trace::Digest,
 };
 
 /// What `stepscope run` takes.
@@ -22,75 +24,111 @@ pub(crate) struct Arguments {
     /// Print only the digest of the trace: XXH64, 16 hexadecimal digits.
     #[arg(long)]
     digest: bool,
-    /// Write the trace: one record a line, cycle and levels in hexadecimal; `-` writes standard
-    /// output.
-    #[arg(long, value_name = "FILE")]
-    trace: Option<PathBuf>,
     /// Print positions, fault flags and ticks done.
     #[arg(long)]
     status: bool,
+    /// Print the share link of the scenario: what stands behind the page's address.
+    #[arg(long)]
+    link: bool,
+    /// Write the trace: one record a line, cycle and levels in hexadecimal (`-`: standard output).
+    #[arg(long, value_name = "FILE")]
+    trace: Option<PathBuf>,
+    /// Write a value change dump, for GTKWave, Surfer or PulseView.
+    #[arg(long, value_name = "FILE")]
+    vcd: Option<PathBuf>,
+    /// Write a table of the signals: cycle, time in s, and a level each.
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Write a table of the packets, with what the controller did with each.
+    #[arg(long, value_name = "FILE")]
+    packets: Option<PathBuf>,
+    /// Write the scenario with its source as a line script: every byte and the cycle it is sent in.
+    /// Run in its turn, it gives the same trace.
+    #[arg(long, value_name = "FILE")]
+    line: Option<PathBuf>,
 }
 
-/// Why there is no result.
-pub(crate) enum Failure {
-    /// A file could not be read or written.
-    File(PathBuf, io::Error),
-    /// The scenario is wrong.
-    Scenario(PathBuf, Vec<Problem>),
-}
-
-impl Failure {
-    /// The command's exit code.
-    pub(crate) fn exit_code(&self) -> ExitCode {
-        match self {
-            Self::File(..) => ExitCode::from(1),
-            Self::Scenario(..) => ExitCode::from(2),
-        }
+impl Arguments {
+    /// Whether something else than digest and status was asked for.
+    const fn asks_for_a_file(&self) -> bool {
+        self.trace.is_some()
+            || self.vcd.is_some()
+            || self.csv.is_some()
+            || self.packets.is_some()
+            || self.line.is_some()
+            || self.link
     }
 }
 
-impl fmt::Display for Failure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::File(path, error) => write!(f, "{}: {error}", path.display()),
-            Self::Scenario(path, problems) => {
-                let count = problems.len();
-                let s = if count == 1 { "" } else { "s" };
-                write!(f, "{}: {count} problem{s}", path.display())?;
-                problems.iter().try_for_each(|problem| write!(f, "\n  {problem}"))
-            }
-        }
-    }
-}
-
-/// Runs the scenario and prints what was asked for; digest and status if nothing was.
+/// Runs the scenario and writes what was asked for; digest and status if nothing was.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
     let text = read(path).map_err(|error| Failure::File(path.clone(), error))?;
     let experiment =
         Experiment::from_json(&text).map_err(|problems| Failure::Scenario(path.clone(), problems))?;
+    let (scenario, _) = Scenario::from_json_lenient(&text);
 
     let mut digest = Digest::default();
-    let finished = match &arguments.trace {
-        None => experiment.run(&mut digest),
-        Some(file) => {
-            let failed = |error| Failure::File(file.clone(), error);
-            let mut out = Text::new(create(file).map_err(failed)?);
-            let finished = experiment.run(&mut (&mut digest, &mut out));
-            out.finish().map_err(failed)?;
-            finished
-        }
-    };
-    print(arguments, &digest, &finished, &experiment)
+    let mut outputs = Outputs { digest: &mut digest, files: open(arguments, &experiment)? };
+    let finished = experiment.run(&mut outputs);
+    for (path, file) in outputs.files {
+        file.finish(finished.cycles().0).map_err(|error| Failure::File(path, error))?;
+    }
+    if let Some(file) = &arguments.line {
+        let text = scripted(scenario.clone(), &experiment).to_json();
+        let failed = |error| Failure::File(file.clone(), error);
+        let mut out = files::create(file).map_err(failed)?;
+        writeln!(out, "{text}").and_then(|()| out.flush()).map_err(failed)?;
+    }
+    let link = if arguments.link { Some(link::encode(&scenario).map_err(Failure::Link)?) } else { None };
+    print(arguments, link, &digest, &finished, &experiment)
         .map_err(|error| Failure::File(PathBuf::from("standard output"), error))
 }
 
-fn print(arguments: &Arguments, digest: &Digest, run: &Run, experiment: &Experiment) -> io::Result<()> {
+/// The files that were asked for, each with its path.
+fn open(arguments: &Arguments, experiment: &Experiment) -> Result<Files, Failure> {
+    let config = experiment.config();
+    let (clock_hz, channels) = (config.clock_hz(), config.channels());
+    let mut opened = Vec::new();
+    let mut add = |path: &Option<PathBuf>, make: &dyn Fn(Out) -> io::Result<Box<dyn Output>>| {
+        let Some(path) = path else { return Ok(()) };
+        let file = files::create(path).and_then(make).map_err(|error| Failure::File(path.clone(), error))?;
+        opened.push((path.clone(), file));
+        Ok(())
+    };
+    add(&arguments.trace, &|out| Ok(files::trace(out)))?;
+    add(&arguments.vcd, &|out| files::vcd(out, clock_hz, channels))?;
+    add(&arguments.csv, &|out| files::csv(out, clock_hz, channels))?;
+    add(&arguments.packets, &|out| Ok(files::packets(out)))?;
+    Ok(opened)
+}
+
+/// The scenario with its host's schedule as its source (DESIGN A9).
+fn scripted(mut scenario: Scenario, experiment: &Experiment) -> Scenario {
+    let sends = experiment
+        .schedule()
+        .iter()
+        .map(|send| ScriptedSend { start_cycle: send.start.0, bytes: Hex(send.bytes.to_vec()) })
+        .collect();
+    scenario.source = Source::Line(LineScript { sends });
+    scenario
+}
+
+fn print(
+    arguments: &Arguments,
+    link: Option<String>,
+    digest: &Digest,
+    run: &Run,
+    experiment: &Experiment,
+) -> io::Result<()> {
     let mut out = io::stdout().lock();
+    if let Some(link) = link {
+        writeln!(out, "#{link}")?;
+    }
     if arguments.digest && !arguments.status {
         return writeln!(out, "{:016x}", digest.value());
     }
-    if !arguments.status && arguments.trace.is_some() {
+    if !arguments.status && arguments.asks_for_a_file() {
         return Ok(());
     }
     let device = run.device();
@@ -113,36 +151,4 @@ fn read(path: &Path) -> io::Result<String> {
         return Ok(text);
     }
     fs::read_to_string(path)
-}
-
-fn create(path: &Path) -> io::Result<Box<dyn Write>> {
-    Ok(if path == Path::new("-") { Box::new(io::stdout()) } else { Box::new(fs::File::create(path)?) })
-}
-
-/// Writes records as text; the first error is kept until the end.
-struct Text {
-    out: BufWriter<Box<dyn Write>>,
-    line: String,
-    result: io::Result<()>,
-}
-
-impl Text {
-    fn new(out: Box<dyn Write>) -> Self {
-        Self { out: BufWriter::new(out), line: String::new(), result: Ok(()) }
-    }
-
-    fn finish(mut self) -> io::Result<()> {
-        self.result.and_then(|()| self.out.flush())
-    }
-}
-
-impl Sink for Text {
-    fn record(&mut self, record: Record) {
-        if self.result.is_ok() {
-            self.line.clear();
-            self.result = write_record(&mut self.line, record)
-                .map_err(io::Error::other)
-                .and_then(|()| self.out.write_all(self.line.as_bytes()));
-        }
-    }
 }

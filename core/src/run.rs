@@ -10,19 +10,20 @@
 //! assert_eq!(run.device().positions()[0], 3200);
 //! ```
 
+mod cost;
+
+pub use cost::Cost;
+
 use crate::{
     device::Device,
     motion::{AxisPlan, plan_axis},
     quantise::ticks,
-    scenario::{Cause, Checked, Config, DirLine, END_OF_TIME, Problem, Pulses, Scenario, Source, line_time},
+    scenario::{Cause, Checked, Config, END_OF_TIME, Problem, Scenario, Source, line_time},
     signal::{Event, Record, Sink},
     units::{Cycles, Instant},
-    wire::{Line, Schedule, packet::Order},
+    wire::{Line, Schedule},
 };
 use alloc::{format, rc::Rc, vec::Vec};
-
-/// Edges of the line that a byte has at most.
-const MOST_EDGES_A_BYTE: u64 = 10;
 
 /// A scenario that has been judged in every respect, with its motions planned and its packets made.
 #[derive(Clone, Debug)]
@@ -31,19 +32,6 @@ pub struct Experiment {
     plans: Vec<AxisPlan>,
     schedule: Rc<Schedule>,
     cost: Cost,
-}
-
-/// What a run costs, known before it starts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Cost {
-    /// Records of the trace, at most.
-    pub records: u64,
-    /// Sends of the host.
-    pub sends: u64,
-    /// Bytes that the host sends.
-    pub bytes: u64,
-    /// Cycle in which the host has sent everything, or the run's given end.
-    pub end_cycle: u64,
 }
 
 impl Experiment {
@@ -64,13 +52,8 @@ impl Experiment {
             }
         }
         let Some(checked) = checked.filter(|_| problems.is_empty()) else { return Err(problems) };
-        let (schedule, records) = schedule(&checked, &plans)?;
-        let cost = Cost {
-            records,
-            sends: schedule.len() as u64,
-            bytes: schedule.total_bytes() as u64,
-            end_cycle: checked.run.map_or_else(|| last_cycle(&schedule, &checked), |run| run.0),
-        };
+        let schedule = schedule(&checked, &plans)?;
+        let cost = Cost::of(&checked, &schedule);
         if cost.end_cycle > END_OF_TIME {
             let cause =
                 Cause::TooMuch { given: cost.end_cycle as f64, most: END_OF_TIME as f64, of: "cycles" };
@@ -229,62 +212,21 @@ impl<S: Sink> Sink for Slice<'_, S> {
     }
 }
 
-/// What the host sends, and how many records that can make.
-fn schedule(checked: &Checked, plans: &[AxisPlan]) -> Result<(Schedule, u64), Vec<Problem>> {
+/// What the host sends.
+fn schedule(checked: &Checked, plans: &[AxisPlan]) -> Result<Schedule, Vec<Problem>> {
     let config = &checked.config;
     let too_slow = |cause| alloc::vec![Problem::new("line.baud", cause)];
-    let line_edges = |schedule: &Schedule| schedule.total_bytes() as u64 * MOST_EDGES_A_BYTE + 1;
     match &checked.source {
         Source::Motion(_) => {
             let ticks = ticks(plans, config.channels(), config.slots(), config.tick().0, config.clock_hz())?;
-            let packets =
-                ticks.iter().map(|tick| config.address().into_iter().chain(tick.iter().copied()).collect());
-            let packets: Vec<Vec<u8>> = packets.collect();
-            let edges = packets.iter().map(|packet| tick_records(config, packet)).sum::<u64>();
-            let schedule = Schedule::paced(config, checked.baud, packets.iter()).map_err(too_slow)?;
-            let records = line_edges(&schedule) + edges;
-            Ok((schedule, records))
+            let packet = |tick: &[u8]| config.address().into_iter().chain(tick.iter().copied()).collect();
+            let packets = ticks.iter().map(|tick| -> Vec<u8> { packet(tick) });
+            Schedule::paced(config, checked.baud, packets).map_err(too_slow)
         }
         Source::Packets(source) => {
             let packets = source.packets.iter().map(|packet| &packet.0);
-            let edges = packets.clone().map(|packet| tick_records(config, packet)).sum::<u64>();
-            let schedule = Schedule::paced(config, checked.baud, packets).map_err(too_slow)?;
-            let records = line_edges(&schedule) + edges;
-            Ok((schedule, records))
+            Schedule::paced(config, checked.baud, packets).map_err(too_slow)
         }
-        Source::Line(script) => {
-            let schedule = Schedule::scripted(script);
-            let packets = (schedule.total_bytes() / config.packet_len()) as u64;
-            let most = u64::from(config.slots()) * u64::from(config.channels());
-            let records = line_edges(&schedule) + packets * records_of(config, most);
-            Ok((schedule, records))
-        }
+        Source::Line(script) => Ok(Schedule::scripted(script)),
     }
-}
-
-/// Records that the tick of a packet makes at most.
-fn tick_records(config: &Config, packet: &[u8]) -> u64 {
-    records_of(config, packet.iter().map(|&byte| u64::from(Order::parse(byte).steps)).sum())
-}
-
-/// Records that a tick of `pulses` pulses makes at most: two edges a pulse, or a slot where they
-/// come together, and the changes of DIR.
-fn records_of(config: &Config, pulses: u64) -> u64 {
-    let slots = pulses.min(u64::from(config.slots()));
-    match (config.pulses, config.dir_line) {
-        (Pulses::Simultaneous, DirLine::PerChannel) => 2 * slots + 1,
-        (Pulses::Simultaneous, DirLine::Common) => 6 * slots,
-        (Pulses::Staggered, DirLine::PerChannel) => 2 * pulses + 1,
-        (Pulses::Staggered, DirLine::Common) => 2 * pulses + 2 * slots,
-    }
-}
-
-/// A cycle by which the host has sent everything and the last tick has passed.
-fn last_cycle(schedule: &Schedule, checked: &Checked) -> u64 {
-    let last = schedule.len().checked_sub(1).and_then(|index| schedule.get(index));
-    let sent = last.map_or(0, |send| {
-        send.start.0 + line_time(send.bytes.len() as u64, checked.config.clock_hz(), checked.baud)
-    });
-    let forced = checked.forced.iter().map(|forced| forced.end.0).max().unwrap_or(0);
-    sent.max(forced) + checked.config.tick().0
 }

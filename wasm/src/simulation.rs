@@ -7,7 +7,7 @@ use stepscope_core::{
     analysis::curves::{self, Window},
     run::{Experiment, Run},
     scenario::Scenario,
-    signal::{Fate, Levels, Record},
+    signal::{Levels, Record},
     trace::{Recording, Step, Verdict, columns, steps},
     wire::packet::Order,
 };
@@ -42,7 +42,7 @@ struct Row {
     end_cycle: u64,
     hex: String,
     fields: String,
-    outcome: &'static str,
+    outcome: String,
     tick_start_cycle: Option<u64>,
     tick_end_cycle: Option<u64>,
 }
@@ -218,7 +218,7 @@ impl Simulation {
                 end_cycle: row.end.0,
                 hex: hex.join(" "),
                 fields: self.fields(bytes, row.verdict),
-                outcome: outcome(row.verdict),
+                outcome: row.verdict.to_string(),
                 tick_start_cycle: row.tick_start.map(|at| at.0),
                 tick_end_cycle: row.tick_end.map(|at| at.0),
             })
@@ -278,18 +278,4 @@ fn edges(trace: &[Record]) -> u64 {
             _ => 0,
         })
         .sum()
-}
-
-const fn outcome(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Packet(Fate::Queued) => "queued",
-        Verdict::Packet(Fate::Foreign) => "another address",
-        Verdict::Packet(Fate::Booting) => "dropped: self-test after reset",
-        Verdict::Packet(Fate::TooManySteps) => "dropped: TOO_MANY_STEPS",
-        Verdict::Packet(Fate::QueueFull) => "dropped: QUEUE_OVERFLOW",
-        Verdict::Short => "dropped: SHORT_PACKET",
-        Verdict::Framing => "dropped: FRAMING",
-        Verdict::Ignored => "ignored until a gap",
-        Verdict::Open => "not complete",
-    }
 }

@@ -24,7 +24,14 @@ macro_rules! plain {
         }
     )*};
 }
-plain!(u8, u16, u32, u64, f64, String, Option<u8>, Option<u32>, Option<u64>);
+plain!(u8, u16, u32, u64, String, Option<u8>, Option<u32>, Option<u64>);
+
+impl Compact for f64 {
+    /// -0.0 equals 0.0, so it is written like it.
+    fn compact(&self) -> Value {
+        Value::from(*self + 0.0)
+    }
+}
 
 impl<T: Compact> Compact for Vec<T> {
     fn compact(&self) -> Value {

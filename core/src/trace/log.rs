@@ -5,6 +5,7 @@ use crate::{
     units::Instant,
 };
 use alloc::{collections::VecDeque, vec::Vec};
+use core::fmt;
 
 /// How a row came to its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,6 +20,23 @@ pub enum Verdict {
     Ignored,
     /// The run ended within it.
     Open,
+}
+
+impl fmt::Display for Verdict {
+    /// What became of the packet, as the page and the command's tables say it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Packet(Fate::Queued) => "queued",
+            Self::Packet(Fate::Foreign) => "another address",
+            Self::Packet(Fate::Booting) => "dropped: self-test after reset",
+            Self::Packet(Fate::TooManySteps) => "dropped: TOO_MANY_STEPS",
+            Self::Packet(Fate::QueueFull) => "dropped: QUEUE_OVERFLOW",
+            Self::Short => "dropped: SHORT_PACKET",
+            Self::Framing => "dropped: FRAMING",
+            Self::Ignored => "ignored until a gap",
+            Self::Open => "not complete",
+        })
+    }
 }
 
 /// One row.

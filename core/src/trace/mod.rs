@@ -7,6 +7,8 @@ mod log;
 mod recording;
 mod steps;
 mod text;
+#[cfg(feature = "std")]
+mod vcd;
 
 pub use columns::{Columns, columns};
 pub use digest::Digest;
@@ -14,3 +16,11 @@ pub use log::{LoggedPacket, PacketLog, Verdict};
 pub use recording::Recording;
 pub use steps::{Step, steps};
 pub use text::{ParseError, parse_line, write_record};
+#[cfg(feature = "std")]
+pub use vcd::VcdWriter;
+
+/// Bits of the signals that exports show: STEP and DIR of the channels in use, then EN, RX, TX, DE.
+pub fn shown_signals(channels: u8) -> impl Iterator<Item = u32> {
+    let channels = 0..u32::from(channels);
+    channels.flat_map(|channel| [channel, 16 + channel]).chain(32..36)
+}

@@ -1,0 +1,149 @@
+//! Files that `stepscope run` writes while a run is made.
+
+use std::{
+    fs,
+    io::{self, BufWriter, Write},
+    path::{Path, PathBuf},
+};
+use stepscope_core::{
+    signal::{Event, Record, Sink},
+    trace::{PacketLog, VcdWriter, shown_signals, write_record},
+    units::Instant,
+};
+
+/// Where a file goes: its path, or standard output for `-`.
+pub(crate) type Out = BufWriter<Box<dyn Write>>;
+
+/// Creates `path`, or takes standard output for `-`.
+pub(crate) fn create(path: &Path) -> io::Result<Out> {
+    let out: Box<dyn Write> =
+        if path == Path::new("-") { Box::new(io::stdout()) } else { Box::new(fs::File::create(path)?) };
+    Ok(BufWriter::new(out))
+}
+
+/// A file that takes a run and is finished after it; `end` is the first cycle that was not run.
+pub(crate) trait Output: Sink {
+    /// Writes what is left; the first error of all writing.
+    fn finish(self: Box<Self>, end: u64) -> io::Result<()>;
+}
+
+/// Lines of text, one a record.
+struct Lines<F> {
+    out: Out,
+    line: F,
+    result: io::Result<()>,
+}
+
+impl<F: FnMut(&mut Out, Record) -> io::Result<()>> Sink for Lines<F> {
+    fn record(&mut self, record: Record) {
+        if self.result.is_ok() {
+            self.result = (self.line)(&mut self.out, record);
+        }
+    }
+}
+
+impl<F: FnMut(&mut Out, Record) -> io::Result<()>> Output for Lines<F> {
+    fn finish(mut self: Box<Self>, _: u64) -> io::Result<()> {
+        self.result.and_then(|()| self.out.flush())
+    }
+}
+
+/// The trace: cycle and levels in hexadecimal.
+pub(crate) fn trace(out: Out) -> Box<dyn Output> {
+    let mut text = String::new();
+    let line = move |out: &mut Out, record| {
+        text.clear();
+        write_record(&mut text, record).map_err(io::Error::other)?;
+        out.write_all(text.as_bytes())
+    };
+    Box::new(Lines { out, line, result: Ok(()) })
+}
+
+/// A table: cycle, time in s, and each signal's level.
+pub(crate) fn csv(mut out: Out, clock_hz: u32, channels: u8) -> io::Result<Box<dyn Output>> {
+    write!(out, "cycle,time_s")?;
+    for bit in shown_signals(channels) {
+        write!(out, ",{}", stepscope_core::signal::name(bit).unwrap_or_default())?;
+    }
+    writeln!(out)?;
+    let line = move |out: &mut Out, record: Record| {
+        write!(out, "{},{}", record.cycle.0, record.cycle.seconds(clock_hz))?;
+        for bit in shown_signals(channels) {
+            write!(out, ",{}", u8::from(record.levels.has(1 << bit)))?;
+        }
+        writeln!(out)
+    };
+    Ok(Box::new(Lines { out, line, result: Ok(()) }))
+}
+
+/// A value change dump.
+pub(crate) fn vcd(out: Out, clock_hz: u32, channels: u8) -> io::Result<Box<dyn Output>> {
+    Ok(Box::new(VcdWriter::new(out, clock_hz, channels)?))
+}
+
+impl Output for VcdWriter<Out> {
+    fn finish(self: Box<Self>, end: u64) -> io::Result<()> {
+        VcdWriter::finish(*self, end)
+    }
+}
+
+/// A table of the packets, one a row, with what the controller did with it.
+pub(crate) fn packets(out: Out) -> Box<dyn Output> {
+    Box::new(Packets { out, log: PacketLog::default() })
+}
+
+/// Rows are written at the end, when it is known what became of each packet.
+struct Packets {
+    out: Out,
+    log: PacketLog,
+}
+
+impl Sink for Packets {
+    fn record(&mut self, _: Record) {}
+
+    fn event(&mut self, at: Instant, event: Event) {
+        self.log.event(at, event);
+    }
+}
+
+impl Output for Packets {
+    fn finish(mut self: Box<Self>, _: u64) -> io::Result<()> {
+        self.log.finish();
+        writeln!(self.out, "start_cycle,end_cycle,bytes,outcome,tick_start_cycle,tick_end_cycle")?;
+        let cycle = |at: Option<Instant>| at.map(|at| at.0.to_string()).unwrap_or_default();
+        for (index, row) in self.log.rows().iter().enumerate() {
+            write!(self.out, "{},{},", row.start.0, row.end.0)?;
+            for byte in self.log.bytes(index) {
+                write!(self.out, "{byte:02x}")?;
+            }
+            writeln!(self.out, ",{},{},{}", row.verdict, cycle(row.tick_start), cycle(row.tick_end))?;
+        }
+        self.out.flush()
+    }
+}
+
+/// Files that a run writes, each with its path.
+pub(crate) type Files = Vec<(PathBuf, Box<dyn Output>)>;
+
+/// The digest and all files of a run.
+pub(crate) struct Outputs<'d> {
+    /// The digest.
+    pub(crate) digest: &'d mut stepscope_core::trace::Digest,
+    /// The files.
+    pub(crate) files: Files,
+}
+
+impl Sink for Outputs<'_> {
+    fn record(&mut self, record: Record) {
+        self.digest.record(record);
+        for (_, file) in &mut self.files {
+            file.record(record);
+        }
+    }
+
+    fn event(&mut self, at: Instant, event: Event) {
+        for (_, file) in &mut self.files {
+            file.event(at, event);
+        }
+    }
+}

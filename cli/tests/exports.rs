@@ -1,0 +1,81 @@
+//! The files that `stepscope run` writes, and the ways to a scenario: links and presets.
+#![allow(clippy::expect_used, reason = "what is missing fails the test")]
+
+use std::{fs, path::PathBuf, process::Command};
+
+fn stepscope(arguments: &[&str]) -> (Option<i32>, String) {
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_stepscope")).args(arguments).output().expect("the command starts");
+    (output.status.code(), String::from_utf8(output.stdout).expect("text"))
+}
+
+/// A path for this test's file, in the folder that cargo keeps for tests.
+fn file(name: &str) -> (PathBuf, String) {
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let text = path.display().to_string();
+    (path, text)
+}
+
+fn preset(id: &str, name: &str) -> String {
+    let (path, text) = file(name);
+    fs::write(path, stepscope(&["presets", id]).1).expect("a file");
+    text
+}
+
+#[test]
+fn the_hosts_schedule_run_in_its_turn_gives_the_same_trace() {
+    for id in ["song-2021-plateau", "patent-2019-sixteen-motors", "glitches-and-breaks"] {
+        let scenario = preset(id, &format!("{id}.json"));
+        let (_, line) = file(&format!("{id}-line.json"));
+        assert_eq!(stepscope(&["run", &scenario, "--line", &line]), (Some(0), String::new()), "{id}");
+        let digest = stepscope(&["run", &scenario, "--digest"]);
+        assert_eq!(stepscope(&["run", &line, "--digest"]), digest, "{id}");
+    }
+}
+
+#[test]
+fn a_link_opens_as_the_scenario_that_it_was_made_of() {
+    let scenario = preset("sonobe-2011-table", "linked.json");
+    let (code, link) = stepscope(&["run", &scenario, "--link"]);
+    assert_eq!(code, Some(0));
+    let address = format!("http://127.0.0.1:8080/{}", link.trim());
+    let (path, opened) = file("opened.json");
+    fs::write(path, stepscope(&["open", &address]).1).expect("a file");
+    assert_eq!(stepscope(&["run", &opened, "--digest"]), stepscope(&["run", &scenario, "--digest"]));
+    assert_eq!(stepscope(&["open", "c=1.j"]), (Some(2), String::new()));
+}
+
+#[test]
+fn tables_have_a_row_for_each_record_and_each_packet() {
+    let scenario = preset("patent-2019-addressed", "tables.json");
+    let (csv_path, csv) = file("signals.csv");
+    let (packets_path, packets) = file("packets.csv");
+    let (trace_path, trace) = file("tables.trace");
+    let asked = ["run", &scenario, "--csv", &csv, "--packets", &packets, "--trace", &trace];
+    assert_eq!(stepscope(&asked).0, Some(0));
+    let lines = |path| fs::read_to_string(path).expect("a file").lines().count();
+    assert_eq!(lines(csv_path), lines(trace_path) + 1, "a head, and a row a record");
+    let packets = fs::read_to_string(packets_path).expect("a file");
+    let outcomes: Vec<&str> = packets.lines().skip(1).filter_map(|row| row.split(',').nth(3)).collect();
+    let expected =
+        ["queued", "another address", "queued", "dropped: TOO_MANY_STEPS", "dropped: SHORT_PACKET"];
+    assert_eq!(outcomes, expected);
+}
+
+#[test]
+fn a_value_change_dump_has_the_signals_of_the_channels_in_use() {
+    let scenario = preset("patent-2019-four-motors", "dump.json");
+    let (path, vcd) = file("dump.vcd");
+    assert_eq!(stepscope(&["run", &scenario, "--vcd", &vcd]).0, Some(0));
+    let text = fs::read_to_string(path).expect("a file");
+    let variables: Vec<&str> = text.lines().filter(|line| line.starts_with("$var")).collect();
+    assert_eq!(variables.len(), 4 * 2 + 4, "{variables:?}");
+    assert!(text.contains("STEP3") && text.contains("DE") && !text.contains("STEP4"));
+}
+
+#[test]
+fn every_preset_is_listed_and_unknown_ones_are_refused() {
+    let (code, list) = stepscope(&["presets"]);
+    assert_eq!((code, list.lines().count()), (Some(0), 10));
+    assert_eq!(stepscope(&["presets", "no-such"]), (Some(2), String::new()));
+}

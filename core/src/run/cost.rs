@@ -1,0 +1,110 @@
+//! What a run costs at most, before it starts: from the host's bytes, what is forced on the line,
+//! and what the receiver can make of both.
+//!
+//! Each byte that is heard begins with a fall of the line, and the next one no earlier than
+//! floor(B/2) + 9*B + 1 cycles later (DESIGN A4). So a receiver hears what is sent only if nothing
+//! is forced and its samples lie in their bits; otherwise one byte can become several, and a forced
+//! level can begin one of its own.
+
+use crate::{
+    scenario::{Checked, Config, DirLine, Pulses, Source, line_time},
+    units::Cycles,
+    wire::{Schedule, packet::Order},
+};
+
+/// Edges of the line that a byte has at most, and how many of them fall.
+const MOST_EDGES_A_BYTE: u64 = 10;
+const MOST_FALLS_A_BYTE: u64 = 5;
+/// Where the last of them can be: the start of data bit 7.
+const LAST_FALL_BIT: u64 = 8;
+
+/// What a run costs, known before it starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cost {
+    /// Records of the trace, at most.
+    pub records: u64,
+    /// Sends of the host.
+    pub sends: u64,
+    /// Bytes that the host sends.
+    pub bytes: u64,
+    /// Cycle in which the host has sent everything, or the run's given end.
+    pub end_cycle: u64,
+}
+
+impl Cost {
+    pub(super) fn of(checked: &Checked, schedule: &Schedule) -> Self {
+        let (bytes, forced) = (schedule.total_bytes() as u64, checked.forced.len() as u64);
+        let line = MOST_EDGES_A_BYTE * bytes + 2 * forced;
+        Self {
+            records: 1 + line + tick_records(checked, schedule),
+            sends: schedule.len() as u64,
+            bytes,
+            end_cycle: checked.run.map_or_else(|| last_cycle(schedule, checked), |Cycles(run)| run),
+        }
+    }
+}
+
+/// Records of all ticks at most.
+fn tick_records(checked: &Checked, schedule: &Schedule) -> u64 {
+    let config = &checked.config;
+    let faithful = checked.forced.is_empty() && hears(config, checked.baud);
+    match checked.source {
+        Source::Motion(_) | Source::Packets(_) if faithful => {
+            schedule.iter().map(|packet| records_of(config, pulses(config, packet.bytes))).sum()
+        }
+        _ => {
+            let heard = if faithful {
+                schedule.total_bytes() as u64
+            } else {
+                let sent: u64 = schedule.iter().map(|send| most_heard(checked, send.bytes.len())).sum();
+                sent + checked.forced.len() as u64
+            };
+            let most = u64::from(config.slots()) * u64::from(config.channels());
+            heard / config.packet_len() as u64 * records_of(config, most)
+        }
+    }
+}
+
+/// Whether the receiver takes each sample in the bit that it is of, and is armed for the next byte.
+fn hears(config: &Config, baud: u32) -> bool {
+    let (bit, clock_hz, baud) = (config.bit().0, u64::from(config.clock_hz()), u64::from(baud));
+    let starts = |k: u64| k * clock_hz / baud;
+    (0..10).all(|k| (starts(k)..starts(k + 1)).contains(&(bit / 2 + k * bit)))
+}
+
+/// Bytes that can be heard of so many that are sent back to back.
+fn most_heard(checked: &Checked, bytes: usize) -> u64 {
+    let (bytes, bit) = (bytes as u64, checked.config.bit().0);
+    let Some(before) = bytes.checked_sub(1) else { return 0 };
+    let last_fall =
+        (10 * before + LAST_FALL_BIT) * u64::from(checked.config.clock_hz()) / u64::from(checked.baud);
+    (MOST_FALLS_A_BYTE * bytes).min(last_fall / (bit / 2 + 9 * bit + 1) + 1)
+}
+
+/// Pulses that a packet orders.
+fn pulses(config: &Config, packet: &[u8]) -> u64 {
+    let orders = packet.iter().skip(usize::from(config.address().is_some()));
+    orders.map(|&byte| u64::from(Order::parse(byte).steps)).sum()
+}
+
+/// Records that a tick of `pulses` pulses makes at most: two edges a pulse, or a slot where they
+/// come together, and the changes of DIR.
+fn records_of(config: &Config, pulses: u64) -> u64 {
+    let slots = pulses.min(u64::from(config.slots()));
+    match (config.pulses, config.dir_line) {
+        (Pulses::Simultaneous, DirLine::PerChannel) => 2 * slots + 1,
+        (Pulses::Simultaneous, DirLine::Common) => 6 * slots,
+        (Pulses::Staggered, DirLine::PerChannel) => 2 * pulses + 1,
+        (Pulses::Staggered, DirLine::Common) => 2 * pulses + 2 * slots,
+    }
+}
+
+/// A cycle by which the host has sent everything and the last tick has passed.
+fn last_cycle(schedule: &Schedule, checked: &Checked) -> u64 {
+    let last = schedule.len().checked_sub(1).and_then(|index| schedule.get(index));
+    let sent = last.map_or(0, |send| {
+        send.start.0 + line_time(send.bytes.len() as u64, checked.config.clock_hz(), checked.baud)
+    });
+    let forced = checked.forced.iter().map(|forced| forced.end.0).max().unwrap_or(0);
+    sent.max(forced) + checked.config.tick().0
+}
