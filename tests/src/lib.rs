@@ -11,6 +11,10 @@ pub mod oracle;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod cases;
 
+/// Random scenarios for the property tests.
+#[cfg(not(target_arch = "wasm32"))]
+pub mod scenarios;
+
 /// The README's examples, compiled and run as documentation tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]

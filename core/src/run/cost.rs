@@ -108,3 +108,50 @@ fn last_cycle(schedule: &Schedule, checked: &Checked) -> u64 {
     let forced = checked.forced.iter().map(|forced| forced.end.0).max().unwrap_or(0);
     sent.max(forced) + checked.config.tick().0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        run::Experiment,
+        scenario::{Bus, Glitch, Line, Scenario},
+    };
+    use alloc::vec;
+
+    fn config(clock_hz: u32, baud: u32, receiver_baud: u32) -> Option<Config> {
+        let line = Line { baud, receiver_baud: Some(receiver_baud), ..Line::default() };
+        Config::new(clock_hz, &Bus::default(), &line).ok()
+    }
+
+    #[test]
+    fn a_receiver_at_the_senders_rate_hears_what_is_sent() {
+        for clock_hz in [21, 1000, 1603, 16_000_000] {
+            for baud in (1..clock_hz / 10).step_by(1 + clock_hz as usize / 3000) {
+                assert!(config(clock_hz, baud, baud).is_none_or(|c| hears(&c, baud)), "{clock_hz} {baud}");
+            }
+        }
+        // 16 cycles a bit; a receiver's 15 and 17 take a sample in the wrong bit.
+        for (receiver_baud, expected) in [(100, true), (97, true), (107, false), (95, false)] {
+            let config = config(1600, 100, receiver_baud).expect("holds");
+            assert_eq!(hears(&config, 100), expected, "{receiver_baud}");
+        }
+    }
+
+    #[test]
+    fn each_forced_level_may_be_heard_as_a_byte() {
+        // A low of half a bit on an idle line is the byte ff: 127 steps, 255 records.
+        let glitch = |k: u64| Glitch { start_cycle: 1 + k * 2000, length_cycles: 80, level: 0 };
+        let mut scenario =
+            Scenario::from_json(r#"{"bus":{"slots":127},"source":{"line":{}}}"#).expect("reads");
+        for glitches in [0, 1, 10] {
+            scenario.line.glitches = (0..glitches).map(glitch).collect();
+            let records = Experiment::new(&scenario).expect("runs").cost().records;
+            assert_eq!(records, 1 + glitches * (2 + 255));
+        }
+        scenario.line = Line { glitches: vec![], receiver_baud: Some(1_000_000), ..Line::default() };
+        let json = r#"{"line":{"sends":[{"bytes":"5555"}]}}"#;
+        scenario.source = serde_json::from_str(json).expect("reads");
+        let records = Experiment::new(&scenario).expect("runs").cost().records;
+        assert_eq!(records, 1 + 2 * 10 + 10 * 255, "every fall of the line may begin a byte");
+    }
+}

@@ -1,0 +1,195 @@
+//! Scenarios of the right types with any numbers in them: most are refused, some are huge.
+
+use proptest::prelude::*;
+use stepscope_core::scenario::{
+    Acceleration, Analysis, Axis, Bus, Constant, Cosine, DirLine, Direct, Distance, Distribution, Dwell,
+    Glitch, Hex, Line, LineScript, Mechanics, Motion, Move, Packets, Pulses, Rotary, Scenario, Screw,
+    ScriptedSend, SineSegments, Source, Speed, Trapezoid, TrapezoidMethod, Wheel,
+};
+
+/// Any scenario of this version that JSON can carry: no number in it is infinite or none at all.
+pub fn typed() -> impl Strategy<Value = Scenario> {
+    let texts = (text(), text());
+    let analysis = (small_or_any(0), small_or_any(40), small_or_any(4096));
+    (texts, small_or_any(16_000_000), bus(), line(), source(), any::<Option<u64>>(), analysis).prop_map(
+        |((title, note), clock_hz, bus, line, source, run_cycles, (axis, order, fft_length))| Scenario {
+            title,
+            note,
+            clock_hz,
+            bus,
+            line,
+            source,
+            run_cycles,
+            analysis: Analysis { axis, order, fft_length },
+            ..Scenario::default()
+        },
+    )
+}
+
+/// The default often, else small numbers, the ends of the type, or any.
+fn small_or_any<T>(default: T) -> impl Strategy<Value = T> + Clone
+where
+    T: Arbitrary + Copy + TryFrom<u64> + 'static,
+    T::Strategy: Clone,
+{
+    let number = |value: u64| T::try_from(value).ok();
+    let odd = [0, 1, 2, 16, 17, 127, 128, 255, 65_536, 1 << 20, u64::from(u32::MAX), 1 << 53, u64::MAX];
+    let odd: Vec<T> = odd.into_iter().filter_map(number).collect();
+    prop_oneof![30 => Just(default), 2 => prop::sample::select(odd), 1 => any::<T>()]
+}
+
+/// Any finite number, round and absurd ones often.
+fn number(default: f64) -> impl Strategy<Value = f64> + Clone {
+    let odd = [
+        0.0,
+        -0.0,
+        1.0,
+        -1.0,
+        0.1,
+        1e-9,
+        1e9,
+        1e300,
+        -1e300,
+        f64::MIN_POSITIVE,
+        f64::MAX,
+        5e-324,
+        1e15,
+        1e22,
+    ];
+    prop_oneof![
+        30 => Just(default),
+        2 => prop::sample::select(odd.to_vec()),
+        1 => prop::num::f64::NORMAL | prop::num::f64::SUBNORMAL,
+    ]
+}
+
+fn text() -> impl Strategy<Value = String> {
+    prop_oneof![2 => Just(String::new()), 1 => any::<String>(), 1 => "[ -~]{0,130}"]
+}
+
+fn bus() -> impl Strategy<Value = Bus> {
+    let modes = any::<[bool; 3]>();
+    let counts = (small_or_any(1), small_or_any(100), small_or_any(16));
+    let times = (small_or_any(320), small_or_any(40), small_or_any(40), small_or_any(0), small_or_any(0));
+    (modes, counts, times, small_or_any(1600)).prop_map(
+        |([burst, common, staggered], (channels, slots, queue_depth), times, boot_cycles)| {
+            let (step_period_cycles, pulse_width_cycles, dir_setup_cycles, dir_hold_cycles, settle_cycles) =
+                times;
+            Bus {
+                channels,
+                slots,
+                step_period_cycles,
+                pulse_width_cycles,
+                dir_setup_cycles,
+                dir_hold_cycles,
+                distribution: if burst { Distribution::Burst } else { Distribution::Spread },
+                dir_line: if common { DirLine::Common } else { DirLine::PerChannel },
+                pulses: if staggered { Pulses::Staggered } else { Pulses::Simultaneous },
+                settle_cycles,
+                queue_depth,
+                boot_cycles,
+            }
+        },
+    )
+}
+
+fn line() -> impl Strategy<Value = Line> {
+    let glitch = (small_or_any(1), small_or_any(1), small_or_any(0))
+        .prop_map(|(start_cycle, length_cycles, level)| Glitch { start_cycle, length_cycles, level });
+    let glitches = prop::collection::vec(glitch, 0..4);
+    let receiver_baud = prop::option::weighted(0.2, small_or_any(115_200));
+    let address = prop::option::weighted(0.2, any::<u8>());
+    (small_or_any(115_200), receiver_baud, address, glitches)
+        .prop_map(|(baud, receiver_baud, address, glitches)| Line { baud, receiver_baud, address, glitches })
+}
+
+fn source() -> impl Strategy<Value = Source> {
+    let hex = prop_oneof![
+        3 => prop::collection::vec(any::<u8>(), 1),
+        1 => prop::collection::vec(any::<u8>(), 0..40),
+    ];
+    let hex = hex.prop_map(Hex);
+    let send =
+        (small_or_any(1), hex.clone()).prop_map(|(start_cycle, bytes)| ScriptedSend { start_cycle, bytes });
+    prop_oneof![
+        4 => prop::collection::vec(axis(), 0..3).prop_map(|axes| Source::Motion(Motion { axes })),
+        1 => prop::collection::vec(hex, 0..20).prop_map(|packets| Source::Packets(Packets { packets })),
+        1 => prop::collection::vec(send, 0..6).prop_map(|sends| Source::Line(LineScript { sends })),
+    ]
+}
+
+fn axis() -> impl Strategy<Value = Axis> {
+    let shaft = || (number(1.8), small_or_any(16));
+    let mechanics = prop_oneof![
+        3 => shaft().prop_map(|(full_step_deg, microsteps)| Mechanics::Rotary(Rotary { full_step_deg, microsteps })),
+        1 => (shaft(), number(10.0)).prop_map(|((full_step_deg, microsteps), radius_mm)| {
+            Mechanics::Wheel(Wheel { full_step_deg, microsteps, radius_mm })
+        }),
+        1 => (shaft(), number(8.0)).prop_map(|((full_step_deg, microsteps), lead_mm)| {
+            Mechanics::Screw(Screw { full_step_deg, microsteps, lead_mm })
+        }),
+        1 => number(0.01).prop_map(|step_mm| Mechanics::Direct(Direct { step_mm })),
+    ];
+    (mechanics, prop::collection::vec(one_move(), 0..4))
+        .prop_map(|(mechanics, moves)| Axis { mechanics, moves })
+}
+
+fn distance(steps: f64) -> impl Strategy<Value = Distance> + Clone {
+    prop_oneof![
+        4 => number(steps).prop_map(Distance::Steps),
+        1 => number(1.0).prop_map(Distance::Millimetres),
+        1 => number(90.0).prop_map(Distance::Degrees),
+    ]
+}
+
+fn speed(steps_s: f64) -> impl Strategy<Value = Speed> + Clone {
+    prop_oneof![
+        4 => number(steps_s).prop_map(Speed::StepsPerSecond),
+        1 => number(1.0).prop_map(Speed::MillimetresPerSecond),
+        1 => number(90.0).prop_map(Speed::DegreesPerSecond),
+        1 => number(60.0).prop_map(Speed::TurnsPerMinute),
+    ]
+}
+
+fn acceleration() -> impl Strategy<Value = Acceleration> + Clone {
+    prop_oneof![
+        4 => number(9000.0).prop_map(Acceleration::StepsPerSecond2),
+        1 => number(10.0).prop_map(Acceleration::MillimetresPerSecond2),
+        1 => number(90.0).prop_map(Acceleration::DegreesPerSecond2),
+    ]
+}
+
+fn one_move() -> impl Strategy<Value = Move> {
+    prop_oneof![
+        (
+            distance(2000.0),
+            speed(250.0),
+            speed(4000.0),
+            acceleration(),
+            any::<bool>(),
+            small_or_any(1_000_000)
+        )
+            .prop_map(|(distance, start_speed, top_speed, acceleration, table, timer_hz)| {
+                let method = if table { TrapezoidMethod::Table } else { TrapezoidMethod::Exact };
+                Move::Trapezoid(Trapezoid {
+                    distance,
+                    start_speed,
+                    top_speed,
+                    acceleration,
+                    method,
+                    timer_hz,
+                })
+            }),
+        (distance(3200.0), number(0.4), number(0.2)).prop_map(|(distance, duration_s, ramp_s)| {
+            Move::Cosine(Cosine { distance, duration_s, ramp_s })
+        }),
+        (distance(1000.0), number(0.5), small_or_any(4), number(0.006)).prop_map(
+            |(amplitude, period_s, periods, max_deviation)| {
+                Move::SineSegments(SineSegments { amplitude, period_s, periods, max_deviation })
+            }
+        ),
+        (distance(1000.0), speed(1000.0))
+            .prop_map(|(distance, speed)| Move::Constant(Constant { distance, speed })),
+        number(0.1).prop_map(|duration_s| Move::Dwell(Dwell { duration_s })),
+    ]
+}
