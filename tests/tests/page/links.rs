@@ -1,0 +1,147 @@
+//! Links: one visitor's experiment in another visitor's browser.
+
+use anyhow::{Context, Result, ensure};
+use serde_json::json;
+use stepscope_core::scenario::presets::PRESETS;
+
+use crate::{
+    bench::in_browser,
+    native::{Known, with_distance},
+    session::Session,
+};
+
+const DISTANCE: &str = "source.motion.axes[0].moves[0].cosine.distance";
+
+/// Presses the button and gives what is on the clipboard then.
+async fn copied(page: &Session) -> Result<String> {
+    let permissions = ["clipboardReadWrite", "clipboardSanitizedWrite"];
+    let origin = page.address().trim_end_matches('/');
+    page.devtools("Browser.grantPermissions", json!({ "origin": origin, "permissions": permissions }))
+        .await?;
+    page.click("#copy-link").await?;
+    page.until("document.getElementById('copy-link').textContent === 'Copied'").await?;
+    page.js("return navigator.clipboard.readText();", vec![]).await
+}
+
+#[test]
+fn a_copied_link_gives_a_stranger_the_same_form_and_the_same_digest() -> Result<()> {
+    in_browser(|page| async move {
+        let known = Known::of(&with_distance(1200.0))?;
+        page.open("").await?;
+        page.fill(DISTANCE, "1200").await?;
+        page.until_digest(&known.digest).await?;
+        let link = copied(&page).await?;
+        assert_eq!(link, format!("{}#{}", page.address(), known.link), "the link is the core's, bit by bit");
+
+        let stranger = page.stranger().await?;
+        let (_, fragment) = link.split_once('#').context("no fragment")?;
+        stranger.open(&format!("#{fragment}")).await?;
+        stranger.until_digest(&known.digest).await?;
+        assert_eq!(stranger.form().await?, page.form().await?);
+        let message = stranger.text("#link-message").await?;
+        ensure!(message.contains("Undo"), "the way back is named: {message}");
+        stranger.click("#undo").await?;
+        stranger.until_digest(&Known::of("{}")?.digest).await
+    })
+}
+
+#[test]
+fn every_presets_link_is_the_cores() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        for preset in PRESETS {
+            let known = Known::preset(preset)?;
+            page.choose("#preset", preset.id).await?;
+            page.until_equal("location.hash", &json!(format!("#{}", known.link)))
+                .await
+                .with_context(|| preset.id)?;
+        }
+        Ok(())
+    })
+}
+
+#[test]
+fn copies_that_a_chat_program_changed_still_open() -> Result<()> {
+    in_browser(|page| async move {
+        let known = Known::of(&with_distance(2400.0))?;
+        let link = &known.link;
+        let encoded = link.replace('=', "%3D").replace('.', "%2E").replace('_', "%5F");
+        for copy in [encoded, format!("{link})"), format!("{link})."), format!("{link}&v=broken&d=0")] {
+            page.open(&format!("#{copy}")).await?;
+            page.until_digest(&known.digest).await.with_context(|| copy.clone())?;
+        }
+        Ok(())
+    })
+}
+
+#[test]
+fn a_refused_clipboard_leaves_the_link_to_be_copied_by_hand() -> Result<()> {
+    in_browser(|page| async move {
+        page.before_scripts("globalThis.Clipboard && (Clipboard.prototype.writeText = () => Promise.reject(new Error('refused')));").await?;
+        page.open("").await?;
+        page.click("#copy-link").await?;
+        page.until("!document.getElementById('copy-fallback').hidden").await?;
+        let known = Known::of("{}")?;
+        let link = format!("{}#{}", page.address(), known.link);
+        assert_eq!(page.eval::<String>("document.getElementById('link-text').value").await?, link);
+        assert_eq!(page.eval::<String>("getSelection().toString()").await?, link, "it is selected");
+        Ok(())
+    })
+}
+
+#[test]
+fn the_address_follows_the_typing_without_growing_the_history() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        let before: u32 = page.eval("history.length").await?;
+        for steps in ["1.2k", "800", "2400"] {
+            page.fill(DISTANCE, steps).await?;
+        }
+        let known = Known::of(&with_distance(2400.0))?;
+        page.until_equal("location.hash", &json!(format!("#{}", known.link))).await?;
+        assert_eq!(page.eval::<u32>("history.length").await?, before);
+        Ok(())
+    })
+}
+
+#[test]
+fn a_link_that_is_put_into_the_address_is_heard_and_undo_brings_the_own_work_back() -> Result<()> {
+    in_browser(|page| async move {
+        let own = Known::of(&with_distance(800.0))?;
+        let preset = PRESETS.first().context("there are presets")?;
+        let shared = Known::preset(preset)?;
+        page.open("").await?;
+        page.fill(DISTANCE, "800").await?;
+        page.until_digest(&own.digest).await?;
+        let form = page.form().await?;
+        page.js::<bool>("location.hash = arguments[0]; return true;", vec![json!(shared.link)]).await?;
+        page.until_digest(&shared.digest).await?;
+        ensure!(
+            page.text("#link-message").await?.contains(&shared.scenario.title),
+            "the link's name is told"
+        );
+
+        page.click("#undo").await?;
+        page.until_digest(&own.digest).await?;
+        let (mut now, mut then) = (page.form().await?, form);
+        // The same value, written as the page writes it.
+        ensure!(now.remove(DISTANCE) == Some(json!("800")) && then.remove(DISTANCE).is_some());
+        assert_eq!(now, then);
+        page.until_equal("location.hash", &json!(format!("#{}", own.link))).await
+    })
+}
+
+#[test]
+fn the_own_work_is_there_again_on_the_next_visit_whatever_link_was_opened_between() -> Result<()> {
+    in_browser(|page| async move {
+        let own = Known::of(&with_distance(800.0))?;
+        let shared = Known::preset(PRESETS.first().context("there are presets")?)?;
+        page.open("").await?;
+        page.fill(DISTANCE, "800").await?;
+        page.until_digest(&own.digest).await?;
+        page.open(&format!("#{}", shared.link)).await?;
+        page.until_digest(&shared.digest).await?;
+        page.open("").await?;
+        page.until_digest(&own.digest).await
+    })
+}

@@ -1,0 +1,79 @@
+//! What the core says of a scenario, without a browser.
+
+use anyhow::{Result, anyhow};
+use crc::{CRC_32_ISO_HDLC, Crc};
+use data_encoding::BASE64URL_NOPAD;
+use stepscope_core::{
+    run::Experiment,
+    scenario::{
+        Problem, Scenario,
+        link::{self, LinkError},
+        presets::Preset,
+    },
+    trace::Recording,
+};
+
+/// A scenario, and all that the core makes of it.
+pub(crate) struct Known {
+    pub(crate) scenario: Scenario,
+    pub(crate) experiment: Experiment,
+    pub(crate) recording: Recording,
+    /// 16 hexadecimal digits, as the page shows it.
+    pub(crate) digest: String,
+    /// What stands behind the `#`.
+    pub(crate) link: String,
+}
+
+impl Known {
+    /// The scenario of a JSON text; `{}` is the default motion.
+    pub(crate) fn of(json: &str) -> Result<Self> {
+        let scenario = Scenario::from_json(json).map_err(listed)?;
+        let experiment = Experiment::new(&scenario).map_err(listed)?;
+        let mut recording = Recording::default();
+        experiment.run(&mut recording);
+        recording.packets.finish();
+        let digest = format!("{:016x}", recording.digest.value());
+        let link = link::encode(&scenario)?;
+        Ok(Self { scenario, experiment, recording, digest, link })
+    }
+
+    pub(crate) fn preset(preset: &Preset) -> Result<Self> {
+        Self::of(preset.json)
+    }
+
+    /// A duration of so many cycles in s.
+    pub(crate) fn seconds(&self, cycles: u64) -> f64 {
+        cycles as f64 / f64::from(self.experiment.config().clock_hz())
+    }
+}
+
+/// The default motion with another distance in steps.
+pub(crate) fn with_distance(steps: f64) -> String {
+    format!(
+        r#"{{"source":{{"motion":{{"axes":[{{"moves":[{{"cosine":{{"distance":{{"steps":{steps}}}}}}}]}}]}}}}}}"#
+    )
+}
+
+/// Everything that is wrong with a scenario, as `check` in the page has it.
+pub(crate) fn problems(json: &str) -> Vec<Problem> {
+    Experiment::from_json(json).err().unwrap_or_default()
+}
+
+/// Why a link does not open; an error if it does.
+pub(crate) fn refusal(fragment: &str) -> Result<String> {
+    let refused = link::decode(fragment)
+        .and_then(|scenario| Experiment::new(&scenario).map_err(LinkError::Scenario))
+        .err();
+    refused.map(|error| error.to_string()).ok_or_else(|| anyhow!("{fragment} opens"))
+}
+
+/// A link of format 1 with a right check around any payload.
+pub(crate) fn forged(codec: char, payload: &[u8]) -> String {
+    let text = format!("1.{codec}.{}", BASE64URL_NOPAD.encode(payload));
+    format!("c={text}.{:08x}", Crc::<u32>::new(&CRC_32_ISO_HDLC).checksum(text.as_bytes()))
+}
+
+fn listed(problems: Vec<Problem>) -> anyhow::Error {
+    let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
+    anyhow!(lines.join("\n"))
+}

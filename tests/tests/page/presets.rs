@@ -1,0 +1,86 @@
+//! The documents' own experiments, one after the other.
+
+use anyhow::{Context, Result, ensure};
+use stepscope_core::{
+    analysis::spectrum::Spectrum,
+    scenario::{Source, presets::PRESETS},
+};
+
+use crate::{bench::in_browser, native::Known};
+
+#[test]
+fn every_preset_opens_and_shows_the_cores_digest() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        let offered: Vec<String> = page
+            .eval("[...document.querySelectorAll('#preset option')].map((o) => o.value).filter(Boolean)")
+            .await?;
+        assert_eq!(offered, PRESETS.iter().map(|preset| preset.id).collect::<Vec<_>>());
+        for preset in PRESETS {
+            let known = Known::preset(preset)?;
+            page.choose("#preset", preset.id).await?;
+            page.until_digest(&known.digest).await.with_context(|| preset.id)?;
+            ensure!(!page.visible("#budget").await?, "{} is over the budget", preset.id);
+            ensure!(
+                page.eval::<String>("document.title").await?.contains(&known.scenario.title),
+                "{}",
+                preset.id
+            );
+            if matches!(known.scenario.source, Source::Motion(_)) {
+                let drawn = page.canvas("chart-position").await?;
+                drawn.has_curve("--ideal").with_context(|| preset.id)?;
+            }
+            let pulses = page.pulses().await?;
+            ensure!(pulses.ink("--step").pixels > 200, "{}: {pulses:?}", preset.id);
+            let rows: u32 = page.eval("document.querySelectorAll('#packets tbody tr').length").await?;
+            ensure!(rows > 0, "{} shows no packets", preset.id);
+        }
+        Ok(())
+    })
+}
+
+/// The number between a word and the percent sign behind it.
+fn percent_after(text: &str, word: &str) -> Result<f64> {
+    let rest = text.split_once(word).and_then(|(_, rest)| rest.split_once('%'));
+    let (number, _) = rest.with_context(|| format!("no {word} in `{text}`"))?;
+    number.trim().parse().with_context(|| format!("`{text}`"))
+}
+
+#[test]
+fn a_periodic_motions_distortion_is_the_cores() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        let mut periodic = 0;
+        for preset in PRESETS {
+            let known = Known::preset(preset)?;
+            let analysis = &known.scenario.analysis;
+            let Some(plan) = known.experiment.plans().get(usize::from(analysis.axis)) else { continue };
+            let Some(ideal) = Spectrum::ideal(plan, analysis.order, analysis.fft_length) else { continue };
+            if !ideal.stretch.periodic {
+                continue;
+            }
+            periodic += 1;
+            page.choose("#preset", preset.id).await?;
+            page.until_digest(&known.digest).await.with_context(|| preset.id)?;
+            for (quantity, harmonics) in [
+                ("position", &ideal.position),
+                ("speed", &ideal.speed),
+                ("acceleration", &ideal.acceleration),
+            ] {
+                page.choose("#spectrum-quantity", quantity).await?;
+                let said = page.text("#thd").await?;
+                ensure!(said.contains(quantity), "{}: {said}", preset.id);
+                if let Some(distortion) = harmonics.distortion {
+                    let (shown, wanted) = (percent_after(&said, "ideal ")?, 100.0 * distortion);
+                    ensure!(
+                        (shown - wanted).abs() <= 1e-4 * wanted.abs() + 1e-9,
+                        "{}: {said}, wanted {wanted}",
+                        preset.id
+                    );
+                }
+            }
+        }
+        ensure!(periodic > 0, "no preset repeats its motion");
+        Ok(())
+    })
+}

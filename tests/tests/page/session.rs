@@ -1,0 +1,298 @@
+//! One browser with the page in it: what a visitor does, and what there is to see.
+
+use std::{env, fs, path::Path, sync::Arc, time::Duration};
+
+use anyhow::{Context, Result, bail, ensure};
+use fantoccini::{Client, Locator, elements::Element, error::CmdError, wd::WebDriverCompatibleCommand};
+use http::Method;
+use serde::{Deserialize, de::DeserializeOwned};
+use serde_json::{Map, Value, json};
+use tokio::time::{Instant, sleep};
+use url::{ParseError, Url};
+
+use crate::bench::Bench;
+
+/// Longest time for anything on the page, on a busy machine.
+const PATIENCE: Duration = Duration::from_secs(30);
+/// Rest between two looks.
+const LOOK_AGAIN: Duration = Duration::from_millis(20);
+
+/// A browser of its own, with a fresh profile.
+#[derive(Clone)]
+pub(crate) struct Session {
+    client: Client,
+    bench: Arc<Bench>,
+}
+
+/// One field of the form as a visitor, or a screen reader, meets it.
+#[derive(Debug, Deserialize, PartialEq)]
+pub(crate) struct Field {
+    pub(crate) value: String,
+    /// `aria-invalid`.
+    pub(crate) invalid: bool,
+    /// The visible error beside it; empty for none.
+    pub(crate) error: String,
+    /// All that `aria-describedby` leads to.
+    pub(crate) described: String,
+}
+
+/// What the header says of the run on show.
+#[derive(Debug, Deserialize, PartialEq)]
+pub(crate) struct Shown {
+    pub(crate) ready: bool,
+    pub(crate) digest: String,
+    /// The digest belongs to an earlier scenario.
+    pub(crate) stale: bool,
+}
+
+impl Session {
+    pub(crate) async fn start(bench: &Arc<Bench>) -> Result<Self> {
+        let session = Self { client: bench.browser().await?, bench: Arc::clone(bench) };
+        bench.keep(session.clone());
+        session.screen(1440, 900).await?;
+        Ok(session)
+    }
+
+    /// Another visitor: a second browser with a fresh profile.
+    pub(crate) async fn stranger(&self) -> Result<Self> {
+        Self::start(&self.bench).await
+    }
+
+    /// Address of the page, without a fragment.
+    pub(crate) fn address(&self) -> &str {
+        &self.bench.page
+    }
+
+    /// Loads the page anew, with a fragment or without one, and does not wait for it.
+    pub(crate) async fn load(&self, fragment: &str) -> Result<()> {
+        // Only a fragment that changes loads nothing.
+        self.client.goto("about:blank").await?;
+        self.client.goto(&format!("{}{fragment}", self.address())).await?;
+        Ok(())
+    }
+
+    /// Loads the page anew and waits until it stands.
+    pub(crate) async fn open(&self, fragment: &str) -> Result<()> {
+        self.load(fragment).await?;
+        self.ready().await
+    }
+
+    /// Runs a script in the page.
+    pub(crate) async fn js<T: DeserializeOwned>(&self, script: &str, arguments: Vec<Value>) -> Result<T> {
+        let answer = self.client.execute(script, arguments).await.with_context(|| script.to_owned())?;
+        serde_json::from_value(answer.clone()).with_context(|| format!("{script} gave {answer}"))
+    }
+
+    /// The value of an expression in the page.
+    pub(crate) async fn eval<T: DeserializeOwned>(&self, expression: &str) -> Result<T> {
+        self.js(&format!("return {expression};"), Vec::new()).await
+    }
+
+    /// Waits until an expression in the page holds.
+    pub(crate) async fn until(&self, expression: &str) -> Result<()> {
+        self.until_equal(&format!("Boolean({expression})"), &json!(true)).await
+    }
+
+    /// Waits until an expression in the page has a value; says what it was last if it never has.
+    pub(crate) async fn until_equal(&self, expression: &str, wanted: &Value) -> Result<()> {
+        let end = Instant::now() + PATIENCE;
+        loop {
+            let found: Value = self.eval(expression).await?;
+            if found == *wanted {
+                return Ok(());
+            }
+            ensure!(
+                Instant::now() < end,
+                "{expression} is still {found} after {PATIENCE:?}, wanted {wanted}"
+            );
+            sleep(LOOK_AGAIN).await;
+        }
+    }
+
+    /// Waits until nothing more is to come.
+    pub(crate) async fn ready(&self) -> Result<()> {
+        self.until("document.documentElement.dataset.state === 'ready'").await
+    }
+
+    pub(crate) async fn shown(&self) -> Result<Shown> {
+        self.eval(SHOWN).await
+    }
+
+    /// Waits until the page stands and shows the result of the scenario with this digest.
+    pub(crate) async fn until_digest(&self, digest: &str) -> Result<()> {
+        let wanted = json!({ "ready": true, "digest": digest, "stale": false });
+        self.until_equal(SHOWN, &wanted).await
+    }
+
+    /// Visible text of an element, empty where it is hidden.
+    pub(crate) async fn text(&self, css: &str) -> Result<String> {
+        Ok(self.find(css).await?.text().await?)
+    }
+
+    pub(crate) async fn find(&self, css: &str) -> Result<Element> {
+        self.client.find(Locator::Css(css)).await.with_context(|| format!("the page has no {css}"))
+    }
+
+    pub(crate) async fn visible(&self, css: &str) -> Result<bool> {
+        Ok(self.find(css).await?.is_displayed().await?)
+    }
+
+    pub(crate) async fn click(&self, css: &str) -> Result<()> {
+        self.find(css).await?.click().await.with_context(|| format!("{css} can't be clicked"))
+    }
+
+    /// Puts the focus on an element and types.
+    pub(crate) async fn press(&self, css: &str, keys: &str) -> Result<()> {
+        let element = self.find(css).await?;
+        self.js::<Value>("arguments[0].focus();", vec![serde_json::to_value(&element)?]).await?;
+        Ok(element.send_keys(keys).await?)
+    }
+
+    /// Replaces the text of the field of a path in the scenario, by keys.
+    pub(crate) async fn fill(&self, path: &str, text: &str) -> Result<()> {
+        self.unfold(path).await?;
+        let field = self.find(&field(path)).await?;
+        field.click().await?;
+        Ok(field.send_keys(&format!("{CONTROL}a{RELEASE}{text}")).await?)
+    }
+
+    /// Chooses an option of the field of a path, as a visitor's click does.
+    pub(crate) async fn choose(&self, css: &str, value: &str) -> Result<()> {
+        self.find(css).await?.select_by_value(value).await.with_context(|| format!("{css} has no {value}"))
+    }
+
+    /// Opens the sections around a field.
+    async fn unfold(&self, path: &str) -> Result<()> {
+        let script = "for (let at = document.querySelector(arguments[0]); at; at = at.parentElement) \
+                      if (at instanceof HTMLDetailsElement) at.open = true; return true;";
+        self.js::<bool>(script, vec![json!(field(path))]).await.map(drop)
+    }
+
+    pub(crate) async fn field(&self, path: &str) -> Result<Field> {
+        self.unfold(path).await?;
+        self.js(FIELD, vec![json!(field(path))]).await
+    }
+
+    /// Text of every field by its path: the whole form.
+    pub(crate) async fn form(&self) -> Result<Map<String, Value>> {
+        self.eval(
+            "Object.fromEntries([...document.querySelectorAll('#fields [data-path]')].map((node) => \
+             [node.dataset.path, node.value]))",
+        )
+        .await
+    }
+
+    /// The value beside a name among what follows from the scenario, such as `Peak rate`.
+    pub(crate) async fn derived(&self, name: &str) -> Result<String> {
+        let script = "const term = [...document.querySelectorAll('#derived dt')].find((each) => \
+                      each.textContent === arguments[0]); return term ? term.nextElementSibling.textContent : null;";
+        let value: Option<String> = self.js(script, vec![json!(name)]).await?;
+        value.with_context(|| format!("nothing is derived that is called {name}"))
+    }
+
+    /// Size of the window's inside in CSS pixels.
+    pub(crate) async fn screen(&self, width: u32, height: u32) -> Result<()> {
+        let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
+        self.devtools("Emulation.setDeviceMetricsOverride", size).await.map(drop)
+    }
+
+    /// What the system says it prefers, `light` or `dark`.
+    pub(crate) async fn system_colours(&self, scheme: &str) -> Result<()> {
+        let features = json!({ "features": [{ "name": "prefers-color-scheme", "value": scheme }] });
+        self.devtools("Emulation.setEmulatedMedia", features).await.map(drop)
+    }
+
+    /// A script that runs in every document to come, before the document's own.
+    pub(crate) async fn before_scripts(&self, source: &str) -> Result<()> {
+        self.devtools("Page.addScriptToEvaluateOnNewDocument", json!({ "source": source })).await.map(drop)
+    }
+
+    pub(crate) async fn actions(&self, actions: impl Into<fantoccini::actions::Actions>) -> Result<()> {
+        Ok(self.client.perform_actions(actions).await?)
+    }
+
+    /// A command of the Chrome DevTools protocol.
+    pub(crate) async fn devtools(&self, method: &str, parameters: Value) -> Result<Value> {
+        let body = json!({ "cmd": method, "params": parameters });
+        Ok(self.chrome("goog/cdp/execute", body).await?)
+    }
+
+    /// Errors in the browser's console: exceptions, refused loads, breaches of the content security policy.
+    pub(crate) async fn complaints(&self) -> Result<Vec<String>> {
+        let entries = self.chrome("se/log", json!({ "type": "browser" })).await?;
+        let Value::Array(entries) = entries else { bail!("the console gave {entries}") };
+        let severe = entries.iter().filter(|entry| entry["level"] == "SEVERE");
+        Ok(severe.map(|entry| entry["message"].to_string()).collect())
+    }
+
+    /// Saves a picture of the page where pictures are wanted.
+    pub(crate) async fn picture(&self, name: &str) -> Result<()> {
+        let Some(folder) = env::var_os("STEPSCOPE_SHOTS") else { return Ok(()) };
+        fs::create_dir_all(&folder)?;
+        let picture = self.client.screenshot().await?;
+        Ok(fs::write(Path::new(&folder).join(format!("{name}.png")), picture)?)
+    }
+
+    /// Keeps what a failed test last saw.
+    pub(crate) async fn failed(&self) {
+        let name = std::thread::current().name().unwrap_or("page").replace("::", "-");
+        // The test has failed already, for a reason that matters more.
+        let _ = tokio::time::timeout(PATIENCE, self.picture(&format!("failed-{name}"))).await;
+    }
+
+    pub(crate) async fn end(self) -> Result<()> {
+        Ok(self.client.close().await?)
+    }
+
+    async fn chrome(&self, place: &'static str, body: Value) -> Result<Value, CmdError> {
+        self.client.issue_cmd(ChromeCommand { place, body }).await
+    }
+}
+
+/// Keys as WebDriver writes them.
+pub(crate) const CONTROL: char = '\u{e009}';
+/// See [`CONTROL`].
+pub(crate) const SHIFT: char = '\u{e008}';
+/// Lifts the keys that are held.
+pub(crate) const RELEASE: char = '\u{e000}';
+/// See [`CONTROL`].
+pub(crate) const ENTER: char = '\u{e007}';
+/// See [`CONTROL`].
+pub(crate) const END: char = '\u{e010}';
+
+/// Selector of the field of a path.
+pub(crate) fn field(path: &str) -> String {
+    format!("[data-path=\"{path}\"]")
+}
+
+const SHOWN: &str = "{ ready: document.documentElement.dataset.state === 'ready', \
+     digest: document.getElementById('digest').textContent, \
+     stale: document.getElementById('digest').classList.contains('stale') }";
+
+const FIELD: &str = "
+    const node = document.querySelector(arguments[0]);
+    const error = node.closest('.field').querySelector('.error');
+    const ids = (node.getAttribute('aria-describedby') ?? '').split(/\\s+/).filter(Boolean);
+    return {
+        value: node.value,
+        invalid: node.getAttribute('aria-invalid') === 'true',
+        error: error.checkVisibility() ? error.textContent : '',
+        described: ids.map((id) => document.getElementById(id).textContent).join(' '),
+    };";
+
+/// A command that only chromedriver knows.
+#[derive(Debug)]
+struct ChromeCommand {
+    place: &'static str,
+    body: Value,
+}
+
+impl WebDriverCompatibleCommand for ChromeCommand {
+    fn endpoint(&self, base: &Url, session: Option<&str>) -> Result<Url, ParseError> {
+        base.join(&format!("session/{}/{}", session.unwrap_or_default(), self.place))
+    }
+
+    fn method_and_body(&self, _: &Url) -> (Method, Option<String>) {
+        (Method::POST, Some(self.body.to_string()))
+    }
+}
