@@ -129,6 +129,7 @@ async function start() {
   createTheme();
   if (typeof WebAssembly !== "object") {
     byId("no-wasm").hidden = false;
+    byId("status").textContent = "no engine";
     return;
   }
   const [fallback, presets, made] = await Promise.all([engine.ask("default_scenario"), engine.ask("presets"), samples(), loadCharts()]);
