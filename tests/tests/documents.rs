@@ -1,0 +1,233 @@
+//! The documents' own numbers (DESIGN Part E), through the whole line: from a preset to the pulses that it makes.
+//!
+//! What a curve or a table says by itself (B2's rates, B4's top speed, B5's breakpoints and distortion) is pinned beside
+//! it in the core; here is what comes out at the STEP lines.
+#![cfg(not(target_arch = "wasm32"))]
+#![allow(clippy::expect_used, reason = "what is missing fails the test")]
+
+use std::f64::consts::PI;
+use stepscope_core::{
+    analysis::spectrum::Spectrum,
+    run::Experiment,
+    scenario::{Packets, Pulses, Scenario, Source, presets::PRESETS},
+    trace::{Recording, Step, steps},
+};
+
+/// A scenario that was run to its end.
+struct Made {
+    scenario: Scenario,
+    experiment: Experiment,
+    recording: Recording,
+}
+
+impl Made {
+    fn of(scenario: Scenario) -> Self {
+        let experiment = Experiment::new(&scenario).expect("it has no problems");
+        let mut recording = Recording::default();
+        let run = experiment.run(&mut recording);
+        assert_eq!(run.device().faults().bits(), 0);
+        recording.packets.finish();
+        Self { scenario, experiment, recording }
+    }
+
+    fn preset(id: &str) -> Self {
+        Self::of(PRESETS.iter().find(|preset| preset.id == id).expect("it is a preset").scenario())
+    }
+
+    fn steps(&self, channel: u8) -> Vec<Step> {
+        steps(&self.recording.trace, channel)
+    }
+
+    /// A tick in s.
+    fn tick_s(&self) -> f64 {
+        self.experiment.config().tick().0 as f64 / f64::from(self.scenario.clock_hz)
+    }
+
+    /// When a step comes, in s from the start of the first tick, where the motion's time 0 is.
+    fn time_s(&self, step: &Step) -> f64 {
+        let zero = self.recording.first_tick().expect("there is a tick");
+        (step.cycle as f64 - zero.0 as f64) / f64::from(self.scenario.clock_hz)
+    }
+
+    /// Steps of a channel in each tick of the motion.
+    fn steps_a_tick(&self, channel: u8) -> Vec<u32> {
+        let mut counts = Vec::new();
+        for step in self.steps(channel) {
+            let tick = (self.time_s(&step) / self.tick_s()) as usize;
+            counts.resize(counts.len().max(tick + 1), 0);
+            counts[tick] += 1;
+        }
+        counts
+    }
+}
+
+/// A step comes in the tick in which it is due, so no step is a whole tick late or early.
+#[track_caller]
+fn within_a_tick(made: &Made, found_s: f64, expected_s: f64) {
+    assert!((found_s - expected_s).abs() < made.tick_s(), "{found_s} s is not {expected_s} s");
+}
+
+#[track_caller]
+fn close(found: f64, expected: f64, relative: f64) {
+    assert!((found - expected).abs() <= relative * expected.abs(), "{found} is not {expected}");
+}
+
+/// Zhang 2012: 565 pulses/cm, 30.5 cm; f_1 = 1000, f_s = 5000, a = 3000.
+#[test]
+fn zhang_2012_ends_after_the_ramps_and_the_plateau_of_its_formulas() {
+    let made = Made::preset("zhang-2012-fixed-length");
+    let all = made.steps(0);
+    assert_eq!((all.len(), all[17_232].position), (17_233, 17_233), "30.5 * 565, rounded half up");
+    // t_r = (f_s - f_1)/a, t_m = (L - (f_1 + f_s)*t_r)/f_s
+    let t_r = (5000.0 - 1000.0) / 3000.0;
+    let t_m = (17_233.0 - (1000.0 + 5000.0) * t_r) / 5000.0;
+    close(2.0 * t_r + t_m, 4.513, 1e-4);
+    close(made.experiment.plans()[0].duration_s(), 2.0 * t_r + t_m, 1e-12);
+    within_a_tick(&made, made.time_s(&all[17_232]), 2.0 * t_r + t_m);
+    // A ramp has (f_1 + f_s)/2*t_r steps.
+    within_a_tick(&made, made.time_s(&all[3_999]), t_r);
+    within_a_tick(&made, made.time_s(&all[17_232 - 4_000]), t_r + t_m);
+}
+
+/// Sonobe 2011: 0.393 mm a step, 300 mm there, 0.1 s, 60 mm back, at most 700 mm/s.
+#[test]
+fn sonobe_2011_goes_there_and_back_and_rests_between() {
+    let made = Made::preset("sonobe-2011-table");
+    let all = made.steps(0);
+    assert_eq!(all.len(), 763 + 153, "300/0.393 and 60/0.393, rounded");
+    assert_eq!((all[762].position, all[763 + 152].position), (763, 610));
+    let rest = made.time_s(&all[763]) - made.time_s(&all[762]);
+    // The first step back comes one interval of 100 mm/s after the pause.
+    within_a_tick(&made, rest, 0.1 + 0.393 / 100.0);
+    let top = made.experiment.plans()[0].peaks().speed;
+    close(top, 700.0 / 0.393, 1e-3);
+}
+
+/// The last step falls due half a step before the end (B1). Near its end the curve is, but for 1 in 1000, a cubic:
+/// f_max*pi^2*t^3/(12*t_s^2) steps are left t before it.
+#[allow(clippy::disallowed_methods, reason = "the last bit does not matter to a tick")]
+fn last_half_step_s(top: f64, ramp_s: f64) -> f64 {
+    (6.0 * ramp_s * ramp_s / (top * PI * PI)).cbrt()
+}
+
+/// Song, Han and Lu 2021: f_max = n/(t_i - t_s).
+#[test]
+fn song_2021_makes_one_turn_of_exactly_3200_steps_in_0_4_s() {
+    let made = Made::preset("song-2021-one-turn");
+    let all = made.steps(0);
+    assert_eq!((all.len(), all[3199].position), (3200, 3200));
+    within_a_tick(&made, made.time_s(&all[3199]), 0.4 - last_half_step_s(16_000.0, 0.2));
+    // Half of the way at half of the time.
+    within_a_tick(&made, made.time_s(&all[1599]), 0.2);
+    let busiest = made.steps_a_tick(0).into_iter().max();
+    assert_eq!(busiest, Some((3200.0 / (0.4 - 0.2) * made.tick_s()) as u32), "16000 steps/s");
+}
+
+#[test]
+fn song_2021s_table_2_has_6400_steps_in_0_4_s_without_and_with_a_plateau() {
+    let made = Made::preset("song-2021-plateau");
+    for (channel, ramp_s) in [(0, 0.2), (1, 0.1)] {
+        let all = made.steps(channel);
+        assert_eq!((all.len(), all[6399].position), (6400, 6400), "channel {channel}");
+        let top = 6400.0 / (0.4 - ramp_s);
+        within_a_tick(&made, made.time_s(&all[6399]), 0.4 - last_half_step_s(top, ramp_s));
+        let peaks = made.experiment.plans()[usize::from(channel)].peaks();
+        close(peaks.speed, top, 1e-12);
+        close(peaks.acceleration, top * PI / (2.0 * ramp_s), 1e-12);
+        let (a_tick, counts) = (top * made.tick_s(), made.steps_a_tick(channel));
+        let plateau = counts.iter().filter(|count| (f64::from(**count) - a_tick).abs() < 1.0).count();
+        let plateau_s = plateau as f64 * made.tick_s();
+        // Near its top a cosine is flat, too: some ticks more.
+        assert!(plateau_s >= 0.4 - 2.0 * ramp_s && plateau_s < 0.45 - 2.0 * ramp_s, "{plateau_s} s at {top}");
+    }
+}
+
+/// SWorldJournal, issue 11: amplitude 20 mm; distortions 0.26913 % and 0.26710 %, and the remark on the 7th harmonic.
+#[test]
+fn the_sines_return_and_their_pulses_have_the_documents_distortion() {
+    let spectra = [("sine-2022-d00054", 0.26913), ("sine-2022-d0006", 0.26710)].map(|(id, distortion)| {
+        let made = Made::preset(id);
+        let all = made.steps(0);
+        let Source::Motion(motion) = &made.scenario.source else { panic!("{id} is a motion") };
+        let amplitude = 20.0 / motion.axes[0].mechanics.step_mm().expect("a wheel has millimetres");
+        assert_eq!(all.last().map(|step| step.position), Some(0), "{id}");
+        let farthest = all.iter().map(|step| step.position).min().expect("it moves");
+        assert_eq!(farthest, -2 * amplitude.round() as i32, "{id}: from one extreme to the other");
+
+        let pulses: Vec<(f64, i8)> = (0..all.len())
+            .map(|index| (made.time_s(&all[index]), Step::direction(&all, index) as i8))
+            .collect();
+        let order = made.scenario.analysis.order;
+        let ideal = Spectrum::ideal(&made.experiment.plans()[0], order, 2048).expect("it lasts");
+        let spectrum = Spectrum::of_pulses(&pulses, ideal.stretch, order);
+        for spectrum in [&ideal, &spectrum] {
+            close(spectrum.position.distortion.expect("it repeats") * 100.0, distortion, 3e-3);
+            close(spectrum.position.amplitudes[0], amplitude, 1e-2);
+        }
+        spectrum
+    });
+    let [first, second] = spectra.map(|spectrum| spectrum.position.amplitudes[6]);
+    assert!(first * first > 22.0 * second * second, "the 7th harmonics {first} and {second} steps");
+}
+
+/// RU 2704486: four motors, a step every 2.048 ms, all at once.
+#[test]
+fn the_patents_four_motors_step_together() {
+    let made = Made::preset("patent-2019-four-motors");
+    for pair in made.steps(0).windows(2).take(7) {
+        assert_eq!(pair[1].cycle - pair[0].cycle, 32_768, "2.048 ms of 62.5 ns");
+    }
+    // All channels of the first tick have 8 steps.
+    let cycles = |channel| made.steps(channel).iter().take(8).map(|step| step.cycle).collect::<Vec<_>>();
+    assert!((1..4).all(|channel| cycles(channel) == cycles(0)));
+    assert_ticks_follow_each_other(&made);
+}
+
+/// One after the other, each after the settling time of 0.518 ms: four do not fit, so they are 2.048/4 = 0.512 ms apart.
+#[test]
+fn the_patents_four_motors_step_one_after_the_other() {
+    let mut scenario = Made::preset("patent-2019-four-motors").scenario;
+    scenario.bus.pulses = Pulses::Staggered;
+    scenario.bus.settle_cycles = 8_288;
+    let made = Made::of(scenario.clone());
+    let first = |channel: u8| made.steps(channel).first().map_or(0, |step| step.cycle);
+    for channel in 1..4 {
+        assert_eq!(first(channel) - first(channel - 1), 8_192, "0.512 ms of 62.5 ns");
+    }
+    // Of three, each has its settling time.
+    let Source::Packets(Packets { packets }) = &mut scenario.source else { panic!("it is packets") };
+    for packet in packets {
+        packet.0[1] &= 0x80;
+    }
+    let made = Made::of(scenario);
+    let first = |channel: u8| made.steps(channel).first().map_or(0, |step| step.cycle);
+    assert_eq!((first(2) - first(0), first(3) - first(2)), (8_288, 8_288), "0.518 ms");
+}
+
+/// RU 2704486: the orders of a tick come while the tick before it runs.
+#[test]
+fn the_patents_sixteen_motors_get_each_packet_a_tick_ahead() {
+    let made = Made::preset("patent-2019-sixteen-motors");
+    assert_ticks_follow_each_other(&made);
+    for pair in made.recording.packets.rows().windows(2) {
+        assert!(pair[1].start > pair[0].tick_start.expect("it runs"), "while the tick before it runs");
+        assert!(pair[1].end < pair[0].tick_end.expect("it ends"), "{pair:?}");
+    }
+    // Packet 1 goes right, packet 2 the same way back, in packet 3 channel i makes i + 1, odd counts to the right.
+    for channel in 0..16 {
+        let count = i32::from(channel) + 1;
+        let all = made.steps(channel);
+        let expected = if count % 2 == 1 { count } else { -count };
+        assert_eq!(all.iter().map(|step| step.position).max(), Some(count), "channel {channel}");
+        assert_eq!(all.last().map(|step| step.position), Some(expected), "channel {channel}");
+    }
+}
+
+#[track_caller]
+fn assert_ticks_follow_each_other(made: &Made) {
+    let rows = made.recording.packets.rows();
+    assert!(rows.len() > 2);
+    for pair in rows.windows(2) {
+        assert_eq!(pair[0].tick_end, pair[1].tick_start, "without a pause");
+    }
+}
