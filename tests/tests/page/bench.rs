@@ -37,6 +37,8 @@ const END_LIMIT: Duration = Duration::from_secs(10);
 /// Flags of every browser: no window, and no word to any other host.
 const FLAGS: &[&str] = &[
     "--headless",
+    // The browser ends when the driver does.
+    "--remote-debugging-pipe",
     "--no-sandbox",
     "--disable-gpu",
     "--disable-quic",

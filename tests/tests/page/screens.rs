@@ -73,12 +73,8 @@ fn on_a_narrow_screen_tabs_switch_the_views_and_nothing_scrolls_sideways() -> Re
 
 /// Waits until a canvas, which may have been hidden, is drawn.
 async fn drawn(page: &Session, canvas: &str, ink: &str) -> Result<()> {
-    for _ in 0..100 {
-        if page.canvas(canvas).await?.ink(ink).pixels > 100 {
-            return Ok(());
-        }
-    }
-    anyhow::bail!("{canvas} has no {ink}: {:?}", page.canvas(canvas).await?)
+    let look = async || Ok((page.canvas(canvas).await?.ink(ink).pixels > 100).then_some(()));
+    page.eventually(&format!("{canvas} drawn in {ink}"), look).await
 }
 
 #[test]

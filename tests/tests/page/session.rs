@@ -109,6 +109,22 @@ impl Session {
         }
     }
 
+    /// Looks again and again until there is something to see.
+    pub(crate) async fn eventually<T>(
+        &self,
+        what: &str,
+        look: impl AsyncFn() -> Result<Option<T>>,
+    ) -> Result<T> {
+        let end = Instant::now() + PATIENCE;
+        loop {
+            if let Some(seen) = look().await? {
+                return Ok(seen);
+            }
+            ensure!(Instant::now() < end, "{what}: not after {PATIENCE:?}");
+            sleep(LOOK_AGAIN).await;
+        }
+    }
+
     /// Waits until nothing more is to come.
     pub(crate) async fn ready(&self) -> Result<()> {
         self.until("document.documentElement.dataset.state === 'ready'").await

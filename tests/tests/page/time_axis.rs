@@ -94,12 +94,8 @@ fn a_chosen_packet_is_shown_in_the_pulses_and_in_the_curves() -> Result<()> {
 }
 
 async fn redrawn(page: &Session, id: &str, before: &str) -> Result<()> {
-    for _ in 0..100 {
-        if page.canvas(id).await?.hash != before {
-            return Ok(());
-        }
-    }
-    Err(anyhow!("{id} is drawn as before"))
+    let look = async || Ok((page.canvas(id).await?.hash != before).then_some(()));
+    page.eventually(&format!("{id} drawn anew"), look).await
 }
 
 /// Where an element lies in the window, in CSS pixels.
@@ -167,13 +163,8 @@ fn wheel_keys_buttons_and_fields_change_the_shown_time_and_fit_restores_it() -> 
 
 /// Waits for another window than this one.
 async fn changed(page: &Session, before: Window) -> Result<Window> {
-    for _ in 0..200 {
-        let now = window(page).await?;
-        if now != before {
-            return Ok(now);
-        }
-    }
-    Err(anyhow!("the shown time is still {before:?}"))
+    let look = async || Ok(Some(window(page).await?).filter(|now| *now != before));
+    page.eventually(&format!("another time than {before:?}"), look).await
 }
 
 #[test]
