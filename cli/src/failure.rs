@@ -7,6 +7,8 @@ use stepscope_core::scenario::{Problem, link::LinkError};
 pub(crate) enum Failure {
     /// A file could not be read or written.
     File(PathBuf, io::Error),
+    /// The scenario's file is not text.
+    NotText(PathBuf),
     /// The scenario is wrong.
     Scenario(PathBuf, Vec<Problem>),
     /// The link is wrong, or the scenario does not fit in one.
@@ -20,7 +22,7 @@ impl Failure {
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
             Self::File(..) => ExitCode::from(1),
-            Self::Scenario(..) | Self::Link(_) | Self::Preset(_) => ExitCode::from(2),
+            Self::NotText(_) | Self::Scenario(..) | Self::Link(_) | Self::Preset(_) => ExitCode::from(2),
         }
     }
 }
@@ -29,6 +31,9 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::File(path, error) => write!(f, "{}: {error}", path.display()),
+            Self::NotText(path) => {
+                write!(f, "{}: not UTF-8 text; save the scenario as UTF-8", path.display())
+            }
             Self::Scenario(path, problems) => {
                 let count = problems.len();
                 let s = if count == 1 { "" } else { "s" };

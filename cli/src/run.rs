@@ -63,7 +63,8 @@ impl Arguments {
 /// Runs the scenario and writes what was asked for; digest and status if nothing was.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
-    let text = read(path).map_err(|error| Failure::File(path.clone(), error))?;
+    let bytes = read(path).map_err(|error| Failure::File(path.clone(), error))?;
+    let text = String::from_utf8(bytes).map_err(|_| Failure::NotText(path.clone()))?;
     let experiment =
         Experiment::from_json(&text).map_err(|problems| Failure::Scenario(path.clone(), problems))?;
     let (scenario, _) = Scenario::from_json_lenient(&text);
@@ -144,11 +145,11 @@ fn print(
     writeln!(out, "faults {:#06x} {faults}", device.faults().bits())
 }
 
-fn read(path: &Path) -> io::Result<String> {
+fn read(path: &Path) -> io::Result<Vec<u8>> {
     if path == Path::new("-") {
-        let mut text = String::new();
-        io::stdin().read_to_string(&mut text)?;
-        return Ok(text);
+        let mut bytes = Vec::new();
+        io::stdin().read_to_end(&mut bytes)?;
+        return Ok(bytes);
     }
-    fs::read_to_string(path)
+    fs::read(path)
 }

@@ -123,7 +123,7 @@ fn every_golden_case_comes_out_of_the_command() {
 fn a_bad_scenario_ends_with_2_and_all_its_problems() {
     let rows: [(&str, &[&str]); 4] = [
         ("", &["not JSON at line 1, column 0: "]),
-        (r#"{"clock_hz": 0}"#, &["clock_hz: 0 Hz is out of range; give 1 to 1000000000 Hz", "line.baud: "]),
+        (r#"{"clock_hz": 0}"#, &["clock_hz: 0 Hz is out of range; give 11 to 1000000000 Hz"]),
         (
             r#"{"clok_hz": 1, "bus": {"slots": 200, "channels": "four"}, "line": {"baud": 0}}"#,
             &["bus.channels: ", "clok_hz: ", "bus.slots: ", "line.baud: "],

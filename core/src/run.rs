@@ -12,7 +12,7 @@
 
 mod cost;
 
-pub use cost::Cost;
+pub use cost::{BUDGET_RECORDS, Cost};
 
 use crate::{
     device::Device,
@@ -21,7 +21,7 @@ use crate::{
     scenario::{Cause, Checked, Config, END_OF_TIME, Problem, Scenario, Source, line_time},
     signal::{Event, Record, Sink},
     units::{Cycles, Instant},
-    wire::{Line, Schedule},
+    wire::{Line, Schedule, host::carries},
 };
 use alloc::{format, rc::Rc, vec::Vec};
 
@@ -42,17 +42,21 @@ impl Experiment {
     pub fn new(scenario: &Scenario) -> Result<Self, Vec<Problem>> {
         let mut problems = Vec::new();
         let checked = scenario.check().map_err(|found| problems.extend(found)).ok();
-        let mut plans = Vec::new();
-        if let Source::Motion(motion) = &scenario.source {
-            for (index, axis) in motion.axes.iter().enumerate() {
-                match plan_axis(axis, &format!("source.motion.axes[{index}]")) {
-                    Ok(plan) => plans.push(plan),
-                    Err(found) => problems.extend(found),
-                }
-            }
+        let plans = plan(scenario).map_err(|found| problems.extend(found)).ok();
+        let Some(checked) = checked else { return Err(problems) };
+        if !matches!(checked.source, Source::Line(_))
+            && let Err(cause) = carries(&checked.config, checked.baud)
+        {
+            problems.push(Problem::new("line.baud", cause));
         }
-        let Some(checked) = checked.filter(|_| problems.is_empty()) else { return Err(problems) };
-        let schedule = schedule(&checked, &plans)?;
+        let Some(plans) = plans else { return Err(problems) };
+        let schedule = match schedule(&checked, &plans) {
+            Ok(schedule) if problems.is_empty() => schedule,
+            judged => {
+                problems.extend(judged.err().unwrap_or_default());
+                return Err(problems);
+            }
+        };
         let cost = Cost::of(&checked, &schedule);
         if cost.end_cycle > END_OF_TIME {
             let cause =
@@ -65,17 +69,28 @@ impl Experiment {
     /// Reads, judges and prepares a scenario.
     ///
     /// # Errors
-    /// Every problem, those of types and those of numbers together: a field that cannot be read
-    /// stands at its default while the rest is judged.
+    /// Every problem, those of types and those of numbers together.
     pub fn from_json(text: &str) -> Result<Self, Vec<Problem>> {
-        let (scenario, mut problems) = Scenario::from_json_lenient(text);
-        match Self::new(&scenario) {
-            Ok(experiment) if problems.is_empty() => Ok(experiment),
-            judged => {
-                problems.extend(judged.err().unwrap_or_default());
-                Err(problems)
-            }
+        let (scenario, unread) = Scenario::from_json_lenient(text);
+        Self::of_lenient(&scenario, unread)
+    }
+
+    /// Judges a scenario of which some fields could not be read, `unread`: these stand at their
+    /// defaults while the rest is judged, and what follows from several fields together waits until
+    /// all can be read.
+    ///
+    /// # Errors
+    /// `unread` and what else is wrong.
+    pub fn of_lenient(scenario: &Scenario, unread: Vec<Problem>) -> Result<Self, Vec<Problem>> {
+        let judged = Self::new(scenario);
+        if unread.is_empty() {
+            return judged;
         }
+        let mut problems = unread.clone();
+        problems.extend(judged.err().unwrap_or_default().into_iter().filter(|problem| {
+            !problem.cause.joins_fields() && !unread.iter().any(|bad| problem.path.starts_with(&bad.path))
+        }));
+        Err(problems)
     }
 
     /// The peripheral's configuration.
@@ -212,21 +227,91 @@ impl<S: Sink> Sink for Slice<'_, S> {
     }
 }
 
+/// The plan of each axis, if the source is a motion.
+fn plan(scenario: &Scenario) -> Result<Vec<AxisPlan>, Vec<Problem>> {
+    let Source::Motion(motion) = &scenario.source else { return Ok(Vec::new()) };
+    let (mut plans, mut problems) = (Vec::new(), Vec::new());
+    for (index, axis) in motion.axes.iter().enumerate() {
+        match plan_axis(axis, &format!("source.motion.axes[{index}]")) {
+            Ok(plan) => plans.push(plan),
+            Err(found) => problems.extend(found),
+        }
+    }
+    if problems.is_empty() { Ok(plans) } else { Err(problems) }
+}
+
 /// What the host sends.
 fn schedule(checked: &Checked, plans: &[AxisPlan]) -> Result<Schedule, Vec<Problem>> {
     let config = &checked.config;
-    let too_slow = |cause| alloc::vec![Problem::new("line.baud", cause)];
-    match &checked.source {
+    Ok(match &checked.source {
         Source::Motion(_) => {
             let ticks = ticks(plans, config.channels(), config.slots(), config.tick().0, config.clock_hz())?;
             let packet = |tick: &[u8]| config.address().into_iter().chain(tick.iter().copied()).collect();
-            let packets = ticks.iter().map(|tick| -> Vec<u8> { packet(tick) });
-            Schedule::paced(config, checked.baud, packets).map_err(too_slow)
+            Schedule::paced(config, ticks.iter().map(|tick| -> Vec<u8> { packet(tick) }))
         }
-        Source::Packets(source) => {
-            let packets = source.packets.iter().map(|packet| &packet.0);
-            Schedule::paced(config, checked.baud, packets).map_err(too_slow)
+        Source::Packets(source) => Schedule::paced(config, source.packets.iter().map(|packet| &packet.0)),
+        Source::Line(script) => Schedule::scripted(script),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::string::String;
+
+    fn paths(json: &str) -> Vec<String> {
+        Experiment::from_json(json)
+            .err()
+            .unwrap_or_default()
+            .into_iter()
+            .map(|problem| problem.path)
+            .collect()
+    }
+
+    #[test]
+    fn problems_of_types_and_numbers_come_together_and_none_is_invented() {
+        let rows: &[(&str, &[&str])] = &[
+            ("{}", &[]),
+            // Too slow a line does not hide too fast a motion.
+            (
+                r#"{"line":{"baud":1200},"source":{"motion":{"axes":[{"moves":[{"constant":{"speed":{"steps_s":100000}}}]}]}}}"#,
+                &["line.baud", "source.motion.axes[0]"],
+            ),
+            // Packets of two bytes are not judged by the default of a field that cannot be read.
+            (
+                r#"{"bus":{"channels":"2"},"source":{"packets":{"packets":["8001","0180"]}}}"#,
+                &["bus.channels"],
+            ),
+            // Entries that cannot be read do not move the others.
+            (
+                r#"{"source":{"motion":{"axes":[{"moves":["bad",{"dwell":{"duration_s":-1}}]}]}}}"#,
+                &["source.motion.axes[0].moves[0]", "source.motion.axes[0].moves[1].dwell.duration_s"],
+            ),
+            (r#"{"bus":{"slots":200},"title":5,"clock_hz":3}"#, &["title", "clock_hz", "bus.slots"]),
+        ];
+        for (json, expected) in rows {
+            assert_eq!(paths(json), *expected, "{json}");
         }
-        Source::Line(script) => Ok(Schedule::scripted(script)),
+    }
+
+    #[test]
+    fn many_entries_of_the_wrong_type_are_judged_in_few_readings() {
+        let json = alloc::format!(
+            r#"{{"source":{{"motion":{{"axes":[{{"moves":[{}5]}}]}}}}}}"#,
+            "{},".repeat(11_000)
+        );
+        assert!(paths(&json).len() <= 101);
+        let json =
+            alloc::format!(r#"{{"source":{{"packets":{{"packets":[{}""]}}}}}}"#, "\"\",".repeat(20_000));
+        assert!(paths(&json).len() <= 101);
+    }
+
+    #[test]
+    fn a_scripted_runs_end_counts_the_ticks_that_wait() {
+        let json = r#"{"source":{"line":{"sends":[{"bytes":"0505050505050505"}]}},"bus":{"boot_cycles":0}}"#;
+        let experiment = Experiment::from_json(json).expect("no problems");
+        let run = experiment.run(&mut Vec::new());
+        assert!(run.cycles().0 > 8 * 32_000);
+        assert!(run.cycles().0 <= experiment.cost().end_cycle);
     }
 }

@@ -4,13 +4,10 @@ use crate::convert::object;
 use serde::Serialize;
 use stepscope_core::{
     motion::{AxisPlan, Curve, Profile},
-    run::{Cost, Experiment},
+    run::{BUDGET_RECORDS, Cost, Experiment},
     scenario::{Problem, Scenario, Source, presets as core_presets},
 };
 use wasm_bindgen::prelude::*;
-
-/// Records up to which a scenario runs without asking: what a page redraws at once.
-pub(crate) const BUDGET_RECORDS: u64 = 4_000_000;
 
 /// Version of Stepscope.
 #[wasm_bindgen]
@@ -111,13 +108,10 @@ struct Price {
 /// Never for any text: what is wrong with it is in the result.
 #[wasm_bindgen]
 pub fn check(json: &str) -> Result<JsValue, JsError> {
-    let (scenario, mut problems) = Scenario::from_json_lenient(json);
-    let experiment = match Experiment::new(&scenario) {
-        Ok(experiment) if problems.is_empty() => Some(experiment),
-        judged => {
-            problems.extend(judged.err().unwrap_or_default());
-            None
-        }
+    let (scenario, unread) = Scenario::from_json_lenient(json);
+    let (experiment, problems) = match Experiment::of_lenient(&scenario, unread) {
+        Ok(experiment) => (Some(experiment), Vec::new()),
+        Err(problems) => (None, problems),
     };
     object(&Judgement {
         problems: problems.iter().map(told).collect(),
@@ -137,20 +131,18 @@ fn price(cost: Cost) -> Price {
         edges: cost.records,
         packets: cost.sends,
         bytes: cost.bytes,
-        over_budget: over_budget(cost),
+        over_budget: cost.is_over_budget(),
         message: cost_message(cost),
     }
 }
 
-pub(crate) const fn over_budget(cost: Cost) -> bool {
-    cost.records > BUDGET_RECORDS
-}
-
 pub(crate) fn cost_message(cost: Cost) -> String {
-    if over_budget(cost) {
+    if cost.is_over_budget() {
         format!(
-            "up to {} edges and {} packets: more than the {BUDGET_RECORDS} edges that run unasked",
-            cost.records, cost.sends
+            "up to {} edges and {} packets: more than the {} edges that run unasked",
+            grouped(cost.records as f64),
+            grouped(cost.sends as f64),
+            grouped(BUDGET_RECORDS as f64)
         )
     } else {
         String::new()
@@ -207,21 +199,35 @@ fn detail(profile: &Profile) -> String {
     match profile {
         Profile::Trapezoid(_) | Profile::Cosine(_) => {
             let peaks = profile.peaks();
-            format!("peak {:.0} steps/s, {:.0} steps/s\u{b2}", peaks.speed, peaks.acceleration)
+            format!("peak {} steps/s, {} steps/s\u{b2}", grouped(peaks.speed), grouped(peaks.acceleration))
         }
         Profile::TrapezoidTable(table) => {
-            format!("peak {:.0} steps/s, table of {} rows", profile.peaks().speed, table.rows())
+            format!("peak {} steps/s, table of {} rows", grouped(profile.peaks().speed), table.rows())
         }
         Profile::SineSegments(sine) => {
             let points: Vec<String> = sine
                 .segments()
                 .iter()
-                .map(|segment| format!("{:.2}\u{b0} {:.0}/s", segment.from_deg, segment.rate))
+                .map(|segment| format!("{:.2}\u{b0} {}/s", segment.from_deg, grouped(segment.rate)))
                 .collect();
             format!("{} segments a quarter: {}", sine.segments().len(), points.join(", "))
         }
         Profile::Constant(_) | Profile::Dwell(_) => String::new(),
     }
+}
+
+/// A whole number with groups of three digits, as the page prints them.
+fn grouped(value: f64) -> String {
+    let digits = format!("{value:.0}");
+    let whole = digits.trim_start_matches('-');
+    let mut text = String::from(if whole.len() < digits.len() { "\u{2212}" } else { "" });
+    for (index, digit) in whole.chars().enumerate() {
+        if index > 0 && (whole.len() - index) % 3 == 0 {
+            text.push('\u{202f}');
+        }
+        text.push(digit);
+    }
+    text
 }
 
 /// The move's name as in a scenario.

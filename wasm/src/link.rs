@@ -1,15 +1,12 @@
 //! Links: a scenario to a fragment and back.
 
-use crate::{
-    convert::object,
-    judge::{cost_message, over_budget},
-};
+use crate::{convert::object, judge::cost_message};
 use serde::Serialize;
 use stepscope_core::{
     run::Experiment,
     scenario::{
         Scenario,
-        link::{LinkError, decode, encode},
+        link::{LinkError, decode, encode, part},
     },
 };
 use wasm_bindgen::prelude::*;
@@ -32,6 +29,14 @@ enum Opened {
     Error { error: String },
 }
 
+/// Another part of a fragment, such as `v`, as its writer meant it: percent signs decoded, without what
+/// a chat program put behind it.
+#[wasm_bindgen]
+#[must_use]
+pub fn link_part(fragment: &str, name: &str) -> Option<String> {
+    part(fragment, name)
+}
+
 /// The scenario of a fragment: `{scenario, over_budget, message}`, or `{error}` with what is wrong
 /// with the link. Every step is judged before the next: length, version, check, size, types,
 /// ranges, cost.
@@ -44,7 +49,7 @@ pub fn decode_link(fragment: &str) -> Result<JsValue, JsError> {
         let cost = Experiment::new(&scenario).map_err(LinkError::Scenario)?.cost();
         Ok(Opened::Scenario {
             scenario: scenario.to_json(),
-            over_budget: over_budget(cost),
+            over_budget: cost.is_over_budget(),
             message: cost_message(cost),
         })
     });

@@ -116,6 +116,8 @@ impl Simulation {
             channels: u8,
             faults: Faults,
             ticks_done: u32,
+            /// Bits of the signals that change at all.
+            changing: Vec<u8>,
         }
         let device = self.run.device();
         let config = self.experiment.config();
@@ -129,6 +131,7 @@ impl Simulation {
             channels: config.channels(),
             faults: Faults { bits: device.faults().bits(), names: device.faults().names().collect() },
             ticks_done: device.ticks_done(),
+            changing: changing(&self.recording.trace),
         })?;
         let positions = device.positions();
         let used = positions.get(..usize::from(config.channels())).unwrap_or_default();
@@ -141,7 +144,6 @@ impl Simulation {
     pub fn motion(&mut self, axis: u8, t0_s: f64, t1_s: f64, columns: u32) -> Object {
         let window = Window { start_s: t0_s, end_s: t1_s, columns: columns.clamp(1, 10_000) as usize };
         let clock_hz = self.experiment.config().clock_hz();
-        let addressed = self.experiment.config().address().is_some();
         let result = Object::new();
         let centres: Vec<f64> = (0..window.columns).map(|column| window.centre_s(column)).collect();
         numbers(&result, "x", &centres);
@@ -159,7 +161,7 @@ impl Simulation {
         }
         self.count_steps(axis);
         let steps = self.steps.get(usize::from(axis)).and_then(Option::as_deref).unwrap_or_default();
-        let made = curves::made(&self.recording, steps, axis, addressed, clock_hz, window);
+        let made = curves::made(&self.recording, steps, axis, self.experiment.config(), window);
         for (name, band) in [("made_position", made.position), ("made_speed", made.speed)] {
             numbers(&result, &format!("{name}_min"), &band.min);
             numbers(&result, &format!("{name}_max"), &band.max);
@@ -207,23 +209,30 @@ impl Simulation {
     /// # Errors
     /// Never in practice.
     pub fn packets(&self, from: u32, count: u32) -> Result<JsValue, JsError> {
+        let rows = (from as usize..).take(count as usize).map_while(|index| self.row(index));
+        object(&Rows { total: self.recording.packets.rows().len(), rows: rows.collect() })
+    }
+
+    /// The first `limit` packets whose time on the line or in the sequencer touches a stretch of cycles:
+    /// `{rows, more}`.
+    ///
+    /// # Errors
+    /// Never in practice.
+    pub fn packets_in(&self, start_cycle: f64, end_cycle: f64, limit: u32) -> Result<JsValue, JsError> {
+        #[derive(Serialize)]
+        struct Touching {
+            rows: Vec<Row>,
+            more: bool,
+        }
+        let (start, end) = (start_cycle.max(0.0) as u64, end_cycle.max(0.0) as u64);
         let all = self.recording.packets.rows();
-        let rows = (from as usize..).take(count as usize).map_while(|index| {
-            let row = all.get(index)?;
-            let bytes = self.recording.packets.bytes(index);
-            let hex: Vec<String> = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
-            Some(Row {
-                index,
-                start_cycle: row.start.0,
-                end_cycle: row.end.0,
-                hex: hex.join(" "),
-                fields: self.fields(bytes, row.verdict),
-                outcome: row.verdict.to_string(),
-                tick_start_cycle: row.tick_start.map(|at| at.0),
-                tick_end_cycle: row.tick_end.map(|at| at.0),
-            })
+        let until = all.partition_point(|row| row.start.0 <= end);
+        // No search for the first: a packet that waits in the queue ends after a later one that was dropped.
+        let mut touching = (0..until).filter(|&index| {
+            all.get(index).is_some_and(|row| row.end.max(row.tick_end.unwrap_or(row.end)).0 >= start)
         });
-        object(&Rows { total: all.len(), rows: rows.collect() })
+        let rows = touching.by_ref().take(limit as usize).filter_map(|index| self.row(index)).collect();
+        object(&Touching { rows, more: touching.next().is_some() })
     }
 
     /// Spectra of the ideal motion and of the pulses, for the axis that the scenario's analysis
@@ -244,6 +253,23 @@ impl Simulation {
         {
             *place = Some(steps(&self.recording.trace, channel));
         }
+    }
+
+    /// A packet as the page shows it.
+    fn row(&self, index: usize) -> Option<Row> {
+        let row = self.recording.packets.rows().get(index)?;
+        let bytes = self.recording.packets.bytes(index);
+        let hex: Vec<String> = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+        Some(Row {
+            index,
+            start_cycle: row.start.0,
+            end_cycle: row.end.0,
+            hex: hex.join(" "),
+            fields: self.fields(bytes, row.verdict),
+            outcome: row.verdict.to_string(),
+            tick_start_cycle: row.tick_start.map(|at| at.0),
+            tick_end_cycle: row.tick_end.map(|at| at.0),
+        })
     }
 
     /// A packet's bytes in words.
@@ -278,4 +304,11 @@ fn edges(trace: &[Record]) -> u64 {
             _ => 0,
         })
         .sum()
+}
+
+/// Bits of the signals that are not the same in all records.
+fn changing(trace: &[Record]) -> Vec<u8> {
+    let first = trace.first().map_or(0, |record| record.levels.0);
+    let mask = trace.iter().fold(0, |mask, record| mask | (record.levels.0 ^ first));
+    (0..64).filter(|bit| mask >> bit & 1 == 1).collect()
 }

@@ -3,6 +3,7 @@
 
 use crate::{
     motion::AxisPlan,
+    scenario::Config,
     trace::{Recording, Step},
     wire::packet::Order,
 };
@@ -109,15 +110,8 @@ pub struct Made {
 
 /// The motion that the pulses of a channel make.
 #[must_use]
-pub fn made(
-    recording: &Recording,
-    steps: &[Step],
-    channel: u8,
-    addressed: bool,
-    clock_hz: u32,
-    window: Window,
-) -> Made {
-    let hz = f64::from(clock_hz);
+pub fn made(recording: &Recording, steps: &[Step], channel: u8, config: &Config, window: Window) -> Made {
+    let (clock_hz, hz) = (config.clock_hz(), f64::from(config.clock_hz()));
     let mut bands = Made { position: Band::new(window.columns), speed: Band::new(window.columns) };
     let mut next = steps.partition_point(|step| step.cycle as f64 / hz < window.start_s);
     let mut position = next.checked_sub(1).and_then(|i| steps.get(i)).map_or(0, |step| step.position);
@@ -130,20 +124,22 @@ pub fn made(
             next += 1;
         }
     }
-    let rows = recording.packets.rows();
-    let first = rows.partition_point(|row| {
-        row.tick_end.or(row.tick_start).unwrap_or(row.end).seconds(clock_hz) < window.start_s
-    });
-    for (index, row) in rows.iter().enumerate().skip(first) {
-        let (Some(start), Some(end)) = (row.tick_start, row.tick_end) else { continue };
-        let (from_s, to_s) = (start.seconds(clock_hz), end.seconds(clock_hz));
+    let log = &recording.packets;
+    let tick_s = config.tick().0 as f64 / hz;
+    let start_s = |index: usize| {
+        let start = log.rows().get(index).and_then(|row| row.tick_start);
+        start.map_or(f64::INFINITY, |start| start.seconds(clock_hz))
+    };
+    let first = log.ticks().partition_point(|&index| start_s(index) + tick_s < window.start_s);
+    for &index in log.ticks().iter().skip(first) {
+        let from_s = start_s(index);
         if from_s > window.end_s {
             break;
         }
-        let byte = recording.packets.bytes(index).get(usize::from(channel) + usize::from(addressed));
+        let byte = log.bytes(index).get(usize::from(channel) + usize::from(config.address().is_some()));
         let order = Order::parse(byte.copied().unwrap_or(0));
-        let rate = f64::from(order.steps) / (to_s - from_s);
-        for column in window.columns(from_s, to_s) {
+        let rate = f64::from(order.steps) / tick_s;
+        for column in window.columns(from_s, from_s + tick_s) {
             bands.speed.take(column, if order.right { rate } else { -rate });
         }
     }

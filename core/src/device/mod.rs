@@ -205,6 +205,11 @@ impl Device {
             let quiet = self.input_deadline().min(line.next_change()).min(until);
             if self.sequencer.deadline() < quiet {
                 self.levels = self.sequencer.run(quiet, self.base(), sink);
+                if self.sequencer.deadline() < quiet {
+                    // Paused: nothing happens before the sequencer's next change.
+                    self.now = self.sequencer.deadline();
+                    return;
+                }
             }
             if quiet == Instant::NEVER {
                 self.now = self.now.max(self.sequencer.last_active().next());

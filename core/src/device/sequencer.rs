@@ -152,9 +152,9 @@ impl Sequencer {
     }
 
     /// Runs alone through the cycles before `until`, while nothing else changes: `base` are the
-    /// other signals. Gives the levels after them.
+    /// other signals. Stops after the tick in which the sink asks for a pause. Gives the levels.
     pub(super) fn run(&mut self, until: Instant, base: u64, sink: &mut impl Sink) -> Levels {
-        while self.deadline < until {
+        while self.deadline < until && !sink.paused() {
             self.run_pulses(until, base, sink);
             let now = self.deadline;
             if now < until {

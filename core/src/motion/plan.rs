@@ -212,7 +212,7 @@ mod tests {
                 "axis.moves[0].trapezoid.timer_hz: 0 Hz is out of range; give 1 to 4294967295 Hz",
                 "axis.moves[0].trapezoid.top_speed: a top speed of 4000 steps/s is under the start speed of 5000 steps/s; give a higher top speed or a lower start speed",
                 "axis.moves[1].trapezoid.timer_hz: a timer of 3999 Hz cannot make 4000 steps/s; give a timer of at least that rate",
-                "axis.moves[2].trapezoid.start_speed: 0 steps_s is out of range; give 0.5 to 10000000 steps_s",
+                "axis.moves[2].trapezoid.start_speed: 0 steps/s is out of range; give 0.5 to 10000000 steps/s",
             ],
         );
         check(
@@ -220,7 +220,7 @@ mod tests {
             &[
                 "axis.mechanics.wheel.microsteps: 0 is out of range; give 1 to 512",
                 "axis.mechanics.wheel.radius_mm: -1 mm is out of range; give 1e-6 to 1000000 mm",
-                "axis.moves[0].constant.speed: -2 steps_s is out of range; give 1e-6 to 10000000 steps_s",
+                "axis.moves[0].constant.speed: -2 steps/s is out of range; give 1e-6 to 10000000 steps/s",
             ],
         );
         check(
@@ -238,14 +238,16 @@ mod tests {
     fn an_axis_has_bounds_on_time_and_tables() {
         check(
             r#"{"moves":[{"sine_segments":{"period_s":10,"periods":99999}},{"constant":{"speed":{"steps_s":0.01}}}]}"#,
-            &["axis.moves: 1099990 seconds are more than one run may have; stay under 1000000"],
+            &[
+                "axis.moves: 1099990 seconds are more than one run may have; at most 1000000 are allowed: give a shorter motion or longer ticks",
+            ],
         );
         let table = r#"{"trapezoid":{"distance":{"steps":1400000},"top_speed":{"steps_s":1e6},"acceleration":{"steps_s2":1}}}"#;
         let text = format!(r#"{{"moves":[{table},{table}]}}"#);
         check(
             &text,
             &[
-                "axis.moves[1].trapezoid: 1400002 table rows are more than one run may have; stay under 1000000",
+                "axis.moves[1].trapezoid: 1400002 table rows are more than one run may have; at most 1000000 are allowed: give a higher acceleration or a lower top speed",
             ],
         );
         let moves = format!(r#"{{"moves":[{}{{"dwell":{{}}}}]}}"#, r#"{"dwell":{}},"#.repeat(64));

@@ -18,6 +18,9 @@ const MOST_FALLS_A_BYTE: u64 = 5;
 /// Where the last of them can be: the start of data bit 7.
 const LAST_FALL_BIT: u64 = 8;
 
+/// Bits of a byte that has just begun and of the gap after it (45, A5), rounded up.
+const LONGEST_REST_BITS: u64 = 60;
+
 /// What a run costs, known before it starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cost {
@@ -27,11 +30,20 @@ pub struct Cost {
     pub sends: u64,
     /// Bytes that the host sends.
     pub bytes: u64,
-    /// Cycle in which the host has sent everything, or the run's given end.
+    /// Cycle by which nothing can change any more, or the run's given end.
     pub end_cycle: u64,
 }
 
+/// Records up to which a scenario runs without asking.
+pub const BUDGET_RECORDS: u64 = 4_000_000;
+
 impl Cost {
+    /// Whether it is more than runs without asking.
+    #[must_use]
+    pub const fn is_over_budget(&self) -> bool {
+        self.records > BUDGET_RECORDS
+    }
+
     pub(super) fn of(checked: &Checked, schedule: &Schedule) -> Self {
         let (bytes, forced) = (schedule.total_bytes() as u64, checked.forced.len() as u64);
         let line = MOST_EDGES_A_BYTE * bytes + 2 * forced;
@@ -47,22 +59,31 @@ impl Cost {
 /// Records of all ticks at most.
 fn tick_records(checked: &Checked, schedule: &Schedule) -> u64 {
     let config = &checked.config;
-    let faithful = checked.forced.is_empty() && hears(config, checked.baud);
-    match checked.source {
-        Source::Motion(_) | Source::Packets(_) if faithful => {
-            schedule.iter().map(|packet| records_of(config, pulses(config, packet.bytes))).sum()
-        }
-        _ => {
-            let heard = if faithful {
-                schedule.total_bytes() as u64
-            } else {
-                let sent: u64 = schedule.iter().map(|send| most_heard(checked, send.bytes.len())).sum();
-                sent + checked.forced.len() as u64
-            };
-            let most = u64::from(config.slots()) * u64::from(config.channels());
-            heard / config.packet_len() as u64 * records_of(config, most)
-        }
+    if paced_and_heard(checked) {
+        return schedule.iter().map(|packet| records_of(config, pulses(config, packet.bytes))).sum();
     }
+    let most = u64::from(config.slots()) * u64::from(config.channels());
+    most_ticks(checked, schedule) * records_of(config, most)
+}
+
+/// Whether each packet comes with its tick and is heard as it was sent.
+fn paced_and_heard(checked: &Checked) -> bool {
+    !matches!(checked.source, Source::Line(_)) && is_faithful(checked)
+}
+
+fn is_faithful(checked: &Checked) -> bool {
+    checked.forced.is_empty() && hears(&checked.config, checked.baud)
+}
+
+/// Packets for this controller that can be heard.
+fn most_ticks(checked: &Checked, schedule: &Schedule) -> u64 {
+    let heard = if is_faithful(checked) {
+        schedule.total_bytes() as u64
+    } else {
+        let sent: u64 = schedule.iter().map(|send| most_heard(checked, send.bytes.len())).sum();
+        sent + checked.forced.len() as u64
+    };
+    heard / checked.config.packet_len() as u64
 }
 
 /// Whether the receiver takes each sample in the bit that it is of, and is armed for the next byte.
@@ -99,14 +120,20 @@ fn records_of(config: &Config, pulses: u64) -> u64 {
     }
 }
 
-/// A cycle by which the host has sent everything and the last tick has passed.
+/// A cycle by which everything has been sent and what can follow it has passed: the tick that runs
+/// and those that wait, or a byte that a forced level began and the gap after it.
 fn last_cycle(schedule: &Schedule, checked: &Checked) -> u64 {
+    let config = &checked.config;
     let last = schedule.len().checked_sub(1).and_then(|index| schedule.get(index));
-    let sent = last.map_or(0, |send| {
-        send.start.0 + line_time(send.bytes.len() as u64, checked.config.clock_hz(), checked.baud)
-    });
+    let sent = last
+        .map_or(0, |send| send.start.0 + line_time(send.bytes.len() as u64, config.clock_hz(), checked.baud));
     let forced = checked.forced.iter().map(|forced| forced.end.0).max().unwrap_or(0);
-    sent.max(forced) + checked.config.tick().0
+    let ticks = if paced_and_heard(checked) {
+        1
+    } else {
+        most_ticks(checked, schedule).min(u64::from(config.queue_depth) + 1)
+    };
+    sent.max(forced) + (ticks * config.tick().0).max(LONGEST_REST_BITS * config.bit().0) + 1
 }
 
 #[cfg(test)]

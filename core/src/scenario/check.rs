@@ -12,14 +12,18 @@ use crate::{
 };
 use alloc::{format, string::String, vec::Vec};
 
-/// First cycle that no run reaches: 2^53, up to which a JavaScript number is exact.
-pub const END_OF_TIME: u64 = 1 << 53;
+/// First cycle that no run reaches: a JavaScript number is exact up to 2^53, and this is below.
+pub const END_OF_TIME: u64 = 9_000_000_000_000_000;
+/// Most problems of one scenario that are listed.
+pub(super) const MOST_PROBLEMS: usize = 100;
 /// Most bytes of a line script, and most packets of a packet list.
 const MOST_BYTES: usize = 4 << 20;
 /// Most glitches on a line.
 const MOST_GLITCHES: usize = 10_000;
 /// Least cycles of a receiver's bit (A4).
 const LEAST_BIT_CYCLES: u64 = 11;
+/// Slowest clock: one that hears 1 baud.
+const LEAST_CLOCK_HZ: u64 = 11;
 
 /// The peripheral's configuration, checked: every rule of A4 and A7 holds.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -48,8 +52,8 @@ impl Config {
     /// Every problem, with paths as in a scenario (`bus.slots`, `line.receiver_baud`).
     pub fn new(clock_hz: u32, bus: &Bus, line: &Line) -> Result<Self, Vec<Problem>> {
         let mut judge = Judge::default();
-        judge.range("clock_hz", clock_hz, 1, 1_000_000_000, "Hz");
-        judge.range("bus.channels", bus.channels, 1, MAX_CHANNELS as u32, "");
+        judge.range("clock_hz", clock_hz, LEAST_CLOCK_HZ, 1_000_000_000, "Hz");
+        judge.range("bus.channels", bus.channels, 1, MAX_CHANNELS as u64, "");
         judge.range("bus.slots", bus.slots, 1, 127, "");
         judge.range("bus.step_period_cycles", bus.step_period_cycles, 2, 1_000_000_000, "cycles");
         judge.range("bus.pulse_width_cycles", bus.pulse_width_cycles, 1, 1_000_000_000, "cycles");
@@ -63,10 +67,10 @@ impl Config {
         pulses_fit(bus, &mut judge);
         let baud = line.receiver_baud.unwrap_or(line.baud);
         let path = if line.receiver_baud.is_some() { "line.receiver_baud" } else { "line.baud" };
-        judge.range(path, baud, 1, 100_000_000, "baud");
-        let bit_cycles = bit_cycles(clock_hz, baud.max(1));
-        if bit_cycles < LEAST_BIT_CYCLES {
-            let most_baud = (2 * u64::from(clock_hz) / (2 * LEAST_BIT_CYCLES - 1)) as u32;
+        let (bit_cycles, most_baud) = (bit_cycles(clock_hz, baud.max(1)), most_baud(clock_hz));
+        if baud == 0 {
+            judge.range(path, baud, 1, most_baud.max(1).into(), "baud");
+        } else if bit_cycles < LEAST_BIT_CYCLES && u64::from(clock_hz) >= LEAST_CLOCK_HZ {
             judge.add(path, Cause::BitTooShort { bit_cycles, baud, clock_hz, most_baud });
         }
         judge.end(Self {
@@ -163,6 +167,11 @@ const fn bit_cycles(clock_hz: u32, baud: u32) -> u64 {
     (2 * clock_hz as u64 + baud as u64) / (2 * baud as u64)
 }
 
+/// The highest rate whose bit time is at least 11 cycles (A4).
+pub(crate) const fn most_baud(clock_hz: u32) -> u32 {
+    (2 * clock_hz as u64 / (2 * LEAST_BIT_CYCLES - 1)) as u32
+}
+
 /// A level forced on the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Forced {
@@ -200,17 +209,17 @@ impl Scenario {
             let given = u64::from(self.version);
             judge.add("version", Cause::NewerVersion { given, newest: super::VERSION });
         } else {
-            judge.range("version", self.version, 1, super::VERSION, "");
+            judge.range("version", self.version, 1, super::VERSION.into(), "");
         }
         judge.length("title", self.title.chars().count(), 0, 120, "characters");
         judge.length("note", self.note.chars().count(), 0, 2000, "characters");
         let config = judge.take(Config::new(self.clock_hz, &self.bus, &self.line));
         // Without a rate of its own the receiver has the host's, which is judged above.
         if self.line.receiver_baud.is_some() {
-            judge.range("line.baud", self.line.baud, 1, self.clock_hz.clamp(1, 100_000_000), "baud");
+            judge.range("line.baud", self.line.baud, 1, self.clock_hz.max(1).into(), "baud");
         }
         if let Some(cycles) = self.run_cycles {
-            judge.range("run_cycles", cycles as f64, 1, END_OF_TIME as f64, "cycles");
+            judge.range("run_cycles", cycles, 1, END_OF_TIME, "cycles");
         }
         let forced = self.glitches(&mut judge);
         match &self.source {
@@ -238,12 +247,14 @@ impl Scenario {
         let mut forced = Vec::new();
         for (index, glitch) in self.line.glitches.iter().enumerate() {
             let at = |field| format!("line.glitches[{index}].{field}");
-            judge.range(&at("start_cycle"), glitch.start_cycle as f64, 1, END_OF_TIME as f64, "cycles");
-            judge.range(&at("length_cycles"), glitch.length_cycles as f64, 1, END_OF_TIME as f64, "cycles");
+            let start = glitch.start_cycle;
+            judge.range(&at("start_cycle"), start, 1, END_OF_TIME - 1, "cycles");
+            let room = END_OF_TIME.saturating_sub(start).max(1);
+            judge.range(&at("length_cycles"), glitch.length_cycles, 1, room, "cycles");
             judge.range(&at("level"), glitch.level, 0, 1, "");
             forced.push(Forced {
-                start: Instant(glitch.start_cycle),
-                end: Instant(glitch.start_cycle.saturating_add(glitch.length_cycles)),
+                start: Instant(start),
+                end: Instant(start.saturating_add(glitch.length_cycles)),
                 level: glitch.level != 0,
             });
         }
@@ -265,19 +276,23 @@ impl Scenario {
         for (index, send) in script.sends.iter().enumerate() {
             let path = format!("source.line.sends[{index}].start_cycle");
             let start = send.start_cycle;
-            judge.range(&path, start as f64, 1, END_OF_TIME as f64, "cycles");
+            judge.range(&path, start, 1, END_OF_TIME - 1, "cycles");
             if start < free_from && start >= 1 {
                 judge.add(path, Cause::Overlap { start, free_from });
             }
             let bytes = send.bytes.0.len() as u64;
-            let end = start.min(END_OF_TIME) + line_time(bytes, self.clock_hz, self.line.baud.max(1));
+            let end = start.min(END_OF_TIME) + line_time(bytes, self.clock_hz, self.line.baud);
             free_from = free_from.max(end);
         }
     }
 
     fn analysis(&self, judge: &mut Judge) {
         let analysis = &self.analysis;
-        judge.range("analysis.axis", analysis.axis, 0, u32::from(self.bus.channels.clamp(1, 16)) - 1, "");
+        let axes = match &self.source {
+            Source::Motion(motion) => motion.axes.len(),
+            _ => usize::from(self.bus.channels),
+        };
+        judge.range("analysis.axis", analysis.axis, 0, axes.clamp(1, MAX_CHANNELS) as u64 - 1, "");
         judge.range("analysis.order", analysis.order, 2, 1000, "");
         judge.range("analysis.fft_length", analysis.fft_length, 256, 65_536, "");
         if (256..=65_536).contains(&analysis.fft_length) && !analysis.fft_length.is_power_of_two() {
@@ -286,10 +301,11 @@ impl Scenario {
     }
 }
 
-/// Cycles that `bytes` bytes sent back to back hold the line, to the end of the last stop bit (A4).
+/// Cycles that `bytes` bytes sent back to back hold the line, to the end of the last stop bit (A4);
+/// a rate of 0 counts as 1 baud.
 #[must_use]
 pub const fn line_time(bytes: u64, clock_hz: u32, baud: u32) -> u64 {
-    let (clock, baud) = (clock_hz as u64, baud as u64);
+    let (clock, baud) = (clock_hz as u64, if baud == 0 { 1 } else { baud as u64 });
     match bytes {
         0 => 0,
         _ => 10 * (bytes - 1) * clock / baud + 10 * clock / baud,
@@ -304,19 +320,16 @@ struct Judge {
 
 impl Judge {
     fn add(&mut self, path: impl Into<String>, cause: Cause) {
-        self.problems.push(Problem::new(path, cause));
+        if self.problems.len() < MOST_PROBLEMS {
+            self.problems.push(Problem::new(path, cause));
+        }
     }
 
-    fn range<G: Into<f64>, L: Into<f64>>(
-        &mut self,
-        path: &str,
-        given: G,
-        least: u32,
-        most: L,
-        unit: &'static str,
-    ) {
-        let (given, least, most) = (given.into(), f64::from(least), most.into());
+    /// Judges a whole number; it is told as f64, which is exact for all that is allowed.
+    fn range(&mut self, path: &str, given: impl Into<u64>, least: u64, most: u64, unit: &'static str) {
+        let given = given.into();
         if !(least..=most).contains(&given) {
+            let (given, least, most) = (given as f64, least as f64, most as f64);
             self.add(path, Cause::Range { given, least, most, unit });
         }
     }
@@ -355,6 +368,14 @@ mod tests {
                 &["bus.channels", "bus.slots", "bus.queue_depth"],
             ),
             (r#"{"bus":{"channels":17}}"#, &["bus.channels"]),
+            (r#"{"clock_hz":10}"#, &["clock_hz"]),
+            (r#"{"clock_hz":11,"line":{"baud":1}}"#, &[]),
+            (r#"{"line":{"baud":200000000}}"#, &["line.baud"]),
+            (r#"{"run_cycles":9007199254740993}"#, &["run_cycles"]),
+            (
+                r#"{"line":{"glitches":[{"start_cycle":8999999999999999,"length_cycles":2}]}}"#,
+                &["line.glitches[0].length_cycles"],
+            ),
             (r#"{"line":{"baud":0}}"#, &["line.baud"]),
             (r#"{"line":{"baud":0,"receiver_baud":9600}}"#, &["line.baud"]),
             (r#"{"clock_hz":1000000,"line":{"baud":100000}}"#, &["line.baud"]),

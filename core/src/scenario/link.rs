@@ -149,15 +149,18 @@ pub fn decode(fragment: &str) -> Result<Scenario, LinkError> {
 }
 
 /// Part `name` of a fragment, without what a chat program put behind it. Some programs
-/// percent-encode a link when it is copied.
+/// percent-encode a link when it is copied, also its `&`; what is wrong with another part does not
+/// matter.
 #[must_use]
 pub fn part(fragment: &str, name: &str) -> Option<String> {
-    let decoded = percent_decode_str(fragment.trim()).decode_utf8().ok()?;
-    decoded
-        .trim_start_matches('#')
-        .split('&')
-        .find_map(|part| part.strip_prefix(name)?.strip_prefix('='))
-        .map(|part| part.trim_end_matches(TRAILING).to_string())
+    fragment.trim().split('&').filter_map(|part| percent_decode_str(part).decode_utf8().ok()).find_map(
+        |part| {
+            part.trim_start_matches('#')
+                .split('&')
+                .find_map(|part| part.strip_prefix(name)?.strip_prefix('='))
+                .map(|part| part.trim_end_matches(TRAILING).to_string())
+        },
+    )
 }
 
 #[cfg(test)]
@@ -203,6 +206,9 @@ mod tests {
             format!("{link})."),
             format!("#{link}&v=broken&d=0"),
             format!("v=%zz&{link}"),
+            format!("{link}&v=%ff"),
+            format!("v=%ff&{link}"),
+            format!("{link}%26v=1"),
             format!("  #{link}  "),
             encoded,
         ] {

@@ -20,6 +20,7 @@ mod problem;
 mod quantity;
 mod read;
 
+pub(crate) use check::most_baud;
 pub use check::{Checked, Config, END_OF_TIME, Forced, line_time};
 pub use compact::Compact;
 pub use hex::Hex;

@@ -198,6 +198,8 @@ pub enum Cause {
         baud: u32,
         /// The least rate that does.
         needed_baud: u64,
+        /// The highest rate that the receiver can hear with this clock.
+        most_baud: u64,
     },
     /// More work than one run may be.
     TooMuch {
@@ -217,7 +219,7 @@ impl fmt::Display for Short {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let value = self.0;
         let magnitude = libm::fabs(value);
-        if value == libm::trunc(value) && magnitude < 1e15 {
+        if value == libm::trunc(value) && magnitude < 1e17 {
             write!(f, "{value:.0}")
         } else if (1e-3..1e6).contains(&magnitude) {
             let text = alloc::format!("{value:.4}");
@@ -234,6 +236,36 @@ impl fmt::Display for Short {
     }
 }
 
+/// A unit as people write it.
+fn shown(unit: &str) -> &str {
+    match unit {
+        "steps_s" => "steps/s",
+        "mm_s" => "mm/s",
+        "deg_s" => "deg/s",
+        "steps_s2" => "steps/s^2",
+        "mm_s2" => "mm/s^2",
+        "deg_s2" => "deg/s^2",
+        other => other,
+    }
+}
+
+impl Cause {
+    /// Whether it follows from several fields together, so that it means nothing while one of them
+    /// cannot be read.
+    #[must_use]
+    pub const fn joins_fields(&self) -> bool {
+        !matches!(
+            self,
+            Self::Syntax { .. }
+                | Self::Type { .. }
+                | Self::NewerVersion { .. }
+                | Self::Range { .. }
+                | Self::NotPowerOfTwo { .. }
+                | Self::NoSteps { .. }
+        )
+    }
+}
+
 impl fmt::Display for Cause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -246,14 +278,12 @@ impl fmt::Display for Cause {
                 "version {given} was made with a newer Stepscope; this one reads up to version {newest}"
             ),
             Self::Range { given, least, most, unit } => {
-                let space = if unit.is_empty() { "" } else { " " };
-                write!(
-                    f,
-                    "{}{space}{unit} is out of range; give {} to {}{space}{unit}",
-                    Short(*given),
-                    Short(*least),
-                    Short(*most)
-                )
+                let (unit, space) = (shown(unit), if unit.is_empty() { "" } else { " " });
+                write!(f, "{}{space}{unit} is out of range; give {}", Short(*given), Short(*least))?;
+                if least < most {
+                    write!(f, " to {}", Short(*most))?;
+                }
+                write!(f, "{space}{unit}")
             }
             Self::NotPowerOfTwo { given } => {
                 write!(f, "{given} is not a power of two; give 256, 512, 1024 … 65536")
@@ -267,7 +297,8 @@ impl fmt::Display for Cause {
             Self::NoSuchUnit { given, unit, mechanics } => write!(
                 f,
                 "{} {unit}, but mechanics of kind {mechanics} have no such unit; give steps, or choose mechanics that have it",
-                Short(*given)
+                Short(*given),
+                unit = shown(unit)
             ),
             Self::BitTooShort { bit_cycles, baud, clock_hz, most_baud } => write!(
                 f,
@@ -316,19 +347,34 @@ impl fmt::Display for Cause {
             }
             Self::TooManySteps { tick, steps, slots, rate, limit } => write!(
                 f,
-                "tick {tick} needs {steps} steps ({} steps/s), its {slots} slots give at most {} steps/s; slow the motion, or give more slots or a shorter step period",
+                "tick {tick} needs {steps} steps ({} steps/s), its {slots} slots give at most {} steps/s; slow the motion, or give a shorter step period",
                 Short(*rate),
                 Short(*limit)
             ),
-            Self::LineTooSlow { packet_cycles, tick_cycles, baud, needed_baud } => write!(
-                f,
-                "at {baud} baud a packet takes {packet_cycles} cycles, a tick has {tick_cycles}; give at least {needed_baud} baud, longer ticks or fewer channels"
-            ),
+            Self::LineTooSlow { packet_cycles, tick_cycles, baud, needed_baud, most_baud } => {
+                write!(
+                    f,
+                    "at {baud} baud a packet takes {packet_cycles} cycles, a tick has {tick_cycles}; give "
+                )?;
+                if needed_baud <= most_baud {
+                    write!(f, "at least {needed_baud} baud, longer ticks or fewer channels")
+                } else {
+                    write!(
+                        f,
+                        "longer ticks or fewer channels: it would need {needed_baud} baud, and this clock hears at most {most_baud}"
+                    )
+                }
+            }
             Self::TooMuch { given, most, of } => write!(
                 f,
-                "{} {of} are more than one run may have; stay under {}",
+                "{} {of} are more than one run may have; at most {} are allowed: {}",
                 Short(*given),
-                Short(*most)
+                Short(*most),
+                match *of {
+                    "table rows" => "give a higher acceleration or a lower top speed",
+                    "moves" | "sine moves" => "give fewer moves",
+                    _ => "give a shorter motion or longer ticks",
+                }
             ),
         }
     }

@@ -1,18 +1,15 @@
 //! Reads a scenario from JSON and finds every field of the wrong type at once.
 //!
-//! serde stops at the first error. So the offending value is taken out of the JSON (its default
-//! takes its place) and the reading begins again, until it succeeds.
+//! serde stops at the first error. So the offending value is taken out of the JSON, its default
+//! takes its place, and the reading begins again, until it succeeds.
 
-use super::{Cause, Problem, Scenario, VERSION};
+use super::{Cause, Problem, Scenario, VERSION, check::MOST_PROBLEMS};
 use alloc::{
     string::{String, ToString},
     vec::Vec,
 };
 use serde_json::Value;
 use serde_path_to_error::Segment;
-
-/// Most wrong fields that one reading lists.
-const MOST_PROBLEMS: usize = 100;
 
 impl Scenario {
     /// Reads a scenario from JSON text of any version up to [`VERSION`].
@@ -58,7 +55,8 @@ impl Scenario {
 }
 
 fn parse(text: &str) -> Result<Value, Vec<Problem>> {
-    serde_json::from_str(text).map_err(|error| {
+    // Some editors put a byte order mark before the text.
+    serde_json::from_str(text.trim_start_matches('\u{feff}')).map_err(|error| {
         let (line, column) = (error.line(), error.column());
         let detail = error.to_string();
         let detail = detail.split(" at line ").next().unwrap_or_default().into();
@@ -78,43 +76,44 @@ fn upgrade(value: Value) -> Result<Value, Vec<Problem>> {
 }
 
 fn read(mut value: Value) -> (Scenario, Vec<Problem>) {
-    let mut problems = Vec::new();
-    let mut taken: Vec<Vec<Step>> = Vec::new();
-    loop {
-        match serde_path_to_error::deserialize(&value) {
+    let mut problems: Vec<Problem> = Vec::new();
+    for _ in 0..MOST_PROBLEMS {
+        let error = match serde_path_to_error::deserialize(&value) {
             Ok(scenario) => {
                 lists_for_maps(&value, &serde_json::to_value(&scenario).unwrap_or_default(), &mut |path| {
                     let detail = "a list, where a map of names and values belongs".into();
-                    problems.push(Problem::new(print(&original(&path, &taken)), Cause::Type { detail }));
+                    problems.push(Problem::new(print(&path), Cause::Type { detail }));
                 });
                 return (scenario, problems);
             }
-            Err(error) => {
-                let path: Vec<Step> = error.path().iter().filter_map(Step::of).collect();
-                // What is left of a choice or a list whose value was taken out is no new problem.
-                if !taken.iter().any(|gone| gone.len() > path.len() && gone.starts_with(&path)) {
-                    let at = print(&original(&path, &taken));
-                    problems
-                        .push(Problem::new(at, Cause::Type { detail: in_words(&error.inner().to_string()) }));
-                }
-                match take_out(&mut value, &path) {
-                    Some(gone) if problems.len() < MOST_PROBLEMS => taken.push(gone),
-                    _ => return (Scenario::default(), problems),
-                }
-            }
+            Err(error) => error,
+        };
+        let path: Vec<Step> = error.path().iter().filter_map(Step::of).collect();
+        let at = print(&path);
+        // What is left of a choice whose only value was taken out is no new problem.
+        if !problems.iter().any(|earlier| earlier.path.len() > at.len() && earlier.path.starts_with(&at)) {
+            problems.push(Problem::new(at, Cause::Type { detail: in_words(&error.inner().to_string()) }));
+        }
+        if !put_right(&mut value, &path, "") {
+            break;
         }
     }
+    (Scenario::default(), problems)
 }
 
 /// serde's message without Rust's names for types.
 fn in_words(message: &str) -> String {
-    const WORDS: [(&str, &str); 6] = [
+    const CHOICE: &str = "expected a map of one key that names the choice, such as {\"mm\": 250}";
+    const WORDS: [(&str, &str); 9] = [
         ("expected u8", "expected a whole number from 0 to 255"),
         ("expected u16", "expected a whole number from 0 to 65535"),
         ("expected u32", "expected a whole number from 0 to 4294967295"),
         ("expected u64", "expected a whole number from 0 on"),
         ("expected f64", "expected a number"),
         ("expected struct ", "expected a map of names and values for "),
+        ("expected map with a single key", CHOICE),
+        ("unit variant, expected newtype variant", CHOICE),
+        ("expected string or map", "expected a word or a map of one key"),
     ];
     match WORDS.iter().find(|(rust, _)| message.contains(rust)) {
         Some((rust, words)) => message.replace(rust, words),
@@ -172,40 +171,27 @@ impl Step {
     }
 }
 
-/// Removes the value at the longest part of `path` that exists and returns that part.
-fn take_out(value: &mut Value, path: &[Step]) -> Option<Vec<Step>> {
-    let (step, rest) = path.split_first()?;
-    if let Some(inner) = step.value_in(value)
-        && let Some(mut gone) = take_out(inner, rest)
-    {
-        gone.insert(0, step.clone());
-        return Some(gone);
+/// Takes out the value at the longest part of `path` that exists, so that its default takes its
+/// place; in the list `list`, an entry is replaced by a default one, so that the others keep their
+/// places. False if nothing of the path exists.
+fn put_right(value: &mut Value, path: &[Step], list: &str) -> bool {
+    let Some((step, rest)) = path.split_first() else { return false };
+    let name = if let Step::Key(key) = step { key } else { list };
+    if step.value_in(value).is_some_and(|inner| put_right(inner, rest, name)) {
+        return true;
     }
     match (step, value) {
-        (Step::Key(key), Value::Object(map)) => map.remove(key).map(|_| ()),
-        (Step::Index(index), Value::Array(list)) if *index < list.len() => {
-            list.remove(*index);
-            Some(())
-        }
-        _ => None,
+        (Step::Key(key), Value::Object(map)) => map.remove(key).is_some(),
+        (Step::Index(index), Value::Array(entries)) => entries.get_mut(*index).is_some_and(|entry| {
+            let default = match list {
+                "moves" => serde_json::json!({ "dwell": {} }),
+                "packets" => Value::from(""),
+                _ => serde_json::json!({}),
+            };
+            core::mem::replace(entry, default.clone()) != default
+        }),
+        _ => false,
     }
-    .map(|()| alloc::vec![step.clone()])
-}
-
-/// The path as it was before list entries were taken out.
-fn original(path: &[Step], taken: &[Vec<Step>]) -> Vec<Step> {
-    let mut path = path.to_vec();
-    for gone in taken.iter().rev() {
-        let Some((Step::Index(gone_index), list)) = gone.split_last() else { continue };
-        if path.len() > list.len()
-            && path.starts_with(list)
-            && let Step::Index(index) = &mut path[list.len()]
-            && *index >= *gone_index
-        {
-            *index += 1;
-        }
-    }
-    path
 }
 
 fn print(path: &[Step]) -> String {
@@ -253,6 +239,15 @@ mod tests {
                     "source.motion.axes[0].moves[1]",
                     "source.motion.axes[0].moves[2].dwell.duration_s",
                     "source.motion.axes[1].mechanics.screw.lead_mm",
+                ],
+            ),
+            (
+                r#"{"source":{"motion":{"axes":[{"moves":[{"cosine":5},{"dwel":{}},5]},7]}}}"#,
+                &[
+                    "source.motion.axes[0].moves[0].cosine",
+                    "source.motion.axes[0].moves[1]",
+                    "source.motion.axes[0].moves[2]",
+                    "source.motion.axes[1]",
                 ],
             ),
             (

@@ -21,12 +21,12 @@ pub struct Columns {
 #[must_use]
 pub fn columns(trace: &[Record], start: u64, end: u64, count: usize) -> Columns {
     let span = u128::from(end.saturating_sub(start).max(1));
-    let bound = |i: usize| start + (span * i as u128 / count.max(1) as u128) as u64;
+    let bound = |i: usize| start.saturating_add((span * i as u128 / count.max(1) as u128) as u64);
     let mut result = Columns { high: vec![0; count], low: vec![0; count], last: vec![0; count] };
     let mut next = trace.partition_point(|r| r.cycle.0 <= start);
     let mut levels = next.checked_sub(1).and_then(|i| trace.get(i)).map_or(0, |r| r.levels.0);
     for i in 0..count {
-        let (first, after) = (bound(i), bound(i + 1).max(bound(i) + 1));
+        let (first, after) = (bound(i), bound(i + 1).max(bound(i).saturating_add(1)));
         // Columns narrower than a cycle share it: the records of cycle `first` are already in.
         let (mut high, mut low) = (levels, !levels);
         while let Some(record) = trace.get(next).filter(|r| r.cycle.0 < after) {

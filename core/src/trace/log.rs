@@ -64,9 +64,9 @@ pub struct PacketLog {
     open: Option<Instant>,
     last: Instant,
     ignoring: bool,
-    /// Rows whose tick waits, and whose tick runs.
+    /// Rows whose tick waits, and those whose tick has begun, in the order of the ticks.
     waiting: VecDeque<usize>,
-    running: Option<usize>,
+    begun: Vec<usize>,
 }
 
 impl PacketLog {
@@ -74,6 +74,12 @@ impl PacketLog {
     #[must_use]
     pub fn rows(&self) -> &[LoggedPacket] {
         &self.rows
+    }
+
+    /// Indices of the rows whose tick has begun, in the order of the ticks.
+    #[must_use]
+    pub fn ticks(&self) -> &[usize] {
+        &self.begun
     }
 
     /// Bytes of a row.
@@ -123,13 +129,15 @@ impl Sink for PacketLog {
             }
             Event::Packet(fate) => self.close(at, Verdict::Packet(fate)),
             Event::TickStart => {
-                self.running = self.waiting.pop_front();
-                if let Some(row) = self.running.and_then(|i| self.rows.get_mut(i)) {
+                if let Some(index) = self.waiting.pop_front()
+                    && let Some(row) = self.rows.get_mut(index)
+                {
                     row.tick_start = Some(at);
+                    self.begun.push(index);
                 }
             }
             Event::TickEnd => {
-                if let Some(row) = self.running.take().and_then(|i| self.rows.get_mut(i)) {
+                if let Some(row) = self.begun.last().and_then(|&index| self.rows.get_mut(index)) {
                     row.tick_end = Some(at);
                 }
             }

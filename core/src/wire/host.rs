@@ -4,7 +4,7 @@
 //! packet j starts at boot + 1 + j*M*Ts, so tick follows tick without a pause.
 
 use crate::{
-    scenario::{Cause, Config, LineScript, line_time},
+    scenario::{Cause, Config, LineScript, line_time, most_baud},
     units::Instant,
 };
 use alloc::vec::Vec;
@@ -37,29 +37,17 @@ impl Schedule {
         schedule
     }
 
-    /// Packets of `packet_len` bytes, one a tick, as the paced raw host sends them.
-    ///
-    /// # Errors
-    /// [`Cause::LineTooSlow`] where a packet takes longer than a tick, with the rate that would do.
-    pub fn paced(
-        config: &Config,
-        baud: u32,
-        packets: impl Iterator<Item = impl AsRef<[u8]>>,
-    ) -> Result<Self, Cause> {
-        let tick_cycles = config.tick().0;
-        let bytes = config.packet_len() as u64;
-        let packet_cycles = line_time(bytes, config.clock_hz, baud);
-        if packet_cycles > tick_cycles {
-            let needed_baud = (10 * bytes * u64::from(config.clock_hz)).div_ceil(tick_cycles);
-            return Err(Cause::LineTooSlow { packet_cycles, tick_cycles, baud, needed_baud });
-        }
+    /// Packets of `packet_len` bytes, one a tick, as the paced raw host sends them. Whether the
+    /// line can carry them is judged by [`carries`].
+    #[must_use]
+    pub fn paced(config: &Config, packets: impl Iterator<Item = impl AsRef<[u8]>>) -> Self {
         let mut schedule = Self::default();
         let mut start = config.boot.next();
         for packet in packets {
             schedule.push(start, packet.as_ref());
             start += config.tick();
         }
-        Ok(schedule)
+        schedule
     }
 
     fn push(&mut self, start: Instant, bytes: &[u8]) {
@@ -97,4 +85,20 @@ impl Schedule {
     pub fn iter(&self) -> impl Iterator<Item = Sent<'_>> {
         (0..self.len()).filter_map(|index| self.get(index))
     }
+}
+
+/// Judges whether a line of `baud` carries a packet a tick (A9).
+///
+/// # Errors
+/// [`Cause::LineTooSlow`] where a packet takes longer than a tick, with the rate that would do.
+pub fn carries(config: &Config, baud: u32) -> Result<(), Cause> {
+    let tick_cycles = config.tick().0;
+    let bytes = config.packet_len() as u64;
+    let packet_cycles = line_time(bytes, config.clock_hz, baud);
+    if packet_cycles <= tick_cycles {
+        return Ok(());
+    }
+    let needed_baud = (10 * bytes * u64::from(config.clock_hz)).div_ceil(tick_cycles);
+    let most_baud = u64::from(most_baud(config.clock_hz));
+    Err(Cause::LineTooSlow { packet_cycles, tick_cycles, baud, needed_baud, most_baud })
 }

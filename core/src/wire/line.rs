@@ -28,7 +28,7 @@ pub struct Line {
 }
 
 impl Line {
-    /// The line before cycle 1: idle.
+    /// The line before cycle 1: idle. A rate of 0 counts as 1 baud.
     #[must_use]
     pub fn new(schedule: Rc<Schedule>, forced: &[Forced], clock_hz: u32, baud: u32) -> Self {
         let mut forced = flatten(forced);
@@ -114,7 +114,7 @@ struct Sender {
 
 impl Sender {
     fn new(schedule: Rc<Schedule>, clock_hz: u32, baud: u32) -> Self {
-        let (clock_hz, baud) = (u64::from(clock_hz), u64::from(baud));
+        let (clock_hz, baud) = (u64::from(clock_hz), u64::from(baud.max(1)));
         let bit_starts = core::array::from_fn(|k| k as u64 * clock_hz / baud);
         let byte_start = Instant::NEVER;
         let mut sender =

@@ -22,8 +22,8 @@ impl<'a> Ticks<'a> {
             // A part of a step is 0.2, not 200m.
             .filter(|(scale, _)| *scale >= 1.0 || !axis.unit.is_empty())
             .unwrap_or((1.0, ""));
-        // Ticks lie the next 1, 2 or 5 times a power of ten apart.
-        let mut step = (axis.max - axis.min) / scale / count as f64;
+        // Ticks lie 1, 2 or 5 times a power of ten apart, and there may be one more than asked for.
+        let mut step = (axis.max - axis.min) / scale / (count + 1) as f64;
         let mut digits = 0;
         while step <= 0.5001 && digits < 9 {
             step *= 10.0;
@@ -58,6 +58,7 @@ mod tests {
             (-1.0, 1.0, "", -0.5, "\u{2212}0.5"),
             (0.0, 1e-6, "s", 5e-7, "0.5 µs"),
             (0.0, 0.4, "", 0.1, "0.1"),
+            (0.0, 2_700.0, "", 500.0, "0.5k"),
         ];
         for (min, max, unit, value, expected) in rows {
             let axis = Axis { min, max, unit: unit.into(), prefix: true, label_px: 40.0 };
