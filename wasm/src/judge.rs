@@ -4,10 +4,13 @@ use crate::convert::object;
 use serde::Serialize;
 use stepscope_core::{
     motion::{AxisPlan, Curve, Profile},
-    run::{BUDGET_RECORDS, Cost, Experiment},
+    run::{Cost, Experiment},
     scenario::{Problem, Scenario, Source, presets as core_presets},
 };
 use wasm_bindgen::prelude::*;
+
+/// Records up to which a scenario runs without asking: what a page redraws at once.
+pub(crate) const BUDGET_RECORDS: u64 = 4_000_000;
 
 /// Version of Stepscope.
 #[wasm_bindgen]
@@ -108,10 +111,13 @@ struct Price {
 /// Never for any text: what is wrong with it is in the result.
 #[wasm_bindgen]
 pub fn check(json: &str) -> Result<JsValue, JsError> {
-    let (scenario, unread) = Scenario::from_json_lenient(json);
-    let (experiment, problems) = match Experiment::of_lenient(&scenario, unread) {
-        Ok(experiment) => (Some(experiment), Vec::new()),
-        Err(problems) => (None, problems),
+    let (scenario, mut problems) = Scenario::from_json_lenient(json);
+    let experiment = match Experiment::new(&scenario) {
+        Ok(experiment) if problems.is_empty() => Some(experiment),
+        judged => {
+            problems.extend(judged.err().unwrap_or_default());
+            None
+        }
     };
     object(&Judgement {
         problems: problems.iter().map(told).collect(),
@@ -131,13 +137,17 @@ fn price(cost: Cost) -> Price {
         edges: cost.records,
         packets: cost.sends,
         bytes: cost.bytes,
-        over_budget: cost.is_over_budget(),
+        over_budget: over_budget(cost),
         message: cost_message(cost),
     }
 }
 
+pub(crate) const fn over_budget(cost: Cost) -> bool {
+    cost.records > BUDGET_RECORDS
+}
+
 pub(crate) fn cost_message(cost: Cost) -> String {
-    if cost.is_over_budget() {
+    if over_budget(cost) {
         format!(
             "up to {} edges and {} packets: more than the {} edges that run unasked",
             grouped(cost.records as f64),

@@ -11,5 +11,5 @@ mod simulation;
 mod spectrum;
 
 pub use judge::{check, default_scenario, presets, version};
-pub use link::{decode_link, encode_link};
+pub use link::{decode_link, encode_link, link_part};
 pub use simulation::Simulation;
