@@ -9,6 +9,20 @@ import { Dropped } from "./engine.js";
 
 /** How long the scenario must stand before the address follows, in ms. */
 const SETTLE_MS = 300;
+/** The view: start and end of the shown time, in cycles. */
+const VIEW = /^(\d{1,16})-(\d{1,16})$/;
+
+/** The shown time as a link writes it; empty for the whole run. @param {State} state */
+function viewOf({ window, awaited }) {
+  const span = window ?? awaited;
+  return span ? `${span.start}-${span.end}` : "";
+}
+
+/** The time that a link asks to be shown; none where that cannot be read. @param {string | undefined} text @returns {import("./types.js").Span | null} */
+export function spanOf(text) {
+  const [, start, end] = (VIEW.exec(text ?? "") ?? []).map(Number);
+  return Number.isSafeInteger(end) && start < end ? { start, end } : null;
+}
 
 /** @param {{engine: import("./engine.js").Engine} & import("./timeline.js").Page} page */
 export function createLink({ engine, dispatch, now }) {
@@ -22,9 +36,11 @@ export function createLink({ engine, dispatch, now }) {
   byId("link-close").addEventListener("click", () => { fallback.hidden = true; });
   window.addEventListener("hashchange", () => { if (location.hash !== written) read(); });
 
-  /** @returns {Promise<string>} The page's address with the scenario in it. */
+  /** @returns {Promise<string>} The page's address with the scenario and the view in it. */
   async function address() {
-    const fragment = await engine.ask("encode_link", JSON.stringify(now().scenario));
+    const scenario = await engine.ask("encode_link", JSON.stringify(now().scenario));
+    const view = viewOf(now());
+    const fragment = [scenario, ...(view ? [`v=${view}`] : [])].join("&");
     return `${location.origin}${location.pathname}${location.search}#${fragment}`;
   }
 
@@ -76,10 +92,13 @@ export function createLink({ engine, dispatch, now }) {
       const answer = await engine.ask("decode_link", fragment);
       if ("error" in answer) return refuse(answer.error);
       const scenario = JSON.parse(answer.scenario);
-      if (JSON.stringify(scenario) === JSON.stringify(now().scenario)) return;
-      dispatch({ type: "replace", scenario, origin: "shared" });
-      const name = scenario.title ? `“${scenario.title}”` : "a scenario";
-      dispatch({ type: "notice", notice: { kind: "info", text: `Shared with you: ${name}. Your own work is kept; Undo brings it back.` } });
+      if (JSON.stringify(scenario) !== JSON.stringify(now().scenario)) {
+        dispatch({ type: "replace", scenario, origin: "shared" });
+        const name = scenario.title ? `“${scenario.title}”` : "a scenario";
+        dispatch({ type: "notice", notice: { kind: "info", text: `Shared with you: ${name}. Your own work is kept; Undo brings it back.` } });
+      }
+      const window = spanOf(await engine.ask("link_part", fragment, "v"));
+      if (window) dispatch({ type: "open", window });
     } catch (error) {
       if (!(error instanceof Dropped)) refuse(message(error));
     }
@@ -98,12 +117,12 @@ export function createLink({ engine, dispatch, now }) {
       line.classList.toggle("error", state.notice?.kind === "error");
       say(line, state.notice?.text ?? "");
     }
-    if (!before || before.scenario !== state.scenario) {
-      fallback.hidden = true;
-      clearTimeout(timer);
-      // Standing by until the visitor changes something: an address without a link stays as it is.
-      if (state.revision > 0) timer = window.setTimeout(write, SETTLE_MS);
-    }
+    const changed = before?.scenario !== state.scenario;
+    if (!changed && viewOf(before) === viewOf(state)) return;
+    if (changed) fallback.hidden = true;
+    clearTimeout(timer);
+    // Standing by until the visitor changes something: an address without a link stays as it is.
+    if (state.revision > 0 || written !== "" || viewOf(state) !== "") timer = window.setTimeout(write, SETTLE_MS);
   }
   return { render, read };
 }

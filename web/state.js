@@ -20,6 +20,7 @@
  *   | {type: "done", revision: number, summary: import("./types.js").Summary, ms: number}
  *   | {type: "failed", message: string}
  *   | {type: "window", window: Span | null}
+ *   | {type: "open", window: Span}
  *   | {type: "hover", cycle: number | null}
  *   | {type: "cursor", which: "a" | "b", cycle: number | null}
  *   | {type: "row", row: number} | {type: "packet", packet: number | null}
@@ -38,7 +39,7 @@ export function initial(scenario) {
     scenario, origin: "own", revision: 0, edited: null, past: [], future: [], drafts: {},
     judgement: null, judged: -1, derived: null, approved: -1,
     run: { phase: "idle", progress: null, message: "" }, result: null,
-    window: null, axis: 0, unit: "steps", hover: null, cursors: { a: null, b: null }, row: 0, packet: null,
+    window: null, awaited: null, axis: 0, unit: "steps", hover: null, cursors: { a: null, b: null }, row: 0, packet: null,
     view: "motion", notice: null,
   };
 }
@@ -63,6 +64,8 @@ export function update(state, message) {
     case "done": return done(state, message);
     case "failed": return { ...state, run: { phase: "failed", progress: null, message: message.message } };
     case "window": return { ...state, window: message.window && clamp(message.window, endOf(state)) };
+    case "open":
+      return state.result?.revision === state.revision ? { ...state, window: within(message.window, endOf(state)) } : { ...state, awaited: message.window };
     case "hover": return state.hover === message.cycle ? state : { ...state, hover: message.cycle };
     case "cursor": return { ...state, cursors: { ...state.cursors, [message.which]: message.cycle } };
     case "row": return { ...state, row: message.row };
@@ -95,7 +98,7 @@ function remember(state) {
 /** @param {State} state @param {Scenario} scenario @param {Origin} origin @returns {State} */
 function changed(state, scenario, origin) {
   const run = { .../** @type {const} */ ({ phase: "waiting", progress: null, message: "" }) };
-  return { ...state, scenario, origin, run, revision: state.revision + 1, drafts: {}, edited: null, notice: null };
+  return { ...state, scenario, origin, run, revision: state.revision + 1, drafts: {}, edited: null, notice: null, awaited: null };
 }
 
 /** @param {State} state @param {"past" | "future"} from @param {"past" | "future"} to @returns {State} */
@@ -123,9 +126,10 @@ function done(state, { revision, summary, ms }) {
   const axis = Math.min(state.axis, summary.channels - 1);
   // An old window over a run of another length or clock would show another time.
   const same = state.result?.summary.clock_hz === summary.clock_hz;
-  const window = state.window && same ? clamp(state.window, summary.end_cycle) : null;
+  const kept = state.window && same ? clamp(state.window, summary.end_cycle) : null;
+  const window = state.awaited ? within(state.awaited, summary.end_cycle) : kept;
   const inside = (/** @type {number | null} */ c) => (c !== null && c <= summary.end_cycle && same ? c : null);
-  return { ...next, axis, window, packet: null, hover: null,
+  return { ...next, axis, window, awaited: null, packet: null, hover: null,
     cursors: { a: inside(state.cursors.a), b: inside(state.cursors.b) } };
 }
 
@@ -145,6 +149,12 @@ export function clamp({ start, end }, last) {
   const span = Math.min(most, Math.max(LEAST_SPAN, Math.round(end - start)));
   const from = Math.min(Math.max(0, Math.round(start)), most - span);
   return Number.isFinite(from + span) ? { start: from, end: from + span } : null;
+}
+
+/** A window that a link asks for; none where it does not lie in the run or is all of it. @param {Span} window @param {number} last @returns {Span | null} */
+function within(window, last) {
+  const inside = window.end <= last && window.end - window.start < last;
+  return inside ? clamp(window, last) : null;
 }
 
 /** Why nothing runs, if so. @param {State} state @returns {"unjudged" | "problems" | "budget" | null} */

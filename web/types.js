@@ -7,14 +7,14 @@
  * @typedef {{kind: string, start_s: number, duration_s: number, steps: number, detail: string}} DerivedMove
  * @typedef {{steps: number, duration_s: number, peak_speed_steps_s: number, peak_acceleration_steps_s2: number,
  *   step_mm: number | null, step_deg: number | null, moves: DerivedMove[]}} DerivedAxis
- * @typedef {{tick_s: number, limit_steps_s: number, ticks: number, packets_per_s: number, line_load: number,
+ * @typedef {{tick_s: number, limit_steps_s: number, ticks: number, packets_per_s: number, line_load: number | null,
  *   duration_s: number, axes: DerivedAxis[]}} Derived
  * @typedef {{edges: number, packets: number, bytes: number, over_budget: boolean, message: string}} Cost
  * @typedef {{problems: Problem[], scenario: string, derived: Derived | null, cost: Cost | null}} Judgement
  * @typedef {{id: string, document: string, scenario: string}} Preset
  *
  * @typedef {{digest: string, records: number, edges: number, end_cycle: number, end_s: number, clock_hz: number,
- *   channels: number, positions: Int32Array, faults: {bits: number, names: string[]}, ticks_done: number}} Summary
+ *   channels: number, positions: Int32Array, faults: {bits: number, names: string[]}, ticks_done: number, changing: number[]}} Summary
  * @typedef {{done: boolean, cycle: number, end_cycle: number, records: number}} Progress
  * @typedef {{x: Float64Array, has_ideal: boolean,
  *   position_min: Float64Array, position_max: Float64Array, speed_min: Float64Array, speed_max: Float64Array,
@@ -52,6 +52,7 @@
  * @property {Run} run
  * @property {Result | null} result The last good one.
  * @property {Span | null} window   Shown part of the time axis; null shows the whole run.
+ * @property {Span | null} awaited  Part that a link asks for, until there is a result to show it of.
  * @property {number} axis          Axis of the motion view.
  * @property {"steps" | "mm" | "deg"} unit  Unit of the motion view.
  * @property {number | null} hover  Cycle under the pointer.
