@@ -68,9 +68,17 @@ export function control(path, field, { dispatch, now }) {
     dispatch({ type: "edit", path, value: convert(value, unitSelect.value, path, now()) });
   });
 
+  /** A field without use stays away, unless what is wrong is in it. @param {State} state */
+  function place({ scenario }) {
+    const { when } = field;
+    const beside = when && path.slice(0, path.length - field.key.length) + when.key;
+    root.hidden = when !== undefined && get(scenario, beside ?? "") !== when.is && error.textContent === "";
+  }
+
   return {
     root,
     show(next, state) {
+      place(state);
       const was = value;
       value = next;
       const drafted = state.drafts[path];
@@ -88,6 +96,7 @@ export function control(path, field, { dispatch, now }) {
     },
     fail(message) {
       say(error, message);
+      place(now());
       if (message) input.setAttribute("aria-invalid", "true");
       else input.removeAttribute("aria-invalid");
     },

@@ -87,7 +87,7 @@ export function createForm({ root, samples, dispatch }) {
     const head = element("div", { class: "item-head" },
       kindSelect(`Mechanics of axis ${index}`, `${path}.mechanics`, kind, labels(MECHANICS), (chosen) => ({ [chosen]: samples.mechanics[chosen] })),
       button("Copy", `Copy axis ${index}`, () => addAxis(axes, structuredClone(axis)), axes.length >= MOST_CHANNELS),
-      button("✕", `Remove axis ${index}`, () => put("source.motion.axes", axes.toSpliced(index, 1)), axes.length === 1));
+      button("✕", `Remove axis ${index}`, () => removeAxis(axes, index), axes.length === 1));
     const fields = (MECHANICS[kind]?.fields ?? []).map((field) => row(`${path}.mechanics.${kind}.${field.key}`, field));
     const moves = axis.moves.map((/** @type {any} */ move, /** @type {number} */ i) => moveItem(move, `${list}[${i}]`, i, axis.moves, list));
     const last = axis.moves[axis.moves.length - 1];
@@ -101,6 +101,15 @@ export function createForm({ root, samples, dispatch }) {
     const grown = [...axes, axis];
     const channels = Math.max(Number(scenario.bus.channels) || 1, grown.length);
     put("", { ...scenario, bus: { ...scenario.bus, channels }, source: { motion: { axes: grown } } });
+  }
+
+  /** The spectrum stays with its axis, or goes to a neighbour of the one that is removed. @param {any[]} axes @param {number} index */
+  function removeAxis(axes, index) {
+    const { scenario } = state;
+    const left = axes.toSpliced(index, 1);
+    const looked = scenario.analysis.axis;
+    const axis = Math.min(looked > index ? looked - 1 : looked, left.length - 1);
+    put("", { ...scenario, analysis: { ...scenario.analysis, axis }, source: { motion: { axes: left } } });
   }
 
   /** @param {Scenario} scenario @returns {Node[]} */
