@@ -88,13 +88,14 @@ export function showDerived(state, form) {
   if (!derived) return fill(root);
   const peak = Math.max(0, ...derived.axes.map((axis) => axis.peak_speed_steps_s));
   const load = derived.line_load;
+  const sends = "line" in state.scenario.source;
   const rows = [
     ["Duration", si(derived.duration_s, "s"), ""],
     ["Peak rate", derived.axes.length ? plain(peak, "steps/s") : "–", peak > derived.limit_steps_s ? "over" : ""],
-    ["Tick", `${si(derived.tick_s, "s")}, ${count(derived.ticks)} in all`, ""],
+    ["Tick", sends ? si(derived.tick_s, "s") : `${si(derived.tick_s, "s")}, ${count(derived.ticks)} in all`, ""],
     ["Limit of the bus", plain(derived.limit_steps_s, "steps/s"), ""],
-    ["Packets", plain(derived.packets_per_s, "/s"), ""],
-    ["Line load", `${short(load * 100, 3)} %`, load > 1 ? "over" : ""],
+    sends ? ["Sends", count(derived.ticks), ""] : ["Packets", load === null ? "–" : plain(derived.packets_per_s, "/s"), ""],
+    ["Line load", load === null ? "–" : `${short(load * 100, 3)} %`, load !== null && load > 1 ? "over" : ""],
   ];
   fill(root, element("dl", {}, ...rows.map(([name, value, mark]) =>
     element("div", {}, element("dt", {}, name), element("dd", mark ? { class: mark } : {}, value)))));

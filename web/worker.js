@@ -54,21 +54,6 @@ async function simulate(run, json) {
   postMessage({ event: "done", run, summary: simulation.summary(), ms: performance.now() - begin });
 }
 
-/** Packets whose time on the line or in the sequencer touches the span, at most `limit`. @param {number} start @param {number} end @param {number} limit */
-function packetsIn(start, end, limit) {
-  const total = finished.packets(0, 0).total;
-  let [low, high] = [0, total];
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    const row = finished.packets(middle, 1).rows[0];
-    if (Math.max(row.end_cycle, row.tick_end_cycle ?? 0) < start) low = middle + 1;
-    else high = middle;
-  }
-  const { rows } = finished.packets(low, limit + 1);
-  const inside = rows.filter((/** @type {any} */ row) => row.start_cycle <= end);
-  return { rows: inside.slice(0, limit), more: inside.length > limit };
-}
-
 /** Edges around a cycle: the level's begin and end, and the edge after that. @param {number} bit @param {number} cycle */
 function pulseAt(bit, cycle) {
   const begin = finished.next_edge(bit, cycle + 1, false, "any");
@@ -79,10 +64,7 @@ function pulseAt(bit, cycle) {
 
 /** @param {string} method @param {any[]} args */
 function answer(method, args) {
-  if (method === "packets_in" || method === "pulse_at") {
-    if (!finished) return null;
-    return method === "packets_in" ? packetsIn(args[0], args[1], args[2]) : pulseAt(args[0], args[1]);
-  }
+  if (method === "pulse_at") return finished && pulseAt(args[0], args[1]);
   const calls = /** @type {any} */ (core);
   if (typeof calls[method] === "function") return calls[method](...args);
   return finished ? finished[method](...args) : null;
