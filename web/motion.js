@@ -62,9 +62,9 @@ export function createMotion({ engine, dispatch, now }) {
       const text = bands.length === 0 ? "nothing to show" : `from ${short(range.low)} to ${short(range.high)} ${label}`;
       canvas.setAttribute("aria-label", `${name} over time: ${text}`);
     }
-    const empty = byId("no-acceleration");
-    empty.hidden = columns.has_ideal;
-    say(empty, "Packets and line scripts have no ideal curve, so no acceleration.");
+    const note = withoutAcceleration(columns);
+    byId("no-acceleration").hidden = note === "";
+    say(byId("no-acceleration"), note);
     say(byId("motion-sentence"), `Axis ${state.axis}, ${si(x.min, "s")} to ${si(x.max, "s")}.`);
     paintCursor(state);
   }
@@ -157,6 +157,15 @@ function bandsOf(columns, name, scale) {
     bands.push({ name: "ideal", color: "--ideal", opacity: 1, width: 1.6, min: scaled(min), max: scaled(max) });
   }
   return bands;
+}
+
+/** Why the chart of the acceleration looks empty, if so. @param {MotionColumns} columns */
+function withoutAcceleration({ has_ideal, acceleration_min, acceleration_max, speed_min, speed_max }) {
+  if (!has_ideal) return "Packets and line scripts have no ideal curve, so no acceleration.";
+  const still = (/** @type {number} */ value) => !(Math.abs(value) > 0);
+  if (!acceleration_min.every(still) || !acceleration_max.every(still)) return "";
+  const [low, high] = [Math.min(...speed_min), Math.max(...speed_max)];
+  return high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high)) ? "The speed jumps between segments; no acceleration in between." : "The speed does not change here; no acceleration.";
 }
 
 /** Least and greatest value, and a range around them that leaves air. @param {{min: Float64Array, max: Float64Array}[]} bands @param {boolean} zero */
