@@ -10,7 +10,7 @@
 //! The document goes over to constant speed as soon as v >= v_max; so the first row that reaches
 //! the top speed has the top speed itself, and is the last.
 
-use super::round_half_up;
+use super::{round_half_up, square_root};
 
 /// The rows of an acceleration table, each computed when it is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +48,7 @@ impl AccelerationTable {
     #[must_use]
     pub fn rate(&self, row: u64) -> u64 {
         let speed = if row < self.top {
-            libm::sqrt(self.start_speed * self.start_speed + 2.0 * self.acceleration * row as f64)
+            square_root(self.start_speed * self.start_speed + 2.0 * self.acceleration * row as f64)
         } else {
             self.top_speed
         };

@@ -13,8 +13,8 @@
 //! ```
 //!
 //! Positions are in steps, f64, and not rounded: [`round_half_up`] is the one rounding (B1's R),
-//! and `quantise` is where it decides. All mathematics that is more than + - * / comes from
-//! `libm`, so a plan has the same bits on every target.
+//! and `quantise` is where it decides. All mathematics that is more than + - * / and the square root
+//! comes from `libm`, so a plan has the same bits on every target.
 
 pub mod acceleration_table;
 mod asked;
@@ -55,9 +55,29 @@ pub fn round_half_up(x: f64) -> i64 {
     }
 }
 
+/// The square root. IEEE 754 leaves it no choice of bits, so every target may take its own:
+/// wasm has an instruction for it, and `libm` there has ten times its time.
+#[inline]
+fn square_root(x: f64) -> f64 {
+    #[cfg(feature = "std")]
+    let root = x.sqrt();
+    #[cfg(not(feature = "std"))]
+    let root = libm::sqrt(x);
+    root
+}
+
 #[cfg(test)]
 mod tests {
-    use super::round_half_up;
+    use super::{round_half_up, square_root};
+
+    #[test]
+    fn the_square_root_has_the_bits_that_libm_gives_it() {
+        let grid = (0..100_000_u64).map(|i| f64::from_bits(i.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 1));
+        for x in grid.chain([0.0, -0.0, 1e-320, 2.0, -1.0, f64::MAX, f64::INFINITY]) {
+            let (found, expected) = (square_root(x), libm::sqrt(x));
+            assert!(found.to_bits() == expected.to_bits() || (found.is_nan() && expected.is_nan()), "{x}");
+        }
+    }
 
     #[test]
     fn halves_are_rounded_up_and_nothing_else_is() {

@@ -15,7 +15,7 @@
 //! place, which divides but keeps the digits that v - v0 loses. Either way a time is within one
 //! cycle of the ideal one.
 
-use super::{Curve, round_half_up, trapezoid::Trapezoid};
+use super::{Curve, round_half_up, square_root, trapezoid::Trapezoid};
 
 /// Error of a step's time, in cycles, from which on a ramp divides.
 const MOST_ERROR: f64 = 0.125;
@@ -54,7 +54,7 @@ impl Ramp {
     /// Cycles until `place`, not rounded.
     #[inline]
     fn cycles(&self, place: f64) -> f64 {
-        let speed = libm::sqrt(self.start_squared + self.twice_acceleration * place);
+        let speed = square_root(self.start_squared + self.twice_acceleration * place);
         if self.divides {
             self.twice_clock * place / (speed + self.start_speed)
         } else {

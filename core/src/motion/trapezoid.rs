@@ -12,7 +12,7 @@
 //!       t_r        T-t_r  T
 //! ```
 
-use super::{Curve, Peaks, profile::greater};
+use super::{Curve, Peaks, profile::greater, square_root};
 
 /// A trapezoid or triangle of uniform acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,7 +40,7 @@ impl Trapezoid {
         let (peak_speed, ramp_steps) = if 2.0 * whole_ramp <= all {
             (v1, whole_ramp)
         } else {
-            (libm::sqrt(v0 * v0 + a * all), all / 2.0)
+            (square_root(v0 * v0 + a * all), all / 2.0)
         };
         // s = (v0 + v)/2 * t, which has no difference of nearly equal numbers in it.
         let ramp_s = if ramp_steps > 0.0 { 2.0 * ramp_steps / (v0 + peak_speed) } else { 0.0 };
