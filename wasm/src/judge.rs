@@ -4,13 +4,10 @@ use crate::convert::object;
 use serde::Serialize;
 use stepscope_core::{
     motion::{AxisPlan, Curve, Profile},
-    run::{Cost, Experiment},
+    run::{BUDGET_RECORDS, Cost, Experiment},
     scenario::{Problem, Scenario, Source, presets as core_presets},
 };
 use wasm_bindgen::prelude::*;
-
-/// Records up to which a scenario runs without asking: what a page redraws at once.
-pub(crate) const BUDGET_RECORDS: u64 = 4_000_000;
 
 /// Version of Stepscope.
 #[wasm_bindgen]
@@ -111,13 +108,10 @@ struct Price {
 /// Never for any text: what is wrong with it is in the result.
 #[wasm_bindgen]
 pub fn check(json: &str) -> Result<JsValue, JsError> {
-    let (scenario, mut problems) = Scenario::from_json_lenient(json);
-    let experiment = match Experiment::new(&scenario) {
-        Ok(experiment) if problems.is_empty() => Some(experiment),
-        judged => {
-            problems.extend(judged.err().unwrap_or_default());
-            None
-        }
+    let (scenario, unread) = Scenario::from_json_lenient(json);
+    let (experiment, problems) = match Experiment::of_lenient(&scenario, unread) {
+        Ok(experiment) => (Some(experiment), Vec::new()),
+        Err(problems) => (None, problems),
     };
     object(&Judgement {
         problems: problems.iter().map(told).collect(),
@@ -137,17 +131,13 @@ fn price(cost: Cost) -> Price {
         edges: cost.records,
         packets: cost.sends,
         bytes: cost.bytes,
-        over_budget: over_budget(cost),
+        over_budget: cost.is_over_budget(),
         message: cost_message(cost),
     }
 }
 
-pub(crate) const fn over_budget(cost: Cost) -> bool {
-    cost.records > BUDGET_RECORDS
-}
-
 pub(crate) fn cost_message(cost: Cost) -> String {
-    if over_budget(cost) {
+    if cost.is_over_budget() {
         format!(
             "up to {} edges and {} packets: more than the {} edges that run unasked",
             grouped(cost.records as f64),

@@ -1,9 +1,6 @@
 //! Links: a scenario to a fragment and back.
 
-use crate::{
-    convert::object,
-    judge::{cost_message, over_budget},
-};
+use crate::{convert::object, judge::cost_message};
 use serde::Serialize;
 use stepscope_core::{
     run::Experiment,
@@ -52,7 +49,7 @@ pub fn decode_link(fragment: &str) -> Result<JsValue, JsError> {
         let cost = Experiment::new(&scenario).map_err(LinkError::Scenario)?.cost();
         Ok(Opened::Scenario {
             scenario: scenario.to_json(),
-            over_budget: over_budget(cost),
+            over_budget: cost.is_over_budget(),
             message: cost_message(cost),
         })
     });

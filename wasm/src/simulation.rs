@@ -144,7 +144,6 @@ impl Simulation {
     pub fn motion(&mut self, axis: u8, t0_s: f64, t1_s: f64, columns: u32) -> Object {
         let window = Window { start_s: t0_s, end_s: t1_s, columns: columns.clamp(1, 10_000) as usize };
         let clock_hz = self.experiment.config().clock_hz();
-        let addressed = self.experiment.config().address().is_some();
         let result = Object::new();
         let centres: Vec<f64> = (0..window.columns).map(|column| window.centre_s(column)).collect();
         numbers(&result, "x", &centres);
@@ -162,7 +161,7 @@ impl Simulation {
         }
         self.count_steps(axis);
         let steps = self.steps.get(usize::from(axis)).and_then(Option::as_deref).unwrap_or_default();
-        let made = curves::made(&self.recording, steps, axis, addressed, clock_hz, window);
+        let made = curves::made(&self.recording, steps, axis, self.experiment.config(), window);
         for (name, band) in [("made_position", made.position), ("made_speed", made.speed)] {
             numbers(&result, &format!("{name}_min"), &band.min);
             numbers(&result, &format!("{name}_max"), &band.max);
