@@ -1,17 +1,109 @@
-//! `cargo xtask bench`: the benchmarks, native code first.
+//! `cargo xtask bench`: criterion's figure of each kernel, and ratios between kernels and between
+//! native code and the browser.
+//!
+//! A time by itself says more of the machine than of the code, and a busy machine changes its speed
+//! from second to second. So the ratios come from blocks: in each, a native process and then the
+//! page in a browser call all kernels in turn, several rounds long; what else runs on the machine
+//! only ever adds time, so the best call of a kernel in the block is the one that counts. The table
+//! gives the median of the blocks' ratios and, as the measure of what noise is left, their median
+//! absolute deviation.
 
-use anyhow::Result;
+mod page;
+mod table;
 
-use crate::{run, toolchain};
+use std::fs::File;
+use std::path::Path;
 
-/// Runs every benchmark there is. One of the wasm build belongs after the native one.
-pub(crate) async fn run() -> Result<()> {
-    native().await
+use anyhow::{Context, Result};
+use tokio::process::Command;
+
+use crate::browser::Browser;
+use crate::tools::{Optimise, WasmTools};
+use crate::{root, run, toolchain};
+use page::Page;
+use table::{Block, Estimate, Report};
+
+/// The crate of the kernels, from the workspace's folder.
+const FOLDER: &str = "tests/bench";
+const PACKAGE: &str = "stepscope-bench";
+
+/// How long to measure.
+struct Effort {
+    blocks: usize,
+    /// Rounds of a block.
+    rounds: u32,
+    criterion: [&'static str; 6],
 }
 
-/// The criterion benchmarks of the core, as native code.
-async fn native() -> Result<()> {
-    let mut command = toolchain::cargo();
-    command.args(["bench", "--package", "stepscope-tests", "--locked"]);
+const FULL: Effort = Effort {
+    blocks: 15,
+    rounds: 8,
+    criterion: ["--sample-size", "30", "--warm-up-time", "0.5", "--measurement-time", "2"],
+};
+const QUICK: Effort = Effort {
+    blocks: 4,
+    rounds: 5,
+    criterion: ["--sample-size", "10", "--warm-up-time", "0.1", "--measurement-time", "0.4"],
+};
+
+/// Builds the kernels for both, measures, and prints the tables.
+pub(crate) async fn run(quick: bool) -> Result<()> {
+    let effort = if quick { QUICK } else { FULL };
+    let browser = Browser::ready().await?;
+    let tools = WasmTools::ready(Optimise::Yes).await?;
+    let home = root().join("target").join("bench");
+    let package = home.join("pkg");
+    std::fs::create_dir_all(&home).with_context(|| format!("{} can't be made", home.display()))?;
+
+    crate::page::wasm(&tools, FOLDER, &package).await?;
+    criterion(&home.join("criterion"), effort.criterion).await?;
+
+    println!("{} blocks of {} rounds, native and in the browser", effort.blocks, effort.rounds);
+    let mut page = Page::open(&browser, &root().join(FOLDER).join("page"), &package, &home).await?;
+    let mut blocks = Vec::new();
+    for _ in 0..effort.blocks {
+        blocks.push(Block {
+            native: native(&home, effort.rounds).await?,
+            browser: page.rounds(effort.rounds).await?,
+        });
+    }
+    print!("\n{}", table::tables(&blocks, |kernel| estimate(&home.join("criterion"), kernel))?);
+    Ok(())
+}
+
+/// Criterion's benchmarks, each kernel by itself; their results lie under `home` then.
+async fn criterion(home: &Path, effort: [&str; 6]) -> Result<()> {
+    // What an earlier run left would only be compared with.
+    if home.exists() {
+        std::fs::remove_dir_all(home).with_context(|| format!("{} can't be removed", home.display()))?;
+    }
+    let mut command = kernels();
+    command.arg("--noplot").args(effort).env("CRITERION_HOME", home);
     run::to_end(command, run::LIMIT).await
+}
+
+/// Criterion's estimate of a kernel.
+fn estimate(home: &Path, kernel: &str) -> Result<Estimate> {
+    let file = home.join("kernels").join(kernel).join("new").join("estimates.json");
+    let text = std::fs::read_to_string(&file).with_context(|| format!("{} can't be read", file.display()))?;
+    Estimate::from_json(&text).with_context(|| format!("{} is not what it should be", file.display()))
+}
+
+/// One native process of so many rounds.
+async fn native(home: &Path, rounds: u32) -> Result<Vec<Report>> {
+    let path = home.join("native.json");
+    let file = File::create(&path).with_context(|| format!("{} can't be written", path.display()))?;
+    let mut command = kernels();
+    command.args(["--rounds", &rounds.to_string()]).stdout(file);
+    run::to_end(command, run::LIMIT).await?;
+    let text = std::fs::read_to_string(&path).with_context(|| format!("{} can't be read", path.display()))?;
+    Report::all_from_json(&text)
+}
+
+/// A call of the kernels as native code, to which their own arguments can be added.
+fn kernels() -> Command {
+    let mut command = toolchain::cargo();
+    command.args(["bench", "--quiet", "--package", PACKAGE, "--features", "criterion"]);
+    command.args(["--bench", "kernels", "--locked", "--"]);
+    command
 }

@@ -70,8 +70,12 @@ enum Task {
         #[arg(long)]
         list: bool,
     },
-    /// Run the benchmarks
-    Bench,
+    /// Measure the core, native and in a browser, and print ratios that can be compared
+    Bench {
+        /// In a minute or two after the builds, and noisier
+        #[arg(long)]
+        quick: bool,
+    },
 }
 
 /// Whether wasm-opt goes over the page's wasm.
@@ -116,7 +120,7 @@ async fn perform(task: Task) -> Result<()> {
             Ok(())
         }
         Task::Test { only, list: false } => steps::run(&only).await,
-        Task::Bench => bench::run().await,
+        Task::Bench { quick } => bench::run(quick).await,
     }
 }
 

@@ -9,8 +9,8 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use walkdir::{DirEntry, WalkDir};
 
-use crate::run;
 use crate::tools::{Optimise, WasmTools};
+use crate::{root, run};
 
 /// What all files together may weigh, in bytes, compressed by brotli as hosts do.
 const BUDGET: usize = 400_000;
@@ -18,10 +18,14 @@ const BUDGET: usize = 400_000;
 /// Builds the wasm crate into `web/pkg`, installing the tools first if they are missing.
 pub(crate) async fn build(optimise: Optimise) -> Result<()> {
     let tools = WasmTools::ready(optimise).await?;
+    wasm(&tools, "wasm", &root().join("web").join("pkg")).await
+}
+
+/// Builds the crate in `folder` of the workspace for the browser into `package`.
+pub(crate) async fn wasm(tools: &WasmTools, folder: &str, package: &Path) -> Result<()> {
     let mut command = tools.wasm_pack()?;
     command.args(["build", "--target", "web"]).args(tools.build_options());
-    // wasm-pack takes the output folder relative to the crate.
-    command.args(["wasm", "--out-dir", "../web/pkg", "--", "--locked"]);
+    command.args([folder, "--out-dir"]).arg(package).args(["--", "--locked"]);
     tools.judge(run::to_end(command, run::LIMIT).await)
 }
 

@@ -13,7 +13,7 @@ use tokio::process::Command;
 pub(crate) const LIMIT: Duration = Duration::from_secs(30 * 60);
 
 /// A running child; dropping it kills its process group.
-struct Group(Box<dyn ChildWrapper>);
+pub(crate) struct Group(Box<dyn ChildWrapper>);
 
 impl Drop for Group {
     fn drop(&mut self) {
@@ -22,8 +22,8 @@ impl Drop for Group {
     }
 }
 
-/// Runs `command` to its end; an error if it can't be started, fails, or takes longer than `limit`.
-pub(crate) async fn to_end(mut command: Command, limit: Duration) -> Result<()> {
+/// Starts `command`, which runs until it ends or what is returned is dropped.
+pub(crate) fn start(mut command: Command) -> Result<Group> {
     let name = name(&command);
     command.stdin(Stdio::null());
     let mut wrap = CommandWrap::from(command);
@@ -31,7 +31,13 @@ pub(crate) async fn to_end(mut command: Command, limit: Duration) -> Result<()> 
     wrap.wrap(process_wrap::tokio::ProcessGroup::leader());
     #[cfg(windows)]
     wrap.wrap(process_wrap::tokio::JobObject);
-    let mut group = Group(wrap.spawn().with_context(|| format!("{name} can't be started"))?);
+    Ok(Group(wrap.spawn().with_context(|| format!("{name} can't be started"))?))
+}
+
+/// Runs `command` to its end; an error if it can't be started, fails, or takes longer than `limit`.
+pub(crate) async fn to_end(command: Command, limit: Duration) -> Result<()> {
+    let name = name(&command);
+    let mut group = start(command)?;
     let Ok(status) = tokio::time::timeout(limit, group.0.wait()).await else {
         bail!("{name} was not done after {} s and was stopped", limit.as_secs_f64());
     };

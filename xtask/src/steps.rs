@@ -48,6 +48,7 @@ impl Step {
                 toolchain::target(BARE_METAL).await?;
                 clippy("--workspace --all-targets --all-features").await?;
                 clippy(&format!("--package stepscope-wasm --all-targets --target {WASM}")).await?;
+                clippy(&format!("--package stepscope-bench --lib --target {WASM}")).await?;
                 clippy(&format!("--package stepscope-core --no-default-features --target {BARE_METAL}")).await
             }
             Self::Docs => {

@@ -1,0 +1,294 @@
+//! The kernels, what each is compared with, and the aim.
+
+use core::hint::black_box;
+
+use stepscope_core::{
+    motion::trapezoid::Trapezoid,
+    run::Experiment,
+    scenario::Problem,
+    signal::{Levels, Record},
+    trace::Digest,
+    units::Instant,
+};
+
+use crate::motions;
+
+/// Steps of the planner's move: a triangle, so that every step has its square root.
+const STEPS: u32 = 1_000_000;
+const START_SPEED: f64 = 250.0;
+const TOP_SPEED: f64 = 1e7;
+const ACCELERATION: f64 = 9000.0;
+const CLOCK_HZ: u32 = 16_000_000;
+/// How often the short motion is run at the fast speed, so that it takes a time that can be told.
+const SHORT_RUNS: u64 = 200;
+
+/// Something that is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kernel {
+    /// The records of the steady motion, copied: what a stored trace is compared with.
+    Copy,
+    /// As many records, made of a counter: memory is written and not read.
+    Write,
+    /// The steady motion into a stored trace.
+    Stored,
+    /// The steady motion into a digest.
+    Digest,
+    /// The varied motion into a stored trace.
+    VariedStored,
+    /// The varied motion into a digest.
+    VariedDigest,
+    /// The motion that is the same at every clock into a stored trace, at 16 MHz.
+    Clock16,
+    /// The same at 1 MHz.
+    Clock1,
+    /// The same at 200 MHz.
+    Clock200,
+    /// The short motion clock by clock.
+    ClockByClock,
+    /// The short motion at the fast speed.
+    Fast,
+    /// One square root a step, summed: what the planner is compared with.
+    Roots,
+    /// The cycles of a trapezoid's steps, summed.
+    StepTimes,
+}
+
+/// What there is to say of a kernel.
+#[derive(Clone, Copy, Debug)]
+pub struct Facts {
+    /// Its name, fit for a file.
+    pub name: &'static str,
+    /// What it makes.
+    pub unit: &'static str,
+    /// What its speed is compared with.
+    pub yardstick: Option<Kernel>,
+    /// Which ratio of the two speeds is aimed at, at least.
+    pub aim: Option<f64>,
+    /// Whether it runs in the browser too.
+    pub in_browser: bool,
+    /// Which part of the native speed is aimed at in the browser, at least.
+    pub browser_aim: Option<f64>,
+}
+
+impl Kernel {
+    /// All kernels, each yardstick right before what is compared with it.
+    pub const ALL: [Self; 13] = [
+        Self::Write,
+        Self::Copy,
+        Self::Stored,
+        Self::Digest,
+        Self::VariedStored,
+        Self::VariedDigest,
+        Self::Clock16,
+        Self::Clock1,
+        Self::Clock200,
+        Self::ClockByClock,
+        Self::Fast,
+        Self::Roots,
+        Self::StepTimes,
+    ];
+
+    /// What there is to say of it.
+    #[must_use]
+    pub const fn facts(self) -> Facts {
+        let plain = Facts {
+            name: "",
+            unit: "records",
+            yardstick: None,
+            aim: None,
+            in_browser: false,
+            browser_aim: None,
+        };
+        let run = Facts { yardstick: Some(Self::Copy), ..plain };
+        let clock = Facts { yardstick: Some(Self::Clock16), aim: Some(0.9), ..plain };
+        let steps = Facts { unit: "steps", in_browser: true, ..plain };
+        match self {
+            Self::Write => Facts { name: "plain_write", in_browser: true, ..plain },
+            Self::Copy => Facts { name: "plain_copy", in_browser: true, ..plain },
+            Self::Stored => Facts {
+                name: "stored_trace",
+                aim: Some(1.0 / 6.0),
+                in_browser: true,
+                browser_aim: Some(0.6),
+                ..run
+            },
+            Self::Digest => Facts { name: "digest", in_browser: true, browser_aim: Some(0.6), ..run },
+            Self::VariedStored => Facts { name: "varied_stored_trace", ..run },
+            Self::VariedDigest => Facts { name: "varied_digest", ..run },
+            Self::Clock16 => Facts { name: "clock_16_mhz", ..plain },
+            Self::Clock1 => Facts { name: "clock_1_mhz", ..clock },
+            Self::Clock200 => Facts { name: "clock_200_mhz", ..clock },
+            Self::ClockByClock => Facts { name: "clock_by_clock", ..plain },
+            Self::Fast => Facts { name: "fast_speed", yardstick: Some(Self::ClockByClock), ..plain },
+            Self::Roots => Facts { name: "square_roots", ..steps },
+            Self::StepTimes => Facts {
+                name: "step_times",
+                yardstick: Some(Self::Roots),
+                aim: Some(0.5),
+                browser_aim: Some(0.6),
+                ..steps
+            },
+        }
+    }
+}
+
+/// The kernels' experiments and the memory that they write.
+pub struct Kernels {
+    steady: Experiment,
+    varied: Experiment,
+    clock_1: Experiment,
+    clock_16: Experiment,
+    clock_200: Experiment,
+    short: Experiment,
+    ramp: Trapezoid,
+    /// The steady motion's trace.
+    source: Vec<Record>,
+    /// What is written: room for the longest trace, every page of it touched before.
+    target: Vec<Record>,
+}
+
+/// What a kernel makes in one call.
+#[derive(Clone, Copy, Debug)]
+pub struct Work {
+    /// Records or steps.
+    pub units: u64,
+    /// Single-signal edges among them: a record may hold several.
+    pub edges: Option<u64>,
+}
+
+impl Kernels {
+    /// Prepares all of them.
+    ///
+    /// # Errors
+    /// None, as long as the scenario's rules stay as they are.
+    pub fn new() -> Result<Self, Vec<Problem>> {
+        let (steady, varied) = (motions::steady()?, motions::varied()?);
+        let mut source = Vec::new();
+        steady.run(&mut source);
+        let most = source.len().max(varied.cost().records as usize);
+        Ok(Self {
+            steady,
+            varied,
+            clock_1: motions::at_clock(1_000_000)?,
+            clock_16: motions::at_clock(16_000_000)?,
+            clock_200: motions::at_clock(200_000_000)?,
+            short: motions::short()?,
+            ramp: Trapezoid::new(i64::from(STEPS), START_SPEED, TOP_SPEED, ACCELERATION),
+            source,
+            target: vec![Record { cycle: Instant::NEVER, levels: Levels::RESET }; most],
+        })
+    }
+
+    /// Calls a kernel once; the result is only there to be used.
+    pub fn call(&mut self, kernel: Kernel) -> u64 {
+        match kernel {
+            Kernel::Copy => self.copy(),
+            Kernel::Write => self.write(),
+            Kernel::Roots => roots(black_box(START_SPEED), black_box(ACCELERATION)).to_bits(),
+            Kernel::StepTimes => black_box(self.ramp).step_times(CLOCK_HZ).fold(0, u64::wrapping_add),
+            Kernel::Digest => digest(&self.steady),
+            Kernel::VariedDigest => digest(&self.varied),
+            Kernel::Stored => store(&self.steady, &mut self.target),
+            Kernel::VariedStored => store(&self.varied, &mut self.target),
+            Kernel::Clock1 => store(&self.clock_1, &mut self.target),
+            Kernel::Clock16 => store(&self.clock_16, &mut self.target),
+            Kernel::Clock200 => store(&self.clock_200, &mut self.target),
+            Kernel::Fast => (0..SHORT_RUNS).map(|_| store(&self.short, &mut self.target)).sum(),
+            Kernel::ClockByClock => {
+                self.target.clear();
+                black_box(&self.short).run_clock_by_clock(&mut self.target);
+                self.target.len() as u64
+            }
+        }
+    }
+
+    /// What one call of a kernel makes.
+    pub fn work(&mut self, kernel: Kernel) -> Work {
+        let result = self.call(kernel);
+        let stored = || Some(edges(&self.target));
+        let (units, edges) = match kernel {
+            Kernel::Roots | Kernel::StepTimes => (u64::from(STEPS), None),
+            Kernel::Write => (result, None),
+            Kernel::Digest => return self.work(Kernel::Stored),
+            Kernel::VariedDigest => return self.work(Kernel::VariedStored),
+            Kernel::Fast => (result, stored().map(|edges| edges * SHORT_RUNS)),
+            _ => (result, stored()),
+        };
+        Work { units, edges }
+    }
+
+    fn copy(&mut self) -> u64 {
+        self.target.clear();
+        self.target.extend_from_slice(black_box(&self.source));
+        self.target.len() as u64
+    }
+
+    fn write(&mut self) -> u64 {
+        self.target.clear();
+        let made =
+            (0..self.source.len() as u64).map(|i| Record { cycle: Instant(i), levels: Levels(i & 0xffff) });
+        self.target.extend(made);
+        self.target.len() as u64
+    }
+}
+
+fn store(experiment: &Experiment, target: &mut Vec<Record>) -> u64 {
+    target.clear();
+    black_box(experiment).run(target);
+    target.len() as u64
+}
+
+fn digest(experiment: &Experiment) -> u64 {
+    let mut digest = Digest::default();
+    black_box(experiment).run(&mut digest);
+    digest.value()
+}
+
+/// The least that a planner of this ramp could do.
+fn roots(v0: f64, a: f64) -> f64 {
+    (0..STEPS).map(|k| libm::sqrt(v0 * v0 + 2.0 * a * f64::from(k))).sum()
+}
+
+/// Single-signal edges of a trace after its first record, which is the state at reset.
+fn edges(trace: &[Record]) -> u64 {
+    let pairs = trace.iter().zip(trace.iter().skip(1));
+    pairs.map(|(before, after)| u64::from((before.levels.0 ^ after.levels.0).count_ones())).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_yardstick_is_measured_right_before_what_is_compared_with_it_or_with_others_of_its_own() {
+        for (index, kernel) in Kernel::ALL.into_iter().enumerate() {
+            let before = &Kernel::ALL[..index];
+            if let Some(yardstick) = kernel.facts().yardstick {
+                assert!(before.contains(&yardstick), "{kernel:?}");
+                assert_eq!(kernel.facts().unit, yardstick.facts().unit, "{kernel:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn sixteen_channels_make_two_records_a_slot_and_thirty_two_edges() {
+        let mut kernels = Kernels::new().unwrap();
+        let Work { units, edges } = kernels.work(Kernel::Digest);
+        // Beside the steps: four edges of the line a byte (0xe4), the first record, and DIR.
+        let line = 10_000 * 16 * 4;
+        assert_eq!((units, edges), (2_000_000 + line + 2, Some(32_000_000 + line + 16)));
+        assert_eq!(kernels.work(Kernel::Copy).units, units);
+        assert_eq!(kernels.work(Kernel::Write).units, units);
+    }
+
+    #[test]
+    fn both_speeds_make_as_many_records_and_every_clock_too() {
+        let mut kernels = Kernels::new().unwrap();
+        let [slow, fast] = [Kernel::ClockByClock, Kernel::Fast].map(|kernel| kernels.work(kernel));
+        assert_eq!(slow.units * SHORT_RUNS, fast.units);
+        assert_eq!(slow.edges.map(|edges| edges * SHORT_RUNS), fast.edges);
+        let clocks = [Kernel::Clock1, Kernel::Clock16, Kernel::Clock200];
+        let [slowest, clock, fastest] = clocks.map(|kernel| kernels.work(kernel));
+        assert_eq!((slowest.edges, fastest.edges), (clock.edges, clock.edges));
+    }
+}

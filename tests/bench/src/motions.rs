@@ -1,0 +1,120 @@
+//! The experiments that the kernels run.
+
+use stepscope_core::{
+    run::Experiment,
+    scenario::{Axis, Bus, Constant, Cosine, Distance, Line, Motion, Move, Problem, Scenario, Source, Speed},
+};
+
+/// Sixteen channels, 100 slots of 10 us in a tick of 1 ms: at most 100 kHz a channel.
+fn sixteen(axes: Vec<Axis>) -> Scenario {
+    Scenario {
+        bus: Bus {
+            channels: 16,
+            slots: 100,
+            step_period_cycles: 160,
+            pulse_width_cycles: 40,
+            dir_setup_cycles: 40,
+            ..Bus::default()
+        },
+        line: Line { baud: 1_000_000, ..Line::default() },
+        source: Source::Motion(Motion { axes }),
+        ..Scenario::default()
+    }
+}
+
+/// Four channels, 100 slots of 100 us in a tick of 10 ms, every time the same whole number of
+/// microseconds whatever the clock. The line is slow enough for a clock of 1 MHz.
+fn four(clock_hz: u32, axes: Vec<Axis>) -> Scenario {
+    let micros = clock_hz / 1_000_000;
+    Scenario {
+        clock_hz,
+        bus: Bus {
+            channels: 4,
+            slots: 100,
+            step_period_cycles: 100 * micros,
+            pulse_width_cycles: 10 * micros,
+            dir_setup_cycles: 10 * micros,
+            boot_cycles: 1000 * micros,
+            ..Bus::default()
+        },
+        line: Line { baud: 50_000, ..Line::default() },
+        source: Source::Motion(Motion { axes }),
+        ..Scenario::default()
+    }
+}
+
+fn constant(steps: f64, steps_s: f64) -> Axis {
+    let (distance, speed) = (Distance::Steps(steps), Speed::StepsPerSecond(steps_s));
+    Axis { moves: vec![Move::Constant(Constant { distance, speed })], ..Axis::default() }
+}
+
+/// An S-curve without a plateau whose peak is `top_speed` steps/s.
+fn s_curve(duration_s: f64, top_speed: f64) -> Axis {
+    let ramp_s = duration_s / 2.0;
+    let distance = Distance::Steps((top_speed * ramp_s).round());
+    Axis { moves: vec![Move::Cosine(Cosine { distance, duration_s, ramp_s })], ..Axis::default() }
+}
+
+/// Sixteen channels at 100 kHz each for 10 s: every tick orders the same.
+///
+/// # Errors
+/// None, as long as the scenario's rules stay as they are.
+pub fn steady() -> Result<Experiment, Vec<Problem>> {
+    Experiment::new(&sixteen(vec![constant(1e6, 1e5); 16]))
+}
+
+/// Sixteen S-curves of different lengths, 7 to 10 s: hardly a tick orders what the one before did.
+///
+/// # Errors
+/// None, as long as the scenario's rules stay as they are.
+pub fn varied() -> Result<Experiment, Vec<Problem>> {
+    let axes = (0..16).map(|axis| s_curve(10.0 - 0.2 * f64::from(axis), 95_000.0 - 500.0 * f64::from(axis)));
+    Experiment::new(&sixteen(axes.collect()))
+}
+
+/// Four S-curves of some 10 s, the same in time at every clock.
+///
+/// # Errors
+/// None for whole MHz, as long as the scenario's rules stay as they are.
+pub fn at_clock(clock_hz: u32) -> Result<Experiment, Vec<Problem>> {
+    let axes = (0..4).map(|axis| s_curve(10.0 - 0.25 * f64::from(axis), 9500.0 - 50.0 * f64::from(axis)));
+    Experiment::new(&four(clock_hz, axes.collect()))
+}
+
+/// Four channels at 10 kHz each for 0.05 s, short enough to run clock by clock.
+///
+/// # Errors
+/// None, as long as the scenario's rules stay as they are.
+pub fn short() -> Result<Experiment, Vec<Problem>> {
+    Experiment::new(&four(16_000_000, vec![constant(500.0, 1e4); 4]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_steady_motion_fires_every_channel_in_every_slot() {
+        let experiment = steady().unwrap();
+        let ticks: Vec<&[u8]> = experiment.schedule().iter().map(|send| send.bytes).collect();
+        assert_eq!(ticks, vec![&[0x80 | 100; 16]; 10_000]);
+    }
+
+    #[test]
+    fn nearly_every_tick_of_the_varied_motion_orders_something_else_than_the_one_before() {
+        let experiment = varied().unwrap();
+        let ticks: Vec<&[u8]> = experiment.schedule().iter().map(|send| send.bytes).collect();
+        let same = ticks.windows(2).filter(|pair| pair[0] == pair[1]).count();
+        assert!(ticks.len() >= 10_000 && same * 20 < ticks.len(), "{same} of {} repeat", ticks.len());
+    }
+
+    #[test]
+    fn a_motion_orders_the_same_at_every_clock() {
+        let orders = |clock_hz| {
+            let experiment = at_clock(clock_hz).unwrap();
+            experiment.schedule().iter().map(|send| send.bytes.to_vec()).collect::<Vec<_>>()
+        };
+        let expected = orders(16_000_000);
+        assert!(orders(1_000_000) == expected && orders(200_000_000) == expected);
+    }
+}

@@ -1,0 +1,37 @@
+//! What the worker of the benchmark's page calls.
+
+use wasm_bindgen::prelude::*;
+
+use crate::{kernels::Kernels, rounds};
+
+#[wasm_bindgen]
+extern "C" {
+    /// Milliseconds.
+    #[wasm_bindgen(js_namespace = performance)]
+    fn now() -> f64;
+}
+
+/// The kernels, prepared.
+#[wasm_bindgen]
+pub struct Bench(Kernels);
+
+#[wasm_bindgen]
+impl Bench {
+    /// Prepares them.
+    ///
+    /// # Errors
+    /// The problems of the motions, of which there are none.
+    #[wasm_bindgen(constructor)]
+    pub fn new() -> Result<Bench, JsError> {
+        Kernels::new().map(Self).map_err(|problems| JsError::new(&format!("{problems:?}")))
+    }
+
+    /// So many rounds of those that run in a browser, reported as JSON.
+    ///
+    /// # Errors
+    /// None that is known.
+    pub fn rounds(&mut self, count: u32) -> Result<String, JsError> {
+        let reports = rounds::measure(&mut self.0, |kernel| kernel.facts().in_browser, count, || now() / 1e3);
+        Ok(serde_json::to_string(&reports)?)
+    }
+}

@@ -1,0 +1,262 @@
+//! What was measured, and the tables of it.
+
+use anyhow::{Context, Result};
+use serde::Deserialize;
+
+/// One kernel's times in the rounds of one process, as it reports them.
+#[derive(Clone, Debug, Deserialize)]
+pub(super) struct Report {
+    name: String,
+    /// What a call makes, and how many.
+    unit: String,
+    units: u64,
+    /// Single-signal edges of a call.
+    edges: Option<u64>,
+    /// The kernel that its speed is compared with.
+    yardstick: Option<String>,
+    aim: Option<f64>,
+    browser_aim: Option<f64>,
+    seconds: Vec<f64>,
+}
+
+impl Report {
+    /// All kernels of a process.
+    pub(super) fn all_from_json(text: &str) -> Result<Vec<Self>> {
+        serde_json::from_str(text).with_context(|| format!("this is no report of the kernels: {text:?}"))
+    }
+
+    /// Units a second of the best call: what else runs on the machine only ever adds time.
+    fn best(&self) -> f64 {
+        self.units as f64 / self.seconds.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// Rounds as native code, and right after them in the browser.
+pub(super) struct Block {
+    pub(super) native: Vec<Report>,
+    pub(super) browser: Vec<Report>,
+}
+
+/// Criterion's estimate of the time of one call.
+pub(super) struct Estimate {
+    median_s: f64,
+    deviation_s: f64,
+}
+
+impl Estimate {
+    /// Reads criterion's `estimates.json`.
+    pub(super) fn from_json(text: &str) -> Result<Self> {
+        #[derive(Deserialize)]
+        struct Estimates {
+            median: Point,
+            median_abs_dev: Point,
+        }
+        #[derive(Deserialize)]
+        struct Point {
+            /// In ns.
+            point_estimate: f64,
+        }
+        let Estimates { median, median_abs_dev } = serde_json::from_str(text)?;
+        Ok(Self { median_s: median.point_estimate * 1e-9, deviation_s: median_abs_dev.point_estimate * 1e-9 })
+    }
+}
+
+/// A ratio of speeds over all blocks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Ratio {
+    median: f64,
+    /// Median absolute deviation.
+    deviation: f64,
+}
+
+impl Ratio {
+    fn of(ratios: &[f64]) -> Self {
+        let median = median(ratios.iter().copied());
+        Self { median, deviation: self::median(ratios.iter().map(|ratio| (ratio - median).abs())) }
+    }
+
+    fn print(self) -> String {
+        let digits = if self.median < 10.0 { 3 } else { 0 };
+        format!("{:.digits$} ± {:.digits$}", self.median, self.deviation)
+    }
+
+    fn judge(self, aim: Option<f64>) -> String {
+        let met = |aim: f64| if self.median >= aim { "met" } else { "missed" };
+        aim.map_or_else(String::new, |aim| format!("at least {aim:.2}: {}", met(aim)))
+    }
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    let half = values.len() / 2;
+    match (values.get(half), half.checked_sub(1).and_then(|below| values.get(below))) {
+        (Some(&upper), Some(&lower)) if values.len().is_multiple_of(2) => (lower + upper) / 2.0,
+        (Some(&middle), _) => middle,
+        (None, _) => f64::NAN,
+    }
+}
+
+/// Both tables: what each kernel does as native code, and which part of that in the browser.
+pub(super) fn tables(blocks: &[Block], estimate: impl Fn(&str) -> Result<Estimate>) -> Result<String> {
+    let first = blocks.first().context("nothing was measured")?;
+    let mut native =
+        vec![["kernel", "a call (median)", "units", "edges", "speed (best calls)", "aim"].map(str::to_owned)];
+    for kernel in &first.native {
+        native.push(native_row(kernel, blocks, &estimate(&kernel.name)?)?);
+    }
+    let mut browser =
+        vec![["kernel", "native (best)", "browser (best)", "speed (best calls)", "aim"].map(str::to_owned)];
+    for kernel in &first.browser {
+        browser.push(browser_row(kernel, blocks)?);
+    }
+    Ok(format!("native code\n{}\nbrowser\n{}", align(&native), align(&browser)))
+}
+
+fn native_row(kernel: &Report, blocks: &[Block], estimate: &Estimate) -> Result<[String; 6]> {
+    let calls = 1.0 / estimate.median_s;
+    let ratio = match &kernel.yardstick {
+        Some(yardstick) => {
+            let ratio = ratio(blocks, |block| {
+                Ok((find(&block.native, &kernel.name)?, find(&block.native, yardstick)?))
+            })?;
+            Some((ratio, yardstick.as_str()))
+        }
+        None => None,
+    };
+    Ok([
+        kernel.name.clone(),
+        format!("{} ± {:.1} %", si(estimate.median_s, "s"), 100.0 * estimate.deviation_s / estimate.median_s),
+        si(kernel.units as f64 * calls, &format!("{}/s", kernel.unit)),
+        kernel.edges.map_or_else(String::new, |edges| si(edges as f64 * calls, "edges/s")),
+        ratio.map_or_else(String::new, |(ratio, yardstick)| format!("{} of {yardstick}", ratio.print())),
+        ratio.map_or_else(String::new, |(ratio, _)| ratio.judge(kernel.aim)),
+    ])
+}
+
+fn browser_row(kernel: &Report, blocks: &[Block]) -> Result<[String; 5]> {
+    let ratio =
+        ratio(blocks, |block| Ok((find(&block.browser, &kernel.name)?, find(&block.native, &kernel.name)?)))?;
+    let best = |of: fn(&Block) -> &[Report]| -> Result<String> {
+        let bests = blocks.iter().map(|block| Ok(find(of(block), &kernel.name)?.best()));
+        let bests: Vec<f64> = bests.collect::<Result<_>>()?;
+        Ok(si(median(bests.into_iter()), &format!("{}/s", kernel.unit)))
+    };
+    Ok([
+        kernel.name.clone(),
+        best(|block| &block.native)?,
+        best(|block| &block.browser)?,
+        format!("{} of native", ratio.print()),
+        ratio.judge(kernel.browser_aim),
+    ])
+}
+
+/// The ratio of the best speeds of two reports that `pair` finds in each block.
+fn ratio<'b>(
+    blocks: &'b [Block],
+    pair: impl Fn(&'b Block) -> Result<(&'b Report, &'b Report)>,
+) -> Result<Ratio> {
+    let ratios =
+        blocks.iter().map(|block| pair(block).map(|(subject, yardstick)| subject.best() / yardstick.best()));
+    Ok(Ratio::of(&ratios.collect::<Result<Vec<f64>>>()?))
+}
+
+fn find<'r>(reports: &'r [Report], name: &str) -> Result<&'r Report> {
+    reports.iter().find(|report| report.name == name).with_context(|| format!("{name} was not measured"))
+}
+
+/// Columns side by side, the first to the left and the others to the right.
+fn align<const N: usize>(rows: &[[String; N]]) -> String {
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: [usize; N] = std::array::from_fn(width);
+    let line = |row: &[String; N]| {
+        let cells = row.iter().zip(widths).enumerate().map(|(column, (cell, width))| {
+            if column == 0 { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+        });
+        cells.collect::<Vec<_>>().join("  ").trim_end().to_owned() + "\n"
+    };
+    rows.iter().map(line).collect()
+}
+
+/// A number in three digits with the prefix that fits, from nano to giga.
+fn si(value: f64, unit: &str) -> String {
+    let prefixes = [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n")];
+    let (scale, prefix) = prefixes.into_iter().find(|(scale, _)| value >= *scale).unwrap_or((1e-9, "n"));
+    let scaled = value / scale;
+    let digits = if scaled >= 99.95 {
+        0
+    } else if scaled >= 9.995 {
+        1
+    } else {
+        2
+    };
+    format!("{scaled:.digits$} {prefix}{unit}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A report of 1000 units a call.
+    fn report(name: &str, yardstick: Option<&str>, seconds: &[f64]) -> Report {
+        Report {
+            name: name.to_owned(),
+            unit: "records".to_owned(),
+            units: 1000,
+            edges: Some(4000),
+            yardstick: yardstick.map(str::to_owned),
+            aim: yardstick.map(|_| 0.25),
+            browser_aim: yardstick.map(|_| 0.6),
+            seconds: seconds.to_vec(),
+        }
+    }
+
+    #[test]
+    fn a_ratio_is_of_the_best_calls_of_each_block_and_the_median_of_the_blocks() {
+        // In each block the yardstick's best call is 1 ms; a call that was disturbed changes nothing.
+        let blocks: Vec<Block> = [[0.004, 0.9], [0.9, 0.005], [0.002, 0.004]]
+            .iter()
+            .map(|seconds| Block {
+                native: vec![report("copy", None, &[0.9, 0.001]), report("trace", Some("copy"), seconds)],
+                browser: vec![report("trace", Some("copy"), &[0.01])],
+            })
+            .collect();
+        let estimate = |_: &str| Ok(Estimate { median_s: 0.004, deviation_s: 0.0001 });
+        let tables = tables(&blocks, estimate).unwrap();
+        let lines: Vec<Vec<&str>> = tables
+            .lines()
+            .map(|line| line.split("  ").filter(|cell| !cell.is_empty()).map(str::trim).collect())
+            .collect();
+        assert_eq!(lines[2], ["copy", "4.00 ms ± 2.5 %", "250 krecords/s", "1.00 Medges/s"]);
+        let trace = ["trace", "4.00 ms ± 2.5 %", "250 krecords/s", "1.00 Medges/s"];
+        assert_eq!(lines[3][..4], trace);
+        assert_eq!(lines[3][4..], ["0.250 ± 0.050 of copy", "at least 0.25: met"]);
+        assert_eq!(
+            lines[7],
+            ["trace", "250 krecords/s", "100 krecords/s", "0.400 ± 0.100 of native", "at least 0.60: missed"]
+        );
+    }
+
+    #[test]
+    fn numbers_have_three_digits_and_a_prefix() {
+        for (value, expected) in [
+            (0.0, "0.00 ns"),
+            (3.21e-9, "3.21 ns"),
+            (0.000_045_67, "45.7 µs"),
+            (1.0, "1.00 s"),
+            (999.4, "999 s"),
+            (1.5e9, "1.50 Gs"),
+            (2.5e12, "2500 Gs"),
+        ] {
+            assert_eq!(si(value, "s"), expected);
+        }
+    }
+
+    #[test]
+    fn criterions_estimates_are_read_in_seconds() {
+        let text = r#"{"mean":{"point_estimate":9.0},"median":{"point_estimate":2000.0,"standard_error":1.0},"median_abs_dev":{"point_estimate":30.0}}"#;
+        let Estimate { median_s, deviation_s } = Estimate::from_json(text).unwrap();
+        assert!((median_s - 2e-6).abs() < 1e-18 && (deviation_s - 3e-8).abs() < 1e-18);
+        assert!(Estimate::from_json("{}").is_err());
+    }
+}
