@@ -1,7 +1,7 @@
 //! What the page calls: the core behind wasm-bindgen. Nothing is decided here.
 //!
-//! The page loads this module twice: in a worker, where [`Simulation`] runs, and on the main
-//! thread, where the charts are drawn and links are read and written.
+//! The page loads this module twice: in a worker, where scenarios are judged, links read and
+//! written and [`Simulation`] runs, and on the main thread, where the charts are drawn.
 
 mod charts;
 mod convert;
