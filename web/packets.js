@@ -4,6 +4,7 @@
  */
 import { byId, element, fill, say } from "./dom.js";
 import { unlessDropped } from "./engine.js";
+import { time } from "./motion.js";
 import { count } from "./number.js";
 import { shown } from "./state.js";
 
@@ -13,6 +14,9 @@ import { shown } from "./state.js";
 const ROW_PX = 23;
 /** Browsers refuse boxes taller than some ten million pixels; a longer list scrolls in larger steps. */
 const MOST_PX = 6_000_000;
+/** Air at both sides of a cell's text. */
+const CELL_PX = 18;
+const ruler = /** @type {CanvasRenderingContext2D} */ (document.createElement("canvas").getContext("2d"));
 
 /** @param {{engine: import("./engine.js").Engine} & import("./timeline.js").Page} page */
 export function createPackets({ engine, dispatch, now }) {
@@ -24,6 +28,8 @@ export function createPackets({ engine, dispatch, now }) {
   let current = 0;
   /** @type {PacketRow[]} */
   let rows = [];
+  /** Widest texts of the columns so far, in CSS pixels: columns do not jump while the table scrolls. @type {{[column: string]: number}} */
+  let widest = {};
 
   scroller.addEventListener("scroll", () => fetchRows(now()));
   new ResizeObserver(() => fetchRows(now())).observe(scroller);
@@ -93,6 +99,7 @@ export function createPackets({ engine, dispatch, now }) {
     if (!answer) return;
     if (answer.total !== total) {
       total = answer.total;
+      widest = {};
       current = Math.min(current, Math.max(0, total - 1));
       say(byId("packets-count"), `${count(total)} on the line`);
       table.setAttribute("aria-rowcount", String(total + 1));
@@ -104,15 +111,12 @@ export function createPackets({ engine, dispatch, now }) {
 
   /** @param {State} state */
   function paint(state) {
-    // One unit and one number of digits for the whole column, so that times can be compared at a glance.
-    const seconds = (state.result?.summary.end_s ?? 0) >= 10;
-    const clock = (state.result?.summary.clock_hz ?? 1) / (seconds ? 1 : 1000);
-    const column = (/** @type {number} */ cycle) => (cycle / clock).toFixed(seconds ? 6 : 4);
-    say(byId("packets-time"), seconds ? "start, s" : "start, ms");
-    say(byId("packets-tick"), seconds ? "tick at, s" : "tick at, ms");
+    const { unit, print } = clockOf(state);
+    say(byId("packets-time"), `start, ${unit}`);
+    say(byId("packets-tick"), `tick, ${unit}`);
     fill(body, ...rows.map((row) => {
-      const tick = row.tick_start_cycle === null ? "–" : column(row.tick_start_cycle);
-      const cells = [count(row.index), column(row.start_cycle), row.hex, row.fields, row.outcome, tick];
+      const tick = row.tick_start_cycle === null ? "–" : print(row.tick_start_cycle);
+      const cells = [count(row.index), print(row.start_cycle), row.hex, row.fields, row.outcome, tick];
       const line = element("tr", {
         id: `packet-${row.index}`, "data-index": String(row.index), "aria-rowindex": String(row.index + 2),
         "aria-selected": String(row.index === state.packet),
@@ -123,6 +127,44 @@ export function createPackets({ engine, dispatch, now }) {
     const there = rows.some(({ index }) => index === current);
     if (there) table.setAttribute("aria-activedescendant", `packet-${current}`);
     else table.removeAttribute("aria-activedescendant");
+    widen(print(state.result?.summary.end_cycle ?? 0), unit);
+    detail(rows.find(({ index }) => index === current), state);
+  }
+
+  /** Columns as wide as their texts; the steps take what is left. @param {string} time @param {string} unit */
+  function widen(time, unit) {
+    const fontOf = (/** @type {string} */ cell) => {
+      const { fontWeight, fontSize, fontFamily } = getComputedStyle(table.querySelector(cell) ?? table);
+      return `${fontWeight} ${fontSize} ${fontFamily}`;
+    };
+    const measure = (/** @type {string} */ column, /** @type {string} */ font, /** @type {string[]} */ ...texts) => {
+      ruler.font = font;
+      widest[column] = Math.max(widest[column] ?? 0, ...texts.map((text) => Math.ceil(ruler.measureText(text).width) + CELL_PX));
+    };
+    const [head, plain, hex] = [fontOf("th"), fontOf("td"), fontOf("td:nth-child(3)")];
+    measure("index", plain, count(total), "00");
+    measure("time", plain, time);
+    measure("time", head, `start, ${unit}`);
+    measure("outcome", plain, ...rows.map(({ outcome }) => outcome));
+    measure("outcome", head, "outcome");
+    measure("bytes", hex, ...rows.map((row) => row.hex));
+    measure("bytes", head, "bytes (hex)");
+    const spare = table.clientWidth - widest.index - 2 * widest.time - widest.outcome;
+    for (const [column, width] of Object.entries({ ...widest, bytes: Math.min(widest.bytes, Math.max(spare / 2, 96)) })) {
+      table.style.setProperty(`--${column}-px`, `${width}px`);
+    }
+  }
+
+  /** All of the current packet, for what its row has no room for. @param {PacketRow | undefined} row @param {State} state */
+  function detail(row, state) {
+    // What stands while other rows are looked at is still true.
+    if (!row) return total === 0 ? say(byId("packet-detail"), "") : undefined;
+    const clock = state.result?.summary.clock_hz ?? 1;
+    const at = (/** @type {number} */ cycle) => time(cycle / clock);
+    const tick = row.tick_start_cycle === null ? "no tick"
+      : `tick ${at(row.tick_start_cycle)}${row.tick_end_cycle === null ? ", not ended" : ` to ${at(row.tick_end_cycle)}`}`;
+    say(byId("packet-detail"), [`#${count(row.index)}`, row.hex, row.fields, row.outcome, `on the line ${at(row.start_cycle)} to ${at(row.end_cycle)}`, tick]
+      .filter(Boolean).join(" · "));
   }
 
   /** @param {State} state @param {State | undefined} before */
@@ -142,4 +184,15 @@ export function createPackets({ engine, dispatch, now }) {
     return undefined;
   }
   return { render };
+}
+
+/**
+ * One unit and one number of digits for a whole column, so that times can be compared at a glance.
+ * @param {State} state
+ */
+function clockOf(state) {
+  const { end_s = 0, clock_hz = 1 } = state.result?.summary ?? {};
+  const { unit, per_s, digits } = end_s >= 10 ? { unit: "s", per_s: 1, digits: 5 }
+    : end_s >= 0.01 ? { unit: "ms", per_s: 1e3, digits: 3 } : { unit: "µs", per_s: 1e6, digits: 2 };
+  return { unit, print: (/** @type {number} */ cycle) => ((cycle * per_s) / clock_hz).toFixed(digits) };
 }
