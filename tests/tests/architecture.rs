@@ -23,9 +23,6 @@ const INEXACT: &[&str] = &[
 ];
 /// Exact on every platform, but only there with the standard library: the core takes them from libm, too.
 const EXACT: &[&str] = &["ceil", "floor", "fract", "round", "round_ties_even", "sqrt", "trunc"];
-/// Where one of them is the target's own all the same, for its speed: the square root has one right result, and the
-/// function there says so.
-const OWN: &[(&str, &str)] = &[("core/src/motion/mod.rs", "sqrt")];
 /// Their iteration order differs from run to run.
 const UNORDERED: &[&str] = &["HashMap", "HashSet", "RandomState"];
 /// Clocks, threads, files and their like: nothing of them decides an edge.

@@ -78,13 +78,26 @@ fn upgrade(value: Value) -> Result<Value, Vec<Problem>> {
 fn read(mut value: Value) -> (Scenario, Vec<Problem>) {
     let mut problems: Vec<Problem> = Vec::new();
     for _ in 0..MOST_PROBLEMS {
+        if problems.len() >= MOST_PROBLEMS {
+            break;
+        }
         let error = match serde_path_to_error::deserialize(&value) {
             Ok(scenario) => {
-                lists_for_maps(&value, &serde_json::to_value(&scenario).unwrap_or_default(), &mut |path| {
+                let mut lists = Vec::new();
+                let typed = serde_json::to_value(&scenario).unwrap_or_default();
+                lists_for_maps(&value, &typed, &mut |path| lists.push(path));
+                if lists.is_empty() {
+                    return (scenario, problems);
+                }
+                lists.truncate(MOST_PROBLEMS - problems.len());
+                for path in lists {
                     let detail = "a list, where a map of names and values belongs".into();
                     problems.push(Problem::new(print(&path), Cause::Type { detail }));
-                });
-                return (scenario, problems);
+                    if !put_right(&mut value, &path, "") {
+                        return (Scenario::default(), problems);
+                    }
+                }
+                continue;
             }
             Err(error) => error,
         };
@@ -269,10 +282,23 @@ mod tests {
     }
 
     #[test]
+    fn a_hundred_problems_are_enough() {
+        for wrong in ["[],", "7,"] {
+            let axes = wrong.repeat(300);
+            let text = format!(r#"{{"source":{{"motion":{{"axes":[{axes}{{}}]}}}}}}"#);
+            assert_eq!(paths(&text).len(), MOST_PROBLEMS, "{wrong}");
+        }
+    }
+
+    #[test]
     fn what_can_be_read_is_kept_beside_a_wrong_field() {
         let (scenario, problems) = Scenario::from_json_lenient(r#"{"title":"kept","clock_hz":"x"}"#);
         assert_eq!(scenario.title, "kept");
         assert_eq!(problems.len(), 1);
         assert!(format!("{}", problems[0]).starts_with("clock_hz: "));
+        // A list in a map's place leaves nothing behind, though serde could read it by its order.
+        let (scenario, problems) = Scenario::from_json_lenient(r#"{"title":"kept","bus":[7]}"#);
+        assert_eq!((scenario.title.as_str(), scenario.bus.channels, problems.len()), ("kept", 1, 1));
+        assert_eq!(Scenario::from_json_lenient("[2]").0, Scenario::default());
     }
 }

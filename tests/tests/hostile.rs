@@ -1,0 +1,329 @@
+//! Scenarios and links from strangers: whatever stands in them, the core answers, and what it accepts is work of a size
+//! that was bounded before (PAGE "Share link").
+//!
+//! Time is not measured here. A reading is bounded because its text is; a run because its cost is known and limited.
+#![cfg(not(target_arch = "wasm32"))]
+
+use crc::{CRC_32_ISO_HDLC, Crc};
+use data_encoding::BASE64URL_NOPAD;
+use miniz_oxide::deflate::compress_to_vec;
+use proptest::{prelude::*, sample::Index, test_runner::FileFailurePersistence};
+use serde_json::{Map, Value, json};
+use stepscope_core::{
+    run::Experiment,
+    scenario::{
+        Compact, END_OF_TIME, Problem, Scenario, VERSION,
+        link::{LinkError, MOST_FRAGMENT_BYTES, MOST_JSON_BYTES, decode, encode},
+        presets::PRESETS,
+    },
+};
+use stepscope_tests::scenarios::{small, typed};
+
+/// Most wrong fields that one reading lists.
+const MOST_PROBLEMS: usize = 100;
+/// What one run may be at most: packets or bytes of a script, and the records of the busiest ticks.
+const MOST_SENDS: u64 = 4 << 20;
+const MOST_BYTES: u64 = 2_000_000 * 17;
+const MOST_RECORDS: u64 = 1 + (MOST_BYTES + 10_000) * (10 + 16 * 127 * 4);
+
+fn cases(cases: u32) -> ProptestConfig {
+    let told = ProptestConfig::default();
+    ProptestConfig {
+        cases: if std::env::var_os("PROPTEST_CASES").is_some() { told.cases } else { cases },
+        failure_persistence: Some(Box::new(FileFailurePersistence::WithSource("regressions"))),
+        ..told
+    }
+}
+
+/// Reads and judges a text: its problems can be printed, and what it accepts is bounded.
+fn judge(text: &str) -> Result<(), TestCaseError> {
+    let (scenario, problems) = Scenario::from_json_lenient(text);
+    prop_assert!(problems.len() <= MOST_PROBLEMS);
+    prop_assert_eq!(Scenario::from_json(text).is_ok(), problems.is_empty());
+    let again = Scenario::from_json(&scenario.to_json());
+    prop_assert_eq!(again.as_ref(), Ok(&scenario), "what is left of it is a scenario");
+    let judged = Experiment::from_json(text);
+    prop_assert!(problems.is_empty() || judged.is_err());
+    bounded(judged)
+}
+
+fn bounded(judged: Result<Experiment, Vec<Problem>>) -> Result<(), TestCaseError> {
+    match judged {
+        Ok(experiment) => {
+            let cost = experiment.cost();
+            prop_assert!(cost.sends <= MOST_SENDS && cost.bytes <= MOST_BYTES.max(MOST_SENDS), "{:?}", cost);
+            prop_assert!(cost.records <= MOST_RECORDS && cost.end_cycle <= END_OF_TIME, "{:?}", cost);
+        }
+        Err(problems) => {
+            prop_assert!(!problems.is_empty(), "refused without a reason");
+            for problem in problems {
+                let text = problem.to_string();
+                prop_assert!(text.len() > problem.path.len() && !text.contains("NaN"), "{}", text);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Any JSON, with the names that scenarios use.
+fn value() -> impl Strategy<Value = Value> {
+    let name = prop_oneof![
+        2 => prop::sample::select(vec!["steps", "mm", "bus", "source", "motion", "moves", "bytes", "__proto__", ""]),
+        1 => Just("constructor"),
+    ];
+    let leaf = prop_oneof![
+        Just(Value::Null),
+        any::<bool>().prop_map(Value::from),
+        any::<f64>().prop_map(Value::from),
+        any::<i64>().prop_map(Value::from),
+        any::<u64>().prop_map(Value::from),
+        // Numbers that no type holds; see `print`.
+        prop::sample::select(vec!["@1e999", "@-1e999", "@123456789012345678901234567890", "@1e-999", "@-0"])
+            .prop_map(Value::from),
+        prop::sample::select(vec!["", "80", "8", "burst", "\u{0}", "𝄞", "-1", "ten"]).prop_map(Value::from),
+    ];
+    leaf.prop_recursive(3, 12, 4, move |inner| {
+        prop_oneof![
+            prop::collection::vec(inner.clone(), 0..4).prop_map(Value::from),
+            prop::collection::vec((name.clone(), inner), 0..4).prop_map(|fields| {
+                Value::Object(
+                    fields.into_iter().map(|(name, value)| (name.to_owned(), value)).collect::<Map<_, _>>(),
+                )
+            }),
+        ]
+    })
+}
+
+/// JSON text; texts that begin with @ are numbers as they stand.
+fn print(value: &Value) -> String {
+    let mut text = value.to_string();
+    while let Some(start) = text.find("\"@") {
+        let end = start + 2 + text[start + 2..].find('"').unwrap_or(0);
+        text = format!("{}{}{}", &text[..start], &text[start + 2..end], &text[end + 1..]);
+    }
+    text
+}
+
+/// One change of a JSON document.
+#[derive(Clone, Debug)]
+enum Change {
+    Replace(Index, Value),
+    Remove(Index),
+    Add(Index, Value),
+    Nest(Index, usize),
+    /// A number, by another one of its kind.
+    Number(Index, f64),
+}
+
+fn change() -> impl Strategy<Value = Change> {
+    let odd = vec![
+        0.0, 1.0, 2.0, 16.0, 17.0, 127.0, 255.0, 1e-9, 0.5, 1e3, 1e5, 1e6, 1e7, 1e9, 4e9, 1e15, 9e15, 1e300,
+    ];
+    prop_oneof![
+        2 => (any::<Index>(), value()).prop_map(|(at, value)| Change::Replace(at, value)),
+        1 => any::<Index>().prop_map(Change::Remove),
+        1 => (any::<Index>(), value()).prop_map(|(at, value)| Change::Add(at, value)),
+        1 => (any::<Index>(), 1..200_usize).prop_map(|(at, depth)| Change::Nest(at, depth)),
+        4 => (any::<Index>(), prop::sample::select(odd)).prop_map(|(at, number)| Change::Number(at, number)),
+    ]
+}
+
+/// Paths to all values in a document that `which` takes.
+fn paths(value: &Value, which: fn(&Value) -> bool) -> Vec<String> {
+    let below = |(name, inner): (String, &Value)| {
+        paths(inner, which).into_iter().map(move |path| format!("/{name}{path}")).collect::<Vec<_>>()
+    };
+    let mut found: Vec<String> = match value {
+        Value::Object(map) => {
+            map.iter().map(|(k, v)| (k.replace('~', "~0").replace('/', "~1"), v)).flat_map(below).collect()
+        }
+        Value::Array(list) => {
+            list.iter().enumerate().map(|(i, v)| (i.to_string(), v)).flat_map(below).collect()
+        }
+        _ => Vec::new(),
+    };
+    if which(value) {
+        found.push(String::new());
+    }
+    found
+}
+
+fn apply(document: &mut Value, change: &Change) {
+    let (Change::Replace(index, _)
+    | Change::Remove(index)
+    | Change::Add(index, _)
+    | Change::Nest(index, _)
+    | Change::Number(index, _)) = change;
+    let places =
+        paths(document, if matches!(change, Change::Number(..)) { Value::is_number } else { |_| true });
+    if places.is_empty() {
+        return;
+    }
+    let path: &String = index.get(&places);
+    let Some(place) = document.pointer_mut(path) else { return };
+    match change {
+        Change::Replace(_, value) => *place = value.clone(),
+        Change::Remove(_) => *place = Value::Null,
+        Change::Add(_, value) => match place {
+            Value::Object(map) => {
+                map.insert("added".into(), value.clone());
+            }
+            Value::Array(list) => list.push(value.clone()),
+            other => *other = json!([other, value]),
+        },
+        Change::Nest(_, depth) => {
+            for _ in 0..*depth {
+                *place = json!([place.take()]);
+            }
+        }
+        // A whole number stays one, so that it is judged and not only refused for its type.
+        Change::Number(_, number) => {
+            *place = if place.is_f64() { json!(number) } else { json!(*number as u64) }
+        }
+    }
+}
+
+/// A scenario's JSON with some changes; with only numbers changed it is often still a scenario.
+fn changed(scenario: &Scenario, changes: &[Change]) -> String {
+    let mut document: Value = serde_json::from_str(&scenario.to_json()).unwrap_or_default();
+    changes.iter().for_each(|change| apply(&mut document, change));
+    print(&document)
+}
+
+/// A link with a good check around any payload.
+fn link_around(codec: char, payload: &[u8]) -> String {
+    let text = format!("{VERSION}.{codec}.{}", BASE64URL_NOPAD.encode(payload));
+    format!("c={text}.{:08x}", Crc::<u32>::new(&CRC_32_ISO_HDLC).checksum(text.as_bytes()))
+}
+
+/// Opens a link: what comes out is a scenario within the limits, or a reason.
+fn open(fragment: &str) -> Result<(), TestCaseError> {
+    match decode(fragment) {
+        Ok(scenario) => {
+            prop_assert!(fragment.len() <= MOST_FRAGMENT_BYTES);
+            prop_assert!(scenario.compact().to_string().len() <= 2 * MOST_JSON_BYTES);
+            if let Ok(link) = encode(&scenario) {
+                prop_assert_eq!(decode(&link), Ok(scenario));
+            }
+        }
+        Err(LinkError::Scenario(problems)) => prop_assert!((1..=MOST_PROBLEMS).contains(&problems.len())),
+        Err(error) => prop_assert!(!error.to_string().is_empty()),
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(cases(3_000))]
+
+    #[test]
+    fn no_text_makes_the_reader_fail(text in prop_oneof![any::<String>(), "[\\[\\]{}\",:0-9a-e.@-]{0,80}"]) {
+        judge(&text)?;
+        open(&text)?;
+        open(&format!("c={text}"))?;
+    }
+
+    #[test]
+    fn no_change_of_a_scenario_makes_the_judge_fail(
+        scenario in prop_oneof![small(), typed()],
+        changes in prop::collection::vec(change(), 1..6),
+    ) {
+        judge(&changed(&scenario, &changes))?;
+    }
+
+    #[test]
+    fn no_link_with_a_good_check_makes_the_opener_fail(
+        scenario in prop_oneof![small(), typed()],
+        changes in prop::collection::vec(change(), 0..3),
+        noise in prop::collection::vec((any::<Index>(), any::<u8>()), 0..4),
+        codec in prop::sample::select(vec!['z', 'j', 'x', '.']),
+        deflated in any::<bool>(),
+    ) {
+        let json = changed(&scenario, &changes);
+        let mut payload = if deflated { compress_to_vec(json.as_bytes(), 6) } else { json.into_bytes() };
+        for (index, byte) in noise {
+            let at = index.index(payload.len());
+            payload[at] = byte;
+        }
+        open(&link_around(codec, &payload))?;
+    }
+
+    #[test]
+    fn a_changed_link_is_refused(
+        preset in prop::sample::select(PRESETS),
+        changes in prop::collection::vec((any::<Index>(), "[!-~]"), 1..5),
+    ) {
+        let link = encode(&preset.scenario()).expect("a preset fits in a link");
+        let mut characters: Vec<char> = link.chars().collect();
+        for (index, with) in changes {
+            let at = index.index(characters.len());
+            characters.splice(at..=at, with.chars());
+        }
+        let changed: String = characters.into_iter().collect();
+        // Four changed characters are more than a CRC-32 always finds; but it did not happen yet.
+        prop_assert!(changed == link || decode(&changed).is_err(), "{}", changed);
+    }
+
+    /// Only numbers change, so many of these are accepted: what they cost is known and limited.
+    #[test]
+    fn what_is_accepted_is_bounded_work(
+        preset in prop::sample::select(PRESETS),
+        changes in prop::collection::vec(
+            (any::<Index>(), prop::sample::select(vec![1.0, 2.0, 16.0, 127.0, 1e-3, 0.5, 1e3, 1e5, 1e7, 4e9]))
+                .prop_map(|(at, number)| Change::Number(at, number)),
+            1..3,
+        ),
+    ) {
+        bounded(Experiment::from_json(&changed(&preset.scenario(), &changes)))?;
+    }
+}
+
+#[test]
+fn every_truncation_and_every_flipped_character_of_every_presets_link_is_refused() {
+    for preset in PRESETS {
+        let link = encode(&preset.scenario()).expect("a preset fits in a link");
+        assert_eq!(decode(&link), Ok(preset.scenario()), "{}", preset.id);
+        for length in 0..link.len() {
+            assert!(decode(&link[..length]).is_err(), "{} cut to {length}", preset.id);
+        }
+        let mut bytes = link.clone().into_bytes();
+        for at in 0..bytes.len() {
+            let own = bytes[at];
+            for with in (b'!'..=b'~').filter(|with| *with != own) {
+                bytes[at] = with;
+                let flipped = std::str::from_utf8(&bytes).expect("ASCII");
+                assert!(decode(flipped).is_err(), "{}: {flipped}", preset.id);
+            }
+            bytes[at] = own;
+        }
+    }
+}
+
+#[test]
+fn a_payload_inflates_to_the_limit_and_not_a_byte_beyond() {
+    let padded = |length: usize| compress_to_vec(format!("{{}}{}", " ".repeat(length - 2)).as_bytes(), 10);
+    assert_eq!(decode(&link_around('z', &padded(MOST_JSON_BYTES))), Ok(Scenario::default()));
+    let refusal = Err(LinkError::Payload { most: MOST_JSON_BYTES });
+    for length in [MOST_JSON_BYTES + 1, 10 * MOST_JSON_BYTES, 10 << 20] {
+        let bomb = link_around('z', &padded(length));
+        assert!(bomb.len() <= MOST_FRAGMENT_BYTES, "{length} bytes fit in a fragment");
+        assert_eq!(decode(&bomb), refusal, "{length} bytes");
+    }
+}
+
+#[test]
+fn deep_nesting_and_long_lists_of_nonsense_are_refused_like_any_other() {
+    let depth = 200_000;
+    let texts = [
+        "[".repeat(depth),
+        "{\"a\":".repeat(depth),
+        format!("{}{}", "[".repeat(depth), "]".repeat(depth)),
+        format!("{{\"source\":{}}}", "{\"motion\":".repeat(depth)),
+        format!("{{\"source\":{{\"packets\":{{\"packets\":[{}\"00\"]}}}}}}", "7,".repeat(depth)),
+        format!("{{{}\"title\":\"\"}}", "\"x\":1,".repeat(depth)),
+        format!("{{{}\"title\":\"\"}}", (0..20_000).map(|i| format!("\"x{i}\":1,")).collect::<String>()),
+    ];
+    for text in texts {
+        judge(&text).unwrap_or_else(|failure| panic!("{}…: {failure}", &text[..20]));
+        assert!(Scenario::from_json(&text).is_err(), "{}…", &text[..20]);
+    }
+}
