@@ -102,7 +102,8 @@ fn line(scenario: &Scenario, experiment: &Experiment) -> Line {
 }
 
 /// What was made is not above what was said before.
-fn within(cost: Cost, left: &Left) -> Result<(), TestCaseError> {
+fn within(cost: Cost, left: &Left, cycles: Cycles) -> Result<(), TestCaseError> {
+    prop_assert!(cycles.0 <= cost.end_cycle, "{} cycles were run, {} announced", cycles.0, cost.end_cycle);
     let made = left.recording.trace.len() as u64;
     prop_assert!(made <= cost.records, "{} records were made, {} announced", made, cost.records);
     Ok(())
@@ -120,7 +121,7 @@ proptest! {
         let Ok(experiment) = Experiment::new(&scenario) else { return Ok(()) };
         let (mut fast, mut slow) = (Left::default(), Left::default());
         let run = experiment.run(&mut fast);
-        within(experiment.cost(), &fast)?;
+        within(experiment.cost(), &fast, run.cycles())?;
         prop_assert!(run.is_done());
 
         let (left, sliced) = in_slices(&experiment, &slices);
