@@ -5,7 +5,7 @@
 import { GLITCH, MECHANICS, MOVES, PACKET_LINES, SECTIONS, SEND, SOURCES } from "./fields.js";
 import { button, element, fill } from "./dom.js";
 import { control } from "./control.js";
-import { get, held } from "./state.js";
+import { MOST_CHANNELS, get, held } from "./state.js";
 import { showAbout, showDerived, showProblems } from "./judgement.js";
 
 /** @typedef {import("./types.js").State} State */
@@ -13,8 +13,6 @@ import { showAbout, showDerived, showProblems } from "./judgement.js";
 /** @typedef {import("./fields.js").Field} Field */
 /** @typedef {import("./control.js").Control} Control */
 /** @typedef {{moves: {[kind: string]: any}, mechanics: {[kind: string]: any}, sources: {[kind: string]: any}, glitch: any, send: any}} Samples */
-
-const MOST_CHANNELS = 16;
 
 /**
  * @param {{root: HTMLElement, samples: Samples, dispatch: (message: import("./state.js").Message) => void}} given

@@ -6,26 +6,9 @@ import { color } from "./plot.js";
 
 /** @typedef {import("./types.js").PulseColumns} PulseColumns */
 /** @typedef {import("./types.js").PacketRow} PacketRow */
-/** @typedef {{name: string, bit: number, ink: string, kind: "signal"} | {name: string, kind: "packets" | "ticks", ink: string}} Row */
 
-/** Height of a row in CSS pixels. */
-export const ROW_PX = 19;
 /** Consecutive busy columns from which on they count as a block. */
 const BLOCK = 4;
-
-/** The rows of a bus. @param {number} channels @returns {Row[]} */
-export function rowsOf(channels) {
-  /** @type {Row[]} */
-  const rows = [{ name: "EN", bit: 32, ink: "--enable", kind: "signal" }];
-  for (let channel = 0; channel < channels; channel++) {
-    rows.push({ name: `DIR ${channel}`, bit: 16 + channel, ink: "--dir", kind: "signal" });
-    rows.push({ name: `STEP ${channel}`, bit: channel, ink: "--step", kind: "signal" });
-  }
-  rows.push({ name: "ticks", ink: "--tick", kind: "ticks" }, { name: "RX", bit: 33, ink: "--wire", kind: "signal" },
-    { name: "packets", ink: "--packet", kind: "packets" }, { name: "TX", bit: 34, ink: "--wire", kind: "signal" },
-    { name: "DE", bit: 35, ink: "--wire", kind: "signal" });
-  return rows;
-}
 
 /** Whether a signal was at a level in a column. @param {Uint32Array} words @param {number} column @param {number} bit */
 export function has(words, column, bit) {
@@ -72,6 +55,23 @@ export function paintSignal(context, columns, bit, { left, top, height, ratio, i
   context.fill(bars);
   context.globalAlpha = 0.62;
   context.fill(blocks);
+  context.globalAlpha = 1;
+}
+
+/**
+ * A ground behind the columns in which a signal is high: the direction under the steps of a folded channel.
+ * @param {CanvasRenderingContext2D} context  In device pixels.
+ * @param {PulseColumns} columns
+ * @param {number} bit
+ * @param {{left: number, top: number, height: number, ink: string}} place  Device pixels.
+ */
+export function paintTint(context, columns, bit, { left, top, height, ink }) {
+  const path = new Path2D();
+  const total = columns.high.length / 2;
+  for (let i = 0; i < total; i++) if (has(columns.high, i, bit)) path.rect(left + i, top, 1, height);
+  context.fillStyle = ink;
+  context.globalAlpha = 0.22;
+  context.fill(path);
   context.globalAlpha = 1;
 }
 

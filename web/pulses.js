@@ -2,11 +2,14 @@
 import { byId, options, say } from "./dom.js";
 import { unlessDropped } from "./engine.js";
 import { drawCursors, time } from "./motion.js";
-import { count, parseNumber, si } from "./number.js";
-import { ROW_PX, paintOverview, paintSignal, paintSpans, rowsOf } from "./paint.js";
+import { createOverview } from "./overview.js";
+import { paintSignal, paintSpans, paintTint } from "./paint.js";
 import { GUTTER, MARGIN, color, fit, ratio, watch } from "./plot.js";
-import { endOf, shown } from "./state.js";
-import { cycleAt, gestures, pixelOf, reveal, zoom } from "./timeline.js";
+import { createRange } from "./range.js";
+import { createReading } from "./reading.js";
+import { ROW_PX, allFolded, channelOf, idle, isFolded, rowsOf, shows, signalsOf } from "./rows.js";
+import { shown } from "./state.js";
+import { cycleAt, gestures, pixelOf, reveal } from "./timeline.js";
 
 /** @typedef {import("./types.js").State} State */
 /** @typedef {import("./types.js").PulseColumns} PulseColumns */
@@ -17,59 +20,63 @@ const MOST_SPANS = 400;
 
 /** A cursor that is set this near to an edge is set on it, in CSS pixels. */
 const SNAP_PX = 6;
+/** The sign that folds a channel stands in so many CSS pixels at the left. */
+const FOLD_PX = 26;
 
 /** @param {{engine: import("./engine.js").Engine} & import("./timeline.js").Page} page */
 export function createPulses({ engine, dispatch, now }) {
   const page = { dispatch, now };
   const canvas = /** @type {HTMLCanvasElement} */ (byId("pulses"));
   const overlay = /** @type {HTMLCanvasElement} */ (byId("pulses-cursor"));
-  const overview = /** @type {HTMLCanvasElement} */ (byId("overview"));
   const stack = byId("pulses-stack");
   const rowSelect = /** @type {HTMLSelectElement} */ (byId("edge-row"));
   const kindSelect = /** @type {HTMLSelectElement} */ (byId("edge-kind"));
+  const foldAll = byId("fold-channels");
+  const allSignals = /** @type {HTMLInputElement} */ (byId("all-signals"));
+  const range = createRange(page);
+  const overview = createOverview({ engine, ...page });
+  const reading = createReading({ engine, now });
   /** @type {{columns: PulseColumns, packets: {rows: PacketRow[], more: boolean}} | null} */
   let shownColumns = null;
-  /** @type {PulseColumns | null} */
-  let whole = null;
   let plot = { left: GUTTER, right: GUTTER + 1 };
-  /** @type {{bit: number, begin?: number, end?: number, next?: number, cycle: number} | null} */
-  let pulse = null;
-
-  const rows = () => rowsOf(now().result?.summary.channels ?? 1);
-  const signals = () => rows().flatMap((row) => (row.kind === "signal" ? [row] : []));
 
   gestures(canvas, () => plot, { ...page, click: pick });
   watch(stack, () => refresh(now()));
-  watch(overview, () => refreshOverview(now()));
-  byId("zoom-in").addEventListener("click", () => zoom(page, 0.5, now().cursors.a ?? undefined));
-  byId("zoom-out").addEventListener("click", () => zoom(page, 2, now().cursors.a ?? undefined));
-  byId("zoom-fit").addEventListener("click", () => dispatch({ type: "window", window: null }));
   byId("edge-next").addEventListener("click", () => jump(true));
   byId("edge-previous").addEventListener("click", () => jump(false));
   rowSelect.addEventListener("change", () => dispatch({ type: "row", row: Number(rowSelect.value) }));
-  for (const id of ["window-start", "window-end"]) byId(id).addEventListener("change", typedWindow);
+  foldAll.addEventListener("click", () => dispatch({ type: "fold-all", folded: !allFolded(now()) }));
+  allSignals.addEventListener("change", () => dispatch({ type: "all-signals", on: allSignals.checked }));
   canvas.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const name = event.key.toLowerCase();
     if (name === "n" || name === "p") jump(name === "n");
     else if (event.key === "ArrowUp" || event.key === "ArrowDown") step(event.key === "ArrowUp" ? -1 : 1);
+    else if (event.key === "Enter") fold(channelOf(now().row));
     else return;
     event.preventDefault();
   });
-  canvas.addEventListener("pointermove", (event) => hover(event));
-  canvas.addEventListener("pointerleave", () => { pulse = null; foot(now()); });
-  dragOverview();
+  canvas.addEventListener("pointermove", (event) => reading.hover(rowAt(event)));
+  canvas.addEventListener("pointerleave", reading.leave);
 
   /** @param {number} by */
   function step(by) {
-    const all = signals();
-    const at = all.findIndex(({ bit }) => bit === now().row);
+    const all = rowsOf(now()).flatMap((row) => ("bit" in row ? [row] : []));
+    const at = all.findIndex((row) => shows(row, now().row));
     dispatch({ type: "row", row: all[Math.min(all.length - 1, Math.max(0, at + by))].bit });
+  }
+
+  /** Folds a channel's two rows into one, or unfolds them. @param {number | null} channel */
+  function fold(channel) {
+    if (channel === null) return;
+    const folded = !isFolded(now(), channel);
+    dispatch({ type: "fold", channel, folded });
+    say(byId("pulses-sentence"), `Channel ${channel} ${folded ? "folded" : "unfolded"}.`);
   }
 
   /** The row under a pointer. @param {MouseEvent} event */
   function rowAt(event) {
-    return rows()[Math.floor((event.clientY - canvas.getBoundingClientRect().top) / ROW_PX)];
+    return rowsOf(now())[Math.floor((event.clientY - canvas.getBoundingClientRect().top) / ROW_PX)];
   }
 
   /** The edge of a row within a few pixels of a cycle, else the cycle. @param {number} bit @param {number} cycle */
@@ -87,9 +94,13 @@ export function createPulses({ engine, dispatch, now }) {
     const row = rowAt(event);
     if (!row) return false;
     const x = event.clientX - canvas.getBoundingClientRect().left;
-    if (row.kind === "signal") dispatch({ type: "row", row: row.bit });
+    if (x < FOLD_PX && "channel" in row && row.channel !== undefined) {
+      fold(row.channel);
+      return true;
+    }
+    if ("bit" in row && !shows(row, now().row)) dispatch({ type: "row", row: row.bit });
     if (x < plot.left) return true;
-    if (row.kind === "signal") return snapped(row.bit, at);
+    if ("bit" in row) return snapped(row.bit, at);
     const cycle = cycleAt(now(), plot, x);
     const found = shownColumns?.packets.rows.find((packet) => row.kind === "packets"
       ? packet.start_cycle <= cycle && cycle < packet.end_cycle
@@ -106,28 +117,11 @@ export function createPulses({ engine, dispatch, now }) {
     const { a } = state.cursors;
     const from = a !== null && a >= start && a <= end ? a : forward ? start : end;
     const edge = await engine.ask("next_edge", state.row, from, forward, kindSelect.value).catch(unlessDropped);
-    const name = signals().find(({ bit }) => bit === state.row)?.name ?? "";
+    const name = signalsOf(state).find(({ bit }) => bit === state.row)?.name ?? "";
     if (edge === undefined || edge === null) return say(byId("pulses-sentence"), `${name}: no ${forward ? "later" : "earlier"} edge.`);
     dispatch({ type: "cursor", which: "a", cycle: edge });
     reveal(page, edge);
     say(byId("pulses-sentence"), `${name}: edge at ${time(edge / state.result.summary.clock_hz)}, cycle ${edge}.`);
-  }
-
-  function typedWindow() {
-    const state = now();
-    const clockHz = state.result?.summary.clock_hz ?? 1;
-    const [start, end] = ["window-start", "window-end"].map((id) => {
-      const input = /** @type {HTMLInputElement} */ (byId(id));
-      const read = parseNumber(input.value, "s");
-      input.toggleAttribute("aria-invalid", "message" in read);
-      return read;
-    });
-    const wrong = "message" in start ? start.message : "message" in end ? end.message : "";
-    if (wrong || "message" in start || "message" in end) return say(byId("window-error"), wrong);
-    if (end.value <= start.value) return say(byId("window-error"), "“to” lies before “from”.");
-    say(byId("window-error"), "");
-    dispatch({ type: "window", window: { start: start.value * clockHz, end: end.value * clockHz } });
-    fields(now());
   }
 
   /** @param {State} state */
@@ -155,10 +149,10 @@ export function createPulses({ engine, dispatch, now }) {
     const left = Math.round(plot.left * scale);
     const right = Math.round(plot.right * scale);
     context.font = `${11 * scale}px ${getComputedStyle(document.body).fontFamily}`;
-    for (const [index, row] of rows().entries()) {
+    for (const [index, row] of rowsOf(state).entries()) {
       const top = Math.round((index * ROW_PX + 4) * scale);
       const height = Math.round((ROW_PX - 6) * scale);
-      const chosen = row.kind === "signal" && row.bit === state.row;
+      const chosen = shows(row, state.row);
       if (chosen) {
         context.fillStyle = color("--chosen");
         context.fillRect(0, top - 3 * scale, width * scale, ROW_PX * scale);
@@ -168,8 +162,13 @@ export function createPulses({ engine, dispatch, now }) {
       context.textBaseline = "middle";
       context.font = `${chosen ? "bold " : ""}${11 * scale}px ${getComputedStyle(document.body).fontFamily}`;
       context.fillText(row.name, left - 8 * scale, top + height / 2);
+      if (row.kind === "folded" || (row.kind === "signal" && row.name.startsWith("DIR"))) {
+        context.textAlign = "left";
+        context.fillText(row.kind === "folded" ? "▸" : "▾", 8 * scale, top + height / 2);
+      }
       const place = { left, right, top, height, ratio: scale, ink: color(row.ink) };
-      if (row.kind === "signal") paintSignal(context, columns, row.bit, place);
+      if (row.kind === "folded") paintTint(context, columns, row.dir, { ...place, ink: color("--dir") });
+      if ("bit" in row) paintSignal(context, columns, row.bit, place);
       else paintSpans(context, spansOf(state, row.kind, packets), place);
     }
     describe(state);
@@ -198,150 +197,48 @@ export function createPulses({ engine, dispatch, now }) {
     if (!context || !state.result) return;
     context.scale(scale, scale);
     drawCursors(context, state, plot, height);
-    foot(state);
-    cursors(state);
-  }
-
-  /** @param {State} state */
-  function cursors(state) {
-    const clock = state.result?.summary.clock_hz ?? 1;
-    const { a, b } = state.cursors;
-    const texts = [];
-    if (a !== null) texts.push(`A ${time(a / clock)}`);
-    if (b !== null) texts.push(`B ${time(b / clock)}`);
-    if (a !== null && b !== null) texts.push(`B−A ${time((b - a) / clock)}${a === b ? "" : ` = ${si(clock / Math.abs(b - a), "Hz", 6)}`}`);
-    else texts.push(a === null ? "click sets cursor A" : "shift-click sets B");
-    say(byId("cursor-readings"), texts.join(" · "));
-  }
-
-  /** Width and period of the pulse under the pointer. @param {PointerEvent} event */
-  async function hover(event) {
-    const row = rowAt(event);
-    const state = now();
-    if (!row || row.kind !== "signal" || !state.result || state.hover === null) {
-      pulse = null;
-      return foot(state);
-    }
-    const cycle = state.hover;
-    const answer = await engine.latest("pulse", "pulse_at", row.bit, cycle).catch(unlessDropped);
-    if (!answer) return;
-    pulse = { ...answer, bit: row.bit, cycle };
-    foot(now());
-  }
-
-  /** @param {State} state */
-  function foot(state) {
-    const clock = state.result?.summary.clock_hz ?? 1;
-    const parts = [];
-    if (state.hover !== null) parts.push(`${time(state.hover / clock)} · cycle ${count(state.hover)}`);
-    const name = pulse && signals().find(({ bit }) => bit === pulse?.bit)?.name;
-    if (pulse && name && state.hover !== null) {
-      const { begin, end, next } = pulse;
-      if (begin !== undefined && end !== undefined) {
-        parts.push(`${name} stays ${time((end - begin) / clock)} (${count(end - begin)} cycles)`);
-        if (next !== undefined) parts.push(`period ${time((next - begin) / clock)} = ${si(clock / (next - begin), "Hz", 5)}`);
-      } else if (begin === undefined && end === undefined) parts.push(`${name} never changes`);
-      else parts.push(`${name} ${end === undefined ? "stays so to the end" : `first changes at ${time(end / clock)}`}`);
-    }
-    say(byId("hover-reading"), parts.length ? parts.join(" · ") : "wheel zooms, dragging moves, double click shows the whole run");
+    reading.render(state);
   }
 
   /** @param {State} state */
   function describe(state) {
     const { start, end } = shown(state);
     const clock = state.result?.summary.clock_hz ?? 1;
-    canvas.setAttribute("aria-label", `Logic analyser, ${rows().length} rows, ${time(start / clock)} to ${time(end / clock)}`);
+    canvas.setAttribute("aria-label", `Logic analyser, ${rowsOf(state).length} rows, ${time(start / clock)} to ${time(end / clock)}`);
   }
 
-  /** @param {State} state */
-  function fields(state) {
-    const { start, end } = shown(state);
-    const clock = state.result?.summary.clock_hz ?? 1;
-    for (const [id, cycle] of /** @type {[string, number][]} */ ([["window-start", start], ["window-end", end]])) {
-      const input = /** @type {HTMLInputElement} */ (byId(id));
-      if (document.activeElement !== input) input.value = time(cycle / clock);
-    }
+  /** The head's choices and the height that the rows take. @param {State} state */
+  function layout(state) {
+    const channels = state.result?.summary.channels ?? 1;
+    options(rowSelect, signalsOf(state).map(({ name, bit }) => [String(bit), name]), String(state.row));
+    const folded = allFolded(state);
+    foldAll.hidden = channels === 1;
+    say(foldAll, folded ? "Unfold channels" : "Fold channels");
+    allSignals.checked = state.allSignals;
+    /** @type {HTMLElement} */ (allSignals.parentElement).hidden = idle(state).length === 0;
+    const tall = rowsOf(state).length * ROW_PX + 6;
+    stack.style.height = `${tall}px`;
+    // On a wide screen this view takes what its rows need, and the curves the rest.
+    byId("views").style.setProperty("--rows-px", `${tall}px`);
   }
 
-  /** @param {State} state */
-  async function refreshOverview(state) {
-    if (!state.result || overview.clientWidth < 60) return;
-    const wanted = Math.max(16, Math.round((overview.clientWidth - GUTTER - MARGIN) * ratio()));
-    const answer = await engine.latest("overview", "pulses", 0, endOf(state), wanted).catch(unlessDropped);
-    if (!answer) return;
-    whole = answer;
-    paintStrip(now());
-  }
-
-  /** @param {State} state */
-  function paintStrip(state) {
-    const { width, height, ratio: scale } = fit(overview);
-    const context = overview.getContext("2d");
-    if (!context || !whole) return;
-    const left = Math.round(GUTTER * scale);
-    const right = (width - MARGIN) * scale;
-    paintOverview(context, whole, { left, height: height * scale });
-    context.fillStyle = color("--quiet");
-    context.font = `${11 * scale}px ${getComputedStyle(document.body).fontFamily}`;
-    context.textAlign = "right";
-    context.textBaseline = "middle";
-    context.fillText("whole run", left - 8 * scale, (height / 2) * scale);
-    const { start, end } = shown(state);
-    const x = (/** @type {number} */ cycle) => left + (cycle / endOf(state)) * (right - left);
-    const [a, b] = [x(start), Math.max(x(end), x(start) + 3 * scale)];
-    context.fillStyle = color("--ground");
-    context.globalAlpha = 0.6;
-    context.fillRect(left, 0, a - left, height * scale);
-    context.fillRect(b, 0, right - b, height * scale);
-    context.globalAlpha = 1;
-    context.strokeStyle = color("--accent");
-    context.lineWidth = 2 * scale;
-    context.strokeRect(a, scale, b - a, height * scale - 2 * scale);
-  }
-
-  /** Pressing in the overview brings that time into the middle. */
-  function dragOverview() {
-    const go = (/** @type {PointerEvent} */ event) => {
-      const box = overview.getBoundingClientRect();
-      const part = (event.clientX - box.left - GUTTER) / Math.max(1, box.width - GUTTER - MARGIN);
-      const { start, end } = shown(now());
-      const half = (end - start) / 2;
-      const middle = part * endOf(now());
-      dispatch({ type: "window", window: { start: middle - half, end: middle + half } });
-    };
-    overview.addEventListener("pointerdown", (event) => {
-      overview.setPointerCapture(event.pointerId);
-      go(event);
-    });
-    overview.addEventListener("pointermove", (event) => { if (overview.hasPointerCapture(event.pointerId)) go(event); });
-    overview.addEventListener("wheel", (event) => {
-      event.preventDefault();
-      zoom(page, Math.exp(event.deltaY * 0.002));
-    }, { passive: false });
+  /** Scrolls the chosen row into view. @param {State} state */
+  function follow(state) {
+    const scroller = /** @type {HTMLElement} */ (stack.parentElement);
+    const top = rowsOf(state).findIndex((row) => shows(row, state.row)) * ROW_PX;
+    if (top < scroller.scrollTop) scroller.scrollTop = top;
+    else if (top + ROW_PX + 6 > scroller.scrollTop + scroller.clientHeight) scroller.scrollTop = top + ROW_PX + 6 - scroller.clientHeight;
   }
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    if (before?.result !== state.result || before?.row !== state.row) {
-      options(rowSelect, signals().map(({ name, bit }) => [String(bit), name]), String(state.row));
-    }
-    const moved = before?.window !== state.window || before?.result !== state.result;
-    if (before?.result !== state.result) {
-      const tall = rows().length * ROW_PX + 6;
-      stack.style.height = `${tall}px`;
-      // On a wide screen this view takes what its rows need, and the curves the rest.
-      byId("views").style.setProperty("--rows-px", `${tall}px`);
-    }
-    if (moved) {
-      fields(state);
-      say(byId("window-error"), "");
-    }
-    if (moved) {
-      paintStrip(state);
-      const strip = before?.result !== state.result ? refreshOverview(state) : undefined;
-      return Promise.all([refresh(state), strip]);
-    }
-    if (before?.row !== state.row || before?.packet !== state.packet) paint(state);
+    range.render(state, before);
+    const strip = overview.render(state, before);
+    const arranged = before?.result !== state.result || before?.row !== state.row || before?.folds !== state.folds || before?.allSignals !== state.allSignals;
+    if (arranged) layout(state);
+    if (before && before.row !== state.row) follow(state);
+    if (before?.window !== state.window || before?.result !== state.result) return Promise.all([refresh(state), strip]);
+    if (arranged || before?.packet !== state.packet) paint(state);
     else if (before?.hover !== state.hover || before?.cursors !== state.cursors) paintCursor(state);
     return undefined;
   }

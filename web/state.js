@@ -24,12 +24,16 @@
  *   | {type: "hover", cycle: number | null}
  *   | {type: "cursor", which: "a" | "b", cycle: number | null}
  *   | {type: "row", row: number} | {type: "packet", packet: number | null}
+ *   | {type: "fold", channel: number, folded: boolean} | {type: "fold-all", folded: boolean}
+ *   | {type: "all-signals", on: boolean}
  *   | {type: "axis", axis: number} | {type: "unit", unit: State["unit"]}
  *   | {type: "view", view: string} | {type: "notice", notice: State["notice"]}} Message
  */
 
 /** Steps of history that are kept. */
 export const DEPTH = 50;
+/** Channels that a bus can have. */
+export const MOST_CHANNELS = 16;
 /** Least cycles that the time axis shows. */
 export const LEAST_SPAN = 16;
 
@@ -39,7 +43,7 @@ export function initial(scenario) {
     scenario, origin: "own", revision: 0, edited: null, past: [], future: [], drafts: {},
     judgement: null, judged: -1, derived: null, approved: -1,
     run: { phase: "idle", progress: null, message: "" }, result: null,
-    window: null, awaited: null, axis: 0, unit: "steps", hover: null, cursors: { a: null, b: null }, row: 0, packet: null,
+    window: null, awaited: null, axis: 0, unit: "steps", hover: null, cursors: { a: null, b: null }, row: 0, folds: {}, allSignals: false, packet: null,
     view: "motion", notice: null,
   };
 }
@@ -69,6 +73,9 @@ export function update(state, message) {
     case "hover": return state.hover === message.cycle ? state : { ...state, hover: message.cycle };
     case "cursor": return { ...state, cursors: { ...state.cursors, [message.which]: message.cycle } };
     case "row": return { ...state, row: message.row };
+    case "fold": return { ...state, folds: { ...state.folds, [message.channel]: message.folded } };
+    case "fold-all": return { ...state, folds: Object.fromEntries(Array.from({ length: MOST_CHANNELS }, (_, channel) => [channel, message.folded])) };
+    case "all-signals": return { ...state, allSignals: message.on };
     case "packet": return { ...state, packet: message.packet };
     case "axis": return { ...state, axis: message.axis };
     case "unit": return { ...state, unit: message.unit };
@@ -78,7 +85,7 @@ export function update(state, message) {
 }
 
 /** What a wholly different scenario begins with. */
-const fresh = { window: null, packet: null, hover: null, cursors: { a: null, b: null }, axis: 0, row: 0 };
+const fresh = { window: null, packet: null, hover: null, cursors: { a: null, b: null }, axis: 0, row: 0, folds: {} };
 
 /** @param {State} state @param {{path: string, value: any, joins?: boolean}} message */
 function edit(state, { path, value, joins = false }) {

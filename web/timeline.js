@@ -73,6 +73,8 @@ export function gestures(target, plot, page) {
 
   target.addEventListener("wheel", (event) => {
     if (event.ctrlKey && event.deltaMode !== 0) return;
+    // Beside the plotting area the wheel scrolls the rows.
+    if (xOf(event) < plot().left && !event.ctrlKey) return;
     event.preventDefault();
     const sideways = event.shiftKey || Math.abs(event.deltaX) > Math.abs(event.deltaY);
     const delta = (event.deltaX || event.deltaY) * (event.deltaMode === 1 ? 20 : 1);

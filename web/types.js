@@ -58,6 +58,8 @@
  * @property {number | null} hover  Cycle under the pointer.
  * @property {{a: number | null, b: number | null}} cursors  Cycles.
  * @property {number} row           Signal bit whose edges are looked for.
+ * @property {{[channel: number]: boolean}} folds  Channels that the visitor folded or unfolded.
+ * @property {boolean} allSignals   Also the signals that never change.
  * @property {number | null} packet Selected packet.
  * @property {string} view          Tab on a narrow screen.
  * @property {{text: string, kind: "info" | "error"} | null} notice  About links and the engine.
