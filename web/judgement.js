@@ -90,7 +90,8 @@ export function showDerived(state, form) {
   const load = derived.line_load;
   const sends = "line" in state.scenario.source;
   const rows = [
-    ["Duration", si(derived.duration_s, "s"), ""],
+    // How long the last tick of a line script waits is known only after the run.
+    [sends ? "Duration at most" : "Duration", si(derived.duration_s, "s"), ""],
     ["Peak rate", derived.axes.length ? plain(peak, "steps/s") : "–", peak > derived.limit_steps_s ? "over" : ""],
     ["Tick", sends ? si(derived.tick_s, "s") : `${si(derived.tick_s, "s")}, ${count(derived.ticks)} in all`, ""],
     ["Limit of the bus", plain(derived.limit_steps_s, "steps/s"), ""],

@@ -145,9 +145,9 @@ pub(crate) fn draw<DB: DrawingBackend>(root: &DrawingArea<DB, Shift>, spec: &Spe
 
     let css = |pixels: u32| f64::from(pixels) / spec.ratio;
     // Plain counts have short labels.
-    let x_space = if spec.x.unit.is_empty() { 40.0 } else { 110.0 };
+    let x_space = if spec.x.unit.is_empty() { 40.0 } else { 90.0 };
     let x_ticks = ((css(width) / x_space) as usize).clamp(2, 12);
-    let y_ticks = ((css(height) / 22.0) as usize).clamp(4, 10);
+    let y_ticks = (((css(height) - spec.x.label_px) / 22.0) as usize).clamp(3, 10);
     let x_format = Ticks::new(&spec.x, x_ticks);
     let y_format = Ticks::new(&spec.y, y_ticks);
     let font = (spec.font.as_str(), spec.font_px * spec.ratio, FontStyle::Normal);
