@@ -3,175 +3,19 @@
 //! Motions are judged where they are planned (`motion`), because only the plan knows what they ask
 //! for; [`crate::run::Experiment`] gathers the problems of both.
 
-use super::{
-    Bus, Cause, DirLine, Distribution, Hex, Line, LineScript, Packets, Problem, Pulses, Scenario, Source,
-};
+use super::{Cause, Config, Hex, LineScript, Packets, Problem, Scenario, Source, judge::Judge};
 use crate::{
     signal::MAX_CHANNELS,
     units::{Cycles, Instant},
 };
-use alloc::{format, string::String, vec::Vec};
+use alloc::{format, vec::Vec};
 
 /// First cycle that no run reaches: a JavaScript number is exact up to 2^53, and this is below.
 pub const END_OF_TIME: u64 = 9_000_000_000_000_000;
-/// Most problems of one scenario that are listed.
-pub(super) const MOST_PROBLEMS: usize = 100;
 /// Most bytes of a line script, and most packets of a packet list.
 const MOST_BYTES: usize = 4 << 20;
 /// Most glitches on a line.
 const MOST_GLITCHES: usize = 10_000;
-/// Least cycles of a receiver's bit (A4).
-const LEAST_BIT_CYCLES: u64 = 11;
-/// Slowest clock: one that hears 1 baud.
-const LEAST_CLOCK_HZ: u64 = 11;
-
-/// The peripheral's configuration, checked: every rule of A4 and A7 holds.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Config {
-    pub(crate) clock_hz: u32,
-    pub(crate) channels: u8,
-    pub(crate) slots: u8,
-    pub(crate) step_period: u64,
-    pub(crate) pulse_width: u64,
-    pub(crate) dir_setup: u64,
-    pub(crate) dir_hold: u64,
-    pub(crate) settle: u64,
-    pub(crate) dir_line: DirLine,
-    pub(crate) pulses: Pulses,
-    pub(crate) distribution: Distribution,
-    pub(crate) queue_depth: u8,
-    pub(crate) boot: Instant,
-    pub(crate) bit_cycles: u64,
-    pub(crate) address: Option<u8>,
-}
-
-impl Config {
-    /// Checks the peripheral's part of a scenario.
-    ///
-    /// # Errors
-    /// Every problem, with paths as in a scenario (`bus.slots`, `line.receiver_baud`).
-    pub fn new(clock_hz: u32, bus: &Bus, line: &Line) -> Result<Self, Vec<Problem>> {
-        let mut judge = Judge::default();
-        judge.range("clock_hz", clock_hz, LEAST_CLOCK_HZ, 1_000_000_000, "Hz");
-        judge.range("bus.channels", bus.channels, 1, MAX_CHANNELS as u64, "");
-        judge.range("bus.slots", bus.slots, 1, 127, "");
-        judge.range("bus.step_period_cycles", bus.step_period_cycles, 2, 1_000_000_000, "cycles");
-        judge.range("bus.pulse_width_cycles", bus.pulse_width_cycles, 1, 1_000_000_000, "cycles");
-        judge.range("bus.dir_setup_cycles", bus.dir_setup_cycles, 0, 1_000_000_000, "cycles");
-        judge.range("bus.dir_hold_cycles", bus.dir_hold_cycles, 0, 1_000_000_000, "cycles");
-        judge.range("bus.queue_depth", bus.queue_depth, 1, 255, "ticks");
-        if let Some(address) = line.address {
-            judge.range("line.address", address, 0, 254, "");
-        }
-        judge.range("bus.settle_cycles", bus.settle_cycles, 0, 1_000_000_000, "cycles");
-        pulses_fit(bus, &mut judge);
-        let baud = line.receiver_baud.unwrap_or(line.baud);
-        let path = if line.receiver_baud.is_some() { "line.receiver_baud" } else { "line.baud" };
-        let (bit_cycles, most_baud) = (bit_cycles(clock_hz, baud.max(1)), most_baud(clock_hz));
-        if baud == 0 {
-            judge.range(path, baud, 1, most_baud.max(1).into(), "baud");
-        } else if bit_cycles < LEAST_BIT_CYCLES && u64::from(clock_hz) >= LEAST_CLOCK_HZ {
-            judge.add(path, Cause::BitTooShort { bit_cycles, baud, clock_hz, most_baud });
-        }
-        judge.end(Self {
-            clock_hz,
-            channels: bus.channels,
-            slots: bus.slots,
-            step_period: u64::from(bus.step_period_cycles),
-            pulse_width: u64::from(bus.pulse_width_cycles),
-            dir_setup: u64::from(bus.dir_setup_cycles),
-            dir_hold: u64::from(bus.dir_hold_cycles),
-            settle: u64::from(bus.settle_cycles),
-            dir_line: bus.dir_line,
-            pulses: bus.pulses,
-            distribution: bus.distribution,
-            queue_depth: bus.queue_depth,
-            boot: Instant(u64::from(bus.boot_cycles)),
-            bit_cycles,
-            address: line.address,
-        })
-    }
-
-    /// Clock of the peripheral in Hz.
-    #[must_use]
-    pub const fn clock_hz(&self) -> u32 {
-        self.clock_hz
-    }
-
-    /// Channels in use, 1 to 16.
-    #[must_use]
-    pub const fn channels(&self) -> u8 {
-        self.channels
-    }
-
-    /// The controller's address, where packets begin with one.
-    #[must_use]
-    pub const fn address(&self) -> Option<u8> {
-        self.address
-    }
-
-    /// Slots in a tick, 1 to 127.
-    #[must_use]
-    pub const fn slots(&self) -> u8 {
-        self.slots
-    }
-
-    /// Length of a tick, M*Ts.
-    #[must_use]
-    pub const fn tick(&self) -> Cycles {
-        Cycles(self.slots as u64 * self.step_period)
-    }
-
-    /// The receiver's bit time B (A4).
-    #[must_use]
-    pub const fn bit(&self) -> Cycles {
-        Cycles(self.bit_cycles)
-    }
-
-    /// Bytes of a packet: one a channel, and the address on an addressed line.
-    #[must_use]
-    pub const fn packet_len(&self) -> usize {
-        self.channels as usize + self.address.is_some() as usize
-    }
-}
-
-/// A7's rules: with L = W + max(D + H, 1), simultaneous L <= Ts, with a common DIR line 2*L <= Ts;
-/// staggered L <= floor(Ts/channels), with a common DIR line also dp >= L.
-fn pulses_fit(bus: &Bus, judge: &mut Judge) {
-    let (width, setup, hold, period, settle) = (
-        u64::from(bus.pulse_width_cycles),
-        u64::from(bus.dir_setup_cycles),
-        u64::from(bus.dir_hold_cycles),
-        u64::from(bus.step_period_cycles),
-        u64::from(bus.settle_cycles),
-    );
-    let needed = width + (setup + hold).max(1);
-    let (pulses, of) = match (bus.pulses, bus.dir_line) {
-        (Pulses::Simultaneous, DirLine::PerChannel) => (1, "all channels at once"),
-        (Pulses::Simultaneous, DirLine::Common) => (2, "left, then right, on a common DIR line"),
-        (Pulses::Staggered, _) => (u64::from(bus.channels.max(1)), "one channel after another"),
-    };
-    if needed > period / pulses {
-        judge.add(
-            "bus.step_period_cycles",
-            Cause::PulseTooLong { width, setup, hold, needed, pulses, of, period },
-        );
-    }
-    if bus.pulses == Pulses::Staggered && bus.dir_line == DirLine::Common && settle < needed {
-        judge.add("bus.settle_cycles", Cause::SettleTooShort { settle, width, setup, hold, needed });
-    }
-}
-
-/// B = floor((2*clock_hz + baud) / (2*baud)): the bit time rounded to the nearest cycle (A4).
-const fn bit_cycles(clock_hz: u32, baud: u32) -> u64 {
-    (2 * clock_hz as u64 + baud as u64) / (2 * baud as u64)
-}
-
-/// The highest rate whose bit time is at least 11 cycles (A4).
-pub(crate) const fn most_baud(clock_hz: u32) -> u32 {
-    (2 * clock_hz as u64 / (2 * LEAST_BIT_CYCLES - 1)) as u32
-}
-
 /// A level forced on the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Forced {
@@ -312,47 +156,10 @@ pub const fn line_time(bytes: u64, clock_hz: u32, baud: u32) -> u64 {
     }
 }
 
-/// Gathers problems.
-#[derive(Default)]
-struct Judge {
-    problems: Vec<Problem>,
-}
-
-impl Judge {
-    fn add(&mut self, path: impl Into<String>, cause: Cause) {
-        if self.problems.len() < MOST_PROBLEMS {
-            self.problems.push(Problem::new(path, cause));
-        }
-    }
-
-    /// Judges a whole number; it is told as f64, which is exact for all that is allowed.
-    fn range(&mut self, path: &str, given: impl Into<u64>, least: u64, most: u64, unit: &'static str) {
-        let given = given.into();
-        if !(least..=most).contains(&given) {
-            let (given, least, most) = (given as f64, least as f64, most as f64);
-            self.add(path, Cause::Range { given, least, most, unit });
-        }
-    }
-
-    fn length(&mut self, path: &str, given: usize, least: usize, most: usize, of: &'static str) {
-        if !(least..=most).contains(&given) {
-            self.add(path, Cause::Length { given, least, most, of });
-        }
-    }
-
-    fn take<T>(&mut self, result: Result<T, Vec<Problem>>) -> Option<T> {
-        result.map_err(|problems| self.problems.extend(problems)).ok()
-    }
-
-    fn end<T>(self, value: T) -> Result<T, Vec<Problem>> {
-        if self.problems.is_empty() { Ok(value) } else { Err(self.problems) }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use alloc::vec;
+    use alloc::string::String;
 
     fn paths(json: &str) -> Vec<String> {
         let scenario = Scenario::from_json(json).expect("reads");
@@ -406,15 +213,6 @@ mod tests {
         ];
         for (given, expected) in rows {
             assert_eq!(paths(given), *expected, "{given}");
-        }
-    }
-
-    #[test]
-    fn the_receivers_bit_time_is_rounded_to_the_nearest_cycle() {
-        let rows =
-            vec![(16_000_000, 115_200, 139), (1000, 50, 20), (1000, 300, 3), (105, 10, 11), (104, 10, 10)];
-        for (clock_hz, baud, expected) in rows {
-            assert_eq!(bit_cycles(clock_hz, baud), expected, "{clock_hz} Hz, {baud} baud");
         }
     }
 }

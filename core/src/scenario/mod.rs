@@ -13,16 +13,19 @@
 
 mod check;
 mod compact;
+mod config;
 mod hex;
+mod judge;
 pub mod link;
 pub mod presets;
 mod problem;
 mod quantity;
 mod read;
 
-pub(crate) use check::most_baud;
-pub use check::{Checked, Config, END_OF_TIME, Forced, line_time};
+pub use check::{Checked, END_OF_TIME, Forced, line_time};
 pub use compact::Compact;
+pub use config::Config;
+pub(crate) use config::most_baud;
 pub use hex::Hex;
 pub use problem::{Cause, Problem};
 pub use quantity::{Acceleration, Direct, Distance, Mechanics, NoSuchUnit, Rotary, Screw, Speed, Wheel};

@@ -3,7 +3,7 @@
 //! serde stops at the first error. So the offending value is taken out of the JSON, its default
 //! takes its place, and the reading begins again, until it succeeds.
 
-use super::{Cause, Problem, Scenario, VERSION, check::MOST_PROBLEMS};
+use super::{Cause, Problem, Scenario, VERSION, judge::MOST_PROBLEMS};
 use alloc::{
     string::{String, ToString},
     vec::Vec,
