@@ -16,6 +16,7 @@ pub const END_OF_TIME: u64 = 9_000_000_000_000_000;
 const MOST_BYTES: usize = 4 << 20;
 /// Most glitches on a line.
 const MOST_GLITCHES: usize = 10_000;
+
 /// A level forced on the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Forced {

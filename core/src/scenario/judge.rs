@@ -5,6 +5,7 @@ use alloc::{string::String, vec::Vec};
 
 /// Most problems of one scenario that are listed.
 pub(super) const MOST_PROBLEMS: usize = 100;
+
 /// Gathers problems.
 #[derive(Default)]
 pub(super) struct Judge {
