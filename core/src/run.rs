@@ -16,14 +16,14 @@ pub use cost::{BUDGET_RECORDS, Cost};
 
 use crate::{
     device::Device,
-    motion::{AxisPlan, plan_axis},
+    motion::{self, AxisPlan},
     quantise::ticks,
     scenario::{Cause, Checked, Config, END_OF_TIME, Problem, Scenario, Source, line_time},
     signal::{Event, Record, Sink},
     units::{Cycles, Instant},
     wire::{Line, Schedule, host::carries},
 };
-use alloc::{format, rc::Rc, vec::Vec};
+use alloc::{rc::Rc, vec::Vec};
 
 /// A scenario that has been judged in every respect, with its motions planned and its packets made.
 #[derive(Clone, Debug)]
@@ -230,14 +230,7 @@ impl<S: Sink> Sink for Slice<'_, S> {
 /// The plan of each axis, if the source is a motion.
 fn plan(scenario: &Scenario) -> Result<Vec<AxisPlan>, Vec<Problem>> {
     let Source::Motion(motion) = &scenario.source else { return Ok(Vec::new()) };
-    let (mut plans, mut problems) = (Vec::new(), Vec::new());
-    for (index, axis) in motion.axes.iter().enumerate() {
-        match plan_axis(axis, &format!("source.motion.axes[{index}]")) {
-            Ok(plan) => plans.push(plan),
-            Err(found) => problems.extend(found),
-        }
-    }
-    if problems.is_empty() { Ok(plans) } else { Err(problems) }
+    motion::plan(motion)
 }
 
 /// What the host sends.

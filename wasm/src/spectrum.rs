@@ -4,6 +4,7 @@ use crate::convert::{field, numbers, object};
 use js_sys::Object;
 use stepscope_core::{
     analysis::spectrum::{Harmonics, Spectrum, Stretch},
+    quantise::TickClock,
     run::Experiment,
     scenario::Scenario,
     trace::{Recording, Step},
@@ -30,15 +31,17 @@ pub(crate) fn spectrum(
     };
     let ideal = Spectrum::ideal(plan, analysis.order, analysis.fft_length);
     field(&result, "ideal", &ideal.map_or(Ok(JsValue::NULL), |spectrum| told(&spectrum))?);
-    let clock_hz = experiment.config().clock_hz();
-    let zero_s = recording.first_tick().map_or(0.0, |start| start.seconds(clock_hz));
-    let pulses: Vec<(f64, i8)> = steps
+    let config = experiment.config();
+    let zero = recording.first_tick().map_or(0, |start| start.0);
+    let pulses: Vec<(u64, i8)> = steps
         .iter()
         .enumerate()
-        .map(|(index, step)| {
-            (step.cycle as f64 / f64::from(clock_hz) - zero_s, Step::direction(steps, index).signum() as i8)
+        .filter_map(|(index, step)| {
+            Some((step.cycle.checked_sub(zero)?, Step::direction(steps, index).signum() as i8))
         })
         .collect();
+    let ticks = TickClock::new(config.tick().0, config.clock_hz());
+    let pulses = stretch.own_pulses(plan, ticks, &pulses);
     field(&result, "pulses", &told(&Spectrum::of_pulses(&pulses, stretch, analysis.order))?);
     let note = if stretch.periodic {
         ""

@@ -9,89 +9,65 @@
 //!
 //! There is nothing to sample: a pulse train has no highest frequency, so every sampling would
 //! fold its upper spectrum into the harmonics, and clock-cycle edges between samples would move.
-//! exp(-i*2*pi*k*x) comes from k by one complex product a harmonic, begun anew with sine and
-//! cosine every [`RESEED`] harmonics, so its error stays under 1e-12.
+//! But the pulses near a point of a grid can go through the transform together. With x the time in
+//! periods, g the nearest of N points and d = N*x - g, |d| <= 1/2, w = -i*2*pi*k/N:
+//!
+//! ```text
+//! sum dir_i * exp(w*(g_i + d_i)) = sum over m of w^m/m! * F_m(k)
+//! F_m = transform over the grid of the cells' moments, sum dir_i * d_i^m
+//! ```
+//!
+//! With N >= 16*order, |w*d| <= pi/16, and after [`MOMENTS`] terms the rest is under 1e-17 of the
+//! pulses' weight. So the time is [`MOMENTS`] products a pulse, whatever the order, and as many
+//! transforms of N points.
 
 use alloc::{vec, vec::Vec};
 use core::f64::consts::TAU;
 use rustfft::{Fft, FftDirection, algorithm::Radix4, num_complex::Complex};
 
-/// Harmonics that one sine and cosine serve.
-const RESEED: usize = 32;
-/// Pulses that go through the harmonics side by side.
-const LANES: usize = 8;
-
-/// The fractional part, 0 to 1.
-fn fraction(x: f64) -> f64 {
-    x - libm::floor(x)
-}
+/// Terms of the exponential's series: (pi/16)^12/12! < 1e-17.
+const MOMENTS: usize = 12;
+/// Points of the grid for each harmonic.
+const GRID_A_HARMONIC: usize = 16;
 
 /// sum dir_i * exp(-i*2*pi*k*x_i) for k = 1 ..= `order` over (x_i, dir_i), x in periods.
 pub(super) fn sums(pulses: impl Iterator<Item = (f64, f64)>, order: usize) -> Vec<Complex<f64>> {
+    let points = (GRID_A_HARMONIC * order.max(1)).next_power_of_two();
+    let cells = moments(pulses, points);
+    let transform = Radix4::new(points, FftDirection::Forward);
     let mut sums = vec![Complex { re: 0.0, im: 0.0 }; order];
-    let mut group = Group { phase: [0.0; LANES], weight: [0.0; LANES] };
-    let mut filled = 0;
-    for (x, direction) in pulses {
-        if let (Some(phase), Some(weight)) = (group.phase.get_mut(filled), group.weight.get_mut(filled)) {
-            (*phase, *weight) = (fraction(x), direction);
+    let mut line = vec![Complex { re: 0.0, im: 0.0 }; points];
+    // Horner's rule, the last moment first.
+    for moment in (0..MOMENTS).rev() {
+        for (place, cell) in line.iter_mut().zip(&cells) {
+            *place = Complex { re: cell.get(moment).copied().unwrap_or(0.0), im: 0.0 };
         }
-        filled += 1;
-        if filled == LANES {
-            group.add_to(&mut sums);
-            (group.weight, filled) = ([0.0; LANES], 0);
+        transform.process(&mut line);
+        for (k, (sum, term)) in (1_u32..).zip(sums.iter_mut().zip(line.iter().skip(1))) {
+            // *sum = term + *sum*w/(moment + 1), with w = -i*turn.
+            let turn = TAU * f64::from(k) / points as f64 / (moment + 1) as f64;
+            *sum = Complex { re: term.re + sum.im * turn, im: term.im - sum.re * turn };
         }
     }
-    group.add_to(&mut sums);
     sums
 }
 
-/// Some pulses: phases in periods, and what each weighs (a free place nothing).
-struct Group {
-    phase: [f64; LANES],
-    weight: [f64; LANES],
-}
-
-impl Group {
-    fn add_to(&self, sums: &mut [Complex<f64>]) {
-        let turn = self.powers(1);
-        for (block, sums) in sums.chunks_mut(RESEED).enumerate() {
-            let mut at = self.powers(block * RESEED + 1);
-            for ((re, im), weight) in at.re.iter_mut().zip(&mut at.im).zip(&self.weight) {
-                *re *= weight;
-                *im *= weight;
-            }
-            for sum in sums {
-                sum.re += at.re.iter().sum::<f64>();
-                sum.im += at.im.iter().sum::<f64>();
-                at.turn(&turn);
+/// The moments 0 .. [`MOMENTS`] of the pulses around each of so many points of a period.
+fn moments(pulses: impl Iterator<Item = (f64, f64)>, points: usize) -> Vec<[f64; MOMENTS]> {
+    let mut cells = vec![[0.0; MOMENTS]; points];
+    for (x, direction) in pulses {
+        let place = (x - libm::floor(x)) * points as f64;
+        let nearest = libm::floor(place + 0.5);
+        // Half a cell before the end of the period is the cell of its start.
+        if let Some(cell) = cells.get_mut(nearest as usize % points) {
+            let mut weight = direction;
+            for moment in cell {
+                *moment += weight;
+                weight *= place - nearest;
             }
         }
     }
-
-    /// exp(-i*2*pi*k*x) of each.
-    fn powers(&self, k: usize) -> Lanes {
-        let mut lanes = Lanes { re: [0.0; LANES], im: [0.0; LANES] };
-        for ((re, im), x) in lanes.re.iter_mut().zip(&mut lanes.im).zip(&self.phase) {
-            let (sine, cosine) = libm::sincos(TAU * fraction(k as f64 * x));
-            (*re, *im) = (cosine, -sine);
-        }
-        lanes
-    }
-}
-
-/// Complex numbers side by side.
-struct Lanes {
-    re: [f64; LANES],
-    im: [f64; LANES],
-}
-
-impl Lanes {
-    fn turn(&mut self, by: &Self) {
-        let factors = by.re.iter().zip(&by.im);
-        for ((re, im), (by_re, by_im)) in self.re.iter_mut().zip(&mut self.im).zip(factors) {
-            (*re, *im) = (*re * by_re - *im * by_im, *re * by_im + *im * by_re);
-        }
-    }
+    cells
 }
 
 /// Amplitudes of harmonics 1 ..= `order` of samples that fill one period, by rustfft.

@@ -4,8 +4,6 @@ pub mod curves;
 #[cfg(feature = "std")]
 mod fourier;
 #[cfg(feature = "std")]
-mod lines;
-#[cfg(feature = "std")]
 pub mod spectrum;
 #[cfg(feature = "std")]
 mod stretch;

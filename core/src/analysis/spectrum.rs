@@ -17,20 +17,15 @@
 //! last point is taken off its position, for otherwise the jump back at the end would be in all
 //! three. Its lines are no harmonics of anything, so it has no distortion.
 
-pub use super::{lines::Lines, stretch::Stretch};
+pub use super::stretch::Stretch;
 
 use super::{
     fourier::{amplitudes, magnitude, sums},
     stretch::sampled,
 };
-use crate::motion::{AxisPlan, polyline::unit_polyline};
+use crate::motion::AxisPlan;
 use alloc::vec::Vec;
 use core::f64::consts::{PI, TAU};
-
-/// Points of the document's transform over one period (B5).
-pub const DOCUMENT_POINTS: usize = 2048;
-/// The order that gives the document's distortions: all harmonics of [`DOCUMENT_POINTS`].
-pub const DOCUMENT_ORDER: u16 = 1023;
 
 /// Harmonics of one quantity.
 #[derive(Clone, Debug, PartialEq)]
@@ -98,12 +93,16 @@ impl Spectrum {
     }
 
     /// Of the motion that pulses make: `pulses` are (time in s, on the same axis of time as the
-    /// stretch; +1 right or -1 left), in any order. Those outside the stretch don't count.
+    /// stretch; +1 right or -1 left), in any order, such as [`Stretch::own_pulses`]. All count; one
+    /// outside the stretch stands where whole periods take it.
     ///
-    /// Straight from the pulses' times, see `fourier`: nothing is sampled, nothing folds back.
+    /// Straight from the pulses' times, see `fourier`: nothing is sampled, nothing folds back. The
+    /// time grows with the pulses, some 10 ns each, and not with pulses times order.
     #[must_use]
     pub fn of_pulses(pulses: &[(f64, i8)], stretch: Stretch, order: u16) -> Self {
-        let phases = stretch.within(pulses).map(|(since_s, way)| (since_s / stretch.period_s, way));
+        let phases = pulses
+            .iter()
+            .map(|&(time_s, way)| ((time_s - stretch.start_s) / stretch.period_s, f64::from(way)));
         let position = sums(phases, order.into())
             .into_iter()
             .enumerate()
@@ -114,27 +113,20 @@ impl Spectrum {
     }
 }
 
-/// Harmonics of the polyline through the cosine at a quarter's `breakpoints`, with B5's figures of
-/// distortion: [`DOCUMENT_POINTS`] samples of a period, all their [`DOCUMENT_ORDER`] harmonics.
-///
-/// The document does not state its order; this is the one that gives its 0.26913 % for
-/// d1 = 0.0054 and 0.26710 % for d1 = 0.006 to the last digit (up to the 40th harmonic they would
-/// be 0.26369 % and 0.26078 %).
-#[must_use]
-pub fn polyline_harmonics(breakpoints: &[u16]) -> Harmonics {
-    let samples: Vec<f64> =
-        (0..DOCUMENT_POINTS).map(|point| unit_polyline(breakpoints, point as f64)).collect();
-    Harmonics::new(amplitudes(&samples, DOCUMENT_ORDER.into()), true)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::{
-        motion::{plan_axis, polyline::breakpoints},
-        scenario::{Axis, Cosine, Distance, Dwell, Move, SineSegments},
+        motion::{plan_axis, round_half_up},
+        quantise::TickClock,
+        scenario::{Axis, Constant, Cosine, Distance, Dwell, Move, SineSegments, Speed},
     };
     use alloc::vec;
+
+    /// All harmonics of the document's transform of 2048 points. The document does not state its
+    /// order; this is the one that gives its distortions to the last digit (up to the 40th harmonic
+    /// they would be 0.26369 % and 0.26078 %).
+    const DOCUMENT_ORDER: u16 = 1023;
 
     fn plan(moves: Vec<Move>) -> AxisPlan {
         plan_axis(&Axis { moves, ..Axis::default() }, "axis").unwrap()
@@ -151,7 +143,17 @@ mod tests {
 
     #[test]
     fn the_documents_distortions_come_out() {
-        let harmonics = |d1| polyline_harmonics(&breakpoints(d1));
+        // So many steps that their rounding is not in the last digit.
+        let harmonics = |d1| {
+            let sine = SineSegments {
+                amplitude: Distance::Steps(1e9),
+                period_s: 3600.0,
+                max_deviation: d1,
+                ..SineSegments::default()
+            };
+            let plan = plan(vec![Move::SineSegments(sine)]);
+            Spectrum::ideal(&plan, DOCUMENT_ORDER, 2048).unwrap().position
+        };
         let (first, second) = (harmonics(0.0054), harmonics(0.006));
         assert_eq!(first.amplitudes.len(), usize::from(DOCUMENT_ORDER));
         close(first.distortion.unwrap() * 100.0, 0.26913, 2e-5);
@@ -194,21 +196,18 @@ mod tests {
     fn a_step_to_and_fro_is_a_square_wave() {
         // Two periods of 1 s, height 1.
         let stretch = Stretch { start_s: 10.0, period_s: 1.0, periods: 2, periodic: true };
-        let pulses = [(10.25, 1), (10.75, -1), (11.25, 1), (11.75, -1), (9.99, 1), (12.0, 1)];
+        // The last two are a step outside and where periods take it back.
+        let pulses = [(10.25, 1), (10.75, -1), (11.25, 1), (11.75, -1), (9.99, 1), (11.99, -1)];
         let spectrum = Spectrum::of_pulses(&pulses, stretch, 101);
-        let lines = Lines::of_pulses(&pulses, stretch, 4096);
-        assert_eq!(lines.step_hz, 0.5);
         for (k, amplitude) in (1..).zip(&spectrum.position.amplitudes) {
             let expected = if k % 2 == 1 { 2.0 / (PI * f64::from(k)) } else { 0.0 };
             assert!((amplitude - expected).abs() < 1e-12, "{k}: {amplitude} {expected}");
-            let line = lines.amplitudes[2 * k as usize - 1];
-            assert!((line - expected).abs() < 1e-3, "{k}: {line} {expected}");
         }
         close(spectrum.speed.amplitudes[6], 4.0, 1e-12);
     }
 
     #[test]
-    fn pulses_through_the_recurrence_weigh_as_much_as_one_by_one() {
+    fn pulses_through_the_grid_weigh_as_much_as_one_by_one() {
         let stretch = Stretch { start_s: 0.0, period_s: 0.125, periods: 3, periodic: true };
         let pulses: Vec<(f64, i8)> = (0..1001)
             .map(|i| (f64::from(i * i % 4099) * 0.375 / 4099.0, if i % 3 == 0 { -1 } else { 1 }))
@@ -241,9 +240,47 @@ mod tests {
         let made = Spectrum::of_pulses(&pulses, ideal.stretch, 40);
         close(made.position.amplitudes[0], ideal.position.amplitudes[0], 1e-5);
         close(made.position.distortion.unwrap(), ideal.position.distortion.unwrap(), 0.02);
-        let lines = Lines::of_pulses(&pulses, ideal.stretch, 1 << 15);
-        close(lines.amplitudes[3], ideal.position.amplitudes[0], 1e-4);
-        let smooth = Lines::ideal(&plan, ideal.stretch, 1 << 15);
-        close(smooth.amplitudes[3], ideal.position.amplitudes[0], 1e-6);
+    }
+    #[test]
+    fn of_ticks_that_moves_share_each_pulse_is_of_one() {
+        // Ticks of 1 ms: a constant of 4 steps until 2 ms, or 2.5 ms, then the sine.
+        let run = |steps: f64, speed: f64, sine_steps: f64, pulses: &[(u64, i8)]| {
+            let constant = Move::Constant(Constant {
+                distance: Distance::Steps(steps),
+                speed: Speed::StepsPerSecond(speed),
+            });
+            let sine = SineSegments {
+                amplitude: Distance::Steps(sine_steps),
+                period_s: 0.004,
+                periods: 1,
+                max_deviation: 1.0,
+            };
+            let plan = plan(vec![constant.clone(), Move::SineSegments(sine), constant]);
+            let stretch = Stretch::of(&plan).unwrap();
+            let own = stretch.own_pulses(&plan, TickClock::new(1000, 1_000_000), pulses);
+            own.iter().map(|(t, way)| (round_half_up(t * 1e6) as u64, *way)).collect::<Vec<_>>()
+        };
+        // On the grid nothing is shared. The sine goes 2 steps a tick: left in two, right in two.
+        let there = |tick: u64, way: i8| [(tick * 1000, way), (tick * 1000 + 500, way)];
+        let sine: Vec<(u64, i8)> =
+            [there(2, -1), there(3, -1), there(4, 1), there(5, 1)].into_iter().flatten().collect();
+        let all: Vec<(u64, i8)> =
+            [there(0, 1), there(1, 1)].into_iter().flatten().chain(sine.clone()).chain(there(6, 1)).collect();
+        assert_eq!(run(4.0, 2000.0, 2.0, &all), sine);
+        // Left, and half a tick later: the second pulse of tick 2 is the sine's. What the sine and
+        // the move after it ask of tick 6 cancels.
+        let all: Vec<(u64, i8)> = [(0, -1), (1, -1), (2, -1), (3, -1), (5, 1)]
+            .into_iter()
+            .flat_map(|(tick, way)| there(tick, way))
+            .collect();
+        assert_eq!(run(-5.0, 2000.0, 2.0, &all), all[5..]);
+        // The other way round: tick 2 cancels, of tick 6 the first pulse is the sine's.
+        let all: Vec<(u64, i8)> = [(0, -1), (1, -1), (3, 1), (5, -1), (6, -1)]
+            .into_iter()
+            .flat_map(|(tick, way)| there(tick, way))
+            .collect();
+        assert_eq!(run(-5.0, 2000.0, -2.0, &all), all[4..9]);
+        // A tick too many pulses, as of a broken line: the others' stay the others'.
+        assert_eq!(run(-5.0, 2000.0, -2.0, &[(2500, 1), (2600, -1), (6500, 1)]), [(2500, 1)]);
     }
 }

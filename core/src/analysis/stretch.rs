@@ -3,9 +3,20 @@
 //! ```text
 //!        start_s    period_s        all whole periods of the sine: no window, no leakage
 //! _______|/\/\/\/\/\/\/\/\|______
+//!    |    '     '     '    |         ticks; a pulse comes somewhere in the tick that orders it
 //! ```
+//!
+//! The pulses that a move makes begin with the tick in which it starts and end with the tick in
+//! which it ends, so some come before the stretch and some after; taken on into the next period
+//! (whole periods later or earlier) they are the motion that repeats for ever. In a tick that two
+//! moves share the pulses of the move before come first: of the tick of its start a move has the
+//! last ones, of the tick of its end the first ones, as many as it asks for there. Where the two
+//! go opposite ways in such a tick, only the difference is made, and what cancels is no one's.
 
-use crate::motion::{AxisPlan, Profile};
+use crate::{
+    motion::{AxisPlan, Profile},
+    quantise::TickClock,
+};
 use alloc::vec::Vec;
 
 /// Longest transform.
@@ -54,13 +65,39 @@ impl Stretch {
         1.0 / self.period_s
     }
 
-    /// Pulses within the stretch: when since its start, in s, and +1 or -1.
-    pub(super) fn within<'p>(&self, pulses: &'p [(f64, i8)]) -> impl Iterator<Item = (f64, f64)> + use<'p> {
-        let (start_s, length_s) = (self.start_s, self.length_s());
-        pulses
-            .iter()
-            .map(move |&(time_s, direction)| (time_s - start_s, f64::from(direction)))
-            .filter(move |(since_s, _)| (0.0..length_s).contains(since_s))
+    /// The pulses that belong to the stretch, see the module, as (time in s, +1 right or -1 left).
+    ///
+    /// `pulses` are all that the axis of `plan` makes, as (cycle from the start of its first tick
+    /// on, +1 right or -1 left), rising in time.
+    #[must_use]
+    pub fn own_pulses(&self, plan: &AxisPlan, ticks: TickClock, pulses: &[(u64, i8)]) -> Vec<(f64, i8)> {
+        let end_s = self.start_s + self.length_s();
+        let (first, last) = (ticks.ticks_until(self.start_s) - 1, ticks.ticks_until(end_s) - 1);
+        let (begin, end) = (plan.steps_due(self.start_s), plan.steps_due(end_s));
+        let due_by_end = |tick: u64| plan.steps_due(ticks.end_s(tick));
+        let place = |tick: u64| pulses.partition_point(|(cycle, _)| cycle / ticks.tick_cycles() < tick);
+        let within = |from: u64, to: u64| pulses.get(place(from)..place(to)).unwrap_or_default();
+        let going = |way: i64| move |pulse: &&(u64, i8)| i64::from(pulse.1) == way.signum();
+        let mut own: Vec<&(u64, i8)> = Vec::new();
+        if first == last {
+            // Shorter than a tick: the tick's pulses are taken for the stretch's.
+            own.extend(within(first, first + 1));
+        } else {
+            let asked = due_by_end(first) - begin;
+            own.extend(
+                within(first, first + 1)
+                    .iter()
+                    .rev()
+                    .filter(going(asked))
+                    .take(asked.unsigned_abs() as usize),
+            );
+            own.extend(within(first + 1, last));
+            let asked = end - due_by_end(last - 1);
+            own.extend(
+                within(last, last + 1).iter().filter(going(asked)).take(asked.unsigned_abs() as usize),
+            );
+        }
+        own.into_iter().map(|&(cycle, way)| (ticks.seconds(cycle), way)).collect()
     }
 }
 

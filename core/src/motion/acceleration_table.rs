@@ -44,14 +44,12 @@ impl AccelerationTable {
         self.top
     }
 
-    /// Pulse rate of a row in whole pps; rows after the last are as the last.
+    /// Pulse rate of a row in whole pps, not falling from row to row; rows after the last are as the last.
     #[must_use]
     pub fn rate(&self, row: u64) -> u64 {
-        let speed = if row < self.top {
-            square_root(self.start_speed * self.start_speed + 2.0 * self.acceleration * row as f64)
-        } else {
-            self.top_speed
-        };
+        let climbed = square_root(self.start_speed * self.start_speed + 2.0 * self.acceleration * row as f64);
+        // A root can pass the top speed by a rounding.
+        let speed = if row < self.top && climbed < self.top_speed { climbed } else { self.top_speed };
         round_half_up(speed).unsigned_abs()
     }
 

@@ -93,6 +93,19 @@ impl AxisPlan {
         })
     }
 
+    /// [`Self::steps_due`], quick where `before` were due a short time before: then a table's row is
+    /// looked for from there on.
+    pub(crate) fn steps_due_after(&self, t: f64, before: i64) -> i64 {
+        match self.at(t) {
+            Some((PlannedMove { profile: Profile::TrapezoidTable(table), start_steps, .. }, since))
+                if t < self.duration_s =>
+            {
+                start_steps.saturating_add(table.steps_due(since, before.saturating_sub(*start_steps)))
+            }
+            _ => self.steps_due(t),
+        }
+    }
+
     /// Speed at `t` s in steps/s; 0 before the start and from the end on.
     #[must_use]
     pub fn speed(&self, t: f64) -> f64 {

@@ -12,14 +12,13 @@
 //!
 //! The mirror makes s(T) exactly n. With t_s = 0 the speed jumps to f_max and back.
 
-use super::{Curve, Peaks, profile::greater};
+use super::{Curve, Peaks, mirrored::Mirrored};
 use core::f64::consts::PI;
 
 /// A cosine S-curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cosine {
-    steps: i64,
-    duration_s: f64,
+    halves: Mirrored,
     ramp_s: f64,
     /// f_max in steps/s.
     top_speed: f64,
@@ -30,7 +29,7 @@ impl Cosine {
     #[must_use]
     pub fn new(steps: i64, duration_s: f64, ramp_s: f64) -> Self {
         let top_speed = steps.unsigned_abs() as f64 / (duration_s - ramp_s);
-        Self { steps, duration_s, ramp_s, top_speed }
+        Self { halves: Mirrored { steps, duration_s }, ramp_s, top_speed }
     }
 
     /// f_max in steps/s, the speed of the plateau.
@@ -39,16 +38,12 @@ impl Cosine {
         self.top_speed
     }
 
-    /// The longest ramp in s that keeps the top speed at or under `speed`: T - n/speed (B4), of
-    /// which a move can use up to T/2; `None` where even no ramp is too fast.
+    /// The longest ramp in s with which this move keeps its top speed at or under `speed`:
+    /// T - n/speed (B4), of which it can use up to T/2; `None` where even no ramp is too fast.
     #[must_use]
-    pub fn longest_ramp_s(steps: i64, duration_s: f64, speed: f64) -> Option<f64> {
-        let ramp_s = duration_s - steps.unsigned_abs() as f64 / speed;
+    pub fn longest_ramp_s(&self, speed: f64) -> Option<f64> {
+        let ramp_s = self.halves.duration_s - self.halves.count() / speed;
         (ramp_s >= 0.0).then_some(ramp_s)
-    }
-
-    fn signed(&self, magnitude: f64) -> f64 {
-        if self.steps < 0 { -magnitude } else { magnitude }
     }
 
     /// Phase of the ramp at `t` after the start or before the end, 0 to pi; `None` in the plateau.
@@ -58,50 +53,40 @@ impl Cosine {
 
     /// s(t) of the first half, in steps without sign.
     fn first_half(&self, t: f64) -> f64 {
-        let position = match self.phase(t) {
+        match self.phase(t) {
             Some(phase) => self.top_speed * self.ramp_s / (2.0 * PI) * minus_sine(phase),
             None => self.top_speed * (t - self.ramp_s / 2.0),
-        };
-        // The middle belongs to both halves; without this they could pass it by a rounding.
-        let half = self.steps.unsigned_abs() as f64 / 2.0;
-        if position > half { half } else { position }
-    }
-
-    /// Time from the nearer end, 0 at both.
-    fn nearer_end(&self, t: f64) -> f64 {
-        greater(0.0, if t <= self.duration_s / 2.0 { t } else { self.duration_s - t })
+        }
     }
 }
 
 impl Curve for Cosine {
     fn duration_s(&self) -> f64 {
-        self.duration_s
+        self.halves.duration_s
     }
 
     fn steps(&self) -> i64 {
-        self.steps
+        self.halves.steps
     }
 
     fn position(&self, t: f64) -> f64 {
-        let travelled = self.first_half(self.nearer_end(t));
-        if t <= self.duration_s / 2.0 {
-            self.signed(travelled)
-        } else {
-            self.signed(self.steps.unsigned_abs() as f64 - travelled)
-        }
+        self.halves.position(t, |t| self.first_half(t))
     }
 
     fn speed(&self, t: f64) -> f64 {
-        let Some(phase) = self.phase(self.nearer_end(t)) else { return self.signed(self.top_speed) };
-        // (1 - cos x)/2 = sin^2(x/2), which keeps its digits near 0.
-        let sine = libm::sin(phase / 2.0);
-        self.signed(self.top_speed * sine * sine)
+        self.halves.signed(match self.phase(self.halves.nearer_end(t)) {
+            Some(phase) => {
+                // (1 - cos x)/2 = sin^2(x/2), which keeps its digits near 0.
+                let sine = libm::sin(phase / 2.0);
+                self.top_speed * sine * sine
+            }
+            None => self.top_speed,
+        })
     }
 
     fn acceleration(&self, t: f64) -> f64 {
-        let Some(phase) = self.phase(self.nearer_end(t)) else { return 0.0 };
-        let magnitude = self.top_speed * PI / (2.0 * self.ramp_s) * libm::sin(phase);
-        self.signed(if t <= self.duration_s / 2.0 { magnitude } else { -magnitude })
+        let Some(phase) = self.phase(self.halves.nearer_end(t)) else { return 0.0 };
+        self.halves.acceleration(t, self.top_speed * PI / (2.0 * self.ramp_s) * libm::sin(phase))
     }
 
     fn peaks(&self) -> Peaks {
@@ -136,10 +121,11 @@ mod tests {
     #[test]
     fn the_documents_top_speed_and_longest_ramp_come_out() {
         assert_eq!(Cosine::new(6400, 0.4, 0.2).top_speed(), 32_000.0);
-        let longest = Cosine::longest_ramp_s(3200, 0.4, 19_200.0).unwrap();
+        let curve = Cosine::new(3200, 0.4, 0.2);
+        let longest = curve.longest_ramp_s(19_200.0).unwrap();
         assert!((longest - 0.233_333_3).abs() < 1e-6, "{longest}");
-        assert_eq!(Cosine::longest_ramp_s(3200, 0.4, 8000.0), Some(0.0));
-        assert_eq!(Cosine::longest_ramp_s(3200, 0.4, 7999.0), None);
+        assert_eq!(curve.longest_ramp_s(8000.0), Some(0.0));
+        assert_eq!(curve.longest_ramp_s(7999.0), None);
     }
 
     #[test]

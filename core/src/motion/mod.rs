@@ -1,7 +1,7 @@
 //! Motions: what an axis is asked to do, as position, speed and acceleration over time (DESIGN
 //! Part B).
 //!
-//! [`plan_axis`] turns a scenario's axis into an [`AxisPlan`]: moves one after another, each a
+//! [`plan()`] turns a scenario's axes into an [`AxisPlan`] each: moves one after another, each a
 //! [`Profile`]. One file a family:
 //!
 //! ```text
@@ -20,8 +20,9 @@ pub mod acceleration_table;
 mod asked;
 mod axis;
 pub mod cosine;
+mod mirrored;
 mod plan;
-pub mod polyline;
+mod polyline;
 mod profile;
 pub mod sine_segments;
 pub mod steady;
@@ -30,7 +31,7 @@ pub mod trapezoid;
 pub mod trapezoid_table;
 
 pub use axis::{AxisPlan, PlannedMove};
-pub use plan::plan_axis;
+pub use plan::{plan, plan_axis};
 pub use profile::{Curve, Peaks, Profile};
 pub use step_times::StepTimes;
 

@@ -13,26 +13,66 @@ use super::{
     trapezoid::Trapezoid,
     trapezoid_table::{NoTable, TrapezoidTable},
 };
-use crate::scenario::{self, Axis, Cause, Move, Problem, TrapezoidMethod};
+use crate::{
+    scenario::{self, Axis, Cause, Motion, Move, Problem, TrapezoidMethod},
+    signal::MAX_CHANNELS,
+};
 use alloc::{format, string::String, vec::Vec};
 
 /// Most moves of an axis.
 const MOST_MOVES: usize = 64;
-/// Most rows that the acceleration tables of one axis may have together.
+/// Most rows that all acceleration tables of a scenario may have together.
 const MOST_TABLE_ROWS: u64 = 1_000_000;
+/// Most segments that the quarters of all sines of a scenario may have together.
+const MOST_SEGMENTS: usize = 65_536;
 /// Longest time of an axis in s.
 const MOST_DURATION_S: f64 = 1e6;
 /// Most periods of a sine.
 const MOST_PERIODS: f64 = 1e6;
 
+/// What the axes of a scenario may still ask of memory and work.
+struct Left {
+    table_rows: u64,
+    segments: usize,
+}
+
+impl Default for Left {
+    fn default() -> Self {
+        Self { table_rows: MOST_TABLE_ROWS, segments: MOST_SEGMENTS }
+    }
+}
+
+/// Plans all axes of a scenario's motion, with the paths that they have there.
+///
+/// Each axis is as [`plan_axis`] says; the tables and the sines of all together have to stay under
+/// its bounds.
+///
+/// # Errors
+/// Every problem of every axis, each with its path.
+pub fn plan(motion: &Motion) -> Result<Vec<AxisPlan>, Vec<Problem>> {
+    let (mut plans, mut problems, mut left) = (Vec::new(), Vec::new(), Left::default());
+    // More axes than that are refused by their number.
+    for (index, axis) in motion.axes.iter().take(MAX_CHANNELS).enumerate() {
+        match plan_within(axis, &format!("source.motion.axes[{index}]"), &mut left) {
+            Ok(plan) => plans.push(plan),
+            Err(found) => problems.extend(found),
+        }
+    }
+    if problems.is_empty() { Ok(plans) } else { Err(problems) }
+}
+
 /// Plans an axis; `path` is where it stands in the scenario, such as `source.motion.axes[0]`.
 ///
-/// Distances are rounded half up to whole steps; an axis has at most 64 moves, 1e6 s and 1e6 rows
-/// of acceleration tables.
+/// Distances are rounded half up to whole steps; an axis has at most 64 moves and 1e6 s, its
+/// acceleration tables 1e6 rows and the quarters of its sines 65536 segments.
 ///
 /// # Errors
 /// Every problem of the axis, each with its path.
 pub fn plan_axis(axis: &Axis, path: &str) -> Result<AxisPlan, Vec<Problem>> {
+    plan_within(axis, path, &mut Left::default())
+}
+
+fn plan_within(axis: &Axis, path: &str, left: &mut Left) -> Result<AxisPlan, Vec<Problem>> {
     let mut asked = Asked::new(&axis.mechanics, &format!("{path}.mechanics"));
     let moves_path = format!("{path}.moves");
     let given = axis.moves.len();
@@ -40,12 +80,11 @@ pub fn plan_axis(axis: &Axis, path: &str) -> Result<AxisPlan, Vec<Problem>> {
         let cause = Cause::Length { given, least: 1, most: MOST_MOVES, of: "moves" };
         asked.refuse(moves_path.as_str(), cause);
     }
-    let mut rows_left = MOST_TABLE_ROWS;
     let mut profiles = Vec::new();
     // Past the most moves none is planned: the list's length is refused already.
     for (index, each) in axis.moves.iter().take(MOST_MOVES).enumerate() {
         let at = format!("{moves_path}[{index}]");
-        if let Some(profile) = plan_move(&mut asked, each, &at, &mut rows_left) {
+        if let Some(profile) = plan_move(&mut asked, each, &at, left) {
             profiles.push(profile);
         }
     }
@@ -57,11 +96,11 @@ pub fn plan_axis(axis: &Axis, path: &str) -> Result<AxisPlan, Vec<Problem>> {
     if asked.problems.is_empty() { Ok(plan) } else { Err(asked.problems) }
 }
 
-fn plan_move(asked: &mut Asked<'_>, given: &Move, path: &str, rows_left: &mut u64) -> Option<Profile> {
+fn plan_move(asked: &mut Asked<'_>, given: &Move, path: &str, left: &mut Left) -> Option<Profile> {
     match given {
-        Move::Trapezoid(given) => plan_trapezoid(asked, given, &format!("{path}.trapezoid"), rows_left),
+        Move::Trapezoid(given) => plan_trapezoid(asked, given, &format!("{path}.trapezoid"), left),
         Move::Cosine(given) => plan_cosine(asked, given, &format!("{path}.cosine")),
-        Move::SineSegments(given) => plan_sine(asked, given, &format!("{path}.sine_segments")),
+        Move::SineSegments(given) => plan_sine(asked, given, &format!("{path}.sine_segments"), left),
         Move::Constant(given) => {
             let steps = asked.distance(format!("{path}.constant.distance"), &given.distance);
             let speed = asked.speed(format!("{path}.constant.speed"), &given.speed);
@@ -78,7 +117,7 @@ fn plan_trapezoid(
     asked: &mut Asked<'_>,
     given: &scenario::Trapezoid,
     path: &str,
-    rows_left: &mut u64,
+    left: &mut Left,
 ) -> Option<Profile> {
     // The table's first rate has to round to a pulse a second; the exact curve may start from rest.
     let least_start = match given.method {
@@ -107,13 +146,13 @@ fn plan_trapezoid(
         return Some(Profile::Trapezoid(Trapezoid::new(steps, start, top, acceleration)));
     }
     let table = AccelerationTable::new(start, top, acceleration, given.timer_hz);
-    match TrapezoidTable::new(steps, table, *rows_left) {
+    match TrapezoidTable::new(steps, table, left.table_rows) {
         Ok(table) => {
-            *rows_left -= table.kept_rows();
+            left.table_rows -= table.kept_rows();
             Some(Profile::TrapezoidTable(table))
         }
         Err(NoTable::Rows { needed }) => {
-            let (given, most) = ((MOST_TABLE_ROWS - *rows_left).saturating_add(needed), MOST_TABLE_ROWS);
+            let (given, most) = ((MOST_TABLE_ROWS - left.table_rows).saturating_add(needed), MOST_TABLE_ROWS);
             let cause = Cause::TooMuch { given: given as f64, most: most as f64, of: "table rows" };
             asked.refuse(path, cause);
             None
@@ -140,7 +179,12 @@ fn plan_cosine(asked: &mut Asked<'_>, given: &scenario::Cosine, path: &str) -> O
     Some(Profile::Cosine(curve))
 }
 
-fn plan_sine(asked: &mut Asked<'_>, given: &scenario::SineSegments, path: &str) -> Option<Profile> {
+fn plan_sine(
+    asked: &mut Asked<'_>,
+    given: &scenario::SineSegments,
+    path: &str,
+    left: &mut Left,
+) -> Option<Profile> {
     let amplitude = asked.distance(format!("{path}.amplitude"), &given.amplitude);
     let period_s = asked.duration(format!("{path}.period_s"), given.period_s);
     let periods = asked.range(format!("{path}.periods"), given.periods.into(), 1.0, MOST_PERIODS, "");
@@ -148,6 +192,14 @@ fn plan_sine(asked: &mut Asked<'_>, given: &scenario::SineSegments, path: &str) 
     let (amplitude, period_s, deviation) = (amplitude?, period_s?, deviation?);
     periods?;
     let curve = SineSegments::new(amplitude, period_s, given.periods, deviation);
+    let segments = curve.segments().len();
+    let Some(still_left) = left.segments.checked_sub(segments) else {
+        let (given, most) = (MOST_SEGMENTS - left.segments + segments, MOST_SEGMENTS);
+        let cause = Cause::TooMuch { given: given as f64, most: most as f64, of: "sine segments" };
+        asked.refuse(path, cause);
+        return None;
+    };
+    left.segments = still_left;
     hold_speed(asked, format!("{path}.period_s"), curve.peaks().speed)?;
     Some(Profile::SineSegments(curve))
 }
@@ -165,7 +217,7 @@ fn hold_speed(asked: &mut Asked<'_>, path: String, rate: f64) -> Option<()> {
 mod tests {
     use super::*;
     use crate::scenario::{Scenario, Source};
-    use alloc::string::ToString;
+    use alloc::{string::ToString, vec};
 
     fn axis(json: &str) -> Axis {
         let text = format!(r#"{{"source":{{"motion":{{"axes":[{json}]}}}}}}"#);
@@ -247,11 +299,39 @@ mod tests {
         check(
             &text,
             &[
-                "axis.moves[1].trapezoid: 1400002 table rows are more than one run may have; at most 1000000 are allowed: give a higher acceleration or a lower top speed",
+                "axis.moves[1].trapezoid: 1400000 table rows are more than one run may have; at most 1000000 are allowed: give a higher acceleration or a lower top speed",
             ],
         );
         let moves = format!(r#"{{"moves":[{}{{"dwell":{{}}}}]}}"#, r#"{"dwell":{}},"#.repeat(64));
         check(&moves, &["axis.moves: 65 moves; give 1 to 64"]);
+    }
+
+    #[test]
+    fn axes_share_the_bounds_on_tables_and_segments() {
+        let problems = |each: &str, axes: usize| {
+            let motion = Motion { axes: vec![axis(each); axes] };
+            let found = super::plan(&motion).err().unwrap_or_default();
+            found.iter().map(ToString::to_string).collect::<Vec<_>>()
+        };
+        let table = r#"{"moves":[{"trapezoid":{"distance":{"steps":800000},"top_speed":{"steps_s":1e6},"acceleration":{"steps_s2":1}}}]}"#;
+        assert_eq!(problems(table, 2), [""; 0]);
+        assert_eq!(
+            problems(table, 3),
+            [
+                "source.motion.axes[2].moves[0].trapezoid: 1200000 table rows are more than one run may have; at most 1000000 are allowed: give a higher acceleration or a lower top speed",
+            ]
+        );
+        let sine = r#"{"sine_segments":{"max_deviation":0}}"#;
+        let sines = format!(r#"{{"moves":[{sine}{}]}}"#, format!(",{sine}").repeat(63));
+        assert_eq!(problems(&sines, 2), [""; 0]);
+        assert_eq!(problems(&sines, 3).len(), 64);
+        assert_eq!(
+            problems(&sines, 3)[0],
+            "source.motion.axes[2].moves[0].sine_segments: 66048 sine segments are more than one run may have; at most 65536 are allowed: give a greater largest deviation or fewer sines"
+        );
+        // The preset of the document has six: a sweep of ten on each of 16 axes is no trouble.
+        let sweep = sines.replace(r#""max_deviation":0"#, r#""max_deviation":0.0054"#);
+        assert_eq!(problems(&sweep, 16), [""; 0]);
     }
 
     #[test]

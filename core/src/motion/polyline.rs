@@ -8,20 +8,19 @@
 //!  0 +-----------'- 512
 //! ```
 
-use super::profile::greater;
+use super::{profile::greater, round_half_up};
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 
 /// Points of the angle in a period; breakpoints lie on them.
-pub const POINTS: u16 = 2048;
+pub(super) const POINTS: u16 = 2048;
 /// Points of the angle in a quarter.
-pub const QUARTER: u16 = POINTS / 4;
+pub(super) const QUARTER: u16 = POINTS / 4;
 /// In how many parts a chord is cut to find its greatest deviation; its ends count too.
 const CHORD_PARTS: u16 = 100;
 
 /// y = cos at a point of the angle, 0..=[`QUARTER`].
-#[must_use]
-pub fn cosine_at(point: u16) -> f64 {
+pub(super) fn cosine_at(point: u16) -> f64 {
     // The end of the quarter is exactly 0; cos(pi/2) of the rounded pi is not.
     if point == QUARTER { 0.0 } else { libm::cos(PI * f64::from(point) / 1024.0) }
 }
@@ -32,8 +31,7 @@ pub fn cosine_at(point: u16) -> f64 {
 /// From a breakpoint the next point is tried as long as the chord's greatest deviation from the
 /// cosine, over the 101 points that cut it in 100, is at most `d1`; the last that holds is the next
 /// breakpoint, and at least the very next point is.
-#[must_use]
-pub fn breakpoints(d1: f64) -> Vec<u16> {
+pub(super) fn breakpoints(d1: f64) -> Vec<u16> {
     let mut points = Vec::from([0]);
     let mut from = 0;
     while from < QUARTER {
@@ -47,15 +45,25 @@ pub fn breakpoints(d1: f64) -> Vec<u16> {
     points
 }
 
-/// Greatest |chord - cosine| between two points of the angle.
+/// Greatest |chord - cosine| between two points of the angle, over the 101 that cut the chord.
+///
+/// In a quarter the difference rises to one summit, where the cosine runs along the chord, and
+/// falls; so of the 101 only those next to the summit are looked at.
 fn deviation(from: u16, to: u16) -> f64 {
     let (y_from, y_to) = (cosine_at(from), cosine_at(to));
-    (0..=CHORD_PARTS).fold(0.0, |greatest, k| {
-        let part = f64::from(k) / f64::from(CHORD_PARTS);
-        let chord = y_from + (y_to - y_from) * part;
-        let point = f64::from(from) + f64::from(to - from) * part;
-        greater(greatest, libm::fabs(chord - libm::cos(PI * point / 1024.0)))
-    })
+    let length = f64::from(to - from);
+    let summit = libm::asin((y_from - y_to) * 1024.0 / (PI * length)) * 1024.0 / PI;
+    let nearest = round_half_up((summit - f64::from(from)) / length * f64::from(CHORD_PARTS)) as u16;
+    (nearest.saturating_sub(1)..=CHORD_PARTS.min(nearest + 1))
+        .fold(0.0, |greatest, k| greater(greatest, deviation_at(k, from, to, y_from, y_to)))
+}
+
+/// |chord - cosine| at part `k` of [`CHORD_PARTS`].
+fn deviation_at(k: u16, from: u16, to: u16, y_from: f64, y_to: f64) -> f64 {
+    let part = f64::from(k) / f64::from(CHORD_PARTS);
+    let chord = y_from + (y_to - y_from) * part;
+    let point = f64::from(from) + f64::from(to - from) * part;
+    libm::fabs(chord - libm::cos(PI * point / 1024.0))
 }
 
 /// A point of the first quarter, and what the other quarters make of it.
@@ -75,20 +83,6 @@ pub(super) fn fold(point: f64) -> Folded {
     let right = half <= f64::from(QUARTER);
     let point = if right { half } else { f64::from(2 * QUARTER) - half };
     Folded { point: greater(0.0, point), right, leftwards }
-}
-
-/// The polyline through the cosine's own values at the breakpoints, amplitude 1, at a point of a
-/// period, 0..=2048: what B5's distortion is told of.
-#[must_use]
-pub fn unit_polyline(breakpoints: &[u16], point: f64) -> f64 {
-    let folded = fold(point);
-    let after = breakpoints.partition_point(|&at| f64::from(at) <= folded.point);
-    let (Some(&from), Some(&to)) = (breakpoints.get(after.saturating_sub(1)), breakpoints.get(after)) else {
-        return 0.0;
-    };
-    let (y_from, y_to) = (cosine_at(from), cosine_at(to));
-    let y = y_from + (y_to - y_from) * (folded.point - f64::from(from)) / f64::from(to - from);
-    if folded.right { y } else { -y }
 }
 
 #[cfg(test)]
@@ -112,16 +106,13 @@ mod tests {
     }
 
     #[test]
-    fn the_polyline_meets_the_cosine_at_its_breakpoints_in_every_quarter() {
-        let points = breakpoints(0.006);
-        for &point in &points {
-            let y = cosine_at(point);
-            let at = f64::from(point);
-            for (at, expected) in [(at, y), (1024.0 - at, -y), (1024.0 + at, -y), (2048.0 - at, y)] {
-                let found = unit_polyline(&points, at);
-                assert!((found - expected).abs() < 1e-15, "{at}: {found} {expected}");
+    fn the_summits_neighbours_stand_for_all_101_points_of_every_chord() {
+        for from in 0..QUARTER {
+            for to in from + 1..=QUARTER {
+                let (y_from, y_to) = (cosine_at(from), cosine_at(to));
+                let all = (0..=CHORD_PARTS).map(|k| deviation_at(k, from, to, y_from, y_to));
+                assert_eq!(deviation(from, to), all.fold(0.0, f64::max), "{from} to {to}");
             }
         }
-        assert_eq!(unit_polyline(&[], 3.0), 0.0);
     }
 }

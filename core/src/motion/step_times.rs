@@ -74,7 +74,7 @@ impl Trapezoid {
     #[must_use]
     pub fn step_times(&self, clock_hz: u32) -> StepTimes {
         let clock = f64::from(clock_hz);
-        let count = self.steps.unsigned_abs();
+        let count = self.steps().unsigned_abs();
         let half = count / 2;
         let in_ramp = round_half_up(self.ramp_steps).unsigned_abs();
         // Of a triangle with an odd number of steps the middle one is both; the climb has it.

@@ -12,12 +12,12 @@
 //!       t_r        T-t_r  T
 //! ```
 
-use super::{Curve, Peaks, profile::greater, square_root};
+use super::{Curve, Peaks, mirrored::Mirrored, square_root};
 
 /// A trapezoid or triangle of uniform acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trapezoid {
-    pub(super) steps: i64,
+    pub(super) halves: Mirrored,
     pub(super) start_speed: f64,
     pub(super) acceleration: f64,
     /// Highest speed that is reached: the top speed, or that of the triangle's tip.
@@ -25,7 +25,6 @@ pub struct Trapezoid {
     /// Steps of a ramp, at most half of all.
     pub(super) ramp_steps: f64,
     pub(super) ramp_s: f64,
-    pub(super) duration_s: f64,
 }
 
 impl Trapezoid {
@@ -46,7 +45,8 @@ impl Trapezoid {
         let ramp_s = if ramp_steps > 0.0 { 2.0 * ramp_steps / (v0 + peak_speed) } else { 0.0 };
         let plateau_s = (all - 2.0 * ramp_steps) / peak_speed;
         let duration_s = 2.0 * ramp_s + plateau_s;
-        Self { steps, start_speed, acceleration, peak_speed, ramp_steps, ramp_s, duration_s }
+        let halves = Mirrored { steps, duration_s };
+        Self { halves, start_speed, acceleration, peak_speed, ramp_steps, ramp_s }
     }
 
     /// Highest speed that is reached, in steps/s.
@@ -67,58 +67,40 @@ impl Trapezoid {
         self.ramp_steps
     }
 
-    fn signed(&self, magnitude: f64) -> f64 {
-        if self.steps < 0 { -magnitude } else { magnitude }
-    }
-
     /// s(t) of the first half, in steps without sign.
     fn first_half(&self, t: f64) -> f64 {
-        let position = if t < self.ramp_s {
+        if t < self.ramp_s {
             (self.start_speed + self.acceleration * t / 2.0) * t
         } else {
             self.ramp_steps + self.peak_speed * (t - self.ramp_s)
-        };
-        // The middle belongs to both halves; without this they could pass it by a rounding.
-        let half = self.steps.unsigned_abs() as f64 / 2.0;
-        if position > half { half } else { position }
-    }
-
-    /// Time from the nearer end, 0 at both.
-    fn nearer_end(&self, t: f64) -> f64 {
-        greater(0.0, if t <= self.duration_s / 2.0 { t } else { self.duration_s - t })
+        }
     }
 }
 
 impl Curve for Trapezoid {
     fn duration_s(&self) -> f64 {
-        self.duration_s
+        self.halves.duration_s
     }
 
     fn steps(&self) -> i64 {
-        self.steps
+        self.halves.steps
     }
 
     fn position(&self, t: f64) -> f64 {
-        let travelled = self.first_half(self.nearer_end(t));
-        if t <= self.duration_s / 2.0 {
-            self.signed(travelled)
-        } else {
-            self.signed(self.steps.unsigned_abs() as f64 - travelled)
-        }
+        self.halves.position(t, |t| self.first_half(t))
     }
 
     fn speed(&self, t: f64) -> f64 {
-        let t = self.nearer_end(t);
-        self.signed(if t < self.ramp_s { self.start_speed + self.acceleration * t } else { self.peak_speed })
+        let t = self.halves.nearer_end(t);
+        let climbed = self.start_speed + self.acceleration * t;
+        self.halves.signed(if t < self.ramp_s { climbed } else { self.peak_speed })
     }
 
     fn acceleration(&self, t: f64) -> f64 {
-        if self.nearer_end(t) >= self.ramp_s {
+        if self.halves.nearer_end(t) >= self.ramp_s {
             0.0
-        } else if t <= self.duration_s / 2.0 {
-            self.signed(self.acceleration)
         } else {
-            self.signed(-self.acceleration)
+            self.halves.acceleration(t, self.acceleration)
         }
     }
 

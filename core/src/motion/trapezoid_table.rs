@@ -1,7 +1,7 @@
 //! Trapezoid by acceleration table (DESIGN B2, Sonobe 2011).
 //!
-//! The [`AccelerationTable`] has a reload of the timer for each row. The timer's interrupt makes one step and loads the next interval. Of a move of n steps, interval
-//! i (from 0) has row min(i, n - 1 - i, top), so a short move is a triangle, and step k falls at
+//! The [`AccelerationTable`] has a reload of the timer for each row. The timer's interrupt makes one
+//! step and loads the next interval. Of a move of n steps, interval i (from 0) has row min(i, n - 1 - i, top), so a short move is a triangle, and step k falls at
 //! the sum of the first k reloads; the move ends with its last step:
 //!
 //! ```text
@@ -26,11 +26,12 @@ const PAST_THE_STEP: f64 = 1.0 / 1_048_576.0;
 pub struct TrapezoidTable {
     steps: i64,
     table: AccelerationTable,
-    /// Intervals of the ramp; the deceleration has as many.
+    /// Intervals of the ramp, which is also the highest row that the move uses; the deceleration
+    /// has as many, and at least one interval is between them.
     ramp: u64,
     /// Timer ticks from the start to step k, k = 0 ..= ramp + 1.
     ///
-    /// Invariant: at least two entries, rising.
+    /// Invariant: at least two entries, rising: no reload is 0.
     sums: Vec<u64>,
 }
 
@@ -55,22 +56,22 @@ impl TrapezoidTable {
     /// # Errors
     /// [`NoTable`] where the move needs more than `most_rows` rows or a rate above the timer's.
     pub fn new(steps: i64, table: AccelerationTable, most_rows: u64) -> Result<Self, NoTable> {
-        let ramp = table.top().min(steps.unsigned_abs() / 2);
+        let ramp = table.top().min(steps.unsigned_abs().saturating_sub(1) / 2);
         if ramp >= most_rows {
             return Err(NoTable::Rows { needed: ramp.saturating_add(1) });
         }
-        let mut curve = Self { steps, table, ramp, sums: Vec::with_capacity(ramp as usize + 2) };
-        let greatest = curve.table.rate(curve.highest_row());
-        if greatest > curve.table.timer_hz().into() {
+        let greatest = table.rate(ramp);
+        if greatest > table.timer_hz().into() {
             return Err(NoTable::Timer { rate: greatest as f64 });
         }
+        let mut sums = Vec::with_capacity(ramp as usize + 2);
         let mut sum = 0;
-        curve.sums.push(0);
+        sums.push(0);
         for row in 0..=ramp {
-            sum += curve.table.reload(row);
-            curve.sums.push(sum);
+            sum += table.reload(row);
+            sums.push(sum);
         }
-        Ok(curve)
+        Ok(Self { steps, table, ramp, sums })
     }
 
     /// The whole table, also the rows that a short move does not reach.
@@ -89,11 +90,6 @@ impl TrapezoidTable {
     #[must_use]
     pub fn kept_rows(&self) -> u64 {
         self.ramp + 1
-    }
-
-    /// The highest row that the move uses.
-    fn highest_row(&self) -> u64 {
-        self.ramp.min(self.count().saturating_sub(1) / 2)
     }
 
     /// Steps of the move, without sign.
@@ -134,19 +130,20 @@ impl TrapezoidTable {
         self.step_ticks(k) as f64 / f64::from(self.table.timer_hz())
     }
 
-    /// Steps that have fallen by `t`.
-    fn fallen(&self, t: f64) -> u64 {
+    /// Steps that have fallen by `t`; looked for from `near` on, which changes the time that it
+    /// takes and not what is found.
+    fn fallen(&self, t: f64, near: u64) -> u64 {
         let count = self.count();
         // From the timer's ticks comes a guess that can be off by one; the times themselves decide.
         let ticks = (t * f64::from(self.table.timer_hz())) as u64;
         let (up, all) = (self.sum(self.ramp), self.step_ticks(count));
         let guess = if ticks < up {
-            self.sums.partition_point(|&sum| sum <= ticks).saturating_sub(1) as u64
+            first_from(&self.sums, ticks.saturating_add(1), near as usize).saturating_sub(1) as u64
         } else if ticks < all - up {
             self.ramp + (ticks - up).checked_div(self.plateau_reload()).unwrap_or(0)
         } else {
             let left = all.saturating_sub(ticks);
-            count - self.sums.partition_point(|&sum| sum < left) as u64
+            count - first_from(&self.sums, left, count.saturating_sub(near) as usize) as u64
         };
         let mut fallen = if guess > count { count } else { guess };
         while fallen > 0 && self.step_s(fallen) > t {
@@ -156,6 +153,13 @@ impl TrapezoidTable {
             fallen += 1;
         }
         fallen
+    }
+
+    /// Steps due by `t`, as B1's rounding of the position gives them, looked for from those that
+    /// were due some time before on.
+    pub(super) fn steps_due(&self, t: f64, before: i64) -> i64 {
+        let fallen = self.fallen(t, before.unsigned_abs()) as i64;
+        if self.steps < 0 { -fallen } else { fallen }
     }
 
     /// Row of interval `i` (from 0).
@@ -181,12 +185,32 @@ impl TrapezoidTable {
 
     /// Interval at `t`, from 0.
     fn interval(&self, t: f64) -> u64 {
-        self.fallen(t).min(self.count().saturating_sub(1))
+        self.fallen(t, 0).min(self.count().saturating_sub(1))
     }
 
     fn signed(&self, magnitude: f64) -> f64 {
         if self.steps < 0 { -magnitude } else { magnitude }
     }
+}
+
+/// The first of rising `sums` that is not under `bound`, or their number: two neighbours where it is
+/// next to `near`, twice as many each time that it is further away.
+fn first_from(sums: &[u64], bound: u64, near: usize) -> usize {
+    let is_under = |index: usize| sums.get(index).is_some_and(|&sum| sum < bound);
+    let near = near.min(sums.len());
+    // Invariant: all before `from` are under the bound, all from `to` on are not.
+    let (mut from, mut to, mut width) = (near, near, 1);
+    while is_under(to) {
+        from = to + 1;
+        to = sums.len().min(to + width);
+        width *= 2;
+    }
+    while from > 0 && !is_under(from - 1) {
+        to = from - 1;
+        from = from.saturating_sub(width);
+        width *= 2;
+    }
+    from + sums.get(from..to).map_or(0, |between| between.partition_point(|&sum| sum < bound))
 }
 
 impl Curve for TrapezoidTable {
@@ -199,7 +223,7 @@ impl Curve for TrapezoidTable {
     }
 
     fn position(&self, t: f64) -> f64 {
-        let fallen = self.fallen(t);
+        let fallen = self.fallen(t, 0);
         if fallen >= self.count() || t <= 0.0 {
             return self.signed(fallen as f64);
         }
@@ -226,7 +250,7 @@ impl Curve for TrapezoidTable {
 
     fn peaks(&self) -> Peaks {
         let mut peaks = Peaks::default();
-        for i in 0..=self.highest_row() {
+        for i in 0..=self.ramp {
             peaks.speed = greater(peaks.speed, self.interval_speed(i));
             peaks.acceleration = greater(peaks.acceleration, libm::fabs(self.acceleration_into(i)));
             let jump = self.interval_speed(i) - self.interval_speed(i.saturating_sub(1));
@@ -278,12 +302,29 @@ mod tests {
             TrapezoidTable::new(steps, AccelerationTable::new(250.0, top, 9000.0, timer), 100).err()
         };
         // Row 100 would be the 101st.
-        assert_eq!(new(199, 1e6, 1_000_000), None);
-        assert_eq!(new(200, 1e6, 1_000_000), Some(NoTable::Rows { needed: 101 }));
+        assert_eq!(new(200, 1e6, 1_000_000), None);
+        assert_eq!(new(201, 1e6, 1_000_000), Some(NoTable::Rows { needed: 101 }));
         assert_eq!(new(50, 600.0, 600), None);
         assert_eq!(new(50, 600.0, 599), Some(NoTable::Timer { rate: 600.0 }));
-        // Two steps use row 0 alone.
+        // Two steps use row 0 alone, of a reload of 1.
         assert_eq!(new(2, 600.0, 250), None);
+        let two = TrapezoidTable::new(2, AccelerationTable::new(250.0, 600.0, 9000.0, 250), 100).unwrap();
+        assert!(two.sums.is_sorted_by(|a, b| a < b), "{two:?}");
+        assert_eq!((two.step_ticks(1), two.step_ticks(2), two.kept_rows()), (1, 2, 1));
+    }
+
+    #[test]
+    fn where_a_search_begins_does_not_change_what_it_finds() {
+        for steps in [1, 2, -41, 2000, -2001] {
+            let table = table(steps, 700.0);
+            for look in -1..400 {
+                let t = table.duration_s() * f64::from(look) / 397.0;
+                let due = round_half_up(table.position(t));
+                for before in [0, due - 1, due, due + 3, steps, i64::MIN, i64::MAX] {
+                    assert_eq!(table.steps_due(t, before), due, "{steps} steps, {t} s, {before} before");
+                }
+            }
+        }
     }
 
     #[test]

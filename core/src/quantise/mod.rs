@@ -5,4 +5,4 @@
 
 mod ticks;
 
-pub use ticks::{Ticks, ticks};
+pub use ticks::{TickClock, Ticks, ticks};

@@ -16,7 +16,9 @@ use crate::{
 use alloc::{format, vec, vec::Vec};
 
 /// Most ticks of a run.
-const MOST_TICKS: usize = 2_000_000;
+const MOST_TICKS: u64 = 2_000_000;
+/// Most ticks of all its channels together, which is what they take in bytes.
+const MOST_BYTES: u64 = 4_000_000;
 /// Bit of a byte that says right (A5).
 const RIGHT: u8 = 1 << 7;
 
@@ -69,19 +71,22 @@ pub fn ticks(
     tick_cycles: u64,
     clock_hz: u32,
 ) -> Result<Ticks, Vec<Problem>> {
-    let clock = TickClock { tick_cycles: tick_cycles.max(1), clock_hz: f64::from(clock_hz.max(1)) };
+    let clock = TickClock::new(tick_cycles, clock_hz);
     let channels = channels.max(1);
     if plans.len() > channels.into() {
         let cause = Cause::Length { given: plans.len(), least: 1, most: channels.into(), of: "axes" };
         return Err(vec![Problem::new("source.motion.axes", cause)]);
     }
     let needed = plans.iter().map(|plan| clock.ticks_until(plan.duration_s())).max().unwrap_or(1);
-    if needed > MOST_TICKS as u64 {
-        let cause = Cause::TooMuch { given: needed as f64, most: MOST_TICKS as f64, of: "ticks" };
-        return Err(vec![Problem::new("source.motion", cause)]);
+    let all = needed.saturating_mul(channels.into());
+    for (given, most, of) in [(needed, MOST_TICKS, "ticks"), (all, MOST_BYTES, "ticks of all channels")] {
+        if given > most {
+            let cause = Cause::TooMuch { given: given as f64, most: most as f64, of };
+            return Err(vec![Problem::new("source.motion", cause)]);
+        }
     }
     let width = usize::from(channels);
-    let mut bytes = vec![0; needed as usize * width];
+    let mut bytes = vec![0; all as usize];
     let mut problems = Vec::new();
     for (channel, plan) in plans.iter().enumerate() {
         let column = bytes.iter_mut().skip(channel).step_by(width);
@@ -103,7 +108,7 @@ fn fill<'b>(
     let mut direction = 0;
     for (tick, byte) in column.enumerate() {
         let tick = tick as u64;
-        let next = plan.steps_due(clock.end_s(tick));
+        let next = plan.steps_due_after(clock.end_s(tick), due);
         let steps = next.abs_diff(due);
         let count = match u8::try_from(steps) {
             Ok(count) if count <= slots => count,
@@ -122,20 +127,41 @@ fn fill<'b>(
     Ok(())
 }
 
-/// The ticks' time, from integers.
-struct TickClock {
+/// The ticks' time, from integers: tick j is [j*T, (j + 1)*T) of the motion's time, in s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TickClock {
     tick_cycles: u64,
     clock_hz: f64,
 }
 
 impl TickClock {
+    /// Ticks of `tick_cycles` of a clock of `clock_hz`; 0 of either is taken as 1.
+    #[must_use]
+    pub fn new(tick_cycles: u64, clock_hz: u32) -> Self {
+        Self { tick_cycles: tick_cycles.max(1), clock_hz: f64::from(clock_hz.max(1)) }
+    }
+
+    /// Cycles of a tick.
+    #[must_use]
+    pub fn tick_cycles(&self) -> u64 {
+        self.tick_cycles
+    }
+
+    /// A cycle, counted from the motion's start, in s.
+    #[must_use]
+    pub fn seconds(&self, cycle: u64) -> f64 {
+        cycle as f64 / self.clock_hz
+    }
+
     /// End of tick `tick` (from 0) in s.
-    fn end_s(&self, tick: u64) -> f64 {
-        tick.saturating_add(1).saturating_mul(self.tick_cycles) as f64 / self.clock_hz
+    #[must_use]
+    pub fn end_s(&self, tick: u64) -> f64 {
+        self.seconds(tick.saturating_add(1).saturating_mul(self.tick_cycles))
     }
 
     /// The fewest ticks, at least one, whose end is not before `duration_s`.
-    fn ticks_until(&self, duration_s: f64) -> u64 {
+    #[must_use]
+    pub fn ticks_until(&self, duration_s: f64) -> u64 {
         let tick_s = self.end_s(0);
         let mut ticks = libm::ceil(duration_s / tick_s) as u64;
         // The division can be off by a rounding; the tick's own end decides.
@@ -207,6 +233,12 @@ mod tests {
         assert_eq!(found, expected);
         let found = ticks(&one, 2, 12, 1, 1_000_000_000).unwrap_err();
         let cause = Cause::TooMuch { given: 10_000_000.0, most: 2_000_000.0, of: "ticks" };
+        assert_eq!(found, [Problem::new("source.motion", cause)]);
+        // 625 000 ticks, of which seven channels are the first too many.
+        let long = [plan(vec![Move::Dwell(Dwell { duration_s: 625.0 })])];
+        assert_eq!(ticks(&long, 6, 12, 1000, 1_000_000).map(|ticks| ticks.len()), Ok(625_000));
+        let found = ticks(&long, 7, 12, 1000, 1_000_000).unwrap_err();
+        let cause = Cause::TooMuch { given: 4_375_000.0, most: 4_000_000.0, of: "ticks of all channels" };
         assert_eq!(found, [Problem::new("source.motion", cause)]);
         assert!(ticks(&one, 1, 12, 1000, 1_000_000).is_err());
         // Nothing of this is a scenario; nothing of it may panic.

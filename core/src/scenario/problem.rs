@@ -372,7 +372,8 @@ impl fmt::Display for Cause {
                 Short(*most),
                 match *of {
                     "table rows" => "give a higher acceleration or a lower top speed",
-                    "moves" | "sine moves" => "give fewer moves",
+                    "moves" => "give fewer moves",
+                    "sine segments" => "give a greater largest deviation or fewer sines",
                     _ => "give a shorter motion or longer ticks",
                 }
             ),

@@ -1,0 +1,46 @@
+//! Spectra of whole scenarios, from their pulses at the STEP lines (DESIGN B5, Part D).
+#![cfg(not(target_arch = "wasm32"))]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use stepscope_core::{
+    analysis::spectrum::{Spectrum, Stretch},
+    quantise::TickClock,
+    run::Experiment,
+    trace::{Recording, Step, steps},
+};
+
+/// Distortion of the position that the pulses of a scenario's first axis make, in per cent, and
+/// where they end.
+fn made_distortion(json: &str) -> (f64, i32) {
+    let experiment = Experiment::from_json(json).unwrap();
+    let mut recording = Recording::default();
+    experiment.run(&mut recording);
+    let steps = steps(&recording.trace, 0);
+    let zero = recording.first_tick().unwrap().0;
+    let pulses: Vec<(u64, i8)> = steps
+        .iter()
+        .enumerate()
+        .map(|(i, step)| (step.cycle - zero, Step::direction(&steps, i) as i8))
+        .collect();
+    let plan = &experiment.plans()[0];
+    let stretch = Stretch::of(plan).unwrap();
+    let config = experiment.config();
+    let own = stretch.own_pulses(plan, TickClock::new(config.tick().0, config.clock_hz()), &pulses);
+    let spectrum = Spectrum::of_pulses(&own, stretch, 40);
+    (spectrum.position.distortion.unwrap() * 100.0, own.iter().map(|(_, way)| i32::from(*way)).sum())
+}
+
+#[test]
+fn a_pause_that_is_no_whole_tick_takes_no_pulse_from_the_period_after_it() {
+    let sine =
+        r#"{"sine_segments":{"amplitude":{"steps":1000},"period_s":0.5,"periods":1,"max_deviation":0.0054}}"#;
+    for pause_s in ["0", "0.0011", "0.0013", "0.002"] {
+        let json = format!(
+            r#"{{"source":{{"motion":{{"axes":[{{"moves":[{{"dwell":{{"duration_s":{pause_s}}}}},{sine}]}}]}}}}}}"#
+        );
+        let (distortion, end) = made_distortion(&json);
+        // Pulses come with their ticks, so where these lie moves the last digits.
+        assert!((distortion - 0.262).abs() < 1e-3, "{pause_s} s: {distortion} %");
+        assert_eq!(end, 0, "{pause_s} s: as many to the right as to the left");
+    }
+}
