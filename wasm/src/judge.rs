@@ -153,6 +153,7 @@ fn derive(scenario: &Scenario, experiment: &Experiment) -> Derived {
     let config = experiment.config();
     let clock_hz = f64::from(config.clock_hz());
     let tick_s = config.tick().0 as f64 / clock_hz;
+    let limit_steps_s = f64::from(config.slots()) / tick_s;
     let axes = match &scenario.source {
         Source::Motion(motion) => motion
             .axes
@@ -165,14 +166,14 @@ fn derive(scenario: &Scenario, experiment: &Experiment) -> Derived {
                 peak_acceleration_steps_s2: plan.peaks().acceleration,
                 step_mm: axis.mechanics.step_mm(),
                 step_deg: axis.mechanics.step_deg(),
-                moves: moves(plan),
+                moves: moves(plan, limit_steps_s),
             })
             .collect(),
         _ => Vec::new(),
     };
     Derived {
         tick_s,
-        limit_steps_s: f64::from(config.slots()) / tick_s,
+        limit_steps_s,
         ticks: experiment.cost().sends,
         packets_per_s: 1.0 / tick_s,
         line_load: experiment.line_load(),
@@ -181,7 +182,7 @@ fn derive(scenario: &Scenario, experiment: &Experiment) -> Derived {
     }
 }
 
-fn moves(plan: &AxisPlan) -> Vec<DerivedMove> {
+fn moves(plan: &AxisPlan, limit_steps_s: f64) -> Vec<DerivedMove> {
     plan.moves()
         .iter()
         .map(|planned| DerivedMove {
@@ -189,18 +190,25 @@ fn moves(plan: &AxisPlan) -> Vec<DerivedMove> {
             start_s: planned.start_s,
             duration_s: planned.profile.duration_s(),
             steps: planned.profile.steps(),
-            detail: detail(&planned.profile),
+            detail: detail(&planned.profile, limit_steps_s),
         })
         .collect()
 }
 
 /// What a user wants to know of a move beside its times.
-fn detail(profile: &Profile) -> String {
+fn detail(profile: &Profile, limit_steps_s: f64) -> String {
+    let peaks = profile.peaks();
+    let peaks =
+        format!("peak {} steps/s, {} steps/s\u{b2}", grouped(peaks.speed), grouped(peaks.acceleration));
     match profile {
-        Profile::Trapezoid(_) | Profile::Cosine(_) => {
-            let peaks = profile.peaks();
-            format!("peak {} steps/s, {} steps/s\u{b2}", grouped(peaks.speed), grouped(peaks.acceleration))
-        }
+        Profile::Trapezoid(_) => peaks,
+        Profile::Cosine(cosine) => match cosine.longest_ramp_s(limit_steps_s) {
+            Some(longest_s) => {
+                let longest_s = longest_s.min(profile.duration_s() / 2.0);
+                format!("{peaks}; with a ramp of up to {longest_s:.4} s the bus can still follow")
+            }
+            None => peaks,
+        },
         Profile::TrapezoidTable(table) => {
             format!("peak {} steps/s, table of {} rows", grouped(profile.peaks().speed), table.rows())
         }
@@ -210,7 +218,14 @@ fn detail(profile: &Profile) -> String {
                 .iter()
                 .map(|segment| format!("{:.2}\u{b0} {}/s", segment.from_deg, grouped(segment.rate)))
                 .collect();
-            format!("{} segments a quarter: {}", sine.segments().len(), points.join(", "))
+            let memory = sine.memory();
+            format!(
+                "{} segments a quarter: {}; {} bytes, against {} with an interval a step",
+                sine.segments().len(),
+                points.join(", "),
+                grouped(memory.segments as f64),
+                grouped(memory.intervals as f64)
+            )
         }
         Profile::Constant(_) | Profile::Dwell(_) => String::new(),
     }
