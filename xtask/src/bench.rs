@@ -36,13 +36,13 @@ struct Effort {
 }
 
 const FULL: Effort = Effort {
-    blocks: 15,
-    rounds: 8,
+    blocks: 10,
+    rounds: 12,
     criterion: ["--sample-size", "30", "--warm-up-time", "0.5", "--measurement-time", "2"],
 };
 const QUICK: Effort = Effort {
     blocks: 4,
-    rounds: 5,
+    rounds: 6,
     criterion: ["--sample-size", "10", "--warm-up-time", "0.1", "--measurement-time", "0.4"],
 };
 
@@ -58,7 +58,7 @@ pub(crate) async fn run(quick: bool) -> Result<()> {
     crate::page::wasm(&tools, FOLDER, &package).await?;
     criterion(&home.join("criterion"), effort.criterion).await?;
 
-    println!("{} blocks of {} rounds, native and in the browser", effort.blocks, effort.rounds);
+    println!("measuring {} blocks of {} rounds, native and in the browser", effort.blocks, effort.rounds);
     let mut page = Page::open(&browser, &root().join(FOLDER).join("page"), &package, &home).await?;
     let mut blocks = Vec::new();
     for _ in 0..effort.blocks {
@@ -68,6 +68,11 @@ pub(crate) async fn run(quick: bool) -> Result<()> {
         });
     }
     print!("\n{}", table::tables(&blocks, |kernel| estimate(&home.join("criterion"), kernel))?);
+    println!(
+        "\nTimes are criterion's medians ± their median absolute deviation. Ratios are of speeds, a unit each: of the \
+         best calls in a block of {} rounds,\nthe median of {} blocks ± its median absolute deviation.",
+        effort.rounds, effort.blocks
+    );
     Ok(())
 }
 
@@ -77,8 +82,8 @@ async fn criterion(home: &Path, effort: [&str; 6]) -> Result<()> {
     if home.exists() {
         std::fs::remove_dir_all(home).with_context(|| format!("{} can't be removed", home.display()))?;
     }
-    let mut command = kernels();
-    command.arg("--noplot").args(effort).env("CRITERION_HOME", home);
+    let mut command = kernels(&[]);
+    command.args(["--noplot", "--quiet"]).args(effort).env("CRITERION_HOME", home);
     run::to_end(command, run::LIMIT).await
 }
 
@@ -93,17 +98,17 @@ fn estimate(home: &Path, kernel: &str) -> Result<Estimate> {
 async fn native(home: &Path, rounds: u32) -> Result<Vec<Report>> {
     let path = home.join("native.json");
     let file = File::create(&path).with_context(|| format!("{} can't be written", path.display()))?;
-    let mut command = kernels();
+    let mut command = kernels(&["--quiet"]);
     command.args(["--rounds", &rounds.to_string()]).stdout(file);
     run::to_end(command, run::LIMIT).await?;
     let text = std::fs::read_to_string(&path).with_context(|| format!("{} can't be read", path.display()))?;
     Report::all_from_json(&text)
 }
 
-/// A call of the kernels as native code, to which their own arguments can be added.
-fn kernels() -> Command {
+/// A call of the kernels as native code with cargo's `options`, to which their own can be added.
+fn kernels(options: &[&str]) -> Command {
     let mut command = toolchain::cargo();
-    command.args(["bench", "--quiet", "--package", PACKAGE, "--features", "criterion"]);
-    command.args(["--bench", "kernels", "--locked", "--"]);
+    command.args(["bench", "--package", PACKAGE, "--features", "criterion", "--bench", "kernels"]);
+    command.arg("--locked").args(options).arg("--");
     command
 }

@@ -113,7 +113,7 @@ impl Kernel {
                 ..run
             },
             Self::Digest => Facts { name: "digest", in_browser: true, browser_aim: Some(0.6), ..run },
-            Self::VariedStored => Facts { name: "varied_stored_trace", ..run },
+            Self::VariedStored => Facts { name: "varied_stored_trace", in_browser: true, ..run },
             Self::VariedDigest => Facts { name: "varied_digest", ..run },
             Self::Clock16 => Facts { name: "clock_16_mhz", ..plain },
             Self::Clock1 => Facts { name: "clock_1_mhz", ..clock },
@@ -208,7 +208,7 @@ impl Kernels {
         let stored = || Some(edges(&self.target));
         let (units, edges) = match kernel {
             Kernel::Roots | Kernel::StepTimes => (u64::from(STEPS), None),
-            Kernel::Write => (result, None),
+            Kernel::Write | Kernel::Copy => (result, None),
             Kernel::Digest => return self.work(Kernel::Stored),
             Kernel::VariedDigest => return self.work(Kernel::VariedStored),
             Kernel::Fast => (result, stored().map(|edges| edges * SHORT_RUNS)),
@@ -244,7 +244,8 @@ fn digest(experiment: &Experiment) -> u64 {
     digest.value()
 }
 
-/// The least that a planner of this ramp could do.
+/// The least that a planner of this ramp could do, with the square root of `libm`: on wasm a slow one,
+/// because it does not use the instruction there.
 fn roots(v0: f64, a: f64) -> f64 {
     (0..STEPS).map(|k| libm::sqrt(v0 * v0 + 2.0 * a * f64::from(k))).sum()
 }

@@ -101,12 +101,11 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
 pub(super) fn tables(blocks: &[Block], estimate: impl Fn(&str) -> Result<Estimate>) -> Result<String> {
     let first = blocks.first().context("nothing was measured")?;
     let mut native =
-        vec![["kernel", "a call (median)", "units", "edges", "speed (best calls)", "aim"].map(str::to_owned)];
+        vec![["kernel", "time of a call", "units", "edges of one signal", "ratio", "aim"].map(str::to_owned)];
     for kernel in &first.native {
         native.push(native_row(kernel, blocks, &estimate(&kernel.name)?)?);
     }
-    let mut browser =
-        vec![["kernel", "native (best)", "browser (best)", "speed (best calls)", "aim"].map(str::to_owned)];
+    let mut browser = vec![["kernel", "native, best", "browser, best", "ratio", "aim"].map(str::to_owned)];
     for kernel in &first.browser {
         browser.push(browser_row(kernel, blocks)?);
     }
