@@ -2,7 +2,7 @@
 import { byId, element, fill, say } from "./dom.js";
 import { count, si } from "./number.js";
 import { recolor } from "./plot.js";
-import { held } from "./state.js";
+import { held, isStale } from "./state.js";
 import { loadTheme, saveTheme } from "./storage.js";
 
 /** @typedef {import("./types.js").State} State */
@@ -53,7 +53,7 @@ export function createHeader({ presets, cancel, retry, dispatch, now }) {
     if (state.run.progress) progress.value = state.run.progress.cycle / Math.max(1, state.run.progress.end_cycle);
     say(byId("status"), status(state, long));
     say(byId("digest"), state.result?.summary.digest ?? "–");
-    byId("digest").classList.toggle("stale", state.result?.revision !== state.revision);
+    byId("digest").classList.toggle("stale", isStale(state));
     messages(state);
     document.title = state.scenario.title ? `${state.scenario.title} – Stepscope` : "Stepscope";
   }
@@ -68,6 +68,7 @@ function status(state, long) {
   if (!state.result) return state.run.phase === "running" ? "running…" : "no result yet";
   const { edges, end_s, faults } = state.result.summary;
   const parts = [`${count(edges)} edges`, si(end_s, "s"), `computed in ${si(state.result.ms / 1000, "s", 2)}`];
+  if (held(state) === "problems") parts.unshift("not run: the form needs attention; last result");
   if (faults.names.length) parts.push(`faults: ${faults.names.join(", ")}`);
   return parts.join(" · ");
 }

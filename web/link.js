@@ -4,6 +4,7 @@
  */
 import { byId, say } from "./dom.js";
 import { Dropped } from "./engine.js";
+import { held } from "./state.js";
 
 /** @typedef {import("./types.js").State} State */
 
@@ -44,23 +45,35 @@ export function createLink({ engine, dispatch, now }) {
     return `${location.origin}${location.pathname}${location.search}#${fragment}`;
   }
 
+  /** @param {string} full */
+  function place(full) {
+    // The mark tells a reload that the address only repeats the visitor's own work.
+    history.replaceState({ own: now().origin === "own" }, "", full);
+    written = location.hash;
+  }
+
   async function write() {
-    const revision = now().revision;
+    const { revision } = now();
+    if (held(now()) === "problems") return;
+    if (held(now()) === "unjudged") {
+      timer = window.setTimeout(write, SETTLE_MS);
+      return;
+    }
     try {
       const full = await address();
-      if (now().revision !== revision) return;
-      history.replaceState(null, "", full);
-      written = location.hash;
+      if (now().revision === revision) place(full);
     } catch {
       // A scenario that cannot be a link yet; its problems are shown where they are.
     }
   }
 
   async function copy() {
+    if (held(now()) === "problems") {
+      return dispatch({ type: "notice", notice: { kind: "error", text: "No link yet: fields of the form need other values; mend them, then copy." } });
+    }
     try {
       const full = await address();
-      history.replaceState(null, "", full);
-      written = location.hash;
+      place(full);
       try {
         await navigator.clipboard.writeText(full);
         flash();
@@ -81,6 +94,19 @@ export function createLink({ engine, dispatch, now }) {
     setTimeout(() => say(button, "Copy link"), 1500);
   }
 
+  /** The address at the page's start; after a reload it may only repeat the visitor's own work. @param {boolean} saved */
+  async function start(saved) {
+    if (!saved || history.state?.own !== true) return read();
+    written = location.hash;
+    await open(location.hash.replace(/^#/, ""));
+  }
+
+  /** Shows the time that a fragment asks for. @param {string} fragment */
+  async function open(fragment) {
+    const window = spanOf(await engine.ask("link_part", fragment, "v"));
+    if (window) dispatch({ type: "open", window });
+  }
+
   /** Reads the address; shows what it holds as a shared scenario, or says why it cannot. */
   async function read() {
     const fragment = location.hash.replace(/^#/, "");
@@ -97,8 +123,7 @@ export function createLink({ engine, dispatch, now }) {
         const name = scenario.title ? `“${scenario.title}”` : "a scenario";
         dispatch({ type: "notice", notice: { kind: "info", text: `Shared with you: ${name}. Your own work is kept; Undo brings it back.` } });
       }
-      const window = spanOf(await engine.ask("link_part", fragment, "v"));
-      if (window) dispatch({ type: "open", window });
+      await open(fragment);
     } catch (error) {
       if (!(error instanceof Dropped)) refuse(message(error));
     }
@@ -124,7 +149,7 @@ export function createLink({ engine, dispatch, now }) {
     // Standing by until the visitor changes something: an address without a link stays as it is.
     if (state.revision > 0 || written !== "" || viewOf(state) !== "") timer = window.setTimeout(write, SETTLE_MS);
   }
-  return { render, read };
+  return { render, start };
 }
 
 /** @param {unknown} error */

@@ -13,8 +13,8 @@ import { createPackets } from "./packets.js";
 import { load as loadCharts } from "./plot.js";
 import { createPulses } from "./pulses.js";
 import { createSpectrum } from "./spectrum.js";
-import { held, initial, update } from "./state.js";
-import { loadScenario, saveScenario } from "./storage.js";
+import { held, initial, isStale, update } from "./state.js";
+import { loadPrevious, loadScenario, saveScenario, setAside } from "./storage.js";
 import { createTabs } from "./tabs.js";
 
 /** @typedef {import("./types.js").State} State */
@@ -54,12 +54,16 @@ function follow(before) {
   if (before?.scenario !== scenario) {
     document.documentElement.dataset.state = "busy";
     judge();
-    if (state.origin === "own") saveScenario(JSON.stringify(scenario));
+    if (state.origin === "own") {
+      // An edited link or preset becomes the visitor's own work; what was so before is set aside.
+      if (before && before.origin !== "own") setAside();
+      saveScenario(JSON.stringify(scenario));
+    }
   }
   if (before?.judgement !== judgement || before?.approved !== approved || before?.drafts !== drafts) plan();
   const drawn = views.map((view) => view.render(state, before));
   byId("views").classList.toggle("empty", result === null);
-  byId("views").classList.toggle("dim", result !== null && result.revision !== state.revision && held(state) !== "unjudged" && state.run.phase !== "running");
+  byId("views").classList.toggle("dim", result !== null && isStale(state) && held(state) !== "unjudged" && state.run.phase !== "running");
   if (result && before?.result !== result) settle(Promise.allSettled(drawn));
   else if (state.run.phase === "failed") settle(Promise.resolve());
 }
@@ -117,12 +121,17 @@ async function samples() {
   };
 }
 
-/** The visitor's own scenario from an earlier visit, if it can still be read. @param {string} fallback */
+/**
+ * The state that an earlier visit left: the visitor's own scenario, also with problems in it, and the one
+ * that was set aside for it, which undo brings back.
+ * @param {string} fallback @returns {Promise<State>}
+ */
 async function own(fallback) {
-  const saved = loadScenario();
-  if (saved === null) return JSON.parse(fallback);
-  const { problems, scenario } = await engine.ask("check", saved);
-  return problems.length === 0 ? JSON.parse(scenario) : JSON.parse(fallback);
+  const read = async (/** @type {string} */ saved) => JSON.parse((await engine.ask("check", saved)).scenario);
+  const [saved, previous] = [loadScenario(), loadPrevious()];
+  if (saved === null) return initial(JSON.parse(fallback));
+  const past = previous === null || previous === saved ? [] : [{ scenario: await read(previous), origin: /** @type {const} */ ("own") }];
+  return { ...initial(await read(saved)), past };
 }
 
 async function start() {
@@ -133,7 +142,7 @@ async function start() {
     return;
   }
   const [fallback, presets, made] = await Promise.all([engine.ask("default_scenario"), engine.ask("presets"), samples(), loadCharts()]);
-  state = initial(await own(fallback));
+  state = await own(fallback);
   const page = { engine, dispatch, now: () => state };
   // Nothing is ever sent; Enter in a field must not try to.
   byId("form").addEventListener("submit", (event) => event.preventDefault());
@@ -141,7 +150,7 @@ async function start() {
   const retry = () => { ran = -1; judge(); };
   views = [createHeader({ presets, cancel, retry, ...page }), createForm({ root: byId("fields"), samples: made, dispatch }),
     createTabs(page), createMotion(page), createPulses(page), createPackets(page), createSpectrum(page), link];
-  await link.read();
+  await link.start(loadScenario() !== null);
   if (state.revision === 0) follow(undefined);
 }
 

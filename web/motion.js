@@ -161,7 +161,7 @@ function bandsOf(columns, name, scale) {
 
 /** Why the chart of the acceleration looks empty, if so. @param {MotionColumns} columns */
 function withoutAcceleration({ has_ideal, acceleration_min, acceleration_max, speed_min, speed_max }) {
-  if (!has_ideal) return "Packets and line scripts have no ideal curve, so no acceleration.";
+  if (!has_ideal) return "No motion is planned for this channel, so it has no ideal curve and no acceleration.";
   const still = (/** @type {number} */ value) => !(Math.abs(value) > 0);
   if (!acceleration_min.every(still) || !acceleration_max.every(still)) return "";
   const [low, high] = [Math.min(...speed_min), Math.max(...speed_max)];

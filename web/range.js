@@ -2,7 +2,7 @@
 import { byId, say } from "./dom.js";
 import { time } from "./motion.js";
 import { parseNumber } from "./number.js";
-import { shown } from "./state.js";
+import { endOf, shown } from "./state.js";
 import { zoom } from "./timeline.js";
 
 /** @typedef {import("./types.js").State} State */
@@ -28,7 +28,8 @@ export function createRange({ dispatch, now }) {
     if (wrong || "message" in start || "message" in end) return say(byId("window-error"), wrong);
     if (end.value <= start.value) return say(byId("window-error"), "“to” lies before “from”.");
     say(byId("window-error"), "");
-    dispatch({ type: "window", window: { start: start.value * clockHz, end: end.value * clockHz } });
+    const inRun = (/** @type {number} */ s) => Math.min(Math.max(0, s * clockHz), endOf(state));
+    dispatch({ type: "window", window: { start: inRun(start.value), end: inRun(end.value) } });
     fields(now());
   }
 

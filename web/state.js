@@ -89,11 +89,16 @@ const fresh = { window: null, packet: null, hover: null, cursors: { a: null, b: 
 
 /** @param {State} state @param {{path: string, value: any, joins?: boolean}} message */
 function edit(state, { path, value, joins = false }) {
-  const { [path]: _, ...drafts } = state.drafts;
+  const drafts = Object.fromEntries(Object.entries(state.drafts).filter(([at]) => !isWithin(at, path)));
   if (Object.is(get(state.scenario, path), value)) return { ...state, drafts };
   const joined = joins && state.edited === path;
   const before = joined ? state : remember(state);
   return { ...changed(before, set(state.scenario, path, value), "own"), drafts, edited: joins ? path : null };
+}
+
+/** Whether `path` is `outer` or a part of it: what was typed there goes with it. @param {string} path @param {string} outer */
+function isWithin(path, outer) {
+  return outer === "" || path === outer || path.startsWith(`${outer}.`) || path.startsWith(`${outer}[`);
 }
 
 /** @param {State} state @returns {State} */
@@ -170,6 +175,11 @@ export function held(state) {
   if (state.judged !== state.revision || !state.judgement) return "unjudged";
   if (state.judgement.problems.length > 0) return "problems";
   return state.judgement.cost?.over_budget && state.approved !== state.revision ? "budget" : null;
+}
+
+/** Whether the views show an earlier scenario than the form. @param {State} state */
+export function isStale(state) {
+  return state.result?.revision !== state.revision || Object.keys(state.drafts).length > 0;
 }
 
 /** `a.b[2].c` as its parts. @param {string} path @returns {string[]} */

@@ -1,6 +1,7 @@
 /** What this device keeps: the visitor's own scenario and the choice of colours. Storage may be refused; then nothing is kept. */
 
 const SCENARIO = "stepscope.scenario";
+const PREVIOUS = "stepscope.previous";
 const THEME = "stepscope.theme";
 
 /** @param {string} key @returns {string | null} */
@@ -24,6 +25,12 @@ function save(key, value) {
 export const loadScenario = () => load(SCENARIO);
 /** @param {string} json */
 export const saveScenario = (json) => save(SCENARIO, json);
+/** Keeps the saved scenario beside the one that is about to take its place. */
+export function setAside() {
+  const saved = load(SCENARIO);
+  if (saved !== null) save(PREVIOUS, saved);
+}
+export const loadPrevious = () => load(PREVIOUS);
 export const loadTheme = () => load(THEME);
 /** @param {string} theme */
 export const saveTheme = (theme) => save(THEME, theme);
