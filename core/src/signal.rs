@@ -136,6 +136,7 @@ pub trait Sink {
 
 /// A stored trace.
 impl Sink for Vec<Record> {
+    #[inline(always)]
     fn record(&mut self, record: Record) {
         self.push(record);
     }

@@ -172,6 +172,7 @@ impl Device {
         }
     }
 
+    #[inline(always)]
     fn input_deadline(&self) -> Instant {
         let last = Instant(self.now.0.saturating_sub(1));
         self.receiver.deadline(last, self.rx).min(self.unpacker.deadline())

@@ -75,7 +75,7 @@ impl Plan {
 
     fn rebuild(&mut self) {
         let counts = self.orders.map(|byte| Order::parse(byte).steps);
-        let right = pack(self.orders.map(|byte| u8::from(Order::parse(byte).right)));
+        let right = tops(u128::from_le_bytes(self.orders));
         let dir = Lines::from(right) << Levels::DIR_SHIFT & self.all_right;
         self.changes.clear();
         if self.config.dir_line == DirLine::PerChannel {
@@ -168,49 +168,55 @@ fn channels(fires: u16) -> impl Iterator<Item = Lines> {
 /// Which channels fire in a slot.
 ///
 /// `spread` fires in slot k if floor(((k+1)*c + h)/M) > floor((k*c + h)/M), h = floor(M/2): each
-/// channel keeps (k*c + h) mod M. `burst` fires if k < c.
+/// channel keeps r = (k*c + h) mod M and fires if r >= M - c. `burst` fires if k < c.
+///
+/// All channels go side by side in one number, a byte each. r, c, k and M are at most 127: with bit
+/// 7 set beforehand a subtraction takes nothing from the byte above, and bit 7 is left where it
+/// did not go below 0.
 struct Firing {
-    counts: [u8; MAX_CHANNELS],
-    remainders: [u8; MAX_CHANNELS],
+    /// c of each channel.
+    counts: u128,
+    /// r of each channel.
+    remainders: u128,
     slots: u8,
     distribution: Distribution,
 }
 
+/// A 1 in each byte.
+const ONES: u128 = u128::from_le_bytes([1; MAX_CHANNELS]);
+/// Bit 7 of each byte.
+const TOPS: u128 = ONES << 7;
+
 impl Firing {
     const fn new(counts: [u8; MAX_CHANNELS], slots: u8, distribution: Distribution) -> Self {
-        Self { counts, remainders: [slots / 2; MAX_CHANNELS], slots, distribution }
+        let remainders = u128::from_le_bytes([slots / 2; MAX_CHANNELS]);
+        Self { counts: u128::from_le_bytes(counts), remainders, slots, distribution }
     }
 
-    /// The channels that fire in slot `slot`; slots are asked for in order. Counts are at most
-    /// `slots` <= 127, so the sum below stays under 254.
+    /// The channels that fire in slot `slot`; slots are asked for in order.
     fn slot(&mut self, slot: u8) -> u16 {
-        let mut fires = [0_u8; MAX_CHANNELS];
         match self.distribution {
-            Distribution::Burst => {
-                for (fire, count) in fires.iter_mut().zip(self.counts) {
-                    *fire = u8::from(slot < count);
-                }
-            }
+            // c - (k + 1) >= 0
+            Distribution::Burst => tops((self.counts | TOPS) - (u128::from(slot) + 1) * ONES),
+            // r - (M - c) >= 0, which then is the next r; that of the others is M more.
             Distribution::Spread => {
-                for ((fire, remainder), count) in fires.iter_mut().zip(&mut self.remainders).zip(self.counts)
-                {
-                    let sum = *remainder + count;
-                    *fire = u8::from(sum >= self.slots);
-                    *remainder = if sum >= self.slots { sum - self.slots } else { sum };
-                }
+                let slots = u128::from(self.slots);
+                let rest = (self.remainders | TOPS) - (slots * ONES - self.counts);
+                let fires = rest & TOPS;
+                self.remainders = rest - fires - ((fires ^ TOPS) >> 7) * (128 - slots);
+                tops(fires)
             }
         }
-        pack(fires)
     }
 }
 
-/// Bit i of the result is byte i, each 0 or 1.
+/// Bit i of the result is bit 7 of byte i.
 ///
 /// The multiplication moves byte i's bit to bit 56 + i of its half; no two of them meet.
-fn pack(bits: [u8; MAX_CHANNELS]) -> u16 {
-    let all = u128::from_le_bytes(bits);
-    let half = |bytes: u64| (bytes.wrapping_mul(0x0102_0408_1020_4080) >> 56) as u16;
-    half(all as u64) | half((all >> 64) as u64) << 8
+fn tops(bytes: u128) -> u16 {
+    let bits = bytes >> 7 & ONES;
+    let half = |bits: u64| (bits.wrapping_mul(0x0102_0408_1020_4080) >> 56) as u16;
+    half(bits as u64) | half((bits >> 64) as u64) << 8
 }
 
 #[cfg(test)]
@@ -218,27 +224,31 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pack_puts_byte_i_into_bit_i() {
+    fn tops_puts_bit_7_of_byte_i_into_bit_i() {
         for value in [0, 1, 0x8000, 0xffff, 0xa5c3, 0x0180, 0x1234] {
-            let bits = core::array::from_fn(|i| (value >> i & 1) as u8);
-            assert_eq!(pack(bits), value);
+            let bytes = core::array::from_fn(|i| 0x7f | ((value >> i & 1) as u8) << 7);
+            assert_eq!(tops(u128::from_le_bytes(bytes)), value);
         }
     }
 
     #[test]
     fn every_count_fires_as_often_as_ordered_and_where_the_formula_says() {
         for slots in 1..=127_u8 {
-            for count in 0..=slots {
-                let mut counts = [0; MAX_CHANNELS];
-                counts[3] = count;
-                let (m, c, h) = (u32::from(slots), u32::from(count), u32::from(slots / 2));
+            for first in 0..=slots {
+                // Neighbours with other counts, the extremes among them: none may disturb another.
+                let others = [0, slots, 1, slots - 1, slots / 2, first / 2, slots - first];
+                let counts = core::array::from_fn(|i| if i % 2 == 0 { first } else { others[i / 2 % 7] });
+                let (m, h) = (u32::from(slots), u32::from(slots / 2));
                 let mut spread = Firing::new(counts, slots, Distribution::Spread);
                 let mut burst = Firing::new(counts, slots, Distribution::Burst);
                 for slot in 0..slots {
                     let k = u32::from(slot);
-                    let formula = ((k + 1) * c + h) / m > (k * c + h) / m;
-                    assert_eq!(spread.slot(slot), u16::from(formula) << 3, "{c} of {m}, slot {k}");
-                    assert_eq!(burst.slot(slot), u16::from(k < c) << 3, "{c} of {m}, slot {k}");
+                    let of = |fires: &dyn Fn(u32) -> bool| {
+                        (0..).zip(counts).map(|(i, c)| u16::from(fires(c.into())) << i).sum::<u16>()
+                    };
+                    let formula = of(&|c| ((k + 1) * c + h) / m > (k * c + h) / m);
+                    assert_eq!(spread.slot(slot), formula, "{counts:?} of {m}, slot {k}");
+                    assert_eq!(burst.slot(slot), of(&|c| k < c), "{counts:?} of {m}, slot {k}");
                 }
             }
         }

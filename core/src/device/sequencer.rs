@@ -103,7 +103,15 @@ impl Sequencer {
     }
 
     /// Cycle `now`.
+    #[inline(always)]
     pub(super) fn clock(&mut self, now: Instant, sink: &mut impl Sink) {
+        if self.deadline == now {
+            self.act(now, sink);
+        }
+    }
+
+    /// All that falls due in cycle `now`.
+    fn act(&mut self, now: Instant, sink: &mut impl Sink) {
         while self.deadline == now {
             match self.running {
                 Some(running) => self.follow(running, now, sink),

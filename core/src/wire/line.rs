@@ -52,6 +52,7 @@ impl Line {
     }
 
     /// Enters the cycle of [`Self::next_change`]: the level changes.
+    #[inline(always)]
     pub fn change(&mut self) {
         self.level = !self.level;
         self.look_ahead();
