@@ -24,6 +24,7 @@ mod drawing;
 mod editing;
 mod engine;
 mod hostile_links;
+mod keeping;
 mod links;
 mod native;
 mod pixels;

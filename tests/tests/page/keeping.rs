@@ -1,0 +1,67 @@
+//! Nothing that a visitor typed is lost: over a reload, behind a link, beside a field that is gone.
+
+use anyhow::{Result, ensure};
+
+use crate::{
+    bench::in_browser,
+    native::{Known, with_distance},
+};
+
+const DISTANCE: &str = "source.motion.axes[0].moves[0].cosine.distance";
+const SAVED: &str = "localStorage.getItem('stepscope.scenario') ?? ''";
+
+#[test]
+fn work_with_a_problem_in_it_survives_a_reload_and_is_no_link() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        page.fill("bus.queue_depth", "7").await?;
+        page.until(&format!("{SAVED}.includes('\"queue_depth\":7')")).await?;
+        page.ready().await?;
+        page.fill(DISTANCE, "0").await?;
+        page.until("document.querySelector('#status').textContent.startsWith('not run')").await?;
+        page.click("#copy-link").await?;
+        ensure!(
+            page.text("#link-message").await?.starts_with("No link yet"),
+            "a link of what does not stand"
+        );
+
+        page.open("").await?;
+        assert_eq!(page.field("bus.queue_depth").await?.value, "7");
+        assert_eq!(page.field(DISTANCE).await?.value, "0");
+        assert_eq!(page.text("#link-message").await?, "");
+        let mended = with_distance(500.0).replacen('{', r#"{"bus":{"queue_depth":7},"#, 1);
+        page.fill(DISTANCE, "500").await?;
+        page.until_digest(&Known::of(&mended)?.digest).await
+    })
+}
+
+#[test]
+fn work_from_before_an_edited_link_comes_back_by_undo_after_a_reload() -> Result<()> {
+    in_browser(|page| async move {
+        let (own, shared) = (Known::of(&with_distance(1234.0))?, Known::of(&with_distance(800.0))?);
+        page.open("").await?;
+        page.fill(DISTANCE, "1234").await?;
+        page.until_digest(&own.digest).await?;
+        page.open(&format!("#{}", shared.link)).await?;
+        page.until_digest(&shared.digest).await?;
+        page.fill(DISTANCE, "801").await?;
+        page.until_digest(&Known::of(&with_distance(801.0))?.digest).await?;
+
+        page.open("").await?;
+        page.until_digest(&Known::of(&with_distance(801.0))?.digest).await?;
+        page.click("#undo").await?;
+        page.until_digest(&own.digest).await
+    })
+}
+
+#[test]
+fn what_was_typed_into_a_field_that_is_gone_holds_nothing() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        page.fill("source.motion.axes[0].moves[0].cosine.duration_s", "zz").await?;
+        page.until("document.querySelector('#digest').classList.contains('stale')").await?;
+        page.choose("[data-path='source#kind']", "packets").await?;
+        page.until("!document.querySelector('#status').textContent.startsWith('not run')").await?;
+        page.ready().await
+    })
+}
