@@ -65,10 +65,11 @@ export function createHeader({ presets, cancel, retry, dispatch, now }) {
 function status(state, long) {
   const { progress } = state.run;
   if (long && progress) return `${Math.round((100 * progress.cycle) / Math.max(1, progress.end_cycle))} %, ${count(progress.records)} edges so far`;
-  if (!state.result) return state.run.phase === "running" ? "running…" : "no result yet";
+  const held_back = held(state) === "problems" ? "not run: the form needs attention" : "";
+  if (!state.result) return held_back || (state.run.phase === "running" ? "running…" : "no result yet");
   const { edges, end_s, faults } = state.result.summary;
   const parts = [`${count(edges)} edges`, si(end_s, "s"), `computed in ${si(state.result.ms / 1000, "s", 2)}`];
-  if (held(state) === "problems") parts.unshift("not run: the form needs attention; last result");
+  if (held_back) parts.unshift(`${held_back}; last result`);
   if (faults.names.length) parts.push(`faults: ${faults.names.join(", ")}`);
   return parts.join(" · ");
 }

@@ -62,7 +62,7 @@ function follow(before) {
   }
   if (before?.judgement !== judgement || before?.approved !== approved || before?.drafts !== drafts) plan();
   const drawn = views.map((view) => view.render(state, before));
-  byId("views").classList.toggle("empty", result === null);
+  byId("views").classList.toggle("blank", result === null);
   byId("views").classList.toggle("dim", result !== null && isStale(state) && held(state) !== "unjudged" && state.run.phase !== "running");
   if (result && before?.result !== result) settle(Promise.allSettled(drawn));
   else if (state.run.phase === "failed") settle(Promise.resolve());
