@@ -27,6 +27,8 @@ pub const MOST_JSON_BYTES: usize = 64 << 10;
 /// miniz_oxide's strongest level; part of what makes a scenario's link always the same.
 const DEFLATE_LEVEL: u8 = 10;
 const CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+/// Problems of a stranger's scenario that one message names.
+const MOST_TOLD: usize = 8;
 /// What a chat program or a sentence may have put behind a link.
 const TRAILING: &[char] = &['.', ',', ';', ':', '!', '?', ')', ']', '}', '>', '"', '\''];
 
@@ -85,8 +87,11 @@ impl fmt::Display for LinkError {
             ),
             Self::Scenario(problems) => {
                 f.write_str("the link's scenario has problems")?;
-                for (index, problem) in problems.iter().enumerate() {
+                for (index, problem) in problems.iter().take(MOST_TOLD).enumerate() {
                     write!(f, "{}{problem}", if index == 0 { ": " } else { "; " })?;
+                }
+                if let Some(more @ 1..) = problems.len().checked_sub(MOST_TOLD) {
+                    write!(f, "; and {more} more")?;
                 }
                 Ok(())
             }
@@ -264,6 +269,15 @@ mod tests {
         let bomb = link_of('z', &compress_to_vec(&alloc::vec![b' '; 10 << 20], DEFLATE_LEVEL));
         assert!(bomb.len() < MOST_FRAGMENT_BYTES, "{}", bomb.len());
         assert_eq!(decode(&bomb), Err(LinkError::Payload { most: MOST_JSON_BYTES }));
+    }
+
+    #[test]
+    fn a_message_names_some_problems_and_counts_the_others() {
+        let problem =
+            |count| Problem::new("bus.slots", crate::scenario::Cause::NotPowerOfTwo { given: count });
+        let told = |count| LinkError::Scenario((0..count).map(problem).collect()).to_string();
+        assert!(told(8).matches("bus.slots").count() == 8 && !told(8).contains("more"));
+        assert!(told(1000).matches("bus.slots").count() == 8 && told(1000).ends_with("; and 992 more"));
     }
 
     #[test]
