@@ -1,7 +1,10 @@
 //! The 36 signals of the peripheral, the records of a trace, and the sink that takes them
 //! (DESIGN A3).
 
-use crate::units::Instant;
+use crate::{
+    protocol::{FrameFate, Reply},
+    units::Instant,
+};
 use alloc::vec::Vec;
 
 /// Most channels that one controller drives.
@@ -99,6 +102,21 @@ pub enum Event {
     },
     /// The byte just delivered completed a packet.
     Packet(Fate),
+    /// The byte just delivered completed a frame, or was one too many.
+    Frame(FrameFate),
+    /// The frame of this cycle is answered.
+    Reply {
+        /// Where the first start bit falls.
+        start: Instant,
+        /// Where DE falls.
+        end: Instant,
+        /// What is answered.
+        reply: Reply,
+    },
+    /// This controller drives the line while the host or another controller does.
+    Collision,
+    /// A tick with steps ended and none was there to follow (fault UNDERRUN).
+    Underrun,
     /// A tick began.
     TickStart,
     /// A tick ended.

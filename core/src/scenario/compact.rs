@@ -113,6 +113,7 @@ macro_rules! words {
 words! {
     super::Distribution { Burst = "burst", Spread = "spread", }
     super::DirLine { PerChannel = "per_channel", Common = "common", }
+    super::Protocol { Raw = "raw", Framed = "framed", }
     super::Pulses { Simultaneous = "simultaneous", Staggered = "staggered", }
     super::TrapezoidMethod { Table = "table", Exact = "exact", }
 }

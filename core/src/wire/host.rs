@@ -50,7 +50,8 @@ impl Schedule {
         schedule
     }
 
-    fn push(&mut self, start: Instant, bytes: &[u8]) {
+    /// Adds a send, after all others.
+    pub fn push(&mut self, start: Instant, bytes: &[u8]) {
         self.bytes.extend_from_slice(bytes);
         self.sends.push((start, self.bytes.len()));
     }

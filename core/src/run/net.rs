@@ -1,0 +1,186 @@
+//! Several controllers and their host on one line (DESIGN A9).
+//!
+//! A controller hears the AND of what the host and all other controllers send, and 1 while it sends
+//! itself; the host hears the controllers while it is not sending. A level that is forced is heard by
+//! all of them.
+//!
+//! The run goes from window to window. In a window nobody changes what he does to the line, so each
+//! controller runs through it alone, as fast as its own edges allow. A window ends where the host or
+//! a forced level changes, where a controller may begin or go on to drive, or where the host acts.
+
+use crate::{
+    device::Device,
+    signal::{Event, Record, Sink},
+    units::Instant,
+    wire::{Line, framed_host::FramedHost},
+};
+use alloc::vec::Vec;
+
+/// A line with all that is on it.
+#[derive(Clone, Debug)]
+pub(super) struct Net {
+    line: Line,
+    host: Option<FramedHost>,
+    stations: Vec<Station>,
+    /// The window that is run: its first cycle and the first one after it.
+    start: Instant,
+    until: Instant,
+    last_line: Instant,
+}
+
+/// A controller and what it hears of the others.
+#[derive(Clone, Debug)]
+struct Station {
+    device: Device,
+    hears: bool,
+    collides: bool,
+}
+
+/// Takes what no one asked for.
+struct Ignored;
+
+impl Sink for Ignored {
+    fn record(&mut self, _: Record) {}
+}
+
+impl Net {
+    pub(super) fn new(line: Line, host: Option<FramedHost>, devices: Vec<Device>) -> Self {
+        let station = |device| Station { device, hears: true, collides: false };
+        Self {
+            line,
+            host,
+            stations: devices.into_iter().map(station).collect(),
+            start: Instant::RESET,
+            until: Instant::RESET,
+            last_line: Instant::RESET,
+        }
+    }
+
+    pub(super) const fn line(&self) -> &Line {
+        &self.line
+    }
+
+    pub(super) const fn host(&self) -> Option<&FramedHost> {
+        self.host.as_ref()
+    }
+
+    pub(super) fn devices(&self) -> impl Iterator<Item = &Device> {
+        self.stations.iter().map(|station| &station.device)
+    }
+
+    /// Whether nothing can change any more.
+    pub(super) fn is_over(&self) -> bool {
+        self.is_silent() && self.stations.iter().all(|station| station.device.at_rest())
+    }
+
+    /// Whether nobody will touch the line but in answer to what is under way.
+    fn is_silent(&self) -> bool {
+        self.host.as_ref().is_none_or(FramedHost::is_over) && self.line.is_over()
+    }
+
+    /// First cycle that has not been run by all.
+    pub(super) fn now(&self) -> Instant {
+        let device = self.stations.iter().map(|station| station.device.now()).max();
+        let host = self.host.as_ref().map(|host| host.last_active().next());
+        device.max(host.filter(|_| self.start > Instant::RESET)).unwrap_or(Instant::RESET)
+    }
+
+    /// Enters cycle `self.start`: what each hears in it, and what the host does.
+    fn enter(&mut self, sinks: &mut [impl Sink]) {
+        let Self { line, host, stations, start, .. } = self;
+        let now = *start;
+        if line.next_change() == now {
+            line.change();
+        }
+        let host_sends = match host {
+            Some(host) => host.is_sending(now),
+            None => line.is_pulled_low(),
+        };
+        if let [station] = &mut stations[..] {
+            let driven = station.device.driven();
+            station.hears = line.heard(true);
+            collide(station, driven.is_some() && host_sends, now, sinks.first_mut());
+            if let Some(host) = host {
+                let level = host.is_sending(now) || line.replied(driven.unwrap_or(true));
+                host.clock(now, level, line);
+            }
+            return;
+        }
+        let (mut low, mut driving) = (0, 0);
+        for station in stations.iter() {
+            let driven = station.device.driven();
+            low += u32::from(driven == Some(false));
+            driving += u32::from(driven.is_some());
+        }
+        for (index, station) in stations.iter_mut().enumerate() {
+            let driven = station.device.driven();
+            let others_low = low - u32::from(driven == Some(false));
+            station.hears = line.heard(others_low == 0);
+            let met = driven.is_some() && (host_sends || driving > 1);
+            collide(station, met, now, sinks.get_mut(index));
+        }
+        if let Some(host) = host {
+            let level = host.is_sending(now) || line.replied(low == 0);
+            host.clock(now, level, line);
+        }
+    }
+
+    /// First cycle after the window that begins at `self.start`, at most `end`.
+    fn window(&self, end: Instant) -> Instant {
+        let line = if self.line.is_over() { Instant::NEVER } else { self.line.next_change() };
+        let host = self.host.as_ref().map_or(Instant::NEVER, |host| host.deadline_of_level(self.start));
+        let driven = |station: &Station| station.device.next_driven(station.hears);
+        self.stations.iter().map(driven).fold(line.min(host).min(end), Instant::min)
+    }
+
+    /// Runs to cycle `end`, or with [`Instant::NEVER`] until nothing can change any more, or until a
+    /// sink asks for a pause.
+    pub(super) fn run(&mut self, end: Instant, sinks: &mut [impl Sink]) {
+        loop {
+            if self.start == self.until {
+                if self.start >= end || (self.start > Instant::RESET && self.is_over()) {
+                    return;
+                }
+                self.enter(sinks);
+                self.until = self.window(end);
+            }
+            for (index, station) in self.stations.iter_mut().enumerate() {
+                let Station { device, hears, .. } = station;
+                match sinks.get_mut(index) {
+                    Some(sink) => device.run(*hears, self.until, sink),
+                    None => device.run(*hears, self.until, &mut Ignored),
+                }
+            }
+            let behind = |station: &Station| station.device.now() < self.until && !station.device.at_rest();
+            if self.stations.iter().any(behind) {
+                return;
+            }
+            self.start = self.until;
+            if self.until == Instant::NEVER {
+                return;
+            }
+        }
+    }
+
+    /// One cycle.
+    pub(super) fn clock(&mut self, sinks: &mut [impl Sink]) {
+        self.enter(sinks);
+        for (index, station) in self.stations.iter_mut().enumerate() {
+            let Station { device, hears, .. } = station;
+            match sinks.get_mut(index) {
+                Some(sink) => device.clock(*hears, sink),
+                None => device.clock(*hears, &mut Ignored),
+            };
+        }
+        self.start = self.start.next();
+        self.until = self.start;
+    }
+}
+
+/// Tells of a collision where it begins.
+fn collide(station: &mut Station, collides: bool, now: Instant, sink: Option<&mut impl Sink>) {
+    if collides && !station.collides && let Some(sink) = sink {
+        sink.event(now, Event::Collision);
+    }
+    station.collides = collides;
+}
