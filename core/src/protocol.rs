@@ -3,10 +3,13 @@
 //! stands in them, is in [`crate::wire::frame`].
 
 use alloc::vec::Vec;
+use core::fmt;
 use crc::{CRC_32_ISCSI, Crc};
 
 /// The check of a frame.
 pub(crate) const CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISCSI);
+/// Most ticks in one TICKS frame.
+pub const MOST_TICKS: u8 = 32;
 /// The end mark of a frame.
 pub const END: u8 = 0;
 
@@ -211,5 +214,37 @@ impl FrameFate {
             Self::Refused(reason) => Some(Err(reason)),
             Self::Foreign | Self::Short | Self::BadCheck { .. } | Self::Overlong => None,
         }
+    }
+}
+
+impl fmt::Display for FrameFate {
+    /// What became of the frame, as the page and the command's tables say it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Queued(1) => f.write_str("1 tick queued"),
+            Self::Queued(ticks) => write!(f, "{ticks} ticks queued"),
+            Self::Repeated => f.write_str("repeated: acknowledged, not queued again"),
+            Self::Taken(kind) => write!(f, "{} done", kind.name()),
+            Self::Refused(reason) => write!(f, "refused: {}", reason.name()),
+            Self::Foreign => f.write_str("another address"),
+            Self::Short => f.write_str("dropped: SHORT_PACKET"),
+            Self::BadCheck { found, expected } => {
+                write!(f, "dropped: CRC {found:08x} found, {expected:08x} expected")
+            }
+            Self::Overlong => f.write_str("dropped: OVERLONG"),
+        }
+    }
+}
+
+impl fmt::Display for Reply {
+    /// The reply, as the page and the command's tables say it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.answer {
+            Ok(kind) => write!(f, "ACK {}", kind.name())?,
+            Err(reason) => write!(f, "NAK {}", reason.name())?,
+        }
+        let Status { state, free, expected_seq, faults, ticks_done } = self.status;
+        let state = state.name();
+        write!(f, ": {state}, {free} free, seq {expected_seq}, faults {faults:#04x}, {ticks_done} ticks done")
     }
 }

@@ -94,6 +94,8 @@ pub enum Event {
     FramingError {
         /// Where its start bit was seen.
         seen: Instant,
+        /// Whether it drops a packet and what follows to the next gap, as on a raw line.
+        drops: bool,
     },
     /// A gap cut a packet short, or ended the ignoring of bytes.
     Gap {
@@ -118,7 +120,10 @@ pub enum Event {
     /// A tick with steps ended and none was there to follow (fault UNDERRUN).
     Underrun,
     /// A tick began.
-    TickStart,
+    TickStart {
+        /// What it orders, a byte a channel (A5).
+        orders: [u8; MAX_CHANNELS],
+    },
     /// A tick ended.
     TickEnd,
 }

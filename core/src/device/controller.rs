@@ -3,8 +3,8 @@
 
 use super::{Faults, drive::Drive, sequencer::Sequencer};
 use crate::{
-    scenario::Config,
     protocol::{FrameFate, Kind, Reason, Reply, State, Status},
+    scenario::Config,
     signal::{Event, Sink},
     units::Instant,
     wire::{

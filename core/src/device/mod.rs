@@ -88,9 +88,7 @@ impl Device {
             levels: Levels(0),
             receiver: Receiver::new(config.bit()),
             framing: match config.protocol {
-                Protocol::Raw => {
-                    Framing::Raw(Unpacker::new(config.channels, config.address, config.bit()))
-                }
+                Protocol::Raw => Framing::Raw(Unpacker::new(config.channels, config.address, config.bit())),
                 Protocol::Framed => Framing::Framed(Controller::new(config)),
             },
             drive: Drive::new(config),
@@ -145,10 +143,13 @@ impl Device {
             Some(Heard::Byte(byte)) => self.byte(byte, sink),
             Some(Heard::FramingError) => {
                 self.faults.set(Faults::FRAMING);
-                if let Framing::Raw(unpacker) = &mut self.framing {
+                let drops = if let Framing::Raw(unpacker) = &mut self.framing {
                     unpacker.framing_error(now);
-                }
-                sink.event(now, Event::FramingError { seen: self.receiver.seen() });
+                    true
+                } else {
+                    false
+                };
+                sink.event(now, Event::FramingError { seen: self.receiver.seen(), drops });
             }
             None => {}
         }
@@ -266,8 +267,8 @@ impl Device {
     }
 
     /// Runs until cycle `until` is the next, as fast as the edges allow, while the line stays at
-    /// `line`; with [`Instant::NEVER`], until nothing can change any more: then the last cycle run is
-    /// the last in which something did. Stops early where the sink asks for a pause.
+    /// `line`; with [`Instant::NEVER`], until nothing can change any more ([`Self::settle`] then tells
+    /// when that was). Stops early where the sink asks for a pause.
     #[inline(always)]
     pub fn run(&mut self, line: bool, until: Instant, sink: &mut impl Sink) {
         if self.now < until && (line != self.line || self.now == Instant::RESET) {
@@ -284,13 +285,19 @@ impl Device {
                 }
             }
             if quiet == Instant::NEVER {
-                self.now = self.last.max(self.sequencer.last_active()).next();
                 return;
             }
             self.now = quiet;
             if quiet < until {
                 self.clock(line, sink);
             }
+        }
+    }
+
+    /// At rest: takes back the cycles after the last one in which something happened.
+    pub fn settle(&mut self) {
+        if self.at_rest() {
+            self.now = self.last.max(self.sequencer.last_active()).next();
         }
     }
 

@@ -205,7 +205,7 @@ impl Sequencer {
     fn begin(&mut self, now: Instant, sink: &mut impl Sink) {
         self.deadline = Instant::NEVER;
         if let Some(tick) = self.queue.pop_front() {
-            sink.event(now, Event::TickStart);
+            sink.event(now, Event::TickStart { orders: tick });
             self.plan.set(tick);
             self.go_on(Running { c0: now, end: now + self.tick, next: 0 });
         }

@@ -25,7 +25,6 @@ pub(super) struct Net {
     /// The window that is run: its first cycle and the first one after it.
     start: Instant,
     until: Instant,
-    last_line: Instant,
 }
 
 /// A controller and what it hears of the others.
@@ -52,7 +51,6 @@ impl Net {
             stations: devices.into_iter().map(station).collect(),
             start: Instant::RESET,
             until: Instant::RESET,
-            last_line: Instant::RESET,
         }
     }
 
@@ -64,18 +62,20 @@ impl Net {
         self.host.as_ref()
     }
 
+    pub(super) fn first(&self) -> &Device {
+        // A net is made of one controller at least.
+        &self.stations[0].device
+    }
+
     pub(super) fn devices(&self) -> impl Iterator<Item = &Device> {
         self.stations.iter().map(|station| &station.device)
     }
 
     /// Whether nothing can change any more.
     pub(super) fn is_over(&self) -> bool {
-        self.is_silent() && self.stations.iter().all(|station| station.device.at_rest())
-    }
-
-    /// Whether nobody will touch the line but in answer to what is under way.
-    fn is_silent(&self) -> bool {
-        self.host.as_ref().is_none_or(FramedHost::is_over) && self.line.is_over()
+        self.host.as_ref().is_none_or(FramedHost::is_over)
+            && self.stations.iter().all(|station| station.device.at_rest())
+            && self.line.is_over()
     }
 
     /// First cycle that has not been run by all.
@@ -96,16 +96,6 @@ impl Net {
             Some(host) => host.is_sending(now),
             None => line.is_pulled_low(),
         };
-        if let [station] = &mut stations[..] {
-            let driven = station.device.driven();
-            station.hears = line.heard(true);
-            collide(station, driven.is_some() && host_sends, now, sinks.first_mut());
-            if let Some(host) = host {
-                let level = host.is_sending(now) || line.replied(driven.unwrap_or(true));
-                host.clock(now, level, line);
-            }
-            return;
-        }
         let (mut low, mut driving) = (0, 0);
         for station in stations.iter() {
             let driven = station.device.driven();
@@ -127,20 +117,21 @@ impl Net {
 
     /// First cycle after the window that begins at `self.start`, at most `end`.
     fn window(&self, end: Instant) -> Instant {
-        let line = if self.line.is_over() { Instant::NEVER } else { self.line.next_change() };
-        let host = self.host.as_ref().map_or(Instant::NEVER, |host| host.deadline_of_level(self.start));
         let driven = |station: &Station| station.device.next_driven(station.hears);
-        self.stations.iter().map(driven).fold(line.min(host).min(end), Instant::min)
+        let driven = self.stations.iter().map(driven).fold(Instant::NEVER, Instant::min);
+        let host = self.host.as_ref().map_or(Instant::NEVER, |host| host.deadline(self.start));
+        let others = driven.min(host);
+        // While nobody answers, what is forced to the level that the line has is not heard.
+        let over = others == Instant::NEVER && self.line.is_over();
+        let line = if over { Instant::NEVER } else { self.line.next_change() };
+        line.min(others).min(end)
     }
 
     /// Runs to cycle `end`, or with [`Instant::NEVER`] until nothing can change any more, or until a
     /// sink asks for a pause.
     pub(super) fn run(&mut self, end: Instant, sinks: &mut [impl Sink]) {
-        loop {
+        while self.until < end || self.start < self.until {
             if self.start == self.until {
-                if self.start >= end || (self.start > Instant::RESET && self.is_over()) {
-                    return;
-                }
                 self.enter(sinks);
                 self.until = self.window(end);
             }
@@ -156,9 +147,9 @@ impl Net {
                 return;
             }
             self.start = self.until;
-            if self.until == Instant::NEVER {
-                return;
-            }
+        }
+        if self.until == Instant::NEVER {
+            self.stations.iter_mut().for_each(|station| station.device.settle());
         }
     }
 
@@ -179,7 +170,10 @@ impl Net {
 
 /// Tells of a collision where it begins.
 fn collide(station: &mut Station, collides: bool, now: Instant, sink: Option<&mut impl Sink>) {
-    if collides && !station.collides && let Some(sink) = sink {
+    if collides
+        && !station.collides
+        && let Some(sink) = sink
+    {
         sink.event(now, Event::Collision);
     }
     station.collides = collides;

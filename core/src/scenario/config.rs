@@ -129,6 +129,12 @@ impl Config {
         Cycles(self.bit_cycles)
     }
 
+    /// The bit time of a receiver of `baud` (A4). A rate of 0 counts as 1 baud.
+    #[must_use]
+    pub fn bit_of(clock_hz: u32, baud: u32) -> Cycles {
+        Cycles(bit_cycles(clock_hz, baud.max(1)))
+    }
+
     /// Bytes of a packet: one a channel, and the address on an addressed raw line. A frame has its
     /// address itself.
     #[must_use]

@@ -79,6 +79,14 @@ settings! {
     }
 }
 
+impl Controller {
+    /// Whether it has something to do.
+    #[must_use]
+    pub fn is_busy(&self) -> bool {
+        !self.axes.is_empty() || !self.packets.is_empty()
+    }
+}
+
 settings! {
     /// The tick sequencer and its driver bus (DESIGN A7).
     pub struct Bus {
@@ -386,7 +394,9 @@ impl ScriptedSend {
     /// The bytes that go over the line.
     #[must_use]
     pub fn wire(&self) -> Vec<u8> {
-        self.frame.as_ref().map_or_else(|| self.bytes.0.clone(), |Hex(content)| crate::protocol::seal(content))
+        self.frame
+            .as_ref()
+            .map_or_else(|| self.bytes.0.clone(), |Hex(content)| crate::protocol::seal(content))
     }
 }
 

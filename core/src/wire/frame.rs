@@ -10,7 +10,7 @@
 
 use super::packet::Tick;
 use crate::protocol::CHECK;
-pub use crate::protocol::{END, Kind, Reason, Reply, State, Status, seal};
+pub use crate::protocol::{END, Kind, MOST_TICKS, Reason, Reply, State, Status, seal};
 use crate::signal::MAX_CHANNELS;
 use alloc::vec::Vec;
 use cobs::{DecodeResult, DecoderState};
@@ -21,8 +21,6 @@ const CHECK_LEN: usize = 4;
 const LEAST: usize = 2 + CHECK_LEN;
 /// Most decoded bytes of a frame.
 pub const MOST: usize = 600;
-/// Most ticks in one TICKS frame.
-pub const MOST_TICKS: u8 = 32;
 /// Bytes of a status.
 pub const STATUS_LEN: usize = 9;
 /// Most bytes of a reply on the wire: a NAK in COBS with its end mark.
@@ -317,7 +315,11 @@ mod tests {
         assert_eq!(verdicts(&owed), [(600, "check")], "599 bytes, the last zero is not owed");
         let mut owed: Vec<u8> = [2, 1].repeat(300);
         owed.extend([2, 1, 0, 2, 1, 0]);
-        assert_eq!(verdicts(&owed), [(601, "overlong"), (605, "short")], "the 600th is a zero, the next is too many");
+        assert_eq!(
+            verdicts(&owed),
+            [(601, "overlong"), (605, "short")],
+            "the 600th is a zero, the next is too many"
+        );
         // 254 + 254 + 92 bytes are 600; the code after them owes a zero, the 601st.
         let mut full = Vec::new();
         for len in [254_usize, 254, 92] {

@@ -236,14 +236,14 @@ impl FramedHost {
         matches!(self.phase, Phase::Sending { end, .. } if now < end)
     }
 
-    /// Next cycle after `now` in which it does something while it hears `level`;
-    /// [`Instant::NEVER`] when it is over.
+    /// Next cycle after `now`, the last one that it was clocked in, in which it does something while
+    /// it hears the same level; [`Instant::NEVER`] when it is over.
     #[must_use]
-    pub fn deadline(&self, now: Instant, level: bool) -> Instant {
+    pub fn deadline(&self, now: Instant) -> Instant {
         match self.phase {
             Phase::Pausing { until } => until,
             Phase::Sending { end, .. } => end,
-            Phase::Waiting { until, .. } => until.min(self.receiver.deadline(now, level)),
+            Phase::Waiting { until, .. } => until.min(self.receiver.deadline(now, self.heard)),
             Phase::Over => Instant::NEVER,
         }
     }
@@ -315,9 +315,8 @@ impl FramedHost {
                 peer.progress = Progress::GivenUp(GivenUp::NoReply);
             }
         }
-        let open = |(_, peer): &(usize, &Peer)| {
-            !matches!(peer.progress, Progress::Done | Progress::GivenUp(_))
-        };
+        let open =
+            |(_, peer): &(usize, &Peer)| !matches!(peer.progress, Progress::Done | Progress::GivenUp(_));
         let waiting = || self.peers.iter().enumerate().filter(open);
         let urgent = waiting()
             .filter(|(_, peer)| peer.ready_at <= now)
@@ -447,8 +446,9 @@ impl Peer {
         }
         if self.left() == 0 {
             self.progress = Progress::Confirming;
-            // Those that wait, and the one that runs.
-            return self.queued(self.free) + self.job.tick;
+            // Those that wait, and one for the tick that runs.
+            let waiting = self.queued(self.free);
+            return Cycles(waiting.0 + self.job.tick.0);
         }
         let wanted = self.most.min(self.left());
         let missing = wanted.saturating_sub(self.free);

@@ -116,9 +116,10 @@ impl Line {
 
     #[inline(always)]
     fn look_ahead(&mut self) {
-        let force = self.forced.get(self.passed).map_or(Instant::NEVER, |forced| {
-            if self.force.is_some() { forced.end } else { forced.start }
-        });
+        let force = self
+            .forced
+            .get(self.passed)
+            .map_or(Instant::NEVER, |forced| if self.force.is_some() { forced.end } else { forced.start });
         self.next = self.sender.next_edge().min(force);
     }
 }
@@ -158,7 +159,7 @@ mod tests {
     fn changes(sends: &[(u64, &[u8])], forced: &[(u64, u64, bool)], clock_hz: u32, baud: u32) -> Vec<u64> {
         let sends = sends
             .iter()
-            .map(|(start, bytes)| ScriptedSend { start_cycle: *start, bytes: Hex(bytes.to_vec()) })
+            .map(|(start, bytes)| ScriptedSend { start_cycle: *start, bytes: Hex(bytes.to_vec()), frame: None })
             .collect();
         let schedule = Schedule::scripted(&LineScript { sends });
         let forced: Vec<Forced> = forced
