@@ -76,7 +76,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         file.finish(finished.cycles().0).map_err(|error| Failure::File(path, error))?;
     }
     if let Some(file) = &arguments.line {
-        let text = scripted(scenario.clone(), &experiment).to_json();
+        let text = scripted(scenario.clone(), &finished).to_json();
         let failed = |error| Failure::File(file.clone(), error);
         let mut out = files::create(file).map_err(failed)?;
         writeln!(out, "{text}").and_then(|()| out.flush()).map_err(failed)?;
@@ -105,11 +105,11 @@ fn open(arguments: &Arguments, experiment: &Experiment) -> Result<Files, Failure
 }
 
 /// The scenario with its host's schedule as its source (DESIGN A9).
-fn scripted(mut scenario: Scenario, experiment: &Experiment) -> Scenario {
-    let sends = experiment
+fn scripted(mut scenario: Scenario, run: &Run) -> Scenario {
+    let sends = run
         .schedule()
         .iter()
-        .map(|send| ScriptedSend { start_cycle: send.start.0, bytes: Hex(send.bytes.to_vec()) })
+        .map(|send| ScriptedSend { start_cycle: send.start.0, bytes: Hex(send.bytes.to_vec()), frame: None })
         .collect();
     scenario.source = Source::Line(LineScript { sends });
     scenario

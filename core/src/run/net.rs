@@ -142,7 +142,10 @@ impl Net {
                     None => device.run(*hears, self.until, &mut Ignored),
                 }
             }
-            let behind = |station: &Station| station.device.now() < self.until && !station.device.at_rest();
+            let behind = |station: &Station| {
+                let rests = self.until == Instant::NEVER && station.device.at_rest();
+                station.device.now() < self.until && !rests
+            };
             if self.stations.iter().any(behind) {
                 return;
             }

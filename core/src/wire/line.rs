@@ -159,7 +159,11 @@ mod tests {
     fn changes(sends: &[(u64, &[u8])], forced: &[(u64, u64, bool)], clock_hz: u32, baud: u32) -> Vec<u64> {
         let sends = sends
             .iter()
-            .map(|(start, bytes)| ScriptedSend { start_cycle: *start, bytes: Hex(bytes.to_vec()), frame: None })
+            .map(|(start, bytes)| ScriptedSend {
+                start_cycle: *start,
+                bytes: Hex(bytes.to_vec()),
+                frame: None,
+            })
             .collect();
         let schedule = Schedule::scripted(&LineScript { sends });
         let forced: Vec<Forced> = forced
