@@ -76,6 +76,9 @@ impl Scenario {
             Source::Line(script) => self.script(script, &mut judge),
         }
         self.analysis(&mut judge);
+        if let Some(driver) = &self.driver {
+            driver.judge(&mut judge);
+        }
         judge.end(()).and_then(|()| {
             Ok(Checked {
                 config: config.ok_or_else(Vec::new)?,
