@@ -3,6 +3,7 @@
 use crate::{
     failure::Failure,
     files::{self, Files, Out, Output, Outputs},
+    timing,
 };
 use clap::Args;
 use std::{
@@ -46,6 +47,8 @@ pub(crate) struct Arguments {
     /// Run in its turn, it gives the same trace.
     #[arg(long, value_name = "FILE")]
     line: Option<PathBuf>,
+    #[command(flatten)]
+    timing: timing::Options,
 }
 
 impl Arguments {
@@ -57,6 +60,7 @@ impl Arguments {
             || self.packets.is_some()
             || self.line.is_some()
             || self.link
+            || self.timing.asked()
     }
 }
 
@@ -71,7 +75,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     let mut digest = Digest::default();
     let mut outputs = Outputs { digest: &mut digest, files: open(arguments, &experiment)? };
-    let finished = experiment.run(&mut outputs);
+    let mut timing = arguments.timing.check(path, &scenario)?;
+    let finished = experiment.run(&mut (&mut outputs, timing.as_mut()));
     for (path, file) in outputs.files {
         file.finish(finished.cycles().0).map_err(|error| Failure::File(path, error))?;
     }
@@ -83,7 +88,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let link = if arguments.link { Some(link::encode(&scenario).map_err(Failure::Link)?) } else { None };
     print(arguments, link, &digest, &finished, &experiment)
-        .map_err(|error| Failure::File(PathBuf::from("standard output"), error))
+        .map_err(|error| Failure::File(PathBuf::from("standard output"), error))?;
+    timing.map_or(Ok(()), |timing| arguments.timing.report(&timing, scenario.clock_hz))
 }
 
 /// The files that were asked for, each with its path.

@@ -182,6 +182,25 @@ impl<A: Sink, B: Sink> Sink for (A, B) {
     }
 }
 
+/// A sink that may be missing.
+impl<S: Sink> Sink for Option<S> {
+    fn record(&mut self, record: Record) {
+        if let Some(sink) = self {
+            sink.record(record);
+        }
+    }
+
+    fn event(&mut self, at: Instant, event: Event) {
+        if let Some(sink) = self {
+            sink.event(at, event);
+        }
+    }
+
+    fn paused(&self) -> bool {
+        self.as_ref().is_some_and(Sink::paused)
+    }
+}
+
 impl<S: Sink> Sink for &mut S {
     fn record(&mut self, record: Record) {
         (**self).record(record);

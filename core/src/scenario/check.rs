@@ -98,6 +98,9 @@ impl Scenario {
             Source::Line(script) => self.script(script, &mut judge),
         }
         self.analysis(&mut judge);
+        if let Some(driver) = &self.driver {
+            driver.judge(&mut judge);
+        }
         judge.end(()).and_then(|()| {
             Ok(Checked {
                 configs: config.into_iter().chain(further).collect(),

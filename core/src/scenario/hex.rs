@@ -26,12 +26,6 @@ impl<'de> Deserialize<'de> for Hex {
     }
 }
 
-impl super::Compact for Option<Hex> {
-    fn compact(&self) -> Value {
-        self.as_ref().map_or(Value::Null, super::Compact::compact)
-    }
-}
-
 impl super::Compact for Hex {
     fn compact(&self) -> Value {
         Value::from(HEXLOWER.encode(&self.0))

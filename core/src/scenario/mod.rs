@@ -14,6 +14,7 @@
 mod check;
 mod compact;
 mod config;
+mod drive;
 mod hex;
 mod judge;
 pub mod link;
@@ -26,6 +27,7 @@ pub use check::{Checked, END_OF_TIME, Forced, line_time};
 pub use compact::Compact;
 pub use config::Config;
 pub(crate) use config::most_baud;
+pub use drive::{Driver, DriverModel, TimingRules};
 pub use hex::Hex;
 pub use problem::{Cause, Problem};
 pub use quantity::{Acceleration, Direct, Distance, Mechanics, NoSuchUnit, Rotary, Screw, Speed, Wheel};
@@ -60,6 +62,8 @@ settings! {
         pub analysis: Analysis = Analysis::default(),
         /// Further controllers on the line, up to 31; `bus` and `line.address` describe the first.
         pub controllers: Vec<Controller> = Vec::new(),
+        /// The driver that the pulses are checked against; without it they are not checked.
+        pub driver: Option<Driver> = None,
     }
 }
 

@@ -1,10 +1,12 @@
 //! Scenarios of the right types with any numbers in them: most are refused, some are huge.
 
 use proptest::prelude::*;
+use stepscope_core::analysis::drivers::DRIVERS;
 use stepscope_core::scenario::{
     Acceleration, Analysis, Axis, Bus, Constant, Controller, Cosine, DirLine, Direct, Distance, Distribution,
-    Dwell, Glitch, Hex, Host, Line, LineScript, Mechanics, Motion, Move, Noise, Packets, Protocol, Pulses,
-    Rotary, Scenario, Screw, ScriptedSend, SineSegments, Source, Speed, Trapezoid, TrapezoidMethod, Wheel,
+    Driver, Dwell, Glitch, Hex, Host, Line, LineScript, Mechanics, Motion, Move, Noise, Packets, Protocol,
+    Pulses, Rotary, Scenario, Screw, ScriptedSend, SineSegments, Source, Speed, TimingRules, Trapezoid,
+    TrapezoidMethod, Wheel,
 };
 
 /// Any scenario of this version that JSON can carry: no number in it is infinite or none at all.
@@ -12,26 +14,30 @@ pub fn typed() -> impl Strategy<Value = Scenario> {
     let texts = (text(), text());
     let analysis = (small_or_any(0), small_or_any(40), small_or_any(4096));
     let line = (line(), controllers());
-    (texts, small_or_any(16_000_000), bus(), line, source(), any::<Option<u64>>(), analysis).prop_map(
+    let run = (any::<Option<u64>>(), prop::option::weighted(0.3, driver()));
+    (texts, small_or_any(16_000_000), bus(), line, source(), run, analysis).prop_map(
         |(
             (title, note),
             clock_hz,
             bus,
             (line, controllers),
             source,
-            run_cycles,
+            (run_cycles, driver),
             (axis, order, fft_length),
-        )| Scenario {
-            title,
-            note,
-            clock_hz,
-            bus,
-            line,
-            source,
-            run_cycles,
-            analysis: Analysis { axis, order, fft_length },
-            controllers,
-            ..Scenario::default()
+        )| {
+            Scenario {
+                title,
+                note,
+                clock_hz,
+                bus,
+                line,
+                source,
+                run_cycles,
+                analysis: Analysis { axis, order, fft_length },
+                controllers,
+                driver,
+                ..Scenario::default()
+            }
         },
     )
 }
@@ -101,6 +107,21 @@ fn bus() -> impl Strategy<Value = Bus> {
             }
         },
     )
+}
+
+fn driver() -> impl Strategy<Value = Driver> {
+    let models = prop::sample::select(DRIVERS.map(|sheet| sheet.model).to_vec());
+    let nanos = || small_or_any(0);
+    let rules = (nanos(), nanos(), nanos(), nanos(), nanos()).prop_map(
+        |(step_high_ns, step_low_ns, dir_setup_ns, dir_hold_ns, enable_wake_ns)| TimingRules {
+            step_high_ns,
+            step_low_ns,
+            dir_setup_ns,
+            dir_hold_ns,
+            enable_wake_ns,
+        },
+    );
+    prop_oneof![models.prop_map(Driver::Preset), rules.prop_map(Driver::Rules)]
 }
 
 fn line() -> impl Strategy<Value = Line> {
