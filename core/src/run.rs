@@ -19,7 +19,7 @@ pub use cost::{BUDGET_RECORDS, Cost};
 use crate::{
     device::Device,
     motion::AxisPlan,
-    scenario::{Cause, Checked, Config, END_OF_TIME, Problem, Protocol, Scenario, Source},
+    scenario::{Cause, Checked, Config, END_OF_TIME, Forced, Problem, Protocol, Scenario, Source},
     signal::{Event, Record, Sink},
     units::{Cycles, Instant},
     wire::{Line, Schedule, framed_host::FramedHost},
@@ -239,6 +239,13 @@ impl Run {
     #[must_use]
     pub fn schedule(&self) -> &Schedule {
         self.net.line().schedule()
+    }
+
+    /// The levels that have been forced on the line and will be as far as that is known, those of noise
+    /// among them, rising in time. Together with [`Self::schedule`] they are all that is done to the line.
+    #[must_use]
+    pub fn forced(&self) -> &[Forced] {
+        self.net.line().forced()
     }
 
     /// Cycles that have been run.

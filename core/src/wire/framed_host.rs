@@ -102,8 +102,10 @@ pub struct Counts {
     pub repeated: u64,
     /// Replies taken.
     pub replies: u64,
-    /// Replies that were not understood, or refused a frame.
+    /// What was heard and was no reply to the frame that waits for one.
     pub rejected: u64,
+    /// Replies that refused a frame.
+    pub refused: u64,
     /// How often the host died.
     pub deaths: u64,
 }
@@ -381,14 +383,14 @@ impl FramedHost {
             let Some(peer) = self.peers.get_mut(index) else { return };
             let reply = reply.filter(|reply| reply.address == peer.job.address && !missed);
             match reply.map(|reply| (reply.answer, reply.status)) {
-                Some((Ok(taken), status)) if taken == kind => {
+                Some((Ok(taken), status)) if taken == kind && peer.fits(kind, status) => {
                     self.counts.replies += 1;
                     (peer.attempts, peer.flush) = (0, false);
                     let wait = peer.acknowledge(kind, ticks, status, now);
                     self.pause(now, index, wait);
                 }
                 Some((Err(reason), _)) => {
-                    self.counts.rejected += 1;
+                    self.counts.refused += 1;
                     let wait = peer.refused(reason);
                     self.pause(now, index, wait);
                 }
@@ -414,6 +416,12 @@ impl Peer {
     /// Ticks that the queue still holds take so long.
     const fn queued(&self, free: u32) -> Cycles {
         Cycles((self.job.queue_depth as u64).saturating_sub(free as u64) * self.job.tick.0)
+    }
+
+    /// Whether a status can follow the frame that was sent. A late answer to the frame before tells of
+    /// another sequence number.
+    fn fits(&self, kind: Kind, status: Status) -> bool {
+        kind != Kind::Ticks || status.expected_seq == self.seq.wrapping_add(1)
     }
 
     /// Takes a reply to a frame that was taken; gives the time until the next one is due.

@@ -44,10 +44,24 @@ impl Line {
         self.look_ahead();
     }
 
-    /// Forces a level from `forced.start` on, after all that was forced before.
-    pub fn force(&mut self, forced: Forced) {
-        Rc::make_mut(&mut self.forced).push(forced);
+    /// Forces a level in cycles that are still to come; where another one is forced too, this one wins.
+    pub fn force(&mut self, new: Forced) {
+        let forced = Rc::make_mut(&mut self.forced);
+        let first = forced.partition_point(|one| one.end <= new.start);
+        let end = forced.partition_point(|one| one.start < new.end);
+        let met = forced.get(first..end).unwrap_or_default();
+        let before = met.first().filter(|one| one.start < new.start);
+        let after = met.last().filter(|one| one.end > new.end);
+        let before = before.map(|one| Forced { end: new.start, ..*one });
+        let after = after.map(|one| Forced { start: new.end, ..*one });
+        forced.splice(first..end, [before, Some(new), after].into_iter().flatten());
         self.look_ahead();
+    }
+
+    /// What has been forced and will be, as far as it is known: rising in time and not overlapping.
+    #[must_use]
+    pub fn forced(&self) -> &[Forced] {
+        &self.forced
     }
 
     /// Level in the current cycle as one hears it while all others together send `others`.
