@@ -17,9 +17,11 @@
 
 mod faults;
 mod plan;
+mod segments;
 mod sequencer;
 
 pub use faults::Faults;
+pub use segments::SegmentEngine;
 
 use crate::{
     scenario::Config,
