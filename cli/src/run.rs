@@ -132,17 +132,16 @@ fn print(
     if !arguments.status && arguments.asks_for_a_file() {
         return Ok(());
     }
-    let device = run.device();
     let channels = usize::from(experiment.config().channels());
-    let positions: Vec<String> = device.positions().iter().take(channels).map(i32::to_string).collect();
-    let faults: Vec<&str> = device.faults().names().collect();
+    let positions: Vec<String> = run.positions().iter().take(channels).map(i32::to_string).collect();
+    let faults: Vec<&str> = run.faults().names().collect();
     let faults = if faults.is_empty() { "none".into() } else { faults.join(" ") };
     writeln!(out, "digest {:016x}", digest.value())?;
     writeln!(out, "cycles {}", run.cycles().0)?;
     writeln!(out, "records {}", digest.records())?;
-    writeln!(out, "ticks_done {}", device.ticks_done())?;
+    writeln!(out, "ticks_done {}", run.ticks_done())?;
     writeln!(out, "positions {}", positions.join(" "))?;
-    writeln!(out, "faults {:#06x} {faults}", device.faults().bits())
+    writeln!(out, "faults {:#06x} {faults}", run.faults().bits())
 }
 
 fn read(path: &Path) -> io::Result<Vec<u8>> {

@@ -9,8 +9,8 @@
 //! below: units, signal, segment
 //! ```
 //!
-//! `device` never learns of motions and `motion` never of devices: they meet in ticks. `run` is
-//! the front that walks the whole line, from a scenario to its trace.
+//! `device` never learns of motions and `motion` never of devices: they meet in ticks and in
+//! segments. `run` is the front that walks the whole line, from a scenario to its trace.
 //!
 //! Invariants that hold everywhere: time is an integer count of clock cycles; nothing that decides
 //! an edge depends on the platform (transcendental functions come from `libm`); no panic is

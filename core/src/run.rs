@@ -15,11 +15,12 @@ mod cost;
 pub use cost::{BUDGET_RECORDS, Cost};
 
 use crate::{
-    device::Device,
+    device::{Device, Faults, SegmentEngine},
     motion::{self, AxisPlan},
-    quantise::ticks,
+    quantise::{exact_segments, ticks},
     scenario::{Cause, Checked, Config, END_OF_TIME, Problem, Scenario, Source, line_time},
-    signal::{Event, Record, Sink},
+    segment::{CheckedSegments, PulseTimes},
+    signal::{Event, MAX_CHANNELS, Record, Sink},
     units::{Cycles, Instant},
     wire::{Line, Schedule, host::carries},
 };
@@ -31,6 +32,8 @@ pub struct Experiment {
     checked: Checked,
     plans: Vec<AxisPlan>,
     schedule: Rc<Schedule>,
+    /// What the segment engine runs, where segments run the scenario; then the schedule is empty.
+    segments: Option<Rc<CheckedSegments>>,
     cost: Cost,
 }
 
@@ -45,6 +48,7 @@ impl Experiment {
         let plans = plan(scenario).map_err(|found| problems.extend(found)).ok();
         let Some(checked) = checked else { return Err(problems) };
         if !matches!(checked.source, Source::Line(_))
+            && !checked.source.runs_segments()
             && let Err(cause) = carries(&checked.config, checked.baud)
         {
             problems.push(Problem::new("line.baud", cause));
@@ -57,13 +61,20 @@ impl Experiment {
                 return Err(problems);
             }
         };
-        let cost = Cost::of(&checked, &schedule);
+        let segments = match segments(&checked, &plans) {
+            Ok(segments) => segments.map(Rc::new),
+            Err(problems) => return Err(problems),
+        };
+        let cost = match &segments {
+            Some(segments) => Cost::of_segments(segments, checked.run),
+            None => Cost::of(&checked, &schedule),
+        };
         if cost.end_cycle > END_OF_TIME {
             let cause =
                 Cause::TooMuch { given: cost.end_cycle as f64, most: END_OF_TIME as f64, of: "cycles" };
             return Err(alloc::vec![Problem::new("source", cause)]);
         }
-        Ok(Self { checked, plans, schedule: Rc::new(schedule), cost })
+        Ok(Self { checked, plans, schedule: Rc::new(schedule), segments, cost })
     }
 
     /// Reads, judges and prepares a scenario.
@@ -111,6 +122,12 @@ impl Experiment {
         &self.schedule
     }
 
+    /// What the segment engine runs; `None` where ticks run the scenario.
+    #[must_use]
+    pub fn segments(&self) -> Option<&CheckedSegments> {
+        self.segments.as_deref()
+    }
+
     /// What the run will cost.
     #[must_use]
     pub const fn cost(&self) -> Cost {
@@ -136,6 +153,7 @@ impl Experiment {
         let Checked { config, baud, forced, run, .. } = &self.checked;
         Run {
             device: Device::new(config),
+            engine: self.segments.clone().map(SegmentEngine::new),
             line: Line::new(Rc::clone(&self.schedule), forced, config.clock_hz(), *baud),
             end: run.map(|cycles| Instant(cycles.0)),
         }
@@ -162,30 +180,61 @@ impl Experiment {
 #[derive(Clone, Debug)]
 pub struct Run {
     device: Device,
+    /// Runs in place of the device, which then stays before cycle 0.
+    engine: Option<SegmentEngine>,
     line: Line,
     /// First cycle that is not run; without it the run ends when nothing can change any more.
     end: Option<Instant>,
 }
 
 impl Run {
-    /// The peripheral as it is now.
+    /// The peripheral as it is now; where segments run the scenario, a peripheral before cycle 0.
     #[must_use]
     pub const fn device(&self) -> &Device {
         &self.device
     }
 
+    /// Position counters (DESIGN A3).
+    #[must_use]
+    pub fn positions(&self) -> [i32; MAX_CHANNELS] {
+        self.engine.as_ref().map_or_else(|| self.device.positions(), SegmentEngine::positions)
+    }
+
+    /// Faults so far; segments have none.
+    #[must_use]
+    pub const fn faults(&self) -> Faults {
+        self.device.faults()
+    }
+
+    /// Ticks that have ended; segments have none.
+    #[must_use]
+    pub const fn ticks_done(&self) -> u32 {
+        self.device.ticks_done()
+    }
+
+    /// The cycle that comes next.
+    const fn now(&self) -> Instant {
+        match &self.engine {
+            Some(engine) => engine.now(),
+            None => self.device.now(),
+        }
+    }
+
     /// Cycles that have been run.
     #[must_use]
     pub const fn cycles(&self) -> Cycles {
-        Cycles(self.device.now().0)
+        Cycles(self.now().0)
     }
 
     /// Whether the run is over.
     #[must_use]
     pub fn is_done(&self) -> bool {
         match self.end {
-            Some(end) => self.device.now() >= end,
-            None => self.line.next_change() == Instant::NEVER && self.device.at_rest(),
+            Some(end) => self.now() >= end,
+            None => match &self.engine {
+                Some(engine) => engine.at_rest(),
+                None => self.line.next_change() == Instant::NEVER && self.device.at_rest(),
+            },
         }
     }
 
@@ -193,12 +242,20 @@ impl Run {
     /// end.
     pub fn advance(&mut self, records: u64, sink: &mut impl Sink) -> bool {
         let mut slice = Slice { sink, left: records };
-        self.device.run(&mut self.line, self.end.unwrap_or(Instant::NEVER), &mut slice);
+        let end = self.end.unwrap_or(Instant::NEVER);
+        match &mut self.engine {
+            Some(engine) => engine.run(end, &mut slice),
+            None => self.device.run(&mut self.line, end, &mut slice),
+        }
         self.is_done()
     }
 
     /// One cycle.
     pub fn clock(&mut self, sink: &mut impl Sink) {
+        if let Some(engine) = &mut self.engine {
+            engine.clock(sink);
+            return;
+        }
         if self.line.next_change() == self.device.now() {
             self.line.change();
         }
@@ -238,6 +295,8 @@ fn plan(scenario: &Scenario) -> Result<Vec<AxisPlan>, Vec<Problem>> {
 fn schedule(checked: &Checked, plans: &[AxisPlan]) -> Result<Schedule, Vec<Problem>> {
     let config = &checked.config;
     Ok(match &checked.source {
+        Source::Segments(_) => Schedule::default(),
+        Source::Motion(_) if checked.source.runs_segments() => Schedule::default(),
         Source::Motion(_) => {
             let ticks = ticks(plans, config.channels(), config.slots(), config.tick().0, config.clock_hz())?;
             let packet = |tick: &[u8]| config.address().into_iter().chain(tick.iter().copied()).collect();
@@ -246,6 +305,17 @@ fn schedule(checked: &Checked, plans: &[AxisPlan]) -> Result<Schedule, Vec<Probl
         Source::Packets(source) => Schedule::paced(config, source.packets.iter().map(|packet| &packet.0)),
         Source::Line(script) => Schedule::scripted(script),
     })
+}
+
+/// What the segment engine runs, if segments run the scenario.
+fn segments(checked: &Checked, plans: &[AxisPlan]) -> Result<Option<CheckedSegments>, Vec<Problem>> {
+    let config = &checked.config;
+    match &checked.source {
+        Source::Motion(_) if checked.source.runs_segments() => {
+            exact_segments(plans, config.channels(), PulseTimes::from(config), config.clock_hz()).map(Some)
+        }
+        _ => Ok(checked.segments.clone()),
+    }
 }
 
 #[cfg(test)]

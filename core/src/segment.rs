@@ -109,7 +109,7 @@ pub struct Refused {
 /// Invariant: every rule of DESIGN A8 holds for pulses of `pulse`, so no time in them leaves u64 and
 /// no two pulses of a channel meet.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SegmentLists {
+pub struct CheckedSegments {
     pulse: PulseTimes,
     lists: Vec<SegmentList>,
     steps: u64,
@@ -117,7 +117,7 @@ pub struct SegmentLists {
     end: Instant,
 }
 
-impl SegmentLists {
+impl CheckedSegments {
     /// Judges the lists of channels 0, 1, ….
     ///
     /// # Errors
@@ -246,7 +246,7 @@ mod tests {
 
     fn refusals(start: u64, segments: Vec<Segment>) -> Vec<(Option<usize>, Refusal)> {
         let list = SegmentList { start: Instant(start), segments };
-        let refused = SegmentLists::new(PULSE, vec![list], 100).err().unwrap_or_default();
+        let refused = CheckedSegments::new(PULSE, vec![list], 100).err().unwrap_or_default();
         refused.into_iter().map(|refused| (refused.segment, refused.refusal)).collect()
     }
 
@@ -306,11 +306,11 @@ mod tests {
             list(1, vec![Segment::Dwell(7)]),
             list(100, vec![turn(true)]),
         ];
-        let lists = SegmentLists::new(PULSE, lists, 100).unwrap();
+        let lists = CheckedSegments::new(PULSE, lists, 100).unwrap();
         assert_eq!((lists.steps(), lists.most_records()), (40, 1 + 80 + 2));
         assert_eq!(lists.end(), Instant(5 + 30 * 6 + 3));
         let many = vec![list(1, vec![]); 17];
-        let refused = SegmentLists::new(PULSE, many, 100).unwrap_err();
+        let refused = CheckedSegments::new(PULSE, many, 100).unwrap_err();
         assert_eq!(refused, [Refused { channel: 16, segment: None, refusal: Refusal::NoChannel }]);
     }
 }

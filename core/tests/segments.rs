@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use std::{collections::BTreeMap, rc::Rc};
 use stepscope_core::{
     device::SegmentEngine,
-    segment::{PulseTimes, Segment, SegmentList, SegmentLists},
+    segment::{CheckedSegments, PulseTimes, Segment, SegmentList},
     signal::{Levels, Record, Sink},
     units::{Cycles, Instant},
 };
@@ -102,7 +102,7 @@ proptest! {
         until in 1..3000_u64,
     ) {
         let (expected, positions) = model(pulse, &lists);
-        let lists = Rc::new(SegmentLists::new(pulse, lists, 9).expect("they keep the rules"));
+        let lists = Rc::new(CheckedSegments::new(pulse, lists, 9).expect("they keep the rules"));
         let end = expected.last().map_or(0, |record| record.cycle.0);
         prop_assert_eq!(lists.end().0, end);
         prop_assert!(lists.most_records() >= expected.len() as u64);

@@ -110,18 +110,17 @@ impl Outcome {
     pub fn of(go: impl FnOnce(&mut Keep) -> Run, channels: u8) -> Self {
         let mut keep = Keep::default();
         let run = go(&mut keep);
-        let device = run.device();
         let positions: Vec<String> =
-            device.positions().iter().take(channels.into()).map(i32::to_string).collect();
-        let faults: Vec<&str> = device.faults().names().collect();
+            run.positions().iter().take(channels.into()).map(i32::to_string).collect();
+        let faults: Vec<&str> = run.faults().names().collect();
         let faults = if faults.is_empty() { "none".into() } else { faults.join(" ") };
         let status = format!(
             "cycles {}\nrecords {}\nticks_done {}\npositions {}\nfaults {:#06x} {faults}\n",
             run.cycles().0,
             keep.digest.records(),
-            device.ticks_done(),
+            run.ticks_done(),
             positions.join(" "),
-            device.faults().bits()
+            run.faults().bits()
         );
         Self { digest: format!("{:016x}", keep.digest.value()), status, trace: keep.first }
     }

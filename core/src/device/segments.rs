@@ -19,7 +19,7 @@ mod earliest;
 mod falls;
 
 use crate::{
-    segment::{FRACTION_BITS, Segment, SegmentLists},
+    segment::{CheckedSegments, FRACTION_BITS, Segment},
     signal::{Levels, MAX_CHANNELS, Record, Sink},
     units::{Cycles, Instant},
 };
@@ -33,7 +33,7 @@ use falls::Falls;
 /// use std::rc::Rc;
 /// use stepscope_core::{
 ///     device::SegmentEngine,
-///     segment::{PulseTimes, Segment, SegmentList, SegmentLists},
+///     segment::{PulseTimes, Segment, SegmentList, CheckedSegments},
 ///     signal::Record,
 ///     units::{Cycles, Instant},
 /// };
@@ -41,7 +41,7 @@ use falls::Falls;
 /// let pulse = PulseTimes { width: Cycles(4), setup: Cycles(2), hold: Cycles(0) };
 /// let steps = Segment::Steps { count: 3, interval: 10 << 16, add: 0, right: true };
 /// let list = SegmentList { start: Instant(1), segments: vec![steps] };
-/// let lists = SegmentLists::new(pulse, vec![list], 1).expect("it keeps the rules");
+/// let lists = CheckedSegments::new(pulse, vec![list], 1).expect("it keeps the rules");
 /// let mut engine = SegmentEngine::new(Rc::new(lists));
 /// let mut trace: Vec<Record> = Vec::new();
 /// engine.run(Instant::NEVER, &mut trace);
@@ -50,7 +50,7 @@ use falls::Falls;
 /// ```
 #[derive(Clone, Debug)]
 pub struct SegmentEngine {
-    lists: Rc<SegmentLists>,
+    lists: Rc<CheckedSegments>,
     /// The cycle that the next call of `clock` is.
     now: Instant,
     levels: Levels,
@@ -119,7 +119,7 @@ impl Channel {
 impl SegmentEngine {
     /// An engine before cycle 0.
     #[must_use]
-    pub fn new(lists: Rc<SegmentLists>) -> Self {
+    pub fn new(lists: Rc<CheckedSegments>) -> Self {
         let mut due = Earliest::new(lists.lists().len());
         let channels = lists.lists().iter().enumerate().map(|(index, list)| {
             let mut channel = Channel {

@@ -8,6 +8,7 @@
 
 use crate::{
     scenario::{Checked, Config, DirLine, Pulses, Source, line_time},
+    segment::CheckedSegments,
     units::Cycles,
     wire::{Schedule, packet::Order},
 };
@@ -53,6 +54,12 @@ impl Cost {
             bytes,
             end_cycle: checked.run.map_or_else(|| last_cycle(schedule, checked), |Cycles(run)| run),
         }
+    }
+
+    /// What a run of segments costs: nothing is sent.
+    pub(super) fn of_segments(segments: &CheckedSegments, run: Option<Cycles>) -> Self {
+        let end_cycle = run.map_or(segments.end().0 + 1, |Cycles(run)| run);
+        Self { records: segments.most_records().min(end_cycle), sends: 0, bytes: 0, end_cycle }
     }
 }
 

@@ -5,6 +5,7 @@
 
 use super::{Cause, Config, Hex, LineScript, Packets, Problem, Scenario, Source, judge::Judge};
 use crate::{
+    segment::CheckedSegments,
     signal::MAX_CHANNELS,
     units::{Cycles, Instant},
 };
@@ -39,6 +40,8 @@ pub struct Checked {
     pub forced: Vec<Forced>,
     /// What the host sends; its motions are not judged yet.
     pub source: Source,
+    /// What the segment engine runs, where the source is segments.
+    pub segments: Option<CheckedSegments>,
     /// Length of the run, if it is given.
     pub run: Option<Cycles>,
 }
@@ -58,15 +61,18 @@ impl Scenario {
         }
         judge.length("title", self.title.chars().count(), 0, 120, "characters");
         judge.length("note", self.note.chars().count(), 0, 2000, "characters");
-        let config = judge.take(Config::new(self.clock_hz, &self.bus, &self.line));
+        let runs_segments = self.source.runs_segments();
+        let configure = if runs_segments { Config::of_segments } else { Config::new };
+        let config = judge.take(configure(self.clock_hz, &self.bus, &self.line));
         // Without a rate of its own the receiver has the host's, which is judged above.
-        if self.line.receiver_baud.is_some() {
+        if self.line.receiver_baud.is_some() && !runs_segments {
             judge.range("line.baud", self.line.baud, 1, self.clock_hz.max(1).into(), "baud");
         }
         if let Some(cycles) = self.run_cycles {
             judge.range("run_cycles", cycles, 1, END_OF_TIME, "cycles");
         }
         let forced = self.glitches(&mut judge);
+        let mut segments = None;
         match &self.source {
             Source::Motion(motion) => {
                 let most = usize::from(self.bus.channels).clamp(1, MAX_CHANNELS);
@@ -74,14 +80,17 @@ impl Scenario {
             }
             Source::Packets(packets) => self.packets(packets, &mut judge),
             Source::Line(script) => self.script(script, &mut judge),
+            Source::Segments(lists) => segments = judge.take(lists.check(&self.bus)),
         }
         self.analysis(&mut judge);
         judge.end(()).and_then(|()| {
             Ok(Checked {
                 config: config.ok_or_else(Vec::new)?,
-                baud: self.line.baud,
+                // Where nothing is sent it has not been judged.
+                baud: self.line.baud.max(1),
                 forced,
                 source: self.source.clone(),
+                segments,
                 run: self.run_cycles.map(Cycles),
             })
         })

@@ -24,7 +24,7 @@ macro_rules! plain {
         }
     )*};
 }
-plain!(u8, u16, u32, u64, String, Option<u8>, Option<u32>, Option<u64>);
+plain!(u8, u16, u32, u64, i64, String, Option<u8>, Option<u32>, Option<u64>);
 
 impl Compact for f64 {
     /// -0.0 equals 0.0, so it is written like it.
@@ -114,5 +114,7 @@ words! {
     super::Distribution { Burst = "burst", Spread = "spread", }
     super::DirLine { PerChannel = "per_channel", Common = "common", }
     super::Pulses { Simultaneous = "simultaneous", Staggered = "staggered", }
+    super::MotionEngine { Ticks = "ticks", Segments = "segments", }
+    super::ShortMove { Document = "document", TurnRound = "turn_round", }
     super::TrapezoidMethod { Table = "table", Exact = "exact", }
 }

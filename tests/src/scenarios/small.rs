@@ -76,7 +76,7 @@ fn source(peripheral: &Scenario) -> impl Strategy<Value = Source> + use<> {
     let channels = usize::from(peripheral.bus.channels);
     prop_oneof![
         2 => prop::collection::vec(axis(peripheral), 1..=channels.min(3))
-            .prop_map(|axes| Source::Motion(Motion { axes })),
+            .prop_map(|axes| Source::Motion(Motion { axes, ..Motion::default() })),
         2 => prop::collection::vec(packet(peripheral), 0..10)
             .prop_map(|packets| Source::Packets(Packets { packets })),
         3 => script(peripheral),

@@ -112,7 +112,7 @@ fn source() -> impl Strategy<Value = Source> {
     let send =
         (small_or_any(1), hex.clone()).prop_map(|(start_cycle, bytes)| ScriptedSend { start_cycle, bytes });
     prop_oneof![
-        4 => prop::collection::vec(axis(), 0..3).prop_map(|axes| Source::Motion(Motion { axes })),
+        4 => prop::collection::vec(axis(), 0..3).prop_map(|axes| Source::Motion(Motion { axes, ..Motion::default() })),
         1 => prop::collection::vec(hex, 0..20).prop_map(|packets| Source::Packets(Packets { packets })),
         1 => prop::collection::vec(send, 0..6).prop_map(|sends| Source::Line(LineScript { sends })),
     ]
