@@ -1,8 +1,10 @@
 //! Random scenarios, as proptest strategies that shrink: such as run and are over soon, and such as are only of the
 //! right types.
 
+mod segments;
 mod small;
 mod typed;
 
+pub use segments::segmented;
 pub use small::small;
 pub use typed::typed;

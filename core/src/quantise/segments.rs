@@ -147,8 +147,11 @@ mod tests {
         Move::Constant(Constant { distance, speed })
     }
 
-    /// Segments of one axis at 1 MHz, with intervals in whole cycles.
-    fn segments(moves: Vec<Move>) -> Vec<(u32, u64, i64, bool)> {
+    /// Steps, interval and growth in whole cycles, right.
+    type Plain = (u32, u64, i64, bool);
+
+    /// Segments of one axis at 1 MHz.
+    fn segments(moves: Vec<Move>) -> Vec<Plain> {
         let found = exact_segments(&[plan(moves)], 1, PULSE, 1_000_000).unwrap();
         let list = &found.lists()[0];
         assert_eq!(list.start, Instant(1));
@@ -163,7 +166,7 @@ mod tests {
     }
 
     /// Cycles of the steps, as the segments say.
-    fn cycles(segments: &[(u32, u64, i64, bool)]) -> Vec<u64> {
+    fn cycles(segments: &[Plain]) -> Vec<u64> {
         let mut cycles = Vec::new();
         let mut now = 0;
         for &(count, mut interval, add, _) in segments {
@@ -180,7 +183,7 @@ mod tests {
     fn steps_whose_intervals_differ_by_a_constant_share_a_segment() {
         let dwell = |duration_s| Move::Dwell(Dwell { duration_s });
         // The first step falls due half a period after the start.
-        let rows: [(Vec<Move>, &[(u32, u64, i64, bool)]); 4] = [
+        let rows: [(Vec<Move>, &[Plain]); 4] = [
             (vec![dwell(1.0)], &[]),
             (vec![constant(-1.0, 1000.0)], &[(1, 500, 0, false)]),
             (vec![constant(10.0, 1000.0)], &[(2, 500, 500, true), (8, 1000, 0, true)]),

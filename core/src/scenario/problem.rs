@@ -310,6 +310,7 @@ impl Cause {
                 | Self::Range { .. }
                 | Self::NotPowerOfTwo { .. }
                 | Self::NoSteps { .. }
+                | Self::NoSegmentSteps
         )
     }
 }

@@ -15,6 +15,9 @@ use crate::{
 };
 use alloc::{format, vec::Vec};
 
+/// Most segments of all channels together.
+const MOST_SEGMENTS: usize = 1_000_000;
+
 settings! {
     /// A list of segments for each channel; list i drives channel i.
     pub struct SegmentLists {
@@ -95,6 +98,8 @@ impl SegmentLists {
         let mut judge = Judge::default();
         let most = usize::from(bus.channels).clamp(1, MAX_CHANNELS);
         judge.length("source.segments.channels", self.channels.len(), 0, most, "lists of segments");
+        let total = self.channels.iter().map(|channel| channel.segments.len()).sum();
+        judge.length("source.segments.channels", total, 0, MOST_SEGMENTS, "segments");
         for (index, channel) in self.channels.iter().enumerate() {
             let at = format!("source.segments.channels[{index}]");
             judge.range(&format!("{at}.start_cycle"), channel.start_cycle, 1, LAST_CYCLE.0, "cycles");
