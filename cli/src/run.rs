@@ -42,8 +42,8 @@ pub(crate) struct Arguments {
     /// Write a table of the packets, with what the controller did with each.
     #[arg(long, value_name = "FILE")]
     packets: Option<PathBuf>,
-    /// Write the scenario with its source as a line script: every byte and the cycle it is sent in.
-    /// Run in its turn, it gives the same trace.
+    /// Write the scenario with its source as a line script: every byte and the cycle it is sent in;
+    /// or, where segments run it, as their lists. Run in its turn, it gives the same trace.
     #[arg(long, value_name = "FILE")]
     line: Option<PathBuf>,
 }
@@ -104,8 +104,12 @@ fn open(arguments: &Arguments, experiment: &Experiment) -> Result<Files, Failure
     Ok(opened)
 }
 
-/// The scenario with its host's schedule as its source (DESIGN A9).
+/// The scenario with its host's schedule as its source (DESIGN A9), or with its lists of segments.
 fn scripted(mut scenario: Scenario, experiment: &Experiment) -> Scenario {
+    if let Some(segments) = experiment.segments() {
+        scenario.source = Source::Segments(segments.into());
+        return scenario;
+    }
     let sends = experiment
         .schedule()
         .iter()

@@ -9,7 +9,7 @@ use super::{
     judge::{Judge, MOST_PROBLEMS},
 };
 use crate::{
-    segment::{self, LAST_CYCLE, PulseTimes, Refusal, Refused, SegmentList},
+    segment::{self, CheckedSegments, LAST_CYCLE, PulseTimes, Refusal, Refused, SegmentList},
     signal::MAX_CHANNELS,
     units::{Cycles, Instant},
 };
@@ -94,7 +94,7 @@ impl SegmentLists {
     ///
     /// # Errors
     /// Every problem, at the path of its segment.
-    pub(crate) fn check(&self, bus: &Bus) -> Result<segment::CheckedSegments, Vec<Problem>> {
+    pub(crate) fn check(&self, bus: &Bus) -> Result<CheckedSegments, Vec<Problem>> {
         let mut judge = Judge::default();
         let most = usize::from(bus.channels).clamp(1, MAX_CHANNELS);
         judge.length("source.segments.channels", self.channels.len(), 0, most, "lists of segments");
@@ -111,7 +111,7 @@ impl SegmentLists {
         }
         let pulse = PulseTimes::from(bus);
         let lists = self.channels.iter().take(MAX_CHANNELS).map(ChannelSegments::plain).collect();
-        match segment::CheckedSegments::new(pulse, lists, MOST_PROBLEMS) {
+        match CheckedSegments::new(pulse, lists, MOST_PROBLEMS) {
             Ok(lists) => judge.end(lists),
             Err(refused) => {
                 for Refused { channel, segment, refusal } in refused {
@@ -139,6 +139,23 @@ impl ChannelSegments {
             Segment::Dwell(dwell) => segment::Segment::Dwell(dwell.length_q16),
         });
         SegmentList { start: Instant(self.start_cycle), segments: segments.collect() }
+    }
+}
+
+impl From<&CheckedSegments> for SegmentLists {
+    /// The lists as a scenario writes them.
+    fn from(checked: &CheckedSegments) -> Self {
+        let segment = |each: &segment::Segment| match *each {
+            segment::Segment::Steps { count, interval, add, right } => {
+                Segment::Steps(StepSegment { count, interval_q16: interval, add_q16: add, dir: right.into() })
+            }
+            segment::Segment::Dwell(length_q16) => Segment::Dwell(DwellSegment { length_q16 }),
+        };
+        let channels = checked.lists().iter().map(|list| ChannelSegments {
+            start_cycle: list.start.0,
+            segments: list.segments.iter().map(segment).collect(),
+        });
+        Self { channels: channels.collect() }
     }
 }
 
