@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! scenario -> motion -> quantise -> wire -> device -> trace -> analysis -> run
-//! below: units, signal, segment
+//! below: units, signal, segment, protocol
 //! ```
 //!
 //! `device` never learns of motions and `motion` never of devices: they meet in ticks and in
@@ -35,6 +35,7 @@ pub mod analysis;
 
 pub mod run;
 
+pub mod protocol;
 pub mod segment;
 pub mod signal;
 pub mod units;

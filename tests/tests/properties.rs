@@ -82,7 +82,7 @@ fn by_hand(config: &Config, mut line: Line, cycles: Cycles, hurry: u64) -> (Left
         if line.next_change() == device.now() {
             line.change();
         }
-        device.clock(line.level(), &mut left);
+        device.clock(line.heard(true), &mut left);
         let horizon = line.next_change().0.min(cycles.0).saturating_sub(device.now().0);
         let quiet = device.quiet().map_or(horizon, |quiet| quiet.0.min(horizon));
         device.skip(Cycles((u128::from(quiet) * u128::from(hurry) / 100) as u64));

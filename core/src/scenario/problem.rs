@@ -234,6 +234,23 @@ pub enum Cause {
         /// What decides the least.
         pulse: PulseTimes,
     },
+    /// Two controllers of one address.
+    SameAddress {
+        /// The address.
+        address: u8,
+    },
+    /// Controllers that are paced together and have ticks of different lengths (A9).
+    OtherTick {
+        /// This one's tick in cycles.
+        tick_cycles: u64,
+        /// The first one's.
+        first_cycles: u64,
+    },
+    /// Fields that do not go together.
+    Conflict {
+        /// Which, why, and what to do.
+        detail: &'static str,
+    },
     /// More work than one run may be.
     TooMuch {
         /// How much.
@@ -442,6 +459,14 @@ impl fmt::Display for Cause {
                 if *step == 1 { "the start" } else { "the one before" },
                 Least(*pulse)
             ),
+            Self::SameAddress { address } => {
+                write!(f, "another controller has address {address} already; give each its own, 0 to 254")
+            }
+            Self::OtherTick { tick_cycles, first_cycles } => write!(
+                f,
+                "ticks of {tick_cycles} cycles beside ticks of {first_cycles} on the first controller; paced packets need one length (slots x step period): change one of them, or choose the framed protocol"
+            ),
+            Self::Conflict { detail } => f.write_str(detail),
             Self::TooMuch { given, most, of } => write!(
                 f,
                 "{} {of} are more than one run may have; at most {} are allowed: {}",
