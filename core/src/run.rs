@@ -251,7 +251,7 @@ impl Run {
     #[must_use]
     pub fn is_done(&self) -> bool {
         match self.end {
-            Some(end) => self.net.now() >= end,
+            Some(end) => self.net.has_reached(end),
             None => self.net.is_over(),
         }
     }

@@ -78,7 +78,12 @@ impl Net {
             && self.line.is_over()
     }
 
-    /// First cycle that has not been run by all.
+    /// Whether all have run the cycles before `end`.
+    pub(super) fn has_reached(&self, end: Instant) -> bool {
+        self.start >= end
+    }
+
+    /// First cycle that nobody has run.
     pub(super) fn now(&self) -> Instant {
         let device = self.stations.iter().map(|station| station.device.now()).max();
         let host = self.host.as_ref().map(|host| host.last_active().next());
