@@ -286,7 +286,7 @@ impl Run {
         match (&self.engine, self.end) {
             (Some(engine), Some(end)) => engine.now() >= end,
             (Some(engine), None) => engine.at_rest(),
-            (None, Some(end)) => self.net.now() >= end,
+            (None, Some(end)) => self.net.has_reached(end),
             (None, None) => self.net.is_over(),
         }
     }

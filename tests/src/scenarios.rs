@@ -2,9 +2,11 @@
 //! right types.
 
 mod segments;
+mod shared;
 mod small;
 mod typed;
 
 pub use segments::segmented;
+pub use shared::shared;
 pub use small::small;
 pub use typed::typed;

@@ -231,6 +231,8 @@ mod tests {
             (r#""line":{"receiver_baud":4000000000,"baud":4000000000}"#, true),
             (r#""bus":{"pulse_width_cycles":0}"#, false),
             (r#""bus":{"channels":0}"#, false),
+            (r#""line":{"protocol":"framed","receiver_baud":0}"#, true),
+            (r#""controllers":[{}],"line":{"address":0}"#, false),
         ];
         for (given, expected) in rows {
             let json = format!(r#"{{{given},"source":{{"segments":{{"channels":[]}}}}}}"#);
