@@ -191,10 +191,14 @@ impl Scenario {
         let paced = self.line.protocol == Protocol::Raw && !matches!(self.source, Source::Line(_));
         if let Some(first) = first.filter(|_| paced && configs.len() == self.controllers.len()) {
             for (index, config) in configs.iter().enumerate() {
+                let at = |field: &str| format!("controllers[{index}].bus.{field}");
                 let (tick_cycles, first_cycles) = (config.tick().0, first.tick().0);
                 if tick_cycles != first_cycles {
-                    let path = format!("controllers[{index}].bus.step_period_cycles");
-                    judge.add(path, Cause::OtherTick { tick_cycles, first_cycles });
+                    judge.add(at("step_period_cycles"), Cause::OtherTick { tick_cycles, first_cycles });
+                }
+                let (channels, first_channels) = (config.channels(), first.channels());
+                if channels != first_channels {
+                    judge.add(at("channels"), Cause::OtherPackets { channels, first_channels });
                 }
             }
         }

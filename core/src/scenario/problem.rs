@@ -239,6 +239,14 @@ pub enum Cause {
         /// The address.
         address: u8,
     },
+    /// Controllers of one raw line whose packets have different lengths: each consumes those for
+    /// others by its own (A5).
+    OtherPackets {
+        /// This one's channels.
+        channels: u8,
+        /// The first one's.
+        first_channels: u8,
+    },
     /// Controllers that are paced together and have ticks of different lengths (A9).
     OtherTick {
         /// This one's tick in cycles.
@@ -462,6 +470,10 @@ impl fmt::Display for Cause {
             Self::SameAddress { address } => {
                 write!(f, "another controller has address {address} already; give each its own, 0 to 254")
             }
+            Self::OtherPackets { channels, first_channels } => write!(
+                f,
+                "{channels} channels beside {first_channels} on the first controller; a raw packet has a byte a channel and no end mark, so all controllers of a raw line need as many: change one of them, or choose the framed protocol"
+            ),
             Self::OtherTick { tick_cycles, first_cycles } => write!(
                 f,
                 "ticks of {tick_cycles} cycles beside ticks of {first_cycles} on the first controller; paced packets need one length (slots x step period): change one of them, or choose the framed protocol"
