@@ -38,6 +38,7 @@ pub fn configs(modes: impl Strategy<Value = Mode>) -> impl Strategy<Value = Conf
             common_dir: mode.common_dir,
             staggered: mode.staggered,
             address: bus.address,
+            framed: false,
         };
         let room = pulse_room(&config);
         let shortest_period = match (config.common_dir, config.staggered) {

@@ -29,6 +29,7 @@ fn base() -> Config {
         common_dir: false,
         staggered: false,
         address: None,
+        framed: false,
     }
 }
 
