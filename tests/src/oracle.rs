@@ -20,6 +20,9 @@ mod orders;
 mod packets;
 mod sequencer;
 
+/// Lists of segments, and what a run of them leaves behind.
+pub mod segments;
+
 #[cfg(test)]
 mod tests;
 
@@ -30,6 +33,7 @@ pub use frames::{LONGEST_FRAME, cobs, crc32c, frame};
 pub use line::{Heard, bit_start, byte_start, hear, line_levels, stop_sample};
 pub use orders::kinds;
 pub use packets::packets_schedule;
+pub use segments::run_segments;
 pub use sequencer::fires;
 
 /// Fault bit 0 (A6's list): a stop bit was low.
