@@ -15,6 +15,12 @@ fn left(steps: u32, interval: u64, add: i64) -> Segment {
     Segment::Steps { steps, interval, add, dir: false }
 }
 
+/// A list, and the changes of DIR.
+type DirRow<'a> = (&'a [Segment], &'a [(u64, bool)]);
+
+/// A list with its start, and the segment and the rule by which it is refused.
+type JudgedRow = (u64, Vec<Segment>, Option<(Option<usize>, Rule)>);
+
 fn run_one(config: &Config, start: u64, list: &[Segment], cycles: u64) -> Run {
     run_segments(config, &[(start, list.to_vec())], cycles).expect("a list that is taken")
 }
@@ -56,7 +62,7 @@ fn each_step_comes_an_interval_after_the_one_before() {
 #[test]
 fn dir_changes_when_its_segment_begins_but_not_before_the_last_pulse_has_been_held() {
     let ten = 10 * ONE;
-    let rows: &[(&[Segment], &[(u64, bool)])] = &[
+    let rows: &[DirRow] = &[
         // "0 at the start"; "before the first pulse at next >> 16".
         (&[left(1, ten, 0)], &[]),
         (&[right(1, ten, 0)], &[(1, true)]),
@@ -109,7 +115,7 @@ fn a_list_is_refused_by_the_segment_that_breaks_a_rule() {
     let max = u64::MAX;
     let ten = 10 * ONE;
     let good = || left(2, ten, 0);
-    let rows: Vec<(u64, Vec<Segment>, Option<(Option<usize>, Rule)>)> = vec![
+    let rows: Vec<JudgedRow> = vec![
         (0, vec![good()], Some((None, StartBeforeCycle1))),
         (1, vec![good(), left(0, ten, 0)], Some((Some(1), NoSteps))),
         (1, vec![left(0, 0, 0)], Some((Some(0), NoSteps))),
