@@ -19,9 +19,16 @@ pub(crate) enum Failure {
     NoDriver(PathBuf),
     /// The timing check found this many violations, and none was to be.
     Violations(u64),
+    /// So many seeds of a campaign with the framed protocol went wrong, and none was to.
+    WrongSteps(u64),
 }
 
 impl Failure {
+    /// Standard output could not be written.
+    pub(crate) fn output(error: io::Error) -> Self {
+        Self::File(PathBuf::from("standard output"), error)
+    }
+
     /// The command's exit code.
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
@@ -29,7 +36,7 @@ impl Failure {
             Self::NotText(_) | Self::Scenario(..) | Self::Link(_) | Self::Preset(_) | Self::NoDriver(_) => {
                 ExitCode::from(2)
             }
-            Self::Violations(_) => ExitCode::from(3),
+            Self::Violations(_) | Self::WrongSteps(_) => ExitCode::from(3),
         }
     }
 }
@@ -59,6 +66,10 @@ impl fmt::Display for Failure {
             Self::Violations(count) => {
                 let s = if *count == 1 { "" } else { "s" };
                 write!(f, "{count} violation{s} of the driver's timing")
+            }
+            Self::WrongSteps(count) => {
+                let s = if *count == 1 { "" } else { "s" };
+                write!(f, "framed: wrong, doubled or missing ticks with {count} seed{s}")
             }
         }
     }

@@ -3,13 +3,12 @@
 use crate::{
     failure::Failure,
     files::{self, Files, Out, Output, Outputs},
-    timing,
+    scenarios, timing,
 };
 use clap::Args;
 use std::{
-    fs,
-    io::{self, Read, Write},
-    path::{Path, PathBuf},
+    io::{self, Write},
+    path::PathBuf,
 };
 use stepscope_core::{
     run::{Experiment, Run},
@@ -67,8 +66,7 @@ impl Arguments {
 /// Runs the scenario and writes what was asked for; digest and status if nothing was.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
-    let bytes = read(path).map_err(|error| Failure::File(path.clone(), error))?;
-    let text = String::from_utf8(bytes).map_err(|_| Failure::NotText(path.clone()))?;
+    let text = scenarios::text(path)?;
     let experiment =
         Experiment::from_json(&text).map_err(|problems| Failure::Scenario(path.clone(), problems))?;
     let (scenario, _) = Scenario::from_json_lenient(&text);
@@ -87,8 +85,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         writeln!(out, "{text}").and_then(|()| out.flush()).map_err(failed)?;
     }
     let link = if arguments.link { Some(link::encode(&scenario).map_err(Failure::Link)?) } else { None };
-    print(arguments, link, &digest, &finished, &experiment)
-        .map_err(|error| Failure::File(PathBuf::from("standard output"), error))?;
+    print(arguments, link, &digest, &finished, &experiment).map_err(Failure::output)?;
     timing.map_or(Ok(()), |timing| arguments.timing.report(&timing, scenario.clock_hz))
 }
 
@@ -152,13 +149,4 @@ fn print(
     writeln!(out, "ticks_done {}", run.ticks_done())?;
     writeln!(out, "positions {}", positions.join(" "))?;
     writeln!(out, "faults {:#06x} {faults}", run.faults().bits())
-}
-
-fn read(path: &Path) -> io::Result<Vec<u8>> {
-    if path == Path::new("-") {
-        let mut bytes = Vec::new();
-        io::stdin().read_to_end(&mut bytes)?;
-        return Ok(bytes);
-    }
-    fs::read(path)
 }

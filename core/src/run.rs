@@ -10,6 +10,7 @@
 //! assert_eq!(run.device().positions()[0], 3200);
 //! ```
 
+pub mod campaign;
 mod cost;
 mod net;
 mod orders;
