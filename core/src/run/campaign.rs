@@ -30,7 +30,7 @@ const MOST_PPM: [u64; KINDS] = [5_000, 20_000, 20_000, 20_000, 500_000, 200_000]
 /// Kinds of noise.
 const KINDS: usize = 6;
 /// Rates go down from the greatest by so many powers of two.
-const OCTAVES: u64 = 8;
+const OCTAVES: u64 = 6;
 
 /// Receiver rates differ from the host's by so many thousandths, most of them: within, bytes are
 /// heard.
