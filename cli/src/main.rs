@@ -8,9 +8,11 @@
 mod failure;
 mod faults;
 mod files;
+mod line;
 mod progress;
 mod run;
 mod scenarios;
+mod status;
 mod timing;
 
 use clap::{Parser, Subcommand};

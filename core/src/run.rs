@@ -24,7 +24,10 @@ use crate::{
     segment::CheckedSegments,
     signal::{Event, MAX_CHANNELS, Record, Sink},
     units::{Cycles, Instant},
-    wire::{Line, Schedule, framed_host::FramedHost},
+    wire::{
+        Line, Schedule,
+        framed_host::{FramedHost, Progress},
+    },
 };
 use alloc::{rc::Rc, vec::Vec};
 use core::slice;
@@ -141,6 +144,15 @@ impl Experiment {
     #[must_use]
     pub fn ticks_of(&self, index: usize) -> &[u8] {
         self.orders.get(index).map_or(&[], Orders::ticks)
+    }
+
+    /// How far the host of a framed line has come in `run` with controller `index`; `None` where nobody
+    /// waits for replies, or that controller has nothing to do.
+    #[must_use]
+    pub fn host_progress(&self, run: &Run, index: usize) -> Option<Progress> {
+        self.orders.get(index).filter(|orders| orders.has_ticks())?;
+        let busy_before = self.orders.iter().take(index).filter(|orders| orders.has_ticks()).count();
+        run.host()?.progress().nth(busy_before)
     }
 
     fn first(&self) -> &Orders {

@@ -147,7 +147,6 @@ fn in_reach(scenario: &Scenario) -> bool {
 /// What a run came to.
 fn tally(scenario: &Scenario, experiment: &Experiment, run: &Run, watches: &[Watch]) -> Tally {
     let mut tally = Tally { seeds: 1, ..Tally::default() };
-    let mut progress = run.host().into_iter().flat_map(|host| host.progress());
     for (index, (watch, config)) in watches.iter().zip(experiment.configs()).enumerate() {
         let channels = usize::from(config.channels());
         let ordered = experiment.ticks_of(index);
@@ -156,7 +155,7 @@ fn tally(scenario: &Scenario, experiment: &Experiment, run: &Run, watches: &[Wat
         tally.ordered += (ordered.len() / channels) as u64;
         tally.executed += (executed.len() / channels) as u64;
         // A host that waits for replies has each controller's job; on a raw line all is sent.
-        let reached = if ordered.is_empty() { None } else { progress.next() };
+        let reached = experiment.host_progress(run, index);
         let due = match reached {
             None | Some(Progress::Done) => ordered,
             Some(_) => ordered.get(..executed.len()).unwrap_or(ordered),
