@@ -35,7 +35,7 @@ const OCTAVES: u64 = 6;
 /// Receiver rates differ from the host's by so many thousandths, most of them: within, bytes are
 /// heard.
 pub const IN_REACH: u64 = 40;
-/// By so many at most. Beyond 45 or so no byte gets through.
+/// By so many at most. From 52 on no frame gets through.
 const OUT_OF_REACH: u64 = 60;
 
 /// Runs of the same orders under faults that a seed chooses.
