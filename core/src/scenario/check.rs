@@ -150,8 +150,10 @@ impl Scenario {
     /// The further controllers' configurations.
     fn further(&self, first: Option<&Config>, judge: &mut Judge) -> Vec<Config> {
         judge.length("controllers", self.controllers.len(), 0, MOST_FURTHER, "further controllers");
-        if !self.controllers.is_empty() && self.line.protocol == Protocol::Raw && self.line.address.is_none()
-        {
+        // Who writes the line himself may also ask what several of one address do.
+        let scripted = matches!(self.source, Source::Line(_));
+        let nameless = self.line.protocol == Protocol::Raw && self.line.address.is_none();
+        if !self.controllers.is_empty() && nameless && !scripted {
             let detail =
                 "several controllers on a line need an address each; give the first one an address, 0 to 254";
             judge.add("line.address", Cause::Conflict { detail });
@@ -183,7 +185,9 @@ impl Scenario {
             }
             let mut before = self.controllers.iter().take(index).map(|controller| controller.address);
             let first_address = first.and_then(Config::address);
-            if first_address == Some(controller.address) || before.any(|other| other == controller.address) {
+            let same =
+                first_address == Some(controller.address) || before.any(|other| other == controller.address);
+            if same && !scripted {
                 judge.add(at("address"), Cause::SameAddress { address: controller.address });
             }
             self.orders(controller, &at, judge);
