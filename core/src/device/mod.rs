@@ -23,10 +23,12 @@ mod machine;
 mod model_bus;
 mod plan;
 mod registers;
+mod segments;
 mod sequencer;
 
 pub use faults::Faults;
 pub use model_bus::ModelBus;
+pub use segments::SegmentEngine;
 
 use crate::{
     protocol::{Reason, Status},
@@ -268,8 +270,8 @@ impl Device {
     }
 
     /// Runs until cycle `until` is the next, as fast as the edges allow, while the line stays at
-    /// `line`; with [`Instant::NEVER`], until nothing can change any more ([`Self::settle`] then tells
-    /// when that was). Stops early where the sink asks for a pause.
+    /// `line`; with [`Instant::NEVER`], until nothing can change any more ([`Self::last_active`] then
+    /// tells when that was). Stops early where the sink asks for a pause.
     #[inline(always)]
     pub fn run(&mut self, line: bool, until: Instant, sink: &mut impl Sink) {
         if self.now < until && (line != self.line || self.now == Instant::RESET) {
@@ -295,10 +297,17 @@ impl Device {
         }
     }
 
-    /// At rest: takes back the cycles after the last one in which something happened.
-    pub fn settle(&mut self) {
+    /// The last cycle in which something happened, if every cycle that was clocked by itself had a
+    /// reason.
+    #[must_use]
+    pub fn last_active(&self) -> Instant {
+        self.last.max(self.machine.sequencer.last_active())
+    }
+
+    /// At rest: the cycle that the next call of [`Self::clock`] is becomes `now`. Otherwise nothing.
+    pub fn settle(&mut self, now: Instant) {
         if self.at_rest() {
-            self.now = self.last.max(self.machine.sequencer.last_active()).next();
+            self.now = now;
         }
     }
 

@@ -159,7 +159,7 @@ impl Device {
         if self.now == Instant::RESET {
             return;
         }
-        // Time does not go back behind a write, also where `settle` is called after it.
+        // A write is something that happened: time is not settled to before it.
         self.last = self.present();
         self.now = self.last.next();
         if let Some(index) = index(&map::orders::REGISTER, offset) {
@@ -183,7 +183,7 @@ impl Device {
 
     /// The last cycle that was run. A run to the end of all change leaves `now` behind it.
     fn present(&self) -> Instant {
-        self.before().max(self.last).max(self.machine.sequencer.last_active())
+        self.before().max(self.last_active())
     }
 
     /// The highest command whose bit is set.

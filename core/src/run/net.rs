@@ -36,7 +36,7 @@ struct Station {
 }
 
 /// Takes what no one asked for.
-struct Ignored;
+pub(super) struct Ignored;
 
 impl Sink for Ignored {
     fn record(&mut self, _: Record) {}
@@ -78,11 +78,14 @@ impl Net {
             && self.line.is_over()
     }
 
-    /// First cycle that has not been run by all.
+    /// Whether all have run the cycles before `end`.
+    pub(super) fn has_reached(&self, end: Instant) -> bool {
+        self.start >= end
+    }
+
+    /// First cycle that nobody has run.
     pub(super) fn now(&self) -> Instant {
-        let device = self.stations.iter().map(|station| station.device.now()).max();
-        let host = self.host.as_ref().map(|host| host.last_active().next());
-        device.max(host.filter(|_| self.start > Instant::RESET)).unwrap_or(Instant::RESET)
+        self.stations.iter().map(|station| station.device.now()).max().unwrap_or(Instant::RESET)
     }
 
     /// Enters cycle `self.start`: what each hears in it, and what the host does.
@@ -147,13 +150,22 @@ impl Net {
                 station.device.now() < self.until && !rests
             };
             if self.stations.iter().any(behind) {
-                return;
+                break;
             }
             self.start = self.until;
         }
-        if self.until == Instant::NEVER {
-            self.stations.iter_mut().for_each(|station| station.device.settle());
+        if end == Instant::NEVER && self.is_over() {
+            self.settle();
         }
+    }
+
+    /// At rest: the last cycle that was run is the last one in which something happened.
+    fn settle(&mut self) {
+        let device = self.stations.iter().map(|station| station.device.last_active()).max();
+        let host = self.host.as_ref().map(FramedHost::last_active);
+        let now = device.max(host).unwrap_or(Instant::RESET).next();
+        self.stations.iter_mut().for_each(|station| station.device.settle(now));
+        (self.start, self.until) = (now, Instant::NEVER);
     }
 
     /// One cycle.

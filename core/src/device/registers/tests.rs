@@ -380,7 +380,8 @@ fn time_does_not_go_back_behind_a_write() {
     assert_eq!(bench.device.now(), Instant(end + 1));
     bench.run_to(5_000);
     bench.write(map::faults::OFFSET, 0);
-    bench.device.settle();
+    let rest = bench.device.last_active().next();
+    bench.device.settle(rest);
     assert_eq!(bench.device.now(), Instant(5_001));
     assert_eq!(bench.edges_from(end), [(end + 4, Levels::EN | 1), (end + 9, Levels::EN)]);
 }
