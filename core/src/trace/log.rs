@@ -199,3 +199,24 @@ impl Sink for PacketLog {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_that_firmware_pushed_have_no_row_and_those_around_them_their_own() {
+        let packet = |seen| [Event::Byte { seen: Instant(seen), byte: 1 }, Event::Packet(Fate::Queued)];
+        let [start, pushed] = [Event::TickStart { orders: [0; 16] }, Event::Pushed];
+        let (first, second) = (packet(10), packet(20));
+        let events = [first[0], first[1], pushed, second[0], second[1], start, start, Event::Stopped];
+        let after = [pushed, start];
+        let mut log = PacketLog::default();
+        for (at, event) in events.into_iter().chain(after).enumerate() {
+            log.event(Instant(100 + at as u64), event);
+        }
+        let rows: Vec<_> = log.ticks().iter().map(|tick| tick.row).collect();
+        assert_eq!(rows, [Some(0), None, None], "the second packet's tick was stopped before it began");
+        assert_eq!(log.rows()[1].tick_start, None);
+    }
+}
