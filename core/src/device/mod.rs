@@ -60,6 +60,9 @@ pub struct Device {
     /// The cycle that the next call of `clock` is, and the one that was run last.
     now: Instant,
     last: Instant,
+    /// A cycle that is clocked by itself, whatever rests: reset, or the one after firmware's last write.
+    /// So on a raw line, where nobody else moves it, EN is looked at in no other.
+    wake: Instant,
     /// The line as others drive it, and as the controller hears it.
     line: bool,
     rx: bool,
@@ -72,7 +75,11 @@ pub struct Device {
 }
 
 /// How bytes are joined to orders.
+///
+/// It is asked for in every window of a run: a tag of its own is read in fewer instructions than one
+/// that hides in a variant's unused values.
 #[derive(Clone, Debug)]
+#[repr(u8)]
 enum Framing {
     Raw(Unpacker),
     Framed(Controller),
@@ -85,6 +92,7 @@ impl Device {
         Self {
             now: Instant::RESET,
             last: Instant::RESET,
+            wake: Instant::RESET,
             line: true,
             rx: true,
             levels: Levels(0),
@@ -216,7 +224,7 @@ impl Device {
     /// Next cycle, from [`Self::now`] on, in which something can change if the line stays at the
     /// level of the last cycle.
     fn deadline(&self) -> Instant {
-        if self.now == Instant::RESET {
+        if self.now == self.wake {
             self.now
         } else {
             self.machine.sequencer.deadline().min(self.input_deadline())
@@ -227,9 +235,9 @@ impl Device {
     fn input_deadline(&self) -> Instant {
         let framing = match &self.framing {
             Framing::Raw(unpacker) => unpacker.deadline(),
-            Framing::Framed(_) => Instant::NEVER,
+            Framing::Framed(_) => self.machine.drive.deadline(),
         };
-        self.receiver.deadline(self.before(), self.rx).min(framing).min(self.machine.drive.deadline())
+        self.receiver.deadline(self.before(), self.rx).min(framing)
     }
 
     /// What this controller does to the line in cycle [`Self::now`]: its TX where it drives, `None`
@@ -274,7 +282,7 @@ impl Device {
     /// tells when that was). Stops early where the sink asks for a pause.
     #[inline(always)]
     pub fn run(&mut self, line: bool, until: Instant, sink: &mut impl Sink) {
-        if self.now < until && (line != self.line || self.now == Instant::RESET) {
+        if self.now < until && (line != self.line || self.now == self.wake) {
             self.clock(line, sink);
         }
         while self.now < until && !sink.paused() {

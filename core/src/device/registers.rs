@@ -162,6 +162,7 @@ impl Device {
         // A write is something that happened: time is not settled to before it.
         self.last = self.present();
         self.now = self.last.next();
+        self.wake = self.now;
         if let Some(index) = index(&map::orders::REGISTER, offset) {
             return self.latches.set_orders(index, value);
         }
