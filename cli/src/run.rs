@@ -3,6 +3,7 @@
 use crate::{
     failure::Failure,
     files::{self, Files, Out, Output, Outputs},
+    timing,
 };
 use clap::Args;
 use std::{
@@ -42,10 +43,12 @@ pub(crate) struct Arguments {
     /// Write a table of the packets, with what the controller did with each.
     #[arg(long, value_name = "FILE")]
     packets: Option<PathBuf>,
-    /// Write the scenario with its source as a line script: every byte and the cycle it is sent in.
-    /// Run in its turn, it gives the same trace.
+    /// Write the scenario with its source as a line script: every byte and the cycle it is sent in;
+    /// or, where segments run it, as their lists. Run in its turn, it gives the same trace.
     #[arg(long, value_name = "FILE")]
     line: Option<PathBuf>,
+    #[command(flatten)]
+    timing: timing::Options,
 }
 
 impl Arguments {
@@ -57,6 +60,7 @@ impl Arguments {
             || self.packets.is_some()
             || self.line.is_some()
             || self.link
+            || self.timing.asked()
     }
 }
 
@@ -71,19 +75,21 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     let mut digest = Digest::default();
     let mut outputs = Outputs { digest: &mut digest, files: open(arguments, &experiment)? };
-    let finished = experiment.run(&mut outputs);
+    let mut timing = arguments.timing.check(path, &scenario)?;
+    let finished = experiment.run(&mut (&mut outputs, timing.as_mut()));
     for (path, file) in outputs.files {
         file.finish(finished.cycles().0).map_err(|error| Failure::File(path, error))?;
     }
     if let Some(file) = &arguments.line {
-        let text = scripted(scenario.clone(), &experiment).to_json();
+        let text = scripted(scenario.clone(), &experiment, &finished).to_json();
         let failed = |error| Failure::File(file.clone(), error);
         let mut out = files::create(file).map_err(failed)?;
         writeln!(out, "{text}").and_then(|()| out.flush()).map_err(failed)?;
     }
     let link = if arguments.link { Some(link::encode(&scenario).map_err(Failure::Link)?) } else { None };
     print(arguments, link, &digest, &finished, &experiment)
-        .map_err(|error| Failure::File(PathBuf::from("standard output"), error))
+        .map_err(|error| Failure::File(PathBuf::from("standard output"), error))?;
+    timing.map_or(Ok(()), |timing| arguments.timing.report(&timing, scenario.clock_hz))
 }
 
 /// The files that were asked for, each with its path.
@@ -104,12 +110,16 @@ fn open(arguments: &Arguments, experiment: &Experiment) -> Result<Files, Failure
     Ok(opened)
 }
 
-/// The scenario with its host's schedule as its source (DESIGN A9).
-fn scripted(mut scenario: Scenario, experiment: &Experiment) -> Scenario {
-    let sends = experiment
+/// The scenario with its host's schedule as its source (DESIGN A9), or with its lists of segments.
+fn scripted(mut scenario: Scenario, experiment: &Experiment, run: &Run) -> Scenario {
+    if let Some(segments) = experiment.segments() {
+        scenario.source = Source::Segments(segments.into());
+        return scenario;
+    }
+    let sends = run
         .schedule()
         .iter()
-        .map(|send| ScriptedSend { start_cycle: send.start.0, bytes: Hex(send.bytes.to_vec()) })
+        .map(|send| ScriptedSend { start_cycle: send.start.0, bytes: Hex(send.bytes.to_vec()), frame: None })
         .collect();
     scenario.source = Source::Line(LineScript { sends });
     scenario
@@ -132,17 +142,16 @@ fn print(
     if !arguments.status && arguments.asks_for_a_file() {
         return Ok(());
     }
-    let device = run.device();
     let channels = usize::from(experiment.config().channels());
-    let positions: Vec<String> = device.positions().iter().take(channels).map(i32::to_string).collect();
-    let faults: Vec<&str> = device.faults().names().collect();
+    let positions: Vec<String> = run.positions().iter().take(channels).map(i32::to_string).collect();
+    let faults: Vec<&str> = run.faults().names().collect();
     let faults = if faults.is_empty() { "none".into() } else { faults.join(" ") };
     writeln!(out, "digest {:016x}", digest.value())?;
     writeln!(out, "cycles {}", run.cycles().0)?;
     writeln!(out, "records {}", digest.records())?;
-    writeln!(out, "ticks_done {}", device.ticks_done())?;
+    writeln!(out, "ticks_done {}", run.ticks_done())?;
     writeln!(out, "positions {}", positions.join(" "))?;
-    writeln!(out, "faults {:#06x} {faults}", device.faults().bits())
+    writeln!(out, "faults {:#06x} {faults}", run.faults().bits())
 }
 
 fn read(path: &Path) -> io::Result<Vec<u8>> {

@@ -1,26 +1,35 @@
-//! Golden cases: folders of `tests/golden/`, run by every target from the same files.
+//! Golden cases: folders of `tests/golden/`, run by every target (native, a browser, a microcontroller) from the same
+//! files.
 //!
 //! | file | what it is |
 //! | --- | --- |
 //! | `scenario.json` or `preset` | the experiment, or the id of the preset that it is |
 //! | `why` | the sentence of the contract that the case pins, and whether its trace was checked by hand |
-//! | `digest` | XXH64 of the trace, 16 hexadecimal digits |
+//! | `digest` | XXH64 of each controller's trace, 16 hexadecimal digits |
 //! | `status` | what `stepscope run --status` prints below the digest |
-//! | `expect.trace` | the trace, where it is short: a record a line, cycle and levels in hexadecimal |
+//! | `expect.trace` | the first controller's trace, where it is short: a record a line, cycle and levels in hexadecimal |
 //!
 //! The last three are written by `STEPSCOPE_BLESS=1 cargo test -p stepscope-tests --test golden`
 //! and by nothing else.
 
-use std::fmt::Write as _;
+use alloc::{
+    format,
+    string::{String, ToString as _},
+    vec::Vec,
+};
+use core::fmt::Write as _;
 use stepscope_core::{
     run::{Experiment, Run},
-    scenario::presets::PRESETS,
+    scenario::{Config, presets::PRESETS},
     signal::{self, Record, Sink},
     trace::{Digest, parse_line, write_record},
 };
 
 /// Most records of a trace that is kept as text.
 pub const MOST_RECORDS: u64 = 400;
+
+/// Runs up to which a case is also run clock by clock, in cycles.
+const MOST_CYCLES_CLOCK_BY_CLOCK: u64 = 2_000_000;
 
 /// All cases, by name.
 pub const CASES: &[Case] = include!(concat!(env!("OUT_DIR"), "/golden.rs"));
@@ -37,7 +46,7 @@ pub struct Case {
 /// What a run leaves, in the words of the case's files.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Outcome {
-    /// 16 hexadecimal digits.
+    /// 16 hexadecimal digits, a line for each controller.
     pub digest: String,
     /// One `name value` a line.
     pub status: String,
@@ -79,6 +88,39 @@ impl Case {
         })
     }
 
+    /// Runs the experiment at the fast speed and, where it is short, clock by clock too (DESIGN A2).
+    ///
+    /// # Errors
+    /// A sentence with every problem of the scenario.
+    pub fn run(&self) -> Result<(Outcome, Option<Outcome>), String> {
+        let experiment = self.experiment()?;
+        let mut cycles = 0;
+        let go = |sinks: &mut [Keep]| {
+            let run = experiment.run_each(sinks);
+            cycles = run.cycles().0;
+            run
+        };
+        let fast = Outcome::of(go, &experiment);
+        let slow = (cycles < MOST_CYCLES_CLOCK_BY_CLOCK)
+            .then(|| Outcome::of(|sinks| experiment.run_each_clock_by_clock(sinks), &experiment));
+        Ok((fast, slow))
+    }
+
+    /// Runs the experiment as [`Case::run`] does and compares with the case's files: the whole test of a target.
+    ///
+    /// # Errors
+    /// The problems of the scenario, or the differences.
+    pub fn check(&self) -> Result<(), String> {
+        let (fast, slow) = self.run()?;
+        let fast = self.compare(&fast).err();
+        let slow =
+            slow.and_then(|slow| self.compare(&slow).err()).map(|text| format!("clock by clock, {text}"));
+        match [fast, slow].into_iter().flatten().reduce(|fast, slow| fast + &slow) {
+            Some(differences) => Err(differences),
+            None => Ok(()),
+        }
+    }
+
     /// Compares a run with the case's files.
     ///
     /// # Errors
@@ -106,24 +148,47 @@ impl Case {
 }
 
 impl Outcome {
-    /// Makes a run by `go`, which takes the sink of its records.
-    pub fn of(go: impl FnOnce(&mut Keep) -> Run, channels: u8) -> Self {
-        let mut keep = Keep::default();
-        let run = go(&mut keep);
-        let device = run.device();
-        let positions: Vec<String> =
-            device.positions().iter().take(channels.into()).map(i32::to_string).collect();
-        let faults: Vec<&str> = device.faults().names().collect();
-        let faults = if faults.is_empty() { "none".into() } else { faults.join(" ") };
-        let status = format!(
-            "cycles {}\nrecords {}\nticks_done {}\npositions {}\nfaults {:#06x} {faults}\n",
-            run.cycles().0,
-            keep.digest.records(),
-            device.ticks_done(),
-            positions.join(" "),
-            device.faults().bits()
-        );
-        Self { digest: format!("{:016x}", keep.digest.value()), status, trace: keep.first }
+    /// Makes a run by `go`, which takes the sinks of the controllers' records; of the further ones digest and status
+    /// are kept, of the first the records too.
+    pub fn of(go: impl FnOnce(&mut [Keep]) -> Run, experiment: &Experiment) -> Self {
+        let mut keeps: Vec<Keep> = (0..experiment.controllers()).map(|_| Keep::default()).collect();
+        let run = go(&mut keeps);
+        let (mut digest, mut status) = (String::new(), format!("cycles {}\n", run.cycles().0));
+        let channels: Vec<u8> = experiment.configs().map(Config::channels).collect();
+        for (index, (keep, device)) in keeps.iter().zip(run.devices()).enumerate() {
+            let _ = writeln!(digest, "{:016x}", keep.digest.value());
+            let first = index == 0;
+            // Where segments run the scenario there is one controller, and no device moves.
+            let positions = if first { run.positions() } else { device.positions() };
+            let used = channels.get(index).copied().unwrap_or(0).into();
+            let positions: Vec<String> = positions.iter().take(used).map(i32::to_string).collect();
+            let faults: Vec<&str> = device.faults().names().collect();
+            let faults = if faults.is_empty() { "none".into() } else { faults.join(" ") };
+            if !first {
+                let _ = writeln!(status, "controller {index}");
+            }
+            let _ = write!(
+                status,
+                "records {}\nticks_done {}\npositions {}\nfaults {:#06x} {faults}\n",
+                keep.digest.records(),
+                device.ticks_done(),
+                positions.join(" "),
+                device.faults().bits()
+            );
+            if let Some(told) = device.status() {
+                let _ = writeln!(
+                    status,
+                    "state {} seq {} free {}",
+                    told.state.name(),
+                    told.expected_seq,
+                    told.free
+                );
+            }
+        }
+        if let Some(host) = run.host() {
+            let _ = writeln!(status, "host {:?}\n{:?}", host.progress().collect::<Vec<_>>(), host.counts());
+        }
+        Self { digest, status, trace: keeps.into_iter().next().map(|keep| keep.first).unwrap_or_default() }
     }
 
     /// The trace as text, if it is short enough to be kept.

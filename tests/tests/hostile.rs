@@ -17,7 +17,7 @@ use stepscope_core::{
         presets::PRESETS,
     },
 };
-use stepscope_tests::scenarios::{small, typed};
+use stepscope_tests::scenarios::{segmented, small, typed};
 
 /// Most wrong fields that one reading lists.
 const MOST_PROBLEMS: usize = 100;
@@ -25,6 +25,8 @@ const MOST_PROBLEMS: usize = 100;
 const MOST_SENDS: u64 = 4 << 20;
 const MOST_BYTES: u64 = 2_000_000 * 17;
 const MOST_RECORDS: u64 = 1 + (MOST_BYTES + 10_000) * (10 + 16 * 127 * 4);
+/// Of segments: an edge in each cycle of 48 bits on each channel.
+const MOST_SEGMENT_RECORDS: u64 = 16 << 48;
 
 fn cases(cases: u32) -> ProptestConfig {
     let told = ProptestConfig::default();
@@ -52,7 +54,8 @@ fn bounded(judged: Result<Experiment, Vec<Problem>>) -> Result<(), TestCaseError
         Ok(experiment) => {
             let cost = experiment.cost();
             prop_assert!(cost.sends <= MOST_SENDS && cost.bytes <= MOST_BYTES.max(MOST_SENDS), "{:?}", cost);
-            prop_assert!(cost.records <= MOST_RECORDS && cost.end_cycle <= END_OF_TIME, "{:?}", cost);
+            let most = if experiment.segments().is_some() { MOST_SEGMENT_RECORDS } else { MOST_RECORDS };
+            prop_assert!(cost.records <= most && cost.end_cycle <= END_OF_TIME, "{:?}", cost);
         }
         Err(problems) => {
             prop_assert!(!problems.is_empty(), "refused without a reason");
@@ -224,7 +227,7 @@ proptest! {
 
     #[test]
     fn no_change_of_a_scenario_makes_the_judge_fail(
-        scenario in prop_oneof![small(), typed()],
+        scenario in prop_oneof![small(), segmented(), typed()],
         changes in prop::collection::vec(change(), 1..6),
     ) {
         judge(&changed(&scenario, &changes))?;

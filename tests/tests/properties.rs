@@ -1,4 +1,4 @@
-//! What holds for every scenario, over random ones of all three sources: all speeds give the same run (DESIGN A2), a run
+//! What holds for every scenario, over random ones of all sources: all speeds give the same run (DESIGN A2), a run
 //! costs no more than was said before it, and a scenario survives its way through JSON and links (PAGE "Share link").
 #![cfg(not(target_arch = "wasm32"))]
 
@@ -16,7 +16,7 @@ use stepscope_core::{
     units::{Cycles, Instant},
     wire::Line,
 };
-use stepscope_tests::scenarios::{small, typed};
+use stepscope_tests::scenarios::{segmented, small, typed};
 
 /// Some seconds' worth of cases, or as many as PROPTEST_CASES says.
 fn cases(cases: u32) -> ProptestConfig {
@@ -82,7 +82,7 @@ fn by_hand(config: &Config, mut line: Line, cycles: Cycles, hurry: u64) -> (Left
         if line.next_change() == device.now() {
             line.change();
         }
-        device.clock(line.level(), &mut left);
+        device.clock(line.heard(true), &mut left);
         let horizon = line.next_change().0.min(cycles.0).saturating_sub(device.now().0);
         let quiet = device.quiet().map_or(horizon, |quiet| quiet.0.min(horizon));
         device.skip(Cycles((u128::from(quiet) * u128::from(hurry) / 100) as u64));
@@ -131,6 +131,26 @@ proptest! {
         if run.cycles().0 < 200_000 {
             let clocked = experiment.run_clock_by_clock(&mut slow);
             same("clock by clock", (&slow, clocked.device()), (&fast, run.device()))?;
+        }
+    }
+
+    #[test]
+    fn every_way_through_segments_leaves_the_same(
+        scenario in segmented(),
+        slices in prop::collection::vec(1..40_u64, 1..5),
+    ) {
+        let Ok(experiment) = Experiment::new(&scenario) else { return Ok(()) };
+        let (mut fast, mut slow) = (Left::default(), Left::default());
+        let run = experiment.run(&mut fast);
+        within(experiment.cost(), &fast, run.cycles())?;
+        prop_assert!(run.is_done());
+        prop_assert!(fast.events.is_empty() && run.faults().bits() == 0 && run.ticks_done() == 0);
+        let clocked = experiment.run_clock_by_clock(&mut slow);
+        let (sliced, sliced_run) = in_slices(&experiment, &slices);
+        for (left, other) in [(&slow, &clocked), (&sliced, &sliced_run)] {
+            prop_assert_eq!(&left.recording.trace, &fast.recording.trace);
+            prop_assert_eq!(left.recording.digest.value(), fast.recording.digest.value());
+            prop_assert_eq!((other.positions(), other.cycles()), (run.positions(), run.cycles()));
         }
     }
 

@@ -41,8 +41,17 @@ impl Judge {
         }
     }
 
+    /// Whether something is wrong at `path` already.
+    pub(super) fn has(&self, path: &str) -> bool {
+        self.problems.iter().any(|problem| problem.path == path)
+    }
+
     pub(super) fn take<T>(&mut self, result: Result<T, Vec<Problem>>) -> Option<T> {
         result.map_err(|problems| self.problems.extend(problems)).ok()
+    }
+
+    pub(super) fn problems(self) -> Vec<Problem> {
+        self.problems
     }
 
     pub(super) fn end<T>(self, value: T) -> Result<T, Vec<Problem>> {

@@ -14,6 +14,7 @@
 mod check;
 mod compact;
 mod config;
+mod drive;
 mod hex;
 mod judge;
 pub mod link;
@@ -21,14 +22,17 @@ pub mod presets;
 mod problem;
 mod quantity;
 mod read;
+mod segments;
 
 pub use check::{Checked, END_OF_TIME, Forced, line_time};
 pub use compact::Compact;
 pub use config::Config;
 pub(crate) use config::most_baud;
+pub use drive::{Driver, DriverModel, TimingRules};
 pub use hex::Hex;
 pub use problem::{Cause, Problem};
 pub use quantity::{Acceleration, Direct, Distance, Mechanics, NoSuchUnit, Rotary, Screw, Speed, Wheel};
+pub use segments::{ChannelSegments, DwellSegment, Segment, SegmentLists, StepSegment};
 
 use alloc::{string::String, vec, vec::Vec};
 use compact::{choices, settings};
@@ -58,6 +62,34 @@ settings! {
         pub run_cycles: Option<u64> = None,
         /// What the spectrum is taken of.
         pub analysis: Analysis = Analysis::default(),
+        /// Further controllers on the line, up to 31; `bus` and `line.address` describe the first.
+        pub controllers: Vec<Controller> = Vec::new(),
+        /// The driver that the pulses are checked against; without it they are not checked.
+        pub driver: Option<Driver> = None,
+    }
+}
+
+settings! {
+    /// A further controller on the line (DESIGN A9).
+    pub struct Controller {
+        /// Its address, 0 to 254, which no other controller has.
+        pub address: u8 = 1,
+        /// Bit rate of its receiver and its replies in baud, where its clock differs from the host's.
+        pub receiver_baud: Option<u32> = None,
+        /// Its driver bus and queue; paced packets need ticks of the same length on all controllers.
+        pub bus: Bus = Bus::default(),
+        /// What its axes do, where the source is a motion.
+        pub axes: Vec<Axis> = Vec::new(),
+        /// Its packets, one a tick, where the source is packets.
+        pub packets: Vec<Hex> = Vec::new(),
+    }
+}
+
+impl Controller {
+    /// Whether it has something to do.
+    #[must_use]
+    pub fn is_busy(&self) -> bool {
+        !self.axes.is_empty() || !self.packets.is_empty()
     }
 }
 
@@ -132,10 +164,63 @@ settings! {
         pub baud: u32 = 115_200,
         /// Bit rate of the receiver in baud where its clock differs from the host's.
         pub receiver_baud: Option<u32> = None,
-        /// The controller's address, 0 to 254, if packets begin with one. 255 addresses all.
+        /// The controller's address, 0 to 254, if packets begin with one. 255 addresses all. On a
+        /// framed line a controller always has one: 0 if none is given.
         pub address: Option<u8> = None,
+        /// What stands around the orders.
+        pub protocol: Protocol = Protocol::Raw,
+        /// How the host of a framed line behaves.
+        pub host: Host = Host::default(),
+        /// Random faults of the line.
+        pub noise: Noise = Noise::default(),
         /// Levels forced on the line whatever is sent; where two overlap the later entry wins.
         pub glitches: Vec<Glitch> = Vec::new(),
+    }
+}
+
+/// What stands around the orders on the line.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Protocol {
+    /// Nothing: bytes, and pauses between packets, as in RU 2704486 (DESIGN A5).
+    #[default]
+    Raw,
+    /// Frames with a check, sequence numbers and replies (DESIGN A6).
+    Framed,
+}
+
+settings! {
+    /// How the host of a framed line behaves: one frame, its reply, the next (DESIGN A9).
+    pub struct Host {
+        /// Most ticks in one frame, 1 to 32; at most half of the queue is sent at once.
+        pub ticks_a_frame: u8 = 8,
+        /// From the end of a frame to its repetition, in cycles, 1 to 4 294 967 295; without it 256
+        /// bit times.
+        pub reply_timeout_cycles: Option<u32> = None,
+        /// How often one frame is sent before the host gives up, 1 to 255.
+        pub attempts: u8 = 10,
+    }
+}
+
+settings! {
+    /// Random faults of the line and of the host, each in millionths (0 to 1 000 000). The same seed
+    /// gives the same faults.
+    pub struct Noise {
+        /// Where the random numbers begin.
+        pub seed: u32 = 0,
+        /// Bits that are turned over, of all bits of all bytes, both ways.
+        pub flipped_bits_ppm: u32 = 0,
+        /// Bytes that are left out, of all bytes, both ways.
+        pub lost_bytes_ppm: u32 = 0,
+        /// Bytes that come twice, of all bytes, both ways.
+        pub doubled_bytes_ppm: u32 = 0,
+        /// Levels forced on the line for up to two bit times, of all bytes of the host.
+        pub glitches_ppm: u32 = 0,
+        /// Replies that the host does not hear, of all replies.
+        pub lost_replies_ppm: u32 = 0,
+        /// Frames (on a raw line: packets) within which the host dies, of all of them. It comes back and
+        /// remembers nothing but its orders.
+        pub deaths_ppm: u32 = 0,
     }
 }
 
@@ -160,6 +245,8 @@ choices! {
         Packets(Packets) = "packets",
         /// Bytes at cycles: a recorded or hand-made line (DESIGN A9).
         Line(LineScript) = "line",
+        /// Nothing is sent: the peripheral runs lists of segments by itself (DESIGN A8).
+        Segments(SegmentLists) = "segments",
     }
 }
 
@@ -174,6 +261,33 @@ settings! {
     pub struct Motion {
         /// 1 to 16 axes, no more than `bus.channels`.
         pub axes: Vec<Axis> = vec![Axis::default()],
+        /// What runs it.
+        pub engine: MotionEngine = MotionEngine::Ticks,
+    }
+}
+
+/// What runs a motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MotionEngine {
+    /// The tick path: the host sends the steps of each tick (DESIGN A7, B7).
+    #[default]
+    Ticks,
+    /// The segment engine: each step at the cycle in which it falls due (DESIGN A8, B8).
+    Segments,
+}
+
+impl Source {
+    /// Whether the host sends ticks of it.
+    #[must_use]
+    pub const fn is_ticks(&self) -> bool {
+        !matches!(self, Self::Line(_)) && !self.runs_segments()
+    }
+
+    /// Whether segments run it, and not ticks.
+    #[must_use]
+    pub const fn runs_segments(&self) -> bool {
+        matches!(self, Self::Segments(_) | Self::Motion(Motion { engine: MotionEngine::Segments, .. }))
     }
 }
 
@@ -192,6 +306,8 @@ choices! {
     pub enum Move {
         /// Uniform acceleration by table (B2).
         Trapezoid(Trapezoid) = "trapezoid",
+        /// Fixed length by a staircase of rates (B3).
+        Staircase(Staircase) = "staircase",
         /// Cosine S-curve with exact distance and exact time (B4).
         Cosine(Cosine) = "cosine",
         /// Sine as segments of fixed rate (B5).
@@ -236,6 +352,35 @@ pub enum TrapezoidMethod {
     Table,
     /// Every step where the ideal curve crosses its half-integer (B1).
     Exact,
+}
+
+settings! {
+    /// Fixed length by a staircase of rates (B3, Zhang 2012).
+    pub struct Staircase {
+        /// How far, the document's L; negative is left.
+        pub distance: Distance = Distance::Steps(10_000.0),
+        /// Speed of the plateau, f_s; at or below the start speed that of the whole move.
+        pub top_speed: Speed = Speed::StepsPerSecond(5000.0),
+        /// Acceleration level 1 to 5: 1000 to 5000 steps/s^2.
+        pub level: u8 = 3,
+        /// What becomes of a move that is too short to reach its top speed.
+        pub short_move: ShortMove = ShortMove::Document,
+        /// First rate of the table, f_1.
+        pub start_speed: Speed = Speed::StepsPerSecond(1000.0),
+        /// The table ends with the first rate above this, f_max; no top speed may be above it.
+        pub max_speed: Speed = Speed::StepsPerSecond(20_000.0),
+    }
+}
+
+/// What becomes of a move that is too short to reach its top speed (B3).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ShortMove {
+    /// The document's: the whole move at the start speed.
+    #[default]
+    Document,
+    /// Up as many rows of the table as there is room for, and down again.
+    TurnRound,
 }
 
 settings! {
@@ -305,6 +450,19 @@ settings! {
         pub start_cycle: u64 = 1,
         /// The bytes in hex.
         pub bytes: Hex = Hex::default(),
+        /// In place of bytes: a frame's address, kind and body in hex; check, COBS and end mark are
+        /// added (DESIGN A6).
+        pub frame: Option<Hex> = None,
+    }
+}
+
+impl ScriptedSend {
+    /// The bytes that go over the line.
+    #[must_use]
+    pub fn wire(&self) -> Vec<u8> {
+        self.frame
+            .as_ref()
+            .map_or_else(|| self.bytes.0.clone(), |Hex(content)| crate::protocol::seal(content))
     }
 }
 

@@ -26,6 +26,7 @@ const SONG: &str = "Song, Han, Lu 2021: exact S-curve";
 const SONOBE: &str = "Sonobe 2011: acceleration table";
 const PATENT: &str = "RU 2704486, 2019: tick packets";
 const ZHANG: &str = "Zhang 2012: fixed-length controller";
+const DRIVERS: &str = "Drivers' data sheets: timing";
 
 macro_rules! presets {
     ($($document:expr => $id:literal;)*) => {
@@ -42,13 +43,16 @@ presets! {
     SONG => "song-2021-one-turn";
     SONG => "song-2021-plateau";
     SONOBE => "sonobe-2011-table";
+    SONOBE => "sonobe-2011-segments";
     ZHANG => "zhang-2012-fixed-length";
+    ZHANG => "zhang-2012-staircase";
     SINE => "sine-2022-d00054";
     SINE => "sine-2022-d0006";
     PATENT => "patent-2019-four-motors";
     PATENT => "patent-2019-sixteen-motors";
     PATENT => "patent-2019-addressed";
     PATENT => "glitches-and-breaks";
+    DRIVERS => "driver-timing-broken";
 }
 
 #[cfg(test)]
