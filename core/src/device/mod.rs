@@ -230,6 +230,12 @@ impl Device {
         self.receiver.deadline(last, self.rx).min(framing)
     }
 
+    /// Whether it ever drives the line.
+    #[must_use]
+    pub const fn answers(&self) -> bool {
+        matches!(self.framing, Framing::Framed(_))
+    }
+
     /// What this controller does to the line in cycle [`Self::now`]: its TX where it drives, `None`
     /// where it does not.
     #[must_use]
@@ -242,7 +248,9 @@ impl Device {
     /// line, while others keep the line at `line`; [`Instant::NEVER`] if it will not.
     #[must_use]
     pub fn next_driven(&self, line: bool) -> Instant {
-        let Framing::Framed(_) = self.framing else { return Instant::NEVER };
+        if !self.answers() {
+            return Instant::NEVER;
+        }
         let (levels, next) = self.drive.ahead(self.now);
         let last = Instant(self.now.0.saturating_sub(1));
         let heard = self.receiver.deadline(last, line || Levels(levels).has(Levels::DE));
