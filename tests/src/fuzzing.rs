@@ -1,0 +1,79 @@
+//! What the fuzz targets check, as plain functions of bytes that panic where a property is broken. `cargo xtask fuzz`
+//! feeds them with libFuzzer's inputs; `tests/findings.rs` with all that was ever found, with the seeds and with chance.
+//!
+//! A new target is a module here, a line in [`TARGETS`] and a file in `fuzz/fuzz_targets/`. Its findings lie in
+//! `findings/<target>/`, a file each: see the README there.
+
+pub mod line;
+pub mod link;
+pub mod scenario;
+
+use crate::golden::CASES;
+use std::{collections::BTreeSet, fs, io, path::PathBuf};
+use stepscope_core::scenario::presets::PRESETS;
+
+/// A fuzz target.
+#[derive(Clone, Copy, Debug)]
+pub struct Target {
+    /// Its name: of the binary in `fuzz/`, and of the folder in `findings/`.
+    pub name: &'static str,
+    /// Panics where a property is broken.
+    pub check: fn(&[u8]),
+    /// What fuzzing begins with, made from files of the repository; never empty.
+    pub seeds: fn() -> Vec<Vec<u8>>,
+    /// Whether its inputs hold JSON, so that a dictionary of a scenario's words helps.
+    pub is_json: bool,
+}
+
+/// All fuzz targets.
+pub const TARGETS: &[Target] = &[
+    Target { name: "line", check: line::check, seeds: line::seeds, is_json: false },
+    Target { name: "scenario", check: scenario::check, seeds: scenario::seeds, is_json: true },
+    Target { name: "link", check: link::check, seeds: link::seeds, is_json: true },
+];
+
+impl Target {
+    /// Inputs that once broke a property: name and bytes, in the order of their names.
+    ///
+    /// # Errors
+    /// If a file or the folder cannot be read; a target without a folder has no findings.
+    pub fn findings(&self) -> io::Result<Vec<(String, Vec<u8>)>> {
+        let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("findings").join(self.name);
+        if !folder.exists() {
+            return Ok(Vec::new());
+        }
+        let files = fs::read_dir(folder)?.map(|entry| {
+            let path = entry?.path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            Ok((name, fs::read(path)?))
+        });
+        let mut files = files.collect::<io::Result<Vec<_>>>()?;
+        files.sort();
+        Ok(files)
+    }
+
+    /// The words that its inputs are made of, such as `"channels"` with its quotation marks; empty where it has none.
+    #[must_use]
+    pub fn dictionary(&self) -> BTreeSet<String> {
+        if !self.is_json {
+            return BTreeSet::new();
+        }
+        // Quoted words, the texts for people left out: they are long.
+        let words = |text: &str| -> Vec<String> {
+            let quoted = text.split('"').skip(1).step_by(2);
+            quoted.filter(|word| word.len() < 24).map(|word| format!("\"{word}\"")).collect()
+        };
+        scenarios().flat_map(words).collect()
+    }
+}
+
+/// JSON of the presets and the golden cases.
+fn scenarios() -> impl Iterator<Item = &'static str> {
+    let golden = CASES.iter().filter_map(|case| case.file("scenario.json"));
+    PRESETS.iter().map(|preset| preset.json).chain(golden)
+}
+
+/// The links that were published.
+fn links() -> impl Iterator<Item = &'static str> {
+    include_str!("../links/v1.txt").lines().filter_map(|line| line.split(' ').next())
+}

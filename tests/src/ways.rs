@@ -1,0 +1,157 @@
+//! Every way through a scenario leaves the same (DESIGN A2): the fast speed, slices of it, clock by clock, and a device
+//! driven by hand. What a run leaves also agrees with itself: its trace, positions, ticks and digest (A3, A7).
+//!
+//! All checks panic with what differs, so that property tests, fuzz targets and kept findings share them.
+
+use std::rc::Rc;
+use stepscope_core::{
+    device::Device,
+    run::{Experiment, Run},
+    scenario::{Config, Forced, Scenario},
+    signal::{Event, Fate, Levels, Record, Sink},
+    trace::{Digest, Recording, steps},
+    units::{Cycles, Instant},
+    wire::Line,
+};
+
+/// All that a run leaves.
+#[derive(Default)]
+pub struct Left {
+    /// Records, digest and packets.
+    pub recording: Recording,
+    /// Everything that happened beside the signals.
+    pub events: Vec<(Instant, Event)>,
+}
+
+impl Sink for Left {
+    fn record(&mut self, record: Record) {
+        self.recording.record(record);
+    }
+
+    fn event(&mut self, at: Instant, event: Event) {
+        self.recording.event(at, event);
+        self.events.push((at, event));
+    }
+}
+
+/// How to go through a scenario beside the fast speed.
+#[derive(Clone, Copy, Debug)]
+pub struct Ways<'a> {
+    /// The run in slices of so many records, again and again; none can be 0.
+    pub slices: &'a [u64],
+    /// How much of what is quiet a device driven by hand skips at once, in percent.
+    pub hurry: u64,
+    /// Longest run that is also made clock by clock, in cycles.
+    pub most_clocked: u64,
+}
+
+/// Runs a scenario in every way.
+///
+/// # Panics
+/// If two ways differ, if what is left does not agree with itself, or if the run costs more than was said before it.
+pub fn check(scenario: &Scenario, experiment: &Experiment, ways: Ways<'_>) {
+    let mut fast = Left::default();
+    let run = experiment.run(&mut fast);
+    assert!(run.is_done(), "the run ends");
+    let (cost, cycles, made) = (experiment.cost(), run.cycles().0, fast.recording.trace.len() as u64);
+    assert!(cycles <= cost.end_cycle, "{cycles} cycles were run, {} announced", cost.end_cycle);
+    assert!(made <= cost.records, "{made} records were made, {} announced", cost.records);
+    consistent(&fast, run.device(), experiment.config());
+
+    let (left, sliced) = in_slices(experiment, ways.slices);
+    same("in slices", (&left, sliced.device()), (&fast, run.device()));
+    let line = line(scenario, experiment);
+    let (left, device) = by_hand(experiment.config(), line, run.cycles(), ways.hurry);
+    same("by hand", (&left, &device), (&fast, run.device()));
+    if cycles <= ways.most_clocked {
+        let mut slow = Left::default();
+        let clocked = experiment.run_clock_by_clock(&mut slow);
+        same("clock by clock", (&slow, clocked.device()), (&fast, run.device()));
+    }
+}
+
+/// Compares what two ways through the same scenario left.
+///
+/// # Panics
+/// If they differ, with the name of the first one and the first difference.
+pub fn same(way: &str, left: (&Left, &Device), fast: (&Left, &Device)) {
+    let ((left, device), (fast, fast_device)) = (left, fast);
+    let longest = left.recording.trace.len().max(fast.recording.trace.len());
+    for index in 0..longest {
+        let (record, expected) = (left.recording.trace.get(index), fast.recording.trace.get(index));
+        assert_eq!(record, expected, "{way}: record {index}");
+    }
+    assert_eq!(left.recording.digest.value(), fast.recording.digest.value(), "{way}: digest");
+    assert_eq!(left.events, fast.events, "{way}: events");
+    assert_eq!(device.positions(), fast_device.positions(), "{way}: positions");
+    assert_eq!(device.faults(), fast_device.faults(), "{way}: faults");
+    assert_eq!(device.ticks_done(), fast_device.ticks_done(), "{way}: ticks done");
+    assert_eq!(device.now(), fast_device.now(), "{way}: cycles");
+}
+
+/// What a run leaves agrees with itself.
+fn consistent(left: &Left, device: &Device, config: &Config) {
+    let trace = &left.recording.trace;
+    let first = Record { cycle: Instant::RESET, levels: Levels::RESET };
+    assert_eq!(trace.first(), Some(&first), "a trace begins with reset");
+    for pair in trace.windows(2) {
+        assert!(pair[0].cycle < pair[1].cycle, "cycles rise: {pair:?}");
+        assert_ne!(pair[0].levels, pair[1].levels, "a record is a change: {pair:?}");
+    }
+    assert!(trace.last().is_none_or(|last| last.cycle < device.now()), "no record after the run's end");
+    let unused = !0_u16 << (config.channels() - 1) << 1;
+    for record in trace {
+        let levels = record.levels;
+        assert_eq!((levels.step() | levels.dir()) & unused, 0, "unused channels stay low: {record:?}");
+    }
+    for (channel, position) in (0..).zip(device.positions()) {
+        let made = steps(trace, channel).last().map_or(0, |step| step.position);
+        assert_eq!(made, position, "position of channel {channel}, from the trace and as counted");
+    }
+    assert_eq!(Digest::of(trace), left.recording.digest.value(), "digest of the records");
+
+    let count = |wanted: Event| left.events.iter().filter(|(_, event)| *event == wanted).count();
+    let (queued, begun, ended) =
+        (count(Event::Packet(Fate::Queued)), count(Event::TickStart), count(Event::TickEnd));
+    assert_eq!(device.ticks_done() as usize, ended, "ticks done, as counted and as events");
+    assert!(begun == ended || begun == ended + 1, "{begun} ticks began, {ended} ended");
+    assert!(begun <= queued, "{begun} ticks began, {queued} packets were queued");
+}
+
+/// The run in slices of so many records, again and again.
+fn in_slices(experiment: &Experiment, slices: &[u64]) -> (Left, Run) {
+    let (mut left, mut run) = (Left::default(), experiment.start());
+    for records in slices.iter().cycle() {
+        if run.advance(*records, &mut left) {
+            break;
+        }
+    }
+    (left, run)
+}
+
+/// As a firmware's test would drive a peripheral by hand: `clock` where something can change, `skip` over what `quiet`
+/// says. `hurry` is how much of that it skips at once, in percent.
+fn by_hand(config: &Config, mut line: Line, cycles: Cycles, hurry: u64) -> (Left, Device) {
+    let (mut left, mut device) = (Left::default(), Device::new(config));
+    while device.now().0 < cycles.0 {
+        if line.next_change() == device.now() {
+            line.change();
+        }
+        device.clock(line.level(), &mut left);
+        let horizon = line.next_change().0.min(cycles.0).saturating_sub(device.now().0);
+        let quiet = device.quiet().map_or(horizon, |quiet| quiet.0.min(horizon));
+        device.skip(Cycles((u128::from(quiet) * u128::from(hurry) / 100) as u64));
+    }
+    (left, device)
+}
+
+/// The line of a scenario, made from the outside.
+fn line(scenario: &Scenario, experiment: &Experiment) -> Line {
+    let forced = scenario.line.glitches.iter().map(|glitch| Forced {
+        start: Instant(glitch.start_cycle),
+        end: Instant(glitch.start_cycle + glitch.length_cycles),
+        level: glitch.level != 0,
+    });
+    let forced: Vec<Forced> = forced.collect();
+    Line::new(Rc::new(experiment.schedule().clone()), &forced, scenario.clock_hz, scenario.line.baud)
+}
