@@ -19,6 +19,8 @@ pub struct Target {
     pub name: &'static str,
     /// Panics where a property is broken.
     pub check: fn(&[u8]),
+    /// What an input stands for, in words that a person can use.
+    pub told: fn(&[u8]) -> String,
     /// What fuzzing begins with, made from files of the repository; never empty.
     pub seeds: fn() -> Vec<Vec<u8>>,
     /// Whether its inputs hold JSON, so that a dictionary of a scenario's words helps.
@@ -27,9 +29,9 @@ pub struct Target {
 
 /// All fuzz targets.
 pub const TARGETS: &[Target] = &[
-    Target { name: "line", check: line::check, seeds: line::seeds, is_json: false },
-    Target { name: "scenario", check: scenario::check, seeds: scenario::seeds, is_json: true },
-    Target { name: "link", check: link::check, seeds: link::seeds, is_json: true },
+    Target { name: "line", check: line::check, told: line::told, seeds: line::seeds, is_json: false },
+    Target { name: "scenario", check: scenario::check, told: text, seeds: scenario::seeds, is_json: true },
+    Target { name: "link", check: link::check, told: text, seeds: link::seeds, is_json: true },
 ];
 
 impl Target {
@@ -65,6 +67,11 @@ impl Target {
         };
         scenarios().flat_map(words).collect()
     }
+}
+
+/// An input that is a text.
+fn text(data: &[u8]) -> String {
+    String::from_utf8_lossy(data).into_owned()
 }
 
 /// JSON of the presets and the golden cases.

@@ -76,17 +76,20 @@ pub fn check(scenario: &Scenario, experiment: &Experiment, ways: Ways<'_>) {
 /// If they differ, with the name of the first one and the first difference.
 pub fn same(way: &str, left: (&Left, &Device), fast: (&Left, &Device)) {
     let ((left, device), (fast, fast_device)) = (left, fast);
-    let longest = left.recording.trace.len().max(fast.recording.trace.len());
-    for index in 0..longest {
-        let (record, expected) = (left.recording.trace.get(index), fast.recording.trace.get(index));
-        assert_eq!(record, expected, "{way}: record {index}");
-    }
+    each_equal(way, "record", &left.recording.trace, &fast.recording.trace);
+    each_equal(way, "event", &left.events, &fast.events);
     assert_eq!(left.recording.digest.value(), fast.recording.digest.value(), "{way}: digest");
-    assert_eq!(left.events, fast.events, "{way}: events");
     assert_eq!(device.positions(), fast_device.positions(), "{way}: positions");
     assert_eq!(device.faults(), fast_device.faults(), "{way}: faults");
     assert_eq!(device.ticks_done(), fast_device.ticks_done(), "{way}: ticks done");
     assert_eq!(device.now(), fast_device.now(), "{way}: cycles");
+}
+
+/// Lists are compared entry by entry: a difference is told without the thousands that are equal.
+fn each_equal<T: PartialEq + std::fmt::Debug>(way: &str, what: &str, left: &[T], fast: &[T]) {
+    for index in 0..left.len().max(fast.len()) {
+        assert_eq!(left.get(index), fast.get(index), "{way}: {what} {index}");
+    }
 }
 
 /// What a run leaves agrees with itself.

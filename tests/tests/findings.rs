@@ -6,10 +6,12 @@ use proptest::{prelude::*, test_runner::FileFailurePersistence};
 use std::{fs, panic::catch_unwind, path::Path};
 use stepscope_tests::fuzzing::{TARGETS, Target};
 
-/// All inputs that break the target's check, by name.
+/// All inputs that break the target's check: name, and what they stand for.
 fn broken(target: &Target, inputs: impl IntoIterator<Item = (String, Vec<u8>)>) -> Vec<String> {
-    let check = target.check;
-    let breaks = |(name, bytes): (String, Vec<u8>)| catch_unwind(|| check(&bytes)).is_err().then_some(name);
+    let breaks = |(name, bytes): (String, Vec<u8>)| {
+        let broken = catch_unwind(|| (target.check)(&bytes)).is_err();
+        broken.then(|| format!("{name}: {}", (target.told)(&bytes)))
+    };
     inputs.into_iter().filter_map(breaks).collect()
 }
 

@@ -6,8 +6,8 @@ use arbitrary::{Result, Unstructured};
 use stepscope_core::{
     run::Experiment,
     scenario::{
-        Bus, DirLine, Distribution, Glitch, Hex, Line, LineScript, Pulses, Scenario, ScriptedSend, Source,
-        line_time,
+        Bus, Compact, DirLine, Distribution, Glitch, Hex, Line, LineScript, Pulses, Scenario, ScriptedSend,
+        Source, line_time,
     },
 };
 
@@ -16,18 +16,31 @@ const LONGEST_RUN: u64 = 10_000;
 /// No scenario has more sends and glitches than this.
 const MOST_ACTS: usize = 40;
 
-/// Runs a scenario that the bytes stand for in every way.
+/// Runs the scenario that the bytes stand for in every way.
 ///
 /// # Panics
 /// Where a property is broken.
 pub fn check(data: &[u8]) {
-    let mut bytes = Unstructured::new(data);
-    // Bytes that are used up read as zeros, so that this never fails; it would be an input that says nothing.
-    let Ok((mut scenario, slices, hurry)) = drawn(&mut bytes) else { return };
-    scenario.run_cycles = Some(scenario.run_cycles.unwrap_or(LONGEST_RUN).min(LONGEST_RUN));
+    let Some((scenario, slices, hurry)) = bounded(data) else { return };
     if let Ok(experiment) = Experiment::new(&scenario) {
         ways::check(&scenario, &experiment, Ways { slices: &slices, hurry, most_clocked: LONGEST_RUN });
     }
+}
+
+/// The scenario that the bytes stand for, as JSON.
+#[must_use]
+pub fn told(data: &[u8]) -> String {
+    bounded(data).map_or_else(String::new, |(scenario, ..)| scenario.compact().to_string())
+}
+
+/// What the bytes stand for, cut where it would run too long.
+fn bounded(data: &[u8]) -> Option<(Scenario, Vec<u64>, u64)> {
+    // Bytes that are used up read as zeros, so there always is a scenario.
+    let (mut scenario, slices, hurry) = drawn(&mut Unstructured::new(data)).ok()?;
+    if Experiment::new(&scenario).is_ok_and(|experiment| experiment.cost().end_cycle > LONGEST_RUN) {
+        scenario.run_cycles = Some(LONGEST_RUN);
+    }
+    Some((scenario, slices, hurry))
 }
 
 /// What published links hold: deflated, so as good as random bytes, and always the same.
@@ -86,10 +99,10 @@ fn acts(bytes: &mut Unstructured<'_>, scenario: &mut Scenario) -> Result<()> {
     let (channels, slots) = (usize::from(scenario.bus.channels), scenario.bus.slots);
     let mut sends = Vec::new();
     let mut free_from = 1;
-    scenario.run_cycles = match bytes.int_in_range(0..=LONGEST_RUN)? {
-        0 => None,
-        cycles => Some(cycles),
-    };
+    // Cut somewhere, or to its own end.
+    if bytes.arbitrary()? {
+        scenario.run_cycles = Some(bytes.int_in_range(1..=LONGEST_RUN)?);
+    }
     for _ in 0..MOST_ACTS {
         if bytes.is_empty() || free_from > LONGEST_RUN {
             break;
