@@ -94,8 +94,9 @@ async fn build(manifest: &Path, folder: &Path) -> Result<PathBuf> {
     )?;
     let triple = toolchain::host().await?;
     let mut command = Command::new(cargo_fuzz);
-    command.current_dir(root()).args(["build", "--sanitizer", "none", "--target", &triple, "--target-dir"]);
-    command.arg(folder);
+    command.current_dir(root()).args(["build", "--sanitizer", "none"]);
+    // What is compared is at times an address, which differs from run to run; without it coverage is as good.
+    command.args(["--no-trace-compares", "--target", &triple, "--target-dir"]).arg(folder);
     run::to_end(command, run::LIMIT).await.context(
         "the fuzz targets were not built; libFuzzer needs a C++ compiler (Debian: apt-get install g++)",
     )?;
@@ -142,21 +143,16 @@ async fn fuzz(program: &Path, folder: &Path, options: &Options) -> Result<Report
     }
 }
 
-/// What to do with a finding.
+/// What to do with a finding, as commands for the workspace's folder.
 fn advice(target: &str, input: &Path, program: &Path) -> String {
-    let kept = format!("tests/findings/{target}/a-name-that-says-what-is-wrong");
+    let short = |path: &Path| path.strip_prefix(root()).unwrap_or(path).display().to_string();
+    let (input, program) = (short(input), short(program));
     format!(
-        "input:        {}\n\
-         reproduce:    {} {}\n\
-         shorten:      {} -minimize_crash=1 -max_total_time=60 {}\n\
-         keep:         cp {} {kept}\n\
-         then, always: cargo test -p stepscope-tests --test findings",
-        input.display(),
-        program.display(),
-        input.display(),
-        program.display(),
-        input.display(),
-        input.display(),
+        "input:      {input}\n\
+         reproduce:  {program} {input}\n\
+         shorten:    {program} -minimize_crash=1 -max_total_time=60 {input}\n\
+         keep:       mkdir -p tests/findings/{target} && cp {input} tests/findings/{target}/what-is-wrong\n\
+         as a test:  cargo test -p stepscope-tests --test findings"
     )
 }
 
