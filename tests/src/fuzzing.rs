@@ -1,7 +1,7 @@
 //! What the fuzz targets check, as plain functions of bytes that panic where a property is broken. `cargo xtask fuzz`
 //! feeds them with libFuzzer's inputs; `tests/findings.rs` with all that was ever found, with the seeds and with chance.
 //!
-//! A new target is a module here, a line in [`TARGETS`] and a file in `fuzz/fuzz_targets/`. Its findings lie in
+//! A new target is a module here, a line in `TARGETS` and a file in `fuzz/fuzz_targets/`. Its findings lie in
 //! `findings/<target>/`, a file each: see the README there.
 
 pub mod line;
