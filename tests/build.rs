@@ -1,5 +1,5 @@
-//! Turns the folders of `golden/` into constants, so that the native test and the one in a browser,
-//! which has no files, run the very same cases.
+//! Turns the folders of `golden/` into constants, so that the native test and those in a browser and
+//! on a microcontroller, which have no files, run the very same cases.
 //!
 //! A case is a folder, each file in it a text: see `src/golden.rs` for their names.
 

@@ -15,6 +15,10 @@ pub(crate) enum Failure {
     Link(LinkError),
     /// There is no such preset.
     Preset(String),
+    /// A timing check without a driver.
+    NoDriver(PathBuf),
+    /// The timing check found this many violations, and none was to be.
+    Violations(u64),
 }
 
 impl Failure {
@@ -22,7 +26,10 @@ impl Failure {
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
             Self::File(..) => ExitCode::from(1),
-            Self::NotText(_) | Self::Scenario(..) | Self::Link(_) | Self::Preset(_) => ExitCode::from(2),
+            Self::NotText(_) | Self::Scenario(..) | Self::Link(_) | Self::Preset(_) | Self::NoDriver(_) => {
+                ExitCode::from(2)
+            }
+            Self::Violations(_) => ExitCode::from(3),
         }
     }
 }
@@ -43,6 +50,15 @@ impl fmt::Display for Failure {
             Self::Link(error) => write!(f, "{error}"),
             Self::Preset(id) => {
                 write!(f, "{id}: no such preset; `stepscope presets` lists them")
+            }
+            Self::NoDriver(path) => write!(
+                f,
+                "{}: the scenario names no driver; give one with --driver, `stepscope drivers` lists them",
+                path.display()
+            ),
+            Self::Violations(count) => {
+                let s = if *count == 1 { "" } else { "s" };
+                write!(f, "{count} violation{s} of the driver's timing")
             }
         }
     }

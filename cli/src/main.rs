@@ -1,12 +1,14 @@
 //! The `stepscope` command: the native front of the model.
 //!
 //! Results go to standard output, errors to standard error. Exit codes: 0 the run was made, 1 a
-//! file could not be read or written, 2 the scenario, link or command line is wrong.
+//! file could not be read or written, 2 the scenario, link or command line is wrong, 3 `--strict` and
+//! the timing check found violations.
 
 mod failure;
 mod files;
 mod run;
 mod scenarios;
+mod timing;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -33,6 +35,8 @@ enum Command {
         /// The preset to write.
         id: Option<String>,
     },
+    /// Lists the drivers that pulses can be checked against, with their data sheets' figures.
+    Drivers,
 }
 
 fn main() -> ExitCode {
@@ -40,6 +44,7 @@ fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Open { link } => scenarios::open(&link),
         Command::Presets { id } => scenarios::presets(id.as_deref()),
+        Command::Drivers => timing::drivers(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

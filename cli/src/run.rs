@@ -3,6 +3,7 @@
 use crate::{
     failure::Failure,
     files::{self, Files, Out, Output, Outputs},
+    timing,
 };
 use clap::Args;
 use std::{
@@ -46,6 +47,8 @@ pub(crate) struct Arguments {
     /// Run in its turn, it gives the same trace.
     #[arg(long, value_name = "FILE")]
     line: Option<PathBuf>,
+    #[command(flatten)]
+    timing: timing::Options,
 }
 
 impl Arguments {
@@ -57,6 +60,7 @@ impl Arguments {
             || self.packets.is_some()
             || self.line.is_some()
             || self.link
+            || self.timing.asked()
     }
 }
 
@@ -71,19 +75,21 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     let mut digest = Digest::default();
     let mut outputs = Outputs { digest: &mut digest, files: open(arguments, &experiment)? };
-    let finished = experiment.run(&mut outputs);
+    let mut timing = arguments.timing.check(path, &scenario)?;
+    let finished = experiment.run(&mut (&mut outputs, timing.as_mut()));
     for (path, file) in outputs.files {
         file.finish(finished.cycles().0).map_err(|error| Failure::File(path, error))?;
     }
     if let Some(file) = &arguments.line {
-        let text = scripted(scenario.clone(), &experiment).to_json();
+        let text = scripted(scenario.clone(), &finished).to_json();
         let failed = |error| Failure::File(file.clone(), error);
         let mut out = files::create(file).map_err(failed)?;
         writeln!(out, "{text}").and_then(|()| out.flush()).map_err(failed)?;
     }
     let link = if arguments.link { Some(link::encode(&scenario).map_err(Failure::Link)?) } else { None };
     print(arguments, link, &digest, &finished, &experiment)
-        .map_err(|error| Failure::File(PathBuf::from("standard output"), error))
+        .map_err(|error| Failure::File(PathBuf::from("standard output"), error))?;
+    timing.map_or(Ok(()), |timing| arguments.timing.report(&timing, scenario.clock_hz))
 }
 
 /// The files that were asked for, each with its path.
@@ -105,11 +111,11 @@ fn open(arguments: &Arguments, experiment: &Experiment) -> Result<Files, Failure
 }
 
 /// The scenario with its host's schedule as its source (DESIGN A9).
-fn scripted(mut scenario: Scenario, experiment: &Experiment) -> Scenario {
-    let sends = experiment
+fn scripted(mut scenario: Scenario, run: &Run) -> Scenario {
+    let sends = run
         .schedule()
         .iter()
-        .map(|send| ScriptedSend { start_cycle: send.start.0, bytes: Hex(send.bytes.to_vec()) })
+        .map(|send| ScriptedSend { start_cycle: send.start.0, bytes: Hex(send.bytes.to_vec()), frame: None })
         .collect();
     scenario.source = Source::Line(LineScript { sends });
     scenario

@@ -8,6 +8,7 @@ use std::{
     path::PathBuf,
     process::{Command, Stdio},
 };
+use stepscope_core::analysis::drivers::DRIVERS;
 use stepscope_tests::golden::{CASES, Case};
 
 /// What a call gave.
@@ -174,4 +175,44 @@ fn a_bad_command_line_ends_with_2_and_the_usage() {
     }
     let answer = stepscope(&["--version"], "").expect("it runs");
     assert_eq!(answer.parts(), (Some(0), concat!("stepscope ", env!("CARGO_PKG_VERSION"), "\n"), ""));
+}
+
+#[test]
+fn the_timing_check_prints_writes_and_is_strict_when_asked() {
+    let broken = stepscope(&["presets", "driver-timing-broken"], "").expect("it runs").out;
+    let run = |options: &[&str]| stepscope(&[&["run", "-"], options].concat(), &broken).expect("it runs");
+    let answer = run(&["--timing"]);
+    assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
+    let lines: Vec<Vec<&str>> = answer.out.lines().map(|line| line.split_whitespace().collect()).collect();
+    assert_eq!(lines[1], ["step_high", "1900", "1000", "-900", "2946", "0", "128"]);
+    assert_eq!(lines[3], ["dir_setup", "650", "500", "-150", "2930", "0", "3"]);
+    assert_eq!(
+        lines[6..8].concat().join(" "),
+        "violations 131 cycle 2930 channel 0 dir_setup: 8 cycles, at least 11 required"
+    );
+    assert_eq!((lines.len(), lines[27].join(" ").as_str()), (28, "and 111 more"));
+
+    let strict = run(&["--strict"]);
+    let complaint = "131 violations of the driver's timing\n";
+    assert_eq!(strict.parts(), (Some(3), answer.out.as_str(), complaint));
+    let rows = run(&["--violations", "-"]);
+    assert_eq!((rows.code, rows.out.lines().count()), (Some(0), 132));
+    assert_eq!(rows.out.lines().nth(1), Some("2930,0.000183125,0,dir_setup,8,11,500,650"));
+    // An A4988 could follow; what the scenario names gives way.
+    assert_eq!(run(&["--driver", "a4988", "--strict"]).code, Some(0));
+    let answer = stepscope(&["run", "-", "--timing"], "{}").expect("it runs");
+    assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""));
+    assert!(answer.err.contains("--driver"), "{answer:?}");
+    assert_eq!(stepscope(&["run", "-", "--driver", "a4989"], "{}").expect("it runs").code, Some(2));
+}
+
+#[test]
+fn drivers_are_listed_with_their_figures() {
+    let answer = stepscope(&["drivers"], "").expect("it runs");
+    assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
+    for sheet in DRIVERS {
+        let rest = answer.out.split_once(&format!("{:14} {}\n", sheet.id, sheet.name)).expect(sheet.id).1;
+        let figures = rest.lines().next().unwrap_or_default();
+        assert!(figures.contains(&format!("step_high {} ns", sheet.rules.step_high_ns)), "{figures}");
+    }
 }

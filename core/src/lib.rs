@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! scenario -> motion -> quantise -> wire -> device -> trace -> analysis -> run
-//! below: units, signal
+//! below: units, signal, protocol
 //! ```
 //!
 //! `device` never learns of motions and `motion` never of devices: they meet in ticks. `run` is
@@ -35,5 +35,6 @@ pub mod analysis;
 
 pub mod run;
 
+pub mod protocol;
 pub mod signal;
 pub mod units;

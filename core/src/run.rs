@@ -11,26 +11,33 @@
 //! ```
 
 mod cost;
+mod net;
+mod orders;
 
 pub use cost::{BUDGET_RECORDS, Cost};
 
 use crate::{
     device::Device,
-    motion::{self, AxisPlan},
-    quantise::ticks,
-    scenario::{Cause, Checked, Config, END_OF_TIME, Problem, Scenario, Source, line_time},
+    motion::AxisPlan,
+    scenario::{Cause, Checked, Config, END_OF_TIME, Problem, Protocol, Scenario, Source},
     signal::{Event, Record, Sink},
     units::{Cycles, Instant},
-    wire::{Line, Schedule, host::carries},
+    wire::{Line, Schedule, framed_host::FramedHost},
 };
 use alloc::{rc::Rc, vec::Vec};
+use core::slice;
+use net::Net;
+use orders::Orders;
 
 /// A scenario that has been judged in every respect, with its motions planned and its packets made.
 #[derive(Clone, Debug)]
 pub struct Experiment {
     checked: Checked,
-    plans: Vec<AxisPlan>,
+    /// What each controller is to do.
+    orders: Vec<Orders>,
+    /// What the host sends without waiting for replies.
     schedule: Rc<Schedule>,
+    line_load: Option<f64>,
     cost: Cost,
 }
 
@@ -42,28 +49,27 @@ impl Experiment {
     pub fn new(scenario: &Scenario) -> Result<Self, Vec<Problem>> {
         let mut problems = Vec::new();
         let checked = scenario.check().map_err(|found| problems.extend(found)).ok();
-        let plans = plan(scenario).map_err(|found| problems.extend(found)).ok();
-        let Some(checked) = checked else { return Err(problems) };
-        if !matches!(checked.source, Source::Line(_))
-            && let Err(cause) = carries(&checked.config, checked.baud)
-        {
-            problems.push(Problem::new("line.baud", cause));
-        }
+        let plans = orders::plans(scenario).map_err(|found| problems.extend(found)).ok();
+        let Some(mut checked) = checked else { return Err(problems) };
+        let line_load = orders::line_load(&checked).map_err(|problem| problems.push(problem)).ok();
         let Some(plans) = plans else { return Err(problems) };
-        let schedule = match schedule(&checked, &plans) {
-            Ok(schedule) if problems.is_empty() => schedule,
+        let orders = match orders::orders(&checked, plans) {
+            Ok(orders) if problems.is_empty() => orders,
             judged => {
                 problems.extend(judged.err().unwrap_or_default());
                 return Err(problems);
             }
         };
-        let cost = Cost::of(&checked, &schedule);
+        let (schedule, forced) = orders::schedule(&checked, &orders);
+        checked.forced.extend(forced);
+        let cost = Cost::of(&checked, &orders, &schedule);
         if cost.end_cycle > END_OF_TIME {
             let cause =
                 Cause::TooMuch { given: cost.end_cycle as f64, most: END_OF_TIME as f64, of: "cycles" };
             return Err(alloc::vec![Problem::new("source", cause)]);
         }
-        Ok(Self { checked, plans, schedule: Rc::new(schedule), cost })
+        let line_load = line_load.flatten().filter(|_| orders.iter().any(Orders::has_ticks));
+        Ok(Self { checked, orders, schedule: Rc::new(schedule), line_load, cost })
     }
 
     /// Reads, judges and prepares a scenario.
@@ -93,19 +99,49 @@ impl Experiment {
         Err(problems)
     }
 
-    /// The peripheral's configuration.
+    /// How many controllers are on the line, 1 to 32.
     #[must_use]
-    pub const fn config(&self) -> &Config {
-        &self.checked.config
+    pub fn controllers(&self) -> usize {
+        self.orders.len()
     }
 
-    /// The plan of each axis; empty where the source is no motion.
+    /// The configuration of the first controller: that of `bus` and `line.address`.
+    #[must_use]
+    pub fn config(&self) -> &Config {
+        self.first().config()
+    }
+
+    /// The configuration of each controller, in the order of the scenario.
+    pub fn configs(&self) -> impl ExactSizeIterator<Item = &Config> {
+        self.orders.iter().map(Orders::config)
+    }
+
+    /// The plan of each axis of the first controller; empty where the source is no motion.
     #[must_use]
     pub fn plans(&self) -> &[AxisPlan] {
-        &self.plans
+        self.first().plans()
     }
 
-    /// What the host sends.
+    /// The plan of each axis of controller `index`.
+    #[must_use]
+    pub fn plans_of(&self, index: usize) -> &[AxisPlan] {
+        self.orders.get(index).map_or(&[], Orders::plans)
+    }
+
+    /// The ticks that controller `index` is ordered, a byte a channel (A5), tick after tick; empty
+    /// where the source is a line script.
+    #[must_use]
+    pub fn ticks_of(&self, index: usize) -> &[u8] {
+        self.orders.get(index).map_or(&[], Orders::ticks)
+    }
+
+    fn first(&self) -> &Orders {
+        // There is always a first one.
+        &self.orders[0]
+    }
+
+    /// What the host sends without waiting for replies; empty for the host of a framed line, whose
+    /// sends a run tells ([`Run::schedule`]).
     #[must_use]
     pub fn schedule(&self) -> &Schedule {
         &self.schedule
@@ -117,42 +153,56 @@ impl Experiment {
         self.cost
     }
 
-    /// The part of the line's time that the host's packets take, 0..=1; `None` where nothing paced
-    /// is sent.
+    /// The part of the line's time that packets, frames and replies take while all controllers move,
+    /// 0..=1; `None` where nothing paced is sent.
     #[must_use]
-    pub fn line_load(&self) -> Option<f64> {
-        let config = self.config();
-        let packet = line_time(config.packet_len() as u64, config.clock_hz(), self.checked.baud);
-        match self.checked.source {
-            Source::Line(_) => None,
-            _ if self.schedule.is_empty() => None,
-            _ => Some(packet as f64 / config.tick().0 as f64),
-        }
+    pub const fn line_load(&self) -> Option<f64> {
+        self.line_load
     }
 
     /// A run before cycle 0.
     #[must_use]
     pub fn start(&self) -> Run {
-        let Checked { config, baud, forced, run, .. } = &self.checked;
+        let Checked { baud, forced, run, .. } = &self.checked;
+        let clock_hz = self.config().clock_hz();
+        let line = Line::new(Rc::clone(&self.schedule), forced, clock_hz, *baud);
+        let host = self.host();
         Run {
-            device: Device::new(config),
-            line: Line::new(Rc::clone(&self.schedule), forced, config.clock_hz(), *baud),
+            net: Net::new(line, host, self.configs().map(Device::new).collect()),
             end: run.map(|cycles| Instant(cycles.0)),
         }
     }
 
-    /// The whole run, at the fast speed.
+    /// The host of a framed line, where it has ticks to send.
+    fn host(&self) -> Option<FramedHost> {
+        let waits =
+            self.config().protocol() == Protocol::Framed && !matches!(self.checked.source, Source::Line(_));
+        waits.then(|| orders::framed_host(&self.checked, &self.orders))
+    }
+
+    /// The whole run, at the fast speed; `sink` takes what the first controller does.
     pub fn run(&self, sink: &mut impl Sink) -> Run {
+        self.run_each(slice::from_mut(sink))
+    }
+
+    /// The whole run, at the fast speed, with a sink for each controller; those without one run all
+    /// the same.
+    pub fn run_each(&self, sinks: &mut [impl Sink]) -> Run {
         let mut run = self.start();
-        while !run.advance(u64::MAX, sink) {}
+        while !run.advance_each(u64::MAX, sinks) {}
         run
     }
 
     /// The whole run clock by clock: slow, and the measure of the fast speed.
     pub fn run_clock_by_clock(&self, sink: &mut impl Sink) -> Run {
+        self.run_each_clock_by_clock(slice::from_mut(sink))
+    }
+
+    /// As [`Self::run_each`], clock by clock.
+    pub fn run_each_clock_by_clock(&self, sinks: &mut [impl Sink]) -> Run {
         let mut run = self.start();
         while !run.is_done() {
-            run.clock(sink);
+            run.clock(sinks);
         }
         run
     }
@@ -161,48 +211,67 @@ impl Experiment {
 /// A run under way.
 #[derive(Clone, Debug)]
 pub struct Run {
-    device: Device,
-    line: Line,
+    net: Net,
     /// First cycle that is not run; without it the run ends when nothing can change any more.
     end: Option<Instant>,
 }
 
 impl Run {
-    /// The peripheral as it is now.
+    /// The first controller as it is now.
     #[must_use]
-    pub const fn device(&self) -> &Device {
-        &self.device
+    pub fn device(&self) -> &Device {
+        self.net.first()
+    }
+
+    /// All controllers as they are now, in the order of the scenario.
+    pub fn devices(&self) -> impl Iterator<Item = &Device> {
+        self.net.devices()
+    }
+
+    /// The host of a framed line as it is now; `None` where nobody waits for replies.
+    #[must_use]
+    pub const fn host(&self) -> Option<&FramedHost> {
+        self.net.host()
+    }
+
+    /// What the host has sent, and what it will send as far as that is known. Another run can take it
+    /// as its source (A9).
+    #[must_use]
+    pub fn schedule(&self) -> &Schedule {
+        self.net.line().schedule()
     }
 
     /// Cycles that have been run.
     #[must_use]
-    pub const fn cycles(&self) -> Cycles {
-        Cycles(self.device.now().0)
+    pub fn cycles(&self) -> Cycles {
+        Cycles(self.net.now().0)
     }
 
     /// Whether the run is over.
     #[must_use]
     pub fn is_done(&self) -> bool {
         match self.end {
-            Some(end) => self.device.now() >= end,
-            None => self.line.next_change() == Instant::NEVER && self.device.at_rest(),
+            Some(end) => self.net.has_reached(end),
+            None => self.net.is_over(),
         }
     }
 
-    /// Goes on until `records` more have been made (a few more may come) or to the end; true at the
-    /// end.
+    /// Goes on until the first controller has made `records` more (a few more may come) or to the
+    /// end; true at the end.
     pub fn advance(&mut self, records: u64, sink: &mut impl Sink) -> bool {
-        let mut slice = Slice { sink, left: records };
-        self.device.run(&mut self.line, self.end.unwrap_or(Instant::NEVER), &mut slice);
+        self.advance_each(records, slice::from_mut(sink))
+    }
+
+    /// Goes on until one controller has made `records` more, with a sink for each; true at the end.
+    pub fn advance_each(&mut self, records: u64, sinks: &mut [impl Sink]) -> bool {
+        let mut slices: Vec<_> = sinks.iter_mut().map(|sink| Slice { sink, left: records }).collect();
+        self.net.run(self.end.unwrap_or(Instant::NEVER), &mut slices);
         self.is_done()
     }
 
-    /// One cycle.
-    pub fn clock(&mut self, sink: &mut impl Sink) {
-        if self.line.next_change() == self.device.now() {
-            self.line.change();
-        }
-        self.device.clock(self.line.level(), sink);
+    /// One cycle, with a sink for each controller.
+    pub fn clock(&mut self, sinks: &mut [impl Sink]) {
+        self.net.clock(sinks);
     }
 }
 
@@ -226,26 +295,6 @@ impl<S: Sink> Sink for Slice<'_, S> {
     fn paused(&self) -> bool {
         self.left == 0
     }
-}
-
-/// The plan of each axis, if the source is a motion.
-fn plan(scenario: &Scenario) -> Result<Vec<AxisPlan>, Vec<Problem>> {
-    let Source::Motion(motion) = &scenario.source else { return Ok(Vec::new()) };
-    motion::plan(motion)
-}
-
-/// What the host sends.
-fn schedule(checked: &Checked, plans: &[AxisPlan]) -> Result<Schedule, Vec<Problem>> {
-    let config = &checked.config;
-    Ok(match &checked.source {
-        Source::Motion(_) => {
-            let ticks = ticks(plans, config.channels(), config.slots(), config.tick().0, config.clock_hz())?;
-            let packet = |tick: &[u8]| config.address().into_iter().chain(tick.iter().copied()).collect();
-            Schedule::paced(config, ticks.iter().map(|tick| -> Vec<u8> { packet(tick) }))
-        }
-        Source::Packets(source) => Schedule::paced(config, source.packets.iter().map(|packet| &packet.0)),
-        Source::Line(script) => Schedule::scripted(script),
-    })
 }
 
 #[cfg(test)]

@@ -1,7 +1,10 @@
 //! The 36 signals of the peripheral, the records of a trace, and the sink that takes them
 //! (DESIGN A3).
 
-use crate::units::Instant;
+use crate::{
+    protocol::{FrameFate, Reply},
+    units::Instant,
+};
 use alloc::vec::Vec;
 
 /// Most channels that one controller drives.
@@ -91,6 +94,8 @@ pub enum Event {
     FramingError {
         /// Where its start bit was seen.
         seen: Instant,
+        /// Whether it drops a packet and what follows to the next gap, as on a raw line.
+        drops: bool,
     },
     /// A gap cut a packet short, or ended the ignoring of bytes.
     Gap {
@@ -99,8 +104,26 @@ pub enum Event {
     },
     /// The byte just delivered completed a packet.
     Packet(Fate),
+    /// The byte just delivered completed a frame, or was one too many.
+    Frame(FrameFate),
+    /// The frame of this cycle is answered.
+    Reply {
+        /// Where the first start bit falls.
+        start: Instant,
+        /// Where DE falls.
+        end: Instant,
+        /// What is answered.
+        reply: Reply,
+    },
+    /// This controller drives the line while the host or another controller does.
+    Collision,
+    /// A tick with steps ended and none was there to follow (fault UNDERRUN).
+    Underrun,
     /// A tick began.
-    TickStart,
+    TickStart {
+        /// What it orders, a byte a channel (A5).
+        orders: [u8; MAX_CHANNELS],
+    },
     /// A tick ended.
     TickEnd,
 }
@@ -156,6 +179,25 @@ impl<A: Sink, B: Sink> Sink for (A, B) {
 
     fn paused(&self) -> bool {
         self.0.paused() || self.1.paused()
+    }
+}
+
+/// A sink that may be missing.
+impl<S: Sink> Sink for Option<S> {
+    fn record(&mut self, record: Record) {
+        if let Some(sink) = self {
+            sink.record(record);
+        }
+    }
+
+    fn event(&mut self, at: Instant, event: Event) {
+        if let Some(sink) = self {
+            sink.event(at, event);
+        }
+    }
+
+    fn paused(&self) -> bool {
+        self.as_ref().is_some_and(Sink::paused)
     }
 }
 

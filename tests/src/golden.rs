@@ -1,4 +1,5 @@
-//! Golden cases: folders of `tests/golden/`, run by every target from the same files.
+//! Golden cases: folders of `tests/golden/`, run by every target (native, a browser, a microcontroller) from the same
+//! files.
 //!
 //! | file | what it is |
 //! | --- | --- |
@@ -11,7 +12,12 @@
 //! The last three are written by `STEPSCOPE_BLESS=1 cargo test -p stepscope-tests --test golden`
 //! and by nothing else.
 
-use std::fmt::Write as _;
+use alloc::{
+    format,
+    string::{String, ToString as _},
+    vec::Vec,
+};
+use core::fmt::Write as _;
 use stepscope_core::{
     run::{Experiment, Run},
     scenario::presets::PRESETS,
@@ -21,6 +27,9 @@ use stepscope_core::{
 
 /// Most records of a trace that is kept as text.
 pub const MOST_RECORDS: u64 = 400;
+
+/// Runs up to which a case is also run clock by clock, in cycles.
+const MOST_CYCLES_CLOCK_BY_CLOCK: u64 = 2_000_000;
 
 /// All cases, by name.
 pub const CASES: &[Case] = include!(concat!(env!("OUT_DIR"), "/golden.rs"));
@@ -77,6 +86,42 @@ impl Case {
         Experiment::from_json(self.json()?).map_err(|problems| {
             problems.iter().fold(format!("{}:", self.name), |text, problem| format!("{text}\n  {problem}"))
         })
+    }
+
+    /// Runs the experiment at the fast speed and, where it is short, clock by clock too (DESIGN A2).
+    ///
+    /// # Errors
+    /// A sentence with every problem of the scenario.
+    pub fn run(&self) -> Result<(Outcome, Option<Outcome>), String> {
+        let experiment = self.experiment()?;
+        let channels = experiment.config().channels();
+        let mut cycles = 0;
+        let fast = Outcome::of(
+            |sink| {
+                let run = experiment.run(sink);
+                cycles = run.cycles().0;
+                run
+            },
+            channels,
+        );
+        let slow = (cycles < MOST_CYCLES_CLOCK_BY_CLOCK)
+            .then(|| Outcome::of(|sink| experiment.run_clock_by_clock(sink), channels));
+        Ok((fast, slow))
+    }
+
+    /// Runs the experiment as [`Case::run`] does and compares with the case's files: the whole test of a target.
+    ///
+    /// # Errors
+    /// The problems of the scenario, or the differences.
+    pub fn check(&self) -> Result<(), String> {
+        let (fast, slow) = self.run()?;
+        let fast = self.compare(&fast).err();
+        let slow =
+            slow.and_then(|slow| self.compare(&slow).err()).map(|text| format!("clock by clock, {text}"));
+        match [fast, slow].into_iter().flatten().reduce(|fast, slow| fast + &slow) {
+            Some(differences) => Err(differences),
+            None => Ok(()),
+        }
     }
 
     /// Compares a run with the case's files.

@@ -1,18 +1,21 @@
 //! What the tests of all targets share: the golden cases, and natively the independent model of the contract, the
 //! strategies that feed it, and the checks that fuzzing feeds.
+#![cfg_attr(target_os = "none", no_std)]
+
+extern crate alloc;
 
 pub mod golden;
 
 /// The slow model of the contract that the core is compared with.
-#[cfg(not(target_arch = "wasm32"))]
+#[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 pub mod oracle;
 
 /// Random configurations and line activity for the property tests.
-#[cfg(not(target_arch = "wasm32"))]
+#[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 pub mod cases;
 
 /// Random scenarios for the property tests.
-#[cfg(not(target_arch = "wasm32"))]
+#[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 pub mod scenarios;
 
 /// Every way through a scenario, compared.

@@ -64,6 +64,7 @@ fn scenario(config: &oracle::Config, forced: &[(u64, u64, bool)], source: Source
                     level: level.into(),
                 })
                 .collect(),
+            ..Line::default()
         },
         source,
         ..Scenario::default()
@@ -78,7 +79,7 @@ fn experiment(
     let sends = input
         .sends
         .iter()
-        .map(|(start, bytes)| ScriptedSend { start_cycle: *start, bytes: Hex(bytes.clone()) })
+        .map(|(start, bytes)| ScriptedSend { start_cycle: *start, bytes: Hex(bytes.clone()), frame: None })
         .collect();
     let mut scenario = scenario(config, &input.forced, Source::Line(LineScript { sends }));
     scenario.run_cycles = cycles;
@@ -116,7 +117,7 @@ fn clocked_and_skipped(experiment: &Experiment, scenario_line: wire::Line, cycle
         if line.next_change() == device.now() {
             line.change();
         }
-        device.clock(line.level(), &mut trace);
+        device.clock(line.heard(true), &mut trace);
         let to_line = line.next_change().0.min(cycles).saturating_sub(device.now().0);
         let quiet = device.quiet().map_or(to_line, |quiet| quiet.0.min(to_line));
         device.skip(Cycles(quiet));

@@ -9,7 +9,9 @@ mod judge;
 mod link;
 mod simulation;
 mod spectrum;
+mod timing;
 
 pub use judge::{check, default_scenario, presets, version};
 pub use link::{decode_link, encode_link, link_part};
 pub use simulation::Simulation;
+pub use timing::drivers;

@@ -4,7 +4,10 @@ use crate::convert::{field, numbers, object, words};
 use js_sys::{Int32Array, Object};
 use serde::Serialize;
 use stepscope_core::{
-    analysis::curves::{self, Window},
+    analysis::{
+        curves::{self, Window},
+        timing::TimingCheck,
+    },
     run::{Experiment, Run},
     scenario::Scenario,
     signal::{Levels, Record},
@@ -19,10 +22,12 @@ const MOST_RECORDS: usize = 40_000_000;
 /// One scenario's run.
 #[wasm_bindgen]
 pub struct Simulation {
-    scenario: Scenario,
-    experiment: Experiment,
+    pub(crate) scenario: Scenario,
+    pub(crate) experiment: Experiment,
     run: Run,
     recording: Recording,
+    /// The pulses against the scenario's driver, if it names one.
+    pub(crate) timing: Option<TimingCheck>,
     /// Steps of each channel, as far as they were asked for after the end.
     steps: Vec<Option<Vec<Step>>>,
 }
@@ -69,7 +74,8 @@ impl Simulation {
         let experiment = Experiment::new(&scenario).map_err(listed)?;
         let run = experiment.start();
         let steps = vec![None; usize::from(experiment.config().channels())];
-        Ok(Self { scenario, experiment, run, recording: Recording::default(), steps })
+        let timing = crate::timing::check(&scenario);
+        Ok(Self { scenario, experiment, run, recording: Recording::default(), timing, steps })
     }
 
     /// Runs on for about `max_records` records: `{done, cycle, end_cycle, records}`.
@@ -77,7 +83,8 @@ impl Simulation {
     /// # Errors
     /// If the run makes more records than a page can keep.
     pub fn advance(&mut self, max_records: u32) -> Result<JsValue, JsError> {
-        let done = self.run.advance(u64::from(max_records.max(1)), &mut self.recording);
+        let mut sink = (&mut self.recording, self.timing.as_mut());
+        let done = self.run.advance(u64::from(max_records.max(1)), &mut sink);
         if self.recording.trace.len() > MOST_RECORDS {
             return Err(JsError::new(&format!(
                 "the run makes more than {MOST_RECORDS} edges, which is more than a page can keep; shorten the motion, or run it with the stepscope command"

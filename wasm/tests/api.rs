@@ -5,7 +5,9 @@ mod js;
 
 use js::{get, list, number, text};
 use js_sys::{Float64Array, Int32Array, Uint32Array};
-use stepscope_wasm::{Simulation, check, decode_link, default_scenario, encode_link, presets, version};
+use stepscope_wasm::{
+    Simulation, check, decode_link, default_scenario, drivers, encode_link, presets, version,
+};
 use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_test::{wasm_bindgen_test, wasm_bindgen_test_configure};
 
@@ -192,4 +194,51 @@ fn edges_are_found_in_both_directions_and_columns_hold_them() {
     assert_eq!(low_words("last"), [0x1_0000; 4]);
     let empty: Uint32Array = get(&simulation.pulses(5.0, 1.0, 0), "high").unchecked_into();
     assert_eq!(empty.length(), 2, "at least one column");
+}
+
+#[wasm_bindgen_test]
+fn a_driver_that_cannot_follow_is_told_with_every_violation_in_its_place() {
+    assert!(sure(finished(&default_scenario()).timing()).is_null(), "no driver, no check");
+    let all = sure(presets()).unchecked_into::<js_sys::Array>().to_vec();
+    let broken = all.iter().find(|preset| text(preset, "id") == "driver-timing-broken");
+    let simulation = finished(&broken.map(|preset| text(preset, "scenario")).unwrap_or_default());
+    let timing = sure(simulation.timing());
+    assert_eq!((text(&timing, "driver").as_str(), number(&timing, "total")), ("drv8825", 131.0));
+    let rules = list(&timing, "rules");
+    let totals: Vec<(String, f64, f64)> = rules
+        .iter()
+        .map(|rule| (text(rule, "rule"), number(rule, "required_ns"), number(rule, "violations")))
+        .collect();
+    let expected = [
+        ("step_high", 1900.0, 128.0),
+        ("step_low", 1900.0, 0.0),
+        ("dir_setup", 650.0, 3.0),
+        ("dir_hold", 650.0, 0.0),
+        ("enable_wake", 650.0, 0.0),
+    ];
+    assert_eq!(totals, expected.map(|(name, required, count)| (name.to_owned(), required, count)));
+    assert_eq!(list(&rules[0], "by_channel").len(), 1);
+    assert_eq!(number(&get(&rules[2], "least"), "measured_cycles"), 8.0);
+
+    let violations = list(&timing, "violations");
+    assert_eq!(violations.len(), 131);
+    let first = number(&violations[0], "cycle");
+    assert_eq!(
+        (text(&violations[0], "rule").as_str(), number(&violations[0], "required_cycles")),
+        ("dir_setup", 11.0)
+    );
+    for (cycle, forward, expected) in [
+        (-1.0, true, Some(0)),
+        (f64::NAN, true, Some(0)),
+        (first, true, Some(1)),
+        (first, false, None),
+        (1e15, false, Some(130)),
+        (1e15, true, None),
+    ] {
+        assert_eq!(simulation.next_violation(cycle, forward), expected, "{cycle}, forward {forward}");
+    }
+    let listed = sure(drivers()).unchecked_into::<js_sys::Array>().to_vec();
+    assert!(listed.iter().any(
+        |sheet| text(sheet, "id") == "drv8825" && number(&get(sheet, "rules"), "step_high_ns") == 1900.0
+    ));
 }

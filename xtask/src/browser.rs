@@ -3,10 +3,9 @@
 use std::env;
 use std::path::PathBuf;
 
-use anyhow::{Context, Result, bail};
-use tokio::process::Command;
+use anyhow::{Context, Result};
 
-use crate::run;
+use crate::apt;
 
 /// A browser and the driver that goes with it.
 pub(crate) struct Browser {
@@ -25,22 +24,8 @@ impl Browser {
         if let Some(found) = Self::find() {
             return Ok(found);
         }
-        match which::which("apt-get") {
-            Ok(apt) if is_root() => {
-                println!("installing chromium and chromium-driver");
-                let apt = |arguments: &[&str]| {
-                    let mut command = Command::new(&apt);
-                    command.args(arguments).env("DEBIAN_FRONTEND", "noninteractive");
-                    run::to_end(command, run::LIMIT)
-                };
-                apt(&["update"]).await.with_context(remedy)?;
-                apt(&["install", "-y", "--no-install-recommends", "chromium", "chromium-driver"])
-                    .await
-                    .with_context(remedy)?;
-                Self::find().with_context(remedy)
-            }
-            _ => bail!(remedy()),
-        }
+        apt::install(&["chromium", "chromium-driver"]).await.with_context(remedy)?;
+        Self::find().with_context(remedy)
     }
 
     fn find() -> Option<Self> {
@@ -61,14 +46,4 @@ fn remedy() -> String {
          (Debian: `apt-get install chromium chromium-driver` as root) so that they are on PATH, or name them in \
          {CHROMIUM} and {CHROMEDRIVER}"
     )
-}
-
-#[cfg(unix)]
-fn is_root() -> bool {
-    rustix::process::geteuid().is_root()
-}
-
-#[cfg(not(unix))]
-fn is_root() -> bool {
-    false
 }

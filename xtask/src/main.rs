@@ -2,14 +2,16 @@
 //!
 //! | file | what it holds |
 //! | --- | --- |
-//! | `toolchain`, `tools`, `wasm_opt` | what a fresh machine lacks, installed once per user |
+//! | `toolchain`, `tools`, `wasm_opt`, `apt` | what a fresh machine lacks, installed once per user |
 //! | `page` | the optimised page, and what each of its files weighs |
 //! | `headers`, `serve` | the local server, whose headers are `web/_headers`' |
-//! | `steps`, `browser` | `cargo xtask test`, step by step |
+//! | `steps`, `browser`, `bare_metal` | `cargo xtask test`, step by step |
 //! | `bench` | `cargo xtask bench` |
 //! | `fuzz` | `cargo xtask fuzz` |
 //! | `run` | child processes: time limit, no input, killed as a group |
 
+mod apt;
+mod bare_metal;
 mod bench;
 mod browser;
 mod fuzz;

@@ -10,7 +10,7 @@ use clap::ValueEnum;
 use crate::browser::{self, Browser};
 use crate::toolchain::{self, BARE_METAL, WASM};
 use crate::tools::{Optimise, WasmTools};
-use crate::{page, root, run};
+use crate::{bare_metal, page, root, run};
 
 /// The steps, in the order in which they run: what fails fastest comes first.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -23,7 +23,7 @@ pub(crate) enum Step {
     Docs,
     /// Unit, integration and documentation tests, as native code
     Native,
-    /// The core builds without the standard library, for a Cortex-M3
+    /// The golden cases on a Cortex-M3 without an operating system, in QEMU
     BareMetal,
     /// The wasm crate's own tests, in a real browser
     Wasm,
@@ -51,7 +51,8 @@ impl Step {
                 clippy("--workspace --all-targets --all-features").await?;
                 clippy(&format!("--package stepscope-wasm --all-targets --target {WASM}")).await?;
                 clippy(&format!("--package stepscope-bench --lib --target {WASM}")).await?;
-                clippy(&format!("--package stepscope-core --no-default-features --target {BARE_METAL}")).await
+                let packages = format!("--package stepscope-core --package {}", bare_metal::PACKAGE);
+                clippy(&format!("{packages} --no-default-features --target {BARE_METAL}")).await
             }
             Self::Docs => {
                 let mut command = toolchain::cargo();
@@ -59,13 +60,7 @@ impl Step {
                 run::to_end(command, run::LIMIT).await
             }
             Self::Native => cargo("test --workspace --locked").await,
-            Self::BareMetal => {
-                toolchain::target(BARE_METAL).await?;
-                cargo(&format!(
-                    "build --package stepscope-core --no-default-features --target {BARE_METAL} --locked"
-                ))
-                .await
-            }
+            Self::BareMetal => bare_metal::test().await,
             Self::Wasm => wasm().await,
             Self::Page => page().await,
         }

@@ -10,7 +10,7 @@ use crate::{root, run};
 
 /// The page's target.
 pub(crate) const WASM: &str = "wasm32-unknown-unknown";
-/// A Cortex-M3, on which the core must build without an operating system.
+/// A Cortex-M3, on which the core must run without an operating system.
 pub(crate) const BARE_METAL: &str = "thumbv7m-none-eabi";
 
 /// A cargo call in the workspace's folder.

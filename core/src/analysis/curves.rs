@@ -126,18 +126,13 @@ pub fn made(recording: &Recording, steps: &[Step], channel: u8, config: &Config,
     }
     let log = &recording.packets;
     let tick_s = config.tick().0 as f64 / hz;
-    let start_s = |index: usize| {
-        let start = log.rows().get(index).and_then(|row| row.tick_start);
-        start.map_or(f64::INFINITY, |start| start.seconds(clock_hz))
-    };
-    let first = log.ticks().partition_point(|&index| start_s(index) + tick_s < window.start_s);
-    for &index in log.ticks().iter().skip(first) {
-        let from_s = start_s(index);
+    let first = log.ticks().partition_point(|tick| tick.start.seconds(clock_hz) + tick_s < window.start_s);
+    for tick in log.ticks().iter().skip(first) {
+        let from_s = tick.start.seconds(clock_hz);
         if from_s > window.end_s {
             break;
         }
-        let byte = log.bytes(index).get(usize::from(channel) + usize::from(config.address().is_some()));
-        let order = Order::parse(byte.copied().unwrap_or(0));
+        let order = Order::parse(tick.orders.get(usize::from(channel)).copied().unwrap_or(0));
         let rate = f64::from(order.steps) / tick_s;
         for column in window.columns(from_s, from_s + tick_s) {
             bands.speed.take(column, if order.right { rate } else { -rate });

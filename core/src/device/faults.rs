@@ -9,10 +9,18 @@ impl Faults {
     pub const FRAMING: Self = Self(1 << 0);
     /// A gap cut a packet short.
     pub const SHORT_PACKET: Self = Self(1 << 1);
+    /// A frame's check failed.
+    pub const CRC: Self = Self(1 << 2);
+    /// A frame had more than 600 decoded bytes.
+    pub const OVERLONG: Self = Self(1 << 3);
     /// A packet found the queue full.
     pub const QUEUE_OVERFLOW: Self = Self(1 << 4);
     /// A packet ordered more steps than a tick has slots.
     pub const TOO_MANY_STEPS: Self = Self(1 << 5);
+    /// TICKS had neither the expected sequence number nor the one before it.
+    pub const BAD_SEQ: Self = Self(1 << 6);
+    /// A tick with steps ended and none was there to follow (framed protocol).
+    pub const UNDERRUN: Self = Self(1 << 7);
 
     const NAMES: [&'static str; 8] = [
         "FRAMING",
@@ -27,6 +35,12 @@ impl Faults {
 
     pub(super) const fn set(&mut self, fault: Self) {
         self.0 |= fault.0;
+    }
+
+    /// The faults of both.
+    #[must_use]
+    pub const fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
     }
 
     /// The flags as A6 numbers their bits.

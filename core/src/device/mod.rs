@@ -6,7 +6,7 @@
 //! the same trace.
 //!
 //! # The order within one cycle
-//! 1. the line's level is heard;
+//! 1. EN, TX and DE change, and the line's level is heard (high while DE is);
 //! 2. the sequencer: STEP edges, a tick ends, a tick starts (from commits of earlier cycles);
 //! 3. the gap timer;
 //! 4. the byte delivered in this cycle and what it completes;
@@ -15,6 +15,8 @@
 //! So a place freed by a tick that starts in cycle p is free for the packet that ends in p, and a
 //! byte delivered in the very cycle of a gap begins a new packet.
 
+mod controller;
+mod drive;
 mod faults;
 mod plan;
 mod sequencer;
@@ -22,15 +24,17 @@ mod sequencer;
 pub use faults::Faults;
 
 use crate::{
-    scenario::Config,
+    protocol::Status,
+    scenario::{Config, Protocol},
     signal::{Event, Fate, Levels, MAX_CHANNELS, Record, Sink},
     units::{Cycles, Instant},
     wire::{
-        Line,
         packet::{Order, Tick, Unpacked, Unpacker},
         uart::{Heard, Receiver},
     },
 };
+use controller::{Controller, Parts};
+use drive::Drive;
 use sequencer::Sequencer;
 
 /// The peripheral.
@@ -48,15 +52,26 @@ use sequencer::Sequencer;
 pub struct Device {
     slots: u8,
     boot: Instant,
-    /// The cycle that the next call of `clock` is.
+    /// The cycle that the next call of `clock` is, and the one that was run last.
     now: Instant,
+    last: Instant,
+    /// The line as others drive it, and as the controller hears it.
+    line: bool,
     rx: bool,
     /// Levels in the last record.
     levels: Levels,
     receiver: Receiver,
-    unpacker: Unpacker,
+    framing: Framing,
+    drive: Drive,
     sequencer: Sequencer,
     faults: Faults,
+}
+
+/// How bytes are joined to orders.
+#[derive(Clone, Debug)]
+enum Framing {
+    Raw(Unpacker),
+    Framed(Controller),
 }
 
 impl Device {
@@ -67,10 +82,16 @@ impl Device {
             slots: config.slots,
             boot: config.boot,
             now: Instant::RESET,
+            last: Instant::RESET,
+            line: true,
             rx: true,
             levels: Levels(0),
             receiver: Receiver::new(config.bit()),
-            unpacker: Unpacker::new(config.channels, config.address, config.bit()),
+            framing: match config.protocol {
+                Protocol::Raw => Framing::Raw(Unpacker::new(config.channels, config.address, config.bit())),
+                Protocol::Framed => Framing::Framed(Controller::new(config)),
+            },
+            drive: Drive::new(config),
             sequencer: Sequencer::new(config),
             faults: Faults::default(),
         }
@@ -97,17 +118,22 @@ impl Device {
     /// Faults so far.
     #[must_use]
     pub const fn faults(&self) -> Faults {
-        self.faults
+        self.faults.union(self.sequencer.faults())
     }
 
-    /// Advances one cycle with the line at `line` and gives the levels of all signals in it. Cycle
-    /// 0 is reset: the line is high in it, whatever is given.
+    /// Advances one cycle with the line at `line`, as others drive it, and gives the levels of all
+    /// signals in it. Cycle 0 is reset: the line is high in it, whatever is given.
     pub fn clock(&mut self, line: bool, sink: &mut impl Sink) -> Levels {
         let now = self.now;
-        let before = core::mem::replace(&mut self.rx, line || now == Instant::RESET);
+        self.line = line;
+        self.drive.clock(now);
+        let deaf = now == Instant::RESET || self.drive.levels() & Levels::DE != 0;
+        let before = core::mem::replace(&mut self.rx, line || deaf);
         self.sequencer.clock(now, sink);
-        if now == self.unpacker.deadline() {
-            let short = self.unpacker.gap();
+        if let Framing::Raw(unpacker) = &mut self.framing
+            && now == unpacker.deadline()
+        {
+            let short = unpacker.gap();
             sink.event(now, Event::Gap { short });
             if short {
                 self.faults.set(Faults::SHORT_PACKET);
@@ -117,12 +143,17 @@ impl Device {
             Some(Heard::Byte(byte)) => self.byte(byte, sink),
             Some(Heard::FramingError) => {
                 self.faults.set(Faults::FRAMING);
-                self.unpacker.framing_error(now);
-                sink.event(now, Event::FramingError { seen: self.receiver.seen() });
+                let drops = if let Framing::Raw(unpacker) = &mut self.framing {
+                    unpacker.framing_error(now);
+                    true
+                } else {
+                    false
+                };
+                sink.event(now, Event::FramingError { seen: self.receiver.seen(), drops });
             }
             None => {}
         }
-        self.now = now.next();
+        (self.now, self.last) = (now.next(), now);
         let levels = Levels(self.base() | u64::from(self.sequencer.lines()));
         if levels != self.levels {
             self.levels = levels;
@@ -133,7 +164,14 @@ impl Device {
 
     fn byte(&mut self, byte: u8, sink: &mut impl Sink) {
         sink.event(self.now, Event::Byte { seen: self.receiver.seen(), byte });
-        let fate = match self.unpacker.byte(self.now, byte) {
+        let unpacked = match &mut self.framing {
+            Framing::Raw(unpacker) => unpacker.byte(self.now, byte),
+            Framing::Framed(controller) => {
+                let Self { drive, sequencer, faults, .. } = self;
+                return controller.byte(self.now, byte, Parts { drive, sequencer, faults }, sink);
+            }
+        };
+        let fate = match unpacked {
             None => return,
             Some(Unpacked::Foreign) => Fate::Foreign,
             Some(Unpacked::Own(tick)) => self.commit(tick),
@@ -157,9 +195,17 @@ impl Device {
         }
     }
 
+    /// What the controller would tell of itself in the cycle that was run last (A6); `None` on a raw
+    /// line.
+    #[must_use]
+    pub fn status(&self) -> Option<Status> {
+        let Framing::Framed(controller) = &self.framing else { return None };
+        Some(controller.status(Instant(self.now.0.saturating_sub(1)), &self.sequencer, self.faults))
+    }
+
     /// Signals that do not come from the sequencer.
     const fn base(&self) -> u64 {
-        Levels::EN | Levels::TX | if self.rx { Levels::RX } else { 0 }
+        self.drive.levels() | if self.rx { Levels::RX } else { 0 }
     }
 
     /// Next cycle, from [`Self::now`] on, in which something can change if the line stays at the
@@ -175,7 +221,32 @@ impl Device {
     #[inline(always)]
     fn input_deadline(&self) -> Instant {
         let last = Instant(self.now.0.saturating_sub(1));
-        self.receiver.deadline(last, self.rx).min(self.unpacker.deadline())
+        let framing = match &self.framing {
+            Framing::Raw(unpacker) => unpacker.deadline(),
+            Framing::Framed(_) => self.drive.deadline(),
+        };
+        self.receiver.deadline(last, self.rx).min(framing)
+    }
+
+    /// What this controller does to the line in cycle [`Self::now`]: its TX where it drives, `None`
+    /// where it does not.
+    #[must_use]
+    pub fn driven(&self) -> Option<bool> {
+        let levels = Levels(self.drive.ahead(self.now).0);
+        levels.has(Levels::DE).then(|| levels.has(Levels::TX))
+    }
+
+    /// A cycle after [`Self::now`] up to which this controller does not change what it does to the
+    /// line, while others keep the line at `line`; [`Instant::NEVER`] if it will not.
+    #[must_use]
+    pub fn next_driven(&self, line: bool) -> Instant {
+        let Framing::Framed(_) = self.framing else { return Instant::NEVER };
+        let (levels, next) = self.drive.ahead(self.now);
+        let last = Instant(self.now.0.saturating_sub(1));
+        let heard = self.receiver.deadline(last, line || Levels(levels).has(Levels::DE));
+        // What it may hear then can be answered no sooner than after the turnaround.
+        let answer = if heard == Instant::NEVER { heard } else { heard + self.drive.turnaround() };
+        next.min(answer)
     }
 
     /// For how many cycles nothing can change while the line stays at the level of the last cycle;
@@ -195,15 +266,16 @@ impl Device {
         self.now = target.min(self.deadline());
     }
 
-    /// Runs until cycle `until` is the next, as fast as the edges allow; with [`Instant::NEVER`],
-    /// until nothing can change any more: then the last cycle run is the last in which something
-    /// did. Stops early where the sink asks for a pause.
-    pub fn run(&mut self, line: &mut Line, until: Instant, sink: &mut impl Sink) {
-        if self.now == Instant::RESET && self.now < until {
-            self.clock(line.level(), sink);
+    /// Runs until cycle `until` is the next, as fast as the edges allow, while the line stays at
+    /// `line`; with [`Instant::NEVER`], until nothing can change any more ([`Self::last_active`] then
+    /// tells when that was). Stops early where the sink asks for a pause.
+    #[inline(always)]
+    pub fn run(&mut self, line: bool, until: Instant, sink: &mut impl Sink) {
+        if self.now < until && (line != self.line || self.now == Instant::RESET) {
+            self.clock(line, sink);
         }
         while self.now < until && !sink.paused() {
-            let quiet = self.input_deadline().min(line.next_change()).min(until);
+            let quiet = self.input_deadline().min(until);
             if self.sequencer.deadline() < quiet {
                 self.levels = self.sequencer.run(quiet, self.base(), sink);
                 if self.sequencer.deadline() < quiet {
@@ -213,16 +285,26 @@ impl Device {
                 }
             }
             if quiet == Instant::NEVER {
-                self.now = self.now.max(self.sequencer.last_active().next());
                 return;
             }
             self.now = quiet;
             if quiet < until {
-                if line.next_change() == quiet {
-                    line.change();
-                }
-                self.clock(line.level(), sink);
+                self.clock(line, sink);
             }
+        }
+    }
+
+    /// The last cycle in which something happened, if every cycle that was clocked by itself had a
+    /// reason.
+    #[must_use]
+    pub fn last_active(&self) -> Instant {
+        self.last.max(self.sequencer.last_active())
+    }
+
+    /// At rest: the cycle that the next call of [`Self::clock`] is becomes `now`. Otherwise nothing.
+    pub fn settle(&mut self, now: Instant) {
+        if self.at_rest() {
+            self.now = now;
         }
     }
 

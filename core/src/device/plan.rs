@@ -59,6 +59,11 @@ impl Plan {
         &self.orders
     }
 
+    /// Whether any channel makes a step.
+    pub(super) fn has_steps(&self) -> bool {
+        self.orders.iter().any(|&byte| Order::parse(byte).steps > 0)
+    }
+
     /// Rising offsets. With a common DIR line the first change sets DIR: what it was before the
     /// tick does not matter.
     pub(super) fn changes(&self) -> &[Change] {

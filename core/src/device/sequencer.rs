@@ -4,9 +4,12 @@
 //! the tick before. It leaves the queue at c0 and ends at e = c0 + M*Ts; ticks_done counts there.
 //! When the queue is empty at e the sequencer rests: STEP = 0, DIR keeps its level.
 
-use super::plan::{Change, Lines, Plan, STEPS};
+use super::{
+    Faults,
+    plan::{Change, Lines, Plan, STEPS},
+};
 use crate::{
-    scenario::Config,
+    scenario::{Config, Protocol},
     signal::{Event, Levels, MAX_CHANNELS, Record, Sink},
     units::{Cycles, Instant},
     wire::packet::{Order, Tick},
@@ -20,6 +23,11 @@ pub(super) struct Sequencer {
     queue: VecDeque<Tick>,
     plan: Plan,
     running: Option<Running>,
+    /// STEP falls in the next cycle, after a stop.
+    halt: bool,
+    /// Whether a tick with steps that none follows is a fault: the framed protocol's rule.
+    framed: bool,
+    faults: Faults,
     /// Next cycle in which the sequencer does something: the next change of the plan or the end of
     /// the tick that runs, else the start of the queue's head; [`Instant::NEVER`] at rest.
     deadline: Instant,
@@ -48,6 +56,9 @@ impl Sequencer {
             queue: VecDeque::with_capacity(usize::from(config.queue_depth)),
             plan: Plan::new(config),
             running: None,
+            halt: false,
+            framed: config.protocol == Protocol::Framed,
+            faults: Faults::default(),
             deadline: Instant::NEVER,
             lines: 0,
             positions: [0; MAX_CHANNELS],
@@ -97,6 +108,35 @@ impl Sequencer {
         true
     }
 
+    /// UNDERRUN, if it has been.
+    pub(super) const fn faults(&self) -> Faults {
+        self.faults
+    }
+
+    pub(super) fn clear_faults(&mut self) {
+        self.faults = Faults::default();
+    }
+
+    /// Whether a tick runs or waits.
+    pub(super) fn is_moving(&self) -> bool {
+        self.running.is_some() || !self.queue.is_empty()
+    }
+
+    /// Free places in the queue.
+    pub(super) fn free(&self) -> u8 {
+        (self.depth - self.queue.len()) as u8
+    }
+
+    /// Abandons the tick that runs and those that wait: STEP falls in the cycle after `now`, DIR
+    /// stays. Pulses that rose count.
+    pub(super) fn stop(&mut self, now: Instant) {
+        self.positions = self.positions();
+        self.running = None;
+        self.queue.clear();
+        self.halt = true;
+        self.deadline = now.next();
+    }
+
     /// Next cycle in which the sequencer does something; [`Instant::NEVER`] at rest.
     pub(super) const fn deadline(&self) -> Instant {
         self.deadline
@@ -115,6 +155,7 @@ impl Sequencer {
         while self.deadline == now {
             match self.running {
                 Some(running) => self.follow(running, now, sink),
+                None if self.halt => self.halt(now),
                 None => self.begin(now, sink),
             }
         }
@@ -138,6 +179,13 @@ impl Sequencer {
         self.running = Some(running);
     }
 
+    fn halt(&mut self, now: Instant) {
+        self.halt = false;
+        self.lines &= !STEPS;
+        self.last_active = now;
+        self.deadline = if self.queue.is_empty() { Instant::NEVER } else { now };
+    }
+
     fn end(&mut self, now: Instant, sink: &mut impl Sink) {
         sink.event(now, Event::TickEnd);
         self.last_active = now;
@@ -148,12 +196,16 @@ impl Sequencer {
         self.ticks_done = self.ticks_done.wrapping_add(1);
         self.running = None;
         self.deadline = if self.queue.is_empty() { Instant::NEVER } else { now };
+        if self.framed && self.queue.is_empty() && self.plan.has_steps() {
+            self.faults.set(Faults::UNDERRUN);
+            sink.event(now, Event::Underrun);
+        }
     }
 
     fn begin(&mut self, now: Instant, sink: &mut impl Sink) {
         self.deadline = Instant::NEVER;
         if let Some(tick) = self.queue.pop_front() {
-            sink.event(now, Event::TickStart);
+            sink.event(now, Event::TickStart { orders: tick });
             self.plan.set(tick);
             self.go_on(Running { c0: now, end: now + self.tick, next: 0 });
         }

@@ -6,10 +6,11 @@
 //! is forced and its samples lie in their bits; otherwise one byte can become several, and a forced
 //! level can begin one of its own.
 
+use super::orders::{Orders, job, pulses};
 use crate::{
-    scenario::{Checked, Config, DirLine, Pulses, Source, line_time},
+    scenario::{Checked, Config, DirLine, Noise, Protocol, Pulses, Source, line_time},
     units::Cycles,
-    wire::{Schedule, packet::Order},
+    wire::{Schedule, frame::REPLY_LEN},
 };
 
 /// Edges of the line that a byte has at most, and how many of them fall.
@@ -22,6 +23,9 @@ const LAST_FALL_BIT: u64 = 8;
 const BYTE_BITS: u64 = 10;
 /// Bits of a byte that has just begun and of the gap after it (45, A5), rounded up.
 const LONGEST_REST_BITS: u64 = 60;
+
+/// Bytes of a frame beside its ticks: address, kind, count, sequence number, check, COBS and end mark.
+const FRAME_OVERHEAD: u64 = 13;
 
 /// What a run costs, known before it starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,46 +50,106 @@ impl Cost {
         self.records > BUDGET_RECORDS
     }
 
-    pub(super) fn of(checked: &Checked, schedule: &Schedule) -> Self {
-        let (bytes, forced) = (schedule.total_bytes() as u64, checked.forced.len() as u64);
-        let line = MOST_EDGES_A_BYTE * bytes + 2 * forced;
+    pub(super) fn of(checked: &Checked, orders: &[Orders], schedule: &Schedule) -> Self {
+        let sends = if orders.iter().any(|orders| waits_for_replies(checked, orders)) {
+            Sends::framed(checked, orders)
+        } else {
+            Sends::scheduled(checked, schedule)
+        };
+        let edges = MOST_EDGES_A_BYTE * (sends.bytes + sends.reply_bytes) + 2 * checked.forced.len() as u64;
+        let records = orders.iter().map(|orders| 1 + edges + tick_records(checked, orders, schedule)).sum();
         Self {
-            records: 1 + line + tick_records(checked, schedule),
-            sends: schedule.len() as u64,
-            bytes,
-            end_cycle: checked.run.map_or_else(|| last_cycle(schedule, checked), |Cycles(run)| run),
+            records,
+            sends: sends.count,
+            bytes: sends.bytes,
+            end_cycle: checked.run.map_or_else(
+                || last_cycle(schedule, checked, orders).max(sends.end_cycle),
+                |Cycles(run)| run,
+            ),
         }
     }
 }
 
-/// Records of all ticks at most.
-fn tick_records(checked: &Checked, schedule: &Schedule) -> u64 {
-    let config = &checked.config;
-    if paced_and_heard(checked) {
-        return schedule.iter().map(|packet| records_of(config, pulses(config, packet.bytes))).sum();
+/// What goes over the line.
+struct Sends {
+    count: u64,
+    bytes: u64,
+    reply_bytes: u64,
+    /// When it is over, where that is not told by a schedule.
+    end_cycle: u64,
+}
+
+impl Sends {
+    fn scheduled(checked: &Checked, schedule: &Schedule) -> Self {
+        let bytes = schedule.total_bytes() as u64;
+        let framed = checked.configs.iter().any(|config| config.protocol() == Protocol::Framed);
+        // A frame is seven bytes at least.
+        let replies = if framed { bytes / 7 + checked.forced.len() as u64 } else { 0 };
+        Self { count: schedule.len() as u64, bytes, reply_bytes: replies * REPLY_LEN as u64, end_cycle: 0 }
+    }
+
+    /// Frames of a host that waits for replies; with noise, each of them twice.
+    fn framed(checked: &Checked, orders: &[Orders]) -> Self {
+        let repeats = if checked.noise == Noise::default() && checked.forced.is_empty() { 1 } else { 2 };
+        let mut sends = Self { count: 0, bytes: 0, reply_bytes: 0, end_cycle: 0 };
+        for orders in orders.iter().filter(|orders| orders.has_ticks()) {
+            let job = job(orders.config(), &orders.shared_ticks());
+            let frames = u64::from(job.ticks()).div_ceil(job.ticks_a_frame(&checked.host).into()) + 2;
+            sends.count += repeats * frames;
+            sends.bytes += repeats * (orders.ticks().len() as u64 + FRAME_OVERHEAD * frames);
+            sends.reply_bytes += repeats * REPLY_LEN as u64 * frames;
+            let ticks = u64::from(job.ticks()) * job.tick.0;
+            sends.end_cycle = sends.end_cycle.max(orders.config().boot.0 + ticks);
+        }
+        let bytes = sends.bytes + sends.reply_bytes;
+        let clock_hz = orders.first().map_or(1, |first| first.config().clock_hz());
+        // The line and the ticks go side by side, but for the first and the last exchange.
+        sends.end_cycle = sends.end_cycle.max(line_time(bytes, clock_hz, checked.baud))
+            + line_time(sends.bytes / sends.count.max(1) + 200, clock_hz, checked.baud);
+        sends
+    }
+}
+
+fn waits_for_replies(checked: &Checked, orders: &Orders) -> bool {
+    orders.config().protocol() == Protocol::Framed && !matches!(checked.source, Source::Line(_))
+}
+
+/// Records of all ticks of one controller at most.
+fn tick_records(checked: &Checked, orders: &Orders, schedule: &Schedule) -> u64 {
+    let config = orders.config();
+    if waits_for_replies(checked, orders) || comes_as_ordered(checked, config) {
+        if let Source::Packets(_) = &checked.source
+            && config.protocol() == Protocol::Raw
+            && checked.configs.len() > 1
+        {
+            // A list of packets may speak to any controller.
+            let most = schedule.iter().map(|send| pulses(send.bytes)).sum::<u64>();
+            return records_of(config, most) + schedule.total_bytes() as u64;
+        }
+        return orders.each_tick().map(|tick| records_of(config, pulses(tick))).sum();
     }
     let most = u64::from(config.slots()) * u64::from(config.channels());
-    most_ticks(checked, schedule) * records_of(config, most)
+    most_ticks(checked, config, schedule) * records_of(config, most)
 }
 
 /// Whether each packet comes with its tick and is heard as it was sent.
-fn paced_and_heard(checked: &Checked) -> bool {
-    !matches!(checked.source, Source::Line(_)) && is_faithful(checked)
+fn comes_as_ordered(checked: &Checked, config: &Config) -> bool {
+    !matches!(checked.source, Source::Line(_)) && is_faithful(checked, config)
 }
 
-fn is_faithful(checked: &Checked) -> bool {
-    checked.forced.is_empty() && hears(&checked.config, checked.baud)
+fn is_faithful(checked: &Checked, config: &Config) -> bool {
+    checked.forced.is_empty() && checked.noise == Noise::default() && hears(config, checked.baud)
 }
 
-/// Packets for this controller that can be heard.
-fn most_ticks(checked: &Checked, schedule: &Schedule) -> u64 {
-    let heard = if is_faithful(checked) {
+/// Ticks for this controller that can be heard.
+fn most_ticks(checked: &Checked, config: &Config, schedule: &Schedule) -> u64 {
+    let heard = if is_faithful(checked, config) {
         schedule.total_bytes() as u64
     } else {
-        let sent: u64 = schedule.iter().map(|send| most_heard(checked, send.bytes.len())).sum();
+        let sent: u64 = schedule.iter().map(|send| most_heard(checked, config, send.bytes.len())).sum();
         sent + checked.forced.len() as u64
     };
-    heard / checked.config.packet_len() as u64
+    heard / config.packet_len() as u64
 }
 
 /// Whether the receiver takes each sample in the bit that it is of, and is armed for the next byte.
@@ -96,18 +160,11 @@ fn hears(config: &Config, baud: u32) -> bool {
 }
 
 /// Bytes that can be heard of so many that are sent back to back.
-fn most_heard(checked: &Checked, bytes: usize) -> u64 {
-    let (bytes, bit) = (bytes as u64, checked.config.bit().0);
+fn most_heard(checked: &Checked, config: &Config, bytes: usize) -> u64 {
+    let (bytes, bit) = (bytes as u64, config.bit().0);
     let Some(before) = bytes.checked_sub(1) else { return 0 };
-    let last_fall =
-        (10 * before + LAST_FALL_BIT) * u64::from(checked.config.clock_hz()) / u64::from(checked.baud);
+    let last_fall = (10 * before + LAST_FALL_BIT) * u64::from(config.clock_hz()) / u64::from(checked.baud);
     (MOST_FALLS_A_BYTE * bytes).min(last_fall / (bit / 2 + 9 * bit + 1) + 1)
-}
-
-/// Pulses that a packet orders.
-fn pulses(config: &Config, packet: &[u8]) -> u64 {
-    let orders = packet.iter().skip(usize::from(config.address().is_some()));
-    orders.map(|&byte| u64::from(Order::parse(byte).steps)).sum()
 }
 
 /// Records that a tick of `pulses` pulses makes at most: two edges a pulse, or a slot where they
@@ -123,21 +180,26 @@ fn records_of(config: &Config, pulses: u64) -> u64 {
 }
 
 /// A cycle by which everything has been sent and what can follow it has passed: a byte that is heard
-/// late (by a slow receiver, or begun by a forced level), the tick that runs and those that wait,
-/// or the gap.
-fn last_cycle(schedule: &Schedule, checked: &Checked) -> u64 {
-    let config = &checked.config;
+/// late (by a slow receiver, or begun by a forced level), the tick that runs and those that wait, or
+/// a reply and the gap.
+fn last_cycle(schedule: &Schedule, checked: &Checked, orders: &[Orders]) -> u64 {
     let last = schedule.len().checked_sub(1).and_then(|index| schedule.get(index));
-    let sent = last
-        .map_or(0, |send| send.start.0 + line_time(send.bytes.len() as u64, config.clock_hz(), checked.baud));
+    let clock_hz = orders.first().map_or(1, |first| first.config().clock_hz());
+    let sent =
+        last.map_or(0, |send| send.start.0 + line_time(send.bytes.len() as u64, clock_hz, checked.baud));
     let forced = checked.forced.iter().map(|forced| forced.end.0).max().unwrap_or(0);
-    let ticks = if paced_and_heard(checked) {
-        1
-    } else {
-        most_ticks(checked, schedule).min(u64::from(config.queue_depth) + 1)
+    let rest = |orders: &Orders| {
+        let config = orders.config();
+        let ticks = if waits_for_replies(checked, orders) || comes_as_ordered(checked, config) {
+            1
+        } else {
+            most_ticks(checked, config, schedule).min(u64::from(config.queue_depth) + 1)
+        };
+        let reply = line_time(REPLY_LEN as u64, clock_hz, config.reply_baud);
+        let late = if is_faithful(checked, config) { 0 } else { BYTE_BITS * config.bit().0 };
+        late + (ticks * config.tick().0).max(LONGEST_REST_BITS * config.bit().0 + reply)
     };
-    let late = if is_faithful(checked) { 0 } else { BYTE_BITS * config.bit().0 };
-    sent.max(forced) + late + (ticks * config.tick().0).max(LONGEST_REST_BITS * config.bit().0) + 1
+    sent.max(forced) + orders.iter().map(rest).max().unwrap_or(0) + 1
 }
 
 #[cfg(test)]

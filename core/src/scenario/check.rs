@@ -3,17 +3,23 @@
 //! Motions are judged where they are planned (`motion`), because only the plan knows what they ask
 //! for; [`crate::run::Experiment`] gathers the problems of both.
 
-use super::{Cause, Config, Hex, LineScript, Packets, Problem, Scenario, Source, judge::Judge};
+use super::{
+    Cause, Config, Controller, Hex, Host, Line, LineScript, Noise, Problem, Protocol, Scenario, Source,
+    judge::Judge,
+};
 use crate::{
+    protocol::MOST_TICKS,
     signal::MAX_CHANNELS,
     units::{Cycles, Instant},
 };
-use alloc::{format, vec::Vec};
+use alloc::{format, string::String, vec::Vec};
 
 /// First cycle that no run reaches: a JavaScript number is exact up to 2^53, and this is below.
 pub const END_OF_TIME: u64 = 9_000_000_000_000_000;
 /// Most bytes of a line script, and most packets of a packet list.
 const MOST_BYTES: usize = 4 << 20;
+/// Most controllers on a line beside the first.
+const MOST_FURTHER: usize = 31;
 /// Most glitches on a line.
 const MOST_GLITCHES: usize = 10_000;
 
@@ -31,10 +37,16 @@ pub struct Forced {
 /// A scenario whose numbers hold, but for its motions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checked {
-    /// The peripheral.
-    pub config: Config,
+    /// The controllers on the line, the scenario's own first.
+    pub configs: Vec<Config>,
+    /// What the further ones do.
+    pub further: Vec<Controller>,
     /// The host's bit rate.
     pub baud: u32,
+    /// How the host of a framed line behaves.
+    pub host: Host,
+    /// Random faults of the line.
+    pub noise: Noise,
     /// Levels forced on the line; where two overlap the later one wins.
     pub forced: Vec<Forced>,
     /// What the host sends; its motions are not judged yet.
@@ -63,6 +75,8 @@ impl Scenario {
         if self.line.receiver_baud.is_some() {
             judge.range("line.baud", self.line.baud, 1, self.clock_hz.max(1).into(), "baud");
         }
+        let further = self.further(config.as_ref(), &mut judge);
+        self.host(&mut judge);
         if let Some(cycles) = self.run_cycles {
             judge.range("run_cycles", cycles, 1, END_OF_TIME, "cycles");
         }
@@ -72,14 +86,28 @@ impl Scenario {
                 let most = usize::from(self.bus.channels).clamp(1, MAX_CHANNELS);
                 judge.length("source.motion.axes", motion.axes.len(), 1, most, "axes");
             }
-            Source::Packets(packets) => self.packets(packets, &mut judge),
+            Source::Packets(packets) => {
+                let address = usize::from(self.line.protocol == Protocol::Raw && self.line.address.is_some());
+                let len = usize::from(self.bus.channels) + address;
+                let further = self.controllers.iter().map(|controller| &controller.packets);
+                let total: usize =
+                    further.chain([&packets.packets]).flatten().map(|Hex(bytes)| bytes.len()).sum();
+                judge_packets("source.packets.packets", &packets.packets, len, &mut judge);
+                judge.length("source.packets.packets", total, 0, MOST_BYTES, "bytes");
+            }
             Source::Line(script) => self.script(script, &mut judge),
         }
         self.analysis(&mut judge);
+        if let Some(driver) = &self.driver {
+            driver.judge(&mut judge);
+        }
         judge.end(()).and_then(|()| {
             Ok(Checked {
-                config: config.ok_or_else(Vec::new)?,
+                configs: config.into_iter().chain(further).collect(),
+                further: self.controllers.clone(),
                 baud: self.line.baud,
+                host: self.line.host.clone(),
+                noise: self.line.noise.clone(),
                 forced,
                 source: self.source.clone(),
                 run: self.run_cycles.map(Cycles),
@@ -106,16 +134,109 @@ impl Scenario {
         forced
     }
 
-    fn packets(&self, source: &Packets, judge: &mut Judge) {
-        let len = usize::from(self.bus.channels) + usize::from(self.line.address.is_some());
-        for (index, Hex(bytes)) in source.packets.iter().enumerate() {
-            judge.length(&format!("source.packets.packets[{index}]"), bytes.len(), len, len, "bytes");
+    /// The further controllers' configurations.
+    fn further(&self, first: Option<&Config>, judge: &mut Judge) -> Vec<Config> {
+        judge.length("controllers", self.controllers.len(), 0, MOST_FURTHER, "further controllers");
+        if !self.controllers.is_empty() && self.line.protocol == Protocol::Raw && self.line.address.is_none()
+        {
+            let detail =
+                "several controllers on a line need an address each; give the first one an address, 0 to 254";
+            judge.add("line.address", Cause::Conflict { detail });
         }
-        judge.length("source.packets.packets", source.packets.len() * len, 0, MOST_BYTES, "bytes");
+        let mut configs = Vec::new();
+        for (index, controller) in self.controllers.iter().enumerate() {
+            let at = |field: &str| format!("controllers[{index}].{field}");
+            let line = Line {
+                baud: self.line.baud,
+                receiver_baud: controller.receiver_baud,
+                address: Some(controller.address),
+                protocol: self.line.protocol,
+                ..Line::default()
+            };
+            match Config::new(self.clock_hz, &controller.bus, &line) {
+                Ok(config) => configs.push(config),
+                Err(problems) => {
+                    for Problem { path, cause } in problems {
+                        let path = match path.strip_prefix("line.") {
+                            _ if path == "clock_hz" || path == "line.baud" => path,
+                            Some(own) => at(own),
+                            None => at(&path),
+                        };
+                        if !judge.has(&path) {
+                            judge.add(path, cause);
+                        }
+                    }
+                }
+            }
+            let mut before = self.controllers.iter().take(index).map(|controller| controller.address);
+            let first_address = first.and_then(Config::address);
+            if first_address == Some(controller.address) || before.any(|other| other == controller.address) {
+                judge.add(at("address"), Cause::SameAddress { address: controller.address });
+            }
+            self.orders(controller, &at, judge);
+        }
+        let paced = self.line.protocol == Protocol::Raw && !matches!(self.source, Source::Line(_));
+        if let Some(first) = first.filter(|_| paced && configs.len() == self.controllers.len()) {
+            for (index, config) in configs.iter().enumerate() {
+                let (tick_cycles, first_cycles) = (config.tick().0, first.tick().0);
+                if tick_cycles != first_cycles {
+                    let path = format!("controllers[{index}].bus.step_period_cycles");
+                    judge.add(path, Cause::OtherTick { tick_cycles, first_cycles });
+                }
+            }
+        }
+        configs
+    }
+
+    /// What a further controller is to do.
+    fn orders(&self, controller: &Controller, at: &impl Fn(&str) -> String, judge: &mut Judge) {
+        let most = usize::from(controller.bus.channels).clamp(1, MAX_CHANNELS);
+        judge.length(&at("axes"), controller.axes.len(), 0, most, "axes");
+        if !controller.axes.is_empty() && !matches!(self.source, Source::Motion(_)) {
+            let detail = "axes are for a source of kind motion; take them out, or choose that source";
+            judge.add(at("axes"), Cause::Conflict { detail });
+        }
+        if !controller.packets.is_empty() && !matches!(self.source, Source::Packets(_)) {
+            let detail = "packets are for a source of kind packets; take them out, or choose that source";
+            judge.add(at("packets"), Cause::Conflict { detail });
+        }
+        let len = usize::from(controller.bus.channels) + usize::from(self.line.protocol == Protocol::Raw);
+        judge_packets(&at("packets"), &controller.packets, len, judge);
+    }
+
+    fn host(&self, judge: &mut Judge) {
+        let Host { ticks_a_frame, reply_timeout_cycles, attempts } = self.line.host;
+        judge.range("line.host.ticks_a_frame", ticks_a_frame, 1, MOST_TICKS.into(), "ticks");
+        if let Some(cycles) = reply_timeout_cycles {
+            judge.range("line.host.reply_timeout_cycles", cycles, 1, u32::MAX.into(), "cycles");
+        }
+        judge.range("line.host.attempts", attempts, 1, 255, "");
+        let noise = &self.line.noise;
+        let rates = [
+            ("flipped_bits_ppm", noise.flipped_bits_ppm),
+            ("lost_bytes_ppm", noise.lost_bytes_ppm),
+            ("doubled_bytes_ppm", noise.doubled_bytes_ppm),
+            ("glitches_ppm", noise.glitches_ppm),
+            ("lost_replies_ppm", noise.lost_replies_ppm),
+            ("deaths_ppm", noise.deaths_ppm),
+        ];
+        for (field, rate) in rates {
+            judge.range(&format!("line.noise.{field}"), rate, 0, 1_000_000, "ppm");
+        }
+        let hears_replies = self.line.protocol == Protocol::Framed && !matches!(self.source, Source::Line(_));
+        if hears_replies && self.line.receiver_baud.is_some() {
+            let host = Line { receiver_baud: None, ..self.line.clone() };
+            let problems = Config::new(self.clock_hz, &Default::default(), &host).err().unwrap_or_default();
+            for Problem { path, cause } in problems {
+                if path == "line.baud" && !judge.has(&path) {
+                    judge.add(path, cause);
+                }
+            }
+        }
     }
 
     fn script(&self, script: &LineScript, judge: &mut Judge) {
-        let total = script.sends.iter().map(|send| send.bytes.0.len()).sum();
+        let total = script.sends.iter().map(|send| send.wire().len()).sum();
         judge.length("source.line.sends", total, 0, MOST_BYTES, "bytes");
         let mut free_from = 1;
         for (index, send) in script.sends.iter().enumerate() {
@@ -125,7 +246,11 @@ impl Scenario {
             if start < free_from && start >= 1 {
                 judge.add(path, Cause::Overlap { start, free_from });
             }
-            let bytes = send.bytes.0.len() as u64;
+            if send.frame.is_some() && !send.bytes.0.is_empty() {
+                let detail = "a send has bytes or a frame, not both; take one out";
+                judge.add(format!("source.line.sends[{index}].bytes"), Cause::Conflict { detail });
+            }
+            let bytes = send.wire().len() as u64;
             let end = start.min(END_OF_TIME) + line_time(bytes, self.clock_hz, self.line.baud);
             free_from = free_from.max(end);
         }
@@ -143,6 +268,13 @@ impl Scenario {
         if (256..=65_536).contains(&analysis.fft_length) && !analysis.fft_length.is_power_of_two() {
             judge.add("analysis.fft_length", Cause::NotPowerOfTwo { given: analysis.fft_length });
         }
+    }
+}
+
+/// Packets are of `len` bytes.
+fn judge_packets(path: &str, packets: &[Hex], len: usize, judge: &mut Judge) {
+    for (index, Hex(bytes)) in packets.iter().enumerate() {
+        judge.length(&format!("{path}[{index}]"), bytes.len(), len, len, "bytes");
     }
 }
 

@@ -24,12 +24,18 @@ macro_rules! plain {
         }
     )*};
 }
-plain!(u8, u16, u32, u64, String, Option<u8>, Option<u32>, Option<u64>);
+plain!(u8, u16, u32, u64, String);
 
 impl Compact for f64 {
     /// -0.0 equals 0.0, so it is written like it.
     fn compact(&self) -> Value {
         Value::from(*self + 0.0)
+    }
+}
+
+impl<T: Compact> Compact for Option<T> {
+    fn compact(&self) -> Value {
+        self.as_ref().map_or(Value::Null, Compact::compact)
     }
 }
 
@@ -113,6 +119,15 @@ macro_rules! words {
 words! {
     super::Distribution { Burst = "burst", Spread = "spread", }
     super::DirLine { PerChannel = "per_channel", Common = "common", }
+    super::Protocol { Raw = "raw", Framed = "framed", }
     super::Pulses { Simultaneous = "simultaneous", Staggered = "staggered", }
     super::TrapezoidMethod { Table = "table", Exact = "exact", }
+    super::DriverModel {
+        A4988 = "a4988",
+        A4979 = "a4979",
+        Drv8825 = "drv8825",
+        Tmc2209 = "tmc2209",
+        Tmc262 = "tmc262",
+        Tb6600Class = "tb6600_class",
+    }
 }

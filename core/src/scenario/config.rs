@@ -1,7 +1,7 @@
 //! The peripheral's configuration: what of a scenario the device is built from, and the rules of
 //! DESIGN A4 and A7 that it keeps.
 
-use super::{Bus, Cause, DirLine, Distribution, Line, Problem, Pulses, judge::Judge};
+use super::{Bus, Cause, DirLine, Distribution, Line, Problem, Protocol, Pulses, judge::Judge};
 use crate::{
     signal::MAX_CHANNELS,
     units::{Cycles, Instant},
@@ -30,6 +30,8 @@ pub struct Config {
     pub(crate) queue_depth: u8,
     pub(crate) boot: Instant,
     pub(crate) bit_cycles: u64,
+    pub(crate) reply_baud: u32,
+    pub(crate) protocol: Protocol,
     pub(crate) address: Option<u8>,
 }
 
@@ -76,7 +78,12 @@ impl Config {
             queue_depth: bus.queue_depth,
             boot: Instant(u64::from(bus.boot_cycles)),
             bit_cycles,
-            address: line.address,
+            reply_baud: baud,
+            protocol: line.protocol,
+            address: match line.protocol {
+                Protocol::Raw => line.address,
+                Protocol::Framed => Some(line.address.unwrap_or(0)),
+            },
         })
     }
 
@@ -92,7 +99,13 @@ impl Config {
         self.channels
     }
 
-    /// The controller's address, where packets begin with one.
+    /// What stands around the orders on the line.
+    #[must_use]
+    pub const fn protocol(&self) -> Protocol {
+        self.protocol
+    }
+
+    /// The controller's address, where packets begin with one; always on a framed line.
     #[must_use]
     pub const fn address(&self) -> Option<u8> {
         self.address
@@ -116,10 +129,26 @@ impl Config {
         Cycles(self.bit_cycles)
     }
 
-    /// Bytes of a packet: one a channel, and the address on an addressed line.
+    /// The bit time of a receiver of `baud` (A4). A rate of 0 counts as 1 baud.
+    #[must_use]
+    pub fn bit_of(clock_hz: u32, baud: u32) -> Cycles {
+        Cycles(bit_cycles(clock_hz, baud.max(1)))
+    }
+
+    /// Bytes of a packet: one a channel, and the address on an addressed raw line. A frame has its
+    /// address itself.
     #[must_use]
     pub const fn packet_len(&self) -> usize {
-        self.channels as usize + self.address.is_some() as usize
+        self.channels as usize + self.packet_address().is_some() as usize
+    }
+
+    /// The address that packets begin with, if they do.
+    #[must_use]
+    pub const fn packet_address(&self) -> Option<u8> {
+        match self.protocol {
+            Protocol::Raw => self.address,
+            Protocol::Framed => None,
+        }
     }
 }
 

@@ -41,6 +41,11 @@ impl Judge {
         }
     }
 
+    /// Whether something is wrong at `path` already.
+    pub(super) fn has(&self, path: &str) -> bool {
+        self.problems.iter().any(|problem| problem.path == path)
+    }
+
     pub(super) fn take<T>(&mut self, result: Result<T, Vec<Problem>>) -> Option<T> {
         result.map_err(|problems| self.problems.extend(problems)).ok()
     }

@@ -14,6 +14,7 @@
 mod check;
 mod compact;
 mod config;
+mod drive;
 mod hex;
 mod judge;
 pub mod link;
@@ -26,6 +27,7 @@ pub use check::{Checked, END_OF_TIME, Forced, line_time};
 pub use compact::Compact;
 pub use config::Config;
 pub(crate) use config::most_baud;
+pub use drive::{Driver, DriverModel, TimingRules};
 pub use hex::Hex;
 pub use problem::{Cause, Problem};
 pub use quantity::{Acceleration, Direct, Distance, Mechanics, NoSuchUnit, Rotary, Screw, Speed, Wheel};
@@ -58,6 +60,34 @@ settings! {
         pub run_cycles: Option<u64> = None,
         /// What the spectrum is taken of.
         pub analysis: Analysis = Analysis::default(),
+        /// Further controllers on the line, up to 31; `bus` and `line.address` describe the first.
+        pub controllers: Vec<Controller> = Vec::new(),
+        /// The driver that the pulses are checked against; without it they are not checked.
+        pub driver: Option<Driver> = None,
+    }
+}
+
+settings! {
+    /// A further controller on the line (DESIGN A9).
+    pub struct Controller {
+        /// Its address, 0 to 254, which no other controller has.
+        pub address: u8 = 1,
+        /// Bit rate of its receiver and its replies in baud, where its clock differs from the host's.
+        pub receiver_baud: Option<u32> = None,
+        /// Its driver bus and queue; paced packets need ticks of the same length on all controllers.
+        pub bus: Bus = Bus::default(),
+        /// What its axes do, where the source is a motion.
+        pub axes: Vec<Axis> = Vec::new(),
+        /// Its packets, one a tick, where the source is packets.
+        pub packets: Vec<Hex> = Vec::new(),
+    }
+}
+
+impl Controller {
+    /// Whether it has something to do.
+    #[must_use]
+    pub fn is_busy(&self) -> bool {
+        !self.axes.is_empty() || !self.packets.is_empty()
     }
 }
 
@@ -132,10 +162,63 @@ settings! {
         pub baud: u32 = 115_200,
         /// Bit rate of the receiver in baud where its clock differs from the host's.
         pub receiver_baud: Option<u32> = None,
-        /// The controller's address, 0 to 254, if packets begin with one. 255 addresses all.
+        /// The controller's address, 0 to 254, if packets begin with one. 255 addresses all. On a
+        /// framed line a controller always has one: 0 if none is given.
         pub address: Option<u8> = None,
+        /// What stands around the orders.
+        pub protocol: Protocol = Protocol::Raw,
+        /// How the host of a framed line behaves.
+        pub host: Host = Host::default(),
+        /// Random faults of the line.
+        pub noise: Noise = Noise::default(),
         /// Levels forced on the line whatever is sent; where two overlap the later entry wins.
         pub glitches: Vec<Glitch> = Vec::new(),
+    }
+}
+
+/// What stands around the orders on the line.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Protocol {
+    /// Nothing: bytes, and pauses between packets, as in RU 2704486 (DESIGN A5).
+    #[default]
+    Raw,
+    /// Frames with a check, sequence numbers and replies (DESIGN A6).
+    Framed,
+}
+
+settings! {
+    /// How the host of a framed line behaves: one frame, its reply, the next (DESIGN A9).
+    pub struct Host {
+        /// Most ticks in one frame, 1 to 32; at most half of the queue is sent at once.
+        pub ticks_a_frame: u8 = 8,
+        /// From the end of a frame to its repetition, in cycles, 1 to 4 294 967 295; without it 256
+        /// bit times.
+        pub reply_timeout_cycles: Option<u32> = None,
+        /// How often one frame is sent before the host gives up, 1 to 255.
+        pub attempts: u8 = 10,
+    }
+}
+
+settings! {
+    /// Random faults of the line and of the host, each in millionths (0 to 1 000 000). The same seed
+    /// gives the same faults.
+    pub struct Noise {
+        /// Where the random numbers begin.
+        pub seed: u32 = 0,
+        /// Bits that are turned over, of all bits of all bytes, both ways.
+        pub flipped_bits_ppm: u32 = 0,
+        /// Bytes that are left out, of all bytes, both ways.
+        pub lost_bytes_ppm: u32 = 0,
+        /// Bytes that come twice, of all bytes, both ways.
+        pub doubled_bytes_ppm: u32 = 0,
+        /// Levels forced on the line for up to two bit times, of all bytes of the host.
+        pub glitches_ppm: u32 = 0,
+        /// Replies that the host does not hear, of all replies.
+        pub lost_replies_ppm: u32 = 0,
+        /// Frames (on a raw line: packets) within which the host dies, of all of them. It comes back and
+        /// remembers nothing but its orders.
+        pub deaths_ppm: u32 = 0,
     }
 }
 
@@ -305,6 +388,19 @@ settings! {
         pub start_cycle: u64 = 1,
         /// The bytes in hex.
         pub bytes: Hex = Hex::default(),
+        /// In place of bytes: a frame's address, kind and body in hex; check, COBS and end mark are
+        /// added (DESIGN A6).
+        pub frame: Option<Hex> = None,
+    }
+}
+
+impl ScriptedSend {
+    /// The bytes that go over the line.
+    #[must_use]
+    pub fn wire(&self) -> Vec<u8> {
+        self.frame
+            .as_ref()
+            .map_or_else(|| self.bytes.0.clone(), |Hex(content)| crate::protocol::seal(content))
     }
 }
 

@@ -26,6 +26,7 @@ const SONG: &str = "Song, Han, Lu 2021: exact S-curve";
 const SONOBE: &str = "Sonobe 2011: acceleration table";
 const PATENT: &str = "RU 2704486, 2019: tick packets";
 const ZHANG: &str = "Zhang 2012: fixed-length controller";
+const DRIVERS: &str = "Drivers' data sheets: timing";
 
 macro_rules! presets {
     ($($document:expr => $id:literal;)*) => {
@@ -49,6 +50,7 @@ presets! {
     PATENT => "patent-2019-sixteen-motors";
     PATENT => "patent-2019-addressed";
     PATENT => "glitches-and-breaks";
+    DRIVERS => "driver-timing-broken";
 }
 
 #[cfg(test)]

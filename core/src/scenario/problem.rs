@@ -201,6 +201,23 @@ pub enum Cause {
         /// The highest rate that the receiver can hear with this clock.
         most_baud: u64,
     },
+    /// Two controllers of one address.
+    SameAddress {
+        /// The address.
+        address: u8,
+    },
+    /// Controllers that are paced together and have ticks of different lengths (A9).
+    OtherTick {
+        /// This one's tick in cycles.
+        tick_cycles: u64,
+        /// The first one's.
+        first_cycles: u64,
+    },
+    /// Fields that do not go together.
+    Conflict {
+        /// Which, why, and what to do.
+        detail: &'static str,
+    },
     /// More work than one run may be.
     TooMuch {
         /// How much.
@@ -365,6 +382,14 @@ impl fmt::Display for Cause {
                     )
                 }
             }
+            Self::SameAddress { address } => {
+                write!(f, "another controller has address {address} already; give each its own, 0 to 254")
+            }
+            Self::OtherTick { tick_cycles, first_cycles } => write!(
+                f,
+                "ticks of {tick_cycles} cycles beside ticks of {first_cycles} on the first controller; paced packets need one length (slots x step period): change one of them, or choose the framed protocol"
+            ),
+            Self::Conflict { detail } => f.write_str(detail),
             Self::TooMuch { given, most, of } => write!(
                 f,
                 "{} {of} are more than one run may have; at most {} are allowed: {}",

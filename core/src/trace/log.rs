@@ -1,8 +1,10 @@
 //! The packets of a run, one row each: when, which bytes, what the controller did with it.
 
 use crate::{
+    protocol::{FrameFate, Kind, Reply},
     signal::{Event, Fate, Record, Sink},
     units::Instant,
+    wire::packet::Tick,
 };
 use alloc::{collections::VecDeque, vec::Vec};
 use core::fmt;
@@ -18,6 +20,12 @@ pub enum Verdict {
     Framing,
     /// Bytes that were ignored after a framing error.
     Ignored,
+    /// A frame, or what was none.
+    Frame(FrameFate),
+    /// What the controller answered to the frame before.
+    Reply(Reply),
+    /// The controller drove the line while another did.
+    Collision,
     /// The run ended within it.
     Open,
 }
@@ -34,6 +42,9 @@ impl fmt::Display for Verdict {
             Self::Short => "dropped: SHORT_PACKET",
             Self::Framing => "dropped: FRAMING",
             Self::Ignored => "ignored until a gap",
+            Self::Frame(fate) => return fate.fmt(f),
+            Self::Reply(reply) => return reply.fmt(f),
+            Self::Collision => "collision: the controller and another drive the line",
             Self::Open => "not complete",
         })
     }
@@ -48,11 +59,22 @@ pub struct LoggedPacket {
     pub end: Instant,
     /// What became of it.
     pub verdict: Verdict,
-    /// Its tick's first cycle, if it has begun.
+    /// First cycle of its tick, of a frame's its first tick, if that has begun.
     pub tick_start: Option<Instant>,
-    /// First cycle after its tick, if it has ended.
+    /// First cycle after its last tick so far that has ended.
     pub tick_end: Option<Instant>,
     bytes_end: usize,
+}
+
+/// A tick that has begun.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LoggedTick {
+    /// Its first cycle.
+    pub start: Instant,
+    /// What it orders, a byte a channel (A5).
+    pub orders: Tick,
+    /// The row that brought it; `None` for one that firmware pushed.
+    pub row: Option<usize>,
 }
 
 /// All packets of a run.
@@ -64,9 +86,9 @@ pub struct PacketLog {
     open: Option<Instant>,
     last: Instant,
     ignoring: bool,
-    /// Rows whose tick waits, and those whose tick has begun, in the order of the ticks.
+    /// The row of each tick that waits.
     waiting: VecDeque<usize>,
-    begun: Vec<usize>,
+    ticks: Vec<LoggedTick>,
 }
 
 impl PacketLog {
@@ -76,10 +98,10 @@ impl PacketLog {
         &self.rows
     }
 
-    /// Indices of the rows whose tick has begun, in the order of the ticks.
+    /// The ticks that have begun.
     #[must_use]
-    pub fn ticks(&self) -> &[usize] {
-        &self.begun
+    pub fn ticks(&self) -> &[LoggedTick] {
+        &self.ticks
     }
 
     /// Bytes of a row.
@@ -96,10 +118,22 @@ impl PacketLog {
         }
     }
 
+    /// Bytes that belong to no row yet.
+    fn bytes_of_open(&self) -> Vec<u8> {
+        let first = self.rows.last().map_or(0, |row| row.bytes_end);
+        self.bytes.get(first..).unwrap_or_default().to_vec()
+    }
+
     fn close(&mut self, end: Instant, verdict: Verdict) {
         let start = self.open.take().unwrap_or(end);
-        if verdict == Verdict::Packet(Fate::Queued) {
-            self.waiting.push_back(self.rows.len());
+        let queued = match verdict {
+            Verdict::Packet(Fate::Queued) => 1,
+            Verdict::Frame(FrameFate::Queued(ticks)) => ticks.into(),
+            _ => 0,
+        };
+        self.waiting.extend(core::iter::repeat_n(self.rows.len(), queued));
+        if verdict == Verdict::Frame(FrameFate::Taken(Kind::Stop)) {
+            self.waiting.clear();
         }
         let bytes_end = self.bytes.len();
         self.rows.push(LoggedPacket { start, end, verdict, tick_start: None, tick_end: None, bytes_end });
@@ -116,7 +150,9 @@ impl Sink for PacketLog {
                 self.bytes.push(byte);
                 self.last = at;
             }
-            Event::FramingError { seen } => {
+            // On a framed line only the byte is missing, and the frame's check tells.
+            Event::FramingError { drops: false, .. } => {}
+            Event::FramingError { seen, .. } => {
                 self.open.get_or_insert(seen);
                 self.close(at, Verdict::Framing);
                 self.ignoring = true;
@@ -128,16 +164,32 @@ impl Sink for PacketLog {
                 self.ignoring = false;
             }
             Event::Packet(fate) => self.close(at, Verdict::Packet(fate)),
-            Event::TickStart => {
-                if let Some(index) = self.waiting.pop_front()
-                    && let Some(row) = self.rows.get_mut(index)
-                {
-                    row.tick_start = Some(at);
-                    self.begun.push(index);
+            Event::Frame(fate) => self.close(at, Verdict::Frame(fate)),
+            Event::Reply { start, end, reply } => {
+                self.bytes.extend(reply.emit());
+                self.open = Some(start);
+                self.close(end, Verdict::Reply(reply));
+            }
+            Event::Collision => {
+                // The bytes of what is coming stay with it.
+                let (open, coming) = (self.open.take(), self.bytes_of_open());
+                self.bytes.truncate(self.bytes.len() - coming.len());
+                self.open = Some(at);
+                self.close(at, Verdict::Collision);
+                self.bytes.extend(coming);
+                self.open = open;
+            }
+            Event::Underrun => {}
+            Event::TickStart { orders } => {
+                let row = self.waiting.pop_front();
+                if let Some(row) = row.and_then(|index| self.rows.get_mut(index)) {
+                    row.tick_start.get_or_insert(at);
                 }
+                self.ticks.push(LoggedTick { start: at, orders, row });
             }
             Event::TickEnd => {
-                if let Some(row) = self.begun.last().and_then(|&index| self.rows.get_mut(index)) {
+                let row = self.ticks.last().and_then(|tick| tick.row);
+                if let Some(row) = row.and_then(|index| self.rows.get_mut(index)) {
                     row.tick_end = Some(at);
                 }
             }

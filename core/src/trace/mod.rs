@@ -12,7 +12,7 @@ mod vcd;
 
 pub use columns::{Columns, columns};
 pub use digest::Digest;
-pub use log::{LoggedPacket, PacketLog, Verdict};
+pub use log::{LoggedPacket, LoggedTick, PacketLog, Verdict};
 pub use recording::Recording;
 pub use steps::{Step, steps};
 pub use text::{ParseError, parse_line, write_record};

@@ -33,6 +33,6 @@ impl Recording {
     /// Start of the first tick: where a motion's time 0 is on the device's clock.
     #[must_use]
     pub fn first_tick(&self) -> Option<Instant> {
-        self.packets.rows().iter().find_map(|row| row.tick_start)
+        self.packets.ticks().first().map(|tick| tick.start)
     }
 }

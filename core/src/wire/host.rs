@@ -4,8 +4,8 @@
 //! packet j starts at boot + 1 + j*M*Ts, so tick follows tick without a pause.
 
 use crate::{
-    scenario::{Cause, Config, LineScript, line_time, most_baud},
-    units::Instant,
+    scenario::{Cause, LineScript, most_baud},
+    units::{Cycles, Instant},
 };
 use alloc::vec::Vec;
 
@@ -32,25 +32,26 @@ impl Schedule {
     pub fn scripted(script: &LineScript) -> Self {
         let mut schedule = Self::default();
         for send in &script.sends {
-            schedule.push(Instant(send.start_cycle), &send.bytes.0);
+            schedule.push(Instant(send.start_cycle), &send.wire());
         }
         schedule
     }
 
-    /// Packets of `packet_len` bytes, one a tick, as the paced raw host sends them. Whether the
-    /// line can carry them is judged by [`carries`].
+    /// Packets, one a tick of `tick` cycles, as the paced raw host sends them from `start` on.
+    /// Whether the line can carry them is judged by [`carries`].
     #[must_use]
-    pub fn paced(config: &Config, packets: impl Iterator<Item = impl AsRef<[u8]>>) -> Self {
+    pub fn paced(start: Instant, tick: Cycles, packets: impl Iterator<Item = impl AsRef<[u8]>>) -> Self {
         let mut schedule = Self::default();
-        let mut start = config.boot.next();
+        let mut start = start;
         for packet in packets {
             schedule.push(start, packet.as_ref());
-            start += config.tick();
+            start += tick;
         }
         schedule
     }
 
-    fn push(&mut self, start: Instant, bytes: &[u8]) {
+    /// Adds a send, after all others.
+    pub fn push(&mut self, start: Instant, bytes: &[u8]) {
         self.bytes.extend_from_slice(bytes);
         self.sends.push((start, self.bytes.len()));
     }
@@ -87,18 +88,21 @@ impl Schedule {
     }
 }
 
-/// Judges whether a line of `baud` carries a packet a tick (A9).
+/// Judges whether what is sent for one tick, `bits` bit times at `baud`, fits in its cycles (A9).
 ///
 /// # Errors
-/// [`Cause::LineTooSlow`] where a packet takes longer than a tick, with the rate that would do.
-pub fn carries(config: &Config, baud: u32) -> Result<(), Cause> {
-    let tick_cycles = config.tick().0;
-    let bytes = config.packet_len() as u64;
-    let packet_cycles = line_time(bytes, config.clock_hz, baud);
+/// [`Cause::LineTooSlow`] where it does not, with the rate that would do.
+pub fn carries(
+    packet_cycles: u64,
+    bits: u64,
+    tick_cycles: u64,
+    clock_hz: u32,
+    baud: u32,
+) -> Result<(), Cause> {
     if packet_cycles <= tick_cycles {
         return Ok(());
     }
-    let needed_baud = (10 * bytes * u64::from(config.clock_hz)).div_ceil(tick_cycles);
-    let most_baud = u64::from(most_baud(config.clock_hz));
+    let needed_baud = (bits * u64::from(clock_hz)).div_ceil(tick_cycles);
+    let most_baud = u64::from(most_baud(clock_hz));
     Err(Cause::LineTooSlow { packet_cycles, tick_cycles, baud, needed_baud, most_baud })
 }

@@ -1,29 +1,23 @@
-//! The level of the serial line (DESIGN A4): what the host sends, and what is forced upon it.
+//! The level of the serial line (DESIGN A4, A9): what the host sends, what controllers reply, and
+//! what is forced upon it.
 //!
-//! ```text
-//!  idle  start  d0    d1        d7   stop
-//! ──────┐     ┌─────┬─────┬ ─ ┬─────┬─────
-//!       └─────┴─────┴─────┴   ┴─────┘
-//!       t0    |     |  bit k begins at t0 + floor(k*clock_hz/baud)
-//! ```
-//!
-//! The line says its level and when it changes next, so a run can skip what lies between.
+//! A level that is forced is heard whatever is sent; else the line is the AND of all that send. The
+//! line tells when what the host sends or what is forced changes next, so a run can skip what lies
+//! between.
 
-use super::Schedule;
+use super::{Schedule, sender::Sender};
 use crate::{scenario::Forced, units::Instant};
 use alloc::{collections::BTreeSet, rc::Rc, vec::Vec};
-
-/// Bits of a byte on the line: start, eight data bits, stop.
-const FRAME_BITS: usize = 10;
 
 /// The line as a run walks along it.
 #[derive(Clone, Debug)]
 pub struct Line {
     sender: Sender,
-    sender_level: bool,
-    /// Disjoint, rising, all later than what has passed; the last one first.
-    forced: Vec<Forced>,
-    level: bool,
+    /// Disjoint and rising; those before `passed` are over.
+    forced: Rc<Vec<Forced>>,
+    passed: usize,
+    /// The level that is forced now.
+    force: Option<bool>,
     next: Instant,
 }
 
@@ -31,129 +25,102 @@ impl Line {
     /// The line before cycle 1: idle. A rate of 0 counts as 1 baud.
     #[must_use]
     pub fn new(schedule: Rc<Schedule>, forced: &[Forced], clock_hz: u32, baud: u32) -> Self {
-        let mut forced = flatten(forced);
-        forced.reverse();
         let sender = Sender::new(schedule, clock_hz, baud);
-        let mut line = Self { sender, sender_level: true, forced, level: true, next: Instant::RESET };
+        let mut line =
+            Self { sender, forced: Rc::new(flatten(forced)), passed: 0, force: None, next: Instant::NEVER };
         line.look_ahead();
         line
     }
 
-    /// Level in the current cycle.
+    /// What the host has sent and will send, as far as it is known.
     #[must_use]
-    pub const fn level(&self) -> bool {
-        self.level
+    pub fn schedule(&self) -> &Schedule {
+        self.sender.schedule()
     }
 
-    /// Cycle in which the level changes next; [`Instant::NEVER`] if it stays.
+    /// Adds a send, after all that were added before.
+    pub fn send(&mut self, start: Instant, bytes: &[u8]) {
+        self.sender.send(start, bytes);
+        self.look_ahead();
+    }
+
+    /// Forces a level from `forced.start` on, after all that was forced before.
+    pub fn force(&mut self, forced: Forced) {
+        Rc::make_mut(&mut self.forced).push(forced);
+        self.look_ahead();
+    }
+
+    /// Level in the current cycle as one hears it while all others together send `others`.
     #[must_use]
+    #[inline(always)]
+    pub fn heard(&self, others: bool) -> bool {
+        self.force.unwrap_or(self.sender.level() && others)
+    }
+
+    /// Level in the current cycle as the host hears it: what controllers send, or what is forced.
+    #[must_use]
+    pub fn replied(&self, others: bool) -> bool {
+        self.force.unwrap_or(others)
+    }
+
+    /// Whether the host holds the line low.
+    #[must_use]
+    pub const fn is_pulled_low(&self) -> bool {
+        !self.sender.level()
+    }
+
+    /// Next cycle in which what the host sends or what is forced changes; [`Instant::NEVER`] if
+    /// neither does.
+    #[must_use]
+    #[inline(always)]
     pub const fn next_change(&self) -> Instant {
         self.next
     }
 
-    /// Enters the cycle of [`Self::next_change`]: the level changes.
+    /// Whether no change is left that anyone hears while no controller sends.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        if self.passed == self.forced.len() {
+            return self.next == Instant::NEVER;
+        }
+        let (mut ahead, level) = (self.clone(), self.heard(true));
+        while ahead.next != Instant::NEVER {
+            ahead.change();
+            if ahead.heard(true) != level {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Enters the cycle of [`Self::next_change`].
     #[inline(always)]
     pub fn change(&mut self) {
-        self.level = !self.level;
+        let now = self.next;
+        if self.sender.next_edge() == now {
+            self.sender.pass();
+        }
+        if self.passed < self.forced.len() {
+            self.follow_forced(now);
+        }
         self.look_ahead();
     }
 
-    /// Finds the next cycle in which the level that is heard differs from the current one.
+    fn follow_forced(&mut self, now: Instant) {
+        while self.forced.get(self.passed).is_some_and(|forced| forced.end <= now) {
+            self.passed += 1;
+        }
+        self.force =
+            self.forced.get(self.passed).filter(|forced| forced.start <= now).map(|forced| forced.level);
+    }
+
+    #[inline(always)]
     fn look_ahead(&mut self) {
-        if self.forced.is_empty() && self.sender_level == self.level {
-            self.next = self.sender.next_edge();
-            if self.next != Instant::NEVER {
-                self.sender_level = !self.sender_level;
-                self.sender.pass();
-            }
-            return;
-        }
-        loop {
-            let edge = self.sender.next_edge();
-            let force = self
-                .forced
-                .last()
-                .map_or(Instant::NEVER, |f| if self.next < f.start { f.start } else { f.end });
-            let at = edge.min(force);
-            if at == Instant::NEVER {
-                self.next = Instant::NEVER;
-                return;
-            }
-            if at == edge {
-                self.sender_level = !self.sender_level;
-                self.sender.pass();
-            }
-            self.next = at;
-            while self.forced.last().is_some_and(|f| f.end <= at) {
-                self.forced.pop();
-            }
-            let level = match self.forced.last() {
-                Some(f) if f.start <= at => f.level,
-                _ => self.sender_level,
-            };
-            if level != self.level {
-                return;
-            }
-        }
-    }
-}
-
-/// The edges of the bytes of a schedule.
-#[derive(Clone, Debug)]
-struct Sender {
-    schedule: Rc<Schedule>,
-    clock_hz: u64,
-    baud: u64,
-    /// floor(k*clock_hz/baud): where bit k begins.
-    bit_starts: [u64; FRAME_BITS],
-    send: usize,
-    byte: usize,
-    byte_start: Instant,
-    /// Bits of the byte that differ from the bit before them and have not passed.
-    edges: u16,
-}
-
-impl Sender {
-    fn new(schedule: Rc<Schedule>, clock_hz: u32, baud: u32) -> Self {
-        let (clock_hz, baud) = (u64::from(clock_hz), u64::from(baud.max(1)));
-        let bit_starts = core::array::from_fn(|k| k as u64 * clock_hz / baud);
-        let byte_start = Instant::NEVER;
-        let mut sender =
-            Self { schedule, clock_hz, baud, bit_starts, send: 0, byte: 0, byte_start, edges: 0 };
-        sender.load();
-        sender
-    }
-
-    /// Takes up the byte at (`send`, `byte`), or the first one after it.
-    fn load(&mut self) {
-        while let Some(send) = self.schedule.get(self.send) {
-            if let Some(&byte) = send.bytes.get(self.byte) {
-                let offset = 10 * self.byte as u64 * self.clock_hz / self.baud;
-                self.byte_start = Instant(send.start.0 + offset);
-                // Start bit 0, data, stop bit 1; before the start bit the line is high.
-                let frame = u16::from(byte) << 1 | 1 << 9;
-                self.edges = (frame ^ (frame << 1 | 1)) & 0x3ff;
-                return;
-            }
-            self.send += 1;
-            self.byte = 0;
-        }
-        self.edges = 0;
-    }
-
-    fn next_edge(&self) -> Instant {
-        match self.bit_starts.get(self.edges.trailing_zeros() as usize) {
-            Some(offset) => Instant(self.byte_start.0 + offset),
-            None => Instant::NEVER,
-        }
-    }
-
-    fn pass(&mut self) {
-        self.edges &= self.edges.wrapping_sub(1);
-        if self.edges == 0 {
-            self.byte += 1;
-            self.load();
-        }
+        let force = self
+            .forced
+            .get(self.passed)
+            .map_or(Instant::NEVER, |forced| if self.force.is_some() { forced.end } else { forced.start });
+        self.next = self.sender.next_edge().min(force);
     }
 }
 
@@ -192,7 +159,11 @@ mod tests {
     fn changes(sends: &[(u64, &[u8])], forced: &[(u64, u64, bool)], clock_hz: u32, baud: u32) -> Vec<u64> {
         let sends = sends
             .iter()
-            .map(|(start, bytes)| ScriptedSend { start_cycle: *start, bytes: Hex(bytes.to_vec()) })
+            .map(|(start, bytes)| ScriptedSend {
+                start_cycle: *start,
+                bytes: Hex(bytes.to_vec()),
+                frame: None,
+            })
             .collect();
         let schedule = Schedule::scripted(&LineScript { sends });
         let forced: Vec<Forced> = forced
@@ -205,11 +176,16 @@ mod tests {
             .collect();
         let mut line = Line::new(Rc::new(schedule), &forced, clock_hz, baud);
         let mut found = vec![];
-        while line.next_change() != Instant::NEVER {
-            found.push(line.next_change().0);
+        let mut level = true;
+        while !line.is_over() {
+            let at = line.next_change();
             line.change();
+            if line.heard(true) != level {
+                level = !level;
+                found.push(at.0);
+            }
         }
-        assert!(line.level(), "the line ends idle");
+        assert!(line.heard(true), "the line ends idle");
         found
     }
 

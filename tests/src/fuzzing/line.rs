@@ -136,7 +136,7 @@ fn acts(bytes: &mut Unstructured<'_>, scenario: &mut Scenario) -> Result<()> {
         };
         let start_cycle = free_from + pause;
         free_from = start_cycle + line_time(sent.len() as u64, scenario.clock_hz, scenario.line.baud);
-        sends.push(ScriptedSend { start_cycle, bytes: Hex(sent) });
+        sends.push(ScriptedSend { start_cycle, bytes: Hex(sent), ..ScriptedSend::default() });
     }
     scenario.source = Source::Line(LineScript { sends });
     Ok(())

@@ -109,7 +109,7 @@ fn script(peripheral: &Scenario) -> impl Strategy<Value = Source> + use<> {
         let sends = sends.into_iter().map(|(pause, bytes)| {
             let start_cycle = free_from + pause;
             free_from = start_cycle + line_time(bytes.len() as u64, clock_hz, baud);
-            ScriptedSend { start_cycle, bytes: Hex(bytes) }
+            ScriptedSend { start_cycle, bytes: Hex(bytes), frame: None }
         });
         Source::Line(LineScript { sends: sends.collect() })
     })

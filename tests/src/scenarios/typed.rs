@@ -1,27 +1,43 @@
 //! Scenarios of the right types with any numbers in them: most are refused, some are huge.
 
 use proptest::prelude::*;
+use stepscope_core::analysis::drivers::DRIVERS;
 use stepscope_core::scenario::{
-    Acceleration, Analysis, Axis, Bus, Constant, Cosine, DirLine, Direct, Distance, Distribution, Dwell,
-    Glitch, Hex, Line, LineScript, Mechanics, Motion, Move, Packets, Pulses, Rotary, Scenario, Screw,
-    ScriptedSend, SineSegments, Source, Speed, Trapezoid, TrapezoidMethod, Wheel,
+    Acceleration, Analysis, Axis, Bus, Constant, Controller, Cosine, DirLine, Direct, Distance, Distribution,
+    Driver, Dwell, Glitch, Hex, Host, Line, LineScript, Mechanics, Motion, Move, Noise, Packets, Protocol,
+    Pulses, Rotary, Scenario, Screw, ScriptedSend, SineSegments, Source, Speed, TimingRules, Trapezoid,
+    TrapezoidMethod, Wheel,
 };
 
 /// Any scenario of this version that JSON can carry: no number in it is infinite or none at all.
 pub fn typed() -> impl Strategy<Value = Scenario> {
     let texts = (text(), text());
     let analysis = (small_or_any(0), small_or_any(40), small_or_any(4096));
-    (texts, small_or_any(16_000_000), bus(), line(), source(), any::<Option<u64>>(), analysis).prop_map(
-        |((title, note), clock_hz, bus, line, source, run_cycles, (axis, order, fft_length))| Scenario {
-            title,
-            note,
+    let line = (line(), controllers());
+    let run = (any::<Option<u64>>(), prop::option::weighted(0.3, driver()));
+    (texts, small_or_any(16_000_000), bus(), line, source(), run, analysis).prop_map(
+        |(
+            (title, note),
             clock_hz,
             bus,
-            line,
+            (line, controllers),
             source,
-            run_cycles,
-            analysis: Analysis { axis, order, fft_length },
-            ..Scenario::default()
+            (run_cycles, driver),
+            (axis, order, fft_length),
+        )| {
+            Scenario {
+                title,
+                note,
+                clock_hz,
+                bus,
+                line,
+                source,
+                run_cycles,
+                analysis: Analysis { axis, order, fft_length },
+                controllers,
+                driver,
+                ..Scenario::default()
+            }
         },
     )
 }
@@ -93,14 +109,80 @@ fn bus() -> impl Strategy<Value = Bus> {
     )
 }
 
+fn driver() -> impl Strategy<Value = Driver> {
+    let models = prop::sample::select(DRIVERS.map(|sheet| sheet.model).to_vec());
+    let nanos = || small_or_any(0);
+    let rules = (nanos(), nanos(), nanos(), nanos(), nanos()).prop_map(
+        |(step_high_ns, step_low_ns, dir_setup_ns, dir_hold_ns, enable_wake_ns)| TimingRules {
+            step_high_ns,
+            step_low_ns,
+            dir_setup_ns,
+            dir_hold_ns,
+            enable_wake_ns,
+        },
+    );
+    prop_oneof![models.prop_map(Driver::Preset), rules.prop_map(Driver::Rules)]
+}
+
 fn line() -> impl Strategy<Value = Line> {
     let glitch = (small_or_any(1), small_or_any(1), small_or_any(0))
         .prop_map(|(start_cycle, length_cycles, level)| Glitch { start_cycle, length_cycles, level });
     let glitches = prop::collection::vec(glitch, 0..4);
     let receiver_baud = prop::option::weighted(0.2, small_or_any(115_200));
     let address = prop::option::weighted(0.2, any::<u8>());
-    (small_or_any(115_200), receiver_baud, address, glitches)
-        .prop_map(|(baud, receiver_baud, address, glitches)| Line { baud, receiver_baud, address, glitches })
+    let protocol = prop_oneof![Just(Protocol::Raw), Just(Protocol::Framed)];
+    (small_or_any(115_200), receiver_baud, address, glitches, protocol, host(), noise()).prop_map(
+        |(baud, receiver_baud, address, glitches, protocol, host, noise)| Line {
+            baud,
+            receiver_baud,
+            address,
+            glitches,
+            protocol,
+            host,
+            noise,
+        },
+    )
+}
+
+fn host() -> impl Strategy<Value = Host> {
+    (small_or_any(8), prop::option::weighted(0.2, any::<u32>()), small_or_any(10)).prop_map(
+        |(ticks_a_frame, reply_timeout_cycles, attempts)| Host {
+            ticks_a_frame,
+            reply_timeout_cycles,
+            attempts,
+        },
+    )
+}
+
+fn noise() -> impl Strategy<Value = Noise> {
+    let rate = || small_or_any(0_u32);
+    (small_or_any(0), rate(), rate(), rate(), rate(), rate(), rate()).prop_map(
+        |(seed, flipped, lost, doubled, glitches, replies, deaths)| Noise {
+            seed,
+            flipped_bits_ppm: flipped,
+            lost_bytes_ppm: lost,
+            doubled_bytes_ppm: doubled,
+            glitches_ppm: glitches,
+            lost_replies_ppm: replies,
+            deaths_ppm: deaths,
+        },
+    )
+}
+
+fn controllers() -> impl Strategy<Value = Vec<Controller>> {
+    let hex = prop::collection::vec(any::<u8>(), 0..3).prop_map(Hex);
+    let (axes, packets) = (prop::collection::vec(axis(), 0..2), prop::collection::vec(hex, 0..2));
+    let receiver_baud = prop::option::weighted(0.2, small_or_any(115_200));
+    let controller = (small_or_any(1), receiver_baud, bus(), axes, packets).prop_map(
+        |(address, receiver_baud, bus, axes, packets)| Controller {
+            address,
+            receiver_baud,
+            bus,
+            axes,
+            packets,
+        },
+    );
+    prop_oneof![4 => Just(Vec::new()), 1 => prop::collection::vec(controller, 0..3)]
 }
 
 fn source() -> impl Strategy<Value = Source> {
@@ -109,8 +191,8 @@ fn source() -> impl Strategy<Value = Source> {
         1 => prop::collection::vec(any::<u8>(), 0..40),
     ];
     let hex = hex.prop_map(Hex);
-    let send =
-        (small_or_any(1), hex.clone()).prop_map(|(start_cycle, bytes)| ScriptedSend { start_cycle, bytes });
+    let send = (small_or_any(1), hex.clone(), prop::option::weighted(0.2, hex.clone()))
+        .prop_map(|(start_cycle, bytes, frame)| ScriptedSend { start_cycle, bytes, frame });
     prop_oneof![
         4 => prop::collection::vec(axis(), 0..3).prop_map(|axes| Source::Motion(Motion { axes })),
         1 => prop::collection::vec(hex, 0..20).prop_map(|packets| Source::Packets(Packets { packets })),

@@ -1,0 +1,169 @@
+//! `stepscope run --timing` and `stepscope drivers`: could a driver follow the pulses?
+
+use crate::{failure::Failure, files};
+use clap::Args;
+use std::{
+    io::{self, Write},
+    path::{Path, PathBuf},
+};
+use stepscope_core::{
+    analysis::{
+        drivers::{self, DRIVERS, Sheet},
+        timing::{Rule, RuleResult, TimingCheck},
+    },
+    scenario::{Scenario, TimingRules},
+    units::{Cycles, Instant},
+};
+
+/// Violations that the screen shows.
+const MOST_SHOWN: usize = 20;
+/// Violations that a file holds.
+const MOST_WRITTEN: usize = 1_000_000;
+
+/// What `stepscope run` takes about the timing check.
+#[derive(Args)]
+pub(crate) struct Options {
+    /// Check the pulses against the scenario's driver: the shortest times, what they have to spare,
+    /// and the first violations.
+    #[arg(long)]
+    timing: bool,
+    /// Check against this driver, whatever the scenario names; `stepscope drivers` lists them.
+    #[arg(long, value_name = "DRIVER", value_parser = driver)]
+    driver: Option<&'static Sheet>,
+    /// Write a table of the violations, up to a million.
+    #[arg(long, value_name = "FILE")]
+    violations: Option<PathBuf>,
+    /// End with exit code 3 if the timing check finds a violation.
+    #[arg(long)]
+    strict: bool,
+}
+
+/// The driver of that name.
+fn driver(id: &str) -> Result<&'static Sheet, String> {
+    let found = DRIVERS.into_iter().find(|sheet| sheet.id == id);
+    found.ok_or_else(|| "no such driver; `stepscope drivers` lists them".to_owned())
+}
+
+impl Options {
+    /// Whether a timing check was asked for.
+    pub(crate) const fn asked(&self) -> bool {
+        self.timing || self.driver.is_some() || self.violations.is_some() || self.strict
+    }
+
+    /// The check, if one was asked for.
+    pub(crate) fn check(&self, path: &Path, scenario: &Scenario) -> Result<Option<TimingCheck>, Failure> {
+        if !self.asked() {
+            return Ok(None);
+        }
+        let own = || scenario.driver.as_ref().map(drivers::rules);
+        let rules = self.driver.map(|sheet| sheet.rules.clone()).or_else(own);
+        let rules = rules.ok_or_else(|| Failure::NoDriver(path.to_owned()))?;
+        let kept = if self.violations.is_some() { MOST_WRITTEN } else { MOST_SHOWN };
+        Ok(Some(TimingCheck::new(&rules, scenario.clock_hz, kept)))
+    }
+
+    /// Writes the file and prints what the check found.
+    pub(crate) fn report(&self, check: &TimingCheck, clock_hz: u32) -> Result<(), Failure> {
+        if let Some(path) = &self.violations {
+            table(path, check, clock_hz).map_err(|error| Failure::File(path.clone(), error))?;
+        }
+        // A table on standard output stands alone, as the other files do.
+        if self.violations.is_none() || self.timing {
+            print(check, clock_hz).map_err(|error| Failure::File(PathBuf::from("standard output"), error))?;
+        }
+        if self.strict && check.total() > 0 { Err(Failure::Violations(check.total())) } else { Ok(()) }
+    }
+}
+
+/// Lists the drivers with their figures.
+pub(crate) fn drivers() -> Result<(), Failure> {
+    let list = |out: &mut dyn Write| {
+        DRIVERS.iter().try_for_each(|sheet| {
+            writeln!(out, "{:14} {}", sheet.id, sheet.name)?;
+            writeln!(out, "{:14} {}", "", figures(&sheet.rules))?;
+            writeln!(out, "{:14} {}", "", sheet.source)
+        })
+    };
+    list(&mut io::stdout().lock()).map_err(|error| Failure::File(PathBuf::from("standard output"), error))
+}
+
+/// What rules ask for, in words.
+fn figures(rules: &TimingRules) -> String {
+    let asked = Rule::ALL.iter().filter(|rule| rule.nanos(rules) > 0);
+    asked.map(|rule| format!("{} {} ns", rule.name(), rule.nanos(rules))).collect::<Vec<_>>().join(", ")
+}
+
+/// The violations as a table.
+fn table(path: &Path, check: &TimingCheck, clock_hz: u32) -> io::Result<()> {
+    let mut out = files::create(path)?;
+    writeln!(out, "cycle,time_s,channel,rule,measured_cycles,required_cycles,measured_ns,required_ns")?;
+    for found in check.violations() {
+        let Instant(cycle) = found.at;
+        let (time, channel, rule) = (found.at.seconds(clock_hz), found.channel, found.rule.name());
+        let (measured, required) = (found.measured.0, found.required.0);
+        let asked = check.results().get(found.rule as usize).map_or(0, |result| result.nanos);
+        let nanos = Tenths::over(found.measured, 0, clock_hz);
+        writeln!(out, "{cycle},{time},{channel},{rule},{measured},{required},{nanos},{asked}")?;
+    }
+    out.flush()
+}
+
+fn print(check: &TimingCheck, clock_hz: u32) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    writeln!(out, "rule         required_ns     least_ns     spare_ns        at_cycle  channel  violations")?;
+    for result in check.results() {
+        let (required, least, spare, at, channel) = columns(result, clock_hz);
+        let (name, total) = (result.rule.name(), result.total());
+        writeln!(out, "{name:12} {required:>11} {least:>12} {spare:>12} {at:>15} {channel:>8} {total:>11}")?;
+    }
+    writeln!(out, "violations {}", check.total())?;
+    for found in check.violations().iter().take(MOST_SHOWN) {
+        let (cycle, channel, rule) = (found.at.0, found.channel, found.rule.name());
+        let (measured, required) = (found.measured.0, found.required.0);
+        writeln!(
+            out,
+            "cycle {cycle} channel {channel} {rule}: {measured} cycles, at least {required} required"
+        )?;
+    }
+    match check.total().saturating_sub(MOST_SHOWN as u64) {
+        0 => Ok(()),
+        more => writeln!(out, "and {more} more"),
+    }
+}
+
+/// A rule's columns; `-` where nothing is asked for or nothing was measured.
+fn columns(result: &RuleResult, clock_hz: u32) -> (String, String, String, String, String) {
+    let none = || "-".to_owned();
+    let asked = result.nanos > 0;
+    let required = if asked { result.nanos.to_string() } else { none() };
+    let Some(least) = result.least else { return (required, none(), none(), none(), none()) };
+    let spare = Tenths::over(least.measured, result.nanos, clock_hz);
+    (
+        required,
+        Tenths::over(least.measured, 0, clock_hz).to_string(),
+        if asked { spare.to_string() } else { none() },
+        least.at.0.to_string(),
+        least.channel.to_string(),
+    )
+}
+
+/// Tenths of a nanosecond, rounded down: what is below zero stays below.
+struct Tenths(i128);
+
+impl Tenths {
+    /// What `measured` has over `nanos`.
+    fn over(measured: Cycles, nanos: u32, clock_hz: u32) -> Self {
+        let clock = i128::from(clock_hz.max(1));
+        Self((i128::from(measured.0) * 10_000_000_000 - i128::from(nanos) * 10 * clock).div_euclid(clock))
+    }
+}
+
+impl std::fmt::Display for Tenths {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (sign, size) = (if self.0 < 0 { "-" } else { "" }, self.0.unsigned_abs());
+        match size % 10 {
+            0 => write!(f, "{sign}{}", size / 10),
+            tenth => write!(f, "{sign}{}.{tenth}", size / 10),
+        }
+    }
+}

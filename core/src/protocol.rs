@@ -1,0 +1,250 @@
+//! The words of the framed protocol (DESIGN A6): what a frame orders, what becomes of it, and what
+//! a controller tells of itself; and the seal around every frame. How frames are read, and what
+//! stands in them, is in [`crate::wire::frame`].
+
+use alloc::vec::Vec;
+use core::fmt;
+use crc::{CRC_32_ISCSI, Crc};
+
+/// The check of a frame.
+pub(crate) const CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISCSI);
+/// Most ticks in one TICKS frame.
+pub const MOST_TICKS: u8 = 32;
+/// The end mark of a frame.
+pub const END: u8 = 0;
+
+/// `content` (address, kind, body) with its check, in COBS, with the end mark.
+#[must_use]
+pub fn seal(content: &[u8]) -> Vec<u8> {
+    let mut content = content.to_vec();
+    content.extend(CHECK.checksum(&content).to_le_bytes());
+    let mut wire = cobs::encode_vec(&content);
+    wire.push(END);
+    wire
+}
+
+/// What a frame orders (DESIGN A6).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Kind {
+    /// Ticks for the queue.
+    Ticks = 1,
+    /// Drivers on; leaves STOPPED.
+    Enable = 2,
+    /// Drivers off, if nothing moves.
+    Disable = 3,
+    /// A reply, and nothing else.
+    Status = 4,
+    /// Emergency stop.
+    Stop = 5,
+    /// Expected sequence number 0, fault flags cleared.
+    Resync = 6,
+}
+
+impl Kind {
+    pub(crate) const ALL: [Self; 6] =
+        [Self::Ticks, Self::Enable, Self::Disable, Self::Status, Self::Stop, Self::Resync];
+
+    /// The kind that a byte means, if it means one.
+    #[must_use]
+    pub fn parse(byte: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|&kind| kind as u8 == byte)
+    }
+
+    /// Its name in DESIGN A6.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Ticks => "TICKS",
+            Self::Enable => "ENABLE",
+            Self::Disable => "DISABLE",
+            Self::Status => "STATUS",
+            Self::Stop => "STOP",
+            Self::Resync => "RESYNC",
+        }
+    }
+}
+
+/// Why a frame was refused (DESIGN A6).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Reason {
+    /// Neither the expected sequence number nor the one before it.
+    BadSeq = 1,
+    /// Fewer free places in the queue than ticks.
+    QueueFull = 2,
+    /// A byte orders more steps than a tick has slots.
+    TooManySteps = 3,
+    /// In the self-test; or, for DISABLE, a tick runs or waits.
+    Busy = 4,
+    /// Stopped: ENABLE comes first.
+    Stopped = 5,
+    /// The body's length or count is wrong.
+    BadBody = 6,
+    /// No such kind.
+    UnknownKind = 7,
+}
+
+impl Reason {
+    pub(crate) const ALL: [Self; 7] = [
+        Self::BadSeq,
+        Self::QueueFull,
+        Self::TooManySteps,
+        Self::Busy,
+        Self::Stopped,
+        Self::BadBody,
+        Self::UnknownKind,
+    ];
+
+    /// The reason that a byte means, if it means one.
+    #[must_use]
+    pub fn parse(byte: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|&reason| reason as u8 == byte)
+    }
+
+    /// Its name in DESIGN A6.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::BadSeq => "BAD_SEQ",
+            Self::QueueFull => "QUEUE_FULL",
+            Self::TooManySteps => "TOO_MANY_STEPS",
+            Self::Busy => "BUSY",
+            Self::Stopped => "STOPPED",
+            Self::BadBody => "BAD_BODY",
+            Self::UnknownKind => "UNKNOWN_KIND",
+        }
+    }
+}
+
+/// What a controller does (DESIGN A6).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum State {
+    /// In the self-test after reset.
+    Busy = 0,
+    /// Waits for ticks.
+    Ready = 1,
+    /// A tick runs or waits.
+    Moving = 2,
+    /// Stopped; ENABLE leaves this state.
+    Stopped = 3,
+}
+
+impl State {
+    pub(crate) const ALL: [Self; 4] = [Self::Busy, Self::Ready, Self::Moving, Self::Stopped];
+
+    /// The state that a byte means, if it means one.
+    #[must_use]
+    pub fn parse(byte: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|&state| state as u8 == byte)
+    }
+
+    /// Its name in DESIGN A6.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Busy => "BUSY",
+            Self::Ready => "READY",
+            Self::Moving => "MOVING",
+            Self::Stopped => "STOPPED",
+        }
+    }
+}
+
+/// What every reply tells of its controller (DESIGN A6).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Status {
+    /// What it does.
+    pub state: State,
+    /// Free places in the queue.
+    pub free: u8,
+    /// Sequence number that the next TICKS must have.
+    pub expected_seq: u8,
+    /// Fault flags.
+    pub faults: u16,
+    /// Ticks that have ended, wrapping.
+    pub ticks_done: u32,
+}
+
+/// A controller's answer to one frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reply {
+    /// The controller's own address.
+    pub address: u8,
+    /// The kind that was taken, or why the frame was refused.
+    pub answer: Result<Kind, Reason>,
+    /// The controller after it.
+    pub status: Status,
+}
+
+/// What the controller did with a frame (DESIGN A6).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrameFate {
+    /// So many ticks are in the queue.
+    Queued(u8),
+    /// TICKS that were taken before: acknowledged, and not queued again.
+    Repeated,
+    /// Done.
+    Taken(Kind),
+    /// Refused; nothing but fault flags changed.
+    Refused(Reason),
+    /// It was for another address.
+    Foreign,
+    /// Not COBS, or too short for a frame.
+    Short,
+    /// Its check failed.
+    BadCheck {
+        /// The check that came.
+        found: u32,
+        /// The check of what came before it.
+        expected: u32,
+    },
+    /// A byte too many; the rest is dropped to the next end mark.
+    Overlong,
+}
+
+impl FrameFate {
+    /// What is answered to it, if anything is.
+    #[must_use]
+    pub const fn answer(self) -> Option<Result<Kind, Reason>> {
+        match self {
+            Self::Queued(_) | Self::Repeated => Some(Ok(Kind::Ticks)),
+            Self::Taken(kind) => Some(Ok(kind)),
+            Self::Refused(reason) => Some(Err(reason)),
+            Self::Foreign | Self::Short | Self::BadCheck { .. } | Self::Overlong => None,
+        }
+    }
+}
+
+impl fmt::Display for FrameFate {
+    /// What became of the frame, as the page and the command's tables say it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Queued(1) => f.write_str("1 tick queued"),
+            Self::Queued(ticks) => write!(f, "{ticks} ticks queued"),
+            Self::Repeated => f.write_str("repeated: acknowledged, not queued again"),
+            Self::Taken(kind) => write!(f, "{} done", kind.name()),
+            Self::Refused(reason) => write!(f, "refused: {}", reason.name()),
+            Self::Foreign => f.write_str("another address"),
+            Self::Short => f.write_str("dropped: SHORT_PACKET"),
+            Self::BadCheck { found, expected } => {
+                write!(f, "dropped: CRC {found:08x} found, {expected:08x} expected")
+            }
+            Self::Overlong => f.write_str("dropped: OVERLONG"),
+        }
+    }
+}
+
+impl fmt::Display for Reply {
+    /// The reply, as the page and the command's tables say it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.answer {
+            Ok(kind) => write!(f, "ACK {}", kind.name())?,
+            Err(reason) => write!(f, "NAK {}", reason.name())?,
+        }
+        let Status { state, free, expected_seq, faults, ticks_done } = self.status;
+        let state = state.name();
+        write!(f, ": {state}, {free} free, seq {expected_seq}, faults {faults:#04x}, {ticks_done} ticks done")
+    }
+}

@@ -1,0 +1,261 @@
+//! What each controller is to do, and how the host sends it (DESIGN A9): ticks from motions or
+//! packets, a schedule of them on a raw line, a job each for the host of a framed line.
+
+use crate::{
+    motion::{self, AxisPlan},
+    protocol::seal,
+    quantise::ticks,
+    scenario::{
+        Cause, Checked, Config, Controller, Forced, Motion, Problem, Protocol, Scenario, Source, line_time,
+    },
+    units::Instant,
+    wire::{
+        Schedule,
+        frame::REPLY_LEN,
+        framed_host::{FramedHost, Job},
+        host::carries,
+        noise::Noise,
+        packet::{Order, Tick},
+    },
+};
+use alloc::{format, rc::Rc, vec, vec::Vec};
+
+/// Bytes of all controllers' ticks together.
+const MOST_BYTES: usize = 8_000_000;
+/// Bit times of an exchange beside its bytes: from a frame to its reply, and from that to the next.
+const EXCHANGE_BITS: u64 = 11 + 10;
+/// Parts of a bit time that loads are counted in.
+const PART_OF_BIT: u64 = 1000;
+
+/// What one controller is to do.
+#[derive(Clone, Debug)]
+pub(super) struct Orders {
+    config: Config,
+    plans: Vec<AxisPlan>,
+    /// A byte a channel, tick after tick.
+    ticks: Rc<[u8]>,
+}
+
+impl Orders {
+    pub(super) const fn config(&self) -> &Config {
+        &self.config
+    }
+
+    pub(super) fn plans(&self) -> &[AxisPlan] {
+        &self.plans
+    }
+
+    pub(super) fn ticks(&self) -> &[u8] {
+        &self.ticks
+    }
+
+    pub(super) fn shared_ticks(&self) -> Rc<[u8]> {
+        Rc::clone(&self.ticks)
+    }
+
+    pub(super) fn has_ticks(&self) -> bool {
+        !self.ticks.is_empty()
+    }
+
+    /// The ticks one by one.
+    pub(super) fn each_tick(&self) -> impl ExactSizeIterator<Item = &[u8]> {
+        self.ticks.chunks(usize::from(self.config.channels()))
+    }
+}
+
+/// The plan of each axis of each controller; empty where the source is no motion.
+pub(super) fn plans(scenario: &Scenario) -> Result<Vec<Vec<AxisPlan>>, Vec<Problem>> {
+    let Source::Motion(motion) = &scenario.source else {
+        return Ok(vec![Vec::new(); 1 + scenario.controllers.len()]);
+    };
+    let (mut plans, mut problems) = (Vec::new(), Vec::new());
+    let mut take = |result: Result<Vec<AxisPlan>, Vec<Problem>>| {
+        plans.extend(result.map_err(|found| problems.extend(found)));
+    };
+    take(motion::plan(motion));
+    for (index, controller) in scenario.controllers.iter().enumerate() {
+        let motion = Motion { axes: controller.axes.clone() };
+        take(motion::plan(&motion).map_err(|found| of_controller(index, found)));
+    }
+    if problems.is_empty() { Ok(plans) } else { Err(problems) }
+}
+
+/// Problems of a further controller's axes, at their own paths.
+fn of_controller(index: usize, problems: Vec<Problem>) -> Vec<Problem> {
+    let renamed = |Problem { path, cause }| {
+        let own = path.strip_prefix("source.motion.").unwrap_or(&path);
+        Problem::new(format!("controllers[{index}].{own}"), cause)
+    };
+    problems.into_iter().map(renamed).collect()
+}
+
+/// The ticks of each controller.
+pub(super) fn orders(checked: &Checked, plans: Vec<Vec<AxisPlan>>) -> Result<Vec<Orders>, Vec<Problem>> {
+    let (mut orders, mut problems, mut total) = (Vec::new(), Vec::new(), 0);
+    for (index, (config, plans)) in checked.configs.iter().zip(plans).enumerate() {
+        match ticks_of(checked, index, config, &plans) {
+            Ok(mut ticks) => {
+                total += ticks.len();
+                if config.protocol() == Protocol::Framed {
+                    end_at_rest(&mut ticks, config.channels());
+                }
+                orders.push(Orders { config: config.clone(), plans, ticks: ticks.into() });
+            }
+            Err(found) if index == 0 => problems.extend(found),
+            Err(found) => problems.extend(of_controller(index - 1, found)),
+        }
+        if total > MOST_BYTES {
+            let cause =
+                Cause::TooMuch { given: total as f64, most: MOST_BYTES as f64, of: "orders of all channels" };
+            problems.push(Problem::new("controllers", cause));
+            break;
+        }
+    }
+    if problems.is_empty() { Ok(orders) } else { Err(problems) }
+}
+
+fn ticks_of(
+    checked: &Checked,
+    index: usize,
+    config: &Config,
+    plans: &[AxisPlan],
+) -> Result<Vec<u8>, Vec<Problem>> {
+    let further = index.checked_sub(1).and_then(|index| checked.further.get(index));
+    Ok(match &checked.source {
+        Source::Motion(_) if plans.is_empty() => Vec::new(),
+        Source::Motion(_) => {
+            let tick = config.tick().0;
+            ticks(plans, config.channels(), config.slots(), tick, config.clock_hz())?.bytes().to_vec()
+        }
+        Source::Packets(source) => {
+            let packets = further.map_or(&source.packets, |further| &further.packets);
+            let address = usize::from(config.packet_address().is_some());
+            packets.iter().flat_map(|packet| packet.0.iter().copied().skip(address)).collect()
+        }
+        Source::Line(_) => Vec::new(),
+    })
+}
+
+/// A framed job's last tick has no steps: that is how the host says that it was the last (A7).
+fn end_at_rest(ticks: &mut Vec<u8>, channels: u8) {
+    let last = ticks.chunks(usize::from(channels)).last();
+    if let Some(last) = last.filter(|last| last.iter().any(|&byte| Order::parse(byte).steps > 0)) {
+        let rest: Vec<u8> = last.iter().map(|byte| byte & 0x80).collect();
+        ticks.extend(rest);
+    }
+}
+
+/// What the host sends without waiting for replies, and what noise forces on the line meanwhile.
+pub(super) fn schedule(checked: &Checked, orders: &[Orders]) -> (Schedule, Vec<Forced>) {
+    let schedule = match &checked.source {
+        Source::Line(script) => Schedule::scripted(script),
+        _ if framed(checked) => return (Schedule::default(), Vec::new()),
+        _ => paced(checked, orders),
+    };
+    let clock_hz = orders.first().map_or(1, |first| first.config.clock_hz());
+    match Noise::new(&checked.noise, clock_hz, checked.baud) {
+        Some(noise) => noise.schedule(&schedule),
+        None => (schedule, Vec::new()),
+    }
+}
+
+fn framed(checked: &Checked) -> bool {
+    checked.configs.first().is_some_and(|config| config.protocol() == Protocol::Framed)
+}
+
+/// First cycle after the self-tests of all controllers, in which the host begins.
+fn start(checked: &Checked) -> Instant {
+    checked.configs.iter().map(|config| config.boot).max().unwrap_or(Instant::RESET).next()
+}
+
+/// Packet j of all controllers in ascending address, back to back from start + j*M*Ts.
+fn paced(checked: &Checked, orders: &[Orders]) -> Schedule {
+    let packets: Vec<Vec<Vec<u8>>> =
+        orders.iter().enumerate().map(|(index, orders)| packets_of(checked, index, orders)).collect();
+    let mut turn: Vec<usize> = (0..orders.len()).collect();
+    turn.sort_by_key(|&index| orders.get(index).map(|orders| orders.config.address()));
+    let last = packets.iter().map(Vec::len).max().unwrap_or(0);
+    let joined = (0..last).map(|tick| -> Vec<u8> {
+        turn.iter().filter_map(|&index| packets.get(index)?.get(tick)).flatten().copied().collect()
+    });
+    let Some(first) = checked.configs.first() else { return Schedule::default() };
+    Schedule::paced(start(checked), first.tick(), joined)
+}
+
+/// The packets of one controller as they go over a raw line.
+fn packets_of(checked: &Checked, index: usize, orders: &Orders) -> Vec<Vec<u8>> {
+    if let Source::Packets(source) = &checked.source {
+        let further = index.checked_sub(1).and_then(|index| checked.further.get(index));
+        let packets = further.map_or(&source.packets, |further| &further.packets);
+        return packets.iter().map(|packet| packet.0.clone()).collect();
+    }
+    let address = orders.config.packet_address();
+    orders.each_tick().map(|tick| address.into_iter().chain(tick.iter().copied()).collect()).collect()
+}
+
+/// The host of a framed line.
+pub(super) fn framed_host(checked: &Checked, orders: &[Orders]) -> FramedHost {
+    let jobs =
+        orders.iter().filter(|orders| orders.has_ticks()).map(|orders| job(&orders.config, &orders.ticks));
+    let (clock_hz, baud) = (orders.first().map_or(1, |first| first.config.clock_hz()), checked.baud);
+    let noise = Noise::new(&checked.noise, clock_hz, baud);
+    let start = start(checked);
+    FramedHost::new(
+        jobs.collect(),
+        &checked.host,
+        (clock_hz, baud, Config::bit_of(clock_hz, baud)),
+        start,
+        noise,
+    )
+}
+
+pub(super) fn job(config: &Config, orders: &Rc<[u8]>) -> Job {
+    Job {
+        address: config.address().unwrap_or(0),
+        channels: config.channels(),
+        tick: config.tick(),
+        queue_depth: config.queue_depth,
+        orders: Rc::clone(orders),
+    }
+}
+
+/// The part of the line's time that is taken while all controllers move; `None` for a line script.
+///
+/// # Errors
+/// Where it is more than 1, with the rate that would do.
+pub(super) fn line_load<'a>(checked: &'a Checked) -> Result<Option<f64>, Problem> {
+    let Some(first) = checked.configs.first() else { return Ok(None) };
+    if matches!(checked.source, Source::Line(_)) {
+        return Ok(None);
+    }
+    let (clock_hz, tick) = (first.clock_hz(), first.tick().0);
+    let busy = |(index, config): (usize, &'a Config)| {
+        let further = index.checked_sub(1).and_then(|index| checked.further.get(index));
+        further.is_none_or(Controller::is_busy).then_some(config)
+    };
+    let configs = checked.configs.iter().enumerate().filter_map(busy);
+    let (cycles, bits) = if framed(checked) {
+        // Of the first controller's tick, so that ticks may have different lengths.
+        let bits: u64 = configs.map(|config| frame_bits(checked, config) * tick / config.tick().0).sum();
+        (bits * u64::from(clock_hz) / (PART_OF_BIT * u64::from(checked.baud)), bits.div_ceil(PART_OF_BIT))
+    } else {
+        let bytes = configs.map(|config| config.packet_len() as u64).sum();
+        (line_time(bytes, clock_hz, checked.baud), 10 * bytes)
+    };
+    carries(cycles, bits, tick, clock_hz, checked.baud).map_err(|cause| Problem::new("line.baud", cause))?;
+    Ok(Some(cycles as f64 / tick as f64))
+}
+
+/// Bit times, in parts, that one tick of a controller takes on a framed line with its share of the
+/// frame around it and of the reply.
+fn frame_bits(checked: &Checked, config: &Config) -> u64 {
+    let ticks = job(config, &Rc::from([])).ticks_a_frame(&checked.host);
+    let content = vec![0xff; 4 + usize::from(ticks) * usize::from(config.channels())];
+    let bytes = (seal(&content).len() + REPLY_LEN - 1) as u64;
+    PART_OF_BIT * (10 * bytes + EXCHANGE_BITS) / u64::from(ticks)
+}
+
+/// One tick's orders, from its bytes.
+pub(super) fn pulses(tick: &[u8]) -> u64 {
+    tick.iter().take(Tick::default().len()).map(|&byte| u64::from(Order::parse(byte).steps)).sum()
+}

@@ -1,0 +1,143 @@
+//! The timing check of a run, as the page shows it, and the drivers that it may choose from.
+
+use crate::{convert::object, simulation::Simulation};
+use serde::Serialize;
+use stepscope_core::{
+    analysis::{
+        drivers::{self, DRIVERS},
+        timing::{RuleResult, TimingCheck, Violation},
+    },
+    scenario::{Driver, Scenario, TimingRules},
+    units::Instant,
+};
+use wasm_bindgen::prelude::*;
+
+/// Violations that the page gets in full.
+const MOST_KEPT: usize = 1000;
+
+#[derive(Serialize)]
+struct Listed {
+    id: &'static str,
+    name: &'static str,
+    source: &'static str,
+    rules: TimingRules,
+}
+
+/// All drivers whose figures are known: `{id, name, source, rules}`, the rules as in a scenario.
+///
+/// # Errors
+/// Never in practice.
+#[wasm_bindgen]
+pub fn drivers() -> Result<JsValue, JsError> {
+    let listed: Vec<Listed> = DRIVERS
+        .iter()
+        .map(|sheet| Listed {
+            id: sheet.id,
+            name: sheet.name,
+            source: sheet.source,
+            rules: sheet.rules.clone(),
+        })
+        .collect();
+    object(&listed)
+}
+
+/// The check that a scenario asks for, before its run.
+pub(crate) fn check(scenario: &Scenario) -> Option<TimingCheck> {
+    let rules = scenario.driver.as_ref().map(drivers::rules)?;
+    Some(TimingCheck::new(&rules, scenario.clock_hz, MOST_KEPT))
+}
+
+#[derive(Serialize)]
+struct Timing {
+    /// Id of the driver; none for rules of the scenario's own.
+    driver: Option<&'static str>,
+    total: u64,
+    rules: Vec<RuleRow>,
+    violations: Vec<ViolationRow>,
+}
+
+#[derive(Serialize)]
+struct RuleRow {
+    rule: &'static str,
+    required_ns: u32,
+    required_cycles: u64,
+    least: Option<LeastRow>,
+    violations: u64,
+    by_channel: Vec<u64>,
+}
+
+#[derive(Serialize)]
+struct LeastRow {
+    measured_cycles: u64,
+    cycle: u64,
+    channel: u8,
+}
+
+#[derive(Serialize)]
+struct ViolationRow {
+    cycle: u64,
+    channel: u8,
+    rule: &'static str,
+    measured_cycles: u64,
+    required_cycles: u64,
+}
+
+#[wasm_bindgen]
+impl Simulation {
+    /// The pulses so far against the scenario's driver; null without a driver. Of each rule what is
+    /// required (0: nothing), the least that was measured, and the violations in all and of each
+    /// channel: `{driver, total, rules: [{rule, required_ns, required_cycles, least:
+    /// {measured_cycles, cycle, channel} | null, violations, by_channel}], violations: [{cycle,
+    /// channel, rule, measured_cycles, required_cycles}]}`, the violations the first 1000 in the order
+    /// of their cycles.
+    ///
+    /// # Errors
+    /// Never in practice.
+    pub fn timing(&self) -> Result<JsValue, JsError> {
+        let Some(check) = &self.timing else { return Ok(JsValue::NULL) };
+        let channels = usize::from(self.experiment.config().channels());
+        object(&Timing {
+            driver: match &self.scenario.driver {
+                Some(Driver::Preset(model)) => Some(drivers::sheet(*model).id),
+                _ => None,
+            },
+            total: check.total(),
+            rules: check.results().iter().map(|result| rule_row(result, channels)).collect(),
+            violations: check.violations().iter().map(violation_row).collect(),
+        })
+    }
+
+    /// Index in `timing().violations` of the first violation after `cycle`, or with `forward` false of
+    /// the last one before.
+    #[must_use]
+    pub fn next_violation(&self, cycle: f64, forward: bool) -> Option<u32> {
+        // A cycle before reset has reset's violations, of which there are none, before it.
+        let at = Instant(cycle.max(0.0) as u64);
+        self.timing.as_ref()?.next(at, forward).map(|index| index as u32)
+    }
+}
+
+fn rule_row(result: &RuleResult, channels: usize) -> RuleRow {
+    RuleRow {
+        rule: result.rule.name(),
+        required_ns: result.nanos,
+        required_cycles: result.required.0,
+        least: result.least.map(|least| LeastRow {
+            measured_cycles: least.measured.0,
+            cycle: least.at.0,
+            channel: least.channel,
+        }),
+        violations: result.total(),
+        by_channel: result.violations.iter().take(channels).copied().collect(),
+    }
+}
+
+fn violation_row(violation: &Violation) -> ViolationRow {
+    ViolationRow {
+        cycle: violation.at.0,
+        channel: violation.channel,
+        rule: violation.rule.name(),
+        measured_cycles: violation.measured.0,
+        required_cycles: violation.required.0,
+    }
+}

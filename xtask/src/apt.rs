@@ -1,0 +1,33 @@
+//! Debian's packages, for what no Rust registry has: a browser and an emulator.
+
+use anyhow::{Result, bail};
+use tokio::process::Command;
+
+use crate::run;
+
+/// Installs `packages` where that is one command and nobody needs to be asked.
+pub(crate) async fn install(packages: &[&str]) -> Result<()> {
+    let names = packages.join(" and ");
+    let apt = match which::which("apt-get") {
+        Ok(apt) if is_root() => apt,
+        _ => bail!("{names} can be installed from here only by root and with apt-get"),
+    };
+    println!("installing {names}");
+    let apt = |arguments: &[&str]| {
+        let mut command = Command::new(&apt);
+        command.args(arguments).env("DEBIAN_FRONTEND", "noninteractive");
+        run::to_end(command, run::LIMIT)
+    };
+    apt(&["update"]).await?;
+    apt(&[&["install", "-y", "--no-install-recommends"], packages].concat()).await
+}
+
+#[cfg(unix)]
+fn is_root() -> bool {
+    rustix::process::geteuid().is_root()
+}
+
+#[cfg(not(unix))]
+fn is_root() -> bool {
+    false
+}
