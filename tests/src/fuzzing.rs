@@ -4,13 +4,14 @@
 //! A new target is a module here, a line in `TARGETS` and a file in `fuzz/fuzz_targets/`. Its findings lie in
 //! `findings/<target>/`, a file each: see the README there.
 
+pub mod frames;
 pub mod line;
 pub mod link;
 pub mod scenario;
 
 use crate::golden::CASES;
 use std::{collections::BTreeSet, fs, io, path::PathBuf};
-use stepscope_core::scenario::presets::PRESETS;
+use stepscope_core::scenario::{Scenario, presets::PRESETS};
 
 /// A fuzz target.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +31,7 @@ pub struct Target {
 /// All fuzz targets.
 pub const TARGETS: &[Target] = &[
     Target { name: "line", check: line::check, told: line::told, seeds: line::seeds, is_json: false },
+    Target { name: "frames", check: frames::check, told: bytes, seeds: frames::seeds, is_json: false },
     Target { name: "scenario", check: scenario::check, told: text, seeds: scenario::seeds, is_json: true },
     Target { name: "link", check: link::check, told: text, seeds: link::seeds, is_json: true },
 ];
@@ -65,8 +67,13 @@ impl Target {
             let quoted = text.split('"').skip(1).step_by(2);
             quoted.filter(|word| word.len() < 24).map(|word| format!("\"{word}\"")).collect()
         };
-        scenarios().flat_map(words).collect()
+        scenarios().flat_map(words).chain(words(&Scenario::default().to_json())).collect()
     }
+}
+
+/// An input that is a stream of bytes.
+fn bytes(data: &[u8]) -> String {
+    format!("{data:02x?}")
 }
 
 /// An input that is a text.
