@@ -8,7 +8,7 @@ use stepscope_core::{
     device::Device,
     run::{Experiment, Run},
     scenario::{Config, Forced, Noise, Protocol, Scenario},
-    signal::{Event, Fate, Levels, Record, Sink},
+    signal::{Event, Fate, Levels, MAX_CHANNELS, Record, Sink},
     trace::{Digest, Recording, steps},
     units::{Cycles, Instant},
     wire::Line,
@@ -45,7 +45,7 @@ pub struct Ways<'a> {
     pub most_clocked: u64,
 }
 
-/// Runs a scenario in every way; by hand only where one controller listens to a raw line without noise.
+/// Runs a scenario in every way; by hand only where one controller runs ticks and its line is raw and without noise.
 ///
 /// # Panics
 /// If two ways differ, if what is left does not agree with itself, or if the run costs more than was said before it
@@ -61,8 +61,17 @@ pub fn check(scenario: &Scenario, experiment: &Experiment, ways: Ways<'_>) {
         assert!(cycles.0 <= cost.end_cycle, "{} cycles were run, {} announced", cycles.0, cost.end_cycle);
         assert!(made as u64 <= cost.records, "{made} records were made, {} announced", cost.records);
     }
-    for ((left, device), config) in fast.iter().zip(run.devices()).zip(experiment.configs()) {
-        consistent(left, device, config, cycles);
+    if experiment.segments().is_some() {
+        assert!(fast.iter().all(|left| left.events.is_empty()), "segments make pulses and nothing else");
+        assert_eq!((run.faults().bits(), run.ticks_done()), (0, 0), "segments have no faults and no ticks");
+    }
+    // The segment engine runs in the first controller's place.
+    let positions = [run.positions()].into_iter().chain(run.devices().skip(1).map(Device::positions));
+    for (((left, device), config), positions) in
+        fast.iter().zip(run.devices()).zip(experiment.configs()).zip(positions)
+    {
+        consistent(left, config, cycles);
+        counted(left, config, positions, device.ticks_done());
     }
 
     let (mut left, mut sliced) = (each(), experiment.start());
@@ -79,6 +88,7 @@ pub fn check(scenario: &Scenario, experiment: &Experiment, ways: Ways<'_>) {
     }
     if let [fast] = fast.as_slice()
         && experiment.config().protocol() == Protocol::Raw
+        && experiment.segments().is_none()
         && scenario.line.noise == Noise::default()
     {
         let (left, device) = by_hand(experiment.config(), line(scenario, experiment), cycles, ways.hurry);
@@ -93,6 +103,7 @@ fn same_run(way: &str, (left, run): (&[Left], &Run), (fast, fast_run): (&[Left],
         same(&format!("{way}, controller {index}"), left, fast);
     }
     assert_eq!(run.schedule(), fast_run.schedule(), "{way}: what was sent");
+    assert_eq!(run.positions(), fast_run.positions(), "{way}: positions");
     assert_eq!(run.cycles(), fast_run.cycles(), "{way}: cycles");
 }
 
@@ -119,8 +130,8 @@ fn each_equal<T: PartialEq + std::fmt::Debug>(way: &str, what: &str, left: &[T],
     }
 }
 
-/// What a run leaves agrees with itself.
-fn consistent(left: &Left, device: &Device, config: &Config, cycles: Cycles) {
+/// A trace is as A3 says.
+fn consistent(left: &Left, config: &Config, cycles: Cycles) {
     let trace = &left.recording.trace;
     let first = Record { cycle: Instant::RESET, levels: Levels::RESET };
     assert_eq!(trace.first(), Some(&first), "a trace begins with reset");
@@ -134,16 +145,19 @@ fn consistent(left: &Left, device: &Device, config: &Config, cycles: Cycles) {
         let levels = record.levels;
         assert_eq!((levels.step() | levels.dir()) & unused, 0, "unused channels stay low: {record:?}");
     }
-    for (channel, position) in (0..).zip(device.positions()) {
-        let made = steps(trace, channel).last().map_or(0, |step| step.position);
+    assert_eq!(Digest::of(trace), left.recording.digest.value(), "digest of the records");
+}
+
+/// What a controller counts is what its trace and its events say.
+fn counted(left: &Left, config: &Config, positions: [i32; MAX_CHANNELS], ticks_done: u32) {
+    for (channel, position) in (0..).zip(positions) {
+        let made = steps(&left.recording.trace, channel).last().map_or(0, |step| step.position);
         assert_eq!(made, position, "position of channel {channel}, from the trace and as counted");
     }
-    assert_eq!(Digest::of(trace), left.recording.digest.value(), "digest of the records");
-
     let count = |is: fn(&Event) -> bool| left.events.iter().filter(|(_, event)| is(event)).count();
     let begun = count(|event| matches!(event, Event::TickStart { .. }));
     let ended = count(|event| matches!(event, Event::TickEnd));
-    assert_eq!(device.ticks_done() as usize, ended, "ticks done, as counted and as events");
+    assert_eq!(ticks_done as usize, ended, "ticks done, as counted and as events");
     if config.protocol() == Protocol::Raw {
         let queued = count(|event| matches!(event, Event::Packet(Fate::Queued)));
         assert!(begun == ended || begun == ended + 1, "{begun} ticks began, {ended} ended");

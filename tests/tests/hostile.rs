@@ -17,7 +17,7 @@ use stepscope_tests::{
         link::{around, open},
         scenario::judge,
     },
-    scenarios::{small, typed},
+    scenarios::{segmented, small, typed},
 };
 
 fn cases(cases: u32) -> ProptestConfig {
@@ -166,7 +166,7 @@ proptest! {
 
     #[test]
     fn no_change_of_a_scenario_makes_the_judge_fail(
-        scenario in prop_oneof![small(), typed()],
+        scenario in prop_oneof![small(), segmented(), typed()],
         changes in prop::collection::vec(change(), 1..6),
     ) {
         let _ = judge(&changed(&scenario, &changes));

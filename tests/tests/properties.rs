@@ -1,4 +1,4 @@
-//! What holds for every scenario, over random ones of all three sources: all speeds give the same run (DESIGN A2), a run
+//! What holds for every scenario, over random ones of all sources: all speeds give the same run (DESIGN A2), a run
 //! costs no more than was said before it, and a scenario survives its way through JSON and links (PAGE "Share link").
 #![cfg(not(target_arch = "wasm32"))]
 
@@ -15,7 +15,7 @@ use stepscope_core::{
     units::Cycles,
 };
 use stepscope_tests::{
-    scenarios::{small, typed},
+    scenarios::{segmented, small, typed},
     ways::{self, Left, Ways, same},
 };
 
@@ -40,6 +40,15 @@ proptest! {
     ) {
         let Ok(experiment) = Experiment::new(&scenario) else { return Ok(()) };
         ways::check(&scenario, &experiment, Ways { slices: &slices, hurry, most_clocked: 200_000 });
+    }
+
+    #[test]
+    fn every_way_through_segments_leaves_the_same(
+        scenario in segmented(),
+        slices in prop::collection::vec(1..40_u64, 1..5),
+    ) {
+        let Ok(experiment) = Experiment::new(&scenario) else { return Ok(()) };
+        ways::check(&scenario, &experiment, Ways { slices: &slices, hurry: 100, most_clocked: u64::MAX });
     }
 
     /// Not only what a scenario can put on the line: any levels at all, such as a firmware's test would feed.

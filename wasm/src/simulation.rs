@@ -126,7 +126,7 @@ impl Simulation {
             /// Bits of the signals that change at all.
             changing: Vec<u8>,
         }
-        let device = self.run.device();
+        let faults = self.run.faults();
         let config = self.experiment.config();
         let summary = object(&Summary {
             digest: format!("{:016x}", self.recording.digest.value()),
@@ -136,11 +136,11 @@ impl Simulation {
             end_s: self.run.cycles().0 as f64 / f64::from(config.clock_hz()),
             clock_hz: config.clock_hz(),
             channels: config.channels(),
-            faults: Faults { bits: device.faults().bits(), names: device.faults().names().collect() },
-            ticks_done: device.ticks_done(),
+            faults: Faults { bits: faults.bits(), names: faults.names().collect() },
+            ticks_done: self.run.ticks_done(),
             changing: changing(&self.recording.trace),
         })?;
-        let positions = device.positions();
+        let positions = self.run.positions();
         let used = positions.get(..usize::from(config.channels())).unwrap_or_default();
         field(summary.unchecked_ref(), "positions", &Int32Array::from(used));
         Ok(summary)

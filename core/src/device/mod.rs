@@ -19,9 +19,11 @@ mod controller;
 mod drive;
 mod faults;
 mod plan;
+mod segments;
 mod sequencer;
 
 pub use faults::Faults;
+pub use segments::SegmentEngine;
 
 use crate::{
     protocol::Status,

@@ -9,6 +9,7 @@
 use super::orders::{Orders, job, pulses};
 use crate::{
     scenario::{Checked, Config, DirLine, Noise, Protocol, Pulses, Source, line_time},
+    segment::CheckedSegments,
     units::Cycles,
     wire::{Schedule, frame::REPLY_LEN},
 };
@@ -70,6 +71,14 @@ impl Cost {
     }
 }
 
+impl Cost {
+    /// What a run of segments costs: nothing is sent.
+    pub(super) fn of_segments(segments: &CheckedSegments, run: Option<Cycles>) -> Self {
+        let end_cycle = run.map_or(segments.end().0 + 1, |Cycles(run)| run);
+        Self { records: segments.most_records().min(end_cycle), sends: 0, bytes: 0, end_cycle }
+    }
+}
+
 /// What goes over the line.
 struct Sends {
     count: u64,
@@ -111,7 +120,7 @@ impl Sends {
 }
 
 fn waits_for_replies(checked: &Checked, orders: &Orders) -> bool {
-    orders.config().protocol() == Protocol::Framed && !matches!(checked.source, Source::Line(_))
+    orders.config().protocol() == Protocol::Framed && checked.source.is_ticks()
 }
 
 /// Records of all ticks of one controller at most.
@@ -134,7 +143,7 @@ fn tick_records(checked: &Checked, orders: &Orders, schedule: &Schedule) -> u64 
 
 /// Whether each packet comes with its tick and is heard as it was sent.
 fn comes_as_ordered(checked: &Checked, config: &Config) -> bool {
-    !matches!(checked.source, Source::Line(_)) && is_faithful(checked, config)
+    checked.source.is_ticks() && is_faithful(checked, config)
 }
 
 fn is_faithful(checked: &Checked, config: &Config) -> bool {

@@ -36,7 +36,7 @@ struct Station {
 }
 
 /// Takes what no one asked for.
-struct Ignored;
+pub(super) struct Ignored;
 
 impl Sink for Ignored {
     fn record(&mut self, _: Record) {}

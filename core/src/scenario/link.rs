@@ -189,7 +189,7 @@ mod tests {
         Scenario {
             title: "Sixteen different channels".into(),
             bus: Bus { channels: 16, ..Bus::default() },
-            source: Source::Motion(Motion { axes: (0..16).map(axis).collect() }),
+            source: Source::Motion(Motion { axes: (0..16).map(axis).collect(), ..Motion::default() }),
             ..Scenario::default()
         }
     }

@@ -17,7 +17,7 @@ fn sixteen(axes: Vec<Axis>) -> Scenario {
             ..Bus::default()
         },
         line: Line { baud: 1_000_000, ..Line::default() },
-        source: Source::Motion(Motion { axes }),
+        source: Source::Motion(Motion { axes, ..Motion::default() }),
         ..Scenario::default()
     }
 }
@@ -38,7 +38,7 @@ fn four(clock_hz: u32, axes: Vec<Axis>) -> Scenario {
             ..Bus::default()
         },
         line: Line { baud: 50_000, ..Line::default() },
-        source: Source::Motion(Motion { axes }),
+        source: Source::Motion(Motion { axes, ..Motion::default() }),
         ..Scenario::default()
     }
 }

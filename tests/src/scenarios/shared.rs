@@ -41,7 +41,9 @@ pub fn shared() -> impl Strategy<Value = Scenario> {
             }
             let controllers = further.into_iter().enumerate().map(|(index, (bits, off))| {
                 let mut bus = scenario.bus.clone();
-                bus.channels = 1 + bits % 3;
+                if framed {
+                    bus.channels = 1 + bits % 3;
+                }
                 bus.queue_depth = 1 + bits / 64;
                 let (axes, packets) = orders(&scenario, index as u8, bus.channels);
                 let receiver_baud = off.map(|off| scenario.line.baud / 1_000 * off);
