@@ -47,7 +47,7 @@ fn bus(config: &oracle::Config) -> Bus {
 
 /// The same line in the core's words.
 fn experiment(line: &[oracle::Config], input: &oracle::Input) -> Result<Experiment, Vec<Problem>> {
-    let (first, further) = line.split_first().expect("there is a controller");
+    let (first, further) = (&line[0], &line[1..]);
     let send = |(start, bytes): &(u64, Vec<u8>)| ScriptedSend {
         start_cycle: *start,
         bytes: Hex(bytes.clone()),
@@ -59,7 +59,7 @@ fn experiment(line: &[oracle::Config], input: &oracle::Input) -> Result<Experime
         level: level.into(),
     };
     let controller = |config: &oracle::Config| Controller {
-        address: config.address.expect("further controllers have one"),
+        address: config.address.unwrap_or(0),
         receiver_baud: Some(config.receiver_baud as u32),
         bus: bus(config),
         ..Controller::default()
@@ -218,7 +218,8 @@ proptest! {
             }
         };
         let model = model.map_err(|refused| TestCaseError::fail(format!("the model alone refuses: {refused:?}")))?;
-        let ways: [(&str, fn(&Experiment, &mut Vec<Record>) -> Run); 2] = [
+        type Way = fn(&Experiment, &mut Vec<Record>) -> Run;
+        let ways: [(&str, Way); 2] = [
             ("clock by clock", |experiment, trace| experiment.run_clock_by_clock(trace)),
             ("fast", |experiment, trace| experiment.run(trace)),
         ];

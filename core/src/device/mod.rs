@@ -240,6 +240,12 @@ impl Device {
         self.receiver.deadline(self.before(), self.rx).min(framing)
     }
 
+    /// Whether it ever drives the line.
+    #[must_use]
+    pub const fn answers(&self) -> bool {
+        matches!(self.framing, Framing::Framed(_))
+    }
+
     /// What this controller does to the line in cycle [`Self::now`]: its TX where it drives, `None`
     /// where it does not.
     #[must_use]
@@ -252,7 +258,9 @@ impl Device {
     /// line, while others keep the line at `line`; [`Instant::NEVER`] if it will not.
     #[must_use]
     pub fn next_driven(&self, line: bool) -> Instant {
-        let Framing::Framed(_) = self.framing else { return Instant::NEVER };
+        if !self.answers() {
+            return Instant::NEVER;
+        }
         let (levels, next) = self.machine.drive.ahead(self.now);
         let heard = self.receiver.deadline(self.before(), line || Levels(levels).has(Levels::DE));
         // What it may hear then can be answered no sooner than after the turnaround.

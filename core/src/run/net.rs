@@ -35,6 +35,13 @@ struct Station {
     collides: bool,
 }
 
+impl Station {
+    /// Whether it has not come to the end of the window, and has something to do there.
+    fn is_behind(&self, until: Instant) -> bool {
+        self.device.now() < until && !(until == Instant::NEVER && self.device.at_rest())
+    }
+}
+
 /// Takes what no one asked for.
 pub(super) struct Ignored;
 
@@ -133,30 +140,41 @@ impl Net {
     /// Runs to cycle `end`, or with [`Instant::NEVER`] until nothing can change any more, or until a
     /// sink asks for a pause.
     pub(super) fn run(&mut self, end: Instant, sinks: &mut [impl Sink]) {
+        let deaf = self.host.is_none() && !self.stations.iter().any(|station| station.device.answers());
         while self.until < end || self.start < self.until {
-            if self.start == self.until {
-                self.enter(sinks);
-                self.until = self.window(end);
-            }
-            for (index, station) in self.stations.iter_mut().enumerate() {
-                let Station { device, hears, .. } = station;
-                match sinks.get_mut(index) {
-                    Some(sink) => device.run(*hears, self.until, sink),
-                    None => device.run(*hears, self.until, &mut Ignored),
+            let done = match (&mut self.stations[..], &mut *sinks) {
+                ([station], [sink]) if deaf => {
+                    listen(&mut self.line, station, (&mut self.start, &mut self.until), end, sink)
                 }
-            }
-            let behind = |station: &Station| {
-                let rests = self.until == Instant::NEVER && station.device.at_rest();
-                station.device.now() < self.until && !rests
+                _ => self.run_window(end, sinks),
             };
-            if self.stations.iter().any(behind) {
+            if !done {
                 break;
             }
-            self.start = self.until;
         }
         if end == Instant::NEVER && self.is_over() {
             self.settle();
         }
+    }
+
+    /// Runs to the end of a window, which may have begun; false where a sink asked for a pause.
+    fn run_window(&mut self, end: Instant, sinks: &mut [impl Sink]) -> bool {
+        if self.start == self.until {
+            self.enter(sinks);
+            self.until = self.window(end);
+        }
+        for (index, station) in self.stations.iter_mut().enumerate() {
+            let Station { device, hears, .. } = station;
+            match sinks.get_mut(index) {
+                Some(sink) => device.run(*hears, self.until, sink),
+                None => device.run(*hears, self.until, &mut Ignored),
+            }
+        }
+        let behind = self.stations.iter().any(|station| station.is_behind(self.until));
+        if !behind {
+            self.start = self.until;
+        }
+        !behind
     }
 
     /// At rest: the last cycle that was run is the last one in which something happened.
@@ -181,6 +199,34 @@ impl Net {
         self.start = self.start.next();
         self.until = self.start;
     }
+}
+
+/// Runs the only controller of a raw line to cycle `end`, from window to window; false where the sink
+/// asked for a pause. It never drives the line, so a window is what the line stays the same for: the
+/// inner loop of a long run.
+fn listen(
+    line: &mut Line,
+    station: &mut Station,
+    (start, until): (&mut Instant, &mut Instant),
+    end: Instant,
+    sink: &mut impl Sink,
+) -> bool {
+    while *start < end {
+        if start == until {
+            if line.next_change() == *start {
+                line.change();
+            }
+            station.hears = line.heard(true);
+            let next = if line.is_over() { Instant::NEVER } else { line.next_change() };
+            *until = next.min(end);
+        }
+        station.device.run(station.hears, *until, sink);
+        if station.is_behind(*until) {
+            return false;
+        }
+        *start = *until;
+    }
+    true
 }
 
 /// Tells of a collision where it begins.

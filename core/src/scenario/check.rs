@@ -112,19 +112,17 @@ impl Scenario {
         if let Some(driver) = &self.driver {
             driver.judge(&mut judge);
         }
-        judge.end(()).and_then(|()| {
-            Ok(Checked {
-                configs: config.into_iter().chain(further).collect(),
-                further: self.controllers.clone(),
-                // Where nothing is sent it has not been judged.
-                baud: self.line.baud.max(1),
-                host: self.line.host.clone(),
-                noise: self.line.noise.clone(),
-                forced,
-                source: self.source.clone(),
-                segments,
-                run: self.run_cycles.map(Cycles),
-            })
+        judge.end(()).map(|()| Checked {
+            configs: config.into_iter().chain(further).collect(),
+            further: self.controllers.clone(),
+            // Where nothing is sent it has not been judged.
+            baud: self.line.baud.max(1),
+            host: self.line.host.clone(),
+            noise: self.line.noise.clone(),
+            forced,
+            source: self.source.clone(),
+            segments,
+            run: self.run_cycles.map(Cycles),
         })
     }
 
