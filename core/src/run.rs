@@ -12,8 +12,10 @@
 
 pub mod campaign;
 mod cost;
+mod listener;
 mod net;
 mod orders;
+mod talk;
 
 pub use cost::{BUDGET_RECORDS, Cost};
 

@@ -44,7 +44,7 @@ pub fn cases(modes: impl Strategy<Value = Mode>) -> impl Strategy<Value = (Confi
 }
 
 /// One to four controllers with raw addressed packets on one line and something to do with them, at most 30 000 cycles
-/// long. `clock_hz` and `baud` are common, and every address is another; a few controllers are refused.
+/// long. `clock_hz`, `baud` and `channels` are common, and every address is another; a few controllers are refused.
 pub fn raw_lines<M>(modes: M) -> impl Strategy<Value = (Vec<Config>, Input)>
 where
     M: Strategy<Value = Mode> + 'static,

@@ -42,7 +42,9 @@ impl Step {
         match self {
             Self::Format => {
                 toolchain::components().await?;
-                cargo("fmt --all --check").await
+                cargo("fmt --all --check").await?;
+                // A workspace of its own.
+                cargo("fmt --manifest-path fuzz/Cargo.toml --check").await
             }
             Self::Lint => {
                 toolchain::components().await?;
@@ -51,7 +53,10 @@ impl Step {
                 clippy("--workspace --all-targets --all-features").await?;
                 clippy(&format!("--package stepscope-wasm --all-targets --target {WASM}")).await?;
                 clippy(&format!("--package stepscope-bench --lib --target {WASM}")).await?;
-                let packages = format!("--package stepscope-core --package {}", bare_metal::PACKAGE);
+                let packages = format!(
+                    "--package stepscope-core --package stepscope-firmware --package {}",
+                    bare_metal::PACKAGE
+                );
                 clippy(&format!("{packages} --no-default-features --target {BARE_METAL}")).await
             }
             Self::Docs => {

@@ -112,19 +112,17 @@ impl Scenario {
         if let Some(driver) = &self.driver {
             driver.judge(&mut judge);
         }
-        judge.end(()).and_then(|()| {
-            Ok(Checked {
-                configs: config.into_iter().chain(further).collect(),
-                further: self.controllers.clone(),
-                // Where nothing is sent it has not been judged.
-                baud: self.line.baud.max(1),
-                host: self.line.host.clone(),
-                noise: self.line.noise.clone(),
-                forced,
-                source: self.source.clone(),
-                segments,
-                run: self.run_cycles.map(Cycles),
-            })
+        judge.end(()).map(|()| Checked {
+            configs: config.into_iter().chain(further).collect(),
+            further: self.controllers.clone(),
+            // Where nothing is sent it has not been judged.
+            baud: self.line.baud.max(1),
+            host: self.line.host.clone(),
+            noise: self.line.noise.clone(),
+            forced,
+            source: self.source.clone(),
+            segments,
+            run: self.run_cycles.map(Cycles),
         })
     }
 
@@ -150,8 +148,10 @@ impl Scenario {
     /// The further controllers' configurations.
     fn further(&self, first: Option<&Config>, judge: &mut Judge) -> Vec<Config> {
         judge.length("controllers", self.controllers.len(), 0, MOST_FURTHER, "further controllers");
-        if !self.controllers.is_empty() && self.line.protocol == Protocol::Raw && self.line.address.is_none()
-        {
+        // Who writes the line himself may also ask what several of one address do.
+        let scripted = matches!(self.source, Source::Line(_));
+        let nameless = self.line.protocol == Protocol::Raw && self.line.address.is_none();
+        if !self.controllers.is_empty() && nameless && !scripted {
             let detail =
                 "several controllers on a line need an address each; give the first one an address, 0 to 254";
             judge.add("line.address", Cause::Conflict { detail });
@@ -183,7 +183,9 @@ impl Scenario {
             }
             let mut before = self.controllers.iter().take(index).map(|controller| controller.address);
             let first_address = first.and_then(Config::address);
-            if first_address == Some(controller.address) || before.any(|other| other == controller.address) {
+            let same =
+                first_address == Some(controller.address) || before.any(|other| other == controller.address);
+            if same && !scripted {
                 judge.add(at("address"), Cause::SameAddress { address: controller.address });
             }
             self.orders(controller, &at, judge);

@@ -109,10 +109,10 @@ fn order() -> impl Strategy<Value = Order> {
         },
     );
     let plain = prop_oneof![
-        4 => Just(kinds::ENABLE),
+        5 => Just(kinds::ENABLE),
         1 => Just(kinds::DISABLE),
         3 => Just(kinds::STATUS),
-        1 => Just(kinds::STOP),
+        2 => Just(kinds::STOP),
         1 => Just(kinds::RESYNC),
     ];
     let body = prop::collection::vec(prop_oneof![any::<u8>(), 0..3_u8], 0..6);

@@ -20,6 +20,8 @@ pub(super) enum Pause {
     DeFall(i64),
     /// The last byte is delivered this many cycles after a tick's end.
     TickEnd(i64),
+    /// The last byte is delivered while a tick runs, after so many per mille of it.
+    InTick(u64),
 }
 
 /// Where not `calm`, one in six comes while a reply is sent.
@@ -33,6 +35,7 @@ pub(super) fn pause(calm: bool) -> impl Strategy<Value = Pause> {
         1 => (-200..=0_i64).prop_map(Pause::DeFall),
         1 => (-3..=3_i64).prop_map(Pause::DeFall),
         polite / 2 => (-2..=2_i64).prop_map(Pause::TickEnd),
+        polite / 3 => (0..1_000_u64).prop_map(Pause::InTick),
     ]
 }
 
@@ -118,20 +121,25 @@ impl<'a> Host<'a> {
             Pause::Polite(cycles) => self.quiet_from() + cycles,
             Pause::DeRise(offset) => reply.start.saturating_add_signed(offset),
             Pause::DeFall(offset) => reply.end.saturating_add_signed(offset),
-            Pause::TickEnd(offset) => self
-                .foreseen
-                .iter()
-                .flat_map(|foreseen| &foreseen.ticks)
-                .map(|tick| tick.end.saturating_add_signed(offset))
-                .filter(|delivery| *delivery >= self.quiet_from() + to_delivery)
-                .min()
-                .map_or(self.quiet_from(), |delivery| delivery - to_delivery),
+            Pause::TickEnd(offset) => {
+                self.delivered_at(to_delivery, |tick| tick.end.saturating_add_signed(offset))
+            }
+            Pause::InTick(permille) => {
+                self.delivered_at(to_delivery, |tick| tick.start + (tick.end - tick.start) * permille / 1_000)
+            }
         };
         let start = start.max(self.free_from);
         self.sends.push((start, bytes.to_vec()));
         self.deliveries.push(start + to_delivery);
         self.byte_starts.extend((0..=last).map(|j| byte_start(config, start, j)));
         self.free_from = byte_start(config, start, last) + byte_start(config, 0, 1);
+    }
+
+    /// The start of a send that lasts `to_delivery` cycles up to the first tick's aim that a polite host can reach.
+    fn delivered_at(&self, to_delivery: u64, aim: impl Fn(&Span) -> u64) -> u64 {
+        let ticks = self.foreseen.iter().flat_map(|foreseen| &foreseen.ticks);
+        let reached = ticks.map(aim).filter(|delivery| *delivery >= self.quiet_from() + to_delivery).min();
+        reached.map_or(self.quiet_from(), |delivery| delivery - to_delivery)
     }
 
     /// Notes what a good frame does whose last byte starts at `last`.

@@ -26,14 +26,20 @@ pub fn configs(modes: impl Strategy<Value = Mode>) -> impl Strategy<Value = Conf
         .prop_map(|(link, permille, drive, bus, mode)| assemble(&link, permille, &drive, &bus, mode))
 }
 
-/// One to four controllers with raw packets on one line, all addressed; a few are refused.
+/// One to four controllers with raw packets on one line, all addressed; a few are refused. They have as many channels,
+/// for "packets for another address are consumed by length".
 pub(super) fn raw_line<M>(modes: M) -> impl Strategy<Value = Vec<Config>>
 where
     M: Strategy<Value = Mode> + 'static,
 {
     let controller = (narrow_receiver(), drive(500..5_000), bus(), modes).boxed();
-    (link(2_000), addresses(controller))
-        .prop_map(|(link, controllers)| together(&link, controllers.into_iter()).collect())
+    (link(2_000), addresses(controller)).prop_map(|(link, mut controllers)| {
+        let channels = controllers[0].1.2.channels;
+        for (_, (_, _, bus, _)) in &mut controllers {
+            bus.channels = channels;
+        }
+        together(&link, controllers.into_iter()).collect()
+    })
 }
 
 /// One to four controllers of the framed protocol on one line, seldom refused; a lone one may go without an address.
