@@ -17,19 +17,31 @@ pub(crate) enum Failure {
     Preset(String),
     /// A timing check without a driver.
     NoDriver(PathBuf),
+    /// The scenario has no controller of this number, but so many.
+    Controller(PathBuf, usize, usize),
     /// The timing check found this many violations, and none was to be.
     Violations(u64),
+    /// So many seeds of a campaign with the framed protocol went wrong, and none was to.
+    WrongSteps(u64),
 }
 
 impl Failure {
+    /// Standard output could not be written.
+    pub(crate) fn output(error: io::Error) -> Self {
+        Self::File(PathBuf::from("standard output"), error)
+    }
+
     /// The command's exit code.
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
             Self::File(..) => ExitCode::from(1),
-            Self::NotText(_) | Self::Scenario(..) | Self::Link(_) | Self::Preset(_) | Self::NoDriver(_) => {
-                ExitCode::from(2)
-            }
-            Self::Violations(_) => ExitCode::from(3),
+            Self::NotText(_)
+            | Self::Scenario(..)
+            | Self::Link(_)
+            | Self::Preset(_)
+            | Self::NoDriver(_)
+            | Self::Controller(..) => ExitCode::from(2),
+            Self::Violations(_) | Self::WrongSteps(_) => ExitCode::from(3),
         }
     }
 }
@@ -56,9 +68,20 @@ impl fmt::Display for Failure {
                 "{}: the scenario names no driver; give one with --driver, `stepscope drivers` lists them",
                 path.display()
             ),
+            Self::Controller(path, given, 1) => {
+                write!(f, "{}: there is no controller {given}; the scenario has one, 0", path.display())
+            }
+            Self::Controller(path, given, count) => {
+                let most = count - 1;
+                write!(f, "{}: there is no controller {given}; give 0 to {most}", path.display())
+            }
             Self::Violations(count) => {
                 let s = if *count == 1 { "" } else { "s" };
                 write!(f, "{count} violation{s} of the driver's timing")
+            }
+            Self::WrongSteps(count) => {
+                let s = if *count == 1 { "" } else { "s" };
+                write!(f, "framed: wrong, doubled or missing ticks with {count} seed{s}")
             }
         }
     }

@@ -6,8 +6,9 @@ use std::{
     path::{Path, PathBuf},
 };
 use stepscope_core::{
+    analysis::timing::TimingCheck,
     signal::{Event, Record, Sink},
-    trace::{PacketLog, VcdWriter, shown_signals, write_record},
+    trace::{Digest, PacketLog, VcdWriter, shown_signals, write_record},
     units::Instant,
 };
 
@@ -109,41 +110,58 @@ impl Sink for Packets {
 impl Output for Packets {
     fn finish(mut self: Box<Self>, _: u64) -> io::Result<()> {
         self.log.finish();
-        writeln!(self.out, "start_cycle,end_cycle,bytes,outcome,tick_start_cycle,tick_end_cycle")?;
+        let mut table = csv::Writer::from_writer(self.out);
+        table.write_record([
+            "start_cycle",
+            "end_cycle",
+            "bytes",
+            "outcome",
+            "tick_start_cycle",
+            "tick_end_cycle",
+        ])?;
         let cycle = |at: Option<Instant>| at.map(|at| at.0.to_string()).unwrap_or_default();
         for (index, row) in self.log.rows().iter().enumerate() {
-            write!(self.out, "{},{},", row.start.0, row.end.0)?;
-            for byte in self.log.bytes(index) {
-                write!(self.out, "{byte:02x}")?;
-            }
-            writeln!(self.out, ",{},{},{}", row.verdict, cycle(row.tick_start), cycle(row.tick_end))?;
+            let bytes: String = self.log.bytes(index).iter().map(|byte| format!("{byte:02x}")).collect();
+            table.write_record([
+                row.start.0.to_string(),
+                row.end.0.to_string(),
+                bytes,
+                row.verdict.to_string(),
+                cycle(row.tick_start),
+                cycle(row.tick_end),
+            ])?;
         }
-        self.out.flush()
+        table.flush()
     }
 }
 
 /// Files that a run writes, each with its path.
 pub(crate) type Files = Vec<(PathBuf, Box<dyn Output>)>;
 
-/// The digest and all files of a run.
-pub(crate) struct Outputs<'d> {
-    /// The digest.
-    pub(crate) digest: &'d mut stepscope_core::trace::Digest,
-    /// The files.
+/// All that is taken down of one controller.
+#[derive(Default)]
+pub(crate) struct Station {
+    /// The digest of its trace.
+    pub(crate) digest: Digest,
+    /// Its files.
     pub(crate) files: Files,
+    /// Its timing check.
+    pub(crate) timing: Option<TimingCheck>,
 }
 
-impl Sink for Outputs<'_> {
+impl Sink for Station {
     fn record(&mut self, record: Record) {
         self.digest.record(record);
         for (_, file) in &mut self.files {
             file.record(record);
         }
+        self.timing.record(record);
     }
 
     fn event(&mut self, at: Instant, event: Event) {
         for (_, file) in &mut self.files {
             file.event(at, event);
         }
+        self.timing.event(at, event);
     }
 }

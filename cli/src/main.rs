@@ -1,13 +1,18 @@
 //! The `stepscope` command: the native front of the model.
 //!
 //! Results go to standard output, errors to standard error. Exit codes: 0 the run was made, 1 a
-//! file could not be read or written, 2 the scenario, link or command line is wrong, 3 `--strict` and
-//! the timing check found violations.
+//! file could not be read or written, 2 the scenario, link or command line is wrong, 3 something was to
+//! hold and does not: `--strict` and the timing check found violations, or `faults` found wrong steps on
+//! a framed line.
 
 mod failure;
+mod faults;
 mod files;
+mod line;
+mod progress;
 mod run;
 mod scenarios;
+mod status;
 mod timing;
 
 use clap::{Parser, Subcommand};
@@ -25,6 +30,9 @@ struct Arguments {
 enum Command {
     /// Runs a scenario: digest, status, trace and other files.
     Run(run::Arguments),
+    /// Sends the same orders over a line that goes wrong in as many ways as there are seeds, and counts
+    /// what was executed wrong, twice or not at all, with and without the framed protocol.
+    Faults(faults::Arguments),
     /// Writes the scenario of a share link as JSON.
     Open {
         /// The link, or what stands behind its `#`.
@@ -42,6 +50,7 @@ enum Command {
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Run(arguments) => run::run(&arguments),
+        Command::Faults(arguments) => faults::faults(&arguments),
         Command::Open { link } => scenarios::open(&link),
         Command::Presets { id } => scenarios::presets(id.as_deref()),
         Command::Drivers => timing::drivers(),

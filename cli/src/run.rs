@@ -2,30 +2,37 @@
 
 use crate::{
     failure::Failure,
-    files::{self, Files, Out, Output, Outputs},
+    files::{self, Files, Out, Output, Station},
+    line,
+    progress::Progress,
+    scenarios,
+    status::{self, Shown},
     timing,
 };
 use clap::Args;
 use std::{
-    fs,
-    io::{self, Read, Write},
-    path::{Path, PathBuf},
+    io::{self, Write},
+    path::PathBuf,
 };
 use stepscope_core::{
     run::{Experiment, Run},
-    scenario::{Hex, LineScript, Scenario, ScriptedSend, Source, link},
-    trace::Digest,
+    scenario::{Config, Scenario, link},
 };
+
+/// Records between two looks at how far a run is.
+const SLICE: u64 = 1 << 16;
 
 /// What `stepscope run` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// The scenario, a JSON file; `-` reads standard input.
     scenario: PathBuf,
-    /// Print only the digest of the trace: XXH64, 16 hexadecimal digits.
+    /// Print only the digest of the trace: XXH64, 16 hexadecimal digits; of several controllers, one a
+    /// line.
     #[arg(long)]
     digest: bool,
-    /// Print positions, fault flags and ticks done.
+    /// Print positions, fault flags and ticks done; on a framed line also the controller's state, what
+    /// the host reached and counted, and the load of the line.
     #[arg(long)]
     status: bool,
     /// Print the share link of the scenario: what stands behind the page's address.
@@ -40,13 +47,21 @@ pub(crate) struct Arguments {
     /// Write a table of the signals: cycle, time in s, and a level each.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Write a table of the packets, with what the controller did with each.
+    /// Write a table of the packets, with what the controller did with each (CSV as in RFC 4180).
     #[arg(long, value_name = "FILE")]
     packets: Option<PathBuf>,
-    /// Write the scenario with its source as a line script: every byte and the cycle it is sent in;
-    /// or, where segments run it, as their lists. Run in its turn, it gives the same trace.
+    /// Write the scenario with what was done to the line as its source: every byte and the cycle it is
+    /// sent in, and every forced level, those of noise among them; or, where segments run it, as their
+    /// lists. Run in its turn, it gives the same traces.
     #[arg(long, value_name = "FILE")]
     line: Option<PathBuf>,
+    /// Of several controllers take this one: 0 is the scenario's own, 1 the first of `controllers`.
+    /// Without it digest and status are those of all, files and timing those of controller 0.
+    #[arg(long, value_name = "K")]
+    controller: Option<usize>,
+    /// Show the progress also where standard error is no terminal.
+    #[arg(long)]
+    progress: bool,
     #[command(flatten)]
     timing: timing::Options,
 }
@@ -67,34 +82,60 @@ impl Arguments {
 /// Runs the scenario and writes what was asked for; digest and status if nothing was.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
-    let bytes = read(path).map_err(|error| Failure::File(path.clone(), error))?;
-    let text = String::from_utf8(bytes).map_err(|_| Failure::NotText(path.clone()))?;
+    let text = scenarios::text(path)?;
     let experiment =
         Experiment::from_json(&text).map_err(|problems| Failure::Scenario(path.clone(), problems))?;
     let (scenario, _) = Scenario::from_json_lenient(&text);
+    let controllers = experiment.controllers();
+    let chosen = arguments.controller.unwrap_or(0);
+    let config = experiment.configs().nth(chosen);
+    let config = config.ok_or_else(|| Failure::Controller(path.clone(), chosen, controllers))?;
 
-    let mut digest = Digest::default();
-    let mut outputs = Outputs { digest: &mut digest, files: open(arguments, &experiment)? };
-    let mut timing = arguments.timing.check(path, &scenario)?;
-    let finished = experiment.run(&mut (&mut outputs, timing.as_mut()));
-    for (path, file) in outputs.files {
-        file.finish(finished.cycles().0).map_err(|error| Failure::File(path, error))?;
+    let mut stations: Vec<Station> = (0..controllers).map(|_| Station::default()).collect();
+    if let Some(station) = stations.get_mut(chosen) {
+        station.files = open(arguments, config)?;
+        station.timing = arguments.timing.check(path, &scenario)?;
+    }
+    let finished = go(&experiment, &mut stations, arguments.progress);
+    let mut timing = None;
+    for station in &mut stations {
+        timing = timing.or(station.timing.take());
+        for (path, file) in station.files.drain(..) {
+            file.finish(finished.cycles().0).map_err(|error| Failure::File(path, error))?;
+        }
     }
     if let Some(file) = &arguments.line {
-        let text = scripted(scenario.clone(), &experiment, &finished).to_json();
-        let failed = |error| Failure::File(file.clone(), error);
-        let mut out = files::create(file).map_err(failed)?;
-        writeln!(out, "{text}").and_then(|()| out.flush()).map_err(failed)?;
+        line::write(file, scenario.clone(), &experiment, &finished)?;
     }
-    let link = if arguments.link { Some(link::encode(&scenario).map_err(Failure::Link)?) } else { None };
-    print(arguments, link, &digest, &finished, &experiment)
-        .map_err(|error| Failure::File(PathBuf::from("standard output"), error))?;
+    if arguments.link {
+        let link = link::encode(&scenario).map_err(Failure::Link)?;
+        writeln!(io::stdout(), "#{link}").map_err(Failure::output)?;
+    }
+    let shown =
+        Shown { stations: &stations, only: arguments.controller, run: &finished, experiment: &experiment };
+    if arguments.digest && !arguments.status {
+        status::digests(&shown).map_err(Failure::output)?;
+    } else if arguments.status || !arguments.asks_for_a_file() {
+        status::print(&shown).map_err(Failure::output)?;
+    }
     timing.map_or(Ok(()), |timing| arguments.timing.report(&timing, scenario.clock_hz))
 }
 
+/// The whole run; a long one says how far it is.
+fn go(experiment: &Experiment, stations: &mut [Station], wanted: bool) -> Run {
+    let mut progress = Progress::new("run", wanted);
+    let mut run = experiment.start();
+    while !run.advance_each(SLICE, stations) {
+        progress.tell(run.cycles().0, experiment.cost().end_cycle);
+    }
+    if wanted {
+        progress.tell(1, 1);
+    }
+    run
+}
+
 /// The files that were asked for, each with its path.
-fn open(arguments: &Arguments, experiment: &Experiment) -> Result<Files, Failure> {
-    let config = experiment.config();
+fn open(arguments: &Arguments, config: &Config) -> Result<Files, Failure> {
     let (clock_hz, channels) = (config.clock_hz(), config.channels());
     let mut opened = Vec::new();
     let mut add = |path: &Option<PathBuf>, make: &dyn Fn(Out) -> io::Result<Box<dyn Output>>| {
@@ -108,57 +149,4 @@ fn open(arguments: &Arguments, experiment: &Experiment) -> Result<Files, Failure
     add(&arguments.csv, &|out| files::csv(out, clock_hz, channels))?;
     add(&arguments.packets, &|out| Ok(files::packets(out)))?;
     Ok(opened)
-}
-
-/// The scenario with its host's schedule as its source (DESIGN A9), or with its lists of segments.
-fn scripted(mut scenario: Scenario, experiment: &Experiment, run: &Run) -> Scenario {
-    if let Some(segments) = experiment.segments() {
-        scenario.source = Source::Segments(segments.into());
-        return scenario;
-    }
-    let sends = run
-        .schedule()
-        .iter()
-        .map(|send| ScriptedSend { start_cycle: send.start.0, bytes: Hex(send.bytes.to_vec()), frame: None })
-        .collect();
-    scenario.source = Source::Line(LineScript { sends });
-    scenario
-}
-
-fn print(
-    arguments: &Arguments,
-    link: Option<String>,
-    digest: &Digest,
-    run: &Run,
-    experiment: &Experiment,
-) -> io::Result<()> {
-    let mut out = io::stdout().lock();
-    if let Some(link) = link {
-        writeln!(out, "#{link}")?;
-    }
-    if arguments.digest && !arguments.status {
-        return writeln!(out, "{:016x}", digest.value());
-    }
-    if !arguments.status && arguments.asks_for_a_file() {
-        return Ok(());
-    }
-    let channels = usize::from(experiment.config().channels());
-    let positions: Vec<String> = run.positions().iter().take(channels).map(i32::to_string).collect();
-    let faults: Vec<&str> = run.faults().names().collect();
-    let faults = if faults.is_empty() { "none".into() } else { faults.join(" ") };
-    writeln!(out, "digest {:016x}", digest.value())?;
-    writeln!(out, "cycles {}", run.cycles().0)?;
-    writeln!(out, "records {}", digest.records())?;
-    writeln!(out, "ticks_done {}", run.ticks_done())?;
-    writeln!(out, "positions {}", positions.join(" "))?;
-    writeln!(out, "faults {:#06x} {faults}", run.faults().bits())
-}
-
-fn read(path: &Path) -> io::Result<Vec<u8>> {
-    if path == Path::new("-") {
-        let mut bytes = Vec::new();
-        io::stdin().read_to_end(&mut bytes)?;
-        return Ok(bytes);
-    }
-    fs::read(path)
 }

@@ -1,14 +1,35 @@
-//! `stepscope open` and `stepscope presets`: scenarios from links and from the documents.
+//! Scenarios from files; `stepscope open` and `stepscope presets`: from links and from the documents.
 
 use crate::failure::Failure;
 use std::{
-    io::{self, Write},
-    path::PathBuf,
+    fs,
+    io::{self, Read, Write},
+    path::Path,
 };
 use stepscope_core::scenario::{
-    link,
+    Scenario, link,
     presets::{PRESETS, Preset},
 };
+
+/// Reads a scenario of the right types; `-` is standard input.
+pub(crate) fn read(path: &Path) -> Result<Scenario, Failure> {
+    match Scenario::from_json_lenient(&text(path)?) {
+        (scenario, problems) if problems.is_empty() => Ok(scenario),
+        (_, problems) => Err(Failure::Scenario(path.to_owned(), problems)),
+    }
+}
+
+/// The text of a scenario's file; `-` is standard input.
+pub(crate) fn text(path: &Path) -> Result<String, Failure> {
+    let bytes = if path == Path::new("-") {
+        let mut bytes = Vec::new();
+        io::stdin().read_to_end(&mut bytes).map(|_| bytes)
+    } else {
+        fs::read(path)
+    };
+    let bytes = bytes.map_err(|error| Failure::File(path.to_owned(), error))?;
+    String::from_utf8(bytes).map_err(|_| Failure::NotText(path.to_owned()))
+}
 
 /// Writes the scenario of a link, or of an address that ends with one, as JSON.
 pub(crate) fn open(link: &str) -> Result<(), Failure> {
@@ -27,5 +48,5 @@ pub(crate) fn presets(id: Option<&str>) -> Result<(), Failure> {
 }
 
 fn print(text: &str) -> Result<(), Failure> {
-    writeln!(io::stdout(), "{text}").map_err(|error| Failure::File(PathBuf::from("standard output"), error))
+    writeln!(io::stdout(), "{text}").map_err(Failure::output)
 }

@@ -69,7 +69,7 @@ impl Options {
         }
         // A table on standard output stands alone, as the other files do.
         if self.violations.is_none() || self.timing {
-            print(check, clock_hz).map_err(|error| Failure::File(PathBuf::from("standard output"), error))?;
+            print(check, clock_hz).map_err(Failure::output)?;
         }
         if self.strict && check.total() > 0 { Err(Failure::Violations(check.total())) } else { Ok(()) }
     }
@@ -84,7 +84,7 @@ pub(crate) fn drivers() -> Result<(), Failure> {
             writeln!(out, "{:14} {}", "", sheet.source)
         })
     };
-    list(&mut io::stdout().lock()).map_err(|error| Failure::File(PathBuf::from("standard output"), error))
+    list(&mut io::stdout().lock()).map_err(Failure::output)
 }
 
 /// What rules ask for, in words.

@@ -10,6 +10,7 @@
 //! assert_eq!(run.device().positions()[0], 3200);
 //! ```
 
+pub mod campaign;
 mod cost;
 mod listener;
 mod net;
@@ -21,11 +22,14 @@ pub use cost::{BUDGET_RECORDS, Cost};
 use crate::{
     device::{Device, Faults, SegmentEngine},
     motion::AxisPlan,
-    scenario::{Cause, Checked, Config, END_OF_TIME, Problem, Protocol, Scenario},
+    scenario::{Cause, Checked, Config, END_OF_TIME, Forced, Problem, Protocol, Scenario},
     segment::CheckedSegments,
     signal::{Event, MAX_CHANNELS, Record, Sink},
     units::{Cycles, Instant},
-    wire::{Line, Schedule, framed_host::FramedHost},
+    wire::{
+        Line, Schedule,
+        framed_host::{FramedHost, Progress},
+    },
 };
 use alloc::{rc::Rc, vec::Vec};
 use core::slice;
@@ -144,6 +148,15 @@ impl Experiment {
         self.orders.get(index).map_or(&[], Orders::ticks)
     }
 
+    /// How far the host of a framed line has come in `run` with controller `index`; `None` where nobody
+    /// waits for replies, or that controller has nothing to do.
+    #[must_use]
+    pub fn host_progress(&self, run: &Run, index: usize) -> Option<Progress> {
+        self.orders.get(index).filter(|orders| orders.has_ticks())?;
+        let busy_before = self.orders.iter().take(index).filter(|orders| orders.has_ticks()).count();
+        run.host()?.progress().nth(busy_before)
+    }
+
     fn first(&self) -> &Orders {
         // There is always a first one.
         &self.orders[0]
@@ -256,6 +269,13 @@ impl Run {
     #[must_use]
     pub fn schedule(&self) -> &Schedule {
         self.net.line().schedule()
+    }
+
+    /// The levels that have been forced on the line and will be as far as that is known, those of noise
+    /// among them, rising in time. Together with [`Self::schedule`] they are all that is done to the line.
+    #[must_use]
+    pub fn forced(&self) -> &[Forced] {
+        self.net.line().forced()
     }
 
     /// Position counters of the first controller, or of the segment engine (DESIGN A3).

@@ -6,7 +6,7 @@
 //! | `scenario.json` or `preset` | the experiment, or the id of the preset that it is |
 //! | `why` | the sentence of the contract that the case pins, and whether its trace was checked by hand |
 //! | `digest` | XXH64 of each controller's trace, 16 hexadecimal digits |
-//! | `status` | what `stepscope run --status` prints below the digest |
+//! | `status` | what `stepscope run --status` prints below the digests |
 //! | `expect.trace` | the first controller's trace, where it is short: a record a line, cycle and levels in hexadecimal |
 //!
 //! The last three are written by `STEPSCOPE_BLESS=1 cargo test -p stepscope-tests --test golden`
@@ -23,6 +23,7 @@ use stepscope_core::{
     scenario::{Config, presets::PRESETS},
     signal::{self, Record, Sink},
     trace::{Digest, parse_line, write_record},
+    wire::framed_host::{Counts, FramedHost},
 };
 
 /// Most records of a trace that is kept as text.
@@ -176,17 +177,22 @@ impl Outcome {
                 device.faults().bits()
             );
             if let Some(told) = device.status() {
-                let _ = writeln!(
-                    status,
-                    "state {} seq {} free {}",
-                    told.state.name(),
-                    told.expected_seq,
-                    told.free
-                );
+                let (state, seq, free) = (told.state.name(), told.expected_seq, told.free);
+                let _ = writeln!(status, "state {state} seq {seq} free {free}");
+            }
+            if let Some(progress) = experiment.host_progress(&run, index) {
+                let _ = writeln!(status, "host {progress}");
             }
         }
-        if let Some(host) = run.host() {
-            let _ = writeln!(status, "host {:?}\n{:?}", host.progress().collect::<Vec<_>>(), host.counts());
+        if let Some(counts) = run.host().map(FramedHost::counts) {
+            let Counts { frames, repeated, replies, rejected, refused, deaths } = counts;
+            let _ = writeln!(
+                status,
+                "frames {frames} repeated {repeated} replies {replies} rejected {rejected} refused {refused} deaths {deaths}"
+            );
+            if let Some(load) = experiment.line_load() {
+                let _ = writeln!(status, "line_load {:.1} %", 100.0 * load);
+            }
         }
         Self { digest, status, trace: keeps.into_iter().next().map(|keep| keep.first).unwrap_or_default() }
     }

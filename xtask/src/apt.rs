@@ -1,4 +1,4 @@
-//! Debian's packages, for what no Rust registry has: a browser and an emulator.
+//! Debian's packages, for what no Rust registry has: a browser, an emulator and a waveform viewer.
 
 use anyhow::{Result, bail};
 use tokio::process::Command;

@@ -5,7 +5,7 @@
 //! | `toolchain`, `tools`, `wasm_opt`, `apt` | what a fresh machine lacks, installed once per user |
 //! | `page` | the optimised page, and what each of its files weighs |
 //! | `headers`, `serve` | the local server, whose headers are `web/_headers`' |
-//! | `steps`, `browser`, `bare_metal` | `cargo xtask test`, step by step |
+//! | `steps`, `browser`, `bare_metal`, `gtkwave` | `cargo xtask test`, step by step |
 //! | `bench` | `cargo xtask bench` |
 //! | `fuzz` | `cargo xtask fuzz` |
 //! | `run` | child processes: time limit, no input, killed as a group |
@@ -15,6 +15,7 @@ mod bare_metal;
 mod bench;
 mod browser;
 mod fuzz;
+mod gtkwave;
 mod headers;
 mod page;
 mod run;

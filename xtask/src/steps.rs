@@ -10,7 +10,7 @@ use clap::ValueEnum;
 use crate::browser::{self, Browser};
 use crate::toolchain::{self, BARE_METAL, WASM};
 use crate::tools::{Optimise, WasmTools};
-use crate::{bare_metal, page, root, run};
+use crate::{bare_metal, gtkwave, page, root, run};
 
 /// The steps, in the order in which they run: what fails fastest comes first.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -23,6 +23,8 @@ pub(crate) enum Step {
     Docs,
     /// Unit, integration and documentation tests, as native code
     Native,
+    /// Value change dumps, read by GTKWave's programs
+    Vcd,
     /// The golden cases on a Cortex-M3 without an operating system, in QEMU
     BareMetal,
     /// The wasm crate's own tests, in a real browser
@@ -63,6 +65,7 @@ impl Step {
                 run::to_end(command, run::LIMIT).await
             }
             Self::Native => cargo("test --workspace --locked").await,
+            Self::Vcd => gtkwave::test().await,
             Self::BareMetal => bare_metal::test().await,
             Self::Wasm => wasm().await,
             Self::Page => page().await,

@@ -17,9 +17,15 @@
 //! - Confirming, it sees that every tick was done. It gives up on a controller that does not answer
 //!   `attempts` times, that is stopped, or that refuses a frame for good.
 
+mod peer;
+#[cfg(test)]
+mod tests;
+
+pub use peer::{GivenUp, Job, Progress};
+
 use super::{
     Line,
-    frame::{self, Deframed, Deframer, Kind, Reason, Reply, State, Status, Ticks},
+    frame::{self, Deframed, Deframer, Kind, Reply, Ticks},
     noise::Noise,
     uart::{Heard, Receiver},
 };
@@ -27,7 +33,8 @@ use crate::{
     scenario::{Host as Settings, line_time},
     units::{Cycles, Instant},
 };
-use alloc::{rc::Rc, vec::Vec};
+use alloc::vec::Vec;
+use peer::Peer;
 
 /// Bit times from the end of a reply to the next frame: DE has fallen by then, whatever the
 /// controller's clock.
@@ -35,63 +42,6 @@ const PAUSE_BITS: u64 = 10;
 /// Bit times from the end of a frame to its repetition, if the scenario does not say: the longest
 /// reply takes 191.
 const TIMEOUT_BITS: u64 = 256;
-
-/// What one controller is to do.
-#[derive(Clone, Debug)]
-pub struct Job {
-    /// Its address.
-    pub address: u8,
-    /// Its channels: the bytes of a tick.
-    pub channels: u8,
-    /// Length of a tick.
-    pub tick: Cycles,
-    /// Ticks that its queue holds.
-    pub queue_depth: u8,
-    /// The orders, tick after tick.
-    pub orders: Rc<[u8]>,
-}
-
-impl Job {
-    /// How many ticks.
-    #[must_use]
-    pub fn ticks(&self) -> u32 {
-        (self.orders.len() / usize::from(self.channels.max(1))) as u32
-    }
-
-    /// Most ticks that go into one frame: half of the queue, so that the other half runs meanwhile.
-    #[must_use]
-    pub fn ticks_a_frame(&self, settings: &Settings) -> u8 {
-        settings.ticks_a_frame.min(frame::MOST_TICKS).min(self.queue_depth / 2).max(1)
-    }
-}
-
-/// How far the host has come with one controller.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Progress {
-    /// It asks what the controller expects.
-    Opening,
-    /// It sends ticks.
-    Filling,
-    /// All ticks are acknowledged; it asks whether they were done.
-    Confirming,
-    /// Every tick was done.
-    Done,
-    /// No more is sent, and why.
-    GivenUp(GivenUp),
-}
-
-/// Why the host gave up on a controller.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GivenUp {
-    /// It did not answer, as often as it was asked.
-    NoReply,
-    /// It is stopped.
-    Stopped,
-    /// It refused a frame for good.
-    Refused(Reason),
-    /// It rests and has done fewer ticks than it acknowledged.
-    TicksMissing,
-}
 
 /// What the host counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -102,30 +52,12 @@ pub struct Counts {
     pub repeated: u64,
     /// Replies taken.
     pub replies: u64,
-    /// Replies that were not understood, or refused a frame.
+    /// What was heard and was no reply to the frame that waits for one.
     pub rejected: u64,
+    /// Replies that refused a frame.
+    pub refused: u64,
     /// How often the host died.
     pub deaths: u64,
-}
-
-/// A controller as the host knows it.
-#[derive(Clone, Debug)]
-struct Peer {
-    job: Job,
-    most: u32,
-    progress: Progress,
-    /// Ticks that the controller had done before the first was sent.
-    base: Option<u32>,
-    acknowledged: u32,
-    seq: u8,
-    free: u32,
-    /// When it is to be talked to again, and when its queue runs dry.
-    ready_at: Instant,
-    dry_at: Instant,
-    /// How often the frame that is due was sent.
-    attempts: u8,
-    /// What was left of a broken frame may wait at the controller for an end mark.
-    flush: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -169,22 +101,7 @@ impl FramedHost {
         noise: Option<Noise>,
     ) -> Self {
         let timeout = settings.reply_timeout_cycles.map_or(TIMEOUT_BITS * bit.0, u64::from);
-        let peers = jobs
-            .into_iter()
-            .map(|job| Peer {
-                most: job.ticks_a_frame(settings).into(),
-                progress: Progress::Opening,
-                base: None,
-                acknowledged: 0,
-                seq: 0,
-                free: 0,
-                ready_at: start,
-                dry_at: start,
-                attempts: 0,
-                flush: false,
-                job,
-            })
-            .collect();
+        let peers = jobs.into_iter().map(|job| Peer::new(job, settings, start)).collect();
         Self {
             clock_hz,
             baud,
@@ -297,7 +214,7 @@ impl FramedHost {
     fn come_back(&mut self, now: Instant) {
         self.counts.deaths += 1;
         for peer in &mut self.peers {
-            if !matches!(peer.progress, Progress::Done | Progress::GivenUp(_)) {
+            if peer.is_open() {
                 peer.progress = Progress::Opening;
                 peer.ready_at = now + self.timeout;
                 peer.dry_at = now;
@@ -309,15 +226,12 @@ impl FramedHost {
 
     /// Begins what is most urgent, or waits for it.
     fn next_exchange(&mut self, now: Instant, line: &mut Line) {
-        let open = |peer: &&mut Peer| !matches!(peer.progress, Progress::Done | Progress::GivenUp(_));
-        for peer in self.peers.iter_mut().filter(open) {
+        for peer in self.peers.iter_mut().filter(|peer| peer.is_open()) {
             if peer.attempts >= self.attempts && peer.ready_at <= now {
                 peer.progress = Progress::GivenUp(GivenUp::NoReply);
             }
         }
-        let open =
-            |(_, peer): &(usize, &Peer)| !matches!(peer.progress, Progress::Done | Progress::GivenUp(_));
-        let waiting = || self.peers.iter().enumerate().filter(open);
+        let waiting = || self.peers.iter().enumerate().filter(|(_, peer)| peer.is_open());
         let urgent = waiting()
             .filter(|(_, peer)| peer.ready_at <= now)
             .min_by_key(|(index, peer)| (peer.dry_at, *index))
@@ -381,88 +295,19 @@ impl FramedHost {
             let Some(peer) = self.peers.get_mut(index) else { return };
             let reply = reply.filter(|reply| reply.address == peer.job.address && !missed);
             match reply.map(|reply| (reply.answer, reply.status)) {
-                Some((Ok(taken), status)) if taken == kind => {
+                Some((Ok(taken), status)) if taken == kind && peer.fits(kind, status) => {
                     self.counts.replies += 1;
                     (peer.attempts, peer.flush) = (0, false);
                     let wait = peer.acknowledge(kind, ticks, status, now);
                     self.pause(now, index, wait);
                 }
                 Some((Err(reason), _)) => {
-                    self.counts.rejected += 1;
+                    self.counts.refused += 1;
                     let wait = peer.refused(reason);
                     self.pause(now, index, wait);
                 }
                 _ => self.counts.rejected += 1,
             }
         }
-    }
-}
-
-impl Peer {
-    /// Ticks that are not acknowledged.
-    fn left(&self) -> u32 {
-        self.job.ticks() - self.acknowledged
-    }
-
-    /// The next so many ticks' orders.
-    fn orders(&self, ticks: u32) -> &[u8] {
-        let channels = usize::from(self.job.channels);
-        let from = self.acknowledged as usize * channels;
-        self.job.orders.get(from..from + ticks as usize * channels).unwrap_or_default()
-    }
-
-    /// Ticks that the queue still holds take so long.
-    const fn queued(&self, free: u32) -> Cycles {
-        Cycles((self.job.queue_depth as u64).saturating_sub(free as u64) * self.job.tick.0)
-    }
-
-    /// Takes a reply to a frame that was taken; gives the time until the next one is due.
-    fn acknowledge(&mut self, kind: Kind, ticks: u32, status: Status, now: Instant) -> Cycles {
-        if kind == Kind::Ticks {
-            self.acknowledged += ticks;
-            self.seq = self.seq.wrapping_add(1);
-        } else if status.state == State::Stopped {
-            self.progress = Progress::GivenUp(GivenUp::Stopped);
-        } else if self.progress == Progress::Opening {
-            if status.state != State::Ready {
-                return self.job.tick;
-            }
-            let base = *self.base.get_or_insert(status.ticks_done);
-            self.acknowledged = status.ticks_done.wrapping_sub(base).min(self.job.ticks());
-            self.seq = status.expected_seq;
-            self.progress = Progress::Filling;
-        } else {
-            let done = status.ticks_done.wrapping_sub(self.base.unwrap_or(0));
-            self.progress = match status.state {
-                _ if done == self.job.ticks() => Progress::Done,
-                State::Ready => Progress::GivenUp(GivenUp::TicksMissing),
-                _ => return self.job.tick,
-            };
-        }
-        self.free = status.free.into();
-        self.dry_at = now + self.queued(self.free);
-        if self.progress != Progress::Filling {
-            return Cycles(0);
-        }
-        if self.left() == 0 {
-            self.progress = Progress::Confirming;
-            // Those that wait, and one for the tick that runs.
-            let waiting = self.queued(self.free);
-            return Cycles(waiting.0 + self.job.tick.0);
-        }
-        let wanted = self.most.min(self.left());
-        let missing = wanted.saturating_sub(self.free);
-        self.free = self.free.max(wanted);
-        Cycles(u64::from(missing) * self.job.tick.0)
-    }
-
-    /// Takes a refusal; gives the time until the frame is sent again.
-    fn refused(&mut self, reason: Reason) -> Cycles {
-        match reason {
-            Reason::QueueFull | Reason::Busy => {}
-            Reason::Stopped => self.progress = Progress::GivenUp(GivenUp::Stopped),
-            other => self.progress = Progress::GivenUp(GivenUp::Refused(other)),
-        }
-        self.job.tick
     }
 }

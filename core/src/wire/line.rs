@@ -44,10 +44,24 @@ impl Line {
         self.look_ahead();
     }
 
-    /// Forces a level from `forced.start` on, after all that was forced before.
-    pub fn force(&mut self, forced: Forced) {
-        Rc::make_mut(&mut self.forced).push(forced);
+    /// Forces a level in cycles that are still to come; where another one is forced too, this one wins.
+    pub fn force(&mut self, new: Forced) {
+        let forced = Rc::make_mut(&mut self.forced);
+        let first = forced.partition_point(|one| one.end <= new.start);
+        let end = forced.partition_point(|one| one.start < new.end);
+        let met = forced.get(first..end).unwrap_or_default();
+        let before = met.first().filter(|one| one.start < new.start);
+        let after = met.last().filter(|one| one.end > new.end);
+        let before = before.map(|one| Forced { end: new.start, ..*one });
+        let after = after.map(|one| Forced { start: new.end, ..*one });
+        forced.splice(first..end, [before, Some(new), after].into_iter().flatten());
         self.look_ahead();
+    }
+
+    /// What has been forced and will be, as far as it is known: rising in time and not overlapping.
+    #[must_use]
+    pub fn forced(&self) -> &[Forced] {
+        &self.forced
     }
 
     /// Level in the current cycle as one hears it while all others together send `others`.
@@ -219,6 +233,42 @@ mod tests {
         ];
         for (forced, expected) in rows {
             assert_eq!(changes(&[], forced, 100, 10), *expected, "{forced:?}");
+        }
+    }
+
+    /// What is forced while the line runs wins over what was known before, and comes in its turn.
+    #[test]
+    fn what_is_forced_later_finds_its_place() {
+        let span =
+            |(start, length, level)| Forced { start: Instant(start), end: Instant(start + length), level };
+        type Row<'a> = (&'a [(u64, u64, bool)], (u64, u64, bool), &'a [(u64, u64, bool)]);
+        let rows: &[Row<'_>] = &[
+            (&[], (20, 5, false), &[(20, 5, false)]),
+            (&[(50, 5, false)], (20, 5, true), &[(20, 5, true), (50, 5, false)]),
+            (&[(50, 5, false)], (60, 5, true), &[(50, 5, false), (60, 5, true)]),
+            (&[(50, 5, false)], (45, 5, true), &[(45, 5, true), (50, 5, false)]),
+            (&[(50, 9, false)], (52, 2, true), &[(50, 2, false), (52, 2, true), (54, 5, false)]),
+            (&[(50, 9, false)], (45, 9, true), &[(45, 9, true), (54, 5, false)]),
+            (&[(50, 9, false)], (55, 9, true), &[(50, 5, false), (55, 9, true)]),
+            (&[(50, 2, false), (60, 2, true)], (40, 40, true), &[(40, 40, true)]),
+        ];
+        for (before, new, expected) in rows {
+            let before: Vec<Forced> = before.iter().copied().map(span).collect();
+            let mut line = Line::new(Rc::new(Schedule::default()), &before, 100, 10);
+            line.force(span(*new));
+            let expected: Vec<Forced> = expected.iter().copied().map(span).collect();
+            assert_eq!(line.forced(), expected, "{before:?} {new:?}");
+            let (mut changes, mut level) = (Vec::new(), true);
+            while line.next_change() != Instant::NEVER {
+                let at = line.next_change();
+                line.change();
+                if core::mem::replace(&mut level, line.heard(true)) != line.heard(true) {
+                    changes.push(at.0);
+                }
+            }
+            let low = |at| expected.iter().any(|one| !one.level && one.start <= at && at < one.end);
+            let due: Vec<u64> = (1..100).filter(|&at| low(Instant(at)) != low(Instant(at - 1))).collect();
+            assert_eq!(changes, due, "{before:?} {new:?}");
         }
     }
 

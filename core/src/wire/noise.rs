@@ -14,11 +14,27 @@ use rand_xoshiro::{
     rand_core::{Rng, SeedableRng},
 };
 
+/// Numbers from a seed, the same everywhere.
+#[derive(Clone, Debug)]
+pub(crate) struct Random(Xoshiro256PlusPlus);
+
+impl Random {
+    /// The numbers of a seed.
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(Xoshiro256PlusPlus::seed_from_u64(seed))
+    }
+
+    /// A number from 0 to `end` - 1.
+    pub(crate) fn below(&mut self, end: u64) -> u64 {
+        ((u128::from(self.0.next_u64()) * u128::from(end)) >> 64) as u64
+    }
+}
+
 /// A noisy line, as it goes on.
 #[derive(Clone, Debug)]
 pub struct Noise {
     rates: Rates,
-    random: Xoshiro256PlusPlus,
+    random: Random,
     clock_hz: u32,
     baud: u32,
 }
@@ -39,18 +55,13 @@ impl Noise {
     #[must_use]
     pub fn new(rates: &Rates, clock_hz: u32, baud: u32) -> Option<Self> {
         let quiet = Rates { seed: rates.seed, ..Rates::default() };
-        let random = Xoshiro256PlusPlus::seed_from_u64(rates.seed.into());
+        let random = Random::new(rates.seed.into());
         (*rates != quiet).then(|| Self { rates: rates.clone(), random, clock_hz, baud })
     }
 
     /// Whether something happens that happens so many times in a million.
     fn happens(&mut self, ppm: u32) -> bool {
-        ppm > 0 && self.below(1_000_000) < u64::from(ppm)
-    }
-
-    /// A number from 0 to `end` - 1.
-    fn below(&mut self, end: u64) -> u64 {
-        ((u128::from(self.random.next_u64()) * u128::from(end)) >> 64) as u64
+        ppm > 0 && self.random.below(1_000_000) < u64::from(ppm)
     }
 
     fn byte(&mut self, byte: u8, out: &mut Vec<u8>) {
@@ -87,7 +98,7 @@ impl Noise {
         }
         let dies = self.happens(self.rates.deaths_ppm);
         if dies {
-            spoiled.truncate(self.below(spoiled.len() as u64 + 1) as usize);
+            spoiled.truncate(self.random.below(spoiled.len() as u64 + 1) as usize);
         }
         let glitch = (0..bytes.len()).any(|_| self.happens(self.rates.glitches_ppm));
         let forced = glitch.then(|| self.glitch(start, spoiled.len() as u64));
@@ -98,9 +109,9 @@ impl Noise {
     fn glitch(&mut self, start: Instant, bytes: u64) -> Forced {
         let room = line_time(bytes.max(1), self.clock_hz, self.baud);
         let longest = 2 * u64::from(self.clock_hz) / u64::from(self.baud.max(1));
-        let start = start + Cycles(self.below(room));
-        let end = start + Cycles(1 + self.below(longest.max(1)));
-        Forced { start, end, level: self.below(2) == 1 }
+        let start = start + Cycles(self.random.below(room));
+        let end = start + Cycles(1 + self.random.below(longest.max(1)));
+        Forced { start, end, level: self.random.below(2) == 1 }
     }
 
     /// What becomes of a whole schedule, and the levels that are forced upon it. A send ends before

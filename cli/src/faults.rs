@@ -1,0 +1,242 @@
+//! `stepscope faults`: the same orders over a line that goes wrong in thousands of ways.
+
+use crate::{failure::Failure, progress::Progress, scenarios};
+use clap::{Args, ValueEnum};
+use std::{
+    io::{self, Write},
+    num::NonZero,
+    ops::Range,
+    path::PathBuf,
+    sync::{
+        atomic::{AtomicU64, Ordering},
+        mpsc,
+    },
+    thread,
+};
+use stepscope_core::{
+    run::campaign::{Campaign, Tally},
+    scenario::{Problem, Protocol, Scenario, link},
+};
+
+/// Seeds that a thread takes at once.
+const BATCH: u64 = 64;
+/// The name of the protocol that nothing may go wrong with.
+const FRAMED: &str = "framed";
+/// Seeds that are named where something went wrong.
+const MOST_NAMED: usize = 8;
+
+/// What `stepscope faults` takes.
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// The scenario whose orders are sent, a JSON file; `-` reads standard input. Its noise and its
+    /// receivers' rates give way to those of each seed. Without a file two motors turn against each
+    /// other for 40 ticks.
+    file: Option<PathBuf>,
+    /// How many seeds to run.
+    #[arg(long, value_name = "N", default_value_t = 1000)]
+    seeds: u32,
+    /// The first of them.
+    #[arg(long, value_name = "SEED", default_value_t = 0)]
+    from: u32,
+    /// What stands around the orders.
+    #[arg(long, value_enum, default_value_t = Which::Both)]
+    protocol: Which,
+    /// Threads that run seeds; without it one for each processor. The result is the same.
+    #[arg(long, value_name = "N")]
+    threads: Option<NonZero<usize>>,
+    /// Run this seed alone.
+    #[arg(long, value_name = "SEED", conflicts_with_all = ["seeds", "from"])]
+    seed: Option<u32>,
+    /// Write the scenario of `--seed` as JSON and run nothing; `stepscope run` runs it.
+    #[arg(long, requires = "seed")]
+    scenario: bool,
+    /// Print the share link of the scenario of `--seed` and run nothing.
+    #[arg(long, requires = "seed", conflicts_with = "scenario")]
+    link: bool,
+    /// Show the progress also where standard error is no terminal.
+    #[arg(long)]
+    progress: bool,
+}
+
+/// Which protocols a campaign runs.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Which {
+    /// Packets without a check, as in RU 2704486.
+    Raw,
+    /// Frames with a check, sequence numbers and replies.
+    Framed,
+    /// One after the other, side by side in the table.
+    Both,
+}
+
+impl Which {
+    const fn protocols(self) -> &'static [Protocol] {
+        match self {
+            Self::Raw => &[Protocol::Raw],
+            Self::Framed => &[Protocol::Framed],
+            Self::Both => &[Protocol::Framed, Protocol::Raw],
+        }
+    }
+}
+
+/// What the seeds of one protocol came to.
+#[derive(Default)]
+struct Report {
+    tally: Tally,
+    /// The first seeds that went wrong, rising.
+    wrong: Vec<u32>,
+}
+
+impl Report {
+    fn add(&mut self, seed: u32, tally: Tally) {
+        if tally.is_wrong() {
+            self.wrong.push(seed);
+        }
+        self.tally += tally;
+    }
+
+    fn join(&mut self, mut other: Self) {
+        self.tally += other.tally;
+        self.wrong.append(&mut other.wrong);
+        self.wrong.sort_unstable();
+        self.wrong.truncate(MOST_NAMED);
+    }
+}
+
+/// Runs the campaign and prints its table, or writes the scenario of a seed.
+pub(crate) fn faults(arguments: &Arguments) -> Result<(), Failure> {
+    let base = arguments.file.as_deref().map(scenarios::read).transpose()?;
+    let path = arguments.file.clone().unwrap_or_else(|| PathBuf::from("the small scenario"));
+    let campaign = |protocol| {
+        let mut base = base.clone().unwrap_or_else(|| Campaign::small(protocol));
+        base.line.protocol = protocol;
+        Campaign::new(base).map_err(|problems| Failure::Scenario(path.clone(), problems))
+    };
+    let protocols = arguments.protocol.protocols();
+    if let Some(seed) = arguments.seed.filter(|_| arguments.scenario || arguments.link) {
+        let scenarios: Result<Vec<_>, _> =
+            protocols.iter().map(|&protocol| Ok(campaign(protocol)?.scenario(seed))).collect();
+        return write(&scenarios?, arguments.link);
+    }
+    let seeds = match arguments.seed {
+        Some(seed) => u64::from(seed)..u64::from(seed) + 1,
+        None => u64::from(arguments.from)..u64::from(arguments.from) + u64::from(arguments.seeds),
+    };
+    // Seeds are numbers of 32 bits.
+    let seeds = seeds.start..seeds.end.min(1 << 32);
+    let mut reports = Vec::new();
+    for &protocol in protocols {
+        let (name, campaign) =
+            (if protocol == Protocol::Framed { FRAMED } else { "raw" }, campaign(protocol)?);
+        let progress = Progress::new(name, arguments.progress);
+        let report = run(&campaign, &seeds, arguments.threads, progress);
+        reports.push((name, report.map_err(|problems| Failure::Scenario(path.clone(), problems))?));
+    }
+    print(&reports).map_err(Failure::output)?;
+    // On a raw line wrong steps are what is to be seen.
+    match reports.iter().find(|(name, report)| *name == FRAMED && report.tally.is_wrong()) {
+        Some((_, report)) => Err(Failure::WrongSteps(report.tally.wrong_seeds)),
+        None => Ok(()),
+    }
+}
+
+/// Runs seeds, a batch at a time on each thread.
+fn run(
+    campaign: &Campaign,
+    seeds: &Range<u64>,
+    threads: Option<NonZero<usize>>,
+    mut progress: Progress,
+) -> Result<Report, Vec<Problem>> {
+    let threads = threads.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZero::get);
+    let next = AtomicU64::new(seeds.start);
+    let (sender, receiver) = mpsc::channel();
+    thread::scope(|scope| {
+        for _ in 0..threads {
+            let (sender, next) = (sender.clone(), &next);
+            scope.spawn(move || {
+                let batches = std::iter::repeat_with(|| next.fetch_add(BATCH, Ordering::Relaxed));
+                for from in batches.take_while(|&from| from < seeds.end) {
+                    let batch = batch(campaign, from..seeds.end.min(from + BATCH));
+                    if sender.send(batch).is_err() {
+                        return;
+                    }
+                }
+            });
+        }
+        drop(sender);
+        let mut whole = Report::default();
+        for report in receiver {
+            whole.join(report?);
+            progress.tell(whole.tally.seeds, seeds.end - seeds.start);
+        }
+        Ok(whole)
+    })
+}
+
+fn batch(campaign: &Campaign, seeds: Range<u64>) -> Result<Report, Vec<Problem>> {
+    let mut report = Report::default();
+    for seed in seeds {
+        report.add(seed as u32, campaign.run(seed as u32)?);
+    }
+    Ok(report)
+}
+
+/// Writes the scenarios of a seed, one for each protocol.
+fn write(scenarios: &[Scenario], as_links: bool) -> Result<(), Failure> {
+    for scenario in scenarios {
+        let text = if as_links {
+            format!("#{}", link::encode(scenario).map_err(Failure::Link)?)
+        } else {
+            scenario.to_json()
+        };
+        writeln!(io::stdout(), "{text}").map_err(Failure::output)?;
+    }
+    Ok(())
+}
+
+/// The table's rows: a name and what of a tally it shows.
+type Row = (&'static str, fn(&Tally) -> u64);
+const ROWS: &[Row] = &[
+    ("seeds", |tally| tally.seeds),
+    ("seeds with something wrong", |tally| tally.wrong_seeds),
+    ("frames or packets sent", |tally| tally.frames),
+    ("  repeated", |tally| tally.repeated),
+    ("  rejected: CRC", |tally| tally.bad_check),
+    ("  rejected: SHORT_PACKET", |tally| tally.short),
+    ("  rejected: OVERLONG", |tally| tally.overlong),
+    ("  refused", |tally| tally.refused),
+    ("  acknowledged again", |tally| tally.acknowledged_again),
+    ("bytes lost: FRAMING", |tally| tally.framing),
+    ("replies sent", |tally| tally.replies),
+    ("  lost or spoiled", |tally| tally.replies_lost),
+    ("deaths of the host", |tally| tally.deaths),
+    ("ticks ordered", |tally| tally.ordered),
+    ("  executed", |tally| tally.executed),
+    ("  not reached: host gave up", |tally| tally.unreached),
+    ("  missing", |tally| tally.missing),
+    ("  wrong", |tally| tally.wrong),
+    ("  doubled or not ordered", |tally| tally.doubled),
+    ("wrong steps", |tally| tally.wrong_steps),
+    ("steps of missing ticks", |tally| tally.missing_steps),
+    ("distance of end positions", |tally| tally.position_error),
+    ("given up: no reply", |tally| tally.given_up),
+    ("  with rates within 4 %", |tally| tally.given_up_in_reach),
+    ("given up: other reasons", |tally| tally.stuck),
+];
+
+fn print(reports: &[(&str, Report)]) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    write!(out, "{:30}", "")?;
+    reports.iter().try_for_each(|(name, _)| write!(out, "{name:>14}"))?;
+    writeln!(out)?;
+    for (name, value) in ROWS {
+        write!(out, "{name:30}")?;
+        reports.iter().try_for_each(|(_, report)| write!(out, "{:>14}", value(&report.tally)))?;
+        writeln!(out)?;
+    }
+    for (name, report) in reports.iter().filter(|(_, report)| !report.wrong.is_empty()) {
+        let seeds: Vec<String> = report.wrong.iter().map(u32::to_string).collect();
+        writeln!(out, "{name}: something is wrong with seeds {} …", seeds.join(" "))?;
+    }
+    Ok(())
+}

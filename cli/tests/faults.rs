@@ -1,0 +1,91 @@
+//! `stepscope faults`: its table, its exit code, and the scenarios that its seeds stand for.
+#![allow(clippy::expect_used, reason = "what is missing fails the test")]
+
+use std::{fs, path::PathBuf, process::Command};
+
+/// Exit code, standard output, standard error.
+fn stepscope(arguments: &[&str]) -> (Option<i32>, String, String) {
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_stepscope")).args(arguments).output().expect("the command starts");
+    let text = |bytes| String::from_utf8(bytes).expect("text");
+    (output.status.code(), text(output.stdout), text(output.stderr))
+}
+
+/// The numbers of the table's row of that name.
+fn row(table: &str, name: &str) -> Vec<u64> {
+    let row = table.lines().find(|line| line.trim_start().starts_with(name)).expect(name);
+    row.trim_start()[name.len()..]
+        .split_whitespace()
+        .map(|number| number.parse().expect("a number"))
+        .collect()
+}
+
+#[test]
+fn framed_has_no_wrong_steps_raw_has_and_the_threads_do_not_matter() {
+    let call = |threads| stepscope(&["faults", "--seeds", "300", "--threads", threads]);
+    let (code, table, err) = call("1");
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    assert_eq!(row(&table, "seeds"), [300, 300]);
+    for name in ["missing", "wrong", "doubled or not ordered", "wrong steps", "distance of end positions"] {
+        let numbers = row(&table, name);
+        assert!(numbers[0] == 0 && numbers[1] > 0, "{name}: {numbers:?}");
+    }
+    assert!(table.contains("raw: something is wrong with seeds "), "{table}");
+    assert_eq!(call("3"), (code, table, err));
+}
+
+#[test]
+fn seeds_add_up_from_wherever_they_begin() {
+    let frames = |options: &[&str]| {
+        let all = [&["faults", "--protocol", "framed"], options].concat();
+        row(&stepscope(&all).1, "frames or packets sent")[0]
+    };
+    let parts = frames(&["--seeds", "70"]) + frames(&["--from", "70", "--seeds", "80"]);
+    assert_eq!(parts, frames(&["--seeds", "150"]));
+    assert_eq!(frames(&["--seed", "149"]), frames(&["--from", "149", "--seeds", "1"]));
+    // Seeds have 32 bits; those beyond do not come again from 0.
+    let (_, table, _) = stepscope(&["faults", "--from", "4294967290", "--seeds", "100"]);
+    assert_eq!(row(&table, "seeds"), [6, 6]);
+}
+
+#[test]
+fn a_seed_can_be_run_as_a_scenario_and_opened_as_a_link() {
+    let seed = ["faults", "--seed", "8", "--protocol", "framed"];
+    let (code, json, _) = stepscope(&[&seed[..], &["--scenario"]].concat());
+    assert_eq!(code, Some(0));
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("seed.json").display().to_string();
+    fs::write(&path, &json).expect("a file");
+    let (code, status, _) = stepscope(&["run", &path]);
+    assert_eq!(code, Some(0));
+    let frames = row(&stepscope(&seed).1, "frames or packets sent")[0];
+    assert!(status.contains(&format!("\nframes {frames} repeated ")), "{status}");
+    let (_, link, _) = stepscope(&[&seed[..], &["--link"]].concat());
+    assert_eq!(stepscope(&["open", link.trim()]).1, json);
+    assert_eq!(stepscope(&["faults", "--link"]).0, Some(2), "a link is one seed's");
+}
+
+#[test]
+fn a_file_gives_the_orders_and_its_problems_end_with_2() {
+    let file = |name: &str, json: &str| {
+        let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name).display().to_string();
+        fs::write(&path, json).expect("a file");
+        path
+    };
+    let orders = r#"{ "source": { "packets": { "packets": [ "81", "02", "83", "04" ] } } }"#;
+    let (code, table, _) = stepscope(&["faults", "--seeds", "20", &file("orders.json", orders)]);
+    assert_eq!((code, row(&table, "ticks ordered")), (Some(0), vec![20 * 5, 20 * 4]));
+    for (name, json, says) in [
+        ("typo.json", r#"{ "bus": { "slots": "many" } }"#, "bus.slots: "),
+        ("script.json", r#"{ "source": { "line": {} } }"#, "source: faults need ticks to go wrong"),
+    ] {
+        let (code, out, err) = stepscope(&["faults", &file(name, json)]);
+        assert_eq!((code, out.as_str()), (Some(2), ""));
+        assert!(err.contains(says), "{err}");
+    }
+}
+
+#[test]
+fn the_progress_is_told_if_it_is_asked_for() {
+    let (code, _, err) = stepscope(&["faults", "--seeds", "200", "--protocol", "raw", "--progress"]);
+    assert_eq!((code, err.lines().last()), (Some(0), Some("raw: 100 %")));
+}

@@ -1,0 +1,145 @@
+//! Lines with several controllers, replies and noise: what is printed of each controller, the table of
+//! packets, and the line that is written out.
+#![allow(clippy::expect_used, reason = "what is missing fails the test")]
+
+use std::{fs, path::PathBuf, process::Command};
+
+/// Three controllers of which one has nothing to do, on a line on which everything goes wrong.
+const NOISY: &str = r#"{
+    "bus": { "channels": 2 },
+    "line": { "baud": 230400, "protocol": "framed", "address": 5, "host": { "attempts": 100 },
+        "glitches": [ { "start_cycle": 400000, "length_cycles": 3000, "level": 0 } ],
+        "noise": { "seed": 11, "flipped_bits_ppm": 1000, "lost_bytes_ppm": 5000, "doubled_bytes_ppm": 5000,
+            "glitches_ppm": 10000, "lost_replies_ppm": 100000, "deaths_ppm": 50000 } },
+    "source": { "motion": { "axes": [
+        { "moves": [ { "constant": { "distance": { "steps": 60 }, "speed": { "steps_s": 1000 } } } ] },
+        { "moves": [ { "constant": { "distance": { "steps": -30 }, "speed": { "steps_s": 700 } } } ] } ] } },
+    "controllers": [
+        { "address": 9 },
+        { "address": 7, "receiver_baud": 228000, "bus": { "step_period_cycles": 400 }, "axes": [
+            { "moves": [ { "constant": { "distance": { "steps": -40 }, "speed": { "steps_s": 1000 } } } ] } ] } ] }"#;
+
+/// Exit code, standard output, standard error.
+fn stepscope(arguments: &[&str]) -> (Option<i32>, String, String) {
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_stepscope")).args(arguments).output().expect("the command starts");
+    let text = |bytes| String::from_utf8(bytes).expect("text");
+    (output.status.code(), text(output.stdout), text(output.stderr))
+}
+
+/// A path for this test's file, in the folder that cargo keeps for tests.
+fn file(name: &str) -> String {
+    PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name).display().to_string()
+}
+
+fn scenario(name: &str, json: &str) -> String {
+    let path = file(name);
+    fs::write(&path, json).expect("a file");
+    path
+}
+
+fn out(arguments: &[&str]) -> String {
+    let (code, out, err) = stepscope(arguments);
+    assert_eq!((code, err.as_str()), (Some(0), ""), "{arguments:?}");
+    out
+}
+
+#[test]
+fn each_controller_has_its_digest_status_and_files() {
+    let scenario = scenario("controllers.json", NOISY);
+    let digests = out(&["run", &scenario, "--digest"]);
+    let digests: Vec<&str> = digests.lines().collect();
+    assert_eq!(digests.len(), 3);
+    for (index, digest) in digests.iter().enumerate() {
+        let k = index.to_string();
+        assert_eq!(out(&["run", &scenario, "--controller", &k, "--digest"]).trim(), *digest);
+        let trace = file("controller.trace");
+        assert_eq!(out(&["run", &scenario, "--controller", &k, "--trace", &trace]), "");
+        let records = fs::read_to_string(&trace).expect("a trace").lines().count();
+        let status = out(&["run", &scenario, "--controller", &k]);
+        let lines: Vec<&str> = status.lines().collect();
+        assert_eq!(lines[0], format!("digest {digest}"));
+        assert_eq!(lines[2], format!("records {records}"), "the file is that controller's");
+    }
+    let status = out(&["run", &scenario]);
+    let lines: Vec<&str> = status.lines().filter(|line| !line.starts_with("records ")).collect();
+    assert_eq!(lines[..3], digests.iter().map(|digest| format!("digest {digest}")).collect::<Vec<_>>());
+    let block = |from: usize| lines[from..from + 6].to_vec();
+    assert_eq!((block(4)[1], block(4)[4]), ("positions 60 -30", "host done"));
+    assert_eq!((block(9)[0], block(9)[2]), ("controller 1", "positions 0"));
+    // Controller 1 has nothing to do: no host speaks with it.
+    assert!(block(9)[4].starts_with("state READY"), "{status}");
+    assert_eq!((block(14)[0], block(14)[2], block(14)[5]), ("controller 2", "positions -40", "host done"));
+    assert!(lines[20].starts_with("frames ") && lines[21].starts_with("line_load "), "{status}");
+    assert_eq!(lines.len(), 22);
+}
+
+#[test]
+fn a_controller_that_is_not_there_ends_with_2() {
+    let (several, one) = (scenario("three.json", NOISY), scenario("one.json", "{}"));
+    for (path, given, says) in [(&several, "3", "give 0 to 2"), (&one, "1", "the scenario has one, 0")] {
+        let (code, out, err) = stepscope(&["run", path, "--controller", given]);
+        assert_eq!((code, out.as_str()), (Some(2), ""));
+        assert!(err.contains(says), "{err}");
+    }
+}
+
+#[test]
+fn a_host_that_gives_up_says_why_and_how_much_was_done() {
+    let json = r#"{ "line": { "protocol": "framed", "receiver_baud": 100000 } }"#;
+    let status = out(&["run", &scenario("deaf.json", json)]);
+    assert!(status.contains("ticks_done 0\n") && status.contains("\nhost given up: no reply\n"), "{status}");
+    assert!(status.contains("\nframes 10 repeated 9 replies 0 "), "{status}");
+}
+
+/// The line is written out with what noise did to it, and needs no noise, host or motion any more.
+#[test]
+fn a_noisy_line_run_in_its_turn_gives_every_controller_the_same_trace() {
+    let raw = r#"{ "bus": { "channels": 2 }, "line": { "address": 3,
+            "glitches": [ { "start_cycle": 90000, "length_cycles": 90000, "level": 1 } ],
+            "noise": { "seed": 5, "flipped_bits_ppm": 5000, "lost_bytes_ppm": 20000,
+                "doubled_bytes_ppm": 20000, "glitches_ppm": 50000, "deaths_ppm": 50000 } },
+        "controllers": [ { "address": 4, "bus": { "channels": 2 } } ] }"#;
+    let cut = NOISY.replacen("\"bus\"", "\"run_cycles\": 500000, \"bus\"", 1);
+    for (title, json) in [("framed", NOISY), ("raw", raw), ("cut", &cut)] {
+        let scenario = scenario(&format!("{title}.json"), json);
+        let line = file(&format!("{title}-line.json"));
+        assert_eq!(out(&["run", &scenario, "--line", &line]), "");
+        assert_eq!(out(&["run", &line, "--digest"]), out(&["run", &scenario, "--digest"]), "{title}");
+        let written: serde_json::Value =
+            serde_json::from_str(&fs::read_to_string(&line).expect("the line")).expect("JSON");
+        let forced = written["line"]["glitches"].as_array().map_or(0, Vec::len);
+        assert!(forced > 1, "{title}: noise forced something");
+        assert!(written["source"]["line"]["sends"].as_array().is_some_and(|sends| sends.len() > 5));
+        // What was written is what was done: written once more it is the same.
+        let again = file(&format!("{title}-again.json"));
+        assert_eq!(out(&["run", &line, "--line", &again]), "");
+        assert_eq!(fs::read(&again).expect("the line"), fs::read(&line).expect("the line"), "{title}");
+    }
+}
+
+#[test]
+fn the_table_of_packets_is_read_back_field_by_field() {
+    let (scenario, table) = (scenario("table.json", NOISY), file("table.csv"));
+    out(&["run", &scenario, "--packets", &table]);
+    let mut reader = csv::Reader::from_path(&table).expect("a table");
+    assert_eq!(
+        reader.headers().expect("a head"),
+        ["start_cycle", "end_cycle", "bytes", "outcome", "tick_start_cycle", "tick_end_cycle"].as_slice()
+    );
+    let rows: Vec<csv::StringRecord> = reader.records().map(|row| row.expect("six fields")).collect();
+    let with_commas = rows.iter().filter(|row| row[3].starts_with("ACK TICKS: ") && row[3].contains(", "));
+    assert!(with_commas.count() > 0);
+    for row in &rows {
+        let (start, end): (u64, u64) = (row[0].parse().expect("a cycle"), row[1].parse().expect("a cycle"));
+        assert!(start <= end && row[2].bytes().all(|digit| digit.is_ascii_hexdigit()), "{row:?}");
+    }
+}
+
+#[test]
+fn a_run_says_how_far_it_is_if_it_is_asked() {
+    let scenario = scenario("progress.json", NOISY);
+    let (code, out, err) = stepscope(&["run", &scenario, "--digest", "--progress"]);
+    assert_eq!((code, err.lines().last()), (Some(0), Some("run: 100 %")));
+    assert_eq!(out.lines().count(), 3);
+}

@@ -1,0 +1,49 @@
+//! What a controller is seen to do in a campaign's run.
+
+use super::Tally;
+use crate::{
+    protocol::FrameFate,
+    signal::{Event, Fate, MAX_CHANNELS, Record, Sink},
+    units::Instant,
+};
+use alloc::vec::Vec;
+
+/// Takes the ticks of one controller, and counts what it threw away.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Watch {
+    ticks: Vec<[u8; MAX_CHANNELS]>,
+    counted: Tally,
+}
+
+impl Watch {
+    /// The ticks that began, a byte a channel.
+    pub(super) fn executed(&self, channels: usize) -> Vec<u8> {
+        self.ticks.iter().flat_map(|tick| tick.iter().take(channels)).copied().collect()
+    }
+
+    /// Adds what was counted.
+    pub(super) fn count(&self, tally: &mut Tally) {
+        *tally += self.counted;
+    }
+}
+
+impl Sink for Watch {
+    fn record(&mut self, _: Record) {}
+
+    fn event(&mut self, _: Instant, event: Event) {
+        let counted = &mut self.counted;
+        let place = match event {
+            Event::TickStart { orders } => return self.ticks.push(orders),
+            Event::FramingError { .. } => &mut counted.framing,
+            Event::Frame(FrameFate::BadCheck { .. }) => &mut counted.bad_check,
+            Event::Frame(FrameFate::Short) | Event::Gap { short: true } => &mut counted.short,
+            Event::Frame(FrameFate::Overlong) => &mut counted.overlong,
+            Event::Frame(FrameFate::Refused(_))
+            | Event::Packet(Fate::TooManySteps | Fate::QueueFull | Fate::Booting) => &mut counted.refused,
+            Event::Frame(FrameFate::Repeated) => &mut counted.acknowledged_again,
+            Event::Reply { .. } => &mut counted.replies,
+            _ => return,
+        };
+        *place += 1;
+    }
+}

@@ -1,0 +1,105 @@
+//! Issue "Faults", in its short form: seeds of faults with and without the framed protocol. The long
+//! form is `stepscope faults --seeds 100000`.
+#![allow(clippy::expect_used, reason = "what is missing fails the test")]
+
+use stepscope_core::{
+    run::campaign::{Campaign, Tally},
+    scenario::{Noise, Protocol, Scenario},
+};
+
+fn campaign(protocol: Protocol) -> Campaign {
+    Campaign::new(Campaign::small(protocol)).expect("the small scenario has no problems")
+}
+
+fn run(campaign: &Campaign, seeds: u32) -> Tally {
+    (0..seeds).fold(Tally::default(), |mut sum, seed| {
+        sum += campaign.run(seed).expect("seeds make no problems");
+        sum
+    })
+}
+
+#[test]
+fn framed_ticks_are_executed_once_and_as_ordered_whatever_the_line_does() {
+    let campaign = campaign(Protocol::Framed);
+    let tally = run(&campaign, 300);
+    assert_eq!((tally.seeds, tally.wrong_seeds, tally.is_wrong()), (300, 0, false), "{tally:?}");
+    // A host that may repeat gets there, but where no byte does; and it gives up for no other reason.
+    assert_eq!((tally.given_up_in_reach, tally.stuck, tally.cut), (0, 0, 0), "{tally:?}");
+    assert_eq!(tally.executed + tally.unreached, tally.ordered, "{tally:?}");
+    assert_eq!(tally.ordered % 300, 0);
+    // The faults bite, all of them.
+    for count in [
+        tally.repeated,
+        tally.deaths,
+        tally.bad_check,
+        tally.short,
+        tally.framing,
+        tally.replies_lost,
+        tally.acknowledged_again,
+        tally.given_up,
+    ] {
+        assert!(count > 0, "{tally:?}");
+    }
+}
+
+#[test]
+fn raw_packets_are_executed_wrong_or_not_at_all() {
+    let tally = run(&campaign(Protocol::Raw), 100);
+    assert_eq!((tally.repeated, tally.replies, tally.unreached), (0, 0, 0));
+    for count in [tally.wrong_seeds, tally.wrong, tally.wrong_steps, tally.missing, tally.position_error] {
+        assert!(count > 0, "{tally:?}");
+    }
+}
+
+#[test]
+fn a_line_without_faults_does_what_is_ordered_with_both_protocols() {
+    let quiet = |protocol| {
+        let campaign = campaign(protocol);
+        let is_quiet = |scenario: &Scenario| {
+            let noise = Noise { seed: scenario.line.noise.seed, ..Noise::default() };
+            scenario.line.noise == noise && scenario.line.receiver_baud.is_none()
+        };
+        // A mixture may draw no noise at all.
+        let seed = (0..10_000).find(|&seed| is_quiet(&campaign.scenario(seed))).expect("there is one");
+        campaign.run(seed).expect("no problems")
+    };
+    for protocol in [Protocol::Raw, Protocol::Framed] {
+        let tally = quiet(protocol);
+        assert!(!tally.is_wrong() && tally.executed == tally.ordered && tally.repeated == 0, "{tally:?}");
+    }
+}
+
+/// A seed stands for a scenario that anyone can run.
+#[test]
+fn a_seeds_scenario_stands_for_itself() {
+    let campaign = campaign(Protocol::Framed);
+    for seed in 0..50 {
+        let scenario = campaign.scenario(seed);
+        assert_eq!(scenario.line.noise.seed, seed);
+        let again = Campaign::new(scenario.clone()).expect("no problems").scenario(seed);
+        assert_eq!((again.line, again.source), (scenario.line, scenario.source));
+    }
+}
+
+#[test]
+fn several_controllers_and_a_line_held_low_cost_repetitions_and_no_step() {
+    let json = r#"{
+        "bus": { "channels": 2, "queue_depth": 3 },
+        "line": { "baud": 460800, "protocol": "framed", "address": 5, "host": { "attempts": 255 },
+            "glitches": [ { "start_cycle": 300000, "length_cycles": 200000, "level": 0 } ] },
+        "source": { "packets": { "packets": [ "8102", "8304", "8506", "0708", "090a", "8b8c" ] } },
+        "controllers": [ { "address": 9, "bus": { "slots": 50, "queue_depth": 1 },
+            "packets": [ "81", "02", "83", "04", "85" ] } ] }"#;
+    let base = Scenario::from_json(json).expect("reads");
+    let tally = run(&Campaign::new(base).expect("no problems"), 60);
+    assert!(!tally.is_wrong(), "{tally:?}");
+    assert_eq!((tally.given_up_in_reach, tally.stuck, tally.ordered), (0, 0, 60 * (7 + 6)), "{tally:?}");
+    assert!(tally.repeated > 0 && tally.deaths > 0, "{tally:?}");
+}
+
+#[test]
+fn a_base_without_ticks_is_refused() {
+    let base = Scenario::from_json(r#"{ "source": { "line": {} } }"#).expect("reads");
+    let problems = Campaign::new(base).expect_err("there is nothing to go wrong");
+    assert_eq!(problems[0].path, "source");
+}
