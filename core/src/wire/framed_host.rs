@@ -28,6 +28,7 @@ use crate::{
     units::{Cycles, Instant},
 };
 use alloc::{rc::Rc, vec::Vec};
+use core::fmt;
 
 /// Bit times from the end of a reply to the next frame: DE has fallen by then, whatever the
 /// controller's clock.
@@ -91,6 +92,18 @@ pub enum GivenUp {
     Refused(Reason),
     /// It rests and has done fewer ticks than it acknowledged.
     TicksMissing,
+}
+
+impl fmt::Display for GivenUp {
+    /// Why, as the page says it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoReply => f.write_str("no reply"),
+            Self::Stopped => f.write_str("it is stopped"),
+            Self::Refused(reason) => write!(f, "it refused a frame: {}", reason.name()),
+            Self::TicksMissing => f.write_str("it did fewer ticks than it acknowledged"),
+        }
+    }
 }
 
 /// What the host counted.
