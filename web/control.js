@@ -4,6 +4,7 @@
  */
 import { element, say } from "./dom.js";
 import { parseNumber, si } from "./number.js";
+import { printSegments, readSegments } from "./segments.js";
 import { derivedAxis, get } from "./state.js";
 
 /** @typedef {import("./types.js").State} State */
@@ -31,7 +32,7 @@ export function control(path, field, { dispatch, now }) {
   const hint = element("p", { class: "hint", id: `${id}-hint` }, field.hint);
   const also = element("span", { class: "also" });
   const described = { id, "aria-describedby": `${id}-error ${id}-hint`, "data-path": path };
-  const long = field.kind === "lines" || field.rows !== undefined;
+  const long = field.kind === "lines" || field.kind === "segments" || field.rows !== undefined;
   const wide = long || field.kind === "text" || isHex(field);
   const input = field.kind === "choice"
     ? element("select", described, ...Object.entries(field.choices ?? {}).map(([value, text]) => element("option", { value }, text)))
@@ -123,6 +124,7 @@ function print(value, field) {
   if (value === null || value === undefined) return "";
   if (field.kind === "quantity") return String(Object.values(value)[0]);
   if (field.kind === "lines") return value.map(spaced).join("\n");
+  if (field.kind === "segments") return printSegments(value);
   return isHex(field) ? spaced(value) : String(value);
 }
 
@@ -148,6 +150,7 @@ function read(text, field, state, before) {
   switch (field.kind) {
     case "choice": return { value: /^\d+$/.test(text) ? Number(text) : text };
     case "text": return { value: text };
+    case "segments": return readSegments(text);
     case "hex": return { value: bare(text) };
     case "optional-hex": return { value: bare(text) || null };
     case "lines": return { value: text.split("\n").map(bare).filter((line) => line !== "") };

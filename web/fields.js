@@ -9,8 +9,9 @@ import { RULES } from "./rules.js";
  * @property {string} key     Name in the scenario.
  * @property {string} label
  * @property {string} hint    What it is, and its range.
- * @property {"number" | "integer" | "optional" | "cycles" | "optional-cycles" | "choice" | "quantity" | "text" | "hex" | "optional-hex" | "lines"} kind
- *   `optional…` may be empty (null); `cycles` also takes a time; `lines` is one hex packet a line.
+ * @property {"number" | "integer" | "optional" | "cycles" | "optional-cycles" | "choice" | "quantity" | "text" | "hex" | "optional-hex" | "lines" | "segments"} kind
+ *   `optional…` may be empty (null); `cycles` also takes a time; `lines` is one hex packet a line, `segments` one
+ *   segment.
  * @property {string} [unit]
  * @property {{[value: string]: string}} [choices]
  * @property {{[unit: string]: string}} [units]  Of a quantity: JSON's name to the printed one.
@@ -65,6 +66,17 @@ export const MOVES = {
       { ...integer("timer_hz", "Timer clock", "Hz", "Counts the table's reloads."), when: { key: "method", is: "table" } },
     ],
   },
+  staircase: {
+    label: "Staircase of rates",
+    fields: [
+      quantity("distance", "Distance", DISTANCE, "Negative is left."),
+      quantity("top_speed", "Top speed", SPEED, "Speed of the plateau; at or below the start speed that of the whole move."),
+      integer("level", "Acceleration level", "", "1 to 5: 1000 to 5000 steps/s²."),
+      { key: "short_move", label: "Short moves", kind: "choice", choices: { document: "at start speed", turn_round: "turn round" }, hint: "What becomes of a move that is too short for its top speed: the whole of it at the start speed, as in the document, or up as many rows as there is room for and down again." },
+      quantity("start_speed", "Start speed", SPEED, "First rate of the table."),
+      quantity("max_speed", "Table ends above", SPEED, "The table ends with the first rate above this; no top speed may be above it."),
+    ],
+  },
   sine_segments: {
     label: "Sine in segments",
     fields: [
@@ -83,6 +95,15 @@ export const MOVES = {
 
 /** @type {Field} */
 export const PACKET_LINES = { key: "packets", label: "Packets, one a line", kind: "lines", rows: 8, hint: "Hex, one byte a channel: bit 7 is the direction (1 right), bits 6 to 0 the steps. A raw line with addresses has the address first. One packet orders one tick." };
+
+/** What runs a motion. @type {Field} */
+export const ENGINE = { key: "engine", label: "Steps made by", kind: "choice", choices: { ticks: "ticks", segments: "segments" }, hint: "Ticks: the host sends the steps of each tick. Segments: nothing is sent; the peripheral makes each step in the cycle in which it falls due." };
+
+/** A channel's list of segments. @type {Field[]} */
+export const SEGMENTS = [
+  cycles("start_cycle", "Start", "Cycle in which the list's time begins, from 1."),
+  { key: "segments", label: "Segments, one a line", kind: "segments", rows: 5, hint: "Count, interval, growth of the interval, direction: 20 1048576000 -500 right; or dwell 65536000. Times in 1/65536 cycle." },
+];
 
 /** Only on a framed line. */
 const FRAMED = { path: "line.protocol", is: "framed" };

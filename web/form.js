@@ -86,6 +86,6 @@ function used(group) {
 function shapeOf({ source, controllers, driver, line }) {
   const kinds = (/** @type {any[]} */ axes) => axes.map((axis) =>
     [Object.keys(axis.mechanics)[0], ...axis.moves.map((/** @type {any} */ move) => Object.keys(move)[0])]);
-  return JSON.stringify([Object.keys(source)[0], kinds(source.motion?.axes ?? []), source.line?.sends?.length, line.glitches.length,
+  return JSON.stringify([Object.keys(source)[0], kinds(source.motion?.axes ?? []), source.line?.sends?.length, source.segments?.channels?.length, line.glitches.length,
     controllers.map((/** @type {any} */ { axes }) => kinds(axes)), driver && (driver.preset ?? "rules")]);
 }

@@ -90,17 +90,20 @@ export function showDerived(state, form) {
   const [{ tick_s, limit_steps_s }] = derived.controllers;
   const axes = derived.controllers.flatMap((controller) => controller.axes);
   const peak = Math.max(0, ...axes.map((axis) => axis.peak_speed_steps_s));
-  const over = derived.controllers.some((controller) => controller.axes.some((axis) => axis.peak_speed_steps_s > controller.limit_steps_s));
   const load = derived.line_load;
-  const sends = "line" in state.scenario.source;
+  const { source, line } = state.scenario;
+  const sends = "line" in source;
+  // Segments run by themselves: there are no ticks, and nothing is sent.
+  const alone = "segments" in source || source.motion?.engine === "segments";
+  const over = !alone && derived.controllers.some((controller) => controller.axes.some((axis) => axis.peak_speed_steps_s > controller.limit_steps_s));
   const rows = [
     // How long the last tick of a line script waits is known only after the run.
-    [sends ? "Duration at most" : state.scenario.line.protocol === "framed" ? "Duration, about" : "Duration", si(derived.duration_s, "s"), ""],
+    [sends ? "Duration at most" : line.protocol === "framed" && !alone ? "Duration, about" : "Duration", si(derived.duration_s, "s"), ""],
     ["Peak rate", axes.length ? plain(peak, "steps/s") : "–", over ? "over" : ""],
-    ["Tick", sends ? si(tick_s, "s") : `${si(tick_s, "s")}, ${count(derived.ticks)} in all`, ""],
+    ...(alone ? [["On the line", "nothing", ""]] : [["Tick", sends ? si(tick_s, "s") : `${si(tick_s, "s")}, ${count(derived.ticks)} in all`, ""],
     ["Limit of the bus", plain(limit_steps_s, "steps/s"), ""],
     sent(state, derived),
-    ["Line load", load === null ? "–" : `${short(load * 100, 3)} %`, load !== null && load > 1 ? "over" : ""],
+    ["Line load", load === null ? "–" : `${short(load * 100, 3)} %`, load !== null && load > 1 ? "over" : ""]]),
   ];
   fill(root, element("dl", {}, ...rows.map(([name, value, mark]) =>
     element("div", {}, element("dt", {}, name), element("dd", mark ? { class: mark } : {}, value)))));

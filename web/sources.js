@@ -1,6 +1,6 @@
 /** What the host can send: a row a kind, with its part of the form and what it begins with. */
 import { axisItems } from "./axes.js";
-import { PACKET_LINES, SEND } from "./fields.js";
+import { ENGINE, PACKET_LINES, SEGMENTS, SEND } from "./fields.js";
 
 /** @typedef {import("./types.js").Scenario} Scenario */
 /** @typedef {import("./kit.js").Kit} Kit */
@@ -19,7 +19,7 @@ export const SOURCES = {
   motion: {
     label: "Motion of axes",
     fresh: (_, samples) => structuredClone(samples.sources.motion),
-    form: (kit) => axisItems(kit, { axes: "source.motion.axes", bus: "bus", whose: "", least: 1 }),
+    form: (kit) => [kit.row("source.motion.engine", ENGINE), ...axisItems(kit, { axes: "source.motion.axes", bus: "bus", whose: "", least: 1 })],
     order: (_, samples) => ({ axes: structuredClone(samples.sources.motion.axes) }),
     orderForm: (kit, index) => axisItems(kit, { axes: `controllers[${index}].axes`, bus: `controllers[${index}].bus`, whose: ` of controller ${index + 2}`, least: 0 }),
   },
@@ -38,7 +38,21 @@ export const SOURCES = {
     order: () => ({}),
     orderForm: () => [],
   },
+  segments: {
+    label: "Lists of segments",
+    fresh: ({ bus }) => ({ channels: Array.from({ length: Number(bus.channels) || 1 }, list) }),
+    form: (kit, scenario) => kit.rows("source.segments.channels", scenario.source.segments.channels, SEGMENTS, "List", (last) => structuredClone(last ?? list())),
+    order: () => ({}),
+    orderForm: () => [],
+  },
 };
+
+/** Faster to the right, a pause, and evenly back: something to see and to change. */
+function list() {
+  const ms = 16_000 * 65_536;
+  return { start_cycle: 1, segments: [{ steps: { count: 20, interval_q16: ms, add_q16: -ms / 32, dir: 1 } },
+    { dwell: { length_q16: 5 * ms } }, { steps: { count: 20, interval_q16: ms / 2, add_q16: 0, dir: 0 } }] };
+}
 
 /** The scenario with another kind of source; each controller gets something to do that fits it. @param {Scenario} scenario @param {string} kind @param {Samples} samples */
 export function withSource(scenario, kind, samples) {

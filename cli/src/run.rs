@@ -43,8 +43,8 @@ pub(crate) struct Arguments {
     /// Write a table of the packets, with what the controller did with each.
     #[arg(long, value_name = "FILE")]
     packets: Option<PathBuf>,
-    /// Write the scenario with its source as a line script: every byte and the cycle it is sent in.
-    /// Run in its turn, it gives the same trace.
+    /// Write the scenario with its source as a line script: every byte and the cycle it is sent in;
+    /// or, where segments run it, as their lists. Run in its turn, it gives the same trace.
     #[arg(long, value_name = "FILE")]
     line: Option<PathBuf>,
     #[command(flatten)]
@@ -81,7 +81,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         file.finish(finished.cycles().0).map_err(|error| Failure::File(path, error))?;
     }
     if let Some(file) = &arguments.line {
-        let text = scripted(scenario.clone(), &finished).to_json();
+        let text = scripted(scenario.clone(), &experiment, &finished).to_json();
         let failed = |error| Failure::File(file.clone(), error);
         let mut out = files::create(file).map_err(failed)?;
         writeln!(out, "{text}").and_then(|()| out.flush()).map_err(failed)?;
@@ -110,8 +110,12 @@ fn open(arguments: &Arguments, experiment: &Experiment) -> Result<Files, Failure
     Ok(opened)
 }
 
-/// The scenario with its host's schedule as its source (DESIGN A9).
-fn scripted(mut scenario: Scenario, run: &Run) -> Scenario {
+/// The scenario with its host's schedule as its source (DESIGN A9), or with its lists of segments.
+fn scripted(mut scenario: Scenario, experiment: &Experiment, run: &Run) -> Scenario {
+    if let Some(segments) = experiment.segments() {
+        scenario.source = Source::Segments(segments.into());
+        return scenario;
+    }
     let sends = run
         .schedule()
         .iter()
@@ -138,17 +142,16 @@ fn print(
     if !arguments.status && arguments.asks_for_a_file() {
         return Ok(());
     }
-    let device = run.device();
     let channels = usize::from(experiment.config().channels());
-    let positions: Vec<String> = device.positions().iter().take(channels).map(i32::to_string).collect();
-    let faults: Vec<&str> = device.faults().names().collect();
+    let positions: Vec<String> = run.positions().iter().take(channels).map(i32::to_string).collect();
+    let faults: Vec<&str> = run.faults().names().collect();
     let faults = if faults.is_empty() { "none".into() } else { faults.join(" ") };
     writeln!(out, "digest {:016x}", digest.value())?;
     writeln!(out, "cycles {}", run.cycles().0)?;
     writeln!(out, "records {}", digest.records())?;
-    writeln!(out, "ticks_done {}", device.ticks_done())?;
+    writeln!(out, "ticks_done {}", run.ticks_done())?;
     writeln!(out, "positions {}", positions.join(" "))?;
-    writeln!(out, "faults {:#06x} {faults}", device.faults().bits())
+    writeln!(out, "faults {:#06x} {faults}", run.faults().bits())
 }
 
 fn read(path: &Path) -> io::Result<Vec<u8>> {

@@ -25,7 +25,9 @@ fn preset(id: &str, name: &str) -> String {
 
 #[test]
 fn the_hosts_schedule_run_in_its_turn_gives_the_same_trace() {
-    for id in ["song-2021-plateau", "patent-2019-sixteen-motors", "glitches-and-breaks"] {
+    let ids =
+        ["song-2021-plateau", "patent-2019-sixteen-motors", "glitches-and-breaks", "sonobe-2011-segments"];
+    for id in ids {
         let scenario = preset(id, &format!("{id}.json"));
         let (_, line) = file(&format!("{id}-line.json"));
         assert_eq!(stepscope(&["run", &scenario, "--line", &line]), (Some(0), String::new()), "{id}");

@@ -6,11 +6,11 @@
 //!
 //! ```text
 //! scenario -> motion -> quantise -> wire -> device -> trace -> analysis -> run
-//! below: units, signal, protocol
+//! below: units, signal, segment, protocol
 //! ```
 //!
-//! `device` never learns of motions and `motion` never of devices: they meet in ticks. `run` is
-//! the front that walks the whole line, from a scenario to its trace.
+//! `device` never learns of motions and `motion` never of devices: they meet in ticks and in
+//! segments. `run` is the front that walks the whole line, from a scenario to its trace.
 //!
 //! Invariants that hold everywhere: time is an integer count of clock cycles; nothing that decides
 //! an edge depends on the platform (transcendental functions come from `libm`); no panic is
@@ -36,5 +36,6 @@ pub mod analysis;
 pub mod run;
 
 pub mod protocol;
+pub mod segment;
 pub mod signal;
 pub mod units;

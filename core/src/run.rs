@@ -17,16 +17,17 @@ mod orders;
 pub use cost::{BUDGET_RECORDS, Cost};
 
 use crate::{
-    device::Device,
+    device::{Device, Faults, SegmentEngine},
     motion::AxisPlan,
-    scenario::{Cause, Checked, Config, END_OF_TIME, Problem, Protocol, Scenario, Source},
-    signal::{Event, Record, Sink},
+    scenario::{Cause, Checked, Config, END_OF_TIME, Problem, Protocol, Scenario},
+    segment::CheckedSegments,
+    signal::{Event, MAX_CHANNELS, Record, Sink},
     units::{Cycles, Instant},
     wire::{Line, Schedule, framed_host::FramedHost},
 };
 use alloc::{rc::Rc, vec::Vec};
 use core::slice;
-use net::Net;
+use net::{Ignored, Net};
 use orders::Orders;
 
 /// A scenario that has been judged in every respect, with its motions planned and its packets made.
@@ -37,6 +38,8 @@ pub struct Experiment {
     orders: Vec<Orders>,
     /// What the host sends without waiting for replies.
     schedule: Rc<Schedule>,
+    /// What the segment engine runs, where segments run the scenario; then nothing is sent.
+    segments: Option<Rc<CheckedSegments>>,
     line_load: Option<f64>,
     cost: Cost,
 }
@@ -62,14 +65,18 @@ impl Experiment {
         };
         let (schedule, forced) = orders::schedule(&checked, &orders);
         checked.forced.extend(forced);
-        let cost = Cost::of(&checked, &orders, &schedule);
+        let segments = orders::segments(&checked, &orders)?.map(Rc::new);
+        let cost = match &segments {
+            Some(segments) => Cost::of_segments(segments, checked.run),
+            None => Cost::of(&checked, &orders, &schedule),
+        };
         if cost.end_cycle > END_OF_TIME {
             let cause =
                 Cause::TooMuch { given: cost.end_cycle as f64, most: END_OF_TIME as f64, of: "cycles" };
             return Err(alloc::vec![Problem::new("source", cause)]);
         }
         let line_load = line_load.flatten().filter(|_| orders.iter().any(Orders::has_ticks));
-        Ok(Self { checked, orders, schedule: Rc::new(schedule), line_load, cost })
+        Ok(Self { checked, orders, schedule: Rc::new(schedule), segments, line_load, cost })
     }
 
     /// Reads, judges and prepares a scenario.
@@ -147,6 +154,12 @@ impl Experiment {
         &self.schedule
     }
 
+    /// What the segment engine runs; `None` where ticks run the scenario.
+    #[must_use]
+    pub fn segments(&self) -> Option<&CheckedSegments> {
+        self.segments.as_deref()
+    }
+
     /// What the run will cost.
     #[must_use]
     pub const fn cost(&self) -> Cost {
@@ -169,14 +182,14 @@ impl Experiment {
         let host = self.host();
         Run {
             net: Net::new(line, host, self.configs().map(Device::new).collect()),
+            engine: self.segments.clone().map(SegmentEngine::new),
             end: run.map(|cycles| Instant(cycles.0)),
         }
     }
 
     /// The host of a framed line, where it has ticks to send.
     fn host(&self) -> Option<FramedHost> {
-        let waits =
-            self.config().protocol() == Protocol::Framed && !matches!(self.checked.source, Source::Line(_));
+        let waits = self.config().protocol() == Protocol::Framed && self.checked.source.is_ticks();
         waits.then(|| orders::framed_host(&self.checked, &self.orders))
     }
 
@@ -212,12 +225,14 @@ impl Experiment {
 #[derive(Clone, Debug)]
 pub struct Run {
     net: Net,
+    /// Runs in place of the net, which then stays before cycle 0.
+    engine: Option<SegmentEngine>,
     /// First cycle that is not run; without it the run ends when nothing can change any more.
     end: Option<Instant>,
 }
 
 impl Run {
-    /// The first controller as it is now.
+    /// The first controller as it is now; where segments run the scenario, one before cycle 0.
     #[must_use]
     pub fn device(&self) -> &Device {
         self.net.first()
@@ -241,18 +256,38 @@ impl Run {
         self.net.line().schedule()
     }
 
+    /// Position counters of the first controller, or of the segment engine (DESIGN A3).
+    #[must_use]
+    pub fn positions(&self) -> [i32; MAX_CHANNELS] {
+        self.engine.as_ref().map_or_else(|| self.device().positions(), SegmentEngine::positions)
+    }
+
+    /// Faults of the first controller so far; segments have none.
+    #[must_use]
+    pub fn faults(&self) -> Faults {
+        self.device().faults()
+    }
+
+    /// Ticks of the first controller that have ended; segments have none.
+    #[must_use]
+    pub fn ticks_done(&self) -> u32 {
+        self.device().ticks_done()
+    }
+
     /// Cycles that have been run.
     #[must_use]
     pub fn cycles(&self) -> Cycles {
-        Cycles(self.net.now().0)
+        Cycles(self.engine.as_ref().map_or_else(|| self.net.now(), SegmentEngine::now).0)
     }
 
     /// Whether the run is over.
     #[must_use]
     pub fn is_done(&self) -> bool {
-        match self.end {
-            Some(end) => self.net.now() >= end,
-            None => self.net.is_over(),
+        match (&self.engine, self.end) {
+            (Some(engine), Some(end)) => engine.now() >= end,
+            (Some(engine), None) => engine.at_rest(),
+            (None, Some(end)) => self.net.has_reached(end),
+            (None, None) => self.net.is_over(),
         }
     }
 
@@ -265,13 +300,26 @@ impl Run {
     /// Goes on until one controller has made `records` more, with a sink for each; true at the end.
     pub fn advance_each(&mut self, records: u64, sinks: &mut [impl Sink]) -> bool {
         let mut slices: Vec<_> = sinks.iter_mut().map(|sink| Slice { sink, left: records }).collect();
-        self.net.run(self.end.unwrap_or(Instant::NEVER), &mut slices);
+        let end = self.end.unwrap_or(Instant::NEVER);
+        match (&mut self.engine, slices.first_mut()) {
+            (Some(engine), Some(slice)) => engine.run(end, slice),
+            (Some(engine), None) => engine.run(end, &mut Ignored),
+            (None, _) => self.net.run(end, &mut slices),
+        }
         self.is_done()
     }
 
     /// One cycle, with a sink for each controller.
     pub fn clock(&mut self, sinks: &mut [impl Sink]) {
-        self.net.clock(sinks);
+        match (&mut self.engine, sinks.first_mut()) {
+            (Some(engine), Some(sink)) => {
+                engine.clock(sink);
+            }
+            (Some(engine), None) => {
+                engine.clock(&mut Ignored);
+            }
+            (None, _) => self.net.clock(sinks),
+        }
     }
 }
 

@@ -1,15 +1,21 @@
-//! What holds for every motion and its ticks (DESIGN B1, B7), over random axes.
+//! What holds for every motion, its ticks and its segments (DESIGN B1, B7, B8), over random axes.
 #![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::panic, reason = "a test fails by panicking")]
 
 use proptest::prelude::*;
+use std::rc::Rc;
 use stepscope_core::{
+    device::SegmentEngine,
     motion::{AxisPlan, Curve, Profile, plan_axis, round_half_up},
-    quantise::ticks,
+    quantise::{exact_segments, ticks},
     scenario::{
-        Acceleration, Axis, Constant, Cosine, Direct, Distance, Dwell, Mechanics, Move, SineSegments, Speed,
-        Trapezoid, TrapezoidMethod,
+        Acceleration, Axis, Constant, Cosine, Direct, Distance, Dwell, Mechanics, Move, ShortMove,
+        SineSegments, Speed, Staircase, Trapezoid, TrapezoidMethod,
     },
+    segment::PulseTimes,
+    signal::Record,
+    trace::steps,
+    units::{Cycles, Instant},
 };
 
 const CLOCK_HZ: u32 = 16_000_000;
@@ -34,6 +40,17 @@ fn sane_move() -> impl Strategy<Value = Move> {
                 })
             }
         ),
+        (steps.clone(), 1..=5_u8, 500..20_000_u32, any::<bool>()).prop_map(
+            |(distance, level, top, turns)| {
+                Move::Staircase(Staircase {
+                    distance,
+                    level,
+                    top_speed: Speed::StepsPerSecond(top.into()),
+                    short_move: short_move(turns),
+                    ..Staircase::default()
+                })
+            }
+        ),
         (steps.clone(), 0.05..2.0, 1..4_u32, 0.002..0.1).prop_map(
             |(amplitude, period_s, periods, max_deviation)| {
                 Move::SineSegments(SineSegments { amplitude, period_s, periods, max_deviation })
@@ -44,6 +61,10 @@ fn sane_move() -> impl Strategy<Value = Move> {
         }),
         (0.0..1.0).prop_map(|duration_s| Move::Dwell(Dwell { duration_s })),
     ]
+}
+
+fn short_move(turns: bool) -> ShortMove {
+    if turns { ShortMove::TurnRound } else { ShortMove::Document }
 }
 
 /// Any number, with the absurd ones often.
@@ -98,6 +119,12 @@ fn wild_move() -> impl Strategy<Value = Move> {
                 })
             }
         ),
+        (distance.clone(), speed.clone(), 0..=6_u8, any::<bool>(), speed.clone(), speed.clone()).prop_map(
+            |(distance, top_speed, level, turns, start_speed, max_speed)| {
+                let short_move = short_move(turns);
+                Move::Staircase(Staircase { distance, top_speed, level, short_move, start_speed, max_speed })
+            }
+        ),
         (distance.clone(), number(), any::<u32>(), number()).prop_map(
             |(amplitude, period_s, periods, max_deviation)| {
                 Move::SineSegments(SineSegments { amplitude, period_s, periods, max_deviation })
@@ -119,6 +146,7 @@ fn mirrored(given: &Move) -> Move {
     match given.clone() {
         Move::Cosine(m) => Move::Cosine(Cosine { distance: back(&m.distance), ..m }),
         Move::Trapezoid(m) => Move::Trapezoid(Trapezoid { distance: back(&m.distance), ..m }),
+        Move::Staircase(m) => Move::Staircase(Staircase { distance: back(&m.distance), ..m }),
         Move::SineSegments(m) => Move::SineSegments(SineSegments { amplitude: back(&m.amplitude), ..m }),
         Move::Constant(m) => Move::Constant(Constant { distance: back(&m.distance), ..m }),
         Move::Dwell(m) => Move::Dwell(m),
@@ -152,6 +180,42 @@ proptest! {
         // The last tick is needed: the axis has not ended before it.
         let before = (counts.len() as u64 - 1) * tick_cycles;
         prop_assert!(before == 0 || (before as f64 / f64::from(CLOCK_HZ)) < plan.duration_s());
+    }
+
+    #[test]
+    fn each_step_falls_due_where_the_curve_crosses_its_half_integer(
+        moves in prop::collection::vec(sane_move(), 1..4),
+    ) {
+        let plan = plan(moves);
+        let mut made = 0.0;
+        let seconds = |cycle: f64| cycle / f64::from(CLOCK_HZ);
+        for due in plan.due_steps(CLOCK_HZ) {
+            let way = if due.right { 1.0 } else { -1.0 };
+            let past = |t: f64| (plan.position(t) - made) * way - 0.5;
+            let (before, after) = (past(seconds(due.cycle as f64 - 1.0)), past(seconds(due.cycle as f64 + 1.0)));
+            prop_assert!(before < 1e-6 && after > -1e-6, "{made} {due:?}: {before} {after}");
+            made += way;
+        }
+        prop_assert_eq!(made, plan.steps() as f64);
+    }
+
+    #[test]
+    fn an_exact_list_gives_every_step_in_its_cycle(
+        moves in prop::collection::vec(sane_move(), 1..4), other in sane_move(),
+    ) {
+        let plans = [plan(moves), plan(vec![other])];
+        let pulse = PulseTimes { width: Cycles(1), setup: Cycles(1), hold: Cycles(0) };
+        let lists = exact_segments(&plans, 2, pulse, CLOCK_HZ).unwrap_or_else(|problems| panic!("{problems:?}"));
+        prop_assert_eq!(lists.steps(), plans[0].step_count() + plans[1].step_count());
+        let mut trace: Vec<Record> = Vec::new();
+        let mut engine = SegmentEngine::new(Rc::new(lists));
+        engine.run(Instant::NEVER, &mut trace);
+        for (channel, plan) in (0..).zip(&plans) {
+            let made = steps(&trace, channel);
+            let cycles = made.iter().map(|step| step.cycle);
+            prop_assert!(cycles.eq(plan.due_steps(CLOCK_HZ).map(|due| 1 + due.cycle)));
+            prop_assert_eq!(i64::from(engine.positions()[usize::from(channel)]), plan.steps());
+        }
     }
 
     #[test]
@@ -214,6 +278,12 @@ proptest! {
                             prop_assert!(curve.step_times(clock_hz).take(9).is_sorted());
                         }
                         let _ = planned.profile.peaks();
+                    }
+                    let first = plan.due_steps(clock_hz).take(2000).map(|due| due.cycle);
+                    prop_assert!(first.is_sorted());
+                    let pulse = PulseTimes { width: Cycles(1), setup: Cycles(0), hold: Cycles(0) };
+                    if plan.step_count() <= 20_000 {
+                        let _ = exact_segments(std::slice::from_ref(&plan), 1, pulse, clock_hz);
                     }
                     let few_ticks = plan.duration_s() / 1000.0 * f64::from(clock_hz);
                     let _ = ticks(&[plan], 1, slots, tick_cycles.max(few_ticks as u64), clock_hz);

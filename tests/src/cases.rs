@@ -1,12 +1,16 @@
 //! Random configurations and line activity for the property tests, as proptest strategies that shrink.
 //!
 //! Plain random bytes at random times would seldom meet a rule's edge. So a case is drawn as a list of
-//! *pieces* (a packet, a packet cut short, noise) and *strikes* (a forced level), each placed by a rule
-//! that aims at an edge of the contract: exactly 45 bit times after the last byte, a commit within a cycle
-//! of a tick's end, a glitch on a sample point, a boot that ends as a packet is committed. What was drawn
-//! is plain values; [`cases`] then works out the cycles from the configuration, so that every piece shrinks
-//! on its own.
+//! *pieces* (a packet, a packet cut short, a frame, a damaged frame, noise) and *strikes* (a forced level), each placed
+//! by a rule that aims at an edge of the contract: exactly 45 bit times after the last byte, a commit within a cycle
+//! of a tick's end, a byte in progress as a reply begins, a glitch on a sample point, a boot that ends as a packet is
+//! committed. What was drawn is plain values; the cycles are then worked out from the configuration, so that every piece
+//! shrinks on its own.
 
+mod frames;
+mod host;
+mod lines;
+mod segments;
 mod sends;
 mod setup;
 mod strikes;
@@ -18,59 +22,112 @@ use proptest::prelude::*;
 use proptest::sample::Index;
 
 use crate::oracle::{Config, Input, bit_time};
-use sends::{Line, pause, piece, split};
-use strikes::{force, strike};
+use sends::{Line, Pause, Piece, pause, piece, split};
+use setup::raw_line;
+use strikes::{Strike, force, strike};
 
+pub use crate::oracle::frame;
+pub use lines::{framed_lines, framed_lines_of_one_address};
+pub use segments::{SegmentCase, segment_lists};
 pub use setup::{Mode, configs, every_mode};
 
-/// No run is longer than this, cycles.
+/// No run with raw packets is longer than this, cycles.
 const LONGEST_RUN: u64 = 30_000;
 
-/// A configuration and something to do with it, at most 30 000 cycles long.
+/// A configuration with raw packets and something to do with it, at most 30 000 cycles long.
 pub fn cases(modes: impl Strategy<Value = Mode>) -> impl Strategy<Value = (Config, Input)> {
-    let pieces = prop::collection::vec((pause(), piece(), split()), 0..18);
+    (configs(modes), activity()).prop_map(|(config, activity)| {
+        let mut line = vec![config];
+        let input = activity.on(&mut line);
+        (line.remove(0), input)
+    })
+}
+
+/// One to four controllers with raw addressed packets on one line and something to do with them, at most 30 000 cycles
+/// long. `clock_hz`, `baud` and `channels` are common, and every address is another; a few controllers are refused.
+pub fn raw_lines<M>(modes: M) -> impl Strategy<Value = (Vec<Config>, Input)>
+where
+    M: Strategy<Value = Mode> + 'static,
+{
+    (raw_line(modes), activity()).prop_map(|(mut line, activity)| {
+        let input = activity.on(&mut line);
+        (line, input)
+    })
+}
+
+/// What happens on a line of raw packets, before the configurations give it cycles.
+#[derive(Debug)]
+struct Activity {
+    /// Each piece with the controller whose packet it is.
+    pieces: Vec<(Pause, Piece, Split, Index)>,
+    in_a_hurry: bool,
+    strikes: Vec<Strike>,
+    /// The first controller's boot ends as a packet comes, or a cycle beside it.
+    boot_at_commit: Option<(Index, i64)>,
+    end: End,
+}
+
+/// Where a piece is cut in two, and the pause between.
+type Split = Option<(Index, Pause)>;
+
+fn activity() -> impl Strategy<Value = Activity> {
+    let pieces = prop::collection::vec((pause(), piece(), split(), any::<Index>()), 0..18);
     let strikes = prop_oneof![
         3 => Just(Vec::new()),
         2 => prop::collection::vec(strike(), 1..6),
     ];
     let boot_at_commit = prop::option::weighted(0.2, (any::<Index>(), -1..=1_i64));
-    (configs(modes), pieces, any::<bool>(), strikes, boot_at_commit, end()).prop_map(
-        |(mut config, pieces, in_a_hurry, strikes, boot_at_commit, end)| {
-            let mut line = Line::new(&config, in_a_hurry);
-            for (pause, piece, split) in &pieces {
-                let bytes = piece.bytes(&config);
-                match split {
-                    Some((at, second_pause)) if bytes.len() > 1 => {
-                        let (first, second) = bytes.split_at(1 + at.index(bytes.len() - 1));
-                        line.send(*pause, first, false);
-                        line.send(*second_pause, second, piece.orders_tick());
-                    }
-                    _ => line.send(*pause, &bytes, piece.orders_tick()),
-                }
-            }
-            let (sends, commits, byte_starts, quiet_from) =
-                (line.sends, line.deliveries, line.byte_starts, line.free_from);
-            if let Some((which, offset)) = boot_at_commit
-                && !commits.is_empty()
-            {
-                config.boot = which.get(&commits).saturating_add_signed(offset);
-            }
-            let forced = force(&config, &strikes, &byte_starts);
-            let delivery = |which: Index| if commits.is_empty() { 0 } else { *which.get(&commits) };
-            let cycles = match end {
-                End::After(cycles) => quiet_from + cycles,
-                End::PartWay(permille) => 1 + quiet_from * permille / 1_000,
-                End::AfterTicks(which, ticks, offset) => {
-                    let tick = config.slots * config.step_period;
-                    (delivery(which) + 1 + ticks * tick).saturating_add_signed(offset)
-                }
-                End::Gap(which, offset) => {
-                    (delivery(which) + 45 * bit_time(&config)).saturating_add_signed(offset)
-                }
-            };
-            (config, Input { sends, forced, cycles: cycles.clamp(1, LONGEST_RUN) })
+    (pieces, any::<bool>(), strikes, boot_at_commit, end()).prop_map(
+        |(pieces, in_a_hurry, strikes, boot_at_commit, end)| Activity {
+            pieces,
+            in_a_hurry,
+            strikes,
+            boot_at_commit,
+            end,
         },
     )
+}
+
+impl Activity {
+    /// Works out the cycles on a line of at least one controller.
+    fn on(self, configs: &mut [Config]) -> Input {
+        let first = configs[0].clone();
+        let mut line = Line::new(&first, self.in_a_hurry);
+        for (pause, piece, split, which) in &self.pieces {
+            let which = which.index(configs.len());
+            let bytes = piece.bytes(&configs[which]);
+            let orders_tick = which == 0 && piece.orders_tick();
+            match split {
+                Some((at, second_pause)) if bytes.len() > 1 => {
+                    let (first, second) = bytes.split_at(1 + at.index(bytes.len() - 1));
+                    line.send(*pause, first, false);
+                    line.send(*second_pause, second, orders_tick);
+                }
+                _ => line.send(*pause, &bytes, orders_tick),
+            }
+        }
+        let (sends, commits, byte_starts, quiet_from) =
+            (line.sends, line.deliveries, line.byte_starts, line.free_from);
+        if let Some((which, offset)) = self.boot_at_commit
+            && !commits.is_empty()
+        {
+            configs[0].boot = which.get(&commits).saturating_add_signed(offset);
+        }
+        let forced = force(&first, &self.strikes, &byte_starts);
+        let delivery = |which: Index| if commits.is_empty() { 0 } else { *which.get(&commits) };
+        let cycles = match self.end {
+            End::After(cycles) => quiet_from + cycles,
+            End::PartWay(permille) => 1 + quiet_from * permille / 1_000,
+            End::AfterTicks(which, ticks, offset) => {
+                let tick = first.slots * first.step_period;
+                (delivery(which) + 1 + ticks * tick).saturating_add_signed(offset)
+            }
+            End::Gap(which, offset) => {
+                (delivery(which) + 45 * bit_time(&first)).saturating_add_signed(offset)
+            }
+        };
+        Input { sends, forced, cycles: cycles.clamp(1, LONGEST_RUN) }
+    }
 }
 
 #[derive(Debug, Clone, Copy)]

@@ -5,9 +5,9 @@
 //! | --- | --- |
 //! | `scenario.json` or `preset` | the experiment, or the id of the preset that it is |
 //! | `why` | the sentence of the contract that the case pins, and whether its trace was checked by hand |
-//! | `digest` | XXH64 of the trace, 16 hexadecimal digits |
+//! | `digest` | XXH64 of each controller's trace, 16 hexadecimal digits |
 //! | `status` | what `stepscope run --status` prints below the digest |
-//! | `expect.trace` | the trace, where it is short: a record a line, cycle and levels in hexadecimal |
+//! | `expect.trace` | the first controller's trace, where it is short: a record a line, cycle and levels in hexadecimal |
 //!
 //! The last three are written by `STEPSCOPE_BLESS=1 cargo test -p stepscope-tests --test golden`
 //! and by nothing else.
@@ -20,7 +20,7 @@ use alloc::{
 use core::fmt::Write as _;
 use stepscope_core::{
     run::{Experiment, Run},
-    scenario::presets::PRESETS,
+    scenario::{Config, presets::PRESETS},
     signal::{self, Record, Sink},
     trace::{Digest, parse_line, write_record},
 };
@@ -46,7 +46,7 @@ pub struct Case {
 /// What a run leaves, in the words of the case's files.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Outcome {
-    /// 16 hexadecimal digits.
+    /// 16 hexadecimal digits, a line for each controller.
     pub digest: String,
     /// One `name value` a line.
     pub status: String,
@@ -94,18 +94,15 @@ impl Case {
     /// A sentence with every problem of the scenario.
     pub fn run(&self) -> Result<(Outcome, Option<Outcome>), String> {
         let experiment = self.experiment()?;
-        let channels = experiment.config().channels();
         let mut cycles = 0;
-        let fast = Outcome::of(
-            |sink| {
-                let run = experiment.run(sink);
-                cycles = run.cycles().0;
-                run
-            },
-            channels,
-        );
+        let go = |sinks: &mut [Keep]| {
+            let run = experiment.run_each(sinks);
+            cycles = run.cycles().0;
+            run
+        };
+        let fast = Outcome::of(go, &experiment);
         let slow = (cycles < MOST_CYCLES_CLOCK_BY_CLOCK)
-            .then(|| Outcome::of(|sink| experiment.run_clock_by_clock(sink), channels));
+            .then(|| Outcome::of(|sinks| experiment.run_each_clock_by_clock(sinks), &experiment));
         Ok((fast, slow))
     }
 
@@ -151,24 +148,47 @@ impl Case {
 }
 
 impl Outcome {
-    /// Makes a run by `go`, which takes the sink of its records.
-    pub fn of(go: impl FnOnce(&mut Keep) -> Run, channels: u8) -> Self {
-        let mut keep = Keep::default();
-        let run = go(&mut keep);
-        let device = run.device();
-        let positions: Vec<String> =
-            device.positions().iter().take(channels.into()).map(i32::to_string).collect();
-        let faults: Vec<&str> = device.faults().names().collect();
-        let faults = if faults.is_empty() { "none".into() } else { faults.join(" ") };
-        let status = format!(
-            "cycles {}\nrecords {}\nticks_done {}\npositions {}\nfaults {:#06x} {faults}\n",
-            run.cycles().0,
-            keep.digest.records(),
-            device.ticks_done(),
-            positions.join(" "),
-            device.faults().bits()
-        );
-        Self { digest: format!("{:016x}", keep.digest.value()), status, trace: keep.first }
+    /// Makes a run by `go`, which takes the sinks of the controllers' records; of the further ones digest and status
+    /// are kept, of the first the records too.
+    pub fn of(go: impl FnOnce(&mut [Keep]) -> Run, experiment: &Experiment) -> Self {
+        let mut keeps: Vec<Keep> = (0..experiment.controllers()).map(|_| Keep::default()).collect();
+        let run = go(&mut keeps);
+        let (mut digest, mut status) = (String::new(), format!("cycles {}\n", run.cycles().0));
+        let channels: Vec<u8> = experiment.configs().map(Config::channels).collect();
+        for (index, (keep, device)) in keeps.iter().zip(run.devices()).enumerate() {
+            let _ = writeln!(digest, "{:016x}", keep.digest.value());
+            let first = index == 0;
+            // Where segments run the scenario there is one controller, and no device moves.
+            let positions = if first { run.positions() } else { device.positions() };
+            let used = channels.get(index).copied().unwrap_or(0).into();
+            let positions: Vec<String> = positions.iter().take(used).map(i32::to_string).collect();
+            let faults: Vec<&str> = device.faults().names().collect();
+            let faults = if faults.is_empty() { "none".into() } else { faults.join(" ") };
+            if !first {
+                let _ = writeln!(status, "controller {index}");
+            }
+            let _ = write!(
+                status,
+                "records {}\nticks_done {}\npositions {}\nfaults {:#06x} {faults}\n",
+                keep.digest.records(),
+                device.ticks_done(),
+                positions.join(" "),
+                device.faults().bits()
+            );
+            if let Some(told) = device.status() {
+                let _ = writeln!(
+                    status,
+                    "state {} seq {} free {}",
+                    told.state.name(),
+                    told.expected_seq,
+                    told.free
+                );
+            }
+        }
+        if let Some(host) = run.host() {
+            let _ = writeln!(status, "host {:?}\n{:?}", host.progress().collect::<Vec<_>>(), host.counts());
+        }
+        Self { digest, status, trace: keeps.into_iter().next().map(|keep| keep.first).unwrap_or_default() }
     }
 
     /// The trace as text, if it is short enough to be kept.

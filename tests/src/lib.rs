@@ -1,5 +1,5 @@
-//! What the tests of all targets share: the golden cases, and natively the independent model of the contract and the
-//! strategies that feed it.
+//! What the tests of all targets share: the golden cases, and natively the independent model of the contract, the
+//! strategies that feed it, and the checks that fuzzing feeds.
 #![cfg_attr(target_os = "none", no_std)]
 
 extern crate alloc;
@@ -17,6 +17,14 @@ pub mod cases;
 /// Random scenarios for the property tests.
 #[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 pub mod scenarios;
+
+/// Every way through a scenario, compared.
+#[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
+pub mod ways;
+
+/// What the fuzz targets check.
+#[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
+pub mod fuzzing;
 
 /// The README's examples, compiled and run as documentation tests.
 #[cfg(doctest)]

@@ -1,31 +1,57 @@
-//! The contract's second reader: a slow model of the raw-framing peripheral, written from the sentences of
-//! DESIGN Part A (A1, A3, A4, A5, A7, A9) and from nothing else, so that property tests can hold the core
-//! to the text edge by edge.
+//! The contract's second reader: a slow model of the peripheral, written from the sentences of DESIGN Part A and
+//! from nothing else, so that property tests can hold the core to the text edge by edge.
 //!
 //! It is naive on purpose. Every cycle of `0..cycles` is visited one at a time; levels come straight from the
-//! contract's formulas; nothing is skipped, predicted or shared with the core. Raw framing has no reply, so
-//! EN = 1, TX = 1 and DE = 0 throughout, and UNDERRUN (framed mode only) never shows.
+//! contract's formulas; nothing is skipped, predicted or shared with the core, COBS and CRC-32C included.
 //!
 //! ```text
-//! sends, forced --A4 sender--> line (RX, a level a cycle) --A4 receiver--> bytes, framing errors
-//!    --A5--> packets, faults --A7--> queue, ticks, slots, pulses --A3--> records, positions
+//! sends, replies, forced --A4 sender--> line (RX, a level a cycle) --A4 receiver--> bytes, framing errors
+//!    --A5 packets | A6 frames--> orders, faults, replies --A7--> queue, ticks, slots, pulses
+//!    --A3--> records, positions
+//! segments --A8--> pulses, DIR changes --A3--> records, positions
 //! ```
 //!
 //! Where the contract leaves room, the reading taken is written at the line that takes it ("Reading:").
 
+mod controller;
+mod frames;
+mod line;
+mod orders;
+mod packets;
+mod sequencer;
+
+/// Lists of segments, and what a run of them leaves behind.
+pub mod segments;
+
 #[cfg(test)]
 mod tests;
 
-use std::collections::VecDeque;
+use controller::{Controller, Driven};
+use line::{forced_levels, host_levels};
+
+pub use frames::{LONGEST_FRAME, cobs, crc32c, frame};
+pub use line::{Heard, bit_start, byte_start, hear, line_levels, stop_sample};
+pub use orders::kinds;
+pub use packets::packets_schedule;
+pub use segments::run_segments;
+pub use sequencer::fires;
 
 /// Fault bit 0 (A6's list): a stop bit was low.
 pub const FRAMING: u16 = 1 << 0;
-/// Fault bit 1: a gap found a packet unfinished.
+/// Fault bit 1: a gap found a packet unfinished, or a run of bytes was no frame.
 pub const SHORT_PACKET: u16 = 1 << 1;
-/// Fault bit 4: a packet found the queue full.
+/// Fault bit 2: a frame failed its check.
+pub const CRC: u16 = 1 << 2;
+/// Fault bit 3: a run of bytes decoded to more than [`LONGEST_FRAME`].
+pub const OVERLONG: u16 = 1 << 3;
+/// Fault bit 4: a packet or frame found the queue full.
 pub const QUEUE_OVERFLOW: u16 = 1 << 4;
-/// Fault bit 5: a packet ordered more steps than a tick has slots.
+/// Fault bit 5: a packet or frame ordered more steps than a tick has slots.
 pub const TOO_MANY_STEPS: u16 = 1 << 5;
+/// Fault bit 6: a frame's seq was neither the expected one nor a repeat's.
+pub const BAD_SEQ: u16 = 1 << 6;
+/// Fault bit 7 (A7): a tick with counts ended and none followed.
+pub const UNDERRUN: u16 = 1 << 7;
 
 /// The bits of a record's levels (A3): channel 0's STEP and DIR, and the lines that all channels share.
 pub mod bits {
@@ -77,8 +103,10 @@ pub struct Config {
     pub common_dir: bool,
     /// `true`: staggered; `false`: simultaneous.
     pub staggered: bool,
-    /// The controller's own address, 0..=254; `None`: packets carry no address.
+    /// The controller's own address, 0..=254; `None`: raw packets carry no address, and in framed mode it is 0.
     pub address: Option<u8>,
+    /// `true`: the framed protocol (A6); `false`: raw packets (A5).
+    pub framed: bool,
 }
 
 /// What the host and the scenario do to the line, and for how long the run lasts.
@@ -92,8 +120,22 @@ pub struct Input {
     pub cycles: u64,
 }
 
+/// A6's state; the number is the status's.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum State {
+    /// Self-test.
+    #[default]
+    Busy = 0,
+    /// Nothing runs and nothing is queued.
+    Ready = 1,
+    /// A tick runs or is queued.
+    Moving = 2,
+    /// By STOP or DISABLE, until ENABLE.
+    Stopped = 3,
+}
+
 /// What a run leaves behind.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Run {
     /// A3's records (cycle, levels).
     pub trace: Vec<(u64, u64)>,
@@ -103,6 +145,12 @@ pub struct Run {
     pub faults: u16,
     /// Ticks whose end was reached.
     pub ticks_done: u32,
+    /// The seq that the next TICKS must have (A6); 0 with raw packets.
+    pub expected_seq: u8,
+    /// The state in the last cycle of the run, after its byte; [`State::Busy`] for a run of no cycles.
+    pub state: State,
+    /// Free places in the queue.
+    pub free: usize,
 }
 
 /// B, the receiver's bit time in cycles: "floor((2*clock_hz + receiver_baud) / (2*receiver_baud))" (A4).
@@ -148,330 +196,45 @@ pub fn refused(config: &Config) -> bool {
     }
 }
 
-/// Start of the `j`-th of the bytes sent back to back from `t0`: "t0 + floor(10*j*clock_hz/baud)" (A4).
-pub fn byte_start(config: &Config, t0: u64, j: u64) -> u64 {
-    t0 + 10 * j * config.clock_hz / config.baud
-}
-
-/// First cycle of bit `k` of a byte that starts at `start`; `k` = 10 is the stop bit's end (A4).
-pub fn bit_start(config: &Config, start: u64, k: u64) -> u64 {
-    start + k * config.clock_hz / config.baud
-}
-
-/// The cycle in which a byte that the receiver first saw at `t` is delivered, or found to have no stop bit
-/// (A4).
-pub fn stop_sample(config: &Config, t: u64) -> u64 {
-    t + bit_time(config) / 2 + 9 * bit_time(config)
-}
-
-/// Raw host, paced (A9): "packet j starts at boot + 1 + j*M*Ts".
-///
-/// Whether the line can carry a packet in M*Ts cycles is the caller's affair.
-pub fn packets_schedule(config: &Config, packets: &[Vec<u8>]) -> Vec<(u64, Vec<u8>)> {
-    let mut schedule = Vec::new();
-    for (j, packet) in packets.iter().enumerate() {
-        let start = config.boot + 1 + j as u64 * config.slots * config.step_period;
-        schedule.push((start, packet.clone()));
-    }
-    schedule
-}
-
-/// The line's level in every cycle of the run: high, then the sends' bits, then what is forced, in the
-/// entries' order.
-pub fn line_levels(config: &Config, input: &Input) -> Vec<bool> {
-    let mut line = vec![true; input.cycles as usize];
-    let mut hold = |from: u64, to: u64, level: bool| {
-        for cycle in from..to {
-            // "RX = TX = 1" at cycle 0 (A3), whatever is sent or forced.
-            if cycle >= 1 && cycle < input.cycles {
-                line[cycle as usize] = level;
-            }
-        }
-    };
-    for (t0, bytes) in &input.sends {
-        for (j, byte) in bytes.iter().enumerate() {
-            let start = byte_start(config, *t0, j as u64);
-            for k in 0..10 {
-                let level = match k {
-                    0 => false,
-                    9 => true,
-                    _ => byte >> (k - 1) & 1 == 1,
-                };
-                hold(bit_start(config, start, k), bit_start(config, start, k + 1), level);
-            }
-        }
-    }
-    for &(cycle, length, level) in &input.forced {
-        hold(cycle, cycle + length, level);
-    }
-    line
-}
-
-/// What the receiver makes of the line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Heard {
-    /// A byte, delivered.
-    Byte(u8),
-    /// The stop bit was low: the byte is dropped.
-    FramingError,
-}
-
-/// A4's receiver, between two cycles.
-enum Receiver {
-    Armed,
-    /// The line was first seen low at `t`; `byte` holds the data bits sampled so far.
-    InByte {
-        t: u64,
-        byte: u8,
-    },
-    /// After a framing error: until the line has been high for a cycle.
-    WaitingForHigh,
-}
-
-/// The receiver's deliveries and framing errors, each with its cycle.
-pub fn hear(config: &Config, line: &[bool]) -> Vec<(u64, Heard)> {
-    let bit_time = bit_time(config);
-    let mut heard = Vec::new();
-    let mut receiver = Receiver::Armed;
-    for (cycle, &high) in line.iter().enumerate() {
-        let cycle = cycle as u64;
-        // The state that a cycle leaves is the next cycle's: "arms again in the next cycle", "is armed from
-        // the next cycle on", "arms in the cycle after the first cycle … in which the line is high".
-        receiver = match receiver {
-            Receiver::Armed if high => Receiver::Armed,
-            Receiver::Armed => Receiver::InByte { t: cycle, byte: 0 },
-            Receiver::InByte { t, .. } if cycle == t + bit_time / 2 && high => Receiver::Armed,
-            Receiver::InByte { t, byte } if cycle == stop_sample(config, t) => {
-                heard.push((cycle, if high { Heard::Byte(byte) } else { Heard::FramingError }));
-                if high { Receiver::Armed } else { Receiver::WaitingForHigh }
-            }
-            Receiver::InByte { t, mut byte } => {
-                for i in 0..8 {
-                    if cycle == t + bit_time / 2 + (i + 1) * bit_time && high {
-                        byte |= 1 << i;
-                    }
-                }
-                Receiver::InByte { t, byte }
-            }
-            Receiver::WaitingForHigh if high => Receiver::Armed,
-            Receiver::WaitingForHigh => Receiver::WaitingForHigh,
-        };
-    }
-    heard
-}
-
-/// Whether a channel with count `count` fires in slot `k` (A7).
-pub fn fires(config: &Config, count: u64, k: u64) -> bool {
-    if config.spread {
-        let half = config.slots / 2;
-        ((k + 1) * count + half) / config.slots > (k * count + half) / config.slots
-    } else {
-        k < count
-    }
-}
-
-/// A pulse: STEP of `channel` is 1 during `[rise, fall)`.
-struct Pulse {
-    channel: usize,
-    rise: u64,
-    fall: u64,
-}
-
-/// From `cycle` on, DIR of `channels` (a bit each) has `level`.
-struct DirChange {
-    cycle: u64,
-    channels: u64,
-    level: bool,
-}
-
-/// A tick that has started: all of its pulses and DIR changes, and its end e.
-struct Tick {
-    end: u64,
-    pulses: Vec<Pulse>,
-    dir_changes: Vec<DirChange>,
-}
-
-/// Lays out the tick that `orders` (byte i for channel i) give, started at `c0` (A7).
-fn start_tick(config: &Config, orders: &[u8], c0: u64) -> Tick {
-    let (width, setup, hold) = (config.pulse_width, config.dir_setup, config.dir_hold);
-    let right = |channel: usize| orders[channel] >> 7 == 1;
-    let all = (1 << config.channels) - 1;
-    let mut tick =
-        Tick { end: c0 + config.slots * config.step_period, pulses: Vec::new(), dir_changes: Vec::new() };
-
-    if !config.common_dir {
-        for channel in 0..config.channels {
-            tick.dir_changes.push(DirChange { cycle: c0, channels: 1 << channel, level: right(channel) });
-        }
-    }
-    for k in 0..config.slots {
-        let s = c0 + k * config.step_period;
-        let firing: Vec<usize> = (0..config.channels)
-            .filter(|&channel| fires(config, (orders[channel] & 0x7F).into(), k))
-            .collect();
-        if firing.is_empty() {
-            continue;
-        }
-        let nd = firing.len() as u64;
-        let d = config.settle.min(config.step_period / nd);
-        let lefts = firing.iter().copied().filter(|&channel| !right(channel));
-        let rights = firing.iter().copied().filter(|&channel| right(channel));
-
-        let mut rises: Vec<(usize, u64)> = Vec::new();
-        match (config.common_dir, config.staggered) {
-            (false, false) => rises.extend(firing.iter().map(|&channel| (channel, s + setup))),
-            (false, true) => {
-                for (j, &channel) in firing.iter().enumerate() {
-                    rises.push((channel, s + setup + j as u64 * d));
-                }
-            }
-            (true, false) => {
-                tick.dir_changes.push(DirChange { cycle: s, channels: all, level: false });
-                rises.extend(lefts.map(|channel| (channel, s + setup)));
-                tick.dir_changes.push(DirChange {
-                    cycle: s + setup + width + hold,
-                    channels: all,
-                    level: true,
-                });
-                rises.extend(rights.map(|channel| (channel, s + 2 * setup + width + hold)));
-            }
-            (true, true) => {
-                let left_count = lefts.clone().count();
-                for (j, channel) in lefts.chain(rights).enumerate() {
-                    let rise = s + setup + j as u64 * d;
-                    rises.push((channel, rise));
-                    if j == 0 && left_count > 0 {
-                        tick.dir_changes.push(DirChange { cycle: s, channels: all, level: false });
-                    }
-                    if j == left_count {
-                        tick.dir_changes.push(DirChange { cycle: rise - setup, channels: all, level: true });
-                    }
-                }
-            }
-        }
-        for (channel, rise) in rises {
-            // A7's refusal rules give every pulse room in its own slot.
-            assert!(rise + width <= s + config.step_period, "a pulse leaves its slot: {config:?}");
-            tick.pulses.push(Pulse { channel, rise, fall: rise + width });
-        }
-    }
-    tick
-}
-
-/// Runs a configuration that is not [`refused`], cycle by cycle, in A7's order within one cycle: the
-/// sequencer, the gap timer, the byte.
+/// Runs one controller, alone on its line. Its configuration must not be [`refused`].
 pub fn run(config: &Config, input: &Input) -> Run {
-    assert!(!refused(config), "a refused configuration has no run: {config:?}");
-    let line = line_levels(config, input);
-    let heard = hear(config, &line);
-    let gap = 45 * bit_time(config);
-    let packet_length = config.channels + usize::from(config.address.is_some());
+    run_line(std::slice::from_ref(config), input).remove(0)
+}
 
-    let mut result = Run { trace: Vec::new(), positions: [0; 16], faults: 0, ticks_done: 0 };
-    // Each place of the queue holds a tick's orders.
-    let mut queue: VecDeque<Vec<u8>> = VecDeque::new();
-    let mut running: Option<Tick> = None;
-    let mut dir: u64 = 0;
-    let mut step_before: u64 = 0;
-    let mut levels_before: Option<u64> = None;
-    // A5's d, the partial packet, and whether bytes are being ignored.
-    let mut last_heard: Option<u64> = None;
-    let mut partial: Vec<u8> = Vec::new();
-    let mut ignoring = false;
+/// Runs several controllers (1..=32) on one line, cycle by cycle; a run a controller, in the order of `configs`.
+///
+/// `clock_hz` and `baud` are common. No configuration may be [`refused`].
+pub fn run_line(configs: &[Config], input: &Input) -> Vec<Run> {
+    assert!((1..=32).contains(&configs.len()), "{} controllers", configs.len());
+    for config in configs {
+        assert!(!refused(config), "a refused configuration has no run: {config:?}");
+        assert!(config.clock_hz == configs[0].clock_hz && config.baud == configs[0].baud, "{configs:?}");
+    }
+    let host = host_levels(&configs[0], input);
+    let forced = forced_levels(input);
+    let mut controllers: Vec<Controller> = configs.iter().map(Controller::new).collect();
 
     for cycle in 0..input.cycles {
-        // The sequencer: a tick ends, a tick starts "from commits of earlier cycles only" (this cycle's
-        // byte comes later).
-        if running.as_ref().is_some_and(|tick| tick.end == cycle) {
-            result.ticks_done += 1;
-            running = None;
-        }
-        if running.is_none()
-            && let Some(orders) = queue.pop_front()
-        {
-            running = Some(start_tick(config, &orders, cycle));
-        }
-        let mut step: u64 = 0;
-        if let Some(tick) = &running {
-            for change in &tick.dir_changes {
-                if change.cycle == cycle {
-                    dir = if change.level { dir | change.channels } else { dir & !change.channels };
+        let driven: Vec<Driven> = controllers.iter().map(|controller| controller.driven(cycle)).collect();
+        for (k, controller) in controllers.iter_mut().enumerate() {
+            // "the AND of what the host and all other controllers with DE = 1 send".
+            let mut rx = host[cycle as usize];
+            for (j, other) in driven.iter().enumerate() {
+                if j != k && other.de {
+                    rx &= other.tx;
                 }
             }
-            for pulse in &tick.pulses {
-                if pulse.rise <= cycle && cycle < pulse.fall {
-                    step |= 1 << pulse.channel;
-                }
+            // "gives it that level for that long, whatever is sent": by the host or by controllers.
+            if let Some(level) = forced[cycle as usize] {
+                rx = level;
             }
-        }
-
-        // The gap timer.
-        if last_heard.is_some_and(|d| cycle == d + gap + 1) {
-            if !partial.is_empty() {
-                result.faults |= SHORT_PACKET;
-                partial.clear();
+            // "1 while its own DE is high". Reading: whatever is forced, too, for a transceiver that sends hears
+            // nothing.
+            if driven[k].de {
+                rx = true;
             }
-            ignoring = false;
-        }
-
-        // The byte. Reading: a framing error has a delivered byte's place in the order, after the gap
-        // timer; so in the cycle d + 45*B + 1 a partial packet is SHORT_PACKET first, and then the error is
-        // FRAMING.
-        for &(_, what) in heard.iter().filter(|(heard_at, _)| *heard_at == cycle) {
-            last_heard = Some(cycle);
-            match what {
-                Heard::FramingError => {
-                    result.faults |= FRAMING;
-                    partial.clear();
-                    ignoring = true;
-                }
-                Heard::Byte(_) if ignoring => {}
-                Heard::Byte(byte) => {
-                    partial.push(byte);
-                    if partial.len() == packet_length {
-                        result.faults |= commit(config, &partial, cycle, &mut queue);
-                        partial.clear();
-                    }
-                }
-            }
-        }
-
-        // The cycle's levels, and the steps that rise in it.
-        for channel in 0..config.channels {
-            if step & !step_before & 1 << channel != 0 {
-                result.positions[channel] += if dir >> channel & 1 == 1 { 1 } else { -1 };
-            }
-        }
-        step_before = step;
-        let rx = u64::from(line[cycle as usize]);
-        let levels = step << bits::STEP | dir << bits::DIR | 1 << bits::EN | rx << bits::RX | 1 << bits::TX;
-        if levels_before != Some(levels) {
-            result.trace.push((cycle, levels));
-            levels_before = Some(levels);
+            controller.clock(cycle, rx, driven[k]);
         }
     }
-    result
-}
-
-/// Judges a whole packet committed in cycle `p`; returns the fault it sets, 0 for none.
-fn commit(config: &Config, packet: &[u8], p: u64, queue: &mut VecDeque<Vec<u8>>) -> u16 {
-    let orders = match config.address {
-        None => packet,
-        Some(own) if packet[0] == own || packet[0] == 255 => &packet[1..],
-        Some(_) => return 0,
-    };
-    // Reading: "One with p < boot is dropped without a fault" holds whatever is in it, so boot is judged
-    // first.
-    if p < config.boot {
-        return 0;
-    }
-    // "dropped whole (fault TOO_MANY_STEPS, and no other)": judged before the queue.
-    if orders.iter().any(|order| u64::from(order & 0x7F) > config.slots) {
-        return TOO_MANY_STEPS;
-    }
-    if queue.len() == config.queue_depth {
-        return QUEUE_OVERFLOW;
-    }
-    queue.push_back(orders.to_vec());
-    0
+    controllers.into_iter().map(|controller| controller.finish(input.cycles)).collect()
 }

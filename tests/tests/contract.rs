@@ -93,6 +93,7 @@ fn outcome(device: &Device, trace: &[Record]) -> oracle::Run {
         positions: device.positions(),
         faults: device.faults().bits(),
         ticks_done: device.ticks_done(),
+        ..oracle::Run::default()
     }
 }
 

@@ -8,6 +8,7 @@
 use std::f64::consts::PI;
 use stepscope_core::{
     analysis::spectrum::Spectrum,
+    motion::Profile,
     run::Experiment,
     scenario::{Packets, Pulses, Scenario, Source, presets::PRESETS},
     trace::{Recording, Step, steps},
@@ -101,6 +102,60 @@ fn sonobe_2011_goes_there_and_back_and_rests_between() {
     within_a_tick(&made, rest, 0.1 + 0.393 / 100.0);
     let top = made.experiment.plans()[0].peaks().speed;
     close(top, 700.0 / 0.393, 1e-3);
+}
+
+/// By its staircase table: level 3 from 1000 to 5000; segments put each step at its cycle of 16 MHz, time 0 at cycle 1.
+#[test]
+fn zhang_2012s_staircase_holds_each_rate_for_its_steps() {
+    let made = Made::preset("zhang-2012-staircase");
+    let all = made.steps(0);
+    assert_eq!((all.len(), all[17_232].position), (17_233, 17_233));
+    // f_n^2 = f_1^2 + 2*a*S, each rate rounded half up and held for 30 steps, from the sixth row on for 60, ...
+    let (mut k, mut n, mut covered) = (0, 1, 0_u64);
+    let mut cycle = 1.0;
+    let rate = |covered: u64| (1e6 + 2.0 * 3000.0 * covered as f64).sqrt().round();
+    while rate(covered) < 5000.0 {
+        let steps = 30 * (1 + (n - 1) / 5);
+        for _ in 0..steps {
+            cycle += 16e6 / rate(covered);
+            assert!((all[k].cycle as f64 - cycle).abs() <= 1.0, "step {k}: {} {cycle}", all[k].cycle);
+            k += 1;
+        }
+        (n, covered) = (n + 1, covered + steps);
+    }
+    // S = steps to reach f_s; L > 2*S, so the plateau follows, and the same way back.
+    // Uniform acceleration has 4000 steps; 7 times five rows are the first that have as many.
+    assert_eq!((n, k, covered), (36, 4_200, 4_200), "35 rows");
+    assert_eq!(all[k + 1000].cycle - all[k].cycle, 3_200_000, "1000 steps at 5000 Hz");
+    let end = all[17_232].cycle;
+    for (up, down) in (0..k).zip((0..17_232).rev()) {
+        assert!((all[up].cycle - 1).abs_diff(end - all[down].cycle) <= 1, "step {up}");
+    }
+    // The document's times: 1.333 s, 1.847 s, 1.333 s. A row holds the rate of its start, so a ramp is some 4 % late.
+    close(made.experiment.plans()[0].duration_s(), 4.513, 0.02);
+}
+
+/// Sonobe 2011 by segments: every edge at the table's reloads, of a timer of 1 MHz and so 16 cycles each.
+#[test]
+fn sonobe_2011_by_segments_steps_at_the_tables_reloads() {
+    let made = Made::preset("sonobe-2011-segments");
+    let all = made.steps(0);
+    assert_eq!((all.len(), all[762].position, all[762 + 153].position), (763 + 153, 763, 610));
+    let moves = made.experiment.plans()[0].moves();
+    let [Profile::TrapezoidTable(there), _, Profile::TrapezoidTable(back)] =
+        [0, 1, 2].map(|i| &moves[i].profile)
+    else {
+        panic!("a table, a dwell, a table")
+    };
+    let rates = [254_u64, 287, 317, 344, 369, 392, 414, 435];
+    for (k, rate) in rates.into_iter().enumerate() {
+        let before = if k == 0 { 1 } else { all[k - 1].cycle };
+        assert_eq!(all[k].cycle - before, 16 * (1_000_000 / rate), "interval {k}");
+    }
+    let (first, second) = all.split_at(763);
+    let rest = first[762].cycle + 1_600_000;
+    assert!(first.iter().zip(1..).all(|(step, k)| step.cycle == 1 + 16 * there.step_ticks(k)));
+    assert!(second.iter().zip(1..).all(|(step, k)| step.cycle == rest + 16 * back.step_ticks(k)));
 }
 
 /// The last step falls due half a step before the end (B1). Near its end the curve is, but for 1 in 1000, a cubic:

@@ -8,7 +8,7 @@ use stepscope_tests::golden::{CASES, Case, Outcome};
 
 fn bless(case: &Case, outcome: &Outcome) -> io::Result<()> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("golden").join(case.name);
-    fs::write(folder.join("digest"), format!("{}\n", outcome.digest))?;
+    fs::write(folder.join("digest"), &outcome.digest)?;
     fs::write(folder.join("status"), &outcome.status)?;
     match outcome.trace_text() {
         Some(text) => fs::write(folder.join("expect.trace"), text),

@@ -1,22 +1,23 @@
-//! What holds for every scenario, over random ones of all three sources: all speeds give the same run (DESIGN A2), a run
+//! What holds for every scenario, over random ones of all sources: all speeds give the same run (DESIGN A2), a run
 //! costs no more than was said before it, and a scenario survives its way through JSON and links (PAGE "Share link").
 #![cfg(not(target_arch = "wasm32"))]
 
 use proptest::{prelude::*, test_runner::FileFailurePersistence};
-use std::rc::Rc;
 use stepscope_core::{
     device::Device,
-    run::{Cost, Experiment, Run},
+    run::Experiment,
     scenario::{
-        Compact, Config, Forced, Scenario,
+        Compact, Config, Scenario,
         link::{LinkError, decode, encode},
     },
-    signal::{Event, Record, Sink},
-    trace::{Digest, Recording},
-    units::{Cycles, Instant},
-    wire::Line,
+    signal::Record,
+    trace::Digest,
+    units::Cycles,
 };
-use stepscope_tests::scenarios::{small, typed};
+use stepscope_tests::{
+    scenarios::{segmented, small, typed},
+    ways::{self, Left, Ways, same},
+};
 
 /// Some seconds' worth of cases, or as many as PROPTEST_CASES says.
 fn cases(cases: u32) -> ProptestConfig {
@@ -26,87 +27,6 @@ fn cases(cases: u32) -> ProptestConfig {
         failure_persistence: Some(Box::new(FileFailurePersistence::WithSource("regressions"))),
         ..told
     }
-}
-
-/// All that a run leaves.
-#[derive(Default)]
-struct Left {
-    recording: Recording,
-    events: Vec<(Instant, Event)>,
-}
-
-impl Sink for Left {
-    fn record(&mut self, record: Record) {
-        self.recording.record(record);
-    }
-
-    fn event(&mut self, at: Instant, event: Event) {
-        self.recording.event(at, event);
-        self.events.push((at, event));
-    }
-}
-
-/// Two ways through the same scenario left the same.
-fn same(way: &str, left: (&Left, &Device), fast: (&Left, &Device)) -> Result<(), TestCaseError> {
-    let ((left, device), (fast, fast_device)) = (left, fast);
-    let longest = left.recording.trace.len().max(fast.recording.trace.len());
-    for index in 0..longest {
-        let (record, expected) = (left.recording.trace.get(index), fast.recording.trace.get(index));
-        prop_assert_eq!(record, expected, "{}: record {}", way, index);
-    }
-    prop_assert_eq!(left.recording.digest.value(), fast.recording.digest.value(), "{}: digest", way);
-    prop_assert_eq!(&left.events, &fast.events, "{}: events", way);
-    prop_assert_eq!(device.positions(), fast_device.positions(), "{}: positions", way);
-    prop_assert_eq!(device.faults(), fast_device.faults(), "{}: faults", way);
-    prop_assert_eq!(device.ticks_done(), fast_device.ticks_done(), "{}: ticks done", way);
-    prop_assert_eq!(device.now(), fast_device.now(), "{}: cycles", way);
-    Ok(())
-}
-
-/// The run in slices of so many records, again and again.
-fn in_slices(experiment: &Experiment, slices: &[u64]) -> (Left, Run) {
-    let (mut left, mut run) = (Left::default(), experiment.start());
-    for records in slices.iter().cycle() {
-        if run.advance(*records, &mut left) {
-            break;
-        }
-    }
-    (left, run)
-}
-
-/// As a firmware's test would drive a peripheral by hand: `clock` where something can change, `skip` over what `quiet`
-/// says. `hurry` is how much of that it skips at once, in percent.
-fn by_hand(config: &Config, mut line: Line, cycles: Cycles, hurry: u64) -> (Left, Device) {
-    let (mut left, mut device) = (Left::default(), Device::new(config));
-    while device.now().0 < cycles.0 {
-        if line.next_change() == device.now() {
-            line.change();
-        }
-        device.clock(line.heard(true), &mut left);
-        let horizon = line.next_change().0.min(cycles.0).saturating_sub(device.now().0);
-        let quiet = device.quiet().map_or(horizon, |quiet| quiet.0.min(horizon));
-        device.skip(Cycles((u128::from(quiet) * u128::from(hurry) / 100) as u64));
-    }
-    (left, device)
-}
-
-/// The line of a scenario, made from the outside.
-fn line(scenario: &Scenario, experiment: &Experiment) -> Line {
-    let forced = scenario.line.glitches.iter().map(|glitch| Forced {
-        start: Instant(glitch.start_cycle),
-        end: Instant(glitch.start_cycle + glitch.length_cycles),
-        level: glitch.level != 0,
-    });
-    let forced: Vec<Forced> = forced.collect();
-    Line::new(Rc::new(experiment.schedule().clone()), &forced, scenario.clock_hz, scenario.line.baud)
-}
-
-/// What was made is not above what was said before.
-fn within(cost: Cost, left: &Left, cycles: Cycles) -> Result<(), TestCaseError> {
-    prop_assert!(cycles.0 <= cost.end_cycle, "{} cycles were run, {} announced", cycles.0, cost.end_cycle);
-    let made = left.recording.trace.len() as u64;
-    prop_assert!(made <= cost.records, "{} records were made, {} announced", made, cost.records);
-    Ok(())
 }
 
 proptest! {
@@ -119,19 +39,16 @@ proptest! {
         hurry in 0..=100_u64,
     ) {
         let Ok(experiment) = Experiment::new(&scenario) else { return Ok(()) };
-        let (mut fast, mut slow) = (Left::default(), Left::default());
-        let run = experiment.run(&mut fast);
-        within(experiment.cost(), &fast, run.cycles())?;
-        prop_assert!(run.is_done());
+        ways::check(&scenario, &experiment, Ways { slices: &slices, hurry, most_clocked: 200_000 });
+    }
 
-        let (left, sliced) = in_slices(&experiment, &slices);
-        same("in slices", (&left, sliced.device()), (&fast, run.device()))?;
-        let (left, device) = by_hand(experiment.config(), line(&scenario, &experiment), run.cycles(), hurry);
-        same("by hand", (&left, &device), (&fast, run.device()))?;
-        if run.cycles().0 < 200_000 {
-            let clocked = experiment.run_clock_by_clock(&mut slow);
-            same("clock by clock", (&slow, clocked.device()), (&fast, run.device()))?;
-        }
+    #[test]
+    fn every_way_through_segments_leaves_the_same(
+        scenario in segmented(),
+        slices in prop::collection::vec(1..40_u64, 1..5),
+    ) {
+        let Ok(experiment) = Experiment::new(&scenario) else { return Ok(()) };
+        ways::check(&scenario, &experiment, Ways { slices: &slices, hurry: 100, most_clocked: u64::MAX });
     }
 
     /// Not only what a scenario can put on the line: any levels at all, such as a firmware's test would feed.
@@ -156,7 +73,7 @@ proptest! {
                 skipped.skip(skipped.quiet().map_or(Cycles(left), |quiet| Cycles(quiet.0.min(left))));
             }
         }
-        same("skipping", (&skipping, &skipped), (&every, &clocked))?;
+        same("skipping", (&skipping, &skipped), (&every, &clocked));
     }
 }
 

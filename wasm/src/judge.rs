@@ -227,6 +227,20 @@ fn detail(profile: &Profile, limit_steps_s: f64) -> String {
         Profile::TrapezoidTable(table) => {
             format!("peak {} steps/s, table of {} rows", grouped(profile.peaks().speed), table.rows())
         }
+        Profile::Staircase(staircase) => match staircase.plateau_rate() {
+            Some(rate) => format!(
+                "{} rows of {} steps each way, {} steps at {}/s between",
+                staircase.ramp_rows(),
+                grouped(staircase.ramp_steps() as f64),
+                grouped(staircase.plateau_steps() as f64),
+                grouped(rate as f64)
+            ),
+            None => format!(
+                "{} rows of {} steps each way, none between",
+                staircase.ramp_rows(),
+                grouped(staircase.ramp_steps() as f64)
+            ),
+        },
         Profile::SineSegments(sine) => {
             let points: Vec<String> = sine
                 .segments()
@@ -264,6 +278,7 @@ fn grouped(value: f64) -> String {
 const fn kind(profile: &Profile) -> &'static str {
     match profile {
         Profile::Trapezoid(_) | Profile::TrapezoidTable(_) => "trapezoid",
+        Profile::Staircase(_) => "staircase",
         Profile::Cosine(_) => "cosine",
         Profile::SineSegments(_) => "sine_segments",
         Profile::Constant(_) => "constant",

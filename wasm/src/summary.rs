@@ -9,7 +9,7 @@ use stepscope_core::{
     analysis::timing::TimingCheck,
     device::Device,
     scenario::{Config, Protocol},
-    signal::Record,
+    signal::{MAX_CHANNELS, Record},
     wire::framed_host::{Counts, FramedHost, Progress},
 };
 use wasm_bindgen::prelude::*;
@@ -86,6 +86,11 @@ impl Simulation {
         let config = self.experiment.config();
         let cycles = self.run.cycles().0;
         let each = self.kept.iter().zip(self.run.devices()).zip(self.experiment.configs());
+        // Where segments run the scenario there is one controller, and no device moves.
+        let alone = self.experiment.segments().map(|_| self.run.positions());
+        let each = each.map(|((kept, device), config)| {
+            controller(kept, device, config, alone.unwrap_or_else(|| device.positions()))
+        });
         object(&Summary {
             framed: config.protocol() == Protocol::Framed,
             end_cycle: cycles,
@@ -93,7 +98,7 @@ impl Simulation {
             clock_hz: config.clock_hz(),
             line_load: self.experiment.line_load(),
             host: self.run.host().map(|host| self.host(host)),
-            controllers: each.map(|((kept, device), config)| controller(kept, device, config)).collect(),
+            controllers: each.collect(),
         })
     }
 
@@ -118,8 +123,7 @@ impl Simulation {
     }
 }
 
-fn controller(kept: &Kept, device: &Device, config: &Config) -> Controller {
-    let positions = device.positions();
+fn controller(kept: &Kept, device: &Device, config: &Config, positions: [i32; MAX_CHANNELS]) -> Controller {
     let faults = device.faults();
     Controller {
         address: config.address(),

@@ -7,12 +7,14 @@
 //! | `headers`, `serve` | the local server, whose headers are `web/_headers`' |
 //! | `steps`, `browser`, `bare_metal` | `cargo xtask test`, step by step |
 //! | `bench` | `cargo xtask bench` |
+//! | `fuzz` | `cargo xtask fuzz` |
 //! | `run` | child processes: time limit, no input, killed as a group |
 
 mod apt;
 mod bare_metal;
 mod bench;
 mod browser;
+mod fuzz;
 mod headers;
 mod page;
 mod run;
@@ -28,7 +30,7 @@ use std::process::ExitCode;
 use anyhow::Result;
 use clap::{Args, Parser, Subcommand};
 
-/// Builds, shows, tests and measures Stepscope.
+/// Builds, shows, tests, measures and fuzzes Stepscope.
 #[derive(Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask")]
 struct Cli {
@@ -78,6 +80,17 @@ enum Task {
         #[arg(long)]
         quick: bool,
     },
+    /// Search for inputs that break the core, by libFuzzer; what is found is said and can be kept as a test
+    Fuzz {
+        /// Targets to run, such as `line`; all if none is given
+        targets: Vec<String>,
+        /// How long each target runs
+        #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=86_400))]
+        seconds: u32,
+        /// Where chance begins: the same seed takes the same way
+        #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+        seed: u32,
+    },
 }
 
 /// Whether wasm-opt goes over the page's wasm.
@@ -123,6 +136,7 @@ async fn perform(task: Task) -> Result<()> {
         }
         Task::Test { only, list: false } => steps::run(&only).await,
         Task::Bench { quick } => bench::run(quick).await,
+        Task::Fuzz { targets, seconds, seed } => fuzz::run(fuzz::Options { targets, seconds, seed }).await,
     }
 }
 

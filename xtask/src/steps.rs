@@ -40,7 +40,9 @@ impl Step {
         match self {
             Self::Format => {
                 toolchain::components().await?;
-                cargo("fmt --all --check").await
+                cargo("fmt --all --check").await?;
+                // A workspace of its own.
+                cargo("fmt --manifest-path fuzz/Cargo.toml --check").await
             }
             Self::Lint => {
                 toolchain::components().await?;

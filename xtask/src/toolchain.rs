@@ -20,6 +20,15 @@ pub(crate) fn cargo() -> Command {
     command
 }
 
+/// The target of this machine, such as `x86_64-unknown-linux-gnu`.
+pub(crate) async fn host() -> Result<String> {
+    let mut command = Command::new("rustc");
+    command.current_dir(root()).arg("-vV");
+    let answer = run::output(command).await.context("rustc does not answer")?;
+    let host = answer.lines().find_map(|line| line.strip_prefix("host: "));
+    host.map(str::to_owned).context("rustc does not name its host")
+}
+
 /// Makes sure that the tool chain can build for `target`.
 pub(crate) async fn target(target: &str) -> Result<()> {
     let mut command = Command::new("rustc");

@@ -14,6 +14,7 @@ use tokio::process::Command;
 use crate::{root, run, toolchain, wasm_opt};
 
 const WASM_PACK: &str = "0.15.1";
+const CARGO_FUZZ: &str = "0.13.2";
 
 /// Whether the page's wasm goes through wasm-opt.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -60,21 +61,7 @@ impl WasmTools {
         let wasm_pack = Tool { package: "wasm-pack", program: "wasm-pack", version: WASM_PACK.to_owned() };
         let wasm_bindgen =
             Tool { package: "wasm-bindgen-cli", program: "wasm-bindgen", version: wasm_bindgen };
-        let mut programs = Vec::new();
-        let mut installed = false;
-        for tool in [wasm_pack, wasm_bindgen] {
-            programs.push(match tool.find(&cache).await {
-                Some(program) => program,
-                None => {
-                    installed = true;
-                    tool.install(&cache).await?
-                }
-            });
-        }
-        if installed {
-            // What the two share is built by now; should it stay, only the disk is fuller.
-            let _ = std::fs::remove_dir_all(build_folder(&cache));
-        }
+        let mut programs = ready(&cache, &[wasm_pack, wasm_bindgen]).await?;
         let wasm_pack = programs[0].clone();
         let wasm_opt = match optimise {
             Optimise::No => WasmOpt::LeftOut,
@@ -122,6 +109,32 @@ impl WasmTools {
         let folders = self.folders.iter().cloned().chain(env::split_paths(&rest));
         env::join_paths(folders).context("a folder on PATH can't be written there")
     }
+}
+
+/// The path of cargo-fuzz, installing it if it is missing.
+pub(crate) async fn cargo_fuzz() -> Result<PathBuf> {
+    let tool = Tool { package: "cargo-fuzz", program: "cargo-fuzz", version: CARGO_FUZZ.to_owned() };
+    ready(&cache()?, &[tool]).await?.pop().context("cargo-fuzz was lost")
+}
+
+/// The paths of the tools, installing what is missing.
+async fn ready(cache: &Path, tools: &[Tool]) -> Result<Vec<PathBuf>> {
+    let mut programs = Vec::new();
+    let mut installed = false;
+    for tool in tools {
+        programs.push(match tool.find(cache).await {
+            Some(program) => program,
+            None => {
+                installed = true;
+                tool.install(cache).await?
+            }
+        });
+    }
+    if installed {
+        // What they share is built by now; should it stay, only the disk is fuller.
+        let _ = std::fs::remove_dir_all(build_folder(cache));
+    }
+    Ok(programs)
 }
 
 /// A command that cargo can install.

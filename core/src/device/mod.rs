@@ -19,9 +19,11 @@ mod controller;
 mod drive;
 mod faults;
 mod plan;
+mod segments;
 mod sequencer;
 
 pub use faults::Faults;
+pub use segments::SegmentEngine;
 
 use crate::{
     protocol::Status,
@@ -228,6 +230,12 @@ impl Device {
         self.receiver.deadline(last, self.rx).min(framing)
     }
 
+    /// Whether it ever drives the line.
+    #[must_use]
+    pub const fn answers(&self) -> bool {
+        matches!(self.framing, Framing::Framed(_))
+    }
+
     /// What this controller does to the line in cycle [`Self::now`]: its TX where it drives, `None`
     /// where it does not.
     #[must_use]
@@ -240,7 +248,9 @@ impl Device {
     /// line, while others keep the line at `line`; [`Instant::NEVER`] if it will not.
     #[must_use]
     pub fn next_driven(&self, line: bool) -> Instant {
-        let Framing::Framed(_) = self.framing else { return Instant::NEVER };
+        if !self.answers() {
+            return Instant::NEVER;
+        }
         let (levels, next) = self.drive.ahead(self.now);
         let last = Instant(self.now.0.saturating_sub(1));
         let heard = self.receiver.deadline(last, line || Levels(levels).has(Levels::DE));
@@ -267,8 +277,8 @@ impl Device {
     }
 
     /// Runs until cycle `until` is the next, as fast as the edges allow, while the line stays at
-    /// `line`; with [`Instant::NEVER`], until nothing can change any more ([`Self::settle`] then tells
-    /// when that was). Stops early where the sink asks for a pause.
+    /// `line`; with [`Instant::NEVER`], until nothing can change any more ([`Self::last_active`] then
+    /// tells when that was). Stops early where the sink asks for a pause.
     #[inline(always)]
     pub fn run(&mut self, line: bool, until: Instant, sink: &mut impl Sink) {
         if self.now < until && (line != self.line || self.now == Instant::RESET) {
@@ -294,10 +304,17 @@ impl Device {
         }
     }
 
-    /// At rest: takes back the cycles after the last one in which something happened.
-    pub fn settle(&mut self) {
+    /// The last cycle in which something happened, if every cycle that was clocked by itself had a
+    /// reason.
+    #[must_use]
+    pub fn last_active(&self) -> Instant {
+        self.last.max(self.sequencer.last_active())
+    }
+
+    /// At rest: the cycle that the next call of [`Self::clock`] is becomes `now`. Otherwise nothing.
+    pub fn settle(&mut self, now: Instant) {
         if self.at_rest() {
-            self.now = self.last.max(self.sequencer.last_active()).next();
+            self.now = now;
         }
     }
 

@@ -51,6 +51,22 @@ impl Cosine {
         (t < self.ramp_s).then(|| PI * t / self.ramp_s)
     }
 
+    /// When the curve is at `place`, in s; `place` in steps without sign, 0 to all.
+    pub(super) fn time_s(&self, place: f64) -> f64 {
+        let left = self.halves.count() - place;
+        if place <= left { self.climb_s(place) } else { self.halves.duration_s - self.climb_s(left) }
+    }
+
+    /// When the first half is at `place`: the phase solves x - sin(x) = pi*place/(steps of the ramp).
+    fn climb_s(&self, place: f64) -> f64 {
+        let ramp_steps = self.top_speed * self.ramp_s / 2.0;
+        if place >= ramp_steps {
+            self.ramp_s / 2.0 + place / self.top_speed
+        } else {
+            self.ramp_s * phase_at(PI * place / ramp_steps) / PI
+        }
+    }
+
     /// s(t) of the first half, in steps without sign.
     fn first_half(&self, t: f64) -> f64 {
         match self.phase(t) {
@@ -97,6 +113,27 @@ impl Curve for Cosine {
             Peaks { speed, acceleration: 0.0, jump: 0.0 }
         }
     }
+}
+
+/// Newton's steps after which a phase has all its digits; two or three do.
+const MOST_NEWTON_STEPS: u32 = 10;
+
+/// The x of 0..=pi with x - sin(x) = `level`.
+fn phase_at(level: f64) -> f64 {
+    // The series of the inverse is a little low; x - sin(x) rises and is convex, so from Newton's
+    // first step on all are above the root and fall towards it.
+    let root = libm::cbrt(6.0 * level);
+    let square = root * root;
+    let mut phase = root * (1.0 + square * (1.0 / 60.0 + square * (1.0 / 1400.0 + square / 25_200.0)));
+    for _ in 0..MOST_NEWTON_STEPS {
+        let half = libm::sin(phase / 2.0);
+        let correction = (minus_sine(phase) - level) / (2.0 * half * half);
+        if libm::fabs(correction) <= phase * f64::EPSILON {
+            break;
+        }
+        phase -= correction;
+    }
+    phase
 }
 
 /// x - sin(x) for x in 0..=pi, with all digits also where both nearly cancel.
@@ -158,6 +195,26 @@ mod tests {
                 assert_eq!(curve.position(9.0), steps as f64);
                 let middle = curve.position(end / 2.0) * 2.0 / steps as f64;
                 assert!((middle - 1.0).abs() < 1e-14, "{middle}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_curve_is_at_each_place_at_its_time() {
+        for (steps, ramp_s) in [(1, 0.15), (7, 0.05), (-6400, 0.15), (6401, 0.0), (1_000_000_000, 0.1)] {
+            let curve = Cosine::new(steps, 0.3, ramp_s);
+            let count = curve.halves.count();
+            for i in 0..=5000 {
+                let place = if i < 100 { 0.5 + f64::from(i) } else { count * f64::from(i) / 5000.0 };
+                let place = if place > count { count } else { place };
+                let t = curve.time_s(place);
+                // Within a cycle of 1 GHz, and the digits of the position.
+                let at = |t: f64| libm::fabs(curve.position(t));
+                let digits = count * 1e-15;
+                assert!(
+                    at(t - 1e-9) <= place + digits && at(t + 1e-9) >= place - digits,
+                    "{place} of {steps}"
+                );
             }
         }
     }

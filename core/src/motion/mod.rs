@@ -7,6 +7,7 @@
 //! ```text
 //! trapezoid        B2, exact:  / uniform \   every step where the curve crosses its half-integer
 //! trapezoid_table  B2, table:  / staircase \ whole pulse rates and a timer's whole reloads
+//! staircase        B3          _-_           rates that are each held for some steps
 //! cosine           B4, exact:  ( S-curve )   so many steps in so much time
 //! sine_segments    B5          \/\/          a sine as segments of fixed rate
 //! steady           B6          ---           constant rate, dwell
@@ -20,17 +21,22 @@ pub mod acceleration_table;
 mod asked;
 mod axis;
 pub mod cosine;
+mod due;
 mod mirrored;
 mod plan;
 mod polyline;
 mod profile;
 pub mod sine_segments;
+pub mod staircase;
+pub mod staircase_table;
 pub mod steady;
 mod step_times;
+mod stepped;
 pub mod trapezoid;
 pub mod trapezoid_table;
 
 pub use axis::{AxisPlan, PlannedMove};
+pub use due::DueStep;
 pub use plan::{plan, plan_axis};
 pub use profile::{Curve, Peaks, Profile};
 pub use step_times::StepTimes;

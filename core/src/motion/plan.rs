@@ -3,6 +3,8 @@
 //! A number is judged where it stands, with the path of its field; what only follows from several
 //! (a top speed, a table's length) is judged when the curve is made.
 
+mod staircase;
+
 use super::{
     AxisPlan, Curve, MOST_SPEED, Profile,
     acceleration_table::AccelerationTable,
@@ -99,6 +101,7 @@ fn plan_within(axis: &Axis, path: &str, left: &mut Left) -> Result<AxisPlan, Vec
 fn plan_move(asked: &mut Asked<'_>, given: &Move, path: &str, left: &mut Left) -> Option<Profile> {
     match given {
         Move::Trapezoid(given) => plan_trapezoid(asked, given, &format!("{path}.trapezoid"), left),
+        Move::Staircase(given) => staircase::plan(asked, given, &format!("{path}.staircase"), left),
         Move::Cosine(given) => plan_cosine(asked, given, &format!("{path}.cosine")),
         Move::SineSegments(given) => plan_sine(asked, given, &format!("{path}.sine_segments"), left),
         Move::Constant(given) => {
@@ -309,7 +312,7 @@ mod tests {
     #[test]
     fn axes_share_the_bounds_on_tables_and_segments() {
         let problems = |each: &str, axes: usize| {
-            let motion = Motion { axes: vec![axis(each); axes] };
+            let motion = Motion { axes: vec![axis(each); axes], ..Motion::default() };
             let found = super::plan(&motion).err().unwrap_or_default();
             found.iter().map(ToString::to_string).collect::<Vec<_>>()
         };

@@ -3,6 +3,7 @@
 use super::{
     cosine::Cosine,
     sine_segments::SineSegments,
+    staircase::Staircase,
     steady::{Constant, Dwell},
     trapezoid::Trapezoid,
     trapezoid_table::TrapezoidTable,
@@ -68,6 +69,8 @@ pub enum Profile {
     Trapezoid(Trapezoid),
     /// Uniform acceleration by table (B2).
     TrapezoidTable(TrapezoidTable),
+    /// Fixed length by a staircase of rates (B3).
+    Staircase(Staircase),
     /// Cosine S-curve (B4, `exact`).
     Cosine(Cosine),
     /// Sine by segments (B5).
@@ -83,6 +86,7 @@ macro_rules! each {
         match $profile {
             Profile::Trapezoid($curve) => $what,
             Profile::TrapezoidTable($curve) => $what,
+            Profile::Staircase($curve) => $what,
             Profile::Cosine($curve) => $what,
             Profile::SineSegments($curve) => $what,
             Profile::Constant($curve) => $what,

@@ -15,7 +15,7 @@
 
 use super::{
     Curve, Peaks,
-    polyline::{Folded, POINTS, breakpoints, cosine_at, fold},
+    polyline::{Folded, POINTS, QUARTER, breakpoints, cosine_at, fold},
     profile::greater,
     round_half_up,
 };
@@ -120,6 +120,42 @@ impl SineSegments {
     #[must_use]
     pub fn periods(&self) -> u32 {
         self.periods
+    }
+
+    /// Where each step falls due, in points of the angle from the start, and whether it goes to
+    /// the right.
+    pub(super) fn due_points(&self) -> impl Iterator<Item = (f64, bool)> + '_ {
+        let quarters = (0..self.periods).flat_map(|period| (0..4_u16).map(move |quarter| (period, quarter)));
+        quarters.flat_map(move |(period, quarter)| {
+            let origin = f64::from(period) * f64::from(POINTS);
+            let right = self.starts_right == (quarter >= 2);
+            (0..self.segments.len()).flat_map(move |index| {
+                // Every other quarter goes through the segments from the middle to the extreme.
+                let (mirrored, last) = (quarter % 2 == 1, self.segments.len() - 1);
+                let segment = self.segments.get(if mirrored { last - index } else { index });
+                let (near, far, steps) = segment.map_or((0, 0, 0), |s| (s.from, s.to, s.steps));
+                let (base, from, to) = match quarter {
+                    0 => (0, near, far),
+                    1 => (0, 2 * QUARTER - far, 2 * QUARTER - near),
+                    2 => (2 * QUARTER, near, far),
+                    _ => (2 * QUARTER, 2 * QUARTER - far, 2 * QUARTER - near),
+                };
+                let (from, to) = (origin + f64::from(base + from), origin + f64::from(base + to));
+                let each = (to - from) / steps as f64;
+                (0..steps).map(move |step| (from + (step as f64 + 0.5) * each, right))
+            })
+        })
+    }
+
+    /// Time of a point of the angle in s.
+    pub(super) fn point_s(&self) -> f64 {
+        self.period_s / f64::from(POINTS)
+    }
+
+    /// Steps of all periods, there and back.
+    #[must_use]
+    pub fn step_count(&self) -> u64 {
+        4 * self.amplitude * u64::from(self.periods)
     }
 
     /// Place within a period at `t`, and the segment there.

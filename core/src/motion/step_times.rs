@@ -65,7 +65,7 @@ impl Ramp {
 
 /// floor(cycles + 1/2), for times from 0 on, where truncation is the floor.
 #[inline]
-fn cycle(cycles: f64) -> u64 {
+pub(super) fn cycle(cycles: f64) -> u64 {
     (cycles + 0.5) as i64 as u64
 }
 
@@ -104,26 +104,23 @@ impl Trapezoid {
 
 impl StepTimes {
     #[inline]
-    fn climbing(&self, place: f64) -> u64 {
-        cycle(self.ramp.cycles(place))
+    fn climbing(&self, place: f64) -> f64 {
+        self.ramp.cycles(place)
     }
 
     #[inline]
-    fn steady(&self, place: f64) -> u64 {
-        cycle(self.plateau_zero + place * self.cycles_per_step)
+    fn steady(&self, place: f64) -> f64 {
+        self.plateau_zero + place * self.cycles_per_step
     }
 
     #[inline]
-    fn slowing(&self, place: f64) -> u64 {
-        cycle(self.end - self.ramp.cycles(self.count - place))
+    fn slowing(&self, place: f64) -> f64 {
+        self.end - self.ramp.cycles(self.count - place)
     }
-}
 
-impl Iterator for StepTimes {
-    type Item = u64;
-
+    /// Cycles until the next step, not rounded.
     #[inline]
-    fn next(&mut self) -> Option<u64> {
+    pub(super) fn next_unrounded(&mut self) -> Option<f64> {
         let place = self.place;
         let time = if place < self.ramp_end {
             self.climbing(place)
@@ -136,6 +133,15 @@ impl Iterator for StepTimes {
         };
         self.place = place + 1.0;
         Some(time)
+    }
+}
+
+impl Iterator for StepTimes {
+    type Item = u64;
+
+    #[inline]
+    fn next(&mut self) -> Option<u64> {
+        self.next_unrounded().map(cycle)
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {

@@ -6,20 +6,16 @@
 //!
 //! ```text
 //! rate |      _______
-//!      |    _|       |_        position   k - 1/2 at step k, straight between; B1's R of it
-//!      |  _|           |_                 counts the steps. 0 at the start, n at the end, so the
-//!      |_|               |_               first interval climbs half a step and the last half
-//!       ^ ^ ^^^^^^^^^^^ ^ ^ steps         step comes with the last pulse.
+//!      |    _|       |_
+//!      |  _|           |_
+//!      |_|               |_
+//!       ^ ^ ^^^^^^^^^^^ ^ ^ steps
 //! ```
 //!
 //! Only the ramp is kept, as sums of reloads: integers up to the last division by `timer_hz`.
 
-use super::{Curve, Peaks, acceleration_table::AccelerationTable, profile::greater};
+use super::{Curve, Peaks, acceleration_table::AccelerationTable, profile::greater, stepped};
 use alloc::vec::Vec;
-
-/// How far past a step's place the curve stands at the very time of the step, in steps. With it
-/// R counts the step at its own time to the left as well as to the right.
-const PAST_THE_STEP: f64 = 1.0 / 1_048_576.0;
 
 /// A trapezoid by acceleration table.
 #[derive(Clone, Debug, PartialEq)]
@@ -125,6 +121,14 @@ impl TrapezoidTable {
         }
     }
 
+    /// Cycles of a clock of `clock_hz` from the start to step `k`, in whole numbers but for the
+    /// fraction of a cycle.
+    pub(super) fn step_cycles(&self, k: u64, clock_hz: u32) -> f64 {
+        let timer_hz = u128::from(self.table.timer_hz().max(1));
+        let product = u128::from(self.step_ticks(k)) * u128::from(clock_hz);
+        (product / timer_hz) as f64 + (product % timer_hz) as f64 / timer_hz as f64
+    }
+
     /// Time of step `k` in s, rounded once.
     fn step_s(&self, k: u64) -> f64 {
         self.step_ticks(k) as f64 / f64::from(self.table.timer_hz())
@@ -145,14 +149,7 @@ impl TrapezoidTable {
             let left = all.saturating_sub(ticks);
             count - first_from(&self.sums, left, count.saturating_sub(near) as usize) as u64
         };
-        let mut fallen = if guess > count { count } else { guess };
-        while fallen > 0 && self.step_s(fallen) > t {
-            fallen -= 1;
-        }
-        while fallen < count && self.step_s(fallen + 1) <= t {
-            fallen += 1;
-        }
-        fallen
+        stepped::fallen(t, guess, count, |k| self.step_s(k))
     }
 
     /// Steps due by `t`, as B1's rounding of the position gives them, looked for from those that
@@ -223,18 +220,7 @@ impl Curve for TrapezoidTable {
     }
 
     fn position(&self, t: f64) -> f64 {
-        let fallen = self.fallen(t, 0);
-        if fallen >= self.count() || t <= 0.0 {
-            return self.signed(fallen as f64);
-        }
-        let (from, to) = (self.step_s(fallen), self.step_s(fallen + 1));
-        let part = (t - from) / (to - from);
-        self.signed(if fallen == 0 {
-            // Half a step in the first interval, and short of it until the step falls.
-            part * (0.5 - PAST_THE_STEP)
-        } else {
-            fallen as f64 - 0.5 + PAST_THE_STEP + part * (1.0 - 2.0 * PAST_THE_STEP)
-        })
+        self.signed(stepped::position(t, self.fallen(t, 0), self.count(), |k| self.step_s(k)))
     }
 
     fn speed(&self, t: f64) -> f64 {

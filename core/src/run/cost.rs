@@ -9,6 +9,7 @@
 use super::orders::{Orders, job, pulses};
 use crate::{
     scenario::{Checked, Config, DirLine, Noise, Protocol, Pulses, Source, line_time},
+    segment::CheckedSegments,
     units::Cycles,
     wire::{Schedule, frame::REPLY_LEN},
 };
@@ -19,6 +20,8 @@ const MOST_FALLS_A_BYTE: u64 = 5;
 /// Where the last of them can be: the start of data bit 7.
 const LAST_FALL_BIT: u64 = 8;
 
+/// Bits of a byte that has just begun, rounded up.
+const BYTE_BITS: u64 = 10;
 /// Bits of a byte that has just begun and of the gap after it (45, A5), rounded up.
 const LONGEST_REST_BITS: u64 = 60;
 
@@ -68,6 +71,14 @@ impl Cost {
     }
 }
 
+impl Cost {
+    /// What a run of segments costs: nothing is sent.
+    pub(super) fn of_segments(segments: &CheckedSegments, run: Option<Cycles>) -> Self {
+        let end_cycle = run.map_or(segments.end().0 + 1, |Cycles(run)| run);
+        Self { records: segments.most_records().min(end_cycle), sends: 0, bytes: 0, end_cycle }
+    }
+}
+
 /// What goes over the line.
 struct Sends {
     count: u64,
@@ -109,7 +120,7 @@ impl Sends {
 }
 
 fn waits_for_replies(checked: &Checked, orders: &Orders) -> bool {
-    orders.config().protocol() == Protocol::Framed && !matches!(checked.source, Source::Line(_))
+    orders.config().protocol() == Protocol::Framed && checked.source.is_ticks()
 }
 
 /// Records of all ticks of one controller at most.
@@ -132,7 +143,7 @@ fn tick_records(checked: &Checked, orders: &Orders, schedule: &Schedule) -> u64 
 
 /// Whether each packet comes with its tick and is heard as it was sent.
 fn comes_as_ordered(checked: &Checked, config: &Config) -> bool {
-    !matches!(checked.source, Source::Line(_)) && is_faithful(checked, config)
+    checked.source.is_ticks() && is_faithful(checked, config)
 }
 
 fn is_faithful(checked: &Checked, config: &Config) -> bool {
@@ -177,8 +188,9 @@ fn records_of(config: &Config, pulses: u64) -> u64 {
     }
 }
 
-/// A cycle by which everything has been sent and what can follow it has passed: the tick that runs
-/// and those that wait, a reply, or a byte that a forced level began and the gap after it.
+/// A cycle by which everything has been sent and what can follow it has passed: a byte that is heard
+/// late (by a slow receiver, or begun by a forced level), the tick that runs and those that wait, or
+/// a reply and the gap.
 fn last_cycle(schedule: &Schedule, checked: &Checked, orders: &[Orders]) -> u64 {
     let last = schedule.len().checked_sub(1).and_then(|index| schedule.get(index));
     let clock_hz = orders.first().map_or(1, |first| first.config().clock_hz());
@@ -193,7 +205,8 @@ fn last_cycle(schedule: &Schedule, checked: &Checked, orders: &[Orders]) -> u64 
             most_ticks(checked, config, schedule).min(u64::from(config.queue_depth) + 1)
         };
         let reply = line_time(REPLY_LEN as u64, clock_hz, config.reply_baud);
-        (ticks * config.tick().0).max(LONGEST_REST_BITS * config.bit().0 + reply)
+        let late = if is_faithful(checked, config) { 0 } else { BYTE_BITS * config.bit().0 };
+        late + (ticks * config.tick().0).max(LONGEST_REST_BITS * config.bit().0 + reply)
     };
     sent.max(forced) + orders.iter().map(rest).max().unwrap_or(0) + 1
 }
@@ -224,6 +237,17 @@ mod tests {
             let config = config(1600, 100, receiver_baud).expect("holds");
             assert_eq!(hears(&config, 100), expected, "{receiver_baud}");
         }
+    }
+
+    #[test]
+    fn a_slow_receivers_tick_begins_after_the_byte_has_been_sent() {
+        // 10.4 cycles a bit are sent, 11 heard: the byte ends at 105 and is delivered there.
+        let json = r#"{"clock_hz":1000,"line":{"baud":96,"receiver_baud":94},
+            "bus":{"boot_cycles":0},"source":{"line":{"sends":[{"start_cycle":1,"bytes":"87"}]}}}"#;
+        let experiment = Experiment::from_json(json).expect("runs");
+        let run = experiment.run(&mut vec![]);
+        assert_eq!(run.cycles().0, 105 + 1 + 32_000 + 1);
+        assert!(run.cycles().0 <= experiment.cost().end_cycle);
     }
 
     #[test]

@@ -35,8 +35,15 @@ struct Station {
     collides: bool,
 }
 
+impl Station {
+    /// Whether it has not come to the end of the window, and has something to do there.
+    fn is_behind(&self, until: Instant) -> bool {
+        self.device.now() < until && !(until == Instant::NEVER && self.device.at_rest())
+    }
+}
+
 /// Takes what no one asked for.
-struct Ignored;
+pub(super) struct Ignored;
 
 impl Sink for Ignored {
     fn record(&mut self, _: Record) {}
@@ -78,11 +85,14 @@ impl Net {
             && self.line.is_over()
     }
 
-    /// First cycle that has not been run by all.
+    /// Whether all have run the cycles before `end`.
+    pub(super) fn has_reached(&self, end: Instant) -> bool {
+        self.start >= end
+    }
+
+    /// First cycle that nobody has run.
     pub(super) fn now(&self) -> Instant {
-        let device = self.stations.iter().map(|station| station.device.now()).max();
-        let host = self.host.as_ref().map(|host| host.last_active().next());
-        device.max(host.filter(|_| self.start > Instant::RESET)).unwrap_or(Instant::RESET)
+        self.stations.iter().map(|station| station.device.now()).max().unwrap_or(Instant::RESET)
     }
 
     /// Enters cycle `self.start`: what each hears in it, and what the host does.
@@ -130,30 +140,50 @@ impl Net {
     /// Runs to cycle `end`, or with [`Instant::NEVER`] until nothing can change any more, or until a
     /// sink asks for a pause.
     pub(super) fn run(&mut self, end: Instant, sinks: &mut [impl Sink]) {
+        let deaf = self.host.is_none() && !self.stations.iter().any(|station| station.device.answers());
         while self.until < end || self.start < self.until {
-            if self.start == self.until {
-                self.enter(sinks);
-                self.until = self.window(end);
-            }
-            for (index, station) in self.stations.iter_mut().enumerate() {
-                let Station { device, hears, .. } = station;
-                match sinks.get_mut(index) {
-                    Some(sink) => device.run(*hears, self.until, sink),
-                    None => device.run(*hears, self.until, &mut Ignored),
+            let done = match (&mut self.stations[..], &mut *sinks) {
+                ([station], [sink]) if deaf => {
+                    listen(&mut self.line, station, (&mut self.start, &mut self.until), end, sink)
                 }
-            }
-            let behind = |station: &Station| {
-                let rests = self.until == Instant::NEVER && station.device.at_rest();
-                station.device.now() < self.until && !rests
+                _ => self.run_window(end, sinks),
             };
-            if self.stations.iter().any(behind) {
-                return;
+            if !done {
+                break;
             }
+        }
+        if end == Instant::NEVER && self.is_over() {
+            self.settle();
+        }
+    }
+
+    /// Runs to the end of a window, which may have begun; false where a sink asked for a pause.
+    fn run_window(&mut self, end: Instant, sinks: &mut [impl Sink]) -> bool {
+        if self.start == self.until {
+            self.enter(sinks);
+            self.until = self.window(end);
+        }
+        for (index, station) in self.stations.iter_mut().enumerate() {
+            let Station { device, hears, .. } = station;
+            match sinks.get_mut(index) {
+                Some(sink) => device.run(*hears, self.until, sink),
+                None => device.run(*hears, self.until, &mut Ignored),
+            }
+        }
+        let behind = self.stations.iter().any(|station| station.is_behind(self.until));
+        if !behind {
             self.start = self.until;
         }
-        if self.until == Instant::NEVER {
-            self.stations.iter_mut().for_each(|station| station.device.settle());
-        }
+        !behind
+    }
+
+    /// At rest: the last cycle that was run is the last one in which something happened.
+    fn settle(&mut self) {
+        let device = self.stations.iter().map(|station| station.device.last_active()).max();
+        let host = self.host.as_ref().map(FramedHost::last_active);
+        let now = device.max(host).unwrap_or(Instant::RESET).next();
+        self.stations.iter_mut().for_each(|station| station.device.settle(now));
+        (self.start, self.until) = (now, Instant::NEVER);
     }
 
     /// One cycle.
@@ -169,6 +199,34 @@ impl Net {
         self.start = self.start.next();
         self.until = self.start;
     }
+}
+
+/// Runs the only controller of a raw line to cycle `end`, from window to window; false where the sink
+/// asked for a pause. It never drives the line, so a window is what the line stays the same for: the
+/// inner loop of a long run.
+fn listen(
+    line: &mut Line,
+    station: &mut Station,
+    (start, until): (&mut Instant, &mut Instant),
+    end: Instant,
+    sink: &mut impl Sink,
+) -> bool {
+    while *start < end {
+        if start == until {
+            if line.next_change() == *start {
+                line.change();
+            }
+            station.hears = line.heard(true);
+            let next = if line.is_over() { Instant::NEVER } else { line.next_change() };
+            *until = next.min(end);
+        }
+        station.device.run(station.hears, *until, sink);
+        if station.is_behind(*until) {
+            return false;
+        }
+        *start = *until;
+    }
+    true
 }
 
 /// Tells of a collision where it begins.

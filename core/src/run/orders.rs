@@ -4,10 +4,11 @@
 use crate::{
     motion::{self, AxisPlan},
     protocol::seal,
-    quantise::ticks,
+    quantise::{exact_segments, ticks},
     scenario::{
         Cause, Checked, Config, Controller, Forced, Motion, Problem, Protocol, Scenario, Source, line_time,
     },
+    segment::{CheckedSegments, PulseTimes},
     units::Instant,
     wire::{
         Schedule,
@@ -74,7 +75,7 @@ pub(super) fn plans(scenario: &Scenario) -> Result<Vec<Vec<AxisPlan>>, Vec<Probl
     };
     take(motion::plan(motion));
     for (index, controller) in scenario.controllers.iter().enumerate() {
-        let motion = Motion { axes: controller.axes.clone() };
+        let motion = Motion { axes: controller.axes.clone(), ..Motion::default() };
         take(motion::plan(&motion).map_err(|found| of_controller(index, found)));
     }
     if problems.is_empty() { Ok(plans) } else { Err(problems) }
@@ -122,6 +123,7 @@ fn ticks_of(
 ) -> Result<Vec<u8>, Vec<Problem>> {
     let further = index.checked_sub(1).and_then(|index| checked.further.get(index));
     Ok(match &checked.source {
+        source if !source.is_ticks() => Vec::new(),
         Source::Motion(_) if plans.is_empty() => Vec::new(),
         Source::Motion(_) => {
             let tick = config.tick().0;
@@ -132,8 +134,21 @@ fn ticks_of(
             let address = usize::from(config.packet_address().is_some());
             packets.iter().flat_map(|packet| packet.0.iter().copied().skip(address)).collect()
         }
-        Source::Line(_) => Vec::new(),
+        Source::Line(_) | Source::Segments(_) => Vec::new(),
     })
+}
+
+/// What the segment engine runs, where segments run the scenario.
+pub(super) fn segments(
+    checked: &Checked,
+    orders: &[Orders],
+) -> Result<Option<CheckedSegments>, Vec<Problem>> {
+    match (&checked.source, orders.first()) {
+        (Source::Motion(_), Some(Orders { config, plans, .. })) if checked.source.runs_segments() => {
+            exact_segments(plans, config.channels(), PulseTimes::from(config), config.clock_hz()).map(Some)
+        }
+        _ => Ok(checked.segments.clone()),
+    }
 }
 
 /// A framed job's last tick has no steps: that is how the host says that it was the last (A7).
@@ -219,13 +234,14 @@ pub(super) fn job(config: &Config, orders: &Rc<[u8]>) -> Job {
     }
 }
 
-/// The part of the line's time that is taken while all controllers move; `None` for a line script.
+/// The part of the line's time that is taken while all controllers move; `None` where no ticks are
+/// sent.
 ///
 /// # Errors
 /// Where it is more than 1, with the rate that would do.
 pub(super) fn line_load<'a>(checked: &'a Checked) -> Result<Option<f64>, Problem> {
     let Some(first) = checked.configs.first() else { return Ok(None) };
-    if matches!(checked.source, Source::Line(_)) {
+    if !checked.source.is_ticks() {
         return Ok(None);
     }
     let (clock_hz, tick) = (first.clock_hz(), first.tick().0);

@@ -9,6 +9,7 @@ use super::{
 };
 use crate::{
     protocol::MOST_TICKS,
+    segment::CheckedSegments,
     signal::MAX_CHANNELS,
     units::{Cycles, Instant},
 };
@@ -51,6 +52,8 @@ pub struct Checked {
     pub forced: Vec<Forced>,
     /// What the host sends; its motions are not judged yet.
     pub source: Source,
+    /// What the segment engine runs, where the source is segments.
+    pub segments: Option<CheckedSegments>,
     /// Length of the run, if it is given.
     pub run: Option<Cycles>,
 }
@@ -70,10 +73,16 @@ impl Scenario {
         }
         judge.length("title", self.title.chars().count(), 0, 120, "characters");
         judge.length("note", self.note.chars().count(), 0, 2000, "characters");
-        let config = judge.take(Config::new(self.clock_hz, &self.bus, &self.line));
+        let runs_segments = self.source.runs_segments();
+        let configure = if runs_segments { Config::of_segments } else { Config::new };
+        let config = judge.take(configure(self.clock_hz, &self.bus, &self.line));
         // Without a rate of its own the receiver has the host's, which is judged above.
-        if self.line.receiver_baud.is_some() {
+        if self.line.receiver_baud.is_some() && !runs_segments {
             judge.range("line.baud", self.line.baud, 1, self.clock_hz.max(1).into(), "baud");
+        }
+        if runs_segments && !self.controllers.is_empty() {
+            let detail = "segments run one controller by itself; take the others out, or choose ticks";
+            judge.add("controllers", Cause::Conflict { detail });
         }
         let further = self.further(config.as_ref(), &mut judge);
         self.host(&mut judge);
@@ -81,6 +90,7 @@ impl Scenario {
             judge.range("run_cycles", cycles, 1, END_OF_TIME, "cycles");
         }
         let forced = self.glitches(&mut judge);
+        let mut segments = None;
         match &self.source {
             Source::Motion(motion) => {
                 let most = usize::from(self.bus.channels).clamp(1, MAX_CHANNELS);
@@ -96,22 +106,23 @@ impl Scenario {
                 judge.length("source.packets.packets", total, 0, MOST_BYTES, "bytes");
             }
             Source::Line(script) => self.script(script, &mut judge),
+            Source::Segments(lists) => segments = judge.take(lists.check(&self.bus)),
         }
         self.analysis(&mut judge);
         if let Some(driver) = &self.driver {
             driver.judge(&mut judge);
         }
-        judge.end(()).and_then(|()| {
-            Ok(Checked {
-                configs: config.into_iter().chain(further).collect(),
-                further: self.controllers.clone(),
-                baud: self.line.baud,
-                host: self.line.host.clone(),
-                noise: self.line.noise.clone(),
-                forced,
-                source: self.source.clone(),
-                run: self.run_cycles.map(Cycles),
-            })
+        judge.end(()).map(|()| Checked {
+            configs: config.into_iter().chain(further).collect(),
+            further: self.controllers.clone(),
+            // Where nothing is sent it has not been judged.
+            baud: self.line.baud.max(1),
+            host: self.line.host.clone(),
+            noise: self.line.noise.clone(),
+            forced,
+            source: self.source.clone(),
+            segments,
+            run: self.run_cycles.map(Cycles),
         })
     }
 
@@ -137,8 +148,10 @@ impl Scenario {
     /// The further controllers' configurations.
     fn further(&self, first: Option<&Config>, judge: &mut Judge) -> Vec<Config> {
         judge.length("controllers", self.controllers.len(), 0, MOST_FURTHER, "further controllers");
-        if !self.controllers.is_empty() && self.line.protocol == Protocol::Raw && self.line.address.is_none()
-        {
+        // Who writes the line himself may also ask what several of one address do.
+        let scripted = matches!(self.source, Source::Line(_));
+        let nameless = self.line.protocol == Protocol::Raw && self.line.address.is_none();
+        if !self.controllers.is_empty() && nameless && !scripted {
             let detail =
                 "several controllers on a line need an address each; give the first one an address, 0 to 254";
             judge.add("line.address", Cause::Conflict { detail });
@@ -170,7 +183,9 @@ impl Scenario {
             }
             let mut before = self.controllers.iter().take(index).map(|controller| controller.address);
             let first_address = first.and_then(Config::address);
-            if first_address == Some(controller.address) || before.any(|other| other == controller.address) {
+            let same =
+                first_address == Some(controller.address) || before.any(|other| other == controller.address);
+            if same && !scripted {
                 judge.add(at("address"), Cause::SameAddress { address: controller.address });
             }
             self.orders(controller, &at, judge);
@@ -178,10 +193,14 @@ impl Scenario {
         let paced = self.line.protocol == Protocol::Raw && !matches!(self.source, Source::Line(_));
         if let Some(first) = first.filter(|_| paced && configs.len() == self.controllers.len()) {
             for (index, config) in configs.iter().enumerate() {
+                let at = |field: &str| format!("controllers[{index}].bus.{field}");
                 let (tick_cycles, first_cycles) = (config.tick().0, first.tick().0);
                 if tick_cycles != first_cycles {
-                    let path = format!("controllers[{index}].bus.step_period_cycles");
-                    judge.add(path, Cause::OtherTick { tick_cycles, first_cycles });
+                    judge.add(at("step_period_cycles"), Cause::OtherTick { tick_cycles, first_cycles });
+                }
+                let (channels, first_channels) = (config.channels(), first.channels());
+                if channels != first_channels {
+                    judge.add(at("channels"), Cause::OtherPackets { channels, first_channels });
                 }
             }
         }
@@ -223,7 +242,7 @@ impl Scenario {
         for (field, rate) in rates {
             judge.range(&format!("line.noise.{field}"), rate, 0, 1_000_000, "ppm");
         }
-        let hears_replies = self.line.protocol == Protocol::Framed && !matches!(self.source, Source::Line(_));
+        let hears_replies = self.line.protocol == Protocol::Framed && self.source.is_ticks();
         if hears_replies && self.line.receiver_baud.is_some() {
             let host = Line { receiver_baud: None, ..self.line.clone() };
             let problems = Config::new(self.clock_hz, &Default::default(), &host).err().unwrap_or_default();

@@ -24,7 +24,7 @@ macro_rules! plain {
         }
     )*};
 }
-plain!(u8, u16, u32, u64, String);
+plain!(u8, u16, u32, u64, i64, String);
 
 impl Compact for f64 {
     /// -0.0 equals 0.0, so it is written like it.
@@ -121,6 +121,8 @@ words! {
     super::DirLine { PerChannel = "per_channel", Common = "common", }
     super::Protocol { Raw = "raw", Framed = "framed", }
     super::Pulses { Simultaneous = "simultaneous", Staggered = "staggered", }
+    super::MotionEngine { Ticks = "ticks", Segments = "segments", }
+    super::ShortMove { Document = "document", TurnRound = "turn_round", }
     super::TrapezoidMethod { Table = "table", Exact = "exact", }
     super::DriverModel {
         A4988 = "a4988",

@@ -41,6 +41,19 @@ impl Config {
     /// # Errors
     /// Every problem, with paths as in a scenario (`bus.slots`, `line.receiver_baud`).
     pub fn new(clock_hz: u32, bus: &Bus, line: &Line) -> Result<Self, Vec<Problem>> {
+        Self::judged(clock_hz, bus, line, true)
+    }
+
+    /// Checks the part of a scenario whose bus is driven by segments (A8): there are no slots for
+    /// the pulses to fit in, and nothing is received.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn of_segments(clock_hz: u32, bus: &Bus, line: &Line) -> Result<Self, Vec<Problem>> {
+        Self::judged(clock_hz, bus, line, false)
+    }
+
+    fn judged(clock_hz: u32, bus: &Bus, line: &Line, has_ticks: bool) -> Result<Self, Vec<Problem>> {
         let mut judge = Judge::default();
         judge.range("clock_hz", clock_hz, LEAST_CLOCK_HZ, 1_000_000_000, "Hz");
         judge.range("bus.channels", bus.channels, 1, MAX_CHANNELS as u64, "");
@@ -54,11 +67,15 @@ impl Config {
             judge.range("line.address", address, 0, 254, "");
         }
         judge.range("bus.settle_cycles", bus.settle_cycles, 0, 1_000_000_000, "cycles");
-        pulses_fit(bus, &mut judge);
+        if has_ticks {
+            pulses_fit(bus, &mut judge);
+        }
         let baud = line.receiver_baud.unwrap_or(line.baud);
         let path = if line.receiver_baud.is_some() { "line.receiver_baud" } else { "line.baud" };
         let (bit_cycles, most_baud) = (bit_cycles(clock_hz, baud.max(1)), most_baud(clock_hz));
-        if baud == 0 {
+        if !has_ticks {
+            // No bit is heard.
+        } else if baud == 0 {
             judge.range(path, baud, 1, most_baud.max(1).into(), "baud");
         } else if bit_cycles < LEAST_BIT_CYCLES && u64::from(clock_hz) >= LEAST_CLOCK_HZ {
             judge.add(path, Cause::BitTooShort { bit_cycles, baud, clock_hz, most_baud });

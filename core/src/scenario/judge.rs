@@ -50,6 +50,10 @@ impl Judge {
         result.map_err(|problems| self.problems.extend(problems)).ok()
     }
 
+    pub(super) fn problems(self) -> Vec<Problem> {
+        self.problems
+    }
+
     pub(super) fn end<T>(self, value: T) -> Result<T, Vec<Problem>> {
         if self.problems.is_empty() { Ok(value) } else { Err(self.problems) }
     }

@@ -133,6 +133,10 @@ pub fn decode(fragment: &str) -> Result<Scenario, LinkError> {
     let text = part(fragment, "c").ok_or(LinkError::NoScenario)?;
     let (version, rest) = text.split_once('.').unwrap_or((&text, ""));
     let version: u64 = version.parse().map_err(|_| LinkError::Damaged)?;
+    if version == 0 {
+        // Versions count from 1: nobody wrote this.
+        return Err(LinkError::Damaged);
+    }
     if version > u64::from(VERSION) {
         return Err(LinkError::Newer { given: version, newest: VERSION });
     }
@@ -185,7 +189,7 @@ mod tests {
         Scenario {
             title: "Sixteen different channels".into(),
             bus: Bus { channels: 16, ..Bus::default() },
-            source: Source::Motion(Motion { axes: (0..16).map(axis).collect() }),
+            source: Source::Motion(Motion { axes: (0..16).map(axis).collect(), ..Motion::default() }),
             ..Scenario::default()
         }
     }
@@ -249,6 +253,7 @@ mod tests {
             ("c=99", LinkError::Newer { given: 99, newest: VERSION }),
             ("c=1.z.AAAA.00000000", LinkError::Damaged),
             ("c=x", LinkError::Damaged),
+            ("c=0.j.e30.0768f5dc", LinkError::Damaged),
             ("d=1", LinkError::NoScenario),
             ("", LinkError::NoScenario),
         ];

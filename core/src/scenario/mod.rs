@@ -22,6 +22,7 @@ pub mod presets;
 mod problem;
 mod quantity;
 mod read;
+mod segments;
 
 pub use check::{Checked, END_OF_TIME, Forced, line_time};
 pub use compact::Compact;
@@ -31,6 +32,7 @@ pub use drive::{Driver, DriverModel, TimingRules};
 pub use hex::Hex;
 pub use problem::{Cause, Problem};
 pub use quantity::{Acceleration, Direct, Distance, Mechanics, NoSuchUnit, Rotary, Screw, Speed, Wheel};
+pub use segments::{ChannelSegments, DwellSegment, Segment, SegmentLists, StepSegment};
 
 use alloc::{string::String, vec, vec::Vec};
 use compact::{choices, settings};
@@ -243,6 +245,8 @@ choices! {
         Packets(Packets) = "packets",
         /// Bytes at cycles: a recorded or hand-made line (DESIGN A9).
         Line(LineScript) = "line",
+        /// Nothing is sent: the peripheral runs lists of segments by itself (DESIGN A8).
+        Segments(SegmentLists) = "segments",
     }
 }
 
@@ -257,6 +261,33 @@ settings! {
     pub struct Motion {
         /// 1 to 16 axes, no more than `bus.channels`.
         pub axes: Vec<Axis> = vec![Axis::default()],
+        /// What runs it.
+        pub engine: MotionEngine = MotionEngine::Ticks,
+    }
+}
+
+/// What runs a motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MotionEngine {
+    /// The tick path: the host sends the steps of each tick (DESIGN A7, B7).
+    #[default]
+    Ticks,
+    /// The segment engine: each step at the cycle in which it falls due (DESIGN A8, B8).
+    Segments,
+}
+
+impl Source {
+    /// Whether the host sends ticks of it.
+    #[must_use]
+    pub const fn is_ticks(&self) -> bool {
+        !matches!(self, Self::Line(_)) && !self.runs_segments()
+    }
+
+    /// Whether segments run it, and not ticks.
+    #[must_use]
+    pub const fn runs_segments(&self) -> bool {
+        matches!(self, Self::Segments(_) | Self::Motion(Motion { engine: MotionEngine::Segments, .. }))
     }
 }
 
@@ -275,6 +306,8 @@ choices! {
     pub enum Move {
         /// Uniform acceleration by table (B2).
         Trapezoid(Trapezoid) = "trapezoid",
+        /// Fixed length by a staircase of rates (B3).
+        Staircase(Staircase) = "staircase",
         /// Cosine S-curve with exact distance and exact time (B4).
         Cosine(Cosine) = "cosine",
         /// Sine as segments of fixed rate (B5).
@@ -319,6 +352,35 @@ pub enum TrapezoidMethod {
     Table,
     /// Every step where the ideal curve crosses its half-integer (B1).
     Exact,
+}
+
+settings! {
+    /// Fixed length by a staircase of rates (B3, Zhang 2012).
+    pub struct Staircase {
+        /// How far, the document's L; negative is left.
+        pub distance: Distance = Distance::Steps(10_000.0),
+        /// Speed of the plateau, f_s; at or below the start speed that of the whole move.
+        pub top_speed: Speed = Speed::StepsPerSecond(5000.0),
+        /// Acceleration level 1 to 5: 1000 to 5000 steps/s^2.
+        pub level: u8 = 3,
+        /// What becomes of a move that is too short to reach its top speed.
+        pub short_move: ShortMove = ShortMove::Document,
+        /// First rate of the table, f_1.
+        pub start_speed: Speed = Speed::StepsPerSecond(1000.0),
+        /// The table ends with the first rate above this, f_max; no top speed may be above it.
+        pub max_speed: Speed = Speed::StepsPerSecond(20_000.0),
+    }
+}
+
+/// What becomes of a move that is too short to reach its top speed (B3).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ShortMove {
+    /// The document's: the whole move at the start speed.
+    #[default]
+    Document,
+    /// Up as many rows of the table as there is room for, and down again.
+    TurnRound,
 }
 
 settings! {

@@ -44,7 +44,9 @@ presets! {
     SONG => "song-2021-one-turn";
     SONG => "song-2021-plateau";
     SONOBE => "sonobe-2011-table";
+    SONOBE => "sonobe-2011-segments";
     ZHANG => "zhang-2012-fixed-length";
+    ZHANG => "zhang-2012-staircase";
     SINE => "sine-2022-d00054";
     SINE => "sine-2022-d0006";
     PATENT => "patent-2019-four-motors";

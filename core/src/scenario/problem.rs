@@ -1,6 +1,7 @@
 //! What can be wrong with a scenario: every problem with its path, what was given, what is
 //! allowed, and what to change.
 
+use crate::segment::{FRACTION_BITS, LAST_CYCLE, PulseTimes};
 use alloc::string::String;
 use core::fmt;
 
@@ -156,6 +157,13 @@ pub enum Cause {
         /// Start speed in steps/s.
         start: f64,
     },
+    /// A top speed above the table's greatest (B3).
+    TopAboveTable {
+        /// Top speed in steps/s.
+        top: f64,
+        /// Greatest speed of the table in steps/s.
+        most: f64,
+    },
     /// A rate that the table's timer cannot give (B2).
     TimerTooSlow {
         /// Rate in steps/s.
@@ -201,10 +209,43 @@ pub enum Cause {
         /// The highest rate that the receiver can hear with this clock.
         most_baud: u64,
     },
+    /// A segment of no steps (A8).
+    NoSegmentSteps,
+    /// An interval that a step of a segment uses is out of its range (A8).
+    SegmentInterval {
+        /// The first such step, from 0.
+        step: u32,
+        /// Its interval in 1/65536 cycle.
+        interval: i128,
+        /// What decides the least.
+        pulse: PulseTimes,
+    },
+    /// The time of a segment list leaves 64 bits (A8).
+    SegmentEnd {
+        /// Time after the segment, in 1/65536 cycle.
+        next: i128,
+    },
+    /// A step of a motion comes too soon after the one before (A8).
+    StepTooSoon {
+        /// The step, from 1.
+        step: u64,
+        /// Cycles after the step before, or after the start of the motion.
+        interval: u64,
+        /// What decides the least.
+        pulse: PulseTimes,
+    },
     /// Two controllers of one address.
     SameAddress {
         /// The address.
         address: u8,
+    },
+    /// Controllers of one raw line whose packets have different lengths: each consumes those for
+    /// others by its own (A5).
+    OtherPackets {
+        /// This one's channels.
+        channels: u8,
+        /// The first one's.
+        first_channels: u8,
     },
     /// Controllers that are paced together and have ticks of different lengths (A9).
     OtherTick {
@@ -227,6 +268,21 @@ pub enum Cause {
         /// Of what: `ticks`, `cycles`, `table rows`, …
         of: &'static str,
     },
+}
+
+/// The least interval of a pulse, and what it is made of.
+struct Least(PulseTimes);
+
+impl fmt::Display for Least {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let PulseTimes { width, setup, hold } = self.0;
+        let least = self.0.least_interval().0;
+        write!(
+            f,
+            "a pulse needs width {} + max(hold {} + setup {}, 1) = {least} cycles",
+            width.0, hold.0, setup.0
+        )
+    }
 }
 
 /// Prints a number without needless digits.
@@ -279,6 +335,7 @@ impl Cause {
                 | Self::Range { .. }
                 | Self::NotPowerOfTwo { .. }
                 | Self::NoSteps { .. }
+                | Self::NoSegmentSteps
         )
     }
 }
@@ -348,6 +405,12 @@ impl fmt::Display for Cause {
                 Short(*top),
                 Short(*start)
             ),
+            Self::TopAboveTable { top, most } => write!(
+                f,
+                "a top speed of {} steps/s is above the table's greatest of {} steps/s; give a lower top speed or a higher table",
+                Short(*top),
+                Short(*most)
+            ),
             Self::TimerTooSlow { rate, timer_hz } => write!(
                 f,
                 "a timer of {timer_hz} Hz cannot make {} steps/s; give a timer of at least that rate",
@@ -382,9 +445,35 @@ impl fmt::Display for Cause {
                     )
                 }
             }
+            Self::NoSegmentSteps => f.write_str("no steps; give a count of at least 1, or a dwell"),
+            Self::SegmentInterval { step, interval, pulse } => {
+                write!(f, "step {step} has an interval of {interval}/65536 cycles")?;
+                if *interval > u64::MAX.into() {
+                    write!(f, "; give at most {}", u64::MAX)
+                } else {
+                    let least = pulse.least_interval().0 << FRACTION_BITS;
+                    write!(f, ", {}; give at least {least}, or shorter times of the pulse", Least(*pulse))
+                }
+            }
+            Self::SegmentEnd { next } => write!(
+                f,
+                "ends at {next}/65536 cycles; give less time, at most {}/65536 (cycle {})",
+                u64::MAX,
+                LAST_CYCLE.0
+            ),
+            Self::StepTooSoon { step, interval, pulse } => write!(
+                f,
+                "step {step} comes {interval} cycles after {}, {}; slow the motion, or give shorter times of the pulse",
+                if *step == 1 { "the start" } else { "the one before" },
+                Least(*pulse)
+            ),
             Self::SameAddress { address } => {
                 write!(f, "another controller has address {address} already; give each its own, 0 to 254")
             }
+            Self::OtherPackets { channels, first_channels } => write!(
+                f,
+                "{channels} channels beside {first_channels} on the first controller; a raw packet has a byte a channel and no end mark, so all controllers of a raw line need as many: change one of them, or choose the framed protocol"
+            ),
             Self::OtherTick { tick_cycles, first_cycles } => write!(
                 f,
                 "ticks of {tick_cycles} cycles beside ticks of {first_cycles} on the first controller; paced packets need one length (slots x step period): change one of them, or choose the framed protocol"
@@ -398,6 +487,7 @@ impl fmt::Display for Cause {
                 match *of {
                     "table rows" => "give a higher acceleration or a lower top speed",
                     "moves" => "give fewer moves",
+                    "steps" => "give a shorter motion, or run it by ticks",
                     "sine segments" => "give a greater largest deviation or fewer sines",
                     _ => "give a shorter motion or longer ticks",
                 }

@@ -117,11 +117,12 @@ fn read(mut value: Value) -> (Scenario, Vec<Problem>) {
 /// serde's message without Rust's names for types.
 fn in_words(message: &str) -> String {
     const CHOICE: &str = "expected a map of one key that names the choice, such as {\"mm\": 250}";
-    const WORDS: [(&str, &str); 9] = [
+    const WORDS: [(&str, &str); 10] = [
         ("expected u8", "expected a whole number from 0 to 255"),
         ("expected u16", "expected a whole number from 0 to 65535"),
         ("expected u32", "expected a whole number from 0 to 4294967295"),
         ("expected u64", "expected a whole number from 0 on"),
+        ("expected i64", "expected a whole number"),
         ("expected f64", "expected a number"),
         ("expected struct ", "expected a map of names and values for "),
         ("expected map with a single key", CHOICE),
@@ -197,7 +198,7 @@ fn put_right(value: &mut Value, path: &[Step], list: &str) -> bool {
         (Step::Key(key), Value::Object(map)) => map.remove(key).is_some(),
         (Step::Index(index), Value::Array(entries)) => entries.get_mut(*index).is_some_and(|entry| {
             let default = match list {
-                "moves" => serde_json::json!({ "dwell": {} }),
+                "moves" | "segments" => serde_json::json!({ "dwell": {} }),
                 "packets" => Value::from(""),
                 _ => serde_json::json!({}),
             };

@@ -171,6 +171,7 @@ pub struct Deframer {
 }
 
 impl Clone for Deframer {
+    #[allow(clippy::needless_match, reason = "the decoder's state has no Clone of its own")]
     fn clone(&self) -> Self {
         let cobs = match self.cobs {
             DecoderState::Idle => DecoderState::Idle,

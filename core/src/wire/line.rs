@@ -79,10 +79,13 @@ impl Line {
 
     /// Whether no change is left that anyone hears while no controller sends.
     #[must_use]
+    #[inline(always)]
     pub fn is_over(&self) -> bool {
-        if self.passed == self.forced.len() {
-            return self.next == Instant::NEVER;
-        }
+        if self.passed == self.forced.len() { self.next == Instant::NEVER } else { self.stays() }
+    }
+
+    /// Whether what is left to be forced changes nothing.
+    fn stays(&self) -> bool {
         let (mut ahead, level) = (self.clone(), self.heard(true));
         while ahead.next != Instant::NEVER {
             ahead.change();

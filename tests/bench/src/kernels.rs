@@ -37,6 +37,18 @@ pub enum Kernel {
     VariedStored,
     /// The varied motion into a digest.
     VariedDigest,
+    /// The steady motion at a tenth of the rate, with one DIR line for all channels.
+    CommonDir,
+    /// The same with pulses one after another.
+    Staggered,
+    /// The steady motion over the framed protocol, with a host that waits for replies.
+    Framed,
+    /// The steady motion by lists of segments.
+    Segments,
+    /// A controller of 16 motors on an addressed line.
+    Motors16,
+    /// 32 such controllers on one line.
+    Motors512,
     /// The motion that is the same at every clock into a stored trace, at 16 MHz.
     Clock16,
     /// The same at 1 MHz.
@@ -72,13 +84,19 @@ pub struct Facts {
 
 impl Kernel {
     /// All kernels, each yardstick right before what is compared with it.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 19] = [
         Self::Write,
         Self::Copy,
         Self::Stored,
         Self::Digest,
         Self::VariedStored,
         Self::VariedDigest,
+        Self::CommonDir,
+        Self::Staggered,
+        Self::Framed,
+        Self::Segments,
+        Self::Motors16,
+        Self::Motors512,
         Self::Clock16,
         Self::Clock1,
         Self::Clock200,
@@ -115,6 +133,14 @@ impl Kernel {
             Self::Digest => Facts { name: "digest", in_browser: true, browser_aim: Some(0.6), ..run },
             Self::VariedStored => Facts { name: "varied_stored_trace", in_browser: true, ..run },
             Self::VariedDigest => Facts { name: "varied_digest", ..run },
+            Self::CommonDir => Facts { name: "common_dir", ..run },
+            Self::Staggered => Facts { name: "staggered", ..run },
+            Self::Framed => Facts { name: "framed", ..run },
+            Self::Segments => Facts { name: "segments", ..run },
+            Self::Motors16 => Facts { name: "motors_16", ..run },
+            Self::Motors512 => {
+                Facts { name: "motors_512", yardstick: Some(Self::Motors16), aim: Some(0.5), ..plain }
+            }
             Self::Clock16 => Facts { name: "clock_16_mhz", ..plain },
             Self::Clock1 => Facts { name: "clock_1_mhz", ..clock },
             Self::Clock200 => Facts { name: "clock_200_mhz", ..clock },
@@ -136,6 +162,12 @@ impl Kernel {
 pub struct Kernels {
     steady: Experiment,
     varied: Experiment,
+    common_dir: Experiment,
+    staggered: Experiment,
+    framed: Experiment,
+    segments: Experiment,
+    motors_16: Experiment,
+    motors_512: Experiment,
     clock_1: Experiment,
     clock_16: Experiment,
     clock_200: Experiment,
@@ -145,6 +177,8 @@ pub struct Kernels {
     source: Vec<Record>,
     /// What is written: room for the longest trace, every page of it touched before.
     target: Vec<Record>,
+    /// The same for each controller of a line.
+    targets: Vec<Vec<Record>>,
 }
 
 /// What a kernel makes in one call.
@@ -169,6 +203,12 @@ impl Kernels {
         Ok(Self {
             steady,
             varied,
+            common_dir: motions::common_dir()?,
+            staggered: motions::staggered()?,
+            framed: motions::framed()?,
+            segments: motions::segments()?,
+            motors_16: motions::motors(1)?,
+            motors_512: motions::motors(32)?,
             clock_1: motions::at_clock(1_000_000)?,
             clock_16: motions::at_clock(16_000_000)?,
             clock_200: motions::at_clock(200_000_000)?,
@@ -176,6 +216,7 @@ impl Kernels {
             ramp: Trapezoid::new(i64::from(STEPS), START_SPEED, TOP_SPEED, ACCELERATION),
             source,
             target: vec![Record { cycle: Instant::NEVER, levels: Levels::RESET }; most],
+            targets: vec![Vec::new(); 32],
         })
     }
 
@@ -190,6 +231,12 @@ impl Kernels {
             Kernel::VariedDigest => digest(&self.varied),
             Kernel::Stored => store(&self.steady, &mut self.target),
             Kernel::VariedStored => store(&self.varied, &mut self.target),
+            Kernel::CommonDir => store(&self.common_dir, &mut self.target),
+            Kernel::Staggered => store(&self.staggered, &mut self.target),
+            Kernel::Framed => store(&self.framed, &mut self.target),
+            Kernel::Segments => store(&self.segments, &mut self.target),
+            Kernel::Motors16 => store_each(&self.motors_16, &mut self.targets),
+            Kernel::Motors512 => store_each(&self.motors_512, &mut self.targets),
             Kernel::Clock1 => store(&self.clock_1, &mut self.target),
             Kernel::Clock16 => store(&self.clock_16, &mut self.target),
             Kernel::Clock200 => store(&self.clock_200, &mut self.target),
@@ -209,6 +256,9 @@ impl Kernels {
         let (units, edges) = match kernel {
             Kernel::Roots | Kernel::StepTimes => (u64::from(STEPS), None),
             Kernel::Write | Kernel::Copy => (result, None),
+            Kernel::Motors16 | Kernel::Motors512 => {
+                (result, Some(self.targets.iter().map(|trace| edges(trace)).sum()))
+            }
             Kernel::Digest => return self.work(Kernel::Stored),
             Kernel::VariedDigest => return self.work(Kernel::VariedStored),
             Kernel::Fast => (result, stored().map(|edges| edges * SHORT_RUNS)),
@@ -236,6 +286,14 @@ fn store(experiment: &Experiment, target: &mut Vec<Record>) -> u64 {
     target.clear();
     black_box(experiment).run(target);
     target.len() as u64
+}
+
+/// Every controller of a line into a trace of its own.
+fn store_each(experiment: &Experiment, targets: &mut [Vec<Record>]) -> u64 {
+    targets.iter_mut().for_each(Vec::clear);
+    let (used, _) = targets.split_at_mut(experiment.controllers().min(targets.len()));
+    black_box(experiment).run_each(used);
+    used.iter().map(|trace| trace.len() as u64).sum()
 }
 
 fn digest(experiment: &Experiment) -> u64 {
@@ -280,6 +338,24 @@ mod tests {
         assert_eq!((units, edges), (2_000_000 + line + 2, Some(32_000_000 + line + 16)));
         assert_eq!(kernels.work(Kernel::Copy).units, units);
         assert_eq!(kernels.work(Kernel::Write).units, units);
+    }
+
+    #[test]
+    fn every_mode_makes_the_steps_that_it_was_asked_for() {
+        let mut kernels = Kernels::new().unwrap();
+        let modes = [Kernel::CommonDir, Kernel::Staggered, Kernel::Framed, Kernel::Segments];
+        for (kernel, steps) in modes.into_iter().zip([100_000, 100_000, 1_000_000, 1_000_000]) {
+            kernels.call(kernel);
+            for channel in 0..16 {
+                let high = kernels.target.windows(2).filter(|pair| {
+                    let rose = pair[1].levels.0 & !pair[0].levels.0;
+                    rose >> channel & 1 == 1
+                });
+                assert_eq!(high.count(), steps, "{kernel:?} channel {channel}");
+            }
+        }
+        let [one, all] = [Kernel::Motors16, Kernel::Motors512].map(|kernel| kernels.work(kernel));
+        assert!(all.edges > one.edges.map(|edges| 32 * edges), "each hears the packets of all");
     }
 
     #[test]

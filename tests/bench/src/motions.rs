@@ -2,7 +2,10 @@
 
 use stepscope_core::{
     run::Experiment,
-    scenario::{Axis, Bus, Constant, Cosine, Distance, Line, Motion, Move, Problem, Scenario, Source, Speed},
+    scenario::{
+        Axis, Bus, ChannelSegments, Constant, Controller, Cosine, DirLine, Distance, Line, Motion, Move,
+        Problem, Protocol, Pulses, Scenario, Segment, SegmentLists, Source, Speed, StepSegment,
+    },
 };
 
 /// Sixteen channels, 100 slots of 10 us in a tick of 1 ms: at most 100 kHz a channel.
@@ -17,7 +20,7 @@ fn sixteen(axes: Vec<Axis>) -> Scenario {
             ..Bus::default()
         },
         line: Line { baud: 1_000_000, ..Line::default() },
-        source: Source::Motion(Motion { axes }),
+        source: Source::Motion(Motion { axes, ..Motion::default() }),
         ..Scenario::default()
     }
 }
@@ -38,7 +41,7 @@ fn four(clock_hz: u32, axes: Vec<Axis>) -> Scenario {
             ..Bus::default()
         },
         line: Line { baud: 50_000, ..Line::default() },
-        source: Source::Motion(Motion { axes }),
+        source: Source::Motion(Motion { axes, ..Motion::default() }),
         ..Scenario::default()
     }
 }
@@ -70,6 +73,82 @@ pub fn steady() -> Result<Experiment, Vec<Problem>> {
 pub fn varied() -> Result<Experiment, Vec<Problem>> {
     let axes = (0..16).map(|axis| s_curve(10.0 - 0.2 * f64::from(axis), 95_000.0 - 500.0 * f64::from(axis)));
     Experiment::new(&sixteen(axes.collect()))
+}
+
+/// Sixteen channels at 10 kHz each for 10 s in slots of 100 us: room for pulses that come after each
+/// other.
+fn roomy(bus: Bus) -> Result<Experiment, Vec<Problem>> {
+    let mut scenario = sixteen(vec![constant(1e5, 1e4); 16]);
+    let (channels, slots) = (scenario.bus.channels, scenario.bus.slots);
+    scenario.bus = Bus {
+        channels,
+        slots,
+        step_period_cycles: 1600,
+        pulse_width_cycles: 40,
+        dir_setup_cycles: 40,
+        ..bus
+    };
+    Experiment::new(&scenario)
+}
+
+/// With one DIR line for all channels.
+///
+/// # Errors
+/// None, as long as the scenario's rules stay as they are.
+pub fn common_dir() -> Result<Experiment, Vec<Problem>> {
+    roomy(Bus { dir_line: DirLine::Common, ..Bus::default() })
+}
+
+/// With pulses one after another.
+///
+/// # Errors
+/// None, as long as the scenario's rules stay as they are.
+pub fn staggered() -> Result<Experiment, Vec<Problem>> {
+    roomy(Bus { pulses: Pulses::Staggered, settle_cycles: 100, ..Bus::default() })
+}
+
+/// The steady motion over the framed protocol; the line is fast enough for frames and replies.
+///
+/// # Errors
+/// None, as long as the scenario's rules stay as they are.
+pub fn framed() -> Result<Experiment, Vec<Problem>> {
+    // Ticks of 1.5 ms: a tick's bytes, with their share of frames and replies, take more than 1 ms.
+    let mut scenario = sixteen(vec![constant(1e6, 1e5 * 160.0 / 240.0); 16]);
+    scenario.line = Line { baud: 1_400_000, protocol: Protocol::Framed, ..Line::default() };
+    scenario.line.host.ticks_a_frame = 32;
+    (scenario.bus.queue_depth, scenario.bus.step_period_cycles) = (64, 240);
+    Experiment::new(&scenario)
+}
+
+/// The steady motion by lists of segments.
+///
+/// # Errors
+/// None, as long as the scenario's rules stay as they are.
+pub fn segments() -> Result<Experiment, Vec<Problem>> {
+    let steps = StepSegment { count: 1_000_000, interval_q16: 160 << 16, ..StepSegment::default() };
+    let list = ChannelSegments { segments: vec![Segment::Steps(steps)], ..ChannelSegments::default() };
+    let mut scenario = sixteen(Vec::new());
+    scenario.source = Source::Segments(SegmentLists { channels: vec![list; 16] });
+    Experiment::new(&scenario)
+}
+
+/// So many controllers of 16 motors on one addressed line, each motor at 10 kHz for 0.5 s.
+///
+/// # Errors
+/// None up to 32, as long as the scenario's rules stay as they are.
+pub fn motors(controllers: u8) -> Result<Experiment, Vec<Problem>> {
+    let mut scenario = sixteen(vec![constant(5000.0, 1e4); 16]);
+    scenario.bus.step_period_cycles = 1600;
+    scenario.line.address = Some(0);
+    scenario.controllers = (1..controllers)
+        .map(|address| Controller {
+            address,
+            bus: scenario.bus.clone(),
+            axes: vec![constant(5000.0, 1e4); 16],
+            ..Controller::default()
+        })
+        .collect();
+    Experiment::new(&scenario)
 }
 
 /// Four S-curves of some 10 s, the same in time at every clock.

@@ -61,6 +61,15 @@ pub(super) enum Count {
     AllSlots,
 }
 
+impl Count {
+    pub(super) fn steps(self, config: &Config) -> u64 {
+        match self {
+            Count::Any(count) => count % (config.slots + 1),
+            Count::AllSlots => config.slots,
+        }
+    }
+}
+
 pub(super) fn piece() -> impl Strategy<Value = Piece> {
     let to = prop_oneof![6 => Just(To::Own), 1 => Just(To::All), 2 => (1..=255_u8).prop_map(To::Foreign)];
     let count = prop_oneof![
@@ -90,13 +99,8 @@ impl Piece {
             Piece::Noise(bytes) => return bytes.clone(),
             Piece::Packet { to, orders, too_many, missing } => (to, orders, too_many, missing),
         };
-        let mut counts: Vec<u64> = orders[..config.channels]
-            .iter()
-            .map(|(_, count)| match count {
-                Count::Any(count) => count % (config.slots + 1),
-                Count::AllSlots => config.slots,
-            })
-            .collect();
+        let mut counts: Vec<u64> =
+            orders[..config.channels].iter().map(|(_, count)| count.steps(config)).collect();
         if let Some((which, excess)) = too_many {
             counts[which.index(config.channels)] = (config.slots + excess).min(127);
         }

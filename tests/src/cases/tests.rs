@@ -6,59 +6,233 @@ use std::collections::BTreeMap;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 
+use super::lines::LONGEST_CONVERSATION;
 use super::*;
-use crate::oracle::{FRAMING, QUEUE_OVERFLOW, SHORT_PACKET, TOO_MANY_STEPS, byte_start, refused, run};
+use crate::oracle::segments::{Rule, Segment};
+use crate::oracle::{
+    BAD_SEQ, CRC, FRAMING, Heard, OVERLONG, QUEUE_OVERFLOW, Run, SHORT_PACKET, TOO_MANY_STEPS, UNDERRUN,
+    bits, byte_start, hear, kinds, refused, run, run_line, run_segments,
+};
 
-fn drawn(count: usize) -> Vec<(Config, Input)> {
+fn drawn<S: Strategy>(strategy: S, count: usize) -> Vec<S::Value> {
     let mut runner = TestRunner::deterministic();
-    (0..count).map(|_| cases(every_mode()).new_tree(&mut runner).expect("a case").current()).collect()
+    (0..count).map(|_| strategy.new_tree(&mut runner).expect("a case").current()).collect()
 }
 
-#[test]
-fn sends_neither_overlap_nor_start_before_cycle_1() {
-    for (config, input) in drawn(300) {
-        let mut free_from = 1;
-        for (start, bytes) in &input.sends {
-            assert!(*start >= free_from && !bytes.is_empty(), "{config:?} {input:?}");
-            let last = byte_start(&config, *start, bytes.len() as u64 - 1);
-            free_from = last + 10 * config.clock_hz / config.baud;
+/// How often something was reached.
+#[derive(Debug, Default)]
+struct Reached(BTreeMap<String, usize>);
+
+impl Reached {
+    fn count(&mut self, what: impl Into<String>) {
+        *self.0.entry(what.into()).or_default() += 1;
+    }
+
+    fn count_faults(&mut self, faults: u16) {
+        for (bit, name) in [
+            (FRAMING, "framing"),
+            (SHORT_PACKET, "short packet"),
+            (CRC, "check"),
+            (OVERLONG, "overlong"),
+            (QUEUE_OVERFLOW, "queue overflow"),
+            (TOO_MANY_STEPS, "too many steps"),
+            (BAD_SEQ, "bad seq"),
+            (UNDERRUN, "underrun"),
+        ] {
+            if faults & bit != 0 {
+                self.count(name);
+            }
         }
-        assert!(input.forced.iter().all(|(cycle, length, _)| *cycle >= 1 && *length >= 1));
-        assert!((1..=LONGEST_RUN).contains(&input.cycles));
+        if faults == 0 {
+            self.count("no fault");
+        }
+    }
+
+    fn count_mode(&mut self, config: &Config) {
+        let Config { spread, common_dir, staggered, .. } = config;
+        self.count(format!("ticks: spread {spread}, common {common_dir}, staggered {staggered}"));
+    }
+
+    /// So many things were reached, each at least so often.
+    fn check(&self, things: usize, least: usize) {
+        println!("{self:#?}");
+        assert_eq!(self.0.len(), things, "{self:#?}");
+        assert!(self.0.values().all(|&times| times >= least), "{self:#?}");
+    }
+}
+
+/// Sends neither overlap nor start before cycle 1.
+fn check_input(config: &Config, input: &Input, longest: u64) {
+    let mut free_from = 1;
+    for (start, bytes) in &input.sends {
+        assert!(*start >= free_from && !bytes.is_empty(), "{config:?} {input:?}");
+        let last = byte_start(config, *start, bytes.len() as u64 - 1);
+        free_from = last + 10 * config.clock_hz / config.baud;
+    }
+    assert!(input.forced.iter().all(|(cycle, length, _)| *cycle >= 1 && *length >= 1));
+    assert!((1..=longest).contains(&input.cycles));
+}
+
+/// The line's common words are common, and no two controllers have one address.
+fn check_line(line: &[Config]) {
+    assert!((1..=4).contains(&line.len()));
+    for (k, config) in line.iter().enumerate() {
+        assert_eq!((config.clock_hz, config.baud), (line[0].clock_hz, line[0].baud));
+        let own = config.address.unwrap_or(0);
+        assert!(own != 255 && line[..k].iter().all(|other| other.address != Some(own)), "{line:?}");
     }
 }
 
 #[test]
-fn the_cases_reach_every_mode_every_fault_and_both_sides_of_the_rules() {
-    let mut reached: BTreeMap<String, usize> = BTreeMap::new();
-    let mut count = |what: String| *reached.entry(what).or_default() += 1;
-    let cases = 600;
-    for (config, input) in drawn(cases) {
+fn raw_cases_reach_every_mode_every_fault_and_both_sides_of_the_rules() {
+    let mut reached = Reached::default();
+    let cases_drawn = 600;
+    for (config, input) in drawn(cases(every_mode()), cases_drawn) {
+        check_input(&config, &input, LONGEST_RUN);
         if refused(&config) {
-            count("refused".into());
+            reached.count("refused");
             continue;
         }
         let run = run(&config, &input);
-        for (fault, name) in [
-            (FRAMING, "framing"),
-            (SHORT_PACKET, "short packet"),
-            (QUEUE_OVERFLOW, "queue overflow"),
-            (TOO_MANY_STEPS, "too many steps"),
-        ] {
-            if run.faults & fault != 0 {
-                count(name.into());
-            }
-        }
-        if run.faults == 0 && run.ticks_done > 0 {
-            count("no fault".into());
+        if run.faults != 0 || run.ticks_done > 0 {
+            reached.count_faults(run.faults);
         }
         if run.ticks_done > 2 {
-            let Config { spread, common_dir, staggered, .. } = config;
-            count(format!("ticks: spread {spread}, common {common_dir}, staggered {staggered}"));
+            reached.count_mode(&config);
         }
     }
-    println!("{reached:#?}");
-    assert_eq!(reached.len(), 6 + 8, "{reached:#?}");
-    assert!(reached.values().all(|&times| times >= cases / 60), "{reached:#?}");
-    assert!(reached["refused"] < cases / 4, "{reached:#?}");
+    // Five faults or none, eight modes, refused.
+    reached.check(4 + 1 + 8 + 1, cases_drawn / 60);
+    assert!(reached.0["refused"] < cases_drawn / 4, "{reached:#?}");
+}
+
+#[test]
+fn raw_lines_move_several_controllers() {
+    let mut reached = Reached::default();
+    let lines = 200;
+    for (line, input) in drawn(raw_lines(every_mode()), lines) {
+        check_line(&line);
+        check_input(&line[0], &input, LONGEST_RUN);
+        if line.iter().any(refused) {
+            reached.count("refused");
+            continue;
+        }
+        let moved = run_line(&line, &input).iter().filter(|run| run.positions != [0; 16]).count();
+        reached.count(match (line.len(), moved) {
+            (1, _) => "a lone one",
+            (_, 2..) => "several moved",
+            (_, 1) => "one of several moved",
+            (_, _) => "none of several moved",
+        });
+    }
+    reached.check(5, lines / 20);
+    assert!(reached.0["refused"] < lines / 2, "{reached:#?}");
+}
+
+/// The levels of one signal, a cycle each.
+fn levels(run: &Run, bit: u32, cycles: u64) -> Vec<bool> {
+    let ends = run.trace.iter().skip(1).map(|(cycle, _)| *cycle).chain([cycles]);
+    let stretches = run.trace.iter().zip(ends);
+    stretches.flat_map(|((from, levels), to)| vec![levels >> bit & 1 == 1; (to - from) as usize]).collect()
+}
+
+#[test]
+fn framed_lines_reach_every_fault_reply_and_state() {
+    let mut reached = Reached::default();
+    let lines = 500;
+    let mut cycles = 0;
+    for (line, input) in drawn(framed_lines(every_mode()), lines) {
+        check_line(&line);
+        check_input(&line[0], &input, LONGEST_CONVERSATION);
+        if line.iter().any(refused) {
+            reached.count("refused");
+            continue;
+        }
+        reached.count(format!("{} controllers", line.len()));
+        cycles += input.cycles;
+        let runs = run_line(&line, &input);
+        for (config, run) in line.iter().zip(&runs) {
+            let de = levels(run, bits::DE, input.cycles);
+            reached.count_faults(run.faults);
+            reached.count(format!("{:?} in the end", run.state));
+            if run.ticks_done > 2 {
+                reached.count_mode(config);
+            }
+            if input.sends.iter().any(|(start, _)| de.get(*start as usize) == Some(&true)) {
+                reached.count("a send in a reply");
+            }
+            let replies = hear(config, &levels(run, bits::TX, input.cycles));
+            let said: Vec<u8> = replies
+                .into_iter()
+                .filter_map(|(_, heard)| if let Heard::Byte(byte) = heard { Some(byte) } else { None })
+                .collect();
+            for reason in 1..=7 {
+                if said.windows(2).any(|pair| pair == [kinds::NAK, reason]) {
+                    reached.count(format!("NAK {reason}"));
+                }
+            }
+            for kind in kinds::TICKS..=kinds::RESYNC {
+                if said.contains(&(kind | 0x80)) {
+                    reached.count(format!("ACK {kind}"));
+                }
+            }
+        }
+    }
+    println!("{cycles} cycles");
+    // Eight faults or none, four states, eight modes, seven reasons, six kinds, one to four controllers, a send in
+    // a reply.
+    assert!(reached.0.remove("refused").is_some_and(|times| times < lines / 4), "{reached:#?}");
+    reached.check(8 + 1 + 4 + 8 + 7 + 6 + 4 + 1, lines / 60);
+}
+
+#[test]
+fn controllers_of_one_address_answer_at_once() {
+    let mut reached = 0;
+    for (line, input) in drawn(framed_lines_of_one_address(every_mode()), 100) {
+        if line.iter().any(refused) {
+            continue;
+        }
+        let runs = run_line(&line, &input);
+        let driven: Vec<Vec<bool>> = runs.iter().map(|run| levels(run, bits::DE, input.cycles)).collect();
+        let at_once = |cycle: usize| driven.iter().filter(|de| de[cycle]).count();
+        reached += usize::from((0..input.cycles as usize).any(|cycle| at_once(cycle) > 1));
+    }
+    assert!(reached >= 20, "{reached}");
+}
+
+#[test]
+fn segment_lists_reach_every_rule_of_refusal_and_both_directions() {
+    let mut reached = Reached::default();
+    let lists_drawn = 2_000;
+    for SegmentCase { config, lists, cycles } in drawn(segment_lists(every_mode()), lists_drawn) {
+        assert!(!refused(&config) && lists.len() == config.channels);
+        match run_segments(&config, &lists, cycles) {
+            Err(refused) => reached.count(format!("{:?}", refused.rule)),
+            Ok(run) => {
+                reached.count("taken");
+                let level = |bit: u32| levels(&run, bit, cycles);
+                if level(bits::DIR).windows(2).filter(|pair| pair[0] != pair[1]).count() > 2 {
+                    reached.count("turns");
+                }
+                let least = (config.pulse_width + (config.dir_hold + config.dir_setup).max(1)) << 16;
+                let steps_at_least = |segment: &Segment| matches!(segment, Segment::Steps { interval, .. } if *interval == least);
+                if lists.iter().any(|(_, list)| list.iter().any(steps_at_least)) {
+                    reached.count("an interval as short as may be");
+                }
+                if lists.iter().any(|(_, list)| matches!(list.last(), Some(Segment::Dwell(_)))) {
+                    reached.count("a dwell last");
+                }
+            }
+        }
+    }
+    let rules = [
+        Rule::StartBeforeCycle1,
+        Rule::NoSteps,
+        Rule::ShortInterval,
+        Rule::IntervalLeavesU64,
+        Rule::NextLeavesU64,
+    ];
+    assert!(rules.iter().all(|rule| reached.0.contains_key(&format!("{rule:?}"))), "{reached:#?}");
+    reached.check(rules.len() + 4, lists_drawn / 100);
+    assert!(reached.0["taken"] > lists_drawn / 3, "{reached:#?}");
 }

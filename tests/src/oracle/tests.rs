@@ -4,9 +4,14 @@
 //! and is delivered 8 + 9*16 = 152 cycles after its start; the gap is 45*16 = 720. A tick is 4 slots of 10
 //! cycles.
 
+mod frames;
 mod line;
+mod orders;
 mod packets;
 mod pulses;
+mod replies;
+mod segments;
+mod stops;
 mod ticks;
 
 use super::*;
@@ -29,6 +34,7 @@ fn base() -> Config {
         common_dir: false,
         staggered: false,
         address: None,
+        framed: false,
     }
 }
 
@@ -59,4 +65,25 @@ fn rises(run: &Run, bit: u32) -> Vec<u64> {
 /// STEP rises of channel `channel`.
 fn steps(run: &Run, channel: u32) -> Vec<u64> {
     rises(run, bits::STEP + channel)
+}
+
+/// The levels of one signal, a cycle each.
+fn levels(run: &Run, bit: u32, cycles: u64) -> Vec<bool> {
+    let mut levels = Vec::new();
+    for (index, (from, record)) in run.trace.iter().enumerate() {
+        let to = run.trace.get(index + 1).map_or(cycles, |next| next.0);
+        levels.extend(vec![record >> bit & 1 == 1; (to - from) as usize]);
+    }
+    levels
+}
+
+/// The bytes that a controller's TX says.
+fn said(config: &Config, run: &Run, cycles: u64) -> Vec<u8> {
+    hear(config, &levels(run, bits::TX, cycles))
+        .into_iter()
+        .map(|(_, heard)| match heard {
+            Heard::Byte(byte) => byte,
+            Heard::FramingError => panic!("TX breaks off"),
+        })
+        .collect()
 }

@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 use stepscope_core::scenario::{
     Axis, Bus, Constant, Cosine, DirLine, Distance, Distribution, Dwell, Glitch, Hex, Line, LineScript,
-    Motion, Move, Packets, Pulses, Scenario, ScriptedSend, SineSegments, Source, Speed, Trapezoid,
-    TrapezoidMethod, line_time,
+    Motion, Move, Packets, Pulses, Scenario, ScriptedSend, ShortMove, SineSegments, Source, Speed, Staircase,
+    Trapezoid, TrapezoidMethod, line_time,
 };
 
 /// Scenarios of all three sources, of which nearly all run, for some ten thousand cycles.
@@ -76,7 +76,7 @@ fn source(peripheral: &Scenario) -> impl Strategy<Value = Source> + use<> {
     let channels = usize::from(peripheral.bus.channels);
     prop_oneof![
         2 => prop::collection::vec(axis(peripheral), 1..=channels.min(3))
-            .prop_map(|axes| Source::Motion(Motion { axes })),
+            .prop_map(|axes| Source::Motion(Motion { axes, ..Motion::default() })),
         2 => prop::collection::vec(packet(peripheral), 0..10)
             .prop_map(|packets| Source::Packets(Packets { packets })),
         3 => script(peripheral),
@@ -144,6 +144,19 @@ fn axis(peripheral: &Scenario) -> impl Strategy<Value = Axis> + use<> {
                     ),
                     method,
                     timer_hz: 1_000_000,
+                })
+            }
+        ),
+        (steps.clone(), 0.3..1.0_f64, 1..=5_u8, any::<bool>()).prop_map(
+            move |(steps, start, level, turns)| {
+                let top = rate.max(1.0);
+                Move::Staircase(Staircase {
+                    distance: Distance::Steps(steps),
+                    top_speed: speed(top),
+                    level,
+                    short_move: if turns { ShortMove::TurnRound } else { ShortMove::Document },
+                    start_speed: speed((top * start).max(1.0)),
+                    max_speed: speed(top),
                 })
             }
         ),

@@ -3,10 +3,11 @@
 use proptest::prelude::*;
 use stepscope_core::analysis::drivers::DRIVERS;
 use stepscope_core::scenario::{
-    Acceleration, Analysis, Axis, Bus, Constant, Controller, Cosine, DirLine, Direct, Distance, Distribution,
-    Driver, Dwell, Glitch, Hex, Host, Line, LineScript, Mechanics, Motion, Move, Noise, Packets, Protocol,
-    Pulses, Rotary, Scenario, Screw, ScriptedSend, SineSegments, Source, Speed, TimingRules, Trapezoid,
-    TrapezoidMethod, Wheel,
+    Acceleration, Analysis, Axis, Bus, ChannelSegments, Constant, Controller, Cosine, DirLine, Direct,
+    Distance, Distribution, Driver, Dwell, DwellSegment, Glitch, Hex, Host, Line, LineScript, Mechanics,
+    Motion, MotionEngine, Move, Noise, Packets, Protocol, Pulses, Rotary, Scenario, Screw, ScriptedSend,
+    Segment, SegmentLists, ShortMove, SineSegments, Source, Speed, Staircase, StepSegment, TimingRules,
+    Trapezoid, TrapezoidMethod, Wheel,
 };
 
 /// Any scenario of this version that JSON can carry: no number in it is infinite or none at all.
@@ -193,8 +194,19 @@ fn source() -> impl Strategy<Value = Source> {
     let hex = hex.prop_map(Hex);
     let send = (small_or_any(1), hex.clone(), prop::option::weighted(0.2, hex.clone()))
         .prop_map(|(start_cycle, bytes, frame)| ScriptedSend { start_cycle, bytes, frame });
+    let segment = prop_oneof![
+        3 => (small_or_any(1), small_or_any(16_000 << 16), small_or_any(0), small_or_any(1)).prop_map(
+            |(count, interval_q16, add_q16, dir)| Segment::Steps(StepSegment { count, interval_q16, add_q16, dir })
+        ),
+        1 => small_or_any(0).prop_map(|length_q16| Segment::Dwell(DwellSegment { length_q16 })),
+    ];
+    let list = (small_or_any(1), prop::collection::vec(segment, 0..5))
+        .prop_map(|(start_cycle, segments)| ChannelSegments { start_cycle, segments });
+    let engine = prop_oneof![Just(MotionEngine::Ticks), Just(MotionEngine::Segments)];
     prop_oneof![
-        4 => prop::collection::vec(axis(), 0..3).prop_map(|axes| Source::Motion(Motion { axes })),
+        4 => (prop::collection::vec(axis(), 0..3), engine)
+            .prop_map(|(axes, engine)| Source::Motion(Motion { axes, engine })),
+        1 => prop::collection::vec(list, 0..3).prop_map(|channels| Source::Segments(SegmentLists { channels })),
         1 => prop::collection::vec(hex, 0..20).prop_map(|packets| Source::Packets(Packets { packets })),
         1 => prop::collection::vec(send, 0..6).prop_map(|sends| Source::Line(LineScript { sends })),
     ]
@@ -261,6 +273,11 @@ fn one_move() -> impl Strategy<Value = Move> {
                     method,
                     timer_hz,
                 })
+            }),
+        (distance(9000.0), speed(5000.0), small_or_any(3), any::<bool>(), speed(1000.0), speed(20_000.0))
+            .prop_map(|(distance, top_speed, level, turns, start_speed, max_speed)| {
+                let short_move = if turns { ShortMove::TurnRound } else { ShortMove::Document };
+                Move::Staircase(Staircase { distance, top_speed, level, short_move, start_speed, max_speed })
             }),
         (distance(3200.0), number(0.4), number(0.2)).prop_map(|(distance, duration_s, ramp_s)| {
             Move::Cosine(Cosine { distance, duration_s, ramp_s })

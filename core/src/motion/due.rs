@@ -1,0 +1,74 @@
+//! When the steps of an axis fall due, one after another (DESIGN B1).
+//!
+//! ```text
+//! cycle = floor(t*clock_hz + 1/2)     t where s(t) = k - 1/2, or the time that a table gives
+//! ```
+//!
+//! A move's own times are formed in cycles from its start, those of a timer's table in whole
+//! numbers; to them comes the start of the move, and the sum is rounded once.
+
+use super::{AxisPlan, Curve, Profile, step_times::cycle};
+use alloc::boxed::Box;
+
+/// A step that is due.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DueStep {
+    /// Its cycle, from the motion's start on.
+    pub cycle: u64,
+    /// Whether it goes to the right.
+    pub right: bool,
+}
+
+/// Cycles from the start of a move, not rounded, and whether the step goes to the right.
+type Due<'p> = Box<dyn Iterator<Item = (f64, bool)> + 'p>;
+
+impl AxisPlan {
+    /// Steps of all moves, whichever way they go.
+    #[must_use]
+    pub fn step_count(&self) -> u64 {
+        self.moves().iter().fold(0, |sum: u64, planned| sum.saturating_add(step_count(&planned.profile)))
+    }
+
+    /// All steps in the order of their times, in cycles of a clock of `clock_hz`.
+    pub fn due_steps(&self, clock_hz: u32) -> impl Iterator<Item = DueStep> + '_ {
+        self.moves().iter().flat_map(move |planned| {
+            let start = planned.start_s * f64::from(clock_hz);
+            due(&planned.profile, clock_hz)
+                .map(move |(cycles, right)| DueStep { cycle: cycle(start + cycles), right })
+        })
+    }
+}
+
+fn step_count(profile: &Profile) -> u64 {
+    match profile {
+        Profile::SineSegments(sine) => sine.step_count(),
+        one_way => one_way.steps().unsigned_abs(),
+    }
+}
+
+fn due(profile: &Profile, clock_hz: u32) -> Due<'_> {
+    let clock = f64::from(clock_hz);
+    let (right, steps) = (profile.steps() >= 0, 1..=profile.steps().unsigned_abs());
+    // Where the curve crosses the half-integer of each step.
+    let places = steps.clone().map(|k| k as f64 - 0.5);
+    match profile {
+        Profile::Trapezoid(curve) => {
+            let mut times = curve.step_times(clock_hz);
+            Box::new(core::iter::from_fn(move || times.next_unrounded().map(|cycles| (cycles, right))))
+        }
+        Profile::TrapezoidTable(table) => {
+            Box::new(steps.map(move |k| (table.step_cycles(k, clock_hz), right)))
+        }
+        Profile::Staircase(staircase) => Box::new(steps.map(move |k| (staircase.step_s(k) * clock, right))),
+        Profile::Cosine(curve) => Box::new(places.map(move |place| (curve.time_s(place) * clock, right))),
+        Profile::SineSegments(sine) => {
+            let cycles_per_point = sine.point_s() * clock;
+            Box::new(sine.due_points().map(move |(point, right)| (point * cycles_per_point, right)))
+        }
+        Profile::Constant(constant) => {
+            let cycles_per_step = clock / libm::fabs(constant.speed(0.0));
+            Box::new(places.map(move |place| (place * cycles_per_step, right)))
+        }
+        Profile::Dwell(_) => Box::new(core::iter::empty()),
+    }
+}

@@ -1,0 +1,316 @@
+//! Segments: what a generator that runs a move by itself is given (DESIGN A8), and the rules that a
+//! list of them keeps.
+//!
+//! ```text
+//! next = start << 16                     48.16 fixed point: 1/65536 cycle
+//! each step   next += interval           STEP rises at next >> 16
+//!             interval += add
+//! dwell       next += dwell
+//! ```
+//!
+//! The intervals of a segment grow by one number from step to step, so its extremes are its first
+//! and its last interval, and its length is a sum in closed form: a segment of 2^32 steps is judged
+//! as quickly as one of one.
+
+use crate::{
+    signal::MAX_CHANNELS,
+    units::{Cycles, Instant},
+};
+use alloc::vec::Vec;
+
+/// Bits of an interval's fraction: all times of a segment are in 1/65536 cycle.
+pub const FRACTION_BITS: u32 = 16;
+/// The last cycle that 48.16 fixed point holds.
+pub const LAST_CYCLE: Instant = Instant(u64::MAX >> FRACTION_BITS);
+
+/// One segment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Segment {
+    /// Steps at intervals that grow by a constant.
+    Steps {
+        /// How many, at least one.
+        count: u32,
+        /// Time before the first step, in 1/65536 cycle.
+        interval: u64,
+        /// What each next interval is longer, in 1/65536 cycle.
+        add: i64,
+        /// Level of DIR: right is 1.
+        right: bool,
+    },
+    /// Standing still, in 1/65536 cycle; 0 is allowed.
+    Dwell(u64),
+}
+
+/// The segments of one channel, one after another.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SegmentList {
+    /// Where its time begins; cycle 1 or later.
+    pub start: Instant,
+    /// The segments in order.
+    pub segments: Vec<Segment>,
+}
+
+/// Times of a pulse and of DIR around it (DESIGN A7's W, D and H).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PulseTimes {
+    /// W: how long STEP is high.
+    pub width: Cycles,
+    /// D: from a change of DIR to the rise of STEP.
+    pub setup: Cycles,
+    /// H: from the fall of STEP to a change of DIR.
+    pub hold: Cycles,
+}
+
+impl PulseTimes {
+    /// W + max(H + D, 1): the least time from step to step.
+    #[must_use]
+    pub const fn least_interval(self) -> Cycles {
+        let around = self.hold.0.saturating_add(self.setup.0);
+        Cycles(self.width.0.saturating_add(if around == 0 { 1 } else { around }))
+    }
+}
+
+/// Why a list is refused (DESIGN A8).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refusal {
+    /// There is no such channel.
+    NoChannel,
+    /// Nothing starts before cycle 1, and 48.16 fixed point ends with [`LAST_CYCLE`].
+    Start,
+    /// A segment of no steps.
+    NoSteps,
+    /// An interval that a step uses is shorter than a pulse allows, or longer than 64 bits hold.
+    Interval {
+        /// The first such step, from 0.
+        step: u32,
+        /// Its interval in 1/65536 cycle.
+        interval: i128,
+    },
+    /// Its last step, or the end of its dwell, leaves 64 bits.
+    End {
+        /// `next` after it, in 1/65536 cycle.
+        next: i128,
+    },
+}
+
+/// A refusal and where it stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Refused {
+    /// Channel of the list.
+    pub channel: usize,
+    /// Index of the segment; `None` where the list itself is refused.
+    pub segment: Option<usize>,
+    /// Why.
+    pub refusal: Refusal,
+}
+
+/// The lists of all channels, channel i's at i.
+///
+/// Invariant: every rule of DESIGN A8 holds for pulses of `pulse`, so no time in them leaves u64 and
+/// no two pulses of a channel meet.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CheckedSegments {
+    pulse: PulseTimes,
+    lists: Vec<SegmentList>,
+    steps: u64,
+    turns: u64,
+    end: Instant,
+}
+
+impl CheckedSegments {
+    /// Judges the lists of channels 0, 1, ….
+    ///
+    /// # Errors
+    /// What is refused, at most `most` of it. Of a list whose time leaves 64 bits nothing after that
+    /// is judged; the time of a segment with a bad interval counts as none.
+    pub fn new(pulse: PulseTimes, lists: Vec<SegmentList>, most: usize) -> Result<Self, Vec<Refused>> {
+        let mut refused = Vec::new();
+        let mut all = Self { pulse, lists: Vec::new(), steps: 0, turns: 0, end: Instant::RESET };
+        for (channel, list) in lists.iter().enumerate() {
+            all.judge(list, &mut |segment, refusal| {
+                let refusal = if channel < MAX_CHANNELS { refusal } else { Refusal::NoChannel };
+                if refused.len() < most {
+                    refused.push(Refused { channel, segment, refusal });
+                }
+            });
+            if channel >= MAX_CHANNELS && refused.len() < most {
+                refused.push(Refused { channel, segment: None, refusal: Refusal::NoChannel });
+            }
+        }
+        all.lists = lists;
+        if refused.is_empty() { Ok(all) } else { Err(refused) }
+    }
+
+    /// Judges one list, and counts what it makes.
+    fn judge(&mut self, list: &SegmentList, refuse: &mut dyn FnMut(Option<usize>, Refusal)) {
+        if list.start == Instant::RESET || list.start > LAST_CYCLE {
+            return refuse(None, Refusal::Start);
+        }
+        let mut next = i128::from(list.start.0) << FRACTION_BITS;
+        let (mut level, mut last_step) = (false, None);
+        for (index, segment) in list.segments.iter().enumerate() {
+            match *segment {
+                Segment::Steps { count: 0, .. } => refuse(Some(index), Refusal::NoSteps),
+                Segment::Steps { count, interval, add, right } => {
+                    if let Some((step, interval)) = self.first_bad(count, interval, add) {
+                        refuse(Some(index), Refusal::Interval { step, interval });
+                        continue;
+                    }
+                    next += length(count, interval, add);
+                    last_step = Some(next);
+                    self.steps = self.steps.saturating_add(count.into());
+                    self.turns += u64::from(right != level);
+                    level = right;
+                }
+                Segment::Dwell(dwell) => next += i128::from(dwell),
+            }
+            if next > i128::from(u64::MAX) {
+                return refuse(Some(index), Refusal::End { next });
+            }
+        }
+        if let Some(last_step) = last_step {
+            let rise = Instant((last_step >> FRACTION_BITS) as u64);
+            self.end = self.end.max(rise + self.pulse.width);
+        }
+    }
+
+    /// The first step whose interval is too short or leaves u64, and the interval.
+    fn first_bad(&self, count: u32, interval: u64, add: i64) -> Option<(u32, i128)> {
+        let least = i128::from(self.pulse.least_interval().0) << FRACTION_BITS;
+        let most = i128::from(u64::MAX);
+        let at = |step: u32| i128::from(interval) + i128::from(step) * i128::from(add);
+        let is_bad = |step: u32| !(least..=most).contains(&at(step));
+        let (first, last) = (at(0), count.saturating_sub(1));
+        let step = if is_bad(0) {
+            0
+        } else if !is_bad(last) {
+            return None;
+        } else if add < 0 {
+            // The first k with first + k*add < least.
+            ((first - least) / -i128::from(add) + 1) as u32
+        } else {
+            ((most - first) / i128::from(add) + 1) as u32
+        };
+        Some((step, at(step)))
+    }
+
+    /// Times of the pulses.
+    #[must_use]
+    pub const fn pulse(&self) -> PulseTimes {
+        self.pulse
+    }
+
+    /// The lists, channel i's at i.
+    #[must_use]
+    pub fn lists(&self) -> &[SegmentList] {
+        &self.lists
+    }
+
+    /// Steps of all channels together.
+    #[must_use]
+    pub const fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// Records of a trace of all of it, at most: the first, two edges a step, and the changes of DIR.
+    #[must_use]
+    pub const fn most_records(&self) -> u64 {
+        self.steps.saturating_mul(2).saturating_add(self.turns).saturating_add(1)
+    }
+
+    /// Fall of the last pulse: the last cycle in which a signal changes, 0 where there is none.
+    #[must_use]
+    pub const fn end(&self) -> Instant {
+        self.end
+    }
+}
+
+/// Time of `count` steps: the sum of interval + k*add, k from 0.
+fn length(count: u32, interval: u64, add: i64) -> i128 {
+    let count = i128::from(count);
+    count * i128::from(interval) + i128::from(add) * (count * (count - 1) / 2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec;
+
+    const PULSE: PulseTimes = PulseTimes { width: Cycles(3), setup: Cycles(2), hold: Cycles(1) };
+    /// (W + max(H + D, 1)) << 16
+    const LEAST: u64 = 6 << 16;
+
+    fn steps(count: u32, interval: u64, add: i64) -> Segment {
+        Segment::Steps { count, interval, add, right: true }
+    }
+
+    fn refusals(start: u64, segments: Vec<Segment>) -> Vec<(Option<usize>, Refusal)> {
+        let list = SegmentList { start: Instant(start), segments };
+        let refused = CheckedSegments::new(PULSE, vec![list], 100).err().unwrap_or_default();
+        refused.into_iter().map(|refused| (refused.segment, refused.refusal)).collect()
+    }
+
+    #[test]
+    fn each_rule_is_held_to_its_last_number() {
+        let interval = |step, interval| Refusal::Interval { step, interval };
+        let least = i128::from(LEAST);
+        // start, segment, what is refused of it
+        let rows = [
+            (0, Segment::Dwell(0), Some((None, Refusal::Start))),
+            (LAST_CYCLE.0, Segment::Dwell(0xffff), None),
+            (LAST_CYCLE.0 + 1, Segment::Dwell(0), Some((None, Refusal::Start))),
+            (LAST_CYCLE.0, Segment::Dwell(0x1_0000), Some((Some(0), Refusal::End { next: 1 << 64 }))),
+            (1, steps(0, LEAST, 0), Some((Some(0), Refusal::NoSteps))),
+            (1, steps(1, LEAST, i64::MIN), None),
+            (1, steps(1, LEAST - 1, 0), Some((Some(0), interval(0, least - 1)))),
+            (1, steps(4, LEAST + 3, -1), None),
+            (1, steps(5, LEAST + 3, -1), Some((Some(0), interval(4, least - 1)))),
+            (1, steps(9, LEAST + 3, -2), Some((Some(0), interval(2, least - 1)))),
+            (1, steps(u32::MAX, LEAST, 0), None),
+            (1, steps(u32::MAX, LEAST + u64::from(u32::MAX) - 1, -1), None),
+            (
+                1,
+                steps(u32::MAX, LEAST + u64::from(u32::MAX) - 2, -1),
+                Some((Some(0), interval(u32::MAX - 1, least - 1))),
+            ),
+        ];
+        for (start, segment, expected) in rows {
+            assert_eq!(refusals(start, vec![segment]), Vec::from_iter(expected), "{start} {segment:?}");
+        }
+    }
+
+    #[test]
+    fn an_interval_and_a_time_that_leave_64_bits_are_told_apart() {
+        let most = i128::from(u64::MAX);
+        let found = refusals(1, vec![steps(2, u64::MAX - 0x10_0000, i64::MAX)]);
+        let interval = most - 0x10_0000 + i128::from(i64::MAX);
+        assert_eq!(found, [(Some(0), Refusal::Interval { step: 1, interval })]);
+        let found = refusals(1, vec![steps(2, u64::MAX - 0x10_0000, 0)]);
+        assert_eq!(found, [(Some(0), Refusal::End { next: 2 * (most - 0x10_0000) + 0x1_0000 })]);
+        // Two steps of half the time each, to the last 65536th.
+        let half = (u64::MAX - 0x1_0000) / 2;
+        assert_eq!(refusals(1, vec![steps(2, half, 0), Segment::Dwell(1)]), []);
+        let found = refusals(1, vec![steps(2, half, 0), Segment::Dwell(2), Segment::Dwell(5)]);
+        assert_eq!(found, [(Some(1), Refusal::End { next: most + 1 })]);
+        // The greatest numbers that there are.
+        let found = refusals(1, vec![steps(u32::MAX, u64::MAX, i64::MAX), steps(u32::MAX, 0, i64::MIN)]);
+        assert_eq!(found.len(), 2);
+    }
+
+    #[test]
+    fn what_a_run_makes_is_known_before() {
+        let turn = |right| Segment::Steps { count: 10, interval: LEAST, add: 0, right };
+        let list = |start, segments| SegmentList { start: Instant(start), segments };
+        let lists = vec![
+            list(5, vec![turn(false), turn(true), turn(true), Segment::Dwell(1 << 40)]),
+            list(1, vec![Segment::Dwell(7)]),
+            list(100, vec![turn(true)]),
+        ];
+        let lists = CheckedSegments::new(PULSE, lists, 100).unwrap();
+        assert_eq!((lists.steps(), lists.most_records()), (40, 1 + 80 + 2));
+        assert_eq!(lists.end(), Instant(5 + 30 * 6 + 3));
+        let many = vec![list(1, vec![]); 17];
+        let refused = CheckedSegments::new(PULSE, many, 100).unwrap_err();
+        assert_eq!(refused, [Refused { channel: 16, segment: None, refusal: Refusal::NoChannel }]);
+    }
+}

@@ -1,0 +1,160 @@
+//! The segment engine against DESIGN A8 written down as plainly as it goes: every edge of every
+//! channel into one list, sorted. And all ways through the engine against each other (DESIGN A2).
+#![cfg(not(target_arch = "wasm32"))]
+
+use proptest::prelude::*;
+use std::{collections::BTreeMap, rc::Rc};
+use stepscope_core::{
+    device::SegmentEngine,
+    segment::{CheckedSegments, PulseTimes, Segment, SegmentList},
+    signal::{Levels, Record, Sink},
+    units::{Cycles, Instant},
+};
+
+/// Bits of the signals that an engine never moves.
+const STILL: u64 = Levels::EN | Levels::RX | Levels::TX;
+
+/// Trace and positions of A8, step by step.
+fn model(pulse: PulseTimes, lists: &[SegmentList]) -> (Vec<Record>, [i32; 16]) {
+    // Which bits change in a cycle; a bit never changes twice in one.
+    let mut changes: BTreeMap<u64, u64> = BTreeMap::new();
+    let mut positions = [0; 16];
+    for (channel, list) in lists.iter().enumerate() {
+        let mut change = |cycle: u64, bit: usize| *changes.entry(cycle).or_default() ^= 1 << (bit + channel);
+        let mut next = list.start.0 << 16;
+        let mut level = false;
+        let mut last_fall = None;
+        for segment in &list.segments {
+            match *segment {
+                Segment::Dwell(dwell) => next += dwell,
+                Segment::Steps { count, mut interval, add, right } => {
+                    if right != level {
+                        let held = last_fall.map_or(0, |fall: u64| fall + pulse.hold.0);
+                        change((next >> 16).max(held), 16);
+                        level = right;
+                    }
+                    for _ in 0..count {
+                        next += interval;
+                        let fall = (next >> 16) + pulse.width.0;
+                        change(next >> 16, 0);
+                        change(fall, 0);
+                        last_fall = Some(fall);
+                        positions[channel] += if right { 1 } else { -1 };
+                        interval = interval.wrapping_add_signed(add);
+                    }
+                }
+            }
+        }
+    }
+    let mut levels = STILL;
+    let first = Record { cycle: Instant::RESET, levels: Levels::RESET };
+    let rest = changes.into_iter().map(|(cycle, bits)| {
+        levels ^= bits;
+        Record { cycle: Instant(cycle), levels: Levels(levels) }
+    });
+    (std::iter::once(first).chain(rest).collect(), positions)
+}
+
+/// Lists of some hundred steps, most of which keep the rules: intervals from the least on, whole
+/// cycles and fractions, growing and shrinking.
+fn lists() -> impl Strategy<Value = (PulseTimes, Vec<SegmentList>)> {
+    let cycles = |range| Strategy::prop_map(range, Cycles);
+    let pulse = (cycles(1..=6_u64), cycles(0..=4_u64), cycles(0..=4_u64))
+        .prop_map(|(width, setup, hold)| PulseTimes { width, setup, hold });
+    pulse.prop_flat_map(|pulse| {
+        let least = pulse.least_interval().0 << 16;
+        let fraction = prop_oneof![Just(0_u64), 0..0x1_0000_u64];
+        let spare = (prop_oneof![2 => Just(0), 2 => 0..3_u64, 1 => 0..400_u64], fraction.clone());
+        let steps = (1..=12_u32, spare, prop_oneof![Just(0), -0x4000..0x4000_i64, -0x4_0000..0x4_0000_i64]);
+        let steps = (steps, any::<bool>()).prop_map(move |((count, (whole, fraction), add), right)| {
+            // A shrinking interval is the least one at the end.
+            let room = if add < 0 { u64::from(count - 1) * add.unsigned_abs() } else { 0 };
+            Segment::Steps { count, interval: least + (whole << 16) + fraction + room, add, right }
+        });
+        let dwell =
+            (0..200_u64, fraction).prop_map(|(whole, fraction)| Segment::Dwell((whole << 16) + fraction));
+        let segments = prop::collection::vec(prop_oneof![3 => steps, 1 => dwell], 0..12);
+        let list = (1..60_u64, segments)
+            .prop_map(|(start, segments)| SegmentList { start: Instant(start), segments });
+        (Just(pulse), prop::collection::vec(list, 0..=16))
+    })
+}
+
+/// A sink that asks for a pause after so many records.
+struct Slice<'a>(&'a mut Vec<Record>, usize);
+
+impl Sink for Slice<'_> {
+    fn record(&mut self, record: Record) {
+        self.0.push(record);
+    }
+
+    fn paused(&self) -> bool {
+        self.0.len() >= self.1
+    }
+}
+
+proptest! {
+    #[test]
+    fn every_way_through_an_engine_gives_the_contracts_edges(
+        (pulse, lists) in lists(),
+        slice in 1..20_usize,
+        hurry in 0..=100_u64,
+        until in 1..3000_u64,
+    ) {
+        let (expected, positions) = model(pulse, &lists);
+        let lists = Rc::new(CheckedSegments::new(pulse, lists, 9).expect("they keep the rules"));
+        let end = expected.last().map_or(0, |record| record.cycle.0);
+        prop_assert_eq!(lists.end().0, end);
+        prop_assert!(lists.most_records() >= expected.len() as u64);
+        let done = |engine: &SegmentEngine| {
+            (engine.at_rest(), engine.quiet(), engine.now().0, engine.positions()) == (true, None, end + 1, positions)
+        };
+
+        let (mut fast, mut engine) = (Vec::new(), SegmentEngine::new(Rc::clone(&lists)));
+        engine.run(Instant::NEVER, &mut fast);
+        prop_assert_eq!(&fast, &expected);
+        prop_assert!(done(&engine), "{:?}", engine);
+
+        let (mut clocked, mut engine) = (Vec::new(), SegmentEngine::new(Rc::clone(&lists)));
+        let mut levels = Levels(0);
+        while !engine.at_rest() {
+            levels = engine.clock(&mut clocked);
+        }
+        prop_assert_eq!(&clocked, &expected);
+        prop_assert_eq!(Some(levels), expected.last().map(|record| record.levels));
+        prop_assert!(done(&engine), "{:?}", engine);
+
+        let (mut sliced, mut engine) = (Vec::new(), SegmentEngine::new(Rc::clone(&lists)));
+        while !engine.at_rest() {
+            let pause = sliced.len() + slice;
+            engine.run(Instant::NEVER, &mut Slice(&mut sliced, pause));
+        }
+        prop_assert_eq!(&sliced, &expected);
+        prop_assert!(done(&engine), "{:?}", engine);
+
+        let (mut skipped, mut engine) = (Vec::new(), SegmentEngine::new(Rc::clone(&lists)));
+        while let Some(quiet) = engine.quiet() {
+            engine.skip(Cycles(quiet.0 * hurry / 100));
+            engine.clock(&mut skipped);
+        }
+        prop_assert_eq!(&skipped, &expected);
+        prop_assert!(done(&engine), "{:?}", engine);
+
+        let (mut cut, mut engine) = (Vec::new(), SegmentEngine::new(Rc::clone(&lists)));
+        engine.run(Instant(until), &mut cut);
+        prop_assert_eq!(engine.now(), Instant(until));
+        prop_assert!(cut.iter().eq(expected.iter().filter(|record| record.cycle.0 < until)));
+        let cut_short = steps_before(&expected, until);
+        prop_assert_eq!(engine.positions(), cut_short, "positions count the edges so far");
+        engine.run(Instant::NEVER, &mut cut);
+        prop_assert_eq!(&cut, &expected);
+    }
+}
+
+/// Positions by the edges before a cycle (DESIGN A3).
+fn steps_before(trace: &[Record], cycle: u64) -> [i32; 16] {
+    std::array::from_fn(|channel| {
+        let steps = stepscope_core::trace::steps(trace, channel as u8);
+        steps.iter().rev().find(|step| step.cycle < cycle).map_or(0, |step| step.position)
+    })
+}

@@ -1,0 +1,93 @@
+//! What the fuzz targets check, as plain functions of bytes that panic where a property is broken. `cargo xtask fuzz`
+//! feeds them with libFuzzer's inputs; `tests/findings.rs` with all that was ever found, with the seeds and with chance.
+//!
+//! A new target is a module here, a line in `TARGETS` and a file in `fuzz/fuzz_targets/`. Its findings lie in
+//! `findings/<target>/`, a file each: see the README there.
+
+pub mod frames;
+pub mod line;
+pub mod link;
+pub mod scenario;
+
+use crate::golden::CASES;
+use std::{collections::BTreeSet, fs, io, path::PathBuf};
+use stepscope_core::scenario::{Scenario, presets::PRESETS};
+
+/// A fuzz target.
+#[derive(Clone, Copy, Debug)]
+pub struct Target {
+    /// Its name: of the binary in `fuzz/`, and of the folder in `findings/`.
+    pub name: &'static str,
+    /// Panics where a property is broken.
+    pub check: fn(&[u8]),
+    /// What an input stands for, in words that a person can use.
+    pub told: fn(&[u8]) -> String,
+    /// What fuzzing begins with, made from files of the repository; never empty.
+    pub seeds: fn() -> Vec<Vec<u8>>,
+    /// Whether its inputs hold JSON, so that a dictionary of a scenario's words helps.
+    pub is_json: bool,
+}
+
+/// All fuzz targets.
+pub const TARGETS: &[Target] = &[
+    Target { name: "line", check: line::check, told: line::told, seeds: line::seeds, is_json: false },
+    Target { name: "frames", check: frames::check, told: bytes, seeds: frames::seeds, is_json: false },
+    Target { name: "scenario", check: scenario::check, told: text, seeds: scenario::seeds, is_json: true },
+    Target { name: "link", check: link::check, told: text, seeds: link::seeds, is_json: true },
+];
+
+impl Target {
+    /// Inputs that once broke a property: name and bytes, in the order of their names.
+    ///
+    /// # Errors
+    /// If a file or the folder cannot be read; a target without a folder has no findings.
+    pub fn findings(&self) -> io::Result<Vec<(String, Vec<u8>)>> {
+        let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("findings").join(self.name);
+        if !folder.exists() {
+            return Ok(Vec::new());
+        }
+        let files = fs::read_dir(folder)?.map(|entry| {
+            let path = entry?.path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            Ok((name, fs::read(path)?))
+        });
+        let mut files = files.collect::<io::Result<Vec<_>>>()?;
+        files.sort();
+        Ok(files)
+    }
+
+    /// The words that its inputs are made of, such as `"channels"` with its quotation marks; empty where it has none.
+    #[must_use]
+    pub fn dictionary(&self) -> BTreeSet<String> {
+        if !self.is_json {
+            return BTreeSet::new();
+        }
+        // Quoted words, the texts for people left out: they are long.
+        let words = |text: &str| -> Vec<String> {
+            let quoted = text.split('"').skip(1).step_by(2);
+            quoted.filter(|word| word.len() < 24).map(|word| format!("\"{word}\"")).collect()
+        };
+        scenarios().flat_map(words).chain(words(&Scenario::default().to_json())).collect()
+    }
+}
+
+/// An input that is a stream of bytes.
+fn bytes(data: &[u8]) -> String {
+    format!("{data:02x?}")
+}
+
+/// An input that is a text.
+fn text(data: &[u8]) -> String {
+    String::from_utf8_lossy(data).into_owned()
+}
+
+/// JSON of the presets and the golden cases.
+fn scenarios() -> impl Iterator<Item = &'static str> {
+    let golden = CASES.iter().filter_map(|case| case.file("scenario.json"));
+    PRESETS.iter().map(|preset| preset.json).chain(golden)
+}
+
+/// The links that were published.
+fn links() -> impl Iterator<Item = &'static str> {
+    include_str!("../links/v1.txt").lines().filter_map(|line| line.split(' ').next())
+}

@@ -1,0 +1,70 @@
+//! Texts as share links (PAGE "Share link"): none makes the opener fail, and what opens is a scenario within the limits
+//! whose own link opens as the same scenario.
+
+use super::scenario::MOST_PROBLEMS;
+use crc::{CRC_32_ISO_HDLC, Crc};
+use data_encoding::BASE64URL_NOPAD;
+use stepscope_core::scenario::{
+    Compact, VERSION,
+    link::{LinkError, MOST_FRAGMENT_BYTES, MOST_JSON_BYTES, decode, encode},
+};
+
+/// Opens bytes as a link, as it stands and with its check put right, and as what a link with a good check holds.
+///
+/// # Panics
+/// Where a property is broken.
+pub fn check(data: &[u8]) {
+    if let Ok(text) = str::from_utf8(data) {
+        open(text);
+        if let Some((checked, _)) = text.strip_prefix("c=").and_then(|text| text.rsplit_once('.')) {
+            open(&with_check(checked));
+        }
+    }
+    open(&around('j', data));
+    open(&around('z', data));
+}
+
+/// The links that were published, and what they hold.
+#[must_use]
+pub fn seeds() -> Vec<Vec<u8>> {
+    let held = super::links().filter_map(payload);
+    super::links().map(|link| link.as_bytes().to_vec()).chain(held).collect()
+}
+
+/// What a link holds: a scenario's JSON, mostly deflated.
+pub(super) fn payload(link: &str) -> Option<Vec<u8>> {
+    BASE64URL_NOPAD.decode(link.split('.').nth(2)?.as_bytes()).ok()
+}
+
+/// A link with a good check around any payload.
+#[must_use]
+pub fn around(codec: char, payload: &[u8]) -> String {
+    with_check(&format!("{VERSION}.{codec}.{}", BASE64URL_NOPAD.encode(payload)))
+}
+
+fn with_check(text: &str) -> String {
+    format!("c={text}.{:08x}", Crc::<u32>::new(&CRC_32_ISO_HDLC).checksum(text.as_bytes()))
+}
+
+/// Opens a link: what comes out is a scenario within the limits, or a reason.
+///
+/// # Panics
+/// Where a property is broken.
+pub fn open(fragment: &str) {
+    match decode(fragment) {
+        Ok(scenario) => {
+            assert!(fragment.len() <= MOST_FRAGMENT_BYTES, "{} bytes", fragment.len());
+            assert!(scenario.compact().to_string().len() <= 2 * MOST_JSON_BYTES);
+            match encode(&scenario) {
+                Ok(link) => {
+                    let again = decode(&link);
+                    assert_eq!(again.as_ref(), Ok(&scenario), "{link}");
+                    assert_eq!(again.and_then(|again| encode(&again)).as_ref(), Ok(&link));
+                }
+                Err(error) => assert!(matches!(error, LinkError::TooLong { .. }), "{error:?}"),
+            }
+        }
+        Err(LinkError::Scenario(problems)) => assert!((1..=MOST_PROBLEMS).contains(&problems.len())),
+        Err(error) => assert!(!error.to_string().is_empty()),
+    }
+}

@@ -1,0 +1,91 @@
+//! A5: raw packets, committed byte by byte, the gap between them, and A9's paced host.
+
+use super::sequencer::Sequencer;
+use super::{Config, FRAMING, Heard, QUEUE_OVERFLOW, SHORT_PACKET, TOO_MANY_STEPS, bit_time};
+
+/// Raw host, paced (A9): "packet j starts at boot + 1 + j*M*Ts".
+///
+/// Whether the line can carry a packet in M*Ts cycles is the caller's affair.
+pub fn packets_schedule(config: &Config, packets: &[Vec<u8>]) -> Vec<(u64, Vec<u8>)> {
+    let mut schedule = Vec::new();
+    for (j, packet) in packets.iter().enumerate() {
+        let start = config.boot + 1 + j as u64 * config.slots * config.step_period;
+        schedule.push((start, packet.clone()));
+    }
+    schedule
+}
+
+/// What A5 keeps of the bytes heard so far.
+#[derive(Default)]
+pub(super) struct Packets {
+    /// A5's d, the cycle of the last delivery or framing error.
+    last_heard: Option<u64>,
+    partial: Vec<u8>,
+    ignoring: bool,
+}
+
+impl Packets {
+    /// The gap timer's part of `cycle`; returns the fault it sets, 0 for none.
+    pub(super) fn gap(&mut self, config: &Config, cycle: u64) -> u16 {
+        if self.last_heard.is_none_or(|d| cycle != d + 45 * bit_time(config) + 1) {
+            return 0;
+        }
+        self.ignoring = false;
+        if self.partial.is_empty() {
+            return 0;
+        }
+        self.partial.clear();
+        SHORT_PACKET
+    }
+
+    /// What the receiver delivers in `cycle`; returns the fault it sets, 0 for none.
+    ///
+    /// Reading: a framing error has a delivered byte's place in the order, after the gap timer; so in the cycle d +
+    /// 45*B + 1 a partial packet is SHORT_PACKET first, and then the error is FRAMING.
+    pub(super) fn hear(&mut self, config: &Config, heard: Heard, cycle: u64, device: &mut Sequencer) -> u16 {
+        self.last_heard = Some(cycle);
+        match heard {
+            Heard::FramingError => {
+                self.partial.clear();
+                self.ignoring = true;
+                FRAMING
+            }
+            Heard::Byte(_) if self.ignoring => 0,
+            Heard::Byte(byte) => {
+                self.partial.push(byte);
+                if self.partial.len() < config.channels + usize::from(config.address.is_some()) {
+                    return 0;
+                }
+                commit(config, &std::mem::take(&mut self.partial), cycle, device)
+            }
+        }
+    }
+}
+
+/// Judges a whole packet committed in cycle `p`; returns the fault it sets, 0 for none.
+fn commit(config: &Config, packet: &[u8], p: u64, device: &mut Sequencer) -> u16 {
+    let orders = match config.address {
+        None => packet,
+        Some(own) if packet[0] == own || packet[0] == 255 => &packet[1..],
+        Some(_) => return 0,
+    };
+    // Reading: "One with p < boot is dropped without a fault" holds whatever is in it, so boot is judged
+    // first.
+    if p < config.boot {
+        return 0;
+    }
+    // "dropped whole (fault TOO_MANY_STEPS, and no other)": judged before the queue.
+    if too_many_steps(config, orders) {
+        return TOO_MANY_STEPS;
+    }
+    if device.free(config) == 0 {
+        return QUEUE_OVERFLOW;
+    }
+    device.queue(orders);
+    0
+}
+
+/// Whether "a byte orders more steps than the tick has slots".
+pub(super) fn too_many_steps(config: &Config, orders: &[u8]) -> bool {
+    orders.iter().any(|order| u64::from(order & 0x7F) > config.slots)
+}

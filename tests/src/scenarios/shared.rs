@@ -1,0 +1,118 @@
+//! Scenarios of one to four controllers on a line, raw and framed, with and without noise: small
+//! enough that every cycle can be visited.
+
+use super::small;
+use proptest::prelude::*;
+use stepscope_core::scenario::{Controller, Hex, Host, Noise, Protocol, Scenario, ScriptedSend, Source};
+
+/// Scenarios of which nearly all run, for some ten thousand cycles to some hundred thousand.
+pub fn shared() -> impl Strategy<Value = Scenario> {
+    let further = prop::collection::vec((any::<u8>(), prop::option::weighted(0.3, 970..1_030_u32)), 0..4);
+    (small(), further, any::<bool>(), host(), noise(), any::<u64>()).prop_map(
+        |(scenario, further, framed, host, noise, choice)| {
+            let mut scenario = scenario;
+            let protocol = if framed { Protocol::Framed } else { Protocol::Raw };
+            let address = scenario.line.address.unwrap_or(254);
+            scenario.line.address = Some(address);
+            scenario.line.noise = noise;
+            scenario.line.host = host;
+            scenario.line.protocol = protocol;
+            // A faster clock and line under ticks of the same time: there is room for the packets of all,
+            // or for a frame's share.
+            let faster = if framed { 20 } else { 2 } * (1 + further.len() as u32);
+            scenario.clock_hz *= faster;
+            scenario.line.baud *= faster;
+            scenario.line.receiver_baud = scenario.line.receiver_baud.map(|baud| baud * faster);
+            scenario.bus.step_period_cycles *= faster;
+            scenario.bus.boot_cycles = scenario.bus.boot_cycles.min(2_000);
+            scenario.line.glitches.truncate(1);
+            if let Source::Packets(source) = &mut scenario.source {
+                for Hex(packet) in &mut source.packets {
+                    packet.truncate(usize::from(scenario.bus.channels));
+                    packet.resize(usize::from(scenario.bus.channels), 0);
+                    if protocol == Protocol::Raw {
+                        packet.insert(0, address);
+                    }
+                }
+            }
+            if let (Source::Line(script), Protocol::Framed) = (&mut scenario.source, protocol) {
+                script.sends.iter_mut().enumerate().for_each(|(index, send)| seal(send, index, address));
+                script.sends.truncate(1 + (choice % 4) as usize);
+            }
+            let controllers = further.into_iter().enumerate().map(|(index, (bits, off))| {
+                let mut bus = scenario.bus.clone();
+                if framed {
+                    bus.channels = 1 + bits % 3;
+                }
+                bus.queue_depth = 1 + bits / 64;
+                let (axes, packets) = orders(&scenario, index as u8, bus.channels);
+                let receiver_baud = off.map(|off| scenario.line.baud / 1_000 * off);
+                Controller { address: other_address(address, index), receiver_baud, bus, axes, packets }
+            });
+            scenario.controllers = controllers.collect();
+            scenario
+        },
+    )
+}
+
+/// The address of the `index`th further controller.
+fn other_address(first: u8, index: usize) -> u8 {
+    ((usize::from(first) + 1 + index) % 255) as u8
+}
+
+/// What a further controller does: as much as the first, on its own channels.
+fn orders(scenario: &Scenario, index: u8, channels: u8) -> (Vec<stepscope_core::scenario::Axis>, Vec<Hex>) {
+    let address = other_address(scenario.line.address.unwrap_or(0), index.into());
+    match &scenario.source {
+        Source::Motion(motion) => (motion.axes.iter().take(channels.into()).cloned().collect(), Vec::new()),
+        Source::Packets(source) => {
+            let own = |Hex(packet): &Hex| {
+                let skipped = usize::from(scenario.line.protocol == Protocol::Raw);
+                let mut orders: Vec<u8> = packet.iter().copied().skip(skipped).collect();
+                orders.resize(channels.into(), 0x81);
+                let address = (skipped == 1).then_some(address);
+                Hex(address.into_iter().chain(orders).collect())
+            };
+            (Vec::new(), source.packets.iter().map(own).collect())
+        }
+        _ => (Vec::new(), Vec::new()),
+    }
+}
+
+/// Makes a frame of what was to be sent: a kind by its number, and the bytes as ticks for TICKS.
+fn seal(send: &mut ScriptedSend, index: usize, address: u8) {
+    let Hex(bytes) = std::mem::take(&mut send.bytes);
+    let kind = [1, 1, 2, 5, 4, 3, 6, 9].get(index).copied().unwrap_or(4);
+    let mut frame = vec![if index % 5 == 4 { 255 } else { address }, kind];
+    if kind == 1 {
+        frame.extend([index as u8, 1]);
+        frame.extend(bytes);
+    }
+    send.frame = Some(Hex(frame));
+    send.start_cycle *= 20;
+}
+
+fn host() -> impl Strategy<Value = Host> {
+    (1..=32_u8, prop::option::weighted(0.2, 100..20_000_u32), 1..12_u8).prop_map(
+        |(ticks_a_frame, reply_timeout_cycles, attempts)| Host {
+            ticks_a_frame,
+            reply_timeout_cycles,
+            attempts,
+        },
+    )
+}
+
+fn noise() -> impl Strategy<Value = Noise> {
+    let rate = || prop_oneof![6 => Just(0), 1 => 1_000..40_000_u32];
+    (any::<u32>(), rate(), rate(), rate(), rate(), rate(), rate()).prop_map(
+        |(seed, flipped, lost, doubled, glitches, replies, deaths)| Noise {
+            seed,
+            flipped_bits_ppm: flipped / 20,
+            lost_bytes_ppm: lost,
+            doubled_bytes_ppm: doubled,
+            glitches_ppm: glitches,
+            lost_replies_ppm: replies,
+            deaths_ppm: deaths,
+        },
+    )
+}

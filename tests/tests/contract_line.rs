@@ -1,0 +1,234 @@
+//! DESIGN Part A, held edge by edge on shared lines and without a line: for random conversations with framed
+//! controllers, several raw controllers, and lists of segments the core gives, at every one of its speeds, what the
+//! independent model in [`stepscope_tests::oracle`] gives.
+#![cfg(not(target_arch = "wasm32"))]
+
+use proptest::{prelude::*, test_runner::FileFailurePersistence};
+use stepscope_core::{
+    protocol::State,
+    run::{Experiment, Run},
+    scenario::{
+        Bus, ChannelSegments, Controller, DirLine, Distribution, DwellSegment, Glitch, Hex, Line, LineScript,
+        Problem, Protocol, Pulses, Scenario, ScriptedSend, Segment, SegmentLists, Source, StepSegment,
+    },
+    signal::Record,
+};
+use stepscope_tests::{
+    cases::{SegmentCase, every_mode, framed_lines, framed_lines_of_one_address, raw_lines, segment_lists},
+    oracle,
+};
+
+/// Some seconds' worth of cases, or as many as PROPTEST_CASES says.
+fn cases(cases: u32) -> ProptestConfig {
+    let told = ProptestConfig::default();
+    ProptestConfig {
+        cases: if std::env::var_os("PROPTEST_CASES").is_some() { told.cases } else { cases },
+        failure_persistence: Some(Box::new(FileFailurePersistence::WithSource("regressions"))),
+        ..told
+    }
+}
+
+fn bus(config: &oracle::Config) -> Bus {
+    Bus {
+        channels: config.channels as u8,
+        slots: config.slots as u8,
+        step_period_cycles: config.step_period as u32,
+        pulse_width_cycles: config.pulse_width as u32,
+        dir_setup_cycles: config.dir_setup as u32,
+        dir_hold_cycles: config.dir_hold as u32,
+        distribution: if config.spread { Distribution::Spread } else { Distribution::Burst },
+        dir_line: if config.common_dir { DirLine::Common } else { DirLine::PerChannel },
+        pulses: if config.staggered { Pulses::Staggered } else { Pulses::Simultaneous },
+        settle_cycles: config.settle as u32,
+        queue_depth: config.queue_depth as u8,
+        boot_cycles: config.boot as u32,
+    }
+}
+
+/// The same line in the core's words.
+fn experiment(line: &[oracle::Config], input: &oracle::Input) -> Result<Experiment, Vec<Problem>> {
+    let (first, further) = (&line[0], &line[1..]);
+    let send = |(start, bytes): &(u64, Vec<u8>)| ScriptedSend {
+        start_cycle: *start,
+        bytes: Hex(bytes.clone()),
+        frame: None,
+    };
+    let glitch = |&(start_cycle, length_cycles, level): &(u64, u64, bool)| Glitch {
+        start_cycle,
+        length_cycles,
+        level: level.into(),
+    };
+    let controller = |config: &oracle::Config| Controller {
+        address: config.address.unwrap_or(0),
+        receiver_baud: Some(config.receiver_baud as u32),
+        bus: bus(config),
+        ..Controller::default()
+    };
+    Experiment::new(&Scenario {
+        clock_hz: first.clock_hz as u32,
+        bus: bus(first),
+        line: Line {
+            baud: first.baud as u32,
+            receiver_baud: Some(first.receiver_baud as u32),
+            address: first.address,
+            protocol: if first.framed { Protocol::Framed } else { Protocol::Raw },
+            glitches: input.forced.iter().map(glitch).collect(),
+            ..Line::default()
+        },
+        source: Source::Line(LineScript { sends: input.sends.iter().map(send).collect() }),
+        run_cycles: Some(input.cycles),
+        controllers: further.iter().map(controller).collect(),
+        ..Scenario::default()
+    })
+}
+
+/// What the core leaves behind, in the model's words; of a raw controller no status.
+fn outcomes(run: &Run, traces: &[Vec<Record>]) -> Vec<oracle::Run> {
+    let one = |(device, trace): (&stepscope_core::device::Device, &Vec<Record>)| {
+        let status = device.status();
+        oracle::Run {
+            trace: trace.iter().map(|record| (record.cycle.0, record.levels.0)).collect(),
+            positions: device.positions(),
+            faults: device.faults().bits(),
+            ticks_done: device.ticks_done(),
+            expected_seq: status.map_or(0, |status| status.expected_seq),
+            state: status.map_or(oracle::State::Busy, |status| match status.state {
+                State::Busy => oracle::State::Busy,
+                State::Ready => oracle::State::Ready,
+                State::Moving => oracle::State::Moving,
+                State::Stopped => oracle::State::Stopped,
+            }),
+            free: status.map_or(0, |status| status.free.into()),
+        }
+    };
+    run.devices().zip(traces).map(one).collect()
+}
+
+/// The outcomes are the same; where not, the first record that differs is named.
+fn same(speed: &str, core: &[oracle::Run], model: &[oracle::Run]) -> Result<(), TestCaseError> {
+    prop_assert_eq!(core.len(), model.len());
+    for (at, (core, model)) in core.iter().zip(model).enumerate() {
+        for index in 0..core.trace.len().max(model.trace.len()) {
+            let (core, model) = (core.trace.get(index), model.trace.get(index));
+            prop_assert!(
+                core == model,
+                "{speed}: controller {at}: record {index} is {} in the core and {} in the model",
+                show(core),
+                show(model)
+            );
+        }
+        prop_assert_eq!(core, model, "{}: controller {}", speed, at);
+    }
+    Ok(())
+}
+
+fn show(record: Option<&(u64, u64)>) -> String {
+    record.map_or("none".into(), |(cycle, levels)| format!("cycle {cycle} levels {levels:#011x}"))
+}
+
+fn compare(line: &[oracle::Config], input: &oracle::Input) -> Result<(), TestCaseError> {
+    let experiment = match experiment(line, input) {
+        Ok(experiment) => experiment,
+        Err(problems) => {
+            prop_assert!(line.iter().any(oracle::refused), "the core alone refuses: {problems:?}");
+            return Ok(());
+        }
+    };
+    prop_assert!(!line.iter().any(oracle::refused), "the core does not refuse");
+    let mut model = oracle::run_line(line, input);
+    if !line[0].framed {
+        // Raw controllers tell nothing of themselves.
+        for run in &mut model {
+            (run.state, run.free) = (oracle::State::Busy, 0);
+        }
+    }
+    let none = || vec![Vec::<Record>::new(); line.len()];
+    let mut traces = none();
+    let run = experiment.run_each_clock_by_clock(&mut traces);
+    same("clock by clock", &outcomes(&run, &traces), &model)?;
+    traces = none();
+    let run = experiment.run_each(&mut traces);
+    same("fast", &outcomes(&run, &traces), &model)?;
+    for records in [1, 7] {
+        traces = none();
+        let mut run = experiment.start();
+        while !run.advance_each(records, &mut traces) {}
+        same("in slices", &outcomes(&run, &traces), &model)?;
+    }
+    Ok(())
+}
+
+/// The lists in the core's words.
+fn segments(case: &SegmentCase) -> Result<Experiment, Vec<Problem>> {
+    let segment = |segment: &oracle::segments::Segment| match *segment {
+        oracle::segments::Segment::Steps { steps, interval, add, dir } => Segment::Steps(StepSegment {
+            count: steps,
+            interval_q16: interval,
+            add_q16: add,
+            dir: dir.into(),
+        }),
+        oracle::segments::Segment::Dwell(length_q16) => Segment::Dwell(DwellSegment { length_q16 }),
+    };
+    let channel = |(start, list): &(u64, Vec<oracle::segments::Segment>)| ChannelSegments {
+        start_cycle: *start,
+        segments: list.iter().map(segment).collect(),
+    };
+    Experiment::new(&Scenario {
+        clock_hz: case.config.clock_hz as u32,
+        bus: bus(&case.config),
+        source: Source::Segments(SegmentLists { channels: case.lists.iter().map(channel).collect() }),
+        run_cycles: Some(case.cycles),
+        ..Scenario::default()
+    })
+}
+
+proptest! {
+    #![proptest_config(cases(400))]
+
+    #[test]
+    fn framed_controllers_do_what_the_model_does((line, input) in framed_lines(every_mode())) {
+        compare(&line, &input)?;
+    }
+
+    #[test]
+    fn framed_controllers_of_one_address_do_what_the_model_does(
+        (line, input) in framed_lines_of_one_address(every_mode())
+    ) {
+        // A controller without an address has 0, and the further ones need one to be written down.
+        let line: Vec<_> = line
+            .into_iter()
+            .map(|config| oracle::Config { address: Some(config.address.unwrap_or(0)), ..config })
+            .collect();
+        compare(&line, &input)?;
+    }
+
+    #[test]
+    fn raw_controllers_on_one_line_do_what_the_model_does((line, input) in raw_lines(every_mode())) {
+        compare(&line, &input)?;
+    }
+
+    #[test]
+    fn segments_do_what_the_model_does(case in segment_lists(every_mode())) {
+        let model = oracle::segments::run_segments(&case.config, &case.lists, case.cycles);
+        let experiment = match segments(&case) {
+            Ok(experiment) => experiment,
+            Err(problems) => {
+                prop_assert!(model.is_err(), "the core alone refuses: {problems:?}");
+                return Ok(());
+            }
+        };
+        let model = model.map_err(|refused| TestCaseError::fail(format!("the model alone refuses: {refused:?}")))?;
+        type Way = fn(&Experiment, &mut Vec<Record>) -> Run;
+        let ways: [(&str, Way); 2] = [
+            ("clock by clock", |experiment, trace| experiment.run_clock_by_clock(trace)),
+            ("fast", |experiment, trace| experiment.run(trace)),
+        ];
+        for (speed, go) in ways {
+            let mut trace = Vec::new();
+            let run = go(&experiment, &mut trace);
+            let trace = trace.iter().map(|record| (record.cycle.0, record.levels.0)).collect();
+            let core = oracle::Run { trace, positions: run.positions(), ..oracle::Run::default() };
+            same(speed, &[core], std::slice::from_ref(&model))?;
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! What fuzzing found stays found: every input of `tests/findings/` goes through the check that it once broke, and with
+//! them the seeds and some inputs of chance, so that a check that breaks is seen without fuzzing.
+#![cfg(not(any(target_arch = "wasm32", target_os = "none")))]
+
+use proptest::{prelude::*, test_runner::FileFailurePersistence};
+use std::{fs, panic::catch_unwind, path::Path};
+use stepscope_tests::fuzzing::{TARGETS, Target};
+
+/// All inputs that break the target's check: name, and what they stand for.
+fn broken(target: &Target, inputs: impl IntoIterator<Item = (String, Vec<u8>)>) -> Vec<String> {
+    let breaks = |(name, bytes): (String, Vec<u8>)| {
+        let broken = catch_unwind(|| (target.check)(&bytes)).is_err();
+        broken.then(|| format!("{name}: {}", (target.told)(&bytes)))
+    };
+    inputs.into_iter().filter_map(breaks).collect()
+}
+
+#[test]
+fn no_finding_breaks_its_check_again() {
+    for target in TARGETS {
+        let findings = target.findings().expect("the findings can be read");
+        assert_eq!(broken(target, findings), [""; 0], "in tests/findings/{}", target.name);
+    }
+}
+
+#[test]
+fn every_seed_passes_and_there_are_some() {
+    for target in TARGETS {
+        let seeds = (target.seeds)();
+        assert!(seeds.len() > 5, "{} has {} seeds", target.name, seeds.len());
+        let named = seeds.into_iter().enumerate().map(|(index, bytes)| (index.to_string(), bytes));
+        assert_eq!(broken(target, named), [""; 0], "seeds of {}", target.name);
+        assert_eq!(target.is_json, target.dictionary().contains("\"channels\""), "{}", target.name);
+    }
+}
+
+/// libFuzzer runs what the table above says, and nothing else.
+#[test]
+fn each_target_is_a_binary_of_its_own() {
+    let fuzz = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fuzz");
+    let manifest = fs::read_to_string(fuzz.join("Cargo.toml")).expect("fuzz/Cargo.toml");
+    let names = manifest
+        .lines()
+        .skip_while(|line| *line != "[[bin]]")
+        .filter_map(|line| line.strip_prefix("name = ").map(|name| name.trim_matches('"').to_owned()));
+    let names: Vec<String> = names.collect();
+    assert_eq!(names, TARGETS.iter().map(|target| target.name).collect::<Vec<_>>());
+    for name in names {
+        let source = fs::read_to_string(fuzz.join(format!("fuzz_targets/{name}.rs"))).expect("its source");
+        assert!(source.contains(&format!("fuzzing::{name}::check(data)")), "{name}: {source}");
+    }
+}
+
+/// The seed with some of its bytes changed, as libFuzzer's first steps do.
+fn inputs() -> impl Strategy<Value = (usize, Vec<u8>)> {
+    let all: Vec<(usize, Vec<u8>)> = (0..TARGETS.len())
+        .flat_map(|target| (TARGETS[target].seeds)().into_iter().map(move |seed| (target, seed)))
+        .collect();
+    let changes = prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..8);
+    let near = (prop::sample::select(all), changes).prop_map(|((target, mut bytes), changes)| {
+        for (index, byte) in changes {
+            let at = index.index(bytes.len());
+            bytes[at] = byte;
+        }
+        (target, bytes)
+    });
+    prop_oneof![3 => near, 1 => (0..TARGETS.len(), prop::collection::vec(any::<u8>(), 0..600))]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: if std::env::var_os("PROPTEST_CASES").is_some() { ProptestConfig::default().cases } else { 1_000 },
+        failure_persistence: Some(Box::new(FileFailurePersistence::WithSource("regressions"))),
+        ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn no_input_of_chance_breaks_a_check((target, bytes) in inputs()) {
+        (TARGETS[target].check)(&bytes);
+    }
+}
