@@ -28,7 +28,9 @@ pub(crate) fn spectrum(
         field(&result, "pulses", &JsValue::NULL);
         let note = match &scenario.source {
             Source::Motion(_) => format!("This controller has no axis {}.", analysis.axis),
-            _ => "A spectrum needs a motion; packets and line scripts have none.".to_owned(),
+            _ => {
+                "A spectrum needs a motion; packets, line scripts and lists of segments have none.".to_owned()
+            }
         };
         field(&result, "note", &note.into());
         return Ok(result.into());
