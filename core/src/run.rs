@@ -11,8 +11,10 @@
 //! ```
 
 mod cost;
+mod listener;
 mod net;
 mod orders;
+mod talk;
 
 pub use cost::{BUDGET_RECORDS, Cost};
 

@@ -119,6 +119,10 @@ pub enum Event {
     Collision,
     /// A tick with steps ended and none was there to follow (fault UNDERRUN).
     Underrun,
+    /// Firmware queued a tick.
+    Pushed,
+    /// Firmware stopped the controller: the ticks that waited are gone.
+    Stopped,
     /// A tick began.
     TickStart {
         /// What it orders, a byte a channel (A5).
@@ -137,6 +141,8 @@ pub enum Fate {
     Foreign,
     /// It came during the self-test.
     Booting,
+    /// Firmware had stopped the controller.
+    Stopped,
     /// A byte ordered more steps than the tick has slots.
     TooManySteps,
     /// The queue was full.

@@ -300,6 +300,26 @@ fn no_float_function_of_the_platform_and_nothing_from_outside_is_in_the_core() {
     assert!(broken.is_empty(), "{}", broken.join("\n"));
 }
 
+/// What a package's manifest has between `[dependencies]` and the next section.
+fn dependencies(package: &str) -> Vec<String> {
+    let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(package).join("Cargo.toml");
+    let text = fs::read_to_string(manifest).unwrap();
+    let lines = text.lines().skip_while(|line| *line != "[dependencies]").skip(1);
+    let lines = lines.take_while(|line| !line.starts_with('['));
+    lines.filter(|line| !line.is_empty()).map(str::to_owned).collect()
+}
+
+#[test]
+fn firmware_knows_the_registers_alone_and_they_know_nothing() {
+    assert_eq!(dependencies("registers"), Vec::<String>::new());
+    assert_eq!(dependencies("firmware"), ["stepscope-registers.workspace = true"]);
+    for package in ["registers", "firmware"] {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(package).join("src/lib.rs");
+        let text = fs::read_to_string(root).unwrap();
+        assert!(text.contains("#![no_std]") && !text.contains("extern crate"), "{package} needs nothing");
+    }
+}
+
 #[test]
 fn clippy_refuses_every_inexact_function_in_all_crates() {
     let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../clippy.toml")).unwrap();

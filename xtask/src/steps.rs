@@ -51,7 +51,10 @@ impl Step {
                 clippy("--workspace --all-targets --all-features").await?;
                 clippy(&format!("--package stepscope-wasm --all-targets --target {WASM}")).await?;
                 clippy(&format!("--package stepscope-bench --lib --target {WASM}")).await?;
-                let packages = format!("--package stepscope-core --package {}", bare_metal::PACKAGE);
+                let packages = format!(
+                    "--package stepscope-core --package stepscope-firmware --package {}",
+                    bare_metal::PACKAGE
+                );
                 clippy(&format!("{packages} --no-default-features --target {BARE_METAL}")).await
             }
             Self::Docs => {

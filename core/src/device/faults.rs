@@ -1,6 +1,6 @@
 //! Fault flags (DESIGN A6).
 
-/// Faults that a peripheral has seen; they stay.
+/// Faults that a peripheral has seen; they stay until RESYNC or firmware clears them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Faults(u16);
 
@@ -33,8 +33,21 @@ impl Faults {
         "UNDERRUN",
     ];
 
+    /// All of them.
+    pub const ALL: Self = Self::from_bits(u16::MAX);
+
     pub(super) const fn set(&mut self, fault: Self) {
         self.0 |= fault.0;
+    }
+
+    pub(super) const fn clear(&mut self, which: Self) {
+        self.0 &= !which.0;
+    }
+
+    /// The faults whose bits, as A6 numbers them, are set; bits of no fault are left out.
+    #[must_use]
+    pub const fn from_bits(bits: u16) -> Self {
+        Self(bits & ((1 << Self::NAMES.len()) - 1))
     }
 
     /// The faults of both.

@@ -10,7 +10,8 @@
 //! 2. the sequencer: STEP edges, a tick ends, a tick starts (from commits of earlier cycles);
 //! 3. the gap timer;
 //! 4. the byte delivered in this cycle and what it completes;
-//! 5. the record, if a signal changed.
+//! 5. the record, if a signal changed;
+//! 6. what firmware reads and writes ([`Device::read`], [`Device::write`]).
 //!
 //! So a place freed by a tick that starts in cycle p is free for the packet that ends in p, and a
 //! byte delivered in the very cycle of a gap begins a new packet.
@@ -18,26 +19,30 @@
 mod controller;
 mod drive;
 mod faults;
+mod machine;
+mod model_bus;
 mod plan;
+mod registers;
 mod segments;
 mod sequencer;
 
 pub use faults::Faults;
+pub use model_bus::ModelBus;
 pub use segments::SegmentEngine;
 
 use crate::{
-    protocol::Status,
+    protocol::{Reason, Status},
     scenario::{Config, Protocol},
     signal::{Event, Fate, Levels, MAX_CHANNELS, Record, Sink},
     units::{Cycles, Instant},
     wire::{
-        packet::{Order, Tick, Unpacked, Unpacker},
+        packet::{Tick, Unpacked, Unpacker},
         uart::{Heard, Receiver},
     },
 };
-use controller::{Controller, Parts};
-use drive::Drive;
-use sequencer::Sequencer;
+use controller::Controller;
+use machine::Machine;
+use registers::Latches;
 
 /// The peripheral.
 ///
@@ -52,11 +57,12 @@ use sequencer::Sequencer;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Device {
-    slots: u8,
-    boot: Instant,
     /// The cycle that the next call of `clock` is, and the one that was run last.
     now: Instant,
     last: Instant,
+    /// A cycle that is clocked by itself, whatever rests: reset, or the one after firmware's last write.
+    /// So on a raw line, where nobody else moves it, EN is looked at in no other.
+    wake: Instant,
     /// The line as others drive it, and as the controller hears it.
     line: bool,
     rx: bool,
@@ -64,13 +70,16 @@ pub struct Device {
     levels: Levels,
     receiver: Receiver,
     framing: Framing,
-    drive: Drive,
-    sequencer: Sequencer,
-    faults: Faults,
+    machine: Machine,
+    latches: Latches,
 }
 
 /// How bytes are joined to orders.
+///
+/// It is asked for in every window of a run: a tag of its own is read in fewer instructions than one
+/// that hides in a variant's unused values.
 #[derive(Clone, Debug)]
+#[repr(u8)]
 enum Framing {
     Raw(Unpacker),
     Framed(Controller),
@@ -81,10 +90,9 @@ impl Device {
     #[must_use]
     pub fn new(config: &Config) -> Self {
         Self {
-            slots: config.slots,
-            boot: config.boot,
             now: Instant::RESET,
             last: Instant::RESET,
+            wake: Instant::RESET,
             line: true,
             rx: true,
             levels: Levels(0),
@@ -93,9 +101,8 @@ impl Device {
                 Protocol::Raw => Framing::Raw(Unpacker::new(config.channels, config.address, config.bit())),
                 Protocol::Framed => Framing::Framed(Controller::new(config)),
             },
-            drive: Drive::new(config),
-            sequencer: Sequencer::new(config),
-            faults: Faults::default(),
+            machine: Machine::new(config),
+            latches: Latches::new(config),
         }
     }
 
@@ -108,19 +115,19 @@ impl Device {
     /// Position counters: rising STEP edges, +1 where DIR is 1, -1 where it is 0.
     #[must_use]
     pub fn positions(&self) -> [i32; MAX_CHANNELS] {
-        self.sequencer.positions()
+        self.machine.sequencer.positions()
     }
 
     /// Ticks that have ended.
     #[must_use]
     pub const fn ticks_done(&self) -> u32 {
-        self.sequencer.ticks_done()
+        self.machine.sequencer.ticks_done()
     }
 
     /// Faults so far.
     #[must_use]
     pub const fn faults(&self) -> Faults {
-        self.faults.union(self.sequencer.faults())
+        self.machine.faults()
     }
 
     /// Advances one cycle with the line at `line`, as others drive it, and gives the levels of all
@@ -128,23 +135,23 @@ impl Device {
     pub fn clock(&mut self, line: bool, sink: &mut impl Sink) -> Levels {
         let now = self.now;
         self.line = line;
-        self.drive.clock(now);
-        let deaf = now == Instant::RESET || self.drive.levels() & Levels::DE != 0;
+        self.machine.drive.clock(now);
+        let deaf = now == Instant::RESET || self.machine.drive.levels() & Levels::DE != 0;
         let before = core::mem::replace(&mut self.rx, line || deaf);
-        self.sequencer.clock(now, sink);
+        self.machine.sequencer.clock(now, sink);
         if let Framing::Raw(unpacker) = &mut self.framing
             && now == unpacker.deadline()
         {
             let short = unpacker.gap();
             sink.event(now, Event::Gap { short });
             if short {
-                self.faults.set(Faults::SHORT_PACKET);
+                self.machine.fault(Faults::SHORT_PACKET);
             }
         }
         match self.receiver.clock(now, before, self.rx) {
             Some(Heard::Byte(byte)) => self.byte(byte, sink),
             Some(Heard::FramingError) => {
-                self.faults.set(Faults::FRAMING);
+                self.machine.fault(Faults::FRAMING);
                 let drops = if let Framing::Raw(unpacker) = &mut self.framing {
                     unpacker.framing_error(now);
                     true
@@ -156,7 +163,7 @@ impl Device {
             None => {}
         }
         (self.now, self.last) = (now.next(), now);
-        let levels = Levels(self.base() | u64::from(self.sequencer.lines()));
+        let levels = Levels(self.base() | u64::from(self.machine.sequencer.lines()));
         if levels != self.levels {
             self.levels = levels;
             sink.record(Record { cycle: now, levels });
@@ -168,10 +175,7 @@ impl Device {
         sink.event(self.now, Event::Byte { seen: self.receiver.seen(), byte });
         let unpacked = match &mut self.framing {
             Framing::Raw(unpacker) => unpacker.byte(self.now, byte),
-            Framing::Framed(controller) => {
-                let Self { drive, sequencer, faults, .. } = self;
-                return controller.byte(self.now, byte, Parts { drive, sequencer, faults }, sink);
-            }
+            Framing::Framed(controller) => return controller.byte(self.now, byte, &mut self.machine, sink),
         };
         let fate = match unpacked {
             None => return,
@@ -181,19 +185,17 @@ impl Device {
         sink.event(self.now, Event::Packet(fate));
     }
 
-    /// Judges a packet for this controller (A5). The self-test comes first: a controller that is
-    /// not up judges nothing.
+    /// Judges a packet for this controller (A5).
     fn commit(&mut self, tick: Tick) -> Fate {
-        if self.now < self.boot {
-            Fate::Booting
-        } else if tick.iter().any(|&byte| Order::parse(byte).steps > self.slots) {
-            self.faults.set(Faults::TOO_MANY_STEPS);
-            Fate::TooManySteps
-        } else if self.sequencer.push(self.now, tick) {
-            Fate::Queued
-        } else {
-            self.faults.set(Faults::QUEUE_OVERFLOW);
-            Fate::QueueFull
+        match self.machine.admit(self.now, &tick, 1) {
+            Ok(()) => {
+                self.machine.sequencer.push(self.now, tick);
+                Fate::Queued
+            }
+            Err(Reason::Stopped) => Fate::Stopped,
+            Err(Reason::TooManySteps) => Fate::TooManySteps,
+            Err(Reason::QueueFull) => Fate::QueueFull,
+            Err(_) => Fate::Booting,
         }
     }
 
@@ -201,33 +203,41 @@ impl Device {
     /// line.
     #[must_use]
     pub fn status(&self) -> Option<Status> {
-        let Framing::Framed(controller) = &self.framing else { return None };
-        Some(controller.status(Instant(self.now.0.saturating_sub(1)), &self.sequencer, self.faults))
+        match &self.framing {
+            Framing::Framed(controller) => {
+                Some(self.machine.status(self.before(), controller.expected_seq()))
+            }
+            Framing::Raw(_) => None,
+        }
+    }
+
+    /// The cycle before [`Self::now`]; before reset, reset.
+    const fn before(&self) -> Instant {
+        Instant(self.now.0.saturating_sub(1))
     }
 
     /// Signals that do not come from the sequencer.
     const fn base(&self) -> u64 {
-        self.drive.levels() | if self.rx { Levels::RX } else { 0 }
+        self.machine.drive.levels() | if self.rx { Levels::RX } else { 0 }
     }
 
     /// Next cycle, from [`Self::now`] on, in which something can change if the line stays at the
     /// level of the last cycle.
     fn deadline(&self) -> Instant {
-        if self.now == Instant::RESET {
+        if self.now == self.wake {
             self.now
         } else {
-            self.sequencer.deadline().min(self.input_deadline())
+            self.machine.sequencer.deadline().min(self.input_deadline())
         }
     }
 
     #[inline(always)]
     fn input_deadline(&self) -> Instant {
-        let last = Instant(self.now.0.saturating_sub(1));
         let framing = match &self.framing {
             Framing::Raw(unpacker) => unpacker.deadline(),
-            Framing::Framed(_) => self.drive.deadline(),
+            Framing::Framed(_) => self.machine.drive.deadline(),
         };
-        self.receiver.deadline(last, self.rx).min(framing)
+        self.receiver.deadline(self.before(), self.rx).min(framing)
     }
 
     /// Whether it ever drives the line.
@@ -240,7 +250,7 @@ impl Device {
     /// where it does not.
     #[must_use]
     pub fn driven(&self) -> Option<bool> {
-        let levels = Levels(self.drive.ahead(self.now).0);
+        let levels = Levels(self.machine.drive.ahead(self.now).0);
         levels.has(Levels::DE).then(|| levels.has(Levels::TX))
     }
 
@@ -251,11 +261,10 @@ impl Device {
         if !self.answers() {
             return Instant::NEVER;
         }
-        let (levels, next) = self.drive.ahead(self.now);
-        let last = Instant(self.now.0.saturating_sub(1));
-        let heard = self.receiver.deadline(last, line || Levels(levels).has(Levels::DE));
+        let (levels, next) = self.machine.drive.ahead(self.now);
+        let heard = self.receiver.deadline(self.before(), line || Levels(levels).has(Levels::DE));
         // What it may hear then can be answered no sooner than after the turnaround.
-        let answer = if heard == Instant::NEVER { heard } else { heard + self.drive.turnaround() };
+        let answer = if heard == Instant::NEVER { heard } else { heard + self.machine.drive.turnaround() };
         next.min(answer)
     }
 
@@ -281,16 +290,16 @@ impl Device {
     /// tells when that was). Stops early where the sink asks for a pause.
     #[inline(always)]
     pub fn run(&mut self, line: bool, until: Instant, sink: &mut impl Sink) {
-        if self.now < until && (line != self.line || self.now == Instant::RESET) {
+        if self.now < until && (line != self.line || self.now == self.wake) {
             self.clock(line, sink);
         }
         while self.now < until && !sink.paused() {
             let quiet = self.input_deadline().min(until);
-            if self.sequencer.deadline() < quiet {
-                self.levels = self.sequencer.run(quiet, self.base(), sink);
-                if self.sequencer.deadline() < quiet {
+            if self.machine.sequencer.deadline() < quiet {
+                self.levels = self.machine.sequencer.run(quiet, self.base(), sink);
+                if self.machine.sequencer.deadline() < quiet {
                     // Paused: nothing happens before the sequencer's next change.
-                    self.now = self.sequencer.deadline();
+                    self.now = self.machine.sequencer.deadline();
                     return;
                 }
             }
@@ -308,7 +317,7 @@ impl Device {
     /// reason.
     #[must_use]
     pub fn last_active(&self) -> Instant {
-        self.last.max(self.sequencer.last_active())
+        self.last.max(self.machine.sequencer.last_active())
     }
 
     /// At rest: the cycle that the next call of [`Self::clock`] is becomes `now`. Otherwise nothing.

@@ -113,8 +113,14 @@ impl Sequencer {
         self.faults
     }
 
-    pub(super) fn clear_faults(&mut self) {
-        self.faults = Faults::default();
+    pub(super) const fn clear_faults(&mut self, which: Faults) {
+        self.faults.clear(which);
+    }
+
+    /// Another timing for the ticks that start from now on; the caller knows that none runs or waits.
+    pub(super) fn retime(&mut self, config: &Config) {
+        self.tick = config.tick();
+        self.plan = Plan::new(config);
     }
 
     /// Whether a tick runs or waits.

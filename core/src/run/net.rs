@@ -1,45 +1,22 @@
-//! Several controllers and their host on one line (DESIGN A9).
-//!
-//! A controller hears the AND of what the host and all other controllers send, and 1 while it sends
-//! itself; the host hears the controllers while it is not sending. A level that is forced is heard by
-//! all of them.
-//!
-//! The run goes from window to window. In a window nobody changes what he does to the line, so each
-//! controller runs through it alone, as fast as its own edges allow. A window ends where the host or
-//! a forced level changes, where a controller may begin or go on to drive, or where the host acts.
+//! All controllers of a line and what is done to it (DESIGN A9): those of a raw line listen, each by
+//! itself; those of a framed line talk with each other and the host.
 
+use super::{listener::Listener, talk::Talk};
 use crate::{
     device::Device,
-    signal::{Event, Record, Sink},
+    signal::{Record, Sink},
     units::Instant,
     wire::{Line, framed_host::FramedHost},
 };
-use alloc::vec::Vec;
+use alloc::{boxed::Box, vec::Vec};
 
 /// A line with all that is on it.
 #[derive(Clone, Debug)]
-pub(super) struct Net {
-    line: Line,
-    host: Option<FramedHost>,
-    stations: Vec<Station>,
-    /// The window that is run: its first cycle and the first one after it.
-    start: Instant,
-    until: Instant,
-}
-
-/// A controller and what it hears of the others.
-#[derive(Clone, Debug)]
-struct Station {
-    device: Device,
-    hears: bool,
-    collides: bool,
-}
-
-impl Station {
-    /// Whether it has not come to the end of the window, and has something to do there.
-    fn is_behind(&self, until: Instant) -> bool {
-        self.device.now() < until && !(until == Instant::NEVER && self.device.at_rest())
-    }
+pub(super) enum Net {
+    /// Nobody answers. There is one controller at least, as in `Framed`.
+    Raw(Vec<Listener>),
+    /// Controllers answer, and a host may wait for them.
+    Framed(Box<Talk>),
 }
 
 /// Takes what no one asked for.
@@ -51,191 +28,111 @@ impl Sink for Ignored {
 
 impl Net {
     pub(super) fn new(line: Line, host: Option<FramedHost>, devices: Vec<Device>) -> Self {
-        let station = |device| Station { device, hears: true, collides: false };
-        Self {
-            line,
-            host,
-            stations: devices.into_iter().map(station).collect(),
-            start: Instant::RESET,
-            until: Instant::RESET,
+        if host.is_some() || devices.iter().any(Device::answers) {
+            return Self::Framed(Box::new(Talk::new(line, host, devices)));
+        }
+        Self::Raw(devices.into_iter().map(|device| Listener::new(line.clone(), device)).collect())
+    }
+
+    pub(super) fn line(&self) -> &Line {
+        match self {
+            Self::Raw(listeners) => listeners[0].line(),
+            Self::Framed(talk) => talk.line(),
         }
     }
 
-    pub(super) const fn line(&self) -> &Line {
-        &self.line
-    }
-
     pub(super) const fn host(&self) -> Option<&FramedHost> {
-        self.host.as_ref()
+        match self {
+            Self::Raw(_) => None,
+            Self::Framed(talk) => talk.host(),
+        }
     }
 
     pub(super) fn first(&self) -> &Device {
-        // A net is made of one controller at least.
-        &self.stations[0].device
+        match self {
+            Self::Raw(listeners) => listeners[0].device(),
+            Self::Framed(talk) => talk.first(),
+        }
+    }
+
+    pub(super) fn device(&self, index: usize) -> Option<&Device> {
+        match self {
+            Self::Raw(listeners) => listeners.get(index).map(Listener::device),
+            Self::Framed(talk) => talk.device(index),
+        }
     }
 
     pub(super) fn devices(&self) -> impl Iterator<Item = &Device> {
-        self.stations.iter().map(|station| &station.device)
+        (0..).map_while(|index| self.device(index))
     }
 
     /// Whether nothing can change any more.
     pub(super) fn is_over(&self) -> bool {
-        self.host.as_ref().is_none_or(FramedHost::is_over)
-            && self.stations.iter().all(|station| station.device.at_rest())
-            && self.line.is_over()
+        match self {
+            Self::Raw(listeners) => listeners.iter().all(Listener::is_over),
+            Self::Framed(talk) => talk.is_over(),
+        }
     }
 
     /// Whether all have run the cycles before `end`.
     pub(super) fn has_reached(&self, end: Instant) -> bool {
-        self.start >= end
+        match self {
+            Self::Raw(listeners) => listeners.iter().all(|listener| listener.has_reached(end)),
+            Self::Framed(talk) => talk.has_reached(end),
+        }
     }
 
     /// First cycle that nobody has run.
     pub(super) fn now(&self) -> Instant {
-        self.stations.iter().map(|station| station.device.now()).max().unwrap_or(Instant::RESET)
-    }
-
-    /// Enters cycle `self.start`: what each hears in it, and what the host does.
-    fn enter(&mut self, sinks: &mut [impl Sink]) {
-        let Self { line, host, stations, start, .. } = self;
-        let now = *start;
-        if line.next_change() == now {
-            line.change();
-        }
-        let host_sends = match host {
-            Some(host) => host.is_sending(now),
-            None => line.is_pulled_low(),
-        };
-        let (mut low, mut driving) = (0, 0);
-        for station in stations.iter() {
-            let driven = station.device.driven();
-            low += u32::from(driven == Some(false));
-            driving += u32::from(driven.is_some());
-        }
-        for (index, station) in stations.iter_mut().enumerate() {
-            let driven = station.device.driven();
-            let others_low = low - u32::from(driven == Some(false));
-            station.hears = line.heard(others_low == 0);
-            let met = driven.is_some() && (host_sends || driving > 1);
-            collide(station, met, now, sinks.get_mut(index));
-        }
-        if let Some(host) = host {
-            let level = host.is_sending(now) || line.replied(low == 0);
-            host.clock(now, level, line);
-        }
-    }
-
-    /// First cycle after the window that begins at `self.start`, at most `end`.
-    fn window(&self, end: Instant) -> Instant {
-        let driven = |station: &Station| station.device.next_driven(station.hears);
-        let driven = self.stations.iter().map(driven).fold(Instant::NEVER, Instant::min);
-        let host = self.host.as_ref().map_or(Instant::NEVER, |host| host.deadline(self.start));
-        let others = driven.min(host);
-        // While nobody answers, what is forced to the level that the line has is not heard.
-        let over = others == Instant::NEVER && self.line.is_over();
-        let line = if over { Instant::NEVER } else { self.line.next_change() };
-        line.min(others).min(end)
+        self.devices().map(Device::now).max().unwrap_or(Instant::RESET)
     }
 
     /// Runs to cycle `end`, or with [`Instant::NEVER`] until nothing can change any more, or until a
     /// sink asks for a pause.
     pub(super) fn run(&mut self, end: Instant, sinks: &mut [impl Sink]) {
-        let deaf = self.host.is_none() && !self.stations.iter().any(|station| station.device.answers());
-        while self.until < end || self.start < self.until {
-            let done = match (&mut self.stations[..], &mut *sinks) {
-                ([station], [sink]) if deaf => {
-                    listen(&mut self.line, station, (&mut self.start, &mut self.until), end, sink)
+        match self {
+            Self::Raw(listeners) => {
+                for (index, listener) in listeners.iter_mut().enumerate() {
+                    match sinks.get_mut(index) {
+                        Some(sink) => listener.run(end, sink),
+                        None => listener.run(end, &mut Ignored),
+                    }
                 }
-                _ => self.run_window(end, sinks),
-            };
-            if !done {
-                break;
             }
+            Self::Framed(talk) => talk.run(end, sinks),
         }
         if end == Instant::NEVER && self.is_over() {
             self.settle();
         }
     }
 
-    /// Runs to the end of a window, which may have begun; false where a sink asked for a pause.
-    fn run_window(&mut self, end: Instant, sinks: &mut [impl Sink]) -> bool {
-        if self.start == self.until {
-            self.enter(sinks);
-            self.until = self.window(end);
-        }
-        for (index, station) in self.stations.iter_mut().enumerate() {
-            let Station { device, hears, .. } = station;
-            match sinks.get_mut(index) {
-                Some(sink) => device.run(*hears, self.until, sink),
-                None => device.run(*hears, self.until, &mut Ignored),
-            }
-        }
-        let behind = self.stations.iter().any(|station| station.is_behind(self.until));
-        if !behind {
-            self.start = self.until;
-        }
-        !behind
-    }
-
     /// At rest: the last cycle that was run is the last one in which something happened.
     fn settle(&mut self) {
-        let device = self.stations.iter().map(|station| station.device.last_active()).max();
-        let host = self.host.as_ref().map(FramedHost::last_active);
-        let now = device.max(host).unwrap_or(Instant::RESET).next();
-        self.stations.iter_mut().for_each(|station| station.device.settle(now));
-        (self.start, self.until) = (now, Instant::NEVER);
+        match self {
+            Self::Raw(listeners) => {
+                let last = listeners.iter().map(Listener::last_active).max();
+                let now = last.unwrap_or(Instant::RESET).next();
+                listeners.iter_mut().for_each(|listener| listener.settle(now));
+            }
+            Self::Framed(talk) => {
+                let now = talk.last_active().next();
+                talk.settle(now);
+            }
+        }
     }
 
     /// One cycle.
     pub(super) fn clock(&mut self, sinks: &mut [impl Sink]) {
-        self.enter(sinks);
-        for (index, station) in self.stations.iter_mut().enumerate() {
-            let Station { device, hears, .. } = station;
-            match sinks.get_mut(index) {
-                Some(sink) => device.clock(*hears, sink),
-                None => device.clock(*hears, &mut Ignored),
-            };
-        }
-        self.start = self.start.next();
-        self.until = self.start;
-    }
-}
-
-/// Runs the only controller of a raw line to cycle `end`, from window to window; false where the sink
-/// asked for a pause. It never drives the line, so a window is what the line stays the same for: the
-/// inner loop of a long run.
-fn listen(
-    line: &mut Line,
-    station: &mut Station,
-    (start, until): (&mut Instant, &mut Instant),
-    end: Instant,
-    sink: &mut impl Sink,
-) -> bool {
-    while *start < end {
-        if start == until {
-            if line.next_change() == *start {
-                line.change();
+        match self {
+            Self::Raw(listeners) => {
+                for (index, listener) in listeners.iter_mut().enumerate() {
+                    match sinks.get_mut(index) {
+                        Some(sink) => listener.clock(sink),
+                        None => listener.clock(&mut Ignored),
+                    }
+                }
             }
-            station.hears = line.heard(true);
-            let next = if line.is_over() { Instant::NEVER } else { line.next_change() };
-            *until = next.min(end);
+            Self::Framed(talk) => talk.clock(sinks),
         }
-        station.device.run(station.hears, *until, sink);
-        if station.is_behind(*until) {
-            return false;
-        }
-        *start = *until;
     }
-    true
-}
-
-/// Tells of a collision where it begins.
-fn collide(station: &mut Station, collides: bool, now: Instant, sink: Option<&mut impl Sink>) {
-    if collides
-        && !station.collides
-        && let Some(sink) = sink
-    {
-        sink.event(now, Event::Collision);
-    }
-    station.collides = collides;
 }

@@ -104,6 +104,16 @@ impl Config {
         })
     }
 
+    /// The same controller with another bus: checked as [`Self::new`] does.
+    ///
+    /// # Errors
+    /// Every problem, with paths as in a scenario.
+    pub(crate) fn with_bus(&self, bus: &Bus) -> Result<Self, Vec<Problem>> {
+        let line =
+            Line { baud: self.reply_baud, address: self.address, protocol: self.protocol, ..Line::default() };
+        Self::new(self.clock_hz, bus, &line)
+    }
+
     /// Clock of the peripheral in Hz.
     #[must_use]
     pub const fn clock_hz(&self) -> u32 {

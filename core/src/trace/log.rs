@@ -37,6 +37,7 @@ impl fmt::Display for Verdict {
             Self::Packet(Fate::Queued) => "queued",
             Self::Packet(Fate::Foreign) => "another address",
             Self::Packet(Fate::Booting) => "dropped: self-test after reset",
+            Self::Packet(Fate::Stopped) => "dropped: stopped",
             Self::Packet(Fate::TooManySteps) => "dropped: TOO_MANY_STEPS",
             Self::Packet(Fate::QueueFull) => "dropped: QUEUE_OVERFLOW",
             Self::Short => "dropped: SHORT_PACKET",
@@ -86,8 +87,8 @@ pub struct PacketLog {
     open: Option<Instant>,
     last: Instant,
     ignoring: bool,
-    /// The row of each tick that waits.
-    waiting: VecDeque<usize>,
+    /// The row of each tick that waits; none for one that firmware pushed.
+    waiting: VecDeque<Option<usize>>,
     ticks: Vec<LoggedTick>,
 }
 
@@ -131,7 +132,7 @@ impl PacketLog {
             Verdict::Frame(FrameFate::Queued(ticks)) => ticks.into(),
             _ => 0,
         };
-        self.waiting.extend(core::iter::repeat_n(self.rows.len(), queued));
+        self.waiting.extend(core::iter::repeat_n(Some(self.rows.len()), queued));
         if verdict == Verdict::Frame(FrameFate::Taken(Kind::Stop)) {
             self.waiting.clear();
         }
@@ -180,8 +181,10 @@ impl Sink for PacketLog {
                 self.open = open;
             }
             Event::Underrun => {}
+            Event::Pushed => self.waiting.push_back(None),
+            Event::Stopped => self.waiting.clear(),
             Event::TickStart { orders } => {
-                let row = self.waiting.pop_front();
+                let row = self.waiting.pop_front().flatten();
                 if let Some(row) = row.and_then(|index| self.rows.get_mut(index)) {
                     row.tick_start.get_or_insert(at);
                 }
@@ -194,5 +197,26 @@ impl Sink for PacketLog {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_that_firmware_pushed_have_no_row_and_those_around_them_their_own() {
+        let packet = |seen| [Event::Byte { seen: Instant(seen), byte: 1 }, Event::Packet(Fate::Queued)];
+        let [start, pushed] = [Event::TickStart { orders: [0; 16] }, Event::Pushed];
+        let (first, second) = (packet(10), packet(20));
+        let events = [first[0], first[1], pushed, second[0], second[1], start, start, Event::Stopped];
+        let after = [pushed, start];
+        let mut log = PacketLog::default();
+        for (at, event) in events.into_iter().chain(after).enumerate() {
+            log.event(Instant(100 + at as u64), event);
+        }
+        let rows: Vec<_> = log.ticks().iter().map(|tick| tick.row).collect();
+        assert_eq!(rows, [Some(0), None, None], "the second packet's tick was stopped before it began");
+        assert_eq!(log.rows()[1].tick_start, None);
     }
 }

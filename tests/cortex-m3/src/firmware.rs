@@ -1,7 +1,8 @@
-//! The program: runs every case and ends with success or failure, all through semihosting.
+//! The program: runs every case and the example driver and ends with success or failure, all through semihosting.
 
 extern crate alloc;
 
+use alloc::vec::Vec;
 use cortex_m_rt::{ExceptionFrame, entry, exception};
 use cortex_m_semihosting::{
     debug::{self, EXIT_FAILURE, EXIT_SUCCESS, ExitStatus},
@@ -10,6 +11,13 @@ use cortex_m_semihosting::{
 use embedded_alloc::TlsfHeap;
 // A panic, also that of an allocation for which there is no room, is printed and ends with failure.
 use panic_semihosting as _;
+use stepscope_core::{
+    device::ModelBus,
+    scenario::{Bus, Config, Line},
+    signal::Record,
+    units::Cycles,
+};
+use stepscope_firmware::{Driver, Error, Order};
 use stepscope_tests::golden::CASES;
 
 /// Bytes; what the heap and the constants leave of memory.x's RAM is the stack's.
@@ -34,8 +42,28 @@ fn main() -> ! {
             }
         }
     }
-    hprintln!("{} cases, {failed} failed", CASES.len());
+    match drive() {
+        Ok([150, -75]) => hprintln!("the driver on the model: as everywhere"),
+        ended => {
+            failed += 1;
+            hprintln!("failed: the driver on the model gave {ended:?}, not the positions [150, -75]");
+        }
+    }
+    hprintln!("{} cases and the driver, {failed} failed", CASES.len());
     end(if failed == 0 { EXIT_SUCCESS } else { EXIT_FAILURE })
+}
+
+/// The example driver, built for this processor, moves two axes of the model: where they end.
+fn drive() -> Result<[i32; 2], Error> {
+    let bus = Bus { channels: 2, ..Bus::default() };
+    let Ok(config) = Config::new(16_000_000, &bus, &Line::default()) else { return Err(Error::NotFound(0)) };
+    let mut driver = Driver::new(ModelBus::new(&config, Cycles(8), Vec::<Record>::new()))?;
+    driver.wait_for_self_test();
+    let mut ticks = (1..=5).map(|tick| [Order::right(10 * tick), Order::left(5 * tick)]);
+    while driver.ticks_done() < 5 {
+        driver.fill(&mut ticks)?;
+    }
+    Ok([driver.position(0), driver.position(1)])
 }
 
 /// A crash would otherwise be silence until the time is up.

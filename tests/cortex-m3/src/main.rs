@@ -1,5 +1,6 @@
 //! The golden cases of `tests/golden/` on a Cortex-M3 without an operating system, in QEMU: the very files, and the very
-//! judgement, of the native test and the one in a browser. `cargo xtask test --only bare-metal` builds and runs it.
+//! judgement, of the native test and the one in a browser; and the example driver of `firmware/`, on the model.
+//! `cargo xtask test --only bare-metal` builds and runs it.
 //!
 //! What may differ here: floating point is software, `usize` has 32 bits, and the core is without its feature `std`, so
 //! that also square roots come from libm.

@@ -1,0 +1,245 @@
+//! An example of firmware for the peripheral: a driver that knows the registers
+//! ([`stepscope_registers`]) and a bus to reach them by, and nothing else. It runs unchanged on a chip
+//! and, in this crate's tests, on the model; no allocation, no standard library.
+//!
+//! A motion is a row of ticks, each with an order a channel. The queue evens out when they come: the
+//! program has only to call [`Driver::fill`] often enough that it never runs empty.
+//!
+//! ```
+//! use stepscope_firmware::{Driver, Order};
+//! use stepscope_registers::RegisterBus;
+//!
+//! fn one_turn<B: RegisterBus>(bus: B) -> Result<(), stepscope_firmware::Error> {
+//!     let mut driver = Driver::new(bus)?;
+//!     driver.wait_for_self_test();
+//!     let mut ticks = (0..16).map(|_| [Order::right(100), Order::left(50)]);
+//!     while driver.fill(&mut ticks)? != 0 {}
+//!     while !driver.is_done()? {}
+//!     Ok(())
+//! }
+//! ```
+#![no_std]
+
+use core::fmt;
+use stepscope_registers::{
+    RegisterBus, capabilities, control, faults, id, orders, position, push, result, slots, status, ticks_done,
+};
+
+/// Why the driver could not do what was asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Error {
+    /// The peripheral is not there: the ID register reads as this.
+    NotFound(u32),
+    /// The peripheral's register map is of this version, which the driver does not know.
+    UnknownVersion(u32),
+    /// No free place in the queue: come again.
+    Full,
+    /// A channel was to make more steps than a tick has slots; or there is no such channel.
+    TooManySteps,
+    /// In the self-test; or, to disable, a tick runs or waits: come again.
+    Busy,
+    /// Stopped: [`Driver::enable`] comes first.
+    Stopped,
+    /// The peripheral gave this result, which the driver does not know.
+    Unexpected(u32),
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFound(id) => {
+                write!(f, "no peripheral: ID is {id:#010x}, not {:#010x}", id::MAGIC_STEP)
+            }
+            Self::UnknownVersion(version) => write!(f, "register map {version}, this driver knows 1"),
+            Self::Full => f.write_str("the queue is full; come again"),
+            Self::TooManySteps => f.write_str("more steps than the tick has slots; give fewer"),
+            Self::Busy => f.write_str("busy; come again"),
+            Self::Stopped => f.write_str("stopped; enable first"),
+            Self::Unexpected(code) => write!(f, "unknown result {code}"),
+        }
+    }
+}
+
+impl core::error::Error for Error {}
+
+/// What one channel is to do in one tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Order {
+    /// Right (DIR high) or left; DIR follows it also where there is no step.
+    pub right: bool,
+    /// Steps, 0 to the slots of a tick.
+    pub steps: u8,
+}
+
+impl Order {
+    /// Steps to the right.
+    #[must_use]
+    pub const fn right(steps: u8) -> Self {
+        Self { right: true, steps }
+    }
+
+    /// Steps to the left.
+    #[must_use]
+    pub const fn left(steps: u8) -> Self {
+        Self { right: false, steps }
+    }
+
+    /// Its byte in an ORDERS register; `None` if it has more than 127 steps.
+    const fn byte(self) -> Option<u8> {
+        if self.steps > 127 { None } else { Some((self.right as u8) << 7 | self.steps) }
+    }
+}
+
+/// The peripheral behind a bus.
+#[derive(Debug)]
+pub struct Driver<B> {
+    bus: B,
+}
+
+impl<B: RegisterBus> Driver<B> {
+    /// Looks whether the peripheral is there.
+    ///
+    /// # Errors
+    /// [`Error::NotFound`], [`Error::UnknownVersion`].
+    pub fn new(mut bus: B) -> Result<Self, Error> {
+        let found = bus.read(id::OFFSET);
+        if found != id::MAGIC_STEP {
+            return Err(Error::NotFound(found));
+        }
+        match capabilities::VERSION.of(bus.read(capabilities::OFFSET)) {
+            capabilities::VERSION_1 => Ok(Self { bus }),
+            version => Err(Error::UnknownVersion(version)),
+        }
+    }
+
+    /// The bus, for what the driver does not do.
+    pub const fn bus(&mut self) -> &mut B {
+        &mut self.bus
+    }
+
+    /// Waits until the self-test after reset is over.
+    pub fn wait_for_self_test(&mut self) {
+        while status::STATE.of(self.bus.read(status::OFFSET)) == status::STATE_BUSY {}
+    }
+
+    /// Channels of this peripheral, 1 to 16.
+    pub fn channels(&mut self) -> u32 {
+        capabilities::CHANNELS.of(self.bus.read(capabilities::OFFSET))
+    }
+
+    /// The most steps that a channel can make in one tick, 1 to 127.
+    pub fn slots(&mut self) -> u32 {
+        self.bus.read(slots::OFFSET)
+    }
+
+    /// Drivers on, and out of STOPPED.
+    ///
+    /// # Errors
+    /// None that the data sheet knows.
+    pub fn enable(&mut self) -> Result<(), Error> {
+        self.command(control::ENABLE.mask())
+    }
+
+    /// Drivers off, once nothing moves.
+    ///
+    /// # Errors
+    /// [`Error::Busy`] while a tick runs or waits.
+    pub fn disable(&mut self) -> Result<(), Error> {
+        self.command(control::DISABLE.mask())
+    }
+
+    /// Emergency stop: drivers off and no pulse from the next cycle on, the queue emptied. One write,
+    /// so an interrupt may do it, too.
+    pub fn stop(&mut self) {
+        self.bus.write(control::OFFSET, control::STOP.mask());
+    }
+
+    /// Queues a tick with these orders, of channel 0 first; further channels stand still.
+    ///
+    /// # Errors
+    /// [`Error::Full`], [`Error::TooManySteps`], [`Error::Busy`] in the self-test, [`Error::Stopped`].
+    pub fn push(&mut self, tick: &[Order]) -> Result<(), Error> {
+        let channels = self.channels() as usize;
+        if tick.len() > channels {
+            return Err(Error::TooManySteps);
+        }
+        for (first, offset) in (0..channels).step_by(4).zip((orders::OFFSET..).step_by(4)) {
+            let mut four = [0; 4];
+            for (byte, order) in four.iter_mut().zip(tick.iter().skip(first)) {
+                *byte = order.byte().ok_or(Error::TooManySteps)?;
+            }
+            self.bus.write(offset, u32::from_le_bytes(four));
+        }
+        self.bus.write(push::OFFSET, 0);
+        self.result()
+    }
+
+    /// Fills the queue from `ticks` as far as there are places, and tells how many ticks that were: 0
+    /// if the queue was full already, or nothing was left.
+    ///
+    /// # Errors
+    /// As [`Self::push`], but for a full queue. The tick that was refused is taken from `ticks`.
+    pub fn fill<const N: usize>(
+        &mut self,
+        ticks: &mut impl Iterator<Item = [Order; N]>,
+    ) -> Result<u32, Error> {
+        let mut pushed = 0;
+        while status::FREE.of(self.bus.read(status::OFFSET)) > 0 {
+            let Some(tick) = ticks.next() else { break };
+            self.push(&tick)?;
+            pushed += 1;
+        }
+        Ok(pushed)
+    }
+
+    /// Whether all ticks have been made.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`]: they have not, and will not be.
+    pub fn is_done(&mut self) -> Result<bool, Error> {
+        let read = self.bus.read(status::OFFSET);
+        match status::STATE.of(read) {
+            status::STATE_STOPPED => Err(Error::Stopped),
+            _ => Ok(!status::MOVING.is_set(read)),
+        }
+    }
+
+    /// Ticks that have ended since reset, wrapping.
+    pub fn ticks_done(&mut self) -> u32 {
+        self.bus.read(ticks_done::OFFSET)
+    }
+
+    /// Where channel `channel` is, in steps from reset; 0 of one that is not there.
+    pub fn position(&mut self, channel: u8) -> i32 {
+        let offset = position::OFFSET + 4 * u32::from(channel);
+        if offset < position::REGISTER.end() { self.bus.read(offset).cast_signed() } else { 0 }
+    }
+
+    /// The fault flags that are set: bits of [`faults`].
+    pub fn faults(&mut self) -> u32 {
+        self.bus.read(faults::OFFSET)
+    }
+
+    /// Gives the fault flags that were set, and clears these. A fault that comes meanwhile stays.
+    pub fn clear_faults(&mut self) -> u32 {
+        let seen = self.faults();
+        self.bus.write(faults::OFFSET, seen);
+        seen
+    }
+
+    fn command(&mut self, command: u32) -> Result<(), Error> {
+        self.bus.write(control::OFFSET, command);
+        self.result()
+    }
+
+    fn result(&mut self) -> Result<(), Error> {
+        match result::CODE.of(self.bus.read(result::OFFSET)) {
+            result::CODE_DONE => Ok(()),
+            result::CODE_QUEUE_FULL => Err(Error::Full),
+            result::CODE_TOO_MANY_STEPS => Err(Error::TooManySteps),
+            result::CODE_BUSY => Err(Error::Busy),
+            result::CODE_STOPPED => Err(Error::Stopped),
+            code => Err(Error::Unexpected(code)),
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! The driver, unchanged, on the model of the peripheral: what it orders is what the STEP lines do.
+#![allow(clippy::expect_used, reason = "what is refused fails the test")]
+
+use stepscope_core::{
+    device::ModelBus,
+    scenario::{Bus, Config, Line, Protocol},
+    signal::{Levels, Record},
+    trace::steps,
+    units::Cycles,
+};
+use stepscope_firmware::{Driver, Error, Order};
+use stepscope_registers::{RegisterBus, faults};
+
+type Model = ModelBus<Vec<Record>>;
+
+/// Ticks of 10 slots of 100 cycles, a queue of 4. The framed protocol's rule makes a gap between ticks a fault,
+/// UNDERRUN.
+fn bus() -> Bus {
+    Bus {
+        channels: 3,
+        slots: 10,
+        step_period_cycles: 100,
+        pulse_width_cycles: 20,
+        dir_setup_cycles: 10,
+        queue_depth: 4,
+        boot_cycles: 500,
+        ..Bus::default()
+    }
+}
+
+/// A tick's cycles.
+const TICK: u64 = 1_000;
+
+/// A driver after the self-test, on a bus whose accesses take so many cycles.
+fn driver(access: u64) -> Driver<Model> {
+    let line = Line { protocol: Protocol::Framed, ..Line::default() };
+    let config = Config::new(16_000_000, &bus(), &line).expect("it holds");
+    let mut driver = Driver::new(ModelBus::new(&config, Cycles(access), Vec::new())).expect("it is there");
+    driver.wait_for_self_test();
+    driver
+}
+
+/// Steps of an axis in tick `tick` of its ramp up, plateau and ramp down over 40 ticks.
+fn ramp(tick: u8, top: u8) -> u8 {
+    tick.min(39 - tick).min(top)
+}
+
+/// Three axes at once; the last tick is the one of zero counts that says so.
+fn three_axes() -> impl Iterator<Item = [Order; 3]> {
+    (0..40).map(|tick| [Order::right(ramp(tick, 9)), Order::left(ramp(tick, 4)), Order::right(tick % 2)])
+}
+
+fn positions(driver: &mut Driver<Model>) -> [i32; 3] {
+    [0, 1, 2].map(|channel| driver.position(channel))
+}
+
+#[test]
+fn three_axes_end_where_they_should_and_no_tick_waits() {
+    // From a bus as fast as the peripheral to one on which a push takes half a tick.
+    for access in [1, 7, 100] {
+        let mut driver = driver(access);
+        let mut ticks = three_axes().chain([[Order::default(); 3]]);
+        while driver.ticks_done() < 41 {
+            driver.fill(&mut ticks).expect("nothing is refused");
+        }
+        assert!(driver.is_done().expect("nobody stops it"));
+        let sum = |top| (0..40).map(|tick| i32::from(ramp(tick, top))).sum::<i32>();
+        assert_eq!(positions(&mut driver), [sum(9), -sum(4), 20], "{access} cycles an access");
+        assert_eq!(driver.faults(), 0, "{access} cycles an access");
+
+        let trace = driver.bus().sink();
+        let first = steps(trace, 2)[0].cycle;
+        for (index, step) in steps(trace, 2).iter().enumerate() {
+            assert_eq!(step.cycle, first + 2 * TICK * index as u64, "one step in every other tick");
+        }
+    }
+}
+
+#[test]
+fn the_queue_bridges_a_slow_poll_and_no_slower_one() {
+    // Between two polls four ticks pass at the most.
+    for (pause, gaps) in [(2 * TICK, false), (3 * TICK + TICK / 2, false), (5 * TICK, true)] {
+        let mut driver = driver(2);
+        let mut ticks = three_axes().chain([[Order::default(); 3]]);
+        while driver.ticks_done() < 41 {
+            driver.fill(&mut ticks).expect("nothing is refused");
+            driver.bus().wait(Cycles(pause));
+        }
+        let expected = if gaps { faults::UNDERRUN.mask() } else { 0 };
+        assert_eq!(driver.clear_faults(), expected, "polled every {pause} cycles");
+        assert_eq!(driver.faults(), 0);
+        assert_eq!(positions(&mut driver)[2], 20);
+    }
+}
+
+#[test]
+fn an_emergency_stop_ends_the_move_within_the_access() {
+    let mut driver = driver(4);
+    let mut ticks = (0..100).map(|_| [Order::right(10), Order::left(10), Order::right(1)]);
+    while driver.ticks_done() < 5 {
+        driver.fill(&mut ticks).expect("nothing is refused");
+    }
+    driver.stop();
+    let stopped_at = driver.bus().device().now().0;
+    assert_eq!(driver.is_done(), Err(Error::Stopped));
+    assert_eq!(driver.fill(&mut ticks), Err(Error::Stopped));
+    driver.bus().wait(Cycles(10 * TICK));
+    let positions = positions(&mut driver);
+    let trace = driver.bus().sink();
+    let last = trace.last().expect("it moved");
+    assert_eq!((last.cycle.0, last.levels.step(), last.levels.has(Levels::EN)), (stopped_at, 0, false));
+    for (channel, position) in positions.into_iter().enumerate() {
+        let last = steps(trace, channel as u8).last().map(|step| step.position);
+        assert_eq!(Some(position), last, "every pulse was counted");
+    }
+    // The rest of the move is not made up for; a new one starts from here.
+    driver.enable().expect("it is always taken");
+    driver.push(&[Order::right(3)]).expect("the queue is empty");
+    while !driver.is_done().expect("nobody stops it") {}
+    assert_eq!(driver.position(0), positions[0] + 3);
+    assert_eq!((driver.ticks_done(), driver.clear_faults()), (6, faults::UNDERRUN.mask()));
+}
+
+#[test]
+fn a_full_queue_and_too_many_steps_are_reported_and_nothing_of_them_moves() {
+    let mut driver = driver(1);
+    let one = [Order::right(1)];
+    while driver.push(&one) == Ok(()) {}
+    assert_eq!(driver.push(&one), Err(Error::Full));
+    assert_eq!(driver.clear_faults(), faults::QUEUE_OVERFLOW.mask());
+    assert_eq!(driver.push(&[Order::left(11)]), Err(Error::TooManySteps));
+    assert_eq!(driver.push(&[Order::left(1), Order::right(128)]), Err(Error::TooManySteps));
+    assert_eq!(driver.push(&[Order::left(1); 4]), Err(Error::TooManySteps), "there are three channels");
+    assert_eq!(driver.clear_faults(), faults::TOO_MANY_STEPS.mask());
+    assert_eq!(driver.disable(), Err(Error::Busy));
+    while !driver.is_done().expect("nobody stops it") {}
+    assert_eq!(driver.disable(), Ok(()));
+    assert_eq!(driver.push(&one), Err(Error::Stopped));
+    // One left the queue to run at once, before the fifth came.
+    assert_eq!((driver.ticks_done(), positions(&mut driver)), (5, [5, 0, 0]));
+}
+
+#[test]
+fn a_driver_waits_for_the_self_test_and_finds_only_its_own_peripheral() {
+    struct Other(u32);
+    impl RegisterBus for Other {
+        fn read(&mut self, _: u32) -> u32 {
+            self.0
+        }
+        fn write(&mut self, _: u32, _: u32) {}
+    }
+    assert_eq!(Driver::new(Other(0xffff_ffff)).err(), Some(Error::NotFound(0xffff_ffff)));
+    assert_eq!(Driver::new(Other(0x5354_4550)).err(), Some(Error::UnknownVersion(0x50)));
+
+    let config = Config::new(16_000_000, &bus(), &Line::default()).expect("it holds");
+    let mut driver = Driver::new(ModelBus::new(&config, Cycles(10), Vec::new())).expect("it is there");
+    assert_eq!(driver.push(&[Order::right(1)]), Err(Error::Busy));
+    driver.wait_for_self_test();
+    assert_eq!(driver.push(&[Order::right(1)]), Ok(()));
+    assert_eq!((driver.channels(), driver.slots()), (3, 10));
+}
