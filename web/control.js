@@ -4,7 +4,8 @@
  */
 import { element, say } from "./dom.js";
 import { parseNumber, si } from "./number.js";
-import { get } from "./state.js";
+import { printSegments, readSegments } from "./segments.js";
+import { derivedAxis, get } from "./state.js";
 
 /** @typedef {import("./types.js").State} State */
 /** @typedef {import("./fields.js").Field} Field */
@@ -31,8 +32,8 @@ export function control(path, field, { dispatch, now }) {
   const hint = element("p", { class: "hint", id: `${id}-hint` }, field.hint);
   const also = element("span", { class: "also" });
   const described = { id, "aria-describedby": `${id}-error ${id}-hint`, "data-path": path };
-  const long = field.kind === "lines" || field.rows !== undefined;
-  const wide = long || field.kind === "text";
+  const long = field.kind === "lines" || field.kind === "segments" || field.rows !== undefined;
+  const wide = long || field.kind === "text" || isHex(field);
   const input = field.kind === "choice"
     ? element("select", described, ...Object.entries(field.choices ?? {}).map(([value, text]) => element("option", { value }, text)))
     : long ? element("textarea", { ...described, rows: String(field.rows ?? 4), spellcheck: "false" })
@@ -71,7 +72,7 @@ export function control(path, field, { dispatch, now }) {
   /** A field without use stays away, unless what is wrong is in it. @param {State} state */
   function place({ scenario }) {
     const { when } = field;
-    const beside = when && path.slice(0, path.length - field.key.length) + when.key;
+    const beside = when && (when.path ?? path.slice(0, path.length - field.key.length) + when.key);
     root.hidden = when !== undefined && get(scenario, beside ?? "") !== when.is && error.textContent === "";
   }
 
@@ -123,12 +124,23 @@ function print(value, field) {
   if (value === null || value === undefined) return "";
   if (field.kind === "quantity") return String(Object.values(value)[0]);
   if (field.kind === "lines") return value.map(spaced).join("\n");
-  return field.key === "bytes" ? spaced(value) : String(value);
+  if (field.kind === "segments") return printSegments(value);
+  return isHex(field) ? spaced(value) : String(value);
+}
+
+/** @param {Field} field */
+function isHex({ kind }) {
+  return kind === "hex" || kind === "optional-hex";
 }
 
 /** @param {any} hex */
 function spaced(hex) {
   return String(hex).replace(/\s+/g, "").replace(/(..)(?=.)/g, "$1 ");
+}
+
+/** @param {string} text */
+function bare(text) {
+  return text.replace(/\s+/g, "").toLowerCase();
 }
 
 /** @param {string} text @param {Field} field @param {State} state @param {any} before @returns {{value: any} | {message: string}} */
@@ -137,8 +149,11 @@ function read(text, field, state, before) {
   const unit = field.unit ?? "";
   switch (field.kind) {
     case "choice": return { value: /^\d+$/.test(text) ? Number(text) : text };
-    case "text": return { value: field.key === "bytes" ? text.replace(/\s+/g, "").toLowerCase() : text };
-    case "lines": return { value: text.split("\n").map((line) => line.replace(/\s+/g, "").toLowerCase()).filter((line) => line !== "") };
+    case "text": return { value: text };
+    case "segments": return readSegments(text);
+    case "hex": return { value: bare(text) };
+    case "optional-hex": return { value: bare(text) || null };
+    case "lines": return { value: text.split("\n").map(bare).filter((line) => line !== "") };
     case "optional":
     case "optional-cycles":
       if (text.trim() === "") return { value: null };
@@ -173,8 +188,7 @@ function convert(value, to, path, state) {
 
 /** Steps in one of a unit. @param {string} unit @param {string} path @param {State} state @returns {number | null} */
 function stepsIn(unit, path, state) {
-  const index = Number(path.match(/axes\[(\d+)\]/)?.[1] ?? 0);
-  const axis = state.derived?.axes[index];
+  const axis = derivedAxis(state, path);
   if (unit.startsWith("steps")) return 1;
   const step = unit.startsWith("mm") ? axis?.step_mm : axis?.step_deg;
   return step ? (unit === "rpm" ? 6 / step : 1 / step) : null;
@@ -186,7 +200,7 @@ function meaning(value, field, state) {
   if (field.kind.endsWith("cycles") && Number.isFinite(value) && value !== null && clock > 0) return `= ${si(value / clock, "s")}`;
   if (field.key === "clock_hz" && value > 0) return `one cycle = ${si(1 / value, "s")}`;
   if (field.key === "microsteps" || typeof value !== "number") return "";
-  if (field.key === "timer_hz" || field.key === "line.baud") return value >= 10000 ? `= ${si(value, field.unit ?? "")}` : "";
+  if (field.key === "timer_hz" || field.key === "baud") return value >= 10000 ? `= ${si(value, field.unit ?? "")}` : "";
   return "";
 }
 

@@ -1,8 +1,9 @@
 /** The header: presets, undo and redo, what the run made, the theme; and the messages under it. */
-import { byId, element, fill, say } from "./dom.js";
+import { byId, element, fill, options, say } from "./dom.js";
+import { health, ill } from "./health.js";
 import { count, si } from "./number.js";
 import { recolor } from "./plot.js";
-import { held, isStale } from "./state.js";
+import { held, isStale, lookedAt } from "./state.js";
 import { loadTheme, saveTheme } from "./storage.js";
 
 /** @typedef {import("./types.js").State} State */
@@ -14,6 +15,7 @@ const PATIENCE_MS = 150;
 /** @param {{presets: Preset[], cancel: () => void, retry: () => void} & import("./timeline.js").Page} page */
 export function createHeader({ presets, cancel, retry, dispatch, now }) {
   const preset = /** @type {HTMLSelectElement} */ (byId("preset"));
+  const controller = /** @type {HTMLSelectElement} */ (byId("controller"));
   const undo = /** @type {HTMLButtonElement} */ (byId("undo"));
   const redo = /** @type {HTMLButtonElement} */ (byId("redo"));
   const progress = /** @type {HTMLProgressElement} */ (byId("progress"));
@@ -26,6 +28,7 @@ export function createHeader({ presets, cancel, retry, dispatch, now }) {
     const chosen = presets.find(({ id }) => id === preset.value);
     if (chosen) dispatch({ type: "replace", scenario: JSON.parse(chosen.scenario), origin: `preset:${chosen.id}` });
   });
+  controller.addEventListener("change", () => dispatch({ type: "controller", controller: Number(controller.value) }));
   undo.addEventListener("click", () => dispatch({ type: "undo" }));
   redo.addEventListener("click", () => dispatch({ type: "redo" }));
   byId("run-anyway").addEventListener("click", () => dispatch({ type: "approve" }));
@@ -52,10 +55,20 @@ export function createHeader({ presets, cancel, retry, dispatch, now }) {
     byId("cancel").hidden = !long;
     if (state.run.progress) progress.value = state.run.progress.cycle / Math.max(1, state.run.progress.end_cycle);
     say(byId("status"), status(state, long));
-    say(byId("digest"), state.result?.summary.digest ?? "–");
+    say(byId("health"), health(state));
+    byId("health").classList.toggle("error", ill(state));
+    chooser(state);
+    say(byId("digest"), lookedAt(state)?.digest ?? "–");
     byId("digest").classList.toggle("stale", isStale(state));
     messages(state);
     document.title = state.scenario.title ? `${state.scenario.title} – Stepscope` : "Stepscope";
+  }
+
+  /** The controllers on the line, where there are several. @param {State} state */
+  function chooser({ result }) {
+    const controllers = result?.summary.controllers ?? [];
+    options(controller, controllers.map(({ address }, index) => [String(index), `${index + 1}, address ${address ?? "none"}`]), String(result?.controller ?? 0));
+    /** @type {HTMLElement} */ (controller.parentElement).hidden = controllers.length < 2;
   }
 
   return { render };
@@ -67,10 +80,9 @@ function status(state, long) {
   if (long && progress) return `${Math.round((100 * progress.cycle) / Math.max(1, progress.end_cycle))} %, ${count(progress.records)} edges so far`;
   const held_back = held(state) === "problems" ? "not run: the form needs attention" : "";
   if (!state.result) return held_back || (state.run.phase === "running" ? "running…" : "no result yet");
-  const { edges, end_s, faults } = state.result.summary;
-  const parts = [`${count(edges)} edges`, si(end_s, "s"), `computed in ${si(state.result.ms / 1000, "s", 2)}`];
+  const { edges = 0 } = lookedAt(state) ?? {};
+  const parts = [`${count(edges)} edges`, si(state.result.summary.end_s, "s"), `computed in ${si(state.result.ms / 1000, "s", 2)}`];
   if (held_back) parts.unshift(`${held_back}; last result`);
-  if (faults.names.length) parts.push(`faults: ${faults.names.join(", ")}`);
   return parts.join(" · ");
 }
 

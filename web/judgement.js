@@ -1,6 +1,7 @@
 /** Shows what the core says about the scenario: problems beside their fields, and what follows from it. */
 import { button, byId, element, fill, say } from "./dom.js";
 import { count, plain, short, si } from "./number.js";
+import { derivedAxis } from "./state.js";
 
 /** @typedef {import("./types.js").State} State */
 /** @typedef {import("./control.js").Control} Control */
@@ -86,27 +87,43 @@ export function showDerived(state, form) {
   const fresh = state.judgement?.derived !== null && Object.keys(state.drafts).length === 0;
   root.classList.toggle("stale", !fresh);
   if (!derived) return fill(root);
-  const peak = Math.max(0, ...derived.axes.map((axis) => axis.peak_speed_steps_s));
+  const [{ tick_s, limit_steps_s }] = derived.controllers;
+  const axes = derived.controllers.flatMap((controller) => controller.axes);
+  const peak = Math.max(0, ...axes.map((axis) => axis.peak_speed_steps_s));
   const load = derived.line_load;
-  const sends = "line" in state.scenario.source;
+  const { source, line } = state.scenario;
+  const sends = "line" in source;
+  // Segments run by themselves: there are no ticks, and nothing is sent.
+  const alone = "segments" in source || source.motion?.engine === "segments";
+  const over = !alone && derived.controllers.some((controller) => controller.axes.some((axis) => axis.peak_speed_steps_s > controller.limit_steps_s));
   const rows = [
     // How long the last tick of a line script waits is known only after the run.
-    [sends ? "Duration at most" : "Duration", si(derived.duration_s, "s"), ""],
-    ["Peak rate", derived.axes.length ? plain(peak, "steps/s") : "–", peak > derived.limit_steps_s ? "over" : ""],
-    ["Tick", sends ? si(derived.tick_s, "s") : `${si(derived.tick_s, "s")}, ${count(derived.ticks)} in all`, ""],
-    ["Limit of the bus", plain(derived.limit_steps_s, "steps/s"), ""],
-    sends ? ["Sends", count(derived.ticks), ""] : ["Packets", load === null ? "–" : plain(derived.packets_per_s, "/s"), ""],
-    ["Line load", load === null ? "–" : `${short(load * 100, 3)} %`, load !== null && load > 1 ? "over" : ""],
+    [sends ? "Duration at most" : line.protocol === "framed" && !alone ? "Duration, about" : "Duration", si(derived.duration_s, "s"), ""],
+    ["Peak rate", axes.length ? plain(peak, "steps/s") : "–", over ? "over" : ""],
+    ...(alone ? [["On the line", "nothing", ""]] : [["Tick", sends ? si(tick_s, "s") : `${si(tick_s, "s")}, ${count(derived.ticks)} in all`, ""],
+    ["Limit of the bus", plain(limit_steps_s, "steps/s"), ""],
+    sent(state, derived),
+    ["Line load", load === null ? "–" : `${short(load * 100, 3)} %`, load !== null && load > 1 ? "over" : ""]]),
   ];
   fill(root, element("dl", {}, ...rows.map(([name, value, mark]) =>
     element("div", {}, element("dt", {}, name), element("dd", mark ? { class: mark } : {}, value)))));
   for (const note of /** @type {NodeListOf<HTMLElement>} */ (form.querySelectorAll("[data-note]"))) say(note, moveNote(note.dataset.note ?? "", state));
 }
 
+/** What goes over the line: how much, or how often. @param {State} state @param {import("./types.js").Derived} derived */
+function sent({ scenario: { source, line } }, { sends, line_load, controllers }) {
+  if ("line" in source) return ["Sends", count(sends), ""];
+  // How many are repeated on a noisy line only the run tells.
+  const quiet = line.glitches.length === 0 && Object.entries(line.noise).every(([key, value]) => key === "seed" || value === 0);
+  if (line.protocol === "framed") return ["Frames", quiet ? count(sends) : "–", ""];
+  const busy = controllers.filter(({ ticks }) => ticks > 0).length;
+  return ["Packets", line_load === null ? "–" : plain(busy / controllers[0].tick_s, "/s"), ""];
+}
+
 /** @param {string} path @param {State} state */
-function moveNote(path, { derived }) {
-  const [, axis, index] = path.match(/axes\[(\d+)\]\.moves\[(\d+)\]/) ?? [];
-  const move = derived?.axes[Number(axis)]?.moves[Number(index)];
+function moveNote(path, state) {
+  const [, index] = path.match(/\.moves\[(\d+)\]/) ?? [];
+  const move = derivedAxis(state, path)?.moves[Number(index)];
   if (!move) return "";
   const steps = `${count(move.steps)} steps`;
   return [`${si(move.start_s, "s")} to ${si(move.start_s + move.duration_s, "s")}`, steps, move.detail].filter(Boolean).join(" · ");

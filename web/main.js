@@ -3,7 +3,7 @@
  * judging, run, drawing.
  */
 import { byId } from "./dom.js";
-import { Engine, Dropped } from "./engine.js";
+import { Engine, Dropped, unlessDropped } from "./engine.js";
 import { SAMPLES } from "./fields.js";
 import { createForm } from "./form.js";
 import { createHeader, createTheme } from "./header.js";
@@ -12,10 +12,12 @@ import { createMotion } from "./motion.js";
 import { createPackets } from "./packets.js";
 import { load as loadCharts } from "./plot.js";
 import { createPulses } from "./pulses.js";
+import { SOURCES } from "./sources.js";
 import { createSpectrum } from "./spectrum.js";
 import { held, initial, isStale, update } from "./state.js";
 import { loadPrevious, loadScenario, saveScenario, setAside } from "./storage.js";
 import { createTabs } from "./tabs.js";
+import { createTiming } from "./timing.js";
 
 /** @typedef {import("./types.js").State} State */
 /** @typedef {{render: (state: State, before: State | undefined) => any}} View */
@@ -61,6 +63,11 @@ function follow(before) {
     }
   }
   if (before?.judgement !== judgement || before?.approved !== approved || before?.drafts !== drafts) plan();
+  if (result && before?.result !== result) {
+    document.documentElement.dataset.state = "busy";
+    // Asked before the views ask.
+    engine.ask("select", result.controller).catch(unlessDropped);
+  }
   const drawn = views.map((view) => view.render(state, before));
   byId("views").classList.toggle("blank", result === null);
   byId("views").classList.toggle("dim", result !== null && isStale(state) && held(state) !== "unjudged" && state.run.phase !== "running");
@@ -70,10 +77,10 @@ function follow(before) {
 
 /** Says that nothing more is to come, once it is drawn. @param {Promise<unknown>} drawn */
 async function settle(drawn) {
-  const { revision } = state;
+  const { revision, result } = state;
   await drawn;
   await new Promise((resolve) => requestAnimationFrame(resolve));
-  if (state.revision === revision) document.documentElement.dataset.state = "ready";
+  if (state.revision === revision && state.result === result) document.documentElement.dataset.state = "ready";
 }
 
 async function judge() {
@@ -110,14 +117,15 @@ function cancel() {
 
 /** One of everything that can be added, with the core's own defaults. */
 async function samples() {
-  const [motion, line] = await Promise.all([SAMPLES.motion, SAMPLES.line].map(async (sample) =>
-    JSON.parse((await engine.ask("check", JSON.stringify(sample))).scenario)));
-  const { axes } = motion.source.motion;
+  const filled = async (/** @type {object} */ sample) => JSON.parse((await engine.ask("check", JSON.stringify(sample))).scenario);
+  const [all, line, ...sources] = await Promise.all([filled(SAMPLES.all), filled(SAMPLES.line),
+    ...Object.keys(SOURCES).map((kind) => filled({ source: { [kind]: {} } }))]);
+  const { axes } = all.source.motion;
   return {
     moves: Object.assign({}, ...axes[0].moves),
     mechanics: Object.assign({}, ...axes.map((/** @type {any} */ axis) => axis.mechanics)),
-    sources: { motion: { axes: [{ mechanics: axes[0].mechanics, moves: [axes[0].moves[0]] }] }, line: line.source.line },
-    glitch: motion.line.glitches[0], send: line.source.line.sends[0],
+    sources: Object.assign({}, ...sources.map(({ source }) => source)),
+    glitch: all.line.glitches[0], send: line.source.line.sends[0], controller: all.controllers[0], rules: all.driver.rules,
   };
 }
 
@@ -141,15 +149,15 @@ async function start() {
     byId("status").textContent = "no engine";
     return;
   }
-  const [fallback, presets, made] = await Promise.all([engine.ask("default_scenario"), engine.ask("presets"), samples(), loadCharts()]);
+  const [fallback, presets, drivers, made] = await Promise.all([engine.ask("default_scenario"), engine.ask("presets"), engine.ask("drivers"), samples(), loadCharts()]);
   state = await own(fallback);
   const page = { engine, dispatch, now: () => state };
   // Nothing is ever sent; Enter in a field must not try to.
   byId("form").addEventListener("submit", (event) => event.preventDefault());
   const link = createLink(page);
   const retry = () => { ran = -1; judge(); };
-  views = [createHeader({ presets, cancel, retry, ...page }), createForm({ root: byId("fields"), samples: made, dispatch }),
-    createTabs(page), createMotion(page), createPulses(page), createPackets(page), createSpectrum(page), link];
+  views = [createHeader({ presets, cancel, retry, ...page }), createForm({ root: byId("fields"), samples: made, drivers, dispatch }),
+    createTabs(page), createMotion(page), createPulses(page), createPackets(page), createSpectrum(page), createTiming({ drivers, ...page }), link];
   await link.start(loadScenario() !== null);
   if (state.revision === 0) follow(undefined);
 }

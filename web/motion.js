@@ -3,7 +3,7 @@ import { byId, options, say } from "./dom.js";
 import { unlessDropped } from "./engine.js";
 import { count, short, si } from "./number.js";
 import { GUTTER, MARGIN, color, draw, fit, watch } from "./plot.js";
-import { shown } from "./state.js";
+import { lookedAt, shown } from "./state.js";
 import { gestures, pixelOf } from "./timeline.js";
 
 /** @typedef {import("./types.js").State} State */
@@ -101,7 +101,7 @@ export function createMotion({ engine, dispatch, now }) {
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    const axes = state.result?.summary.channels ?? 1;
+    const axes = lookedAt(state)?.channels ?? 1;
     options(axisSelect, Array.from({ length: axes }, (_, i) => [String(i), String(i)]), String(state.axis));
     options(unitSelect, unitsOf(state), unitOf(state).name);
     const moved = before?.window !== state.window || before?.axis !== state.axis || before?.result !== state.result;
@@ -125,16 +125,21 @@ function axisOf(state) {
   return { min: start / clock, max: end / clock, unit: "s", prefix: true, label_px: 0 };
 }
 
+/** What follows from the axis on show. @param {State} state */
+function axisOnShow(state) {
+  return state.derived?.controllers[state.result?.controller ?? 0]?.axes[state.axis];
+}
+
 /** @param {State} state @returns {[string, string][]} */
 function unitsOf(state) {
-  const axis = state.derived?.axes[state.axis];
+  const axis = axisOnShow(state);
   return [["steps", "steps"], ...(axis?.step_mm ? [["mm", "mm"]] : []), ...(axis?.step_deg ? [["deg", "°"]] : [])]
     .map(([name, text]) => [name, text]);
 }
 
 /** The chosen unit, or steps where the axis has no such unit. @param {State} state */
 function unitOf(state) {
-  const axis = state.derived?.axes[state.axis];
+  const axis = axisOnShow(state);
   if (state.unit === "mm" && axis?.step_mm) return { name: "mm", unit: "mm", scale: axis.step_mm };
   if (state.unit === "deg" && axis?.step_deg) return { name: "deg", unit: "°", scale: axis.step_deg };
   return { name: "steps", unit: "steps", scale: 1 };

@@ -17,7 +17,7 @@ const NUMBER = /^([-+−]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][-+]?\d+)?)\s*(.*)$/;
  */
 export function parseNumber(text, unit, options = {}) {
   const plain = text.trim().replace(/(\d)[\s\u202f\u00a0](?=\d)/g, "$1");
-  const example = options.integer ? "1200 or 1.2k" : unit === "s" ? "0.4 or 400 ms" : "2.5 or 1.2k";
+  const example = unit === "ns" ? "1900 or 1.9 us" : options.integer ? "1200 or 1.2k" : unit === "s" ? "0.4 or 400 ms" : "2.5 or 1.2k";
   if (plain === "") return { message: `A number is missing; give one, such as ${example}.` };
   const match = NUMBER.exec(plain);
   if (!match) return { message: `“${text.trim()}” is not a number; give one, such as ${example}.` };
@@ -40,8 +40,8 @@ export function parseNumber(text, unit, options = {}) {
  * @returns {number | null}  null where the suffix is neither the unit nor a prefix.
  */
 function shift(mantissa, suffix, unit) {
-  // A millimetre is a metre with a prefix: "3 m" is 3000 mm, never 3 thousandths of one.
-  const [base, own] = unit.startsWith("mm") ? [unit.slice(1), 3] : [unit, 0];
+  // A millimetre is a metre with a prefix: "3 m" is 3000 mm, never 3 thousandths of one; so is a nanosecond a second.
+  const [base, own] = unit.startsWith("mm") ? [unit.slice(1), 3] : unit === "ns" ? ["s", 9] : [unit, 0];
   if (suffix === "") return Number(mantissa);
   for (const tail of new Set([base, own ? base : ""])) {
     if (!suffix.endsWith(tail)) continue;

@@ -16,6 +16,8 @@ const ROW_PX = 23;
 const MOST_PX = 6_000_000;
 /** Air at both sides of a cell's text. */
 const CELL_PX = 18;
+/** Most of the columns whose texts a frame makes long. */
+const FRAMED_PX = { bytes: 104, outcome: 124 };
 const ruler = /** @type {CanvasRenderingContext2D} */ (document.createElement("canvas").getContext("2d"));
 
 /** @param {{engine: import("./engine.js").Engine} & import("./timeline.js").Page} page */
@@ -114,13 +116,14 @@ export function createPackets({ engine, dispatch, now }) {
     const { unit, print } = clockOf(state);
     say(byId("packets-time"), `start, ${unit}`);
     say(byId("packets-tick"), `tick, ${unit}`);
+    say(byId("packets-meaning"), state.result?.summary.framed ? "meaning" : "steps");
     fill(body, ...rows.map((row) => {
       const tick = row.tick_start_cycle === null ? "–" : print(row.tick_start_cycle);
-      const cells = [count(row.index), print(row.start_cycle), row.hex, row.fields, row.outcome, tick];
+      const cells = [count(row.index), print(row.start_cycle), row.hex, worded(row), row.outcome, tick];
       const line = element("tr", {
         id: `packet-${row.index}`, "data-index": String(row.index), "aria-rowindex": String(row.index + 2),
         "aria-selected": String(row.index === state.packet),
-        class: [row.index === current ? "current" : "", row.outcome === "queued" ? "" : "bad"].join(" ").trim(),
+        class: [row.index === current ? "current" : "", row.kind, row.mark].join(" ").trim(),
       }, ...cells.map((text) => element("td", { title: text }, text)));
       return line;
     }));
@@ -149,8 +152,12 @@ export function createPackets({ engine, dispatch, now }) {
     measure("outcome", head, "outcome");
     measure("bytes", hex, ...rows.map((row) => row.hex));
     measure("bytes", head, "bytes (hex)");
-    const spare = table.clientWidth - widest.index - 2 * widest.time - widest.outcome;
-    for (const [column, width] of Object.entries({ ...widest, bytes: Math.min(widest.bytes, Math.max(spare / 2, 96)) })) {
+    // Of a frame the bytes say less than the words.
+    const { framed } = now().result?.summary ?? {};
+    const outcome = Math.min(widest.outcome, framed ? FRAMED_PX.outcome : Infinity);
+    const spare = table.clientWidth - widest.index - 2 * widest.time - outcome;
+    const bytes = Math.min(widest.bytes, framed ? Math.min(FRAMED_PX.bytes, Math.max(spare / 3, 60)) : Math.max(spare / 2, 96));
+    for (const [column, width] of Object.entries({ ...widest, outcome, bytes })) {
       table.style.setProperty(`--${column}-px`, `${width}px`);
     }
   }
@@ -163,7 +170,7 @@ export function createPackets({ engine, dispatch, now }) {
     const at = (/** @type {number} */ cycle) => time(cycle / clock);
     const tick = row.tick_start_cycle === null ? "no tick"
       : `tick ${at(row.tick_start_cycle)}${row.tick_end_cycle === null ? ", not ended" : ` to ${at(row.tick_end_cycle)}`}`;
-    say(byId("packet-detail"), [`#${count(row.index)}`, row.hex, row.fields, row.outcome, `on the line ${at(row.start_cycle)} to ${at(row.end_cycle)}`, tick]
+    say(byId("packet-detail"), [`#${count(row.index)}`, worded(row), row.hex, row.outcome, `on the line ${at(row.start_cycle)} to ${at(row.end_cycle)}`, tick]
       .filter(Boolean).join(" · "));
   }
 
@@ -184,6 +191,13 @@ export function createPackets({ engine, dispatch, now }) {
     return undefined;
   }
   return { render };
+}
+
+/** What a row says, and which way it went. @param {PacketRow} row */
+function worded({ kind, fields }) {
+  if (kind === "packet") return fields;
+  const arrow = { frame: "→", reply: "←", collision: "↯" }[kind];
+  return `${arrow} ${fields || kind}`;
 }
 
 /**

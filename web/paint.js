@@ -5,10 +5,11 @@
 import { color } from "./plot.js";
 
 /** @typedef {import("./types.js").PulseColumns} PulseColumns */
-/** @typedef {import("./types.js").PacketRow} PacketRow */
 
 /** Consecutive busy columns from which on they count as a block. */
 const BLOCK = 4;
+/** Bits of the line's signals (contract A3). */
+const [RX, TX] = [33, 34];
 
 /** Whether a signal was at a level in a column. @param {Uint32Array} words @param {number} column @param {number} bit */
 export function has(words, column, bit) {
@@ -78,19 +79,19 @@ export function paintTint(context, columns, bit, { left, top, height, ink }) {
 /**
  * Spans with a text in them, as a decoder shows them: the longest text that fits.
  * @param {CanvasRenderingContext2D} context  In device pixels.
- * @param {{from: number, to: number, texts: string[], marked: boolean, bad: boolean}[]} spans  Device pixels.
+ * @param {{from: number, to: number, texts: string[], marked: boolean, ink: string | null}[]} spans  Device pixels; an ink of their own where they are not as usual.
  * @param {{top: number, height: number, ratio: number, ink: string, left: number, right: number}} place
  */
 export function paintSpans(context, spans, { top, height, ratio, ink, left, right }) {
   context.font = `${11 * ratio}px ${getComputedStyle(document.body).fontFamily}`;
   context.textAlign = "center";
   context.textBaseline = "middle";
-  for (const { from, to, texts, marked, bad } of spans) {
+  for (const { from, to, texts, marked, ink: own } of spans) {
     const a = Math.max(left, from);
     const b = Math.min(right, Math.max(to, from + ratio));
     if (b <= a) continue;
     const width = Math.max(ratio, b - a - ratio);
-    context.fillStyle = bad ? color("--error") : ink;
+    context.fillStyle = own ? color(own) : ink;
     context.globalAlpha = marked ? 0.75 : 0.28;
     context.fillRect(a, top, width, height);
     context.globalAlpha = 1;
@@ -116,7 +117,7 @@ export function paintOverview(context, columns, { left, height }) {
     context.fill(path);
   }
   const wire = new Path2D();
-  for (let i = 0; i < total; i++) if (has(columns.low, i, 33)) wire.rect(left + i, 0.68 * height, 1, 0.24 * height);
+  for (let i = 0; i < total; i++) if (has(columns.low, i, RX) || has(columns.low, i, TX)) wire.rect(left + i, 0.68 * height, 1, 0.24 * height);
   context.fillStyle = color("--wire");
   context.fill(wire);
 }

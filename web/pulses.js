@@ -8,15 +8,12 @@ import { GUTTER, MARGIN, color, fit, ratio, watch } from "./plot.js";
 import { createRange } from "./range.js";
 import { createReading } from "./reading.js";
 import { ROW_PX, allFolded, channelOf, idle, isFolded, rowsOf, shows, signalsOf } from "./rows.js";
-import { shown } from "./state.js";
+import { createSpans } from "./spans.js";
+import { lookedAt, shown } from "./state.js";
 import { cycleAt, gestures, pixelOf, reveal } from "./timeline.js";
 
 /** @typedef {import("./types.js").State} State */
 /** @typedef {import("./types.js").PulseColumns} PulseColumns */
-/** @typedef {import("./types.js").PacketRow} PacketRow */
-
-/** Packets that are drawn one by one; more than that are too narrow to be told apart. */
-const MOST_SPANS = 400;
 
 /** A cursor that is set this near to an edge is set on it, in CSS pixels. */
 const SNAP_PX = 6;
@@ -36,7 +33,8 @@ export function createPulses({ engine, dispatch, now }) {
   const range = createRange(page);
   const overview = createOverview({ engine, ...page });
   const reading = createReading({ engine, now });
-  /** @type {{columns: PulseColumns, packets: {rows: PacketRow[], more: boolean}} | null} */
+  const spans = createSpans({ engine });
+  /** @type {PulseColumns | null} */
   let shownColumns = null;
   let plot = { left: GUTTER, right: GUTTER + 1 };
 
@@ -102,11 +100,9 @@ export function createPulses({ engine, dispatch, now }) {
     if (x < plot.left) return true;
     if ("bit" in row) return snapped(row.bit, at);
     const cycle = cycleAt(now(), plot, x);
-    const found = shownColumns?.packets.rows.find((packet) => row.kind === "packets"
-      ? packet.start_cycle <= cycle && cycle < packet.end_cycle
-      : packet.tick_start_cycle !== null && packet.tick_start_cycle <= cycle && cycle < (packet.tick_end_cycle ?? 0));
-    if (found) dispatch({ type: "packet", packet: found.index });
-    return Boolean(found);
+    const found = spans.spansOf(now(), row.kind).find(({ start, end }) => start <= cycle && cycle < end)?.packet ?? null;
+    if (found !== null) dispatch({ type: "packet", packet: found });
+    return found !== null;
   }
 
   /** Sets cursor A to the next edge of the chosen row and brings it into view. @param {boolean} forward */
@@ -130,19 +126,17 @@ export function createPulses({ engine, dispatch, now }) {
     if (!state.result || stack.clientWidth < 60) return;
     const { start, end } = shown(state);
     const wanted = Math.max(16, Math.round((plot.right - plot.left) * ratio()));
-    const [columns, packets] = await Promise.all([
-      engine.latest("pulses", "pulses", start, end, wanted),
-      engine.latest("spans", "packets_in", start, end, MOST_SPANS),
-    ]).catch((error) => [unlessDropped(error), null]);
-    if (!columns || !packets) return;
-    shownColumns = { columns, packets };
+    const asked = engine.latest("pulses", "pulses", start, end, wanted).catch(unlessDropped);
+    const [columns, decoded] = await Promise.all([asked, spans.fetch(state)]);
+    if (!columns || !decoded) return;
+    shownColumns = columns;
     paint(now());
   }
 
   /** @param {State} state */
   function paint(state) {
     if (!shownColumns || !state.result) return;
-    const { columns, packets } = shownColumns;
+    const columns = shownColumns;
     const { width, ratio: scale } = fit(canvas);
     const context = canvas.getContext("2d");
     if (!context) return;
@@ -169,25 +163,15 @@ export function createPulses({ engine, dispatch, now }) {
       const place = { left, right, top, height, ratio: scale, ink: color(row.ink) };
       if (row.kind === "folded") paintTint(context, columns, row.dir, { ...place, ink: color("--dir") });
       if ("bit" in row) paintSignal(context, columns, row.bit, place);
-      else paintSpans(context, spansOf(state, row.kind, packets), place);
+      else paintSpans(context, spans.spansOf(state, row.kind).map((span) => placed(state, span)), place);
     }
     describe(state);
     paintCursor(state);
   }
 
-  /** @param {State} state @param {"packets" | "ticks"} kind @param {{rows: PacketRow[], more: boolean}} packets */
-  function spansOf(state, kind, { rows: list, more }) {
-    const x = (/** @type {number} */ cycle) => pixelOf(state, plot, cycle) * ratio();
-    const spans = list.flatMap((packet) => {
-      const [from, to] = kind === "packets" ? [packet.start_cycle, packet.end_cycle] : [packet.tick_start_cycle, packet.tick_end_cycle];
-      if (from === null || to === null) return [];
-      const said = [packet.hex, packet.fields, packet.outcome === "queued" ? "" : packet.outcome].filter(Boolean);
-      const texts = kind === "packets" ? [said.join(" · "), said[0] ?? "", `#${packet.index}`] : [`tick ${packet.index} · ${packet.fields}`, packet.fields, `${packet.index}`];
-      return [{ from: x(from), to: x(to), texts, marked: packet.index === state.packet, bad: kind === "packets" && packet.outcome !== "queued" }];
-    });
-    if (!more || list.length === 0) return spans;
-    const text = `more than ${MOST_SPANS} ${kind}: zoom in to see each`;
-    return [{ from: plot.left * ratio(), to: plot.right * ratio(), texts: [text, "zoom in"], marked: false, bad: false }];
+  /** A span in device pixels. @param {State} state @param {import("./spans.js").Span} span */
+  function placed(state, { start, end, ...rest }) {
+    return { ...rest, from: pixelOf(state, plot, start) * ratio(), to: pixelOf(state, plot, end) * ratio() };
   }
 
   /** @param {State} state */
@@ -209,7 +193,7 @@ export function createPulses({ engine, dispatch, now }) {
 
   /** The head's choices and the height that the rows take. @param {State} state */
   function layout(state) {
-    const channels = state.result?.summary.channels ?? 1;
+    const channels = lookedAt(state)?.channels ?? 1;
     options(rowSelect, signalsOf(state).map(({ name, bit }) => [String(bit), name]), String(state.row));
     const folded = allFolded(state);
     foldAll.hidden = channels === 1;

@@ -2,12 +2,13 @@
  * The rows of the logic view: which there are, which are on show. The line comes first, so that it is in view
  * beside the first channels; a channel is DIR and STEP, or both in one row when it is folded.
  */
+import { lookedAt } from "./state.js";
 
 /** @typedef {import("./types.js").State} State */
 /**
  * @typedef {{kind: "signal", name: string, bit: number, ink: string, channel?: number}} SignalRow
  * @typedef {{kind: "folded", name: string, bit: number, dir: number, ink: string, channel: number}} FoldedRow  STEP over its DIR.
- * @typedef {{kind: "packets" | "ticks", name: string, ink: string}} SpanRow
+ * @typedef {{kind: "packets" | "replies" | "ticks" | "violations", name: string, ink: string}} SpanRow
  * @typedef {SignalRow | FoldedRow | SpanRow} Row
  */
 
@@ -23,7 +24,7 @@ const REPLY = [{ kind: "signal", name: "TX", bit: TX, ink: "--wire" }, { kind: "
 
 /** @param {State} state */
 function channelsOf(state) {
-  return state.result?.summary.channels ?? 1;
+  return lookedAt(state)?.channels ?? 1;
 }
 
 /** @param {State} state @param {number} channel */
@@ -43,7 +44,7 @@ export function channelOf(bit) {
 
 /** Signals that never change in this run and are not asked for. @param {State} state */
 export function idle(state) {
-  const changing = state.result?.summary.changing ?? [];
+  const changing = lookedAt(state)?.changing ?? [];
   return REPLY.filter(({ bit }) => !changing.includes(bit));
 }
 
@@ -52,7 +53,10 @@ export function rowsOf(state) {
   const away = state.allSignals ? [] : idle(state).filter(({ bit }) => bit !== state.row);
   /** @type {Row[]} */
   const rows = [{ kind: "signal", name: "EN", bit: EN, ink: "--enable" }, { kind: "signal", name: "RX", bit: RX, ink: "--wire" },
-    { kind: "packets", name: "packets", ink: "--packet" }, ...REPLY.filter((row) => !away.includes(row)), { kind: "ticks", name: "ticks", ink: "--tick" }];
+    { kind: "packets", name: state.result?.summary.framed ? "frames" : "packets", ink: "--packet" }, ...REPLY.filter((row) => !away.includes(row))];
+  if (state.result?.summary.framed) rows.push({ kind: "replies", name: "replies", ink: "--reply" });
+  rows.push({ kind: "ticks", name: "ticks", ink: "--tick" });
+  if (lookedAt(state)?.violations) rows.push({ kind: "violations", name: "timing", ink: "--error" });
   for (let channel = 0; channel < channelsOf(state); channel++) {
     if (isFolded(state, channel)) rows.push({ kind: "folded", name: `ch ${channel}`, bit: channel, dir: DIR + channel, ink: "--step", channel });
     else {

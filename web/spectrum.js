@@ -15,6 +15,8 @@ const FLOOR_DB = -120;
 const GUTTER = 58;
 /** Below this part of the fundamental a harmonic is the arithmetic's own noise. */
 const NOISE = 1e-11;
+/** And so it is below this many steps, steps/s or steps/s². */
+const LEAST = 1e-9;
 
 /** @param {{engine: import("./engine.js").Engine} & import("./timeline.js").Page} page */
 export function createSpectrum({ engine, now }) {
@@ -54,7 +56,7 @@ export function createSpectrum({ engine, now }) {
     const shownOrder = some[quantity].length;
     const x = Array.from({ length: shownOrder }, (_, i) => i + 1);
     const level = (/** @type {Spectrum} */ spectrum) => (db
-      ? spectrum[quantity].map((value) => 20 * Math.log10(value / reference(spectrum, quantity)))
+      ? spectrum[quantity].map((value) => 20 * Math.log10(heard(value) / reference(spectrum, quantity)))
       : spectrum[quantity]);
     const top = Math.max(...[ideal, pulses].flatMap((spectrum) => (spectrum ? [...spectrum[quantity]] : [])), 1e-12);
     const width = Math.max(1.5, Math.min(5, (canvas.clientWidth - GUTTER) / shownOrder / 3));
@@ -88,7 +90,12 @@ export function createSpectrum({ engine, now }) {
 
 /** What the parts are parts of: the fundamental, or the greatest line where there is no fundamental. @param {Spectrum} spectrum @param {Quantity} quantity */
 function reference(spectrum, quantity) {
-  return spectrum.periodic ? spectrum[quantity][0] : Math.max(...spectrum[quantity]);
+  return Math.max(LEAST, spectrum.periodic ? spectrum[quantity][0] : Math.max(...spectrum[quantity]));
+}
+
+/** @param {number} amplitude */
+function heard(amplitude) {
+  return amplitude < LEAST ? 0 : amplitude;
 }
 
 /** @param {Spectra} spectra @param {Quantity} quantity */
@@ -100,7 +107,7 @@ function harmonics({ ideal, pulses }, quantity) {
     hz: given[0].fundamental_hz * (i + 1),
     cells: given.flatMap((spectrum) => {
       const values = spectrum[quantity];
-      const part = values[i] / reference(spectrum, quantity);
+      const part = heard(values[i]) / reference(spectrum, quantity);
       return !(part >= NOISE) ? ["0", "0"] : [short(values[i], 4), short(100 * part, 3)];
     }),
   }));

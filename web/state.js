@@ -26,12 +26,15 @@
  *   | {type: "row", row: number} | {type: "packet", packet: number | null}
  *   | {type: "fold", channel: number, folded: boolean} | {type: "fold-all", folded: boolean}
  *   | {type: "all-signals", on: boolean}
+ *   | {type: "controller", controller: number} | {type: "side", side: "spectrum" | "timing"}
  *   | {type: "axis", axis: number} | {type: "unit", unit: State["unit"]}
  *   | {type: "view", view: string} | {type: "notice", notice: State["notice"]}} Message
  */
 
 /** Steps of history that are kept. */
 export const DEPTH = 50;
+/** Controllers that a line can have beside the first. */
+export const MOST_FURTHER = 31;
 /** Channels that a bus can have. */
 export const MOST_CHANNELS = 16;
 /** Least cycles that the time axis shows. */
@@ -43,8 +46,8 @@ export function initial(scenario) {
     scenario, origin: "own", revision: 0, edited: null, past: [], future: [], drafts: {},
     judgement: null, judged: -1, derived: null, approved: -1,
     run: { phase: "idle", progress: null, message: "" }, result: null,
-    window: null, awaited: null, axis: 0, unit: "steps", hover: null, cursors: { a: null, b: null }, row: 0, folds: {}, allSignals: false, packet: null,
-    view: "motion", notice: null,
+    controller: 0, window: null, awaited: null, axis: 0, unit: "steps", hover: null, cursors: { a: null, b: null }, row: 0, folds: {}, allSignals: false, packet: null,
+    view: "motion", side: null, notice: null,
   };
 }
 
@@ -77,6 +80,8 @@ export function update(state, message) {
     case "fold-all": return { ...state, folds: Object.fromEntries(Array.from({ length: MOST_CHANNELS }, (_, channel) => [channel, message.folded])) };
     case "all-signals": return { ...state, allSignals: message.on };
     case "packet": return { ...state, packet: message.packet };
+    case "controller": return lookAt(state, message.controller);
+    case "side": return { ...state, side: message.side };
     case "axis": return { ...state, axis: message.axis };
     case "unit": return { ...state, unit: message.unit };
     case "view": return { ...state, view: message.view };
@@ -85,7 +90,7 @@ export function update(state, message) {
 }
 
 /** What a wholly different scenario begins with. */
-const fresh = { window: null, packet: null, hover: null, cursors: { a: null, b: null }, axis: 0, row: 0, folds: {} };
+const fresh = { controller: 0, window: null, packet: null, side: null, hover: null, cursors: { a: null, b: null }, axis: 0, row: 0, folds: {} };
 
 /** @param {State} state @param {{path: string, value: any, joins?: boolean}} message */
 function edit(state, { path, value, joins = false }) {
@@ -133,16 +138,38 @@ function judged(state, { revision, judgement }) {
 /** @param {State} state @param {{revision: number, summary: import("./types.js").Summary, ms: number}} message @returns {State} */
 function done(state, { revision, summary, ms }) {
   if (revision !== state.revision) return state;
-  const result = { revision, serial: (state.result?.serial ?? 0) + 1, summary, ms };
-  const next = { ...state, result, run: { .../** @type {const} */ ({ phase: "done", progress: null, message: "" }) } };
-  const axis = Math.min(state.axis, summary.channels - 1);
+  const next = lookAt({ ...state, result: { revision, summary, ms, controller: 0 },
+    run: { .../** @type {const} */ ({ phase: "done", progress: null, message: "" }) } }, state.controller);
   // An old window over a run of another length or clock would show another time.
   const same = state.result?.summary.clock_hz === summary.clock_hz;
   const kept = state.window && same ? clamp(state.window, summary.end_cycle) : null;
   const window = state.awaited ? within(state.awaited, summary.end_cycle) : kept;
   const inside = (/** @type {number | null} */ c) => (c !== null && c <= summary.end_cycle && same ? c : null);
-  return { ...next, axis, window, awaited: null, packet: null, hover: null,
+  return { ...next, window, awaited: null,
     cursors: { a: inside(state.cursors.a), b: inside(state.cursors.b) } };
+}
+
+/** The result as another of its controllers shows it: for the views another result. @param {State} state @param {number} controller @returns {State} */
+function lookAt(state, controller) {
+  if (!state.result) return { ...state, controller };
+  const { controllers } = state.result.summary;
+  const shown = Math.min(controller, controllers.length - 1);
+  const { channels } = controllers[shown];
+  const row = state.row < 2 * MOST_CHANNELS && state.row % MOST_CHANNELS >= channels ? 0 : state.row;
+  return { ...state, controller, result: { ...state.result, controller: shown }, row,
+    axis: Math.min(state.axis, channels - 1), packet: null, hover: null };
+}
+
+/** What the run made of the controller on show; none before the first run. @param {State} state */
+export function lookedAt({ result }) {
+  return result?.summary.controllers[result.controller];
+}
+
+/** What follows from the axis that a field of the form belongs to. @param {State} state @param {string} path */
+export function derivedAxis({ derived }, path) {
+  const further = /^controllers\[(\d+)\]/.exec(path);
+  const axis = /axes\[(\d+)\]/.exec(path);
+  return derived?.controllers[further ? Number(further[1]) + 1 : 0]?.axes[axis ? Number(axis[1]) : 0];
 }
 
 /** Last cycle of the time axis. @param {State} state */

@@ -1,12 +1,13 @@
 /** On a narrow screen the views are tabs and the form folds away; on a wide one all of them stand. */
 import { byId } from "./dom.js";
+import { lookedAt } from "./state.js";
 
 /** @typedef {import("./types.js").State} State */
 
-const VIEWS = ["motion", "pulses", "packets", "spectrum"];
+const VIEWS = ["motion", "pulses", "packets", "spectrum", "timing"];
 
 /** @param {import("./timeline.js").Page} page */
-export function createTabs({ dispatch, now }) {
+export function createTabs({ dispatch }) {
   const tab = (/** @type {string} */ view) => byId(`tab-${view}`);
   for (const view of VIEWS) {
     tab(view).addEventListener("click", () => dispatch({ type: "view", view }));
@@ -14,7 +15,8 @@ export function createTabs({ dispatch, now }) {
       const by = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
       if (by === undefined) return;
       event.preventDefault();
-      const next = VIEWS[(VIEWS.indexOf(now().view) + by + VIEWS.length) % VIEWS.length];
+      const offered = VIEWS.filter((name) => !tab(name).hidden);
+      const next = offered[(offered.indexOf(view) + by + offered.length) % offered.length];
       dispatch({ type: "view", view: next });
       tab(next).focus();
     });
@@ -31,8 +33,11 @@ export function createTabs({ dispatch, now }) {
     if (narrow.matches && before && before.packet !== state.packet && state.packet !== null && state.view === "packets") {
       queueMicrotask(() => dispatch({ type: "view", view: "pulses" }));
     }
+    const driver = typeof lookedAt(state)?.violations === "number";
+    tab("timing").hidden = !driver;
+    const shown = state.view === "timing" && !driver ? "spectrum" : state.view;
     for (const view of VIEWS) {
-      const open = view === state.view;
+      const open = view === shown;
       tab(view).setAttribute("aria-selected", String(open));
       tab(view).tabIndex = open ? 0 : -1;
       byId(`view-${view}`).classList.toggle("open", open);

@@ -7,14 +7,22 @@
  * @typedef {{kind: string, start_s: number, duration_s: number, steps: number, detail: string}} DerivedMove
  * @typedef {{steps: number, duration_s: number, peak_speed_steps_s: number, peak_acceleration_steps_s2: number,
  *   step_mm: number | null, step_deg: number | null, moves: DerivedMove[]}} DerivedAxis
- * @typedef {{tick_s: number, limit_steps_s: number, ticks: number, packets_per_s: number, line_load: number | null,
- *   duration_s: number, axes: DerivedAxis[]}} Derived
+ * @typedef {{tick_s: number, limit_steps_s: number, ticks: number, axes: DerivedAxis[]}} DerivedController
+ * @typedef {{ticks: number, sends: number, line_load: number | null, duration_s: number,
+ *   controllers: DerivedController[]}} Derived  Controllers in the order of the scenario, the first one at 0.
  * @typedef {{edges: number, packets: number, bytes: number, over_budget: boolean, message: string}} Cost
  * @typedef {{problems: Problem[], scenario: string, derived: Derived | null, cost: Cost | null}} Judgement
  * @typedef {{id: string, document: string, scenario: string}} Preset
+ * @typedef {{id: string, name: string, source: string, rules: {[rule: string]: number}}} DriverSheet
  *
- * @typedef {{digest: string, records: number, edges: number, end_cycle: number, end_s: number, clock_hz: number,
- *   channels: number, positions: Int32Array, faults: {bits: number, names: string[]}, ticks_done: number, changing: number[]}} Summary
+ * @typedef {{address: number | null, digest: string, records: number, edges: number, channels: number, positions: number[],
+ *   faults: {bits: number, names: string[]}, ticks_done: number, state: string | null, changing: number[],
+ *   violations: number | null}} ControllerSummary
+ * @typedef {{controller: number, ticks: number, acknowledged: number, why: string | null,
+ *   progress: "opening" | "filling" | "confirming" | "done" | "given_up"}} Job
+ * @typedef {{frames: number, repeated: number, replies: number, rejected: number, refused: number, deaths: number, jobs: Job[]}} Host
+ * @typedef {{framed: boolean, end_cycle: number, end_s: number, clock_hz: number, line_load: number | null,
+ *   host: Host | null, controllers: ControllerSummary[]}} Summary
  * @typedef {{done: boolean, cycle: number, end_cycle: number, records: number}} Progress
  * @typedef {{x: Float64Array, has_ideal: boolean,
  *   position_min: Float64Array, position_max: Float64Array, speed_min: Float64Array, speed_max: Float64Array,
@@ -22,9 +30,15 @@
  *   made_position_min: Float64Array, made_position_max: Float64Array,
  *   made_speed_min: Float64Array, made_speed_max: Float64Array}} MotionColumns
  * @typedef {{high: Uint32Array, low: Uint32Array, last: Uint32Array}} PulseColumns
- * @typedef {{index: number, start_cycle: number, end_cycle: number, hex: string, fields: string, outcome: string,
+ * @typedef {{index: number, kind: "packet" | "frame" | "reply" | "collision", start_cycle: number, end_cycle: number,
+ *   hex: string, fields: string, outcome: string, mark: "good" | "foreign" | "repeated" | "bad",
  *   tick_start_cycle: number | null, tick_end_cycle: number | null}} PacketRow
+ * @typedef {{start_cycle: number, end_cycle: number, row: number | null, fields: string}} TickRow
  * @typedef {{total: number, rows: PacketRow[]}} PacketPage
+ * @typedef {{cycle: number, channel: number, rule: string, measured_cycles: number, required_cycles: number}} Violation
+ * @typedef {{rule: string, required_ns: number, required_cycles: number, violations: number, by_channel: number[],
+ *   least: {measured_cycles: number, cycle: number, channel: number} | null}} RuleResult
+ * @typedef {{driver: string | null, total: number, rules: RuleResult[], violations: Violation[]}} Timing
  * @typedef {{fundamental_hz: number, periods: number, order: number, periodic: boolean,
  *   position: Float64Array, speed: Float64Array, acceleration: Float64Array,
  *   thd_position: number | null, thd_speed: number | null, thd_acceleration: number | null}} Spectrum
@@ -34,7 +48,7 @@
  * @typedef {{left: number, top: number, right: number, bottom: number}} Plot  CSS pixels in a canvas.
  * @typedef {"own" | "shared" | `preset:${string}`} Origin  Where the scenario on show comes from.
  * @typedef {{scenario: Scenario, origin: Origin}} Moment  One step of the history.
- * @typedef {{revision: number, serial: number, summary: Summary, ms: number}} Result
+ * @typedef {{revision: number, summary: Summary, ms: number, controller: number}} Result  As one of its controllers shows it.
  * @typedef {{phase: "idle" | "waiting" | "running" | "done" | "failed", progress: Progress | null, message: string}} Run
  *
  * @typedef {object} State
@@ -51,6 +65,7 @@
  * @property {number} approved      Revision that the visitor lets run although it is over the budget.
  * @property {Run} run
  * @property {Result | null} result The last good one.
+ * @property {number} controller    The one that the views look at, as long as there is one of this number.
  * @property {Span | null} window   Shown part of the time axis; null shows the whole run.
  * @property {Span | null} awaited  Part that a link asks for, until there is a result to show it of.
  * @property {number} axis          Axis of the motion view.
@@ -62,6 +77,7 @@
  * @property {boolean} allSignals   Also the signals that never change.
  * @property {number | null} packet Selected packet.
  * @property {string} view          Tab on a narrow screen.
+ * @property {"spectrum" | "timing" | null} side  Which of the two shares their place on a wide screen; null: the timing check, if there is one.
  * @property {{text: string, kind: "info" | "error"} | null} notice  About links and the engine.
  */
 export {};

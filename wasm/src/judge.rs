@@ -2,10 +2,11 @@
 
 use crate::convert::object;
 use serde::Serialize;
+use std::iter::once;
 use stepscope_core::{
     motion::{AxisPlan, Curve, Profile},
     run::{BUDGET_RECORDS, Cost, Experiment},
-    scenario::{Problem, Scenario, Source, presets as core_presets},
+    scenario::{Axis, Problem, Scenario, Source, presets as core_presets},
 };
 use wasm_bindgen::prelude::*;
 
@@ -63,12 +64,20 @@ struct Told {
 
 #[derive(Serialize)]
 struct Derived {
+    /// Of the controller that has most.
+    ticks: u64,
+    sends: u64,
+    line_load: Option<f64>,
+    duration_s: f64,
+    /// In the order of the scenario.
+    controllers: Vec<DerivedController>,
+}
+
+#[derive(Serialize)]
+struct DerivedController {
     tick_s: f64,
     limit_steps_s: f64,
     ticks: u64,
-    packets_per_s: f64,
-    line_load: Option<f64>,
-    duration_s: f64,
     axes: Vec<DerivedAxis>,
 }
 
@@ -150,35 +159,41 @@ pub(crate) fn cost_message(cost: Cost) -> String {
 }
 
 fn derive(scenario: &Scenario, experiment: &Experiment) -> Derived {
-    let config = experiment.config();
-    let clock_hz = f64::from(config.clock_hz());
-    let tick_s = config.tick().0 as f64 / clock_hz;
-    let limit_steps_s = f64::from(config.slots()) / tick_s;
-    let axes = match &scenario.source {
-        Source::Motion(motion) => motion
-            .axes
-            .iter()
-            .zip(experiment.plans())
-            .map(|(axis, plan)| DerivedAxis {
-                steps: plan.steps(),
-                duration_s: plan.duration_s(),
-                peak_speed_steps_s: plan.peaks().speed,
-                peak_acceleration_steps_s2: plan.peaks().acceleration,
-                step_mm: axis.mechanics.step_mm(),
-                step_deg: axis.mechanics.step_deg(),
-                moves: moves(plan, limit_steps_s),
-            })
-            .collect(),
-        _ => Vec::new(),
+    let clock_hz = f64::from(experiment.config().clock_hz());
+    let own_axes = match &scenario.source {
+        Source::Motion(motion) => motion.axes.as_slice(),
+        _ => &[],
     };
+    let axes = once(own_axes).chain(scenario.controllers.iter().map(|further| further.axes.as_slice()));
+    let each = experiment.configs().zip(axes).enumerate();
+    let controllers: Vec<DerivedController> = each
+        .map(|(index, (config, axes))| {
+            let tick_s = config.tick().0 as f64 / clock_hz;
+            let limit_steps_s = f64::from(config.slots()) / tick_s;
+            let ticks = experiment.ticks_of(index).len() / usize::from(config.channels().max(1));
+            let plans = experiment.plans_of(index).iter();
+            let axes = axes.iter().zip(plans).map(|(axis, plan)| derive_axis(axis, plan, limit_steps_s));
+            DerivedController { tick_s, limit_steps_s, ticks: ticks as u64, axes: axes.collect() }
+        })
+        .collect();
     Derived {
-        tick_s,
-        limit_steps_s,
-        ticks: experiment.cost().sends,
-        packets_per_s: 1.0 / tick_s,
+        ticks: controllers.iter().map(|controller| controller.ticks).max().unwrap_or(0),
+        sends: experiment.cost().sends,
         line_load: experiment.line_load(),
         duration_s: experiment.cost().end_cycle as f64 / clock_hz,
-        axes,
+        controllers,
+    }
+}
+
+fn derive_axis(axis: &Axis, plan: &AxisPlan, limit_steps_s: f64) -> DerivedAxis {
+    DerivedAxis {
+        steps: plan.steps(),
+        duration_s: plan.duration_s(),
+        peak_speed_steps_s: plan.peaks().speed,
+        peak_acceleration_steps_s2: plan.peaks().acceleration,
+        step_mm: axis.mechanics.step_mm(),
+        step_deg: axis.mechanics.step_deg(),
+        moves: moves(plan, limit_steps_s),
     }
 }
 

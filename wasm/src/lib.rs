@@ -7,8 +7,10 @@ mod charts;
 mod convert;
 mod judge;
 mod link;
+mod packets;
 mod simulation;
 mod spectrum;
+mod summary;
 mod timing;
 
 pub use judge::{check, default_scenario, presets, version};

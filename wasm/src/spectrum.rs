@@ -4,9 +4,9 @@ use crate::convert::{field, numbers, object};
 use js_sys::Object;
 use stepscope_core::{
     analysis::spectrum::{Harmonics, Spectrum, Stretch},
+    motion::AxisPlan,
     quantise::TickClock,
-    run::Experiment,
-    scenario::Scenario,
+    scenario::{Config, Scenario, Source},
     trace::{Recording, Step},
 };
 use wasm_bindgen::prelude::*;
@@ -14,24 +14,29 @@ use wasm_bindgen::prelude::*;
 /// `{axis, ideal, pulses, note}`: the ideal curve's spectrum and the one of the pulses as they come.
 pub(crate) fn spectrum(
     scenario: &Scenario,
-    experiment: &Experiment,
+    plan: Option<&AxisPlan>,
+    config: &Config,
     recording: &Recording,
     steps: &[Step],
 ) -> Result<JsValue, JsError> {
     let analysis = &scenario.analysis;
     let result = Object::new();
     field(&result, "axis", &analysis.axis.into());
-    let plan = experiment.plans().get(usize::from(analysis.axis));
     let stretch = plan.and_then(Stretch::of);
     let (Some(plan), Some(stretch)) = (plan, stretch) else {
         field(&result, "ideal", &JsValue::NULL);
         field(&result, "pulses", &JsValue::NULL);
-        field(&result, "note", &"A spectrum needs a motion; packets and line scripts have none.".into());
+        let note = match &scenario.source {
+            Source::Motion(_) => format!("This controller has no axis {}.", analysis.axis),
+            _ => {
+                "A spectrum needs a motion; packets, line scripts and lists of segments have none.".to_owned()
+            }
+        };
+        field(&result, "note", &note.into());
         return Ok(result.into());
     };
     let ideal = Spectrum::ideal(plan, analysis.order, analysis.fft_length);
     field(&result, "ideal", &ideal.map_or(Ok(JsValue::NULL), |spectrum| told(&spectrum))?);
-    let config = experiment.config();
     let zero = recording.first_tick().map_or(0, |start| start.0);
     let pulses: Vec<(u64, i8)> = steps
         .iter()

@@ -1,6 +1,9 @@
 //! The timing check of a run, as the page shows it, and the drivers that it may choose from.
 
-use crate::{convert::object, simulation::Simulation};
+use crate::{
+    convert::object,
+    simulation::{Simulation, config},
+};
 use serde::Serialize;
 use stepscope_core::{
     analysis::{
@@ -84,7 +87,7 @@ struct ViolationRow {
 
 #[wasm_bindgen]
 impl Simulation {
-    /// The pulses so far against the scenario's driver; null without a driver. Of each rule what is
+    /// The pulses so far of the controller that is looked at, against the scenario's driver; null without a driver. Of each rule what is
     /// required (0: nothing), the least that was measured, and the violations in all and of each
     /// channel: `{driver, total, rules: [{rule, required_ns, required_cycles, least:
     /// {measured_cycles, cycle, channel} | null, violations, by_channel}], violations: [{cycle,
@@ -94,8 +97,8 @@ impl Simulation {
     /// # Errors
     /// Never in practice.
     pub fn timing(&self) -> Result<JsValue, JsError> {
-        let Some(check) = &self.timing else { return Ok(JsValue::NULL) };
-        let channels = usize::from(self.experiment.config().channels());
+        let Some(check) = &self.looked_at().timing else { return Ok(JsValue::NULL) };
+        let channels = usize::from(config(&self.experiment, self.looked_at).channels());
         object(&Timing {
             driver: match &self.scenario.driver {
                 Some(Driver::Preset(model)) => Some(drivers::sheet(*model).id),
@@ -113,7 +116,7 @@ impl Simulation {
     pub fn next_violation(&self, cycle: f64, forward: bool) -> Option<u32> {
         // A cycle before reset has reset's violations, of which there are none, before it.
         let at = Instant(cycle.max(0.0) as u64);
-        self.timing.as_ref()?.next(at, forward).map(|index| index as u32)
+        self.looked_at().timing.as_ref()?.next(at, forward).map(|index| index as u32)
     }
 }
 

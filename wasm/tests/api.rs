@@ -4,7 +4,7 @@
 mod js;
 
 use js::{get, list, number, text};
-use js_sys::{Float64Array, Int32Array, Uint32Array};
+use js_sys::{Float64Array, Uint32Array};
 use stepscope_wasm::{
     Simulation, check, decode_link, default_scenario, drivers, encode_link, presets, version,
 };
@@ -29,6 +29,22 @@ fn paths(judgement: &JsValue) -> Vec<String> {
     list(judgement, "problems").iter().map(|problem| text(problem, "path")).collect()
 }
 
+fn positions(controller: &JsValue) -> Vec<f64> {
+    list(controller, "positions").iter().filter_map(JsValue::as_f64).collect()
+}
+
+/// The finished run of a preset.
+fn preset(id: &str) -> Simulation {
+    let all = sure(presets()).unchecked_into::<js_sys::Array>().to_vec();
+    let found = all.iter().find(|preset| text(preset, "id") == id);
+    finished(&found.map(|preset| text(preset, "scenario")).unwrap_or_default())
+}
+
+/// All rows of the packets of the controller that is looked at.
+fn rows(simulation: &Simulation) -> Vec<JsValue> {
+    list(&sure(simulation.packets(0, u32::MAX)), "rows")
+}
+
 /// Numbers of a typed array.
 fn numbers(object: &JsValue, name: &str) -> Vec<f64> {
     get(object, name).unchecked_into::<Float64Array>().to_vec()
@@ -40,10 +56,11 @@ fn a_good_scenario_is_judged_with_what_follows_from_it() {
     assert_eq!(paths(&judgement), [""; 0]);
     assert_eq!(text(&judgement, "scenario"), default_scenario());
     let derived = get(&judgement, "derived");
-    assert_eq!(number(&derived, "tick_s"), 0.002);
-    assert_eq!(number(&derived, "limit_steps_s"), 50_000.0);
-    assert_eq!(number(&list(&derived, "axes")[0], "steps"), 3200.0);
-    assert_eq!(number(&list(&derived, "axes")[0], "peak_speed_steps_s"), 16_000.0);
+    let first = &list(&derived, "controllers")[0];
+    assert_eq!(number(first, "tick_s"), 0.002);
+    assert_eq!(number(first, "limit_steps_s"), 50_000.0);
+    assert_eq!(number(&list(first, "axes")[0], "steps"), 3200.0);
+    assert_eq!(number(&list(first, "axes")[0], "peak_speed_steps_s"), 16_000.0);
     let cost = get(&judgement, "cost");
     assert!(!get(&cost, "over_budget").is_truthy() && text(&cost, "message").is_empty());
     assert!(number(&cost, "edges") > 6400.0);
@@ -119,11 +136,14 @@ fn a_link_beyond_the_budget_says_so() {
 fn the_default_motion_is_there_from_curve_to_packet() {
     let mut simulation = finished(&default_scenario());
     let summary = sure(simulation.summary());
-    let positions: Int32Array = get(&summary, "positions").unchecked_into();
-    assert_eq!(positions.to_vec(), [3200]);
-    assert_eq!(number(&summary, "ticks_done"), 200.0);
-    assert_eq!(list(&get(&summary, "faults"), "names").len(), 0);
-    assert_eq!(text(&summary, "digest").len(), 16);
+    assert!(!get(&summary, "framed").is_truthy() && get(&summary, "host").is_null());
+    let [only] = &list(&summary, "controllers")[..] else { unreachable!("there is one controller") };
+    assert_eq!(positions(only), [3200.0]);
+    assert_eq!(number(only, "ticks_done"), 200.0);
+    assert_eq!(list(&get(only, "faults"), "names").len(), 0);
+    assert_eq!(text(only, "digest").len(), 16);
+    assert!(get(only, "address").is_null() && get(only, "state").is_null());
+    assert!(get(only, "violations").is_null());
 
     let end_s = number(&summary, "end_s");
     let motion = simulation.motion(0, 0.0, end_s, 50);
@@ -199,9 +219,8 @@ fn edges_are_found_in_both_directions_and_columns_hold_them() {
 #[wasm_bindgen_test]
 fn a_driver_that_cannot_follow_is_told_with_every_violation_in_its_place() {
     assert!(sure(finished(&default_scenario()).timing()).is_null(), "no driver, no check");
-    let all = sure(presets()).unchecked_into::<js_sys::Array>().to_vec();
-    let broken = all.iter().find(|preset| text(preset, "id") == "driver-timing-broken");
-    let simulation = finished(&broken.map(|preset| text(preset, "scenario")).unwrap_or_default());
+    let simulation = preset("driver-timing-broken");
+    assert_eq!(number(&list(&sure(simulation.summary()), "controllers")[0], "violations"), 131.0);
     let timing = sure(simulation.timing());
     assert_eq!((text(&timing, "driver").as_str(), number(&timing, "total")), ("drv8825", 131.0));
     let rules = list(&timing, "rules");
@@ -241,4 +260,122 @@ fn a_driver_that_cannot_follow_is_told_with_every_violation_in_its_place() {
     assert!(listed.iter().any(
         |sheet| text(sheet, "id") == "drv8825" && number(&get(sheet, "rules"), "step_high_ns") == 1900.0
     ));
+}
+
+#[wasm_bindgen_test]
+fn frames_and_replies_are_told_in_words_and_the_host_says_how_it_ended() {
+    let simulation = preset("framed-link");
+    let summary = sure(simulation.summary());
+    assert!(get(&summary, "framed").is_truthy());
+    let load = number(&summary, "line_load");
+    assert!(load > 0.1 && load < 1.0, "{load}");
+    let only = &list(&summary, "controllers")[0];
+    assert_eq!((number(only, "address"), text(only, "state").as_str()), (1.0, "READY"));
+    assert_eq!(positions(only), [3200.0, -1600.0]);
+    let host = get(&summary, "host");
+    let job = &list(&host, "jobs")[0];
+    assert_eq!(text(job, "progress"), "done");
+    assert_eq!(number(job, "ticks"), number(only, "ticks_done"));
+    assert_eq!(number(job, "acknowledged"), number(job, "ticks"));
+    assert!(get(job, "why").is_null());
+    assert_eq!(number(&host, "repeated"), 0.0);
+
+    let rows = rows(&simulation);
+    assert_eq!(rows.len() as f64, number(&host, "frames") + number(&host, "replies"));
+    let told = |index: usize| {
+        let row = &rows[index];
+        ["kind", "fields", "outcome", "mark"].map(|name| text(row, name))
+    };
+    assert_eq!(told(0), ["frame", "to 1: STATUS", "STATUS done", "good"]);
+    let reply = "from 1: ACK STATUS: READY, 16 free, seq 0, faults 0x00, 0 ticks done";
+    assert_eq!(told(1), ["reply", reply, "acknowledged", "good"]);
+    let [kind, fields, outcome, mark] = told(2);
+    assert!(fields.starts_with("to 1: TICKS seq 0, 8 ticks, ch0 +"), "{fields}");
+    assert_eq!((kind.as_str(), outcome.as_str(), mark.as_str()), ("frame", "8 ticks queued", "good"));
+
+    // The frame's eight ticks, one after another, from its first to its last.
+    let (start, end) = (number(&rows[2], "tick_start_cycle"), number(&rows[2], "tick_end_cycle"));
+    let ticks = list(&sure(simulation.ticks_in(start, end - 1.0, 100)), "rows");
+    assert_eq!(ticks.len(), 8);
+    assert!(ticks.iter().all(|tick| number(tick, "row") == 2.0));
+    assert_eq!(number(&ticks[0], "start_cycle"), start);
+    assert_eq!(number(&ticks[7], "end_cycle"), end);
+    assert!(get(&sure(simulation.ticks_in(start, end - 1.0, 7)), "more").is_truthy());
+    // The reply is on the line while the first of these ticks runs.
+    let (start, end) = (number(&rows[3], "start_cycle"), number(&rows[3], "end_cycle"));
+    assert!(start > number(&rows[2], "tick_start_cycle"));
+    let touching = list(&sure(simulation.packets_in(start, end, 9)), "rows");
+    let indices: Vec<f64> = touching.iter().map(|row| number(row, "index")).collect();
+    assert_eq!(indices, [3.0]);
+}
+
+#[wasm_bindgen_test]
+fn the_views_look_at_the_controller_that_is_selected() {
+    let mut simulation = preset("four-controllers-framed");
+    let summary = sure(simulation.summary());
+    let controllers = list(&summary, "controllers");
+    let addresses: Vec<f64> = controllers.iter().map(|controller| number(controller, "address")).collect();
+    assert_eq!(addresses, [1.0, 2.0, 3.0, 4.0]);
+    let jobs = list(&get(&summary, "host"), "jobs");
+    assert!(jobs.iter().all(|job| text(job, "progress") == "done"));
+    let expected: [&[f64]; 4] = [&[2400.0, -2400.0], &[500.0], &[1600.0], &[0.0, 0.0]];
+    for (controller, expected) in controllers.iter().zip(expected) {
+        assert_eq!(positions(controller), expected);
+    }
+    let end_s = number(&summary, "end_s");
+    for (index, expected) in expected.iter().enumerate() {
+        simulation.select(index as u32);
+        let made = numbers(&simulation.motion(0, 0.0, end_s, 20), "made_position_max");
+        assert_eq!(made.last(), Some(&expected[0]), "controller {index}");
+        let rows = rows(&simulation);
+        let own = |kind: &str| {
+            rows.iter().filter(|row| text(row, "kind") == kind && text(row, "mark") == "good").count()
+        };
+        assert_eq!(own("frame"), own("reply"), "controller {index}");
+        let foreign: Vec<&JsValue> = rows.iter().filter(|row| text(row, "mark") == "foreign").collect();
+        assert!(foreign.iter().all(|row| text(row, "outcome") == "another address"));
+        // The others' frames name their own channels, and their replies are read too.
+        assert!(foreign.iter().any(|row| text(row, "kind") == "reply"), "controller {index}");
+        let spectrum = sure(simulation.spectrum());
+        assert!(get(&spectrum, "ideal").is_object(), "controller {index}");
+    }
+    simulation.select(4);
+    let made = numbers(&simulation.motion(0, 0.0, end_s, 20), "made_position_max");
+    assert_eq!(made.last(), Some(&0.0), "there is no fifth one: still the fourth");
+}
+
+#[wasm_bindgen_test]
+fn noise_is_repeated_away_and_another_seed_is_another_run() {
+    let digest =
+        |simulation: &Simulation| text(&list(&sure(simulation.summary()), "controllers")[0], "digest");
+    let noisy = preset("framed-noisy-line");
+    let summary = sure(noisy.summary());
+    let host = get(&summary, "host");
+    assert!(number(&host, "repeated") > 0.0);
+    assert_eq!(text(&list(&host, "jobs")[0], "progress"), "done");
+    assert_eq!(positions(&list(&summary, "controllers")[0]), [3200.0, -1600.0]);
+    let marks: Vec<(String, String)> =
+        rows(&noisy).iter().map(|row| (text(row, "mark"), text(row, "outcome"))).collect();
+    for (mark, outcome) in [("repeated", "not queued again"), ("bad", "expected")] {
+        assert!(marks.iter().any(|(m, o)| m == mark && o.contains(outcome)), "{mark} {outcome}: {marks:?}");
+    }
+    let seeded = |seed: u32| {
+        finished(&format!(
+            r#"{{"line":{{"protocol":"framed","noise":{{"seed":{seed},"flipped_bits_ppm":1000}}}}}}"#
+        ))
+    };
+    assert_eq!(digest(&seeded(1)), digest(&seeded(1)));
+    assert_ne!(digest(&seeded(1)), digest(&seeded(2)));
+}
+
+#[wasm_bindgen_test]
+fn a_host_that_gives_up_says_why() {
+    let silent = finished(r#"{"line":{"protocol":"framed","noise":{"lost_bytes_ppm":1000000}}}"#);
+    let job = &list(&get(&sure(silent.summary()), "host"), "jobs")[0];
+    assert_eq!((text(job, "progress").as_str(), text(job, "why").as_str()), ("given_up", "no reply"));
+    let stop =
+        r#"{"line":{"protocol":"framed"},"source":{"line":{"sends":[{"start_cycle":2000,"frame":"ff05"}]}}}"#;
+    let summary = sure(finished(stop).summary());
+    assert!(get(&summary, "host").is_null(), "nobody waits for replies to a script");
+    assert_eq!(text(&list(&summary, "controllers")[0], "state"), "STOPPED");
 }

@@ -104,7 +104,7 @@ pub fn ideal(plan: &AxisPlan, zero_s: f64, window: Window) -> Ideal {
 pub struct Made {
     /// Position in steps from the start.
     pub position: Band,
-    /// Steps of a tick by its length, in steps/s.
+    /// Steps of a tick by its length, in steps/s; without ticks one step by the time since the one before.
     pub speed: Band,
 }
 
@@ -138,6 +138,9 @@ pub fn made(recording: &Recording, steps: &[Step], channel: u8, config: &Config,
             bands.speed.take(column, if order.right { rate } else { -rate });
         }
     }
+    if log.ticks().is_empty() {
+        intervals(steps, hz, window, &mut bands.speed);
+    }
     // Where no tick runs, nothing moves.
     for column in 0..window.columns {
         if bands.speed.min.get(column).is_some_and(|speed| speed.is_nan()) {
@@ -145,4 +148,46 @@ pub fn made(recording: &Recording, steps: &[Step], channel: u8, config: &Config,
         }
     }
     bands
+}
+
+/// The rate from each step to the next, as the later one's direction has it.
+fn intervals(steps: &[Step], hz: f64, window: Window, speed: &mut Band) {
+    let seconds = |step: &Step| step.cycle as f64 / hz;
+    let first = steps.partition_point(|step| seconds(step) < window.start_s).max(1);
+    for index in first..steps.len() {
+        let (Some(before), Some(step)) = (steps.get(index - 1), steps.get(index)) else { break };
+        let (from_s, to_s) = (seconds(before), seconds(step));
+        if from_s > window.end_s {
+            break;
+        }
+        let rate = f64::from(Step::direction(steps, index)) / (to_s - from_s);
+        for column in window.columns(from_s, to_s) {
+            speed.take(column, rate);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{run::Experiment, trace::steps};
+
+    #[test]
+    fn without_ticks_the_speed_is_that_of_the_intervals() {
+        // 10 steps right, 1 ms apart, a pause of 5 ms, and 10 back, 0.5 ms apart.
+        let json = r#"{"source":{"segments":{"channels":[{"segments":[
+            {"steps":{"count":10}},{"dwell":{"length_q16":5242880000}},
+            {"steps":{"count":10,"interval_q16":524288000,"dir":0}}]}]}}}"#;
+        let experiment = Experiment::from_json(json).expect("no problems");
+        let mut recording = Recording::default();
+        experiment.run(&mut recording);
+        let window = Window { start_s: 0.0, end_s: 0.022, columns: 22 };
+        let steps = steps(&recording.trace, 0);
+        let Made { speed, .. } = made(&recording, &steps, 0, experiment.config(), window);
+        let rows = [(0, 0.0), (5, 1000.0), (12, -1.0 / 0.0055), (17, -2000.0), (21, 0.0)];
+        for (column, expected) in rows {
+            assert!((speed.min[column] - expected).abs() < 0.01, "{column}: {speed:?}");
+            assert!((speed.max[column] - expected).abs() < 0.01, "{column}: {speed:?}");
+        }
+    }
 }

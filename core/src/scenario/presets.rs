@@ -26,6 +26,7 @@ const SONG: &str = "Song, Han, Lu 2021: exact S-curve";
 const SONOBE: &str = "Sonobe 2011: acceleration table";
 const PATENT: &str = "RU 2704486, 2019: tick packets";
 const ZHANG: &str = "Zhang 2012: fixed-length controller";
+const FRAMED: &str = "The framed protocol: checked, answered, repeated";
 const DRIVERS: &str = "Drivers' data sheets: timing";
 
 macro_rules! presets {
@@ -50,8 +51,14 @@ presets! {
     SINE => "sine-2022-d0006";
     PATENT => "patent-2019-four-motors";
     PATENT => "patent-2019-sixteen-motors";
+    PATENT => "patent-2019-staggered";
+    PATENT => "patent-2019-common-dir";
     PATENT => "patent-2019-addressed";
+    PATENT => "two-controllers-raw";
     PATENT => "glitches-and-breaks";
+    FRAMED => "framed-link";
+    FRAMED => "framed-noisy-line";
+    FRAMED => "four-controllers-framed";
     DRIVERS => "driver-timing-broken";
 }
 

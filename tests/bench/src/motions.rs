@@ -3,9 +3,11 @@
 use stepscope_core::{
     run::Experiment,
     scenario::{
-        Axis, Bus, ChannelSegments, Constant, Controller, Cosine, DirLine, Distance, Line, Motion, Move,
-        Problem, Protocol, Pulses, Scenario, Segment, SegmentLists, Source, Speed, StepSegment,
+        Axis, Bus, ChannelSegments, Constant, Controller, Cosine, DirLine, Distance, Hex, Line, LineScript,
+        Motion, Move, Problem, Protocol, Pulses, Scenario, ScriptedSend, Segment, SegmentLists, Source,
+        Speed, StepSegment,
     },
+    wire::host::Sent,
 };
 
 /// Sixteen channels, 100 slots of 10 us in a tick of 1 ms: at most 100 kHz a channel.
@@ -132,23 +134,43 @@ pub fn segments() -> Result<Experiment, Vec<Problem>> {
     Experiment::new(&scenario)
 }
 
-/// So many controllers of 16 motors on one addressed line, each motor at 10 kHz for 0.5 s.
-///
-/// # Errors
-/// None up to 32, as long as the scenario's rules stay as they are.
-pub fn motors(controllers: u8) -> Result<Experiment, Vec<Problem>> {
+/// 32 controllers of 16 motors on one addressed line, each motor at 10 kHz for 0.5 s.
+fn motors() -> Scenario {
     let mut scenario = sixteen(vec![constant(5000.0, 1e4); 16]);
     scenario.bus.step_period_cycles = 1600;
     scenario.line.address = Some(0);
-    scenario.controllers = (1..controllers)
-        .map(|address| Controller {
-            address,
-            bus: scenario.bus.clone(),
-            axes: vec![constant(5000.0, 1e4); 16],
-            ..Controller::default()
-        })
-        .collect();
-    Experiment::new(&scenario)
+    let controller = |address| Controller {
+        address,
+        bus: scenario.bus.clone(),
+        axes: vec![constant(5000.0, 1e4); 16],
+        ..Controller::default()
+    };
+    scenario.controllers = (1..32).map(controller).collect();
+    scenario
+}
+
+/// 32 controllers of 16 motors on one addressed line.
+///
+/// # Errors
+/// None, as long as the scenario's rules stay as they are.
+pub fn motors_512() -> Result<Experiment, Vec<Problem>> {
+    Experiment::new(&motors())
+}
+
+/// The first of them alone, on a line on which the same is sent.
+///
+/// # Errors
+/// None, as long as the scenario's rules stay as they are.
+pub fn motors_16() -> Result<Experiment, Vec<Problem>> {
+    let all = motors_512()?;
+    let send = |send: Sent<'_>| ScriptedSend {
+        start_cycle: send.start.0,
+        bytes: Hex(send.bytes.to_vec()),
+        ..ScriptedSend::default()
+    };
+    let sends = all.schedule().iter().map(send).collect();
+    let source = Source::Line(LineScript { sends });
+    Experiment::new(&Scenario { controllers: Vec::new(), source, ..motors() })
 }
 
 /// Four S-curves of some 10 s, the same in time at every clock.

@@ -165,3 +165,39 @@ fn several_problems_are_shown_at_once_and_each_goes_when_it_is_mended() -> Resul
         Ok(())
     })
 }
+
+#[test]
+fn lists_of_segments_are_typed_a_line_each_and_wrong_ones_are_told_by_their_line() -> Result<()> {
+    const LIST: &str = "source.segments.channels[0].segments";
+    let of = |segments: &str| {
+        format!(r#"{{"source":{{"segments":{{"channels":[{{"segments":[{segments}]}}]}}}}}}"#)
+    };
+    let typed = of(
+        r#"{"steps":{"count":3,"add_q16":-65536}},{"dwell":{"length_q16":65536000}},{"steps":{"count":2,"dir":0}}"#,
+    );
+    let early = of(r#"{"dwell":{}},{"steps":{"interval_q16":1}}"#);
+    in_browser(move |page| async move {
+        page.open("").await?;
+        page.choose(&field("source#kind"), "segments").await?;
+        page.ready().await?;
+        let example = page.shown().await?.digest;
+        page.fill(LIST, "3 1048576000 -65536\ndwell 65536000\n2 1048576000 0 left").await?;
+        page.until_digest(&Known::of(&typed)?.digest).await?;
+        page.fill(LIST, "dwell 0\n1 1 0 right").await?;
+        page.ready().await?;
+        let shown = page.field(LIST).await?;
+        let wanted = problems(&early)[0].cause.to_string();
+        ensure!(shown.invalid && shown.error.contains(&format!("Line 2: {wanted}")), "{shown:?}");
+        page.fill(LIST, "dwell 0\nfaster").await?;
+        page.ready().await?;
+        let shown = page.field(LIST).await?;
+        ensure!(shown.invalid && shown.error.contains("Line 2: \u{201c}faster\u{201d}"), "{shown:?}");
+        // The draft, and what was typed into one field without leaving it.
+        for _ in 0..2 {
+            page.click("#undo").await?;
+        }
+        page.until_digest(&example).await?;
+        page.click("#undo").await?;
+        page.until_digest(&Known::of("{}")?.digest).await
+    })
+}

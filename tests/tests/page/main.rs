@@ -20,9 +20,11 @@
 #![cfg(not(target_arch = "wasm32"))]
 
 mod bench;
+mod controllers;
 mod drawing;
 mod editing;
 mod engine;
+mod framed;
 mod hostile_links;
 mod keeping;
 mod links;
@@ -32,3 +34,4 @@ mod presets;
 mod screens;
 mod session;
 mod time_axis;
+mod timing;

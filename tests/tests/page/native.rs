@@ -10,7 +10,7 @@ use stepscope_core::{
         link::{self, LinkError},
         presets::Preset,
     },
-    trace::Recording,
+    trace::{Digest, Recording},
 };
 
 /// A scenario, and all that the core makes of it.
@@ -35,6 +35,15 @@ impl Known {
         let digest = format!("{:016x}", recording.digest.value());
         let link = link::encode(&scenario)?;
         Ok(Self { scenario, experiment, recording, digest, link })
+    }
+
+    /// The digest of one controller of a scenario, 0 the first.
+    pub(crate) fn digest_of(json: &str, controller: usize) -> Result<String> {
+        let experiment = Experiment::from_json(json).map_err(listed)?;
+        let mut digests = vec![Digest::default(); experiment.controllers()];
+        experiment.run_each(&mut digests);
+        let digest = digests.get(controller).ok_or_else(|| anyhow!("no controller {controller}"))?;
+        Ok(format!("{:016x}", digest.value()))
     }
 
     pub(crate) fn preset(preset: &Preset) -> Result<Self> {

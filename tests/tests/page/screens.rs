@@ -115,7 +115,7 @@ const CONTRAST: &str = "
     const probe = document.createElement('i');
     document.body.append(probe);
     const of = (name) => { probe.style.color = `var(${name})`; return light(rgb(getComputedStyle(probe).color)); };
-    const names = ['--ideal', '--made', '--step', '--dir', '--enable', '--wire', '--packet', '--tick', '--axis'];
+    const names = ['--ideal', '--made', '--step', '--dir', '--enable', '--wire', '--packet', '--reply', '--tick', '--axis'];
     const curves = names.map((name) => [name, ratio(of(name), ground)]);
     const text = ratio(of('--ink'), ground);
     probe.remove();

@@ -66,6 +66,18 @@ pub enum GivenUp {
     TicksMissing,
 }
 
+impl fmt::Display for GivenUp {
+    /// Why, as the command's status and the page say it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoReply => f.write_str("no reply"),
+            Self::Stopped => f.write_str("it is stopped"),
+            Self::Refused(reason) => write!(f, "it refused a frame: {}", reason.name()),
+            Self::TicksMissing => f.write_str("it did fewer ticks than it acknowledged"),
+        }
+    }
+}
+
 impl fmt::Display for Progress {
     /// As the command's status and the page say it.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -74,10 +86,7 @@ impl fmt::Display for Progress {
             Self::Filling => f.write_str("filling"),
             Self::Confirming => f.write_str("confirming"),
             Self::Done => f.write_str("done"),
-            Self::GivenUp(GivenUp::NoReply) => f.write_str("given up: no reply"),
-            Self::GivenUp(GivenUp::Stopped) => f.write_str("given up: STOPPED"),
-            Self::GivenUp(GivenUp::Refused(reason)) => write!(f, "given up: refused: {}", reason.name()),
-            Self::GivenUp(GivenUp::TicksMissing) => f.write_str("given up: acknowledged ticks are missing"),
+            Self::GivenUp(why) => write!(f, "given up: {why}"),
         }
     }
 }

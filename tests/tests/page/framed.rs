@@ -1,0 +1,139 @@
+//! The framed protocol on the page: frames, replies, and what becomes of them on a noisy line.
+
+use anyhow::{Result, ensure};
+use stepscope_core::{protocol::FrameFate, trace::Verdict};
+
+use crate::{
+    bench::in_browser,
+    native::{Known, problems},
+    session::{Session, field},
+};
+
+const FRAMED: &str = r#"{"line":{"protocol":"framed"}}"#;
+
+/// Classes of the rows of the packets that are on show, by their numbers.
+async fn classes(page: &Session) -> Result<Vec<String>> {
+    page.eval("[...document.querySelectorAll('#packets tbody tr')].map((row) => row.className)").await
+}
+
+#[test]
+fn a_framed_line_shows_frames_with_their_ticks_and_replies() -> Result<()> {
+    in_browser(|page| async move {
+        let (raw, framed) = (Known::of("{}")?, Known::of(FRAMED)?);
+        page.open("").await?;
+        page.until_digest(&raw.digest).await?;
+        ensure!(!page.visible(&field("line.host.attempts")).await?, "a raw line's host waits for nothing");
+        ensure!(classes(&page).await?.iter().all(|class| class.contains("packet")));
+
+        page.choose(&field("line.protocol"), "framed").await?;
+        page.until_digest(&framed.digest).await?;
+        ensure!(page.visible(&field("line.host.attempts")).await?, "the host's settings are hidden");
+        let ticks = framed.experiment.ticks_of(0).len();
+        let health = page.text("#health").await?;
+        assert_eq!(health.replace('\u{202f}', ""), format!("all {ticks} ticks done"));
+        let shown = classes(&page).await?;
+        for (index, row) in framed.recording.packets.rows().iter().enumerate().take(shown.len()) {
+            let kind = if matches!(row.verdict, Verdict::Reply(_)) { "reply" } else { "frame" };
+            ensure!(shown[index].contains(kind), "row {index} is {}", shown[index]);
+        }
+        page.pulses().await?;
+        page.picture("framed").await?;
+
+        // The first TICKS frame: its bytes, the reply, and all of its ticks.
+        let first = |row: &&stepscope_core::trace::LoggedPacket| {
+            matches!(row.verdict, Verdict::Frame(FrameFate::Queued(_)))
+        };
+        let rows = framed.recording.packets.rows();
+        let (index, row) = rows.iter().enumerate().find(|(_, row)| first(row)).expect("it queues ticks");
+        let said = page.text(&format!("#packet-{index} td:nth-child(4)")).await?;
+        ensure!(said.starts_with("\u{2192} to 0: TICKS seq 0, 8 ticks"), "{said}");
+        let answer = page.text(&format!("#packet-{} td:nth-child(4)", index + 1)).await?;
+        ensure!(answer.starts_with("\u{2190} from 0: ACK TICKS"), "{answer}");
+        let whole = page.eval::<(f64, f64)>(WINDOW_S).await?;
+        page.click(&format!("#packet-{index} td")).await?;
+        page.until(&format!("({WINDOW_S})[1] < {}", whole.1)).await?;
+        let (start, end): (f64, f64) = page.eval(WINDOW_S).await?;
+        ensure!(start <= framed.seconds(row.start.0) && framed.seconds(row.end.0) <= end);
+        let last = framed.seconds(row.tick_end.map_or(0, |at| at.0));
+        ensure!(last <= end, "the ticks up to {last} s are not in {start} to {end}");
+
+        page.click("#undo").await?;
+        page.until_digest(&raw.digest).await?;
+        assert_eq!(page.text("#health").await?, "");
+        ensure!(!page.visible(&field("line.host.attempts")).await?);
+        page.click("#redo").await?;
+        page.until_digest(&framed.digest).await
+    })
+}
+
+/// The shown time in s, as the fields of the pulses have it.
+const WINDOW_S: &str = "['window-start', 'window-end'].map((id) => {
+    const [number, unit] = document.getElementById(id).value.split(/\\s/);
+    return Number(number) * { s: 1, ms: 1e-3, 'µs': 1e-6 }[unit];
+})";
+
+#[test]
+fn noise_is_repeated_away_and_its_seed_changes_the_run() -> Result<()> {
+    let with = |seed: u32| {
+        format!(r#"{{"line":{{"protocol":"framed","noise":{{"seed":{seed},"flipped_bits_ppm":1000}}}}}}"#)
+    };
+    in_browser(move |page| async move {
+        page.open("").await?;
+        page.choose(&field("line.protocol"), "framed").await?;
+        page.until_digest(&Known::of(FRAMED)?.digest).await?;
+        page.fill("line.noise.flipped_bits_ppm", "1k").await?;
+        let (zero, seven) = (Known::of(&with(0))?, Known::of(&with(7))?);
+        page.until_digest(&zero.digest).await?;
+        page.fill("line.noise.seed", "7").await?;
+        page.until_digest(&seven.digest).await?;
+        let health = page.text("#health").await?;
+        ensure!(health.contains("ticks done") && health.contains("repeated"), "{health}");
+        ensure!(health.contains("CRC"), "broken frames leave a fault: {health}");
+        assert_eq!(seven.recording.packets.ticks().len(), seven.experiment.ticks_of(0).len());
+
+        page.click("#undo").await?;
+        page.until_digest(&zero.digest).await?;
+        page.click("#undo").await?;
+        page.until_digest(&Known::of(FRAMED)?.digest).await
+    })
+}
+
+#[test]
+fn a_host_that_gives_up_says_so_in_the_header() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        page.choose(&field("line.protocol"), "framed").await?;
+        page.fill("line.noise.lost_replies_ppm", "1M").await?;
+        page.until("document.getElementById('health').textContent.startsWith('gave up: no reply')").await?;
+        ensure!(page.eval::<bool>("document.getElementById('health').classList.contains('error')").await?);
+        Ok(())
+    })
+}
+
+#[test]
+fn what_is_wrong_with_host_and_noise_is_said_at_its_field() -> Result<()> {
+    let rows = [
+        ("line.host.ticks_a_frame", "33", r#"{"line":{"host":{"ticks_a_frame":33}}}"#),
+        ("line.host.attempts", "0", r#"{"line":{"host":{"attempts":0}}}"#),
+        ("line.host.reply_timeout_cycles", "0", r#"{"line":{"host":{"reply_timeout_cycles":0}}}"#),
+        ("line.noise.deaths_ppm", "1000001", r#"{"line":{"noise":{"deaths_ppm":1000001}}}"#),
+        ("line.noise.seed", "-1", r#"{"line":{"noise":{"seed":-1}}}"#),
+    ];
+    in_browser(move |page| async move {
+        page.open("").await?;
+        page.choose(&field("line.protocol"), "framed").await?;
+        page.until_digest(&Known::of(FRAMED)?.digest).await?;
+        for (path, typed, json) in rows {
+            page.fill(path, typed).await?;
+            page.ready().await?;
+            let shown = page.field(path).await?;
+            let found = problems(json);
+            assert_eq!(found.len(), 1, "{json}");
+            let message = found[0].cause.to_string();
+            ensure!(shown.invalid && shown.error.contains(&message), "{path}: {shown:?}, wanted {message}");
+            page.click("#undo").await?;
+            page.until_digest(&Known::of(FRAMED)?.digest).await?;
+        }
+        Ok(())
+    })
+}

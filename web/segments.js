@@ -1,0 +1,38 @@
+/**
+ * Lists of segments as a person types them, one a line: `20 1048576000 -500 right` for 20 steps, the first after
+ * so many 1/65536 cycles, each next interval so many longer; `dwell 65536000` for standing still.
+ */
+
+const STEPS = /^(\d+)\s+(\d+)(?:\s+([-+−]?\d+))?(?:\s+(left|right))?$/i;
+const DWELL = /^dwell\s+(\d+)$/i;
+
+/** @typedef {{steps: {count: number, interval_q16: number, add_q16: number, dir: number}} | {dwell: {length_q16: number}}} Segment */
+
+/** @param {any[]} segments */
+export function printSegments(segments) {
+  return segments.map(({ steps, dwell }) => (dwell ? `dwell ${dwell.length_q16}`
+    : [steps.count, steps.interval_q16, steps.add_q16, steps.dir === 1 ? "right" : "left"].join(" "))).join("\n");
+}
+
+/** @param {string} text @returns {{value: Segment[]} | {message: string}} */
+export function readSegments(text) {
+  const lines = text.split("\n").map((line) => line.trim()).filter((line) => line !== "");
+  const value = [];
+  for (const [index, line] of lines.entries()) {
+    const segment = readSegment(line);
+    if (!segment) return { message: `Line ${index + 1}: “${line}” is no segment; give count, interval, growth and direction, such as 20 1048576000 -500 right, or dwell 65536000.` };
+    value.push(segment);
+  }
+  return { value };
+}
+
+/** @param {string} line @returns {Segment | null}  null also for numbers that a page cannot hold exactly. */
+function readSegment(line) {
+  const [, length] = DWELL.exec(line) ?? [];
+  const [, count, interval, add = "0", way = "right"] = STEPS.exec(line) ?? [];
+  const numbers = [length ?? count, interval ?? "0", add.replace("−", "-")].map(Number);
+  if (!numbers.every(Number.isSafeInteger)) return null;
+  const [first, interval_q16, add_q16] = numbers;
+  if (length !== undefined) return { dwell: { length_q16: first } };
+  return { steps: { count: first, interval_q16, add_q16, dir: way.toLowerCase() === "right" ? 1 : 0 } };
+}
