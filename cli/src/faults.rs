@@ -194,34 +194,34 @@ fn write(scenarios: &[Scenario], as_links: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The table's rows: a name and what of a tally it shows.
-type Row = (&'static str, fn(&Tally) -> u64);
+/// The table's rows: a name, whether raw lines have it, too, and what of a tally it shows.
+type Row = (&'static str, bool, fn(&Tally) -> u64);
 const ROWS: &[Row] = &[
-    ("seeds", |tally| tally.seeds),
-    ("seeds with something wrong", |tally| tally.wrong_seeds),
-    ("frames or packets sent", |tally| tally.frames),
-    ("  repeated", |tally| tally.repeated),
-    ("  rejected: CRC", |tally| tally.bad_check),
-    ("  rejected: SHORT_PACKET", |tally| tally.short),
-    ("  rejected: OVERLONG", |tally| tally.overlong),
-    ("  refused", |tally| tally.refused),
-    ("  acknowledged again", |tally| tally.acknowledged_again),
-    ("bytes lost: FRAMING", |tally| tally.framing),
-    ("replies sent", |tally| tally.replies),
-    ("  lost or spoiled", |tally| tally.replies_lost),
-    ("deaths of the host", |tally| tally.deaths),
-    ("ticks ordered", |tally| tally.ordered),
-    ("  executed", |tally| tally.executed),
-    ("  not reached: host gave up", |tally| tally.unreached),
-    ("  missing", |tally| tally.missing),
-    ("  wrong", |tally| tally.wrong),
-    ("  doubled or not ordered", |tally| tally.doubled),
-    ("wrong steps", |tally| tally.wrong_steps),
-    ("steps of missing ticks", |tally| tally.missing_steps),
-    ("distance of end positions", |tally| tally.position_error),
-    ("given up: no reply", |tally| tally.given_up),
-    ("  with rates within 4 %", |tally| tally.given_up_in_reach),
-    ("given up: other reasons", |tally| tally.stuck),
+    ("seeds", true, |tally| tally.seeds),
+    ("seeds with something wrong", true, |tally| tally.wrong_seeds),
+    ("frames or packets sent", true, |tally| tally.frames),
+    ("  repeated", false, |tally| tally.repeated),
+    ("  rejected: CRC", false, |tally| tally.bad_check),
+    ("  rejected: SHORT_PACKET", true, |tally| tally.short),
+    ("  rejected: OVERLONG", false, |tally| tally.overlong),
+    ("  refused", true, |tally| tally.refused),
+    ("  acknowledged again", false, |tally| tally.acknowledged_again),
+    ("bytes lost: FRAMING", true, |tally| tally.framing),
+    ("replies sent", false, |tally| tally.replies),
+    ("  lost or spoiled", false, |tally| tally.replies_lost),
+    ("deaths of the host", false, |tally| tally.deaths),
+    ("ticks ordered", true, |tally| tally.ordered),
+    ("  executed", true, |tally| tally.executed),
+    ("  not reached: host gave up", false, |tally| tally.unreached),
+    ("  missing", true, |tally| tally.missing),
+    ("  wrong", true, |tally| tally.wrong),
+    ("  doubled or not ordered", true, |tally| tally.doubled),
+    ("wrong steps", true, |tally| tally.wrong_steps),
+    ("steps of missing ticks", true, |tally| tally.missing_steps),
+    ("distance of end positions", true, |tally| tally.position_error),
+    ("given up: no reply", false, |tally| tally.given_up),
+    ("  with rates within 4 %", false, |tally| tally.given_up_in_reach),
+    ("given up: other reasons", false, |tally| tally.stuck),
 ];
 
 fn print(reports: &[(&str, Report)]) -> io::Result<()> {
@@ -229,9 +229,13 @@ fn print(reports: &[(&str, Report)]) -> io::Result<()> {
     write!(out, "{:30}", "")?;
     reports.iter().try_for_each(|(name, _)| write!(out, "{name:>14}"))?;
     writeln!(out)?;
-    for (name, value) in ROWS {
+    for (name, everywhere, value) in ROWS {
         write!(out, "{name:30}")?;
-        reports.iter().try_for_each(|(_, report)| write!(out, "{:>14}", value(&report.tally)))?;
+        for (protocol, report) in reports {
+            let shown = *everywhere || *protocol == FRAMED;
+            let value = if shown { value(&report.tally).to_string() } else { "-".to_owned() };
+            write!(out, "{value:>14}")?;
+        }
         writeln!(out)?;
     }
     for (name, report) in reports.iter().filter(|(_, report)| !report.wrong.is_empty()) {
