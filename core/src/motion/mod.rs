@@ -1,7 +1,7 @@
 //! Motions: what an axis is asked to do, as position, speed and acceleration over time (DESIGN
 //! Part B).
 //!
-//! [`plan()`] turns a scenario's axes into an [`AxisPlan`] each: moves one after another, each a
+//! [`plan_lists`] turns a scenario's axes into an [`AxisPlan`] each: moves one after another, each a
 //! [`Profile`]. One file a family:
 //!
 //! ```text
@@ -37,7 +37,7 @@ pub mod trapezoid_table;
 
 pub use axis::{AxisPlan, PlannedMove};
 pub use due::DueStep;
-pub use plan::{plan, plan_axis};
+pub use plan::{plan_axis, plan_lists};
 pub use profile::{Curve, Peaks, Profile};
 pub use step_times::StepTimes;
 

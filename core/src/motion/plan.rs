@@ -16,7 +16,7 @@ use super::{
     trapezoid_table::{NoTable, TrapezoidTable},
 };
 use crate::{
-    scenario::{self, Axis, Cause, Motion, Move, Problem, TrapezoidMethod},
+    scenario::{self, Axis, Cause, Move, Problem, TrapezoidMethod},
     signal::MAX_CHANNELS,
 };
 use alloc::{format, string::String, vec::Vec};
@@ -44,21 +44,27 @@ impl Default for Left {
     }
 }
 
-/// Plans all axes of a scenario's motion, with the paths that they have there.
+/// Plans several lists of axes, one for each controller, each with its path.
 ///
 /// Each axis is as [`plan_axis`] says; the tables and the sines of all together have to stay under
 /// its bounds.
 ///
 /// # Errors
 /// Every problem of every axis, each with its path.
-pub fn plan(motion: &Motion) -> Result<Vec<AxisPlan>, Vec<Problem>> {
+pub fn plan_lists<'a>(
+    lists: impl IntoIterator<Item = (String, &'a [Axis])>,
+) -> Result<Vec<Vec<AxisPlan>>, Vec<Problem>> {
     let (mut plans, mut problems, mut left) = (Vec::new(), Vec::new(), Left::default());
-    // More axes than that are refused by their number.
-    for (index, axis) in motion.axes.iter().take(MAX_CHANNELS).enumerate() {
-        match plan_within(axis, &format!("source.motion.axes[{index}]"), &mut left) {
-            Ok(plan) => plans.push(plan),
-            Err(found) => problems.extend(found),
+    for (path, axes) in lists {
+        let mut list = Vec::new();
+        // More axes than that are refused by their number.
+        for (index, axis) in axes.iter().take(MAX_CHANNELS).enumerate() {
+            match plan_within(axis, &format!("{path}[{index}]"), &mut left) {
+                Ok(plan) => list.push(plan),
+                Err(found) => problems.extend(found),
+            }
         }
+        plans.push(list);
     }
     if problems.is_empty() { Ok(plans) } else { Err(problems) }
 }
@@ -312,8 +318,10 @@ mod tests {
     #[test]
     fn axes_share_the_bounds_on_tables_and_segments() {
         let problems = |each: &str, axes: usize| {
-            let motion = Motion { axes: vec![axis(each); axes], ..Motion::default() };
-            let found = super::plan(&motion).err().unwrap_or_default();
+            let axes = vec![axis(each); axes];
+            let found = super::plan_lists([(String::from("source.motion.axes"), &axes[..])])
+                .err()
+                .unwrap_or_default();
             found.iter().map(ToString::to_string).collect::<Vec<_>>()
         };
         let table = r#"{"moves":[{"trapezoid":{"distance":{"steps":800000},"top_speed":{"steps_s":1e6},"acceleration":{"steps_s2":1}}}]}"#;

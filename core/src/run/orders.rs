@@ -6,7 +6,8 @@ use crate::{
     protocol::seal,
     quantise::{exact_segments, ticks},
     scenario::{
-        Cause, Checked, Config, Controller, Forced, Motion, Problem, Protocol, Scenario, Source, line_time,
+        Cause, Checked, Config, Controller, Forced, MOST_FURTHER, Problem, Protocol, Scenario, Source,
+        line_time,
     },
     segment::{CheckedSegments, PulseTimes},
     units::Instant,
@@ -24,9 +25,9 @@ use alloc::{format, rc::Rc, vec, vec::Vec};
 /// Bytes of all controllers' ticks together.
 const MOST_BYTES: usize = 8_000_000;
 /// Bit times of an exchange beside its bytes: from a frame to its reply, and from that to the next.
-const EXCHANGE_BITS: u64 = 11 + 10;
+const EXCHANGE_BITS: u128 = 11 + 10;
 /// Parts of a bit time that loads are counted in.
-const PART_OF_BIT: u64 = 1000;
+const PART_OF_BIT: u128 = 1000;
 
 /// What one controller is to do.
 #[derive(Clone, Debug)]
@@ -69,22 +70,16 @@ pub(super) fn plans(scenario: &Scenario) -> Result<Vec<Vec<AxisPlan>>, Vec<Probl
     let Source::Motion(motion) = &scenario.source else {
         return Ok(vec![Vec::new(); 1 + scenario.controllers.len()]);
     };
-    let (mut plans, mut problems) = (Vec::new(), Vec::new());
-    let mut take = |result: Result<Vec<AxisPlan>, Vec<Problem>>| {
-        plans.extend(result.map_err(|found| problems.extend(found)));
-    };
-    take(motion::plan(motion));
-    for (index, controller) in scenario.controllers.iter().enumerate() {
-        let motion = Motion { axes: controller.axes.clone(), ..Motion::default() };
-        take(motion::plan(&motion).map_err(|found| of_controller(index, found)));
-    }
-    if problems.is_empty() { Ok(plans) } else { Err(problems) }
+    let further = scenario.controllers.iter().take(MOST_FURTHER).enumerate();
+    let further = further.map(|(index, one)| (format!("controllers[{index}].axes"), &one.axes[..]));
+    motion::plan_lists([("source.motion.axes".into(), &motion.axes[..])].into_iter().chain(further))
 }
 
 /// Problems of a further controller's axes, at their own paths.
 fn of_controller(index: usize, problems: Vec<Problem>) -> Vec<Problem> {
     let renamed = |Problem { path, cause }| {
-        let own = path.strip_prefix("source.motion.").unwrap_or(&path);
+        let own = path.strip_prefix("source.motion").unwrap_or(&path);
+        let own = own.strip_prefix('.').unwrap_or("axes");
         Problem::new(format!("controllers[{index}].{own}"), cause)
     };
     problems.into_iter().map(renamed).collect()
@@ -252,11 +247,14 @@ pub(super) fn line_load<'a>(checked: &'a Checked) -> Result<Option<f64>, Problem
     let configs = checked.configs.iter().enumerate().filter_map(busy);
     let (cycles, bits) = if framed(checked) {
         // Of the first controller's tick, so that ticks may have different lengths.
-        let bits: u64 = configs.map(|config| frame_bits(checked, config) * tick / config.tick().0).sum();
-        (bits * u64::from(clock_hz) / (PART_OF_BIT * u64::from(checked.baud)), bits.div_ceil(PART_OF_BIT))
+        let bits: u128 = configs
+            .map(|config| frame_bits(checked, config) * u128::from(tick) / u128::from(config.tick().0))
+            .sum();
+        let cycles = bits * u128::from(clock_hz) / (PART_OF_BIT * u128::from(checked.baud));
+        (cycles, bits.div_ceil(PART_OF_BIT))
     } else {
         let bytes = configs.map(|config| config.packet_len() as u64).sum();
-        (line_time(bytes, clock_hz, checked.baud), 10 * bytes)
+        (line_time(bytes, clock_hz, checked.baud).into(), u128::from(10 * bytes))
     };
     carries(cycles, bits, tick, clock_hz, checked.baud).map_err(|cause| Problem::new("line.baud", cause))?;
     Ok(Some(cycles as f64 / tick as f64))
@@ -264,11 +262,11 @@ pub(super) fn line_load<'a>(checked: &'a Checked) -> Result<Option<f64>, Problem
 
 /// Bit times, in parts, that one tick of a controller takes on a framed line with its share of the
 /// frame around it and of the reply.
-fn frame_bits(checked: &Checked, config: &Config) -> u64 {
+fn frame_bits(checked: &Checked, config: &Config) -> u128 {
     let ticks = job(config, &Rc::from([])).ticks_a_frame(&checked.host);
     let content = vec![0xff; 4 + usize::from(ticks) * usize::from(config.channels())];
-    let bytes = (seal(&content).len() + REPLY_LEN - 1) as u64;
-    PART_OF_BIT * (10 * bytes + EXCHANGE_BITS) / u64::from(ticks)
+    let bytes = (seal(&content).len() + REPLY_LEN - 1) as u128;
+    PART_OF_BIT * (10 * bytes + EXCHANGE_BITS) / u128::from(ticks)
 }
 
 /// One tick's orders, from its bytes.

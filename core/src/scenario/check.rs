@@ -20,7 +20,7 @@ pub const END_OF_TIME: u64 = 9_000_000_000_000_000;
 /// Most bytes of a line script, and most packets of a packet list.
 const MOST_BYTES: usize = 4 << 20;
 /// Most controllers on a line beside the first.
-const MOST_FURTHER: usize = 31;
+pub(crate) const MOST_FURTHER: usize = 31;
 /// Most glitches on a line.
 const MOST_GLITCHES: usize = 10_000;
 

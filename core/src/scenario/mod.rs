@@ -24,6 +24,7 @@ mod quantity;
 mod read;
 mod segments;
 
+pub(crate) use check::MOST_FURTHER;
 pub use check::{Checked, END_OF_TIME, Forced, line_time};
 pub use compact::Compact;
 pub use config::Config;

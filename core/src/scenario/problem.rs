@@ -434,7 +434,7 @@ impl fmt::Display for Cause {
             Self::LineTooSlow { packet_cycles, tick_cycles, baud, needed_baud, most_baud } => {
                 write!(
                     f,
-                    "at {baud} baud a packet takes {packet_cycles} cycles, a tick has {tick_cycles}; give "
+                    "at {baud} baud what is sent for a tick takes {packet_cycles} cycles, a tick has {tick_cycles}; give "
                 )?;
                 if needed_baud <= most_baud {
                     write!(f, "at least {needed_baud} baud, longer ticks or fewer channels")

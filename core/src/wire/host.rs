@@ -93,16 +93,20 @@ impl Schedule {
 /// # Errors
 /// [`Cause::LineTooSlow`] where it does not, with the rate that would do.
 pub fn carries(
-    packet_cycles: u64,
-    bits: u64,
+    packet_cycles: u128,
+    bits: u128,
     tick_cycles: u64,
     clock_hz: u32,
     baud: u32,
 ) -> Result<(), Cause> {
-    if packet_cycles <= tick_cycles {
+    let tick = u128::from(tick_cycles.max(1));
+    if packet_cycles <= tick {
         return Ok(());
     }
-    let needed_baud = (bits * u64::from(clock_hz)).div_ceil(tick_cycles);
+    // What a message cannot tell exactly is more than any line can do.
+    let told = |value: u128| u64::try_from(value).unwrap_or(u64::MAX);
+    let (packet_cycles, needed_baud) =
+        (told(packet_cycles), told((bits * u128::from(clock_hz)).div_ceil(tick)));
     let most_baud = u64::from(most_baud(clock_hz));
     Err(Cause::LineTooSlow { packet_cycles, tick_cycles, baud, needed_baud, most_baud })
 }
