@@ -136,7 +136,7 @@ const LINE = [
 /** How the host of a framed line behaves. @type {Field[]} */
 const HOST = [
   integer("ticks_a_frame", "Ticks in a frame", "", "At most, 1 to 32; and at most half of the queue."),
-  { key: "reply_timeout_cycles", label: "Reply time-out", unit: "cycles", kind: /** @type {const} */ ("optional-cycles"), hint: "From the end of a frame to its repetition, 1 to 2³² − 1; empty for 256 bit times. A time such as 3 ms is taken too." },
+  { key: "reply_timeout_cycles", label: "Reply time-out", unit: "cycles", kind: /** @type {const} */ ("optional-cycles"), hint: "How long a reply is waited for, from the end of the frame to the end of the reply, 1 to 2³² − 1; empty for 256 bit times. A time such as 3 ms is taken too." },
   integer("attempts", "Attempts", "", "How often one frame is sent before the host gives up, 1 to 255."),
 ].map((field) => ({ ...field, when: FRAMED }));
 

@@ -240,7 +240,8 @@ fn print(reports: &[(&str, Report)]) -> io::Result<()> {
     }
     for (name, report) in reports.iter().filter(|(_, report)| !report.wrong.is_empty()) {
         let seeds: Vec<String> = report.wrong.iter().map(u32::to_string).collect();
-        writeln!(out, "{name}: something is wrong with seeds {} …", seeds.join(" "))?;
+        let more = if report.tally.wrong_seeds > seeds.len() as u64 { " …" } else { "" };
+        writeln!(out, "{name}: something is wrong with seeds {}{more}", seeds.join(" "))?;
     }
     Ok(())
 }

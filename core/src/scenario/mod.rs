@@ -195,8 +195,8 @@ settings! {
     pub struct Host {
         /// Most ticks in one frame, 1 to 32; at most half of the queue is sent at once.
         pub ticks_a_frame: u8 = 8,
-        /// From the end of a frame to its repetition, in cycles, 1 to 4 294 967 295; without it 256
-        /// bit times.
+        /// How long a reply is waited for, from the end of the frame to that of the reply, in cycles, 1 to
+        /// 4 294 967 295; without it 256 bit times. Ten bit times later the frame is sent again.
         pub reply_timeout_cycles: Option<u32> = None,
         /// How often one frame is sent before the host gives up, 1 to 255.
         pub attempts: u8 = 10,

@@ -36,11 +36,11 @@ use crate::{
 use alloc::vec::Vec;
 use peer::Peer;
 
-/// Bit times from the end of a reply to the next frame: DE has fallen by then, whatever the
-/// controller's clock.
+/// Bit times from the end of a reply, or of the time for it, to the next frame: DE has fallen by then,
+/// whatever the controller's clock.
 const PAUSE_BITS: u64 = 10;
-/// Bit times from the end of a frame to its repetition, if the scenario does not say: the longest
-/// reply takes 191.
+/// Bit times from the end of a frame in which its reply has to come, if the scenario does not say: the
+/// longest one takes 191.
 const TIMEOUT_BITS: u64 = 256;
 
 /// What the host counted.

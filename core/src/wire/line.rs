@@ -19,6 +19,9 @@ pub struct Line {
     /// The level that is forced now.
     force: Option<bool>,
     next: Instant,
+    /// Next cycle in which what one hears while no controller sends changes; followed while something is
+    /// left to be forced, because what is forced to the level that the line has is no change.
+    next_heard: Instant,
 }
 
 impl Line {
@@ -26,9 +29,16 @@ impl Line {
     #[must_use]
     pub fn new(schedule: Rc<Schedule>, forced: &[Forced], clock_hz: u32, baud: u32) -> Self {
         let sender = Sender::new(schedule, clock_hz, baud);
-        let mut line =
-            Self { sender, forced: Rc::new(flatten(forced)), passed: 0, force: None, next: Instant::NEVER };
+        let mut line = Self {
+            sender,
+            forced: Rc::new(flatten(forced)),
+            passed: 0,
+            force: None,
+            next: Instant::NEVER,
+            next_heard: Instant::NEVER,
+        };
         line.look_ahead();
+        line.find_heard();
         line
     }
 
@@ -42,6 +52,7 @@ impl Line {
     pub fn send(&mut self, start: Instant, bytes: &[u8]) {
         self.sender.send(start, bytes);
         self.look_ahead();
+        self.find_heard();
     }
 
     /// Forces a level in cycles that are still to come; where another one is forced too, this one wins.
@@ -56,6 +67,7 @@ impl Line {
         let after = after.map(|one| Forced { start: new.end, ..*one });
         forced.splice(first..end, [before, Some(new), after].into_iter().flatten());
         self.look_ahead();
+        self.find_heard();
     }
 
     /// What has been forced and will be, as far as it is known: rising in time and not overlapping.
@@ -95,25 +107,41 @@ impl Line {
     #[must_use]
     #[inline(always)]
     pub fn is_over(&self) -> bool {
-        if self.passed == self.forced.len() { self.next == Instant::NEVER } else { self.stays() }
+        let next = if self.passed == self.forced.len() { self.next } else { self.next_heard };
+        next == Instant::NEVER
     }
 
-    /// Whether what is left to be forced changes nothing.
-    fn stays(&self) -> bool {
-        let (mut ahead, level) = (self.clone(), self.heard(true));
-        while ahead.next != Instant::NEVER {
-            ahead.change();
-            if ahead.heard(true) != level {
-                return false;
-            }
+    /// Looks for the next change that is heard.
+    fn find_heard(&mut self) {
+        if self.passed == self.forced.len() {
+            return;
         }
-        true
+        let (mut ahead, level) = (self.clone(), self.heard(true));
+        self.next_heard = loop {
+            let now = ahead.next;
+            if now == Instant::NEVER {
+                break now;
+            }
+            ahead.enter(now);
+            if ahead.heard(true) != level {
+                break now;
+            }
+        };
     }
 
     /// Enters the cycle of [`Self::next_change`].
     #[inline(always)]
     pub fn change(&mut self) {
         let now = self.next;
+        self.enter(now);
+        if now == self.next_heard {
+            self.find_heard();
+        }
+    }
+
+    /// Enters cycle `now`, the next one in which something changes.
+    #[inline(always)]
+    fn enter(&mut self, now: Instant) {
         if self.sender.next_edge() == now {
             self.sender.pass();
         }
@@ -258,16 +286,17 @@ mod tests {
             line.force(span(*new));
             let expected: Vec<Forced> = expected.iter().copied().map(span).collect();
             assert_eq!(line.forced(), expected, "{before:?} {new:?}");
+            let low = |at| expected.iter().any(|one| !one.level && one.start <= at && at < one.end);
+            let due: Vec<u64> = (1..100).filter(|&at| low(Instant(at)) != low(Instant(at - 1))).collect();
             let (mut changes, mut level) = (Vec::new(), true);
             while line.next_change() != Instant::NEVER {
+                assert_eq!(line.is_over(), changes.len() == due.len(), "{before:?} {new:?} {changes:?}");
                 let at = line.next_change();
                 line.change();
                 if core::mem::replace(&mut level, line.heard(true)) != line.heard(true) {
                     changes.push(at.0);
                 }
             }
-            let low = |at| expected.iter().any(|one| !one.level && one.start <= at && at < one.end);
-            let due: Vec<u64> = (1..100).filter(|&at| low(Instant(at)) != low(Instant(at - 1))).collect();
             assert_eq!(changes, due, "{before:?} {new:?}");
         }
     }
