@@ -25,5 +25,5 @@ function summary({ rules, source }) {
     const ns = rules[`${rule}_ns`];
     return ns ? [`${label} ${si(ns * 1e-9, "s")}`] : [];
   });
-  return `At least: ${times.join(", ")}. ${source}.`;
+  return `At least: ${times.join(", ")}. ${source[0].toUpperCase()}${source.slice(1)}.`;
 }

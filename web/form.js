@@ -39,17 +39,25 @@ export function createForm({ root, samples, drivers, dispatch }) {
     driver: (scenario) => driverItems(kit, scenario, drivers),
   };
 
+  /** Where the focus is, to find it again in the form built anew: a field by its path, a button by what it does. @param {HTMLElement} active */
+  function focusOf(active) {
+    const { path } = active.dataset;
+    const selector = path ? `[data-path="${CSS.escape(path)}"]` : `button[aria-label="${CSS.escape(active.getAttribute("aria-label") ?? "")}"]`;
+    return { selector, nth: [...root.querySelectorAll(selector)].indexOf(active) };
+  }
+
   /** @param {Scenario} scenario */
   function build(scenario) {
     kit.clear();
-    const focus = /** @type {HTMLElement | null} */ (document.activeElement)?.dataset?.path;
+    const active = /** @type {HTMLElement | null} */ (document.activeElement);
+    const focus = active && root.contains(active) ? focusOf(active) : null;
     const sections = SECTIONS.map(({ title, open, blocks, group, list }) => kit.part(title, open, [
       ...blocks.flatMap(({ path, fields }) => kit.block(path, fields)),
       ...(group ? [kit.part(group.title, used(get(scenario, group.path)), kit.block(group.path, group.fields))] : []),
       ...(list ? LISTS[list](scenario) : []),
     ]));
     fill(root, kit.part("Source", true, source(scenario)), ...sections);
-    if (focus) /** @type {HTMLElement | null} */ (root.querySelector(`[data-path="${CSS.escape(focus)}"]`))?.focus();
+    if (focus) /** @type {HTMLElement | undefined} */ (root.querySelectorAll(focus.selector)[focus.nth])?.focus();
   }
 
   /** @param {State} next */

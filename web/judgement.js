@@ -88,6 +88,9 @@ export function showDerived(state, form) {
   root.classList.toggle("stale", !fresh);
   if (!derived) return fill(root);
   const [{ tick_s, limit_steps_s }] = derived.controllers;
+  // Further controllers can have ticks of another length.
+  const several = derived.controllers.length > 1;
+  const ticks = several ? derived.controllers.reduce((sum, controller) => sum + controller.ticks, 0) : derived.ticks;
   const axes = derived.controllers.flatMap((controller) => controller.axes);
   const peak = Math.max(0, ...axes.map((axis) => axis.peak_speed_steps_s));
   const load = derived.line_load;
@@ -100,8 +103,8 @@ export function showDerived(state, form) {
     // How long the last tick of a line script waits is known only after the run.
     [sends ? "Duration at most" : line.protocol === "framed" && !alone ? "Duration, about" : "Duration", si(derived.duration_s, "s"), ""],
     ["Peak rate", axes.length ? plain(peak, "steps/s") : "–", over ? "over" : ""],
-    ...(alone ? [["On the line", "nothing", ""]] : [["Tick", sends ? si(tick_s, "s") : `${si(tick_s, "s")}, ${count(derived.ticks)} in all`, ""],
-    ["Limit of the bus", plain(limit_steps_s, "steps/s"), ""],
+    ...(alone ? [["On the line", "nothing", ""]] : [[several ? "Tick of controller 1" : "Tick", sends ? si(tick_s, "s") : `${si(tick_s, "s")}, ${count(ticks)} in all`, ""],
+    [several ? "Limit of its bus" : "Limit of the bus", plain(limit_steps_s, "steps/s"), ""],
     sent(state, derived),
     ["Line load", load === null ? "–" : `${short(load * 100, 3)} %`, load !== null && load > 1 ? "over" : ""]]),
   ];

@@ -170,7 +170,7 @@ function withoutAcceleration({ has_ideal, acceleration_min, acceleration_max, sp
   const still = (/** @type {number} */ value) => !(Math.abs(value) > 0);
   if (!acceleration_min.every(still) || !acceleration_max.every(still)) return "";
   const [low, high] = [Math.min(...speed_min), Math.max(...speed_max)];
-  return high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high)) ? "The speed jumps between segments; no acceleration in between." : "The speed does not change here; no acceleration.";
+  return high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high)) ? "The speed only jumps here; between the jumps there is no acceleration." : "The speed does not change here; no acceleration.";
 }
 
 /** Least and greatest value, and a range around them that leaves air. @param {{min: Float64Array, max: Float64Array}[]} bands @param {boolean} zero */
