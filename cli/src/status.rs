@@ -48,9 +48,9 @@ pub(crate) fn print(shown: &Shown<'_>) -> io::Result<()> {
             "frames {} repeated {} replies {} rejected {} refused {} deaths {}",
             counts.frames, counts.repeated, counts.replies, counts.rejected, counts.refused, counts.deaths
         )?;
-        if let Some(load) = shown.experiment.line_load() {
-            writeln!(out, "line_load {:.1} %", 100.0 * load)?;
-        }
+    }
+    if let Some(load) = shown.experiment.line_load() {
+        writeln!(out, "line_load {:.1} %", 100.0 * load)?;
     }
     Ok(())
 }

@@ -22,7 +22,7 @@ pub use cost::{BUDGET_RECORDS, Cost};
 use crate::{
     device::{Device, Faults, SegmentEngine},
     motion::AxisPlan,
-    scenario::{Cause, Checked, Config, END_OF_TIME, Forced, Problem, Protocol, Scenario},
+    scenario::{Cause, Checked, Config, END_OF_TIME, Forced, Problem, Scenario},
     segment::CheckedSegments,
     signal::{Event, MAX_CHANNELS, Record, Sink},
     units::{Cycles, Instant},
@@ -204,8 +204,7 @@ impl Experiment {
 
     /// The host of a framed line, where it has ticks to send.
     fn host(&self) -> Option<FramedHost> {
-        let waits = self.config().protocol() == Protocol::Framed && self.checked.source.is_ticks();
-        waits.then(|| orders::framed_host(&self.checked, &self.orders))
+        self.checked.waits_for_replies().then(|| orders::framed_host(&self.checked, &self.orders))
     }
 
     /// The whole run, at the fast speed; `sink` takes what the first controller does.

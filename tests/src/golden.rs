@@ -190,9 +190,9 @@ impl Outcome {
                 status,
                 "frames {frames} repeated {repeated} replies {replies} rejected {rejected} refused {refused} deaths {deaths}"
             );
-            if let Some(load) = experiment.line_load() {
-                let _ = writeln!(status, "line_load {:.1} %", 100.0 * load);
-            }
+        }
+        if let Some(load) = experiment.line_load() {
+            let _ = writeln!(status, "line_load {:.1} %", 100.0 * load);
         }
         Self { digest, status, trace: keeps.into_iter().next().map(|keep| keep.first).unwrap_or_default() }
     }

@@ -52,7 +52,7 @@ impl Cost {
     }
 
     pub(super) fn of(checked: &Checked, orders: &[Orders], schedule: &Schedule) -> Self {
-        let sends = if orders.iter().any(|orders| waits_for_replies(checked, orders)) {
+        let sends = if checked.waits_for_replies() {
             Sends::framed(checked, orders)
         } else {
             Sends::scheduled(checked, schedule)
@@ -97,9 +97,12 @@ impl Sends {
         Self { count: schedule.len() as u64, bytes, reply_bytes: replies * REPLY_LEN as u64, end_cycle: 0 }
     }
 
-    /// Frames of a host that waits for replies; with noise, each of them twice.
+    /// Frames of a host that waits for replies. On a line that goes wrong each may be sent as often as
+    /// the host tries, and a host that dies asks every controller again: no bound, but a fair warning.
     fn framed(checked: &Checked, orders: &[Orders]) -> Self {
-        let repeats = if checked.noise == Noise::default() && checked.forced.is_empty() { 1 } else { 2 };
+        let wrong = checked.noise != Noise::default() || !checked.forced.is_empty();
+        let tries = if wrong { u64::from(checked.host.attempts) } else { 1 };
+        let repeats = tries * if checked.noise.deaths_ppm > 0 { orders.len() as u64 } else { 1 };
         let mut sends = Self { count: 0, bytes: 0, reply_bytes: 0, end_cycle: 0 };
         for orders in orders.iter().filter(|orders| orders.has_ticks()) {
             let job = job(orders.config(), &orders.shared_ticks());
@@ -119,14 +122,10 @@ impl Sends {
     }
 }
 
-fn waits_for_replies(checked: &Checked, orders: &Orders) -> bool {
-    orders.config().protocol() == Protocol::Framed && checked.source.is_ticks()
-}
-
 /// Records of all ticks of one controller at most.
 fn tick_records(checked: &Checked, orders: &Orders, schedule: &Schedule) -> u64 {
     let config = orders.config();
-    if waits_for_replies(checked, orders) || comes_as_ordered(checked, config) {
+    if checked.waits_for_replies() || comes_as_ordered(checked, config) {
         if let Source::Packets(_) = &checked.source
             && config.protocol() == Protocol::Raw
             && checked.configs.len() > 1
@@ -199,7 +198,7 @@ fn last_cycle(schedule: &Schedule, checked: &Checked, orders: &[Orders]) -> u64 
     let forced = checked.forced.iter().map(|forced| forced.end.0).max().unwrap_or(0);
     let rest = |orders: &Orders| {
         let config = orders.config();
-        let ticks = if waits_for_replies(checked, orders) || comes_as_ordered(checked, config) {
+        let ticks = if checked.waits_for_replies() || comes_as_ordered(checked, config) {
             1
         } else {
             most_ticks(checked, config, schedule).min(u64::from(config.queue_depth) + 1)

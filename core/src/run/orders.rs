@@ -159,7 +159,7 @@ fn end_at_rest(ticks: &mut Vec<u8>, channels: u8) {
 pub(super) fn schedule(checked: &Checked, orders: &[Orders]) -> (Schedule, Vec<Forced>) {
     let schedule = match &checked.source {
         Source::Line(script) => Schedule::scripted(script),
-        _ if framed(checked) => return (Schedule::default(), Vec::new()),
+        _ if checked.waits_for_replies() => return (Schedule::default(), Vec::new()),
         _ => paced(checked, orders),
     };
     let clock_hz = orders.first().map_or(1, |first| first.config.clock_hz());
@@ -167,10 +167,6 @@ pub(super) fn schedule(checked: &Checked, orders: &[Orders]) -> (Schedule, Vec<F
         Some(noise) => noise.schedule(&schedule),
         None => (schedule, Vec::new()),
     }
-}
-
-fn framed(checked: &Checked) -> bool {
-    checked.configs.first().is_some_and(|config| config.protocol() == Protocol::Framed)
 }
 
 /// First cycle after the self-tests of all controllers, in which the host begins.
@@ -245,7 +241,7 @@ pub(super) fn line_load<'a>(checked: &'a Checked) -> Result<Option<f64>, Problem
         further.is_none_or(Controller::is_busy).then_some(config)
     };
     let configs = checked.configs.iter().enumerate().filter_map(busy);
-    let (cycles, bits) = if framed(checked) {
+    let (cycles, bits) = if checked.waits_for_replies() {
         // Of the first controller's tick, so that ticks may have different lengths.
         let bits: u128 = configs
             .map(|config| frame_bits(checked, config) * u128::from(tick) / u128::from(config.tick().0))

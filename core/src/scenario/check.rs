@@ -58,6 +58,15 @@ pub struct Checked {
     pub run: Option<Cycles>,
 }
 
+impl Checked {
+    /// Whether the host sends frame after frame, each when the one before is answered.
+    #[must_use]
+    pub fn waits_for_replies(&self) -> bool {
+        let framed = self.configs.first().is_some_and(|config| config.protocol() == Protocol::Framed);
+        framed && self.source.is_ticks()
+    }
+}
+
 impl Scenario {
     /// Judges everything but the motions.
     ///

@@ -437,7 +437,10 @@ impl fmt::Display for Cause {
                     "at {baud} baud what is sent for a tick takes {packet_cycles} cycles, a tick has {tick_cycles}; give "
                 )?;
                 if needed_baud <= most_baud {
-                    write!(f, "at least {needed_baud} baud, longer ticks or fewer channels")
+                    write!(
+                        f,
+                        "at least {needed_baud} baud, longer ticks or fewer channels; on a framed line also more ticks a frame and a deeper queue"
+                    )
                 } else {
                     write!(
                         f,

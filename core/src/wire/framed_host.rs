@@ -15,7 +15,9 @@
 //!   begins with an end mark: what was left of a broken frame cannot join it.
 //! - The last tick of a job has no steps, so that its end is no underrun.
 //! - Confirming, it sees that every tick was done. It gives up on a controller that does not answer
-//!   `attempts` times, that is stopped, or that refuses a frame for good.
+//!   `attempts` times, that is stopped, or that refuses a frame for good; and on one that answers but
+//!   makes no progress (a host that dies again and again), after `attempts` frames for each place of its
+//!   queue.
 
 mod peer;
 #[cfg(test)]
@@ -30,7 +32,7 @@ use super::{
     uart::{Heard, Receiver},
 };
 use crate::{
-    scenario::{Host as Settings, line_time},
+    scenario::{END_OF_TIME, Host as Settings, line_time},
     units::{Cycles, Instant},
 };
 use alloc::vec::Vec;
@@ -59,6 +61,9 @@ pub struct Counts {
     /// How often the host died.
     pub deaths: u64,
 }
+
+/// No exchange begins after this cycle, so that the longest wait still ends before [`END_OF_TIME`].
+const LAST_BEGIN: u64 = END_OF_TIME - (1 << 46);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
@@ -227,7 +232,10 @@ impl FramedHost {
     /// Begins what is most urgent, or waits for it.
     fn next_exchange(&mut self, now: Instant, line: &mut Line) {
         for peer in self.peers.iter_mut().filter(|peer| peer.is_open()) {
-            if peer.attempts >= self.attempts && peer.ready_at <= now {
+            let tired = peer.attempts >= self.attempts || peer.stalls(self.attempts);
+            if now.0 >= LAST_BEGIN {
+                peer.progress = Progress::GivenUp(GivenUp::OutOfTime);
+            } else if tired && peer.ready_at <= now {
                 peer.progress = Progress::GivenUp(GivenUp::NoReply);
             }
         }
@@ -264,6 +272,7 @@ impl FramedHost {
         }
         self.counts.repeated += u64::from(peer.attempts > 0);
         peer.attempts = peer.attempts.saturating_add(1);
+        peer.since_progress = peer.since_progress.saturating_add(1);
         self.counts.frames += 1;
         let start = now.next();
         let mut dies = false;
@@ -303,6 +312,7 @@ impl FramedHost {
                 }
                 Some((Err(reason), _)) => {
                     self.counts.refused += 1;
+                    peer.attempts = 0;
                     let wait = peer.refused(reason);
                     self.pause(now, index, wait);
                 }

@@ -64,6 +64,8 @@ pub enum GivenUp {
     Refused(Reason),
     /// It rests and has done fewer ticks than it acknowledged.
     TicksMissing,
+    /// The longest time that a run can be is over.
+    OutOfTime,
 }
 
 impl fmt::Display for GivenUp {
@@ -74,6 +76,7 @@ impl fmt::Display for GivenUp {
             Self::Stopped => f.write_str("it is stopped"),
             Self::Refused(reason) => write!(f, "it refused a frame: {}", reason.name()),
             Self::TicksMissing => f.write_str("it did fewer ticks than it acknowledged"),
+            Self::OutOfTime => f.write_str("the longest time of a run is over"),
         }
     }
 }
@@ -107,6 +110,8 @@ pub(super) struct Peer {
     pub(super) dry_at: Instant,
     /// How often the frame that is due was sent.
     pub(super) attempts: u8,
+    /// Frames since ticks were last acknowledged.
+    pub(super) since_progress: u32,
     /// What was left of a broken frame may wait at the controller for an end mark.
     pub(super) flush: bool,
 }
@@ -123,9 +128,16 @@ impl Peer {
             ready_at: start,
             dry_at: start,
             attempts: 0,
+            since_progress: 0,
             flush: false,
             job,
         }
+    }
+
+    /// Whether nothing came of so many frames that nothing will: `attempts` for each place of its
+    /// queue, which may have to run empty before it goes on, and for the exchanges around it.
+    pub(super) fn stalls(&self, attempts: u8) -> bool {
+        self.since_progress > u32::from(attempts) * (u32::from(self.job.queue_depth) + 3)
     }
 
     /// Whether there is more to say to it.
@@ -160,6 +172,7 @@ impl Peer {
     pub(super) fn acknowledge(&mut self, kind: Kind, ticks: u32, status: Status, now: Instant) -> Cycles {
         if kind == Kind::Ticks {
             self.acknowledged += ticks;
+            self.since_progress = 0;
             self.seq = self.seq.wrapping_add(1);
         } else if status.state == State::Stopped {
             self.progress = Progress::GivenUp(GivenUp::Stopped);
@@ -168,7 +181,11 @@ impl Peer {
                 return self.job.tick;
             }
             let base = *self.base.get_or_insert(status.ticks_done);
+            let known = self.acknowledged;
             self.acknowledged = status.ticks_done.wrapping_sub(base).min(self.job.ticks());
+            if self.acknowledged > known {
+                self.since_progress = 0;
+            }
             self.seq = status.expected_seq;
             self.progress = Progress::Filling;
         } else {
