@@ -23,132 +23,87 @@ pub fn seal(content: &[u8]) -> Vec<u8> {
     wire
 }
 
-/// What a frame orders (DESIGN A6).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Kind {
-    /// Ticks for the queue.
-    Ticks = 1,
-    /// Drivers on; leaves STOPPED.
-    Enable = 2,
-    /// Drivers off, if nothing moves.
-    Disable = 3,
-    /// A reply, and nothing else.
-    Status = 4,
-    /// Emergency stop.
-    Stop = 5,
-    /// Expected sequence number 0, fault flags cleared.
-    Resync = 6,
-}
-
-impl Kind {
-    pub(crate) const ALL: [Self; 6] =
-        [Self::Ticks, Self::Enable, Self::Disable, Self::Status, Self::Stop, Self::Resync];
-
-    /// The kind that a byte means, if it means one.
-    #[must_use]
-    pub fn parse(byte: u8) -> Option<Self> {
-        Self::ALL.into_iter().find(|&kind| kind as u8 == byte)
-    }
-
-    /// Its name in DESIGN A6.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Ticks => "TICKS",
-            Self::Enable => "ENABLE",
-            Self::Disable => "DISABLE",
-            Self::Status => "STATUS",
-            Self::Stop => "STOP",
-            Self::Resync => "RESYNC",
+/// Declares what one byte of the protocol can mean: each meaning with its byte and its name in DESIGN A6.
+macro_rules! meanings {
+    ($($(#[$meta:meta])* pub enum $name:ident {
+        $($(#[$variant_meta:meta])* $variant:ident = $byte:literal $word:literal,)*
+    })*) => {$(
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[repr(u8)]
+        pub enum $name {
+            $($(#[$variant_meta])* $variant = $byte,)*
         }
-    }
-}
 
-/// Why a frame was refused (DESIGN A6).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Reason {
-    /// Neither the expected sequence number nor the one before it.
-    BadSeq = 1,
-    /// Fewer free places in the queue than ticks.
-    QueueFull = 2,
-    /// A byte orders more steps than a tick has slots.
-    TooManySteps = 3,
-    /// In the self-test; or, for DISABLE, a tick runs or waits.
-    Busy = 4,
-    /// Stopped: ENABLE comes first.
-    Stopped = 5,
-    /// The body's length or count is wrong.
-    BadBody = 6,
-    /// No such kind.
-    UnknownKind = 7,
-}
+        impl $name {
+            /// All of them, in the order of their bytes.
+            pub const ALL: &[Self] = &[$(Self::$variant),*];
 
-impl Reason {
-    pub(crate) const ALL: [Self; 7] = [
-        Self::BadSeq,
-        Self::QueueFull,
-        Self::TooManySteps,
-        Self::Busy,
-        Self::Stopped,
-        Self::BadBody,
-        Self::UnknownKind,
-    ];
+            /// What a byte means, if it means something.
+            #[must_use]
+            pub const fn parse(byte: u8) -> Option<Self> {
+                match byte {
+                    $($byte => Some(Self::$variant),)*
+                    _ => None,
+                }
+            }
 
-    /// The reason that a byte means, if it means one.
-    #[must_use]
-    pub fn parse(byte: u8) -> Option<Self> {
-        Self::ALL.into_iter().find(|&reason| reason as u8 == byte)
-    }
-
-    /// Its name in DESIGN A6.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::BadSeq => "BAD_SEQ",
-            Self::QueueFull => "QUEUE_FULL",
-            Self::TooManySteps => "TOO_MANY_STEPS",
-            Self::Busy => "BUSY",
-            Self::Stopped => "STOPPED",
-            Self::BadBody => "BAD_BODY",
-            Self::UnknownKind => "UNKNOWN_KIND",
+            /// Its name in DESIGN A6.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $word,)*
+                }
+            }
         }
-    }
+    )*};
 }
 
-/// What a controller does (DESIGN A6).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum State {
-    /// In the self-test after reset.
-    Busy = 0,
-    /// Waits for ticks.
-    Ready = 1,
-    /// A tick runs or waits.
-    Moving = 2,
-    /// Stopped; ENABLE leaves this state.
-    Stopped = 3,
-}
-
-impl State {
-    pub(crate) const ALL: [Self; 4] = [Self::Busy, Self::Ready, Self::Moving, Self::Stopped];
-
-    /// The state that a byte means, if it means one.
-    #[must_use]
-    pub fn parse(byte: u8) -> Option<Self> {
-        Self::ALL.into_iter().find(|&state| state as u8 == byte)
+meanings! {
+    /// What a frame orders (DESIGN A6).
+    pub enum Kind {
+        /// Ticks for the queue.
+        Ticks = 1 "TICKS",
+        /// Drivers on; leaves STOPPED.
+        Enable = 2 "ENABLE",
+        /// Drivers off, if nothing moves.
+        Disable = 3 "DISABLE",
+        /// A reply, and nothing else.
+        Status = 4 "STATUS",
+        /// Emergency stop.
+        Stop = 5 "STOP",
+        /// Expected sequence number 0, fault flags cleared.
+        Resync = 6 "RESYNC",
     }
 
-    /// Its name in DESIGN A6.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Busy => "BUSY",
-            Self::Ready => "READY",
-            Self::Moving => "MOVING",
-            Self::Stopped => "STOPPED",
-        }
+    /// Why a frame was refused (DESIGN A6).
+    pub enum Reason {
+        /// Neither the expected sequence number nor the one before it.
+        BadSeq = 1 "BAD_SEQ",
+        /// Fewer free places in the queue than ticks.
+        QueueFull = 2 "QUEUE_FULL",
+        /// A byte orders more steps than a tick has slots.
+        TooManySteps = 3 "TOO_MANY_STEPS",
+        /// In the self-test; or, for DISABLE, a tick runs or waits.
+        Busy = 4 "BUSY",
+        /// Stopped: ENABLE comes first.
+        Stopped = 5 "STOPPED",
+        /// The body's length or count is wrong.
+        BadBody = 6 "BAD_BODY",
+        /// No such kind.
+        UnknownKind = 7 "UNKNOWN_KIND",
+    }
+
+    /// What a controller does (DESIGN A6).
+    pub enum State {
+        /// In the self-test after reset.
+        Busy = 0 "BUSY",
+        /// Waits for ticks.
+        Ready = 1 "READY",
+        /// A tick runs or waits.
+        Moving = 2 "MOVING",
+        /// Stopped; ENABLE leaves this state.
+        Stopped = 3 "STOPPED",
     }
 }
 

@@ -18,6 +18,14 @@ pub mod cases;
 #[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 pub mod scenarios;
 
+/// How many random cases a property test takes.
+#[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
+pub mod effort;
+
+/// A configuration of the slow model in the core's words.
+#[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
+pub mod translate;
+
 /// Every way through a scenario, compared.
 #[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 pub mod ways;

@@ -6,14 +6,10 @@
 use std::rc::Rc;
 
 use proptest::prelude::*;
-use proptest::test_runner::FileFailurePersistence;
 use stepscope_core::{
     device::Device,
     run::{Experiment, Run},
-    scenario::{
-        Bus, DirLine, Distribution, Glitch, Hex, Line, LineScript, Packets, Problem, Pulses, Scenario,
-        ScriptedSend, Source,
-    },
+    scenario::{Hex, Line, LineScript, Packets, Problem, Scenario, Source},
     signal::Record,
     trace::Digest,
     units::Cycles,
@@ -21,49 +17,19 @@ use stepscope_core::{
 };
 use stepscope_tests::{
     cases::{cases, configs, every_mode},
-    oracle,
+    effort, oracle, translate,
 };
-
-/// A few seconds' worth of cases, or as many as PROPTEST_CASES says.
-fn proptest_config() -> ProptestConfig {
-    let told = ProptestConfig::default();
-    ProptestConfig {
-        cases: if std::env::var_os("PROPTEST_CASES").is_some() { told.cases } else { 2_048 },
-        failure_persistence: Some(Box::new(FileFailurePersistence::WithSource("regressions"))),
-        ..told
-    }
-}
 
 /// The same configuration in the core's words.
 fn scenario(config: &oracle::Config, forced: &[(u64, u64, bool)], source: Source) -> Scenario {
     Scenario {
         clock_hz: config.clock_hz as u32,
-        bus: Bus {
-            channels: config.channels as u8,
-            slots: config.slots as u8,
-            step_period_cycles: config.step_period as u32,
-            pulse_width_cycles: config.pulse_width as u32,
-            dir_setup_cycles: config.dir_setup as u32,
-            dir_hold_cycles: config.dir_hold as u32,
-            distribution: if config.spread { Distribution::Spread } else { Distribution::Burst },
-            dir_line: if config.common_dir { DirLine::Common } else { DirLine::PerChannel },
-            pulses: if config.staggered { Pulses::Staggered } else { Pulses::Simultaneous },
-            settle_cycles: config.settle as u32,
-            queue_depth: config.queue_depth as u8,
-            boot_cycles: config.boot as u32,
-        },
+        bus: translate::bus(config),
         line: Line {
             baud: config.baud as u32,
             receiver_baud: Some(config.receiver_baud as u32),
             address: config.address,
-            glitches: forced
-                .iter()
-                .map(|&(start_cycle, length_cycles, level)| Glitch {
-                    start_cycle,
-                    length_cycles,
-                    level: level.into(),
-                })
-                .collect(),
+            glitches: translate::glitches(forced),
             ..Line::default()
         },
         source,
@@ -76,11 +42,7 @@ fn experiment(
     input: &oracle::Input,
     cycles: Option<u64>,
 ) -> Result<Experiment, Vec<Problem>> {
-    let sends = input
-        .sends
-        .iter()
-        .map(|(start, bytes)| ScriptedSend { start_cycle: *start, bytes: Hex(bytes.clone()), frame: None })
-        .collect();
+    let sends = translate::sends(&input.sends);
     let mut scenario = scenario(config, &input.forced, Source::Line(LineScript { sends }));
     scenario.run_cycles = cycles;
     Experiment::new(&scenario)
@@ -167,7 +129,7 @@ fn show(record: Option<&(u64, u64)>) -> String {
 }
 
 proptest! {
-    #![proptest_config(proptest_config())]
+    #![proptest_config(effort::cases(2_048))]
 
     #[test]
     fn the_core_gives_the_models_run_at_every_speed((config, input) in cases(every_mode())) {

@@ -3,79 +3,42 @@
 //! independent model in [`stepscope_tests::oracle`] gives.
 #![cfg(not(target_arch = "wasm32"))]
 
-use proptest::{prelude::*, test_runner::FileFailurePersistence};
+use proptest::prelude::*;
 use stepscope_core::{
     protocol::State,
     run::{Experiment, Run},
     scenario::{
-        Bus, ChannelSegments, Controller, DirLine, Distribution, DwellSegment, Glitch, Hex, Line, LineScript,
-        Problem, Protocol, Pulses, Scenario, ScriptedSend, Segment, SegmentLists, Source, StepSegment,
+        ChannelSegments, Controller, DwellSegment, Line, LineScript, Problem, Protocol, Scenario, Segment,
+        SegmentLists, Source, StepSegment,
     },
     signal::Record,
 };
 use stepscope_tests::{
     cases::{SegmentCase, every_mode, framed_lines, framed_lines_of_one_address, raw_lines, segment_lists},
-    oracle,
+    effort, oracle, translate,
 };
-
-/// Some seconds' worth of cases, or as many as PROPTEST_CASES says.
-fn cases(cases: u32) -> ProptestConfig {
-    let told = ProptestConfig::default();
-    ProptestConfig {
-        cases: if std::env::var_os("PROPTEST_CASES").is_some() { told.cases } else { cases },
-        failure_persistence: Some(Box::new(FileFailurePersistence::WithSource("regressions"))),
-        ..told
-    }
-}
-
-fn bus(config: &oracle::Config) -> Bus {
-    Bus {
-        channels: config.channels as u8,
-        slots: config.slots as u8,
-        step_period_cycles: config.step_period as u32,
-        pulse_width_cycles: config.pulse_width as u32,
-        dir_setup_cycles: config.dir_setup as u32,
-        dir_hold_cycles: config.dir_hold as u32,
-        distribution: if config.spread { Distribution::Spread } else { Distribution::Burst },
-        dir_line: if config.common_dir { DirLine::Common } else { DirLine::PerChannel },
-        pulses: if config.staggered { Pulses::Staggered } else { Pulses::Simultaneous },
-        settle_cycles: config.settle as u32,
-        queue_depth: config.queue_depth as u8,
-        boot_cycles: config.boot as u32,
-    }
-}
 
 /// The same line in the core's words.
 fn experiment(line: &[oracle::Config], input: &oracle::Input) -> Result<Experiment, Vec<Problem>> {
     let (first, further) = (&line[0], &line[1..]);
-    let send = |(start, bytes): &(u64, Vec<u8>)| ScriptedSend {
-        start_cycle: *start,
-        bytes: Hex(bytes.clone()),
-        frame: None,
-    };
-    let glitch = |&(start_cycle, length_cycles, level): &(u64, u64, bool)| Glitch {
-        start_cycle,
-        length_cycles,
-        level: level.into(),
-    };
     let controller = |config: &oracle::Config| Controller {
         address: config.address.unwrap_or(0),
         receiver_baud: Some(config.receiver_baud as u32),
-        bus: bus(config),
+        bus: translate::bus(config),
         ..Controller::default()
     };
     Experiment::new(&Scenario {
         clock_hz: first.clock_hz as u32,
-        bus: bus(first),
+        bus: translate::bus(first),
         line: Line {
             baud: first.baud as u32,
             receiver_baud: Some(first.receiver_baud as u32),
             address: first.address,
             protocol: if first.framed { Protocol::Framed } else { Protocol::Raw },
-            glitches: input.forced.iter().map(glitch).collect(),
+            glitches: translate::glitches(&input.forced),
             ..Line::default()
         },
-        source: Source::Line(LineScript { sends: input.sends.iter().map(send).collect() }),
+        source: Source::Line(LineScript { sends: translate::sends(&input.sends) }),
         run_cycles: Some(input.cycles),
         controllers: further.iter().map(controller).collect(),
         ..Scenario::default()
@@ -175,7 +138,7 @@ fn segments(case: &SegmentCase) -> Result<Experiment, Vec<Problem>> {
     };
     Experiment::new(&Scenario {
         clock_hz: case.config.clock_hz as u32,
-        bus: bus(&case.config),
+        bus: translate::bus(&case.config),
         source: Source::Segments(SegmentLists { channels: case.lists.iter().map(channel).collect() }),
         run_cycles: Some(case.cycles),
         ..Scenario::default()
@@ -183,7 +146,7 @@ fn segments(case: &SegmentCase) -> Result<Experiment, Vec<Problem>> {
 }
 
 proptest! {
-    #![proptest_config(cases(400))]
+    #![proptest_config(effort::cases(400))]
 
     #[test]
     fn framed_controllers_do_what_the_model_does((line, input) in framed_lines(every_mode())) {

@@ -2,8 +2,9 @@
 //! them the seeds and some inputs of chance, so that a check that breaks is seen without fuzzing.
 #![cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 
-use proptest::{prelude::*, test_runner::FileFailurePersistence};
+use proptest::prelude::*;
 use std::{fs, panic::catch_unwind, path::Path};
+use stepscope_tests::effort;
 use stepscope_tests::fuzzing::{TARGETS, Target};
 
 /// All inputs that break the target's check: name, and what they stand for.
@@ -68,11 +69,7 @@ fn inputs() -> impl Strategy<Value = (usize, Vec<u8>)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: if std::env::var_os("PROPTEST_CASES").is_some() { ProptestConfig::default().cases } else { 1_000 },
-        failure_persistence: Some(Box::new(FileFailurePersistence::WithSource("regressions"))),
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(effort::cases(1_000))]
 
     #[test]
     fn no_input_of_chance_breaks_a_check((target, bytes) in inputs()) {

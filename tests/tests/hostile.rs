@@ -5,7 +5,7 @@
 #![cfg(not(target_arch = "wasm32"))]
 
 use miniz_oxide::deflate::compress_to_vec;
-use proptest::{prelude::*, sample::Index, test_runner::FileFailurePersistence};
+use proptest::{prelude::*, sample::Index};
 use serde_json::{Map, Value, json};
 use stepscope_core::scenario::{
     Scenario,
@@ -13,21 +13,13 @@ use stepscope_core::scenario::{
     presets::PRESETS,
 };
 use stepscope_tests::{
+    effort,
     fuzzing::{
         link::{around, open},
         scenario::judge,
     },
     scenarios::{segmented, small, typed},
 };
-
-fn cases(cases: u32) -> ProptestConfig {
-    let told = ProptestConfig::default();
-    ProptestConfig {
-        cases: if std::env::var_os("PROPTEST_CASES").is_some() { told.cases } else { cases },
-        failure_persistence: Some(Box::new(FileFailurePersistence::WithSource("regressions"))),
-        ..told
-    }
-}
 
 /// Any JSON, with the names that scenarios use.
 fn value() -> impl Strategy<Value = Value> {
@@ -155,7 +147,7 @@ fn changed(scenario: &Scenario, changes: &[Change]) -> String {
 }
 
 proptest! {
-    #![proptest_config(cases(3_000))]
+    #![proptest_config(effort::cases(3_000))]
 
     #[test]
     fn no_text_makes_the_reader_fail(text in prop_oneof![any::<String>(), "[\\[\\]{}\",:0-9a-e.@-]{0,80}"]) {

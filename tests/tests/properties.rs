@@ -2,7 +2,7 @@
 //! costs no more than was said before it, and a scenario survives its way through JSON and links (PAGE "Share link").
 #![cfg(not(target_arch = "wasm32"))]
 
-use proptest::{prelude::*, test_runner::FileFailurePersistence};
+use proptest::prelude::*;
 use stepscope_core::{
     device::Device,
     run::Experiment,
@@ -15,22 +15,13 @@ use stepscope_core::{
     units::Cycles,
 };
 use stepscope_tests::{
+    effort,
     scenarios::{segmented, small, typed},
     ways::{self, Left, Ways, same},
 };
 
-/// Some seconds' worth of cases, or as many as PROPTEST_CASES says.
-fn cases(cases: u32) -> ProptestConfig {
-    let told = ProptestConfig::default();
-    ProptestConfig {
-        cases: if std::env::var_os("PROPTEST_CASES").is_some() { told.cases } else { cases },
-        failure_persistence: Some(Box::new(FileFailurePersistence::WithSource("regressions"))),
-        ..told
-    }
-}
-
 proptest! {
-    #![proptest_config(cases(1_500))]
+    #![proptest_config(effort::cases(1_500))]
 
     #[test]
     fn every_way_through_a_scenario_leaves_the_same(
@@ -78,7 +69,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(cases(4_000))]
+    #![proptest_config(effort::cases(4_000))]
 
     #[test]
     fn a_scenario_survives_json_and_links(scenario in prop_oneof![typed(), small()]) {

@@ -3,7 +3,7 @@
 #![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::expect_used, reason = "what does not hold fails the test")]
 
-use proptest::{prelude::*, test_runner::FileFailurePersistence};
+use proptest::prelude::*;
 use std::rc::Rc;
 use stepscope_core::{
     device::Device,
@@ -16,16 +16,7 @@ use stepscope_core::{
 use stepscope_registers::{
     self as map, control, faults, orders, pulse_width, push, result, settle, slots, step_period,
 };
-use stepscope_tests::scenarios::small;
-
-fn cases(cases: u32) -> ProptestConfig {
-    let told = ProptestConfig::default();
-    ProptestConfig {
-        cases: if std::env::var_os("PROPTEST_CASES").is_some() { told.cases } else { cases },
-        failure_persistence: Some(Box::new(FileFailurePersistence::WithSource("regressions"))),
-        ..told
-    }
-}
+use stepscope_tests::{effort, scenarios::small};
 
 /// All that a run leaves.
 #[derive(Debug, Default, PartialEq)]
@@ -149,7 +140,7 @@ fn same(
 }
 
 proptest! {
-    #![proptest_config(cases(1_500))]
+    #![proptest_config(effort::cases(1_500))]
 
     #[test]
     fn accesses_at_any_cycles_leave_both_speeds_the_same(
@@ -265,7 +256,7 @@ fn commanded(
 }
 
 proptest! {
-    #![proptest_config(cases(500))]
+    #![proptest_config(effort::cases(500))]
 
     #[test]
     fn a_register_does_what_the_frame_does_that_ends_in_the_same_cycle(

@@ -2,66 +2,18 @@
 //! sent can be sent again, and on a framed line no tick is wrong, doubled or out of order.
 #![cfg(not(target_arch = "wasm32"))]
 
-use proptest::{prelude::*, test_runner::FileFailurePersistence};
+use proptest::prelude::*;
 use stepscope_core::{
     run::{Experiment, Run},
-    scenario::{Protocol, Source},
-    signal::{Event, Record, Sink},
-    units::Instant,
-    wire::framed_host::Progress,
+    scenario::{Forced, Glitch, Hex, LineScript, Noise, Protocol, Scenario, ScriptedSend, Source},
+    signal::{Event, Record},
+    wire::{framed_host::Progress, host::Sent},
 };
-use stepscope_tests::scenarios::shared;
-
-fn cases(cases: u32) -> ProptestConfig {
-    let told = ProptestConfig::default();
-    ProptestConfig {
-        cases: if std::env::var_os("PROPTEST_CASES").is_some() { told.cases } else { cases },
-        failure_persistence: Some(Box::new(FileFailurePersistence::WithSource("regressions"))),
-        ..told
-    }
-}
-
-/// All that one controller leaves.
-#[derive(Clone, Default, PartialEq)]
-struct Left {
-    trace: Vec<Record>,
-    events: Vec<(Instant, Event)>,
-}
-
-impl Sink for Left {
-    fn record(&mut self, record: Record) {
-        self.trace.push(record);
-    }
-
-    fn event(&mut self, at: Instant, event: Event) {
-        self.events.push((at, event));
-    }
-}
-
-fn same(way: &str, left: &[Left], fast: &[Left], (run, other): (&Run, &Run)) -> Result<(), TestCaseError> {
-    for (index, (left, fast)) in left.iter().zip(fast).enumerate() {
-        for at in 0..left.trace.len().max(fast.trace.len()) {
-            prop_assert_eq!(
-                left.trace.get(at),
-                fast.trace.get(at),
-                "{}: controller {} record {}",
-                way,
-                index,
-                at
-            );
-        }
-        prop_assert_eq!(&left.events, &fast.events, "{}: events of controller {}", way, index);
-    }
-    for (device, other) in run.devices().zip(other.devices()) {
-        prop_assert_eq!(device.positions(), other.positions(), "{}: positions", way);
-        prop_assert_eq!(device.faults(), other.faults(), "{}: faults", way);
-        prop_assert_eq!(device.ticks_done(), other.ticks_done(), "{}: ticks done", way);
-        prop_assert_eq!(device.status(), other.status(), "{}: status", way);
-    }
-    prop_assert_eq!(run.schedule(), other.schedule(), "{}: what was sent", way);
-    prop_assert_eq!(run.cycles(), other.cycles(), "{}: cycles", way);
-    Ok(())
-}
+use stepscope_tests::{
+    effort,
+    scenarios::shared,
+    ways::{self, Left, Ways},
+};
 
 /// The orders of the ticks that began.
 fn executed(left: &Left, channels: usize) -> Vec<u8> {
@@ -72,23 +24,49 @@ fn executed(left: &Left, channels: usize) -> Vec<u8> {
     ticks.flatten().collect()
 }
 
+/// The same controllers on a line to which is done what was done in `run`, and nothing else.
+fn again(scenario: &Scenario, run: &Run) -> Scenario {
+    let mut again = scenario.clone();
+    let send = |send: Sent<'_>| ScriptedSend {
+        start_cycle: send.start.0,
+        bytes: Hex(send.bytes.to_vec()),
+        ..ScriptedSend::default()
+    };
+    let glitch = |forced: &Forced| Glitch {
+        start_cycle: forced.start.0,
+        length_cycles: forced.end.0 - forced.start.0,
+        level: forced.level.into(),
+    };
+    again.source = Source::Line(LineScript { sends: run.schedule().iter().map(send).collect() });
+    again.line.glitches = run.forced().iter().map(glitch).collect();
+    again.line.noise = Noise::default();
+    for controller in &mut again.controllers {
+        controller.axes.clear();
+        controller.packets.clear();
+    }
+    again.run_cycles = Some(run.cycles().0);
+    again
+}
+
 proptest! {
-    #![proptest_config(cases(600))]
+    #![proptest_config(effort::cases(600))]
 
     #[test]
     fn every_way_through_a_shared_line_leaves_the_same(scenario in shared(), slice in 1..50_u64) {
         let Ok(experiment) = Experiment::new(&scenario) else { return Ok(()) };
-        let none = vec![Left::default(); experiment.controllers()];
-        let (mut fast, mut sliced, mut slow) = (none.clone(), none.clone(), none);
-        let run = experiment.run_each(&mut fast);
-        prop_assert!(run.is_done());
-        let mut in_slices = experiment.start();
-        while !in_slices.advance_each(slice, &mut sliced) {}
-        same("in slices", &sliced, &fast, (&in_slices, &run))?;
-        if run.cycles().0 < 400_000 {
-            let clocked = experiment.run_each_clock_by_clock(&mut slow);
-            same("clock by clock", &slow, &fast, (&clocked, &run))?;
-        }
+        ways::check(&scenario, &experiment, Ways { slices: &[slice], hurry: 100, most_clocked: 400_000 });
+    }
+
+    #[test]
+    fn what_was_sent_and_forced_gives_every_controller_the_same_trace_again(scenario in shared()) {
+        let Ok(experiment) = Experiment::new(&scenario) else { return Ok(()) };
+        let mut first: Vec<Vec<Record>> = vec![Vec::new(); experiment.controllers()];
+        let run = experiment.run_each(&mut first);
+        let again = Experiment::new(&again(&scenario, &run));
+        let again = again.map_err(|problems| TestCaseError::fail(format!("{problems:?}")))?;
+        let mut second = vec![Vec::new(); experiment.controllers()];
+        again.run_each(&mut second);
+        prop_assert_eq!(first, second);
     }
 
     #[test]
@@ -98,7 +76,7 @@ proptest! {
         if !waits || scenario.run_cycles.is_some() {
             return Ok(());
         }
-        let mut left = vec![Left::default(); experiment.controllers()];
+        let mut left: Vec<Left> = experiment.configs().map(|_| Left::default()).collect();
         let run = experiment.run_each(&mut left);
         let mut reached = run.host().into_iter().flat_map(|host| host.progress());
         for (index, left) in left.iter().enumerate() {

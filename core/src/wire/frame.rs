@@ -269,7 +269,8 @@ mod tests {
     fn replies_are_read_as_they_were_written() {
         let status =
             Status { state: State::Moving, free: 3, expected_seq: 0, faults: 0x82, ticks_done: 0x0100_0000 };
-        for answer in Kind::ALL.map(Ok).into_iter().chain(Reason::ALL.map(Err)) {
+        let (kinds, reasons) = (Kind::ALL.iter().copied().map(Ok), Reason::ALL.iter().copied().map(Err));
+        for answer in kinds.chain(reasons) {
             let reply = Reply { address: 9, answer, status };
             let wire = reply.emit();
             assert!(wire.len() <= REPLY_LEN);

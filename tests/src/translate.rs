@@ -1,0 +1,45 @@
+//! What the slow model is configured with and given, in the core's words.
+
+use crate::oracle::Config;
+use stepscope_core::scenario::{Bus, DirLine, Distribution, Glitch, Hex, Pulses, ScriptedSend};
+
+/// The driver bus of a configuration.
+#[must_use]
+pub fn bus(config: &Config) -> Bus {
+    Bus {
+        channels: config.channels as u8,
+        slots: config.slots as u8,
+        step_period_cycles: config.step_period as u32,
+        pulse_width_cycles: config.pulse_width as u32,
+        dir_setup_cycles: config.dir_setup as u32,
+        dir_hold_cycles: config.dir_hold as u32,
+        distribution: if config.spread { Distribution::Spread } else { Distribution::Burst },
+        dir_line: if config.common_dir { DirLine::Common } else { DirLine::PerChannel },
+        pulses: if config.staggered { Pulses::Staggered } else { Pulses::Simultaneous },
+        settle_cycles: config.settle as u32,
+        queue_depth: config.queue_depth as u8,
+        boot_cycles: config.boot as u32,
+    }
+}
+
+/// What is sent, as a line script's sends.
+#[must_use]
+pub fn sends(sends: &[(u64, Vec<u8>)]) -> Vec<ScriptedSend> {
+    let send = |(start_cycle, bytes): &(u64, Vec<u8>)| ScriptedSend {
+        start_cycle: *start_cycle,
+        bytes: Hex(bytes.clone()),
+        ..ScriptedSend::default()
+    };
+    sends.iter().map(send).collect()
+}
+
+/// What is forced, as a line's glitches.
+#[must_use]
+pub fn glitches(forced: &[(u64, u64, bool)]) -> Vec<Glitch> {
+    let glitch = |&(start_cycle, length_cycles, level): &(u64, u64, bool)| Glitch {
+        start_cycle,
+        length_cycles,
+        level: level.into(),
+    };
+    forced.iter().map(glitch).collect()
+}
