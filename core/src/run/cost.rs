@@ -28,7 +28,7 @@ const LONGEST_REST_BITS: u64 = 60;
 /// Bytes of a frame beside its ticks: address, kind, count, sequence number, check, COBS and end mark.
 const FRAME_OVERHEAD: u64 = 13;
 
-/// What a run costs, known before it starts.
+/// What a run costs, known before it starts. Where a host waits for replies the numbers are estimates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cost {
     /// Records of the trace, at most.
@@ -113,9 +113,10 @@ impl Sends {
             let ticks = u64::from(job.ticks()) * job.tick.0;
             sends.end_cycle = sends.end_cycle.max(orders.config().boot.0 + ticks);
         }
-        let bytes = sends.bytes + sends.reply_bytes;
+        let bytes = (sends.bytes + sends.reply_bytes) / repeats;
         let clock_hz = orders.first().map_or(1, |first| first.config().clock_hz());
-        // The line and the ticks go side by side, but for the first and the last exchange.
+        // The line and the ticks go side by side, but for the first and the last exchange. How long a line
+        // that goes wrong takes is not known; most such jobs still end with their ticks.
         sends.end_cycle = sends.end_cycle.max(line_time(bytes, clock_hz, checked.baud))
             + line_time(sends.bytes / sends.count.max(1) + 200, clock_hz, checked.baud);
         sends
