@@ -36,6 +36,10 @@ use core::slice;
 use net::{Ignored, Net};
 use orders::Orders;
 
+/// Most bytes that a host may have to send: as many as the most ticks of 16 channels take on an addressed
+/// raw line.
+const MOST_LINE_BYTES: u64 = 2_000_000 * 17;
+
 /// A scenario that has been judged in every respect, with its motions planned and its packets made.
 #[derive(Clone, Debug)]
 pub struct Experiment {
@@ -76,6 +80,11 @@ impl Experiment {
             Some(segments) => Cost::of_segments(segments, checked.run),
             None => Cost::of(&checked, &orders, &schedule),
         };
+        if cost.bytes > MOST_LINE_BYTES {
+            let (given, most) = (cost.bytes as f64, MOST_LINE_BYTES as f64);
+            let cause = Cause::TooMuch { given, most, of: "bytes of all frames and their repetitions" };
+            return Err(alloc::vec![Problem::new("source", cause)]);
+        }
         if cost.end_cycle > END_OF_TIME {
             let cause =
                 Cause::TooMuch { given: cost.end_cycle as f64, most: END_OF_TIME as f64, of: "cycles" };

@@ -492,6 +492,9 @@ impl fmt::Display for Cause {
                     "moves" => "give fewer moves",
                     "steps" => "give a shorter motion, or run it by ticks",
                     "sine segments" => "give a greater largest deviation or fewer sines",
+                    "bytes of all frames and their repetitions" => {
+                        "give a shorter motion, longer ticks, more ticks a frame or fewer attempts"
+                    }
                     _ => "give a shorter motion or longer ticks",
                 }
             ),
