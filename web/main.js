@@ -3,23 +3,23 @@
  * judging, run, drawing.
  */
 import { byId } from "./dom.js";
-import { Engine, Dropped, unlessDropped } from "./engine.js";
-import { SAMPLES } from "./fields.js";
-import { createForm } from "./form.js";
-import { createHeader, createTheme } from "./header.js";
-import { createLink } from "./link.js";
-import { createMotion } from "./motion.js";
-import { createPackets } from "./packets.js";
-import { load as loadCharts } from "./plot.js";
-import { createPulses } from "./pulses.js";
-import { SOURCES } from "./sources.js";
-import { createSpectrum } from "./spectrum.js";
-import { held, initial, isStale, update } from "./state.js";
-import { loadPrevious, loadScenario, saveScenario, setAside } from "./storage.js";
-import { createTabs } from "./tabs.js";
-import { createTiming } from "./timing.js";
+import { Engine, Dropped, unlessDropped } from "./engine/engine.js";
+import { SAMPLES } from "./form/fields.js";
+import { createForm } from "./form/form.js";
+import { createHeader, createTheme } from "./shell/header.js";
+import { createLink } from "./shell/link.js";
+import { createMotion } from "./views/motion.js";
+import { createPackets } from "./views/packets.js";
+import { load as loadCharts } from "./time/plot.js";
+import { createPulses } from "./views/pulses/pulses.js";
+import { SOURCES } from "./form/sources.js";
+import { createSpectrum } from "./views/spectrum.js";
+import { held, initial, isStale, update } from "./state/state.js";
+import { loadPrevious, loadScenario, saveScenario, setAside } from "./shell/storage.js";
+import { createTabs } from "./shell/tabs.js";
+import { createTiming } from "./views/timing.js";
 
-/** @typedef {import("./types.js").State} State */
+/** @typedef {import("./state/types.js").State} State */
 /** @typedef {{render: (state: State, before: State | undefined) => any}} View */
 
 /** Rest after a change before it runs, in ms: typing a number is one run. */
@@ -43,7 +43,7 @@ const engine = new Engine({
   },
 });
 
-/** @param {import("./state.js").Message} message */
+/** @param {import("./state/state.js").Message} message */
 function dispatch(message) {
   const before = state;
   state = update(state, message);

@@ -1,0 +1,130 @@
+/**
+ * The only module that talks to the worker: questions with answers, one run at a time, and a new
+ * worker after a crash.
+ */
+
+/** @typedef {import("../state/types.js").Progress} Progress */
+/** @typedef {import("../state/types.js").Summary} Summary */
+
+/**
+ * @typedef {object} Listener
+ * @property {(revision: number, progress: Progress) => void} progress
+ * @property {(revision: number, summary: Summary, ms: number) => void} done
+ * @property {(revision: number, message: string) => void} failed
+ * @property {(message: string) => void} crashed  A new worker is there already; its last run is gone.
+ */
+
+/** Thrown into questions that no longer matter: a newer one took their place, or the worker is gone. */
+export class Dropped extends Error {}
+
+export class Engine {
+  #worker = this.#start();
+  #listener;
+  #next = 0;
+  /** Crashes since the worker last answered; one that cannot even start is not started for ever. */
+  #crashes = 0;
+  /** @type {Map<number, {resolve: (value: any) => void, reject: (error: Error) => void}>} */
+  #asked = new Map();
+  /** @type {Map<string, {busy: boolean, waiting: null | {method: string, args: any[], resolve: (value: any) => void, reject: (error: Error) => void}}>} */
+  #lanes = new Map();
+
+  /** @param {Listener} listener */
+  constructor(listener) {
+    this.#listener = listener;
+  }
+
+  /**
+   * Asks the core (`check`, `encode_link`, …) or the last finished run (`motion`, `pulses`, …).
+   * @param {string} method
+   * @param {...any} args
+   * @returns {Promise<any>}  null where there is no run to ask.
+   */
+  ask(method, ...args) {
+    const id = this.#next++;
+    return new Promise((resolve, reject) => {
+      this.#asked.set(id, { resolve, reject });
+      this.#worker.postMessage({ id, method, args });
+    });
+  }
+
+  /**
+   * As `ask`, but of the questions that wait in one lane only the newest is put; the others end in
+   * `Dropped`. So a moving pointer never builds a queue.
+   * @param {string} lane
+   * @param {string} method
+   * @param {...any} args
+   * @returns {Promise<any>}
+   */
+  latest(lane, method, ...args) {
+    const state = this.#lanes.get(lane) ?? { busy: false, waiting: null };
+    this.#lanes.set(lane, state);
+    return new Promise((resolve, reject) => {
+      state.waiting?.reject(new Dropped(lane));
+      state.waiting = { method, args, resolve, reject };
+      if (!state.busy) this.#pump(lane);
+    });
+  }
+
+  /** @param {string} lane */
+  async #pump(lane) {
+    const state = this.#lanes.get(lane);
+    if (!state?.waiting) return;
+    const { method, args, resolve, reject } = state.waiting;
+    state.waiting = null;
+    state.busy = true;
+    try {
+      resolve(await this.ask(method, ...args));
+    } catch (error) {
+      reject(/** @type {Error} */ (error));
+    }
+    state.busy = false;
+    this.#pump(lane);
+  }
+
+  /** Runs a scenario; a run that is not done yet is dropped. @param {number} revision @param {string} json */
+  run(revision, json) {
+    this.#worker.postMessage({ run: revision, json });
+  }
+
+  /** Ends a run that is not done yet. @param {number} revision */
+  cancel(revision) {
+    this.#worker.postMessage({ run: revision, json: null });
+  }
+
+  #start() {
+    const worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
+    worker.onmessage = ({ data }) => this.#heard(data);
+    worker.onerror = (event) => this.#restart(event.message || "the engine could not be loaded");
+    return worker;
+  }
+
+  /** @param {any} data */
+  #heard(data) {
+    if (data.event !== "crashed") this.#crashes = 0;
+    switch (data.event) {
+      case "progress": return this.#listener.progress(data.run, data.progress);
+      case "done": return this.#listener.done(data.run, data.summary, data.ms);
+      case "failed": return this.#listener.failed(data.run, data.message);
+      case "crashed": return this.#restart(data.message);
+    }
+    const asked = this.#asked.get(data.id);
+    this.#asked.delete(data.id);
+    if ("error" in data) asked?.reject(new Error(data.error));
+    else asked?.resolve(data.value);
+  }
+
+  /** @param {string} message */
+  #restart(message) {
+    this.#worker.terminate();
+    const asked = [...this.#asked.values()];
+    this.#asked.clear();
+    if (++this.#crashes <= 2) this.#worker = this.#start();
+    for (const { reject } of asked) reject(new Dropped(message));
+    this.#listener.crashed(message);
+  }
+}
+
+/** Lets `Dropped` pass in silence and everything else through. @param {unknown} error */
+export function unlessDropped(error) {
+  if (!(error instanceof Dropped)) throw error;
+}

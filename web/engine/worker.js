@@ -1,0 +1,97 @@
+/**
+ * The worker: holds the wasm core, runs a scenario in slices, answers the views' questions about the
+ * last finished run. Between two slices it reads its messages, so a newer scenario ends an older run.
+ *
+ * In: {id, method, args} for an answer {id, value} or {id, error}; {run, json} for events {event, run, …}.
+ */
+import init, * as core from "../pkg/stepscope_wasm.js";
+
+/** How long a slice should take, in ms: short enough to be cancelled within a tenth of a second. */
+const SLICE_MS = 15;
+/** Least time between two reports of progress, in ms. */
+const REPORT_MS = 60;
+
+/** @type {any} The simulation that the views ask about. */
+let finished = null;
+/** Number of the newest run that was asked for. */
+let newest = -1;
+
+const ready = init();
+const between = new MessageChannel();
+
+/** Lets waiting messages in. */
+function breathe() {
+  return new Promise((resolve) => {
+    between.port1.onmessage = resolve;
+    between.port2.postMessage(0);
+  });
+}
+
+/** @param {number} run @param {string} json */
+async function simulate(run, json) {
+  const begin = performance.now();
+  const simulation = new core.Simulation(json);
+  let records = 4096;
+  let reported = begin;
+  for (;;) {
+    const before = performance.now();
+    const progress = simulation.advance(records);
+    const now = performance.now();
+    if (progress.done) break;
+    records = Math.min(4_000_000, Math.max(256, Math.round((records * SLICE_MS) / Math.max(0.5, now - before))));
+    if (now - reported > REPORT_MS) {
+      reported = now;
+      postMessage({ event: "progress", run, progress: { ...progress } });
+    }
+    await breathe();
+    if (run !== newest) {
+      simulation.free();
+      return;
+    }
+  }
+  finished?.free();
+  finished = simulation;
+  postMessage({ event: "done", run, summary: simulation.summary(), ms: performance.now() - begin });
+}
+
+/** Edges around a cycle: the level's begin and end, and the edge after that. @param {number} bit @param {number} cycle */
+function pulseAt(bit, cycle) {
+  const begin = finished.next_edge(bit, cycle + 1, false, "any");
+  const end = finished.next_edge(bit, cycle, true, "any");
+  const next = end === undefined ? undefined : finished.next_edge(bit, end, true, "any");
+  return { begin, end, next };
+}
+
+/** @param {string} method @param {any[]} args */
+function answer(method, args) {
+  if (method === "pulse_at") return finished && pulseAt(args[0], args[1]);
+  const calls = /** @type {any} */ (core);
+  if (typeof calls[method] === "function") return calls[method](...args);
+  return finished ? finished[method](...args) : null;
+}
+
+/** A panic leaves the wasm memory in no known state: the page has to start another worker. @param {unknown} error */
+function fatal(error) {
+  return error instanceof WebAssembly.RuntimeError || error instanceof RangeError;
+}
+
+/** @param {unknown} error */
+function text(error) {
+  return error instanceof Error ? error.message : String(error);
+}
+
+onmessage = async ({ data }) => {
+  if ("run" in data) newest = data.run;
+  try {
+    await ready;
+    if ("run" in data) {
+      if (data.json !== null && data.run === newest) await simulate(data.run, data.json);
+    } else {
+      postMessage({ id: data.id, value: answer(data.method, data.args) });
+    }
+  } catch (error) {
+    if (fatal(error)) postMessage({ event: "crashed", message: text(error) });
+    else if ("run" in data) postMessage({ event: "failed", run: data.run, message: text(error) });
+    else postMessage({ id: data.id, error: text(error) });
+  }
+};

@@ -1,0 +1,99 @@
+/**
+ * The form: built from the tables of `fields.js` and `sources.js`. It is built anew only when the scenario's shape
+ * changes (kinds, numbers of axes, moves, rows, controllers); else values are put into the fields that stand.
+ */
+import { controllerItems } from "./controllers.js";
+import { element, fill } from "../dom.js";
+import { driverItems } from "./driver.js";
+import { GLITCH, SECTIONS } from "./fields.js";
+import { showAbout, showDerived, showProblems } from "./judgement.js";
+import { createKit, labels } from "./kit.js";
+import { SOURCES, withSource } from "./sources.js";
+import { get, held } from "../state/state.js";
+
+/** @typedef {import("../state/types.js").State} State */
+/** @typedef {import("../state/types.js").Scenario} Scenario */
+
+/**
+ * @param {{root: HTMLElement, samples: import("./kit.js").Samples, drivers: import("../state/types.js").DriverSheet[],
+ *   dispatch: (message: import("../state/state.js").Message) => void}} given
+ */
+export function createForm({ root, samples, drivers, dispatch }) {
+  let shape = "";
+  /** @type {State} */
+  let state;
+  const kit = createKit({ samples, now: () => state, dispatch });
+
+  /** @param {Scenario} scenario @returns {Node[]} */
+  function source(scenario) {
+    const kind = Object.keys(scenario.source)[0];
+    const select = kit.kindSelect("What the host sends", "source", kind, labels(SOURCES), (chosen) => kit.put("", withSource(state.scenario, chosen, samples)));
+    return [kit.errorOf("source"), element("div", { class: "item-head" }, select), ...SOURCES[kind].form(kit, scenario)];
+  }
+
+  /** Lists whose length changes, by the name that a section gives them. @type {{[list: string]: (scenario: Scenario) => Node[]}} */
+  const LISTS = {
+    glitches: (scenario) => kit.rows("line.glitches", scenario.line.glitches, GLITCH, "Glitch",
+      (last) => (last ? { ...last, start_cycle: last.start_cycle + 2 * last.length_cycles } : structuredClone(samples.glitch))),
+    controllers: (scenario) => controllerItems(kit, scenario),
+    driver: (scenario) => driverItems(kit, scenario, drivers),
+  };
+
+  /** Where the focus is, to find it again in the form built anew: a field by its path, a button by what it does. @param {HTMLElement} active */
+  function focusOf(active) {
+    const { path } = active.dataset;
+    const selector = path ? `[data-path="${CSS.escape(path)}"]` : `button[aria-label="${CSS.escape(active.getAttribute("aria-label") ?? "")}"]`;
+    return { selector, nth: [...root.querySelectorAll(selector)].indexOf(active) };
+  }
+
+  /** @param {Scenario} scenario */
+  function build(scenario) {
+    kit.clear();
+    const active = /** @type {HTMLElement | null} */ (document.activeElement);
+    const focus = active && root.contains(active) ? focusOf(active) : null;
+    const sections = SECTIONS.map(({ title, open, blocks, group, list }) => kit.part(title, open, [
+      ...blocks.flatMap(({ path, fields }) => kit.block(path, fields)),
+      ...(group ? [kit.part(group.title, used(get(scenario, group.path)), kit.block(group.path, group.fields))] : []),
+      ...(list ? LISTS[list](scenario) : []),
+    ]));
+    fill(root, kit.part("Source", true, source(scenario)), ...sections);
+    if (focus) /** @type {HTMLElement | undefined} */ (root.querySelectorAll(focus.selector)[focus.nth])?.focus();
+  }
+
+  /** @param {State} next */
+  function render(next) {
+    const before = state;
+    state = next;
+    const nextShape = shapeOf(next.scenario);
+    if (nextShape !== shape) {
+      shape = nextShape;
+      build(next.scenario);
+    }
+    if (before?.scenario !== next.scenario || before?.drafts !== next.drafts || before?.derived !== next.derived) {
+      for (const [path, made] of kit.controls) made.show(get(next.scenario, path), next);
+    }
+    if (before?.scenario !== next.scenario) showAbout(next);
+    // Another experiment begins with what it is about.
+    if (before && before.origin !== next.origin && next.origin !== "own") /** @type {Element} */ (root.closest(".sheet")).scrollTop = 0;
+    const judged = held(next) !== "unjudged";
+    if (judged && (before?.judgement !== next.judgement || before?.drafts !== next.drafts)) {
+      showProblems(next, kit.controls, kit.groups);
+      showDerived(next, root);
+    }
+  }
+
+  return { render };
+}
+
+/** Whether anything in a group of numbers is other than 0. @param {{[key: string]: number}} group */
+function used(group) {
+  return Object.values(group).some((value) => value !== 0);
+}
+
+/** What decides which fields there are; values do not. @param {Scenario} scenario */
+function shapeOf({ source, controllers, driver, line }) {
+  const kinds = (/** @type {any[]} */ axes) => axes.map((axis) =>
+    [Object.keys(axis.mechanics)[0], ...axis.moves.map((/** @type {any} */ move) => Object.keys(move)[0])]);
+  return JSON.stringify([Object.keys(source)[0], kinds(source.motion?.axes ?? []), source.line?.sends?.length, source.segments?.channels?.length, line.glitches.length,
+    controllers.map((/** @type {any} */ { axes }) => kinds(axes)), driver && (driver.preset ?? "rules")]);
+}

@@ -1,0 +1,133 @@
+/** Shows what the core says about the scenario: problems beside their fields, and what follows from it. */
+import { button, byId, element, fill, say } from "../dom.js";
+import { count, plain, short, si } from "../state/number.js";
+import { derivedAxis } from "../state/state.js";
+
+/** @typedef {import("../state/types.js").State} State */
+/** @typedef {import("./control.js").Control} Control */
+
+/** @param {State} state @param {Map<string, Control>} controls @param {Map<string, HTMLElement>} groups */
+export function showProblems(state, controls, groups) {
+  const problems = [
+    ...Object.entries(state.drafts).map(([path, { message }]) => ({ path, message })),
+    ...(state.judgement?.problems ?? []),
+  ];
+  /** @type {Map<string, string>} */
+  const atField = new Map();
+  /** @type {Map<string, string>} */
+  const atGroup = new Map();
+  /** @type {{path: string, message: string}[]} */
+  const others = [];
+  for (const { path, message } of problems) {
+    const field = nearest(path, controls);
+    const group = field === null ? nearest(path, groups) : null;
+    const line = field !== null && path.slice(field.length).match(/^\[(\d+)\]/);
+    if (field !== null) add(atField, field, line ? `Line ${Number(line[1]) + 1}: ${message}.` : message);
+    else if (group !== null) add(atGroup, group, message);
+    else others.push({ path, message });
+  }
+  for (const [path, control] of controls) control.fail(atField.get(path) ?? "");
+  for (const [path, node] of groups) say(node, atGroup.get(path) ?? "");
+  markSections();
+
+  const list = byId("problems");
+  list.hidden = problems.length === 0;
+  const beside = problems.length - others.length;
+  say(/** @type {Element} */ (list.querySelector("h2")), problems.length === 0 ? "" : state.result
+    ? "Not run: the views show the last good result." : "Not run.");
+  const items = others.map(({ path, message }) => element("li", {}, path ? `${path}: ${message}` : message));
+  const first = atField.keys().next().value;
+  const firstGroup = groups.get(atGroup.keys().next().value ?? "");
+  if (beside > 0) {
+    const text = beside === 1 ? "One field needs another value" : `${beside} fields need other values`;
+    items.unshift(element("li", {}, button(text, text, () => {
+      if (first !== undefined) controls.get(first)?.focus();
+      else firstGroup?.scrollIntoView({ block: "center" });
+    })));
+  }
+  fill(/** @type {Element} */ (list.querySelector("ul")), ...items);
+}
+
+/** The longest path that is the problem's own or leads to it. @param {string} path @param {Map<string, unknown>} places */
+function nearest(path, places) {
+  for (let at = path; at; at = at.replace(/(\.[^.[\]]+|\[\d+\])$|^[^.[\]]+$/, "")) if (places.has(at)) return at;
+  // A quantity's problem may name its unit's value further down, never further up.
+  return null;
+}
+
+/** @param {Map<string, string>} map @param {string} path @param {string} message */
+function add(map, path, message) {
+  const before = map.get(path);
+  map.set(path, before ? `${before} ${message}` : message);
+}
+
+/** Name and note of the scenario: what to look at. @param {State} state */
+export function showAbout({ scenario }) {
+  const root = byId("about");
+  root.hidden = !scenario.title && !scenario.note;
+  say(/** @type {Element} */ (root.querySelector("h2")), String(scenario.title ?? ""));
+  say(/** @type {Element} */ (root.querySelector("p")), String(scenario.note ?? ""));
+}
+
+/** A folded section tells that something in it is wrong. */
+function markSections() {
+  for (const part of document.querySelectorAll("details.part")) {
+    const summary = /** @type {Element} */ (part.querySelector("summary"));
+    const wrong = [...part.querySelectorAll(".error")].some((error) => error.textContent !== "");
+    const mark = summary.querySelector(".mark");
+    if (wrong && !mark) summary.append(element("span", { class: "mark" }, " – needs attention"));
+    else if (!wrong) mark?.remove();
+  }
+}
+
+/** @param {State} state @param {HTMLElement} form */
+export function showDerived(state, form) {
+  const root = byId("derived");
+  const { derived } = state;
+  const fresh = state.judgement?.derived !== null && Object.keys(state.drafts).length === 0;
+  root.classList.toggle("stale", !fresh);
+  if (!derived) return fill(root);
+  const [{ tick_s, limit_steps_s }] = derived.controllers;
+  // Further controllers can have ticks of another length.
+  const several = derived.controllers.length > 1;
+  const ticks = several ? derived.controllers.reduce((sum, controller) => sum + controller.ticks, 0) : derived.ticks;
+  const axes = derived.controllers.flatMap((controller) => controller.axes);
+  const peak = Math.max(0, ...axes.map((axis) => axis.peak_speed_steps_s));
+  const load = derived.line_load;
+  const { source, line } = state.scenario;
+  const sends = "line" in source;
+  // Segments run by themselves: there are no ticks, and nothing is sent.
+  const alone = "segments" in source || source.motion?.engine === "segments";
+  const over = !alone && derived.controllers.some((controller) => controller.axes.some((axis) => axis.peak_speed_steps_s > controller.limit_steps_s));
+  const rows = [
+    // How long the last tick of a line script waits is known only after the run.
+    [sends ? "Duration at most" : line.protocol === "framed" && !alone ? "Duration, about" : "Duration", si(derived.duration_s, "s"), ""],
+    ["Peak rate", axes.length ? plain(peak, "steps/s") : "–", over ? "over" : ""],
+    ...(alone ? [["On the line", "nothing", ""]] : [[several ? "Tick of controller 1" : "Tick", sends ? si(tick_s, "s") : `${si(tick_s, "s")}, ${count(ticks)} in all`, ""],
+    [several ? "Limit of its bus" : "Limit of the bus", plain(limit_steps_s, "steps/s"), ""],
+    sent(state, derived),
+    ["Line load", load === null ? "–" : `${short(load * 100, 3)} %`, load !== null && load > 1 ? "over" : ""]]),
+  ];
+  fill(root, element("dl", {}, ...rows.map(([name, value, mark]) =>
+    element("div", {}, element("dt", {}, name), element("dd", mark ? { class: mark } : {}, value)))));
+  for (const note of /** @type {NodeListOf<HTMLElement>} */ (form.querySelectorAll("[data-note]"))) say(note, moveNote(note.dataset.note ?? "", state));
+}
+
+/** What goes over the line: how much, or how often. @param {State} state @param {import("../state/types.js").Derived} derived */
+function sent({ scenario: { source, line } }, { sends, line_load, controllers }) {
+  if ("line" in source) return ["Sends", count(sends), ""];
+  // How many are repeated on a noisy line only the run tells.
+  const quiet = line.glitches.length === 0 && Object.entries(line.noise).every(([key, value]) => key === "seed" || value === 0);
+  if (line.protocol === "framed") return ["Frames", quiet ? count(sends) : "–", ""];
+  const busy = controllers.filter(({ ticks }) => ticks > 0).length;
+  return ["Packets", line_load === null ? "–" : plain(busy / controllers[0].tick_s, "/s"), ""];
+}
+
+/** @param {string} path @param {State} state */
+function moveNote(path, state) {
+  const [, index] = path.match(/\.moves\[(\d+)\]/) ?? [];
+  const move = derivedAxis(state, path)?.moves[Number(index)];
+  if (!move) return "";
+  const steps = `${count(move.steps)} steps`;
+  return [`${si(move.start_s, "s")} to ${si(move.start_s + move.duration_s, "s")}`, steps, move.detail].filter(Boolean).join(" · ");
+}

@@ -1,0 +1,86 @@
+/** What the parts of the form are built with: fields, folded parts, fieldsets, lists and choices of kinds. */
+import { control } from "./control.js";
+import { button, element } from "../dom.js";
+
+/** @typedef {import("../state/types.js").State} State */
+/** @typedef {import("./fields.js").Field} Field */
+/** @typedef {import("./control.js").Control} Control */
+/**
+ * @typedef {{moves: {[kind: string]: any}, mechanics: {[kind: string]: any}, sources: {[kind: string]: any},
+ *   glitch: any, send: any, controller: any, rules: any}} Samples  One of everything, with the core's defaults.
+ */
+/** @typedef {ReturnType<typeof createKit>} Kit */
+
+/** @param {{samples: Samples, now: () => State, dispatch: (message: import("../state/state.js").Message) => void}} given */
+export function createKit({ samples, now, dispatch }) {
+  /** @type {Map<string, Control>} */
+  const controls = new Map();
+  /** @type {Map<string, HTMLElement>} Errors of whole axes, moves and controllers. */
+  const groups = new Map();
+  /** @type {Map<string, boolean>} Which parts stand open. */
+  const open = new Map();
+
+  /** @param {string} path @param {any} value */
+  const put = (path, value) => dispatch({ type: "edit", path, value });
+
+  /** @param {string} path @param {Field} field */
+  function row(path, field) {
+    const made = control(path, field, { dispatch, now });
+    controls.set(path, made);
+    return made.root;
+  }
+
+  /** The fields below a path. @param {string} path @param {Field[]} fields */
+  const block = (path, fields) => fields.map((field) => row(path ? `${path}.${field.key}` : field.key, field));
+
+  /** @param {string} path */
+  function errorOf(path) {
+    const error = element("p", { class: "error" });
+    groups.set(path, error);
+    return error;
+  }
+
+  /** What can be folded away. @param {string} title @param {boolean} isOpen @param {Node[]} children */
+  function part(title, isOpen, children) {
+    const details = element("details", { class: "part" }, element("summary", {}, title), element("div", { class: "part-body" }, ...children));
+    details.open = open.get(title) ?? isOpen;
+    details.addEventListener("toggle", () => open.set(title, details.open));
+    return details;
+  }
+
+  /** A fieldset that can be moved out. @param {string} legend @param {string} path @param {Node[]} children */
+  function item(legend, path, children) {
+    return element("fieldset", { class: "item" }, element("legend", {}, legend), errorOf(path), element("div", { class: "item-body" }, ...children));
+  }
+
+  /** A choice of kinds. @param {string} label @param {string} path @param {string} kind @param {{[kind: string]: string}} kinds @param {(kind: string) => void} choose */
+  function kindSelect(label, path, kind, kinds, choose) {
+    const select = element("select", { "aria-label": label, "data-path": `${path}#kind` });
+    for (const [value, text] of Object.entries(kinds)) select.append(element("option", { value }, text));
+    select.value = kind;
+    select.addEventListener("change", () => choose(select.value));
+    return select;
+  }
+
+  /** A list of equal rows. @param {string} path @param {any[]} values @param {Field[]} fields @param {string} name @param {(last: any) => any} fresh  The row after another, or the first. */
+  function rows(path, values, fields, name, fresh) {
+    const items = values.map((_, index) => item(`${name} ${index + 1}`, `${path}[${index}]`, [
+      ...block(`${path}[${index}]`, fields),
+      button("Remove", `Remove ${name.toLowerCase()} ${index + 1}`, () => put(path, values.toSpliced(index, 1))),
+    ]));
+    return [...items, button(`Add ${name.toLowerCase()}`, `Add ${name.toLowerCase()}`, () => put(path, [...values, fresh(values[values.length - 1])]))];
+  }
+
+  /** Begins anew. */
+  function clear() {
+    controls.clear();
+    groups.clear();
+  }
+
+  return { samples, now, put, row, block, errorOf, part, item, kindSelect, rows, clear, controls, groups };
+}
+
+/** The labels of a table of kinds. @param {{[kind: string]: {label: string}}} kinds */
+export function labels(kinds) {
+  return Object.fromEntries(Object.entries(kinds).map(([kind, { label }]) => [kind, label]));
+}

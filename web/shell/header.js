@@ -1,0 +1,135 @@
+/** The header: presets, undo and redo, what the run made, the theme; and the messages under it. */
+import { byId, element, fill, options, say } from "../dom.js";
+import { health, ill } from "./health.js";
+import { count, si } from "../state/number.js";
+import { recolor } from "../time/plot.js";
+import { held, isStale, lookedAt } from "../state/state.js";
+import { loadTheme, saveTheme } from "./storage.js";
+
+/** @typedef {import("../state/types.js").State} State */
+/** @typedef {import("../state/types.js").Preset} Preset */
+
+/** Progress is shown only for runs longer than this, in ms. */
+const PATIENCE_MS = 150;
+
+/** @param {{presets: Preset[], cancel: () => void, retry: () => void} & import("../time/timeline.js").Page} page */
+export function createHeader({ presets, cancel, retry, dispatch, now }) {
+  const preset = /** @type {HTMLSelectElement} */ (byId("preset"));
+  const controller = /** @type {HTMLSelectElement} */ (byId("controller"));
+  const undo = /** @type {HTMLButtonElement} */ (byId("undo"));
+  const redo = /** @type {HTMLButtonElement} */ (byId("redo"));
+  const progress = /** @type {HTMLProgressElement} */ (byId("progress"));
+  let since = 0;
+
+  fill(preset, element("option", { value: "" }, "Presets…"), ...groups(presets));
+  preset.disabled = false;
+  /** @type {HTMLButtonElement} */ (byId("copy-link")).disabled = false;
+  preset.addEventListener("change", () => {
+    const chosen = presets.find(({ id }) => id === preset.value);
+    if (chosen) dispatch({ type: "replace", scenario: JSON.parse(chosen.scenario), origin: `preset:${chosen.id}` });
+  });
+  controller.addEventListener("change", () => dispatch({ type: "controller", controller: Number(controller.value) }));
+  undo.addEventListener("click", () => dispatch({ type: "undo" }));
+  redo.addEventListener("click", () => dispatch({ type: "redo" }));
+  byId("run-anyway").addEventListener("click", () => dispatch({ type: "approve" }));
+  byId("cancel").addEventListener("click", cancel);
+  byId("try-again").addEventListener("click", retry);
+  document.addEventListener("keydown", (event) => {
+    if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
+    const key = event.key.toLowerCase();
+    if (key !== "z" && key !== "y") return;
+    event.preventDefault();
+    dispatch({ type: key === "y" || event.shiftKey ? "redo" : "undo" });
+  });
+
+  /** @param {State} state @param {State | undefined} before */
+  function render(state, before) {
+    undo.disabled = state.past.length === 0 && Object.keys(state.drafts).length === 0;
+    redo.disabled = state.future.length === 0;
+    const id = state.origin.startsWith("preset:") ? state.origin.slice("preset:".length) : "";
+    if (before?.origin !== state.origin) preset.value = id;
+    if (before?.run.phase !== state.run.phase) since = performance.now();
+    const running = state.run.phase === "running";
+    const long = running && state.run.progress !== null && performance.now() - since > PATIENCE_MS;
+    progress.hidden = !long;
+    byId("cancel").hidden = !long;
+    if (state.run.progress) progress.value = state.run.progress.cycle / Math.max(1, state.run.progress.end_cycle);
+    say(byId("status"), status(state, long));
+    say(byId("health"), health(state));
+    byId("health").classList.toggle("error", ill(state));
+    chooser(state);
+    say(byId("digest"), lookedAt(state)?.digest ?? "–");
+    byId("digest").classList.toggle("stale", isStale(state));
+    messages(state);
+    document.title = state.scenario.title ? `${state.scenario.title} – Stepscope` : "Stepscope";
+  }
+
+  /** The controllers on the line, where there are several. @param {State} state */
+  function chooser({ result }) {
+    const controllers = result?.summary.controllers ?? [];
+    options(controller, controllers.map(({ address }, index) => [String(index), `${index + 1}, address ${address ?? "none"}`]), String(result?.controller ?? 0));
+    /** @type {HTMLElement} */ (controller.parentElement).hidden = controllers.length < 2;
+  }
+
+  return { render };
+}
+
+/** @param {State} state @param {boolean} long */
+function status(state, long) {
+  const { progress } = state.run;
+  if (long && progress) return `${Math.round((100 * progress.cycle) / Math.max(1, progress.end_cycle))} %, ${count(progress.records)} edges so far`;
+  const held_back = held(state) === "problems" ? "not run: the form needs attention" : "";
+  if (!state.result) return held_back || (state.run.phase === "running" ? "running…" : "no result yet");
+  const { edges = 0 } = lookedAt(state) ?? {};
+  const parts = [`${count(edges)} edges`, si(state.result.summary.end_s, "s"), `computed in ${si(state.result.ms / 1000, "s", 2)}`];
+  if (held_back) parts.unshift(`${held_back}; last result`);
+  return parts.join(" · ");
+}
+
+/** @param {State} state */
+function messages(state) {
+  const over = held(state) === "budget";
+  const budget = byId("budget");
+  budget.hidden = !over;
+  say(/** @type {Element} */ (budget.firstElementChild), over ? `Not run yet: ${state.judgement?.cost?.message ?? "this is much work."}` : "");
+  const failed = byId("engine-message");
+  failed.hidden = state.run.phase !== "failed";
+  say(/** @type {Element} */ (failed.firstElementChild), state.run.message);
+}
+
+/** Presets by the document that they come from. @param {Preset[]} presets */
+function groups(presets) {
+  /** @type {Map<string, HTMLOptGroupElement>} */
+  const made = new Map();
+  for (const { id, document: name, scenario } of presets) {
+    const group = made.get(name) ?? element("optgroup", { label: name || "Examples" });
+    made.set(name, group);
+    group.append(element("option", { value: id }, JSON.parse(scenario).title || id));
+  }
+  return made.values();
+}
+
+const THEMES = { system: ["◐", "Colours: as the system"], light: ["☀", "Colours: light"], dark: ["☾", "Colours: dark"] };
+
+/** The button that goes through the themes; the choice is kept. */
+export function createTheme() {
+  const button = byId("theme");
+  const names = /** @type {(keyof typeof THEMES)[]} */ (Object.keys(THEMES));
+  let theme = names.find((name) => name === loadTheme()) ?? "system";
+  const apply = () => {
+    document.documentElement.dataset.theme = theme;
+    const [sign, label] = THEMES[theme];
+    say(button, sign);
+    button.title = label;
+    button.setAttribute("aria-label", label);
+    recolor();
+    document.dispatchEvent(new Event("themechange"));
+  };
+  button.addEventListener("click", () => {
+    theme = names[(names.indexOf(theme) + 1) % names.length];
+    saveTheme(theme);
+    apply();
+  });
+  for (const query of ["(prefers-color-scheme: dark)", "(forced-colors: active)"]) matchMedia(query).addEventListener("change", apply);
+  apply();
+}

@@ -1,0 +1,98 @@
+/**
+ * Charts on the main thread: sizes a canvas for the screen, hands the wasm charts the page's colours,
+ * remembers where the plotting area lies. plotters-canvas measures text in the page's document, so this
+ * cannot be done in the worker.
+ */
+import init, { draw_chart } from "../pkg/stepscope_wasm.js";
+
+/** @typedef {import("../state/types.js").Plot} Plot */
+
+/** Width of the tick labels' column in CSS pixels; the pulses keep the same, so that all time axes line up. */
+export const GUTTER = 68;
+/** Free space at the right of a plotting area, as the charts draw it. */
+export const MARGIN = 26;
+
+/** Charts are always drawn at double size: they know whole pixels only, and half a pixel of a curve can be seen. */
+const CHART_RATIO = 2;
+
+let loaded = /** @type {Promise<unknown> | null} */ (null);
+
+/** Loads the charts. */
+export function load() {
+  loaded ??= init();
+  return loaded;
+}
+
+/** Device pixels to a CSS pixel, at most 2: more costs time and shows nothing. */
+export function ratio() {
+  return Math.min(2, Math.max(1, window.devicePixelRatio || 1));
+}
+
+/**
+ * Gives a canvas the device size of its box and clears it.
+ * @param {HTMLCanvasElement} canvas
+ * @param {number} [scale]  Device pixels to a CSS pixel.
+ * @returns {{width: number, height: number, ratio: number}}  CSS pixels.
+ */
+export function fit(canvas, scale = ratio()) {
+  const width = canvas.clientWidth;
+  const height = canvas.clientHeight;
+  canvas.width = Math.max(1, Math.round(width * scale));
+  canvas.height = Math.max(1, Math.round(height * scale));
+  return { width, height, ratio: scale };
+}
+
+const probe = document.createElement("span");
+/** @type {Map<string, string>} */
+const known = new Map();
+
+/**
+ * A colour of the page as `#rrggbb`, also where a forced-colours theme replaces it by a system colour.
+ * @param {string} name  Custom property, such as `--ideal`.
+ */
+export function color(name) {
+  const found = known.get(name);
+  if (found) return found;
+  if (!probe.isConnected) {
+    probe.className = "probe";
+    document.body.append(probe);
+  }
+  probe.style.color = `var(${name})`;
+  const parts = getComputedStyle(probe).color.match(/[\d.]+/g) ?? ["128", "128", "128"];
+  const hex = `#${parts.slice(0, 3).map((part) => Math.round(Number(part)).toString(16).padStart(2, "0")).join("")}`;
+  known.set(name, hex);
+  return hex;
+}
+
+/** Forgets the colours: the theme has changed. */
+export function recolor() {
+  known.clear();
+}
+
+/**
+ * @typedef {{min: number, max: number, unit: string, prefix: boolean, label_px: number}} Axis
+ * @typedef {{color: string, opacity: number, width: number, x: Float64Array | number[],
+ *   shape: {line: {y: ArrayLike<number>}} | {band: {min: ArrayLike<number>, max: ArrayLike<number>}}
+ *     | {stems: {y: ArrayLike<number>, shift: number}}}} Series
+ */
+
+/**
+ * Draws one chart.
+ * @param {HTMLCanvasElement} canvas
+ * @param {{x: Axis, y: Axis, series: Series[]}} chart
+ * @returns {Plot | null}  null where the canvas is not on show or the chart cannot be drawn.
+ */
+export function draw(canvas, { x, y, series }) {
+  const size = fit(canvas, CHART_RATIO);
+  if (size.width < GUTTER + 40 || size.height < 30) return null;
+  return draw_chart(canvas, {
+    ratio: size.ratio, font: getComputedStyle(document.body).fontFamily, font_px: 11, x, y, series,
+    colors: { label: color("--quiet"), axis: color("--axis"), grid: color("--grid") },
+  });
+}
+
+/** Calls back when an element's size changes or the theme does. @param {Element} element @param {() => void} redraw */
+export function watch(element, redraw) {
+  new ResizeObserver(redraw).observe(element);
+  document.addEventListener("themechange", redraw);
+}

@@ -1,0 +1,53 @@
+/** The shown time in fields and buttons: from, to, zoom in, zoom out, all of it. */
+import { byId, say } from "../dom.js";
+import { time } from "../views/motion.js";
+import { parseNumber } from "../state/number.js";
+import { endOf, shown } from "../state/state.js";
+import { zoom } from "./timeline.js";
+
+/** @typedef {import("../state/types.js").State} State */
+
+/** @param {import("./timeline.js").Page} page */
+export function createRange({ dispatch, now }) {
+  const page = { dispatch, now };
+  byId("zoom-in").addEventListener("click", () => zoom(page, 0.5, now().cursors.a ?? undefined));
+  byId("zoom-out").addEventListener("click", () => zoom(page, 2, now().cursors.a ?? undefined));
+  byId("zoom-fit").addEventListener("click", () => dispatch({ type: "window", window: null }));
+  for (const id of ["window-start", "window-end"]) byId(id).addEventListener("change", typedWindow);
+
+  function typedWindow() {
+    const state = now();
+    const clockHz = state.result?.summary.clock_hz ?? 1;
+    const [start, end] = ["window-start", "window-end"].map((id) => {
+      const input = /** @type {HTMLInputElement} */ (byId(id));
+      const read = parseNumber(input.value, "s");
+      input.toggleAttribute("aria-invalid", "message" in read);
+      return read;
+    });
+    const wrong = "message" in start ? start.message : "message" in end ? end.message : "";
+    if (wrong || "message" in start || "message" in end) return say(byId("window-error"), wrong);
+    if (end.value <= start.value) return say(byId("window-error"), "“to” lies before “from”.");
+    say(byId("window-error"), "");
+    const inRun = (/** @type {number} */ s) => Math.min(Math.max(0, s * clockHz), endOf(state));
+    dispatch({ type: "window", window: { start: inRun(start.value), end: inRun(end.value) } });
+    fields(now());
+  }
+
+  /** @param {State} state */
+  function fields(state) {
+    const { start, end } = shown(state);
+    const clock = state.result?.summary.clock_hz ?? 1;
+    for (const [id, cycle] of /** @type {[string, number][]} */ ([["window-start", start], ["window-end", end]])) {
+      const input = /** @type {HTMLInputElement} */ (byId(id));
+      if (document.activeElement !== input) input.value = time(cycle / clock);
+    }
+  }
+
+  /** @param {State} state @param {State | undefined} before */
+  function render(state, before) {
+    if (before?.window === state.window && before?.result === state.result) return;
+    fields(state);
+    say(byId("window-error"), "");
+  }
+  return { render };
+}

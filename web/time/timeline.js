@@ -1,0 +1,176 @@
+/**
+ * The time axis that motion and pulses share: wheel and pinch zoom at the pointer, dragging moves, a click
+ * sets a cursor, keys do all of it. It knows pixels and cycles, nothing of what is drawn.
+ */
+import { endOf, shown } from "../state/state.js";
+
+/** @typedef {import("../state/types.js").State} State */
+/** @typedef {import("../state/types.js").Span} Span */
+/** @typedef {{dispatch: (message: import("../state/state.js").Message) => void, now: () => State}} Page */
+/** @typedef {(event: PointerEvent, cycle: number) => boolean | Promise<number>} Click  Whether it used the click, or the cycle to take instead. */
+
+/** A press that moves less than this many CSS pixels is a click. */
+const CLICK_PX = 4;
+
+/** @param {Span} window @param {number} factor @param {number} at  Cycle that keeps its place. @returns {Span} */
+export function zoomed({ start, end }, factor, at) {
+  return { start: at - (at - start) * factor, end: at + (end - at) * factor };
+}
+
+/** Zooms the shown time around a cycle, or its middle. @param {Page} page @param {number} factor @param {number} [at] */
+export function zoom({ dispatch, now }, factor, at) {
+  const window = shown(now());
+  dispatch({ type: "window", window: zoomed(window, factor, at ?? (window.start + window.end) / 2) });
+}
+
+/** Moves the shown time by a part of itself. @param {Page} page @param {number} part */
+export function pan({ dispatch, now }, part) {
+  const { start, end } = shown(now());
+  const by = (end - start) * part;
+  dispatch({ type: "window", window: { start: start + by, end: end + by } });
+}
+
+/** Brings a cycle into view, with the same zoom. @param {Page} page @param {number} cycle */
+export function reveal({ dispatch, now }, cycle) {
+  const { start, end } = shown(now());
+  if (cycle >= start && cycle <= end) return;
+  const half = (end - start) / 2;
+  dispatch({ type: "window", window: { start: cycle - half, end: cycle + half } });
+}
+
+/** Cycle under a pixel of the plotting area. @param {State} state @param {{left: number, right: number}} plot @param {number} x */
+export function cycleAt(state, plot, x) {
+  const { start, end } = shown(state);
+  const part = (x - plot.left) / Math.max(1, plot.right - plot.left);
+  return Math.min(endOf(state), Math.max(0, Math.round(start + part * (end - start))));
+}
+
+/** Pixel of a cycle. @param {State} state @param {{left: number, right: number}} plot @param {number} cycle */
+export function pixelOf(state, plot, cycle) {
+  const { start, end } = shown(state);
+  return plot.left + ((cycle - start) / (end - start)) * (plot.right - plot.left);
+}
+
+/**
+ * Makes an element a part of the time axis.
+ * @param {HTMLElement} target
+ * @param {() => {left: number, right: number}} plot  Plotting area in the element's CSS pixels.
+ * @param {Page & {click?: Click}} page
+ */
+export function gestures(target, plot, page) {
+  const { dispatch, now } = page;
+  /** @type {Map<number, {x: number, y: number}>} */
+  const pointers = new Map();
+  /** @type {{window: Span, x: number, spread: number, moved: boolean} | null} */
+  let drag = null;
+  const xOf = (/** @type {{clientX: number}} */ event) => event.clientX - target.getBoundingClientRect().left;
+
+  function begin() {
+    const points = [...pointers.values()];
+    const x = points.reduce((sum, point) => sum + point.x, 0) / points.length;
+    drag = { window: shown(now()), x, spread: Math.abs(points[0].x - (points[1]?.x ?? 0)), moved: drag?.moved ?? false };
+  }
+
+  target.addEventListener("wheel", (event) => {
+    if (event.ctrlKey && event.deltaMode !== 0) return;
+    // Beside the plotting area the wheel scrolls the rows.
+    if (xOf(event) < plot().left && !event.ctrlKey) return;
+    event.preventDefault();
+    const sideways = event.shiftKey || Math.abs(event.deltaX) > Math.abs(event.deltaY);
+    const delta = (event.deltaX || event.deltaY) * (event.deltaMode === 1 ? 20 : 1);
+    if (sideways) pan(page, delta / 800);
+    else zoom(page, Math.exp(Math.max(-1, Math.min(1, event.deltaY * (event.deltaMode === 1 ? 0.05 : 0.002)))), cycleAt(now(), plot(), xOf(event)));
+  }, { passive: false });
+
+  target.addEventListener("pointerdown", (event) => {
+    if (event.button !== 0) return;
+    pointers.set(event.pointerId, { x: xOf(event), y: event.clientY });
+    if (pointers.size === 1) drag = null;
+    begin();
+  });
+
+  target.addEventListener("pointermove", (event) => {
+    const x = xOf(event);
+    const area = plot();
+    if (!pointers.has(event.pointerId)) {
+      const inside = x >= area.left && x <= area.right;
+      return dispatch({ type: "hover", cycle: inside ? cycleAt(now(), area, x) : null });
+    }
+    pointers.set(event.pointerId, { x, y: event.clientY });
+    if (!drag) return;
+    const points = [...pointers.values()];
+    const middle = points.reduce((sum, point) => sum + point.x, 0) / points.length;
+    if (!drag.moved && Math.abs(middle - drag.x) < CLICK_PX && points.length === 1) return;
+    if (!drag.moved) target.setPointerCapture(event.pointerId);
+    drag.moved = true;
+    const width = Math.max(1, area.right - area.left);
+    const { start, end } = drag.window;
+    const spread = points.length > 1 ? Math.max(10, Math.abs(points[0].x - points[1].x)) : drag.spread;
+    const factor = points.length > 1 ? Math.max(10, drag.spread) / spread : 1;
+    const anchor = start + ((drag.x - area.left) / width) * (end - start);
+    const span = (end - start) * factor;
+    const from = anchor - ((middle - area.left) / width) * span;
+    dispatch({ type: "window", window: { start: from, end: from + span } });
+  });
+
+  /** @param {PointerEvent} event */
+  function lift(event) {
+    if (!pointers.delete(event.pointerId)) return;
+    if (event.type === "pointerup" && drag && !drag.moved && pointers.size === 0) click(event);
+    if (pointers.size > 0) begin();
+    else drag = null;
+  }
+  target.addEventListener("pointerup", lift);
+  target.addEventListener("pointercancel", lift);
+  target.addEventListener("pointerleave", () => dispatch({ type: "hover", cycle: null }));
+
+  /** @param {PointerEvent} event */
+  async function click(event) {
+    const area = plot();
+    const x = xOf(event);
+    const cycle = cycleAt(now(), area, x);
+    const used = page.click?.(event, cycle) ?? false;
+    if (used === true || x < area.left || x > area.right) return;
+    dispatch({ type: "cursor", which: event.shiftKey ? "b" : "a", cycle: used === false ? cycle : await used });
+  }
+
+  target.addEventListener("dblclick", (event) => {
+    const area = plot();
+    if (xOf(event) >= area.left) dispatch({ type: "window", window: null });
+  });
+  target.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey) return;
+    if (key(event, page, plot())) event.preventDefault();
+  });
+}
+
+/** @param {KeyboardEvent} event @param {Page} page @param {{left: number, right: number}} plot @returns {boolean} */
+function key(event, page, plot) {
+  const { dispatch, now } = page;
+  const sign = event.key === "ArrowLeft" ? -1 : 1;
+  switch (event.key) {
+    case "+": case "=": zoom(page, 0.5, now().cursors.a ?? undefined); return true;
+    case "-": case "−": zoom(page, 2, now().cursors.a ?? undefined); return true;
+    case "0": case "Home": dispatch({ type: "window", window: null }); return true;
+    case "PageUp": pan(page, -0.9); return true;
+    case "PageDown": pan(page, 0.9); return true;
+    case "Escape":
+      dispatch({ type: "cursor", which: "a", cycle: null });
+      dispatch({ type: "cursor", which: "b", cycle: null });
+      return true;
+    case "ArrowLeft": case "ArrowRight": {
+      if (!event.shiftKey && !event.altKey) pan(page, sign * 0.1);
+      else {
+        const which = event.altKey ? "b" : "a";
+        const { start, end } = shown(now());
+        const column = Math.max(1, Math.round((end - start) / Math.max(1, plot.right - plot.left)));
+        const from = now().cursors[which] ?? Math.round((start + end) / 2);
+        const cycle = Math.min(endOf(now()), Math.max(0, from + sign * column));
+        dispatch({ type: "cursor", which, cycle });
+        reveal(page, cycle);
+      }
+      return true;
+    }
+    default: return false;
+  }
+}

@@ -1,0 +1,230 @@
+/** The pulses view: a logic analyser over all signals of the bus, with the ticks and packets decoded between them. */
+import { byId, options, say } from "../../dom.js";
+import { unlessDropped } from "../../engine/engine.js";
+import { drawCursors, time } from "../motion.js";
+import { createOverview } from "./overview.js";
+import { paintSignal, paintSpans, paintTint } from "./paint.js";
+import { GUTTER, MARGIN, color, fit, ratio, watch } from "../../time/plot.js";
+import { createRange } from "../../time/range.js";
+import { createReading } from "./reading.js";
+import { ROW_PX, allFolded, channelOf, idle, isFolded, rowsOf, shows, signalsOf } from "./rows.js";
+import { createSpans } from "./spans.js";
+import { lookedAt, shown } from "../../state/state.js";
+import { cycleAt, gestures, pixelOf, reveal } from "../../time/timeline.js";
+
+/** @typedef {import("../../state/types.js").State} State */
+/** @typedef {import("../../state/types.js").PulseColumns} PulseColumns */
+
+/** A cursor that is set this near to an edge is set on it, in CSS pixels. */
+const SNAP_PX = 6;
+/** The sign that folds a channel stands in so many CSS pixels at the left. */
+const FOLD_PX = 26;
+
+/** @param {{engine: import("../../engine/engine.js").Engine} & import("../../time/timeline.js").Page} page */
+export function createPulses({ engine, dispatch, now }) {
+  const page = { dispatch, now };
+  const canvas = /** @type {HTMLCanvasElement} */ (byId("pulses"));
+  const overlay = /** @type {HTMLCanvasElement} */ (byId("pulses-cursor"));
+  const stack = byId("pulses-stack");
+  const rowSelect = /** @type {HTMLSelectElement} */ (byId("edge-row"));
+  const kindSelect = /** @type {HTMLSelectElement} */ (byId("edge-kind"));
+  const foldAll = byId("fold-channels");
+  const allSignals = /** @type {HTMLInputElement} */ (byId("all-signals"));
+  const range = createRange(page);
+  const overview = createOverview({ engine, ...page });
+  const reading = createReading({ engine, now });
+  const spans = createSpans({ engine });
+  /** @type {PulseColumns | null} */
+  let shownColumns = null;
+  let plot = { left: GUTTER, right: GUTTER + 1 };
+
+  gestures(canvas, () => plot, { ...page, click: pick });
+  watch(stack, () => refresh(now()));
+  byId("edge-next").addEventListener("click", () => jump(true));
+  byId("edge-previous").addEventListener("click", () => jump(false));
+  rowSelect.addEventListener("change", () => dispatch({ type: "row", row: Number(rowSelect.value) }));
+  foldAll.addEventListener("click", () => dispatch({ type: "fold-all", folded: !allFolded(now()) }));
+  allSignals.addEventListener("change", () => dispatch({ type: "all-signals", on: allSignals.checked }));
+  canvas.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const name = event.key.toLowerCase();
+    if (name === "n" || name === "p") jump(name === "n");
+    else if (event.key === "ArrowUp" || event.key === "ArrowDown") step(event.key === "ArrowUp" ? -1 : 1);
+    else if (event.key === "Enter") fold(channelOf(now().row));
+    else return;
+    event.preventDefault();
+  });
+  canvas.addEventListener("pointermove", (event) => reading.hover(rowAt(event)));
+  canvas.addEventListener("pointerleave", reading.leave);
+
+  /** @param {number} by */
+  function step(by) {
+    const all = rowsOf(now()).flatMap((row) => ("bit" in row ? [row] : []));
+    const at = all.findIndex((row) => shows(row, now().row));
+    dispatch({ type: "row", row: all[Math.min(all.length - 1, Math.max(0, at + by))].bit });
+  }
+
+  /** Folds a channel's two rows into one, or unfolds them. @param {number | null} channel */
+  function fold(channel) {
+    if (channel === null) return;
+    const folded = !isFolded(now(), channel);
+    dispatch({ type: "fold", channel, folded });
+    say(byId("pulses-sentence"), `Channel ${channel} ${folded ? "folded" : "unfolded"}.`);
+  }
+
+  /** The row under a pointer. @param {MouseEvent} event */
+  function rowAt(event) {
+    return rowsOf(now())[Math.floor((event.clientY - canvas.getBoundingClientRect().top) / ROW_PX)];
+  }
+
+  /** The edge of a row within a few pixels of a cycle, else the cycle. @param {number} bit @param {number} cycle */
+  async function snapped(bit, cycle) {
+    const { start, end } = shown(now());
+    const reach = (SNAP_PX * (end - start)) / (plot.right - plot.left);
+    const edges = await Promise.all([true, false].map((forward) =>
+      engine.ask("next_edge", bit, forward ? cycle - 1 : cycle + 1, forward, "any").catch(unlessDropped)));
+    const near = edges.filter((edge) => typeof edge === "number" && Math.abs(edge - cycle) <= reach);
+    return near.sort((a, b) => Math.abs(a - cycle) - Math.abs(b - cycle))[0] ?? cycle;
+  }
+
+  /** A click on a row chooses it and sets a cursor, on an edge if one is near; on a packet, chooses it. @param {PointerEvent} event @param {number} at */
+  function pick(event, at) {
+    const row = rowAt(event);
+    if (!row) return false;
+    const x = event.clientX - canvas.getBoundingClientRect().left;
+    if (x < FOLD_PX && "channel" in row && row.channel !== undefined) {
+      fold(row.channel);
+      return true;
+    }
+    if ("bit" in row && !shows(row, now().row)) dispatch({ type: "row", row: row.bit });
+    if (x < plot.left) return true;
+    if ("bit" in row) return snapped(row.bit, at);
+    const cycle = cycleAt(now(), plot, x);
+    const found = spans.spansOf(now(), row.kind).find(({ start, end }) => start <= cycle && cycle < end)?.packet ?? null;
+    if (found !== null) dispatch({ type: "packet", packet: found });
+    return found !== null;
+  }
+
+  /** Sets cursor A to the next edge of the chosen row and brings it into view. @param {boolean} forward */
+  async function jump(forward) {
+    const state = now();
+    if (!state.result) return;
+    const { start, end } = shown(state);
+    const { a } = state.cursors;
+    const from = a !== null && a >= start && a <= end ? a : forward ? start : end;
+    const edge = await engine.ask("next_edge", state.row, from, forward, kindSelect.value).catch(unlessDropped);
+    const name = signalsOf(state).find(({ bit }) => bit === state.row)?.name ?? "";
+    if (edge === undefined || edge === null) return say(byId("pulses-sentence"), `${name}: no ${forward ? "later" : "earlier"} edge.`);
+    dispatch({ type: "cursor", which: "a", cycle: edge });
+    reveal(page, edge);
+    say(byId("pulses-sentence"), `${name}: edge at ${time(edge / state.result.summary.clock_hz)}, cycle ${edge}.`);
+  }
+
+  /** @param {State} state */
+  async function refresh(state) {
+    plot = { left: GUTTER, right: Math.max(GUTTER + 1, stack.clientWidth - MARGIN) };
+    if (!state.result || stack.clientWidth < 60) return;
+    const { start, end } = shown(state);
+    const wanted = Math.max(16, Math.round((plot.right - plot.left) * ratio()));
+    const asked = engine.latest("pulses", "pulses", start, end, wanted).catch(unlessDropped);
+    const [columns, decoded] = await Promise.all([asked, spans.fetch(state)]);
+    if (!columns || !decoded) return;
+    shownColumns = columns;
+    paint(now());
+  }
+
+  /** @param {State} state */
+  function paint(state) {
+    if (!shownColumns || !state.result) return;
+    const columns = shownColumns;
+    const { width, ratio: scale } = fit(canvas);
+    const context = canvas.getContext("2d");
+    if (!context) return;
+    const left = Math.round(plot.left * scale);
+    const right = Math.round(plot.right * scale);
+    context.font = `${11 * scale}px ${getComputedStyle(document.body).fontFamily}`;
+    for (const [index, row] of rowsOf(state).entries()) {
+      const top = Math.round((index * ROW_PX + 4) * scale);
+      const height = Math.round((ROW_PX - 6) * scale);
+      const chosen = shows(row, state.row);
+      if (chosen) {
+        context.fillStyle = color("--chosen");
+        context.fillRect(0, top - 3 * scale, width * scale, ROW_PX * scale);
+      }
+      context.fillStyle = color(chosen ? "--ink" : "--quiet");
+      context.textAlign = "right";
+      context.textBaseline = "middle";
+      context.font = `${chosen ? "bold " : ""}${11 * scale}px ${getComputedStyle(document.body).fontFamily}`;
+      context.fillText(row.name, left - 8 * scale, top + height / 2);
+      if (row.kind === "folded" || (row.kind === "signal" && row.name.startsWith("DIR"))) {
+        context.textAlign = "left";
+        context.fillText(row.kind === "folded" ? "▸" : "▾", 8 * scale, top + height / 2);
+      }
+      const place = { left, right, top, height, ratio: scale, ink: color(row.ink) };
+      if (row.kind === "folded") paintTint(context, columns, row.dir, { ...place, ink: color("--dir") });
+      if ("bit" in row) paintSignal(context, columns, row.bit, place);
+      else paintSpans(context, spans.spansOf(state, row.kind).map((span) => placed(state, span)), place);
+    }
+    describe(state);
+    paintCursor(state);
+  }
+
+  /** A span in device pixels. @param {State} state @param {import("./spans.js").Span} span */
+  function placed(state, { start, end, ...rest }) {
+    return { ...rest, from: pixelOf(state, plot, start) * ratio(), to: pixelOf(state, plot, end) * ratio() };
+  }
+
+  /** @param {State} state */
+  function paintCursor(state) {
+    const { height, ratio: scale } = fit(overlay);
+    const context = overlay.getContext("2d");
+    if (!context || !state.result) return;
+    context.scale(scale, scale);
+    drawCursors(context, state, plot, height);
+    reading.render(state);
+  }
+
+  /** @param {State} state */
+  function describe(state) {
+    const { start, end } = shown(state);
+    const clock = state.result?.summary.clock_hz ?? 1;
+    canvas.setAttribute("aria-label", `Logic analyser, ${rowsOf(state).length} rows, ${time(start / clock)} to ${time(end / clock)}`);
+  }
+
+  /** The head's choices and the height that the rows take. @param {State} state */
+  function layout(state) {
+    const channels = lookedAt(state)?.channels ?? 1;
+    options(rowSelect, signalsOf(state).map(({ name, bit }) => [String(bit), name]), String(state.row));
+    const folded = allFolded(state);
+    foldAll.hidden = channels === 1;
+    say(foldAll, folded ? "Unfold channels" : "Fold channels");
+    allSignals.checked = state.allSignals;
+    /** @type {HTMLElement} */ (allSignals.parentElement).hidden = idle(state).length === 0;
+    const tall = rowsOf(state).length * ROW_PX + 6;
+    stack.style.height = `${tall}px`;
+    // On a wide screen this view takes what its rows need, and the curves the rest.
+    byId("views").style.setProperty("--rows-px", `${tall}px`);
+  }
+
+  /** Scrolls the chosen row into view. @param {State} state */
+  function follow(state) {
+    const scroller = /** @type {HTMLElement} */ (stack.parentElement);
+    const top = rowsOf(state).findIndex((row) => shows(row, state.row)) * ROW_PX;
+    if (top < scroller.scrollTop) scroller.scrollTop = top;
+    else if (top + ROW_PX + 6 > scroller.scrollTop + scroller.clientHeight) scroller.scrollTop = top + ROW_PX + 6 - scroller.clientHeight;
+  }
+
+  /** @param {State} state @param {State | undefined} before */
+  function render(state, before) {
+    range.render(state, before);
+    const strip = overview.render(state, before);
+    const arranged = before?.result !== state.result || before?.row !== state.row || before?.folds !== state.folds || before?.allSignals !== state.allSignals;
+    if (arranged) layout(state);
+    if (before && before.row !== state.row) follow(state);
+    if (before?.window !== state.window || before?.result !== state.result) return Promise.all([refresh(state), strip]);
+    if (arranged || before?.packet !== state.packet) paint(state);
+    else if (before?.hover !== state.hover || before?.cursors !== state.cursors) paintCursor(state);
+    return undefined;
+  }
+  return { render };
+}

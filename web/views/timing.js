@@ -1,0 +1,132 @@
+/**
+ * The timing check: could the driver have followed the pulses? A row a rule with what was measured, what is
+ * asked for and the slack, and the violations one by one. It takes the spectrum's place where there is a driver.
+ */
+import { byId, element, fill, say } from "../dom.js";
+import { unlessDropped } from "../engine/engine.js";
+import { time } from "./motion.js";
+import { count, si } from "../state/number.js";
+import { ruleName } from "./rules.js";
+import { endOf, lookedAt, shown } from "../state/state.js";
+
+/** @typedef {import("../state/types.js").State} State */
+/** @typedef {import("../state/types.js").Timing} Timing */
+
+/** First bit of DIR (contract A3). */
+const DIR = 16;
+/** A violation is shown in a window of so many of the times that it is about. */
+const AROUND = 14;
+
+/** @param {{engine: import("../engine/engine.js").Engine, drivers: import("../state/types.js").DriverSheet[]} & import("../time/timeline.js").Page} page */
+export function createTiming({ engine, drivers, dispatch, now }) {
+  const body = /** @type {Element} */ (byId("violations").querySelector("tbody"));
+  /** @type {Timing | null} */
+  let timing = null;
+  let current = -1;
+
+  byId("violation-previous").addEventListener("click", () => next(false));
+  byId("violation-next").addEventListener("click", () => next(true));
+  for (const side of /** @type {const} */ (["spectrum", "timing"])) {
+    for (const button of document.querySelectorAll(`[data-side="${side}"]`)) button.addEventListener("click", () => dispatch({ type: "side", side }));
+  }
+  body.addEventListener("click", (event) => {
+    const row = /** @type {HTMLElement} */ (event.target).closest("tr");
+    if (row) show(Number(row.dataset.index));
+  });
+
+  /** The next violation after cursor A, or after the one that is chosen. @param {boolean} forward */
+  async function next(forward) {
+    const state = now();
+    const chosen = timing?.violations[current];
+    const { a } = state.cursors;
+    // Several may lie in one cycle; from the chosen one they are gone through one by one.
+    if (chosen && chosen.cycle === a) return show(current + (forward ? 1 : -1));
+    const index = await engine.ask("next_violation", a ?? (forward ? -1 : endOf(state)), forward).catch(unlessDropped);
+    show(index ?? -1);
+  }
+
+  /** Shows a violation in the pulses, its edge at cursor A. @param {number} index */
+  function show(index) {
+    const violation = timing?.violations[index];
+    if (!violation) return say(byId("timing-sentence"), "No further violation that way.");
+    const { cycle, channel, rule, measured_cycles, required_cycles } = violation;
+    current = index;
+    dispatch({ type: "cursor", which: "a", cycle });
+    dispatch({ type: "row", row: rule.startsWith("dir") ? DIR + channel : channel });
+    const wanted = AROUND * Math.max(1, measured_cycles, required_cycles);
+    const { start, end } = shown(now());
+    if (cycle < start || cycle > end || end - start > 20 * wanted) {
+      dispatch({ type: "window", window: { start: cycle - wanted / 2, end: cycle + wanted / 2 } });
+    }
+    mark();
+    // On a narrow screen the pulses are another tab.
+    if (matchMedia("(max-width: 899px)").matches) dispatch({ type: "view", view: "pulses" });
+    const clock = now().result?.summary.clock_hz ?? 1;
+    say(byId("timing-sentence"), `Violation ${index + 1} of ${timing?.violations.length}: channel ${channel}, ${ruleName(rule)} ${si(measured_cycles / clock, "s")} at ${time(cycle / clock)}, ${asked(timing, rule)} asked for.`);
+  }
+
+  function mark() {
+    for (const row of body.children) {
+      const chosen = /** @type {HTMLElement} */ (row).dataset.index === String(current);
+      row.classList.toggle("current", chosen);
+      if (chosen) row.scrollIntoView({ block: "nearest" });
+    }
+  }
+
+  /** @param {State} state */
+  async function refresh(state) {
+    current = -1;
+    say(byId("timing-sentence"), "");
+    const answer = lookedAt(state)?.violations === null ? null : await engine.latest("timing", "timing").catch(unlessDropped);
+    if (answer === undefined) return;
+    timing = answer;
+    paint(now());
+  }
+
+  /** @param {State} state */
+  function paint(state) {
+    const clock = state.result?.summary.clock_hz ?? 1;
+    const at = (/** @type {number} */ cycles) => si(cycles / clock, "s");
+    const sheet = drivers.find(({ id }) => id === timing?.driver);
+    const total = timing?.total ?? 0;
+    const kept = timing?.violations.length ?? 0;
+    say(byId("timing-driver"), sheet?.name ?? "rules of your own");
+    byId("timing-driver").title = sheet?.source ?? "";
+    const few = total > kept ? `; the first ${count(kept)} are listed` : "";
+    say(byId("timing-total"), total === 0 ? "The driver can follow: no violation." : `${count(total)} ${total === 1 ? "violation" : "violations"}${few}.`);
+    byId("timing-total").classList.toggle("error", total > 0);
+    for (const id of ["violation-previous", "violation-next"]) /** @type {HTMLButtonElement} */ (byId(id)).disabled = total === 0;
+    byId("violations").hidden = total === 0;
+    const rows = (timing?.rules ?? []).map(({ rule, required_cycles, required_ns, least, violations }) => {
+      const slack = least === null ? null : least.measured_cycles - required_cycles;
+      const bad = violations > 0;
+      return element("tr", bad ? { class: "bad" } : {}, element("th", { scope: "row" }, ruleName(rule)),
+        ...[least ? at(least.measured_cycles) : "–", required_ns === 0 ? "–" : si(required_ns * 1e-9, "s"),
+          slack === null || required_ns === 0 ? "–" : `${slack < 0 ? "" : "+"}${at(slack)}`, bad ? count(violations) : required_ns === 0 ? "–" : "0"]
+          .map((text) => element("td", { class: "number" }, text)));
+    });
+    fill(/** @type {Element} */ (byId("margins").querySelector("tbody")), ...rows);
+    fill(body, ...(timing?.violations ?? []).map(({ cycle, channel, rule, measured_cycles }, index) =>
+      element("tr", { "data-index": String(index) }, ...[String(channel), ruleName(rule), time(cycle / clock), at(measured_cycles), asked(timing, rule)]
+        .map((text, column) => element("td", column === 1 ? {} : { class: "number" }, text)))));
+  }
+
+  /** @param {State} state @param {State | undefined} before */
+  function render(state, before) {
+    const has = typeof lookedAt(state)?.violations === "number";
+    const open = has && state.side !== "spectrum" ? "timing" : "spectrum";
+    byId("views").classList.toggle("timing-open", open === "timing");
+    for (const button of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("[data-side]"))) {
+      button.hidden = !has;
+      button.setAttribute("aria-pressed", String(button.dataset.side === open));
+    }
+    if (before?.result !== state.result) return refresh(state);
+    return undefined;
+  }
+  return { render };
+}
+
+/** The least time that a rule asks for; in cycles it is rounded up. @param {Timing | null} timing @param {string} rule */
+export function asked(timing, rule) {
+  return si((timing?.rules.find((each) => each.rule === rule)?.required_ns ?? 0) * 1e-9, "s");
+}
