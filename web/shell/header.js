@@ -1,5 +1,6 @@
 /** The header: presets, undo and redo, what the run made, the theme; and the messages under it. */
 import { byId, element, fill, options, say } from "../dom.js";
+import { listen } from "./commands.js";
 import { health, ill } from "./health.js";
 import { count, si } from "../state/number.js";
 import { recolor } from "../time/plot.js";
@@ -34,13 +35,10 @@ export function createHeader({ presets, cancel, retry, dispatch, now }) {
   byId("run-anyway").addEventListener("click", () => dispatch({ type: "approve" }));
   byId("cancel").addEventListener("click", cancel);
   byId("try-again").addEventListener("click", retry);
-  document.addEventListener("keydown", (event) => {
-    if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
-    const key = event.key.toLowerCase();
-    if (key !== "z" && key !== "y") return;
-    event.preventDefault();
-    dispatch({ type: key === "y" || event.shiftKey ? "redo" : "undo" });
-  });
+  listen(document, "Everywhere", [
+    { keys: ["Ctrl+z"], text: "undo", run: () => dispatch({ type: "undo" }) },
+    { keys: ["Ctrl+Shift+z", "Ctrl+y"], text: "redo", run: () => dispatch({ type: "redo" }) },
+  ]);
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {

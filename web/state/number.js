@@ -118,3 +118,8 @@ function trim(text) {
   const plain = text.includes("e") ? String(Number(text)) : text;
   return (plain.includes(".") && !plain.includes("e") ? plain.replace(/\.?0+$/, "") : plain).replace("-", "−");
 }
+
+/** Time with enough digits to tell one cycle from the next. @param {number} seconds */
+export function time(seconds) {
+  return si(seconds, "s", 7);
+}

@@ -22,6 +22,8 @@
  *   | {type: "window", window: Span | null}
  *   | {type: "open", window: Span}
  *   | {type: "hover", cycle: number | null}
+ *   | {type: "light", lit: State["lit"]}
+ *   | {type: "marker", digit: number, cycle: number | null}
  *   | {type: "cursor", which: "a" | "b", cycle: number | null}
  *   | {type: "row", row: number} | {type: "packet", packet: number | null}
  *   | {type: "fold", channel: number, folded: boolean} | {type: "fold-all", folded: boolean}
@@ -39,6 +41,8 @@ export const MOST_FURTHER = 31;
 export const MOST_CHANNELS = 16;
 /** Least cycles that the time axis shows. */
 export const LEAST_SPAN = 16;
+/** Markers 0 to 9, none of them set. @type {(number | null)[]} */
+const NO_MARKERS = Array(10).fill(null);
 
 /** @param {Scenario} scenario @returns {State} */
 export function initial(scenario) {
@@ -46,8 +50,8 @@ export function initial(scenario) {
     scenario, origin: "own", revision: 0, edited: null, past: [], future: [], drafts: {},
     judgement: null, judged: -1, derived: null, approved: -1,
     run: { phase: "idle", progress: null, message: "" }, result: null,
-    controller: 0, window: null, awaited: null, axis: 0, unit: "steps", hover: null, cursors: { a: null, b: null }, row: 0, folds: {}, allSignals: false, packet: null,
-    view: "motion", side: null, notice: null,
+    controller: 0, window: null, awaited: null, axis: 0, unit: "steps", hover: null, lit: null,
+    cursors: { a: null, b: null }, markers: NO_MARKERS, row: 0, folds: {}, allSignals: false, packet: null, view: "motion", side: null, notice: null,
   };
 }
 
@@ -74,6 +78,8 @@ export function update(state, message) {
     case "open":
       return state.result?.revision === state.revision ? { ...state, window: within(message.window, endOf(state)) } : { ...state, awaited: message.window };
     case "hover": return state.hover === message.cycle ? state : { ...state, hover: message.cycle };
+    case "light": return sameLit(state.lit, message.lit) ? state : { ...state, lit: message.lit };
+    case "marker": return { ...state, markers: state.markers.with(message.digit, message.cycle) };
     case "cursor": return { ...state, cursors: { ...state.cursors, [message.which]: message.cycle } };
     case "row": return { ...state, row: message.row };
     case "fold": return { ...state, folds: { ...state.folds, [message.channel]: message.folded } };
@@ -90,7 +96,12 @@ export function update(state, message) {
 }
 
 /** What a wholly different scenario begins with. */
-const fresh = { controller: 0, window: null, packet: null, side: null, hover: null, cursors: { a: null, b: null }, axis: 0, row: 0, folds: {} };
+const fresh = { controller: 0, window: null, packet: null, side: null, hover: null, lit: null, cursors: { a: null, b: null }, markers: NO_MARKERS, axis: 0, row: 0, folds: {} };
+
+/** @param {State["lit"]} one @param {State["lit"]} other */
+function sameLit(one, other) {
+  return one === other || JSON.stringify(one) === JSON.stringify(other);
+}
 
 /** @param {State} state @param {{path: string, value: any, joins?: boolean}} message */
 function edit(state, { path, value, joins = false }) {
@@ -146,7 +157,7 @@ function done(state, { revision, summary, ms }) {
   const window = state.awaited ? within(state.awaited, summary.end_cycle) : kept;
   const inside = (/** @type {number | null} */ c) => (c !== null && c <= summary.end_cycle && same ? c : null);
   return { ...next, window, awaited: null,
-    cursors: { a: inside(state.cursors.a), b: inside(state.cursors.b) } };
+    cursors: { a: inside(state.cursors.a), b: inside(state.cursors.b) }, markers: state.markers.map(inside), lit: null };
 }
 
 /** The result as another of its controllers shows it: for the views another result. @param {State} state @param {number} controller @returns {State} */
@@ -157,7 +168,7 @@ function lookAt(state, controller) {
   const { channels } = controllers[shown];
   const row = state.row < 2 * MOST_CHANNELS && state.row % MOST_CHANNELS >= channels ? 0 : state.row;
   return { ...state, controller, result: { ...state.result, controller: shown }, row,
-    axis: Math.min(state.axis, channels - 1), packet: null, hover: null };
+    axis: Math.min(state.axis, channels - 1), packet: null, hover: null, lit: null };
 }
 
 /** What the run made of the controller on show; none before the first run. @param {State} state */

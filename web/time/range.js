@@ -1,7 +1,6 @@
 /** The shown time in fields and buttons: from, to, zoom in, zoom out, all of it. */
 import { byId, say } from "../dom.js";
-import { time } from "../views/motion.js";
-import { parseNumber } from "../state/number.js";
+import { parseNumber, time } from "../state/number.js";
 import { endOf, shown } from "../state/state.js";
 import { zoom } from "./timeline.js";
 

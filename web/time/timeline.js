@@ -2,6 +2,7 @@
  * The time axis that motion and pulses share: wheel and pinch zoom at the pointer, dragging moves, a click
  * sets a cursor, keys do all of it. It knows pixels and cycles, nothing of what is drawn.
  */
+import { listen } from "../shell/commands.js";
 import { endOf, shown } from "../state/state.js";
 
 /** @typedef {import("../state/types.js").State} State */
@@ -138,39 +139,39 @@ export function gestures(target, plot, page) {
     const area = plot();
     if (xOf(event) >= area.left) dispatch({ type: "window", window: null });
   });
-  target.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey) return;
-    if (key(event, page, plot())) event.preventDefault();
-  });
+  listen(target, "Time axis (motion and pulses)", keys(page, plot));
 }
 
-/** @param {KeyboardEvent} event @param {Page} page @param {{left: number, right: number}} plot @returns {boolean} */
-function key(event, page, plot) {
+/** What the keys do on the time axis. @param {Page} page @param {() => {left: number, right: number}} plot @returns {import("../shell/commands.js").Command[]} */
+function keys(page, plot) {
   const { dispatch, now } = page;
-  const sign = event.key === "ArrowLeft" ? -1 : 1;
-  switch (event.key) {
-    case "+": case "=": zoom(page, 0.5, now().cursors.a ?? undefined); return true;
-    case "-": case "−": zoom(page, 2, now().cursors.a ?? undefined); return true;
-    case "0": case "Home": dispatch({ type: "window", window: null }); return true;
-    case "PageUp": pan(page, -0.9); return true;
-    case "PageDown": pan(page, 0.9); return true;
-    case "Escape":
-      dispatch({ type: "cursor", which: "a", cycle: null });
-      dispatch({ type: "cursor", which: "b", cycle: null });
-      return true;
-    case "ArrowLeft": case "ArrowRight": {
-      if (!event.shiftKey && !event.altKey) pan(page, sign * 0.1);
-      else {
-        const which = event.altKey ? "b" : "a";
-        const { start, end } = shown(now());
-        const column = Math.max(1, Math.round((end - start) / Math.max(1, plot.right - plot.left)));
-        const from = now().cursors[which] ?? Math.round((start + end) / 2);
-        const cycle = Math.min(endOf(now()), Math.max(0, from + sign * column));
-        dispatch({ type: "cursor", which, cycle });
-        reveal(page, cycle);
-      }
-      return true;
-    }
-    default: return false;
-  }
+  const at = () => now().cursors.a ?? undefined;
+  /** @param {"a" | "b"} which @param {number} sign */
+  const nudge = (which, sign) => {
+    const { left, right } = plot();
+    const { start, end } = shown(now());
+    const column = Math.max(1, Math.round((end - start) / Math.max(1, right - left)));
+    const from = now().cursors[which] ?? Math.round((start + end) / 2);
+    const cycle = Math.min(endOf(now()), Math.max(0, from + sign * column));
+    dispatch({ type: "cursor", which, cycle });
+    reveal(page, cycle);
+  };
+  const clear = () => {
+    dispatch({ type: "cursor", which: "a", cycle: null });
+    dispatch({ type: "cursor", which: "b", cycle: null });
+  };
+  return [
+    { keys: ["+", "="], text: "zoom in, around cursor A if it is set", run: () => zoom(page, 0.5, at()) },
+    { keys: ["-", "−"], text: "zoom out", run: () => zoom(page, 2, at()) },
+    { keys: ["Home"], text: "show the whole run", run: () => dispatch({ type: "window", window: null }) },
+    { keys: ["ArrowLeft"], text: "earlier", run: () => pan(page, -0.1) },
+    { keys: ["ArrowRight"], text: "later", run: () => pan(page, 0.1) },
+    { keys: ["PageUp"], text: "a screen earlier", run: () => pan(page, -0.9) },
+    { keys: ["PageDown"], text: "a screen later", run: () => pan(page, 0.9) },
+    { keys: ["Shift+ArrowLeft"], text: "cursor A to the left", run: () => nudge("a", -1) },
+    { keys: ["Shift+ArrowRight"], text: "cursor A to the right", run: () => nudge("a", 1) },
+    { keys: ["Alt+ArrowLeft"], text: "cursor B to the left", run: () => nudge("b", -1) },
+    { keys: ["Alt+ArrowRight"], text: "cursor B to the right", run: () => nudge("b", 1) },
+    { keys: ["Escape"], text: "remove the cursors", run: clear },
+  ];
 }

@@ -1,10 +1,11 @@
 /** The motion view: position, speed and acceleration over one time axis, the ideal curve over what the pulses make. */
 import { byId, options, say } from "../dom.js";
 import { unlessDropped } from "../engine/engine.js";
-import { count, short, si } from "../state/number.js";
+import { count, short, si, time } from "../state/number.js";
 import { GUTTER, MARGIN, color, draw, fit, watch } from "../time/plot.js";
 import { lookedAt, shown } from "../state/state.js";
-import { gestures, pixelOf } from "../time/timeline.js";
+import { drawCursors, overlaid } from "../time/cursors.js";
+import { gestures } from "../time/timeline.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").MotionColumns} MotionColumns */
@@ -107,15 +108,10 @@ export function createMotion({ engine, dispatch, now }) {
     const moved = before?.window !== state.window || before?.axis !== state.axis || before?.result !== state.result;
     if (moved) return refresh(state);
     if (before?.unit !== state.unit) paint(state);
-    else if (before?.hover !== state.hover || before?.cursors !== state.cursors) paintCursor(state);
+    else if (overlaid(before, state)) paintCursor(state);
     return undefined;
   }
   return { render };
-}
-
-/** Time with enough digits to tell one cycle from the next. @param {number} seconds */
-export function time(seconds) {
-  return si(seconds, "s", 7);
 }
 
 /** @param {State} state */
@@ -191,39 +187,4 @@ function columnAt({ x }, seconds) {
   if (x.length < 2) return x.length - 1;
   const index = Math.round((seconds - x[0]) / (x[1] - x[0]));
   return Math.min(x.length - 1, Math.max(0, index));
-}
-
-/**
- * Cursors A and B, the pointer's line and the chosen packet's time, as both time views show them.
- * @param {CanvasRenderingContext2D} context
- * @param {State} state
- * @param {{left: number, right: number}} plot
- * @param {number} height
- */
-export function drawCursors(context, state, plot, height) {
-  /** @param {number | null} cycle @param {string} ink @param {number[]} dash @param {string} name */
-  const line = (cycle, ink, dash, name) => {
-    if (cycle === null) return;
-    const x = Math.round(pixelOf(state, plot, cycle)) + 0.5;
-    if (x < plot.left - 1 || x > plot.right + 1) return;
-    context.strokeStyle = color(ink);
-    context.setLineDash(dash);
-    context.lineWidth = name ? 1.5 : 1;
-    context.beginPath();
-    context.moveTo(x, 0);
-    context.lineTo(x, height);
-    context.stroke();
-    if (!name) return;
-    context.setLineDash([]);
-    context.fillStyle = color(ink);
-    context.fillRect(x - 6, 0, 12, 13);
-    context.fillStyle = color("--pane");
-    context.font = `bold 10px ${getComputedStyle(document.body).fontFamily}`;
-    context.textAlign = "center";
-    context.textBaseline = "middle";
-    context.fillText(name, x, 7);
-  };
-  line(state.hover, "--axis", [3, 3], "");
-  line(state.cursors.a, "--cursor-a", [], "A");
-  line(state.cursors.b, "--cursor-b", [5, 3], "B");
 }

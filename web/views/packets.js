@@ -4,8 +4,7 @@
  */
 import { byId, element, fill, say } from "../dom.js";
 import { unlessDropped } from "../engine/engine.js";
-import { time } from "./motion.js";
-import { count } from "../state/number.js";
+import { count, time } from "../state/number.js";
 import { shown } from "../state/state.js";
 
 /** @typedef {import("../state/types.js").State} State */

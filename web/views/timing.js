@@ -4,8 +4,7 @@
  */
 import { byId, element, fill, say } from "../dom.js";
 import { unlessDropped } from "../engine/engine.js";
-import { time } from "./motion.js";
-import { count, si } from "../state/number.js";
+import { count, si, time } from "../state/number.js";
 import { ruleName } from "./rules.js";
 import { endOf, lookedAt, shown } from "../state/state.js";
 

@@ -1,7 +1,7 @@
 /** The pulses view: a logic analyser over all signals of the bus, with the ticks and packets decoded between them. */
 import { byId, options, say } from "../../dom.js";
+import { time } from "../../state/number.js";
 import { unlessDropped } from "../../engine/engine.js";
-import { drawCursors, time } from "../motion.js";
 import { createOverview } from "./overview.js";
 import { paintSignal, paintSpans, paintTint } from "./paint.js";
 import { GUTTER, MARGIN, color, fit, ratio, watch } from "../../time/plot.js";
@@ -10,6 +10,8 @@ import { createReading } from "./reading.js";
 import { ROW_PX, allFolded, channelOf, idle, isFolded, rowsOf, shows, signalsOf } from "./rows.js";
 import { createSpans } from "./spans.js";
 import { lookedAt, shown } from "../../state/state.js";
+import { listen } from "../../shell/commands.js";
+import { drawCursors, overlaid } from "../../time/cursors.js";
 import { cycleAt, gestures, pixelOf, reveal } from "../../time/timeline.js";
 
 /** @typedef {import("../../state/types.js").State} State */
@@ -45,15 +47,13 @@ export function createPulses({ engine, dispatch, now }) {
   rowSelect.addEventListener("change", () => dispatch({ type: "row", row: Number(rowSelect.value) }));
   foldAll.addEventListener("click", () => dispatch({ type: "fold-all", folded: !allFolded(now()) }));
   allSignals.addEventListener("change", () => dispatch({ type: "all-signals", on: allSignals.checked }));
-  canvas.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const name = event.key.toLowerCase();
-    if (name === "n" || name === "p") jump(name === "n");
-    else if (event.key === "ArrowUp" || event.key === "ArrowDown") step(event.key === "ArrowUp" ? -1 : 1);
-    else if (event.key === "Enter") fold(channelOf(now().row));
-    else return;
-    event.preventDefault();
-  });
+  listen(canvas, "Pulses", [
+    { keys: ["n"], text: "next edge of the chosen row", run: () => void jump(true) },
+    { keys: ["p"], text: "previous edge of the chosen row", run: () => void jump(false) },
+    { keys: ["ArrowUp"], text: "choose the row above", run: () => step(-1) },
+    { keys: ["ArrowDown"], text: "choose the row below", run: () => step(1) },
+    { keys: ["Enter"], text: "fold or unfold the chosen row's channel", run: () => fold(channelOf(now().row)) },
+  ]);
   canvas.addEventListener("pointermove", (event) => reading.hover(rowAt(event)));
   canvas.addEventListener("pointerleave", reading.leave);
 
@@ -223,7 +223,7 @@ export function createPulses({ engine, dispatch, now }) {
     if (before && before.row !== state.row) follow(state);
     if (before?.window !== state.window || before?.result !== state.result) return Promise.all([refresh(state), strip]);
     if (arranged || before?.packet !== state.packet) paint(state);
-    else if (before?.hover !== state.hover || before?.cursors !== state.cursors) paintCursor(state);
+    else if (overlaid(before, state)) paintCursor(state);
     return undefined;
   }
   return { render };

@@ -1,8 +1,7 @@
 /** The line under the pulses: the pointer's time, the pulse under it, the cursors and what lies between them. */
 import { byId, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
-import { time } from "../motion.js";
-import { count, si } from "../../state/number.js";
+import { count, si, time } from "../../state/number.js";
 import { signalsOf } from "./rows.js";
 
 /** @typedef {import("../../state/types.js").State} State */

@@ -1,0 +1,44 @@
+/**
+ * Every command that has a key: each part of the page lists its own, keys are heard from that list, and the
+ * help is made of it. Letters alone are commands only where the focus is in the part that they belong to.
+ */
+
+/**
+ * @typedef {object} Command
+ * @property {string[]} keys  Such as `n`, `Shift+ArrowLeft`, `Ctrl+Z`; Ctrl is the command key of a Mac, too.
+ * @property {string} text    What it does, as the help says it.
+ * @property {(event: KeyboardEvent) => void | false} run  `false` leaves the key to the browser.
+ *
+ * @typedef {{title: string, commands: Command[]}} Scope  A part of the page.
+ */
+
+/** @type {Scope[]} */
+const scopes = [];
+
+/**
+ * Hears a part's keys.
+ * @param {HTMLElement | Document} target  Has the focus in it when they count.
+ * @param {string} title  What the part is called in the help; parts of one title are listed once.
+ * @param {Command[]} commands
+ */
+export function listen(target, title, commands) {
+  if (!scopes.some((scope) => scope.title === title)) scopes.push({ title, commands });
+  const byKey = new Map(commands.flatMap((command) => command.keys.map((key) => [key.toLowerCase(), command])));
+  target.addEventListener("keydown", (raw) => {
+    const event = /** @type {KeyboardEvent} */ (raw);
+    if (event.defaultPrevented || event.isComposing) return;
+    const command = byKey.get(nameOf(event).toLowerCase());
+    if (command && command.run(event) !== false) event.preventDefault();
+  });
+}
+
+/** All commands so far, by the parts that they belong to. */
+export function listed() {
+  return scopes;
+}
+
+/** A key with its modifiers, as `Command.keys` writes it. Of a sign that needs Shift, Shift is no part. @param {KeyboardEvent} event */
+function nameOf({ key, ctrlKey, metaKey, altKey, shiftKey }) {
+  const sign = key.length === 1 && !/[a-z]/i.test(key);
+  return [ctrlKey || metaKey ? "Ctrl+" : "", altKey ? "Alt+" : "", shiftKey && !sign ? "Shift+" : "", key === " " ? "Space" : key].join("");
+}

@@ -1,0 +1,15 @@
+/** Files that the visitor saves: made in the page, handed to the browser's downloads. */
+
+/**
+ * @param {string} name  File name with its ending.
+ * @param {string} type  MIME type.
+ * @param {BlobPart[]} parts
+ */
+export function save(name, type, parts) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob(parts, { type }));
+  link.download = name;
+  link.click();
+  // The browser reads it after this task; a minute is more than it needs.
+  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+}

@@ -1,0 +1,53 @@
+/** What lies over every view of the time axis: what is pointed at, the pointer, cursors, markers. */
+import { color } from "./plot.js";
+import { pixelOf } from "./timeline.js";
+
+/** @typedef {import("../state/types.js").State} State */
+
+/**
+ * What is lit in all views, the pointer's line, cursors A and B, and the numbered markers.
+ * @param {CanvasRenderingContext2D} context
+ * @param {State} state
+ * @param {{left: number, right: number}} plot
+ * @param {number} height
+ */
+export function drawCursors(context, state, plot, height) {
+  /** @param {number | null} cycle @param {string} ink @param {number[]} dash @param {string} name */
+  const line = (cycle, ink, dash, name) => {
+    if (cycle === null) return;
+    const x = Math.round(pixelOf(state, plot, cycle)) + 0.5;
+    if (x < plot.left - 1 || x > plot.right + 1) return;
+    context.strokeStyle = color(ink);
+    context.setLineDash(dash);
+    context.lineWidth = name ? 1.5 : 1;
+    context.beginPath();
+    context.moveTo(x, 0);
+    context.lineTo(x, height);
+    context.stroke();
+    if (!name) return;
+    context.setLineDash([]);
+    context.fillStyle = color(ink);
+    context.fillRect(x - 6, 0, 12, 13);
+    context.fillStyle = color("--pane");
+    context.font = `bold 10px ${getComputedStyle(document.body).fontFamily}`;
+    context.textAlign = "center";
+    context.textBaseline = "middle";
+    context.fillText(name, x, 7);
+  };
+  if (state.lit) {
+    const [from, to] = [state.lit.start, state.lit.end].map((cycle) => Math.min(plot.right, Math.max(plot.left, pixelOf(state, plot, cycle))));
+    context.fillStyle = color("--mark");
+    context.globalAlpha = 0.3;
+    if (state.lit.end >= state.lit.start && from < plot.right && to > plot.left) context.fillRect(from, 0, Math.max(2, to - from), height);
+    context.globalAlpha = 1;
+  }
+  line(state.hover, "--axis", [3, 3], "");
+  for (const [digit, cycle] of state.markers.entries()) line(cycle, "--accent", [2, 2], String(digit));
+  line(state.cursors.a, "--cursor-a", [], "A");
+  line(state.cursors.b, "--cursor-b", [5, 3], "B");
+}
+
+/** Whether what lies over the views has changed. @param {State | undefined} before @param {State} state */
+export function overlaid(before, state) {
+  return before?.hover !== state.hover || before?.lit !== state.lit || before?.cursors !== state.cursors || before?.markers !== state.markers;
+}
