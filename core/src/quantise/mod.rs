@@ -4,8 +4,16 @@
 //! `motion` gives positions over time, `wire` and `device` know only ticks and segments; here the one becomes
 //! the other.
 
+mod compressed;
+mod entry_format;
+mod line_fit;
+mod longest;
 mod segments;
+mod stored;
 mod ticks;
 
+pub use compressed::{Compressed, MOST_TOLERANCE, Tolerance, compressed};
+pub use entry_format::{Entry, EntryFormat};
 pub use segments::exact_segments;
+pub use stored::TimingError;
 pub use ticks::{TickClock, Ticks, ticks};
