@@ -206,6 +206,12 @@ impl CheckedSegments {
         &self.lists
     }
 
+    /// The lists themselves.
+    #[must_use]
+    pub fn into_lists(self) -> Vec<SegmentList> {
+        self.lists
+    }
+
     /// Steps of all channels together.
     #[must_use]
     pub const fn steps(&self) -> u64 {

@@ -2,6 +2,9 @@
 #![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::panic, reason = "a test fails by panicking")]
 
+mod moves;
+
+use moves::{CLOCK_HZ, plan, sane_move, short_move};
 use proptest::prelude::*;
 use std::rc::Rc;
 use stepscope_core::{
@@ -17,55 +20,6 @@ use stepscope_core::{
     trace::steps,
     units::{Cycles, Instant},
 };
-
-const CLOCK_HZ: u32 = 16_000_000;
-
-/// Moves that a person could ask for, at most some thousand steps.
-fn sane_move() -> impl Strategy<Value = Move> {
-    let steps = prop_oneof![-3000_i32..=-1, 1..=3000_i32].prop_map(|n| Distance::Steps(n.into()));
-    let method = prop_oneof![Just(TrapezoidMethod::Table), Just(TrapezoidMethod::Exact)];
-    prop_oneof![
-        (steps.clone(), 0.02..2.0, 0.0..=0.5).prop_map(|(distance, duration_s, ramp)| {
-            Move::Cosine(Cosine { distance, duration_s, ramp_s: duration_s * ramp })
-        }),
-        (steps.clone(), 100.0..2000.0, 0.0..4000.0, 1.0..1e5, method).prop_map(
-            |(distance, start, climb, acceleration, method)| {
-                Move::Trapezoid(Trapezoid {
-                    distance,
-                    start_speed: Speed::StepsPerSecond(start),
-                    top_speed: Speed::StepsPerSecond(start + climb),
-                    acceleration: Acceleration::StepsPerSecond2(acceleration),
-                    method,
-                    timer_hz: 1_000_000,
-                })
-            }
-        ),
-        (steps.clone(), 1..=5_u8, 500..20_000_u32, any::<bool>()).prop_map(
-            |(distance, level, top, turns)| {
-                Move::Staircase(Staircase {
-                    distance,
-                    level,
-                    top_speed: Speed::StepsPerSecond(top.into()),
-                    short_move: short_move(turns),
-                    ..Staircase::default()
-                })
-            }
-        ),
-        (steps.clone(), 0.05..2.0, 1..4_u32, 0.002..0.1).prop_map(
-            |(amplitude, period_s, periods, max_deviation)| {
-                Move::SineSegments(SineSegments { amplitude, period_s, periods, max_deviation })
-            }
-        ),
-        (steps, 100.0..1e4).prop_map(|(distance, speed)| {
-            Move::Constant(Constant { distance, speed: Speed::StepsPerSecond(speed) })
-        }),
-        (0.0..1.0).prop_map(|duration_s| Move::Dwell(Dwell { duration_s })),
-    ]
-}
-
-fn short_move(turns: bool) -> ShortMove {
-    if turns { ShortMove::TurnRound } else { ShortMove::Document }
-}
 
 /// Any number, with the absurd ones often.
 fn number() -> impl Strategy<Value = f64> + Clone {
@@ -133,11 +87,6 @@ fn wild_move() -> impl Strategy<Value = Move> {
         (distance, speed).prop_map(|(distance, speed)| Move::Constant(Constant { distance, speed })),
         number().prop_map(|duration_s| Move::Dwell(Dwell { duration_s })),
     ]
-}
-
-fn plan(moves: Vec<Move>) -> AxisPlan {
-    let axis = Axis { moves, ..Axis::default() };
-    plan_axis(&axis, "axis").unwrap_or_else(|problems| panic!("{axis:?}: {problems:?}"))
 }
 
 /// The other way round.

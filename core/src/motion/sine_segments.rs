@@ -42,6 +42,19 @@ pub struct Segment {
     from_steps: u64,
 }
 
+/// A segment in its place in the motion; its steps stand in the middles of as many equal parts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Piece {
+    /// Its beginning in points of the angle from the start.
+    pub(crate) from: f64,
+    /// Its end.
+    pub(crate) to: f64,
+    /// Steps.
+    pub(crate) steps: u64,
+    /// Which way they go.
+    pub(crate) right: bool,
+}
+
 /// Memory that a controller needs for a quarter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Memory {
@@ -122,14 +135,13 @@ impl SineSegments {
         self.periods
     }
 
-    /// Where each step falls due, in points of the angle from the start, and whether it goes to
-    /// the right.
-    pub(super) fn due_points(&self) -> impl Iterator<Item = (f64, bool)> + '_ {
+    /// The segments of all quarters, one after another.
+    pub(crate) fn pieces(&self) -> impl Iterator<Item = Piece> + '_ {
         let quarters = (0..self.periods).flat_map(|period| (0..4_u16).map(move |quarter| (period, quarter)));
         quarters.flat_map(move |(period, quarter)| {
             let origin = f64::from(period) * f64::from(POINTS);
             let right = self.starts_right == (quarter >= 2);
-            (0..self.segments.len()).flat_map(move |index| {
+            (0..self.segments.len()).map(move |index| {
                 // Every other quarter goes through the segments from the middle to the extreme.
                 let (mirrored, last) = (quarter % 2 == 1, self.segments.len() - 1);
                 let segment = self.segments.get(if mirrored { last - index } else { index });
@@ -141,14 +153,22 @@ impl SineSegments {
                     _ => (2 * QUARTER, 2 * QUARTER - far, 2 * QUARTER - near),
                 };
                 let (from, to) = (origin + f64::from(base + from), origin + f64::from(base + to));
-                let each = (to - from) / steps as f64;
-                (0..steps).map(move |step| (from + (step as f64 + 0.5) * each, right))
+                Piece { from, to, steps, right }
             })
         })
     }
 
+    /// Where each step falls due, in points of the angle from the start, and whether it goes to
+    /// the right.
+    pub(super) fn due_points(&self) -> impl Iterator<Item = (f64, bool)> + '_ {
+        self.pieces().flat_map(|Piece { from, to, steps, right }| {
+            let each = (to - from) / steps as f64;
+            (0..steps).map(move |step| (from + (step as f64 + 0.5) * each, right))
+        })
+    }
+
     /// Time of a point of the angle in s.
-    pub(super) fn point_s(&self) -> f64 {
+    pub(crate) fn point_s(&self) -> f64 {
         self.period_s / f64::from(POINTS)
     }
 

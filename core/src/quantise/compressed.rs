@@ -10,22 +10,25 @@
 //! comes out at the STEP line: the number of steps is exact, no step leaves its window, and no error is carried from one
 //! entry to the next but the one that the entry's last step has, which is in its window too.
 //!
-//! Each entry is the longest that there is from where the entry before it ended, of those whose last step comes close to
-//! the middle of its window (an eighth of it). Without that last condition entries would be longer one by one and yet
-//! more in number: an entry of greatest length ends at the edge of a window, the worst place for the next one to begin.
-//! Where the curve's third derivative is nearly constant, entries from middle to middle have 0.87 of the length that
-//! entries with free ends had, from edge to edge 0.75. The fewest entries of all are not searched for.
+//! How few entries? Each entry is the longest that there is from the time at which the one before it ended, of those
+//! whose last step comes close to the middle of its window: an eighth of it and a cycle. (Where the windows are the due
+//! cycles alone their middles say nothing, so there it is the longest of all, less an eighth.) Without that condition the
+//! entries would be longer one by one and yet more in number, for an entry of greatest length ends at the edge of a
+//! window, the worst place for the next one to begin. Where the third derivative of time over steps hardly changes, let
+//! an entry that may begin and end anywhere in its windows have the length 1; then entries from middle to middle have
+//! 0.87, and those that are as long as they can be, one after another, have 0.75. The fewest of all are not searched for.
 
 use super::{
     entry_format::EntryFormat,
     longest::{Ahead, Window},
+    segments::START,
     stored::TimingError,
 };
 use crate::{
     motion::DueStep,
     scenario::Cause,
     segment::{FRACTION_BITS, LAST_CYCLE, PulseTimes, Segment, SegmentList},
-    units::{Cycles, Instant},
+    units::Cycles,
 };
 use alloc::vec::Vec;
 use core::num::NonZeroU32;
@@ -33,10 +36,7 @@ use core::num::NonZeroU32;
 /// Greatest tolerance in cycles.
 pub const MOST_TOLERANCE: Cycles = Cycles(1 << 24);
 /// Most entries of a list: 64 MB.
-const MOST_ENTRIES: usize = 2_000_000;
-/// Where the motion's time 0 is: nothing starts before (A3).
-const START: Instant = Instant(1);
-
+pub(super) const MOST_ENTRIES: usize = 2_000_000;
 /// How far a step may be from its due cycle, either way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tolerance {
@@ -85,7 +85,7 @@ pub fn compressed(
         let (given, most) = (tolerance.cycles.0 as f64, MOST_TOLERANCE.0 as f64);
         return Err(Cause::TooMuch { given, most, of: "cycles of tolerance" });
     }
-    let mut windows = Windows::new(steps.into_iter(), tolerance, format, pulse)?;
+    let mut windows = Windows::new(steps.into_iter(), tolerance, format, pulse);
     let mut writer = Writer::new(format);
     let mut ahead = Ahead::new(format, pulse.least_interval().0);
     let mut length = 64;
@@ -121,14 +121,9 @@ struct Windows<I> {
 }
 
 impl<I: Iterator<Item = DueStep>> Windows<I> {
-    fn new(
-        mut steps: I,
-        tolerance: Tolerance,
-        format: EntryFormat,
-        pulse: PulseTimes,
-    ) -> Result<Self, Cause> {
+    fn new(mut steps: I, tolerance: Tolerance, format: EntryFormat, pulse: PulseTimes) -> Self {
         let next = steps.next();
-        Ok(Self { steps, tolerance, format, pulse, next, before: 0, count: 0, right: false })
+        Self { steps, tolerance, format, pulse, next, before: 0, count: 0, right: false }
     }
 
     /// Begins the next run; false where no step is left.
@@ -228,5 +223,129 @@ impl Writer {
             }
             _ => false,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::{collections::BTreeSet, vec};
+    use rand_xoshiro::{
+        Xoshiro256StarStar,
+        rand_core::{Rng, SeedableRng},
+    };
+
+    const PULSE: PulseTimes = PulseTimes { width: Cycles(1), setup: Cycles(0), hold: Cycles(0) };
+
+    fn right(cycles: &[u64]) -> Vec<DueStep> {
+        cycles.iter().map(|&cycle| DueStep { cycle, right: true }).collect()
+    }
+
+    fn entries(due: &[u64], tolerance: u64) -> usize {
+        let tolerance = Tolerance::of(Cycles(tolerance));
+        let made = compressed(right(due), tolerance, EntryFormat::TICKS, PULSE).unwrap();
+        assert!(made.error.greatest <= tolerance.cycles.0 && made.error.steps == due.len() as u64);
+        made.list.segments.len()
+    }
+
+    /// The fewest entries of whole cycles, all intervals and adds tried from every time that a step can have.
+    fn fewest(due: &[u64], tolerance: u64) -> usize {
+        // reached[n]: times that step n can have, n from 0.
+        let mut reached: Vec<BTreeSet<u64>> = vec![BTreeSet::new(); due.len() + 1];
+        reached[0].insert(0);
+        for entries in 1.. {
+            let before = reached.clone();
+            for (step, times) in before.iter().enumerate() {
+                for &time in times {
+                    for interval in 2..=40_i64 {
+                        for add in -20..=20_i64 {
+                            let (mut time, mut next) = (time as i64, interval);
+                            for (n, &due) in (step + 1..).zip(&due[step..]) {
+                                time += next;
+                                if next < 2 || time.abs_diff(due as i64) > tolerance {
+                                    break;
+                                }
+                                reached[n].insert(time as u64);
+                                next += add;
+                            }
+                        }
+                    }
+                }
+            }
+            if !reached[due.len()].is_empty() {
+                return entries;
+            }
+        }
+        unreachable!("each step can have an entry of its own")
+    }
+
+    #[test]
+    fn small_lists_have_the_fewest_entries_or_hardly_more() {
+        let mut noise = Xoshiro256StarStar::seed_from_u64(7);
+        let (mut made, mut least, mut same) = (0, 0, 0);
+        let all = 150;
+        for _ in 0..all {
+            let (mut gap, mut due, mut steps) = (4 + noise.next_u64() % 12, 0, Vec::new());
+            for _ in 0..10 {
+                gap = (gap + noise.next_u64() % 5).saturating_sub(2).max(2);
+                due += gap;
+                steps.push(due);
+            }
+            let tolerance = noise.next_u64() % 3;
+            let (found, optimum) = (entries(&steps, tolerance), fewest(&steps, tolerance));
+            assert!((optimum..=optimum + 2).contains(&found), "{steps:?} {tolerance}: {found} {optimum}");
+            (made, least) = (made + found, least + optimum);
+            same += usize::from(found == optimum);
+        }
+        std::eprintln!("{made} {least} {same}");
+        assert!(same * 10 >= all * 6 && made * 100 <= least * 120, "{made} {least} {same}");
+    }
+
+    #[test]
+    fn what_is_a_parabola_is_one_entry() {
+        let rows: [(Vec<u64>, usize); 5] = [
+            (vec![], 0),
+            (vec![7], 1),
+            ((1..=1000).map(|k| k * 80).collect(), 1),
+            ((1..=1000).map(|k| k * 20_000 - k * (k - 1) / 2 * 3).collect(), 1),
+            // 5/3 cycles of rounding only.
+            ((1..=70_000).map(|k| k * 80).collect(), 2),
+        ];
+        for (due, expected) in rows {
+            assert_eq!(entries(&due, 0), expected, "{:?}", due.get(..3));
+        }
+    }
+
+    #[test]
+    fn a_turn_and_a_long_rest_end_an_entry() {
+        let mut due: Vec<DueStep> = right(&[10, 20, 30]);
+        due.extend([40, 50, 1 << 40].map(|cycle| DueStep { cycle, right: false }));
+        let made = compressed(due.clone(), Tolerance::of(Cycles(0)), EntryFormat::TICKS, PULSE).unwrap();
+        let ways: Vec<Option<bool>> = made
+            .list
+            .segments
+            .iter()
+            .map(|segment| match segment {
+                Segment::Steps { right, .. } => Some(*right),
+                Segment::Dwell(_) => None,
+            })
+            .collect();
+        assert_eq!(ways, [Some(true), Some(false), None, Some(false)]);
+        assert_eq!(TimingError::of(&made.list, due), Some(made.error));
+    }
+
+    #[test]
+    fn the_last_cycles_that_there_are_can_be_reached() {
+        let last = LAST_CYCLE.0 - 1;
+        let due = [last - 20, last - 10, last];
+        for format in EntryFormat::ALL {
+            let made = compressed(right(&due), Tolerance::of(Cycles(0)), format, PULSE);
+            assert_eq!(made.map(|made| made.error.greatest), Ok(0), "{}", format.name);
+        }
+        let late = compressed(right(&due), Tolerance::of(Cycles(1)), EntryFormat::Q16, PULSE);
+        let cause = Cause::TooMuch { given: last as f64 + 1.0, most: last as f64, of: "cycles" };
+        assert_eq!(late, Err(cause));
+        let soon = compressed(right(&[5, 6]), Tolerance::of(Cycles(1)), EntryFormat::Q16, PULSE);
+        assert_eq!(soon, Err(Cause::StepTooSoon { step: 2, interval: 1, pulse: PULSE }));
     }
 }

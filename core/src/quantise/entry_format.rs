@@ -112,7 +112,8 @@ impl EntryFormat {
         if time.trailing_zeros() >= self.shift() {
             Ok(time >> self.shift())
         } else {
-            let detail = "the format has fewer bits for a cycle's fraction than the list; give one with more (q16)";
+            let detail =
+                "the format has fewer bits for a cycle's fraction than the list; give one with more (q16)";
             Err(Cause::Conflict { detail })
         }
     }

@@ -5,15 +5,17 @@
 //! the other.
 
 mod compressed;
+mod document;
 mod entry_format;
 mod line_fit;
 mod longest;
 mod segments;
+pub mod source_code;
 mod stored;
 mod ticks;
 
 pub use compressed::{Compressed, MOST_TOLERANCE, Tolerance, compressed};
 pub use entry_format::{Entry, EntryFormat};
 pub use segments::exact_segments;
-pub use stored::TimingError;
+pub use stored::{Form, Stored, TimingError, stored};
 pub use ticks::{TickClock, Ticks, ticks};

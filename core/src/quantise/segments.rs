@@ -18,9 +18,9 @@ use crate::{
 use alloc::{format, vec, vec::Vec};
 
 /// Most steps of all axes together: a list has up to a segment of 32 bytes for two of them.
-const MOST_STEPS: u64 = 4_000_000;
+pub(super) const MOST_STEPS: u64 = 4_000_000;
 /// Where the motion's time 0 is: nothing starts before (A3).
-const START: Instant = Instant(1);
+pub(super) const START: Instant = Instant(1);
 
 /// The exact segments of the plans, plan i for channel i, for pulses of `pulse`.
 ///
@@ -59,7 +59,10 @@ pub fn exact_segments(
 }
 
 /// The exact list of one axis.
-fn exact(plan: &AxisPlan, pulse: PulseTimes, clock_hz: u32) -> Result<SegmentList, Cause> {
+///
+/// # Errors
+/// The first step that comes too soon for a pulse, or too late for 48.16 fixed point.
+pub(super) fn exact(plan: &AxisPlan, pulse: PulseTimes, clock_hz: u32) -> Result<SegmentList, Cause> {
     let least = pulse.least_interval().0;
     let last = LAST_CYCLE.0 - START.0;
     let mut merge = Merge::default();

@@ -1,9 +1,105 @@
-//! How good a list of segments is (DESIGN B8).
+//! How a controller can keep a motion's step times, and what each form costs (DESIGN B8).
+//!
+//! ```text
+//! exact        every step in its cycle; steps whose intervals differ by a constant share a segment
+//! document     the motion's own table, where it has one
+//! compressed   few entries, no step further from its due cycle than asked
+//! ```
 
-use crate::{
-    motion::DueStep,
-    segment::{FRACTION_BITS, Segment, SegmentList},
+use super::{
+    compressed::{Tolerance, compressed},
+    document::{document, document_bytes},
+    entry_format::{Entry, EntryFormat},
+    segments::{MOST_STEPS, exact},
 };
+use crate::{
+    motion::{AxisPlan, DueStep},
+    scenario::Cause,
+    segment::{CheckedSegments, FRACTION_BITS, PulseTimes, Refusal, Segment, SegmentList},
+};
+use alloc::{vec, vec::Vec};
+
+/// How step times are kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// Every step in its cycle.
+    Exact,
+    /// The motion's own table.
+    Document,
+    /// With few entries.
+    Compressed(Tolerance),
+}
+
+/// The step times of one axis in one form.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stored {
+    /// What the segment engine runs.
+    pub list: SegmentList,
+    /// Widths of the entries.
+    pub format: EntryFormat,
+    /// The list in these widths.
+    pub entries: Vec<Entry>,
+    /// Bytes of the tables as their documents keep them, which are walked up and down again; None where a move has no
+    /// table.
+    pub document_bytes: Option<u64>,
+    /// How far the steps are from their due cycles.
+    pub error: TimingError,
+}
+
+impl Stored {
+    /// Bytes of the entries.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.entries.len() as u64 * self.format.bytes()
+    }
+}
+
+/// Keeps the step times of `plan` in a form.
+///
+/// # Errors
+/// What [`compressed`] refuses; more than 4 000 000 steps for the exact list; a move without a table of its own for the
+/// document's, or a rate of it that is too high for `pulse`.
+pub fn stored(
+    plan: &AxisPlan,
+    form: Form,
+    format: EntryFormat,
+    pulse: PulseTimes,
+    clock_hz: u32,
+) -> Result<Stored, Cause> {
+    let (list, error) = match form {
+        Form::Exact => {
+            let steps = plan.step_count();
+            if steps > MOST_STEPS {
+                return Err(Cause::TooMuch { given: steps as f64, most: MOST_STEPS as f64, of: "steps" });
+            }
+            (exact(plan, pulse, clock_hz)?, None)
+        }
+        Form::Document => (document(plan, format, clock_hz)?, None),
+        Form::Compressed(tolerance) => {
+            let made = compressed(plan.due_steps(clock_hz), tolerance, format, pulse)?;
+            (made.list, Some(made.error))
+        }
+    };
+    let list = judged(list, pulse)?;
+    let error = match error {
+        Some(error) => error,
+        None => TimingError::of(&list, plan.due_steps(clock_hz)).ok_or(Cause::NoSegmentSteps)?,
+    };
+    let entries = format.pack(&list)?;
+    Ok(Stored { list, format, entries, document_bytes: document_bytes(plan), error })
+}
+
+/// The list, if the segment engine runs it.
+fn judged(list: SegmentList, pulse: PulseTimes) -> Result<SegmentList, Cause> {
+    match CheckedSegments::new(pulse, vec![list], 1) {
+        Ok(checked) => Ok(checked.into_lists().pop().ok_or(Cause::NoSegmentSteps)?),
+        Err(refused) => Err(match refused.first().map(|refused| refused.refusal) {
+            Some(Refusal::Interval { step, interval }) => Cause::SegmentInterval { step, interval, pulse },
+            Some(Refusal::End { next }) => Cause::SegmentEnd { next },
+            _ => Cause::NoSegmentSteps,
+        }),
+    }
+}
 
 /// How far steps are from their due cycles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -21,7 +117,7 @@ impl TimingError {
     pub(super) fn step(&mut self, off: u64) {
         self.steps += 1;
         self.greatest = self.greatest.max(off);
-        self.squares += u128::from(off) * u128::from(off);
+        self.squares = self.squares.saturating_add(u128::from(off) * u128::from(off));
     }
 
     /// Root of the mean square in cycles; 0 of no steps.

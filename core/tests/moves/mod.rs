@@ -1,0 +1,66 @@
+//! Moves that the property tests of motions and of their stored forms share.
+#![allow(dead_code, reason = "each test file uses some of it")]
+
+use proptest::prelude::*;
+use stepscope_core::{
+    motion::{AxisPlan, plan_axis},
+    scenario::{
+        Acceleration, Axis, Constant, Cosine, Distance, Dwell, Move, ShortMove, SineSegments, Speed,
+        Staircase, Trapezoid, TrapezoidMethod,
+    },
+};
+
+pub(crate) const CLOCK_HZ: u32 = 16_000_000;
+
+/// Moves that a person could ask for, at most some thousand steps.
+pub(crate) fn sane_move() -> impl Strategy<Value = Move> {
+    let steps = prop_oneof![-3000_i32..=-1, 1..=3000_i32].prop_map(|n| Distance::Steps(n.into()));
+    let method = prop_oneof![Just(TrapezoidMethod::Table), Just(TrapezoidMethod::Exact)];
+    prop_oneof![
+        (steps.clone(), 0.02..2.0, 0.0..=0.5).prop_map(|(distance, duration_s, ramp)| {
+            Move::Cosine(Cosine { distance, duration_s, ramp_s: duration_s * ramp })
+        }),
+        (steps.clone(), 100.0..2000.0, 0.0..4000.0, 1.0..1e5, method).prop_map(
+            |(distance, start, climb, acceleration, method)| {
+                Move::Trapezoid(Trapezoid {
+                    distance,
+                    start_speed: Speed::StepsPerSecond(start),
+                    top_speed: Speed::StepsPerSecond(start + climb),
+                    acceleration: Acceleration::StepsPerSecond2(acceleration),
+                    method,
+                    timer_hz: 1_000_000,
+                })
+            }
+        ),
+        (steps.clone(), 1..=5_u8, 500..20_000_u32, any::<bool>()).prop_map(
+            |(distance, level, top, turns)| {
+                Move::Staircase(Staircase {
+                    distance,
+                    level,
+                    top_speed: Speed::StepsPerSecond(top.into()),
+                    short_move: short_move(turns),
+                    ..Staircase::default()
+                })
+            }
+        ),
+        (steps.clone(), 0.05..2.0, 1..4_u32, 0.002..0.1).prop_map(
+            |(amplitude, period_s, periods, max_deviation)| {
+                Move::SineSegments(SineSegments { amplitude, period_s, periods, max_deviation })
+            }
+        ),
+        (steps, 100.0..1e4).prop_map(|(distance, speed)| {
+            Move::Constant(Constant { distance, speed: Speed::StepsPerSecond(speed) })
+        }),
+        (0.0..1.0).prop_map(|duration_s| Move::Dwell(Dwell { duration_s })),
+    ]
+}
+
+pub(crate) fn short_move(turns: bool) -> ShortMove {
+    if turns { ShortMove::TurnRound } else { ShortMove::Document }
+}
+
+/// The plan of moves that have no problems.
+pub(crate) fn plan(moves: Vec<Move>) -> AxisPlan {
+    let axis = Axis { moves, ..Axis::default() };
+    plan_axis(&axis, "axis").unwrap_or_else(|problems| panic!("{axis:?}: {problems:?}"))
+}

@@ -1,0 +1,273 @@
+//! What holds for every stored form of a motion's step times (DESIGN B8), through the segment engine (A8).
+#![cfg(not(target_arch = "wasm32"))]
+#![allow(clippy::panic, reason = "a test fails by panicking")]
+
+mod moves;
+
+use moves::{CLOCK_HZ, plan, sane_move};
+use proptest::prelude::*;
+use std::{num::NonZeroU32, rc::Rc};
+use stepscope_core::{
+    device::SegmentEngine,
+    motion::DueStep,
+    quantise::{EntryFormat, Form, MOST_TOLERANCE, Stored, TimingError, Tolerance, compressed, stored},
+    scenario::{
+        Acceleration, Cause, Constant, Cosine, Distance, Dwell, Move, SineSegments, Speed, Staircase,
+        Trapezoid, TrapezoidMethod,
+    },
+    segment::{CheckedSegments, PulseTimes, Segment, SegmentList},
+    signal::Record,
+    trace::steps,
+    units::{Cycles, Instant},
+};
+
+const PULSE: PulseTimes = PulseTimes { width: Cycles(1), setup: Cycles(1), hold: Cycles(0) };
+
+fn steps_s(speed: f64) -> Speed {
+    Speed::StepsPerSecond(speed)
+}
+
+fn trapezoid(steps: f64, start: f64, top: f64, acceleration: f64, method: TrapezoidMethod) -> Move {
+    Move::Trapezoid(Trapezoid {
+        distance: Distance::Steps(steps),
+        start_speed: steps_s(start),
+        top_speed: steps_s(top),
+        acceleration: Acceleration::StepsPerSecond2(acceleration),
+        method,
+        timer_hz: 1_000_000,
+    })
+}
+
+fn kept(moves: Vec<Move>, form: Form, format: EntryFormat) -> Stored {
+    stored(&plan(moves), form, format, PULSE, CLOCK_HZ).unwrap_or_else(|cause| panic!("{cause}"))
+}
+
+/// Cycles and ways of the steps that the segment engine makes of a list, from its start.
+fn run(list: &SegmentList) -> Vec<(u64, bool)> {
+    let checked = CheckedSegments::new(PULSE, vec![list.clone()], 1);
+    let checked = checked.unwrap_or_else(|refused| panic!("{refused:?}"));
+    let mut trace: Vec<Record> = Vec::new();
+    SegmentEngine::new(Rc::new(checked)).run(Instant::NEVER, &mut trace);
+    let mut position = 0;
+    let made = steps(&trace, 0);
+    made.iter()
+        .map(|step| {
+            let right = step.position > position;
+            position = step.position;
+            (step.cycle - list.start.0, right)
+        })
+        .collect()
+}
+
+fn format() -> impl Strategy<Value = EntryFormat> {
+    prop::sample::select(EntryFormat::ALL.to_vec())
+}
+
+fn tolerance() -> impl Strategy<Value = Tolerance> {
+    let cycles = prop_oneof![0..4_u64, 0..500_u64, 0..=MOST_TOLERANCE.0];
+    (cycles, prop::option::of(2..9_u32)).prop_map(|(cycles, part)| Tolerance {
+        cycles: Cycles(cycles),
+        interval_part: part.and_then(NonZeroU32::new),
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn no_step_of_a_compressed_list_is_off_by_more_than_was_asked(
+        moves in prop::collection::vec(sane_move(), 1..4), tolerance in tolerance(), format in format(),
+    ) {
+        let plan = plan(moves);
+        let due: Vec<DueStep> = plan.due_steps(CLOCK_HZ).collect();
+        let made = stored(&plan, Form::Compressed(tolerance), format, PULSE, CLOCK_HZ);
+        let made = made.unwrap_or_else(|cause| panic!("{cause}"));
+        let found = run(&made.list);
+        prop_assert_eq!(found.len(), due.len());
+        let mut greatest = 0;
+        for (index, (&(cycle, right), due_step)) in found.iter().zip(&due).enumerate() {
+            prop_assert_eq!(right, due_step.right, "step {}", index);
+            let before = index.checked_sub(1).map_or(0, |before| due[before].cycle);
+            let after = due.get(index + 1).map_or(u64::MAX, |after| after.cycle - due_step.cycle);
+            let shorter = after.min(due_step.cycle - before);
+            let part = tolerance.interval_part.map_or(u64::MAX, |part| shorter / u64::from(part.get()));
+            let off = cycle.abs_diff(due_step.cycle);
+            prop_assert!(off <= tolerance.cycles.0.min(part), "step {} is off by {}", index, off);
+            greatest = greatest.max(off);
+        }
+        prop_assert_eq!(made.error.greatest, greatest);
+        prop_assert_eq!(Some(made.error), TimingError::of(&made.list, due));
+        // As it stands in the format, an entry's times are the same.
+        prop_assert_eq!(walked(&made), found);
+    }
+
+    #[test]
+    fn every_form_has_every_step_and_says_how_far_it_is_off(
+        moves in prop::collection::vec(sane_move(), 1..3), format in format(),
+    ) {
+        let plan = plan(moves);
+        for form in [Form::Exact, Form::Document] {
+            match stored(&plan, form, format, PULSE, CLOCK_HZ) {
+                Ok(made) => {
+                    let found = run(&made.list);
+                    prop_assert_eq!(found.len() as u64, plan.step_count());
+                    let off = found.iter().zip(plan.due_steps(CLOCK_HZ));
+                    let off = off.map(|(made, due)| made.0.abs_diff(due.cycle)).max();
+                    prop_assert_eq!(made.error.greatest, off.unwrap_or(0));
+                    prop_assert!(form != Form::Exact || made.error.greatest == 0);
+                    prop_assert_eq!(walked(&made), found);
+                }
+                // Only what has no table of its own is refused.
+                Err(cause) => {
+                    let refused = form == Form::Document && matches!(cause, Cause::Conflict { .. });
+                    prop_assert!(refused, "{}", cause);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_of_a_list_of_due_steps_makes_it_panic(
+        gaps in prop::collection::vec((prop_oneof![0..9_u64, 0..1000_u64, any::<u64>().prop_map(|x| x >> 18)], any::<bool>()), 0..60),
+        tolerance in tolerance(), format in format(),
+    ) {
+        let mut cycle = 0_u64;
+        let due: Vec<DueStep> = gaps.iter().map(|&(gap, right)| {
+            cycle = cycle.saturating_add(gap);
+            DueStep { cycle, right }
+        }).collect();
+        match compressed(due.iter().copied(), tolerance, format, PULSE) {
+            Ok(made) => {
+                let found = TimingError::of(&made.list, due);
+                prop_assert_eq!(Some(made.error), found);
+                prop_assert!(made.error.greatest <= tolerance.cycles.0);
+                prop_assert!(CheckedSegments::new(PULSE, vec![made.list], 1).is_ok());
+            }
+            Err(cause) => {
+                let refused = matches!(cause, Cause::StepTooSoon { .. } | Cause::TooMuch { .. });
+                prop_assert!(refused, "{}", cause);
+            }
+        }
+    }
+}
+
+/// The steps of a table's entries, as the comment of its source code says how to walk them.
+fn walked(table: &Stored) -> Vec<(u64, bool)> {
+    let (mut time, mut right, mut made) = (0_u64, false, Vec::new());
+    for entry in &table.entries {
+        let mut interval = entry.interval;
+        if entry.count == 0 {
+            time += interval;
+            right = entry.add == 1;
+        }
+        for _ in 0..entry.count {
+            time += interval;
+            interval = interval.wrapping_add_signed(entry.add);
+            made.push((time >> table.format.fraction_bits, right));
+        }
+    }
+    made
+}
+
+/// 10^6 steps at 200 000 steps/s and 200 000 steps/s^2: Klipper's step compression makes about 1289 entries of them.
+#[test]
+fn a_long_trapezoid_takes_fewer_entries_than_klippers_compression() {
+    let ramp = vec![trapezoid(1e6, 1.0, 200_000.0, 200_000.0, TrapezoidMethod::Exact)];
+    let micros_25 = Cycles(400);
+    let half = NonZeroU32::new(2);
+    let rows = [
+        (EntryFormat::Q16, None, 60),
+        (EntryFormat::Q8, None, 160),
+        (EntryFormat::TICKS, None, 260),
+        // Klipper also keeps a step within half an interval.
+        (EntryFormat::Q16, half, 80),
+        (EntryFormat::TICKS, half, 800),
+    ];
+    for (format, interval_part, most) in rows {
+        let tolerance = Tolerance { cycles: micros_25, interval_part };
+        let made = kept(ramp.clone(), Form::Compressed(tolerance), format);
+        assert_eq!(made.error.steps, 1_000_000);
+        assert!(made.entries.len() <= most, "{}: {}", format.name, made.entries.len());
+        assert!(made.error.greatest <= 400 && made.error.rms() < made.error.greatest as f64);
+    }
+}
+
+/// Due where s = k - 1/2 at 7/3 of a 1000th of the clock: nothing adds up over 10^8 steps.
+#[test]
+fn a_hundred_million_steps_do_not_drift() {
+    let count = 100_000_000_u64;
+    let due = |k: u64| (k * 2 - 1) * 1000 * 3 / (7 * 2);
+    let steps = (1..=count).map(|k| DueStep { cycle: due(k), right: true });
+    let made = compressed(steps, Tolerance::of(Cycles(16)), EntryFormat::Q16, PULSE);
+    let made = made.unwrap_or_else(|cause| panic!("{cause}"));
+    assert!(made.error.greatest <= 16 && made.error.steps == count);
+    // The last step's time in closed form: the sum over the entries.
+    let (mut time, mut all) = (0_u128, 0);
+    for segment in &made.list.segments {
+        let Segment::Steps { count, interval, add, .. } = *segment else { panic!("it never rests") };
+        let n = i128::from(count);
+        time = time.wrapping_add_signed(n * i128::from(interval) + n * (n - 1) / 2 * i128::from(add));
+        all += u64::from(count);
+    }
+    assert_eq!(all, count);
+    assert!((time >> 16).abs_diff(u128::from(due(count))) <= 16);
+    assert!(made.list.segments.len() <= 200, "{}", made.list.segments.len());
+}
+
+#[test]
+fn a_documents_table_has_its_own_bytes_and_its_own_error() {
+    let constant = Move::Constant(Constant { distance: Distance::Steps(500.0), speed: steps_s(3000.0) });
+    let staircase = Move::Staircase(Staircase {
+        distance: Distance::Steps(17_233.0),
+        level: 3,
+        top_speed: steps_s(5000.0),
+        ..Staircase::default()
+    });
+    let sine =
+        Move::SineSegments(SineSegments { amplitude: Distance::Steps(1000.0), ..SineSegments::default() });
+    let q16 = EntryFormat::Q16;
+    // Move, format, entries, the document's bytes, greatest error.
+    let rows = [
+        // 250 to 1200 steps/s at 9000 steps/s^2: 76 rows, whole ticks of a timer of which the clock is a multiple.
+        (trapezoid(300.0, 250.0, 1200.0, 9000.0, TrapezoidMethod::Table), q16, 0),
+        (trapezoid(300.0, 250.0, 1200.0, 9000.0, TrapezoidMethod::Table), EntryFormat::TICKS, 0),
+        (staircase.clone(), q16, 1),
+        (sine.clone(), q16, 1),
+        (constant, q16, 1),
+    ];
+    for (given, format, greatest) in rows {
+        let made = kept(vec![given.clone()], Form::Document, format);
+        assert!(made.error.greatest <= greatest, "{given:?}: {:?}", made.error);
+        assert!(made.document_bytes.is_some_and(|bytes| bytes <= made.bytes()), "{given:?}");
+    }
+    // 16 MHz over a whole rate is mostly no whole number: half a cycle a step adds up.
+    let coarse = kept(vec![staircase], Form::Document, EntryFormat::TICKS);
+    assert!(coarse.error.greatest > 100, "{:?}", coarse.error);
+    // Six segments of six bytes.
+    assert_eq!(kept(vec![sine], Form::Document, q16).document_bytes, Some(36));
+}
+
+#[test]
+fn what_has_no_table_or_no_end_is_refused_with_its_numbers() {
+    let refused =
+        |given: Move, form| stored(&plan(vec![given]), form, EntryFormat::TICKS, PULSE, CLOCK_HZ).err();
+    let curve = Move::Cosine(Cosine { distance: Distance::Steps(100.0), duration_s: 1.0, ramp_s: 0.5 });
+    assert!(matches!(refused(curve, Form::Document), Some(Cause::Conflict { .. })));
+    let quick = Move::Constant(Constant { distance: Distance::Steps(9.0), speed: steps_s(9e6) });
+    for form in [Form::Exact, Form::Compressed(Tolerance::of(Cycles(5)))] {
+        let cause = Cause::StepTooSoon { step: 1, interval: 1, pulse: PULSE };
+        assert_eq!(refused(quick.clone(), form), Some(cause));
+    }
+    let interval = 1 << 16;
+    let cause = Cause::SegmentInterval { step: 0, interval, pulse: PULSE };
+    assert_eq!(refused(quick, Form::Document), Some(cause));
+    let many = Move::Constant(Constant { distance: Distance::Steps(5e6), speed: steps_s(1e5) });
+    let cause = Cause::TooMuch { given: 5e6, most: 4e6, of: "steps" };
+    assert_eq!(refused(many, Form::Exact), Some(cause));
+    let rest = Move::Dwell(Dwell { duration_s: 1.0 });
+    let wide = Tolerance::of(Cycles(MOST_TOLERANCE.0 + 1));
+    let cause = Cause::TooMuch { given: 16_777_217.0, most: 16_777_216.0, of: "cycles of tolerance" };
+    assert_eq!(refused(rest.clone(), Form::Compressed(wide)), Some(cause));
+    let nothing = kept(vec![rest], Form::Compressed(Tolerance::of(MOST_TOLERANCE)), EntryFormat::Q8);
+    assert_eq!((nothing.entries.len(), nothing.error.rms()), (0, 0.0));
+}
