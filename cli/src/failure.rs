@@ -19,6 +19,8 @@ pub(crate) enum Failure {
     NoDriver(PathBuf),
     /// The scenario has no controller of this number, but so many.
     Controller(PathBuf, usize, usize),
+    /// The scenario has no axis of this number, but so many.
+    Axis(PathBuf, usize, usize),
     /// The timing check found this many violations, and none was to be.
     Violations(u64),
     /// So many seeds of a campaign with the framed protocol went wrong, and none was to.
@@ -40,7 +42,8 @@ impl Failure {
             | Self::Link(_)
             | Self::Preset(_)
             | Self::NoDriver(_)
-            | Self::Controller(..) => ExitCode::from(2),
+            | Self::Controller(..)
+            | Self::Axis(..) => ExitCode::from(2),
             Self::Violations(_) | Self::WrongSteps(_) => ExitCode::from(3),
         }
     }
@@ -74,6 +77,14 @@ impl fmt::Display for Failure {
             Self::Controller(path, given, count) => {
                 let most = count - 1;
                 write!(f, "{}: there is no controller {given}; give 0 to {most}", path.display())
+            }
+            Self::Axis(path, given, count) => {
+                let axes = if *count == 1 { "axis" } else { "axes" };
+                write!(
+                    f,
+                    "{}: there is no axis {given}; the scenario has {count} {axes}, from 0",
+                    path.display()
+                )
             }
             Self::Violations(count) => {
                 let s = if *count == 1 { "" } else { "s" };

@@ -12,7 +12,9 @@ mod line;
 mod progress;
 mod run;
 mod scenarios;
+mod sine;
 mod status;
+mod tables;
 mod timing;
 
 use clap::{Parser, Subcommand};
@@ -33,6 +35,12 @@ enum Command {
     /// Sends the same orders over a line that goes wrong in as many ways as there are seeds, and counts
     /// what was executed wrong, twice or not at all, with and without the framed protocol.
     Faults(faults::Arguments),
+    /// Writes the step times of an axis as a table for a firmware (C, AVR, Rust, CSV), or what each form of
+    /// table costs and how far its steps are off.
+    Tables(tables::Arguments),
+    /// Looks for the segments that make a sine with least distortion.
+    #[command(subcommand)]
+    Sine(sine::Command),
     /// Writes the scenario of a share link as JSON.
     Open {
         /// The link, or what stands behind its `#`.
@@ -51,6 +59,8 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Faults(arguments) => faults::faults(&arguments),
+        Command::Tables(arguments) => tables::tables(&arguments),
+        Command::Sine(command) => sine::sine(&command),
         Command::Open { link } => scenarios::open(&link),
         Command::Presets { id } => scenarios::presets(id.as_deref()),
         Command::Drivers => timing::drivers(),

@@ -72,7 +72,10 @@ fn table(form: Form, format: EntryFormat) -> Stored {
         Move::Cosine(Cosine { distance: Distance::Steps(-900.0), duration_s: 0.5, ramp_s: 0.2 }),
         Move::Dwell(Dwell { duration_s: 400.0 }),
         Move::SineSegments(sine),
-        Move::Constant(Constant { distance: Distance::Steps(70_000.0), speed: Speed::StepsPerSecond(100_000.0) }),
+        Move::Constant(Constant {
+            distance: Distance::Steps(70_000.0),
+            speed: Speed::StepsPerSecond(100_000.0),
+        }),
     ];
     let moves = if form == Form::Document { moves.into_iter().skip(1).collect() } else { moves };
     let pulse = PulseTimes { width: Cycles(20), setup: Cycles(5), hold: Cycles(0) };
@@ -83,7 +86,8 @@ fn tables() -> Vec<(String, Stored)> {
     let compressed = Form::Compressed(Tolerance::of(Cycles(400)));
     let mut tables = Vec::new();
     for format in EntryFormat::ALL {
-        for (name, form) in [("exact", Form::Exact), ("document", Form::Document), ("compressed", compressed)] {
+        for (name, form) in [("exact", Form::Exact), ("document", Form::Document), ("compressed", compressed)]
+        {
             tables.push((format!("{name}_{}", format.name), table(form, format)));
         }
     }
@@ -173,7 +177,10 @@ fn compiled_as_rust_a_table_gives_its_steps() {
         fs::write(&file, source(&table, Language::Rust) + WALK_RUST).unwrap();
         let mut call = Command::new(&rustc);
         // The constants that the walk does not need are no fault of the table.
-        call.args(["--edition", "2024", "-D", "warnings", "-A", "dead_code"]).arg(&file).arg("-o").arg(&program);
+        call.args(["--edition", "2024", "-D", "warnings", "-A", "dead_code"])
+            .arg(&file)
+            .arg("-o")
+            .arg(&program);
         compare(&name, call, &program, &table);
     }
 }
@@ -184,8 +191,11 @@ fn a_csv_table_has_a_row_for_each_entry_and_a_head_says_what_it_is() {
     let csv = source(&table, Language::Csv);
     let mut lines = csv.lines();
     assert_eq!(lines.next(), Some("interval_q8,count,add_q8"));
-    let rows: Vec<String> =
-        table.entries.iter().map(|entry| format!("{},{},{}", entry.interval, entry.count, entry.add)).collect();
+    let rows: Vec<String> = table
+        .entries
+        .iter()
+        .map(|entry| format!("{},{},{}", entry.interval, entry.count, entry.add))
+        .collect();
     assert!(lines.eq(rows.iter().map(String::as_str)));
     let head = source(&table, Language::Rust);
     let steps = format!("{} steps in {} entries of 8 bytes (q8)", table.error.steps, table.entries.len());

@@ -24,7 +24,7 @@ pub mod cosine;
 mod due;
 mod mirrored;
 mod plan;
-mod polyline;
+pub(crate) mod polyline;
 mod profile;
 pub mod sine_segments;
 pub mod staircase;

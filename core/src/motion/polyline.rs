@@ -13,14 +13,14 @@ use alloc::vec::Vec;
 use core::f64::consts::PI;
 
 /// Points of the angle in a period; breakpoints lie on them.
-pub(super) const POINTS: u16 = 2048;
+pub(crate) const POINTS: u16 = 2048;
 /// Points of the angle in a quarter.
-pub(super) const QUARTER: u16 = POINTS / 4;
+pub(crate) const QUARTER: u16 = POINTS / 4;
 /// In how many parts a chord is cut to find its greatest deviation; its ends count too.
 const CHORD_PARTS: u16 = 100;
 
 /// y = cos at a point of the angle, 0..=[`QUARTER`].
-pub(super) fn cosine_at(point: u16) -> f64 {
+pub(crate) fn cosine_at(point: u16) -> f64 {
     // The end of the quarter is exactly 0; cos(pi/2) of the rounded pi is not.
     if point == QUARTER { 0.0 } else { libm::cos(PI * f64::from(point) / 1024.0) }
 }
@@ -31,7 +31,7 @@ pub(super) fn cosine_at(point: u16) -> f64 {
 /// From a breakpoint the next point is tried as long as the chord's greatest deviation from the
 /// cosine, over the 101 points that cut it in 100, is at most `d1`; the last that holds is the next
 /// breakpoint, and at least the very next point is.
-pub(super) fn breakpoints(d1: f64) -> Vec<u16> {
+pub(crate) fn breakpoints(d1: f64) -> Vec<u16> {
     let mut points = Vec::from([0]);
     let mut from = 0;
     while from < QUARTER {
@@ -43,6 +43,15 @@ pub(super) fn breakpoints(d1: f64) -> Vec<u16> {
         from = to;
     }
     points
+}
+
+/// The least `d1` above the one of these breakpoints that gives others; None where none does.
+pub(crate) fn next_deviation(breakpoints: &[u16]) -> Option<f64> {
+    let chords = breakpoints.iter().zip(breakpoints.iter().skip(1));
+    chords
+        .filter(|(_, to)| **to < QUARTER)
+        .map(|(from, to)| deviation(*from, to + 1))
+        .reduce(|least, deviation| if deviation < least { deviation } else { least })
 }
 
 /// Greatest |chord - cosine| between two points of the angle, over the 101 that cut the chord.

@@ -1,0 +1,136 @@
+//! `stepscope sine`: which segments make a sine with least distortion, as tables (CSV).
+
+use crate::{failure::Failure, files, progress::Progress};
+use clap::{Args, Subcommand};
+use std::{
+    io::{self, Write},
+    path::PathBuf,
+};
+use stepscope_core::analysis::{
+    sine_optimum::{Freedom, MOST_SEGMENTS, optimum},
+    sine_polyline::{self, Distinct, Row},
+};
+
+/// What `stepscope sine` does.
+#[derive(Subcommand)]
+pub(crate) enum Command {
+    /// What each largest deviation d1 of a range gives: segments, distortion, Euclidean distance.
+    Sweep {
+        #[command(flatten)]
+        range: Range,
+        /// How many values of d1, from one end of the range to the other.
+        #[arg(long, value_name = "N", default_value = "500", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+        points: u32,
+    },
+    /// The d1 with least distortion in a range; all polylines that the range has are compared.
+    Best {
+        #[command(flatten)]
+        range: Range,
+    },
+    /// The vertices of so many segments a quarter that give least distortion, on the curve or free.
+    Vertices {
+        /// Segments of a quarter.
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MOST_SEGMENTS as i64))]
+        segments: u8,
+        /// Vertices may leave the curve.
+        #[arg(long)]
+        free: bool,
+        #[command(flatten)]
+        common: Common,
+    },
+}
+
+/// A range of d1.
+#[derive(Args)]
+pub(crate) struct Range {
+    /// Least d1, in parts of the amplitude.
+    #[arg(long, value_name = "D1", default_value = "0.002", value_parser = part)]
+    from: f64,
+    /// Greatest d1.
+    #[arg(long, value_name = "D1", default_value = "0.06", value_parser = part)]
+    to: f64,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// What all of them take.
+#[derive(Args)]
+pub(crate) struct Common {
+    /// Highest harmonic of the distortion.
+    #[arg(long, value_name = "K", default_value = "399", value_parser = clap::value_parser!(u16).range(3..=9999))]
+    order: u16,
+    /// Where the table goes (`-`: standard output).
+    #[arg(long, value_name = "FILE", default_value = "-")]
+    out: PathBuf,
+}
+
+fn part(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|error| format!("{error}"))?;
+    if (1e-6..=1.0).contains(&value) { Ok(value) } else { Err("give 0.000001 to 1".to_owned()) }
+}
+
+/// Writes the table.
+pub(crate) fn sine(command: &Command) -> Result<(), Failure> {
+    let common = match command {
+        Command::Sweep { range, .. } | Command::Best { range } => &range.common,
+        Command::Vertices { common, .. } => common,
+    };
+    let write = || {
+        let mut out = files::create(&common.out)?;
+        match command {
+            Command::Sweep { range, points } => sweep(range, *points, &mut out)?,
+            Command::Best { range } => {
+                let Range { from, to, common } = range;
+                head(&mut out)?;
+                let best = sine_polyline::best(Distinct::new(*from, *to, common.order));
+                best.iter().try_for_each(|best| row(best, &mut out))?;
+            }
+            Command::Vertices { segments, free, common } => {
+                let freedom = if *free { Freedom::Free } else { Freedom::OnCurve };
+                vertices((*segments).into(), freedom, common.order, &mut out)?;
+            }
+        }
+        out.flush()
+    };
+    write().map_err(|error| Failure::File(common.out.clone(), error))
+}
+
+fn sweep(range: &Range, points: u32, out: &mut impl Write) -> io::Result<()> {
+    head(out)?;
+    let mut progress = Progress::new("sweep", false);
+    let rows = sine_polyline::sweep(range.from, range.to, points, range.common.order);
+    for (done, found) in (1..).zip(rows) {
+        row(&found, out)?;
+        progress.tell(done, points.into());
+    }
+    Ok(())
+}
+
+fn head(out: &mut impl Write) -> io::Result<()> {
+    writeln!(
+        out,
+        "d1,segments,thd_position_percent,thd_speed_percent,thd_acceleration_percent,euclidean_distance"
+    )
+}
+
+fn row(row: &Row, out: &mut impl Write) -> io::Result<()> {
+    let distortion = row.distortion;
+    let [position, speed, acceleration] =
+        [distortion.position, distortion.speed, distortion.acceleration].map(|ratio| ratio * 100.0);
+    writeln!(
+        out,
+        "{},{},{position:.6},{speed:.6},{acceleration:.6},{:.9}",
+        row.d1, row.segments, row.euclidean
+    )
+}
+
+fn vertices(segments: usize, freedom: Freedom, order: u16, out: &mut impl Write) -> io::Result<()> {
+    writeln!(out, "vertex,angle_deg,height,thd_position_percent")?;
+    let found =
+        optimum(segments, freedom, order).ok_or_else(|| io::Error::other("no such number of segments"))?;
+    let percent = found.distortion.position * 100.0;
+    for (index, vertex) in found.vertices.iter().enumerate() {
+        writeln!(out, "{index},{:.9},{:.9},{percent:.6}", vertex.angle.to_degrees(), vertex.height)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,112 @@
+//! `stepscope tables` and `stepscope sine`, as a script sees them.
+#![cfg(not(target_arch = "wasm32"))]
+#![allow(clippy::expect_used, reason = "what is missing fails the test")]
+
+use std::{
+    io::Write,
+    process::{Command, Stdio},
+};
+
+const MOTION: &str = r#"{ "title": "A table", "bus": { "channels": 2 }, "source": { "motion": { "axes": [
+    { "moves": [ { "trapezoid": { "distance": { "steps": 20000 }, "start_speed": { "steps_s": 250 },
+        "top_speed": { "steps_s": 5000 }, "acceleration": { "steps_s2": 9000 }, "method": "table" } } ] },
+    { "moves": [ { "cosine": { "distance": { "steps": -6400 }, "duration_s": 2, "ramp_s": 0.5 } } ] } ] } } }"#;
+
+/// Exit code, standard output, standard error.
+fn stepscope(arguments: &[&str], input: &str) -> (Option<i32>, String, String) {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_stepscope"))
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("it starts");
+    // A command that does not read it may be gone already.
+    let _ = child.stdin.take().expect("it is piped").write_all(input.as_bytes());
+    let output = child.wait_with_output().expect("it ends");
+    let text = |bytes| String::from_utf8(bytes).expect("it is text");
+    (output.status.code(), text(output.stdout), text(output.stderr))
+}
+
+#[test]
+fn a_summary_has_a_row_for_each_axis_form_and_width() {
+    let (code, out, err) = stepscope(&["tables", "-"], MOTION);
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    let rows: Vec<Vec<&str>> = out.lines().map(|line| line.split_whitespace().collect()).collect();
+    assert_eq!(rows.len(), 1 + 2 * 3 * 3);
+    // Steps, and the largest error in us.
+    let of = |row: usize| (rows[row][6], rows[row][7]);
+    assert_eq!((&rows[1][..3], of(1)), (["0", "exact", "q16"].as_slice(), ("20000", "0.000")));
+    // The timer's ticks are whole cycles of the clock.
+    assert_eq!((&rows[6][..3], of(6)), (["0", "document", "ticks"].as_slice(), ("20000", "0.000")));
+    assert!(out.contains("1 document   q16      a move of this kind has no table of its own"), "{out}");
+    let count = |row: usize| rows[row][3].parse::<u32>().expect("a count");
+    assert!(count(7) < 60 && rows[7][..3] == ["0", "compressed", "q16"], "{out}");
+    let tight =
+        stepscope(&["tables", "-", "--form", "compressed", "--error-us", "0.1", "--entries", "q8"], MOTION);
+    assert_eq!(tight.1.lines().count(), 3);
+    assert!(tight.1.lines().nth(1).is_some_and(|line| line.contains(" 0.063 ")), "{}", tight.1);
+}
+
+#[test]
+fn a_table_is_written_in_each_language() {
+    let rows: [(&[&str], &[&str]); 4] = [
+        (&["--format", "c"], &["A table: axis 0, compressed step table", "const uint64_t axis_0_interval["]),
+        (
+            &["--format", "avr", "--entries", "ticks", "--axis", "1"],
+            &["int16_t axis_1_add[", "] PROGMEM = {"],
+        ),
+        (&["--format", "rust", "--name", "x_axis", "--form", "exact"], &["pub static X_AXIS_COUNT: [u32; "]),
+        (&["--format", "csv", "--entries", "q8", "--form", "document"], &["interval_q8,count,add_q8\n"]),
+    ];
+    for (options, parts) in rows {
+        let (code, out, err) = stepscope(&[&["tables", "-"], options].concat(), MOTION);
+        assert_eq!((code, err.as_str()), (Some(0), ""), "{options:?}");
+        for part in parts {
+            assert!(out.contains(part), "{options:?}: {part} in {}", &out[..out.len().min(800)]);
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_a_table_ends_with_2_and_says_why() {
+    let rows: [(&[&str], &str, &str); 5] = [
+        (&["--format", "c", "--axis", "2"], MOTION, "there is no axis 2; the scenario has 2 axes, from 0"),
+        (
+            &["--format", "c", "--axis", "1", "--form", "document"],
+            MOTION,
+            "axes[1]: a move of this kind has no table",
+        ),
+        (&[], r#"{ "source": { "line": {} } }"#, "source: no motion"),
+        (&["--error-us", "-1"], MOTION, "give 0 to 1e9"),
+        (&["--format", "rust", "--error-us", "1e8"], MOTION, "cycles of tolerance"),
+    ];
+    for (options, scenario, part) in rows {
+        let (code, out, err) = stepscope(&[&["tables", "-"], options].concat(), scenario);
+        assert_eq!((code, out.as_str()), (Some(2), ""), "{options:?}: {err}");
+        assert!(err.contains(part), "{options:?}: {err}");
+    }
+}
+
+#[test]
+fn the_sines_tables_have_their_columns_and_the_documents_rows() {
+    let sweep = ["sine", "sweep", "--from", "0.0054", "--to", "0.006", "--points", "2", "--order", "1023"];
+    let (code, out, _) = stepscope(&sweep, "");
+    assert_eq!(code, Some(0));
+    let rows: Vec<Vec<&str>> = out.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(
+        (rows.len(), rows[1][..2].to_vec(), rows[2][..2].to_vec()),
+        (3, vec!["0.0054", "6"], vec!["0.006", "6"])
+    );
+    for (row, percent) in rows[1..].iter().zip([0.269_13, 0.267_10]) {
+        let found: f64 = row[2].parse().expect("a number");
+        assert!((found - percent).abs() < 3e-4, "{row:?}");
+    }
+    let (code, out, _) = stepscope(&["sine", "best", "--from", "0.005", "--to", "0.008"], "");
+    assert_eq!((code, out.lines().count()), (Some(0), 2));
+    let (code, out, _) = stepscope(&["sine", "vertices", "--segments", "6", "--free"], "");
+    assert_eq!((code, out.lines().count()), (Some(0), 8));
+    assert!(out.ends_with(",0.221056\n") || out.contains("90.000000000,0.000000000,0.22"), "{out}");
+    assert_eq!(stepscope(&["sine", "vertices", "--segments", "33"], "").0, Some(2));
+    assert_eq!(stepscope(&["sine", "sweep", "--from", "0"], "").0, Some(2));
+}
