@@ -26,6 +26,9 @@ pub(crate) enum Command {
     Best {
         #[command(flatten)]
         range: Range,
+        /// Of those with so many segments a quarter.
+        #[arg(long, value_name = "N")]
+        segments: Option<usize>,
     },
     /// The vertices of so many segments a quarter that give least distortion, on the curve or free.
     Vertices {
@@ -72,17 +75,19 @@ fn part(text: &str) -> Result<f64, String> {
 /// Writes the table.
 pub(crate) fn sine(command: &Command) -> Result<(), Failure> {
     let common = match command {
-        Command::Sweep { range, .. } | Command::Best { range } => &range.common,
+        Command::Sweep { range, .. } | Command::Best { range, .. } => &range.common,
         Command::Vertices { common, .. } => common,
     };
     let write = || {
         let mut out = files::create(&common.out)?;
         match command {
             Command::Sweep { range, points } => sweep(range, *points, &mut out)?,
-            Command::Best { range } => {
+            Command::Best { range, segments } => {
                 let Range { from, to, common } = range;
                 head(&mut out)?;
-                let best = sine_polyline::best(Distinct::new(*from, *to, common.order));
+                let rows = Distinct::new(*from, *to, common.order);
+                let asked = |row: &Row| segments.is_none_or(|segments| segments == row.segments);
+                let best = sine_polyline::best(rows.filter(asked));
                 best.iter().try_for_each(|best| row(best, &mut out))?;
             }
             Command::Vertices { segments, free, common } => {

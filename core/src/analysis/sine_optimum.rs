@@ -260,8 +260,7 @@ fn solve(mut rows: Vec<Vec<f64>>, right: &[f64]) -> Option<Vec<f64>> {
         let (done, below) = rows.split_at_mut(pivot + 1);
         let row = done.last()?;
         let head = *row.get(pivot)?;
-        // Not-a-number is none either.
-        if !(head > 0.0) {
+        if head.is_nan() || head <= 0.0 {
             return None;
         }
         for other in below {

@@ -78,7 +78,7 @@ impl Source<'_> {
         write!(out, "{mark}")?;
         self.title.chars().take(200).map(plain).try_for_each(|c| out.write_char(c))?;
         let nanos = |cycles: f64| round_half_up(cycles * 1e9 / f64::from(self.clock_hz.max(1)));
-        writeln!(out, "\n{mark}")?;
+        writeln!(out, "\n{}", mark.trim_end())?;
         writeln!(
             out,
             "{mark}{} steps in {} entries of {} bytes ({}), {} bytes in all.",
@@ -96,7 +96,7 @@ impl Source<'_> {
             error.rms(),
             nanos(error.rms())
         )?;
-        writeln!(out, "{mark}")?;
+        writeln!(out, "{}", mark.trim_end())?;
         writeln!(
             out,
             "{mark}Clock: {} Hz. Unit of interval and add: 1/{} cycle.",

@@ -3,12 +3,14 @@
 use core::hint::black_box;
 
 use stepscope_core::{
-    motion::trapezoid::Trapezoid,
+    motion::{AxisPlan, DueStep, plan_axis, trapezoid::Trapezoid},
+    quantise::{Compressed, EntryFormat, Form, Stored, Tolerance, compressed, stored},
     run::Experiment,
-    scenario::Problem,
+    scenario::{Cause, Problem},
+    segment::PulseTimes,
     signal::{Levels, Record},
     trace::Digest,
-    units::Instant,
+    units::{Cycles, Instant},
 };
 
 use crate::motions;
@@ -19,6 +21,9 @@ const START_SPEED: f64 = 250.0;
 const TOP_SPEED: f64 = 1e7;
 const ACCELERATION: f64 = 9000.0;
 const CLOCK_HZ: u32 = 16_000_000;
+/// Largest error of a compressed table: 25 us.
+const TOLERANCE: Tolerance = Tolerance::of(Cycles(400));
+const PULSE: PulseTimes = PulseTimes { width: Cycles(16), setup: Cycles(0), hold: Cycles(0) };
 /// How often the short motion is run at the fast speed, so that it takes a time that can be told.
 const SHORT_RUNS: u64 = 200;
 
@@ -63,6 +68,14 @@ pub enum Kernel {
     Roots,
     /// The cycles of a trapezoid's steps, summed.
     StepTimes,
+    /// As many steps up to 200 000 steps/s and down again, planned and kept as the exact list.
+    Exact,
+    /// The same steps, planned before, compressed to 25 us.
+    Compressed,
+    /// Planned and compressed.
+    PlannedCompressed,
+    /// Planned and compressed into entries of whole cycles.
+    PlannedTicks,
 }
 
 /// What there is to say of a kernel.
@@ -84,7 +97,7 @@ pub struct Facts {
 
 impl Kernel {
     /// All kernels, each yardstick right before what is compared with it.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 23] = [
         Self::Write,
         Self::Copy,
         Self::Stored,
@@ -104,6 +117,10 @@ impl Kernel {
         Self::Fast,
         Self::Roots,
         Self::StepTimes,
+        Self::Exact,
+        Self::Compressed,
+        Self::PlannedCompressed,
+        Self::PlannedTicks,
     ];
 
     /// What there is to say of it.
@@ -154,6 +171,15 @@ impl Kernel {
                 browser_aim: Some(0.6),
                 ..steps
             },
+            Self::Exact => Facts { name: "exact_list", yardstick: Some(Self::Roots), ..steps },
+            Self::Compressed => Facts { name: "compressed", yardstick: Some(Self::Roots), ..steps },
+            // Klipper's step compression has 0.075 of such a loop.
+            Self::PlannedCompressed => {
+                Facts { name: "planned_compressed", yardstick: Some(Self::Roots), aim: Some(0.075), ..steps }
+            }
+            Self::PlannedTicks => {
+                Facts { name: "planned_ticks", yardstick: Some(Self::Roots), aim: Some(0.075), ..steps }
+            }
         }
     }
 }
@@ -173,6 +199,9 @@ pub struct Kernels {
     clock_200: Experiment,
     short: Experiment,
     ramp: Trapezoid,
+    /// The move whose tables are made, and its steps.
+    move_of_tables: AxisPlan,
+    due: Vec<DueStep>,
     /// The steady motion's trace.
     source: Vec<Record>,
     /// What is written: room for the longest trace, every page of it touched before.
@@ -197,6 +226,8 @@ impl Kernels {
         let (steady, varied) = (motions::steady()?, motions::varied()?);
         let mut source = Vec::new();
         steady.run(&mut source);
+        let move_of_tables = plan_axis(&motions::table_axis(STEPS), "axis")?;
+        let due = move_of_tables.due_steps(CLOCK_HZ).collect();
         let most = source.len().max(varied.cost().records as usize);
         Ok(Self {
             steady,
@@ -212,6 +243,8 @@ impl Kernels {
             clock_200: motions::at_clock(200_000_000)?,
             short: motions::short()?,
             ramp: Trapezoid::new(i64::from(STEPS), START_SPEED, TOP_SPEED, ACCELERATION),
+            move_of_tables,
+            due,
             source,
             target: vec![Record { cycle: Instant::NEVER, levels: Levels::RESET }; most],
         })
@@ -224,6 +257,15 @@ impl Kernels {
             Kernel::Write => self.write(),
             Kernel::Roots => roots(black_box(START_SPEED), black_box(ACCELERATION)).to_bits(),
             Kernel::StepTimes => black_box(self.ramp).step_times(CLOCK_HZ).fold(0, u64::wrapping_add),
+            Kernel::Exact => {
+                entries(stored(&self.move_of_tables, Form::Exact, EntryFormat::Q16, PULSE, CLOCK_HZ))
+            }
+            Kernel::Compressed => {
+                let due = black_box(&self.due).iter().copied();
+                segments_of(compressed(due, TOLERANCE, EntryFormat::Q16, PULSE))
+            }
+            Kernel::PlannedCompressed => self.planned(EntryFormat::Q16),
+            Kernel::PlannedTicks => self.planned(EntryFormat::TICKS),
             Kernel::Digest => digest(&self.steady),
             Kernel::VariedDigest => digest(&self.varied),
             Kernel::Stored => store(&self.steady, &mut self.target),
@@ -251,7 +293,12 @@ impl Kernels {
         let result = self.call(kernel);
         let stored = || Some(edges(&self.target));
         let (units, edges) = match kernel {
-            Kernel::Roots | Kernel::StepTimes => (u64::from(STEPS), None),
+            Kernel::Roots
+            | Kernel::StepTimes
+            | Kernel::Exact
+            | Kernel::Compressed
+            | Kernel::PlannedCompressed
+            | Kernel::PlannedTicks => (u64::from(STEPS), None),
             Kernel::Write | Kernel::Copy => (result, None),
             Kernel::Motors16 | Kernel::Motors512 => (result, None),
             Kernel::Digest => return self.work(Kernel::Stored),
@@ -260,6 +307,11 @@ impl Kernels {
             _ => (result, stored()),
         };
         Work { units, edges }
+    }
+
+    /// Segments of the move, planned and compressed.
+    fn planned(&self, format: EntryFormat) -> u64 {
+        segments_of(compressed(black_box(&self.move_of_tables).due_steps(CLOCK_HZ), TOLERANCE, format, PULSE))
     }
 
     fn copy(&mut self) -> u64 {
@@ -275,6 +327,15 @@ impl Kernels {
         self.target.extend(made);
         self.target.len() as u64
     }
+}
+
+/// Entries of a table; none where there is no table, which the tests would see.
+fn entries(table: Result<Stored, Cause>) -> u64 {
+    table.map_or(0, |table| table.entries.len() as u64)
+}
+
+fn segments_of(table: Result<Compressed, Cause>) -> u64 {
+    table.map_or(0, |table| table.list.segments.len() as u64)
 }
 
 fn store(experiment: &Experiment, target: &mut Vec<Record>) -> u64 {
@@ -350,6 +411,16 @@ mod tests {
         }
         let [one, all] = [Kernel::Motors16, Kernel::Motors512].map(|kernel| kernels.work(kernel));
         assert_eq!(all.units, 32 * one.units, "each hears the packets of all");
+    }
+
+    #[test]
+    fn every_table_is_made_and_a_compressed_one_is_short() {
+        let mut kernels = Kernels::new().unwrap();
+        let tables = [Kernel::Exact, Kernel::Compressed, Kernel::PlannedCompressed, Kernel::PlannedTicks];
+        let [exact, before, planned, ticks] = tables.map(|kernel| kernels.call(kernel));
+        assert_eq!(before, planned);
+        // Klipper's step compression makes about 1289 entries of this move.
+        assert!(planned > 0 && planned < ticks && ticks < 1289 && ticks < exact, "{exact} {planned} {ticks}");
     }
 
     #[test]

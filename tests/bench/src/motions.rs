@@ -3,9 +3,9 @@
 use stepscope_core::{
     run::Experiment,
     scenario::{
-        Axis, Bus, ChannelSegments, Constant, Controller, Cosine, DirLine, Distance, Hex, Line, LineScript,
-        Motion, Move, Problem, Protocol, Pulses, Scenario, ScriptedSend, Segment, SegmentLists, Source,
-        Speed, StepSegment,
+        Acceleration, Axis, Bus, ChannelSegments, Constant, Controller, Cosine, DirLine, Distance, Hex, Line,
+        LineScript, Motion, Move, Problem, Protocol, Pulses, Scenario, ScriptedSend, Segment, SegmentLists,
+        Source, Speed, StepSegment, Trapezoid, TrapezoidMethod,
     },
     wire::host::Sent,
 };
@@ -51,6 +51,21 @@ fn four(clock_hz: u32, axes: Vec<Axis>) -> Scenario {
 fn constant(steps: f64, steps_s: f64) -> Axis {
     let (distance, speed) = (Distance::Steps(steps), Speed::StepsPerSecond(steps_s));
     Axis { moves: vec![Move::Constant(Constant { distance, speed })], ..Axis::default() }
+}
+
+/// A move up to 200 000 steps/s with 200 000 steps/s^2, exact to the cycle: whoever compresses step times is measured with
+/// it.
+pub(crate) fn table_axis(steps: u32) -> Axis {
+    let speed = Speed::StepsPerSecond;
+    let trapezoid = Trapezoid {
+        distance: Distance::Steps(steps.into()),
+        start_speed: speed(1.0),
+        top_speed: speed(200_000.0),
+        acceleration: Acceleration::StepsPerSecond2(200_000.0),
+        method: TrapezoidMethod::Exact,
+        ..Trapezoid::default()
+    };
+    Axis { moves: vec![Move::Trapezoid(trapezoid)], ..Axis::default() }
 }
 
 /// An S-curve without a plateau whose peak is `top_speed` steps/s.
