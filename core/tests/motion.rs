@@ -12,8 +12,8 @@ use stepscope_core::{
     motion::{AxisPlan, Curve, Profile, plan_axis, round_half_up},
     quantise::{exact_segments, ticks},
     scenario::{
-        Acceleration, Axis, Constant, Cosine, Direct, Distance, Dwell, Mechanics, Move, ShortMove,
-        SineSegments, Speed, Staircase, Trapezoid, TrapezoidMethod,
+        Acceleration, Axis, Constant, Cosine, Direct, Distance, Dwell, Mechanics, Move, SineSegments, Speed,
+        Staircase, Trapezoid, TrapezoidMethod,
     },
     segment::PulseTimes,
     signal::Record,

@@ -175,7 +175,7 @@ impl Search {
         let bend = slope_left - slope_right;
         let cosines =
             OddCosines::of(before.angle).zip(OddCosines::of(this.angle)).zip(OddCosines::of(after.angle));
-        let count = (usize::from(self.order) + 1) / 2;
+        let count = usize::from(self.order).div_ceil(2);
         // The last vertex's cosine is 0 for every odd k, but not after rounding.
         let last = index + 2 == self.vertices.len();
         cosines
