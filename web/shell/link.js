@@ -4,6 +4,7 @@
  */
 import { byId, say } from "../dom.js";
 import { Dropped } from "../engine/engine.js";
+import { readJson } from "../state/json.js";
 import { held } from "../state/state.js";
 
 /** @typedef {import("../state/types.js").State} State */
@@ -117,7 +118,7 @@ export function createLink({ engine, dispatch, now }) {
     try {
       const answer = await engine.ask("decode_link", fragment);
       if ("error" in answer) return refuse(answer.error);
-      const scenario = JSON.parse(answer.scenario);
+      const scenario = readJson(answer.scenario);
       if (JSON.stringify(scenario) !== JSON.stringify(now().scenario)) {
         dispatch({ type: "replace", scenario, origin: "shared" });
         const name = scenario.title ? `“${scenario.title}”` : "a scenario";

@@ -30,6 +30,7 @@
  *   | {type: "all-signals", on: boolean}
  *   | {type: "controller", controller: number} | {type: "side", side: "spectrum" | "timing"}
  *   | {type: "axis", axis: number} | {type: "unit", unit: State["unit"]}
+ *   | {type: "pane", panes: Partial<import("./types.js").Panes>}
  *   | {type: "view", view: string} | {type: "notice", notice: State["notice"]}} Message
  */
 
@@ -52,6 +53,7 @@ export function initial(scenario) {
     run: { phase: "idle", progress: null, message: "" }, result: null,
     controller: 0, window: null, awaited: null, axis: 0, unit: "steps", hover: null, lit: null,
     cursors: { a: null, b: null }, markers: NO_MARKERS, row: 0, folds: {}, allSignals: false, packet: null, view: "motion", side: null, notice: null,
+    panes: { form: null, rows: null, columns: null, folded: [], largest: null },
   };
 }
 
@@ -90,6 +92,7 @@ export function update(state, message) {
     case "side": return { ...state, side: message.side };
     case "axis": return { ...state, axis: message.axis };
     case "unit": return { ...state, unit: message.unit };
+    case "pane": return { ...state, panes: { ...state.panes, ...message.panes } };
     case "view": return { ...state, view: message.view };
     case "notice": return { ...state, notice: message.notice };
   }

@@ -51,6 +51,9 @@
  * @typedef {{revision: number, summary: Summary, ms: number, controller: number}} Result  As one of its controllers shows it.
  * @typedef {{phase: "idle" | "waiting" | "running" | "done" | "failed", progress: Progress | null, message: string}} Run
  *
+ * @typedef {{form: number | null, rows: [number, number, number] | null, columns: [number, number] | null, folded: string[], largest: string | null}} Panes
+ *   Width of the form in CSS pixels, 0 where it is folded; parts of the views' height and width; null: as the style sheet has it.
+ *
  * @typedef {object} State
  * @property {Scenario} scenario
  * @property {Origin} origin
@@ -79,6 +82,7 @@
  * @property {boolean} allSignals   Also the signals that never change.
  * @property {number | null} packet Selected packet.
  * @property {string} view          Tab on a narrow screen.
+ * @property {Panes} panes          Of a wide screen.
  * @property {"spectrum" | "timing" | null} side  Which of the two shares their place on a wide screen; null: the timing check, if there is one.
  * @property {{text: string, kind: "info" | "error"} | null} notice  About links and the engine.
  */
