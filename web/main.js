@@ -163,9 +163,9 @@ async function start() {
   byId("form").addEventListener("submit", (event) => event.preventDefault());
   const link = createLink(page);
   const retry = () => { ran = -1; judge(); };
-  createKeys();
   views = [createHeader({ presets, cancel, retry, ...page }), createForm({ root: byId("fields"), samples: made, drivers, dispatch }),
     createTabs(page), createPanes(page), createGuide(page), createMotion(page), createPulses(page), createPackets(page), createSpectrum(page), createTiming({ drivers, ...page }), link];
+  createKeys();
   await link.start(loadScenario() !== null);
   if (state.revision === 0) follow(undefined);
 }

@@ -118,8 +118,8 @@ function rowsOf(state, derived) {
   const alone = runsAlone(state.scenario);
   const over = !alone && derived.controllers.some((controller) => controller.axes.some((axis) => axis.peak_speed_steps_s > controller.limit_steps_s));
   return [
-    // How long the last tick of packets or a line script lasts or waits is known only after the run.
-    [sends || "packets" in source ? "Duration at most" : line.protocol === "framed" && !alone ? "Duration, about" : "Duration", si(derived.duration_s, "s"), "", "duration"],
+    // When the last tick of packets or of a line script begins and ends, and what becomes of it on a line that goes wrong, is known only after the run.
+    [line.protocol === "framed" && !alone && !sends ? "Duration, about" : sends || "packets" in source || (!alone && !isQuiet(line)) ? "Duration at most" : "Duration", si(derived.duration_s, "s"), "", "duration"],
     ["Peak rate", axes.length ? plain(peak, "steps/s") : "–", over ? "over" : "", "peak_rate"],
     ...(alone ? [/** @type {[string, string, string, string]} */ (["On the line", "nothing", "", "on_the_line"])] : /** @type {[string, string, string, string][]} */ ([
       [several ? "Tick of controller 1" : "Tick", sends ? si(tick_s, "s") : `${si(tick_s, "s")}, ${count(ticks)} in all`, "", "tick"],
@@ -129,12 +129,16 @@ function rowsOf(state, derived) {
   ];
 }
 
+/** Whether nothing on the line goes wrong. @param {any} line */
+function isQuiet({ glitches, noise }) {
+  return glitches.length === 0 && Object.entries(noise).every(([key, value]) => key === "seed" || value === 0);
+}
+
 /** What goes over the line: how much, or how often. @param {State} state @param {import("../state/types.js").Derived} derived @returns {[string, string, string, string]} */
 function sent({ scenario: { source, line } }, { sends, line_load, controllers }) {
   if ("line" in source) return ["Sends", count(sends), "", "line_script"];
   // How many are repeated on a noisy line only the run tells.
-  const quiet = line.glitches.length === 0 && Object.entries(line.noise).every(([key, value]) => key === "seed" || value === 0);
-  if (line.protocol === "framed") return ["Frames", quiet ? count(sends) : "–", "", "frame"];
+  if (line.protocol === "framed") return ["Frames", isQuiet(line) ? count(sends) : "–", "", "frame"];
   const busy = controllers.filter(({ ticks }) => ticks > 0).length;
   return ["Packets", line_load === null ? "–" : plain(busy / controllers[0].tick_s, "/s"), "", "rate_of_packets"];
 }

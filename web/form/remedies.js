@@ -42,7 +42,7 @@ function timing({ scenario, result }, sheets) {
       if (needed <= bus[key]) continue;
       mended = set(mended, `${path}.${key}`, needed);
       changes.push(`${name} ${count(needed)} cycles${controllers.length ? ` on controller ${index + 1}` : ""}`);
-      wrongs.push(`${name} is ${si(bus[key] / clock, "s")}, ${si(needed / clock, "s")} is needed`);
+      wrongs.push(`${name} is ${si(bus[key] / clock, "s")}, ${count(needed)} cycles (${si(needed / clock, "s")}) would do`);
     }
   }
   if (changes.length === 0) return null;

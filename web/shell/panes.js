@@ -62,12 +62,11 @@ export function createPanes({ dispatch, now }) {
     });
     made.addEventListener("dblclick", () => reset(edge));
     const by = (/** @type {number} */ px) => resize(edge, size(edge) + px);
-    const [less, more] = edge.upright ? ["ArrowLeft", "ArrowRight"] : ["ArrowUp", "ArrowDown"];
     listen(made, "Line between two panes", [
-      { keys: [less], text: "make the pane before it smaller", run: () => by(-STEP_PX) },
-      { keys: [more], text: "make the pane before it larger", run: () => by(STEP_PX) },
-      { keys: [`Shift+${less}`], text: "much smaller", run: () => by(-5 * STEP_PX) },
-      { keys: [`Shift+${more}`], text: "much larger", run: () => by(5 * STEP_PX) },
+      { keys: ["ArrowLeft", "ArrowUp"], text: "make the pane before it smaller", run: () => by(-STEP_PX) },
+      { keys: ["ArrowRight", "ArrowDown"], text: "make the pane before it larger", run: () => by(STEP_PX) },
+      { keys: ["Shift+ArrowLeft", "Shift+ArrowUp"], text: "much smaller", run: () => by(-5 * STEP_PX) },
+      { keys: ["Shift+ArrowRight", "Shift+ArrowDown"], text: "much larger", run: () => by(5 * STEP_PX) },
       { keys: ["Home"], text: "as small as can be", run: () => resize(edge, 0) },
       { keys: ["End"], text: "as large as can be", run: () => resize(edge, 1e6) },
       { keys: ["Enter"], text: "as it was at first; the form: fold or unfold it", run: () => (edge.pane === "form" ? dispatch(change({ form: now().panes.form === 0 ? null : 0 })) : reset(edge)) },
@@ -218,11 +217,11 @@ export function template(rows, columns, isFolded, side, largest) {
   const [packets, other] = [isFolded("packets"), isFolded(side)];
   if (!rows && !columns && !isFolded("motion") && !isFolded("pulses") && !packets && !other) return "";
   const [motion, pulses, low] = rows ?? [0.47, 0.26, 0.27];
-  const tall = (/** @type {boolean} */ folded, /** @type {number} */ part) => (folded ? "auto" : `minmax(0, ${part.toFixed(4)}fr)`);
+  const tall = (/** @type {boolean} */ folded, /** @type {number} */ part) => (folded ? "min-content" : `minmax(0, ${(100 * part).toFixed(2)}fr)`);
   // Of the two beside each other a folded one lies under the other.
-  const lowest = packets && other ? '"packets packets" auto "spectrum spectrum" auto'
-    : packets ? `"spectrum spectrum" ${tall(false, low)} "packets packets" auto`
-      : other ? `"packets packets" ${tall(false, low)} "spectrum spectrum" auto`
+  const lowest = packets && other ? '"packets packets" min-content "spectrum spectrum" min-content'
+    : packets ? `"spectrum spectrum" ${tall(false, low)} "packets packets" min-content`
+      : other ? `"packets packets" ${tall(false, low)} "spectrum spectrum" min-content`
         : `"packets spectrum" ${tall(false, low)}`;
   const [left, right] = columns ?? [6 / 11, 5 / 11];
   return `"motion motion" ${tall(isFolded("motion"), motion)} "pulses pulses" ${tall(isFolded("pulses"), pulses)} ${lowest} / minmax(0, ${left.toFixed(4)}fr) minmax(0, ${right.toFixed(4)}fr)`;
