@@ -48,7 +48,7 @@ impl Session {
     /// has loaded.
     pub(crate) async fn complaints(&self) -> Result<Vec<String>> {
         if self.bench.browser != Browser::Chromium {
-            let mut heard: Vec<String> = self.eval("globalThis.heard ?? []").await?;
+            let mut heard: Vec<String> = self.eval("window.heard ?? []").await?;
             heard.extend(self.bench.heard());
             return Ok(heard);
         }
@@ -73,8 +73,8 @@ impl Session {
 }
 
 const LISTEN: &str = "
-    globalThis.heard = [];
-    const say = (text) => globalThis.heard.push(String(text));
+    window.heard = [];
+    const say = (text) => window.heard.push(String(text));
     addEventListener('error', (event) => say(event.message ?? event.target?.src));
     addEventListener('unhandledrejection', (event) => say(event.reason));
     document.addEventListener('securitypolicyviolation', (event) => say(`${event.violatedDirective}: ${event.blockedURI}`));

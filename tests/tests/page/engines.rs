@@ -74,7 +74,7 @@ const ENGINE: &str = "
             failed: (_, message) => end(message), crashed: (message) => end(message),
         });
         let number = 0;
-        globalThis.digests = (json) => new Promise((resolve) => { end = resolve; engine.run(number++, json); });
+        window.digests = (json) => new Promise((resolve) => { end = resolve; engine.run(number++, json); });
         return true;
     });";
 

@@ -173,7 +173,9 @@ impl Session {
         self.unfold(path).await?;
         let field = self.find(&field(path)).await?;
         field.click().await?;
-        Ok(field.send_keys(&format!("{CONTROL}a{RELEASE}{text}")).await?)
+        // Keys that are held are lifted at the end of a command; lifting them within one is not every driver's art.
+        field.send_keys(&format!("{CONTROL}a")).await?;
+        Ok(field.send_keys(text).await?)
     }
 
     /// Chooses an option of the field of a path, as a visitor's click does.
