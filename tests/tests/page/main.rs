@@ -23,6 +23,7 @@
 //! | the others | the tests |
 #![cfg(not(target_arch = "wasm32"))]
 
+mod axe;
 mod bench;
 mod browser;
 mod controllers;
@@ -34,11 +35,15 @@ mod engines;
 mod framed;
 mod hostile_links;
 mod keeping;
+mod keyboard;
 mod links;
 mod native;
+mod pictures;
 mod pixels;
 mod presets;
+mod reflow;
 mod screens;
 mod session;
+mod state;
 mod time_axis;
 mod timing;
