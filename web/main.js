@@ -9,7 +9,7 @@ import { createForm } from "./form/form.js";
 import { createHeader, createTheme } from "./shell/header.js";
 import { createLink } from "./shell/link.js";
 import { createMotion } from "./views/motion.js";
-import { createPackets } from "./views/packets.js";
+import { createPackets } from "./views/packets/packets.js";
 import { load as loadCharts } from "./time/plot.js";
 import { createPulses } from "./views/pulses/pulses.js";
 import { SOURCES } from "./form/sources.js";

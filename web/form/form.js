@@ -78,8 +78,8 @@ export function createForm({ root, samples, drivers, dispatch }) {
     const judged = held(next) !== "unjudged";
     if (judged && (before?.judgement !== next.judgement || before?.drafts !== next.drafts)) {
       showProblems(next, kit.controls, kit.groups);
-      showDerived(next, root);
     }
+    if (judged && (before?.judgement !== next.judgement || before?.drafts !== next.drafts || before?.result !== next.result)) showDerived(next, root);
   }
 
   return { render };

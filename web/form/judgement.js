@@ -114,11 +114,12 @@ export function showDerived(state, form) {
 }
 
 /** What goes over the line: how much, or how often. @param {State} state @param {import("../state/types.js").Derived} derived */
-function sent({ scenario: { source, line } }, { sends, line_load, controllers }) {
+function sent({ scenario: { source, line }, result, revision }, { sends, line_load, controllers }) {
   if ("line" in source) return ["Sends", count(sends), ""];
-  // How many are repeated on a noisy line only the run tells.
+  // How many are repeated on a noisy line only the run tells; a controller that dies is asked everything again.
   const quiet = line.glitches.length === 0 && Object.entries(line.noise).every(([key, value]) => key === "seed" || value === 0);
-  if (line.protocol === "framed") return ["Frames", quiet ? count(sends) : "–", ""];
+  const ran = result?.revision === revision ? result.summary.host : null;
+  if (line.protocol === "framed") return ["Frames", ran ? count(ran.frames) : quiet ? count(sends) : line.noise.deaths_ppm > 0 ? "after the run" : `at most ${count(sends)}`, ""];
   const busy = controllers.filter(({ ticks }) => ticks > 0).length;
   return ["Packets", line_load === null ? "–" : plain(busy / controllers[0].tick_s, "/s"), ""];
 }

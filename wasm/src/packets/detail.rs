@@ -25,7 +25,7 @@ const BYTE_BITS: u64 = 10;
 struct Detail {
     #[serde(flatten)]
     row: Row,
-    fields: Vec<FieldRow>,
+    layout: Vec<FieldRow>,
     /// `none`, `missing`, `holds` or `fails`.
     check: &'static str,
     check_found: Option<String>,
@@ -53,7 +53,7 @@ struct FieldRow {
 #[wasm_bindgen]
 impl Simulation {
     /// Row `index` with its fields, its check and the times around it; null where there is none. A row as
-    /// in `packets`, and `{fields: [{name, from, until, value}], check, check_found, check_expected,
+    /// in `packets`, and `{layout: [{name, from, until, value}], check, check_found, check_expected,
     /// byte_cycles, byte_length, gap_cycles, drive_cycles, turnaround_cycles, answers}`.
     ///
     /// # Errors
@@ -83,7 +83,7 @@ impl Simulation {
         let bit = line.own.bit().0;
         object(&Detail {
             row,
-            fields: meaning
+            layout: meaning
                 .fields
                 .into_iter()
                 .map(|field| FieldRow {
