@@ -12,7 +12,7 @@ import { createKeys } from "./help/keys.js";
 import { createHeader, createTheme } from "./shell/header.js";
 import { createLink } from "./shell/link.js";
 import { createMotion } from "./views/motion.js";
-import { createPackets } from "./views/packets.js";
+import { createPackets } from "./views/packets/packets.js";
 import { load as loadCharts } from "./time/plot.js";
 import { createPanes } from "./shell/panes.js";
 import { createPulses } from "./views/pulses/pulses.js";

@@ -31,10 +31,15 @@
  *   made_speed_min: Float64Array, made_speed_max: Float64Array}} MotionColumns
  * @typedef {{high: Uint32Array, low: Uint32Array, last: Uint32Array}} PulseColumns
  * @typedef {{index: number, kind: "packet" | "frame" | "reply" | "collision", start_cycle: number, end_cycle: number,
- *   hex: string, fields: string, outcome: string, mark: "good" | "foreign" | "repeated" | "bad",
- *   tick_start_cycle: number | null, tick_end_cycle: number | null}} PacketRow
+ *   line_end_cycle: number, start: string, gap: string, hex: string, fields: string, outcome: string, short: string,
+ *   mark: "good" | "foreign" | "repeated" | "bad", tick_start_cycle: number | null, tick_end_cycle: number | null,
+ *   position: number, rank: number | null}} PacketRow  Position among the rows on show, rank among those that the search finds: of the table alone.
+ * @typedef {PacketRow & {layout: {name: string, from: number, until: number, value: string}[],
+ *   check: "none" | "missing" | "holds" | "fails", check_found: string | null, check_expected: string | null,
+ *   byte_cycles: number[], byte_length: number, gap_cycles: number | null, drive_cycles: number | null,
+ *   turnaround_cycles: number | null, answers: number | null}} PacketDetail  The layout: each field with its first byte and the one after its last.
  * @typedef {{start_cycle: number, end_cycle: number, row: number | null, fields: string}} TickRow
- * @typedef {{total: number, rows: PacketRow[]}} PacketPage
+ * @typedef {{total: number, shown: number, matches: number, unit: string, rows: PacketRow[]}} PacketPage
  * @typedef {{cycle: number, channel: number, rule: string, measured_cycles: number, required_cycles: number}} Violation
  * @typedef {{rule: string, required_ns: number, required_cycles: number, violations: number, by_channel: number[],
  *   least: {measured_cycles: number, cycle: number, channel: number} | null}} RuleResult
@@ -81,6 +86,7 @@
  * @property {{[channel: number]: boolean}} folds  Channels that the visitor folded or unfolded.
  * @property {boolean} allSignals   Also the signals that never change.
  * @property {number | null} packet Selected packet.
+ * @property {{text: string, kind: string, address: number | null, outcome: string, only: boolean}} filter  Of the packets: what is searched for, and which rows are shown; `only` leaves out what the search does not find.
  * @property {string} view          Tab on a narrow screen.
  * @property {Panes} panes          Of a wide screen.
  * @property {"spectrum" | "timing" | null} side  Which of the two shares their place on a wide screen; null: the timing check, if there is one.

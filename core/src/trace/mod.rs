@@ -3,6 +3,8 @@
 
 mod columns;
 mod digest;
+mod fields;
+mod heard;
 mod log;
 mod recording;
 mod steps;
@@ -12,6 +14,8 @@ mod vcd;
 
 pub use columns::{Columns, columns};
 pub use digest::Digest;
+pub use fields::{Check, Field, Meaning, Reading};
+pub use heard::heard;
 pub use log::{LoggedPacket, LoggedTick, PacketLog, Verdict};
 pub use recording::Recording;
 pub use steps::{Step, steps};
