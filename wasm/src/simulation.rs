@@ -12,7 +12,7 @@ use stepscope_core::{
     run::{Experiment, Run},
     scenario::{Config, Scenario},
     signal::{Event, Levels, Record, Sink},
-    trace::{Recording, Step, columns, steps},
+    trace::{Against, Recording, Step, columns, steps},
     units::Instant,
 };
 use wasm_bindgen::prelude::*;
@@ -30,6 +30,8 @@ pub struct Simulation {
     pub(crate) kept: Vec<Kept>,
     /// Index in `kept` of the controller that the views look at.
     pub(crate) looked_at: usize,
+    /// A controller's index, and how its trace stands to a file that is being read.
+    pub(crate) against: Option<(usize, Against)>,
 }
 
 /// What is kept of one controller.
@@ -105,7 +107,7 @@ impl Simulation {
             steps: vec![None; usize::from(config.channels())],
         };
         let kept = experiment.configs().map(kept).collect();
-        Ok(Self { scenario, experiment, run, kept, looked_at: 0 })
+        Ok(Self { scenario, experiment, run, kept, looked_at: 0, against: None })
     }
 
     /// Runs on until one controller has made about `max_records` more records: `{done, cycle, end_cycle,
