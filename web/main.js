@@ -6,8 +6,12 @@ import { byId } from "./dom.js";
 import { Engine, Dropped, unlessDropped } from "./engine/engine.js";
 import { SAMPLES } from "./form/fields.js";
 import { createForm } from "./form/form.js";
+import { createExports } from "./shell/exports.js";
 import { createHeader, createTheme } from "./shell/header.js";
+import { createImports } from "./shell/imports.js";
 import { createLink } from "./shell/link.js";
+import { createNotices } from "./shell/notices.js";
+import { createShare } from "./shell/share.js";
 import { createMotion } from "./views/motion.js";
 import { createPackets } from "./views/packets.js";
 import { load as loadCharts } from "./time/plot.js";
@@ -155,9 +159,11 @@ async function start() {
   // Nothing is ever sent; Enter in a field must not try to.
   byId("form").addEventListener("submit", (event) => event.preventDefault());
   const link = createLink(page);
+  createImports({ openLink: link.openLink, ...page });
   const retry = () => { ran = -1; judge(); };
   views = [createHeader({ presets, cancel, retry, ...page }), createForm({ root: byId("fields"), samples: made, drivers, dispatch }),
-    createTabs(page), createMotion(page), createPulses(page), createPackets(page), createSpectrum(page), createTiming({ drivers, ...page }), link];
+    createTabs(page), createMotion(page), createPulses(page), createPackets(page), createSpectrum(page), createTiming({ drivers, ...page }),
+    createNotices(page), createShare({ shared: link.shared, ...page }), createExports(page), link];
   await link.start(loadScenario() !== null);
   if (state.revision === 0) follow(undefined);
 }

@@ -27,7 +27,7 @@ fn a_table_of_packets_sent_again_gives_the_same_trace() {
         for index in 0..recording.packets.rows().len() {
             write_packets_row(&mut table, &recording.packets, index).expect("a string takes it");
         }
-        let script = LineScript::recorded(&table).expect(id);
+        let script = LineScript::recorded(&table, scenario.clock_hz).expect(id);
         let (_, again) = recorded(&replayed(scenario, script));
         assert_eq!(again.digest.value(), recording.digest.value(), "{id}");
     }

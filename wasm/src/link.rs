@@ -52,7 +52,8 @@ pub fn link_with(link: String, name: &str, text: &str) -> String {
 #[wasm_bindgen]
 pub fn replay(table: &str, json: &str) -> Result<String, JsError> {
     let (scenario, _) = Scenario::from_json_lenient(json);
-    Ok(replayed(scenario, LineScript::recorded(table)?).to_json())
+    let script = LineScript::recorded(table, scenario.clock_hz)?;
+    Ok(replayed(scenario, script).to_json())
 }
 
 /// The scenario of a fragment: `{scenario, over_budget, message}`, or `{error}` with what is wrong

@@ -1,7 +1,7 @@
 //! Packets that were recorded, as a table, made into a line script that sends them again.
 //!
-//! The table is the one that a run exports (`start_cycle` and `bytes` among its columns, in any order;
-//! others are left alone). Rows whose `kind` is `reply` or `collision` came from a controller and are not
+//! The table is one that a run exports: `bytes`, and `start_cycle` or `start_s`, are among its columns, in
+//! any order; others are left alone. Rows whose `kind` is `reply` or `collision` came from a controller and are not
 //! sent. A packet's bytes go back to back from its start bit on; pauses within it are not in the table.
 
 use super::{Hex, LineScript, ScriptedSend};
@@ -36,12 +36,12 @@ impl fmt::Display for BadTable {
 impl core::error::Error for BadTable {}
 
 impl LineScript {
-    /// The bytes of a recorded table, each packet at its time.
+    /// The bytes of a recorded table, each packet at its time; times in s become cycles of `clock_hz`.
     ///
     /// # Errors
     /// [`BadTable`] with the first line that cannot be used. Whether the packets follow one another
     /// without overlapping is judged with the scenario that they become a part of.
-    pub fn recorded(table: &str) -> Result<Self, BadTable> {
+    pub fn recorded(table: &str, clock_hz: u32) -> Result<Self, BadTable> {
         let mut rows = Rows { text: table.trim_start_matches('\u{feff}'), at: 0, reader: Reader::new() };
         if table.len() > MOST_TABLE_BYTES {
             return Err(
@@ -53,10 +53,9 @@ impl LineScript {
         let missing = |name: &str| {
             rows.bad(0, format!("there is no column {name}; a table of packets has start_cycle and bytes"))
         };
-        let (start, bytes) = (
-            place("start_cycle").ok_or_else(|| missing("start_cycle"))?,
-            place("bytes").ok_or_else(|| missing("bytes"))?,
-        );
+        let start = place("start_cycle").map(|at| (at, false)).or(place("start_s").map(|at| (at, true)));
+        let (start, in_seconds) = start.ok_or_else(|| missing("start_cycle"))?;
+        let bytes = place("bytes").ok_or_else(|| missing("bytes"))?;
         let kind = place("kind");
         let mut sends = Vec::new();
         while let Some((at, row)) = rows.next() {
@@ -65,11 +64,14 @@ impl LineScript {
                 continue;
             }
             let given = field(start);
-            let start_cycle = given.parse().ok().filter(|cycle| *cycle > 0).ok_or_else(|| {
-                rows.bad(
-                    at,
-                    format!("start_cycle is “{}”; give a whole number of cycles from 1", short(given)),
-                )
+            let start_cycle = if in_seconds { cycle_at(given, clock_hz) } else { given.parse().ok() };
+            let start_cycle = start_cycle.filter(|cycle| *cycle > 0).ok_or_else(|| {
+                let (name, allowed) = if in_seconds {
+                    ("start_s", "a time in s after reset")
+                } else {
+                    ("start_cycle", "a whole number of cycles from 1")
+                };
+                rows.bad(at, format!("{name} is “{}”; give {allowed}", short(given)))
             })?;
             let given = field(bytes);
             let hex: String = given.split_whitespace().collect();
@@ -85,6 +87,13 @@ impl LineScript {
         }
         Ok(Self { sends })
     }
+}
+
+/// The cycle at a time in s.
+fn cycle_at(seconds: &str, clock_hz: u32) -> Option<u64> {
+    let cycle = libm::round(seconds.parse::<f64>().ok()? * f64::from(clock_hz));
+    // What is no number compares with nothing.
+    (cycle >= 1.0 && cycle < 9e15).then_some(cycle as u64)
 }
 
 /// The beginning of a text that a message quotes.
@@ -143,7 +152,7 @@ mod tests {
     use super::*;
 
     fn sends(table: &str) -> Result<Vec<(u64, Vec<u8>)>, String> {
-        let script = LineScript::recorded(table).map_err(|bad| bad.to_string())?;
+        let script = LineScript::recorded(table, 16_000_000).map_err(|bad| bad.to_string())?;
         Ok(script.sends.into_iter().map(|send| (send.start_cycle, send.bytes.0)).collect())
     }
 
@@ -153,6 +162,7 @@ mod tests {
                      packet,10,queued,8a05\r\nreply,20,\"ACK TICKS: idle, 3 free\",00\r\n\r\nframe,30,\"a\nb\",\"FF 00\"\r\n";
         assert_eq!(sends(table), Ok(vec![(10, vec![0x8a, 5]), (30, vec![0xff, 0])]));
         assert_eq!(sends("start_cycle,bytes\n7,01"), Ok(vec![(7, vec![1])]), "no kind, no line's end");
+        assert_eq!(sends("bytes,start_s\n01,0.0000015\n"), Ok(vec![(24, vec![1])]), "24 cycles of 16 MHz");
         let long = format!("bytes,start_cycle\n{},1\n", "ab".repeat(3000));
         assert_eq!(sends(&long), Ok(vec![(1, vec![0xab; 3000])]));
         let wide = format!("{}bytes,start_cycle\n{}ab,1\n", "x,".repeat(100), "x,".repeat(100));
@@ -167,6 +177,8 @@ mod tests {
             ("start_cycle,bytes\n", "line 2: the table has no packets"),
             ("start_cycle,bytes\n1,00\n\n0,00\n", "line 4: start_cycle is “0”"),
             ("start_cycle,bytes\r\n1,00\r\n2.5,00\r\n", "line 3: start_cycle is “2.5”"),
+            ("start_s,bytes\nNaN,00\n", "line 2: start_s is “NaN”"),
+            ("start_s,bytes\n1e300,00\n", "line 2: start_s is “1e300”"),
             ("start_cycle,bytes\n1,0\n", "line 2: bytes are “0”"),
             ("start_cycle,bytes\n1,0g\n", "line 2: bytes are “0g”"),
             ("start_cycle,bytes\n1\n2\n", "line 4: the table has no packets"),

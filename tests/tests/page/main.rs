@@ -24,6 +24,8 @@ mod controllers;
 mod drawing;
 mod editing;
 mod engine;
+mod exchange;
+mod exports;
 mod framed;
 mod hostile_links;
 mod keeping;
