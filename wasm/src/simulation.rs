@@ -15,7 +15,7 @@ use stepscope_core::{
     run::{Experiment, Run},
     scenario::{Config, Scenario},
     signal::{Event, Levels, Record, Sink},
-    trace::{Recording, Step, columns, steps},
+    trace::{Against, Recording, Step, columns, steps},
     units::Instant,
 };
 use wasm_bindgen::prelude::*;
@@ -35,6 +35,8 @@ pub struct Simulation {
     pub(crate) looked_at: usize,
     /// Which rows of its packets the table shows.
     pub(crate) filter: Filter,
+    /// A controller's index, and how its trace stands to a file that is being read.
+    pub(crate) against: Option<(usize, Against)>,
 }
 
 /// What is kept of one controller.
@@ -110,7 +112,7 @@ impl Simulation {
             steps: vec![None; usize::from(config.channels())],
         };
         let kept = experiment.configs().map(kept).collect();
-        Ok(Self { scenario, experiment, run, kept, looked_at: 0, filter: Filter::default() })
+        Ok(Self { scenario, experiment, run, kept, looked_at: 0, filter: Filter::default(), against: None })
     }
 
     /// Runs on until one controller has made about `max_records` more records: `{done, cycle, end_cycle,

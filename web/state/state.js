@@ -20,7 +20,8 @@
  *   | {type: "done", revision: number, summary: import("./types.js").Summary, ms: number}
  *   | {type: "failed", message: string}
  *   | {type: "window", window: Span | null}
- *   | {type: "open", window: Span}
+ *   | {type: "open", view: import("./types.js").ViewPart}
+ *   | {type: "seen", text: string} | {type: "compared", text: string, verdict: import("./types.js").Verdict}
  *   | {type: "hover", cycle: number | null}
  *   | {type: "light", lit: State["lit"]}
  *   | {type: "marker", digit: number, cycle: number | null}
@@ -60,6 +61,7 @@ export function initial(scenario) {
     packet: null, filter: NO_FILTER,
     view: "motion", side: null, notice: null,
     panes: { form: null, rows: null, columns: null, folded: [], largest: null },
+    seen: null,
   };
 }
 
@@ -84,7 +86,9 @@ export function update(state, message) {
     case "failed": return { ...state, run: { phase: "failed", progress: null, message: message.message } };
     case "window": return { ...state, window: message.window && clamp(message.window, endOf(state)) };
     case "open":
-      return state.result?.revision === state.revision ? { ...state, window: within(message.window, endOf(state)) } : { ...state, awaited: message.window };
+      return state.result?.revision === state.revision ? opened(state, message.view) : { ...state, awaited: message.view };
+    case "seen": return { ...state, seen: { text: message.text, verdict: null } };
+    case "compared": return state.seen?.text === message.text ? { ...state, seen: { ...state.seen, verdict: message.verdict } } : state;
     case "hover": return state.hover === message.cycle ? state : { ...state, hover: message.cycle };
     case "light": return sameLit(state.lit, message.lit) ? state : { ...state, lit: message.lit };
     case "marker": return { ...state, markers: state.markers.with(message.digit, message.cycle) };
@@ -136,7 +140,7 @@ function remember(state) {
 /** @param {State} state @param {Scenario} scenario @param {Origin} origin @returns {State} */
 function changed(state, scenario, origin) {
   const run = { .../** @type {const} */ ({ phase: "waiting", progress: null, message: "" }) };
-  return { ...state, scenario, origin, run, revision: state.revision + 1, drafts: {}, edited: null, notice: null, awaited: null };
+  return { ...state, scenario, origin, run, revision: state.revision + 1, drafts: {}, edited: null, notice: null, awaited: null, seen: null };
 }
 
 /** @param {State} state @param {"past" | "future"} from @param {"past" | "future"} to @returns {State} */
@@ -164,10 +168,19 @@ function done(state, { revision, summary, ms }) {
   // An old window over a run of another length or clock would show another time.
   const same = state.result?.summary.clock_hz === summary.clock_hz;
   const kept = state.window && same ? clamp(state.window, summary.end_cycle) : null;
-  const window = state.awaited ? within(state.awaited, summary.end_cycle) : kept;
   const inside = (/** @type {number | null} */ c) => (c !== null && c <= summary.end_cycle && same ? c : null);
-  return { ...next, window, awaited: null,
+  const here = { ...next, window: kept, seen: state.seen && { ...state.seen, verdict: null },
     cursors: { a: inside(state.cursors.a), b: inside(state.cursors.b) }, markers: state.markers.map(inside), lit: null };
+  return state.awaited ? opened(here, state.awaited) : here;
+}
+
+/** Shows what a link asks to be shown, as far as the run has it. @param {State} state @param {import("./types.js").ViewPart} view @returns {State} */
+function opened(state, view) {
+  const last = endOf(state);
+  const inside = (/** @type {number | undefined} */ cycle) => (cycle !== undefined && cycle <= last ? cycle : null);
+  const looked = lookAt(state, view.controller ?? 0);
+  return { ...looked, awaited: null, window: view.window ? within(view.window, last) : null, cursors: { a: inside(view.a), b: inside(view.b) },
+    axis: Math.min(view.axis ?? 0, (lookedAt(looked)?.channels ?? 1) - 1), view: view.view ?? state.view, side: view.side ?? null, unit: view.unit ?? "steps" };
 }
 
 /** The result as another of its controllers shows it: for the views another result. @param {State} state @param {number} controller @returns {State} */

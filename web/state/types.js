@@ -58,6 +58,12 @@
  *
  * @typedef {{form: number | null, rows: [number, number, number] | null, columns: [number, number] | null, folded: string[], largest: string | null}} Panes
  *   Width of the form in CSS pixels, 0 where it is folded; parts of the views' height and width; null: as the style sheet has it.
+ * @typedef {{start: number, end: number, controller: number, cycle: number}} Place  A time that a message can show, in cycles.
+ * @typedef {{edge: number, cycle: number}} Mark
+ * @typedef {{error: string | null, same: boolean, edges: number, version: string | null, own_version: string, controller: number,
+ *   after: Mark | null, until: Mark | null, shorter: "this" | "other" | null}} Verdict  How a run stands to a link's sender's.
+ * @typedef {{window?: Span, controller?: number, axis?: number, a?: number, b?: number, view?: string, side?: "spectrum" | "timing",
+ *   unit?: "steps" | "mm" | "deg"}} ViewPart  What a link says of the view; what it leaves out is as on a fresh page.
  *
  * @typedef {object} State
  * @property {Scenario} scenario
@@ -75,7 +81,8 @@
  * @property {Result | null} result The last good one.
  * @property {number} controller    The one that the views look at, as long as there is one of this number.
  * @property {Span | null} window   Shown part of the time axis; null shows the whole run.
- * @property {Span | null} awaited  Part that a link asks for, until there is a result to show it of.
+ * @property {ViewPart | null} awaited  What a link asks to be shown, until there is a result to show it of.
+ * @property {{text: string, verdict: Verdict | null} | null} seen  The run that a link's sender saw (its part `d`), and how this one stands to it.
  * @property {number} axis          Axis of the motion view.
  * @property {"steps" | "mm" | "deg"} unit  Unit of the motion view.
  * @property {number | null} hover  Cycle under the pointer.
@@ -90,6 +97,6 @@
  * @property {string} view          Tab on a narrow screen.
  * @property {Panes} panes          Of a wide screen.
  * @property {"spectrum" | "timing" | null} side  Which of the two shares their place on a wide screen; null: the timing check, if there is one.
- * @property {{text: string, kind: "info" | "error"} | null} notice  About links and the engine.
+ * @property {{text: string, kind: "info" | "error", place?: Place | null} | null} notice  About links, files and the engine.
  */
 export {};

@@ -30,6 +30,21 @@ pub enum Verdict {
     Open,
 }
 
+impl Verdict {
+    /// What the row is, in a word: `packet`, `frame`, `reply`, `collision`, or `open` where the run ended
+    /// before it was known.
+    #[must_use]
+    pub const fn kind(self) -> &'static str {
+        match self {
+            Self::Packet(_) | Self::Short | Self::Framing | Self::Ignored => "packet",
+            Self::Frame(_) => "frame",
+            Self::Reply(_) => "reply",
+            Self::Collision => "collision",
+            Self::Open => "open",
+        }
+    }
+}
+
 impl fmt::Display for Verdict {
     /// What became of the packet, as the page and the command's tables say it.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

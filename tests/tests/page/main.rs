@@ -32,6 +32,8 @@ mod drawing;
 mod editing;
 mod engine;
 mod engines;
+mod exchange;
+mod exports;
 mod framed;
 mod hostile_links;
 mod keeping;
