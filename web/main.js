@@ -9,10 +9,14 @@ import { createForm } from "./form/form.js";
 import { createCard } from "./help/card.js";
 import { createGuide, offerGuide } from "./help/guide.js";
 import { createKeys } from "./help/keys.js";
+import { createExports } from "./shell/exports.js";
 import { createHeader, createTheme } from "./shell/header.js";
+import { createImports } from "./shell/imports.js";
 import { createLink } from "./shell/link.js";
+import { createNotices } from "./shell/notices.js";
+import { createShare } from "./shell/share.js";
 import { createMotion } from "./views/motion.js";
-import { createPackets } from "./views/packets.js";
+import { createPackets } from "./views/packets/packets.js";
 import { load as loadCharts } from "./time/plot.js";
 import { createPanes } from "./shell/panes.js";
 import { createPulses } from "./views/pulses/pulses.js";
@@ -162,10 +166,13 @@ async function start() {
   // Nothing is ever sent; Enter in a field must not try to.
   byId("form").addEventListener("submit", (event) => event.preventDefault());
   const link = createLink(page);
+  createImports({ openLink: link.openLink, ...page });
   const retry = () => { ran = -1; judge(); };
   views = [createHeader({ presets, cancel, retry, ...page }), createForm({ root: byId("fields"), samples: made, drivers, dispatch }),
-    createTabs(page), createPanes(page), createGuide(page), createMotion(page), createPulses(page), createPackets(page), createSpectrum(page), createTiming({ drivers, ...page }), link];
+    createTabs(page), createPanes(page), createGuide(page), createMotion(page), createPulses(page), createPackets(page), createSpectrum(page), createTiming({ drivers, ...page }),
+    createNotices(page), createShare({ shared: link.shared, ...page }), createExports(page), link];
   createKeys();
+
   await link.start(loadScenario() !== null);
   if (state.revision === 0) follow(undefined);
 }

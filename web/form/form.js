@@ -83,11 +83,11 @@ export function createForm({ root, samples, drivers, dispatch }) {
     const judged = held(next) !== "unjudged";
     if (judged && (before?.judgement !== next.judgement || before?.drafts !== next.drafts)) {
       showProblems(next, kit.controls, kit.groups);
-      showDerived(next, root);
     }
     if (before?.result !== next.result || before?.judgement !== next.judgement || before?.scenario !== next.scenario || before?.drafts !== next.drafts) {
       showRemedy(next, drivers, (scenario) => kit.put("", scenario));
     }
+    if (judged && (before?.judgement !== next.judgement || before?.drafts !== next.drafts || before?.result !== next.result)) showDerived(next, root);
   }
 
   return { render };
