@@ -5,9 +5,11 @@
 
 mod charts;
 mod convert;
+mod decoder;
 mod judge;
 mod link;
 mod packets;
+mod pulses;
 mod simulation;
 mod spectrum;
 mod summary;

@@ -10,6 +10,7 @@ use stepscope_core::{
     scenario::{Config, Protocol},
     signal::Fate,
     trace::{LoggedPacket, LoggedTick, PacketLog, Verdict},
+    units::Instant,
     wire::{
         frame::{Deframed, Deframer, Frame, Ticks},
         packet::{ALL, Order},
@@ -72,15 +73,8 @@ impl Simulation {
     /// # Errors
     /// Never in practice.
     pub fn packets_in(&self, start_cycle: f64, end_cycle: f64, limit: u32) -> Result<JsValue, JsError> {
-        let (start, end) = (start_cycle.max(0.0) as u64, end_cycle.max(0.0) as u64);
-        // Rows stand in the order of their ends, but that a reply is known before it is sent.
-        let mut touching = self
-            .log()
-            .rows()
-            .iter()
-            .enumerate()
-            .filter(|(_, row)| row.start.0 <= end && row.end.0 >= start)
-            .map(|(index, _)| index);
+        let at = |cycle: f64| Instant(cycle.max(0.0) as u64);
+        let mut touching = self.log().touching(at(start_cycle), at(end_cycle));
         let rows = touching.by_ref().take(limit as usize).filter_map(|index| self.row(index)).collect();
         object(&Rows { rows, more: touching.next().is_some() })
     }

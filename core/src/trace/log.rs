@@ -65,6 +65,15 @@ pub struct LoggedPacket {
     /// First cycle after its last tick so far that has ended.
     pub tick_end: Option<Instant>,
     bytes_end: usize,
+    /// The latest end of all rows to here: a reply is known before it is sent.
+    latest: Instant,
+}
+
+impl LoggedPacket {
+    /// Whether it came over the line to this controller.
+    const fn was_heard(&self) -> bool {
+        !matches!(self.verdict, Verdict::Reply(_) | Verdict::Collision)
+    }
 }
 
 /// A tick that has begun.
@@ -83,6 +92,10 @@ pub struct LoggedTick {
 pub struct PacketLog {
     rows: Vec<LoggedPacket>,
     bytes: Vec<u8>,
+    /// Where the start bit of each byte was seen; of a reply's bytes, where its first one falls.
+    seen: Vec<Instant>,
+    /// Where the start bits of bytes with a framing error were seen.
+    broken: Vec<Instant>,
     /// Where the packet that is coming began.
     open: Option<Instant>,
     last: Instant,
@@ -112,6 +125,29 @@ impl PacketLog {
         self.rows.get(index).and_then(|row| self.bytes.get(first..row.bytes_end)).unwrap_or_default()
     }
 
+    /// Where the start bits of a row's bytes were seen; of a reply's, for each the start bit of the first.
+    #[must_use]
+    pub fn seen(&self, index: usize) -> &[Instant] {
+        let first = index.checked_sub(1).and_then(|i| self.rows.get(i)).map_or(0, |row| row.bytes_end);
+        self.rows.get(index).and_then(|row| self.seen.get(first..row.bytes_end)).unwrap_or_default()
+    }
+
+    /// Where the start bits of bytes were seen whose stop bit was low, rising in time.
+    #[must_use]
+    pub fn broken(&self) -> &[Instant] {
+        &self.broken
+    }
+
+    /// Indices of the rows whose time on the line touches the cycles `start..=end`, rising.
+    pub fn touching(&self, start: Instant, end: Instant) -> impl Iterator<Item = usize> {
+        let first = self.rows.partition_point(|row| row.latest < start);
+        let rows = self.rows.iter().enumerate().skip(first);
+        // What was heard later begins later; a reply or a collision that stands later does too.
+        rows.take_while(move |(_, row)| !row.was_heard() || row.start <= end)
+            .filter(move |(_, row)| row.start <= end && row.end >= start)
+            .map(|(index, _)| index)
+    }
+
     /// The run is over: what is still open becomes a row.
     pub fn finish(&mut self) {
         if self.open.is_some() {
@@ -137,7 +173,16 @@ impl PacketLog {
             self.waiting.clear();
         }
         let bytes_end = self.bytes.len();
-        self.rows.push(LoggedPacket { start, end, verdict, tick_start: None, tick_end: None, bytes_end });
+        let latest = self.rows.last().map_or(end, |row| row.latest.max(end));
+        self.rows.push(LoggedPacket {
+            start,
+            end,
+            verdict,
+            tick_start: None,
+            tick_end: None,
+            bytes_end,
+            latest,
+        });
     }
 }
 
@@ -149,11 +194,13 @@ impl Sink for PacketLog {
             Event::Byte { seen, byte } => {
                 self.open.get_or_insert(seen);
                 self.bytes.push(byte);
+                self.seen.push(seen);
                 self.last = at;
             }
             // On a framed line only the byte is missing, and the frame's check tells.
-            Event::FramingError { drops: false, .. } => {}
+            Event::FramingError { seen, drops: false } => self.broken.push(seen),
             Event::FramingError { seen, .. } => {
+                self.broken.push(seen);
                 self.open.get_or_insert(seen);
                 self.close(at, Verdict::Framing);
                 self.ignoring = true;
@@ -168,6 +215,7 @@ impl Sink for PacketLog {
             Event::Frame(fate) => self.close(at, Verdict::Frame(fate)),
             Event::Reply { start, end, reply } => {
                 self.bytes.extend(reply.emit());
+                self.seen.resize(self.bytes.len(), start);
                 self.open = Some(start);
                 self.close(end, Verdict::Reply(reply));
             }

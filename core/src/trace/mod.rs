@@ -1,6 +1,7 @@
 //! What a run leaves: records of the signals, what happened on the way, and their digest
 //! (DESIGN A3). The records themselves are in [`crate::signal`].
 
+mod changes;
 mod columns;
 mod digest;
 mod log;
@@ -10,6 +11,7 @@ mod text;
 #[cfg(feature = "std")]
 mod vcd;
 
+pub use changes::{Changes, Edge};
 pub use columns::{Columns, columns};
 pub use digest::Digest;
 pub use log::{LoggedPacket, LoggedTick, PacketLog, Verdict};
