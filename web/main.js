@@ -156,8 +156,9 @@ async function start() {
   byId("form").addEventListener("submit", (event) => event.preventDefault());
   const link = createLink(page);
   const retry = () => { ran = -1; judge(); };
+  const pulses = createPulses(page);
   views = [createHeader({ presets, cancel, retry, ...page }), createForm({ root: byId("fields"), samples: made, drivers, dispatch }),
-    createTabs(page), createMotion(page), createPulses(page), createPackets(page), createSpectrum(page), createTiming({ drivers, ...page }), link];
+    createTabs(page), createMotion(page), pulses, createPackets(page), createSpectrum(page), createTiming({ drivers, speak: pulses.speak, ...page }), link];
   await link.start(loadScenario() !== null);
   if (state.revision === 0) follow(undefined);
 }

@@ -330,5 +330,5 @@ export function createPulses({ engine, dispatch, now }) {
     else if (overlaid(before, state)) paintCursor(state);
     return undefined;
   }
-  return { render };
+  return { render, speak: reading.speak };
 }
