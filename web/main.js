@@ -8,7 +8,7 @@ import { SAMPLES } from "./form/fields.js";
 import { createForm } from "./form/form.js";
 import { createHeader, createTheme } from "./shell/header.js";
 import { createLink } from "./shell/link.js";
-import { createMotion } from "./views/motion.js";
+import { createMotion } from "./views/motion/motion.js";
 import { createPackets } from "./views/packets.js";
 import { load as loadCharts } from "./time/plot.js";
 import { createPulses } from "./views/pulses/pulses.js";
@@ -39,6 +39,7 @@ const engine = new Engine({
   failed: (revision, message) => { if (revision === state.revision) dispatch({ type: "failed", message: `The run stopped: ${message}` }); },
   crashed: (message) => {
     ran = state.revision;
+    dispatch({ type: "reference", reference: null });
     dispatch({ type: "failed", message: `The engine stopped and was started again; the form is as it was (${message}).` });
   },
 });

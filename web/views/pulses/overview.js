@@ -33,7 +33,7 @@ export function createOverview({ engine, dispatch, now }) {
     const { start, end } = shown(now());
     const half = (end - start) / 2;
     const middle = part * endOf(now());
-    dispatch({ type: "window", window: { start: middle - half, end: middle + half } });
+    dispatch({ type: "window", joins: "overview", window: { start: middle - half, end: middle + half } });
   }
 
   /** @param {State} state */
