@@ -13,7 +13,7 @@ import { createPackets } from "./views/packets.js";
 import { load as loadCharts } from "./time/plot.js";
 import { createPulses } from "./views/pulses/pulses.js";
 import { SOURCES } from "./form/sources.js";
-import { createSpectrum } from "./views/spectrum.js";
+import { createSpectrum } from "./views/spectrum/spectrum.js";
 import { held, initial, isStale, update } from "./state/state.js";
 import { loadPrevious, loadScenario, saveScenario, setAside } from "./shell/storage.js";
 import { createTabs } from "./shell/tabs.js";

@@ -144,11 +144,11 @@ pub(crate) fn draw<DB: DrawingBackend>(root: &DrawingArea<DB, Shift>, spec: &Spe
     let css = |pixels: u32| f64::from(pixels) / spec.ratio;
     // Plain counts have short labels.
     let x_space = if spec.x.unit.is_empty() { 40.0 } else { 90.0 };
-    let x_ticks = ((css(width) / x_space) as usize).clamp(2, 12);
+    let x_ticks = (((css(width) - spec.y.label_px) / x_space) as usize).clamp(2, 12);
     let tall = css(height) - spec.x.label_px;
-    let y_ticks = ((tall / 22.0) as usize).clamp(3, 10);
-    let x_format = Ticks::new(&spec.x, x_ticks, x_ticks + 2);
-    let y_format = Ticks::new(&spec.y, y_ticks, ((tall / 12.0) as usize).max(3));
+    let y_ticks = ((tall / 22.0) as usize).clamp(2, 10);
+    let x_format = Ticks::new(&spec.x, x_ticks, x_ticks);
+    let y_format = Ticks::new(&spec.y, y_ticks, ((tall / 14.0) as usize).max(2));
     let mut chart = ChartBuilder::on(root)
         .margin_top(px(6.0))
         .margin_right(px(26.0))

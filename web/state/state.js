@@ -22,6 +22,7 @@
  *   | {type: "window", window: Span | null, joins?: string} | {type: "back"}
  *   | {type: "box", on: boolean} | {type: "pick", picked: Span | null}
  *   | {type: "reference", reference: State["reference"]} | {type: "difference", on: boolean}
+ *   | {type: "harmonic", harmonic: number | null}
  *   | {type: "open", window: Span}
  *   | {type: "hover", cycle: number | null}
  *   | {type: "light", lit: State["lit"]}
@@ -52,7 +53,7 @@ export function initial(scenario) {
     scenario, origin: "own", revision: 0, edited: null, past: [], future: [], drafts: {},
     judgement: null, judged: -1, derived: null, approved: -1,
     run: { phase: "idle", progress: null, message: "" }, result: null,
-    zooms: [], gesture: null, box: false, picked: null, reference: null, difference: false,
+    zooms: [], gesture: null, box: false, picked: null, reference: null, difference: false, harmonic: null,
     controller: 0, window: null, awaited: null, axis: 0, unit: "steps", hover: null, lit: null,
     cursors: { a: null, b: null }, markers: NO_MARKERS, row: 0, folds: {}, allSignals: false, packet: null, view: "motion", side: null, notice: null,
   };
@@ -86,6 +87,7 @@ export function update(state, message) {
     case "box": return { ...state, box: message.on, picked: null };
     case "pick": return { ...state, picked: message.picked };
     case "reference": return { ...state, reference: message.reference, difference: message.reference !== null && state.difference };
+    case "harmonic": return state.harmonic === message.harmonic ? state : { ...state, harmonic: message.harmonic };
     case "difference": return { ...state, difference: message.on };
     case "open":
       return state.result?.revision === state.revision ? { ...state, window: within(message.window, endOf(state)) } : { ...state, awaited: message.window };
@@ -108,7 +110,7 @@ export function update(state, message) {
 }
 
 /** What a wholly different scenario begins with. */
-const fresh = { controller: 0, window: null, zooms: [], gesture: null, picked: null, packet: null, side: null, hover: null, lit: null, cursors: { a: null, b: null }, markers: NO_MARKERS, axis: 0, row: 0, folds: {} };
+const fresh = { controller: 0, window: null, zooms: [], gesture: null, picked: null, harmonic: null, packet: null, side: null, hover: null, lit: null, cursors: { a: null, b: null }, markers: NO_MARKERS, axis: 0, row: 0, folds: {} };
 
 /** Shows another part of the time axis. The parts before it are kept, a gesture's many as one. @param {State} state @param {{window: Span | null, joins?: string}} message @returns {State} */
 function moveTo(state, { window: wanted, joins }) {

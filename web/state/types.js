@@ -77,6 +77,7 @@
  * @property {boolean} box          Dragging on the time axis zooms to what it spans.
  * @property {Span | null} picked   What such a drag spans so far.
  * @property {Reference | null} reference  The run that was kept to compare with.
+ * @property {number | null} harmonic  Number of the harmonic that is pointed at.
  * @property {boolean} difference   The position's chart shows the difference to it.
  * @property {Span | null} awaited  Part that a link asks for, until there is a result to show it of.
  * @property {number} axis          Axis of the motion view.

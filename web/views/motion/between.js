@@ -23,7 +23,7 @@ export function createBetween({ engine }) {
     if (!answer) return;
     const seconds = (b - a) / state.result.summary.clock_hz;
     const span = `B−A ${time(seconds)}${seconds === 0 ? "" : ` · 1/(B−A) ${si(1 / Math.abs(seconds), "Hz", 6)}`}`;
-    say(byId("between-span"), span);
+    say(byId("between-span"), `${span} · in ${unitOf(state).unit} and s`);
     fill(byId("between-tables"), ...[["ideal", answer.ideal], ["made", answer.made]].flatMap(([name, readings]) =>
       (readings ? [table(state, /** @type {string} */ (name), /** @type {Readings} */ (readings))] : [])));
     const mean = QUANTITIES.flatMap((quantity, index) => {
@@ -45,7 +45,7 @@ function table(state, name, { at_a, at_b, mean, rms }) {
     const values = at_a[index] === undefined ? [] : [at_a[index], at_b[index], at_b[index] - at_a[index], mean[index], rms[index]];
     const cells = values.map((value) => element("td", { class: "number" }, short(value * scale, 6)));
     const none = element("td", { class: "none", colspan: "5" }, "– the pulses’ speed only jumps");
-    return element("tr", {}, element("th", { scope: "row" }, `${quantity}, ${unitFor(state, quantity)}`), ...(cells.length ? cells : [none]));
+    return element("tr", {}, element("th", { scope: "row" }, quantity), ...(cells.length ? cells : [none]));
   });
   return element("table", { "aria-label": `Between the cursors, ${name}` }, element("thead", {}, element("tr", {}, ...head)), element("tbody", {}, ...rows));
 }
