@@ -12,6 +12,8 @@
 #![cfg(any(test, target_arch = "wasm32"))]
 
 mod curve;
+#[cfg(all(test, not(target_arch = "wasm32")))]
+mod pictures;
 mod ticks;
 
 use plotters::{
