@@ -21,7 +21,12 @@ impl<'a> Ticks<'a> {
         const PREFIXES: [(f64, &str); 7] =
             [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n")];
         let step = step(axis, wanted, most);
-        let values = (0..count(axis, step)).map(|k| (first(axis, step) + k as f64) * step).collect();
+        let mut values: Vec<f64> =
+            (0..count(axis, step)).map(|k| (first(axis, step) + k as f64) * step).collect();
+        if values.len() > most.max(2) {
+            // Three around zero, and room for two: the outer ones.
+            values = values.first().into_iter().chain(values.last()).copied().collect();
+        }
         let largest = axis.min.abs().max(axis.max.abs());
         let (scale, prefix) = PREFIXES
             .into_iter()
@@ -70,7 +75,7 @@ fn step(axis: &Axis, wanted: usize, most: usize) -> f64 {
     for step in finer {
         let count = count(axis, step);
         let few = chosen.is_none_or(|chosen| self::count(axis, chosen) < 2);
-        if count <= wanted || (few && count <= most.max(2)) {
+        if count <= wanted || (few && count <= most.max(3)) {
             chosen = Some(step);
         } else {
             break;
@@ -117,16 +122,16 @@ mod tests {
 
     #[test]
     fn every_axis_has_two_ticks_or_more_and_none_has_too_many() {
-        for wanted in [2, 3, 5, 12] {
+        for (wanted, most) in [(2, 2), (3, 6), (5, 8), (12, 15)] {
             for mantissa in 1..1000 {
                 let size = f64::from(mantissa) * 37.0;
                 for (min, max) in
                     [(0.0, size), (-1.08 * size, 1.08 * size), (-0.08 * size, size), (3.3 * size, 4.4 * size)]
                 {
                     let axis = axis(min, max, "");
-                    let ticks = Ticks::new(&axis, wanted, wanted + 3);
+                    let ticks = Ticks::new(&axis, wanted, most);
                     let count = ticks.values.len();
-                    assert!((2..=wanted + 3).contains(&count), "{min}..{max}, {wanted}: {:?}", ticks.values);
+                    assert!((2..=most).contains(&count), "{min}..{max}, {wanted}: {:?}", ticks.values);
                     assert!(
                         ticks.values.iter().all(|value| (min..=max).contains(value)),
                         "{:?}",
