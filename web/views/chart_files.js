@@ -3,12 +3,13 @@
  * code as the charts on the page, with a title, a legend and the quantities' names around them.
  */
 import { unlessDropped } from "../engine/engine.js";
+import { baseName } from "../shell/exports.js";
 import { shown } from "../state/state.js";
-import { short, si, time } from "../state/number.js";
+import { si, time } from "../state/number.js";
 import { color, drawing, font, picture } from "../time/plot.js";
 import { ask } from "./motion/ask.js";
 import { QUANTITIES, bandsOf, chartOf } from "./motion/bands.js";
-import { distortion, given, harmonics } from "./spectrum/harmonics.js";
+import { distortion, given } from "./spectrum/harmonics.js";
 import { chosenSpectrum, spectrumChart } from "./spectrum/spectrum.js";
 
 /** @typedef {import("../state/types.js").State} State */
@@ -29,15 +30,15 @@ const COLUMNS = WIDTH - 94;
 export function chartFiles(state, engine) {
   if (!state.result) return [];
   const [png, svg, csv] = ["image/png", "image/svg+xml", "text/csv"];
+  const base = baseName(state);
   const motion = () => motionSheet(state, engine);
   const spectrum = () => spectrumSheet(state, engine);
   return [
-    { name: "stepscope-motion.png", type: png, label: "Motion, picture (PNG)", make: async () => [await bitmap(await motion())] },
-    { name: "stepscope-motion.svg", type: svg, label: "Motion, picture (SVG)", make: async () => [vector(await motion())] },
-    { name: "stepscope-motion.csv", type: csv, label: "Motion, values (CSV)", make: async () => [motionTable(state, await seen(state, engine))] },
-    { name: "stepscope-spectrum.png", type: png, label: "Spectrum, picture (PNG)", make: async () => [await bitmap(await spectrum())] },
-    { name: "stepscope-spectrum.svg", type: svg, label: "Spectrum, picture (SVG)", make: async () => [vector(await spectrum())] },
-    { name: "stepscope-harmonics.csv", type: csv, label: "Harmonics, values (CSV)", make: async () => [harmonicsTable(await spectra(engine))] },
+    { name: `${base}-motion.png`, type: png, label: "Motion, picture (PNG)", make: async () => [await bitmap(await motion())] },
+    { name: `${base}-motion.svg`, type: svg, label: "Motion, picture (SVG)", make: async () => [vector(await motion())] },
+    { name: `${base}-motion.csv`, type: csv, label: "Motion, values (CSV)", make: async () => [motionTable(state, await seen(state, engine))] },
+    { name: `${base}-spectrum.png`, type: png, label: "Spectrum, picture (PNG)", make: async () => [await bitmap(await spectrum())] },
+    { name: `${base}-spectrum.svg`, type: svg, label: "Spectrum, picture (SVG)", make: async () => [vector(await spectrum())] },
   ];
 }
 
@@ -187,15 +188,4 @@ function motionTable(state, columns) {
   const cell = (/** @type {number} */ value) => (Number.isFinite(value) ? value : "");
   const head = line(["time (s)", ...bands.flatMap(({ head: name, unit }) => [`${name} min (${unit})`, `${name} max (${unit})`])]);
   return head + [...columns.columns.x].map((seconds, row) => line([seconds, ...bands.flatMap(({ min, max }) => [cell(min[row]), cell(max[row])])])).join("");
-}
-
-/** All harmonics of all three quantities. @param {import("../state/types.js").Spectra} found */
-function harmonicsTable(found) {
-  const names = given(found).map(([name]) => name);
-  const tables = QUANTITIES.map((quantity) => harmonics(found, quantity));
-  const units = { position: "steps", speed: "steps/s", acceleration: "steps/s²" };
-  const head = line(["n", "frequency (Hz)", ...QUANTITIES.flatMap((quantity) => names.flatMap((name) => [`${name} ${quantity} (${units[quantity]})`, `${name} ${quantity} (% of the fundamental)`]))]);
-  const count = Math.max(...tables.map((rows) => rows.length));
-  return head + Array.from({ length: count }, (_, row) => line([row + 1, short(tables[0][row].hz, 12).replace("−", "-"),
-    ...tables.flatMap((rows) => rows[row].parts.flatMap(({ amplitude, part }) => [amplitude, 100 * part]))])).join("");
 }

@@ -24,7 +24,7 @@ impl<'a> Ticks<'a> {
         let mut values: Vec<f64> =
             (0..count(axis, step)).map(|k| (first(axis, step) + k as f64) * step).collect();
         if values.len() > most.max(2) {
-            // Three around zero, and room for two: the outer ones.
+            // Some around zero, and no room for all: the outer ones.
             values = values.first().into_iter().chain(values.last()).copied().collect();
         }
         let largest = axis.min.abs().max(axis.max.abs());
@@ -75,7 +75,7 @@ fn step(axis: &Axis, wanted: usize, most: usize) -> f64 {
     for step in finer {
         let count = count(axis, step);
         let few = chosen.is_none_or(|chosen| self::count(axis, chosen) < 2);
-        if count <= wanted || (few && count <= most.max(3)) {
+        if count <= wanted || (few && count <= most.max(5)) {
             chosen = Some(step);
         } else {
             break;
