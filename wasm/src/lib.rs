@@ -5,10 +5,13 @@
 
 mod charts;
 mod convert;
+mod curves;
+mod decoder;
 mod files;
 mod judge;
 mod link;
 mod packets;
+mod pulses;
 mod simulation;
 mod spectrum;
 mod summary;
