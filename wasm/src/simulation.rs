@@ -1,7 +1,10 @@
 //! A run in the worker: made in slices, kept for the views' questions. The views look at one
 //! controller at a time.
 
-use crate::convert::{field, numbers, object, words};
+use crate::{
+    convert::{field, numbers, object, words},
+    packets::Filter,
+};
 use js_sys::Object;
 use serde::Serialize;
 use stepscope_core::{
@@ -30,6 +33,8 @@ pub struct Simulation {
     pub(crate) kept: Vec<Kept>,
     /// Index in `kept` of the controller that the views look at.
     pub(crate) looked_at: usize,
+    /// Which rows of its packets the table shows.
+    pub(crate) filter: Filter,
     /// A controller's index, and how its trace stands to a file that is being read.
     pub(crate) against: Option<(usize, Against)>,
 }
@@ -107,7 +112,7 @@ impl Simulation {
             steps: vec![None; usize::from(config.channels())],
         };
         let kept = experiment.configs().map(kept).collect();
-        Ok(Self { scenario, experiment, run, kept, looked_at: 0, against: None })
+        Ok(Self { scenario, experiment, run, kept, looked_at: 0, filter: Filter::default(), against: None })
     }
 
     /// Runs on until one controller has made about `max_records` more records: `{done, cycle, end_cycle,
@@ -140,6 +145,7 @@ impl Simulation {
     pub fn select(&mut self, controller: u32) {
         if (controller as usize) < self.kept.len() {
             self.looked_at = controller as usize;
+            self.filter = Filter::default();
         }
     }
 

@@ -19,10 +19,14 @@ let newest = -1;
 const ready = init();
 const between = new MessageChannel();
 
+/** Who waits for messages to be let in: a run, a search. @type {((event: MessageEvent) => void)[]} */
+const breathing = [];
+between.port1.onmessage = (event) => breathing.shift()?.(event);
+
 /** Lets waiting messages in. */
 function breathe() {
   return new Promise((resolve) => {
-    between.port1.onmessage = resolve;
+    breathing.push(resolve);
     between.port2.postMessage(0);
   });
 }
@@ -62,8 +66,29 @@ function pulseAt(bit, cycle) {
   return { begin, end, next };
 }
 
+/** Number of the newest search over the packets. */
+let searches = 0;
+
+/** Looks for packets in slices: how many there are, or null where a newer search or run ended it. @param {any[]} args */
+async function search(args) {
+  const own = ++searches;
+  const simulation = finished;
+  if (!simulation) return null;
+  const note = simulation.filter(...args);
+  let rows = 4096;
+  for (;;) {
+    const before = performance.now();
+    const found = simulation.filter_on(rows);
+    if (found.done) return { note, ...found };
+    rows = Math.min(4_000_000, Math.max(256, Math.round((rows * SLICE_MS) / Math.max(0.5, performance.now() - before))));
+    await breathe();
+    if (own !== searches || simulation !== finished) return null;
+  }
+}
+
 /** @param {string} method @param {any[]} args */
 function answer(method, args) {
+  if (method === "filter") return search(args);
   if (method === "pulse_at") return finished && pulseAt(args[0], args[1]);
   const calls = /** @type {any} */ (core);
   if (typeof calls[method] === "function") return calls[method](...args);
@@ -87,7 +112,7 @@ onmessage = async ({ data }) => {
     if ("run" in data) {
       if (data.json !== null && data.run === newest) await simulate(data.run, data.json);
     } else {
-      postMessage({ id: data.id, value: answer(data.method, data.args) });
+      postMessage({ id: data.id, value: await answer(data.method, data.args) });
     }
   } catch (error) {
     if (fatal(error)) postMessage({ event: "crashed", message: text(error) });

@@ -2,6 +2,7 @@
 import { byId, element, fill, options, say } from "../dom.js";
 import { listen } from "./commands.js";
 import { health, ill } from "./health.js";
+import { readJson } from "../state/json.js";
 import { count, si } from "../state/number.js";
 import { recolor } from "../time/plot.js";
 import { held, isStale, lookedAt } from "../state/state.js";
@@ -26,7 +27,7 @@ export function createHeader({ presets, cancel, retry, dispatch, now }) {
   preset.disabled = false;
   preset.addEventListener("change", () => {
     const chosen = presets.find(({ id }) => id === preset.value);
-    if (chosen) dispatch({ type: "replace", scenario: JSON.parse(chosen.scenario), origin: `preset:${chosen.id}` });
+    if (chosen) dispatch({ type: "replace", scenario: readJson(chosen.scenario), origin: `preset:${chosen.id}` });
   });
   controller.addEventListener("change", () => dispatch({ type: "controller", controller: Number(controller.value) }));
   undo.addEventListener("click", () => dispatch({ type: "undo" }));

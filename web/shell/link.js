@@ -3,6 +3,7 @@
  * is heard when it changes, and never overwrites the visitor's own work.
  */
 import { Dropped } from "../engine/engine.js";
+import { readJson } from "../state/json.js";
 import { held, isStale } from "../state/state.js";
 import { parseView, viewOf } from "./view_part.js";
 
@@ -82,7 +83,7 @@ export function createLink({ engine, dispatch, now }) {
     try {
       const answer = await engine.ask("decode_link", fragment);
       if ("error" in answer) return refuse(answer.error);
-      const scenario = JSON.parse(answer.scenario);
+      const scenario = readJson(answer.scenario);
       if (JSON.stringify(scenario) !== JSON.stringify(now().scenario)) {
         dispatch({ type: "replace", scenario, origin: "shared" });
         const name = scenario.title ? `“${scenario.title}”` : "a scenario";

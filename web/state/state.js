@@ -27,10 +27,12 @@
  *   | {type: "marker", digit: number, cycle: number | null}
  *   | {type: "cursor", which: "a" | "b", cycle: number | null}
  *   | {type: "row", row: number} | {type: "packet", packet: number | null}
+ *   | {type: "filter", filter: Partial<State["filter"]>}
  *   | {type: "fold", channel: number, folded: boolean} | {type: "fold-all", folded: boolean}
  *   | {type: "all-signals", on: boolean}
  *   | {type: "controller", controller: number} | {type: "side", side: "spectrum" | "timing"}
  *   | {type: "axis", axis: number} | {type: "unit", unit: State["unit"]}
+ *   | {type: "pane", panes: Partial<import("./types.js").Panes>}
  *   | {type: "view", view: string} | {type: "notice", notice: State["notice"]}} Message
  */
 
@@ -45,6 +47,9 @@ export const LEAST_SPAN = 16;
 /** Markers 0 to 9, none of them set. @type {(number | null)[]} */
 const NO_MARKERS = Array(10).fill(null);
 
+/** All packets are shown. @type {State["filter"]} */
+export const NO_FILTER = { text: "", kind: "", address: null, outcome: "", only: false };
+
 /** @param {Scenario} scenario @returns {State} */
 export function initial(scenario) {
   return {
@@ -52,7 +57,11 @@ export function initial(scenario) {
     judgement: null, judged: -1, derived: null, approved: -1,
     run: { phase: "idle", progress: null, message: "" }, result: null,
     controller: 0, window: null, awaited: null, axis: 0, unit: "steps", hover: null, lit: null,
-    cursors: { a: null, b: null }, markers: NO_MARKERS, row: 0, folds: {}, allSignals: false, packet: null, view: "motion", side: null, notice: null, seen: null,
+    cursors: { a: null, b: null }, markers: NO_MARKERS, row: 0, folds: {}, allSignals: false,
+    packet: null, filter: NO_FILTER,
+    view: "motion", side: null, notice: null,
+    panes: { form: null, rows: null, columns: null, folded: [], largest: null },
+    seen: null,
   };
 }
 
@@ -88,18 +97,20 @@ export function update(state, message) {
     case "fold": return { ...state, folds: { ...state.folds, [message.channel]: message.folded } };
     case "fold-all": return { ...state, folds: Object.fromEntries(Array.from({ length: MOST_CHANNELS }, (_, channel) => [channel, message.folded])) };
     case "all-signals": return { ...state, allSignals: message.on };
+    case "filter": return { ...state, filter: { ...state.filter, ...message.filter } };
     case "packet": return { ...state, packet: message.packet };
     case "controller": return lookAt(state, message.controller);
     case "side": return { ...state, side: message.side };
     case "axis": return { ...state, axis: message.axis };
     case "unit": return { ...state, unit: message.unit };
+    case "pane": return { ...state, panes: { ...state.panes, ...message.panes } };
     case "view": return { ...state, view: message.view };
     case "notice": return { ...state, notice: message.notice };
   }
 }
 
 /** What a wholly different scenario begins with. */
-const fresh = { controller: 0, window: null, packet: null, side: null, hover: null, lit: null, cursors: { a: null, b: null }, markers: NO_MARKERS, axis: 0, row: 0, folds: {} };
+const fresh = { controller: 0, window: null, packet: null, filter: NO_FILTER, side: null, hover: null, lit: null, cursors: { a: null, b: null }, markers: NO_MARKERS, axis: 0, row: 0, folds: {} };
 
 /** @param {State["lit"]} one @param {State["lit"]} other */
 function sameLit(one, other) {
@@ -193,6 +204,11 @@ export function derivedAxis({ derived }, path) {
   const further = /^controllers\[(\d+)\]/.exec(path);
   const axis = /axes\[(\d+)\]/.exec(path);
   return derived?.controllers[further ? Number(further[1]) + 1 : 0]?.axes[axis ? Number(axis[1]) : 0];
+}
+
+/** Whether a filter of the packets asks for anything. @param {State["filter"]} filter */
+export function isFiltering({ text, kind, address, outcome }) {
+  return text.trim() !== "" || kind !== "" || address !== null || outcome !== "";
 }
 
 /** Last cycle of the time axis. @param {State} state */

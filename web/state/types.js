@@ -4,7 +4,7 @@
  *
  * @typedef {{[key: string]: any}} Scenario  Full JSON of one experiment, every field written.
  * @typedef {{path: string, message: string}} Problem
- * @typedef {{kind: string, start_s: number, duration_s: number, steps: number, detail: string}} DerivedMove
+ * @typedef {{start_s: number, duration_s: number, steps: number, detail: string}} DerivedMove
  * @typedef {{steps: number, duration_s: number, peak_speed_steps_s: number, peak_acceleration_steps_s2: number,
  *   step_mm: number | null, step_deg: number | null, moves: DerivedMove[]}} DerivedAxis
  * @typedef {{tick_s: number, limit_steps_s: number, ticks: number, axes: DerivedAxis[]}} DerivedController
@@ -31,10 +31,15 @@
  *   made_speed_min: Float64Array, made_speed_max: Float64Array}} MotionColumns
  * @typedef {{high: Uint32Array, low: Uint32Array, last: Uint32Array}} PulseColumns
  * @typedef {{index: number, kind: "packet" | "frame" | "reply" | "collision", start_cycle: number, end_cycle: number,
- *   hex: string, fields: string, outcome: string, mark: "good" | "foreign" | "repeated" | "bad",
- *   tick_start_cycle: number | null, tick_end_cycle: number | null}} PacketRow
+ *   line_end_cycle: number, start: string, gap: string, hex: string, fields: string, outcome: string, short: string,
+ *   mark: "good" | "foreign" | "repeated" | "bad", tick_start_cycle: number | null, tick_end_cycle: number | null,
+ *   position: number, rank: number | null}} PacketRow  Position among the rows on show, rank among those that the search finds: of the table alone.
+ * @typedef {PacketRow & {layout: {name: string, from: number, until: number, value: string}[],
+ *   check: "none" | "missing" | "holds" | "fails", check_found: string | null, check_expected: string | null,
+ *   byte_cycles: number[], byte_length: number, gap_cycles: number | null, drive_cycles: number | null,
+ *   turnaround_cycles: number | null, answers: number | null}} PacketDetail  The layout: each field with its first byte and the one after its last.
  * @typedef {{start_cycle: number, end_cycle: number, row: number | null, fields: string}} TickRow
- * @typedef {{total: number, rows: PacketRow[]}} PacketPage
+ * @typedef {{total: number, shown: number, matches: number, unit: string, rows: PacketRow[]}} PacketPage
  * @typedef {{cycle: number, channel: number, rule: string, measured_cycles: number, required_cycles: number}} Violation
  * @typedef {{rule: string, required_ns: number, required_cycles: number, violations: number, by_channel: number[],
  *   least: {measured_cycles: number, cycle: number, channel: number} | null}} RuleResult
@@ -51,6 +56,8 @@
  * @typedef {{revision: number, summary: Summary, ms: number, controller: number}} Result  As one of its controllers shows it.
  * @typedef {{phase: "idle" | "waiting" | "running" | "done" | "failed", progress: Progress | null, message: string}} Run
  *
+ * @typedef {{form: number | null, rows: [number, number, number] | null, columns: [number, number] | null, folded: string[], largest: string | null}} Panes
+ *   Width of the form in CSS pixels, 0 where it is folded; parts of the views' height and width; null: as the style sheet has it.
  * @typedef {{start: number, end: number, controller: number, cycle: number}} Place  A time that a message can show, in cycles.
  * @typedef {{edge: number, cycle: number}} Mark
  * @typedef {{error: string | null, same: boolean, edges: number, version: string | null, own_version: string, controller: number,
@@ -86,7 +93,9 @@
  * @property {{[channel: number]: boolean}} folds  Channels that the visitor folded or unfolded.
  * @property {boolean} allSignals   Also the signals that never change.
  * @property {number | null} packet Selected packet.
+ * @property {{text: string, kind: string, address: number | null, outcome: string, only: boolean}} filter  Of the packets: what is searched for, and which rows are shown; `only` leaves out what the search does not find.
  * @property {string} view          Tab on a narrow screen.
+ * @property {Panes} panes          Of a wide screen.
  * @property {"spectrum" | "timing" | null} side  Which of the two shares their place on a wide screen; null: the timing check, if there is one.
  * @property {{text: string, kind: "info" | "error", place?: Place | null} | null} notice  About links, files and the engine.
  */

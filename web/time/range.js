@@ -20,7 +20,7 @@ export function createRange({ dispatch, now }) {
     const [start, end] = ["window-start", "window-end"].map((id) => {
       const input = /** @type {HTMLInputElement} */ (byId(id));
       const read = parseNumber(input.value, "s");
-      input.toggleAttribute("aria-invalid", "message" in read);
+      input.setAttribute("aria-invalid", String("message" in read));
       return read;
     });
     const wrong = "message" in start ? start.message : "message" in end ? end.message : "";

@@ -34,12 +34,14 @@ mod step_times;
 mod stepped;
 pub mod trapezoid;
 pub mod trapezoid_table;
+mod words;
 
 pub use axis::{AxisPlan, PlannedMove};
 pub use due::DueStep;
 pub use plan::{plan_axis, plan_lists};
 pub use profile::{Curve, Peaks, Profile};
 pub use step_times::StepTimes;
+pub use words::grouped;
 
 /// Highest speed that a plan may have, in steps/s.
 pub const MOST_SPEED: f64 = 1e7;

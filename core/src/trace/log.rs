@@ -3,7 +3,7 @@
 use crate::{
     protocol::{FrameFate, Kind, Reply},
     signal::{Event, Fate, Record, Sink},
-    units::Instant,
+    units::{Cycles, Instant},
     wire::packet::Tick,
 };
 use alloc::{collections::VecDeque, vec::Vec};
@@ -79,6 +79,8 @@ pub struct LoggedPacket {
     pub tick_start: Option<Instant>,
     /// First cycle after its last tick so far that has ended.
     pub tick_end: Option<Instant>,
+    /// Where its bytes stand among those of all rows.
+    bytes_start: usize,
     bytes_end: usize,
 }
 
@@ -105,10 +107,14 @@ pub struct PacketLog {
     /// The row of each tick that waits; none for one that firmware pushed.
     waiting: VecDeque<Option<usize>>,
     ticks: Vec<LoggedTick>,
+    /// When the controller was stopped.
+    stops: Vec<Instant>,
 }
 
 impl PacketLog {
-    /// Rows so far, in the order of their ends.
+    /// Rows: in the order in which they were known while the run goes on, in the order of their starts
+    /// once it is finished. A reply is known before it is sent, and a collision before the packet in which
+    /// it happens.
     #[must_use]
     pub fn rows(&self) -> &[LoggedPacket] {
         &self.rows
@@ -120,17 +126,37 @@ impl PacketLog {
         &self.ticks
     }
 
+    /// First cycle after a tick that lasts `length` where nothing stops it.
+    #[must_use]
+    pub fn tick_end(&self, tick: &LoggedTick, length: Cycles) -> Instant {
+        let stop = self.stops.get(self.stops.partition_point(|stop| *stop < tick.start));
+        stop.map_or(tick.start + length, |stop| (tick.start + length).min(*stop))
+    }
+
     /// Bytes of a row.
     #[must_use]
     pub fn bytes(&self, index: usize) -> &[u8] {
-        let first = index.checked_sub(1).and_then(|i| self.rows.get(i)).map_or(0, |row| row.bytes_end);
-        self.rows.get(index).and_then(|row| self.bytes.get(first..row.bytes_end)).unwrap_or_default()
+        let row = self.rows.get(index);
+        row.and_then(|row| self.bytes.get(row.bytes_start..row.bytes_end)).unwrap_or_default()
     }
 
-    /// The run is over: what is still open becomes a row.
+    /// The run is over: what is still open becomes a row, and the rows stand in the order of their starts.
     pub fn finish(&mut self) {
         if self.open.is_some() {
             self.close(self.last, if self.ignoring { Verdict::Ignored } else { Verdict::Open });
+        }
+        if self.rows.is_sorted_by_key(|row| row.start) {
+            return;
+        }
+        let mut order: Vec<usize> = (0..self.rows.len()).collect();
+        order.sort_by_key(|&index| self.rows.get(index).map(|row| row.start));
+        let mut place = alloc::vec![0; order.len()];
+        for (new, &old) in order.iter().enumerate() {
+            place[old] = new;
+        }
+        self.rows.sort_by_key(|row| row.start);
+        for tick in &mut self.ticks {
+            tick.row = tick.row.and_then(|row| place.get(row).copied());
         }
     }
 
@@ -149,10 +175,17 @@ impl PacketLog {
         };
         self.waiting.extend(core::iter::repeat_n(Some(self.rows.len()), queued));
         if verdict == Verdict::Frame(FrameFate::Taken(Kind::Stop)) {
-            self.waiting.clear();
+            self.stop(end);
         }
+        let bytes_start = self.rows.last().map_or(0, |row| row.bytes_end);
         let bytes_end = self.bytes.len();
-        self.rows.push(LoggedPacket { start, end, verdict, tick_start: None, tick_end: None, bytes_end });
+        let (tick_start, tick_end) = (None, None);
+        self.rows.push(LoggedPacket { start, end, verdict, tick_start, tick_end, bytes_start, bytes_end });
+    }
+
+    fn stop(&mut self, at: Instant) {
+        self.waiting.clear();
+        self.stops.push(at);
     }
 }
 
@@ -197,7 +230,7 @@ impl Sink for PacketLog {
             }
             Event::Underrun => {}
             Event::Pushed => self.waiting.push_back(None),
-            Event::Stopped => self.waiting.clear(),
+            Event::Stopped => self.stop(at),
             Event::TickStart { orders } => {
                 let row = self.waiting.pop_front().flatten();
                 if let Some(row) = row.and_then(|index| self.rows.get_mut(index)) {
@@ -233,5 +266,29 @@ mod tests {
         let rows: Vec<_> = log.ticks().iter().map(|tick| tick.row).collect();
         assert_eq!(rows, [Some(0), None, None], "the second packet's tick was stopped before it began");
         assert_eq!(log.rows()[1].tick_start, None);
+        let ends = [0, 1].map(|tick| log.tick_end(&log.ticks()[tick], Cycles(2)).0);
+        assert_eq!(ends, [107, 107], "the first by itself, the second by the stop");
+    }
+
+    #[test]
+    fn finished_rows_stand_in_the_order_of_their_starts_with_their_bytes_and_ticks() {
+        let mut log = PacketLog::default();
+        let events = [
+            (20, Event::Byte { seen: Instant(10), byte: 1 }),
+            (25, Event::Collision),
+            (30, Event::Byte { seen: Instant(22), byte: 2 }),
+            (30, Event::Packet(Fate::Queued)),
+            (31, Event::TickStart { orders: [0; 16] }),
+        ];
+        for (at, event) in events {
+            log.event(Instant(at), event);
+        }
+        assert_eq!(log.rows()[0].verdict, Verdict::Collision, "known first");
+        log.finish();
+        let told: Vec<_> = log.rows().iter().map(|row| (row.start.0, row.verdict)).collect();
+        assert_eq!(told, [(10, Verdict::Packet(Fate::Queued)), (25, Verdict::Collision)]);
+        assert_eq!((log.bytes(0), log.bytes(1)), ([1, 2].as_slice(), [].as_slice()));
+        assert_eq!(log.ticks()[0].row, Some(0));
+        assert_eq!(log.rows()[0].tick_start, Some(Instant(31)));
     }
 }

@@ -4,7 +4,9 @@
 mod against;
 mod columns;
 mod digest;
+mod fields;
 mod fingerprint;
+mod heard;
 mod log;
 mod proof;
 mod recording;
@@ -17,12 +19,14 @@ mod vcd;
 pub use against::{Against, BadLine, Difference, Outcome};
 pub use columns::{Columns, columns};
 pub use digest::Digest;
+pub use fields::{Check, Field, Meaning, Reading};
 pub use fingerprint::{Comparison, Fingerprint, Fingerprinter, Likeness, Mark, Shorter};
+pub use heard::heard;
 pub use log::{LoggedPacket, LoggedTick, PacketLog, Verdict};
 pub use proof::{Proof, ProofError, VERSION};
 pub use recording::Recording;
 pub use steps::{Step, steps};
-pub use table::{Field, write_edges_head, write_edges_row, write_packets_head, write_packets_row};
+pub use table::{Quoted, write_edges_head, write_edges_row, write_packets_head, write_packets_row};
 pub use text::{ParseError, parse_line, write_record};
 #[cfg(feature = "std")]
 pub use vcd::VcdWriter;

@@ -51,7 +51,7 @@ pub fn write_packets_row(out: &mut impl Write, log: &PacketLog, index: usize) ->
     let Some(row) = log.rows().get(index) else { return Ok(()) };
     write!(out, "{},{},", row.start.0, row.end.0)?;
     log.bytes(index).iter().try_for_each(|byte| write!(out, "{byte:02x}"))?;
-    write!(out, ",{}", Field(&row.verdict.to_string()))?;
+    write!(out, ",{}", Quoted(&row.verdict.to_string()))?;
     for at in [row.tick_start, row.tick_end] {
         out.write_char(',')?;
         at.map_or(Ok(()), |Instant(cycle)| write!(out, "{cycle}"))?;
@@ -60,9 +60,9 @@ pub fn write_packets_row(out: &mut impl Write, log: &PacketLog, index: usize) ->
 }
 
 /// A text as a field of a table: in quotes where it needs them.
-pub struct Field<'a>(pub &'a str);
+pub struct Quoted<'a>(pub &'a str);
 
-impl fmt::Display for Field<'_> {
+impl fmt::Display for Quoted<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.0.contains([',', '"', '\n', '\r']) {
             return f.write_str(self.0);
@@ -103,7 +103,7 @@ mod tests {
         assert_eq!(text, expected);
         for (given, written) in [("a b", "a b"), ("a,b", "\"a,b\""), ("a\"", "\"a\"\"\""), ("a\n", "\"a\n\"")]
         {
-            assert_eq!(Field(given).to_string(), written);
+            assert_eq!(Quoted(given).to_string(), written);
         }
     }
 }
