@@ -19,6 +19,7 @@ import { createMotion } from "./views/motion.js";
 import { createPackets } from "./views/packets/packets.js";
 import { load as loadCharts } from "./time/plot.js";
 import { createPanes } from "./shell/panes.js";
+import { packetFiles } from "./views/packets/files.js";
 import { createPulses } from "./views/pulses/pulses.js";
 import { SOURCES } from "./form/sources.js";
 import { createSpectrum } from "./views/spectrum.js";
@@ -170,7 +171,7 @@ async function start() {
   const retry = () => { ran = -1; judge(); };
   views = [createHeader({ presets, cancel, retry, ...page }), createForm({ root: byId("fields"), samples: made, drivers, dispatch }),
     createTabs(page), createPanes(page), createGuide(page), createMotion(page), createPulses(page), createPackets(page), createSpectrum(page), createTiming({ drivers, ...page }),
-    createNotices(page), createShare({ shared: link.shared, ...page }), createExports(page), link];
+    createNotices(page), createShare({ shared: link.shared, ...page }), createExports(page, [["Packets", packetFiles]]), link];
   createKeys();
 
   await link.start(loadScenario() !== null);

@@ -14,7 +14,7 @@ export const STEPS = [
   { title: "Zoom into the pulses", at: "#view-pulses", view: "pulses", text: "Turn the wheel, or press + and the arrow keys, until single pulses show: every edge stands at its exact clock cycle. N goes to the next edge." },
   { title: "See what was sent", at: "#view-packets", view: "packets", text: "A row a packet, with its bytes and what the controller did with it. Choose one: it is shown in the pulses." },
   { title: "Break it, and mend it", at: "#preset", text: "“Pulses too short for a DRV8825” and “Raw packets on a noisy line” go wrong on purpose. The page says what is wrong and why, and “Fix it” puts it right; Undo takes that back." },
-  { title: "Share it", at: "#copy-link", text: "The link holds the whole experiment. Whoever opens it computes the same edges, and the digest proves it. ? at the right end has the keys and the help." },
+  { title: "Share it", at: "#share", text: "The link holds the whole experiment. Whoever opens it computes the same edges, and the digest proves it. ? at the right end has the keys and the help." },
 ];
 
 /** Distance of the panel from what it points at, and from the window's edges, in CSS pixels. */

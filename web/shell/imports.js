@@ -4,6 +4,7 @@
  */
 import { byId } from "../dom.js";
 import { Dropped } from "../engine/engine.js";
+import { readJson } from "../state/json.js";
 import { count, si, time } from "../state/number.js";
 import { isStale } from "../state/state.js";
 import { message } from "./link.js";
@@ -109,7 +110,7 @@ export function createImports({ engine, openLink, dispatch, now }) {
       const more = problems.length > MOST_TOLD ? `; and ${problems.length - MOST_TOLD} more` : "";
       return tell("error", `${file.name} has ${problems.length === 1 ? "a problem" : `${problems.length} problems`}: ${told.join("; ")}${more}. Your own work is as it was.`);
     }
-    const read = JSON.parse(scenario);
+    const read = readJson(scenario);
     if (JSON.stringify(read) === JSON.stringify(now().scenario)) return tell("info", `${file.name} holds the very experiment that is on show.`);
     dispatch({ type: "replace", scenario: read, origin: "shared" });
     tell("info", `${words(read)} Your own work is kept; Undo brings it back.`);
