@@ -169,11 +169,12 @@ async function start() {
   const link = createLink(page);
   createImports({ openLink: link.openLink, ...page });
   const retry = () => { ran = -1; judge(); };
+  const pulses = createPulses(page);
   views = [createHeader({ presets, cancel, retry, ...page }), createForm({ root: byId("fields"), samples: made, drivers, dispatch }),
-    createTabs(page), createPanes(page), createGuide(page), createMotion(page), createPulses(page), createPackets(page), createSpectrum(page), createTiming({ drivers, ...page }),
-    createNotices(page), createShare({ shared: link.shared, ...page }), createExports(page, [["Packets", packetFiles]]), link];
+    createTabs(page), createPanes(page), createGuide(page), createMotion(page), pulses, createPackets(page), createSpectrum(page),
+    createTiming({ drivers, speak: pulses.speak, ...page }), createNotices(page), createShare({ shared: link.shared, ...page }),
+    createExports(page, [["Packets", packetFiles]]), link];
   createKeys();
-
   await link.start(loadScenario() !== null);
   if (state.revision === 0) follow(undefined);
 }

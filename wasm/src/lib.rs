@@ -5,10 +5,12 @@
 
 mod charts;
 mod convert;
+mod decoder;
 mod files;
 mod judge;
 mod link;
 mod packets;
+mod pulses;
 mod simulation;
 mod spectrum;
 mod summary;

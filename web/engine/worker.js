@@ -58,14 +58,6 @@ async function simulate(run, json) {
   postMessage({ event: "done", run, summary: simulation.summary(), ms: performance.now() - begin });
 }
 
-/** Edges around a cycle: the level's begin and end, and the edge after that. @param {number} bit @param {number} cycle */
-function pulseAt(bit, cycle) {
-  const begin = finished.next_edge(bit, cycle + 1, false, "any");
-  const end = finished.next_edge(bit, cycle, true, "any");
-  const next = end === undefined ? undefined : finished.next_edge(bit, end, true, "any");
-  return { begin, end, next };
-}
-
 /** Number of the newest search over the packets. */
 let searches = 0;
 
@@ -89,7 +81,6 @@ async function search(args) {
 /** @param {string} method @param {any[]} args */
 function answer(method, args) {
   if (method === "filter") return search(args);
-  if (method === "pulse_at") return finished && pulseAt(args[0], args[1]);
   const calls = /** @type {any} */ (core);
   if (typeof calls[method] === "function") return calls[method](...args);
   return finished ? finished[method](...args) : null;
