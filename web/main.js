@@ -9,20 +9,22 @@ import { createForm } from "./form/form.js";
 import { createCard } from "./help/card.js";
 import { createGuide, offerGuide } from "./help/guide.js";
 import { createKeys } from "./help/keys.js";
+import { chartFiles } from "./views/chart_files.js";
 import { createExports } from "./shell/exports.js";
 import { createHeader, createTheme } from "./shell/header.js";
 import { createImports } from "./shell/imports.js";
 import { createLink } from "./shell/link.js";
 import { createNotices } from "./shell/notices.js";
 import { createShare } from "./shell/share.js";
-import { createMotion } from "./views/motion.js";
+import { createMotion } from "./views/motion/motion.js";
+import { packetFiles } from "./views/packets/files.js";
 import { createPackets } from "./views/packets/packets.js";
 import { load as loadCharts } from "./time/plot.js";
 import { createPanes } from "./shell/panes.js";
 import { packetFiles } from "./views/packets/files.js";
 import { createPulses } from "./views/pulses/pulses.js";
 import { SOURCES } from "./form/sources.js";
-import { createSpectrum } from "./views/spectrum.js";
+import { createSpectrum } from "./views/spectrum/spectrum.js";
 import { held, initial, isStale, update } from "./state/state.js";
 import { loadPrevious, loadScenario, saveScenario, setAside } from "./shell/storage.js";
 import { createTabs } from "./shell/tabs.js";
@@ -49,6 +51,7 @@ const engine = new Engine({
   failed: (revision, message) => { if (revision === state.revision) dispatch({ type: "failed", message: `The run stopped: ${message}` }); },
   crashed: (message) => {
     ran = state.revision;
+    dispatch({ type: "reference", reference: null });
     dispatch({ type: "failed", message: `The engine stopped and was started again; the form is as it was (${message}).` });
   },
 });
@@ -173,7 +176,7 @@ async function start() {
   views = [createHeader({ presets, cancel, retry, ...page }), createForm({ root: byId("fields"), samples: made, drivers, dispatch }),
     createTabs(page), createPanes(page), createGuide(page), createMotion(page), pulses, createPackets(page), createSpectrum(page),
     createTiming({ drivers, speak: pulses.speak, ...page }), createNotices(page), createShare({ shared: link.shared, ...page }),
-    createExports(page, [["Packets", packetFiles]]), link];
+    createExports(page, [["Charts", chartFiles], ["Packets", packetFiles]]), link];
   createKeys();
   await link.start(loadScenario() !== null);
   if (state.revision === 0) follow(undefined);

@@ -5,6 +5,7 @@
 
 mod charts;
 mod convert;
+mod curves;
 mod decoder;
 mod files;
 mod judge;

@@ -1,17 +1,10 @@
 //! A run in the worker: made in slices, kept for the views' questions. The views look at one
 //! controller at a time.
 
-use crate::{
-    convert::{field, numbers, object},
-    packets::Filter,
-};
-use js_sys::Object;
+use crate::{convert::object, packets::Filter};
 use serde::Serialize;
 use stepscope_core::{
-    analysis::{
-        curves::{self, Window},
-        timing::TimingCheck,
-    },
+    analysis::timing::TimingCheck,
     run::{Experiment, Run},
     scenario::{Config, Scenario},
     signal::{Event, Record, Sink},
@@ -66,7 +59,7 @@ impl Sink for Kept {
 }
 
 impl Kept {
-    fn count_steps(&mut self, channel: u8) {
+    pub(crate) fn count_steps(&mut self, channel: u8) {
         if let Some(place) = self.steps.get_mut(usize::from(channel))
             && place.is_none()
         {
@@ -75,7 +68,7 @@ impl Kept {
     }
 
     /// Steps of a channel, once they are counted.
-    fn steps_of(&self, channel: u8) -> &[Step] {
+    pub(crate) fn steps_of(&self, channel: u8) -> &[Step] {
         self.steps.get(usize::from(channel)).and_then(Option::as_deref).unwrap_or_default()
     }
 }
@@ -151,37 +144,6 @@ impl Simulation {
             self.looked_at = controller as usize;
             self.filter = Filter::default();
         }
-    }
-
-    /// Position, speed and acceleration of an axis over a stretch of time, in columns.
-    #[must_use]
-    pub fn motion(&mut self, axis: u8, t0_s: f64, t1_s: f64, columns: u32) -> Object {
-        let window = Window { start_s: t0_s, end_s: t1_s, columns: columns.clamp(1, 10_000) as usize };
-        let (clock_hz, config) =
-            (self.experiment.config().clock_hz(), config(&self.experiment, self.looked_at));
-        let kept = &mut self.kept[self.looked_at];
-        let result = Object::new();
-        let centres: Vec<f64> = (0..window.columns).map(|column| window.centre_s(column)).collect();
-        numbers(&result, "x", &centres);
-        let plan = self.experiment.plans_of(self.looked_at).get(usize::from(axis));
-        field(&result, "has_ideal", &plan.is_some().into());
-        if let Some(plan) = plan {
-            let zero_s = kept.recording.first_tick().map_or(0.0, |start| start.seconds(clock_hz));
-            let ideal = curves::ideal(plan, zero_s, window);
-            for (name, band) in
-                [("position", ideal.position), ("speed", ideal.speed), ("acceleration", ideal.acceleration)]
-            {
-                numbers(&result, &format!("{name}_min"), &band.min);
-                numbers(&result, &format!("{name}_max"), &band.max);
-            }
-        }
-        kept.count_steps(axis);
-        let made = curves::made(&kept.recording, kept.steps_of(axis), axis, config, window);
-        for (name, band) in [("made_position", made.position), ("made_speed", made.speed)] {
-            numbers(&result, &format!("{name}_min"), &band.min);
-            numbers(&result, &format!("{name}_max"), &band.max);
-        }
-        result
     }
 
     /// Spectra of the ideal motion and of the pulses, for the axis that the scenario's analysis

@@ -19,7 +19,10 @@
  *   | {type: "running"} | {type: "progress", progress: import("./types.js").Progress}
  *   | {type: "done", revision: number, summary: import("./types.js").Summary, ms: number}
  *   | {type: "failed", message: string}
- *   | {type: "window", window: Span | null}
+ *   | {type: "window", window: Span | null, joins?: string} | {type: "back"}
+ *   | {type: "box", on: boolean} | {type: "pick", picked: Span | null}
+ *   | {type: "reference", reference: State["reference"]} | {type: "difference", on: boolean}
+ *   | {type: "harmonic", harmonic: number | null}
  *   | {type: "open", view: import("./types.js").ViewPart}
  *   | {type: "seen", text: string} | {type: "compared", text: string, verdict: import("./types.js").Verdict}
  *   | {type: "hover", cycle: number | null}
@@ -56,6 +59,7 @@ export function initial(scenario) {
     scenario, origin: "own", revision: 0, edited: null, past: [], future: [], drafts: {},
     judgement: null, judged: -1, derived: null, approved: -1,
     run: { phase: "idle", progress: null, message: "" }, result: null,
+    zooms: [], gesture: null, box: false, picked: null, reference: null, difference: false, harmonic: null,
     controller: 0, window: null, awaited: null, axis: 0, unit: "steps", hover: null, lit: null,
     cursors: { a: null, b: null }, markers: NO_MARKERS, row: 0, folds: {}, allSignals: false,
     packet: null, filter: NO_FILTER,
@@ -84,7 +88,17 @@ export function update(state, message) {
     case "progress": return { ...state, run: { ...state.run, progress: message.progress } };
     case "done": return done(state, message);
     case "failed": return { ...state, run: { phase: "failed", progress: null, message: message.message } };
-    case "window": return { ...state, window: message.window && clamp(message.window, endOf(state)) };
+    case "window": return moveTo(state, message);
+    case "back": {
+      if (state.zooms.length === 0) return state;
+      const [before] = state.zooms.slice(-1);
+      return { ...state, window: before && clamp(before, endOf(state)), zooms: state.zooms.slice(0, -1), gesture: null };
+    }
+    case "box": return { ...state, box: message.on, picked: null };
+    case "pick": return { ...state, picked: message.picked };
+    case "reference": return { ...state, reference: message.reference, difference: message.reference !== null && state.difference };
+    case "harmonic": return state.harmonic === message.harmonic ? state : { ...state, harmonic: message.harmonic };
+    case "difference": return { ...state, difference: message.on };
     case "open":
       return state.result?.revision === state.revision ? opened(state, message.view) : { ...state, awaited: message.view };
     case "seen": return { ...state, seen: { text: message.text, verdict: null } };
@@ -110,7 +124,16 @@ export function update(state, message) {
 }
 
 /** What a wholly different scenario begins with. */
-const fresh = { controller: 0, window: null, packet: null, filter: NO_FILTER, side: null, hover: null, lit: null, cursors: { a: null, b: null }, markers: NO_MARKERS, axis: 0, row: 0, folds: {} };
+const fresh = { controller: 0, window: null, zooms: [], gesture: null, picked: null, harmonic: null, packet: null, filter: NO_FILTER, side: null, hover: null, lit: null, cursors: { a: null, b: null }, markers: NO_MARKERS, axis: 0, row: 0, folds: {} };
+
+/** Shows another part of the time axis. The parts before it are kept, a gesture's many as one. @param {State} state @param {{window: Span | null, joins?: string}} message @returns {State} */
+function moveTo(state, { window: wanted, joins }) {
+  const window = wanted && clamp(wanted, endOf(state));
+  const gesture = joins ?? null;
+  const same = window === state.window || (window !== null && window.start === state.window?.start && window.end === state.window.end);
+  if (same || (gesture !== null && gesture === state.gesture)) return { ...state, window, gesture };
+  return { ...state, window, gesture, zooms: [...state.zooms, state.window].slice(-DEPTH) };
+}
 
 /** @param {State["lit"]} one @param {State["lit"]} other */
 function sameLit(one, other) {
@@ -170,6 +193,7 @@ function done(state, { revision, summary, ms }) {
   const kept = state.window && same ? clamp(state.window, summary.end_cycle) : null;
   const inside = (/** @type {number | null} */ c) => (c !== null && c <= summary.end_cycle && same ? c : null);
   const here = { ...next, window: kept, seen: state.seen && { ...state.seen, verdict: null },
+    picked: null, zooms: same ? state.zooms : [], gesture: null,
     cursors: { a: inside(state.cursors.a), b: inside(state.cursors.b) }, markers: state.markers.map(inside), lit: null };
   return state.awaited ? opened(here, state.awaited) : here;
 }

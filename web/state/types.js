@@ -54,6 +54,11 @@
  *   thd_position: number | null, thd_speed: number | null, thd_acceleration: number | null}} Spectrum
  * @typedef {{axis: number, ideal: Spectrum | null, pulses: Spectrum | null, note: string}} Spectra
  *
+ * @typedef {{at_a: number[], at_b: number[], mean: number[], rms: number[]}} Readings  Position, speed, acceleration; of pulses the first two.
+ * @typedef {{ideal: Readings | null, made: Readings}} Between
+ * @typedef {{common_s: number, largest: number, at_s: number, rms: number}} Apart
+ * @typedef {{title: string, revision: number, summary: Summary, controller: number, derived: DerivedController | null}} Reference
+ *
  * @typedef {{start: number, end: number}} Span  Cycles, start < end.
  * @typedef {{left: number, top: number, right: number, bottom: number}} Plot  CSS pixels in a canvas.
  * @typedef {"own" | "shared" | `preset:${string}`} Origin  Where the scenario on show comes from.
@@ -86,6 +91,13 @@
  * @property {Result | null} result The last good one.
  * @property {number} controller    The one that the views look at, as long as there is one of this number.
  * @property {Span | null} window   Shown part of the time axis; null shows the whole run.
+ * @property {(Span | null)[]} zooms  What was shown before, the last one last.
+ * @property {string | null} gesture  The gesture that moves the window; what it moves on joins one step of `zooms`.
+ * @property {boolean} box          Dragging on the time axis zooms to what it spans.
+ * @property {Span | null} picked   What such a drag spans so far.
+ * @property {Reference | null} reference  The run that was kept to compare with.
+ * @property {number | null} harmonic  Number of the harmonic that is pointed at.
+ * @property {boolean} difference   The position's chart shows the difference to it.
  * @property {ViewPart | null} awaited  What a link asks to be shown, until there is a result to show it of.
  * @property {{text: string, verdict: Verdict | null} | null} seen  The run that a link's sender saw (its part `d`), and how this one stands to it.
  * @property {number} axis          Axis of the motion view.

@@ -20,7 +20,7 @@ use core::f64::consts::PI;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cosine {
     halves: Mirrored,
-    ramp_s: f64,
+    pub(super) ramp_s: f64,
     /// f_max in steps/s.
     top_speed: f64,
 }

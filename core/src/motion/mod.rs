@@ -22,6 +22,7 @@ mod asked;
 mod axis;
 pub mod cosine;
 mod due;
+mod joints;
 mod mirrored;
 mod plan;
 mod polyline;
@@ -38,6 +39,7 @@ mod words;
 
 pub use axis::{AxisPlan, PlannedMove};
 pub use due::DueStep;
+pub use joints::{Joints, Piece};
 pub use plan::{plan_axis, plan_lists};
 pub use profile::{Curve, Peaks, Profile};
 pub use step_times::StepTimes;

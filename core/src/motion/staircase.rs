@@ -34,7 +34,7 @@ pub struct Staircase {
     /// Start of each row of the ramp, and its end, in s.
     ///
     /// Invariant: at least one entry, the first 0, rising.
-    starts_s: Vec<f64>,
+    pub(super) starts_s: Vec<f64>,
     duration_s: f64,
 }
 

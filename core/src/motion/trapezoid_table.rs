@@ -130,7 +130,7 @@ impl TrapezoidTable {
     }
 
     /// Time of step `k` in s, rounded once.
-    fn step_s(&self, k: u64) -> f64 {
+    pub(super) fn step_s(&self, k: u64) -> f64 {
         self.step_ticks(k) as f64 / f64::from(self.table.timer_hz())
     }
 

@@ -128,8 +128,7 @@ impl Simulation {
                 (row.end.0 + length).saturating_sub(bit / 2 + 9 * bit)
             }
             Verdict::Short | Verdict::Ignored | Verdict::Open => {
-                let (starts, length) = self.byte_cycles(index);
-                starts.last().map_or(row.end.0, |start| start + length)
+                self.placed(index).last().map_or(row.end.0, |byte| byte.end)
             }
         }
     }
