@@ -17,7 +17,6 @@ import { createLink } from "./shell/link.js";
 import { createNotices } from "./shell/notices.js";
 import { createShare } from "./shell/share.js";
 import { createMotion } from "./views/motion/motion.js";
-import { packetFiles } from "./views/packets/files.js";
 import { createPackets } from "./views/packets/packets.js";
 import { load as loadCharts } from "./time/plot.js";
 import { createPanes } from "./shell/panes.js";
