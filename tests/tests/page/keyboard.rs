@@ -163,7 +163,10 @@ fn a_whole_experiment_is_done_by_keys_alone() -> Result<()> {
         still(&page, "packets").await?;
 
         // The link.
-        go(&page, &[SHIFT], "copy-link").await?;
+        go(&page, &[SHIFT], "share").await?;
+        key(&page, &[], ENTER).await?;
+        page.until("!document.getElementById('copy-link').disabled").await?;
+        go(&page, &[], "copy-link").await?;
         key(&page, &[], ENTER).await?;
         page.until("document.getElementById('copy-link').textContent === 'Copied'").await?;
         still(&page, "copy-link").await?;
