@@ -194,7 +194,7 @@ fn tab_reaches_everything_in_the_order_of_the_page() -> Result<()> {
                      !node.disabled && node.checkVisibility({ visibilityProperty: true })).map(([, index]) => index)",
                 )
                 .await?;
-            ensure!(wanted.len() > 15, "{what} has {} places for the focus", wanted.len());
+            ensure!(wanted.len() > 5, "{what} has {} places for the focus", wanted.len());
             let mut places: Vec<Focus> = Vec::new();
             loop {
                 key(&page, &[], TAB).await?;
