@@ -17,6 +17,7 @@ import { createLink } from "./shell/link.js";
 import { createNotices } from "./shell/notices.js";
 import { createShare } from "./shell/share.js";
 import { createMotion } from "./views/motion/motion.js";
+import { packetFiles } from "./views/packets/files.js";
 import { createPackets } from "./views/packets/packets.js";
 import { load as loadCharts } from "./time/plot.js";
 import { createPanes } from "./shell/panes.js";
@@ -170,11 +171,11 @@ async function start() {
   const link = createLink(page);
   createImports({ openLink: link.openLink, ...page });
   const retry = () => { ran = -1; judge(); };
+  const pulses = createPulses(page);
   views = [createHeader({ presets, cancel, retry, ...page }), createForm({ root: byId("fields"), samples: made, drivers, dispatch }),
-    createTabs(page), createPanes(page), createGuide(page), createMotion(page), createPulses(page), createPackets(page), createSpectrum(page), createTiming({ drivers, ...page }),
-    createNotices(page), createShare({ shared: link.shared, ...page }), createExports(page, [chartFiles]), link];
+    createTabs(page), createPanes(page), createGuide(page), createMotion(page), pulses, createPackets(page), createSpectrum(page),
+    createTiming({ drivers, speak: pulses.speak, ...page }), createNotices(page), createShare({ shared: link.shared, ...page }), createExports(page, [chartFiles, packetFiles]), link];
   createKeys();
-
   await link.start(loadScenario() !== null);
   if (state.revision === 0) follow(undefined);
 }

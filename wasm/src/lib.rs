@@ -6,10 +6,12 @@
 mod charts;
 mod convert;
 mod curves;
+mod decoder;
 mod files;
 mod judge;
 mod link;
 mod packets;
+mod pulses;
 mod simulation;
 mod spectrum;
 mod summary;

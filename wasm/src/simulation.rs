@@ -1,18 +1,14 @@
 //! A run in the worker: made in slices, kept for the views' questions. The views look at one
 //! controller at a time.
 
-use crate::{
-    convert::{object, words},
-    packets::Filter,
-};
-use js_sys::Object;
+use crate::{convert::object, packets::Filter};
 use serde::Serialize;
 use stepscope_core::{
     analysis::timing::TimingCheck,
     run::{Experiment, Run},
     scenario::{Config, Scenario},
-    signal::{Event, Levels, Record, Sink},
-    trace::{Against, Recording, Step, columns, steps},
+    signal::{Event, Record, Sink},
+    trace::{Against, Changes, Recording, Step, steps},
     units::Instant,
 };
 use wasm_bindgen::prelude::*;
@@ -40,6 +36,8 @@ pub struct Simulation {
 #[derive(Default)]
 pub(crate) struct Kept {
     pub(crate) recording: Recording,
+    /// Where its signals change.
+    pub(crate) changes: Changes,
     /// The pulses against the scenario's driver, if it names one.
     pub(crate) timing: Option<TimingCheck>,
     /// Steps of each channel, as far as they were asked for after the end.
@@ -105,6 +103,7 @@ impl Simulation {
         let run = experiment.start();
         let kept = |config: &Config| Kept {
             recording: Recording::default(),
+            changes: Changes::default(),
             timing: crate::timing::check(&scenario),
             steps: vec![None; usize::from(config.channels())],
         };
@@ -119,6 +118,7 @@ impl Simulation {
     /// If the run makes more records than a page can keep.
     pub fn advance(&mut self, max_records: u32) -> Result<JsValue, JsError> {
         let done = self.run.advance_each(u64::from(max_records.max(1)), &mut self.kept);
+        self.kept.iter_mut().for_each(|kept| kept.changes.extend(&kept.recording.trace));
         let records: u64 = self.kept.iter().map(|kept| kept.recording.digest.records()).sum();
         if records > MOST_RECORDS {
             return Err(JsError::new(&format!(
@@ -144,45 +144,6 @@ impl Simulation {
             self.looked_at = controller as usize;
             self.filter = Filter::default();
         }
-    }
-
-    /// The signals over a stretch of cycles, in columns: `{high, low, last}`, two words a column.
-    #[must_use]
-    pub fn pulses(&self, start_cycle: f64, end_cycle: f64, columns_asked: u32) -> Object {
-        let count = columns_asked.clamp(1, 10_000) as usize;
-        let found = columns(
-            &self.looked_at().recording.trace,
-            start_cycle.max(0.0) as u64,
-            end_cycle.max(1.0) as u64,
-            count,
-        );
-        let result = Object::new();
-        words(&result, "high", &found.high);
-        words(&result, "low", &found.low);
-        words(&result, "last", &found.last);
-        result
-    }
-
-    /// Cycle of the next edge of signal `bit` after (or the last before) `cycle`; kind is `any`,
-    /// `rise` or `fall`.
-    #[must_use]
-    pub fn next_edge(&self, bit: u8, cycle: f64, forward: bool, kind: &str) -> Option<f64> {
-        let mask = 1_u64 << bit.min(63);
-        let trace = &self.looked_at().recording.trace;
-        let is_edge = |index: usize| {
-            let now = trace.get(index).map_or(Levels(0), |record| record.levels).has(mask);
-            let before = trace.get(index - 1).map_or(Levels(0), |record| record.levels).has(mask);
-            now != before && (kind == "any" || (kind == "rise") == now)
-        };
-        let at = cycle.max(0.0) as u64;
-        let found = if forward {
-            let first = trace.partition_point(|record| record.cycle.0 <= at).max(1);
-            (first..trace.len()).find(|&index| is_edge(index))
-        } else {
-            let after = trace.partition_point(|record| record.cycle.0 < at);
-            (1..after).rev().find(|&index| is_edge(index))
-        };
-        found.and_then(|index| trace.get(index)).map(|record| record.cycle.0 as f64)
     }
 
     /// Spectra of the ideal motion and of the pulses, for the axis that the scenario's analysis

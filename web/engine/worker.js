@@ -63,14 +63,6 @@ async function simulate(run, json) {
   postMessage({ event: "done", run, summary: simulation.summary(), ms: performance.now() - begin });
 }
 
-/** Edges around a cycle: the level's begin and end, and the edge after that. @param {number} bit @param {number} cycle */
-function pulseAt(bit, cycle) {
-  const begin = finished.next_edge(bit, cycle + 1, false, "any");
-  const end = finished.next_edge(bit, cycle, true, "any");
-  const next = end === undefined ? undefined : finished.next_edge(bit, end, true, "any");
-  return { begin, end, next };
-}
-
 /** Keeps the finished run beside later ones, or lets the kept one go. @param {boolean} on */
 function keep(on) {
   if (kept !== finished) kept?.free();
@@ -115,7 +107,6 @@ function answer(method, args) {
   if (method.startsWith("kept_")) return ofKept(method.slice(5), args);
   if (method === "select") looked = args[0];
   if (method === "filter") return search(args);
-  if (method === "pulse_at") return finished && pulseAt(args[0], args[1]);
   const calls = /** @type {any} */ (core);
   if (typeof calls[method] === "function") return calls[method](...args);
   return finished ? finished[method](...args) : null;

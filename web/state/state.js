@@ -109,7 +109,7 @@ export function update(state, message) {
     case "cursor": return { ...state, cursors: { ...state.cursors, [message.which]: message.cycle } };
     case "row": return { ...state, row: message.row };
     case "fold": return { ...state, folds: { ...state.folds, [message.channel]: message.folded } };
-    case "fold-all": return { ...state, folds: Object.fromEntries(Array.from({ length: MOST_CHANNELS }, (_, channel) => [channel, message.folded])) };
+    case "fold-all": return { ...state, folds: { ...state.folds, ...Object.fromEntries(Array.from({ length: MOST_CHANNELS }, (_, channel) => [channel, message.folded])) } };
     case "all-signals": return { ...state, allSignals: message.on };
     case "filter": return { ...state, filter: { ...state.filter, ...message.filter } };
     case "packet": return { ...state, packet: message.packet };

@@ -30,6 +30,11 @@
  *   made_position_min: Float64Array, made_position_max: Float64Array,
  *   made_speed_min: Float64Array, made_speed_max: Float64Array}} MotionColumns
  * @typedef {{high: Uint32Array, low: Uint32Array, last: Uint32Array}} PulseColumns
+ * @typedef {{start: number, end: number, texts: string[], bad: boolean, packet: number | null, sample: number | null}} LineSpan
+ * @typedef {{bits: LineSpan[], bytes: LineSpan[], fields: LineSpan[]}} Lane
+ * @typedef {{rx: Lane, tx: Lane, more: boolean}} Decoded
+ * @typedef {{high: boolean, begin: number | null, end: number | null, next: number | null}} Pulse  A level and the edges around it, cycles.
+ * @typedef {{cycle: number, bit: number, high: boolean}} EdgeRow
  * @typedef {{index: number, kind: "packet" | "frame" | "reply" | "collision", start_cycle: number, end_cycle: number,
  *   line_end_cycle: number, start: string, gap: string, hex: string, fields: string, outcome: string, short: string,
  *   mark: "good" | "foreign" | "repeated" | "bad", tick_start_cycle: number | null, tick_end_cycle: number | null,
@@ -102,7 +107,7 @@
  * @property {(number | null)[]} markers  Cycles of the markers 0 to 9.
  * @property {{a: number | null, b: number | null}} cursors  Cycles.
  * @property {number} row           Signal bit whose edges are looked for.
- * @property {{[channel: number]: boolean}} folds  Channels that the visitor folded or unfolded.
+ * @property {{[channel: number]: boolean}} folds  Channels that the visitor folded or unfolded, and by their bits the decoders of RX and TX.
  * @property {boolean} allSignals   Also the signals that never change.
  * @property {number | null} packet Selected packet.
  * @property {{text: string, kind: string, address: number | null, outcome: string, only: boolean}} filter  Of the packets: what is searched for, and which rows are shown; `only` leaves out what the search does not find.

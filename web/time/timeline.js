@@ -14,6 +14,7 @@ import { endOf, shown } from "../state/state.js";
 const WHEEL_MS = 600;
 /** A press that moves less than this many CSS pixels is a click. */
 const CLICK_PX = 4;
+const DIGITS = [..."0123456789"];
 
 /** @param {Span} window @param {number} factor @param {number} at  Cycle that keeps its place. @returns {Span} */
 export function zoomed({ start, end }, factor, at) {
@@ -47,6 +48,16 @@ export function reveal({ dispatch, now }, cycle) {
   if (cycle >= start && cycle <= end) return;
   const half = (end - start) / 2;
   dispatch({ type: "window", window: { start: cycle - half, end: cycle + half } });
+}
+
+/** Brings a marker into the middle, with the same zoom; false where it is not set. @param {Page} page @param {number} digit */
+export function goToMarker({ dispatch, now }, digit) {
+  const cycle = now().markers[digit];
+  if (cycle === null) return false;
+  const { start, end } = shown(now());
+  const half = (end - start) / 2;
+  dispatch({ type: "window", window: { start: cycle - half, end: cycle + half } });
+  return true;
 }
 
 /** Cycle under a pixel of the plotting area. @param {State} state @param {{left: number, right: number}} plot @param {number} x */
@@ -196,7 +207,18 @@ function keys(page, plot) {
     dispatch({ type: "cursor", which: "a", cycle: null });
     dispatch({ type: "cursor", which: "b", cycle: null });
   };
+  /** The digit of a key, with Shift or without. @param {KeyboardEvent} event */
+  const digitOf = ({ code, key }) => Number(/^Digit(\d)$/.exec(code)?.[1] ?? key);
+  const mark = (/** @type {KeyboardEvent} */ event) => {
+    const { hover, cursors, markers } = now();
+    const { start, end } = shown(now());
+    const cycle = hover ?? cursors.a ?? Math.round((start + end) / 2);
+    const digit = digitOf(event);
+    dispatch({ type: "marker", digit, cycle: markers[digit] === cycle ? null : cycle });
+  };
   return [
+    { keys: DIGITS, text: "show marker 0 to 9", run: (event) => void goToMarker(page, digitOf(event)) },
+    { keys: DIGITS.map((digit) => `Shift+${digit}`), text: "set that marker at the pointer, else at cursor A; once more removes it", run: mark },
     { keys: ["+", "="], text: "zoom in, around cursor A if it is set", run: () => zoom(page, 0.5, at()) },
     { keys: ["-", "−"], text: "zoom out", run: () => zoom(page, 2, at()) },
     { keys: ["Home"], text: "show the whole run", run: () => dispatch({ type: "window", window: null }) },

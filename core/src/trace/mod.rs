@@ -2,11 +2,11 @@
 //! (DESIGN A3). The records themselves are in [`crate::signal`].
 
 mod against;
+mod changes;
 mod columns;
 mod digest;
 mod fields;
 mod fingerprint;
-mod heard;
 mod log;
 mod proof;
 mod recording;
@@ -17,11 +17,11 @@ mod text;
 mod vcd;
 
 pub use against::{Against, BadLine, Difference, Outcome};
+pub use changes::{Changes, Edge};
 pub use columns::{Columns, columns};
 pub use digest::Digest;
 pub use fields::{Check, Field, Meaning, Reading};
 pub use fingerprint::{Comparison, Fingerprint, Fingerprinter, Likeness, Mark, Shorter};
-pub use heard::heard;
 pub use log::{LoggedPacket, LoggedTick, PacketLog, Verdict};
 pub use proof::{Proof, ProofError, VERSION};
 pub use recording::Recording;
