@@ -26,6 +26,7 @@
 mod axe;
 mod bench;
 mod browser;
+mod charts;
 mod controllers;
 mod devtools;
 mod drawing;
