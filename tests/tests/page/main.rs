@@ -29,6 +29,7 @@ mod hostile_links;
 mod keeping;
 mod links;
 mod native;
+mod packets;
 mod pixels;
 mod presets;
 mod screens;
