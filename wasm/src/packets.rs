@@ -15,6 +15,7 @@ use serde::Serialize;
 use stepscope_core::{
     scenario::Config,
     trace::{LoggedTick, PacketLog},
+    units::Instant,
 };
 use wasm_bindgen::prelude::*;
 use words::{Line, Scale};
@@ -169,26 +170,22 @@ impl Simulation {
         object(&Choices { addresses, kinds })
     }
 
-    /// The first `limit` rows whose time on the line touches a stretch of cycles: `{rows, more}`.
+    /// The rows whose time on the line touches a stretch of cycles, none of them where there are more than `limit`:
+    /// `{rows, more}`.
     ///
     /// # Errors
     /// Never in practice.
     pub fn packets_in(&self, start_cycle: f64, end_cycle: f64, limit: u32) -> Result<JsValue, JsError> {
-        let (start, end) = (start_cycle.max(0.0) as u64, end_cycle.max(0.0) as u64);
-        // Rows stand in the order of their starts.
-        let mut touching = self
-            .log()
-            .rows()
-            .iter()
-            .enumerate()
-            .take_while(|(_, row)| row.start.0 <= end)
-            .filter(|(_, row)| row.end.0 >= start)
-            .map(|(index, _)| index);
-        let rows = touching.by_ref().take(limit as usize).filter_map(|index| self.row(index)).collect();
-        object(&Rows { rows, more: touching.next().is_some() })
+        let at = |cycle: f64| Instant(cycle.max(0.0) as u64);
+        let limit = limit as usize;
+        let touching: Vec<usize> =
+            self.log().touching(at(start_cycle), at(end_cycle)).take(limit + 1).collect();
+        let more = touching.len() > limit;
+        let listed = if more { Vec::new() } else { touching };
+        object(&Rows { rows: listed.into_iter().filter_map(|index| self.row(index)).collect(), more })
     }
 
-    /// The first `limit` ticks that touch a stretch of cycles, each with the row that brought it:
+    /// The ticks that touch a stretch of cycles, none of them where there are more than `limit`, each with the row that brought it:
     /// `{rows: [{start_cycle, end_cycle, row, fields}], more}`.
     ///
     /// # Errors
@@ -200,8 +197,9 @@ impl Simulation {
         let first = all.partition_point(|tick| tick.start.0 + config.tick().0 <= start);
         let until = all.partition_point(|tick| tick.start.0 <= end).max(first);
         let touching = all.get(first..until).unwrap_or_default();
-        let rows = touching.iter().take(limit as usize).map(|tick| self.tick(tick, config)).collect();
-        object(&Rows { rows, more: touching.len() > limit as usize })
+        let more = touching.len() > limit as usize;
+        let listed = if more { &[] } else { touching };
+        object(&Rows { rows: listed.iter().map(|tick| self.tick(tick, config)).collect(), more })
     }
 
     fn tick(&self, tick: &LoggedTick, config: &Config) -> TickRow {

@@ -13,6 +13,10 @@ const REPORT_MS = 60;
 
 /** @type {any} The simulation that the views ask about. */
 let finished = null;
+/** @type {any} The simulation that was kept to compare with; may be the finished one. */
+let kept = null;
+/** Controller that the views look at. */
+let looked = 0;
 /** Number of the newest run that was asked for. */
 let newest = -1;
 
@@ -53,17 +57,28 @@ async function simulate(run, json) {
       return;
     }
   }
-  finished?.free();
+  if (finished !== kept) finished?.free();
   finished = simulation;
+  looked = 0;
   postMessage({ event: "done", run, summary: simulation.summary(), ms: performance.now() - begin });
 }
 
-/** Edges around a cycle: the level's begin and end, and the edge after that. @param {number} bit @param {number} cycle */
-function pulseAt(bit, cycle) {
-  const begin = finished.next_edge(bit, cycle + 1, false, "any");
-  const end = finished.next_edge(bit, cycle, true, "any");
-  const next = end === undefined ? undefined : finished.next_edge(bit, end, true, "any");
-  return { begin, end, next };
+/** Keeps the finished run beside later ones, or lets the kept one go. @param {boolean} on */
+function keep(on) {
+  if (kept !== finished) kept?.free();
+  kept = on ? finished : null;
+  return kept !== null;
+}
+
+/** Asks the kept run, about one of its controllers. @param {string} method @param {any[]} args  The controller first. */
+function ofKept(method, [controller, ...args]) {
+  if (!kept) return null;
+  // A run cannot be compared with itself: it is no other.
+  if (kept === finished && method !== "motion") return null;
+  kept.select(controller);
+  const value = method === "motion" ? kept.motion(...args) : finished[method](kept, ...args);
+  if (kept === finished) kept.select(looked);
+  return value;
 }
 
 /** Number of the newest search over the packets. */
@@ -88,8 +103,10 @@ async function search(args) {
 
 /** @param {string} method @param {any[]} args */
 function answer(method, args) {
+  if (method === "keep") return keep(args[0]);
+  if (method.startsWith("kept_")) return ofKept(method.slice(5), args);
+  if (method === "select") looked = args[0];
   if (method === "filter") return search(args);
-  if (method === "pulse_at") return finished && pulseAt(args[0], args[1]);
   const calls = /** @type {any} */ (core);
   if (typeof calls[method] === "function") return calls[method](...args);
   return finished ? finished[method](...args) : null;

@@ -30,6 +30,21 @@ pub enum Verdict {
     Open,
 }
 
+impl Verdict {
+    /// What the row is, in a word: `packet`, `frame`, `reply`, `collision`, or `open` where the run ended
+    /// before it was known.
+    #[must_use]
+    pub const fn kind(self) -> &'static str {
+        match self {
+            Self::Packet(_) | Self::Short | Self::Framing | Self::Ignored => "packet",
+            Self::Frame(_) => "frame",
+            Self::Reply(_) => "reply",
+            Self::Collision => "collision",
+            Self::Open => "open",
+        }
+    }
+}
+
 impl fmt::Display for Verdict {
     /// What became of the packet, as the page and the command's tables say it.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -67,6 +82,8 @@ pub struct LoggedPacket {
     /// Where its bytes stand among those of all rows.
     bytes_start: usize,
     bytes_end: usize,
+    /// The latest end of all rows to here, once the log is finished: a long row may end after later ones.
+    latest: Instant,
 }
 
 /// A tick that has begun.
@@ -85,6 +102,10 @@ pub struct LoggedTick {
 pub struct PacketLog {
     rows: Vec<LoggedPacket>,
     bytes: Vec<u8>,
+    /// Where the start bit of each byte was seen; of a reply's bytes, where its first one falls.
+    seen: Vec<Instant>,
+    /// Where the start bits of bytes with a framing error were seen.
+    broken: Vec<Instant>,
     /// Where the packet that is coming began.
     open: Option<Instant>,
     last: Instant,
@@ -125,14 +146,42 @@ impl PacketLog {
         row.and_then(|row| self.bytes.get(row.bytes_start..row.bytes_end)).unwrap_or_default()
     }
 
+    /// Where the start bits of a row's bytes were seen; of a reply's, for each the start bit of the first.
+    #[must_use]
+    pub fn seen(&self, index: usize) -> &[Instant] {
+        let row = self.rows.get(index);
+        row.and_then(|row| self.seen.get(row.bytes_start..row.bytes_end)).unwrap_or_default()
+    }
+
+    /// Where the start bits of bytes were seen whose stop bit was low, rising in time.
+    #[must_use]
+    pub fn broken(&self) -> &[Instant] {
+        &self.broken
+    }
+
+    /// Indices of the rows of a finished log whose time on the line touches the cycles `start..=end`, rising.
+    pub fn touching(&self, start: Instant, end: Instant) -> impl Iterator<Item = usize> {
+        let first = self.rows.partition_point(|row| row.latest < start);
+        let rows = self.rows.iter().enumerate().skip(first).take_while(move |(_, row)| row.start <= end);
+        rows.filter(move |(_, row)| row.end >= start).map(|(index, _)| index)
+    }
+
     /// The run is over: what is still open becomes a row, and the rows stand in the order of their starts.
     pub fn finish(&mut self) {
         if self.open.is_some() {
             self.close(self.last, if self.ignoring { Verdict::Ignored } else { Verdict::Open });
         }
-        if self.rows.is_sorted_by_key(|row| row.start) {
-            return;
+        if !self.rows.is_sorted_by_key(|row| row.start) {
+            self.sort();
         }
+        let mut latest = Instant::default();
+        for row in &mut self.rows {
+            latest = latest.max(row.end);
+            row.latest = latest;
+        }
+    }
+
+    fn sort(&mut self) {
         let mut order: Vec<usize> = (0..self.rows.len()).collect();
         order.sort_by_key(|&index| self.rows.get(index).map(|row| row.start));
         let mut place = alloc::vec![0; order.len()];
@@ -165,7 +214,16 @@ impl PacketLog {
         let bytes_start = self.rows.last().map_or(0, |row| row.bytes_end);
         let bytes_end = self.bytes.len();
         let (tick_start, tick_end) = (None, None);
-        self.rows.push(LoggedPacket { start, end, verdict, tick_start, tick_end, bytes_start, bytes_end });
+        self.rows.push(LoggedPacket {
+            start,
+            end,
+            verdict,
+            tick_start,
+            tick_end,
+            bytes_start,
+            bytes_end,
+            latest: end,
+        });
     }
 
     fn stop(&mut self, at: Instant) {
@@ -182,11 +240,13 @@ impl Sink for PacketLog {
             Event::Byte { seen, byte } => {
                 self.open.get_or_insert(seen);
                 self.bytes.push(byte);
+                self.seen.push(seen);
                 self.last = at;
             }
             // On a framed line only the byte is missing, and the frame's check tells.
-            Event::FramingError { drops: false, .. } => {}
+            Event::FramingError { seen, drops: false } => self.broken.push(seen),
             Event::FramingError { seen, .. } => {
+                self.broken.push(seen);
                 self.open.get_or_insert(seen);
                 self.close(at, Verdict::Framing);
                 self.ignoring = true;
@@ -201,6 +261,7 @@ impl Sink for PacketLog {
             Event::Frame(fate) => self.close(at, Verdict::Frame(fate)),
             Event::Reply { start, end, reply } => {
                 self.bytes.extend(reply.emit());
+                self.seen.resize(self.bytes.len(), start);
                 self.open = Some(start);
                 self.close(end, Verdict::Reply(reply));
             }
@@ -273,6 +334,12 @@ mod tests {
         let told: Vec<_> = log.rows().iter().map(|row| (row.start.0, row.verdict)).collect();
         assert_eq!(told, [(10, Verdict::Packet(Fate::Queued)), (25, Verdict::Collision)]);
         assert_eq!((log.bytes(0), log.bytes(1)), ([1, 2].as_slice(), [].as_slice()));
+        assert_eq!(log.seen(0), [Instant(10), Instant(22)]);
+        assert_eq!(
+            log.touching(Instant(28), Instant(29)).collect::<Vec<_>>(),
+            [0],
+            "it began before the collision"
+        );
         assert_eq!(log.ticks()[0].row, Some(0));
         assert_eq!(log.rows()[0].tick_start, Some(Instant(31)));
     }

@@ -7,7 +7,7 @@ use crate::{
 };
 use serde::Serialize;
 use stepscope_core::{
-    trace::{Check, Reading, Verdict, heard},
+    trace::{Check, Meaning, Reading, Verdict},
     units::Cycles,
 };
 use wasm_bindgen::prelude::*;
@@ -64,12 +64,7 @@ impl Simulation {
             return Ok(JsValue::NULL);
         };
         let line = self.line();
-        let reading = Reading {
-            protocol: line.own.protocol(),
-            addressed: line.own.packet_address().is_some(),
-            channels: &|address| line.channels(address),
-        };
-        let meaning = reading.of(self.log().bytes(index), logged.verdict);
+        let Some(meaning) = self.meaning(index) else { return Ok(JsValue::NULL) };
         let (check, sums) = match meaning.check {
             Check::None => ("none", None),
             Check::Missing => ("missing", None),
@@ -77,7 +72,9 @@ impl Simulation {
                 (if found == expected { "holds" } else { "fails" }, Some((found, expected)))
             }
         };
-        let (byte_cycles, byte_length) = self.byte_cycles(index);
+        let bytes = self.placed(index);
+        let byte_length = bytes.first().map_or(0, |byte| byte.end - byte.start);
+        let byte_cycles = bytes.iter().map(|byte| byte.start).collect();
         let answers = self.answered(index);
         let turnaround = answers.map(|frame| logged.start.0.saturating_sub(self.line_end(frame)));
         let bit = line.own.bit().0;
@@ -105,22 +102,16 @@ impl Simulation {
         })
     }
 
-    /// Where each byte of a row starts on the line, and how long one is, in cycles.
-    fn byte_cycles(&self, index: usize) -> (Vec<u64>, u64) {
-        let Some(row) = self.log().rows().get(index) else { return (Vec::new(), 0) };
-        let config = config(&self.experiment, self.looked_at);
-        let clock_hz = u64::from(config.clock_hz());
-        let count = self.log().bytes(index).len();
-        let line = &self.scenario.line;
-        if let Verdict::Reply(_) = row.verdict {
-            // Back to back by the sender's rule (A4).
-            let baud = u64::from(line.receiver_baud.unwrap_or(line.baud).max(1));
-            let starts = (0..count as u64).map(|byte| row.start.0 + BYTE_BITS * byte * clock_hz / baud);
-            return (starts.collect(), BYTE_BITS * clock_hz / baud);
-        }
-        let seen = heard(&self.looked_at().recording.trace, config.bit(), row.start, count);
-        let length = BYTE_BITS * clock_hz / u64::from(line.baud.max(1));
-        (seen.into_iter().map(|at| at.0).collect(), length)
+    /// What the bytes of a row mean.
+    pub(crate) fn meaning(&self, index: usize) -> Option<Meaning> {
+        let verdict = self.log().rows().get(index)?.verdict;
+        let line = self.line();
+        let reading = Reading {
+            protocol: line.own.protocol(),
+            addressed: line.own.packet_address().is_some(),
+            channels: &|address| line.channels(address),
+        };
+        Some(reading.of(self.log().bytes(index), verdict))
     }
 
     /// First cycle after the last byte of a row on the line.
@@ -137,8 +128,7 @@ impl Simulation {
                 (row.end.0 + length).saturating_sub(bit / 2 + 9 * bit)
             }
             Verdict::Short | Verdict::Ignored | Verdict::Open => {
-                let (starts, length) = self.byte_cycles(index);
-                starts.last().map_or(row.end.0, |start| start + length)
+                self.placed(index).last().map_or(row.end.0, |byte| byte.end)
             }
         }
     }
