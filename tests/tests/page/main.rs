@@ -41,6 +41,7 @@ mod keeping;
 mod keyboard;
 mod links;
 mod native;
+mod packets;
 mod people;
 mod pictures;
 mod pixels;
