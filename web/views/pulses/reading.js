@@ -73,8 +73,13 @@ export function createReading({ engine, now }) {
     if (answer) speak(`${time(a / clock)}, cycle ${a}: ${measured(state, row, answer)}.`);
   }
 
+  /** What `said` is about. @type {State["result"]} */
+  let about = null;
+
   /** @param {State} state */
   function render(state) {
+    if (about !== state.result) said = "";
+    about = state.result;
     foot(state);
     cursors(state);
   }
