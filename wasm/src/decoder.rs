@@ -55,11 +55,11 @@ struct Decoded {
 
 /// A byte on the line: its row, its place in the row, and its cycles.
 #[derive(Clone, Copy)]
-struct Placed {
+pub(crate) struct Placed {
     packet: usize,
     byte: u8,
-    start: u64,
-    end: u64,
+    pub(crate) start: u64,
+    pub(crate) end: u64,
 }
 
 #[wasm_bindgen]
@@ -154,7 +154,7 @@ impl Simulation {
     }
 
     /// The bytes of a row with their places.
-    fn placed(&self, packet: usize) -> Vec<Placed> {
+    pub(crate) fn placed(&self, packet: usize) -> Vec<Placed> {
         let log = &self.looked_at().recording.packets;
         let reply = is_reply(log, packet);
         let seen = log.seen(packet);

@@ -5,7 +5,9 @@
 
 mod charts;
 mod convert;
+mod curves;
 mod decoder;
+mod files;
 mod judge;
 mod link;
 mod packets;
@@ -14,8 +16,9 @@ mod simulation;
 mod spectrum;
 mod summary;
 mod timing;
+mod witness;
 
 pub use judge::{check, default_scenario, presets, version};
-pub use link::{decode_link, encode_link, link_part};
+pub use link::{decode_link, encode_link, link_part, link_with, replay};
 pub use simulation::Simulation;
 pub use timing::drivers;

@@ -1,18 +1,14 @@
 //! A run in the worker: made in slices, kept for the views' questions. The views look at one
 //! controller at a time.
 
-use crate::convert::{field, numbers, object};
-use js_sys::Object;
+use crate::{convert::object, packets::Filter};
 use serde::Serialize;
 use stepscope_core::{
-    analysis::{
-        curves::{self, Window},
-        timing::TimingCheck,
-    },
+    analysis::timing::TimingCheck,
     run::{Experiment, Run},
     scenario::{Config, Scenario},
     signal::{Event, Record, Sink},
-    trace::{Changes, Recording, Step, steps},
+    trace::{Against, Changes, Recording, Step, steps},
     units::Instant,
 };
 use wasm_bindgen::prelude::*;
@@ -30,6 +26,10 @@ pub struct Simulation {
     pub(crate) kept: Vec<Kept>,
     /// Index in `kept` of the controller that the views look at.
     pub(crate) looked_at: usize,
+    /// Which rows of its packets the table shows.
+    pub(crate) filter: Filter,
+    /// A controller's index, and how its trace stands to a file that is being read.
+    pub(crate) against: Option<(usize, Against)>,
 }
 
 /// What is kept of one controller.
@@ -59,7 +59,7 @@ impl Sink for Kept {
 }
 
 impl Kept {
-    fn count_steps(&mut self, channel: u8) {
+    pub(crate) fn count_steps(&mut self, channel: u8) {
         if let Some(place) = self.steps.get_mut(usize::from(channel))
             && place.is_none()
         {
@@ -68,7 +68,7 @@ impl Kept {
     }
 
     /// Steps of a channel, once they are counted.
-    fn steps_of(&self, channel: u8) -> &[Step] {
+    pub(crate) fn steps_of(&self, channel: u8) -> &[Step] {
         self.steps.get(usize::from(channel)).and_then(Option::as_deref).unwrap_or_default()
     }
 }
@@ -108,7 +108,7 @@ impl Simulation {
             steps: vec![None; usize::from(config.channels())],
         };
         let kept = experiment.configs().map(kept).collect();
-        Ok(Self { scenario, experiment, run, kept, looked_at: 0 })
+        Ok(Self { scenario, experiment, run, kept, looked_at: 0, filter: Filter::default(), against: None })
     }
 
     /// Runs on until one controller has made about `max_records` more records: `{done, cycle, end_cycle,
@@ -142,38 +142,8 @@ impl Simulation {
     pub fn select(&mut self, controller: u32) {
         if (controller as usize) < self.kept.len() {
             self.looked_at = controller as usize;
+            self.filter = Filter::default();
         }
-    }
-
-    /// Position, speed and acceleration of an axis over a stretch of time, in columns.
-    #[must_use]
-    pub fn motion(&mut self, axis: u8, t0_s: f64, t1_s: f64, columns: u32) -> Object {
-        let window = Window { start_s: t0_s, end_s: t1_s, columns: columns.clamp(1, 10_000) as usize };
-        let (clock_hz, config) =
-            (self.experiment.config().clock_hz(), config(&self.experiment, self.looked_at));
-        let kept = &mut self.kept[self.looked_at];
-        let result = Object::new();
-        let centres: Vec<f64> = (0..window.columns).map(|column| window.centre_s(column)).collect();
-        numbers(&result, "x", &centres);
-        let plan = self.experiment.plans_of(self.looked_at).get(usize::from(axis));
-        field(&result, "has_ideal", &plan.is_some().into());
-        if let Some(plan) = plan {
-            let zero_s = kept.recording.first_tick().map_or(0.0, |start| start.seconds(clock_hz));
-            let ideal = curves::ideal(plan, zero_s, window);
-            for (name, band) in
-                [("position", ideal.position), ("speed", ideal.speed), ("acceleration", ideal.acceleration)]
-            {
-                numbers(&result, &format!("{name}_min"), &band.min);
-                numbers(&result, &format!("{name}_max"), &band.max);
-            }
-        }
-        kept.count_steps(axis);
-        let made = curves::made(&kept.recording, kept.steps_of(axis), axis, config, window);
-        for (name, band) in [("made_position", made.position), ("made_speed", made.speed)] {
-            numbers(&result, &format!("{name}_min"), &band.min);
-            numbers(&result, &format!("{name}_max"), &band.max);
-        }
-        result
     }
 
     /// Spectra of the ideal motion and of the pulses, for the axis that the scenario's analysis

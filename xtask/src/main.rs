@@ -2,10 +2,10 @@
 //!
 //! | file | what it holds |
 //! | --- | --- |
-//! | `toolchain`, `tools`, `wasm_opt`, `apt` | what a fresh machine lacks, installed once per user |
+//! | `toolchain`, `tools`, `wasm_opt`, `npm`, `apt` | what a fresh machine lacks, installed once per user |
 //! | `page` | the optimised page, and what each of its files weighs |
 //! | `headers`, `serve` | the local server, whose headers are `web/_headers`' |
-//! | `steps`, `browser`, `bare_metal`, `gtkwave` | `cargo xtask test`, step by step |
+//! | `steps`, `browser`, `engines`, `bare_metal`, `gtkwave` | `cargo xtask test`, step by step |
 //! | `bench` | `cargo xtask bench` |
 //! | `fuzz` | `cargo xtask fuzz` |
 //! | `run` | child processes: time limit, no input, killed as a group |
@@ -14,9 +14,11 @@ mod apt;
 mod bare_metal;
 mod bench;
 mod browser;
+mod engines;
 mod fuzz;
 mod gtkwave;
 mod headers;
+mod npm;
 mod page;
 mod run;
 mod serve;

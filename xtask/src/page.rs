@@ -15,6 +15,12 @@ use crate::{root, run};
 /// What all files together may weigh, in bytes, compressed by brotli as hosts do.
 const BUDGET: usize = 400_000;
 
+/// As [`build`] with optimising, but once only in this program's life: for steps that use the same page.
+pub(crate) async fn built() -> Result<()> {
+    static BUILT: tokio::sync::OnceCell<()> = tokio::sync::OnceCell::const_new();
+    BUILT.get_or_try_init(|| build(Optimise::Yes)).await.copied()
+}
+
 /// Builds the wasm crate into `web/pkg`, installing the tools first if they are missing.
 pub(crate) async fn build(optimise: Optimise) -> Result<()> {
     let tools = WasmTools::ready(optimise).await?;

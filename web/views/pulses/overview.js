@@ -90,7 +90,7 @@ export function createOverview({ engine, dispatch, now }) {
     const inside = Math.min(last, Math.max(0, to));
     const window = what === "part" ? { start: to, end: to + end - start }
       : what === "start" ? { start: Math.min(inside, end - 1), end } : { start, end: Math.max(inside, start + 1) };
-    dispatch({ type: "window", window });
+    dispatch({ type: "window", joins: "overview", window });
   }
 
   /** @param {State} state */
