@@ -21,7 +21,7 @@ export const STEPS = [
 const GAP_PX = 10;
 
 /** @param {import("../time/timeline.js").Page} page */
-export function createGuide({ dispatch }) {
+export function createGuide({ dispatch, now }) {
   const panel = byId("guide");
   const narrow = matchMedia("(max-width: 899px)");
   let current = -1;
@@ -42,6 +42,12 @@ export function createGuide({ dispatch }) {
     current = step;
     const { title, text, view } = STEPS[step];
     if (view) dispatch({ type: "view", view });
+    // What it points at has to be on show.
+    const { form, folded, largest } = now().panes;
+    if (largest !== null || form === 0 || folded.length > 0) {
+      dispatch({ type: "pane", panes: { largest: null, folded: [], form: form || null } });
+      requestAnimationFrame(() => { if (current === step) place(); });
+    }
     // On a narrow screen the form is folded away.
     const target = targetOf();
     const sheet = /** @type {HTMLDetailsElement} */ (byId("sheet"));
