@@ -33,12 +33,13 @@ mod editing;
 mod engine;
 mod engines;
 mod framed;
+mod golden_pictures;
 mod hostile_links;
 mod keeping;
 mod keyboard;
 mod links;
 mod native;
-mod pictures;
+
 mod pixels;
 mod presets;
 mod reflow;
