@@ -39,7 +39,6 @@ mod keeping;
 mod keyboard;
 mod links;
 mod native;
-
 mod pixels;
 mod presets;
 mod reflow;
