@@ -29,9 +29,9 @@ use crate::{
 };
 
 /// Longest time of one test's own work.
-const TEST_LIMIT: Duration = Duration::from_secs(120);
+const TEST_LIMIT: Duration = Duration::from_secs(300);
 /// Longest time until a program that was started says where it listens.
-const START_LIMIT: Duration = Duration::from_secs(30);
+const START_LIMIT: Duration = Duration::from_secs(120);
 /// Rest between two attempts to reach a program.
 const LOOK_AGAIN: Duration = Duration::from_millis(20);
 /// Longest time for a goodbye, after which a program is killed.
