@@ -70,16 +70,16 @@ fn bytes_and_fields_are_decoded_lit_in_all_views_and_choose_their_packet() -> Re
             ensure!(lit > 0, "{overlay} shows what is pointed at");
         }
         point(&page, &known, FIELDS, middle(0), false).await?;
-        until_reads(&page, "fields: ch 0: +7 steps").await?;
+        until_reads(&page, "fields: ch0: +7").await?;
         point(&page, &known, FIELDS, middle(1), false).await?;
-        until_reads(&page, "fields: ch 1: \u{2212}5 steps").await?;
+        until_reads(&page, "fields: ch1: \u{2212}5").await?;
 
         let broken = log.broken()[0].0 + 5 * known.experiment.config().bit().0;
         point(&page, &known, BYTES, broken, false).await?;
         until_reads(&page, "framing error: stop bit low").await?;
         let ignored = log.rows().iter().position(|row| row.verdict == Verdict::Ignored).context("some are")?;
         point(&page, &known, FIELDS, log.seen(ignored)[0].0 + 100, false).await?;
-        until_reads(&page, "ignored until a gap").await?;
+        until_reads(&page, "ignored: until a gap").await?;
 
         point(&page, &known, BYTES, middle(1), true).await?;
         page.until("document.querySelector('#packets tr[aria-selected=true]')?.dataset.index === '1'").await?;
@@ -115,7 +115,11 @@ fn frames_and_replies_are_decoded_to_their_fields() -> Result<()> {
         assert_eq!(texts("rx", "bytes"), hex(reply - 1));
         assert_eq!(texts("tx", "bytes"), hex(reply));
         assert_eq!(texts("rx", "bits").len(), 10 * hex(reply - 1).len());
-        for (lane, wanted) in [("rx", "kind "), ("rx", " holds"), ("rx", "end mark"), ("tx", "kind ACK of "), ("tx", "state "), ("tx", " places free"), ("tx", " ticks done"), ("tx", " holds")] {
+        let wanted = [
+            ("rx", "kind: "), ("rx", ", holds"), ("rx", "end mark: 00"), ("tx", "kind: ACK "), ("tx", "state: "),
+            ("tx", "free: "), ("tx", "ticks done: "), ("tx", ", holds"),
+        ];
+        for (lane, wanted) in wanted {
             let found = texts(lane, "fields");
             ensure!(found.iter().any(|text| text.contains(wanted)), "{lane} has no `{wanted}` in {found:?}");
         }
