@@ -17,10 +17,10 @@ import { createLink } from "./shell/link.js";
 import { createNotices } from "./shell/notices.js";
 import { createShare } from "./shell/share.js";
 import { createMotion } from "./views/motion/motion.js";
-import { packetFiles } from "./views/packets/files.js";
 import { createPackets } from "./views/packets/packets.js";
 import { load as loadCharts } from "./time/plot.js";
 import { createPanes } from "./shell/panes.js";
+import { packetFiles } from "./views/packets/files.js";
 import { createPulses } from "./views/pulses/pulses.js";
 import { SOURCES } from "./form/sources.js";
 import { createSpectrum } from "./views/spectrum/spectrum.js";
@@ -174,7 +174,8 @@ async function start() {
   const pulses = createPulses(page);
   views = [createHeader({ presets, cancel, retry, ...page }), createForm({ root: byId("fields"), samples: made, drivers, dispatch }),
     createTabs(page), createPanes(page), createGuide(page), createMotion(page), pulses, createPackets(page), createSpectrum(page),
-    createTiming({ drivers, speak: pulses.speak, ...page }), createNotices(page), createShare({ shared: link.shared, ...page }), createExports(page, [chartFiles, packetFiles]), link];
+    createTiming({ drivers, speak: pulses.speak, ...page }), createNotices(page), createShare({ shared: link.shared, ...page }),
+    createExports(page, [["Charts", chartFiles], ["Packets", packetFiles]]), link];
   createKeys();
   await link.start(loadScenario() !== null);
   if (state.revision === 0) follow(undefined);

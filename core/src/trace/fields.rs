@@ -97,10 +97,11 @@ impl Reading<'_> {
         }
         let content = Content::of(bytes, first..whole.len());
         let mut check = Check::Missing;
-        if let (true, Some((frame, sum))) = (content.whole, content.decoded.split_last_chunk::<CHECK_LEN>()) {
-            if frame.len() >= 2 {
-                check = Check::Compared { found: u32::from_le_bytes(*sum), expected: CHECK.checksum(frame) };
-            }
+        if content.whole
+            && let Some((frame, sum)) = content.decoded.split_last_chunk::<CHECK_LEN>()
+            && frame.len() >= 2
+        {
+            check = Check::Compared { found: u32::from_le_bytes(*sum), expected: CHECK.checksum(frame) };
         }
         let mut told = content.told(check, self.channels);
         for &(at, code) in &content.overhead {

@@ -26,6 +26,7 @@
 mod axe;
 mod bench;
 mod browser;
+mod charts;
 mod controllers;
 mod devtools;
 mod drawing;
@@ -42,6 +43,7 @@ mod keyboard;
 mod links;
 mod logic;
 mod native;
+mod packets;
 mod people;
 mod pictures;
 mod pixels;

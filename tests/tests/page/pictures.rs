@@ -71,7 +71,8 @@ async fn compare(page: &Session, canvas: &str, name: &str, wrong: &mut Vec<Strin
     let url: String = page
         .js("return document.getElementById(arguments[0]).toDataURL('image/png');", vec![json!(canvas)])
         .await?;
-    let file = BASE64.decode(url.strip_prefix("data:image/png;base64,").context("no picture")?.as_bytes())?;
+    let base64 = url.strip_prefix("data:image/png;base64,").context("no picture")?;
+    let file = BASE64.decode(base64.as_bytes()).map_err(anyhow::Error::msg)?;
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("pictures");
     let golden = folder.join(format!("{name}.png"));
     if env::var_os("STEPSCOPE_BLESS").is_some() {

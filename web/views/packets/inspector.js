@@ -114,7 +114,7 @@ export function createInspector({ engine, dispatch, now }) {
       cell.classList.toggle("lit", some.slice(from, until).includes(true));
     });
     const [first, last] = [some.indexOf(true), some.lastIndexOf(true)];
-    say(byId("packet-reading"), told && first >= 0 ? reading(told, first, last, result?.summary.clock_hz ?? 1) : "\u00a0");
+    if (told) say(byId("packet-reading"), reading(told, first, last, result?.summary.clock_hz ?? 1));
   }
 
   return {
@@ -127,8 +127,9 @@ export function createInspector({ engine, dispatch, now }) {
   };
 }
 
-/** The bytes that are pointed at: hex, bits, and when they are on the line. @param {PacketDetail} row @param {number} first @param {number} last @param {number} clock */
+/** The bytes that are pointed at: hex, bits, and when they are on the line; with none, when all of them are. @param {PacketDetail} row @param {number} first @param {number} last @param {number} clock */
 function reading(row, first, last, clock) {
+  if (first < 0) return `on the line ${time(row.start_cycle / clock)} to ${time(row.line_end_cycle / clock)}`;
   const hex = row.hex.split(" ").slice(first, last + 1);
   const bits = hex.map((byte) => parseInt(byte, 16).toString(2).padStart(8, "0")).map((eight) => `${eight.slice(0, 4)}\u2009${eight.slice(4)}`);
   const when = `${time(row.byte_cycles[first] / clock)} to ${time((row.byte_cycles[last] + row.byte_length) / clock)}`;
@@ -148,7 +149,6 @@ function facts(row, said) {
   const tick = row.tick_start_cycle === null ? [] : [["tick", `${said(row.tick_start_cycle)}${row.tick_end_cycle === null ? ", not ended" : ` to ${said(row.tick_end_cycle)}`}`]];
   const turnaround = row.turnaround_cycles === null ? [] : [["turnaround", `${said(row.turnaround_cycles)} after the end of #${count(row.answers ?? 0)}; DE rises after ${said(row.drive_cycles ?? 0)}`]];
   const all = [
-    ["on the line", `${said(row.start_cycle)} to ${said(row.line_end_cycle)}`],
     ["gap before", row.gap_cycles === null ? "–" : said(row.gap_cycles)],
     ...turnaround, ...tick,
     ...(row.kind === "collision" ? [] : [["size", `${count(size)} ${size === 1 ? "byte" : "bytes"}${cobs ? `, ${cobs} of them COBS` : ""}`], checked]),

@@ -72,6 +72,7 @@ export function createSearch({ engine, dispatch, now }, { place, reload, moveTo 
 
   /** Another run: what there is to choose from, and the same filter over its rows. @param {State} state */
   async function start(state) {
+    const own = ++asked;
     const choices = await engine.ask("packet_choices").catch(unlessDropped);
     if (choices) {
       const { framed } = state.result?.summary ?? {};
@@ -80,6 +81,7 @@ export function createSearch({ engine, dispatch, now }, { place, reload, moveTo 
       kind.closest("label")?.toggleAttribute("hidden", !framed);
       address.closest("label")?.toggleAttribute("hidden", choices.addresses.length === 0);
     }
+    if (own !== asked) return;
     if (isFiltering(state.filter)) return filter(state);
     matches = 0;
     await reload();
@@ -99,7 +101,8 @@ export function createSearch({ engine, dispatch, now }, { place, reload, moveTo 
     say(byId("packets-note"), answer.note);
     // The row that was the current one stays it; a search goes on from there.
     const there = row ? await engine.ask("packet_position", row.index).catch(unlessDropped) : undefined;
-    await reload();
+    if (own === asked) await reload();
+    if (own !== asked) return;
     if (typeof there === "number") await moveTo(there);
     if (matches > 0 && place().row?.rank === null) return next(true);
     found();
