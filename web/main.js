@@ -7,6 +7,7 @@ import { Engine, Dropped, unlessDropped } from "./engine/engine.js";
 import { SAMPLES } from "./form/fields.js";
 import { createForm } from "./form/form.js";
 import { createHeader, createTheme } from "./shell/header.js";
+import { keepOffline } from "./shell/offline.js";
 import { createLink } from "./shell/link.js";
 import { createMotion } from "./views/motion.js";
 import { createPackets } from "./views/packets.js";
@@ -14,8 +15,8 @@ import { load as loadCharts } from "./time/plot.js";
 import { createPulses } from "./views/pulses/pulses.js";
 import { SOURCES } from "./form/sources.js";
 import { createSpectrum } from "./views/spectrum.js";
-import { held, initial, isStale, update } from "./state/state.js";
-import { loadPrevious, loadScenario, saveScenario, setAside } from "./shell/storage.js";
+import { EARLIER, held, initial, isStale, update } from "./state/state.js";
+import { loadGood, loadPrevious, loadScenario, saveGood, saveScenario, setAside } from "./shell/storage.js";
 import { createTabs } from "./shell/tabs.js";
 import { createTiming } from "./views/timing.js";
 
@@ -24,6 +25,8 @@ import { createTiming } from "./views/timing.js";
 
 /** Rest after a change before it runs, in ms: typing a number is one run. */
 const REST_MS = 120;
+/** A run that has told nothing for so long is still planning, in ms. */
+const PLANNING_MS = 100;
 
 /** @type {State} */
 let state = initial({});
@@ -41,6 +44,7 @@ const engine = new Engine({
     ran = state.revision;
     dispatch({ type: "failed", message: `The engine stopped and was started again; the form is as it was (${message}).` });
   },
+  stopped: () => { if (held(state) === "unjudged") judge(); },
 });
 
 /** @param {import("./state/state.js").Message} message */
@@ -65,6 +69,7 @@ function follow(before) {
   if (before?.judgement !== judgement || before?.approved !== approved || before?.drafts !== drafts) plan();
   if (result && before?.result !== result) {
     document.documentElement.dataset.state = "busy";
+    if (result.revision === state.revision && state.origin === "own") saveGood(JSON.stringify(scenario));
     // Asked before the views ask.
     engine.ask("select", result.controller).catch(unlessDropped);
   }
@@ -81,6 +86,7 @@ async function settle(drawn) {
   await drawn;
   await new Promise((resolve) => requestAnimationFrame(resolve));
   if (state.revision === revision && state.result === result) document.documentElement.dataset.state = "ready";
+  keepOffline();
 }
 
 async function judge() {
@@ -108,6 +114,11 @@ function run() {
   document.documentElement.dataset.state = "busy";
   engine.run(state.revision, JSON.stringify(state.scenario));
   dispatch({ type: "running" });
+  const { revision } = state;
+  window.setTimeout(() => {
+    const silent = state.revision === revision && state.run.phase === "running" && state.run.progress === null;
+    if (silent) dispatch({ type: "progress", progress: { done: false, cycle: 0, end_cycle: 0, records: 0 } });
+  }, PLANNING_MS);
 }
 
 function cancel() {
@@ -132,14 +143,15 @@ async function samples() {
 /**
  * The state that an earlier visit left: the visitor's own scenario, also with problems in it, and the one
  * that was set aside for it, which undo brings back.
- * @param {string} fallback @returns {Promise<State>}
+ * @param {string} fallback @returns {Promise<{left: State, good: string | null}>}  `good` is the last scenario that ran, if this one cannot.
  */
 async function own(fallback) {
-  const read = async (/** @type {string} */ saved) => JSON.parse((await engine.ask("check", saved)).scenario);
+  const read = (/** @type {string} */ saved) => engine.ask("check", saved);
   const [saved, previous] = [loadScenario(), loadPrevious()];
-  if (saved === null) return initial(JSON.parse(fallback));
-  const past = previous === null || previous === saved ? [] : [{ scenario: await read(previous), origin: /** @type {const} */ ("own") }];
-  return { ...initial(await read(saved)), past };
+  if (saved === null) return { left: initial(JSON.parse(fallback)), good: null };
+  const { scenario, problems } = await read(saved);
+  const past = previous === null || previous === saved ? [] : [{ scenario: JSON.parse((await read(previous)).scenario), origin: /** @type {const} */ ("own") }];
+  return { left: { ...initial(JSON.parse(scenario)), past }, good: problems.length > 0 ? loadGood() : null };
 }
 
 async function start() {
@@ -150,7 +162,8 @@ async function start() {
     return;
   }
   const [fallback, presets, drivers, made] = await Promise.all([engine.ask("default_scenario"), engine.ask("presets"), engine.ask("drivers"), samples(), loadCharts()]);
-  state = await own(fallback);
+  const { left, good } = await own(fallback);
+  state = left;
   const page = { engine, dispatch, now: () => state };
   // Nothing is ever sent; Enter in a field must not try to.
   byId("form").addEventListener("submit", (event) => event.preventDefault());
@@ -159,7 +172,11 @@ async function start() {
   views = [createHeader({ presets, cancel, retry, ...page }), createForm({ root: byId("fields"), samples: made, drivers, dispatch }),
     createTabs(page), createMotion(page), createPulses(page), createPackets(page), createSpectrum(page), createTiming({ drivers, ...page }), link];
   await link.start(loadScenario() !== null);
-  if (state.revision === 0) follow(undefined);
+  if (state.revision === 0) {
+    follow(undefined);
+    // What stood before it went wrong is shown, dimmed.
+    if (good !== null) engine.run(EARLIER, good);
+  }
 }
 
 start().catch((error) => {

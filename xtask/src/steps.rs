@@ -10,7 +10,7 @@ use clap::ValueEnum;
 use crate::browser::{self, Browser};
 use crate::toolchain::{self, BARE_METAL, WASM};
 use crate::tools::{Optimise, WasmTools};
-use crate::{bare_metal, gtkwave, page, root, run};
+use crate::{bare_metal, dist, gtkwave, page, root, run};
 
 /// The steps, in the order in which they run: what fails fastest comes first.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -29,7 +29,7 @@ pub(crate) enum Step {
     BareMetal,
     /// The wasm crate's own tests, in a real browser
     Wasm,
-    /// The built page, used in a real browser
+    /// The page as it is shipped: its weight, and its use in a real browser
     Page,
 }
 
@@ -105,7 +105,8 @@ async fn page() -> Result<()> {
     let this = env::current_exe().context("this program's own path is unknown")?;
     let browser = Browser::ready().await?;
     page::build(Optimise::Yes).await?;
-    let web = root().join("web");
+    let web = root().join("dist");
+    dist::make(&root().join("web"), &web).await?;
     let weights = page::weigh(&web)?;
     print!("{weights}");
     weights.within_budget()?;

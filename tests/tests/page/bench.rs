@@ -59,6 +59,7 @@ pub(crate) struct Bench {
     driver: String,
     profiles: Folder,
     sessions: Mutex<Vec<Session>>,
+    server: Mutex<Option<Child>>,
 }
 
 /// Runs `test` in a browser of its own. An error in the browser's console fails the test too.
@@ -67,15 +68,29 @@ where
     T: FnOnce(Session) -> F,
     F: Future<Output = Result<()>> + 'static,
 {
+    in_browser_on(Path::new(&web()?), test)
+}
+
+/// The built page that the environment names.
+pub(crate) fn web() -> Result<OsString> {
+    named("STEPSCOPE_WEB")
+}
+
+/// As [`in_browser`], with the page in a folder of the test's own.
+pub(crate) fn in_browser_on<T, F>(web: &Path, test: T) -> Result<()>
+where
+    T: FnOnce(Session) -> F,
+    F: Future<Output = Result<()>> + 'static,
+{
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     LocalSet::new().block_on(&runtime, async {
         let mut serve = Command::new(named("STEPSCOPE_XTASK")?);
-        serve.args(["serve", "--port", "0", "--web"]).arg(named("STEPSCOPE_WEB")?);
+        serve.args(["serve", "--port", "0", "--web"]).arg(web);
         let mut drive = Command::new(named("STEPSCOPE_CHROMEDRIVER")?);
         let profiles = Folder::temporary()?;
         // Chromium leaves files behind in the folder for temporary ones.
         drive.arg("--port=0").env("TMPDIR", &profiles.0);
-        let (mut server, page) = start(serve, |line| line.strip_prefix("serving ").map(str::to_owned))
+        let (server, page) = start(serve, |line| line.strip_prefix("serving ").map(str::to_owned))
             .await
             .context("the server")?;
         let (mut driver, port) = start(drive, |line| {
@@ -89,6 +104,7 @@ where
             driver: format!("http://127.0.0.1:{port}"),
             profiles,
             sessions: Mutex::default(),
+            server: Mutex::new(Some(server)),
         });
         let outcome = match Session::start(&bench).await {
             Ok(session) => guarded(test(session)).await,
@@ -96,7 +112,7 @@ where
         };
         let outcome = bench.end_sessions(outcome).await;
         end(&mut driver).await;
-        end(&mut server).await;
+        bench.stop_server().await;
         outcome
     })
 }
@@ -133,6 +149,14 @@ impl Bench {
         timeout(START_LIMIT, connecting).await.context("Chromium did not start")?.context("Chromium")
     }
 
+    /// Ends the server: from now on there is no network.
+    pub(crate) async fn stop_server(&self) {
+        let server = self.server.lock().unwrap_or_else(PoisonError::into_inner).take();
+        if let Some(mut server) = server {
+            end(&mut server).await;
+        }
+    }
+
     pub(crate) fn keep(&self, session: Session) {
         self.sessions.lock().unwrap_or_else(PoisonError::into_inner).push(session);
     }
@@ -163,10 +187,10 @@ impl Bench {
 }
 
 /// A folder that goes with its owner.
-struct Folder(PathBuf);
+pub(crate) struct Folder(pub(crate) PathBuf);
 
 impl Folder {
-    fn temporary() -> Result<Self> {
+    pub(crate) fn temporary() -> Result<Self> {
         static FOLDER: AtomicU32 = AtomicU32::new(0);
         let number = FOLDER.fetch_add(1, Ordering::Relaxed);
         let folder = env::temp_dir().join(format!("stepscope-page-{}-{number}", std::process::id()));

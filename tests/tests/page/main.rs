@@ -7,7 +7,7 @@
 //! | --- | --- |
 //! | `STEPSCOPE_CHROMIUM`, `STEPSCOPE_CHROMEDRIVER` | the browser and its driver |
 //! | `STEPSCOPE_XTASK` | the program whose `serve --port 0` serves the page |
-//! | `STEPSCOPE_WEB` | the folder with the built page |
+//! | `STEPSCOPE_WEB` | the folder with the page as it is shipped |
 //! | `STEPSCOPE_SHOTS` | a folder for pictures of the page, and of every page that failed; none without it |
 //!
 //! | file | what it holds |
@@ -28,7 +28,9 @@ mod framed;
 mod hostile_links;
 mod keeping;
 mod links;
+mod loading;
 mod native;
+mod offline;
 mod pixels;
 mod presets;
 mod screens;

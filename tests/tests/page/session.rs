@@ -58,6 +58,16 @@ impl Session {
         Self::start(&self.bench).await
     }
 
+    /// Ends the server: from now on there is no network.
+    pub(crate) async fn stop_server(&self) {
+        self.bench.stop_server().await;
+    }
+
+    /// Goes to another page of the site.
+    pub(crate) async fn go(&self, path: &str) -> Result<()> {
+        Ok(self.client.goto(&format!("{}{path}", self.address())).await?)
+    }
+
     /// Address of the page, without a fragment.
     pub(crate) fn address(&self) -> &str {
         &self.bench.page
