@@ -73,6 +73,7 @@ function follow(before) {
     // Asked before the views ask.
     engine.ask("select", result.controller).catch(unlessDropped);
   }
+  if (state.run.progress) unveil();
   const drawn = views.map((view) => view.render(state, before));
   byId("views").classList.toggle("blank", result === null);
   byId("views").classList.toggle("dim", result !== null && isStale(state) && held(state) !== "unjudged" && state.run.phase !== "running");
@@ -80,11 +81,17 @@ function follow(before) {
   else if (state.run.phase === "failed") settle(Promise.resolve());
 }
 
+/** Shows the form and the views: they stand, or it takes longer. */
+function unveil() {
+  delete document.documentElement.dataset.boot;
+}
+
 /** Says that nothing more is to come, once it is drawn. @param {Promise<unknown>} drawn */
 async function settle(drawn) {
   const { revision, result } = state;
   await drawn;
   await new Promise((resolve) => requestAnimationFrame(resolve));
+  unveil();
   if (state.revision === revision && state.result === result) document.documentElement.dataset.state = "ready";
   keepOffline();
 }

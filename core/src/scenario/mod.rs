@@ -23,6 +23,7 @@ mod problem;
 mod quantity;
 mod read;
 mod segments;
+mod tracked;
 
 pub(crate) use check::MOST_FURTHER;
 pub use check::{Checked, END_OF_TIME, Forced, line_time};

@@ -10,17 +10,17 @@ use crate::{
 };
 
 /// Notes, from the document's beginning on, what the browser measures of the visit.
-const OBSERVE: &str = "
+const OBSERVE: &str = "{
     window.seen = { lcp: 0, lcpOf: '', cls: 0, inp: 0, inpOf: '', shifted: [], fetched: [] };
     const observe = (type, note, options = {}) => new PerformanceObserver((list) => list.getEntries().forEach(note))
         .observe({ type, buffered: true, ...options });
-    observe('largest-contentful-paint', (entry) => { seen.lcp = entry.startTime; seen.lcpOf = entry.element?.className || entry.element?.id || entry.element?.tagName; });
+    observe('largest-contentful-paint', (entry) => { seen.lcp = entry.startTime; seen.lcpOf = String(entry.element?.id || entry.element?.className || entry.element?.tagName); });
     observe('layout-shift', (entry) => { if (!entry.hadRecentInput) { seen.cls += entry.value;
-        seen.shifted.push(...entry.sources.map(({ node }) => node?.id || node?.className || node?.nodeName)); } });
+        seen.shifted.push(...entry.sources.map(({ node }) => String(node?.id || node?.className || node?.nodeName))); } });
     observe('event', (entry) => { if (entry.interactionId && entry.duration > seen.inp) { seen.inp = entry.duration; seen.inpOf = entry.name; } }, { durationThreshold: 16 });
     const { fetch } = window;
     window.fetch = (...given) => { seen.fetched.push(String(given[0]?.url ?? given[0])); return fetch(...given); };
-";
+}";
 
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]

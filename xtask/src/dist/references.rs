@@ -48,16 +48,16 @@ fn pattern(kind: Kind) -> Option<&'static Regex> {
     }
     // An attribute that is an address of this site: no scheme, and more than a place in the page.
     static PAGE: LazyLock<Option<Regex>> =
-        LazyLock::new(|| compiled(r##"\s(?:href|src)="(?<name>[^":#?]+)"##));
+        LazyLock::new(|| compiled(r##"\s(?:href|src)="(?<name>[^":#?]+)["#?]"##));
     // Minified scripts: static and dynamic imports, and new URL(…, import.meta.url).
     static SCRIPT: LazyLock<Option<Regex>> = LazyLock::new(|| {
         compiled(
             r#"(?<static>\bfrom|\bimport)["'`](?<name>\.{1,2}/[^"'`]+)["'`]|\bimport\(["'`](?<lazy>\.{1,2}/[^"'`]+)["'`]\)|new URL\(["'`](?<url>[^"'`]+)["'`],import\.meta\.url\)"#,
         )
     });
-    static STYLE: LazyLock<Option<Regex>> = LazyLock::new(|| compiled(r#"url\(["']?(?<name>[^"'):#]+)"#));
+    static STYLE: LazyLock<Option<Regex>> = LazyLock::new(|| compiled(r#"url\(["']?(?<name>[^"'):#]+)["')#]"#));
     static MANIFEST: LazyLock<Option<Regex>> =
-        LazyLock::new(|| compiled(r##""(?:src|url|start_url|scope|id)":\s*"(?<name>[^":#?]+)"##));
+        LazyLock::new(|| compiled(r##""(?:src|url|start_url|scope|id)":\s*"(?<name>[^":#?]+)["#?]"##));
     match kind {
         Kind::Page => PAGE.as_ref(),
         Kind::Script => SCRIPT.as_ref(),
