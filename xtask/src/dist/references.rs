@@ -55,7 +55,8 @@ fn pattern(kind: Kind) -> Option<&'static Regex> {
             r#"(?<static>\bfrom|\bimport)["'`](?<name>\.{1,2}/[^"'`]+)["'`]|\bimport\(["'`](?<lazy>\.{1,2}/[^"'`]+)["'`]\)|new URL\(["'`](?<url>[^"'`]+)["'`],import\.meta\.url\)"#,
         )
     });
-    static STYLE: LazyLock<Option<Regex>> = LazyLock::new(|| compiled(r#"url\(["']?(?<name>[^"'):#]+)["')#]"#));
+    static STYLE: LazyLock<Option<Regex>> =
+        LazyLock::new(|| compiled(r#"url\(["']?(?<name>[^"'):#]+)["')#]"#));
     static MANIFEST: LazyLock<Option<Regex>> =
         LazyLock::new(|| compiled(r##""(?:src|url|start_url|scope|id)":\s*"(?<name>[^":#?]+)["#?]"##));
     match kind {
