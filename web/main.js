@@ -6,18 +6,29 @@ import { byId } from "./dom.js";
 import { Engine, Dropped, unlessDropped } from "./engine/engine.js";
 import { SAMPLES } from "./form/fields.js";
 import { createForm } from "./form/form.js";
+import { createCard } from "./help/card.js";
+import { createGuide, offerGuide } from "./help/guide.js";
+import { createKeys } from "./help/keys.js";
+import { chartFiles } from "./views/chart_files.js";
+import { createExports } from "./shell/exports.js";
 import { createHeader, createTheme } from "./shell/header.js";
 import { keepOffline } from "./shell/offline.js";
+import { createImports } from "./shell/imports.js";
 import { createLink } from "./shell/link.js";
-import { createMotion } from "./views/motion.js";
-import { createPackets } from "./views/packets.js";
+import { createNotices } from "./shell/notices.js";
+import { createShare } from "./shell/share.js";
+import { createMotion } from "./views/motion/motion.js";
+import { packetFiles } from "./views/packets/files.js";
+import { createPackets } from "./views/packets/packets.js";
 import { load as loadCharts } from "./time/plot.js";
+import { createPanes } from "./shell/panes.js";
 import { createPulses } from "./views/pulses/pulses.js";
 import { SOURCES } from "./form/sources.js";
-import { createSpectrum } from "./views/spectrum.js";
+import { createSpectrum } from "./views/spectrum/spectrum.js";
 import { EARLIER, held, initial, isStale, update } from "./state/state.js";
 import { loadGood, loadPrevious, loadScenario, saveGood, saveScenario, setAside } from "./shell/storage.js";
 import { createTabs } from "./shell/tabs.js";
+import { readJson } from "./state/json.js";
 import { createTiming } from "./views/timing.js";
 
 /** @typedef {import("./state/types.js").State} State */
@@ -42,9 +53,13 @@ const engine = new Engine({
   failed: (revision, message) => { if (revision === state.revision) dispatch({ type: "failed", message: `The run stopped: ${message}` }); },
   crashed: (message) => {
     ran = state.revision;
+    dispatch({ type: "reference", reference: null });
     dispatch({ type: "failed", message: `The engine stopped and was started again; the form is as it was (${message}).` });
   },
-  stopped: () => { if (held(state) === "unjudged") judge(); },
+  stopped: () => {
+    dispatch({ type: "reference", reference: null });
+    if (held(state) === "unjudged") judge();
+  },
 });
 
 /** @param {import("./state/state.js").Message} message */
@@ -135,7 +150,7 @@ function cancel() {
 
 /** One of everything that can be added, with the core's own defaults. */
 async function samples() {
-  const filled = async (/** @type {object} */ sample) => JSON.parse((await engine.ask("check", JSON.stringify(sample))).scenario);
+  const filled = async (/** @type {object} */ sample) => readJson((await engine.ask("check", JSON.stringify(sample))).scenario);
   const [all, line, ...sources] = await Promise.all([filled(SAMPLES.all), filled(SAMPLES.line),
     ...Object.keys(SOURCES).map((kind) => filled({ source: { [kind]: {} } }))]);
   const { axes } = all.source.motion;
@@ -155,14 +170,16 @@ async function samples() {
 async function own(fallback) {
   const read = (/** @type {string} */ saved) => engine.ask("check", saved);
   const [saved, previous] = [loadScenario(), loadPrevious()];
-  if (saved === null) return { left: initial(JSON.parse(fallback)), good: null };
+  if (saved === null) return { left: initial(readJson(fallback)), good: null };
   const { scenario, problems } = await read(saved);
-  const past = previous === null || previous === saved ? [] : [{ scenario: JSON.parse((await read(previous)).scenario), origin: /** @type {const} */ ("own") }];
-  return { left: { ...initial(JSON.parse(scenario)), past }, good: problems.length > 0 ? loadGood() : null };
+  const past = previous === null || previous === saved ? [] : [{ scenario: readJson((await read(previous)).scenario), origin: /** @type {const} */ ("own") }];
+  return { left: { ...initial(readJson(scenario)), past }, good: problems.length > 0 ? loadGood() : null };
 }
 
 async function start() {
   createTheme();
+  createCard();
+  offerGuide();
   if (typeof WebAssembly !== "object") {
     byId("no-wasm").hidden = false;
     byId("status").textContent = "no engine";
@@ -175,9 +192,13 @@ async function start() {
   // Nothing is ever sent; Enter in a field must not try to.
   byId("form").addEventListener("submit", (event) => event.preventDefault());
   const link = createLink(page);
+  createImports({ openLink: link.openLink, ...page });
   const retry = () => { ran = -1; judge(); };
+  const pulses = createPulses(page);
   views = [createHeader({ presets, cancel, retry, ...page }), createForm({ root: byId("fields"), samples: made, drivers, dispatch }),
-    createTabs(page), createMotion(page), createPulses(page), createPackets(page), createSpectrum(page), createTiming({ drivers, ...page }), link];
+    createTabs(page), createPanes(page), createGuide(page), createMotion(page), pulses, createPackets(page), createSpectrum(page),
+    createTiming({ drivers, speak: pulses.speak, ...page }), createNotices(page), createShare({ shared: link.shared, ...page }), createExports(page, [chartFiles, packetFiles]), link];
+  createKeys();
   await link.start(loadScenario() !== null);
   if (state.revision === 0) {
     follow(undefined);

@@ -2,8 +2,8 @@
 //!
 //! Results go to standard output, errors to standard error. Exit codes: 0 the run was made, 1 a
 //! file could not be read or written, 2 the scenario, link or command line is wrong, 3 something was to
-//! hold and does not: `--strict` and the timing check found violations, or `faults` found wrong steps on
-//! a framed line.
+//! hold and does not: `--strict` and the timing check found violations, `faults` found wrong steps on a
+//! framed line, or `open --verify` found another run than the link's.
 
 mod failure;
 mod faults;
@@ -14,6 +14,7 @@ mod run;
 mod scenarios;
 mod status;
 mod timing;
+mod verify;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -37,6 +38,10 @@ enum Command {
     Open {
         /// The link, or what stands behind its `#`.
         link: String,
+        /// Also run it, and say on standard error whether the run is the one that the sender of the link
+        /// saw, or where the first difference is. Ends with 3 if it is another.
+        #[arg(long)]
+        verify: bool,
     },
     /// Lists the presets, or writes one as JSON.
     Presets {
@@ -51,7 +56,7 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Faults(arguments) => faults::faults(&arguments),
-        Command::Open { link } => scenarios::open(&link),
+        Command::Open { link, verify } => scenarios::open(&link, verify),
         Command::Presets { id } => scenarios::presets(id.as_deref()),
         Command::Drivers => timing::drivers(),
     };

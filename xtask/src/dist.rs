@@ -14,7 +14,7 @@ mod references;
 mod script;
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use twox_hash::XxHash64;
@@ -33,6 +33,11 @@ const SERVICE_WORKER: &str = "sw.js";
 const UNBUILT: &str = "development";
 /// The service worker's line that the build fills.
 const UNLISTED: &str = "const build = { id: \"development\", files: [] };";
+
+/// Where the page as it is shipped lies.
+pub(crate) fn folder() -> PathBuf {
+    root().join("dist")
+}
 
 /// Builds the folder `dist` from the built page in `web`.
 pub(crate) async fn make(web: &Path, dist: &Path) -> Result<()> {

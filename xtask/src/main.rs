@@ -2,11 +2,11 @@
 //!
 //! | file | what it holds |
 //! | --- | --- |
-//! | `toolchain`, `tools`, `wasm_opt`, `apt` | what a fresh machine lacks, installed once per user |
+//! | `toolchain`, `tools`, `wasm_opt`, `npm`, `apt` | what a fresh machine lacks, installed once per user |
 //! | `page` | the optimised wasm of the page, and what each file that it loads weighs |
 //! | `dist` | the page as hosts serve it: names with hashes, lists, licences |
 //! | `headers`, `serve` | the local server, whose headers are `web/_headers`' |
-//! | `steps`, `browser`, `bare_metal`, `gtkwave` | `cargo xtask test`, step by step |
+//! | `steps`, `browser`, `engines`, `bare_metal`, `gtkwave` | `cargo xtask test`, step by step |
 //! | `bench` | `cargo xtask bench` |
 //! | `fuzz` | `cargo xtask fuzz` |
 //! | `run` | child processes: time limit, no input, killed as a group |
@@ -16,9 +16,11 @@ mod bare_metal;
 mod bench;
 mod browser;
 mod dist;
+mod engines;
 mod fuzz;
 mod gtkwave;
 mod headers;
+mod npm;
 mod page;
 mod run;
 mod serve;
@@ -130,19 +132,17 @@ async fn perform(task: Task) -> Result<()> {
         Task::Demo { port, no_open, optimising } => {
             // The port first: nobody should wait for a build to hear that it is taken.
             let listener = serve::bind(port)?;
-            page::build(optimising.wanted()).await?;
-            let dist = root().join("dist");
-            dist::make(&web, &dist).await?;
-            serve::serve(listener, &dist, !no_open).await
+            page::shipped(optimising.wanted()).await?;
+            serve::serve(listener, &dist::folder(), !no_open).await
         }
         Task::Build { optimising } => page::build(optimising.wanted()).await,
         Task::Dist { no_build, optimising } => {
-            if !no_build {
-                page::build(optimising.wanted()).await?;
+            if no_build {
+                dist::make(&web, &dist::folder()).await?;
+            } else {
+                page::shipped(optimising.wanted()).await?;
             }
-            let dist = root().join("dist");
-            dist::make(&web, &dist).await?;
-            print!("{}", page::weigh(&dist)?);
+            print!("{}", page::weigh(&dist::folder())?);
             Ok(())
         }
         Task::Serve { port, web: folder } => {

@@ -10,10 +10,22 @@ use flate2::write::GzEncoder;
 use walkdir::WalkDir;
 
 use crate::tools::{Optimise, WasmTools};
-use crate::{root, run};
+use crate::{dist, root, run};
 
 /// What all files together may weigh, in bytes, compressed by brotli as hosts do.
 const BUDGET: usize = 400_000;
+
+/// The page as it is shipped, but made once only in this program's life: for steps that use the same page.
+pub(crate) async fn built() -> Result<()> {
+    static BUILT: tokio::sync::OnceCell<()> = tokio::sync::OnceCell::const_new();
+    BUILT.get_or_try_init(|| shipped(Optimise::Yes)).await.copied()
+}
+
+/// Builds the page into `dist`.
+pub(crate) async fn shipped(optimise: Optimise) -> Result<()> {
+    build(optimise).await?;
+    dist::make(&root().join("web"), &dist::folder()).await
+}
 
 /// Builds the wasm crate into `web/pkg`, installing the tools first if they are missing.
 pub(crate) async fn build(optimise: Optimise) -> Result<()> {

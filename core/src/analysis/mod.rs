@@ -1,10 +1,13 @@
 //! What a run and its ideal come to: curves for the eye, spectra and distortion, and whether a
 //! driver could follow the pulses.
 
+pub mod between;
 pub mod curves;
+pub mod difference;
 pub mod drivers;
 #[cfg(feature = "std")]
 mod fourier;
+pub mod made;
 #[cfg(feature = "std")]
 pub mod spectrum;
 #[cfg(feature = "std")]

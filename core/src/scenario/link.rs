@@ -121,6 +121,15 @@ pub fn encode(scenario: &Scenario) -> Result<String, LinkError> {
     Ok(link)
 }
 
+/// A link with another part, `&name=text`, behind it; without it where it would be too long to be read.
+#[must_use]
+pub fn with_part(link: String, name: &str, text: &str) -> String {
+    if text.is_empty() || link.len() + name.len() + text.len() + 2 > MOST_FRAGMENT_BYTES {
+        return link;
+    }
+    link + "&" + name + "=" + text
+}
+
 /// The scenario of a link's fragment, with or without its `#`; other parts (`&v=`, `&d=`) are left
 /// alone. Its ranges and its cost are still to be judged.
 ///
@@ -223,6 +232,18 @@ mod tests {
         ] {
             assert_eq!(decode(&copy), Ok(scenario.clone()), "{copy}");
         }
+    }
+
+    #[test]
+    fn parts_are_added_as_long_as_the_link_can_be_read() {
+        let link = encode(&sixteen_axes()).expect("short enough");
+        let whole = with_part(with_part(link.clone(), "v", "1-2"), "d", "1.x");
+        assert_eq!(whole, format!("{link}&v=1-2&d=1.x"));
+        assert_eq!((part(&whole, "v"), part(&whole, "d")), (Some("1-2".into()), Some("1.x".into())));
+        assert_eq!(with_part(link.clone(), "v", ""), link);
+        let room = MOST_FRAGMENT_BYTES - link.len() - 3;
+        assert_eq!(with_part(link.clone(), "d", &"x".repeat(room)).len(), MOST_FRAGMENT_BYTES);
+        assert_eq!(with_part(link.clone(), "d", &"x".repeat(room + 1)), link);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! JSON as a scenario's types, with the place where it went wrong.
 //!
 //! A deserializer of its own, because the page carries it: `serde_path_to_error` wraps the visitor of every
-//! type, and doubles the code that reads a scenario. It is also stricter than serde, which reads a
+//! type, and that is 14 kB more in the compressed page. It is also stricter than serde, which reads a
 //! map's fields from a list, by their order; a scenario has names.
 
 use alloc::{

@@ -19,11 +19,9 @@ fn work_with_a_problem_in_it_survives_a_reload_and_is_no_link() -> Result<()> {
         page.ready().await?;
         page.fill(DISTANCE, "0").await?;
         page.until("document.querySelector('#status').textContent.startsWith('not run')").await?;
-        page.click("#copy-link").await?;
-        ensure!(
-            page.text("#link-message").await?.starts_with("No link yet"),
-            "a link of what does not stand"
-        );
+        page.click("#share").await?;
+        ensure!(page.text("#link-about").await?.starts_with("No link yet"), "a link of what does not stand");
+        ensure!(page.eval::<bool>("document.getElementById('copy-link').disabled").await?, "nothing to copy");
 
         page.open("").await?;
         assert_eq!(page.field("bus.queue_depth").await?.value, "7");

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use stepscope_core::scenario::presets::PRESETS;
 
 use crate::{
-    bench::in_browser,
+    bench::in_browser_shipped,
     session::{CONTROL, Session},
 };
 
@@ -40,7 +40,7 @@ async fn seen(page: &Session) -> Result<Seen> {
 
 #[test]
 fn all_that_loads_is_of_this_site_and_the_core_is_fetched_once() -> Result<()> {
-    in_browser(|page| async move {
+    in_browser_shipped(|page| async move {
         page.before_scripts(OBSERVE).await?;
         page.open("").await?;
         let names: Vec<String> =
@@ -59,7 +59,7 @@ fn all_that_loads_is_of_this_site_and_the_core_is_fetched_once() -> Result<()> {
 
 #[test]
 fn nothing_moves_while_the_page_comes_in() -> Result<()> {
-    in_browser(|page| async move {
+    in_browser_shipped(|page| async move {
         page.before_scripts(OBSERVE).await?;
         for (width, height) in [(1440, 900), (1024, 768), (390, 844)] {
             page.screen(width, height).await?;
@@ -75,7 +75,7 @@ fn nothing_moves_while_the_page_comes_in() -> Result<()> {
 #[test]
 #[ignore = "prints times"]
 fn measured() -> Result<()> {
-    in_browser(|page| async move {
+    in_browser_shipped(|page| async move {
         page.before_scripts(OBSERVE).await?;
         for (width, height) in [(1440, 900), (390, 844)] {
             page.screen(width, height).await?;

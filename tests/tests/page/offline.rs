@@ -5,7 +5,7 @@ use std::{fs, path::Path};
 use anyhow::{Context, Result, ensure};
 
 use crate::{
-    bench::{Folder, in_browser, in_browser_on, web},
+    bench::{Folder, dist, in_browser_on, in_browser_shipped},
     native::{Known, with_distance},
     session::Session,
 };
@@ -15,15 +15,13 @@ const BUILD: &str = "const build = { id: \"";
 
 /// Waits until all files of the build are on the device.
 async fn until_kept(page: &Session) -> Result<()> {
-    page.until("navigator.serviceWorker.controller?.state === 'activated'").await.context(
-        "nothing is kept: STEPSCOPE_WEB must name what `cargo xtask dist` makes, not the sources of the page",
-    )
+    page.until("navigator.serviceWorker.controller?.state === 'activated'").await
 }
 
 /// A copy of the page that a test may change.
 fn copy() -> Result<Folder> {
     let folder = Folder::temporary()?;
-    copy_into(Path::new(&web()?), &folder.0)?;
+    copy_into(&dist()?, &folder.0)?;
     Ok(folder)
 }
 
@@ -50,7 +48,7 @@ fn change(file: &Path, from: &str, to: &str) -> Result<()> {
 
 #[test]
 fn the_second_visit_needs_no_network() -> Result<()> {
-    in_browser(|page| async move {
+    in_browser_shipped(|page| async move {
         let known = Known::of(&with_distance(1200.0))?;
         page.open("").await?;
         until_kept(&page).await?;
@@ -132,7 +130,7 @@ fn the_sources_are_not_kept_and_clear_away_what_a_build_left() -> Result<()> {
 
 #[test]
 fn the_page_says_which_build_it_is_and_whose_work_is_in_it() -> Result<()> {
-    in_browser(|page| async move {
+    in_browser_shipped(|page| async move {
         page.open("").await?;
         let version = page.eval::<String>("document.getElementById('version').textContent").await?;
         let (number, build) = version.split_once(' ').context(version.clone())?;
@@ -148,7 +146,7 @@ fn the_page_says_which_build_it_is_and_whose_work_is_in_it() -> Result<()> {
 
 #[test]
 fn the_page_can_be_installed() -> Result<()> {
-    in_browser(|page| async move {
+    in_browser_shipped(|page| async move {
         page.open("").await?;
         until_kept(&page).await?;
         let answer = page.devtools("Page.getInstallabilityErrors", serde_json::json!({})).await?;

@@ -1,13 +1,15 @@
-/** The pulses view: a logic analyser over all signals of the bus, with the ticks and packets decoded between them. */
+/** The pulses view: a logic analyser over all signals of the bus, with the line and the ticks decoded between them. */
 import { byId, options, say } from "../../dom.js";
 import { time } from "../../state/number.js";
 import { unlessDropped } from "../../engine/engine.js";
+import { createEdges } from "./edges.js";
+import { createMarkers } from "./markers.js";
 import { createOverview } from "./overview.js";
 import { paintSignal, paintSpans, paintTint } from "./paint.js";
 import { GUTTER, MARGIN, color, fit, ratio, watch } from "../../time/plot.js";
 import { createRange } from "../../time/range.js";
 import { createReading } from "./reading.js";
-import { ROW_PX, allFolded, channelOf, idle, isFolded, rowsOf, shows, signalsOf } from "./rows.js";
+import { ROW_PX, allFolded, channelOf, idle, isFolded, nameOf, rowsOf, shows, signalsOf } from "./rows.js";
 import { createSpans } from "./spans.js";
 import { lookedAt, shown } from "../../state/state.js";
 import { listen } from "../../shell/commands.js";
@@ -16,6 +18,7 @@ import { cycleAt, gestures, pixelOf, reveal } from "../../time/timeline.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").PulseColumns} PulseColumns */
+/** @typedef {{columns: PulseColumns, start: number, end: number, count: number, margin: number}} Answer  Columns of a stretch of cycles and of a margin at each side. */
 
 /** A cursor that is set this near to an edge is set on it, in CSS pixels. */
 const SNAP_PX = 6;
@@ -36,8 +39,11 @@ export function createPulses({ engine, dispatch, now }) {
   const overview = createOverview({ engine, ...page });
   const reading = createReading({ engine, now });
   const spans = createSpans({ engine });
-  /** @type {PulseColumns | null} */
-  let shownColumns = null;
+  const markers = createMarkers({ ...page, speak: reading.speak });
+  const edges = createEdges({ engine, now });
+  /** @type {Answer | null} */
+  let answer = null;
+  let frame = 0;
   let plot = { left: GUTTER, right: GUTTER + 1 };
 
   gestures(canvas, () => plot, { ...page, click: pick });
@@ -54,8 +60,11 @@ export function createPulses({ engine, dispatch, now }) {
     { keys: ["ArrowDown"], text: "choose the row below", run: () => step(1) },
     { keys: ["Enter"], text: "fold or unfold the chosen row's channel", run: () => fold(channelOf(now().row)) },
   ]);
-  canvas.addEventListener("pointermove", (event) => reading.hover(rowAt(event)));
-  canvas.addEventListener("pointerleave", reading.leave);
+  canvas.addEventListener("pointermove", (event) => { if (event.buttons === 0) point(event); });
+  canvas.addEventListener("pointerleave", () => {
+    light(null);
+    reading.span("");
+  });
 
   /** @param {number} by */
   function step(by) {
@@ -69,7 +78,40 @@ export function createPulses({ engine, dispatch, now }) {
     if (channel === null) return;
     const folded = !isFolded(now(), channel);
     dispatch({ type: "fold", channel, folded });
-    say(byId("pulses-sentence"), `Channel ${channel} ${folded ? "folded" : "unfolded"}.`);
+    reading.speak(`${channel < 16 ? `Channel ${channel}` : `What ${nameOf(now(), channel)} carries`} ${folded ? "folded" : "unfolded"}.`);
+  }
+
+  /** @param {{start: number, end: number, packet?: number | null, bit?: number} | null} what */
+  function light(what) {
+    dispatch({ type: "light", lit: what && { start: what.start, end: what.end, from: "pulses", packet: what.packet ?? null, bit: what.bit ?? null } });
+  }
+
+  /** What is pointed at is lit in all views: a span, or an edge that is near. @param {PointerEvent} event */
+  async function point(event) {
+    const row = rowAt(event);
+    const { hover } = now();
+    if (!row || hover === null) {
+      light(null);
+      return reading.span("");
+    }
+    if (!("bit" in row)) {
+      const span = spanAt(row, event);
+      light(span && { ...span });
+      return reading.span(span ? `${row.name}: ${span.texts[0]}` : "");
+    }
+    const pulse = await reading.signal(row.bit);
+    if (!pulse) return;
+    const { start, end } = shown(now());
+    const reach = (SNAP_PX * (end - start)) / (plot.right - plot.left);
+    const near = [pulse.begin, pulse.end].find((edge) => edge !== null && Math.abs(edge - hover) <= reach) ?? null;
+    light(near === null ? null : { start: near, end: near, bit: row.bit });
+  }
+
+  /** @param {import("./spans.js").DecodedRow} row @param {MouseEvent} event */
+  function spanAt(row, event) {
+    if (spans.isDense(row)) return null;
+    const cycle = cycleAt(now(), plot, event.clientX - canvas.getBoundingClientRect().left);
+    return spans.spansOf(now(), row).find(({ start, end }) => start <= cycle && cycle < end) ?? null;
   }
 
   /** The row under a pointer. @param {MouseEvent} event */
@@ -99,8 +141,7 @@ export function createPulses({ engine, dispatch, now }) {
     if ("bit" in row && !shows(row, now().row)) dispatch({ type: "row", row: row.bit });
     if (x < plot.left) return true;
     if ("bit" in row) return snapped(row.bit, at);
-    const cycle = cycleAt(now(), plot, x);
-    const found = spans.spansOf(now(), row.kind).find(({ start, end }) => start <= cycle && cycle < end)?.packet ?? null;
+    const found = spanAt(row, event)?.packet ?? null;
     if (found !== null) dispatch({ type: "packet", packet: found });
     return found !== null;
   }
@@ -113,36 +154,64 @@ export function createPulses({ engine, dispatch, now }) {
     const { a } = state.cursors;
     const from = a !== null && a >= start && a <= end ? a : forward ? start : end;
     const edge = await engine.ask("next_edge", state.row, from, forward, kindSelect.value).catch(unlessDropped);
-    const name = signalsOf(state).find(({ bit }) => bit === state.row)?.name ?? "";
-    if (edge === undefined || edge === null) return say(byId("pulses-sentence"), `${name}: no ${forward ? "later" : "earlier"} edge.`);
+    const name = nameOf(state, state.row);
+    const kind = { rise: "rising ", fall: "falling " }[kindSelect.value] ?? "";
+    if (edge === undefined || edge === null) return reading.speak(`${name}: no ${forward ? "later" : "earlier"} ${kind}edge.`);
     dispatch({ type: "cursor", which: "a", cycle: edge });
     reveal(page, edge);
-    say(byId("pulses-sentence"), `${name}: edge at ${time(edge / state.result.summary.clock_hz)}, cycle ${edge}.`);
+    reading.speak(`${name}: ${kind}edge at ${time(edge / state.result.summary.clock_hz)}, cycle ${edge}.`);
   }
 
-  /** @param {State} state */
+  /** Asks for what the shown time needs; until it is there the last picture is drawn where it belongs by now. @param {State} state */
   async function refresh(state) {
     plot = { left: GUTTER, right: Math.max(GUTTER + 1, stack.clientWidth - MARGIN) };
     if (!state.result || stack.clientWidth < 60) return;
     const { start, end } = shown(state);
     const wanted = Math.max(16, Math.round((plot.right - plot.left) * ratio()));
-    const asked = engine.latest("pulses", "pulses", start, end, wanted).catch(unlessDropped);
-    const [columns, decoded] = await Promise.all([asked, spans.fetch(state)]);
-    if (!columns || !decoded) return;
-    shownColumns = columns;
-    paint(now());
+    const margin = Math.round(wanted / 4);
+    if (answer) soon();
+    const asked = engine.latest("pulses", "pulses", start, end, wanted, margin).catch(unlessDropped).then((columns) => {
+      if (!columns) return false;
+      answer = { columns, start, end, count: wanted, margin };
+      soon();
+      return true;
+    });
+    const all = await Promise.all([asked, spans.fetch(state, plot.right - plot.left, soon)]);
+    // Whoever waits for the drawing waits for this.
+    if (all.every(Boolean)) paint(now());
+  }
+
+  /** Paints in the next frame, however much has changed until then. */
+  function soon() {
+    frame ||= requestAnimationFrame(() => paint(now()));
+  }
+
+  /** The columns that lie in the plotting area. @param {State} state @param {Answer} last @param {number} left @param {number} right @returns {import("./paint.js").Picture} */
+  function placedColumns(state, { columns, start, end, count, margin }, left, right) {
+    const window = shown(state);
+    const cycles = (end - start) / count;
+    const pixels = (right - left) / (window.end - window.start);
+    // The width of a column is 1 but while the zoom changes; then it stands on whole pixels.
+    const same = end - start === window.end - window.start && count === right - left;
+    const shift = (start - window.start) * pixels - margin * cycles * pixels;
+    const at = same ? (/** @type {number} */ i) => left + Math.round(shift) + i : (/** @type {number} */ i) => left + shift + i * cycles * pixels;
+    const total = count + 2 * margin;
+    const column = (/** @type {number} */ x) => Math.min(total, Math.max(0, same ? x - at(0) : (x - at(0)) / (cycles * pixels)));
+    return { columns, from: Math.floor(column(left)), to: Math.ceil(column(right)), at };
   }
 
   /** @param {State} state */
   function paint(state) {
-    if (!shownColumns || !state.result) return;
-    const columns = shownColumns;
+    cancelAnimationFrame(frame);
+    frame = 0;
+    if (!answer || !state.result) return;
     const { width, ratio: scale } = fit(canvas);
     const context = canvas.getContext("2d");
     if (!context) return;
     const left = Math.round(plot.left * scale);
     const right = Math.round(plot.right * scale);
-    context.font = `${11 * scale}px ${getComputedStyle(document.body).fontFamily}`;
+    const picture = placedColumns(state, answer, left, right);
+    const font = `${11 * scale}px ${getComputedStyle(document.body).fontFamily}`;
     for (const [index, row] of rowsOf(state).entries()) {
       const top = Math.round((index * ROW_PX + 4) * scale);
       const height = Math.round((ROW_PX - 6) * scale);
@@ -154,24 +223,31 @@ export function createPulses({ engine, dispatch, now }) {
       context.fillStyle = color(chosen ? "--ink" : "--quiet");
       context.textAlign = "right";
       context.textBaseline = "middle";
-      context.font = `${chosen ? "bold " : ""}${11 * scale}px ${getComputedStyle(document.body).fontFamily}`;
+      context.font = `${chosen ? "bold " : ""}${font}`;
       context.fillText(row.name, left - 8 * scale, top + height / 2);
-      if (row.kind === "folded" || (row.kind === "signal" && row.name.startsWith("DIR"))) {
+      if ("open" in row && row.open !== undefined) {
         context.textAlign = "left";
-        context.fillText(row.kind === "folded" ? "▸" : "▾", 8 * scale, top + height / 2);
+        context.fillText(row.open ? "▾" : "▸", 8 * scale, top + height / 2);
       }
-      const place = { left, right, top, height, ratio: scale, ink: color(row.ink) };
-      if (row.kind === "folded") paintTint(context, columns, row.dir, { ...place, ink: color("--dir") });
-      if ("bit" in row) paintSignal(context, columns, row.bit, place);
-      else paintSpans(context, spans.spansOf(state, row.kind).map((span) => placed(state, span)), place);
+      const place = { left, right, top, height, ratio: scale, ink: color(row.ink), font };
+      context.save();
+      context.beginPath();
+      context.rect(left, 0, right - left, canvas.height);
+      context.clip();
+      if (row.kind === "folded") paintTint(context, picture, row.dir, true, { ...place, ink: color("--dir") });
+      if ("bit" in row) paintSignal(context, picture, row.bit, place);
+      else if ("lane" in row && spans.isDense(row)) paintTint(context, picture, row.line, false, place);
+      else paintSpans(context, spans.spansOf(state, row).map((span) => placed(state, span)), place);
+      context.restore();
     }
     describe(state);
     paintCursor(state);
   }
 
   /** A span in device pixels. @param {State} state @param {import("./spans.js").Span} span */
-  function placed(state, { start, end, ...rest }) {
-    return { ...rest, from: pixelOf(state, plot, start) * ratio(), to: pixelOf(state, plot, end) * ratio() };
+  function placed(state, { start, end, sample, ...rest }) {
+    const x = (/** @type {number} */ cycle) => pixelOf(state, plot, cycle) * ratio();
+    return { ...rest, from: x(start), to: x(end), sample: typeof sample === "number" ? x(sample + 0.5) : null };
   }
 
   /** @param {State} state */
@@ -181,14 +257,38 @@ export function createPulses({ engine, dispatch, now }) {
     if (!context || !state.result) return;
     context.scale(scale, scale);
     drawCursors(context, state, plot, height);
+    drawLit(context, state);
     reading.render(state);
+  }
+
+  /** A frame around the spans that are lit, whoever points at them, and a ring around a lit edge. @param {CanvasRenderingContext2D} context  In CSS pixels. @param {State} state */
+  function drawLit(context, state) {
+    const { lit } = state;
+    if (!lit) return;
+    context.setLineDash([]);
+    context.strokeStyle = color("--ink");
+    context.lineWidth = 1.5;
+    for (const [index, row] of rowsOf(state).entries()) {
+      const top = index * ROW_PX;
+      if ("bit" in row) {
+        if (lit.bit === null || !shows(row, lit.bit)) continue;
+        const x = pixelOf(state, plot, lit.start);
+        context.strokeRect(x - 3, top + 3, 6, ROW_PX - 4);
+      } else if (!spans.isDense(row)) {
+        for (const { start, end, packet } of spans.spansOf(state, row)) {
+          if (!(start === lit.start && end === lit.end) && (packet === null || packet !== lit.packet || "lane" in row)) continue;
+          const [from, to] = [Math.max(plot.left, pixelOf(state, plot, start)), Math.min(plot.right, pixelOf(state, plot, end))];
+          if (to > from) context.strokeRect(from, top + 3, Math.max(2, to - from), ROW_PX - 5);
+        }
+      }
+    }
   }
 
   /** @param {State} state */
   function describe(state) {
     const { start, end } = shown(state);
     const clock = state.result?.summary.clock_hz ?? 1;
-    canvas.setAttribute("aria-label", `Logic analyser, ${rowsOf(state).length} rows, ${time(start / clock)} to ${time(end / clock)}`);
+    canvas.setAttribute("aria-label", `Logic analyser, ${rowsOf(state).length} rows, ${time(start / clock)} to ${time(end / clock)}, row ${nameOf(state, state.row)}`);
   }
 
   /** The head's choices and the height that the rows take. @param {State} state */
@@ -217,14 +317,18 @@ export function createPulses({ engine, dispatch, now }) {
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
     range.render(state, before);
+    markers.render(state, before);
+    edges.render(state, before);
     const strip = overview.render(state, before);
     const arranged = before?.result !== state.result || before?.row !== state.row || before?.folds !== state.folds || before?.allSignals !== state.allSignals;
     if (arranged) layout(state);
     if (before && before.row !== state.row) follow(state);
+    const walked = before && (before.cursors.a !== state.cursors.a || before.row !== state.row);
+    if (walked && document.activeElement === canvas && before.result === state.result) reading.speakCursor();
     if (before?.window !== state.window || before?.result !== state.result) return Promise.all([refresh(state), strip]);
     if (arranged || before?.packet !== state.packet) paint(state);
     else if (overlaid(before, state)) paintCursor(state);
     return undefined;
   }
-  return { render };
+  return { render, speak: reading.speak };
 }
