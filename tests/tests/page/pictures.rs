@@ -71,7 +71,10 @@ async fn compare(page: &Session, canvas: &str, name: &str, wrong: &mut Vec<Strin
     let url: String = page
         .js("return document.getElementById(arguments[0]).toDataURL('image/png');", vec![json!(canvas)])
         .await?;
-    let file = BASE64.decode(url.strip_prefix("data:image/png;base64,").context("no picture")?.as_bytes()).ok().context("no base64")?;
+    let file = BASE64
+        .decode(url.strip_prefix("data:image/png;base64,").context("no picture")?.as_bytes())
+        .ok()
+        .context("no base64")?;
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("pictures");
     let golden = folder.join(format!("{name}.png"));
     if env::var_os("STEPSCOPE_BLESS").is_some() {
