@@ -193,10 +193,11 @@ impl Session {
         self.find(css).await?.select_by_value(value).await.with_context(|| format!("{css} has no {value}"))
     }
 
-    /// Opens the sections around a field.
+    /// Opens the sections around a field and scrolls to it: what an edge of the form cuts through can't be clicked.
     async fn unfold(&self, path: &str) -> Result<()> {
         let script = "for (let at = document.querySelector(arguments[0]); at; at = at.parentElement) \
-                      if (at instanceof HTMLDetailsElement) at.open = true; return true;";
+                      if (at instanceof HTMLDetailsElement) at.open = true; \
+                      document.querySelector(arguments[0])?.scrollIntoView({ block: 'center' }); return true;";
         self.js::<bool>(script, vec![json!(field(path))]).await.map(drop)
     }
 
