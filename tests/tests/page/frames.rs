@@ -97,8 +97,12 @@ fn the_picture_is_that_of_every_record_dense_or_lone() -> Result<()> {
         ensure!(whole.contains(".#."), "a lone glitch: {whole}");
         ensure!(expected(&known, 0, (0, last), 1000).middle.contains(&"#".repeat(100)), "a dense train");
 
-        let rows = [("0.01", "0.1", (hz / 100, hz / 10)), ("0.0624", "0.0626", (hz * 624 / 10_000, hz * 626 / 10_000)),
-            ("0.062499", "0.062501", (hz / 1_000_000 * 62_499, hz / 1_000_000 * 62_501)), ("0.02", "0.03", (hz / 50, hz * 3 / 100))];
+        let rows = [
+            ("0.01", "0.1", (hz / 100, hz / 10)),
+            ("0.0624", "0.0626", (hz * 624 / 10_000, hz * 626 / 10_000)),
+            ("0.062499", "0.062501", (hz / 1_000_000 * 62_499, hz / 1_000_000 * 62_501)),
+            ("0.02", "0.03", (hz / 50, hz * 3 / 100)),
+        ];
         for (from, to, window) in rows {
             show(&page, from, to).await?;
             is_brute_force(&page, &known, window).await?;
@@ -138,18 +142,29 @@ fn frames_over_ten_million_edges() -> Result<()> {
         println!("{} records", known.recording.trace.len());
         for view in ["all views", "pulses alone"] {
             if view == "pulses alone" {
-                page.js::<Value>("document.getElementById('view-motion').hidden = true; return null;", vec![]).await?;
+                page.js::<Value>(
+                    "document.getElementById('view-motion').hidden = true; return null;",
+                    vec![],
+                )
+                .await?;
             }
             for (what, zoom) in [("zoom", 0), ("pan", 3), ("pan", 12)] {
                 page.click("#zoom-fit").await?;
                 page.js::<Value>(WHEEL, vec![json!(zoom)]).await?;
                 page.js::<Value>(FRAMES, vec![json!(what)]).await?;
                 let mut times: Vec<f64> = page
-                    .eventually("180 frames", async || page.eval::<Option<Vec<f64>>>("window.frameTimes ?? null").await)
+                    .eventually("180 frames", async || {
+                        page.eval::<Option<Vec<f64>>>("window.frameTimes ?? null").await
+                    })
                     .await?;
                 times.sort_by(f64::total_cmp);
                 let at = |part: f64| times[((times.len() - 1) as f64 * part) as usize];
-                println!("{view}, {what} at {zoom}: p50 {:.1} ms, p95 {:.1} ms, longest {:.1} ms", at(0.5), at(0.95), at(1.0));
+                println!(
+                    "{view}, {what} at {zoom}: p50 {:.1} ms, p95 {:.1} ms, longest {:.1} ms",
+                    at(0.5),
+                    at(0.95),
+                    at(1.0)
+                );
             }
         }
         Ok(())

@@ -77,12 +77,14 @@ fn bytes_and_fields_are_decoded_lit_in_all_views_and_choose_their_packet() -> Re
         let broken = log.broken()[0].0 + 5 * known.experiment.config().bit().0;
         point(&page, &known, BYTES, broken, false).await?;
         until_reads(&page, "framing error: stop bit low").await?;
-        let ignored = log.rows().iter().position(|row| row.verdict == Verdict::Ignored).context("some are")?;
+        let ignored =
+            log.rows().iter().position(|row| row.verdict == Verdict::Ignored).context("some are")?;
         point(&page, &known, FIELDS, log.seen(ignored)[0].0 + 100, false).await?;
         until_reads(&page, "ignored until a gap").await?;
 
         point(&page, &known, BYTES, middle(1), true).await?;
-        page.until("document.querySelector('#packets tr[aria-selected=true]')?.dataset.index === '1'").await?;
+        page.until("document.querySelector('#packets tr[aria-selected=true]')?.dataset.index === '1'")
+            .await?;
         point(&page, &known, PACKETS, log.rows()[0].start.0 + 100, true).await?;
         page.until("document.querySelector('#packets tr[aria-selected=true]')?.dataset.index === '0'").await
     })
@@ -95,7 +97,8 @@ fn frames_and_replies_are_decoded_to_their_fields() -> Result<()> {
         open(&page, &known).await?;
         // One frame and its reply fill the view.
         let log = &known.recording.packets;
-        let reply = log.rows().iter().position(|row| matches!(row.verdict, Verdict::Reply(_))).context("a reply")?;
+        let reply =
+            log.rows().iter().position(|row| matches!(row.verdict, Verdict::Reply(_))).context("a reply")?;
         let (from, to) = (log.rows()[reply - 1].start.0, log.rows()[reply].end.0);
         let asked: serde_json::Value = page
             .js(
@@ -111,11 +114,21 @@ fn frames_and_replies_are_decoded_to_their_fields() -> Result<()> {
             let spans = asked[lane][kind].as_array().cloned().unwrap_or_default();
             spans.iter().map(|span| span["texts"][0].as_str().unwrap_or_default().to_owned()).collect()
         };
-        let hex = |row: usize| -> Vec<String> { log.bytes(row).iter().map(|byte| format!("{byte:02x}")).collect() };
+        let hex =
+            |row: usize| -> Vec<String> { log.bytes(row).iter().map(|byte| format!("{byte:02x}")).collect() };
         assert_eq!(texts("rx", "bytes"), hex(reply - 1));
         assert_eq!(texts("tx", "bytes"), hex(reply));
         assert_eq!(texts("rx", "bits").len(), 10 * hex(reply - 1).len());
-        for (lane, wanted) in [("rx", "kind "), ("rx", " holds"), ("rx", "end mark"), ("tx", "kind ACK of "), ("tx", "state "), ("tx", " places free"), ("tx", " ticks done"), ("tx", " holds")] {
+        for (lane, wanted) in [
+            ("rx", "kind "),
+            ("rx", " holds"),
+            ("rx", "end mark"),
+            ("tx", "kind ACK of "),
+            ("tx", "state "),
+            ("tx", " places free"),
+            ("tx", " ticks done"),
+            ("tx", " holds"),
+        ] {
             let found = texts(lane, "fields");
             ensure!(found.iter().any(|text| text.contains(wanted)), "{lane} has no `{wanted}` in {found:?}");
         }
@@ -148,8 +161,10 @@ fn markers_are_set_by_shift_and_a_digit_listed_and_removed() -> Result<()> {
         let shown: (String, String) = page
             .eval("[document.getElementById('window-start').value, document.getElementById('window-end').value]")
             .await?;
-        let around = |text: &str| text.split(['\u{a0}', ' ']).next().and_then(|number| number.parse::<f64>().ok());
-        let (Some(from), Some(to), Some(at)) = (around(&shown.0), around(&shown.1), around(&rows[0][1])) else {
+        let around =
+            |text: &str| text.split(['\u{a0}', ' ']).next().and_then(|number| number.parse::<f64>().ok());
+        let (Some(from), Some(to), Some(at)) = (around(&shown.0), around(&shown.1), around(&rows[0][1]))
+        else {
             anyhow::bail!("{shown:?}, {rows:?}")
         };
         ensure!(from <= at && at <= to, "{shown:?} does not show {at} ms");
@@ -171,7 +186,9 @@ fn the_table_of_edges_is_the_traces_page_after_page() -> Result<()> {
             .map(|index| trace[index].cycle.0)
             .collect();
         page.click("#edge-panel summary").await?;
-        for (press, wanted) in [("", &edges[..50]), ("#edges-later", &edges[50..100]), ("#edges-earlier", &edges[..50])] {
+        for (press, wanted) in
+            [("", &edges[..50]), ("#edges-later", &edges[50..100]), ("#edges-earlier", &edges[..50])]
+        {
             if !press.is_empty() {
                 page.click(press).await?;
             }
@@ -182,8 +199,10 @@ fn the_table_of_edges_is_the_traces_page_after_page() -> Result<()> {
             .await?;
         }
         page.choose("#edges-of", "all").await?;
-        page.until("document.querySelector('#edge-panel tbody td:nth-child(3)')?.textContent === 'RX'").await?;
-        let details: String = page.eval("document.getElementById('pulses').getAttribute('aria-details')").await?;
+        page.until("document.querySelector('#edge-panel tbody td:nth-child(3)')?.textContent === 'RX'")
+            .await?;
+        let details: String =
+            page.eval("document.getElementById('pulses').getAttribute('aria-details')").await?;
         assert_eq!(details, "edge-panel");
         Ok(())
     })
@@ -211,7 +230,8 @@ fn violations_and_edges_that_there_are_not_are_told_where_one_looks() -> Result<
         // What a key comes to is spoken; without a cursor Escape leaves.
         page.choose("#edge-row", "0").await?;
         page.press("#pulses", &format!("{SHIFT}{RIGHT}{RELEASE}")).await?;
-        page.until("/STEP 0 (low|high)/.test(document.getElementById('pulses-sentence').textContent)").await?;
+        page.until("/STEP 0 (low|high)/.test(document.getElementById('pulses-sentence').textContent)")
+            .await?;
         page.press("#pulses", &ESCAPE.to_string()).await?;
         page.until("document.activeElement.id === 'pulses'").await?;
         page.press("#pulses", &ESCAPE.to_string()).await?;
@@ -240,7 +260,11 @@ fn the_strip_moves_and_resizes_what_is_shown_by_mouse_and_keys() -> Result<()> {
         let mouse = MouseActions::new("mouse".into())
             .then(PointerAction::MoveTo { duration: None, x: (left + width - 26.0).floor(), y })
             .then(PointerAction::Down { button: MOUSE_BUTTON_LEFT })
-            .then(PointerAction::MoveTo { duration: None, x: (left + 68.0 + (width - 94.0) / 2.0).floor(), y })
+            .then(PointerAction::MoveTo {
+                duration: None,
+                x: (left + 68.0 + (width - 94.0) / 2.0).floor(),
+                y,
+            })
             .then(PointerAction::Up { button: MOUSE_BUTTON_LEFT });
         page.actions(mouse).await?;
         let halved: (String, String) = page.eval(window).await?;
@@ -255,6 +279,9 @@ fn a_run_of_segments_has_no_rows_of_a_line() -> Result<()> {
         let known = preset("sonobe-2011-segments")?;
         open(&page, &known).await?;
         let rows = 1 + 2 * usize::from(known.experiment.config().channels());
-        page.until(&format!("document.getElementById('pulses').getAttribute('aria-label').includes(' {rows} rows')")).await
+        page.until(&format!(
+            "document.getElementById('pulses').getAttribute('aria-label').includes(' {rows} rows')"
+        ))
+        .await
     })
 }
