@@ -10,7 +10,7 @@ use stepscope_core::{
 use crate::{
     bench::in_browser,
     native::Known,
-    session::{RELEASE, SHIFT, Session},
+    session::{ENTER, RELEASE, SHIFT, Session},
 };
 
 /// Keys as WebDriver writes them.
@@ -70,9 +70,9 @@ fn bytes_and_fields_are_decoded_lit_in_all_views_and_choose_their_packet() -> Re
             ensure!(lit > 0, "{overlay} shows what is pointed at");
         }
         point(&page, &known, FIELDS, middle(0), false).await?;
-        until_reads(&page, "fields: ch 0: +7 steps").await?;
+        until_reads(&page, "fields: ch0: +7").await?;
         point(&page, &known, FIELDS, middle(1), false).await?;
-        until_reads(&page, "fields: ch 1: \u{2212}5 steps").await?;
+        until_reads(&page, "fields: ch1: \u{2212}5").await?;
 
         let broken = log.broken()[0].0 + 5 * known.experiment.config().bit().0;
         point(&page, &known, BYTES, broken, false).await?;
@@ -80,7 +80,7 @@ fn bytes_and_fields_are_decoded_lit_in_all_views_and_choose_their_packet() -> Re
         let ignored =
             log.rows().iter().position(|row| row.verdict == Verdict::Ignored).context("some are")?;
         point(&page, &known, FIELDS, log.seen(ignored)[0].0 + 100, false).await?;
-        until_reads(&page, "ignored until a gap").await?;
+        until_reads(&page, "ignored: until a gap").await?;
 
         point(&page, &known, BYTES, middle(1), true).await?;
         page.until("document.querySelector('#packets tr[aria-selected=true]')?.dataset.index === '1'")
@@ -119,16 +119,17 @@ fn frames_and_replies_are_decoded_to_their_fields() -> Result<()> {
         assert_eq!(texts("rx", "bytes"), hex(reply - 1));
         assert_eq!(texts("tx", "bytes"), hex(reply));
         assert_eq!(texts("rx", "bits").len(), 10 * hex(reply - 1).len());
-        for (lane, wanted) in [
-            ("rx", "kind "),
-            ("rx", " holds"),
-            ("rx", "end mark"),
-            ("tx", "kind ACK of "),
-            ("tx", "state "),
-            ("tx", " places free"),
-            ("tx", " ticks done"),
-            ("tx", " holds"),
-        ] {
+        let wanted = [
+            ("rx", "kind: "),
+            ("rx", ", holds"),
+            ("rx", "end mark: 00"),
+            ("tx", "kind: ACK "),
+            ("tx", "state: "),
+            ("tx", "free: "),
+            ("tx", "ticks done: "),
+            ("tx", ", holds"),
+        ];
+        for (lane, wanted) in wanted {
             let found = texts(lane, "fields");
             ensure!(found.iter().any(|text| text.contains(wanted)), "{lane} has no `{wanted}` in {found:?}");
         }
@@ -220,7 +221,7 @@ fn violations_and_edges_that_there_are_not_are_told_where_one_looks() -> Result<
         until_reads(&page, "No further violation").await?;
         page.click("#pulses-violation-next").await?;
         until_reads(&page, "Violation 2 of ").await?;
-        page.click("#margins tbody tr:not(.bad) th button").await?;
+        page.press("#margins tbody tr:not(.bad) th button", &ENTER.to_string()).await?;
         until_reads(&page, ": least ").await?;
         // EN never changes here.
         page.choose("#edge-row", "32").await?;
