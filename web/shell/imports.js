@@ -75,7 +75,7 @@ export function createImports({ engine, openLink, dispatch, now }) {
       const head = (await file.slice(0, HEAD).text()).replace(/^\ufeff/, "").trimStart();
       const [first] = head.split("\n", 1);
       if (head.startsWith("{")) await scenario(file);
-      else if (file.size <= HEAD && LINK.test(head)) await openLink(head.slice(head.indexOf("#") + 1).trim());
+      else if (file.size <= HEAD && LINK.test(head)) await openLink(head.slice(head.indexOf("#") + 1).trim().split(/\s/, 1)[0]);
       else if (/(^|,)start_(cycle|s)(,|\s*$)/.test(first) && /(^|,)bytes(,|\s*$)/.test(first)) await packets(file);
       else if (/^cycle,/.test(first) || /^[0-9a-f]+ [0-9a-f]+\s*$/.test(first)) await edges(file);
       else if (head.startsWith("$")) tell("error", `${file.name} is a value change dump; these are only written. To compare a run, save its edges as CSV or trace. ${WHAT}`);

@@ -135,7 +135,7 @@ const CUTS: &str = "
         const view = parseView(text);
         const ok = Object.entries(view).every(([name, value]) => name === 'window' ? value.start < value.end && Number.isSafeInteger(value.end)
             : ['view', 'side', 'unit'].includes(name) ? /^[a-z]+$/.test(value) : Number.isSafeInteger(value) && value >= 0);
-        if (!ok || JSON.stringify(parseView(writeView(view))) !== JSON.stringify(view)) bad.push(text);
+        if (!ok || writeView(parseView(writeView(view))) !== writeView(view)) bad.push(text);
     }
     const empty = [undefined, '', 'broken', '5-4', '1-2-3', '__proto__', 'constructor', '.'.repeat(9999), '99999999999999999999-1'].filter((text) => JSON.stringify(parseView(text)) !== '{}');
     return { bad, empty, given: given.length, whole: writeView(parseView(whole)) === whole };";
@@ -243,7 +243,7 @@ fn packets_and_edges_that_were_saved_are_taken_in() -> Result<()> {
         let cycle = recording.trace.get(at).context("a record")?.cycle.0;
         page.until(&format!("location.hash.includes('a{cycle}')")).await?;
 
-        drop_file(&page, "bad.csv", &table(&recording.trace)?.replacen(",0,", ",2,", 1)).await?;
+        drop_file(&page, "bad.csv", &table(&recording.trace)?.replacen("\n0,0,0,", "\n0,0,2,", 1)).await?;
         page.until(&format!("{MESSAGE}.includes('line 2')")).await?;
 
         let mut packets = String::new();

@@ -8,12 +8,7 @@ use stepscope_core::{
     trace::{VcdWriter, write_edges_head, write_edges_row},
 };
 
-use crate::{
-    bench::in_browser,
-    exchange::drop_file,
-    native::{Known, with_distance},
-    session::Session,
-};
+use crate::{bench::in_browser, exchange::drop_file, native::Known, session::Session};
 
 /// Keeps every file that is saved, by its name, in place of a download.
 const KEEP: &str = "window.saved = {}; const make = URL.createObjectURL;
@@ -63,7 +58,9 @@ fn cut(trace: &[Record], start: u64, end: u64) -> Option<Vec<Record>> {
 fn files_of_the_whole_run_and_of_a_stretch_are_the_cores_bytes() -> Result<()> {
     in_browser(|page| async move {
         // More rows than one piece has.
-        let known = Known::of(&with_distance(12_000.0))?;
+        let known = Known::of(
+            r#"{"source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":12000},"duration_s":2}}]}]}}}"#,
+        )?;
         let trace = &known.recording.trace;
         ensure!(trace.len() > 20_000, "{} records", trace.len());
         let cycles = known.experiment.run(&mut Vec::new()).cycles().0;
