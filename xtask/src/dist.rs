@@ -6,9 +6,10 @@
 //! | `assets/` | all else that these name, directly or not; the hash in a name changes with what the file and all that it names hold, so hosts and browsers may keep it for ever |
 //! | `_headers` | `web/_headers` and the rules for keeping |
 //!
-//! Scripts are minified; nothing is bundled: the page names all its modules at its beginning, so that
-//! they load side by side. The result depends on the files and the commit alone.
+//! The modules that a page or a worker begins with are one script, minified; what wasm-bindgen wrote stays beside,
+//! because page and worker share it. The result depends on the files and the commit alone.
 
+mod bundle;
 mod licences;
 mod references;
 mod script;
@@ -21,12 +22,15 @@ use twox_hash::XxHash64;
 use walkdir::WalkDir;
 
 use crate::{root, run};
+use bundle::{Module, Origin, bundled};
 use references::{Kind, Reference, references};
 
 /// Where what has a hash in its name lies.
 const ASSETS: &str = "assets";
 /// The page.
 const PAGE: &str = "index.html";
+/// Scripts in this folder stay by themselves.
+const SHARED: &str = "pkg/";
 /// The service worker, which holds the list of files.
 const SERVICE_WORKER: &str = "sw.js";
 /// What stands in the sources where the build writes what it is.
@@ -43,8 +47,28 @@ pub(crate) fn folder() -> PathBuf {
 pub(crate) async fn make(web: &Path, dist: &Path) -> Result<()> {
     let mut site = Site::read(web)?;
     site.add("licenses.html", licences::page().await?.into_bytes())?;
+    site.bundle()?;
     let commit = commit().await;
     write(dist, &site.built(env!("CARGO_PKG_VERSION"), commit.as_deref())?)
+}
+
+/// The files of `dist` that load when the page is opened, by their paths: not what is kept beside it for other
+/// pages and for installing.
+pub(crate) fn loaded(dist: &Path) -> Result<BTreeSet<String>> {
+    let mut loaded = BTreeSet::from([SERVICE_WORKER.to_owned()]);
+    let mut waiting = vec![PAGE.to_owned()];
+    while let Some(path) = waiting.pop() {
+        if (is_entry(&path) && path != PAGE) || !loaded.insert(path.clone()) {
+            continue;
+        }
+        if Kind::of(&path) != Kind::Other {
+            let file = dist.join(&path);
+            let text = std::fs::read_to_string(&file)
+                .with_context(|| format!("{} can't be read", file.display()))?;
+            waiting.extend(references(&path, &text)?.into_iter().map(|reference| reference.file));
+        }
+    }
+    Ok(loaded)
 }
 
 /// The commit's short name, with a `+` where files differ from it; none outside of a clone.
@@ -143,9 +167,75 @@ impl Site {
         reached
     }
 
-    /// The path under which a file is shipped.
-    ///
-    /// The hash is of all files that it leads to: modules that import each other have names, too.
+    /// Makes one script of each that a page or a worker begins with, and leaves out what nobody names any more.
+    fn bundle(&mut self) -> Result<()> {
+        let named = self.files.values().flat_map(|file| &file.references).filter(|named| !named.at_once);
+        let scripts = named.map(|named| named.file.as_str());
+        let scripts: BTreeSet<&str> = scripts
+            .filter(|file| Kind::of(file) == Kind::Script && !is_entry(file) && !file.starts_with(SHARED))
+            .collect();
+        let bundles: Vec<(String, String)> = scripts
+            .into_iter()
+            .map(|script| Ok((script.to_owned(), self.bundle_of(script)?)))
+            .collect::<Result<_>>()?;
+        for (path, bundle) in bundles {
+            self.add(&path, bundle.into_bytes())?;
+        }
+        let pages = self.files.keys().filter(|path| is_entry(path));
+        let reached: BTreeSet<String> =
+            pages.flat_map(|path| self.reached(path, false)).map(str::to_owned).collect();
+        self.files.retain(|path, _| reached.contains(path));
+        Ok(())
+    }
+
+    /// The modules that load with `script`, as one.
+    fn bundle_of(&self, script: &str) -> Result<String> {
+        let mut order = Vec::new();
+        self.follow(script, &mut order, &mut BTreeSet::new());
+        // Names mean the same from the bundle's own place as they did from the module's.
+        let from_bundle = |file: &str| match script.matches('/').count() {
+            0 => format!("./{file}"),
+            folders => format!("{}{file}", "../".repeat(folders)),
+        };
+        let mut texts = Vec::new();
+        for path in &order {
+            let file = &self.files[*path];
+            let moved = |named: &Reference| (!named.at_once).then(|| from_bundle(&named.file));
+            texts.push(String::from_utf8(replaced(file, moved))?);
+        }
+        let beside: BTreeMap<&str, String> =
+            self.files.keys().map(|path| (path.as_str(), from_bundle(path))).collect();
+        let mut modules = Vec::new();
+        for (path, text) in order.iter().zip(&texts) {
+            let file = &self.files[*path];
+            let mut imports = BTreeMap::new();
+            for Reference { place, file: target, at_once: _ } in
+                file.references.iter().filter(|it| it.at_once)
+            {
+                let specifier = std::str::from_utf8(&file.bytes[place.clone()])?;
+                let origin = match order.iter().position(|other| other == target) {
+                    Some(number) => Origin::Within(number),
+                    None => Origin::Beside(&beside[target.as_str()]),
+                };
+                imports.insert(specifier, origin);
+            }
+            modules.push(Module { name: path, text, imports });
+        }
+        bundled(&modules)
+    }
+
+    /// Adds `path` to `order` after all modules that it imports, in the order in which they would be evaluated.
+    fn follow<'a>(&'a self, path: &str, order: &mut Vec<&'a str>, seen: &mut BTreeSet<&'a str>) {
+        let Some((path, file)) = self.files.get_key_value(path) else { return };
+        if !path.starts_with(SHARED) && seen.insert(path) {
+            for named in file.references.iter().filter(|named| named.at_once) {
+                self.follow(&named.file, order, seen);
+            }
+            order.push(path);
+        }
+    }
+
+    /// The path under which a file is shipped; the hash is of all files that it leads to.
     fn name(&self, path: &str) -> String {
         if is_entry(path) {
             return path.to_owned();
@@ -228,18 +318,26 @@ impl Site {
 /// A file's bytes with the new names of what it names.
 fn renamed(path: &str, file: &File, names: &BTreeMap<&str, String>) -> Vec<u8> {
     let in_assets = !is_entry(path);
-    let mut bytes = Vec::new();
-    let mut done = 0;
-    for Reference { place, file: target, .. } in &file.references {
-        bytes.extend_from_slice(&file.bytes[done..place.start]);
-        let name = names.get(target.as_str()).map_or(target.as_str(), String::as_str);
-        let name = match (in_assets, name.strip_prefix("assets/")) {
+    replaced(file, |Reference { file: target, .. }| {
+        let name = names.get(target.as_str())?;
+        Some(match (in_assets, name.strip_prefix("assets/")) {
             (true, Some(beside)) => format!("./{beside}"),
             (true, None) => format!("../{name}"),
             (false, _) => name.to_owned(),
-        };
-        bytes.extend_from_slice(name.as_bytes());
-        done = place.end;
+        })
+    })
+}
+
+/// A file's bytes with other names in the places where it names files, where there is another.
+fn replaced(file: &File, other: impl Fn(&Reference) -> Option<String>) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut done = 0;
+    for reference in &file.references {
+        if let Some(name) = other(reference) {
+            bytes.extend_from_slice(&file.bytes[done..reference.place.start]);
+            bytes.extend_from_slice(name.as_bytes());
+            done = reference.place.end;
+        }
     }
     bytes.extend_from_slice(&file.bytes[done..]);
     bytes

@@ -64,17 +64,22 @@ impl Sizes {
     }
 }
 
-/// A table of all files that the page loads, with their sum; `Display` prints it.
-pub(crate) struct Weights(Vec<(String, Sizes)>);
+/// A table of what a host sends; `Display` prints it.
+pub(crate) struct Weights {
+    /// What opening the page loads.
+    page: Vec<(String, Sizes)>,
+    /// Other pages and what they need, icons: kept for use without a network.
+    beside: Vec<(String, Sizes)>,
+}
+
+fn sum(rows: &[(String, Sizes)]) -> Sizes {
+    rows.iter().fold(Sizes::default(), |sum, (_, sizes)| sum.plus(*sizes))
+}
 
 impl Weights {
-    fn sum(&self) -> Sizes {
-        self.0.iter().fold(Sizes::default(), |sum, (_, sizes)| sum.plus(*sizes))
-    }
-
     /// An error if the page weighs more than it may.
     pub(crate) fn within_budget(&self) -> Result<()> {
-        let weight = self.sum().brotli;
+        let weight = sum(&self.page).brotli;
         ensure!(weight <= BUDGET, "the page weighs {weight} bytes compressed; it may weigh {BUDGET}");
         Ok(())
     }
@@ -82,30 +87,38 @@ impl Weights {
 
 impl fmt::Display for Weights {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let width = self.0.iter().map(|(name, _)| name.len()).max().unwrap_or(0).max("all files".len());
+        let (all, kept) = ("the page", "kept beside it");
+        let names = self.page.iter().chain(&self.beside).map(|(name, _)| name.len());
+        let width = names.max().unwrap_or(0).max(kept.len());
         writeln!(out, "{:width$} {:>10} {:>10} {:>10}  bytes", "file", "raw", "gzip", "brotli")?;
-        let rows = self.0.iter().map(|(name, sizes)| (name.as_str(), *sizes));
-        for (name, Sizes { raw, gzip, brotli }) in rows.chain([("all files", self.sum())]) {
-            writeln!(out, "{name:width$} {raw:>10} {gzip:>10} {brotli:>10}")?;
+        for (rows, last) in [(&self.page, all), (&self.beside, kept)] {
+            let rows_of = rows.iter().map(|(name, sizes)| (name.as_str(), *sizes));
+            for (name, Sizes { raw, gzip, brotli }) in rows_of.chain([(last, sum(rows))]) {
+                writeln!(out, "{name:width$} {raw:>10} {gzip:>10} {brotli:>10}")?;
+            }
         }
         Ok(())
     }
 }
 
-/// Weighs every file of `dist`.
+/// Weighs the files of `dist`.
 pub(crate) fn weigh(dist: &Path) -> Result<Weights> {
-    let mut rows = Vec::new();
+    let loaded = dist::loaded(dist)?;
+    let mut weights = Weights { page: Vec::new(), beside: Vec::new() };
     for entry in WalkDir::new(dist).sort_by_file_name() {
         let entry = entry.with_context(|| format!("{} can't be read", dist.display()))?;
         // The host's own rules are not sent to anybody.
         if entry.file_type().is_file() && entry.file_name() != "_headers" {
             let bytes = std::fs::read(entry.path())
                 .with_context(|| format!("{} can't be read", entry.path().display()))?;
-            let name = entry.path().strip_prefix(dist).unwrap_or(entry.path()).display().to_string();
+            let path = entry.path().strip_prefix(dist).unwrap_or(entry.path());
+            let parts: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
+            let name = parts.join("/");
+            let rows = if loaded.contains(&name) { &mut weights.page } else { &mut weights.beside };
             rows.push((name, Sizes::of(&bytes)?));
         }
     }
-    Ok(Weights(rows))
+    Ok(weights)
 }
 
 #[cfg(test)]
@@ -114,26 +127,39 @@ mod tests {
 
     #[test]
     fn a_page_beyond_its_budget_is_refused_with_both_numbers() {
-        let weights = |brotli| Weights(vec![("a".to_owned(), Sizes { brotli, ..Sizes::default() })]);
+        let weights = |brotli| Weights {
+            page: vec![("a".to_owned(), Sizes { brotli, ..Sizes::default() })],
+            beside: vec![("b".to_owned(), Sizes { brotli: 1, ..Sizes::default() })],
+        };
         assert!(weights(400_000).within_budget().is_ok());
         let error = weights(400_001).within_budget().unwrap_err().to_string();
         assert_eq!(error, "the page weighs 400001 bytes compressed; it may weigh 400000");
     }
 
     #[test]
-    fn every_file_that_a_browser_can_load_is_weighed_and_summed() {
-        let web = std::env::temp_dir().join(format!("stepscope-weigh-{}", std::process::id()));
-        std::fs::create_dir_all(web.join("pkg")).unwrap();
-        for name in ["index.html", "_headers", "pkg/a.js"] {
-            std::fs::write(web.join(name), "a".repeat(1000)).unwrap();
+    fn what_opening_the_page_loads_is_summed_apart_from_what_is_kept_beside_it() {
+        let dist = std::env::temp_dir().join(format!("stepscope-weigh-{}", std::process::id()));
+        std::fs::create_dir_all(dist.join("assets")).unwrap();
+        let space = " ".repeat(1000);
+        for (name, text) in [
+            ("index.html", "<a href=\"help.html\"></a><script src=\"assets/a.js\"></script>"),
+            ("help.html", "<script src=\"assets/b.js\"></script>"),
+            ("assets/a.js", "new URL('x.wasm',import.meta.url)"),
+            ("assets/b.js", ""),
+            ("assets/x.wasm", ""),
+            ("sw.js", ""),
+            ("_headers", ""),
+        ] {
+            std::fs::write(dist.join(name), format!("{text}{space}")).unwrap();
         }
-        let weights = weigh(&web).unwrap();
-        let names: Vec<_> = weights.0.iter().map(|(name, _)| name.as_str()).collect();
-        assert_eq!(names, ["index.html", "pkg/a.js"]);
+        let weights = weigh(&dist).unwrap();
+        let names = |rows: &[(String, Sizes)]| rows.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+        assert_eq!(names(&weights.page), ["assets/a.js", "assets/x.wasm", "index.html", "sw.js"]);
+        assert_eq!(names(&weights.beside), ["assets/b.js", "help.html"]);
         assert!(
-            weights.0.iter().all(|(_, sizes)| sizes.raw == 1000 && sizes.gzip < 100 && sizes.brotli < 100)
+            weights.page.iter().all(|(_, sizes)| sizes.raw >= 1000 && sizes.gzip < 150 && sizes.brotli < 150)
         );
-        assert!(weights.to_string().contains("all files        2000"), "{weights}");
-        std::fs::remove_dir_all(&web).unwrap();
+        assert!(weights.to_string().contains("the page"), "{weights}");
+        std::fs::remove_dir_all(&dist).unwrap();
     }
 }

@@ -49,10 +49,10 @@ fn pattern(kind: Kind) -> Option<&'static Regex> {
     // An attribute that is an address of this site: no scheme, and more than a place in the page.
     static PAGE: LazyLock<Option<Regex>> =
         LazyLock::new(|| compiled(r##"\s(?:href|src)="(?<name>[^":#?]+)["#?]"##));
-    // Minified scripts: static and dynamic imports, and new URL(…, import.meta.url).
+    // Minified scripts: imports, and new URL(…, import.meta.url).
     static SCRIPT: LazyLock<Option<Regex>> = LazyLock::new(|| {
         compiled(
-            r#"(?<static>\bfrom|\bimport)["'`](?<name>\.{1,2}/[^"'`]+)["'`]|\bimport\(["'`](?<lazy>\.{1,2}/[^"'`]+)["'`]\)|new URL\(["'`](?<url>[^"'`]+)["'`],import\.meta\.url\)"#,
+            r#"(?<static>\bfrom|\bimport)["'`](?<name>\.{1,2}/[^"'`]+)["'`]|new URL\(["'`](?<url>[^"'`]+)["'`],import\.meta\.url\)"#,
         )
     });
     static STYLE: LazyLock<Option<Regex>> =
@@ -72,7 +72,7 @@ fn pattern(kind: Kind) -> Option<&'static Regex> {
 /// The page itself, `./`, is none.
 ///
 /// # Errors
-/// If a name leads out of the page's folder, or a style sheet imports another.
+/// If a name leads out of the page's folder, a style sheet imports another, or a module comes later.
 pub(super) fn references(path: &str, text: &str) -> Result<Vec<Reference>> {
     let kind = Kind::of(path);
     if kind == Kind::Style && text.contains("@import") {
@@ -80,9 +80,12 @@ pub(super) fn references(path: &str, text: &str) -> Result<Vec<Reference>> {
             "{path} has an @import; link the style sheet in the page, so that it does not wait for this one"
         );
     }
+    if kind == Kind::Script && text.contains("import(") {
+        bail!("{path} imports a module later by import(…); import it at its beginning");
+    }
     let mut found = Vec::new();
     for captures in pattern(kind).into_iter().flat_map(|pattern| pattern.captures_iter(text)) {
-        let named = ["name", "lazy", "url"].iter().find_map(|group| captures.name(group));
+        let named = ["name", "url"].iter().find_map(|group| captures.name(group));
         let Some(name) = named.filter(|name| name.as_str() != "./") else { continue };
         let file = resolve(path, name.as_str())?;
         found.push(Reference { place: name.range(), file, at_once: captures.name("static").is_some() });
@@ -123,13 +126,12 @@ mod tests {
     fn every_way_of_naming_a_file_is_seen() {
         check(
             "views/a.js",
-            "import\"../dom.js\";import{a as b}from'./b/c.js';export*from`./d.js`;x=()=>import(\"./e.js\");\
+            "import\"../dom.js\";import{a as b}from'./b/c.js';export*from`./d.js`;\
              new Worker(new URL(\"../engine/w.js\",import.meta.url));new URL(`x.wasm`,import.meta.url);f(\"./g.js\")",
             &[
                 ("../dom.js", "dom.js", true),
                 ("./b/c.js", "views/b/c.js", true),
                 ("./d.js", "views/d.js", true),
-                ("./e.js", "views/e.js", false),
                 ("../engine/w.js", "engine/w.js", false),
                 ("x.wasm", "views/x.wasm", false),
             ],
@@ -155,5 +157,7 @@ mod tests {
         assert_eq!(error, "a.js names ../b.js, which lies outside of the page's folder");
         let error = references("a.css", "@import 'b.css';").unwrap_err().to_string();
         assert!(error.starts_with("a.css has an @import"), "{error}");
+        let error = references("a.js", "import('./b.js')").unwrap_err().to_string();
+        assert!(error.starts_with("a.js imports a module later"), "{error}");
     }
 }

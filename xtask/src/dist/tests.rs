@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// A folder with the files of a small site; two of its modules import each other.
+/// A folder with the files of a small site.
 fn sources(name: &str, changed: &[(&str, &str)]) -> std::path::PathBuf {
     let web = std::env::temp_dir().join(format!("stepscope-dist-{}-{name}", std::process::id()));
     let _ = std::fs::remove_dir_all(&web);
@@ -19,9 +19,16 @@ fn sources(name: &str, changed: &[(&str, &str)]) -> std::path::PathBuf {
             "main.js",
             "import { b } from './part/b.js';\nnew Worker(new URL('./w.js', import.meta.url)); b();\nnavigator.serviceWorker.register(new URL('./sw.js', import.meta.url));",
         ),
-        ("part/b.js", "import { c } from './c.js';\nexport const b = () => c();"),
-        ("part/c.js", "import { b } from './b.js'; // mutual\nexport const c = () => b;"),
-        ("w.js", "new URL('x.wasm', import.meta.url);"),
+        ("part/b.js", "import { c } from './c.js';\nexport const b = () => c('kept in b');"),
+        (
+            "part/c.js",
+            "import { draw } from '../pkg/g.js'; // gone\nexport const c = (text) => draw(text);\nnew URL('../i.svg', import.meta.url);",
+        ),
+        ("pkg/g.js", "export const draw = (text) => text;"),
+        (
+            "w.js",
+            "import * as all from './pkg/g.js';\nonmessage = () => all.draw(1);\nnew URL('x.wasm', import.meta.url);",
+        ),
         ("x.wasm", "\0asm"),
         ("style/a.css", "a { background: url(../i.svg) }"),
         ("i.svg", "<svg/>"),
@@ -41,6 +48,7 @@ fn built(name: &str, changed: &[(&str, &str)]) -> Result<BTreeMap<String, Vec<u8
     let web = sources(name, changed);
     let mut site = Site::read(&web)?;
     site.add("licenses.html", b"<a href=\"./\">".to_vec())?;
+    site.bundle()?;
     let built = site.built("1.2.3", Some("abc"));
     std::fs::remove_dir_all(&web)?;
     built
@@ -63,16 +71,20 @@ fn two_builds_are_the_same_and_hold_what_is_named() {
     assert_eq!(one, built("two", &[]).unwrap());
     let kept: Vec<_> = one.keys().filter(|name| !name.starts_with("assets/")).collect();
     assert_eq!(kept, ["_headers", "a.webmanifest", "index.html", "licenses.html", "sw.js"]);
-    assert_eq!(one.len(), kept.len() + 7, "{:?}", one.keys());
+    assert_eq!(one.len(), kept.len() + 6, "{:?}", one.keys());
 
     let page = text(&one, "index.html");
-    for start in ["assets/main.", "assets/b.", "assets/c.", "assets/a.", "assets/x."] {
+    for start in ["assets/main.", "assets/g.", "assets/a.", "assets/x."] {
         assert!(page.contains(&name(&one, start)), "{start} in {page}");
     }
     assert!(!page.contains("assets/w."), "the worker's script is no module of the page: {page}");
     assert!(page.contains("data-build=\"1.2.3 (abc)\"") && page.contains(">1.2.3 (abc)</span>"), "{page}");
     let main = text(&one, "assets/main.");
-    assert!(main.contains(&name(&one, "assets/b.").replace("assets/", "./")), "{main}");
+    for start in ["assets/g.", "assets/w.", "assets/i."] {
+        assert!(main.contains(&name(&one, start).replace("assets/", "./")), "{start} in {main}");
+    }
+    assert!(main.contains("kept in b") && !main.contains("gone"), "{main}");
+    assert!(text(&one, "assets/w.").contains(&name(&one, "assets/g.").replace("assets/", "./")));
     assert!(main.contains("../sw.js"), "{main}");
     assert!(text(&one, "a.webmanifest").contains(&name(&one, "assets/i.")));
 
@@ -86,14 +98,13 @@ fn two_builds_are_the_same_and_hold_what_is_named() {
 #[test]
 fn a_change_gives_new_names_to_the_file_and_all_that_name_it_and_to_no_other() {
     let one = built("before", &[]).unwrap();
-    let two =
-        built("after", &[("part/c.js", "import { b } from './b.js';\nexport const c = () => [b];")]).unwrap();
+    let two = built("after", &[("part/b.js", "export const b = () => 'other';")]).unwrap();
     for (start, changes) in [
-        ("assets/c.", true),
-        ("assets/b.", true),
         ("assets/main.", true),
         ("assets/w.", false),
         ("assets/x.", false),
+        ("assets/g.", false),
+        ("assets/a.", false),
     ] {
         assert_eq!(name(&one, start) != name(&two, start), changes, "{start}");
     }
@@ -120,6 +131,7 @@ fn a_site_that_does_not_hold_together_is_refused() {
         (("index.html", "<a href=\"help.html\">"), "pages are named but not there: {\"help.html\"}"),
         (("index.html", "<html>"), "index.html must hold once: data-build=\"development\""),
         (("sw.js", "self"), "sw.js must hold once: const build"),
+        (("part/c.js", "import './b.js';"), "part/c.js: waits in a circle with ./b.js"),
     ] {
         let error = format!("{:#}", built("refused", &[changed]).unwrap_err());
         assert!(error.contains(expected), "{error}");
