@@ -107,8 +107,8 @@ impl Simulation {
         object(&BothReadings { ideal, made })
     }
 
-    /// The difference of this run's position and another's in columns, `{min, max}`: `unit` and
-    /// `other_unit` are what a step of each is in the unit of the answer.
+    /// The difference of this run's position and another's in columns, `{min, max}`, over a stretch of
+    /// start and end in s; `units` are what a step of this run and of the other is in the answer's unit.
     #[must_use]
     pub fn difference(
         &mut self,
@@ -116,13 +116,13 @@ impl Simulation {
         axis: u8,
         other_axis: u8,
         units: &[f64],
-        t0_s: f64,
-        t1_s: f64,
+        span_s: &[f64],
         columns: u32,
     ) -> Object {
+        let &[from, to] = span_s else { return Object::new() };
         let common_s = self.end_s().min(other.end_s());
         let (first, second) = (self.scaled(axis, units.first()), other.scaled(other_axis, units.get(1)));
-        let band = difference::difference(first, second, common_s, window(t0_s, t1_s, columns));
+        let band = difference::difference(first, second, common_s, window(from, to, columns));
         let result = Object::new();
         numbers(&result, "min", &band.min);
         numbers(&result, "max", &band.max);

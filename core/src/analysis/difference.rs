@@ -58,8 +58,7 @@ impl<'a> Difference<'a> {
             let [a, b] = self.runs;
             let times = [a.time_s(self.next[0]), b.time_s(self.next[1])].map(|t| t.unwrap_or(f64::INFINITY));
             let at = if times[1] < times[0] { times[1] } else { times[0] };
-            // Also ends where there is no more step: infinity is before nothing.
-            if !(at < to_s) {
+            if at >= to_s || at == f64::INFINITY {
                 return;
             }
             for (next, time) in self.next.iter_mut().zip(times) {
@@ -119,6 +118,8 @@ mod tests {
     use super::*;
     use alloc::vec::Vec;
 
+    type Rows = &'static [(u64, i32)];
+
     fn steps(rows: &[(u64, i32)]) -> Vec<Step> {
         rows.iter().map(|&(cycle, position)| Step { cycle, position }).collect()
     }
@@ -132,7 +133,7 @@ mod tests {
     #[test]
     fn columns_and_the_whole_are_those_of_a_look_at_every_cycle() {
         // Clocks of 1024 Hz and 4096 Hz, so that all times are exact; a step at the same time in both, one a run's only step.
-        let rows: [(&[(u64, i32)], &[(u64, i32)]); 4] = [
+        let rows: [(Rows, Rows); 4] = [
             (&[(1, 1), (5, 2), (9, 1), (30, 2)], &[(4, 1), (22, 2), (23, 1), (36, 2), (80, 3)]),
             (&[], &[(40, -1)]),
             (&[(7, 1)], &[]),

@@ -38,6 +38,8 @@ const THEMES: [Theme; 2] = [
     },
 ];
 
+type Drawing = fn(&Theme) -> Spec;
+
 fn axis(min: f64, max: f64, unit: &str, prefix: bool, label_px: f64) -> Axis {
     Axis { min, max, unit: unit.into(), prefix, label_px }
 }
@@ -99,8 +101,7 @@ fn spectrum(theme: &Theme) -> Spec {
 #[test]
 fn pictures_are_those_that_were_looked_at() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pictures");
-    let drawings: [(&str, fn(&Theme) -> Spec); 3] =
-        [("motion", motion), ("band", band), ("spectrum", spectrum)];
+    let drawings: [(&str, Drawing); 3] = [("motion", motion), ("band", band), ("spectrum", spectrum)];
     for theme in &THEMES {
         for (name, make) in drawings {
             let mut text = String::new();

@@ -7,6 +7,9 @@ use crate::{
 };
 use alloc::{format, vec::Vec};
 
+/// A quantity of a plan over time.
+type Value<'a> = &'a dyn Fn(f64) -> f64;
+
 struct Ran {
     experiment: Experiment,
     recording: Recording,
@@ -65,7 +68,7 @@ fn the_ideal_curves_extremes_are_those_of_a_thousand_looks_a_column() {
         for &(from, to, columns) in WINDOWS {
             let window = Window { start_s: zero_s + from * length, end_s: zero_s + to * length, columns };
             let bands = ideal(plan, zero_s, window);
-            let looks: [(&Band, &dyn Fn(f64) -> f64, f64); 3] = [
+            let looks: [(&Band, Value<'_>, f64); 3] = [
                 (&bands.position, &|t| plan.position(t), 3000.0),
                 (&bands.speed, &|t| plan.speed(t), peaks.speed),
                 (&bands.acceleration, &|t| plan.acceleration(t), peaks.acceleration.max(1.0)),
