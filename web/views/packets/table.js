@@ -75,9 +75,10 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
     return reload();
   }
 
-  async function chooseCurrent() {
+  /** The current row, also where the table has not drawn it yet. @returns {Promise<PacketRow | null>} */
+  async function currentRow() {
     const page = await engine.ask("packets", current, 1).catch(unlessDropped);
-    if (page?.rows[0]) choose(page.rows[0], true);
+    return page?.rows[0] ?? null;
   }
 
   /** Asks for the rows on show. */
@@ -159,7 +160,7 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
   }
 
   return {
-    reload, moveTo, light, chooseCurrent,
+    reload, moveTo, light, current: currentRow,
     /** @param {number} by  Rows. */
     move: (by) => { moveTo(current + by); },
     page: () => Math.max(1, visible() - 1),
