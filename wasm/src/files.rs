@@ -14,9 +14,7 @@ use stepscope_core::{
     scenario::Config,
     segment::Segment,
     signal::{Levels, Record, Sink},
-    trace::{
-        VcdWriter, write_edges_head, write_edges_row, write_packets_head, write_packets_row, write_record,
-    },
+    trace::{VcdWriter, write_edges_head, write_edges_row, write_record},
     units::Instant,
     wire::packet::Order,
 };
@@ -61,7 +59,7 @@ impl<'a> Stretch<'a> {
 impl Simulation {
     /// A piece of a file of controller `controller`, from cycle `start` to cycle `end`, both in it: `{bytes,
     /// next, rows}`, `next` what to give for `from` (first 0) to get the piece after it, null at the end;
-    /// `rows` are those of the whole file. Kinds are `vcd`, `edges`, `trace`, `packets`, `ticks` and
+    /// `rows` are those of the whole file. Kinds are `vcd`, `edges`, `trace`, `ticks` and
     /// `segments` (the lists of the whole run).
     ///
     /// # Errors
@@ -99,18 +97,6 @@ impl Simulation {
                     }
                 }
                 (text.into_bytes(), stretch.rows())
-            }
-            "packets" => {
-                if from == 0 {
-                    write_packets_head(&mut text)?;
-                }
-                let rows = recording.packets.rows();
-                for (index, row) in rows.iter().enumerate().skip(from).take(ROWS) {
-                    if row.start.0 <= end && row.end.0 >= start {
-                        write_packets_row(&mut text, &recording.packets, index)?;
-                    }
-                }
-                (text.into_bytes(), rows.len())
             }
             "ticks" => (self.ticks(&mut text, index, (start, end), from)?, recording.packets.ticks().len()),
             "segments" => {

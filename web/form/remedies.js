@@ -29,7 +29,7 @@ function timing({ scenario, result }, sheets) {
   const sheet = sheets.find(({ id }) => id === driver?.preset);
   const rules = driver?.rules ?? sheet?.rules;
   if (!rules) return null;
-  const least = (/** @type {string} */ rule) => Math.ceil((rules[`${rule}_ns`] * clock) / 1e9);
+  const least = (/** @type {string} */ rule) => Math.ceil(((rules[`${rule}_ns`] ?? 0) * clock) / 1e9);
   const broken = (result?.summary.controllers ?? []).flatMap(({ violations }, index) => (violations ? [index] : []));
   let mended = scenario;
   const changes = [];

@@ -18,7 +18,7 @@ const GAP_PX = 4;
  * @param {{[name: string]: string}} [attributes]
  */
 export function termButton(text, term, attributes = {}) {
-  return element("button", { type: "button", class: "term", popovertarget: CARD, "data-term": term, ...attributes }, text);
+  return element("button", { type: "button", class: "term", "aria-expanded": "false", "aria-controls": CARD, "data-term": term, ...attributes }, text);
 }
 
 /** Opens the card of the word that explains an element, if there is one. @param {Element} at */
@@ -26,7 +26,6 @@ export function explain(at) {
   const word = /** @type {HTMLElement | null} */ (at.closest(".field, .item")?.querySelector(".term") ?? null);
   if (!word) return false;
   show(word);
-  document.getElementById(CARD)?.showPopover();
   return true;
 }
 
@@ -34,13 +33,18 @@ export function explain(at) {
 export function createCard() {
   const card = element("div", { id: CARD, class: "term-card", popover: "auto", role: "note", "aria-live": "polite" });
   document.body.append(card);
+  // A press anywhere closes the card before the click comes: one on the card's own word must not open it again.
+  /** @type {HTMLElement | null} */
+  let closing = null;
+  document.addEventListener("pointerdown", () => { closing = card.matches(":popover-open") ? opener : null; }, { capture: true });
   document.addEventListener("click", (event) => {
-    const word = /** @type {Element} */ (event.target).closest?.(".term");
-    if (word) show(/** @type {HTMLElement} */ (word));
-  }, { capture: true });
+    const word = /** @type {HTMLElement | null} */ (/** @type {Element} */ (event.target).closest?.(".term"));
+    if (word && word !== closing && !(word === opener && card.matches(":popover-open"))) show(word);
+    else if (word) card.hidePopover();
+    closing = null;
+  });
   card.addEventListener("toggle", (event) => {
     const open = /** @type {ToggleEvent} */ (event).newState === "open";
-    if (open && opener) place(card, opener);
     opener?.setAttribute("aria-expanded", String(open));
   });
   for (const view of Object.keys(VIEWS)) {
@@ -52,7 +56,7 @@ export function createCard() {
 /** The word whose card is on show, or was last. @type {HTMLElement | null} */
 let opener = null;
 
-/** Fills the card for a word. @param {HTMLElement} word */
+/** Fills the card for a word and shows it there. @param {HTMLElement} word */
 function show(word) {
   const card = document.getElementById(CARD);
   if (!card) return;
@@ -64,6 +68,10 @@ function show(word) {
   fill(card, ...(name.startsWith("view:") && view
     ? [element("p", {}, view.about), element("dl", {}, ...Object.values(view.terms).flatMap((term) => [element("dt", {}, term.name ?? ""), meaning("dd", term)]))]
     : [element("strong", {}, TERMS[name]?.name ?? word.textContent ?? ""), meaning("p", TERMS[name] ?? { text: "" }), ...(hint ? [element("p", { class: "range" }, hint)] : [])]));
+  card.hidePopover();
+  card.showPopover();
+  place(card, word);
+  word.setAttribute("aria-expanded", "true");
 }
 
 /** What is meant, with where it comes from. @param {"p" | "dd"} tag @param {Term} term */

@@ -14,14 +14,14 @@ export const STEPS = [
   { title: "Zoom into the pulses", at: "#view-pulses", view: "pulses", text: "Turn the wheel, or press + and the arrow keys, until single pulses show: every edge stands at its exact clock cycle. N goes to the next edge." },
   { title: "See what was sent", at: "#view-packets", view: "packets", text: "A row a packet, with its bytes and what the controller did with it. Choose one: it is shown in the pulses." },
   { title: "Break it, and mend it", at: "#preset", text: "“Pulses too short for a DRV8825” and “Raw packets on a noisy line” go wrong on purpose. The page says what is wrong and why, and “Fix it” puts it right; Undo takes that back." },
-  { title: "Share it", at: "#copy-link", text: "The link holds the whole experiment. Whoever opens it computes the same edges, and the digest proves it. ? at the right end has the keys and the help." },
+  { title: "Share it", at: "#share", text: "The link holds the whole experiment. Whoever opens it computes the same edges, and the digest proves it. ? at the right end has the keys and the help." },
 ];
 
 /** Distance of the panel from what it points at, and from the window's edges, in CSS pixels. */
 const GAP_PX = 10;
 
 /** @param {import("../time/timeline.js").Page} page */
-export function createGuide({ dispatch }) {
+export function createGuide({ dispatch, now }) {
   const panel = byId("guide");
   const narrow = matchMedia("(max-width: 899px)");
   let current = -1;
@@ -42,6 +42,12 @@ export function createGuide({ dispatch }) {
     current = step;
     const { title, text, view } = STEPS[step];
     if (view) dispatch({ type: "view", view });
+    // What it points at has to be on show.
+    const { form, folded, largest } = now().panes;
+    if (largest !== null || form === 0 || folded.length > 0) {
+      dispatch({ type: "pane", panes: { largest: null, folded: [], form: form || null } });
+      requestAnimationFrame(() => { if (current === step) place(); });
+    }
     // On a narrow screen the form is folded away.
     const target = targetOf();
     const sheet = /** @type {HTMLDetailsElement} */ (byId("sheet"));

@@ -6,6 +6,7 @@ import { meaning } from "./card.js";
 import { DOCUMENTS, TERMS, VIEWS } from "./terms.js";
 
 fill(byId("moves"), ...Object.values(MOVES).flatMap(({ label, about }) => [element("dt", {}, label), meaning("dd", about)]));
+fill(byId("mechanics"), ...Object.values(MECHANICS).flatMap(({ label, about }) => [element("dt", {}, label), meaning("dd", about)]));
 fill(byId("view-list"), ...Object.entries(VIEWS).flatMap(([view, { about }]) => [element("dt", {}, view === "timing" ? "Driver timing" : view[0].toUpperCase() + view.slice(1)), element("dd", {}, about)]));
 fill(byId("documents"), ...Object.values(DOCUMENTS).map(({ title }) => element("li", {}, title)));
 

@@ -26,8 +26,8 @@ const PIECES = 16;
 
 class Cancelled extends Error {}
 
-/** @param {{engine: Engine} & import("../time/timeline.js").Page} page  @param {((state: State, engine: Engine) => Offer[])[]} others  What other parts of the page offer: charts, packets. */
-export function createExports({ engine, now }, others = []) {
+/** @param {{engine: Engine} & import("../time/timeline.js").Page} page  @param {[string, (state: State, engine: Engine) => Offer[]][]} others  What other parts of the page offer, each list with its title. */
+export function createExports({ engine, now }, others) {
   const stretch = /** @type {HTMLSelectElement} */ (byId("export-stretch"));
   const list = byId("export-list");
   const status = byId("export-status");
@@ -47,7 +47,7 @@ export function createExports({ engine, now }, others = []) {
     options(stretch, [["whole", whole], ...(span ? [/** @type {[string, string]} */ (["cursors", `between A and B, ${time((span.end - span.start) / clock_hz)}`])] : [])],
       span ? stretch.value || "whole" : "whole");
     if (!busy) say(status, state.result ? isStale(state) ? "The views show an earlier experiment than the form; files are of what the views show." : "" : "Nothing was run yet.");
-    const groups = [...offers(state, engine, stretch.value === "cursors" ? span : null), { title: "Views", offers: others.flatMap((make) => make(state, engine)) }];
+    const groups = [...offers(state, engine, stretch.value === "cursors" ? span : null), ...others.map(([title, offered]) => ({ title, offers: offered(state, engine) }))];
     fill(list, ...groups.filter(({ offers }) => offers.length > 0).map(({ title, offers }) => {
       const group = element("div", { role: "group", "aria-label": title }, element("h3", {}, title));
       for (const each of offers) {
@@ -134,7 +134,6 @@ function offers(state, engine, span) {
       file("edges", "-edges.csv", "text/csv", `CSV of edges, ${count(looked.records)} rows in the whole run`),
       file("trace", ".trace", "text/plain", "Trace, cycle and levels in hex"),
     ] },
-    ...(segments ? [] : [{ title: "Line", offers: [file("packets", "-packets.csv", "text/csv", "Packets, CSV")] }]),
     { title: "Tables, CSV", offers: [
       segments ? file("segments", "-segments.csv", "text/csv", "Segment lists") : file("ticks", "-ticks.csv", "text/csv", "Ticks, steps of each channel"),
       table("-harmonics.csv", "Harmonics", "spectrum", harmonicsTable),

@@ -4,6 +4,7 @@
  */
 import { byId } from "../dom.js";
 import { Dropped } from "../engine/engine.js";
+import { readJson } from "../state/json.js";
 import { count, si, time } from "../state/number.js";
 import { isStale } from "../state/state.js";
 import { message } from "./link.js";
@@ -36,22 +37,25 @@ export function createImports({ engine, openLink, dispatch, now }) {
     if (file) open(file);
   });
 
-  /** @param {DragEvent} event */
-  const carries = ({ dataTransfer }) => {
+  /** Whether something is dragged that began in the page, as a selected text. */
+  let inner = false;
+  /** Files count everywhere; text only where no field takes it. @param {DragEvent} event */
+  const counts = ({ dataTransfer, target }) => {
     const types = dataTransfer?.types ?? [];
-    return types.includes("Files") || types.includes("text/uri-list") || types.includes("text/plain");
+    if (types.includes("Files")) return true;
+    return !inner && types.includes("text/plain") && !(target instanceof HTMLInputElement || target instanceof HTMLTextAreaElement);
   };
-  // Text that is moved within a field is the field's own matter.
-  const own = (/** @type {DragEvent} */ { target }) => target instanceof HTMLInputElement || target instanceof HTMLTextAreaElement;
+  document.addEventListener("dragstart", () => { inner = true; });
+  document.addEventListener("dragend", () => { inner = false; });
   document.addEventListener("dragover", (event) => {
-    if (own(event) && !event.dataTransfer?.types.includes("Files") || !carries(event)) return;
+    if (!counts(event)) return;
     event.preventDefault();
     hint.hidden = false;
   });
   document.addEventListener("dragleave", (event) => { if (event.relatedTarget === null) hint.hidden = true; });
   document.addEventListener("drop", (event) => {
     hint.hidden = true;
-    if (own(event) && !event.dataTransfer?.types.includes("Files") || !carries(event)) return;
+    if (!counts(event)) return;
     event.preventDefault();
     const files = event.dataTransfer?.files ?? [];
     if (files.length > 1) return tell("error", `${files.length} files at once: drop one. ${WHAT}`);
@@ -106,7 +110,7 @@ export function createImports({ engine, openLink, dispatch, now }) {
       const more = problems.length > MOST_TOLD ? `; and ${problems.length - MOST_TOLD} more` : "";
       return tell("error", `${file.name} has ${problems.length === 1 ? "a problem" : `${problems.length} problems`}: ${told.join("; ")}${more}. Your own work is as it was.`);
     }
-    const read = JSON.parse(scenario);
+    const read = readJson(scenario);
     if (JSON.stringify(read) === JSON.stringify(now().scenario)) return tell("info", `${file.name} holds the very experiment that is on show.`);
     dispatch({ type: "replace", scenario: read, origin: "shared" });
     tell("info", `${words(read)} Your own work is kept; Undo brings it back.`);
@@ -140,5 +144,4 @@ export function createImports({ engine, openLink, dispatch, now }) {
     const place = around(cycle, cycle, summary.end_cycle, controller);
     tell("error", `${file.name} is not this run: after ${count(held.same)} equal rows the first difference is in line ${count(line)}, cycle ${count(cycle)} (${seconds(cycle)}): ${what}.`, place);
   }
-  return {};
 }

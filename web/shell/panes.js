@@ -48,7 +48,7 @@ export function createPanes({ dispatch, now }) {
   function line(edge) {
     const made = element("div", { class: `edge ${edge.upright ? "upright" : "level"}`, id: `edge-${edge.pane}`, role: "separator", tabindex: "0", "aria-orientation": edge.upright ? "vertical" : "horizontal",
       "aria-label": edge.label, "aria-controls": edge.before.slice(1), "aria-valuemin": "0", "aria-valuemax": "100", "aria-valuenow": "50", title: `${edge.label}: drag, or arrow keys; Enter or double click: as it was` });
-    (edge.pane === "form" ? main : views).append(made);
+    document.querySelector(edge.after)?.before(made);
     made.addEventListener("pointerdown", (event) => {
       if (event.button !== 0) return;
       event.preventDefault();

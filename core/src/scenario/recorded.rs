@@ -75,7 +75,7 @@ impl LineScript {
             })?;
             let given = field(bytes);
             let hex: String = given.split_whitespace().collect();
-            let sent = data_encoding::HEXLOWER_PERMISSIVE.decode(hex.as_bytes()).map_err(|_| {
+            let sent = base16ct::mixed::decode_vec(&hex).map_err(|_| {
                 rows.bad(at, format!("bytes are “{}”; give pairs of hexadecimal digits", short(given)))
             })?;
             if !sent.is_empty() {
@@ -91,9 +91,9 @@ impl LineScript {
 
 /// The cycle at a time in s.
 fn cycle_at(seconds: &str, clock_hz: u32) -> Option<u64> {
-    let cycle = libm::round(seconds.parse::<f64>().ok()? * f64::from(clock_hz));
-    // What is no number compares with nothing.
-    (cycle >= 1.0 && cycle < 9e15).then_some(cycle as u64)
+    // JSON's reader of numbers is here anyway; the standard library's brings tables of its own.
+    let cycle = libm::round(serde_json::from_str::<f64>(seconds).ok()? * f64::from(clock_hz));
+    (1.0..9e15).contains(&cycle).then_some(cycle as u64)
 }
 
 /// The beginning of a text that a message quotes.

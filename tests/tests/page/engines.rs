@@ -43,10 +43,12 @@ async fn main_job(page: Session) -> Result<()> {
     page.click("#zoom-fit").await?;
 
     // Where the clipboard is refused the page offers the link to be copied by hand.
+    page.click("#share").await?;
+    page.until("!document.getElementById('copy-link').disabled").await?;
     page.click("#copy-link").await?;
     page.until(
         "document.getElementById('copy-link').textContent === 'Copied' || \
-         !document.getElementById('copy-fallback').hidden",
+         document.getElementById('link-about').textContent.includes('The link is selected')",
     )
     .await?;
     page.until_equal("location.hash", &json!(format!("#{}", typed.link))).await?;

@@ -153,7 +153,7 @@ fn no_cut_and_no_changed_character_of_a_view_does_more_than_leave_parts_out() ->
 }
 
 /// Drops a file of this name and text on the page.
-async fn dropped(page: &Session, name: &str, text: &str) -> Result<()> {
+pub(crate) async fn drop_file(page: &Session, name: &str, text: &str) -> Result<()> {
     let script = "const data = new DataTransfer(); data.items.add(new File([arguments[1]], arguments[0]));
         const over = new DragEvent('dragover', { dataTransfer: data, bubbles: true, cancelable: true });
         document.body.dispatchEvent(over);
@@ -176,7 +176,7 @@ fn a_dropped_scenario_is_shown_and_undo_brings_the_own_work_back() -> Result<()>
         page.until_digest(&own.digest).await?;
         let preset = PRESETS.iter().find(|preset| preset.id == "song-2021-plateau").context("a preset")?;
         let known = Known::preset(preset)?;
-        dropped(&page, "plateau.json", preset.json).await?;
+        drop_file(&page, "plateau.json", preset.json).await?;
         page.until_digest(&known.digest).await?;
         let said = page.text("#link-message").await?;
         ensure!(said.contains("plateau.json") && said.contains("Undo"), "{said}");
@@ -193,7 +193,7 @@ fn a_dropped_scenario_is_shown_and_undo_brings_the_own_work_back() -> Result<()>
             ("run.vcd", "$timescale 1 ps $end\n", "value change dump"),
             ("link.txt", "see https://example.org/#c=1.j.e30.00000000", "cut short or changed"),
         ] {
-            dropped(&page, name, text).await?;
+            drop_file(&page, name, text).await?;
             page.until(&format!("{MESSAGE}.includes({})", json!(says)))
                 .await
                 .with_context(|| name.to_owned())?;
@@ -205,7 +205,7 @@ fn a_dropped_scenario_is_shown_and_undo_brings_the_own_work_back() -> Result<()>
         }
         // A link as text.
         let text = format!("Look at this: {}#{} !", page.address(), known.link);
-        dropped(&page, "link.txt", &text).await?;
+        drop_file(&page, "link.txt", &text).await?;
         page.until_digest(&known.digest).await
     })
 }
@@ -226,7 +226,7 @@ fn packets_and_edges_that_were_saved_are_taken_in() -> Result<()> {
             }
             Ok(text)
         };
-        dropped(&page, "run.csv", &table(&recording.trace)?).await?;
+        drop_file(&page, "run.csv", &table(&recording.trace)?).await?;
         page.until(&format!(
             "{MESSAGE}.startsWith('run.csv is equal bit-exactly') && {MESSAGE}.includes('all of this run')"
         ))
@@ -235,7 +235,7 @@ fn packets_and_edges_that_were_saved_are_taken_in() -> Result<()> {
         let mut other = recording.trace.clone();
         let at = other.len() / 3;
         other.get_mut(at).context("a record")?.levels.0 ^= 1;
-        dropped(&page, "other.csv", &table(&other)?).await?;
+        drop_file(&page, "other.csv", &table(&other)?).await?;
         page.until(&format!("{MESSAGE}.startsWith('other.csv is not this run')")).await?;
         let said = page.text("#link-message").await?;
         ensure!(said.contains("STEP0 is") && said.contains("in line"), "{said}");
@@ -243,7 +243,7 @@ fn packets_and_edges_that_were_saved_are_taken_in() -> Result<()> {
         let cycle = recording.trace.get(at).context("a record")?.cycle.0;
         page.until(&format!("location.hash.includes('a{cycle}')")).await?;
 
-        dropped(&page, "bad.csv", &table(&recording.trace)?.replacen(",0,", ",2,", 1)).await?;
+        drop_file(&page, "bad.csv", &table(&recording.trace)?.replacen(",0,", ",2,", 1)).await?;
         page.until(&format!("{MESSAGE}.includes('line 2')")).await?;
 
         let mut packets = String::new();
@@ -251,7 +251,7 @@ fn packets_and_edges_that_were_saved_are_taken_in() -> Result<()> {
         for index in 0..recording.packets.rows().len() {
             write_packets_row(&mut packets, &recording.packets, index)?;
         }
-        dropped(&page, "packets.csv", &packets).await?;
+        drop_file(&page, "packets.csv", &packets).await?;
         page.until(&format!("{MESSAGE}.includes('packets of packets.csv are sent again')")).await?;
         page.until_digest(&known.digest).await?;
         ensure!(

@@ -10,6 +10,7 @@ use stepscope_core::{
 
 use crate::{
     bench::in_browser,
+    exchange::drop_file,
     native::{Known, with_distance},
     session::Session,
 };
@@ -78,6 +79,15 @@ fn files_of_the_whole_run_and_of_a_stretch_are_the_cores_bytes() -> Result<()> {
         assert_eq!(Scenario::from_json(&text).ok().as_ref(), Some(&known.scenario));
         let (_, text) = saved(&page, "-line.json").await?;
         assert_eq!(Known::of(&text)?.digest, known.digest, "sent again");
+
+        // The table of packets, dropped on the page: the same bytes at the same times.
+        let (_, text) = saved(&page, "-packets.csv").await?;
+        drop_file(&page, "packets.csv", &text).await?;
+        page.until(
+            "document.getElementById('link-message').textContent.includes('packets.csv are sent again')",
+        )
+        .await?;
+        page.until_digest(&known.digest).await?;
 
         // From the middle of a packet, and on an edge.
         let (a, b) = (

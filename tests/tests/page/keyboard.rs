@@ -133,7 +133,7 @@ fn a_whole_experiment_is_done_by_keys_alone() -> Result<()> {
         go(&page, &[], "bus.step_period_cycles").await?;
         key(&page, &[CONTROL], 'a').await?;
         let mut scenario: Value = serde_json::from_str(PRESETS[0].json)?;
-        let period = scenario["bus"]["step_period_cycles"].as_u64().context("the preset has slots")? + 8;
+        let period = Known::preset(&PRESETS[0])?.scenario.bus.step_period_cycles + 8;
         type_text(&page, &period.to_string()).await?;
         scenario["bus"]["step_period_cycles"] = json!(period);
         let known = Known::of(&scenario.to_string())?;
@@ -163,7 +163,10 @@ fn a_whole_experiment_is_done_by_keys_alone() -> Result<()> {
         still(&page, "packets").await?;
 
         // The link.
-        go(&page, &[SHIFT], "copy-link").await?;
+        go(&page, &[SHIFT], "share").await?;
+        key(&page, &[], ENTER).await?;
+        page.until("!document.getElementById('copy-link').disabled").await?;
+        go(&page, &[], "copy-link").await?;
         key(&page, &[], ENTER).await?;
         page.until("document.getElementById('copy-link').textContent === 'Copied'").await?;
         still(&page, "copy-link").await?;
@@ -179,12 +182,12 @@ fn tab_reaches_everything_in_the_order_of_the_page() -> Result<()> {
         page.open("").await?;
         for (preset, width) in [("", 1440), ("driver-timing-broken", 1440), ("", 390)] {
             page.screen(width, 900).await?;
-            page.open("").await?;
-            if !preset.is_empty() {
-                page.choose("#preset", preset).await?;
-                page.ready().await?;
-                page.eval::<Option<()>>("document.activeElement.blur()").await?;
-            }
+            // By a link: after a click Tab would go on from where that was.
+            let link = match PRESETS.iter().find(|each| each.id == preset) {
+                Some(preset) => format!("#{}", Known::preset(preset)?.link),
+                None => String::new(),
+            };
+            page.open(&link).await?;
             let what = format!("{preset} at {width} px");
             // Of several buttons in a group that one moves through by arrows, one is a place for Tab.
             let mut wanted: Vec<i64> = page
@@ -194,7 +197,7 @@ fn tab_reaches_everything_in_the_order_of_the_page() -> Result<()> {
                      !node.disabled && node.checkVisibility({ visibilityProperty: true })).map(([, index]) => index)",
                 )
                 .await?;
-            ensure!(wanted.len() > 15, "{what} has {} places for the focus", wanted.len());
+            ensure!(wanted.len() > 5, "{what} has {} places for the focus", wanted.len());
             let mut places: Vec<Focus> = Vec::new();
             loop {
                 key(&page, &[], TAB).await?;

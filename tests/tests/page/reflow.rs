@@ -24,6 +24,8 @@ const CUT: &str = "
         const range = document.createRange();
         range.selectNodeContents(text);
         const box = range.getBoundingClientRect();
+        const around = parent.closest('button')?.getBoundingClientRect();
+        if (around && (box.right > around.right + 1 || box.left < around.left - 1)) found.add(`${text.data.trim()} beyond its button`);
         for (let at = parent; at && at !== document.documentElement; at = at.parentElement) {
             const style = getComputedStyle(at);
             if (style.position === 'absolute' && at.parentElement === document.body) break;

@@ -14,7 +14,10 @@ return import(new URL("state/state.js", document.baseURI)).then(({ DEPTH, LEAST_
   const done = (revision, end = 1000, { clock = 10, controllers = [controller(4)] } = {}) =>
     ({ type: "done", revision, ms: 1, summary: { end_cycle: end, clock_hz: clock, controllers } });
   const window = (start, end) => ({ type: "window", window: { start, end } });
-  const open = (start, end) => ({ type: "open", window: { start, end } });
+  const open = (start, end) => ({ type: "open", view: { window: { start, end } } });
+  const view = (parts) => ({ type: "open", view: parts });
+  const seen = { type: "seen", text: "x" };
+  const compared = (text = "x") => ({ type: "compared", text, verdict: { same: true } });
   const cursor = (which, cycle) => ({ type: "cursor", which, cycle });
   const marker = (digit, cycle) => ({ type: "marker", digit, cycle });
   const replace = (scenario, origin = "preset:x") => ({ type: "replace", scenario, origin });
@@ -89,6 +92,14 @@ return import(new URL("state/state.js", document.baseURI)).then(({ DEPTH, LEAST_
     ["a window is whole cycles", [done(0), window(10.4, 99.6)], (s) => s.window, { start: 10, end: 99 }],
     ["a link's window waits for the result", [open(10, 50), done(0)], (s) => [s.window, s.awaited], [{ start: 10, end: 50 }, null]],
     ["a link's window beyond the run is left", [open(10, 5000), done(0)], (s) => s.window, null],
+    ["a link's cursors, axis and unit are taken as far as the run has them", [view({ a: 5, b: 5000, axis: 9, unit: "mm", side: "timing" }), done(0)],
+      (s) => [s.cursors, s.axis, s.unit, s.side, s.awaited], [{ a: 5, b: null }, 3, "mm", "timing", null]],
+    ["a link to the run on show is taken at once", [done(0), view({ a: 7, controller: 4 })], (s) => [s.cursors.a, s.result.controller], [7, 0]],
+    ["what a sender saw is kept until the run is compared", [seen, done(0), compared()], (s) => s.seen, { text: "x", verdict: { same: true } }],
+    ["another comparison is not this link's", [seen, done(0), compared("y")], (s) => s.seen.verdict, null],
+    ["another run is compared anew", [seen, done(0), compared(), done(0)], (s) => s.seen.verdict, null],
+    ["an edit forgets what a sender saw", [seen, done(0), compared(), edit("a.b", 2)], (s) => s.seen, null],
+    ["so does undo", [edit("a.b", 2), seen, undo], (s) => s.seen, null],
     ["an edit forgets a link's window", [open(10, 50), edit("a.b", 2), done(1)], (s) => s.window, null],
     // What is pointed at.
     ["the same light is no change", [{ type: "light", lit: { start: 1, end: 2 } }, { type: "light", lit: { start: 1, end: 2 } }], (s) => s.lit, { start: 1, end: 2 }],

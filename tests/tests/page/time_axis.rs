@@ -143,9 +143,9 @@ fn wheel_keys_buttons_and_fields_change_the_shown_time_and_fit_restores_it() -> 
             page.press(&format!("#{id}"), "-").await?;
             let wider = changed(&page, moved).await?;
             ensure!(wider.length() > moved.length(), "- over {id}: {wider:?}");
-            page.press(&format!("#{id}"), "+0").await?;
+            page.press(&format!("#{id}"), "+\u{e011}").await?;
             page.until_equal("document.getElementById('window-start').value", &"0 s".into()).await?;
-            assert_eq!(window(&page).await?, whole, "0 over {id}");
+            assert_eq!(window(&page).await?, whole, "Home over {id}");
         }
         page.click("#zoom-in").await?;
         let zoomed = changed(&page, whole).await?;

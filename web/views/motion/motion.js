@@ -6,7 +6,7 @@ import { GUTTER, MARGIN, cleared, draw, fit, watch } from "../../time/plot.js";
 import { lookedAt, shown } from "../../state/state.js";
 import { drawCursors, overlaid } from "../../time/cursors.js";
 import { gestures } from "../../time/timeline.js";
-import { QUANTITIES, TIME_PX, chartOf, columnAt, unitOf, unitsOf, withoutAcceleration } from "./bands.js";
+import { QUANTITIES, TIME_PX, chartOf, columnAt, unitFor, unitOf, unitsOf, withoutAcceleration } from "./bands.js";
 import { ask } from "./ask.js";
 import { createBetween } from "./between.js";
 import { createCompare } from "./compare.js";
@@ -114,10 +114,20 @@ export function createMotion({ engine, dispatch, now }) {
   function speak(state, which) {
     clearTimeout(speaking);
     const cycle = state.cursors[which];
-    speaking = window.setTimeout(() => {
-      const values = read(now(), [cycle]);
-      const gone = now().cursors.a === null && now().cursors.b === null ? "No cursors." : "";
-      say(byId("motion-spoken"), values ? `Cursor ${which.toUpperCase()} at ${values.at}. ${QUANTITIES.map((name, index) => `${name}: ${values.texts[index] || "none"}`).join(". ")}.` : gone);
+    speaking = window.setTimeout(async () => {
+      if (cycle === null) return say(byId("motion-spoken"), `Cursor ${which.toUpperCase()} is removed.`);
+      /** @type {import("../../state/types.js").Between | null} */
+      const answer = await engine.latest("spoken", "between", state.axis, cycle, cycle).catch(unlessDropped) ?? null;
+      if (!answer) return;
+      const { scale } = unitOf(state);
+      const texts = QUANTITIES.flatMap((quantity, index) => {
+        const values = [["ideal", answer.ideal], ["made", answer.made]].flatMap(([name, of]) => {
+          const value = /** @type {import("../../state/types.js").Readings | null} */ (of)?.at_a[index];
+          return value === undefined ? [] : [`${name} ${short(value * scale)}`];
+        });
+        return values.length ? [`${quantity}: ${values.join(", ")} ${unitFor(state, quantity)}.`] : [];
+      });
+      say(byId("motion-spoken"), `Cursor ${which.toUpperCase()} at ${time(cycle / (state.result?.summary.clock_hz ?? 1))}. ${texts.join(" ")}`);
     }, SPEAK_MS);
   }
 
@@ -125,6 +135,7 @@ export function createMotion({ engine, dispatch, now }) {
   function render(state, before) {
     if (before?.result !== state.result || before?.derived !== state.derived || before?.axis !== state.axis || before?.unit !== state.unit) {
       const axes = lookedAt(state)?.channels ?? 1;
+      /** @type {HTMLElement} */ (axisSelect.parentElement).hidden = axes === 1;
       options(axisSelect, Array.from({ length: axes }, (_, i) => [String(i), String(i)]), String(state.axis));
       options(unitSelect, unitsOf(state), unitOf(state).name);
     }

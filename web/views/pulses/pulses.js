@@ -5,8 +5,8 @@ import { unlessDropped } from "../../engine/engine.js";
 import { createEdges } from "./edges.js";
 import { createMarkers } from "./markers.js";
 import { createOverview } from "./overview.js";
-import { paintSignal, paintSpans, paintTint } from "./paint.js";
-import { GUTTER, MARGIN, color, fit, ratio, watch } from "../../time/plot.js";
+import { drawLit, paintRows } from "./picture.js";
+import { GUTTER, MARGIN, fit, ratio, watch } from "../../time/plot.js";
 import { createRange } from "../../time/range.js";
 import { createReading } from "./reading.js";
 import { ROW_PX, allFolded, channelOf, idle, isFolded, nameOf, rowsOf, shows, signalsOf } from "./rows.js";
@@ -14,11 +14,9 @@ import { createSpans } from "./spans.js";
 import { lookedAt, shown } from "../../state/state.js";
 import { listen } from "../../shell/commands.js";
 import { drawCursors, overlaid } from "../../time/cursors.js";
-import { cycleAt, gestures, pixelOf, reveal } from "../../time/timeline.js";
+import { cycleAt, gestures, reveal } from "../../time/timeline.js";
 
 /** @typedef {import("../../state/types.js").State} State */
-/** @typedef {import("../../state/types.js").PulseColumns} PulseColumns */
-/** @typedef {{columns: PulseColumns, start: number, end: number, count: number, margin: number}} Answer  Columns of a stretch of cycles and of a margin at each side. */
 
 /** A cursor that is set this near to an edge is set on it, in CSS pixels. */
 const SNAP_PX = 6;
@@ -41,7 +39,7 @@ export function createPulses({ engine, dispatch, now }) {
   const spans = createSpans({ engine });
   const markers = createMarkers({ ...page, speak: reading.speak });
   const edges = createEdges({ engine, now });
-  /** @type {Answer | null} */
+  /** @type {import("./picture.js").Answer | null} */
   let answer = null;
   let frame = 0;
   let plot = { left: GUTTER, right: GUTTER + 1 };
@@ -100,7 +98,7 @@ export function createPulses({ engine, dispatch, now }) {
       return reading.span(span ? `${row.name}: ${span.texts[0]}` : "");
     }
     const pulse = await reading.signal(row.bit);
-    if (!pulse) return;
+    if (!pulse || now().hover !== hover) return;
     const { start, end } = shown(now());
     const reach = (SNAP_PX * (end - start)) / (plot.right - plot.left);
     const near = [pulse.begin, pulse.end].find((edge) => edge !== null && Math.abs(edge - hover) <= reach) ?? null;
@@ -186,68 +184,14 @@ export function createPulses({ engine, dispatch, now }) {
     frame ||= requestAnimationFrame(() => paint(now()));
   }
 
-  /** The columns that lie in the plotting area. @param {State} state @param {Answer} last @param {number} left @param {number} right @returns {import("./paint.js").Picture} */
-  function placedColumns(state, { columns, start, end, count, margin }, left, right) {
-    const window = shown(state);
-    const cycles = (end - start) / count;
-    const pixels = (right - left) / (window.end - window.start);
-    // The width of a column is 1 but while the zoom changes; then it stands on whole pixels.
-    const same = end - start === window.end - window.start && count === right - left;
-    const shift = (start - window.start) * pixels - margin * cycles * pixels;
-    const at = same ? (/** @type {number} */ i) => left + Math.round(shift) + i : (/** @type {number} */ i) => left + shift + i * cycles * pixels;
-    const total = count + 2 * margin;
-    const column = (/** @type {number} */ x) => Math.min(total, Math.max(0, same ? x - at(0) : (x - at(0)) / (cycles * pixels)));
-    return { columns, from: Math.floor(column(left)), to: Math.ceil(column(right)), at };
-  }
-
   /** @param {State} state */
   function paint(state) {
     cancelAnimationFrame(frame);
     frame = 0;
     if (!answer || !state.result) return;
-    const { width, ratio: scale } = fit(canvas);
-    const context = canvas.getContext("2d");
-    if (!context) return;
-    const left = Math.round(plot.left * scale);
-    const right = Math.round(plot.right * scale);
-    const picture = placedColumns(state, answer, left, right);
-    const font = `${11 * scale}px ${getComputedStyle(document.body).fontFamily}`;
-    for (const [index, row] of rowsOf(state).entries()) {
-      const top = Math.round((index * ROW_PX + 4) * scale);
-      const height = Math.round((ROW_PX - 6) * scale);
-      const chosen = shows(row, state.row);
-      if (chosen) {
-        context.fillStyle = color("--chosen");
-        context.fillRect(0, top - 3 * scale, width * scale, ROW_PX * scale);
-      }
-      context.fillStyle = color(chosen ? "--ink" : "--quiet");
-      context.textAlign = "right";
-      context.textBaseline = "middle";
-      context.font = `${chosen ? "bold " : ""}${font}`;
-      context.fillText(row.name, left - 8 * scale, top + height / 2);
-      if ("open" in row && row.open !== undefined) {
-        context.textAlign = "left";
-        context.fillText(row.open ? "▾" : "▸", 8 * scale, top + height / 2);
-      }
-      const place = { left, right, top, height, ratio: scale, ink: color(row.ink), font };
-      context.save();
-      context.beginPath();
-      context.rect(left, 0, right - left, canvas.height);
-      context.clip();
-      if (row.kind === "folded") paintTint(context, picture, row.dir, true, { ...place, ink: color("--dir") });
-      if ("bit" in row) paintSignal(context, picture, row.bit, place);
-      else if ("lane" in row && spans.isDense(row)) paintTint(context, picture, row.line, false, place);
-      else paintSpans(context, spans.spansOf(state, row).map((span) => placed(state, span)), place);
-      context.restore();
-    }
+    paintRows(canvas, state, plot, answer, spans);
     describe(state);
     paintCursor(state);
-  }
-
-  /** A span in device pixels. @param {State} state @param {import("./spans.js").Span} span */
-  function placed(state, { start, end, sample, ...rest }) {
-    const x = (/** @type {number} */ cycle) => pixelOf(state, plot, cycle) * ratio();
-    return { ...rest, from: x(start), to: x(end), sample: typeof sample === "number" ? x(sample + 0.5) : null };
   }
 
   /** @param {State} state */
@@ -257,31 +201,8 @@ export function createPulses({ engine, dispatch, now }) {
     if (!context || !state.result) return;
     context.scale(scale, scale);
     drawCursors(context, state, plot, height);
-    drawLit(context, state);
+    drawLit(context, state, plot, spans);
     reading.render(state);
-  }
-
-  /** A frame around the spans that are lit, whoever points at them, and a ring around a lit edge. @param {CanvasRenderingContext2D} context  In CSS pixels. @param {State} state */
-  function drawLit(context, state) {
-    const { lit } = state;
-    if (!lit) return;
-    context.setLineDash([]);
-    context.strokeStyle = color("--ink");
-    context.lineWidth = 1.5;
-    for (const [index, row] of rowsOf(state).entries()) {
-      const top = index * ROW_PX;
-      if ("bit" in row) {
-        if (lit.bit === null || !shows(row, lit.bit)) continue;
-        const x = pixelOf(state, plot, lit.start);
-        context.strokeRect(x - 3, top + 3, 6, ROW_PX - 4);
-      } else if (!spans.isDense(row)) {
-        for (const { start, end, packet } of spans.spansOf(state, row)) {
-          if (!(start === lit.start && end === lit.end) && (packet === null || packet !== lit.packet || "lane" in row)) continue;
-          const [from, to] = [Math.max(plot.left, pixelOf(state, plot, start)), Math.min(plot.right, pixelOf(state, plot, end))];
-          if (to > from) context.strokeRect(from, top + 3, Math.max(2, to - from), ROW_PX - 5);
-        }
-      }
-    }
   }
 
   /** @param {State} state */

@@ -17,6 +17,8 @@ export function createReading({ engine, now }) {
   /** What was said last, shown until the pointer moves. */
   let said = "";
   let timer = 0;
+  /** Counts the sentences: what comes to be known after a newer one is not said. */
+  let sentences = 0;
 
   /** @param {State} state */
   function cursors(state) {
@@ -58,6 +60,7 @@ export function createReading({ engine, now }) {
   /** Shows a sentence at once and lets it be spoken. @param {string} text */
   function speak(text) {
     said = text;
+    sentences++;
     foot(now());
     clearTimeout(timer);
     timer = window.setTimeout(() => say(byId("pulses-sentence"), text), SPEAK_MS);
@@ -67,14 +70,21 @@ export function createReading({ engine, now }) {
   async function speakCursor() {
     const { row, cursors: { a } } = now();
     if (a === null) return;
+    const asked = sentences;
     const answer = await engine.latest("spoken", "pulse_at", row, a).catch(unlessDropped);
+    if (asked !== sentences) return;
     const state = now();
     const clock = state.result?.summary.clock_hz ?? 1;
     if (answer) speak(`${time(a / clock)}, cycle ${a}: ${measured(state, row, answer)}.`);
   }
 
+  /** What `said` is about. @type {State["result"]} */
+  let about = null;
+
   /** @param {State} state */
   function render(state) {
+    if (about !== state.result) said = "";
+    about = state.result;
     foot(state);
     cursors(state);
   }
