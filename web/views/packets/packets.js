@@ -56,23 +56,22 @@ export function createPackets(page) {
   }
 
   byId("packet-show").addEventListener("click", () => { const row = inspector.row(); if (row) choose(row, true); });
-  byId("packet-copy").addEventListener("click", copyRow);
+  byId("packet-copy").addEventListener("click", () => copyRow(inspector.row()));
   byId("packets-copy-all").addEventListener("click", () => copyAll(engine));
-  async function copyRow() {
-    const row = inspector.row();
+  /** @param {PacketRow | null} row */
+  async function copyRow(row) {
     if (row) await copyHex(row.hex, `Row ${row.index}`);
   }
 
-  const go = (/** @type {() => void} */ run) => run;
   listen(byId("packets"), "Packets", [
-    { keys: ["ArrowUp"], text: "the row before", run: go(() => table.move(-1)) },
-    { keys: ["ArrowDown"], text: "the next row", run: go(() => table.move(1)) },
-    { keys: ["PageUp"], text: "a page of rows back", run: go(() => table.move(-table.page())) },
-    { keys: ["PageDown"], text: "a page of rows on", run: go(() => table.move(table.page())) },
-    { keys: ["Home"], text: "the first row", run: go(() => table.move(-Infinity)) },
-    { keys: ["End"], text: "the last row", run: go(() => table.move(Infinity)) },
-    { keys: ["Enter", "Space"], text: "choose the row and show it in the pulses", run: () => { table.chooseCurrent(); } },
-    { keys: ["c"], text: "copy the row's bytes as hex", run: () => { copyRow(); } },
+    { keys: ["ArrowUp"], text: "the row before", run: () => table.move(-1) },
+    { keys: ["ArrowDown"], text: "the next row", run: () => table.move(1) },
+    { keys: ["PageUp"], text: "a page of rows back", run: () => table.move(-table.page()) },
+    { keys: ["PageDown"], text: "a page of rows on", run: () => table.move(table.page()) },
+    { keys: ["Home"], text: "the first row", run: () => table.move(-Infinity) },
+    { keys: ["End"], text: "the last row", run: () => table.move(Infinity) },
+    { keys: ["Enter", "Space"], text: "choose the row and show it in the pulses", run: () => { table.current().then((row) => row && choose(row, true)); } },
+    { keys: ["c"], text: "copy the row's bytes as hex", run: () => { table.current().then(copyRow); } },
     { keys: ["/"], text: "search", run: () => byId("packets-search").focus() },
     { keys: ["n"], text: "next match", run: () => { search.next(true); } },
     { keys: ["Shift+N"], text: "previous match", run: () => { search.next(false); } },

@@ -14,6 +14,9 @@ const MOST_PX = 6_000_000;
 const CELL_PX = 17;
 /** Most of the column of bytes where words say more than they do. */
 const FRAMED_BYTES_PX = 104;
+/** Texts of a row's cells, each with what its pointer tells where that is more. @type {((row: PacketRow) => [string, string?])[]} */
+const COLUMNS = [({ index }) => [count(index)], ({ start }) => [start], ({ hex }) => [hex], (row) => [worded(row)],
+  ({ short, outcome }) => [short, outcome], ({ gap }) => [gap || "–"]];
 const ruler = /** @type {CanvasRenderingContext2D} */ (document.createElement("canvas").getContext("2d"));
 
 /**
@@ -75,9 +78,10 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
     return reload();
   }
 
-  async function chooseCurrent() {
+  /** The current row, also where the table has not drawn it yet. @returns {Promise<PacketRow | null>} */
+  async function currentRow() {
     const page = await engine.ask("packets", current, 1).catch(unlessDropped);
-    if (page?.rows[0]) choose(page.rows[0], true);
+    return page?.rows[0] ?? null;
   }
 
   /** Asks for the rows on show. */
@@ -105,13 +109,20 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
     say(byId("packets-time"), `start, ${unit}`);
     say(byId("packets-gap"), `gap, ${unit}`);
     say(byId("packets-meaning"), state.result?.summary.framed ? "meaning" : "steps");
+    // A row that stays keeps its element: a click that began on it ends on it.
+    const nodes = new Map([...body.rows].map((node) => [node.id, node]));
     fill(body, ...rows.map((row) => {
-      const cells = [[count(row.index)], [row.start], [row.hex], [worded(row)], [row.short, row.outcome], [row.gap || "–"]];
-      return element("tr", {
-        id: `packet-${row.index}`, "data-index": String(row.index), "aria-rowindex": String(row.position + 2),
-        "aria-selected": String(row.index === state.packet),
-        class: [row.position === current ? "current" : "", row.rank === null ? "" : "found", row.kind, row.mark].join(" ").trim(),
-      }, ...cells.map(([text, title = text]) => element("td", { title }, text)));
+      const id = `packet-${row.index}`;
+      const node = nodes.get(id) ?? element("tr", { id, "data-index": String(row.index) }, ...COLUMNS.map(() => element("td")));
+      node.setAttribute("aria-rowindex", String(row.position + 2));
+      node.setAttribute("aria-selected", String(row.index === state.packet));
+      node.className = [row.position === current ? "current" : "", row.rank === null ? "" : "found", row.kind, row.mark].join(" ").trim();
+      for (const [place, column] of COLUMNS.entries()) {
+        const [text, title = text] = column(row);
+        say(node.cells[place], text);
+        node.cells[place].title = title;
+      }
+      return node;
     }));
     const row = rows.find(({ position }) => position === current);
     if (row) table.setAttribute("aria-activedescendant", `packet-${row.index}`);
@@ -159,7 +170,7 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
   }
 
   return {
-    reload, moveTo, light, chooseCurrent,
+    reload, moveTo, light, current: currentRow,
     /** @param {number} by  Rows. */
     move: (by) => { moveTo(current + by); },
     page: () => Math.max(1, visible() - 1),
