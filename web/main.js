@@ -12,6 +12,7 @@ import { createKeys } from "./help/keys.js";
 import { chartFiles } from "./views/chart_files.js";
 import { createExports } from "./shell/exports.js";
 import { createHeader, createTheme } from "./shell/header.js";
+import { keepOffline } from "./shell/offline.js";
 import { createImports } from "./shell/imports.js";
 import { createLink } from "./shell/link.js";
 import { createNotices } from "./shell/notices.js";
@@ -24,8 +25,8 @@ import { packetFiles } from "./views/packets/files.js";
 import { createPulses } from "./views/pulses/pulses.js";
 import { SOURCES } from "./form/sources.js";
 import { createSpectrum } from "./views/spectrum/spectrum.js";
-import { held, initial, isStale, update } from "./state/state.js";
-import { loadPrevious, loadScenario, saveScenario, setAside } from "./shell/storage.js";
+import { EARLIER, held, initial, isStale, update } from "./state/state.js";
+import { loadGood, loadPrevious, loadScenario, saveGood, saveScenario, setAside } from "./shell/storage.js";
 import { createTabs } from "./shell/tabs.js";
 import { readJson } from "./state/json.js";
 import { createTiming } from "./views/timing.js";
@@ -35,6 +36,8 @@ import { createTiming } from "./views/timing.js";
 
 /** Rest after a change before it runs, in ms: typing a number is one run. */
 const REST_MS = 120;
+/** A run that has told nothing for so long is still planning, in ms. */
+const PLANNING_MS = 100;
 
 /** @type {State} */
 let state = initial({});
@@ -52,6 +55,10 @@ const engine = new Engine({
     ran = state.revision;
     dispatch({ type: "reference", reference: null });
     dispatch({ type: "failed", message: `The engine stopped and was started again; the form is as it was (${message}).` });
+  },
+  stopped: () => {
+    dispatch({ type: "reference", reference: null });
+    if (held(state) === "unjudged") judge();
   },
 });
 
@@ -77,9 +84,11 @@ function follow(before) {
   if (before?.judgement !== judgement || before?.approved !== approved || before?.drafts !== drafts) plan();
   if (result && before?.result !== result) {
     document.documentElement.dataset.state = "busy";
+    if (result.revision === state.revision && state.origin === "own") saveGood(JSON.stringify(scenario));
     // Asked before the views ask.
     engine.ask("select", result.controller).catch(unlessDropped);
   }
+  if (state.run.progress) unveil();
   const drawn = views.map((view) => view.render(state, before));
   byId("views").classList.toggle("blank", result === null);
   byId("views").classList.toggle("dim", result !== null && isStale(state) && held(state) !== "unjudged" && state.run.phase !== "running");
@@ -87,12 +96,19 @@ function follow(before) {
   else if (state.run.phase === "failed") settle(Promise.resolve());
 }
 
+/** Shows the form and the views: they stand, or it takes longer. */
+function unveil() {
+  delete document.documentElement.dataset.boot;
+}
+
 /** Says that nothing more is to come, once it is drawn. @param {Promise<unknown>} drawn */
 async function settle(drawn) {
   const { revision, result } = state;
   await drawn;
   await new Promise((resolve) => requestAnimationFrame(resolve));
+  unveil();
   if (state.revision === revision && state.result === result) document.documentElement.dataset.state = "ready";
+  keepOffline();
 }
 
 async function judge() {
@@ -120,6 +136,11 @@ function run() {
   document.documentElement.dataset.state = "busy";
   engine.run(state.revision, JSON.stringify(state.scenario));
   dispatch({ type: "running" });
+  const { revision } = state;
+  window.setTimeout(() => {
+    const silent = state.revision === revision && state.run.phase === "running" && state.run.progress === null;
+    if (silent) dispatch({ type: "progress", progress: { done: false, cycle: 0, end_cycle: 0, records: 0 } });
+  }, PLANNING_MS);
 }
 
 function cancel() {
@@ -144,14 +165,15 @@ async function samples() {
 /**
  * The state that an earlier visit left: the visitor's own scenario, also with problems in it, and the one
  * that was set aside for it, which undo brings back.
- * @param {string} fallback @returns {Promise<State>}
+ * @param {string} fallback @returns {Promise<{left: State, good: string | null}>}  `good` is the last scenario that ran, if this one cannot.
  */
 async function own(fallback) {
-  const read = async (/** @type {string} */ saved) => readJson((await engine.ask("check", saved)).scenario);
+  const read = (/** @type {string} */ saved) => engine.ask("check", saved);
   const [saved, previous] = [loadScenario(), loadPrevious()];
-  if (saved === null) return initial(readJson(fallback));
-  const past = previous === null || previous === saved ? [] : [{ scenario: await read(previous), origin: /** @type {const} */ ("own") }];
-  return { ...initial(await read(saved)), past };
+  if (saved === null) return { left: initial(readJson(fallback)), good: null };
+  const { scenario, problems } = await read(saved);
+  const past = previous === null || previous === saved ? [] : [{ scenario: readJson((await read(previous)).scenario), origin: /** @type {const} */ ("own") }];
+  return { left: { ...initial(readJson(scenario)), past }, good: problems.length > 0 ? loadGood() : null };
 }
 
 async function start() {
@@ -164,7 +186,8 @@ async function start() {
     return;
   }
   const [fallback, presets, drivers, made] = await Promise.all([engine.ask("default_scenario"), engine.ask("presets"), engine.ask("drivers"), samples(), loadCharts()]);
-  state = await own(fallback);
+  const { left, good } = await own(fallback);
+  state = left;
   const page = { engine, dispatch, now: () => state };
   // Nothing is ever sent; Enter in a field must not try to.
   byId("form").addEventListener("submit", (event) => event.preventDefault());
@@ -178,7 +201,11 @@ async function start() {
     createExports(page, [["Charts", chartFiles], ["Packets", packetFiles]]), link];
   createKeys();
   await link.start(loadScenario() !== null);
-  if (state.revision === 0) follow(undefined);
+  if (state.revision === 0) {
+    follow(undefined);
+    // What stood before it went wrong is shown, dimmed.
+    if (good !== null) engine.run(EARLIER, good);
+  }
 }
 
 start().catch((error) => {

@@ -2,7 +2,9 @@
  * The worker: holds the wasm core, runs a scenario in slices, answers the views' questions about the
  * last finished run. Between two slices it reads its messages, so a newer scenario ends an older run.
  *
- * In: {id, method, args} for an answer {id, value} or {id, error}; {run, json} for events {event, run, …}.
+ * In: first of all {module}, the compiled core; {id, method, args} for an answer {id, value} or {id, error};
+ * {run, json} for events {event, run, …}, without a word of it if `quiet`, and then looking at controller `select`;
+ * {cancel} for {event: "cancelled"} once that run is no longer under way.
  */
 import init, * as core from "../pkg/stepscope_wasm.js";
 
@@ -17,10 +19,14 @@ let finished = null;
 let kept = null;
 /** Controller that the views look at. */
 let looked = 0;
+/** No run has this number. */
+const NONE = -2;
 /** Number of the newest run that was asked for. */
-let newest = -1;
+let newest = NONE;
 
-const ready = init();
+/** @type {(module: WebAssembly.Module) => void} */
+let provide = () => {};
+const ready = new Promise((resolve) => { provide = (module) => resolve(init({ module_or_path: module })); });
 const between = new MessageChannel();
 
 /** Who waits for messages to be let in: a run, a search. @type {((event: MessageEvent) => void)[]} */
@@ -35,8 +41,8 @@ function breathe() {
   });
 }
 
-/** @param {number} run @param {string} json */
-async function simulate(run, json) {
+/** @param {{run: number, json: string, quiet?: boolean, select?: number}} order */
+async function simulate({ run, json, quiet = false, select = 0 }) {
   const begin = performance.now();
   const simulation = new core.Simulation(json);
   let records = 4096;
@@ -47,7 +53,7 @@ async function simulate(run, json) {
     const now = performance.now();
     if (progress.done) break;
     records = Math.min(4_000_000, Math.max(256, Math.round((records * SLICE_MS) / Math.max(0.5, now - before))));
-    if (now - reported > REPORT_MS) {
+    if (now - reported > REPORT_MS && !quiet) {
       reported = now;
       postMessage({ event: "progress", run, progress: { ...progress } });
     }
@@ -60,6 +66,11 @@ async function simulate(run, json) {
   if (finished !== kept) finished?.free();
   finished = simulation;
   looked = 0;
+  if (quiet) {
+    looked = select;
+    finished.select(select);
+    return postMessage({ event: "restored" });
+  }
   postMessage({ event: "done", run, summary: simulation.summary(), ms: performance.now() - begin });
 }
 
@@ -123,11 +134,16 @@ function text(error) {
 }
 
 onmessage = async ({ data }) => {
+  if ("module" in data) return provide(data.module);
+  if ("cancel" in data) {
+    if (newest === data.cancel) newest = NONE;
+    return postMessage({ event: "cancelled" });
+  }
   if ("run" in data) newest = data.run;
   try {
     await ready;
     if ("run" in data) {
-      if (data.json !== null && data.run === newest) await simulate(data.run, data.json);
+      if (data.run === newest) await simulate(data);
     } else {
       postMessage({ id: data.id, value: await answer(data.method, data.args) });
     }

@@ -12,7 +12,7 @@ import { loadTheme, saveTheme } from "./storage.js";
 /** @typedef {import("../state/types.js").Preset} Preset */
 
 /** Progress is shown only for runs longer than this, in ms. */
-const PATIENCE_MS = 150;
+const PATIENCE_MS = 90;
 
 /** @param {{presets: Preset[], cancel: () => void, retry: () => void} & import("../time/timeline.js").Page} page */
 export function createHeader({ presets, cancel, retry, dispatch, now }) {
@@ -82,6 +82,7 @@ function line(id, text) {
 /** @param {State} state @param {boolean} long */
 function status(state, long) {
   const { progress } = state.run;
+  if (long && progress?.end_cycle === 0) return "planning the motion…";
   if (long && progress) return `${Math.round((100 * progress.cycle) / Math.max(1, progress.end_cycle))} %, ${count(progress.records)} edges so far`;
   const held_back = held(state) === "problems" ? "not run: the form needs attention" : "";
   if (!state.result) return held_back || (state.run.phase === "running" ? "running…" : "no result yet");

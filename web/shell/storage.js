@@ -1,7 +1,8 @@
-/** What this device keeps: the visitor's own scenario, the choice of colours, the sizes of the panes. Storage may be refused; then nothing is kept. */
+/** What this device keeps: the visitor's own scenario, the last that ran, the choice of colours, the sizes of the panes. Storage may be refused; then nothing is kept. */
 
 const SCENARIO = "stepscope.scenario";
 const PREVIOUS = "stepscope.previous";
+const GOOD = "stepscope.good";
 const THEME = "stepscope.theme";
 const GUIDED = "stepscope.guide";
 const PANES = "stepscope.panes";
@@ -33,6 +34,10 @@ export function setAside() {
   if (saved !== null) save(PREVIOUS, saved);
 }
 export const loadPrevious = () => load(PREVIOUS);
+/** The last own scenario that ran to its end. */
+export const loadGood = () => load(GOOD);
+/** @param {string} json */
+export const saveGood = (json) => save(GOOD, json);
 export const loadTheme = () => load(THEME);
 /** @param {string} theme */
 export const saveTheme = (theme) => save(THEME, theme);

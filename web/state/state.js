@@ -45,6 +45,8 @@ export const DEPTH = 50;
 export const MOST_FURTHER = 31;
 /** Channels that a bus can have. */
 export const MOST_CHANNELS = 16;
+/** Revision of the result that an earlier visit left, shown while the form has problems. */
+export const EARLIER = -1;
 /** Least cycles that the time axis shows. */
 export const LEAST_SPAN = 16;
 /** Markers 0 to 9, none of them set. @type {(number | null)[]} */
@@ -185,9 +187,11 @@ function judged(state, { revision, judgement }) {
 
 /** @param {State} state @param {{revision: number, summary: import("./types.js").Summary, ms: number}} message @returns {State} */
 function done(state, { revision, summary, ms }) {
-  if (revision !== state.revision) return state;
-  const next = lookAt({ ...state, result: { revision, summary, ms, controller: 0 },
-    run: { .../** @type {const} */ ({ phase: "done", progress: null, message: "" }) } }, state.controller);
+  const earlier = revision === EARLIER && state.result === null;
+  if (revision !== state.revision && !earlier) return state;
+  /** @type {State["run"]} */
+  const run = earlier ? state.run : { phase: "done", progress: null, message: "" };
+  const next = lookAt({ ...state, result: { revision, summary, ms, controller: 0 }, run }, state.controller);
   // An old window over a run of another length or clock would show another time.
   const same = state.result?.summary.clock_hz === summary.clock_hz;
   const kept = state.window && same ? clamp(state.window, summary.end_cycle) : null;

@@ -3,6 +3,7 @@
  * remembers where the plotting area lies. plotters-canvas measures text in the page's document, so this
  * cannot be done in the worker.
  */
+import { compiled } from "../engine/wasm.js";
 import init, { chart_svg, draw_chart } from "../pkg/stepscope_wasm.js";
 
 /** @typedef {import("../state/types.js").Plot} Plot */
@@ -19,7 +20,7 @@ let loaded = /** @type {Promise<unknown> | null} */ (null);
 
 /** Loads the charts. */
 export function load() {
-  loaded ??= init();
+  loaded ??= compiled().then((module) => init({ module_or_path: module }));
   return loaded;
 }
 

@@ -1,4 +1,4 @@
-//! The page: its optimised build, and what each of its files weighs on the way to a visitor.
+//! The page's wasm, optimised, and what each file of the page weighs on the way to a visitor.
 
 use std::fmt;
 use std::io::Write;
@@ -7,18 +7,24 @@ use std::path::Path;
 use anyhow::{Context, Result, ensure};
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use walkdir::{DirEntry, WalkDir};
+use walkdir::WalkDir;
 
 use crate::tools::{Optimise, WasmTools};
-use crate::{root, run};
+use crate::{dist, root, run};
 
 /// What all files together may weigh, in bytes, compressed by brotli as hosts do.
 const BUDGET: usize = 400_000;
 
-/// As [`build`] with optimising, but once only in this program's life: for steps that use the same page.
+/// The page as it is shipped, but made once only in this program's life: for steps that use the same page.
 pub(crate) async fn built() -> Result<()> {
     static BUILT: tokio::sync::OnceCell<()> = tokio::sync::OnceCell::const_new();
-    BUILT.get_or_try_init(|| build(Optimise::Yes)).await.copied()
+    BUILT.get_or_try_init(|| shipped(Optimise::Yes)).await.copied()
+}
+
+/// Builds the page into `dist`.
+pub(crate) async fn shipped(optimise: Optimise) -> Result<()> {
+    build(optimise).await?;
+    dist::make(&root().join("web"), &dist::folder()).await
 }
 
 /// Builds the wasm crate into `web/pkg`, installing the tools first if they are missing.
@@ -86,34 +92,20 @@ impl fmt::Display for Weights {
     }
 }
 
-/// Weighs every file under `web` that the page loads.
-pub(crate) fn weigh(web: &Path) -> Result<Weights> {
+/// Weighs every file of `dist`.
+pub(crate) fn weigh(dist: &Path) -> Result<Weights> {
     let mut rows = Vec::new();
-    for entry in WalkDir::new(web)
-        .sort_by_file_name()
-        .into_iter()
-        .filter_entry(|entry| entry.depth() == 0 || loads(entry))
-    {
-        let entry = entry.with_context(|| format!("{} can't be read", web.display()))?;
-        if entry.file_type().is_file() {
+    for entry in WalkDir::new(dist).sort_by_file_name() {
+        let entry = entry.with_context(|| format!("{} can't be read", dist.display()))?;
+        // The host's own rules are not sent to anybody.
+        if entry.file_type().is_file() && entry.file_name() != "_headers" {
             let bytes = std::fs::read(entry.path())
                 .with_context(|| format!("{} can't be read", entry.path().display()))?;
-            let name = entry.path().strip_prefix(web).unwrap_or(entry.path()).display().to_string();
+            let name = entry.path().strip_prefix(dist).unwrap_or(entry.path()).display().to_string();
             rows.push((name, Sizes::of(&bytes)?));
         }
     }
     Ok(Weights(rows))
-}
-
-/// Whether a visitor's browser may ask for this: not what only tools, hosts and readers of the source use.
-fn loads(entry: &DirEntry) -> bool {
-    let name = entry.file_name().to_string_lossy();
-    let for_tools = ["node_modules", "package.json", "package-lock.json", "tsconfig.json", "jsconfig.json"];
-    !(name.starts_with(['.', '_'])
-        || name.ends_with(".ts")
-        || name.ends_with(".md")
-        || name.starts_with("LICENSE")
-        || for_tools.contains(&&*name))
 }
 
 #[cfg(test)]
@@ -129,18 +121,10 @@ mod tests {
     }
 
     #[test]
-    fn only_what_a_browser_loads_is_weighed_and_summed() {
+    fn every_file_that_a_browser_can_load_is_weighed_and_summed() {
         let web = std::env::temp_dir().join(format!("stepscope-weigh-{}", std::process::id()));
         std::fs::create_dir_all(web.join("pkg")).unwrap();
-        for name in [
-            "index.html",
-            "_headers",
-            "jsconfig.json",
-            "pkg/a.js",
-            "pkg/a.d.ts",
-            "pkg/package.json",
-            "pkg/.gitignore",
-        ] {
+        for name in ["index.html", "_headers", "pkg/a.js"] {
             std::fs::write(web.join(name), "a".repeat(1000)).unwrap();
         }
         let weights = weigh(&web).unwrap();

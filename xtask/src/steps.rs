@@ -12,7 +12,7 @@ use crate::browser::{self, Browser};
 use crate::engines::{self, Firefox, WebKit};
 use crate::toolchain::{self, BARE_METAL, WASM};
 use crate::tools::{Optimise, WasmTools};
-use crate::{bare_metal, gtkwave, npm, page, root, run};
+use crate::{bare_metal, dist, gtkwave, npm, page, root, run};
 
 /// The steps, in the order in which they run: what fails fastest comes first.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -33,7 +33,7 @@ pub(crate) enum Step {
     Wasm,
     /// tsc is silent: the types of the page's modules
     Types,
-    /// The built page, used in Chromium
+    /// The page as it is shipped: its weight, and its use in Chromium
     Page,
     /// The page's main job and the golden digests, in Chromium, Firefox and WebKit
     Engines,
@@ -124,6 +124,7 @@ async fn page_tests() -> Result<Command> {
     command.args(words("test --workspace --features stepscope-tests/browser --test page --locked --"));
     command
         .env("STEPSCOPE_WEB", root().join("web"))
+        .env("STEPSCOPE_DIST", dist::folder())
         .env("STEPSCOPE_XTASK", this)
         .env(browser::CHROMIUM, &browser.chromium)
         .env(browser::CHROMEDRIVER, &browser.chromedriver);
@@ -132,7 +133,7 @@ async fn page_tests() -> Result<Command> {
 
 async fn page() -> Result<()> {
     let mut command = page_tests().await?;
-    let weights = page::weigh(&root().join("web"))?;
+    let weights = page::weigh(&dist::folder())?;
     print!("{weights}");
     weights.within_budget()?;
     command.args(["--skip", "engines::"]).env("STEPSCOPE_AXE", npm::axe().await?);

@@ -1,7 +1,7 @@
 //! Bytes as hexadecimal text.
 
 use alloc::{format, string::String, vec::Vec};
-use data_encoding::HEXLOWER;
+use base16ct::{lower, mixed};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error as _};
 use serde_json::Value;
 
@@ -12,7 +12,7 @@ pub struct Hex(pub Vec<u8>);
 
 impl Serialize for Hex {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(&HEXLOWER.encode(&self.0))
+        serializer.serialize_str(&lower::encode_string(&self.0))
     }
 }
 
@@ -20,10 +20,7 @@ impl<'de> Deserialize<'de> for Hex {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let text = String::deserialize(deserializer)?;
         let digits: String = text.chars().filter(|c| !c.is_ascii_whitespace()).collect();
-        HEXLOWER
-            .decode(digits.to_ascii_lowercase().as_bytes())
-            .map(Self)
-            .map_err(|_| D::Error::custom(wrong_in(&digits)))
+        mixed::decode_vec(&digits).map(Self).map_err(|_| D::Error::custom(wrong_in(&digits)))
     }
 }
 
@@ -39,7 +36,7 @@ fn wrong_in(digits: &str) -> String {
 
 impl super::Compact for Hex {
     fn compact(&self) -> Value {
-        Value::from(HEXLOWER.encode(&self.0))
+        Value::from(lower::encode_string(&self.0))
     }
 }
 

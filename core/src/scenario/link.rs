@@ -14,9 +14,9 @@ use alloc::{
     string::{String, ToString},
     vec::Vec,
 };
+use base64ct::{Base64UrlUnpadded, Encoding};
 use core::fmt;
 use crc::{CRC_32_ISO_HDLC, Crc};
-use data_encoding::BASE64URL_NOPAD;
 use miniz_oxide::{deflate::compress_to_vec, inflate::decompress_to_vec_with_limit};
 use percent_encoding::percent_decode_str;
 
@@ -113,7 +113,7 @@ pub fn encode(scenario: &Scenario) -> Result<String, LinkError> {
     let deflated = compress_to_vec(json.as_bytes(), DEFLATE_LEVEL);
     let (codec, payload) =
         if deflated.len() < json.len() { ('z', deflated.as_slice()) } else { ('j', json.as_bytes()) };
-    let text = format!("{VERSION}.{codec}.{}", BASE64URL_NOPAD.encode(payload));
+    let text = format!("{VERSION}.{codec}.{}", Base64UrlUnpadded::encode_string(payload));
     let link = format!("c={text}.{:08x}", CHECK.checksum(text.as_bytes()));
     if link.len() > MOST_FRAGMENT_BYTES {
         return Err(LinkError::TooLong { given: link.len(), most: MOST_FRAGMENT_BYTES });
@@ -155,7 +155,7 @@ pub fn decode(fragment: &str) -> Result<Scenario, LinkError> {
     }
     let (codec, payload) =
         rest.rsplit_once('.').and_then(|(rest, _)| rest.split_once('.')).ok_or(LinkError::Damaged)?;
-    let payload = BASE64URL_NOPAD.decode(payload.as_bytes()).map_err(|_| LinkError::Damaged)?;
+    let payload = Base64UrlUnpadded::decode_vec(payload).map_err(|_| LinkError::Damaged)?;
     let bad = LinkError::Payload { most: MOST_JSON_BYTES };
     let json = match codec {
         "z" => decompress_to_vec_with_limit(&payload, MOST_JSON_BYTES).map_err(|_| bad.clone())?,
@@ -286,7 +286,7 @@ mod tests {
     }
 
     fn link_of(codec: char, payload: &[u8]) -> String {
-        let text = format!("{VERSION}.{codec}.{}", BASE64URL_NOPAD.encode(payload));
+        let text = format!("{VERSION}.{codec}.{}", Base64UrlUnpadded::encode_string(payload));
         format!("c={text}.{:08x}", CHECK.checksum(text.as_bytes()))
     }
 

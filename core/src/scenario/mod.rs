@@ -24,6 +24,7 @@ mod quantity;
 mod read;
 mod recorded;
 mod segments;
+mod tracked;
 
 pub(crate) use check::MOST_FURTHER;
 pub use check::{Checked, END_OF_TIME, Forced, line_time};

@@ -75,7 +75,7 @@ impl LineScript {
             })?;
             let given = field(bytes);
             let hex: String = given.split_whitespace().collect();
-            let sent = data_encoding::HEXLOWER_PERMISSIVE.decode(hex.as_bytes()).map_err(|_| {
+            let sent = base16ct::mixed::decode_vec(&hex).map_err(|_| {
                 rows.bad(at, format!("bytes are “{}”; give pairs of hexadecimal digits", short(given)))
             })?;
             if !sent.is_empty() {

@@ -18,9 +18,9 @@ use alloc::{
     string::{String, ToString},
     vec::Vec,
 };
+use base64ct::{Base64UrlUnpadded, Encoding};
 use core::fmt;
 use crc::{CRC_32_ISO_HDLC, Crc};
-use data_encoding::BASE64URL_NOPAD;
 
 /// The form that is written here.
 const FORM: u32 = 1;
@@ -81,7 +81,7 @@ impl Proof {
         let mut text = format!("{FORM}.{}", self.version.replace('.', "_"));
         for Fingerprint { digest, records, checkpoints } in &self.controllers {
             let bytes: Vec<u8> = checkpoints.iter().flat_map(|value| value.to_be_bytes()).collect();
-            text += &format!(".{digest:016x}.{records}.{}", BASE64URL_NOPAD.encode(&bytes));
+            text += &format!(".{digest:016x}.{records}.{}", Base64UrlUnpadded::encode_string(&bytes));
         }
         let check = CHECK.checksum(text.as_bytes());
         text + &format!(".{check:08x}")
@@ -112,7 +112,7 @@ fn parsed(checked: &str) -> Option<Proof> {
     let mut controllers = Vec::new();
     while let Some(digest) = parts.next() {
         let records: u64 = parts.next()?.parse().ok()?;
-        let bytes = BASE64URL_NOPAD.decode(parts.next()?.as_bytes()).ok()?;
+        let bytes = Base64UrlUnpadded::decode_vec(parts.next()?).ok()?;
         let checkpoints: Vec<u32> = bytes
             .chunks_exact(4)
             .map(|four| four.iter().fold(0, |sum, byte| sum << 8 | u32::from(*byte)))

@@ -29,9 +29,9 @@ use crate::{
 };
 
 /// Longest time of one test's own work.
-const TEST_LIMIT: Duration = Duration::from_secs(120);
+const TEST_LIMIT: Duration = Duration::from_secs(300);
 /// Longest time until a program that was started says where it listens.
-const START_LIMIT: Duration = Duration::from_secs(30);
+const START_LIMIT: Duration = Duration::from_secs(120);
 /// Rest between two attempts to reach a program.
 const LOOK_AGAIN: Duration = Duration::from_millis(20);
 /// Longest time for a goodbye, after which a program is killed.
@@ -45,6 +45,7 @@ pub(crate) struct Bench {
     driver: String,
     profiles: Folder,
     sessions: Mutex<Vec<Session>>,
+    server: Mutex<Option<Child>>,
     heard: Heard,
 }
 
@@ -60,8 +61,39 @@ where
     in_engine(Browser::Chromium, test)
 }
 
+/// The folder of the page as it is shipped.
+pub(crate) fn dist() -> Result<PathBuf> {
+    named("STEPSCOPE_DIST").map(PathBuf::from)
+}
+
+/// As [`in_browser`], with the page as it is shipped.
+pub(crate) fn in_browser_shipped<T, F>(test: T) -> Result<()>
+where
+    T: FnOnce(Session) -> F,
+    F: Future<Output = Result<()>> + 'static,
+{
+    in_browser_on(&dist()?, test)
+}
+
+/// As [`in_browser`], with the page in a folder of the test's own.
+pub(crate) fn in_browser_on<T, F>(web: &Path, test: T) -> Result<()>
+where
+    T: FnOnce(Session) -> F,
+    F: Future<Output = Result<()>> + 'static,
+{
+    in_engine_on(web, Browser::Chromium, test)
+}
+
 /// As [`in_browser`], in this engine.
 pub(crate) fn in_engine<T, F>(browser: Browser, test: T) -> Result<()>
+where
+    T: FnOnce(Session) -> F,
+    F: Future<Output = Result<()>> + 'static,
+{
+    in_engine_on(Path::new(&named("STEPSCOPE_WEB")?), browser, test)
+}
+
+fn in_engine_on<T, F>(web: &Path, browser: Browser, test: T) -> Result<()>
 where
     T: FnOnce(Session) -> F,
     F: Future<Output = Result<()>> + 'static,
@@ -69,9 +101,9 @@ where
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     LocalSet::new().block_on(&runtime, async {
         let mut serve = Command::new(named("STEPSCOPE_XTASK")?);
-        serve.args(["serve", "--port", "0", "--web"]).arg(named("STEPSCOPE_WEB")?);
+        serve.args(["serve", "--port", "0", "--web"]).arg(web);
         let (heard, silent) = (Heard::default(), Heard::default());
-        let (mut server, page) = start(serve, Says::Port("serving "), &silent).await.context("the server")?;
+        let (server, page) = start(serve, Says::Port("serving "), &silent).await.context("the server")?;
         let profiles = Folder::temporary()?;
         let (drive, says) = browser.driver(&profiles.0)?;
         let (mut driver, port) =
@@ -83,6 +115,7 @@ where
             driver: driver_address,
             profiles,
             sessions: Mutex::default(),
+            server: Mutex::new(Some(server)),
             heard,
         });
         let outcome = match Session::start(&bench).await {
@@ -91,7 +124,7 @@ where
         };
         let outcome = bench.end_sessions(outcome).await;
         end(&mut driver).await;
-        end(&mut server).await;
+        bench.stop_server().await;
         outcome
     })
 }
@@ -127,6 +160,14 @@ impl Bench {
         heard.iter().filter(|line| self.browser.complains(line, &self.page)).cloned().collect()
     }
 
+    /// Ends the server: from now on there is no network.
+    pub(crate) async fn stop_server(&self) {
+        let server = self.server.lock().unwrap_or_else(PoisonError::into_inner).take();
+        if let Some(mut server) = server {
+            end(&mut server).await;
+        }
+    }
+
     pub(crate) fn keep(&self, session: Session) {
         self.sessions.lock().unwrap_or_else(PoisonError::into_inner).push(session);
     }
@@ -157,10 +198,10 @@ impl Bench {
 }
 
 /// A folder that goes with its owner.
-struct Folder(PathBuf);
+pub(crate) struct Folder(pub(crate) PathBuf);
 
 impl Folder {
-    fn temporary() -> Result<Self> {
+    pub(crate) fn temporary() -> Result<Self> {
         static FOLDER: AtomicU32 = AtomicU32::new(0);
         let number = FOLDER.fetch_add(1, Ordering::Relaxed);
         let folder = env::temp_dir().join(format!("stepscope-page-{}-{number}", std::process::id()));

@@ -109,7 +109,7 @@ fn a_long_run_tells_its_progress_and_can_be_cancelled() -> Result<()> {
         let known = Known::of(&MUCH.replace("2200000", "22000000").replace(":60", ":600"))?;
         page.open(&format!("#{}", known.link)).await?;
         page.click("#run-anyway").await?;
-        page.until("!document.getElementById('progress').hidden").await?;
+        page.until("document.getElementById('status').textContent.includes('%')").await?;
         let status = page.text("#status").await?;
         ensure!(status.contains('%') && status.contains("edges"), "progress in numbers: {status}");
         page.click("#cancel").await?;

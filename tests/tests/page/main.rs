@@ -9,7 +9,8 @@
 //! | `STEPSCOPE_FIREFOX`, `STEPSCOPE_GECKODRIVER` | the same of Firefox |
 //! | `STEPSCOPE_WEBKITDRIVER`, `DISPLAY` | the driver of WebKit, which knows its browser, and a display for it |
 //! | `STEPSCOPE_XTASK` | the program whose `serve --port 0` serves the page |
-//! | `STEPSCOPE_WEB` | the folder with the built page |
+//! | `STEPSCOPE_WEB` | the folder with the page's sources and its wasm: single modules can be tested there |
+//! | `STEPSCOPE_DIST` | the folder with the page as it is shipped |
 //! | `STEPSCOPE_SHOTS` | a folder for pictures of the page, and of every page that failed; none without it |
 //!
 //! | file | what it holds |
@@ -37,15 +38,17 @@ mod exchange;
 mod exports;
 mod framed;
 mod frames;
+mod golden_pictures;
 mod hostile_links;
 mod keeping;
 mod keyboard;
 mod links;
+mod loading;
 mod logic;
 mod native;
+mod offline;
 mod packets;
 mod people;
-mod pictures;
 mod pixels;
 mod presets;
 mod reflow;

@@ -56,6 +56,16 @@ impl Session {
         Self::start(&self.bench).await
     }
 
+    /// Ends the server: from now on there is no network.
+    pub(crate) async fn stop_server(&self) {
+        self.bench.stop_server().await;
+    }
+
+    /// Goes to another page of the site.
+    pub(crate) async fn go(&self, path: &str) -> Result<()> {
+        Ok(self.client.goto(&format!("{}{path}", self.address())).await?)
+    }
+
     /// Another visitor where a driver has one browser at a time: this one goes, its console silent.
     pub(crate) async fn next_visitor(&self) -> Result<Self> {
         self.bench.end_sessions(Ok(())).await?;

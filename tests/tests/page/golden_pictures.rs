@@ -153,3 +153,30 @@ async fn settled(page: &Session, canvas: &str, width: u32) -> Result<()> {
     }
     anyhow::bail!("{canvas} never stands still")
 }
+
+/// A white picture of the size of a curve's, with a black line from left to right.
+fn line(top: u32, thick: u32, shade: u8) -> Picture {
+    let (width, height) = (1720, 272);
+    let inked = |row: u32| (top..top + thick).contains(&row);
+    let pixels = (0..height).flat_map(|row| {
+        let part = if inked(row) { shade } else { 255 };
+        std::iter::repeat_n([part, part, part, 255], width as usize).flatten()
+    });
+    Picture { width, height, pixels: pixels.collect() }
+}
+
+#[test]
+fn a_line_that_has_moved_is_told_and_a_smoother_edge_is_not() {
+    let golden = line(100, 4, 0);
+    for (other, differs) in [
+        (line(100, 4, 0), false),
+        (line(100, 4, 40), false),
+        (line(102, 4, 0), true),
+        (line(100, 2, 0), true),
+        (line(100, 4, 128), true),
+        (line(100, 0, 0), true),
+        (Picture { height: 271, ..line(100, 4, 0) }, true),
+    ] {
+        assert_eq!(golden.difference(&other).is_some(), differs, "{:?}", golden.difference(&other));
+    }
+}
