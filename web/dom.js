@@ -44,6 +44,12 @@ export function say(node, text) {
   if (node.textContent !== text) node.textContent = text;
 }
 
+/** Lets a change stand out for a moment. @param {HTMLElement} node */
+export function flash(node) {
+  node.classList.remove("changed");
+  requestAnimationFrame(() => node.classList.add("changed"));
+}
+
 /** Fills a select; keeps its value where that is still there. @param {HTMLSelectElement} select @param {[string, string][]} options @param {string} value */
 export function options(select, options, value) {
   const key = JSON.stringify(options);

@@ -6,17 +6,29 @@ import { byId } from "./dom.js";
 import { Engine, Dropped, unlessDropped } from "./engine/engine.js";
 import { SAMPLES } from "./form/fields.js";
 import { createForm } from "./form/form.js";
+import { createCard } from "./help/card.js";
+import { createGuide, offerGuide } from "./help/guide.js";
+import { createKeys } from "./help/keys.js";
+import { chartFiles } from "./views/chart_files.js";
+import { createExports } from "./shell/exports.js";
 import { createHeader, createTheme } from "./shell/header.js";
+import { keepOffline } from "./shell/offline.js";
+import { createImports } from "./shell/imports.js";
 import { createLink } from "./shell/link.js";
-import { createMotion } from "./views/motion.js";
-import { createPackets } from "./views/packets.js";
+import { createNotices } from "./shell/notices.js";
+import { createShare } from "./shell/share.js";
+import { createMotion } from "./views/motion/motion.js";
+import { createPackets } from "./views/packets/packets.js";
 import { load as loadCharts } from "./time/plot.js";
+import { createPanes } from "./shell/panes.js";
+import { packetFiles } from "./views/packets/files.js";
 import { createPulses } from "./views/pulses/pulses.js";
 import { SOURCES } from "./form/sources.js";
-import { createSpectrum } from "./views/spectrum.js";
-import { held, initial, isStale, update } from "./state/state.js";
-import { loadPrevious, loadScenario, saveScenario, setAside } from "./shell/storage.js";
+import { createSpectrum } from "./views/spectrum/spectrum.js";
+import { EARLIER, held, initial, isStale, update } from "./state/state.js";
+import { loadGood, loadPrevious, loadScenario, saveGood, saveScenario, setAside } from "./shell/storage.js";
 import { createTabs } from "./shell/tabs.js";
+import { readJson } from "./state/json.js";
 import { createTiming } from "./views/timing.js";
 
 /** @typedef {import("./state/types.js").State} State */
@@ -24,6 +36,8 @@ import { createTiming } from "./views/timing.js";
 
 /** Rest after a change before it runs, in ms: typing a number is one run. */
 const REST_MS = 120;
+/** A run that has told nothing for so long is still planning, in ms. */
+const PLANNING_MS = 100;
 
 /** @type {State} */
 let state = initial({});
@@ -39,7 +53,12 @@ const engine = new Engine({
   failed: (revision, message) => { if (revision === state.revision) dispatch({ type: "failed", message: `The run stopped: ${message}` }); },
   crashed: (message) => {
     ran = state.revision;
+    dispatch({ type: "reference", reference: null });
     dispatch({ type: "failed", message: `The engine stopped and was started again; the form is as it was (${message}).` });
+  },
+  stopped: () => {
+    dispatch({ type: "reference", reference: null });
+    if (held(state) === "unjudged") judge();
   },
 });
 
@@ -65,9 +84,11 @@ function follow(before) {
   if (before?.judgement !== judgement || before?.approved !== approved || before?.drafts !== drafts) plan();
   if (result && before?.result !== result) {
     document.documentElement.dataset.state = "busy";
+    if (result.revision === state.revision && state.origin === "own") saveGood(JSON.stringify(scenario));
     // Asked before the views ask.
     engine.ask("select", result.controller).catch(unlessDropped);
   }
+  if (state.run.progress) unveil();
   const drawn = views.map((view) => view.render(state, before));
   byId("views").classList.toggle("blank", result === null);
   byId("views").classList.toggle("dim", result !== null && isStale(state) && held(state) !== "unjudged" && state.run.phase !== "running");
@@ -75,12 +96,19 @@ function follow(before) {
   else if (state.run.phase === "failed") settle(Promise.resolve());
 }
 
+/** Shows the form and the views: they stand, or it takes longer. */
+function unveil() {
+  delete document.documentElement.dataset.boot;
+}
+
 /** Says that nothing more is to come, once it is drawn. @param {Promise<unknown>} drawn */
 async function settle(drawn) {
   const { revision, result } = state;
   await drawn;
   await new Promise((resolve) => requestAnimationFrame(resolve));
+  unveil();
   if (state.revision === revision && state.result === result) document.documentElement.dataset.state = "ready";
+  keepOffline();
 }
 
 async function judge() {
@@ -108,6 +136,11 @@ function run() {
   document.documentElement.dataset.state = "busy";
   engine.run(state.revision, JSON.stringify(state.scenario));
   dispatch({ type: "running" });
+  const { revision } = state;
+  window.setTimeout(() => {
+    const silent = state.revision === revision && state.run.phase === "running" && state.run.progress === null;
+    if (silent) dispatch({ type: "progress", progress: { done: false, cycle: 0, end_cycle: 0, records: 0 } });
+  }, PLANNING_MS);
 }
 
 function cancel() {
@@ -117,7 +150,7 @@ function cancel() {
 
 /** One of everything that can be added, with the core's own defaults. */
 async function samples() {
-  const filled = async (/** @type {object} */ sample) => JSON.parse((await engine.ask("check", JSON.stringify(sample))).scenario);
+  const filled = async (/** @type {object} */ sample) => readJson((await engine.ask("check", JSON.stringify(sample))).scenario);
   const [all, line, ...sources] = await Promise.all([filled(SAMPLES.all), filled(SAMPLES.line),
     ...Object.keys(SOURCES).map((kind) => filled({ source: { [kind]: {} } }))]);
   const { axes } = all.source.motion;
@@ -132,34 +165,47 @@ async function samples() {
 /**
  * The state that an earlier visit left: the visitor's own scenario, also with problems in it, and the one
  * that was set aside for it, which undo brings back.
- * @param {string} fallback @returns {Promise<State>}
+ * @param {string} fallback @returns {Promise<{left: State, good: string | null}>}  `good` is the last scenario that ran, if this one cannot.
  */
 async function own(fallback) {
-  const read = async (/** @type {string} */ saved) => JSON.parse((await engine.ask("check", saved)).scenario);
+  const read = (/** @type {string} */ saved) => engine.ask("check", saved);
   const [saved, previous] = [loadScenario(), loadPrevious()];
-  if (saved === null) return initial(JSON.parse(fallback));
-  const past = previous === null || previous === saved ? [] : [{ scenario: await read(previous), origin: /** @type {const} */ ("own") }];
-  return { ...initial(await read(saved)), past };
+  if (saved === null) return { left: initial(readJson(fallback)), good: null };
+  const { scenario, problems } = await read(saved);
+  const past = previous === null || previous === saved ? [] : [{ scenario: readJson((await read(previous)).scenario), origin: /** @type {const} */ ("own") }];
+  return { left: { ...initial(readJson(scenario)), past }, good: problems.length > 0 ? loadGood() : null };
 }
 
 async function start() {
   createTheme();
+  createCard();
+  offerGuide();
   if (typeof WebAssembly !== "object") {
     byId("no-wasm").hidden = false;
     byId("status").textContent = "no engine";
     return;
   }
   const [fallback, presets, drivers, made] = await Promise.all([engine.ask("default_scenario"), engine.ask("presets"), engine.ask("drivers"), samples(), loadCharts()]);
-  state = await own(fallback);
+  const { left, good } = await own(fallback);
+  state = left;
   const page = { engine, dispatch, now: () => state };
   // Nothing is ever sent; Enter in a field must not try to.
   byId("form").addEventListener("submit", (event) => event.preventDefault());
   const link = createLink(page);
+  createImports({ openLink: link.openLink, ...page });
   const retry = () => { ran = -1; judge(); };
+  const pulses = createPulses(page);
   views = [createHeader({ presets, cancel, retry, ...page }), createForm({ root: byId("fields"), samples: made, drivers, dispatch }),
-    createTabs(page), createMotion(page), createPulses(page), createPackets(page), createSpectrum(page), createTiming({ drivers, ...page }), link];
+    createTabs(page), createPanes(page), createGuide(page), createMotion(page), pulses, createPackets(page), createSpectrum(page),
+    createTiming({ drivers, speak: pulses.speak, ...page }), createNotices(page), createShare({ shared: link.shared, ...page }),
+    createExports(page, [["Charts", chartFiles], ["Packets", packetFiles]]), link];
+  createKeys();
   await link.start(loadScenario() !== null);
-  if (state.revision === 0) follow(undefined);
+  if (state.revision === 0) {
+    follow(undefined);
+    // What stood before it went wrong is shown, dimmed.
+    if (good !== null) engine.run(EARLIER, good);
+  }
 }
 
 start().catch((error) => {

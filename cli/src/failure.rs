@@ -1,7 +1,10 @@
 //! Why a command has no result, in words and as an exit code.
 
 use std::{fmt, io, path::PathBuf, process::ExitCode};
-use stepscope_core::scenario::{Problem, link::LinkError};
+use stepscope_core::{
+    scenario::{Problem, link::LinkError},
+    trace::ProofError,
+};
 
 /// Why there is no result.
 pub(crate) enum Failure {
@@ -13,6 +16,12 @@ pub(crate) enum Failure {
     Scenario(PathBuf, Vec<Problem>),
     /// The link is wrong, or the scenario does not fit in one.
     Link(LinkError),
+    /// A link to be verified does not carry its sender's digests.
+    NoProof,
+    /// They cannot be read.
+    Proof(ProofError),
+    /// The run is not the one that a link's sender saw; where they part.
+    OtherRun(String),
     /// There is no such preset.
     Preset(String),
     /// A timing check without a driver.
@@ -40,11 +49,13 @@ impl Failure {
             Self::NotText(_)
             | Self::Scenario(..)
             | Self::Link(_)
+            | Self::NoProof
+            | Self::Proof(_)
             | Self::Preset(_)
             | Self::NoDriver(_)
             | Self::Controller(..)
             | Self::Axis(..) => ExitCode::from(2),
-            Self::Violations(_) | Self::WrongSteps(_) => ExitCode::from(3),
+            Self::OtherRun(_) | Self::Violations(_) | Self::WrongSteps(_) => ExitCode::from(3),
         }
     }
 }
@@ -63,6 +74,11 @@ impl fmt::Display for Failure {
                 problems.iter().try_for_each(|problem| write!(f, "\n  {problem}"))
             }
             Self::Link(error) => write!(f, "{error}"),
+            Self::NoProof => f.write_str(
+                "the link carries no digests of its sender (no d= in it), so there is nothing to verify; make it with the page's Share or with `stepscope run --link`",
+            ),
+            Self::Proof(error) => write!(f, "{error}"),
+            Self::OtherRun(how) => f.write_str(how),
             Self::Preset(id) => {
                 write!(f, "{id}: no such preset; `stepscope presets` lists them")
             }

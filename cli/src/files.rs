@@ -8,7 +8,10 @@ use std::{
 use stepscope_core::{
     analysis::timing::TimingCheck,
     signal::{Event, Record, Sink},
-    trace::{Digest, PacketLog, VcdWriter, shown_signals, write_record},
+    trace::{
+        Digest, Fingerprinter, PacketLog, VcdWriter, write_edges_head, write_edges_row, write_packets_head,
+        write_packets_row, write_record,
+    },
     units::Instant,
 };
 
@@ -62,17 +65,13 @@ pub(crate) fn trace(out: Out) -> Box<dyn Output> {
 
 /// A table: cycle, time in s, and each signal's level.
 pub(crate) fn csv(mut out: Out, clock_hz: u32, channels: u8) -> io::Result<Box<dyn Output>> {
-    write!(out, "cycle,time_s")?;
-    for bit in shown_signals(channels) {
-        write!(out, ",{}", stepscope_core::signal::name(bit).unwrap_or_default())?;
-    }
-    writeln!(out)?;
+    let mut text = String::new();
+    write_edges_head(&mut text, channels).map_err(io::Error::other)?;
+    out.write_all(text.as_bytes())?;
     let line = move |out: &mut Out, record: Record| {
-        write!(out, "{},{}", record.cycle.0, record.cycle.seconds(clock_hz))?;
-        for bit in shown_signals(channels) {
-            write!(out, ",{}", u8::from(record.levels.has(1 << bit)))?;
-        }
-        writeln!(out)
+        text.clear();
+        write_edges_row(&mut text, record, clock_hz, channels).map_err(io::Error::other)?;
+        out.write_all(text.as_bytes())
     };
     Ok(Box::new(Lines { out, line, result: Ok(()) }))
 }
@@ -110,28 +109,15 @@ impl Sink for Packets {
 impl Output for Packets {
     fn finish(mut self: Box<Self>, _: u64) -> io::Result<()> {
         self.log.finish();
-        let mut table = csv::Writer::from_writer(self.out);
-        table.write_record([
-            "start_cycle",
-            "end_cycle",
-            "bytes",
-            "outcome",
-            "tick_start_cycle",
-            "tick_end_cycle",
-        ])?;
-        let cycle = |at: Option<Instant>| at.map(|at| at.0.to_string()).unwrap_or_default();
-        for (index, row) in self.log.rows().iter().enumerate() {
-            let bytes: String = self.log.bytes(index).iter().map(|byte| format!("{byte:02x}")).collect();
-            table.write_record([
-                row.start.0.to_string(),
-                row.end.0.to_string(),
-                bytes,
-                row.verdict.to_string(),
-                cycle(row.tick_start),
-                cycle(row.tick_end),
-            ])?;
+        let mut text = String::new();
+        write_packets_head(&mut text).map_err(io::Error::other)?;
+        for index in 0..self.log.rows().len() {
+            write_packets_row(&mut text, &self.log, index).map_err(io::Error::other)?;
+            self.out.write_all(text.as_bytes())?;
+            text.clear();
         }
-        table.flush()
+        self.out.write_all(text.as_bytes())?;
+        self.out.flush()
     }
 }
 
@@ -143,6 +129,8 @@ pub(crate) type Files = Vec<(PathBuf, Box<dyn Output>)>;
 pub(crate) struct Station {
     /// The digest of its trace.
     pub(crate) digest: Digest,
+    /// Its fingerprint, for a link.
+    pub(crate) fingerprint: Option<Fingerprinter>,
     /// Its files.
     pub(crate) files: Files,
     /// Its timing check.
@@ -152,6 +140,7 @@ pub(crate) struct Station {
 impl Sink for Station {
     fn record(&mut self, record: Record) {
         self.digest.record(record);
+        self.fingerprint.record(record);
         for (_, file) in &mut self.files {
             file.record(record);
         }

@@ -2,8 +2,8 @@
 //!
 //! Results go to standard output, errors to standard error. Exit codes: 0 the run was made, 1 a
 //! file could not be read or written, 2 the scenario, link or command line is wrong, 3 something was to
-//! hold and does not: `--strict` and the timing check found violations, or `faults` found wrong steps on
-//! a framed line.
+//! hold and does not: `--strict` and the timing check found violations, `faults` found wrong steps on a
+//! framed line, or `open --verify` found another run than the link's.
 
 mod failure;
 mod faults;
@@ -16,6 +16,7 @@ mod sine;
 mod status;
 mod tables;
 mod timing;
+mod verify;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -45,6 +46,10 @@ enum Command {
     Open {
         /// The link, or what stands behind its `#`.
         link: String,
+        /// Also run it, and say on standard error whether the run is the one that the sender of the link
+        /// saw, or where the first difference is. Ends with 3 if it is another.
+        #[arg(long)]
+        verify: bool,
     },
     /// Lists the presets, or writes one as JSON.
     Presets {
@@ -61,7 +66,7 @@ fn main() -> ExitCode {
         Command::Faults(arguments) => faults::faults(&arguments),
         Command::Tables(arguments) => tables::tables(&arguments),
         Command::Sine(command) => sine::sine(&command),
-        Command::Open { link } => scenarios::open(&link),
+        Command::Open { link, verify } => scenarios::open(&link, verify),
         Command::Presets { id } => scenarios::presets(id.as_deref()),
         Command::Drivers => timing::drivers(),
     };

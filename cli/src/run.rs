@@ -17,6 +17,7 @@ use std::{
 use stepscope_core::{
     run::{Experiment, Run},
     scenario::{Config, Scenario, link},
+    trace::{Fingerprinter, Proof},
 };
 
 /// Records between two looks at how far a run is.
@@ -35,7 +36,8 @@ pub(crate) struct Arguments {
     /// the host reached and counted, and the load of the line.
     #[arg(long)]
     status: bool,
-    /// Print the share link of the scenario: what stands behind the page's address.
+    /// Print the share link of the scenario: what stands behind the page's address. It carries the digests
+    /// of this run, so that whoever opens it can tell whether theirs is the same.
     #[arg(long)]
     link: bool,
     /// Write the trace: one record a line, cycle and levels in hexadecimal (`-`: standard output).
@@ -96,6 +98,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         station.files = open(arguments, config)?;
         station.timing = arguments.timing.check(path, &scenario)?;
     }
+    if arguments.link {
+        stations.iter_mut().for_each(|station| station.fingerprint = Some(Fingerprinter::default()));
+    }
     let finished = go(&experiment, &mut stations, arguments.progress);
     let mut timing = None;
     for station in &mut stations {
@@ -109,6 +114,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     if arguments.link {
         let link = link::encode(&scenario).map_err(Failure::Link)?;
+        let seen = stations.iter_mut().filter_map(|station| station.fingerprint.take());
+        let proof = Proof::of(seen.map(Fingerprinter::finish).collect());
+        let link = link::with_part(link, "d", &proof.emit());
         writeln!(io::stdout(), "#{link}").map_err(Failure::output)?;
     }
     let shown =

@@ -1,6 +1,6 @@
 //! Scenarios from files; `stepscope open` and `stepscope presets`: from links and from the documents.
 
-use crate::failure::Failure;
+use crate::{failure::Failure, verify};
 use std::{
     fs,
     io::{self, Read, Write},
@@ -31,10 +31,13 @@ pub(crate) fn text(path: &Path) -> Result<String, Failure> {
     String::from_utf8(bytes).map_err(|_| Failure::NotText(path.to_owned()))
 }
 
-/// Writes the scenario of a link, or of an address that ends with one, as JSON.
-pub(crate) fn open(link: &str) -> Result<(), Failure> {
+/// Writes the scenario of a link, or of an address that ends with one, as JSON; with `verify` it is also
+/// run and held against what the link's sender saw.
+pub(crate) fn open(link: &str, verify: bool) -> Result<(), Failure> {
     let fragment = link.split_once('#').map_or(link, |(_, fragment)| fragment);
-    print(&link::decode(fragment).map_err(Failure::Link)?.to_json())
+    let scenario = link::decode(fragment).map_err(Failure::Link)?;
+    print(&scenario.to_json())?;
+    if verify { verify::verify(&scenario, link::part(fragment, "d").as_deref()) } else { Ok(()) }
 }
 
 /// Lists the presets, or writes the one that is asked for as JSON.

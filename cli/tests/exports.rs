@@ -48,6 +48,46 @@ fn a_link_opens_as_the_scenario_that_it_was_made_of() {
     assert_eq!(stepscope(&["open", "c=1.j"]), (Some(2), String::new()));
 }
 
+/// Exit code and what was said on standard error.
+fn complaint(arguments: &[&str]) -> (Option<i32>, String) {
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_stepscope")).args(arguments).output().expect("the command starts");
+    (output.status.code(), String::from_utf8(output.stderr).expect("text"))
+}
+
+#[test]
+fn a_links_digests_tell_whether_the_run_is_the_senders_and_where_it_is_not() {
+    let scenario = preset("sonobe-2011-table", "verified.json");
+    let link = stepscope(&["run", &scenario, "--link"]).1.trim().to_owned();
+    let digest = stepscope(&["run", &scenario, "--digest"]).1;
+    let (code, said) = complaint(&["open", &link, "--verify"]);
+    assert_eq!(code, Some(0));
+    assert!(said.starts_with("reproduced bit-exactly: ") && said.contains(digest.trim()), "{said}");
+
+    // Another scenario with this one's digests.
+    let other = preset("song-2021-plateau", "verified-other.json");
+    let other = stepscope(&["run", &other, "--link"]).1;
+    let (foreign, _) = other.split_once("&d=").expect("digests");
+    let (own, digests) = link.split_once("&d=").expect("digests");
+    let (code, said) = complaint(&["open", &format!("{foreign}&d={digests}"), "--verify"]);
+    assert_eq!(code, Some(3));
+    assert!(said.starts_with("not the link's run: the first difference comes after edge "), "{said}");
+
+    let (code, said) = complaint(&["open", own, "--verify"]);
+    assert!(code == Some(2) && said.contains("no d= in it"), "{said}");
+    let (code, said) = complaint(&["open", &link[..link.len() - 1], "--verify"]);
+    assert!(code == Some(2) && said.contains("cut short"), "{said}");
+    assert_eq!(
+        complaint(&["open", &link[..link.len() - 1]]),
+        (Some(0), String::new()),
+        "it opens all the same"
+    );
+
+    let several = preset("four-controllers-framed", "verified-several.json");
+    let link = stepscope(&["run", &several, "--link"]).1;
+    assert_eq!(complaint(&["open", link.trim(), "--verify"]).0, Some(0));
+}
+
 #[test]
 fn tables_have_a_row_for_each_record_and_each_packet() {
     let scenario = preset("patent-2019-addressed", "tables.json");

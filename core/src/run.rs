@@ -15,9 +15,11 @@ mod cost;
 mod listener;
 mod net;
 mod orders;
+mod script;
 mod talk;
 
 pub use cost::{BUDGET_RECORDS, Cost};
+pub use script::{replayed, scripted};
 
 use crate::{
     device::{Device, Faults, SegmentEngine},

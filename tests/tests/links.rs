@@ -1,13 +1,18 @@
 //! Links that were published open for ever: `tests/links/v<version>.txt` holds, one a line, a link
-//! of each format that was ever written and the scenario that it means, in canonical JSON.
+//! of each format that was ever written and the scenario that it means, in canonical JSON. Where a link
+//! carries its sender's digests, the run is still the same.
 //!
 //! Lines are only ever added. A new version gets a new file; the old ones then test its upgraders.
 
 use std::{fmt::Write as _, fs, path::PathBuf};
-use stepscope_core::scenario::{
-    Compact, Scenario,
-    link::{decode, encode},
-    presets::PRESETS,
+use stepscope_core::{
+    run::Experiment,
+    scenario::{
+        Compact, Scenario,
+        link::{decode, encode, part, with_part},
+        presets::PRESETS,
+    },
+    trace::{Comparison, Fingerprinter, Likeness, Proof},
 };
 
 fn folder() -> PathBuf {
@@ -37,9 +42,34 @@ fn the_current_versions_links_are_still_written_as_they_were() {
     for line in fs::read_to_string(file).expect("version 1's links").lines() {
         let (link, json) = line.split_once(' ').expect("a link, a space, its scenario");
         let scenario = Scenario::from_json(json).expect("reads");
+        let (link, _) = link.split_once('&').unwrap_or((link, ""));
         assert_eq!(encode(&scenario).as_deref(), Ok(link));
         assert_eq!(scenario.compact().to_string(), json, "canonical");
     }
+}
+
+#[test]
+fn the_runs_that_senders_saw_are_still_made_and_another_run_is_told() {
+    let mut proofs = 0;
+    for line in fs::read_to_string(folder().join("v1.txt")).expect("version 1's links").lines() {
+        let link = line.split(' ').next().unwrap_or_default();
+        let Some(text) = part(link, "d") else { continue };
+        let mut proof = Proof::parse(&text).unwrap_or_else(|error| panic!("{link}: {error}"));
+        let experiment = Experiment::new(&decode(link).expect("opens")).expect("a good scenario");
+        let same = |proof: &Proof| {
+            assert_eq!(proof.controllers.len(), experiment.controllers());
+            let mut comparisons: Vec<_> = proof.controllers.iter().map(Comparison::with).collect();
+            experiment.run_each(&mut comparisons);
+            comparisons.into_iter().all(|each| matches!(each.finish(), Likeness::Same(_)))
+        };
+        assert!(same(&proof), "{link}");
+        if let Some(last) = proof.controllers.last_mut() {
+            last.digest ^= 1;
+        }
+        assert!(!same(&proof), "{link}");
+        proofs += 1;
+    }
+    assert!(proofs >= 4, "only {proofs} links with digests");
 }
 
 /// Prints the lines of today's presets, to add them to the file of their version:
@@ -50,8 +80,13 @@ fn lines_for_the_presets_can_be_printed() {
     for scenario in PRESETS.iter().map(|preset| preset.scenario()).chain([Scenario::default()]) {
         let link = encode(&scenario).expect("a preset fits in a link");
         let _ = writeln!(lines, "{link} {}", scenario.compact());
+        let experiment = Experiment::new(&scenario).expect("a good scenario");
+        let mut fingerprints = vec![Fingerprinter::default(); experiment.controllers()];
+        experiment.run_each(&mut fingerprints);
+        let proof = Proof::of(fingerprints.into_iter().map(Fingerprinter::finish).collect());
+        let _ = writeln!(lines, "{} {}", with_part(link, "d", &proof.emit()), scenario.compact());
     }
-    assert_eq!(lines.lines().count(), PRESETS.len() + 1);
+    assert_eq!(lines.lines().count(), 2 * (PRESETS.len() + 1));
     if std::env::var_os("STEPSCOPE_BLESS").is_some() {
         print!("{lines}");
     }

@@ -12,14 +12,20 @@
 #![cfg(any(test, target_arch = "wasm32"))]
 
 mod curve;
+#[cfg(all(test, not(target_arch = "wasm32")))]
+mod pictures;
 mod ticks;
 
 use plotters::{
-    coord::Shift,
+    coord::{
+        Shift,
+        ranged1d::{DefaultFormatting, KeyPointHint, Ranged},
+    },
     prelude::*,
     style::{FontStyle, RGBColor, ShapeStyle, TextStyle},
 };
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 use ticks::Ticks;
 
 /// What to draw, and with which colours.
@@ -77,6 +83,9 @@ pub(crate) struct Series {
     pub(crate) opacity: f64,
     /// Width of the stroke in CSS pixels.
     pub(crate) width: f64,
+    /// Length of the dashes and of the gaps between them in CSS pixels; 0 for a whole line.
+    #[serde(default)]
+    pub(crate) dash: f64,
     /// Positions on the x axis.
     pub(crate) x: Vec<f64>,
     /// The values, such as `{"line": {"y": […]}}`.
@@ -134,22 +143,26 @@ pub(crate) fn draw<DB: DrawingBackend>(root: &DrawingArea<DB, Shift>, spec: &Spe
     }
     let px = |css: f64| (css * spec.ratio).round() as i32;
     let (width, height) = root.dim_in_pixel();
+    let css = |pixels: u32| f64::from(pixels) / spec.ratio;
+    // Plain counts have short labels.
+    let x_space = if spec.x.unit.is_empty() { 40.0 } else { 90.0 };
+    let x_ticks = (((css(width) - spec.y.label_px) / x_space) as usize).clamp(2, 12);
+    let tall = css(height) - spec.x.label_px;
+    let y_ticks = ((tall / 22.0) as usize).clamp(2, 10);
+    let x_format = Ticks::new(&spec.x, x_ticks, x_ticks);
+    let y_format = Ticks::new(&spec.y, y_ticks, ((tall / 14.0) as usize).max(2));
     let mut chart = ChartBuilder::on(root)
         .margin_top(px(6.0))
         .margin_right(px(26.0))
         .margin_bottom(px(if spec.x.label_px > 0.0 { 2.0 } else { 6.0 }))
         .x_label_area_size(px(spec.x.label_px))
         .y_label_area_size(px(spec.y.label_px))
-        .build_cartesian_2d(spec.x.min..spec.x.max, spec.y.min..spec.y.max)
+        .build_cartesian_2d(
+            Ruled(spec.x.min..spec.x.max, x_format.values.clone()),
+            Ruled(spec.y.min..spec.y.max, y_format.values.clone()),
+        )
         .map_err(|error| error.to_string())?;
 
-    let css = |pixels: u32| f64::from(pixels) / spec.ratio;
-    // Plain counts have short labels.
-    let x_space = if spec.x.unit.is_empty() { 40.0 } else { 90.0 };
-    let x_ticks = ((css(width) / x_space) as usize).clamp(2, 12);
-    let y_ticks = (((css(height) - spec.x.label_px) / 22.0) as usize).clamp(3, 10);
-    let x_format = Ticks::new(&spec.x, x_ticks);
-    let y_format = Ticks::new(&spec.y, y_ticks);
     let font = (spec.font.as_str(), spec.font_px * spec.ratio, FontStyle::Normal);
     let ink = color(&spec.colors.label);
     let label: TextStyle<'_> = TextStyle::from(font).color(&ink);
@@ -157,8 +170,8 @@ pub(crate) fn draw<DB: DrawingBackend>(root: &DrawingArea<DB, Shift>, spec: &Spe
     chart
         .configure_mesh()
         .max_light_lines(1)
-        .x_labels(x_ticks)
-        .y_labels(y_ticks)
+        .x_labels(x_format.values.len())
+        .y_labels(y_format.values.len())
         .x_label_formatter(&|value| x_format.print(*value))
         .y_label_formatter(&|value| y_format.print(*value))
         .label_style(label)
@@ -187,12 +200,35 @@ pub(crate) fn draw<DB: DrawingBackend>(root: &DrawingArea<DB, Shift>, spec: &Spe
             Shape::Band { min, max } => curve::band(&frame, &series.x, min, max),
             Shape::Stems { y, shift } => curve::stems(&frame, &series.x, y, shift * spec.ratio),
         };
+        let lines =
+            if series.dash > 0.0 { curve::dashes(&frame, &lines, series.dash * spec.ratio) } else { lines };
         let paths = lines.into_iter().map(|line| PathElement::new(line, style));
         chart.draw_series(paths).map_err(|error| error.to_string())?;
     }
 
     let css = |pixels: i32| f64::from(pixels) / spec.ratio;
     Ok(Plot { left: css(across.start), top: css(down.start), right: css(across.end), bottom: css(down.end) })
+}
+
+/// A range with its ticks.
+struct Ruled(Range<f64>, Vec<f64>);
+
+impl Ranged for Ruled {
+    type FormatOption = DefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
+        let part = (value - self.0.start) / (self.0.end - self.0.start);
+        from + (part * f64::from(to - from)).round() as i32
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, _: Hint) -> Vec<f64> {
+        self.1.clone()
+    }
+
+    fn range(&self) -> Range<f64> {
+        self.0.clone()
+    }
 }
 
 /// Reads `#rrggbb`; what it cannot read is a middle grey, visible on light and dark.
@@ -207,7 +243,7 @@ fn color(text: &str) -> RGBColor {
 #[cfg(target_arch = "wasm32")]
 mod page {
     use super::{Spec, draw};
-    use plotters::prelude::IntoDrawingArea;
+    use plotters::prelude::{IntoDrawingArea, SVGBackend};
     use plotters_canvas::CanvasBackend;
     use serde::Serialize as _;
     use wasm_bindgen::{JsError, JsValue, prelude::wasm_bindgen};
@@ -227,6 +263,21 @@ mod page {
         let plot = draw(&backend.into_drawing_area(), &spec).map_err(|message| JsError::new(&message))?;
         Ok(plot.serialize(&serde_wasm_bindgen::Serializer::json_compatible())?)
     }
+
+    /// The same chart as the text of an SVG file, in device pixels.
+    ///
+    /// # Errors
+    /// A spec that cannot be read, or an axis without length.
+    #[wasm_bindgen]
+    #[allow(unreachable_pub, reason = "wasm-bindgen exports public functions only")]
+    pub fn chart_svg(width: u32, height: u32, spec: JsValue) -> Result<String, JsError> {
+        let spec: Spec = serde_wasm_bindgen::from_value(spec)?;
+        let mut text = String::new();
+        let area = SVGBackend::with_string(&mut text, (width, height)).into_drawing_area();
+        draw(&area, &spec).map_err(|message| JsError::new(&message))?;
+        drop(area);
+        Ok(text)
+    }
 }
 
 #[cfg(all(test, not(target_arch = "wasm32")))]
@@ -238,8 +289,14 @@ mod tests {
     }
 
     fn spec(x: Axis, y: Axis, shape: Shape) -> Spec {
-        let series =
-            Series { color: "#0072b2".into(), opacity: 1.0, width: 1.0, x: vec![0.0, 0.5, 1.0], shape };
+        let series = Series {
+            color: "#0072b2".into(),
+            opacity: 1.0,
+            width: 1.0,
+            dash: 0.0,
+            x: vec![0.0, 0.5, 1.0],
+            shape,
+        };
         let colors = Colors { label: "#222222".into(), axis: "#888888".into(), grid: "#dddddd".into() };
         Spec { ratio: 2.0, font: "sans-serif".into(), font_px: 11.0, x, y, colors, series: vec![series] }
     }

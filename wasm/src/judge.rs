@@ -4,7 +4,7 @@ use crate::convert::object;
 use serde::Serialize;
 use std::iter::once;
 use stepscope_core::{
-    motion::{AxisPlan, Curve, Profile},
+    motion::{AxisPlan, Curve, grouped},
     run::{BUDGET_RECORDS, Cost, Experiment},
     scenario::{Axis, Problem, Scenario, Source, presets as core_presets},
 };
@@ -94,7 +94,6 @@ struct DerivedAxis {
 
 #[derive(Serialize)]
 struct DerivedMove {
-    kind: &'static str,
     start_s: f64,
     duration_s: f64,
     steps: i64,
@@ -201,87 +200,10 @@ fn moves(plan: &AxisPlan, limit_steps_s: f64) -> Vec<DerivedMove> {
     plan.moves()
         .iter()
         .map(|planned| DerivedMove {
-            kind: kind(&planned.profile),
             start_s: planned.start_s,
             duration_s: planned.profile.duration_s(),
             steps: planned.profile.steps(),
-            detail: detail(&planned.profile, limit_steps_s),
+            detail: planned.profile.detail(limit_steps_s),
         })
         .collect()
-}
-
-/// What a user wants to know of a move beside its times.
-fn detail(profile: &Profile, limit_steps_s: f64) -> String {
-    let peaks = profile.peaks();
-    let peaks =
-        format!("peak {} steps/s, {} steps/s\u{b2}", grouped(peaks.speed), grouped(peaks.acceleration));
-    match profile {
-        Profile::Trapezoid(_) => peaks,
-        Profile::Cosine(cosine) => match cosine.longest_ramp_s(limit_steps_s) {
-            Some(longest_s) => {
-                let longest_s = longest_s.min(profile.duration_s() / 2.0);
-                format!("{peaks}; with a ramp of up to {longest_s:.4} s the bus can still follow")
-            }
-            None => peaks,
-        },
-        Profile::TrapezoidTable(table) => {
-            format!("peak {} steps/s, table of {} rows", grouped(profile.peaks().speed), table.rows())
-        }
-        Profile::Staircase(staircase) => match staircase.plateau_rate() {
-            Some(rate) => format!(
-                "{} rows of {} steps each way, {} steps at {}/s between",
-                staircase.ramp_rows(),
-                grouped(staircase.ramp_steps() as f64),
-                grouped(staircase.plateau_steps() as f64),
-                grouped(rate as f64)
-            ),
-            None => format!(
-                "{} rows of {} steps each way, none between",
-                staircase.ramp_rows(),
-                grouped(staircase.ramp_steps() as f64)
-            ),
-        },
-        Profile::SineSegments(sine) => {
-            let points: Vec<String> = sine
-                .segments()
-                .iter()
-                .map(|segment| format!("{:.2}\u{b0} {}/s", segment.from_deg, grouped(segment.rate)))
-                .collect();
-            let memory = sine.memory();
-            format!(
-                "{} segments a quarter: {}; {} bytes, against {} with an interval a step",
-                sine.segments().len(),
-                points.join(", "),
-                grouped(memory.segments as f64),
-                grouped(memory.intervals as f64)
-            )
-        }
-        Profile::Constant(_) | Profile::Dwell(_) => String::new(),
-    }
-}
-
-/// A whole number with groups of three digits, as the page prints them.
-fn grouped(value: f64) -> String {
-    let digits = format!("{value:.0}");
-    let whole = digits.trim_start_matches('-');
-    let mut text = String::from(if whole.len() < digits.len() { "\u{2212}" } else { "" });
-    for (index, digit) in whole.chars().enumerate() {
-        if index > 0 && (whole.len() - index) % 3 == 0 {
-            text.push('\u{202f}');
-        }
-        text.push(digit);
-    }
-    text
-}
-
-/// The move's name as in a scenario.
-const fn kind(profile: &Profile) -> &'static str {
-    match profile {
-        Profile::Trapezoid(_) | Profile::TrapezoidTable(_) => "trapezoid",
-        Profile::Staircase(_) => "staircase",
-        Profile::Cosine(_) => "cosine",
-        Profile::SineSegments(_) => "sine_segments",
-        Profile::Constant(_) => "constant",
-        Profile::Dwell(_) => "dwell",
-    }
 }

@@ -5,15 +5,20 @@
 
 mod charts;
 mod convert;
+mod curves;
+mod decoder;
+mod files;
 mod judge;
 mod link;
 mod packets;
+mod pulses;
 mod simulation;
 mod spectrum;
 mod summary;
 mod timing;
+mod witness;
 
 pub use judge::{check, default_scenario, presets, version};
-pub use link::{decode_link, encode_link, link_part};
+pub use link::{decode_link, encode_link, link_part, link_with, replay};
 pub use simulation::Simulation;
 pub use timing::drivers;

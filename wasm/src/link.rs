@@ -3,10 +3,10 @@
 use crate::{convert::object, judge::cost_message};
 use serde::Serialize;
 use stepscope_core::{
-    run::Experiment,
+    run::{Experiment, replayed},
     scenario::{
-        Scenario,
-        link::{LinkError, decode, encode, part},
+        LineScript, Scenario,
+        link::{LinkError, decode, encode, part, with_part},
     },
 };
 use wasm_bindgen::prelude::*;
@@ -35,6 +35,25 @@ enum Opened {
 #[must_use]
 pub fn link_part(fragment: &str, name: &str) -> Option<String> {
     part(fragment, name)
+}
+
+/// A link with another part behind it, where it does not become too long to be read.
+#[wasm_bindgen]
+#[must_use]
+pub fn link_with(link: String, name: &str, text: &str) -> String {
+    with_part(link, name, text)
+}
+
+/// The scenario that sends the packets of a table, as a run exports it, to the controllers of the scenario
+/// `json`.
+///
+/// # Errors
+/// With the first line of the table that cannot be used.
+#[wasm_bindgen]
+pub fn replay(table: &str, json: &str) -> Result<String, JsError> {
+    let (scenario, _) = Scenario::from_json_lenient(json);
+    let script = LineScript::recorded(table, scenario.clock_hz)?;
+    Ok(replayed(scenario, script).to_json())
 }
 
 /// The scenario of a fragment: `{scenario, over_budget, message}`, or `{error}` with what is wrong

@@ -1,18 +1,14 @@
 //! A run in the worker: made in slices, kept for the views' questions. The views look at one
 //! controller at a time.
 
-use crate::convert::{field, numbers, object, words};
-use js_sys::Object;
+use crate::{convert::object, packets::Filter};
 use serde::Serialize;
 use stepscope_core::{
-    analysis::{
-        curves::{self, Window},
-        timing::TimingCheck,
-    },
+    analysis::timing::TimingCheck,
     run::{Experiment, Run},
     scenario::{Config, Scenario},
-    signal::{Event, Levels, Record, Sink},
-    trace::{Recording, Step, columns, steps},
+    signal::{Event, Record, Sink},
+    trace::{Against, Changes, Recording, Step, steps},
     units::Instant,
 };
 use wasm_bindgen::prelude::*;
@@ -30,12 +26,18 @@ pub struct Simulation {
     pub(crate) kept: Vec<Kept>,
     /// Index in `kept` of the controller that the views look at.
     pub(crate) looked_at: usize,
+    /// Which rows of its packets the table shows.
+    pub(crate) filter: Filter,
+    /// A controller's index, and how its trace stands to a file that is being read.
+    pub(crate) against: Option<(usize, Against)>,
 }
 
 /// What is kept of one controller.
 #[derive(Default)]
 pub(crate) struct Kept {
     pub(crate) recording: Recording,
+    /// Where its signals change.
+    pub(crate) changes: Changes,
     /// The pulses against the scenario's driver, if it names one.
     pub(crate) timing: Option<TimingCheck>,
     /// Steps of each channel, as far as they were asked for after the end.
@@ -57,7 +59,7 @@ impl Sink for Kept {
 }
 
 impl Kept {
-    fn count_steps(&mut self, channel: u8) {
+    pub(crate) fn count_steps(&mut self, channel: u8) {
         if let Some(place) = self.steps.get_mut(usize::from(channel))
             && place.is_none()
         {
@@ -66,7 +68,7 @@ impl Kept {
     }
 
     /// Steps of a channel, once they are counted.
-    fn steps_of(&self, channel: u8) -> &[Step] {
+    pub(crate) fn steps_of(&self, channel: u8) -> &[Step] {
         self.steps.get(usize::from(channel)).and_then(Option::as_deref).unwrap_or_default()
     }
 }
@@ -101,11 +103,12 @@ impl Simulation {
         let run = experiment.start();
         let kept = |config: &Config| Kept {
             recording: Recording::default(),
+            changes: Changes::default(),
             timing: crate::timing::check(&scenario),
             steps: vec![None; usize::from(config.channels())],
         };
         let kept = experiment.configs().map(kept).collect();
-        Ok(Self { scenario, experiment, run, kept, looked_at: 0 })
+        Ok(Self { scenario, experiment, run, kept, looked_at: 0, filter: Filter::default(), against: None })
     }
 
     /// Runs on until one controller has made about `max_records` more records: `{done, cycle, end_cycle,
@@ -115,6 +118,7 @@ impl Simulation {
     /// If the run makes more records than a page can keep.
     pub fn advance(&mut self, max_records: u32) -> Result<JsValue, JsError> {
         let done = self.run.advance_each(u64::from(max_records.max(1)), &mut self.kept);
+        self.kept.iter_mut().for_each(|kept| kept.changes.extend(&kept.recording.trace));
         let records: u64 = self.kept.iter().map(|kept| kept.recording.digest.records()).sum();
         if records > MOST_RECORDS {
             return Err(JsError::new(&format!(
@@ -138,77 +142,8 @@ impl Simulation {
     pub fn select(&mut self, controller: u32) {
         if (controller as usize) < self.kept.len() {
             self.looked_at = controller as usize;
+            self.filter = Filter::default();
         }
-    }
-
-    /// Position, speed and acceleration of an axis over a stretch of time, in columns.
-    #[must_use]
-    pub fn motion(&mut self, axis: u8, t0_s: f64, t1_s: f64, columns: u32) -> Object {
-        let window = Window { start_s: t0_s, end_s: t1_s, columns: columns.clamp(1, 10_000) as usize };
-        let (clock_hz, config) =
-            (self.experiment.config().clock_hz(), config(&self.experiment, self.looked_at));
-        let kept = &mut self.kept[self.looked_at];
-        let result = Object::new();
-        let centres: Vec<f64> = (0..window.columns).map(|column| window.centre_s(column)).collect();
-        numbers(&result, "x", &centres);
-        let plan = self.experiment.plans_of(self.looked_at).get(usize::from(axis));
-        field(&result, "has_ideal", &plan.is_some().into());
-        if let Some(plan) = plan {
-            let zero_s = kept.recording.first_tick().map_or(0.0, |start| start.seconds(clock_hz));
-            let ideal = curves::ideal(plan, zero_s, window);
-            for (name, band) in
-                [("position", ideal.position), ("speed", ideal.speed), ("acceleration", ideal.acceleration)]
-            {
-                numbers(&result, &format!("{name}_min"), &band.min);
-                numbers(&result, &format!("{name}_max"), &band.max);
-            }
-        }
-        kept.count_steps(axis);
-        let made = curves::made(&kept.recording, kept.steps_of(axis), axis, config, window);
-        for (name, band) in [("made_position", made.position), ("made_speed", made.speed)] {
-            numbers(&result, &format!("{name}_min"), &band.min);
-            numbers(&result, &format!("{name}_max"), &band.max);
-        }
-        result
-    }
-
-    /// The signals over a stretch of cycles, in columns: `{high, low, last}`, two words a column.
-    #[must_use]
-    pub fn pulses(&self, start_cycle: f64, end_cycle: f64, columns_asked: u32) -> Object {
-        let count = columns_asked.clamp(1, 10_000) as usize;
-        let found = columns(
-            &self.looked_at().recording.trace,
-            start_cycle.max(0.0) as u64,
-            end_cycle.max(1.0) as u64,
-            count,
-        );
-        let result = Object::new();
-        words(&result, "high", &found.high);
-        words(&result, "low", &found.low);
-        words(&result, "last", &found.last);
-        result
-    }
-
-    /// Cycle of the next edge of signal `bit` after (or the last before) `cycle`; kind is `any`,
-    /// `rise` or `fall`.
-    #[must_use]
-    pub fn next_edge(&self, bit: u8, cycle: f64, forward: bool, kind: &str) -> Option<f64> {
-        let mask = 1_u64 << bit.min(63);
-        let trace = &self.looked_at().recording.trace;
-        let is_edge = |index: usize| {
-            let now = trace.get(index).map_or(Levels(0), |record| record.levels).has(mask);
-            let before = trace.get(index - 1).map_or(Levels(0), |record| record.levels).has(mask);
-            now != before && (kind == "any" || (kind == "rise") == now)
-        };
-        let at = cycle.max(0.0) as u64;
-        let found = if forward {
-            let first = trace.partition_point(|record| record.cycle.0 <= at).max(1);
-            (first..trace.len()).find(|&index| is_edge(index))
-        } else {
-            let after = trace.partition_point(|record| record.cycle.0 < at);
-            (1..after).rev().find(|&index| is_edge(index))
-        };
-        found.and_then(|index| trace.get(index)).map(|record| record.cycle.0 as f64)
     }
 
     /// Spectra of the ideal motion and of the pulses, for the axis that the scenario's analysis

@@ -204,7 +204,7 @@ fn edges_are_found_in_both_directions_and_columns_hold_them() {
     assert_eq!(simulation.next_edge(200, 0.0, true, "any"), None);
 
     // Four columns of 0x40 cycles from 0x100 on: STEP and DIR are bits 0 and 16.
-    let pulses = simulation.pulses(256.0, 512.0, 4);
+    let pulses = simulation.pulses(256.0, 512.0, 4, 0);
     let low_words = |name: &str| -> Vec<u32> {
         let words: Uint32Array = get(&pulses, name).unchecked_into();
         words.to_vec().into_iter().step_by(2).map(|word| word & 0x1_0001).collect()
@@ -212,8 +212,24 @@ fn edges_are_found_in_both_directions_and_columns_hold_them() {
     assert_eq!(low_words("high"), [0x1_0001, 0x1_0000, 0x1_0001, 0x1_0000]);
     assert_eq!(low_words("low"), [1, 1, 1, 1]);
     assert_eq!(low_words("last"), [0x1_0000; 4]);
-    let empty: Uint32Array = get(&simulation.pulses(5.0, 1.0, 0), "high").unchecked_into();
+    let empty: Uint32Array = get(&simulation.pulses(5.0, 1.0, 0, 0), "high").unchecked_into();
     assert_eq!(empty.length(), 2, "at least one column");
+    let margins: Uint32Array = get(&simulation.pulses(256.0, 512.0, 4, 5), "high").unchecked_into();
+    assert_eq!(margins.to_vec()[..2], [0, 0], "the first column of the margin ends before reset");
+    assert_eq!(margins.length(), 2 * 14);
+
+    let pulse = sure(simulation.pulse_at(0, 0x110.into()));
+    assert!(get(&pulse, "high").is_truthy());
+    assert_eq!(["begin", "end", "next"].map(|name| number(&pulse, name)), [264.0, 280.0, 392.0]);
+    let edges = |bit, cycle, forward, most| {
+        let found = sure(simulation.edges(bit, cycle, forward, most));
+        let cycles: Vec<f64> = list(&found, "rows").iter().map(|row| number(row, "cycle")).collect();
+        (cycles, get(&found, "more").is_truthy())
+    };
+    assert_eq!(edges(Some(0), -1.0, true, 3), (vec![264.0, 280.0, 392.0], true));
+    assert_eq!(edges(Some(0), 281.0, false, 9), (vec![264.0, 280.0], false));
+    assert_eq!(edges(Some(0), 280.0, true, 9), (vec![392.0, 408.0], false));
+    assert_eq!(edges(None, 408.0, false, 1), (vec![392.0], true));
 }
 
 #[wasm_bindgen_test]
@@ -307,6 +323,24 @@ fn frames_and_replies_are_told_in_words_and_the_host_says_how_it_ended() {
     let touching = list(&sure(simulation.packets_in(start, end, 9)), "rows");
     let indices: Vec<f64> = touching.iter().map(|row| number(row, "index")).collect();
     assert_eq!(indices, [3.0]);
+    assert!(list(&sure(simulation.packets_in(0.0, end, 2)), "rows").is_empty(), "more than two");
+
+    // The reply's bytes one after another, and what they mean.
+    let decoded = sure(simulation.decoded(start, end, 99, 99));
+    let tx = get(&decoded, "tx");
+    let bytes = list(&tx, "bytes");
+    let spoken: Vec<String> =
+        bytes.iter().filter_map(|span| list(span, "texts").first().and_then(JsValue::as_string)).collect();
+    assert_eq!(spoken.join(" "), text(&rows[3], "hex"));
+    assert_eq!((number(&bytes[0], "start"), list(&tx, "bits").len()), (start, 10 * bytes.len()));
+    let fields: Vec<String> = list(&tx, "fields")
+        .iter()
+        .filter_map(|span| list(span, "texts").first().and_then(JsValue::as_string))
+        .collect();
+    for wanted in ["address: 1", "kind: ACK TICKS", "state: MOVING", "end mark: 00"] {
+        assert!(fields.iter().any(|field| field == wanted), "no `{wanted}` in {fields:?}");
+    }
+    assert!(get(&sure(simulation.decoded(0.0, end, 3, 3)), "more").is_truthy());
 }
 
 #[wasm_bindgen_test]

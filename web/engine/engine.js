@@ -1,7 +1,9 @@
 /**
  * The only module that talks to the worker: questions with answers, one run at a time, and a new
- * worker after a crash.
+ * worker after a crash, or where a cancel is not heard in time. A new worker makes the last good run
+ * once more, so that the views that show it can still ask.
  */
+import { compiled } from "./wasm.js";
 
 /** @typedef {import("../state/types.js").Progress} Progress */
 /** @typedef {import("../state/types.js").Summary} Summary */
@@ -11,8 +13,12 @@
  * @property {(revision: number, progress: Progress) => void} progress
  * @property {(revision: number, summary: Summary, ms: number) => void} done
  * @property {(revision: number, message: string) => void} failed
- * @property {(message: string) => void} crashed  A new worker is there already; its last run is gone.
+ * @property {(message: string) => void} crashed  A new worker is there already.
+ * @property {() => void} stopped  The worker did not hear a cancel; a new one is there, and open questions are dropped.
  */
+
+/** How long a cancel may go unanswered, in ms: one long call hears nothing. */
+const PATIENCE_MS = 1000;
 
 /** Thrown into questions that no longer matter: a newer one took their place, or the worker is gone. */
 export class Dropped extends Error {}
@@ -21,6 +27,15 @@ export class Engine {
   #worker = this.#start();
   #listener;
   #next = 0;
+  /** The run under way, the last good one, and that one while another worker makes it again. @type {{run: number, json: string} | null} */
+  #running = null;
+  /** @type {{run: number, json: string} | null} */
+  #good = null;
+  /** @type {{run: number, json: string} | null} */
+  #restoring = null;
+  /** The controller that the worker was told to look at. */
+  #selected = 0;
+  #cancelling = 0;
   /** Crashes since the worker last answered; one that cannot even start is not started for ever. */
   #crashes = 0;
   /** @type {Map<number, {resolve: (value: any) => void, reject: (error: Error) => void}>} */
@@ -41,6 +56,7 @@ export class Engine {
    */
   ask(method, ...args) {
     const id = this.#next++;
+    if (method === "select") this.#selected = args[0];
     return new Promise((resolve, reject) => {
       this.#asked.set(id, { resolve, reject });
       this.#worker.postMessage({ id, method, args });
@@ -83,18 +99,27 @@ export class Engine {
 
   /** Runs a scenario; a run that is not done yet is dropped. @param {number} revision @param {string} json */
   run(revision, json) {
-    this.#worker.postMessage({ run: revision, json });
+    this.#running = { run: revision, json };
+    this.#worker.postMessage(this.#running);
   }
 
   /** Ends a run that is not done yet. @param {number} revision */
   cancel(revision) {
-    this.#worker.postMessage({ run: revision, json: null });
+    this.#running = null;
+    this.#worker.postMessage({ cancel: revision });
+    clearTimeout(this.#cancelling);
+    this.#cancelling = window.setTimeout(() => {
+      this.#renew("cancelled");
+      this.#listener.stopped();
+    }, PATIENCE_MS);
   }
 
   #start() {
     const worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
     worker.onmessage = ({ data }) => this.#heard(data);
     worker.onerror = (event) => this.#restart(event.message || "the engine could not be loaded");
+    // What goes wrong with it is told by who waits for the charts.
+    compiled().then((module) => worker.postMessage({ module }), () => {});
     return worker;
   }
 
@@ -103,7 +128,13 @@ export class Engine {
     if (data.event !== "crashed") this.#crashes = 0;
     switch (data.event) {
       case "progress": return this.#listener.progress(data.run, data.progress);
-      case "done": return this.#listener.done(data.run, data.summary, data.ms);
+      case "restored":
+        this.#good ??= this.#restoring;
+        return;
+      case "cancelled": return clearTimeout(this.#cancelling);
+      case "done":
+        if (this.#running?.run === data.run) [this.#good, this.#running] = [this.#running, null];
+        return this.#listener.done(data.run, data.summary, data.ms);
       case "failed": return this.#listener.failed(data.run, data.message);
       case "crashed": return this.#restart(data.message);
     }
@@ -115,12 +146,27 @@ export class Engine {
 
   /** @param {string} message */
   #restart(message) {
+    if (++this.#crashes <= 2) this.#renew(message);
+    else this.#drop(message);
+    this.#listener.crashed(message);
+  }
+
+  /** Another worker in the place of this one. @param {string} why */
+  #renew(why) {
+    this.#drop(why);
+    this.#worker = this.#start();
+    // Should it end this worker, too, it is not made again.
+    [this.#restoring, this.#good] = [this.#good, null];
+    if (this.#restoring) this.#worker.postMessage({ ...this.#restoring, quiet: true, select: this.#selected });
+  }
+
+  /** @param {string} why */
+  #drop(why) {
+    clearTimeout(this.#cancelling);
     this.#worker.terminate();
     const asked = [...this.#asked.values()];
     this.#asked.clear();
-    if (++this.#crashes <= 2) this.#worker = this.#start();
-    for (const { reject } of asked) reject(new Dropped(message));
-    this.#listener.crashed(message);
+    for (const { reject } of asked) reject(new Dropped(why));
   }
 }
 

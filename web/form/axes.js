@@ -1,7 +1,8 @@
 /** The axes of a controller in the form: their mechanics and their moves. The first controller's and any further one's alike. */
 import { button, element } from "../dom.js";
-import { MECHANICS, MOVES } from "./fields.js";
+import { MECHANICS } from "./fields.js";
 import { labels } from "./kit.js";
+import { MOVES } from "./moves/index.js";
 import { MOST_CHANNELS, get, set } from "../state/state.js";
 
 /** @typedef {import("./kit.js").Kit} Kit */
@@ -29,13 +30,14 @@ function axisItem(kit, place, axes, index) {
   const kind = Object.keys(axis.mechanics)[0];
   const head = element("div", { class: "item-head" },
     kindSelect(`Mechanics of ${name}`, `${path}.mechanics`, kind, labels(MECHANICS), (chosen) => put(`${path}.mechanics`, { [chosen]: samples.mechanics[chosen] })),
+    ...(axes.length > 1 ? [button("To all", `Copy ${name} to all others`, () => put(place.axes, axes.map((other) => (other === axis ? axis : structuredClone(axis)))))] : []),
     button("Copy", `Copy ${name}`, () => addAxis(kit, place, axes, structuredClone(axis)), axes.length >= MOST_CHANNELS),
     button("✕", `Remove ${name}`, () => removeAxis(kit, place, axes, index), axes.length <= place.least));
   const fields = block(`${path}.mechanics.${kind}`, MECHANICS[kind]?.fields ?? []);
   const moves = axis.moves.map((/** @type {any} */ _, /** @type {number} */ i) => moveItem(kit, list, axis.moves, i));
   const last = axis.moves[axis.moves.length - 1];
   const add = button("Add move", `Add move to ${name}`, () => put(list, [...axis.moves, structuredClone(last ?? { cosine: samples.moves.cosine })]), axis.moves.length >= MOST_MOVES);
-  return item(`Axis ${index} · channel ${index}`, path, [head, ...fields, ...moves, add]);
+  return item(`Axis ${index} · channel ${index}`, path, [head, ...fields, ...moves, add], kind);
 }
 
 /** @param {Kit} kit @param {string} list @param {any[]} moves @param {number} index */
@@ -47,7 +49,7 @@ function moveItem({ samples, put, block, item, kindSelect }, list, moves, index)
     button("↑", `Move ${index + 1} earlier`, () => put(list, swapped(moves, index - 1)), index === 0),
     button("✕", `Remove move ${index + 1}`, () => put(list, moves.toSpliced(index, 1)), moves.length === 1));
   const note = element("p", { class: "item-note", "data-note": path });
-  return item(`Move ${index + 1}`, path, [head, ...block(`${path}.${kind}`, MOVES[kind]?.fields ?? []), note]);
+  return item(`Move ${index + 1}`, path, [head, ...block(`${path}.${kind}`, MOVES[kind]?.fields ?? []), note], kind);
 }
 
 /** An axis needs its channel: the bus grows with it. @param {Kit} kit @param {Place} place @param {any[]} axes @param {any} axis */

@@ -2,13 +2,14 @@
  * One field of the form: a label, an input (or select), its unit, a hint, its error. What is typed goes out
  * as a value, or as a draft while it is no number yet.
  */
-import { element, say } from "../dom.js";
+import { element, flash, say } from "../dom.js";
+import { termButton } from "../help/card.js";
 import { parseNumber, si } from "../state/number.js";
 import { printSegments, readSegments } from "./segments.js";
 import { derivedAxis, get } from "../state/state.js";
 
 /** @typedef {import("../state/types.js").State} State */
-/** @typedef {import("./fields.js").Field} Field */
+/** @typedef {import("./field.js").Field} Field */
 
 /**
  * @typedef {object} Control
@@ -31,7 +32,8 @@ export function control(path, field, { dispatch, now }) {
   const error = element("p", { class: "error", id: `${id}-error` });
   const hint = element("p", { class: "hint", id: `${id}-hint` }, field.hint);
   const also = element("span", { class: "also" });
-  const described = { id, "aria-describedby": `${id}-error ${id}-hint`, "data-path": path };
+  const labels = { "aria-labelledby": field.unit ? `${id}-label ${id}-unit` : `${id}-label` };
+  const described = { id, ...labels, "aria-describedby": `${id}-error ${id}-hint`, "aria-keyshortcuts": "F1", "data-path": path };
   const long = field.kind === "lines" || field.kind === "segments" || field.rows !== undefined;
   const wide = long || field.kind === "text" || isHex(field);
   const input = field.kind === "choice"
@@ -40,10 +42,10 @@ export function control(path, field, { dispatch, now }) {
       : element("input", { ...described, type: "text", spellcheck: "false" });
   const unitSelect = field.units ? element("select", { "aria-label": `Unit of ${field.label}`, "data-path": `${path}#unit` },
     ...Object.entries(field.units).map(([value, text]) => element("option", { value }, text))) : null;
-  const unit = field.unit ? element("span", { class: "unit" }, field.unit) : null;
+  const unit = field.unit ? element("span", { class: "unit", id: `${id}-unit` }, field.unit) : null;
   const box = element("div", { class: "box" }, input, ...(unitSelect ? [unitSelect] : unit ? [unit] : []));
   const root = element("div", { class: wide ? "field wide" : "field" },
-    element("label", { for: id }, field.label), box, also, hint, error);
+    termButton(field.label, field.term ?? field.key, { id: `${id}-label`, tabindex: "-1" }), box, also, hint, error);
 
   /** @type {any} */
   let value;
@@ -111,12 +113,6 @@ export function control(path, field, { dispatch, now }) {
 /** @param {any} a @param {any} b */
 function same(a, b) {
   return a === b || (typeof a === "object" && JSON.stringify(a) === JSON.stringify(b));
-}
-
-/** @param {HTMLElement} input */
-function flash(input) {
-  input.classList.remove("changed");
-  requestAnimationFrame(() => input.classList.add("changed"));
 }
 
 /** @param {any} value @param {Field} field */

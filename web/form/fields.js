@@ -2,95 +2,22 @@
  * What the form asks for: one row a field, with its unit, its range in words, and how it is typed. Ranges
  * are judged by the core; the words here only help to give a number it accepts.
  */
+import { cycles, integer, number } from "./field.js";
+import { MOVES } from "./moves/index.js";
 import { RULES } from "../views/rules.js";
 
-/**
- * @typedef {object} Field
- * @property {string} key     Name in the scenario.
- * @property {string} label
- * @property {string} hint    What it is, and its range.
- * @property {"number" | "integer" | "optional" | "cycles" | "optional-cycles" | "choice" | "quantity" | "text" | "hex" | "optional-hex" | "lines" | "segments"} kind
- *   `optional…` may be empty (null); `cycles` also takes a time; `lines` is one hex packet a line, `segments` one
- *   segment.
- * @property {string} [unit]
- * @property {{[value: string]: string}} [choices]
- * @property {{[unit: string]: string}} [units]  Of a quantity: JSON's name to the printed one.
- * @property {number} [rows]
- * @property {{key?: string, path?: string, is: string}} [when]  Only of use while a field beside it, or one at a path, has this value.
- */
-
-/** @typedef {{label: string, fields: Field[]}} Kind */
-
-const DISTANCE = { steps: "steps", mm: "mm", deg: "°" };
-const SPEED = { steps_s: "steps/s", mm_s: "mm/s", deg_s: "°/s", rpm: "rpm" };
-const ACCELERATION = { steps_s2: "steps/s²", mm_s2: "mm/s²", deg_s2: "°/s²" };
-
-/** @param {string} key @param {string} label @param {string} unit @param {string} hint @returns {Field} */
-const number = (key, label, unit, hint) => ({ key, label, unit, hint, kind: "number" });
-/** @param {string} key @param {string} label @param {string} unit @param {string} hint @returns {Field} */
-const integer = (key, label, unit, hint) => ({ key, label, unit, hint, kind: "integer" });
-/** @param {string} key @param {string} label @param {string} hint @returns {Field} */
-const cycles = (key, label, hint) => ({ key, label, unit: "cycles", hint: `${hint} A time such as 2.5 us is taken too.`, kind: "cycles" });
-/** @param {string} key @param {string} label @param {{[unit: string]: string}} units @param {string} hint @returns {Field} */
-const quantity = (key, label, units, hint) => ({ key, label, units, hint, kind: "quantity" });
+/** @typedef {import("./field.js").Field} Field */
+/** @typedef {import("./field.js").Kind} Kind */
 
 const FULL_STEP = number("full_step_deg", "Full step", "°", "Angle of the motor's full step, above 0; 1.8° is 200 a turn.");
 const MICROSTEPS = integer("microsteps", "Microsteps", "", "In a full step, 1 to 512.");
 
 /** How an axis turns steps into millimetres and degrees. @type {{[kind: string]: Kind}} */
 export const MECHANICS = {
-  rotary: { label: "Rotary shaft", fields: [FULL_STEP, MICROSTEPS] },
-  wheel: { label: "Wheel, pulley or gear", fields: [FULL_STEP, MICROSTEPS, number("radius_mm", "Radius", "mm", "Above 0; 2π × radius is the way of one turn.")] },
-  screw: { label: "Lead screw", fields: [FULL_STEP, MICROSTEPS, number("lead_mm", "Lead", "mm", "Above 0; way of the nut in one turn.")] },
-  direct: { label: "Length of a step", fields: [number("step_mm", "One step", "mm", "Above 0; measured or given length of one step.")] },
-};
-
-/** What a move can be. @type {{[kind: string]: Kind}} */
-export const MOVES = {
-  cosine: {
-    label: "Cosine S-curve",
-    fields: [
-      quantity("distance", "Distance", DISTANCE, "Negative is left. Reached exactly."),
-      number("duration_s", "Duration", "s", "Time of the whole move, above 0. Kept exactly."),
-      number("ramp_s", "Ramp", "s", "Time of each ramp, at most half of the duration."),
-    ],
-  },
-  trapezoid: {
-    label: "Trapezoid",
-    fields: [
-      quantity("distance", "Distance", DISTANCE, "Negative is left."),
-      quantity("start_speed", "Start speed", SPEED, "Speed of the first step, above 0."),
-      quantity("top_speed", "Top speed", SPEED, "Speed of the plateau, at least the start speed; short moves do not reach it."),
-      quantity("acceleration", "Acceleration", ACCELERATION, "Above 0; also of the slowing down."),
-      { key: "method", label: "Step times", kind: "choice", choices: { table: "table and timer", exact: "exact" }, hint: "Whole rates from a table and a timer's whole reloads, as the document has them; or the ideal curve's own times." },
-      { ...integer("timer_hz", "Timer clock", "Hz", "Counts the table's reloads."), when: { key: "method", is: "table" } },
-    ],
-  },
-  staircase: {
-    label: "Staircase of rates",
-    fields: [
-      quantity("distance", "Distance", DISTANCE, "Negative is left."),
-      quantity("top_speed", "Top speed", SPEED, "Speed of the plateau; at or below the start speed that of the whole move."),
-      integer("level", "Acceleration level", "", "1 to 5: 1000 to 5000 steps/s²."),
-      { key: "short_move", label: "Short moves", kind: "choice", choices: { document: "at start speed", turn_round: "turn round" }, hint: "What becomes of a move that is too short for its top speed: the whole of it at the start speed, as in the document, or up as many rows as there is room for and down again." },
-      quantity("start_speed", "Start speed", SPEED, "First rate of the table."),
-      quantity("max_speed", "Table ends above", SPEED, "The table ends with the first rate above this; no top speed may be above it."),
-    ],
-  },
-  sine_segments: {
-    label: "Sine in segments",
-    fields: [
-      quantity("amplitude", "Amplitude", DISTANCE, "From the middle to an extreme, above 0."),
-      number("period_s", "Period", "s", "Time of one period, above 0."),
-      integer("periods", "Periods", "", "How many whole periods, from 1."),
-      number("max_deviation", "Deviation d1", "× A", "Largest distance of a segment from the sine, d1; 0.002 to 0.015 in the document."),
-    ],
-  },
-  constant: {
-    label: "Constant rate",
-    fields: [quantity("distance", "Distance", DISTANCE, "Negative is left."), quantity("speed", "Speed", SPEED, "From the first step to the last, above 0.")],
-  },
-  dwell: { label: "Dwell", fields: [number("duration_s", "Duration", "s", "Standing still, from 0.")] },
+  rotary: { label: "Rotary shaft", about: { text: "The motor turns something; distances are angles. Steps a turn = 360° / full step × microsteps.", from: "sonobe" }, fields: [FULL_STEP, MICROSTEPS] },
+  wheel: { label: "Wheel, pulley or gear", about: { text: "The motor moves something by a radius: one turn is 2π × radius. A step is that, divided by the steps of a turn.", from: "sonobe" }, fields: [FULL_STEP, MICROSTEPS, number("radius_mm", "Radius", "mm", "Above 0; 2π × radius is the way of one turn.")] },
+  screw: { label: "Lead screw", about: { text: "The motor turns a screw; its nut moves by the lead in one turn.", from: "zhang" }, fields: [FULL_STEP, MICROSTEPS, number("lead_mm", "Lead", "mm", "Above 0; way of the nut in one turn.")] },
+  direct: { label: "Length of a step", about: { text: "The way of one step as it was measured: the fixed-length controller finds it by least squares over measured pairs of length and steps.", from: "zhang" }, fields: [number("step_mm", "One step", "mm", "Above 0; measured or given length of one step.")] },
 };
 
 /** @type {Field} */
@@ -119,7 +46,7 @@ export const SEND = [
 export const GLITCH = [
   cycles("start_cycle", "Start", "First forced cycle, from 1."),
   cycles("length_cycles", "Length", "From 1."),
-  { key: "level", label: "Level", kind: "choice", choices: { 0: "0 (low)", 1: "1 (high)" }, hint: "Forced on the line whatever is sent; the later entry wins." },
+  { key: "level", term: "forced_level", label: "Level", kind: "choice", choices: { 0: "0 (low)", 1: "1 (high)" }, hint: "Forced on the line whatever is sent; the later entry wins." },
 ];
 
 /** @type {Field} */
@@ -173,6 +100,9 @@ const BUS_PULSES = [
   cycles("boot_cycles", "Self-test", "After reset, 0 to 2³² − 1; packets that end in it are dropped."),
 ];
 
+/** What of a bus counts where segments run it; and nothing of the line does. */
+export const OF_SEGMENTS = ["channels", "pulse_width_cycles", "dir_setup_cycles", "dir_hold_cycles"];
+
 /** A further controller: its own fields, its bus, and what of that is folded away. @type {{own: Field[], bus: Field[], folded: Field[]}} */
 export const CONTROLLER = {
   own: [integer("address", "Address", "", "0 to 254, which no other controller has."), RECEIVER_BAUD],
@@ -185,17 +115,18 @@ export const RULE_FIELDS = Object.entries(RULES).map(([rule, label]) =>
 
 /**
  * The sections beside the source. Keys are paths below the section's own; a group is folded away.
+ * `onLine` is of use only where something is sent.
  * @typedef {{path: string, fields: Field[]}} Block
- * @type {{title: string, open: boolean, blocks: Block[], group?: {title: string} & Block, list?: "glitches" | "controllers" | "driver"}[]}
+ * @type {{title: string, open: boolean, onLine?: boolean, blocks: Block[], group?: {title: string} & Block, list?: "glitches" | "controllers" | "driver"}[]}
  */
 export const SECTIONS = [
   {
-    title: "Serial line", open: true, list: "glitches",
+    title: "Serial line", open: true, onLine: true, list: "glitches",
     blocks: [{ path: "line", fields: LINE }, { path: "line.host", fields: HOST }],
     group: { title: "Noise", path: "line.noise", fields: NOISE },
   },
   { title: "Driver bus", open: true, blocks: [{ path: "bus", fields: [...BUS_SIZE, ...BUS_PULSES] }] },
-  { title: "Further controllers", open: true, blocks: [], list: "controllers" },
+  { title: "Further controllers", open: true, onLine: true, blocks: [], list: "controllers" },
   { title: "Driver timing", open: true, blocks: [], list: "driver" },
   {
     title: "Spectrum", open: false,

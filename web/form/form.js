@@ -5,10 +5,12 @@
 import { controllerItems } from "./controllers.js";
 import { element, fill } from "../dom.js";
 import { driverItems } from "./driver.js";
-import { GLITCH, SECTIONS } from "./fields.js";
+import { GLITCH, OF_SEGMENTS, SECTIONS } from "./fields.js";
 import { showAbout, showDerived, showProblems } from "./judgement.js";
+import { TERMS } from "../help/terms.js";
 import { createKit, labels } from "./kit.js";
-import { SOURCES, withSource } from "./sources.js";
+import { showRemedy } from "./remedies.js";
+import { SOURCES, runsAlone, withSource } from "./sources.js";
 import { get, held } from "../state/state.js";
 
 /** @typedef {import("../state/types.js").State} State */
@@ -28,13 +30,14 @@ export function createForm({ root, samples, drivers, dispatch }) {
   function source(scenario) {
     const kind = Object.keys(scenario.source)[0];
     const select = kit.kindSelect("What the host sends", "source", kind, labels(SOURCES), (chosen) => kit.put("", withSource(state.scenario, chosen, samples)));
-    return [kit.errorOf("source"), element("div", { class: "item-head" }, select), ...SOURCES[kind].form(kit, scenario)];
+    return [kit.errorOf("source"), element("div", { class: "item-head" }, select),
+      element("p", { class: "item-note" }, TERMS[SOURCES[kind].term].text), ...SOURCES[kind].form(kit, scenario)];
   }
 
   /** Lists whose length changes, by the name that a section gives them. @type {{[list: string]: (scenario: Scenario) => Node[]}} */
   const LISTS = {
     glitches: (scenario) => kit.rows("line.glitches", scenario.line.glitches, GLITCH, "Glitch",
-      (last) => (last ? { ...last, start_cycle: last.start_cycle + 2 * last.length_cycles } : structuredClone(samples.glitch))),
+      (last) => (last ? { ...last, start_cycle: last.start_cycle + 2 * last.length_cycles } : structuredClone(samples.glitch)), "glitches_ppm"),
     controllers: (scenario) => controllerItems(kit, scenario),
     driver: (scenario) => driverItems(kit, scenario, drivers),
   };
@@ -51,8 +54,10 @@ export function createForm({ root, samples, drivers, dispatch }) {
     kit.clear();
     const active = /** @type {HTMLElement | null} */ (document.activeElement);
     const focus = active && root.contains(active) ? focusOf(active) : null;
-    const sections = SECTIONS.map(({ title, open, blocks, group, list }) => kit.part(title, open, [
-      ...blocks.flatMap(({ path, fields }) => kit.block(path, fields)),
+    const alone = runsAlone(scenario);
+    const asked = SECTIONS.filter(({ onLine }) => !(onLine && alone) || scenario.controllers.length > 0);
+    const sections = asked.map(({ title, open, blocks, group, list }) => kit.part(title, open, [
+      ...blocks.flatMap(({ path, fields }) => kit.block(path, path === "bus" && alone ? fields.filter(({ key }) => OF_SEGMENTS.includes(key)) : fields)),
       ...(group ? [kit.part(group.title, used(get(scenario, group.path)), kit.block(group.path, group.fields))] : []),
       ...(list ? LISTS[list](scenario) : []),
     ]));
@@ -78,8 +83,11 @@ export function createForm({ root, samples, drivers, dispatch }) {
     const judged = held(next) !== "unjudged";
     if (judged && (before?.judgement !== next.judgement || before?.drafts !== next.drafts)) {
       showProblems(next, kit.controls, kit.groups);
-      showDerived(next, root);
     }
+    if (before?.result !== next.result || before?.judgement !== next.judgement || before?.scenario !== next.scenario || before?.drafts !== next.drafts) {
+      showRemedy(next, drivers, (scenario) => kit.put("", scenario));
+    }
+    if (judged && (before?.judgement !== next.judgement || before?.drafts !== next.drafts || before?.result !== next.result)) showDerived(next, root);
   }
 
   return { render };
@@ -94,6 +102,6 @@ function used(group) {
 function shapeOf({ source, controllers, driver, line }) {
   const kinds = (/** @type {any[]} */ axes) => axes.map((axis) =>
     [Object.keys(axis.mechanics)[0], ...axis.moves.map((/** @type {any} */ move) => Object.keys(move)[0])]);
-  return JSON.stringify([Object.keys(source)[0], kinds(source.motion?.axes ?? []), source.line?.sends?.length, source.segments?.channels?.length, line.glitches.length,
+  return JSON.stringify([Object.keys(source)[0], runsAlone({ source }), kinds(source.motion?.axes ?? []), source.line?.sends?.length, source.segments?.channels?.length, line.glitches.length,
     controllers.map((/** @type {any} */ { axes }) => kinds(axes)), driver && (driver.preset ?? "rules")]);
 }

@@ -1,7 +1,9 @@
 /** Shows what the core says about the scenario: problems beside their fields, and what follows from it. */
-import { button, byId, element, fill, say } from "../dom.js";
+import { button, byId, element, fill, flash, say } from "../dom.js";
+import { termButton } from "../help/card.js";
 import { count, plain, short, si } from "../state/number.js";
 import { derivedAxis } from "../state/state.js";
+import { runsAlone } from "./sources.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("./control.js").Control} Control */
@@ -83,10 +85,27 @@ function markSections() {
 /** @param {State} state @param {HTMLElement} form */
 export function showDerived(state, form) {
   const root = byId("derived");
-  const { derived } = state;
   const fresh = state.judgement?.derived !== null && Object.keys(state.drafts).length === 0;
   root.classList.toggle("stale", !fresh);
-  if (!derived) return fill(root);
+  const rows = state.derived ? rowsOf(state, state.derived) : [];
+  const terms = [...root.querySelectorAll("dt")];
+  if (rows.length !== terms.length || rows.some(([name], index) => terms[index].textContent !== name)) {
+    fill(root, element("dl", {}, ...rows.map(([name, value, mark, term]) =>
+      element("div", {}, element("dt", {}, termButton(name, term)), element("dd", { class: mark }, value)))));
+  } else {
+    for (const [index, value] of [...root.querySelectorAll("dd")].entries()) {
+      const [, text, mark] = rows[index];
+      value.classList.toggle("over", mark === "over");
+      if (value.textContent === text) continue;
+      say(value, text);
+      flash(value);
+    }
+  }
+  for (const note of /** @type {NodeListOf<HTMLElement>} */ (form.querySelectorAll("[data-note]"))) say(note, moveNote(note.dataset.note ?? "", state));
+}
+
+/** Name, value, `over` where it is too much, and the term that explains it. @param {State} state @param {import("../state/types.js").Derived} derived @returns {[string, string, string, string][]} */
+function rowsOf(state, derived) {
   const [{ tick_s, limit_steps_s }] = derived.controllers;
   // Further controllers can have ticks of another length.
   const several = derived.controllers.length > 1;
@@ -96,31 +115,34 @@ export function showDerived(state, form) {
   const load = derived.line_load;
   const { source, line } = state.scenario;
   const sends = "line" in source;
-  // Segments run by themselves: there are no ticks, and nothing is sent.
-  const alone = "segments" in source || source.motion?.engine === "segments";
+  const alone = runsAlone(state.scenario);
   const over = !alone && derived.controllers.some((controller) => controller.axes.some((axis) => axis.peak_speed_steps_s > controller.limit_steps_s));
-  const rows = [
-    // How long the last tick of a line script waits is known only after the run.
-    [sends ? "Duration at most" : line.protocol === "framed" && !alone ? "Duration, about" : "Duration", si(derived.duration_s, "s"), ""],
-    ["Peak rate", axes.length ? plain(peak, "steps/s") : "–", over ? "over" : ""],
-    ...(alone ? [["On the line", "nothing", ""]] : [[several ? "Tick of controller 1" : "Tick", sends ? si(tick_s, "s") : `${si(tick_s, "s")}, ${count(ticks)} in all`, ""],
-    [several ? "Limit of its bus" : "Limit of the bus", plain(limit_steps_s, "steps/s"), ""],
-    sent(state, derived),
-    ["Line load", load === null ? "–" : `${short(load * 100, 3)} %`, load !== null && load > 1 ? "over" : ""]]),
+  return [
+    // When the last tick of packets or of a line script begins and ends, and what becomes of it on a line that goes wrong, is known only after the run.
+    [line.protocol === "framed" && !alone && !sends ? "Duration, about" : sends || "packets" in source || (!alone && !isQuiet(line)) ? "Duration at most" : "Duration", si(derived.duration_s, "s"), "", "duration"],
+    ["Peak rate", axes.length ? plain(peak, "steps/s") : "–", over ? "over" : "", "peak_rate"],
+    ...(alone ? [/** @type {[string, string, string, string]} */ (["On the line", "nothing", "", "on_the_line"])] : /** @type {[string, string, string, string][]} */ ([
+      [several ? "Tick of controller 1" : "Tick", sends ? si(tick_s, "s") : `${si(tick_s, "s")}, ${count(ticks)} in all`, "", "tick"],
+      [several ? "Limit of its bus" : "Limit of the bus", plain(limit_steps_s, "steps/s"), "", "limit"],
+      sent(state, derived),
+      ["Line load", load === null ? "–" : `${short(load * 100, 3)} %`, load !== null && load > 1 ? "over" : "", "line_load"]])),
   ];
-  fill(root, element("dl", {}, ...rows.map(([name, value, mark]) =>
-    element("div", {}, element("dt", {}, name), element("dd", mark ? { class: mark } : {}, value)))));
-  for (const note of /** @type {NodeListOf<HTMLElement>} */ (form.querySelectorAll("[data-note]"))) say(note, moveNote(note.dataset.note ?? "", state));
 }
 
-/** What goes over the line: how much, or how often. @param {State} state @param {import("../state/types.js").Derived} derived */
-function sent({ scenario: { source, line } }, { sends, line_load, controllers }) {
-  if ("line" in source) return ["Sends", count(sends), ""];
-  // How many are repeated on a noisy line only the run tells.
-  const quiet = line.glitches.length === 0 && Object.entries(line.noise).every(([key, value]) => key === "seed" || value === 0);
-  if (line.protocol === "framed") return ["Frames", quiet ? count(sends) : "–", ""];
+/** Whether nothing on the line goes wrong. @param {any} line */
+function isQuiet({ glitches, noise }) {
+  return glitches.length === 0 && Object.entries(noise).every(([key, value]) => key === "seed" || value === 0);
+}
+
+/** What goes over the line: how much, or how often. @param {State} state @param {import("../state/types.js").Derived} derived @returns {[string, string, string, string]} */
+function sent({ scenario: { source, line }, result, revision }, { sends, line_load, controllers }) {
+  if ("line" in source) return ["Sends", count(sends), "", "line_script"];
+  // How many are repeated on a noisy line only the run tells; a controller that dies is asked everything again.
+  const ran = result?.revision === revision ? result.summary.host : null;
+  const most = line.noise.deaths_ppm > 0 ? "after the run" : `at most ${count(sends)}`;
+  if (line.protocol === "framed") return ["Frames", ran ? count(ran.frames) : isQuiet(line) ? count(sends) : most, "", "frame"];
   const busy = controllers.filter(({ ticks }) => ticks > 0).length;
-  return ["Packets", line_load === null ? "–" : plain(busy / controllers[0].tick_s, "/s"), ""];
+  return ["Packets", line_load === null ? "–" : plain(busy / controllers[0].tick_s, "/s"), "", "rate_of_packets"];
 }
 
 /** @param {string} path @param {State} state */

@@ -1,9 +1,10 @@
 /** What the parts of the form are built with: fields, folded parts, fieldsets, lists and choices of kinds. */
 import { control } from "./control.js";
 import { button, element } from "../dom.js";
+import { termButton } from "../help/card.js";
 
 /** @typedef {import("../state/types.js").State} State */
-/** @typedef {import("./fields.js").Field} Field */
+/** @typedef {import("./field.js").Field} Field */
 /** @typedef {import("./control.js").Control} Control */
 /**
  * @typedef {{moves: {[kind: string]: any}, mechanics: {[kind: string]: any}, sources: {[kind: string]: any},
@@ -48,26 +49,26 @@ export function createKit({ samples, now, dispatch }) {
     return details;
   }
 
-  /** A fieldset that can be moved out. @param {string} legend @param {string} path @param {Node[]} children */
-  function item(legend, path, children) {
-    return element("fieldset", { class: "item" }, element("legend", {}, legend), errorOf(path), element("div", { class: "item-body" }, ...children));
+  /** A fieldset that can be moved out. @param {string} legend @param {string} path @param {Node[]} children @param {string} term  What explains it. */
+  function item(legend, path, children, term) {
+    return element("fieldset", { class: "item" }, element("legend", {}, termButton(legend, term, { tabindex: "-1" })), errorOf(path), element("div", { class: "item-body" }, ...children));
   }
 
   /** A choice of kinds. @param {string} label @param {string} path @param {string} kind @param {{[kind: string]: string}} kinds @param {(kind: string) => void} choose */
   function kindSelect(label, path, kind, kinds, choose) {
-    const select = element("select", { "aria-label": label, "data-path": `${path}#kind` });
+    const select = element("select", { "aria-label": label, "aria-keyshortcuts": "F1", "data-path": `${path}#kind` });
     for (const [value, text] of Object.entries(kinds)) select.append(element("option", { value }, text));
     select.value = kind;
     select.addEventListener("change", () => choose(select.value));
     return select;
   }
 
-  /** A list of equal rows. @param {string} path @param {any[]} values @param {Field[]} fields @param {string} name @param {(last: any) => any} fresh  The row after another, or the first. */
-  function rows(path, values, fields, name, fresh) {
+  /** A list of equal rows. @param {string} path @param {any[]} values @param {Field[]} fields @param {string} name @param {(last: any) => any} fresh  The row after another, or the first. @param {string} term */
+  function rows(path, values, fields, name, fresh, term) {
     const items = values.map((_, index) => item(`${name} ${index + 1}`, `${path}[${index}]`, [
       ...block(`${path}[${index}]`, fields),
       button("Remove", `Remove ${name.toLowerCase()} ${index + 1}`, () => put(path, values.toSpliced(index, 1))),
-    ]));
+    ], term));
     return [...items, button(`Add ${name.toLowerCase()}`, `Add ${name.toLowerCase()}`, () => put(path, [...values, fresh(values[values.length - 1])]))];
   }
 

@@ -2,11 +2,12 @@
  * Lists of segments as a person types them, one a line: `20 1048576000 -500 right` for 20 steps, the first after
  * so many 1/65536 cycles, each next interval so many longer; `dwell 65536000` for standing still.
  */
+import { whole } from "../state/json.js";
 
 const STEPS = /^(\d+)\s+(\d+)(?:\s+([-+−]?\d+))?(?:\s+(left|right))?$/i;
 const DWELL = /^dwell\s+(\d+)$/i;
 
-/** @typedef {{steps: {count: number, interval_q16: number, add_q16: number, dir: number}} | {dwell: {length_q16: number}}} Segment */
+/** @typedef {{steps: {count: number | bigint, interval_q16: number | bigint, add_q16: number | bigint, dir: number}} | {dwell: {length_q16: number | bigint}}} Segment */
 
 /** @param {any[]} segments */
 export function printSegments(segments) {
@@ -26,13 +27,12 @@ export function readSegments(text) {
   return { value };
 }
 
-/** @param {string} line @returns {Segment | null}  null also for numbers that a page cannot hold exactly. */
+/** @param {string} line @returns {Segment | null} */
 function readSegment(line) {
   const [, length] = DWELL.exec(line) ?? [];
   const [, count, interval, add = "0", way = "right"] = STEPS.exec(line) ?? [];
-  const numbers = [length ?? count, interval ?? "0", add.replace("−", "-")].map(Number);
-  if (!numbers.every(Number.isSafeInteger)) return null;
-  const [first, interval_q16, add_q16] = numbers;
+  if (length === undefined && count === undefined) return null;
+  const [first, interval_q16, add_q16] = [length ?? count, interval ?? "0", add.replace("−", "-").replace("+", "")].map(whole);
   if (length !== undefined) return { dwell: { length_q16: first } };
   return { steps: { count: first, interval_q16, add_q16, dir: way.toLowerCase() === "right" ? 1 : 0 } };
 }

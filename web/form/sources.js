@@ -8,6 +8,7 @@ import { ENGINE, PACKET_LINES, SEGMENTS, SEND } from "./fields.js";
 /**
  * @typedef {object} SourceKind
  * @property {string} label
+ * @property {string} term  What explains it.
  * @property {(scenario: Scenario, samples: Samples) => any} fresh  What stands in the source when it is chosen.
  * @property {(kit: Kit, scenario: Scenario) => Node[]} form
  * @property {(scenario: Scenario, samples: Samples, controller: any) => {axes?: any[], packets?: string[]}} order  What a further controller is to do when it is chosen.
@@ -17,35 +18,40 @@ import { ENGINE, PACKET_LINES, SEGMENTS, SEND } from "./fields.js";
 /** @type {{[kind: string]: SourceKind}} */
 export const SOURCES = {
   motion: {
-    label: "Motion of axes",
+    label: "Motion of axes", term: "motion",
     fresh: (_, samples) => structuredClone(samples.sources.motion),
     form: (kit) => [kit.row("source.motion.engine", ENGINE), ...axisItems(kit, { axes: "source.motion.axes", bus: "bus", whose: "", least: 1 })],
     order: (_, samples) => ({ axes: structuredClone(samples.sources.motion.axes) }),
     orderForm: (kit, index) => axisItems(kit, { axes: `controllers[${index}].axes`, bus: `controllers[${index}].bus`, whose: ` of controller ${index + 2}`, least: 0 }),
   },
   packets: {
-    label: "Packets in hex",
+    label: "Packets in hex", term: "packets_in_hex",
     fresh: (scenario) => ({ packets: packets(scenario, scenario.bus, scenario.line.address) }),
     form: (kit) => [kit.row("source.packets.packets", PACKET_LINES)],
     order: (scenario, _, controller) => ({ packets: packets(scenario, controller.bus, controller.address) }),
     orderForm: (kit, index) => [kit.row(`controllers[${index}].packets`, PACKET_LINES)],
   },
   line: {
-    label: "Line script",
+    label: "Line script", term: "line_script",
     fresh: (scenario) => ({ sends: sends(scenario) }),
     form: (kit, scenario) => kit.rows("source.line.sends", scenario.source.line.sends, SEND, "Send",
-      (last) => (last ? { ...last, start_cycle: after(last, kit.now().scenario) } : structuredClone(kit.samples.send))),
+      (last) => (last ? { ...last, start_cycle: after(last, kit.now().scenario) } : structuredClone(kit.samples.send)), "line_script"),
     order: () => ({}),
     orderForm: () => [],
   },
   segments: {
-    label: "Lists of segments",
+    label: "Lists of segments", term: "lists_of_segments",
     fresh: ({ bus }) => ({ channels: Array.from({ length: Number(bus.channels) || 1 }, list) }),
-    form: (kit, scenario) => kit.rows("source.segments.channels", scenario.source.segments.channels, SEGMENTS, "List", (last) => structuredClone(last ?? list())),
+    form: (kit, scenario) => kit.rows("source.segments.channels", scenario.source.segments.channels, SEGMENTS, "List", (last) => structuredClone(last ?? list()), "lists_of_segments"),
     order: () => ({}),
     orderForm: () => [],
   },
 };
+
+/** Whether segments run it: then nothing is on the line, and there are no ticks. @param {Scenario} scenario */
+export function runsAlone({ source }) {
+  return "segments" in source || source.motion?.engine === "segments";
+}
 
 /** Faster to the right, a pause, and evenly back: something to see and to change. */
 function list() {

@@ -27,7 +27,7 @@ export function listen(target, title, commands) {
   target.addEventListener("keydown", (raw) => {
     const event = /** @type {KeyboardEvent} */ (raw);
     if (event.defaultPrevented || event.isComposing) return;
-    const command = byKey.get(nameOf(event).toLowerCase());
+    const command = byKey.get(nameOf(event).toLowerCase()) ?? byKey.get(digitOf(event));
     if (command && command.run(event) !== false) event.preventDefault();
   });
 }
@@ -41,4 +41,10 @@ export function listed() {
 function nameOf({ key, ctrlKey, metaKey, altKey, shiftKey }) {
   const sign = key.length === 1 && !/[a-z]/i.test(key);
   return [ctrlKey || metaKey ? "Ctrl+" : "", altKey ? "Alt+" : "", shiftKey && !sign ? "Shift+" : "", key === " " ? "Space" : key].join("");
+}
+
+/** A key of the row of digits by its place, for on many keyboards Shift makes another sign of it, or only Shift a digit. @param {KeyboardEvent} event */
+function digitOf({ code, ctrlKey, metaKey, altKey, shiftKey }) {
+  const [, digit] = /^Digit(\d)$/.exec(code) ?? [];
+  return digit && !ctrlKey && !metaKey && !altKey ? `${shiftKey ? "shift+" : ""}${digit}` : "";
 }

@@ -2,6 +2,7 @@
 import { byId, element, fill, options, say } from "../dom.js";
 import { listen } from "./commands.js";
 import { health, ill } from "./health.js";
+import { readJson } from "../state/json.js";
 import { count, si } from "../state/number.js";
 import { recolor } from "../time/plot.js";
 import { held, isStale, lookedAt } from "../state/state.js";
@@ -11,7 +12,7 @@ import { loadTheme, saveTheme } from "./storage.js";
 /** @typedef {import("../state/types.js").Preset} Preset */
 
 /** Progress is shown only for runs longer than this, in ms. */
-const PATIENCE_MS = 150;
+const PATIENCE_MS = 90;
 
 /** @param {{presets: Preset[], cancel: () => void, retry: () => void} & import("../time/timeline.js").Page} page */
 export function createHeader({ presets, cancel, retry, dispatch, now }) {
@@ -24,10 +25,9 @@ export function createHeader({ presets, cancel, retry, dispatch, now }) {
 
   fill(preset, element("option", { value: "" }, "Presets…"), ...groups(presets));
   preset.disabled = false;
-  /** @type {HTMLButtonElement} */ (byId("copy-link")).disabled = false;
   preset.addEventListener("change", () => {
     const chosen = presets.find(({ id }) => id === preset.value);
-    if (chosen) dispatch({ type: "replace", scenario: JSON.parse(chosen.scenario), origin: `preset:${chosen.id}` });
+    if (chosen) dispatch({ type: "replace", scenario: readJson(chosen.scenario), origin: `preset:${chosen.id}` });
   });
   controller.addEventListener("change", () => dispatch({ type: "controller", controller: Number(controller.value) }));
   undo.addEventListener("click", () => dispatch({ type: "undo" }));
@@ -52,8 +52,9 @@ export function createHeader({ presets, cancel, retry, dispatch, now }) {
     progress.hidden = !long;
     byId("cancel").hidden = !long;
     if (state.run.progress) progress.value = state.run.progress.cycle / Math.max(1, state.run.progress.end_cycle);
-    say(byId("status"), status(state, long));
-    say(byId("health"), health(state));
+    line("status", status(state, long));
+    say(byId("computed"), state.result && !long ? `computed in ${si(state.result.ms / 1000, "s", 2)}` : "");
+    line("health", health(state));
     byId("health").classList.toggle("error", ill(state));
     chooser(state);
     say(byId("digest"), lookedAt(state)?.digest ?? "–");
@@ -72,14 +73,21 @@ export function createHeader({ presets, cancel, retry, dispatch, now }) {
   return { render };
 }
 
+/** A line of the header, whole in its tip where there is no room for all of it. @param {string} id @param {string} text */
+function line(id, text) {
+  say(byId(id), text);
+  if (byId(id).title !== text) byId(id).title = text;
+}
+
 /** @param {State} state @param {boolean} long */
 function status(state, long) {
   const { progress } = state.run;
+  if (long && progress?.end_cycle === 0) return "planning the motion…";
   if (long && progress) return `${Math.round((100 * progress.cycle) / Math.max(1, progress.end_cycle))} %, ${count(progress.records)} edges so far`;
   const held_back = held(state) === "problems" ? "not run: the form needs attention" : "";
   if (!state.result) return held_back || (state.run.phase === "running" ? "running…" : "no result yet");
   const { edges = 0 } = lookedAt(state) ?? {};
-  const parts = [`${count(edges)} edges`, si(state.result.summary.end_s, "s"), `computed in ${si(state.result.ms / 1000, "s", 2)}`];
+  const parts = [`${count(edges)} edges`, si(state.result.summary.end_s, "s")];
   if (held_back) parts.unshift(`${held_back}; last result`);
   return parts.join(" · ");
 }

@@ -1,8 +1,11 @@
-/** What this device keeps: the visitor's own scenario and the choice of colours. Storage may be refused; then nothing is kept. */
+/** What this device keeps: the visitor's own scenario, the last that ran, the choice of colours, the sizes of the panes. Storage may be refused; then nothing is kept. */
 
 const SCENARIO = "stepscope.scenario";
 const PREVIOUS = "stepscope.previous";
+const GOOD = "stepscope.good";
 const THEME = "stepscope.theme";
+const GUIDED = "stepscope.guide";
+const PANES = "stepscope.panes";
 
 /** @param {string} key @returns {string | null} */
 function load(key) {
@@ -31,6 +34,17 @@ export function setAside() {
   if (saved !== null) save(PREVIOUS, saved);
 }
 export const loadPrevious = () => load(PREVIOUS);
+/** The last own scenario that ran to its end. */
+export const loadGood = () => load(GOOD);
+/** @param {string} json */
+export const saveGood = (json) => save(GOOD, json);
 export const loadTheme = () => load(THEME);
 /** @param {string} theme */
 export const saveTheme = (theme) => save(THEME, theme);
+/** Whether the guide was seen, or declined for ever. */
+export const loadGuided = () => load(GUIDED) !== null;
+export const saveGuided = () => save(GUIDED, "seen");
+/** Sizes of the panes, as JSON. */
+export const loadPanes = () => load(PANES);
+/** @param {string} json */
+export const savePanes = (json) => save(PANES, json);

@@ -27,12 +27,8 @@ export function createTabs({ dispatch }) {
   narrow.addEventListener("change", fold);
   fold();
 
-  /** @param {State} state @param {State | undefined} before */
-  function render(state, before) {
-    // A chosen packet is shown in the pulses, wherever it was chosen.
-    if (narrow.matches && before && before.packet !== state.packet && state.packet !== null && state.view === "packets") {
-      queueMicrotask(() => dispatch({ type: "view", view: "pulses" }));
-    }
+  /** @param {State} state */
+  function render(state) {
     const driver = typeof lookedAt(state)?.violations === "number";
     tab("timing").hidden = !driver;
     const shown = state.view === "timing" && !driver ? "spectrum" : state.view;

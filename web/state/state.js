@@ -19,17 +19,23 @@
  *   | {type: "running"} | {type: "progress", progress: import("./types.js").Progress}
  *   | {type: "done", revision: number, summary: import("./types.js").Summary, ms: number}
  *   | {type: "failed", message: string}
- *   | {type: "window", window: Span | null}
- *   | {type: "open", window: Span}
+ *   | {type: "window", window: Span | null, joins?: string} | {type: "back"}
+ *   | {type: "box", on: boolean} | {type: "pick", picked: Span | null}
+ *   | {type: "reference", reference: State["reference"]} | {type: "difference", on: boolean}
+ *   | {type: "harmonic", harmonic: number | null}
+ *   | {type: "open", view: import("./types.js").ViewPart}
+ *   | {type: "seen", text: string} | {type: "compared", text: string, verdict: import("./types.js").Verdict}
  *   | {type: "hover", cycle: number | null}
  *   | {type: "light", lit: State["lit"]}
  *   | {type: "marker", digit: number, cycle: number | null}
  *   | {type: "cursor", which: "a" | "b", cycle: number | null}
  *   | {type: "row", row: number} | {type: "packet", packet: number | null}
+ *   | {type: "filter", filter: Partial<State["filter"]>}
  *   | {type: "fold", channel: number, folded: boolean} | {type: "fold-all", folded: boolean}
  *   | {type: "all-signals", on: boolean}
  *   | {type: "controller", controller: number} | {type: "side", side: "spectrum" | "timing"}
  *   | {type: "axis", axis: number} | {type: "unit", unit: State["unit"]}
+ *   | {type: "pane", panes: Partial<import("./types.js").Panes>}
  *   | {type: "view", view: string} | {type: "notice", notice: State["notice"]}} Message
  */
 
@@ -39,10 +45,15 @@ export const DEPTH = 50;
 export const MOST_FURTHER = 31;
 /** Channels that a bus can have. */
 export const MOST_CHANNELS = 16;
+/** Revision of the result that an earlier visit left, shown while the form has problems. */
+export const EARLIER = -1;
 /** Least cycles that the time axis shows. */
 export const LEAST_SPAN = 16;
 /** Markers 0 to 9, none of them set. @type {(number | null)[]} */
 const NO_MARKERS = Array(10).fill(null);
+
+/** All packets are shown. @type {State["filter"]} */
+export const NO_FILTER = { text: "", kind: "", address: null, outcome: "", only: false };
 
 /** @param {Scenario} scenario @returns {State} */
 export function initial(scenario) {
@@ -50,8 +61,13 @@ export function initial(scenario) {
     scenario, origin: "own", revision: 0, edited: null, past: [], future: [], drafts: {},
     judgement: null, judged: -1, derived: null, approved: -1,
     run: { phase: "idle", progress: null, message: "" }, result: null,
+    zooms: [], gesture: null, box: false, picked: null, reference: null, difference: false, harmonic: null,
     controller: 0, window: null, awaited: null, axis: 0, unit: "steps", hover: null, lit: null,
-    cursors: { a: null, b: null }, markers: NO_MARKERS, row: 0, folds: {}, allSignals: false, packet: null, view: "motion", side: null, notice: null,
+    cursors: { a: null, b: null }, markers: NO_MARKERS, row: 0, folds: {}, allSignals: false,
+    packet: null, filter: NO_FILTER,
+    view: "motion", side: null, notice: null,
+    panes: { form: null, rows: null, columns: null, folded: [], largest: null },
+    seen: null,
   };
 }
 
@@ -74,29 +90,52 @@ export function update(state, message) {
     case "progress": return { ...state, run: { ...state.run, progress: message.progress } };
     case "done": return done(state, message);
     case "failed": return { ...state, run: { phase: "failed", progress: null, message: message.message } };
-    case "window": return { ...state, window: message.window && clamp(message.window, endOf(state)) };
+    case "window": return moveTo(state, message);
+    case "back": {
+      if (state.zooms.length === 0) return state;
+      const [before] = state.zooms.slice(-1);
+      return { ...state, window: before && clamp(before, endOf(state)), zooms: state.zooms.slice(0, -1), gesture: null };
+    }
+    case "box": return { ...state, box: message.on, picked: null };
+    case "pick": return { ...state, picked: message.picked };
+    case "reference": return { ...state, reference: message.reference, difference: message.reference !== null && state.difference };
+    case "harmonic": return state.harmonic === message.harmonic ? state : { ...state, harmonic: message.harmonic };
+    case "difference": return { ...state, difference: message.on };
     case "open":
-      return state.result?.revision === state.revision ? { ...state, window: within(message.window, endOf(state)) } : { ...state, awaited: message.window };
+      return state.result?.revision === state.revision ? opened(state, message.view) : { ...state, awaited: message.view };
+    case "seen": return { ...state, seen: { text: message.text, verdict: null } };
+    case "compared": return state.seen?.text === message.text ? { ...state, seen: { ...state.seen, verdict: message.verdict } } : state;
     case "hover": return state.hover === message.cycle ? state : { ...state, hover: message.cycle };
     case "light": return sameLit(state.lit, message.lit) ? state : { ...state, lit: message.lit };
     case "marker": return { ...state, markers: state.markers.with(message.digit, message.cycle) };
     case "cursor": return { ...state, cursors: { ...state.cursors, [message.which]: message.cycle } };
     case "row": return { ...state, row: message.row };
     case "fold": return { ...state, folds: { ...state.folds, [message.channel]: message.folded } };
-    case "fold-all": return { ...state, folds: Object.fromEntries(Array.from({ length: MOST_CHANNELS }, (_, channel) => [channel, message.folded])) };
+    case "fold-all": return { ...state, folds: { ...state.folds, ...Object.fromEntries(Array.from({ length: MOST_CHANNELS }, (_, channel) => [channel, message.folded])) } };
     case "all-signals": return { ...state, allSignals: message.on };
+    case "filter": return { ...state, filter: { ...state.filter, ...message.filter } };
     case "packet": return { ...state, packet: message.packet };
     case "controller": return lookAt(state, message.controller);
     case "side": return { ...state, side: message.side };
     case "axis": return { ...state, axis: message.axis };
     case "unit": return { ...state, unit: message.unit };
+    case "pane": return { ...state, panes: { ...state.panes, ...message.panes } };
     case "view": return { ...state, view: message.view };
     case "notice": return { ...state, notice: message.notice };
   }
 }
 
 /** What a wholly different scenario begins with. */
-const fresh = { controller: 0, window: null, packet: null, side: null, hover: null, lit: null, cursors: { a: null, b: null }, markers: NO_MARKERS, axis: 0, row: 0, folds: {} };
+const fresh = { controller: 0, window: null, zooms: [], gesture: null, picked: null, harmonic: null, packet: null, filter: NO_FILTER, side: null, hover: null, lit: null, cursors: { a: null, b: null }, markers: NO_MARKERS, axis: 0, row: 0, folds: {} };
+
+/** Shows another part of the time axis. The parts before it are kept, a gesture's many as one. @param {State} state @param {{window: Span | null, joins?: string}} message @returns {State} */
+function moveTo(state, { window: wanted, joins }) {
+  const window = wanted && clamp(wanted, endOf(state));
+  const gesture = joins ?? null;
+  const same = window === state.window || (window !== null && window.start === state.window?.start && window.end === state.window.end);
+  if (same || (gesture !== null && gesture === state.gesture)) return { ...state, window, gesture };
+  return { ...state, window, gesture, zooms: [...state.zooms, state.window].slice(-DEPTH) };
+}
 
 /** @param {State["lit"]} one @param {State["lit"]} other */
 function sameLit(one, other) {
@@ -126,7 +165,7 @@ function remember(state) {
 /** @param {State} state @param {Scenario} scenario @param {Origin} origin @returns {State} */
 function changed(state, scenario, origin) {
   const run = { .../** @type {const} */ ({ phase: "waiting", progress: null, message: "" }) };
-  return { ...state, scenario, origin, run, revision: state.revision + 1, drafts: {}, edited: null, notice: null, awaited: null };
+  return { ...state, scenario, origin, run, revision: state.revision + 1, drafts: {}, edited: null, notice: null, awaited: null, seen: null };
 }
 
 /** @param {State} state @param {"past" | "future"} from @param {"past" | "future"} to @returns {State} */
@@ -148,16 +187,28 @@ function judged(state, { revision, judgement }) {
 
 /** @param {State} state @param {{revision: number, summary: import("./types.js").Summary, ms: number}} message @returns {State} */
 function done(state, { revision, summary, ms }) {
-  if (revision !== state.revision) return state;
-  const next = lookAt({ ...state, result: { revision, summary, ms, controller: 0 },
-    run: { .../** @type {const} */ ({ phase: "done", progress: null, message: "" }) } }, state.controller);
+  const earlier = revision === EARLIER && state.result === null;
+  if (revision !== state.revision && !earlier) return state;
+  /** @type {State["run"]} */
+  const run = earlier ? state.run : { phase: "done", progress: null, message: "" };
+  const next = lookAt({ ...state, result: { revision, summary, ms, controller: 0 }, run }, state.controller);
   // An old window over a run of another length or clock would show another time.
   const same = state.result?.summary.clock_hz === summary.clock_hz;
   const kept = state.window && same ? clamp(state.window, summary.end_cycle) : null;
-  const window = state.awaited ? within(state.awaited, summary.end_cycle) : kept;
   const inside = (/** @type {number | null} */ c) => (c !== null && c <= summary.end_cycle && same ? c : null);
-  return { ...next, window, awaited: null,
+  const here = { ...next, window: kept, seen: state.seen && { ...state.seen, verdict: null },
+    picked: null, zooms: same ? state.zooms : [], gesture: null,
     cursors: { a: inside(state.cursors.a), b: inside(state.cursors.b) }, markers: state.markers.map(inside), lit: null };
+  return state.awaited ? opened(here, state.awaited) : here;
+}
+
+/** Shows what a link asks to be shown, as far as the run has it. @param {State} state @param {import("./types.js").ViewPart} view @returns {State} */
+function opened(state, view) {
+  const last = endOf(state);
+  const inside = (/** @type {number | undefined} */ cycle) => (cycle !== undefined && cycle <= last ? cycle : null);
+  const looked = lookAt(state, view.controller ?? 0);
+  return { ...looked, awaited: null, window: view.window ? within(view.window, last) : null, cursors: { a: inside(view.a), b: inside(view.b) },
+    axis: Math.min(view.axis ?? 0, (lookedAt(looked)?.channels ?? 1) - 1), view: view.view ?? state.view, side: view.side ?? null, unit: view.unit ?? "steps" };
 }
 
 /** The result as another of its controllers shows it: for the views another result. @param {State} state @param {number} controller @returns {State} */
@@ -181,6 +232,11 @@ export function derivedAxis({ derived }, path) {
   const further = /^controllers\[(\d+)\]/.exec(path);
   const axis = /axes\[(\d+)\]/.exec(path);
   return derived?.controllers[further ? Number(further[1]) + 1 : 0]?.axes[axis ? Number(axis[1]) : 0];
+}
+
+/** Whether a filter of the packets asks for anything. @param {State["filter"]} filter */
+export function isFiltering({ text, kind, address, outcome }) {
+  return text.trim() !== "" || kind !== "" || address !== null || outcome !== "";
 }
 
 /** Last cycle of the time axis. @param {State} state */

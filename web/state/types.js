@@ -4,7 +4,7 @@
  *
  * @typedef {{[key: string]: any}} Scenario  Full JSON of one experiment, every field written.
  * @typedef {{path: string, message: string}} Problem
- * @typedef {{kind: string, start_s: number, duration_s: number, steps: number, detail: string}} DerivedMove
+ * @typedef {{start_s: number, duration_s: number, steps: number, detail: string}} DerivedMove
  * @typedef {{steps: number, duration_s: number, peak_speed_steps_s: number, peak_acceleration_steps_s2: number,
  *   step_mm: number | null, step_deg: number | null, moves: DerivedMove[]}} DerivedAxis
  * @typedef {{tick_s: number, limit_steps_s: number, ticks: number, axes: DerivedAxis[]}} DerivedController
@@ -30,11 +30,21 @@
  *   made_position_min: Float64Array, made_position_max: Float64Array,
  *   made_speed_min: Float64Array, made_speed_max: Float64Array}} MotionColumns
  * @typedef {{high: Uint32Array, low: Uint32Array, last: Uint32Array}} PulseColumns
+ * @typedef {{start: number, end: number, texts: string[], bad: boolean, packet: number | null, sample: number | null}} LineSpan
+ * @typedef {{bits: LineSpan[], bytes: LineSpan[], fields: LineSpan[]}} Lane
+ * @typedef {{rx: Lane, tx: Lane, more: boolean}} Decoded
+ * @typedef {{high: boolean, begin: number | null, end: number | null, next: number | null}} Pulse  A level and the edges around it, cycles.
+ * @typedef {{cycle: number, bit: number, high: boolean}} EdgeRow
  * @typedef {{index: number, kind: "packet" | "frame" | "reply" | "collision", start_cycle: number, end_cycle: number,
- *   hex: string, fields: string, outcome: string, mark: "good" | "foreign" | "repeated" | "bad",
- *   tick_start_cycle: number | null, tick_end_cycle: number | null}} PacketRow
+ *   line_end_cycle: number, start: string, gap: string, hex: string, fields: string, outcome: string, short: string,
+ *   mark: "good" | "foreign" | "repeated" | "bad", tick_start_cycle: number | null, tick_end_cycle: number | null,
+ *   position: number, rank: number | null}} PacketRow  Position among the rows on show, rank among those that the search finds: of the table alone.
+ * @typedef {PacketRow & {layout: {name: string, from: number, until: number, value: string}[],
+ *   check: "none" | "missing" | "holds" | "fails", check_found: string | null, check_expected: string | null,
+ *   byte_cycles: number[], byte_length: number, gap_cycles: number | null, drive_cycles: number | null,
+ *   turnaround_cycles: number | null, answers: number | null}} PacketDetail  The layout: each field with its first byte and the one after its last.
  * @typedef {{start_cycle: number, end_cycle: number, row: number | null, fields: string}} TickRow
- * @typedef {{total: number, rows: PacketRow[]}} PacketPage
+ * @typedef {{total: number, shown: number, matches: number, unit: string, rows: PacketRow[]}} PacketPage
  * @typedef {{cycle: number, channel: number, rule: string, measured_cycles: number, required_cycles: number}} Violation
  * @typedef {{rule: string, required_ns: number, required_cycles: number, violations: number, by_channel: number[],
  *   least: {measured_cycles: number, cycle: number, channel: number} | null}} RuleResult
@@ -44,12 +54,26 @@
  *   thd_position: number | null, thd_speed: number | null, thd_acceleration: number | null}} Spectrum
  * @typedef {{axis: number, ideal: Spectrum | null, pulses: Spectrum | null, note: string}} Spectra
  *
+ * @typedef {{at_a: number[], at_b: number[], mean: number[], rms: number[]}} Readings  Position, speed, acceleration; of pulses the first two.
+ * @typedef {{ideal: Readings | null, made: Readings}} Between
+ * @typedef {{common_s: number, largest: number, at_s: number, rms: number}} Apart
+ * @typedef {{title: string, revision: number, summary: Summary, controller: number, derived: DerivedController | null}} Reference
+ *
  * @typedef {{start: number, end: number}} Span  Cycles, start < end.
  * @typedef {{left: number, top: number, right: number, bottom: number}} Plot  CSS pixels in a canvas.
  * @typedef {"own" | "shared" | `preset:${string}`} Origin  Where the scenario on show comes from.
  * @typedef {{scenario: Scenario, origin: Origin}} Moment  One step of the history.
  * @typedef {{revision: number, summary: Summary, ms: number, controller: number}} Result  As one of its controllers shows it.
  * @typedef {{phase: "idle" | "waiting" | "running" | "done" | "failed", progress: Progress | null, message: string}} Run
+ *
+ * @typedef {{form: number | null, rows: [number, number, number] | null, columns: [number, number] | null, folded: string[], largest: string | null}} Panes
+ *   Width of the form in CSS pixels, 0 where it is folded; parts of the views' height and width; null: as the style sheet has it.
+ * @typedef {{start: number, end: number, controller: number, cycle: number}} Place  A time that a message can show, in cycles.
+ * @typedef {{edge: number, cycle: number}} Mark
+ * @typedef {{error: string | null, same: boolean, edges: number, version: string | null, own_version: string, controller: number,
+ *   after: Mark | null, until: Mark | null, shorter: "this" | "other" | null}} Verdict  How a run stands to a link's sender's.
+ * @typedef {{window?: Span, controller?: number, axis?: number, a?: number, b?: number, view?: string, side?: "spectrum" | "timing",
+ *   unit?: "steps" | "mm" | "deg"}} ViewPart  What a link says of the view; what it leaves out is as on a fresh page.
  *
  * @typedef {object} State
  * @property {Scenario} scenario
@@ -67,7 +91,15 @@
  * @property {Result | null} result The last good one.
  * @property {number} controller    The one that the views look at, as long as there is one of this number.
  * @property {Span | null} window   Shown part of the time axis; null shows the whole run.
- * @property {Span | null} awaited  Part that a link asks for, until there is a result to show it of.
+ * @property {(Span | null)[]} zooms  What was shown before, the last one last.
+ * @property {string | null} gesture  The gesture that moves the window; what it moves on joins one step of `zooms`.
+ * @property {boolean} box          Dragging on the time axis zooms to what it spans.
+ * @property {Span | null} picked   What such a drag spans so far.
+ * @property {Reference | null} reference  The run that was kept to compare with.
+ * @property {number | null} harmonic  Number of the harmonic that is pointed at.
+ * @property {boolean} difference   The position's chart shows the difference to it.
+ * @property {ViewPart | null} awaited  What a link asks to be shown, until there is a result to show it of.
+ * @property {{text: string, verdict: Verdict | null} | null} seen  The run that a link's sender saw (its part `d`), and how this one stands to it.
  * @property {number} axis          Axis of the motion view.
  * @property {"steps" | "mm" | "deg"} unit  Unit of the motion view.
  * @property {number | null} hover  Cycle under the pointer.
@@ -75,11 +107,13 @@
  * @property {(number | null)[]} markers  Cycles of the markers 0 to 9.
  * @property {{a: number | null, b: number | null}} cursors  Cycles.
  * @property {number} row           Signal bit whose edges are looked for.
- * @property {{[channel: number]: boolean}} folds  Channels that the visitor folded or unfolded.
+ * @property {{[channel: number]: boolean}} folds  Channels that the visitor folded or unfolded, and by their bits the decoders of RX and TX.
  * @property {boolean} allSignals   Also the signals that never change.
  * @property {number | null} packet Selected packet.
+ * @property {{text: string, kind: string, address: number | null, outcome: string, only: boolean}} filter  Of the packets: what is searched for, and which rows are shown; `only` leaves out what the search does not find.
  * @property {string} view          Tab on a narrow screen.
+ * @property {Panes} panes          Of a wide screen.
  * @property {"spectrum" | "timing" | null} side  Which of the two shares their place on a wide screen; null: the timing check, if there is one.
- * @property {{text: string, kind: "info" | "error"} | null} notice  About links and the engine.
+ * @property {{text: string, kind: "info" | "error", place?: Place | null} | null} notice  About links, files and the engine.
  */
 export {};

@@ -1,5 +1,5 @@
 /** What lies over every view of the time axis: what is pointed at, the pointer, cursors, markers. */
-import { color } from "./plot.js";
+import { color, font } from "./plot.js";
 import { pixelOf } from "./timeline.js";
 
 /** @typedef {import("../state/types.js").State} State */
@@ -29,17 +29,24 @@ export function drawCursors(context, state, plot, height) {
     context.fillStyle = color(ink);
     context.fillRect(x - 6, 0, 12, 13);
     context.fillStyle = color("--pane");
-    context.font = `bold 10px ${getComputedStyle(document.body).fontFamily}`;
+    context.font = `bold 10px ${font()}`;
     context.textAlign = "center";
     context.textBaseline = "middle";
     context.fillText(name, x, 7);
   };
-  if (state.lit) {
-    const [from, to] = [state.lit.start, state.lit.end].map((cycle) => Math.min(plot.right, Math.max(plot.left, pixelOf(state, plot, cycle))));
-    context.fillStyle = color("--mark");
-    context.globalAlpha = 0.3;
-    if (state.lit.end >= state.lit.start && from < plot.right && to > plot.left) context.fillRect(from, 0, Math.max(2, to - from), height);
+  /** @param {{start: number, end: number}} span @param {string} ink @param {number} opacity */
+  const band = ({ start, end }, ink, opacity) => {
+    const [from, to] = [start, end].map((cycle) => Math.min(plot.right, Math.max(plot.left, pixelOf(state, plot, cycle))));
+    context.fillStyle = color(ink);
+    context.globalAlpha = opacity;
+    if (end >= start && from < plot.right && to > plot.left) context.fillRect(from, 0, Math.max(2, to - from), height);
     context.globalAlpha = 1;
+  };
+  if (state.lit) band(state.lit, "--mark", 0.3);
+  if (state.picked) {
+    band(state.picked, "--accent", 0.18);
+    line(state.picked.start, "--accent", [], "");
+    line(state.picked.end, "--accent", [], "");
   }
   line(state.hover, "--axis", [3, 3], "");
   for (const [digit, cycle] of state.markers.entries()) line(cycle, "--accent", [2, 2], String(digit));
@@ -49,5 +56,6 @@ export function drawCursors(context, state, plot, height) {
 
 /** Whether what lies over the views has changed. @param {State | undefined} before @param {State} state */
 export function overlaid(before, state) {
-  return before?.hover !== state.hover || before?.lit !== state.lit || before?.cursors !== state.cursors || before?.markers !== state.markers;
+  return before?.hover !== state.hover || before?.lit !== state.lit || before?.cursors !== state.cursors || before?.markers !== state.markers
+    || before?.picked !== state.picked;
 }

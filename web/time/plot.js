@@ -3,7 +3,8 @@
  * remembers where the plotting area lies. plotters-canvas measures text in the page's document, so this
  * cannot be done in the worker.
  */
-import init, { draw_chart } from "../pkg/stepscope_wasm.js";
+import { compiled } from "../engine/wasm.js";
+import init, { chart_svg, draw_chart } from "../pkg/stepscope_wasm.js";
 
 /** @typedef {import("../state/types.js").Plot} Plot */
 
@@ -19,7 +20,7 @@ let loaded = /** @type {Promise<unknown> | null} */ (null);
 
 /** Loads the charts. */
 export function load() {
-  loaded ??= init();
+  loaded ??= compiled().then((module) => init({ module_or_path: module }));
   return loaded;
 }
 
@@ -39,6 +40,7 @@ export function fit(canvas, scale = ratio()) {
   const height = canvas.clientHeight;
   canvas.width = Math.max(1, Math.round(width * scale));
   canvas.height = Math.max(1, Math.round(height * scale));
+  fitted.set(canvas, [width, scale, height]);
   return { width, height, ratio: scale };
 }
 
@@ -69,26 +71,68 @@ export function recolor() {
   known.clear();
 }
 
+let family = "";
+
+/** The page's fonts. Asked for once: it never changes, and asking makes the browser lay out the page. */
+export function font() {
+  family ||= getComputedStyle(document.body).fontFamily;
+  return family;
+}
+
+/**
+ * A canvas that `fit` has sized, cleared to be drawn on anew: without asking for the layout, for what follows a pointer.
+ * @param {HTMLCanvasElement} canvas
+ */
+export function cleared(canvas) {
+  const context = canvas.getContext("2d");
+  const [, scale, height] = fitted.get(canvas) ?? [0, 1, 0];
+  context?.setTransform(scale, 0, 0, scale, 0, 0);
+  context?.clearRect(0, 0, canvas.width, canvas.height);
+  return context && { context, height };
+}
+
+/** Width, scale and height as they were last fitted. @type {WeakMap<HTMLCanvasElement, [number, number, number]>} */
+const fitted = new WeakMap();
+
 /**
  * @typedef {{min: number, max: number, unit: string, prefix: boolean, label_px: number}} Axis
- * @typedef {{color: string, opacity: number, width: number, x: Float64Array | number[],
+ * @typedef {{color: string, opacity: number, width: number, dash?: number, x: Float64Array | number[],
  *   shape: {line: {y: ArrayLike<number>}} | {band: {min: ArrayLike<number>, max: ArrayLike<number>}}
  *     | {stems: {y: ArrayLike<number>, shift: number}}}} Series
+ * @typedef {{x: Axis, y: Axis, series: Series[]}} Chart
  */
 
 /**
  * Draws one chart.
  * @param {HTMLCanvasElement} canvas
- * @param {{x: Axis, y: Axis, series: Series[]}} chart
+ * @param {Chart} chart
  * @returns {Plot | null}  null where the canvas is not on show or the chart cannot be drawn.
  */
-export function draw(canvas, { x, y, series }) {
+export function draw(canvas, chart) {
   const size = fit(canvas, CHART_RATIO);
   if (size.width < GUTTER + 40 || size.height < 30) return null;
-  return draw_chart(canvas, {
-    ratio: size.ratio, font: getComputedStyle(document.body).fontFamily, font_px: 11, x, y, series,
-    colors: { label: color("--quiet"), axis: color("--axis"), grid: color("--grid") },
-  });
+  return draw_chart(canvas, spec(chart));
+}
+
+/** As the wasm module takes a chart. @param {Chart} chart */
+function spec({ x, y, series }) {
+  return { ratio: CHART_RATIO, font: font(), font_px: 11, x, y, series,
+    colors: { label: color("--quiet"), axis: color("--axis"), grid: color("--grid") } };
+}
+
+/** A chart on a canvas of its own, which is not on show. @param {Chart} chart @param {number} width @param {number} height */
+export function picture(chart, width, height) {
+  const canvas = document.createElement("canvas");
+  [canvas.width, canvas.height] = [width * CHART_RATIO, height * CHART_RATIO];
+  draw_chart(canvas, spec(chart));
+  return canvas;
+}
+
+/** A chart as the text of an SVG element at a place. @param {Chart} chart @param {number} x @param {number} y @param {number} width @param {number} height */
+export function drawing(chart, x, y, width, height) {
+  const [w, h] = [width * CHART_RATIO, height * CHART_RATIO];
+  const inner = chart_svg(w, h, spec(chart)).replace(/^[^]*?<svg[^>]*>/, "");
+  return `<svg x="${x}" y="${y}" width="${width}" height="${height}" viewBox="0 0 ${w} ${h}">${inner}`;
 }
 
 /** Calls back when an element's size changes or the theme does. @param {Element} element @param {() => void} redraw */

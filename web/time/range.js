@@ -9,6 +9,12 @@ import { zoom } from "./timeline.js";
 /** @param {import("./timeline.js").Page} page */
 export function createRange({ dispatch, now }) {
   const page = { dispatch, now };
+  // Besides these, any view may have buttons of its own for the same.
+  for (const press of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("[data-time]"))) {
+    const run = { in: () => byId("zoom-in").click(), out: () => byId("zoom-out").click(), fit: () => byId("zoom-fit").click(),
+      back: () => dispatch({ type: "back" }), box: () => dispatch({ type: "box", on: !now().box }) }[press.dataset.time ?? ""];
+    if (run) press.addEventListener("click", run);
+  }
   byId("zoom-in").addEventListener("click", () => zoom(page, 0.5, now().cursors.a ?? undefined));
   byId("zoom-out").addEventListener("click", () => zoom(page, 2, now().cursors.a ?? undefined));
   byId("zoom-fit").addEventListener("click", () => dispatch({ type: "window", window: null }));
@@ -20,7 +26,7 @@ export function createRange({ dispatch, now }) {
     const [start, end] = ["window-start", "window-end"].map((id) => {
       const input = /** @type {HTMLInputElement} */ (byId(id));
       const read = parseNumber(input.value, "s");
-      input.toggleAttribute("aria-invalid", "message" in read);
+      input.setAttribute("aria-invalid", String("message" in read));
       return read;
     });
     const wrong = "message" in start ? start.message : "message" in end ? end.message : "";
@@ -44,6 +50,11 @@ export function createRange({ dispatch, now }) {
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
+    if (before?.box !== state.box || before?.zooms !== state.zooms) {
+      for (const press of document.querySelectorAll("[data-time=box]")) press.setAttribute("aria-pressed", String(state.box));
+      for (const press of document.querySelectorAll("[data-time=back]")) /** @type {HTMLButtonElement} */ (press).disabled = state.zooms.length === 0;
+      document.body.classList.toggle("boxing", state.box);
+    }
     if (before?.window === state.window && before?.result === state.result) return;
     fields(state);
     say(byId("window-error"), "");

@@ -10,25 +10,36 @@ import { endOf, shown } from "../state/state.js";
 /** @typedef {{dispatch: (message: import("../state/state.js").Message) => void, now: () => State}} Page */
 /** @typedef {(event: PointerEvent, cycle: number) => boolean | Promise<number>} Click  Whether it used the click, or the cycle to take instead. */
 
+/** Notches of the wheel that come within this time, in ms, are one gesture. */
+const WHEEL_MS = 600;
 /** A press that moves less than this many CSS pixels is a click. */
 const CLICK_PX = 4;
+const DIGITS = [..."0123456789"];
 
 /** @param {Span} window @param {number} factor @param {number} at  Cycle that keeps its place. @returns {Span} */
 export function zoomed({ start, end }, factor, at) {
   return { start: at - (at - start) * factor, end: at + (end - at) * factor };
 }
 
-/** Zooms the shown time around a cycle, or its middle. @param {Page} page @param {number} factor @param {number} [at] */
-export function zoom({ dispatch, now }, factor, at) {
+/** Zooms the shown time around a cycle, or its middle. @param {Page} page @param {number} factor @param {number} [at] @param {string} [joins] */
+export function zoom({ dispatch, now }, factor, at, joins) {
   const window = shown(now());
-  dispatch({ type: "window", window: zoomed(window, factor, at ?? (window.start + window.end) / 2) });
+  dispatch({ type: "window", joins, window: zoomed(window, factor, at ?? (window.start + window.end) / 2) });
 }
 
-/** Moves the shown time by a part of itself. @param {Page} page @param {number} part */
-export function pan({ dispatch, now }, part) {
+/** Moves the shown time by a part of itself. @param {Page} page @param {number} part @param {string} [joins] */
+export function pan({ dispatch, now }, part, joins) {
   const { start, end } = shown(now());
   const by = (end - start) * part;
-  dispatch({ type: "window", window: { start: start + by, end: end + by } });
+  dispatch({ type: "window", joins, window: { start: start + by, end: end + by } });
+}
+
+/** Shows what lies between the cursors, with a little around it. @param {Page} page */
+export function zoomToCursors({ dispatch, now }) {
+  const { a, b } = now().cursors;
+  if (a === null || b === null || a === b) return;
+  const air = Math.abs(b - a) * 0.05;
+  dispatch({ type: "window", window: { start: Math.min(a, b) - air, end: Math.max(a, b) + air } });
 }
 
 /** Brings a cycle into view, with the same zoom. @param {Page} page @param {number} cycle */
@@ -37,6 +48,16 @@ export function reveal({ dispatch, now }, cycle) {
   if (cycle >= start && cycle <= end) return;
   const half = (end - start) / 2;
   dispatch({ type: "window", window: { start: cycle - half, end: cycle + half } });
+}
+
+/** Brings a marker into the middle, with the same zoom; false where it is not set. @param {Page} page @param {number} digit */
+export function goToMarker({ dispatch, now }, digit) {
+  const cycle = now().markers[digit];
+  if (cycle === null) return false;
+  const { start, end } = shown(now());
+  const half = (end - start) / 2;
+  dispatch({ type: "window", window: { start: cycle - half, end: cycle + half } });
+  return true;
 }
 
 /** Cycle under a pixel of the plotting area. @param {State} state @param {{left: number, right: number}} plot @param {number} x */
@@ -62,14 +83,19 @@ export function gestures(target, plot, page) {
   const { dispatch, now } = page;
   /** @type {Map<number, {x: number, y: number}>} */
   const pointers = new Map();
-  /** @type {{window: Span, x: number, spread: number, moved: boolean} | null} */
+  /** @type {{window: Span, x: number, spread: number, moved: boolean, box: boolean, gesture: string} | null} */
   let drag = null;
+  let gestures = 0;
+  let turned = -Infinity;
+  /** The last press was a box. */
+  let boxed = false;
   const xOf = (/** @type {{clientX: number}} */ event) => event.clientX - target.getBoundingClientRect().left;
 
   function begin() {
     const points = [...pointers.values()];
     const x = points.reduce((sum, point) => sum + point.x, 0) / points.length;
-    drag = { window: shown(now()), x, spread: Math.abs(points[0].x - (points[1]?.x ?? 0)), moved: drag?.moved ?? false };
+    drag = { window: shown(now()), x, spread: Math.abs(points[0].x - (points[1]?.x ?? 0)), moved: drag?.moved ?? false, box: false,
+      gesture: drag?.gesture ?? `${target.id} ${++gestures}` };
   }
 
   target.addEventListener("wheel", (event) => {
@@ -79,16 +105,23 @@ export function gestures(target, plot, page) {
     event.preventDefault();
     const sideways = event.shiftKey || Math.abs(event.deltaX) > Math.abs(event.deltaY);
     const delta = (event.deltaX || event.deltaY) * (event.deltaMode === 1 ? 20 : 1);
-    if (sideways) pan(page, delta / 800);
-    else zoom(page, Math.exp(Math.max(-1, Math.min(1, event.deltaY * (event.deltaMode === 1 ? 0.05 : 0.002)))), cycleAt(now(), plot(), xOf(event)));
+    if (event.timeStamp - turned > WHEEL_MS) gestures += 1;
+    turned = event.timeStamp;
+    const joins = `${target.id} wheel ${gestures}`;
+    if (sideways) pan(page, delta / 800, joins);
+    else zoom(page, Math.exp(Math.max(-1, Math.min(1, event.deltaY * (event.deltaMode === 1 ? 0.05 : 0.002)))), cycleAt(now(), plot(), xOf(event)), joins);
   }, { passive: false });
 
   target.addEventListener("pointerdown", (event) => {
-    if (event.button !== 0) return;
+    if (event.button !== 0 && event.button !== 2) return;
     pointers.set(event.pointerId, { x: xOf(event), y: event.clientY });
     if (pointers.size === 1) drag = null;
+    if (pointers.size > 1 && now().picked) dispatch({ type: "pick", picked: null });
     begin();
+    if (drag && pointers.size === 1) drag.box = (now().box || event.shiftKey || event.button === 2) && xOf(event) >= plot().left;
   });
+  // The right button's drag is a box; a press of it alone is still the browser's menu.
+  target.addEventListener("contextmenu", (event) => { if (drag?.moved || boxed) event.preventDefault(); });
 
   target.addEventListener("pointermove", (event) => {
     const x = xOf(event);
@@ -104,6 +137,10 @@ export function gestures(target, plot, page) {
     if (!drag.moved && Math.abs(middle - drag.x) < CLICK_PX && points.length === 1) return;
     if (!drag.moved) target.setPointerCapture(event.pointerId);
     drag.moved = true;
+    if (drag.box && points.length === 1) {
+      const [from, to] = [drag.x, x].sort((a, b) => a - b).map((at) => cycleAt(now(), area, Math.min(area.right, Math.max(area.left, at))));
+      return dispatch({ type: "pick", picked: { start: from, end: to } });
+    }
     const width = Math.max(1, area.right - area.left);
     const { start, end } = drag.window;
     const spread = points.length > 1 ? Math.max(10, Math.abs(points[0].x - points[1].x)) : drag.spread;
@@ -111,13 +148,19 @@ export function gestures(target, plot, page) {
     const anchor = start + ((drag.x - area.left) / width) * (end - start);
     const span = (end - start) * factor;
     const from = anchor - ((middle - area.left) / width) * span;
-    dispatch({ type: "window", window: { start: from, end: from + span } });
+    dispatch({ type: "window", joins: drag.gesture, window: { start: from, end: from + span } });
   });
 
   /** @param {PointerEvent} event */
   function lift(event) {
     if (!pointers.delete(event.pointerId)) return;
-    if (event.type === "pointerup" && drag && !drag.moved && pointers.size === 0) click(event);
+    const { picked } = now();
+    boxed = drag?.box === true && picked !== null;
+    if (drag?.box && picked) {
+      dispatch({ type: "pick", picked: null });
+      if (event.type === "pointerup" && picked.end > picked.start) dispatch({ type: "window", window: picked });
+    }
+    if (event.type === "pointerup" && event.button === 0 && drag && !drag.moved && pointers.size === 0) click(event);
     if (pointers.size > 0) begin();
     else drag = null;
   }
@@ -157,10 +200,25 @@ function keys(page, plot) {
     reveal(page, cycle);
   };
   const clear = () => {
+    const { box, picked, cursors } = now();
+    if (box || picked) return dispatch({ type: "box", on: false });
+    // Nothing is left to remove: the focus leaves the view.
+    if (cursors.a === null && cursors.b === null && document.activeElement instanceof HTMLElement) return document.activeElement.blur();
     dispatch({ type: "cursor", which: "a", cycle: null });
     dispatch({ type: "cursor", which: "b", cycle: null });
   };
+  /** The digit of a key, with Shift or without. @param {KeyboardEvent} event */
+  const digitOf = ({ code, key }) => Number(/^Digit(\d)$/.exec(code)?.[1] ?? key);
+  const mark = (/** @type {KeyboardEvent} */ event) => {
+    const { hover, cursors, markers } = now();
+    const { start, end } = shown(now());
+    const cycle = hover ?? cursors.a ?? Math.round((start + end) / 2);
+    const digit = digitOf(event);
+    dispatch({ type: "marker", digit, cycle: markers[digit] === cycle ? null : cycle });
+  };
   return [
+    { keys: DIGITS, text: "show marker 0 to 9", run: (event) => void goToMarker(page, digitOf(event)) },
+    { keys: DIGITS.map((digit) => `Shift+${digit}`), text: "set that marker at the pointer, else at cursor A; once more removes it", run: mark },
     { keys: ["+", "="], text: "zoom in, around cursor A if it is set", run: () => zoom(page, 0.5, at()) },
     { keys: ["-", "−"], text: "zoom out", run: () => zoom(page, 2, at()) },
     { keys: ["Home"], text: "show the whole run", run: () => dispatch({ type: "window", window: null }) },
@@ -172,6 +230,9 @@ function keys(page, plot) {
     { keys: ["Shift+ArrowRight"], text: "cursor A to the right", run: () => nudge("a", 1) },
     { keys: ["Alt+ArrowLeft"], text: "cursor B to the left", run: () => nudge("b", -1) },
     { keys: ["Alt+ArrowRight"], text: "cursor B to the right", run: () => nudge("b", 1) },
-    { keys: ["Escape"], text: "remove the cursors", run: clear },
+    { keys: ["Backspace"], text: "back to what was shown before", run: () => dispatch({ type: "back" }) },
+    { keys: ["b"], text: "drag a box to zoom, or no longer", run: () => dispatch({ type: "box", on: !now().box }) },
+    { keys: ["z"], text: "show what lies between the cursors", run: () => zoomToCursors(page) },
+    { keys: ["Escape"], text: "remove the cursors; then leave the view", run: clear },
   ];
 }

@@ -1,4 +1,4 @@
-//! Debian's packages, for what no Rust registry has: a browser, an emulator and a waveform viewer.
+//! Debian's packages, for what no Rust registry has: browsers, an emulator and a waveform viewer.
 
 use anyhow::{Result, bail};
 use tokio::process::Command;

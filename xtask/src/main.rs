@@ -2,10 +2,11 @@
 //!
 //! | file | what it holds |
 //! | --- | --- |
-//! | `toolchain`, `tools`, `wasm_opt`, `apt` | what a fresh machine lacks, installed once per user |
-//! | `page` | the optimised page, and what each of its files weighs |
+//! | `toolchain`, `tools`, `wasm_opt`, `npm`, `apt` | what a fresh machine lacks, installed once per user |
+//! | `page` | the optimised wasm of the page, and what each file that it loads weighs |
+//! | `dist` | the page as hosts serve it: names with hashes, lists, licences |
 //! | `headers`, `serve` | the local server, whose headers are `web/_headers`' |
-//! | `steps`, `browser`, `bare_metal`, `gtkwave` | `cargo xtask test`, step by step |
+//! | `steps`, `browser`, `engines`, `bare_metal`, `gtkwave` | `cargo xtask test`, step by step |
 //! | `bench` | `cargo xtask bench` |
 //! | `fuzz` | `cargo xtask fuzz` |
 //! | `run` | child processes: time limit, no input, killed as a group |
@@ -14,9 +15,12 @@ mod apt;
 mod bare_metal;
 mod bench;
 mod browser;
+mod dist;
+mod engines;
 mod fuzz;
 mod gtkwave;
 mod headers;
+mod npm;
 mod page;
 mod run;
 mod serve;
@@ -52,12 +56,20 @@ enum Task {
         #[command(flatten)]
         optimising: Optimising,
     },
-    /// Build the page and print what each of its files weighs
+    /// Build the page's wasm into web/pkg, for `serve`
     Build {
         #[command(flatten)]
         optimising: Optimising,
     },
-    /// Serve the page as it lies, without building it
+    /// Build the page into dist/, as any static host can serve it, and print what each of its files weighs
+    Dist {
+        /// Take web/pkg as it is
+        #[arg(long)]
+        no_build: bool,
+        #[command(flatten)]
+        optimising: Optimising,
+    },
+    /// Serve the page's sources as they lie, without building anything
     Serve {
         /// Port on 127.0.0.1; 0 takes any free one
         #[arg(long, default_value_t = 8080)]
@@ -120,12 +132,17 @@ async fn perform(task: Task) -> Result<()> {
         Task::Demo { port, no_open, optimising } => {
             // The port first: nobody should wait for a build to hear that it is taken.
             let listener = serve::bind(port)?;
-            page::build(optimising.wanted()).await?;
-            serve::serve(listener, &web, !no_open).await
+            page::shipped(optimising.wanted()).await?;
+            serve::serve(listener, &dist::folder(), !no_open).await
         }
-        Task::Build { optimising } => {
-            page::build(optimising.wanted()).await?;
-            print!("{}", page::weigh(&web)?);
+        Task::Build { optimising } => page::build(optimising.wanted()).await,
+        Task::Dist { no_build, optimising } => {
+            if no_build {
+                dist::make(&web, &dist::folder()).await?;
+            } else {
+                page::shipped(optimising.wanted()).await?;
+            }
+            print!("{}", page::weigh(&dist::folder())?);
             Ok(())
         }
         Task::Serve { port, web: folder } => {

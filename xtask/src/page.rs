@@ -1,4 +1,4 @@
-//! The page: its optimised build, and what each of its files weighs on the way to a visitor.
+//! The page's wasm, optimised, and what each file of the page weighs on the way to a visitor.
 
 use std::fmt;
 use std::io::Write;
@@ -7,13 +7,25 @@ use std::path::Path;
 use anyhow::{Context, Result, ensure};
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use walkdir::{DirEntry, WalkDir};
+use walkdir::WalkDir;
 
 use crate::tools::{Optimise, WasmTools};
-use crate::{root, run};
+use crate::{dist, root, run};
 
 /// What all files together may weigh, in bytes, compressed by brotli as hosts do.
 const BUDGET: usize = 400_000;
+
+/// The page as it is shipped, but made once only in this program's life: for steps that use the same page.
+pub(crate) async fn built() -> Result<()> {
+    static BUILT: tokio::sync::OnceCell<()> = tokio::sync::OnceCell::const_new();
+    BUILT.get_or_try_init(|| shipped(Optimise::Yes)).await.copied()
+}
+
+/// Builds the page into `dist`.
+pub(crate) async fn shipped(optimise: Optimise) -> Result<()> {
+    build(optimise).await?;
+    dist::make(&root().join("web"), &dist::folder()).await
+}
 
 /// Builds the wasm crate into `web/pkg`, installing the tools first if they are missing.
 pub(crate) async fn build(optimise: Optimise) -> Result<()> {
@@ -52,17 +64,22 @@ impl Sizes {
     }
 }
 
-/// A table of all files that the page loads, with their sum; `Display` prints it.
-pub(crate) struct Weights(Vec<(String, Sizes)>);
+/// A table of what a host sends; `Display` prints it.
+pub(crate) struct Weights {
+    /// What opening the page loads.
+    page: Vec<(String, Sizes)>,
+    /// Other pages and what they need, icons: kept for use without a network.
+    beside: Vec<(String, Sizes)>,
+}
+
+fn sum(rows: &[(String, Sizes)]) -> Sizes {
+    rows.iter().fold(Sizes::default(), |sum, (_, sizes)| sum.plus(*sizes))
+}
 
 impl Weights {
-    fn sum(&self) -> Sizes {
-        self.0.iter().fold(Sizes::default(), |sum, (_, sizes)| sum.plus(*sizes))
-    }
-
     /// An error if the page weighs more than it may.
     pub(crate) fn within_budget(&self) -> Result<()> {
-        let weight = self.sum().brotli;
+        let weight = sum(&self.page).brotli;
         ensure!(weight <= BUDGET, "the page weighs {weight} bytes compressed; it may weigh {BUDGET}");
         Ok(())
     }
@@ -70,44 +87,38 @@ impl Weights {
 
 impl fmt::Display for Weights {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let width = self.0.iter().map(|(name, _)| name.len()).max().unwrap_or(0).max("all files".len());
+        let (all, kept) = ("the page", "kept beside it");
+        let names = self.page.iter().chain(&self.beside).map(|(name, _)| name.len());
+        let width = names.max().unwrap_or(0).max(kept.len());
         writeln!(out, "{:width$} {:>10} {:>10} {:>10}  bytes", "file", "raw", "gzip", "brotli")?;
-        let rows = self.0.iter().map(|(name, sizes)| (name.as_str(), *sizes));
-        for (name, Sizes { raw, gzip, brotli }) in rows.chain([("all files", self.sum())]) {
-            writeln!(out, "{name:width$} {raw:>10} {gzip:>10} {brotli:>10}")?;
+        for (rows, last) in [(&self.page, all), (&self.beside, kept)] {
+            let rows_of = rows.iter().map(|(name, sizes)| (name.as_str(), *sizes));
+            for (name, Sizes { raw, gzip, brotli }) in rows_of.chain([(last, sum(rows))]) {
+                writeln!(out, "{name:width$} {raw:>10} {gzip:>10} {brotli:>10}")?;
+            }
         }
         Ok(())
     }
 }
 
-/// Weighs every file under `web` that the page loads.
-pub(crate) fn weigh(web: &Path) -> Result<Weights> {
-    let mut rows = Vec::new();
-    for entry in WalkDir::new(web)
-        .sort_by_file_name()
-        .into_iter()
-        .filter_entry(|entry| entry.depth() == 0 || loads(entry))
-    {
-        let entry = entry.with_context(|| format!("{} can't be read", web.display()))?;
-        if entry.file_type().is_file() {
+/// Weighs the files of `dist`.
+pub(crate) fn weigh(dist: &Path) -> Result<Weights> {
+    let loaded = dist::loaded(dist)?;
+    let mut weights = Weights { page: Vec::new(), beside: Vec::new() };
+    for entry in WalkDir::new(dist).sort_by_file_name() {
+        let entry = entry.with_context(|| format!("{} can't be read", dist.display()))?;
+        // The host's own rules are not sent to anybody.
+        if entry.file_type().is_file() && entry.file_name() != "_headers" {
             let bytes = std::fs::read(entry.path())
                 .with_context(|| format!("{} can't be read", entry.path().display()))?;
-            let name = entry.path().strip_prefix(web).unwrap_or(entry.path()).display().to_string();
+            let path = entry.path().strip_prefix(dist).unwrap_or(entry.path());
+            let parts: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
+            let name = parts.join("/");
+            let rows = if loaded.contains(&name) { &mut weights.page } else { &mut weights.beside };
             rows.push((name, Sizes::of(&bytes)?));
         }
     }
-    Ok(Weights(rows))
-}
-
-/// Whether a visitor's browser may ask for this: not what only tools, hosts and readers of the source use.
-fn loads(entry: &DirEntry) -> bool {
-    let name = entry.file_name().to_string_lossy();
-    let for_tools = ["node_modules", "package.json", "package-lock.json", "tsconfig.json", "jsconfig.json"];
-    !(name.starts_with(['.', '_'])
-        || name.ends_with(".ts")
-        || name.ends_with(".md")
-        || name.starts_with("LICENSE")
-        || for_tools.contains(&&*name))
+    Ok(weights)
 }
 
 #[cfg(test)]
@@ -116,34 +127,39 @@ mod tests {
 
     #[test]
     fn a_page_beyond_its_budget_is_refused_with_both_numbers() {
-        let weights = |brotli| Weights(vec![("a".to_owned(), Sizes { brotli, ..Sizes::default() })]);
+        let weights = |brotli| Weights {
+            page: vec![("a".to_owned(), Sizes { brotli, ..Sizes::default() })],
+            beside: vec![("b".to_owned(), Sizes { brotli: 1, ..Sizes::default() })],
+        };
         assert!(weights(400_000).within_budget().is_ok());
         let error = weights(400_001).within_budget().unwrap_err().to_string();
         assert_eq!(error, "the page weighs 400001 bytes compressed; it may weigh 400000");
     }
 
     #[test]
-    fn only_what_a_browser_loads_is_weighed_and_summed() {
-        let web = std::env::temp_dir().join(format!("stepscope-weigh-{}", std::process::id()));
-        std::fs::create_dir_all(web.join("pkg")).unwrap();
-        for name in [
-            "index.html",
-            "_headers",
-            "jsconfig.json",
-            "pkg/a.js",
-            "pkg/a.d.ts",
-            "pkg/package.json",
-            "pkg/.gitignore",
+    fn what_opening_the_page_loads_is_summed_apart_from_what_is_kept_beside_it() {
+        let dist = std::env::temp_dir().join(format!("stepscope-weigh-{}", std::process::id()));
+        std::fs::create_dir_all(dist.join("assets")).unwrap();
+        let space = " ".repeat(1000);
+        for (name, text) in [
+            ("index.html", "<a href=\"help.html\"></a><script src=\"assets/a.js\"></script>"),
+            ("help.html", "<script src=\"assets/b.js\"></script>"),
+            ("assets/a.js", "new URL('x.wasm',import.meta.url)"),
+            ("assets/b.js", ""),
+            ("assets/x.wasm", ""),
+            ("sw.js", ""),
+            ("_headers", ""),
         ] {
-            std::fs::write(web.join(name), "a".repeat(1000)).unwrap();
+            std::fs::write(dist.join(name), format!("{text}{space}")).unwrap();
         }
-        let weights = weigh(&web).unwrap();
-        let names: Vec<_> = weights.0.iter().map(|(name, _)| name.as_str()).collect();
-        assert_eq!(names, ["index.html", "pkg/a.js"]);
+        let weights = weigh(&dist).unwrap();
+        let names = |rows: &[(String, Sizes)]| rows.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+        assert_eq!(names(&weights.page), ["assets/a.js", "assets/x.wasm", "index.html", "sw.js"]);
+        assert_eq!(names(&weights.beside), ["assets/b.js", "help.html"]);
         assert!(
-            weights.0.iter().all(|(_, sizes)| sizes.raw == 1000 && sizes.gzip < 100 && sizes.brotli < 100)
+            weights.page.iter().all(|(_, sizes)| sizes.raw >= 1000 && sizes.gzip < 150 && sizes.brotli < 150)
         );
-        assert!(weights.to_string().contains("all files        2000"), "{weights}");
-        std::fs::remove_dir_all(&web).unwrap();
+        assert!(weights.to_string().contains("the page"), "{weights}");
+        std::fs::remove_dir_all(&dist).unwrap();
     }
 }

@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 use process_wrap::tokio::{ChildWrapper, CommandWrap};
+use tokio::io::{AsyncBufReadExt, BufReader};
 use tokio::process::Command;
 
 /// No child may take longer: a hung browser or a lost network must not hold a run for ever.
@@ -14,6 +15,16 @@ pub(crate) const LIMIT: Duration = Duration::from_secs(30 * 60);
 
 /// A running child; dropping it kills its process group.
 pub(crate) struct Group(Box<dyn ChildWrapper>);
+
+impl Group {
+    /// The first line that the child writes to its piped output; an error if there is none within a minute.
+    pub(crate) async fn first_line(&mut self) -> Result<String> {
+        let output = self.0.stdout().take().context("the output is not piped")?;
+        let mut lines = BufReader::new(output).lines();
+        let line = tokio::time::timeout(Duration::from_secs(60), lines.next_line()).await;
+        line.context("not within a minute")??.context("it ended without a word")
+    }
+}
 
 impl Drop for Group {
     fn drop(&mut self) {

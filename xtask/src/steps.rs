@@ -6,11 +6,13 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use clap::ValueEnum;
+use tokio::process::Command;
 
 use crate::browser::{self, Browser};
+use crate::engines::{self, Firefox, WebKit};
 use crate::toolchain::{self, BARE_METAL, WASM};
 use crate::tools::{Optimise, WasmTools};
-use crate::{bare_metal, gtkwave, page, root, run};
+use crate::{bare_metal, dist, gtkwave, npm, page, root, run};
 
 /// The steps, in the order in which they run: what fails fastest comes first.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -27,10 +29,14 @@ pub(crate) enum Step {
     Vcd,
     /// The golden cases on a Cortex-M3 without an operating system, in QEMU
     BareMetal,
-    /// The wasm crate's own tests, in a real browser
+    /// The wasm crate's own tests, in Chromium and Firefox
     Wasm,
-    /// The built page, used in a real browser
+    /// tsc is silent: the types of the page's modules
+    Types,
+    /// The page as it is shipped: its weight, and its use in Chromium
     Page,
+    /// The page's main job and the golden digests, in Chromium, Firefox and WebKit
+    Engines,
 }
 
 impl Step {
@@ -68,7 +74,12 @@ impl Step {
             Self::Vcd => gtkwave::test().await,
             Self::BareMetal => bare_metal::test().await,
             Self::Wasm => wasm().await,
+            Self::Types => {
+                page::built().await?;
+                npm::check_types().await
+            }
             Self::Page => page().await,
+            Self::Engines => engines().await,
         }
     }
 }
@@ -88,35 +99,58 @@ async fn clippy(what: &str) -> Result<()> {
     cargo(&format!("clippy {what} --locked -- -D warnings")).await
 }
 
-/// wasm/webdriver.json holds the browser's flags.
+/// wasm/webdriver.json holds the browsers' flags.
 async fn wasm() -> Result<()> {
     let browser = Browser::ready().await?;
+    let Firefox { firefox: _, geckodriver } = Firefox::ready().await?;
     let tools = WasmTools::ready(Optimise::No).await?;
     let mut command = tools.wasm_pack()?;
     command.args(["test", "--headless", "--chrome", "--chromedriver"]).arg(&browser.chromedriver);
+    command.args(["--firefox", "--geckodriver"]).arg(geckodriver);
     command.args(["--mode", "no-install", "wasm", "--locked"]);
     // Seconds for the whole run in the browser; the runner's own 20 are few on a busy machine.
     command.env("WASM_BINDGEN_TEST_TIMEOUT", "600");
     run::to_end(command, run::LIMIT).await
 }
 
-/// The tests start the driver and the server themselves; the environment says where all of it is.
-async fn page() -> Result<()> {
+/// The page's tests, as yet without the words that choose among them. They start the drivers and the server themselves;
+/// the environment says where all of it is.
+async fn page_tests() -> Result<Command> {
     let this = env::current_exe().context("this program's own path is unknown")?;
     let browser = Browser::ready().await?;
-    page::build(Optimise::Yes).await?;
-    let web = root().join("web");
-    let weights = page::weigh(&web)?;
-    print!("{weights}");
-    weights.within_budget()?;
+    page::built().await?;
     let mut command = toolchain::cargo();
     // The whole workspace, so that its packages keep the features, and with them the builds, of the native step.
-    command.args(words("test --workspace --features stepscope-tests/browser --test page --locked"));
+    command.args(words("test --workspace --features stepscope-tests/browser --test page --locked --"));
     command
-        .env("STEPSCOPE_WEB", web)
+        .env("STEPSCOPE_WEB", root().join("web"))
+        .env("STEPSCOPE_DIST", dist::folder())
         .env("STEPSCOPE_XTASK", this)
         .env(browser::CHROMIUM, &browser.chromium)
         .env(browser::CHROMEDRIVER, &browser.chromedriver);
+    Ok(command)
+}
+
+async fn page() -> Result<()> {
+    let mut command = page_tests().await?;
+    let weights = page::weigh(&dist::folder())?;
+    print!("{weights}");
+    weights.within_budget()?;
+    command.args(["--skip", "engines::"]).env("STEPSCOPE_AXE", npm::axe().await?);
+    run::to_end(command, run::LIMIT).await
+}
+
+/// All three engines or none: one that can't be had is an error, so that no run passes without it.
+async fn engines() -> Result<()> {
+    let Firefox { firefox, geckodriver } = Firefox::ready().await?;
+    let webkit = WebKit::ready().await?;
+    let mut command = page_tests().await?;
+    command
+        .arg("engines::")
+        .env(engines::FIREFOX, firefox)
+        .env(engines::GECKODRIVER, geckodriver)
+        .env(engines::WEBKITDRIVER, &webkit.driver)
+        .env("DISPLAY", &webkit.display);
     run::to_end(command, run::LIMIT).await
 }
 

@@ -15,6 +15,7 @@ use crate::{root, run, toolchain, wasm_opt};
 
 const WASM_PACK: &str = "0.15.1";
 const CARGO_FUZZ: &str = "0.13.2";
+const GECKODRIVER: &str = "0.37.1";
 
 /// Whether the page's wasm goes through wasm-opt.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -117,6 +118,12 @@ pub(crate) async fn cargo_fuzz() -> Result<PathBuf> {
     ready(&cache()?, &[tool]).await?.pop().context("cargo-fuzz was lost")
 }
 
+/// The path of geckodriver, Firefox's driver, installing it if it is missing.
+pub(crate) async fn geckodriver() -> Result<PathBuf> {
+    let tool = Tool { package: "geckodriver", program: "geckodriver", version: GECKODRIVER.to_owned() };
+    ready(&cache()?, &[tool]).await?.pop().context("geckodriver was lost")
+}
+
 /// The paths of the tools, installing what is missing.
 async fn ready(cache: &Path, tools: &[Tool]) -> Result<Vec<PathBuf>> {
     let mut programs = Vec::new();
@@ -202,7 +209,7 @@ pub(crate) fn find(program: &str, folder: &Path) -> Option<PathBuf> {
 }
 
 /// Where the tools lie, for all clones of the project of this user.
-fn cache() -> Result<PathBuf> {
+pub(crate) fn cache() -> Result<PathBuf> {
     let strategy =
         etcetera::base_strategy::choose_native_strategy().context("the user has no home folder")?;
     Ok(strategy.cache_dir().join("stepscope"))

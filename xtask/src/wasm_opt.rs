@@ -8,9 +8,8 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
-use tokio::process::Command;
 
-use crate::run;
+use crate::npm::Npm;
 use crate::tools::{find, version_answer};
 
 /// The npm package's version.
@@ -21,21 +20,16 @@ const AT_LEAST: u32 = 130;
 /// The path of a wasm-opt that is recent enough, installed by npm into `cache` if need be; `None` if
 /// wasm-pack must fetch one.
 pub(crate) async fn ready(cache: &Path) -> Result<Option<PathBuf>> {
-    let home = cache.join("tools").join(format!("binaryen-{BINARYEN}"));
-    let own = home.join("node_modules").join(".bin");
+    let npm = Npm { package: "binaryen", version: BINARYEN };
+    let own = npm.modules(cache).join(".bin");
     let on_path = which::which("wasm-opt").ok();
     for program in [find("wasm-opt", &own), on_path.clone()].into_iter().flatten() {
         if fits(&program).await {
             return Ok(Some(program));
         }
     }
-    if let Ok(npm) = which::which("npm") {
-        println!("installing binaryen {BINARYEN} for its wasm-opt (once)");
-        std::fs::create_dir_all(&home).with_context(|| format!("{} can't be made", home.display()))?;
-        let mut command = Command::new(npm);
-        command.args(["install", "--no-audit", "--no-fund", "--no-update-notifier", "--prefix"]).arg(&home);
-        command.arg(format!("binaryen@{BINARYEN}"));
-        run::to_end(command, run::LIMIT).await.with_context(remedy)?;
+    if which::which("npm").is_ok() {
+        npm.install(cache).await.with_context(remedy)?;
         let program = find("wasm-opt", &own).with_context(remedy)?;
         ensure!(fits(&program).await, "{} does not run; {}", program.display(), remedy());
         return Ok(Some(program));

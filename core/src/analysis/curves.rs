@@ -1,16 +1,16 @@
 //! Position, speed and acceleration over a stretch of time, as the least and greatest value in
 //! each pixel column: of the ideal motion, and of the one that the simulated pulses make.
 
+use super::made::Pulses;
 use crate::{
-    motion::AxisPlan,
-    scenario::Config,
-    trace::{Recording, Step},
-    wire::packet::Order,
+    motion::{AxisPlan, Joints, Piece},
+    trace::Step,
 };
 use alloc::{vec, vec::Vec};
 
-/// Looks at the ideal curve in each column; its moves' ends are looked at besides.
-const LOOKS: usize = 8;
+/// Smooth pieces of a column that are all looked at; of more, every 16th and the last. Only a table
+/// of some hundred thousand rows has as many, and its speed rises from row to row.
+const MOST_PIECES: usize = 256;
 
 /// The least and greatest value in each column; NaN where there is none.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,14 +22,23 @@ pub struct Band {
 }
 
 impl Band {
-    fn new(columns: usize) -> Self {
+    pub(super) fn new(columns: usize) -> Self {
         Self { min: vec![f64::NAN; columns], max: vec![f64::NAN; columns] }
     }
 
-    fn take(&mut self, column: usize, value: f64) {
+    pub(super) fn take(&mut self, column: usize, value: f64) {
         if let (Some(min), Some(max)) = (self.min.get_mut(column), self.max.get_mut(column)) {
             *min = libm::fmin(*min, value);
             *max = libm::fmax(*max, value);
+        }
+    }
+}
+
+impl Band {
+    /// Nothing moves from one time to another.
+    fn still(&mut self, window: Window, from_s: f64, to_s: f64) {
+        if to_s > from_s {
+            window.columns(from_s, to_s).for_each(|column| self.take(column, 0.0));
         }
     }
 }
@@ -61,10 +70,17 @@ impl Window {
         libm::floor((time_s - self.start_s) / self.width_s()) as i64
     }
 
-    /// The columns from one time to another that lie inside.
+    /// The start of a column in s; the end of the one before.
+    pub(super) fn edge_s(&self, column: usize) -> f64 {
+        self.start_s + column as f64 * self.width_s()
+    }
+
+    /// The columns that a stretch of time has a part in. One of no length has one, unless it lies
+    /// outside.
     fn columns(&self, from_s: f64, to_s: f64) -> core::ops::Range<usize> {
         let inside = |column: i64| column.clamp(0, self.columns as i64) as usize;
-        inside(self.column(from_s))..inside(self.column(to_s).saturating_add(1))
+        let after = libm::ceil((to_s - self.start_s) / self.width_s()) as i64;
+        inside(self.column(from_s))..inside(after.max(self.column(from_s).saturating_add(1)))
     }
 }
 
@@ -80,23 +96,63 @@ pub struct Ideal {
 }
 
 /// The ideal motion of an axis whose time 0 is at `zero_s`.
+///
+/// Between two joints every curve rises, falls or stays, so a column's extremes are at its own ends
+/// and at either side of the joints in it.
 #[must_use]
 pub fn ideal(plan: &AxisPlan, zero_s: f64, window: Window) -> Ideal {
     let n = window.columns;
     let mut bands = Ideal { position: Band::new(n), speed: Band::new(n), acceleration: Band::new(n) };
-    let mut look = |column: usize, time_s: f64| {
-        let t = time_s - zero_s;
-        bands.position.take(column, plan.position(t));
-        bands.speed.take(column, plan.speed(t));
-        bands.acceleration.take(column, plan.acceleration(t));
-    };
+    let joints = Joints::of(plan);
+    let mut period = None;
     for column in 0..n {
-        let from = window.start_s + column as f64 * window.width_s();
-        for k in 0..=LOOKS {
-            look(column, from + window.width_s() * k as f64 / LOOKS as f64);
+        let (from, to) = (window.edge_s(column) - zero_s, window.edge_s(column + 1) - zero_s);
+        let extremes = match joints.period_within(from, to) {
+            // Thousands of periods over a few columns are one period's work.
+            Some(bounds) => match period {
+                Some((known, extremes)) if known == bounds => extremes,
+                _ => {
+                    let extremes = extremes(plan, &joints, bounds.0, bounds.1);
+                    period = Some((bounds, extremes));
+                    extremes
+                }
+            },
+            None => extremes(plan, &joints, from, to),
+        };
+        let bands = [&mut bands.position, &mut bands.speed, &mut bands.acceleration];
+        for (band, values) in bands.into_iter().zip(extremes) {
+            values.into_iter().for_each(|value| band.take(column, value));
         }
     }
     bands
+}
+
+/// Least and greatest position, speed and acceleration of a stretch.
+fn extremes(plan: &AxisPlan, joints: &Joints, from_s: f64, to_s: f64) -> [[f64; 2]; 3] {
+    let mut found = [[f64::NAN; 2]; 3];
+    let mut look = |piece: Piece| {
+        // Just inside: at a joint itself the value may be that of the other side.
+        let inset = (piece.to_s - piece.from_s) * 1e-9;
+        for t in [piece.from_s + inset, piece.to_s - inset] {
+            let values = [plan.position(t), plan.speed(t), plan.acceleration(t)];
+            for ([least, greatest], value) in found.iter_mut().zip(values) {
+                *least = libm::fmin(*least, value);
+                *greatest = libm::fmax(*greatest, value);
+            }
+        }
+    };
+    let (mut count, mut last) = (0, None);
+    joints.pieces(from_s, to_s, &mut |piece| {
+        count += 1;
+        last = Some(piece);
+        if count <= MOST_PIECES || count % 16 == 0 {
+            look(piece);
+        }
+    });
+    if let Some(last) = last {
+        look(last);
+    }
+    found
 }
 
 /// What the pulses really do.
@@ -104,90 +160,42 @@ pub fn ideal(plan: &AxisPlan, zero_s: f64, window: Window) -> Ideal {
 pub struct Made {
     /// Position in steps from the start.
     pub position: Band,
-    /// Steps of a tick by its length, in steps/s; without ticks one step by the time since the one before.
+    /// Speed in steps/s: of a tick its steps by its length, of a segment's step 1 by its interval,
+    /// and 0 where neither is.
     pub speed: Band,
 }
 
 /// The motion that the pulses of a channel make.
 #[must_use]
-pub fn made(recording: &Recording, steps: &[Step], channel: u8, config: &Config, window: Window) -> Made {
-    let (clock_hz, hz) = (config.clock_hz(), f64::from(config.clock_hz()));
+pub fn made(pulses: &Pulses<'_>, window: Window) -> Made {
     let mut bands = Made { position: Band::new(window.columns), speed: Band::new(window.columns) };
-    let mut next = steps.partition_point(|step| step.cycle as f64 / hz < window.start_s);
-    let mut position = next.checked_sub(1).and_then(|i| steps.get(i)).map_or(0, |step| step.position);
+    let hz = pulses.hz();
+    let mut next = pulses.steps.partition_point(|step| (step.cycle as f64 / hz) < window.start_s);
+    let before = next.checked_sub(1).and_then(|last| pulses.steps.get(last));
+    let mut position = before.map_or(0, |step| step.position);
     for column in 0..window.columns {
         bands.position.take(column, f64::from(position));
-        while let Some(step) = steps.get(next).filter(|s| window.column(s.cycle as f64 / hz) <= column as i64)
-        {
+        let comes = |step: &&Step| window.column(step.cycle as f64 / hz) <= column as i64;
+        while let Some(step) = pulses.steps.get(next).filter(comes) {
             position = step.position;
             bands.position.take(column, f64::from(position));
             next += 1;
         }
     }
-    let log = &recording.packets;
-    let tick_s = config.tick().0 as f64 / hz;
-    let first = log.ticks().partition_point(|tick| tick.start.seconds(clock_hz) + tick_s < window.start_s);
-    for tick in log.ticks().iter().skip(first) {
-        let from_s = tick.start.seconds(clock_hz);
-        if from_s > window.end_s {
-            break;
+    let mut moved_to = window.start_s;
+    pulses.rates(window.start_s, window.end_s, &mut |rate| {
+        if rate.to_s <= window.start_s || rate.from_s >= window.end_s {
+            return;
         }
-        let order = Order::parse(tick.orders.get(usize::from(channel)).copied().unwrap_or(0));
-        let rate = f64::from(order.steps) / tick_s;
-        for column in window.columns(from_s, from_s + tick_s) {
-            bands.speed.take(column, if order.right { rate } else { -rate });
+        bands.speed.still(window, moved_to, rate.from_s);
+        for column in window.columns(rate.from_s, rate.to_s) {
+            bands.speed.take(column, rate.speed);
         }
-    }
-    if log.ticks().is_empty() {
-        intervals(steps, hz, window, &mut bands.speed);
-    }
-    // Where no tick runs, nothing moves.
-    for column in 0..window.columns {
-        if bands.speed.min.get(column).is_some_and(|speed| speed.is_nan()) {
-            bands.speed.take(column, 0.0);
-        }
-    }
+        moved_to = rate.to_s;
+    });
+    bands.speed.still(window, moved_to, window.end_s);
     bands
 }
 
-/// The rate from each step to the next, as the later one's direction has it.
-fn intervals(steps: &[Step], hz: f64, window: Window, speed: &mut Band) {
-    let seconds = |step: &Step| step.cycle as f64 / hz;
-    let first = steps.partition_point(|step| seconds(step) < window.start_s).max(1);
-    for index in first..steps.len() {
-        let (Some(before), Some(step)) = (steps.get(index - 1), steps.get(index)) else { break };
-        let (from_s, to_s) = (seconds(before), seconds(step));
-        if from_s > window.end_s {
-            break;
-        }
-        let rate = f64::from(Step::direction(steps, index)) / (to_s - from_s);
-        for column in window.columns(from_s, to_s) {
-            speed.take(column, rate);
-        }
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{run::Experiment, trace::steps};
-
-    #[test]
-    fn without_ticks_the_speed_is_that_of_the_intervals() {
-        // 10 steps right, 1 ms apart, a pause of 5 ms, and 10 back, 0.5 ms apart.
-        let json = r#"{"source":{"segments":{"channels":[{"segments":[
-            {"steps":{"count":10}},{"dwell":{"length_q16":5242880000}},
-            {"steps":{"count":10,"interval_q16":524288000,"dir":0}}]}]}}}"#;
-        let experiment = Experiment::from_json(json).expect("no problems");
-        let mut recording = Recording::default();
-        experiment.run(&mut recording);
-        let window = Window { start_s: 0.0, end_s: 0.022, columns: 22 };
-        let steps = steps(&recording.trace, 0);
-        let Made { speed, .. } = made(&recording, &steps, 0, experiment.config(), window);
-        let rows = [(0, 0.0), (5, 1000.0), (12, -1.0 / 0.0055), (17, -2000.0), (21, 0.0)];
-        for (column, expected) in rows {
-            assert!((speed.min[column] - expected).abs() < 0.01, "{column}: {speed:?}");
-            assert!((speed.max[column] - expected).abs() < 0.01, "{column}: {speed:?}");
-        }
-    }
-}
+mod tests;

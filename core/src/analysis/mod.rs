@@ -1,10 +1,13 @@
 //! What a run and its ideal come to: curves for the eye, spectra and distortion, which segments
 //! make the best sine, and whether a driver could follow the pulses.
 
+pub mod between;
 pub mod curves;
+pub mod difference;
 pub mod drivers;
 #[cfg(feature = "std")]
 mod fourier;
+pub mod made;
 pub mod sine_optimum;
 pub mod sine_polyline;
 #[cfg(feature = "std")]

@@ -12,14 +12,15 @@
 //!
 //! The mirror makes s(T) exactly n. With t_s = 0 the speed jumps to f_max and back.
 
-use super::{Curve, Peaks, mirrored::Mirrored};
+use super::{Curve, Peaks, mirrored::Mirrored, words::in_words};
+use alloc::{format, string::String};
 use core::f64::consts::PI;
 
 /// A cosine S-curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cosine {
     halves: Mirrored,
-    ramp_s: f64,
+    pub(super) ramp_s: f64,
     /// f_max in steps/s.
     top_speed: f64,
 }
@@ -111,6 +112,17 @@ impl Curve for Cosine {
             Peaks { speed, acceleration: speed * PI / (2.0 * self.ramp_s), jump: 0.0 }
         } else {
             Peaks { speed, acceleration: 0.0, jump: 0.0 }
+        }
+    }
+
+    fn detail(&self, limit_steps_s: f64) -> String {
+        let peaks = in_words(self.peaks());
+        match self.longest_ramp_s(limit_steps_s) {
+            Some(longest_s) => {
+                let longest_s = longest_s.min(self.duration_s() / 2.0);
+                format!("{peaks}; with a ramp of up to {longest_s:.4} s the bus can still follow")
+            }
+            None => peaks,
         }
     }
 }

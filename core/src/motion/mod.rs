@@ -22,6 +22,7 @@ mod asked;
 mod axis;
 pub mod cosine;
 mod due;
+mod joints;
 mod mirrored;
 mod plan;
 pub(crate) mod polyline;
@@ -34,12 +35,15 @@ mod step_times;
 mod stepped;
 pub mod trapezoid;
 pub mod trapezoid_table;
+mod words;
 
 pub use axis::{AxisPlan, PlannedMove};
 pub use due::DueStep;
+pub use joints::{Joints, Piece};
 pub use plan::{plan_axis, plan_lists};
 pub use profile::{Curve, Peaks, Profile};
 pub use step_times::StepTimes;
+pub use words::grouped;
 
 /// Highest speed that a plan may have, in steps/s.
 pub const MOST_SPEED: f64 = 1e7;

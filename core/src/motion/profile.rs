@@ -7,7 +7,9 @@ use super::{
     steady::{Constant, Dwell},
     trapezoid::Trapezoid,
     trapezoid_table::TrapezoidTable,
+    words::in_words,
 };
+use alloc::string::String;
 
 /// The curve of one move: position, speed and acceleration over time since the move's start.
 ///
@@ -32,6 +34,12 @@ pub trait Curve {
 
     /// The greatest values within the move.
     fn peaks(&self) -> Peaks;
+
+    /// What a user wants to know of the move beside its times, in a few words, on a bus that can
+    /// give `limit_steps_s`; empty where there is nothing to say.
+    fn detail(&self, _limit_steps_s: f64) -> String {
+        in_words(self.peaks())
+    }
 }
 
 /// The greatest magnitudes of a move or an axis.
@@ -118,5 +126,9 @@ impl Curve for Profile {
 
     fn peaks(&self) -> Peaks {
         each!(self, curve => curve.peaks())
+    }
+
+    fn detail(&self, limit_steps_s: f64) -> String {
+        each!(self, curve => curve.detail(limit_steps_s))
     }
 }

@@ -18,8 +18,9 @@ use super::{
     polyline::{Folded, POINTS, QUARTER, breakpoints, cosine_at, fold},
     profile::greater,
     round_half_up,
+    words::grouped,
 };
-use alloc::vec::Vec;
+use alloc::{format, string::String, vec::Vec};
 
 /// One segment of a quarter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -245,6 +246,22 @@ impl Curve for SineSegments {
             before = Some(rate);
         }
         peaks
+    }
+
+    fn detail(&self, _: f64) -> String {
+        let points: Vec<String> = self
+            .segments
+            .iter()
+            .map(|segment| format!("{:.2}\u{b0} {}/s", segment.from_deg, grouped(segment.rate)))
+            .collect();
+        let memory = self.memory();
+        format!(
+            "{} segments a quarter: {}; {} bytes, against {} with an interval a step",
+            points.len(),
+            points.join(", "),
+            grouped(memory.segments as f64),
+            grouped(memory.intervals as f64)
+        )
     }
 }
 

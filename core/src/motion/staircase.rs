@@ -12,9 +12,15 @@
 //!      +---------------------    twice, and what is left of the way at the rate after them
 //! ```
 
-use super::{Curve, Peaks, profile::greater, staircase_table::StaircaseTable, stepped};
+use super::{
+    Curve, Peaks,
+    profile::greater,
+    staircase_table::StaircaseTable,
+    stepped,
+    words::{count, grouped},
+};
 use crate::scenario::ShortMove;
-use alloc::vec::Vec;
+use alloc::{format, string::String, vec::Vec};
 
 /// A move by a staircase of rates.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +34,7 @@ pub struct Staircase {
     /// Start of each row of the ramp, and its end, in s.
     ///
     /// Invariant: at least one entry, the first 0, rising.
-    starts_s: Vec<f64>,
+    pub(super) starts_s: Vec<f64>,
     duration_s: f64,
 }
 
@@ -210,6 +216,21 @@ impl Curve for Staircase {
         }
         peaks
     }
+
+    fn detail(&self, _: f64) -> String {
+        let plateau = self.plateau_rate().map(|rate| {
+            format!("{} at {}/s", count(self.plateau_steps(), "step", "steps"), grouped(rate as f64))
+        });
+        match (self.ramp_rows(), plateau) {
+            (0, plateau) => format!("no ramp: {}", plateau.unwrap_or_default()),
+            (rows, plateau) => format!(
+                "{} with {} each way, {} between",
+                count(rows, "row", "rows"),
+                count(self.ramp_steps, "step", "steps"),
+                plateau.as_deref().unwrap_or("none")
+            ),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -302,6 +323,19 @@ mod tests {
             // Up and down through the same rates.
             assert!((0..count).all(|i| made.rate(i) == made.rate(count - 1 - i)), "{steps}");
             assert_eq!(made.rate(0), made.rate(0).min(1000));
+        }
+    }
+
+    #[test]
+    fn what_there_is_to_say_of_a_move_fits_all_of_its_cases() {
+        let rows = [
+            (500, 1100, "4 rows with 120 steps each way, 260 steps at 1\u{202f}100/s between"),
+            (240, 1100, "4 rows with 120 steps each way, none between"),
+            (239, 1100, "no ramp: 239 steps at 1\u{202f}000/s"),
+            (500, 900, "no ramp: 500 steps at 900/s"),
+        ];
+        for (steps, top, expected) in rows {
+            assert_eq!(staircase(steps, 1.0, top, ShortMove::Document).detail(1e6), expected);
         }
     }
 

@@ -6,6 +6,7 @@
 //! ```
 
 use super::{Curve, Peaks};
+use alloc::string::String;
 
 /// One rate from end to end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,6 +59,10 @@ impl Curve for Constant {
     fn peaks(&self) -> Peaks {
         Peaks { speed: self.speed, acceleration: 0.0, jump: 0.0 }
     }
+
+    fn detail(&self, _: f64) -> String {
+        String::new()
+    }
 }
 
 /// Standing still for a time.
@@ -97,5 +102,9 @@ impl Curve for Dwell {
 
     fn peaks(&self) -> Peaks {
         Peaks::default()
+    }
+
+    fn detail(&self, _: f64) -> String {
+        String::new()
     }
 }

@@ -14,8 +14,8 @@
 //!
 //! Only the ramp is kept, as sums of reloads: integers up to the last division by `timer_hz`.
 
-use super::{Curve, Peaks, acceleration_table::AccelerationTable, profile::greater, stepped};
-use alloc::vec::Vec;
+use super::{Curve, Peaks, acceleration_table::AccelerationTable, profile::greater, stepped, words::grouped};
+use alloc::{format, string::String, vec::Vec};
 
 /// A trapezoid by acceleration table.
 #[derive(Clone, Debug, PartialEq)]
@@ -130,7 +130,7 @@ impl TrapezoidTable {
     }
 
     /// Time of step `k` in s, rounded once.
-    fn step_s(&self, k: u64) -> f64 {
+    pub(super) fn step_s(&self, k: u64) -> f64 {
         self.step_ticks(k) as f64 / f64::from(self.table.timer_hz())
     }
 
@@ -243,6 +243,10 @@ impl Curve for TrapezoidTable {
             peaks.jump = greater(peaks.jump, libm::fabs(jump));
         }
         peaks
+    }
+
+    fn detail(&self, _: f64) -> String {
+        format!("peak {} steps/s, table of {} rows", grouped(self.peaks().speed), self.rows())
     }
 }
 

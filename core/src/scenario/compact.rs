@@ -92,6 +92,11 @@ macro_rules! choices {
             $($(#[$variant_meta])* #[serde(rename = $key)] $variant($ty),)*
         }
 
+        impl $name {
+            /// The names of all kinds, as JSON writes them.
+            pub const KINDS: &'static [&'static str] = &[$($key),*];
+        }
+
         impl $crate::scenario::Compact for $name {
             fn compact(&self) -> serde_json::Value {
                 match self {

@@ -150,6 +150,12 @@ impl Config {
         Cycles(self.slots as u64 * self.step_period)
     }
 
+    /// The rate at which the controller replies, in baud (A6).
+    #[must_use]
+    pub const fn reply_baud(&self) -> u32 {
+        self.reply_baud
+    }
+
     /// The receiver's bit time B (A4).
     #[must_use]
     pub const fn bit(&self) -> Cycles {

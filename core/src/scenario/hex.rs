@@ -1,7 +1,7 @@
 //! Bytes as hexadecimal text.
 
-use alloc::{string::String, vec::Vec};
-use data_encoding::HEXLOWER;
+use alloc::{format, string::String, vec::Vec};
+use base16ct::{lower, mixed};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error as _};
 use serde_json::Value;
 
@@ -12,7 +12,7 @@ pub struct Hex(pub Vec<u8>);
 
 impl Serialize for Hex {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(&HEXLOWER.encode(&self.0))
+        serializer.serialize_str(&lower::encode_string(&self.0))
     }
 }
 
@@ -20,14 +20,47 @@ impl<'de> Deserialize<'de> for Hex {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let text = String::deserialize(deserializer)?;
         let digits: String = text.chars().filter(|c| !c.is_ascii_whitespace()).collect();
-        HEXLOWER.decode(digits.to_ascii_lowercase().as_bytes()).map(Self).map_err(|e| {
-            D::Error::custom(alloc::format!("hexadecimal digits, two a byte, such as \"80 01 7f\"; {e}"))
-        })
+        mixed::decode_vec(&digits).map(Self).map_err(|_| D::Error::custom(wrong_in(&digits)))
     }
+}
+
+/// What is wrong with digits that are no bytes, and what is allowed.
+fn wrong_in(digits: &str) -> String {
+    let wrong = digits.chars().enumerate().find(|(_, c)| !c.is_ascii_hexdigit());
+    let what = match wrong {
+        Some((index, c)) => format!("\u{201c}{c}\u{201d} in byte {} is no hexadecimal digit", index / 2 + 1),
+        None => format!("byte {} has one digit only", digits.len() / 2 + 1),
+    };
+    format!("{what}; give 0 to 9 and a to f, two a byte, such as 80 01 7f")
 }
 
 impl super::Compact for Hex {
     fn compact(&self) -> Value {
-        Value::from(HEXLOWER.encode(&self.0))
+        Value::from(lower::encode_string(&self.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::{string::ToString, vec};
+
+    #[test]
+    fn what_is_no_byte_is_told_by_its_place_with_what_is_allowed() {
+        let rows = [
+            ("80 0g", "\u{201c}g\u{201d} in byte 2 is no"),
+            ("8x", "\u{201c}x\u{201d} in byte 1 is no"),
+            ("\u{fc}0", "\u{201c}\u{fc}\u{201d} in byte 1 is no"),
+            ("80 01 7", "byte 3 has one digit only"),
+        ];
+        for (given, expected) in rows {
+            let error = serde_json::from_value::<Hex>(Value::from(given)).unwrap_err().to_string();
+            assert!(error.starts_with(expected), "{given}: {error}");
+            assert!(error.ends_with("give 0 to 9 and a to f, two a byte, such as 80 01 7f"), "{error}");
+        }
+        assert_eq!(
+            serde_json::from_value::<Hex>(Value::from("80 01\n7F")).unwrap(),
+            Hex(vec![0x80, 1, 0x7f])
+        );
     }
 }

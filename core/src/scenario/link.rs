@@ -14,9 +14,9 @@ use alloc::{
     string::{String, ToString},
     vec::Vec,
 };
+use base64ct::{Base64UrlUnpadded, Encoding};
 use core::fmt;
 use crc::{CRC_32_ISO_HDLC, Crc};
-use data_encoding::BASE64URL_NOPAD;
 use miniz_oxide::{deflate::compress_to_vec, inflate::decompress_to_vec_with_limit};
 use percent_encoding::percent_decode_str;
 
@@ -113,12 +113,21 @@ pub fn encode(scenario: &Scenario) -> Result<String, LinkError> {
     let deflated = compress_to_vec(json.as_bytes(), DEFLATE_LEVEL);
     let (codec, payload) =
         if deflated.len() < json.len() { ('z', deflated.as_slice()) } else { ('j', json.as_bytes()) };
-    let text = format!("{VERSION}.{codec}.{}", BASE64URL_NOPAD.encode(payload));
+    let text = format!("{VERSION}.{codec}.{}", Base64UrlUnpadded::encode_string(payload));
     let link = format!("c={text}.{:08x}", CHECK.checksum(text.as_bytes()));
     if link.len() > MOST_FRAGMENT_BYTES {
         return Err(LinkError::TooLong { given: link.len(), most: MOST_FRAGMENT_BYTES });
     }
     Ok(link)
+}
+
+/// A link with another part, `&name=text`, behind it; without it where it would be too long to be read.
+#[must_use]
+pub fn with_part(link: String, name: &str, text: &str) -> String {
+    if text.is_empty() || link.len() + name.len() + text.len() + 2 > MOST_FRAGMENT_BYTES {
+        return link;
+    }
+    link + "&" + name + "=" + text
 }
 
 /// The scenario of a link's fragment, with or without its `#`; other parts (`&v=`, `&d=`) are left
@@ -146,7 +155,7 @@ pub fn decode(fragment: &str) -> Result<Scenario, LinkError> {
     }
     let (codec, payload) =
         rest.rsplit_once('.').and_then(|(rest, _)| rest.split_once('.')).ok_or(LinkError::Damaged)?;
-    let payload = BASE64URL_NOPAD.decode(payload.as_bytes()).map_err(|_| LinkError::Damaged)?;
+    let payload = Base64UrlUnpadded::decode_vec(payload).map_err(|_| LinkError::Damaged)?;
     let bad = LinkError::Payload { most: MOST_JSON_BYTES };
     let json = match codec {
         "z" => decompress_to_vec_with_limit(&payload, MOST_JSON_BYTES).map_err(|_| bad.clone())?,
@@ -226,6 +235,18 @@ mod tests {
     }
 
     #[test]
+    fn parts_are_added_as_long_as_the_link_can_be_read() {
+        let link = encode(&sixteen_axes()).expect("short enough");
+        let whole = with_part(with_part(link.clone(), "v", "1-2"), "d", "1.x");
+        assert_eq!(whole, format!("{link}&v=1-2&d=1.x"));
+        assert_eq!((part(&whole, "v"), part(&whole, "d")), (Some("1-2".into()), Some("1.x".into())));
+        assert_eq!(with_part(link.clone(), "v", ""), link);
+        let room = MOST_FRAGMENT_BYTES - link.len() - 3;
+        assert_eq!(with_part(link.clone(), "d", &"x".repeat(room)).len(), MOST_FRAGMENT_BYTES);
+        assert_eq!(with_part(link.clone(), "d", &"x".repeat(room + 1)), link);
+    }
+
+    #[test]
     fn every_truncation_is_refused() {
         let link = encode(&sixteen_axes()).expect("short enough");
         for length in 0..link.len() {
@@ -265,7 +286,7 @@ mod tests {
     }
 
     fn link_of(codec: char, payload: &[u8]) -> String {
-        let text = format!("{VERSION}.{codec}.{}", BASE64URL_NOPAD.encode(payload));
+        let text = format!("{VERSION}.{codec}.{}", Base64UrlUnpadded::encode_string(payload));
         format!("c={text}.{:08x}", CHECK.checksum(text.as_bytes()))
     }
 

@@ -22,7 +22,9 @@ pub mod presets;
 mod problem;
 mod quantity;
 mod read;
+mod recorded;
 mod segments;
+mod tracked;
 
 pub(crate) use check::MOST_FURTHER;
 pub use check::{Checked, END_OF_TIME, Forced, line_time};
@@ -33,6 +35,7 @@ pub use drive::{Driver, DriverModel, TimingRules};
 pub use hex::Hex;
 pub use problem::{Cause, Problem};
 pub use quantity::{Acceleration, Direct, Distance, Mechanics, NoSuchUnit, Rotary, Screw, Speed, Wheel};
+pub use recorded::{BadTable, MOST_TABLE_BYTES};
 pub use segments::{ChannelSegments, DwellSegment, Segment, SegmentLists, StepSegment};
 
 use alloc::{string::String, vec, vec::Vec};

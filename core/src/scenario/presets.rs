@@ -57,6 +57,7 @@ presets! {
     PATENT => "two-controllers-raw";
     PATENT => "glitches-and-breaks";
     FRAMED => "framed-link";
+    FRAMED => "raw-noisy-line";
     FRAMED => "framed-noisy-line";
     FRAMED => "four-controllers-framed";
     DRIVERS => "driver-timing-broken";
@@ -66,6 +67,14 @@ presets! {
 mod tests {
     use super::*;
     use crate::run::Experiment;
+
+    #[test]
+    fn every_kind_of_move_has_a_preset() {
+        for kind in crate::scenario::Move::KINDS {
+            let key = alloc::format!("\"{kind}\": {{");
+            assert!(PRESETS.iter().any(|preset| preset.json.contains(&key)), "{kind}");
+        }
+    }
 
     #[test]
     fn every_preset_reads_and_has_no_problems() {

@@ -3,13 +3,16 @@
 //! serde stops at the first error. So the offending value is taken out of the JSON, its default
 //! takes its place, and the reading begins again, until it succeeds.
 
-use super::{Cause, Problem, Scenario, VERSION, judge::MOST_PROBLEMS};
+use super::{
+    Cause, Problem, Scenario, VERSION,
+    judge::MOST_PROBLEMS,
+    tracked::{self, Step},
+};
 use alloc::{
     string::{String, ToString},
     vec::Vec,
 };
 use serde_json::Value;
-use serde_path_to_error::Segment;
 
 impl Scenario {
     /// Reads a scenario from JSON text of any version up to [`VERSION`].
@@ -81,31 +84,14 @@ fn read(mut value: Value) -> (Scenario, Vec<Problem>) {
         if problems.len() >= MOST_PROBLEMS {
             break;
         }
-        let error = match serde_path_to_error::deserialize(&value) {
-            Ok(scenario) => {
-                let mut lists = Vec::new();
-                let typed = serde_json::to_value(&scenario).unwrap_or_default();
-                lists_for_maps(&value, &typed, &mut |path| lists.push(path));
-                if lists.is_empty() {
-                    return (scenario, problems);
-                }
-                lists.truncate(MOST_PROBLEMS - problems.len());
-                for path in lists {
-                    let detail = "a list, where a map of names and values belongs".into();
-                    problems.push(Problem::new(print(&path), Cause::Type { detail }));
-                    if !put_right(&mut value, &path, "") {
-                        return (Scenario::default(), problems);
-                    }
-                }
-                continue;
-            }
-            Err(error) => error,
+        let (path, error) = match tracked::read(&value) {
+            Ok(scenario) => return (scenario, problems),
+            Err(wrong) => wrong,
         };
-        let path: Vec<Step> = error.path().iter().filter_map(Step::of).collect();
         let at = print(&path);
         // What is left of a choice whose only value was taken out is no new problem.
         if !problems.iter().any(|earlier| earlier.path.len() > at.len() && earlier.path.starts_with(&at)) {
-            problems.push(Problem::new(at, Cause::Type { detail: in_words(&error.inner().to_string()) }));
+            problems.push(Problem::new(at, Cause::Type { detail: in_words(&error.to_string()) }));
         }
         if !put_right(&mut value, &path, "") {
             break;
@@ -121,8 +107,8 @@ fn in_words(message: &str) -> String {
         ("expected u8", "expected a whole number from 0 to 255"),
         ("expected u16", "expected a whole number from 0 to 65535"),
         ("expected u32", "expected a whole number from 0 to 4294967295"),
-        ("expected u64", "expected a whole number from 0 on"),
-        ("expected i64", "expected a whole number"),
+        ("expected u64", "expected a whole number from 0 to 18446744073709551615"),
+        ("expected i64", "expected a whole number from -9223372036854775808 to 9223372036854775807"),
         ("expected f64", "expected a number"),
         ("expected struct ", "expected a map of names and values for "),
         ("expected map with a single key", CHOICE),
@@ -135,53 +121,11 @@ fn in_words(message: &str) -> String {
     }
 }
 
-/// serde also reads a map's fields from a list, by their order; a scenario has names.
-fn lists_for_maps(given: &Value, typed: &Value, found: &mut dyn FnMut(Vec<Step>)) {
-    match (given, typed) {
-        (Value::Array(_), Value::Object(_)) => found(Vec::new()),
-        (Value::Object(given), Value::Object(typed)) => {
-            for (key, value) in given {
-                if let Some(typed) = typed.get(key) {
-                    lists_for_maps(value, typed, &mut |path| found(below(Step::Key(key.clone()), path)));
-                }
-            }
-        }
-        (Value::Array(given), Value::Array(typed)) => {
-            for (index, (value, typed)) in given.iter().zip(typed).enumerate() {
-                lists_for_maps(value, typed, &mut |path| found(below(Step::Index(index), path)));
-            }
-        }
-        _ => {}
-    }
-}
-
-fn below(step: Step, mut path: Vec<Step>) -> Vec<Step> {
-    path.insert(0, step);
-    path
-}
-
-/// One step of a path into JSON.
-#[derive(Clone, PartialEq)]
-enum Step {
-    Key(String),
-    Index(usize),
-}
-
-impl Step {
-    fn of(segment: &Segment) -> Option<Self> {
-        match segment {
-            Segment::Seq { index } => Some(Self::Index(*index)),
-            Segment::Map { key } => Some(Self::Key(key.clone())),
-            Segment::Enum { variant } => Some(Self::Key(variant.clone())),
-            Segment::Unknown => None,
-        }
-    }
-
-    fn value_in<'v>(&self, value: &'v mut Value) -> Option<&'v mut Value> {
-        match self {
-            Self::Key(key) => value.get_mut(key),
-            Self::Index(index) => value.get_mut(index),
-        }
+/// The value one step further in.
+fn value_in<'v>(value: &'v mut Value, step: &Step) -> Option<&'v mut Value> {
+    match step {
+        Step::Key(key) => value.get_mut(key),
+        Step::Index(index) => value.get_mut(index),
     }
 }
 
@@ -191,7 +135,7 @@ impl Step {
 fn put_right(value: &mut Value, path: &[Step], list: &str) -> bool {
     let Some((step, rest)) = path.split_first() else { return false };
     let name = if let Step::Key(key) = step { key } else { list };
-    if step.value_in(value).is_some_and(|inner| put_right(inner, rest, name)) {
+    if value_in(value, step).is_some_and(|inner| put_right(inner, rest, name)) {
         return true;
     }
     match (step, value) {

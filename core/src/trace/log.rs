@@ -3,7 +3,7 @@
 use crate::{
     protocol::{FrameFate, Kind, Reply},
     signal::{Event, Fate, Record, Sink},
-    units::Instant,
+    units::{Cycles, Instant},
     wire::packet::Tick,
 };
 use alloc::{collections::VecDeque, vec::Vec};
@@ -28,6 +28,21 @@ pub enum Verdict {
     Collision,
     /// The run ended within it.
     Open,
+}
+
+impl Verdict {
+    /// What the row is, in a word: `packet`, `frame`, `reply`, `collision`, or `open` where the run ended
+    /// before it was known.
+    #[must_use]
+    pub const fn kind(self) -> &'static str {
+        match self {
+            Self::Packet(_) | Self::Short | Self::Framing | Self::Ignored => "packet",
+            Self::Frame(_) => "frame",
+            Self::Reply(_) => "reply",
+            Self::Collision => "collision",
+            Self::Open => "open",
+        }
+    }
 }
 
 impl fmt::Display for Verdict {
@@ -64,7 +79,11 @@ pub struct LoggedPacket {
     pub tick_start: Option<Instant>,
     /// First cycle after its last tick so far that has ended.
     pub tick_end: Option<Instant>,
+    /// Where its bytes stand among those of all rows.
+    bytes_start: usize,
     bytes_end: usize,
+    /// The latest end of all rows to here, once the log is finished: a long row may end after later ones.
+    latest: Instant,
 }
 
 /// A tick that has begun.
@@ -83,6 +102,10 @@ pub struct LoggedTick {
 pub struct PacketLog {
     rows: Vec<LoggedPacket>,
     bytes: Vec<u8>,
+    /// Where the start bit of each byte was seen; of a reply's bytes, where its first one falls.
+    seen: Vec<Instant>,
+    /// Where the start bits of bytes with a framing error were seen.
+    broken: Vec<Instant>,
     /// Where the packet that is coming began.
     open: Option<Instant>,
     last: Instant,
@@ -90,10 +113,14 @@ pub struct PacketLog {
     /// The row of each tick that waits; none for one that firmware pushed.
     waiting: VecDeque<Option<usize>>,
     ticks: Vec<LoggedTick>,
+    /// When the controller was stopped.
+    stops: Vec<Instant>,
 }
 
 impl PacketLog {
-    /// Rows so far, in the order of their ends.
+    /// Rows: in the order in which they were known while the run goes on, in the order of their starts
+    /// once it is finished. A reply is known before it is sent, and a collision before the packet in which
+    /// it happens.
     #[must_use]
     pub fn rows(&self) -> &[LoggedPacket] {
         &self.rows
@@ -105,17 +132,65 @@ impl PacketLog {
         &self.ticks
     }
 
+    /// First cycle after a tick that lasts `length` where nothing stops it.
+    #[must_use]
+    pub fn tick_end(&self, tick: &LoggedTick, length: Cycles) -> Instant {
+        let stop = self.stops.get(self.stops.partition_point(|stop| *stop < tick.start));
+        stop.map_or(tick.start + length, |stop| (tick.start + length).min(*stop))
+    }
+
     /// Bytes of a row.
     #[must_use]
     pub fn bytes(&self, index: usize) -> &[u8] {
-        let first = index.checked_sub(1).and_then(|i| self.rows.get(i)).map_or(0, |row| row.bytes_end);
-        self.rows.get(index).and_then(|row| self.bytes.get(first..row.bytes_end)).unwrap_or_default()
+        let row = self.rows.get(index);
+        row.and_then(|row| self.bytes.get(row.bytes_start..row.bytes_end)).unwrap_or_default()
     }
 
-    /// The run is over: what is still open becomes a row.
+    /// Where the start bits of a row's bytes were seen; of a reply's, for each the start bit of the first.
+    #[must_use]
+    pub fn seen(&self, index: usize) -> &[Instant] {
+        let row = self.rows.get(index);
+        row.and_then(|row| self.seen.get(row.bytes_start..row.bytes_end)).unwrap_or_default()
+    }
+
+    /// Where the start bits of bytes were seen whose stop bit was low, rising in time.
+    #[must_use]
+    pub fn broken(&self) -> &[Instant] {
+        &self.broken
+    }
+
+    /// Indices of the rows of a finished log whose time on the line touches the cycles `start..=end`, rising.
+    pub fn touching(&self, start: Instant, end: Instant) -> impl Iterator<Item = usize> {
+        let first = self.rows.partition_point(|row| row.latest < start);
+        let rows = self.rows.iter().enumerate().skip(first).take_while(move |(_, row)| row.start <= end);
+        rows.filter(move |(_, row)| row.end >= start).map(|(index, _)| index)
+    }
+
+    /// The run is over: what is still open becomes a row, and the rows stand in the order of their starts.
     pub fn finish(&mut self) {
         if self.open.is_some() {
             self.close(self.last, if self.ignoring { Verdict::Ignored } else { Verdict::Open });
+        }
+        if !self.rows.is_sorted_by_key(|row| row.start) {
+            self.sort();
+        }
+        let mut latest = Instant::default();
+        for row in &mut self.rows {
+            latest = latest.max(row.end);
+            row.latest = latest;
+        }
+    }
+
+    fn sort(&mut self) {
+        let mut order: Vec<usize> = (0..self.rows.len()).collect();
+        order.sort_by_key(|&index| self.rows.get(index).map(|row| row.start));
+        let mut place = alloc::vec![0; order.len()];
+        for (new, &old) in order.iter().enumerate() {
+            place[old] = new;
+        }
+        self.rows.sort_by_key(|row| row.start);
+        for tick in &mut self.ticks {
+            tick.row = tick.row.and_then(|row| place.get(row).copied());
         }
     }
 
@@ -134,10 +209,26 @@ impl PacketLog {
         };
         self.waiting.extend(core::iter::repeat_n(Some(self.rows.len()), queued));
         if verdict == Verdict::Frame(FrameFate::Taken(Kind::Stop)) {
-            self.waiting.clear();
+            self.stop(end);
         }
+        let bytes_start = self.rows.last().map_or(0, |row| row.bytes_end);
         let bytes_end = self.bytes.len();
-        self.rows.push(LoggedPacket { start, end, verdict, tick_start: None, tick_end: None, bytes_end });
+        let (tick_start, tick_end) = (None, None);
+        self.rows.push(LoggedPacket {
+            start,
+            end,
+            verdict,
+            tick_start,
+            tick_end,
+            bytes_start,
+            bytes_end,
+            latest: end,
+        });
+    }
+
+    fn stop(&mut self, at: Instant) {
+        self.waiting.clear();
+        self.stops.push(at);
     }
 }
 
@@ -149,11 +240,13 @@ impl Sink for PacketLog {
             Event::Byte { seen, byte } => {
                 self.open.get_or_insert(seen);
                 self.bytes.push(byte);
+                self.seen.push(seen);
                 self.last = at;
             }
             // On a framed line only the byte is missing, and the frame's check tells.
-            Event::FramingError { drops: false, .. } => {}
+            Event::FramingError { seen, drops: false } => self.broken.push(seen),
             Event::FramingError { seen, .. } => {
+                self.broken.push(seen);
                 self.open.get_or_insert(seen);
                 self.close(at, Verdict::Framing);
                 self.ignoring = true;
@@ -168,6 +261,7 @@ impl Sink for PacketLog {
             Event::Frame(fate) => self.close(at, Verdict::Frame(fate)),
             Event::Reply { start, end, reply } => {
                 self.bytes.extend(reply.emit());
+                self.seen.resize(self.bytes.len(), start);
                 self.open = Some(start);
                 self.close(end, Verdict::Reply(reply));
             }
@@ -182,7 +276,7 @@ impl Sink for PacketLog {
             }
             Event::Underrun => {}
             Event::Pushed => self.waiting.push_back(None),
-            Event::Stopped => self.waiting.clear(),
+            Event::Stopped => self.stop(at),
             Event::TickStart { orders } => {
                 let row = self.waiting.pop_front().flatten();
                 if let Some(row) = row.and_then(|index| self.rows.get_mut(index)) {
@@ -218,5 +312,35 @@ mod tests {
         let rows: Vec<_> = log.ticks().iter().map(|tick| tick.row).collect();
         assert_eq!(rows, [Some(0), None, None], "the second packet's tick was stopped before it began");
         assert_eq!(log.rows()[1].tick_start, None);
+        let ends = [0, 1].map(|tick| log.tick_end(&log.ticks()[tick], Cycles(2)).0);
+        assert_eq!(ends, [107, 107], "the first by itself, the second by the stop");
+    }
+
+    #[test]
+    fn finished_rows_stand_in_the_order_of_their_starts_with_their_bytes_and_ticks() {
+        let mut log = PacketLog::default();
+        let events = [
+            (20, Event::Byte { seen: Instant(10), byte: 1 }),
+            (25, Event::Collision),
+            (30, Event::Byte { seen: Instant(22), byte: 2 }),
+            (30, Event::Packet(Fate::Queued)),
+            (31, Event::TickStart { orders: [0; 16] }),
+        ];
+        for (at, event) in events {
+            log.event(Instant(at), event);
+        }
+        assert_eq!(log.rows()[0].verdict, Verdict::Collision, "known first");
+        log.finish();
+        let told: Vec<_> = log.rows().iter().map(|row| (row.start.0, row.verdict)).collect();
+        assert_eq!(told, [(10, Verdict::Packet(Fate::Queued)), (25, Verdict::Collision)]);
+        assert_eq!((log.bytes(0), log.bytes(1)), ([1, 2].as_slice(), [].as_slice()));
+        assert_eq!(log.seen(0), [Instant(10), Instant(22)]);
+        assert_eq!(
+            log.touching(Instant(28), Instant(29)).collect::<Vec<_>>(),
+            [0],
+            "it began before the collision"
+        );
+        assert_eq!(log.ticks()[0].row, Some(0));
+        assert_eq!(log.rows()[0].tick_start, Some(Instant(31)));
     }
 }

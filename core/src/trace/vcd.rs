@@ -40,6 +40,24 @@ impl<W: io::Write> VcdWriter<W> {
         Ok(Self { out, clock_hz: u128::from(clock_hz.max(1)), signals, levels: None, result: Ok(()) })
     }
 
+    /// Goes on with a file, of which `levels` have been written last: so it is made in pieces.
+    ///
+    /// # Errors
+    /// Never: nothing is written yet.
+    pub fn resume(out: W, clock_hz: u32, channels: u8, levels: Levels) -> io::Result<Self> {
+        let VcdWriter { signals, clock_hz, .. } = VcdWriter::new(io::sink(), clock_hz, channels)?;
+        Ok(Self { out: Writer::new(out), clock_hz, signals, levels: Some(levels), result: Ok(()) })
+    }
+
+    /// Ends a piece, after which the file goes on.
+    ///
+    /// # Errors
+    /// The first error of the writer.
+    pub fn pause(mut self) -> io::Result<()> {
+        self.result?;
+        self.out.flush()
+    }
+
     /// Ends the file at cycle `end`, the first that was not run.
     ///
     /// # Errors
@@ -81,6 +99,26 @@ mod tests {
     use super::*;
     use crate::units::Instant;
     use vcd::{Command, Parser};
+
+    #[test]
+    fn a_file_in_pieces_is_the_file() {
+        let records: Vec<Record> =
+            (0..20).map(|i| Record { cycle: Instant(i * 3), levels: Levels(0x7_0000_0000 ^ i) }).collect();
+        let mut whole = Vec::new();
+        let mut writer = VcdWriter::new(&mut whole, 16_000_000, 3).expect("memory takes it");
+        records.iter().for_each(|record| writer.record(*record));
+        writer.finish(60).expect("memory takes it");
+        let mut pieces = Vec::new();
+        let mut writer = VcdWriter::new(&mut pieces, 16_000_000, 3).expect("memory takes it");
+        for pair in records.windows(2) {
+            writer.record(pair[0]);
+            writer.pause().expect("memory takes it");
+            writer = VcdWriter::resume(&mut pieces, 16_000_000, 3, pair[0].levels).expect("memory takes it");
+        }
+        writer.record(records[19]);
+        writer.finish(60).expect("memory takes it");
+        assert_eq!(pieces, whole);
+    }
 
     #[test]
     fn a_parser_reads_back_every_change_at_its_time() {

@@ -1,11 +1,9 @@
 //! Server, driver and sessions of one test. All of it ends with the test, also where the test fails.
 
 use std::{
-    env,
-    ffi::OsString,
-    fs,
+    env, fs,
     future::Future,
-    path::{Path, PathBuf},
+    path::PathBuf,
     process::Stdio,
     sync::{
         Arc, Mutex, PoisonError,
@@ -14,55 +12,88 @@ use std::{
     time::Duration,
 };
 
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use fantoccini::{Client, ClientBuilder};
 use hyper_util::client::legacy::connect::HttpConnector;
-use serde_json::{Value, json};
 use tokio::{
-    io::{AsyncBufReadExt, BufReader},
+    io::{AsyncBufReadExt, AsyncRead, BufReader, Lines},
+    net::TcpStream,
     process::{Child, Command},
     task::{LocalSet, spawn_local},
-    time::timeout,
+    time::{sleep, timeout},
 };
 
-use crate::session::Session;
+use crate::{
+    browser::{Browser, Says, named},
+    session::Session,
+};
 
 /// Longest time of one test's own work.
-const TEST_LIMIT: Duration = Duration::from_secs(120);
+const TEST_LIMIT: Duration = Duration::from_secs(300);
 /// Longest time until a program that was started says where it listens.
-const START_LIMIT: Duration = Duration::from_secs(30);
+const START_LIMIT: Duration = Duration::from_secs(120);
+/// Rest between two attempts to reach a program.
+const LOOK_AGAIN: Duration = Duration::from_millis(20);
 /// Longest time for a goodbye, after which a program is killed.
 const END_LIMIT: Duration = Duration::from_secs(10);
-
-/// Flags of every browser: no window, and no word to any other host.
-const FLAGS: &[&str] = &[
-    "--headless",
-    // The browser ends when the driver does.
-    "--remote-debugging-pipe",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--disable-dev-shm-usage",
-    "--force-device-scale-factor=1",
-    "--window-size=1440,900",
-    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1, EXCLUDE localhost",
-];
 
 /// What one test uses.
 pub(crate) struct Bench {
     /// Address of the page, such as `http://127.0.0.1:40000/`.
     pub(crate) page: String,
+    pub(crate) browser: Browser,
     driver: String,
     profiles: Folder,
     sessions: Mutex<Vec<Session>>,
+    server: Mutex<Option<Child>>,
+    heard: Heard,
 }
 
-/// Runs `test` in a browser of its own. An error in the browser's console fails the test too.
+/// What a driver and its browsers have said so far.
+type Heard = Arc<Mutex<Vec<String>>>;
+
+/// Runs `test` in a Chromium of its own. An error in the browser's console fails the test too.
 pub(crate) fn in_browser<T, F>(test: T) -> Result<()>
+where
+    T: FnOnce(Session) -> F,
+    F: Future<Output = Result<()>> + 'static,
+{
+    in_engine(Browser::Chromium, test)
+}
+
+/// The folder of the page as it is shipped.
+pub(crate) fn dist() -> Result<PathBuf> {
+    named("STEPSCOPE_DIST").map(PathBuf::from)
+}
+
+/// As [`in_browser`], with the page as it is shipped.
+pub(crate) fn in_browser_shipped<T, F>(test: T) -> Result<()>
+where
+    T: FnOnce(Session) -> F,
+    F: Future<Output = Result<()>> + 'static,
+{
+    in_browser_on(&dist()?, test)
+}
+
+/// As [`in_browser`], with the page in a folder of the test's own.
+pub(crate) fn in_browser_on<T, F>(web: &Path, test: T) -> Result<()>
+where
+    T: FnOnce(Session) -> F,
+    F: Future<Output = Result<()>> + 'static,
+{
+    in_engine_on(web, Browser::Chromium, test)
+}
+
+/// As [`in_browser`], in this engine.
+pub(crate) fn in_engine<T, F>(browser: Browser, test: T) -> Result<()>
+where
+    T: FnOnce(Session) -> F,
+    F: Future<Output = Result<()>> + 'static,
+{
+    in_engine_on(Path::new(&named("STEPSCOPE_WEB")?), browser, test)
+}
+
+fn in_engine_on<T, F>(web: &Path, browser: Browser, test: T) -> Result<()>
 where
     T: FnOnce(Session) -> F,
     F: Future<Output = Result<()>> + 'static,
@@ -70,25 +101,22 @@ where
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     LocalSet::new().block_on(&runtime, async {
         let mut serve = Command::new(named("STEPSCOPE_XTASK")?);
-        serve.args(["serve", "--port", "0", "--web"]).arg(named("STEPSCOPE_WEB")?);
-        let mut drive = Command::new(named("STEPSCOPE_CHROMEDRIVER")?);
+        serve.args(["serve", "--port", "0", "--web"]).arg(web);
+        let (heard, silent) = (Heard::default(), Heard::default());
+        let (server, page) = start(serve, Says::Port("serving "), &silent).await.context("the server")?;
         let profiles = Folder::temporary()?;
-        // Chromium leaves files behind in the folder for temporary ones.
-        drive.arg("--port=0").env("TMPDIR", &profiles.0);
-        let (mut server, page) = start(serve, |line| line.strip_prefix("serving ").map(str::to_owned))
-            .await
-            .context("the server")?;
-        let (mut driver, port) = start(drive, |line| {
-            let (_, port) = line.split_once("started successfully on port ")?;
-            Some(port.trim_end_matches('.').to_owned())
-        })
-        .await
-        .context("chromedriver")?;
+        let (drive, says) = browser.driver(&profiles.0)?;
+        let (mut driver, port) =
+            start(drive, says, &heard).await.with_context(|| format!("{browser:?}'s driver"))?;
+        let driver_address = format!("http://127.0.0.1:{}", port.trim_end_matches('.'));
         let bench = Arc::new(Bench {
             page,
-            driver: format!("http://127.0.0.1:{port}"),
+            browser,
+            driver: driver_address,
             profiles,
             sessions: Mutex::default(),
+            server: Mutex::new(Some(server)),
+            heard,
         });
         let outcome = match Session::start(&bench).await {
             Ok(session) => guarded(test(session)).await,
@@ -96,7 +124,7 @@ where
         };
         let outcome = bench.end_sessions(outcome).await;
         end(&mut driver).await;
-        end(&mut server).await;
+        bench.stop_server().await;
         outcome
     })
 }
@@ -117,20 +145,27 @@ async fn guarded(work: impl Future<Output = Result<()>> + 'static) -> Result<()>
 
 impl Bench {
     /// A browser with a fresh profile.
-    pub(crate) async fn browser(&self) -> Result<Client> {
+    pub(crate) async fn client(&self) -> Result<Client> {
         static PROFILE: AtomicU32 = AtomicU32::new(0);
         let profile = self.profiles.0.join(PROFILE.fetch_add(1, Ordering::Relaxed).to_string());
-        let mut args: Vec<String> = FLAGS.iter().map(|&flag| flag.to_owned()).collect();
-        args.push(format!("--user-data-dir={}", profile.display()));
-        let wanted = json!({
-            "browserName": "chrome",
-            "goog:loggingPrefs": { "browser": "ALL" },
-            "goog:chromeOptions": { "binary": Path::new(&named("STEPSCOPE_CHROMIUM")?), "args": args },
-        });
-        let Value::Object(wanted) = wanted else { bail!("the capabilities are an object") };
         let mut builder = ClientBuilder::new(HttpConnector::new());
-        let connecting = builder.capabilities(wanted).connect(&self.driver);
-        timeout(START_LIMIT, connecting).await.context("Chromium did not start")?.context("Chromium")
+        let connecting = builder.capabilities(self.browser.capabilities(&profile)?).connect(&self.driver);
+        let name = format!("{:?}", self.browser);
+        timeout(START_LIMIT, connecting).await.with_context(|| format!("{name} did not start"))?.context(name)
+    }
+
+    /// Errors of the page among what the driver and its browsers have said.
+    pub(crate) fn heard(&self) -> Vec<String> {
+        let heard = self.heard.lock().unwrap_or_else(PoisonError::into_inner);
+        heard.iter().filter(|line| self.browser.complains(line, &self.page)).cloned().collect()
+    }
+
+    /// Ends the server: from now on there is no network.
+    pub(crate) async fn stop_server(&self) {
+        let server = self.server.lock().unwrap_or_else(PoisonError::into_inner).take();
+        if let Some(mut server) = server {
+            end(&mut server).await;
+        }
     }
 
     pub(crate) fn keep(&self, session: Session) {
@@ -138,7 +173,7 @@ impl Bench {
     }
 
     /// Reads every session's console and ends the session; `outcome` with what the consoles add.
-    async fn end_sessions(&self, mut outcome: Result<()>) -> Result<()> {
+    pub(crate) async fn end_sessions(&self, mut outcome: Result<()>) -> Result<()> {
         let sessions = std::mem::take(&mut *self.sessions.lock().unwrap_or_else(PoisonError::into_inner));
         for session in sessions {
             if outcome.is_err() {
@@ -163,10 +198,10 @@ impl Bench {
 }
 
 /// A folder that goes with its owner.
-struct Folder(PathBuf);
+pub(crate) struct Folder(pub(crate) PathBuf);
 
 impl Folder {
-    fn temporary() -> Result<Self> {
+    pub(crate) fn temporary() -> Result<Self> {
         static FOLDER: AtomicU32 = AtomicU32::new(0);
         let number = FOLDER.fetch_add(1, Ordering::Relaxed);
         let folder = env::temp_dir().join(format!("stepscope-page-{}-{number}", std::process::id()));
@@ -182,29 +217,44 @@ impl Drop for Folder {
     }
 }
 
-fn named(variable: &str) -> Result<OsString> {
-    env::var_os(variable).with_context(|| {
-        format!("{variable} is not set; `cargo xtask test --only page` sets what these tests need")
-    })
-}
-
-/// Starts a program and waits for the line in which it says where it listens.
-async fn start(mut command: Command, says: impl Fn(&str) -> Option<String>) -> Result<(Child, String)> {
-    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null()).kill_on_drop(true);
+/// Starts a program, waits until it listens and gives where; what it says goes to `heard`.
+async fn start(mut command: Command, says: Says, heard: &Heard) -> Result<(Child, String)> {
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).kill_on_drop(true);
     let mut child = command.spawn().context("does not start")?;
     let mut lines = BufReader::new(child.stdout.take().context("has no output")?).lines();
+    keep(BufReader::new(child.stderr.take().context("has no output")?).lines(), heard);
     let waiting = async {
-        while let Some(line) = lines.next_line().await? {
-            if let Some(place) = says(&line) {
-                return Ok(place);
+        match says {
+            Says::Port(before) => {
+                while let Some(line) = lines.next_line().await? {
+                    if let Some((_, place)) = line.split_once(before) {
+                        return Ok(place.to_owned());
+                    }
+                }
+                bail!("ended without a word on where it listens")
+            }
+            Says::Nothing(port) => {
+                while TcpStream::connect(("127.0.0.1", port)).await.is_err() {
+                    ensure!(child.try_wait()?.is_none(), "ended before it listened");
+                    sleep(LOOK_AGAIN).await;
+                }
+                Ok(port.to_string())
             }
         }
-        bail!("ended without a word on where it listens")
     };
     let place = timeout(START_LIMIT, waiting).await.context("says nothing on where it listens")??;
-    // A full pipe would stop the program.
-    tokio::spawn(async move { while let Ok(Some(_)) = lines.next_line().await {} });
+    keep(lines, heard);
     Ok((child, place))
+}
+
+/// Reads a program's lines as long as it runs: a full pipe would stop it.
+fn keep<R: AsyncRead + Unpin + Send + 'static>(mut lines: Lines<BufReader<R>>, heard: &Heard) {
+    let heard = Arc::clone(heard);
+    tokio::spawn(async move {
+        while let Ok(Some(line)) = lines.next_line().await {
+            heard.lock().unwrap_or_else(PoisonError::into_inner).push(line);
+        }
+    });
 }
 
 async fn end(child: &mut Child) {

@@ -97,6 +97,7 @@ fn nothing_is_asked_of_another_host() -> Result<()> {
         page.choose("#preset", "sonobe-2011-table").await?;
         page.until("document.documentElement.dataset.state === 'ready'").await?;
         page.click("#theme").await?;
+        page.click("#share").await?;
         page.click("#copy-link").await?;
         page.ready().await?;
         let origin = page.address().trim_end_matches('/').to_owned();

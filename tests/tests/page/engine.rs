@@ -4,7 +4,7 @@ use anyhow::{Result, ensure};
 
 use crate::{
     bench::in_browser,
-    native::{Known, with_distance},
+    native::{Known, link_of, with_distance},
     session::Session,
 };
 
@@ -25,7 +25,67 @@ fn without_webassembly_the_page_says_so() -> Result<()> {
 }
 
 /// Lets the test reach the worker that the page has started.
-const REACH: &str = "window.Worker = class extends Worker { constructor(...given) { super(...given); window.worker = this; } };";
+const REACH: &str = "window.heard = 0; window.workers = 0; window.Worker = class extends Worker { \
+     constructor(...given) { super(...given); window.worker = this; window.workers += 1; \
+         this.addEventListener('message', ({ data }) => { if (data.event === 'progress') window.heard += 1; }); } \
+     postMessage(data, ...given) { if (!(window.deaf && 'cancel' in data)) super.postMessage(data, ...given); } };";
+
+/// 22 million steps: seconds, and asked before it runs.
+const LONG: &str = r#"{"source":{"motion":{"axes":[{"moves":[
+    {"cosine":{"distance":{"steps":22000000},"duration_s":600,"ramp_s":10}}]}]}}}"#;
+
+/// Begins a run that takes its time, and waits until it tells of itself.
+async fn begin_long_run(page: &Session) -> Result<()> {
+    page.open(&format!("#{}", link_of(LONG)?)).await?;
+    page.click("#run-anyway").await?;
+    page.until("document.getElementById('status').textContent.includes('%')").await
+}
+
+#[test]
+fn a_cancelled_run_goes_on_nowhere() -> Result<()> {
+    in_browser(|page| async move {
+        page.before_scripts(REACH).await?;
+        begin_long_run(&page).await?;
+        page.click("#cancel").await?;
+        page.until("document.getElementById('engine-message').textContent.includes('cancelled')").await?;
+        let heard = "new Promise((done) => { const before = window.heard; \
+             setTimeout(() => done(window.heard - before), 500); })";
+        // One may have been on its way.
+        ensure!(page.eval::<u32>(heard).await? <= 1, "it still runs");
+        assert_eq!(page.eval::<u32>("window.workers").await?, 1, "it heard the cancel");
+        page.click("#undo").await?;
+        page.until_digest(&Known::of("{}")?.digest).await
+    })
+}
+
+#[test]
+fn an_engine_that_hears_no_cancel_is_replaced_and_makes_the_last_result_again() -> Result<()> {
+    in_browser(|page| async move {
+        let known = Known::of(&with_distance(1200.0))?;
+        page.before_scripts(REACH).await?;
+        page.open(&format!("#{}", known.link)).await?;
+        page.until_digest(&known.digest).await?;
+        // In the same visit, so that there is a last result.
+        page.js::<()>("location.hash = arguments[0];", vec![link_of(LONG)?.into()]).await?;
+        page.until("!document.getElementById('budget').hidden").await?;
+        page.js::<()>("window.deaf = true;", vec![]).await?;
+        page.click("#run-anyway").await?;
+        page.until("document.getElementById('status').textContent.includes('%')").await?;
+        page.click("#cancel").await?;
+        page.until("window.workers === 2").await?;
+        let message = page.text("#engine-message").await?;
+        ensure!(message.contains("cancelled"), "{message}");
+
+        // The views still show the last result, and it can be asked: another part of it is drawn.
+        assert_eq!(page.text("#digest").await?, known.digest);
+        let asked = "new Promise((done) => { const hear = ({ data }) => { if (data.id === -1) done(data.value ? \
+             data.value.high.length : 0); }; window.worker.addEventListener('message', hear); \
+             window.worker.postMessage({ id: -1, method: 'pulses', args: [0, 1000, 10] }); })";
+        page.until(&format!("{asked}.then((length) => length > 0)")).await?;
+        page.fill(DISTANCE, "2400").await?;
+        page.until_digest(&Known::of(&LONG.replace("22000000", "2400"))?.digest).await
+    })
+}
 
 /// Lets the engine run out of stack, by a call with more arguments than fit on it.
 async fn crash(page: &Session) -> Result<()> {

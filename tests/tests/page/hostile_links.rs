@@ -88,7 +88,9 @@ fn too_much_work_fills_the_form_and_waits_to_be_told_to_run() -> Result<()> {
         let distance = page.field("source.motion.axes[0].moves[0].cosine.distance").await?;
         assert_eq!(distance.value, "2200000");
         // What would run has been asked of the engine before; one more question is answered after it.
-        page.click("#copy-link").await?;
+        page.click("#share").await?;
+        page.until("document.getElementById('link-about').textContent.includes('it was not run')").await?;
+        page.press("#link-text", "\u{e00c}").await?;
         page.ready().await?;
         let shown = page.shown().await?;
         ensure!(shown.digest != known.digest && shown.digest.len() != 16, "it ran unasked: {shown:?}");
@@ -107,7 +109,7 @@ fn a_long_run_tells_its_progress_and_can_be_cancelled() -> Result<()> {
         let known = Known::of(&MUCH.replace("2200000", "22000000").replace(":60", ":600"))?;
         page.open(&format!("#{}", known.link)).await?;
         page.click("#run-anyway").await?;
-        page.until("!document.getElementById('progress').hidden").await?;
+        page.until("document.getElementById('status').textContent.includes('%')").await?;
         let status = page.text("#status").await?;
         ensure!(status.contains('%') && status.contains("edges"), "progress in numbers: {status}");
         page.click("#cancel").await?;

@@ -19,16 +19,21 @@ fn work_with_a_problem_in_it_survives_a_reload_and_is_no_link() -> Result<()> {
         page.ready().await?;
         page.fill(DISTANCE, "0").await?;
         page.until("document.querySelector('#status').textContent.startsWith('not run')").await?;
-        page.click("#copy-link").await?;
-        ensure!(
-            page.text("#link-message").await?.starts_with("No link yet"),
-            "a link of what does not stand"
-        );
+        page.click("#share").await?;
+        ensure!(page.text("#link-about").await?.starts_with("No link yet"), "a link of what does not stand");
+        ensure!(page.eval::<bool>("document.getElementById('copy-link').disabled").await?, "nothing to copy");
 
         page.open("").await?;
         assert_eq!(page.field("bus.queue_depth").await?.value, "7");
         assert_eq!(page.field(DISTANCE).await?.value, "0");
         assert_eq!(page.text("#link-message").await?, "");
+        // The views show what ran last, dimmed.
+        let last = Known::of(r#"{"bus":{"queue_depth":7}}"#)?;
+        page.until_equal("document.getElementById('digest').textContent", &last.digest.into()).await?;
+        page.ready().await?;
+        ensure!(page.shown().await?.stale, "it is shown as what it is not");
+        page.until("document.getElementById('views').className === 'views dim'").await?;
+        page.canvas("chart-position").await?.has_curve("--ideal")?;
         let mended = with_distance(500.0).replacen('{', r#"{"bus":{"queue_depth":7},"#, 1);
         page.fill(DISTANCE, "500").await?;
         page.until_digest(&Known::of(&mended)?.digest).await

@@ -2,7 +2,10 @@
 
 use anyhow::{Context, Result, ensure};
 use serde_json::json;
-use stepscope_core::scenario::presets::PRESETS;
+use stepscope_core::{
+    scenario::{link::with_part, presets::PRESETS},
+    trace::{Fingerprint, Proof},
+};
 
 use crate::{
     bench::in_browser,
@@ -12,15 +15,23 @@ use crate::{
 
 const DISTANCE: &str = "source.motion.axes[0].moves[0].cosine.distance";
 
-/// Presses the button and gives what is on the clipboard then.
-async fn copied(page: &Session) -> Result<String> {
+/// Opens Share, copies, and gives what is on the clipboard then.
+pub(crate) async fn copied(page: &Session) -> Result<String> {
     let permissions = ["clipboardReadWrite", "clipboardSanitizedWrite"];
     let origin = page.address().trim_end_matches('/');
     page.devtools("Browser.grantPermissions", json!({ "origin": origin, "permissions": permissions }))
         .await?;
+    page.click("#share").await?;
+    page.until("!document.getElementById('copy-link').disabled").await?;
     page.click("#copy-link").await?;
     page.until("document.getElementById('copy-link').textContent === 'Copied'").await?;
     page.js("return navigator.clipboard.readText();", vec![]).await
+}
+
+/// The link that the page gives of a scenario's run.
+pub(crate) fn whole(page: &Session, known: &Known) -> String {
+    let proof = Proof::of(vec![Fingerprint::of(&known.recording.trace)]);
+    format!("{}#{}", page.address(), with_part(known.link.clone(), "d", &proof.emit()))
 }
 
 #[test]
@@ -31,7 +42,7 @@ fn a_copied_link_gives_a_stranger_the_same_form_and_the_same_digest() -> Result<
         page.fill(DISTANCE, "1200").await?;
         page.until_digest(&known.digest).await?;
         let link = copied(&page).await?;
-        assert_eq!(link, format!("{}#{}", page.address(), known.link), "the link is the core's, bit by bit");
+        assert_eq!(link, whole(&page, &known), "the link is the core's, bit by bit, and its digests");
 
         let stranger = page.stranger().await?;
         let (_, fragment) = link.split_once('#').context("no fragment")?;
@@ -79,10 +90,11 @@ fn a_refused_clipboard_leaves_the_link_to_be_copied_by_hand() -> Result<()> {
     in_browser(|page| async move {
         page.before_scripts("globalThis.Clipboard && (Clipboard.prototype.writeText = () => Promise.reject(new Error('refused')));").await?;
         page.open("").await?;
+        page.click("#share").await?;
+        page.until("!document.getElementById('copy-link').disabled").await?;
         page.click("#copy-link").await?;
-        page.until("!document.getElementById('copy-fallback').hidden").await?;
-        let known = Known::of("{}")?;
-        let link = format!("{}#{}", page.address(), known.link);
+        page.until("document.getElementById('link-about').textContent.includes('did not let')").await?;
+        let link = whole(&page, &Known::of("{}")?);
         assert_eq!(page.eval::<String>("document.getElementById('link-text').value").await?, link);
         assert_eq!(page.eval::<String>("getSelection().toString()").await?, link, "it is selected");
         Ok(())

@@ -1,37 +1,59 @@
-//! The page in a real browser: Chromium without a window, driven by chromedriver, under the headers that a
-//! host sends. What the page shows is held against what the core gives natively.
+//! The page in real browsers, driven by WebDriver, under the headers that a host sends: its main job in three engines,
+//! all else in Chromium without a window. What the page shows is held against what the core gives natively.
 //!
-//! `cargo xtask test --only page` builds the page and sets the environment:
+//! `cargo xtask test --only page --only engines` builds the page and sets the environment:
 //!
 //! | variable | what it names |
 //! | --- | --- |
 //! | `STEPSCOPE_CHROMIUM`, `STEPSCOPE_CHROMEDRIVER` | the browser and its driver |
+//! | `STEPSCOPE_FIREFOX`, `STEPSCOPE_GECKODRIVER` | the same of Firefox |
+//! | `STEPSCOPE_WEBKITDRIVER`, `DISPLAY` | the driver of WebKit, which knows its browser, and a display for it |
 //! | `STEPSCOPE_XTASK` | the program whose `serve --port 0` serves the page |
-//! | `STEPSCOPE_WEB` | the folder with the built page |
+//! | `STEPSCOPE_WEB` | the folder with the page's sources and its wasm: single modules can be tested there |
+//! | `STEPSCOPE_DIST` | the folder with the page as it is shipped |
 //! | `STEPSCOPE_SHOTS` | a folder for pictures of the page, and of every page that failed; none without it |
 //!
 //! | file | what it holds |
 //! | --- | --- |
 //! | `bench` | server, driver and sessions of one test, ended with it however it ends |
+//! | `browser` | the three engines: drivers, sessions, consoles |
 //! | `session` | one browser with the page in it: what a visitor does and sees |
+//! | `devtools` | what is asked of a browser beyond WebDriver |
 //! | `pixels` | what is drawn on a canvas |
 //! | `native` | what the core says of the same scenario |
 //! | the others | the tests |
 #![cfg(not(target_arch = "wasm32"))]
 
+mod axe;
 mod bench;
+mod browser;
+mod charts;
 mod controllers;
+mod devtools;
 mod drawing;
 mod editing;
 mod engine;
+mod engines;
+mod exchange;
+mod exports;
 mod framed;
+mod frames;
+mod golden_pictures;
 mod hostile_links;
 mod keeping;
+mod keyboard;
 mod links;
+mod loading;
+mod logic;
 mod native;
+mod offline;
+mod packets;
+mod people;
 mod pixels;
 mod presets;
+mod reflow;
 mod screens;
 mod session;
+mod state;
 mod time_axis;
 mod timing;

@@ -56,6 +56,11 @@ impl Known {
     }
 }
 
+/// The link of a scenario that is not run.
+pub(crate) fn link_of(json: &str) -> Result<String> {
+    Ok(link::encode(&Scenario::from_json(json).map_err(listed)?)?)
+}
+
 /// The default motion with another distance in steps.
 pub(crate) fn with_distance(steps: f64) -> String {
     format!(

@@ -52,6 +52,7 @@ impl Session {
             "--tick",
             "--cursor-a",
             "--cursor-b",
+            "--kept",
             "--accent",
         ];
         self.js(READ, vec![json!(id), json!(inks), json!(LABELS_PX)]).await

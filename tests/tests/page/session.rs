@@ -2,13 +2,11 @@
 
 use std::{env, fs, path::Path, sync::Arc, time::Duration};
 
-use anyhow::{Context, Result, bail, ensure};
-use fantoccini::{Client, Locator, elements::Element, error::CmdError, wd::WebDriverCompatibleCommand};
-use http::Method;
+use anyhow::{Context, Result, ensure};
+use fantoccini::{Client, Locator, elements::Element};
 use serde::{Deserialize, de::DeserializeOwned};
 use serde_json::{Map, Value, json};
 use tokio::time::{Instant, sleep};
-use url::{ParseError, Url};
 
 use crate::bench::Bench;
 
@@ -20,8 +18,8 @@ const LOOK_AGAIN: Duration = Duration::from_millis(20);
 /// A browser of its own, with a fresh profile.
 #[derive(Clone)]
 pub(crate) struct Session {
-    client: Client,
-    bench: Arc<Bench>,
+    pub(crate) client: Client,
+    pub(crate) bench: Arc<Bench>,
 }
 
 /// One field of the form as a visitor, or a screen reader, meets it.
@@ -47,7 +45,7 @@ pub(crate) struct Shown {
 
 impl Session {
     pub(crate) async fn start(bench: &Arc<Bench>) -> Result<Self> {
-        let session = Self { client: bench.browser().await?, bench: Arc::clone(bench) };
+        let session = Self { client: bench.client().await?, bench: Arc::clone(bench) };
         bench.keep(session.clone());
         session.screen(1440, 900).await?;
         Ok(session)
@@ -55,6 +53,22 @@ impl Session {
 
     /// Another visitor: a second browser with a fresh profile.
     pub(crate) async fn stranger(&self) -> Result<Self> {
+        Self::start(&self.bench).await
+    }
+
+    /// Ends the server: from now on there is no network.
+    pub(crate) async fn stop_server(&self) {
+        self.bench.stop_server().await;
+    }
+
+    /// Goes to another page of the site.
+    pub(crate) async fn go(&self, path: &str) -> Result<()> {
+        Ok(self.client.goto(&format!("{}{path}", self.address())).await?)
+    }
+
+    /// Another visitor where a driver has one browser at a time: this one goes, its console silent.
+    pub(crate) async fn next_visitor(&self) -> Result<Self> {
+        self.bench.end_sessions(Ok(())).await?;
         Self::start(&self.bench).await
     }
 
@@ -68,7 +82,7 @@ impl Session {
         // Only a fragment that changes loads nothing.
         self.client.goto("about:blank").await?;
         self.client.goto(&format!("{}{fragment}", self.address())).await?;
-        Ok(())
+        self.listen().await
     }
 
     /// Loads the page anew and waits until it stands.
@@ -169,7 +183,9 @@ impl Session {
         self.unfold(path).await?;
         let field = self.find(&field(path)).await?;
         field.click().await?;
-        Ok(field.send_keys(&format!("{CONTROL}a{RELEASE}{text}")).await?)
+        // Keys that are held are lifted at the end of a command; lifting them within one is not every driver's art.
+        field.send_keys(&format!("{CONTROL}a")).await?;
+        Ok(field.send_keys(text).await?)
     }
 
     /// Chooses an option of the field of a path, as a visitor's click does.
@@ -177,10 +193,11 @@ impl Session {
         self.find(css).await?.select_by_value(value).await.with_context(|| format!("{css} has no {value}"))
     }
 
-    /// Opens the sections around a field.
+    /// Opens the sections around a field and scrolls to it: what an edge of the form cuts through can't be clicked.
     async fn unfold(&self, path: &str) -> Result<()> {
         let script = "for (let at = document.querySelector(arguments[0]); at; at = at.parentElement) \
-                      if (at instanceof HTMLDetailsElement) at.open = true; return true;";
+                      if (at instanceof HTMLDetailsElement) at.open = true; \
+                      document.querySelector(arguments[0])?.scrollIntoView({ block: 'center' }); return true;";
         self.js::<bool>(script, vec![json!(field(path))]).await.map(drop)
     }
 
@@ -206,39 +223,8 @@ impl Session {
         value.with_context(|| format!("nothing is derived that is called {name}"))
     }
 
-    /// Size of the window's inside in CSS pixels.
-    pub(crate) async fn screen(&self, width: u32, height: u32) -> Result<()> {
-        let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
-        self.devtools("Emulation.setDeviceMetricsOverride", size).await.map(drop)
-    }
-
-    /// What the system says it prefers, `light` or `dark`.
-    pub(crate) async fn system_colours(&self, scheme: &str) -> Result<()> {
-        let features = json!({ "features": [{ "name": "prefers-color-scheme", "value": scheme }] });
-        self.devtools("Emulation.setEmulatedMedia", features).await.map(drop)
-    }
-
-    /// A script that runs in every document to come, before the document's own.
-    pub(crate) async fn before_scripts(&self, source: &str) -> Result<()> {
-        self.devtools("Page.addScriptToEvaluateOnNewDocument", json!({ "source": source })).await.map(drop)
-    }
-
     pub(crate) async fn actions(&self, actions: impl Into<fantoccini::actions::Actions>) -> Result<()> {
         Ok(self.client.perform_actions(actions).await?)
-    }
-
-    /// A command of the Chrome DevTools protocol.
-    pub(crate) async fn devtools(&self, method: &str, parameters: Value) -> Result<Value> {
-        let body = json!({ "cmd": method, "params": parameters });
-        Ok(self.chrome("goog/cdp/execute", body).await?)
-    }
-
-    /// Errors in the browser's console: exceptions, refused loads, breaches of the content security policy.
-    pub(crate) async fn complaints(&self) -> Result<Vec<String>> {
-        let entries = self.chrome("se/log", json!({ "type": "browser" })).await?;
-        let Value::Array(entries) = entries else { bail!("the console gave {entries}") };
-        let severe = entries.iter().filter(|entry| entry["level"] == "SEVERE");
-        Ok(severe.map(|entry| entry["message"].to_string()).collect())
     }
 
     /// Saves a picture of the page where pictures are wanted.
@@ -258,10 +244,6 @@ impl Session {
 
     pub(crate) async fn end(self) -> Result<()> {
         Ok(self.client.close().await?)
-    }
-
-    async fn chrome(&self, place: &'static str, body: Value) -> Result<Value, CmdError> {
-        self.client.issue_cmd(ChromeCommand { place, body }).await
     }
 }
 
@@ -295,20 +277,3 @@ const FIELD: &str = "
         error: error.checkVisibility() ? error.textContent : '',
         described: ids.map((id) => document.getElementById(id).textContent).join(' '),
     };";
-
-/// A command that only chromedriver knows.
-#[derive(Debug)]
-struct ChromeCommand {
-    place: &'static str,
-    body: Value,
-}
-
-impl WebDriverCompatibleCommand for ChromeCommand {
-    fn endpoint(&self, base: &Url, session: Option<&str>) -> Result<Url, ParseError> {
-        base.join(&format!("session/{}/{}", session.unwrap_or_default(), self.place))
-    }
-
-    fn method_and_body(&self, _: &Url) -> (Method, Option<String>) {
-        (Method::POST, Some(self.body.to_string()))
-    }
-}

@@ -64,6 +64,45 @@ pub(super) fn band(frame: &Frame, x: &[f64], min: &[f64], max: &[f64]) -> Vec<Ve
     lines.iter().map(|line| thin(line).into_iter().map(|point| frame.values(point)).collect()).collect()
 }
 
+/// Cuts lines into dashes of `dash` pixels with gaps as long.
+pub(super) fn dashes(frame: &Frame, lines: &[Vec<Point>], dash: f64) -> Vec<Vec<Point>> {
+    let mut cut = Vec::new();
+    for line in lines {
+        let points: Vec<Point> = line.iter().map(|(x, y)| frame.pixels(*x, *y)).collect();
+        let mut open: Vec<Point> = points.first().copied().into_iter().collect();
+        // What is left of this dash or gap; a dash first.
+        let (mut left, mut drawn) = (dash, true);
+        for pair in points.windows(2) {
+            let [mut from, to] = [pair[0], pair[1]];
+            let mut way = distance(from, to);
+            while way > left {
+                let part = left / way;
+                from = (from.0 + (to.0 - from.0) * part, from.1 + (to.1 - from.1) * part);
+                way -= left;
+                if drawn {
+                    open.push(from);
+                    cut.push(core::mem::take(&mut open));
+                } else {
+                    open.push(from);
+                }
+                (left, drawn) = (dash, !drawn);
+            }
+            left -= way;
+            if drawn {
+                open.push(to);
+            }
+        }
+        if open.len() > 1 {
+            cut.push(open);
+        }
+    }
+    cut.iter().map(|line| line.iter().map(|point| frame.values(*point)).collect()).collect()
+}
+
+fn distance(a: Point, b: Point) -> f64 {
+    ((b.0 - a.0) * (b.0 - a.0) + (b.1 - a.1) * (b.1 - a.1)).sqrt()
+}
+
 /// A line from the bottom to each value that lies above it, `shift` pixels to the right.
 pub(super) fn stems(frame: &Frame, x: &[f64], y: &[f64], shift: f64) -> Vec<Vec<Point>> {
     x.iter()
@@ -160,6 +199,19 @@ mod tests {
         for (given, expected) in rows {
             assert_eq!(thin(given), *expected, "{given:?}");
         }
+    }
+
+    #[test]
+    fn dashes_are_as_long_as_their_gaps_and_go_round_corners() {
+        let frame = Frame { x: (0.0, 128.0), y: (0.0, 128.0), width: 128.0, height: 128.0 };
+        let line = vec![(0.0, 0.0), (10.0, 0.0), (10.0, 11.0)];
+        let cut = dashes(&frame, &[line, vec![(20.0, 5.0)]], 4.0);
+        let expected = [
+            vec![(0.0, 0.0), (4.0, 0.0)],
+            vec![(8.0, 0.0), (10.0, 0.0), (10.0, 2.0)],
+            vec![(10.0, 6.0), (10.0, 10.0)],
+        ];
+        assert_eq!(cut, expected);
     }
 
     #[test]

@@ -1,9 +1,13 @@
-//! Tick labels: numbers with an SI prefix, a unit, and no more digits than the ticks need.
+//! Ticks of an axis: where they stand, and their labels: numbers with an SI prefix, a unit, and no
+//! more digits than the ticks need.
 
 use super::Axis;
 
-/// How the labels of one axis print their numbers: one prefix and one number of digits for all.
+/// The ticks of one axis, 1, 2 or 5 times a power of ten apart, with one prefix and one number of
+/// digits for all labels.
 pub(super) struct Ticks<'a> {
+    /// From the least to the greatest.
+    pub(super) values: Vec<f64>,
     scale: f64,
     digits: usize,
     space: &'static str,
@@ -12,9 +16,17 @@ pub(super) struct Ticks<'a> {
 }
 
 impl<'a> Ticks<'a> {
-    pub(super) fn new(axis: &'a Axis, count: usize) -> Self {
+    /// As near to `wanted` ticks as their distances allow, and two at least where `most` have room.
+    pub(super) fn new(axis: &'a Axis, wanted: usize, most: usize) -> Self {
         const PREFIXES: [(f64, &str); 7] =
             [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n")];
+        let step = step(axis, wanted, most);
+        let mut values: Vec<f64> =
+            (0..count(axis, step)).map(|k| (first(axis, step) + k as f64) * step).collect();
+        if values.len() > most.max(2) {
+            // Some around zero, and no room for all: the outer ones.
+            values = values.first().into_iter().chain(values.last()).copied().collect();
+        }
         let largest = axis.min.abs().max(axis.max.abs());
         let (scale, prefix) = PREFIXES
             .into_iter()
@@ -22,15 +34,14 @@ impl<'a> Ticks<'a> {
             // A part of a step is 0.2, not 200m.
             .filter(|(scale, _)| *scale >= 1.0 || !axis.unit.is_empty())
             .unwrap_or((1.0, ""));
-        // Ticks lie 1, 2 or 5 times a power of ten apart, and there may be one more than asked for.
-        let mut step = (axis.max - axis.min) / scale / (count + 1) as f64;
+        let mut shown = step / scale;
         let mut digits = 0;
-        while step <= 0.5001 && digits < 9 {
-            step *= 10.0;
+        while shown < 0.9999 && digits < 9 {
+            shown *= 10.0;
             digits += 1;
         }
         let space = if axis.unit.is_empty() { "" } else { " " };
-        Self { scale, digits, space, prefix, unit: &axis.unit }
+        Self { values, scale, digits, space, prefix, unit: &axis.unit }
     }
 
     pub(super) fn print(&self, value: f64) -> String {
@@ -44,9 +55,52 @@ impl<'a> Ticks<'a> {
     }
 }
 
+/// Distance of the ticks: the least of 1, 2 or 5 times a power of ten that gives no more than wanted, but
+/// a smaller one where that would leave a single tick and more have room.
+fn step(axis: &Axis, wanted: usize, most: usize) -> f64 {
+    let span = axis.max - axis.min;
+    let mut power = 1.0;
+    while power > span {
+        power /= 10.0;
+    }
+    while power * 10.0 <= span {
+        power *= 10.0;
+    }
+    // From coarse to fine, while there are no more than wanted.
+    let finer = (0..20).flat_map(|k| {
+        let power = (0..k).fold(power, |power, _| power / 10.0);
+        [5.0, 2.0, 1.0].map(|times| times * power)
+    });
+    let mut chosen = None;
+    for step in finer {
+        let count = count(axis, step);
+        let few = chosen.is_none_or(|chosen| self::count(axis, chosen) < 2);
+        if count <= wanted || (few && count <= most.max(5)) {
+            chosen = Some(step);
+        } else {
+            break;
+        }
+    }
+    chosen.unwrap_or(power)
+}
+
+/// The first tick in parts of the distance.
+fn first(axis: &Axis, step: f64) -> f64 {
+    // A tick at the very edge is not lost to a rounding.
+    (axis.min / step - 1e-9).ceil()
+}
+
+fn count(axis: &Axis, step: f64) -> usize {
+    ((axis.max / step + 1e-9).floor() - first(axis, step) + 1.0).max(0.0) as usize
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn axis(min: f64, max: f64, unit: &str) -> Axis {
+        Axis { min, max, unit: unit.into(), prefix: true, label_px: 40.0 }
+    }
 
     #[test]
     fn tick_labels_share_one_prefix_and_one_number_of_digits() {
@@ -61,9 +115,33 @@ mod tests {
             (0.0, 2_700.0, "", 500.0, "0.5k"),
         ];
         for (min, max, unit, value, expected) in rows {
-            let axis = Axis { min, max, unit: unit.into(), prefix: true, label_px: 40.0 };
-            let printed = Ticks::new(&axis, 5).print(value);
+            let printed = Ticks::new(&axis(min, max, unit), 6, 6).print(value);
             assert_eq!(printed, expected, "{min}..{max} {unit}: {value}");
+        }
+    }
+
+    #[test]
+    fn every_axis_has_two_ticks_or_more_and_none_has_too_many() {
+        for (wanted, most) in [(2, 2), (3, 6), (5, 8), (12, 15)] {
+            for mantissa in 1..1000 {
+                let size = f64::from(mantissa) * 37.0;
+                for (min, max) in
+                    [(0.0, size), (-1.08 * size, 1.08 * size), (-0.08 * size, size), (3.3 * size, 4.4 * size)]
+                {
+                    let axis = axis(min, max, "");
+                    let ticks = Ticks::new(&axis, wanted, most);
+                    let count = ticks.values.len();
+                    assert!((2..=most).contains(&count), "{min}..{max}, {wanted}: {:?}", ticks.values);
+                    assert!(
+                        ticks.values.iter().all(|value| (min..=max).contains(value)),
+                        "{:?}",
+                        ticks.values
+                    );
+                    // Labels differ: they have the digits they need.
+                    let labels: Vec<String> = ticks.values.iter().map(|value| ticks.print(*value)).collect();
+                    assert!(labels.windows(2).all(|pair| pair[0] != pair[1]), "{labels:?}");
+                }
+            }
         }
     }
 }

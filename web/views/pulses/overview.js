@@ -1,65 +1,127 @@
-/** The strip over the pulses: how busy the whole run is, which part of it is shown; pressing in it goes there. */
+/**
+ * The strip over the pulses: how busy the whole run is, and which part of it is shown. The part is dragged, by its
+ * edges made longer or shorter, and a press beside it brings it there; keys do the same.
+ */
 import { byId } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
+import { listen } from "../../shell/commands.js";
+import { time } from "../../state/number.js";
 import { paintOverview } from "./paint.js";
 import { GUTTER, MARGIN, color, fit, ratio, watch } from "../../time/plot.js";
 import { endOf, shown } from "../../state/state.js";
-import { zoom } from "../../time/timeline.js";
+import { pan, zoom } from "../../time/timeline.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").PulseColumns} PulseColumns */
 
+/** An edge of the part is taken within so many CSS pixels. */
+const EDGE_PX = 6;
+
 /** @param {{engine: import("../../engine/engine.js").Engine} & import("../../time/timeline.js").Page} page */
 export function createOverview({ engine, dispatch, now }) {
+  const page = { dispatch, now };
   const canvas = /** @type {HTMLCanvasElement} */ (byId("overview"));
+  /** The strip without the part on show. */
+  const strip = document.createElement("canvas");
   /** @type {PulseColumns | null} */
   let whole = null;
+  /** What is dragged, and how far the pointer was from it in cycles. @type {{what: "start" | "end" | "part", by: number} | null} */
+  let drag = null;
 
   watch(canvas, () => refresh(now()));
   canvas.addEventListener("pointerdown", (event) => {
+    if (event.button !== 0) return;
     canvas.setPointerCapture(event.pointerId);
-    go(event);
+    const { start, end } = shown(now());
+    const what = under(event);
+    const cycle = cycleOf(event);
+    if (what === "beside") move("part", cycle - (end - start) / 2);
+    drag = what === "beside" ? { what: "part", by: (end - start) / 2 } : { what, by: cycle - (what === "end" ? end : start) };
   });
-  canvas.addEventListener("pointermove", (event) => { if (canvas.hasPointerCapture(event.pointerId)) go(event); });
+  canvas.addEventListener("pointermove", (event) => {
+    if (drag && canvas.hasPointerCapture(event.pointerId)) move(drag.what, cycleOf(event) - drag.by);
+    else canvas.style.cursor = { start: "ew-resize", end: "ew-resize", part: "grab", beside: "pointer" }[under(event)];
+  });
+  for (const kind of ["pointerup", "pointercancel"]) canvas.addEventListener(kind, () => { drag = null; });
+  canvas.addEventListener("dblclick", () => dispatch({ type: "window", window: null }));
   canvas.addEventListener("wheel", (event) => {
     event.preventDefault();
-    zoom({ dispatch, now }, Math.exp(event.deltaY * 0.002));
+    zoom(page, Math.exp(event.deltaY * 0.002));
   }, { passive: false });
+  /** @param {"start" | "end"} what @param {number} sign */
+  const nudge = (what, sign) => () => {
+    const part = shown(now());
+    move(what, part[what] + (sign * (part.end - part.start)) / 10);
+  };
+  listen(canvas, "Whole run (the strip over the pulses)", [
+    { keys: ["ArrowLeft"], text: "the shown part earlier", run: () => pan(page, -0.1) },
+    { keys: ["ArrowRight"], text: "the shown part later", run: () => pan(page, 0.1) },
+    { keys: ["Shift+ArrowLeft"], text: "its end earlier", run: nudge("end", -1) },
+    { keys: ["Shift+ArrowRight"], text: "its end later", run: nudge("end", 1) },
+    { keys: ["Alt+ArrowLeft"], text: "its beginning earlier", run: nudge("start", -1) },
+    { keys: ["Alt+ArrowRight"], text: "its beginning later", run: nudge("start", 1) },
+    { keys: ["+", "="], text: "zoom in", run: () => zoom(page, 0.5) },
+    { keys: ["-", "−"], text: "zoom out", run: () => zoom(page, 2) },
+    { keys: ["Home"], text: "show the whole run", run: () => dispatch({ type: "window", window: null }) },
+  ]);
 
-  /** Brings the time under the pointer into the middle. @param {PointerEvent} event */
-  function go(event) {
+  /** Cycle under the pointer, also beside the run. @param {MouseEvent} event */
+  function cycleOf(event) {
     const box = canvas.getBoundingClientRect();
-    const part = (event.clientX - box.left - GUTTER) / Math.max(1, box.width - GUTTER - MARGIN);
+    return ((event.clientX - box.left - GUTTER) / Math.max(1, box.width - GUTTER - MARGIN)) * endOf(now());
+  }
+
+  /** @param {MouseEvent} event @returns {"start" | "end" | "part" | "beside"} */
+  function under(event) {
     const { start, end } = shown(now());
-    const half = (end - start) / 2;
-    const middle = part * endOf(now());
-    dispatch({ type: "window", window: { start: middle - half, end: middle + half } });
+    const reach = (EDGE_PX / Math.max(1, canvas.clientWidth - GUTTER - MARGIN)) * endOf(now());
+    const cycle = cycleOf(event);
+    // A narrow part is taken by its edges from outside only, so that it can still be moved.
+    const inside = Math.min(reach, (end - start) / 4);
+    if (cycle >= start - reach && cycle < start + inside) return "start";
+    if (cycle > end - inside && cycle <= end + reach) return "end";
+    return cycle >= start && cycle <= end ? "part" : "beside";
+  }
+
+  /** @param {"start" | "end" | "part"} what @param {number} to  Cycle. */
+  function move(what, to) {
+    const { start, end } = shown(now());
+    const last = endOf(now());
+    const inside = Math.min(last, Math.max(0, to));
+    const window = what === "part" ? { start: to, end: to + end - start }
+      : what === "start" ? { start: Math.min(inside, end - 1), end } : { start, end: Math.max(inside, start + 1) };
+    dispatch({ type: "window", joins: "overview", window });
   }
 
   /** @param {State} state */
   async function refresh(state) {
     if (!state.result || canvas.clientWidth < 60) return;
     const wanted = Math.max(16, Math.round((canvas.clientWidth - GUTTER - MARGIN) * ratio()));
-    const answer = await engine.latest("overview", "pulses", 0, endOf(state), wanted).catch(unlessDropped);
+    const answer = await engine.latest("overview", "pulses", 0, endOf(state), wanted, 0).catch(unlessDropped);
     if (!answer) return;
     whole = answer;
+    const context = strip.getContext("2d");
+    [strip.width, strip.height] = [wanted, Math.round(canvas.clientHeight * ratio())];
+    if (context) paintOverview(context, answer, { left: 0, height: strip.height });
     paint(now());
   }
 
   /** @param {State} state */
   function paint(state) {
+    const { start, end } = shown(state);
+    const clock = state.result?.summary.clock_hz ?? 1;
+    canvas.setAttribute("aria-label", `The whole run, ${time(endOf(state) / clock)}; shown are ${time(start / clock)} to ${time(end / clock)}`);
     const { width, height, ratio: scale } = fit(canvas);
     const context = canvas.getContext("2d");
     if (!context || !whole) return;
     const left = Math.round(GUTTER * scale);
     const right = (width - MARGIN) * scale;
-    paintOverview(context, whole, { left, height: height * scale });
+    context.drawImage(strip, left, 0);
     context.fillStyle = color("--quiet");
     context.font = `${11 * scale}px ${getComputedStyle(document.body).fontFamily}`;
     context.textAlign = "right";
     context.textBaseline = "middle";
     context.fillText("whole run", left - 8 * scale, (height / 2) * scale);
-    const { start, end } = shown(state);
     const x = (/** @type {number} */ cycle) => left + (cycle / endOf(state)) * (right - left);
     const [a, b] = [x(start), Math.max(x(end), x(start) + 3 * scale)];
     context.fillStyle = color("--ground");
@@ -74,9 +136,9 @@ export function createOverview({ engine, dispatch, now }) {
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    if (before?.window === state.window && before?.result === state.result) return undefined;
-    paint(state);
-    return before?.result !== state.result ? refresh(state) : undefined;
+    if (before?.result !== state.result) return refresh(state);
+    if (before?.window !== state.window) paint(state);
+    return undefined;
   }
   return { render };
 }

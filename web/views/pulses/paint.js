@@ -1,10 +1,11 @@
 /**
- * Paints the logic view's rows on a 2D context, in few paths: a column in which a signal was high and low is
- * a bar from top to bottom, so one edge is a line and a region too dense to draw is a filled block.
+ * Paints the logic view's rows on a 2D context: a column in which a signal was high and low is a bar from top
+ * to bottom, so one edge is a line and a region too dense to draw is a filled block.
  */
 import { color } from "../../time/plot.js";
 
 /** @typedef {import("../../state/types.js").PulseColumns} PulseColumns */
+/** @typedef {{columns: PulseColumns, from: number, to: number, at: (column: number) => number}} Picture  Columns `from` to `to` are on show; `at` is a column's left edge in device pixels. */
 
 /** Consecutive busy columns from which on they count as a block. */
 const BLOCK = 4;
@@ -16,77 +17,100 @@ export function has(words, column, bit) {
   return ((words[2 * column + (bit >> 5)] >>> (bit & 31)) & 1) === 1;
 }
 
+/** Runs of columns for which something holds. @param {Picture} picture @param {(column: number) => boolean} holds @param {(x: number, width: number) => void} draw */
+function runs({ from, to, at }, holds, draw) {
+  let begin = -1;
+  for (let i = from; i <= to; i++) {
+    const now = i < to && holds(i);
+    if (now && begin < 0) begin = i;
+    if (now || begin < 0) continue;
+    draw(at(begin), at(i) - at(begin));
+    begin = -1;
+  }
+}
+
 /**
  * @param {CanvasRenderingContext2D} context  In device pixels.
- * @param {PulseColumns} columns
+ * @param {Picture} picture
  * @param {number} bit
- * @param {{left: number, top: number, height: number, ratio: number, ink: string}} place  Device pixels.
+ * @param {{top: number, height: number, ratio: number, ink: string}} place  Device pixels.
  */
-export function paintSignal(context, columns, bit, { left, top, height, ratio, ink }) {
-  const total = columns.high.length / 2;
+export function paintSignal(context, { columns, from, to, at }, bit, { top, height, ratio, ink }) {
   const thick = Math.max(1, Math.round(1.25 * ratio));
-  const steady = new Path2D();
-  const bars = new Path2D();
-  const blocks = new Path2D();
-  let begin = 0;
+  /** @type {[number, number][]} */
+  const blocks = [];
+  context.fillStyle = ink;
+  let begin = from;
   let kind = -1;
   /** @param {number} end */
   const close = (end) => {
-    const width = end - begin;
-    if (kind === 0) steady.rect(left + begin, top + height - thick, width, thick);
-    else if (kind === 1) steady.rect(left + begin, top, width, thick);
-    else if (kind === 2 && width < BLOCK) bars.rect(left + begin, top, Math.max(width, thick), height);
-    else if (kind === 2) blocks.rect(left + begin, top, width, height);
+    const [x, width] = [at(begin), at(end) - at(begin)];
+    if (kind === 0) context.fillRect(x, top + height - thick, width, thick);
+    else if (kind === 1) context.fillRect(x, top, width, thick);
+    else if (kind === 2 && end - begin < BLOCK) context.fillRect(x, top, Math.max(width, thick), height);
+    else if (kind === 2) blocks.push([x, width]);
     begin = end;
   };
-  for (let i = 0; i < total; i++) {
+  for (let i = from; i < to; i++) {
     const high = has(columns.high, i, bit);
     const low = has(columns.low, i, bit);
     const next = high && low ? 2 : high ? 1 : low ? 0 : -1;
+    if (next === kind) continue;
+    close(i);
     // Two neighbours that stand at different levels have an edge between them.
-    if (next !== kind) {
-      if (i > 0) close(i);
-      if ((kind === 0 && next === 1) || (kind === 1 && next === 0)) bars.rect(left + i, top, thick, height);
-      kind = next;
-    }
+    if ((kind === 0 && next === 1) || (kind === 1 && next === 0)) context.fillRect(at(i), top, thick, height);
+    kind = next;
   }
-  close(total);
-  context.fillStyle = ink;
-  context.fill(steady);
-  context.fill(bars);
+  close(to);
   context.globalAlpha = 0.62;
-  context.fill(blocks);
+  for (const [x, width] of blocks) context.fillRect(x, top, width, height);
   context.globalAlpha = 1;
 }
 
 /**
- * A ground behind the columns in which a signal is high: the direction under the steps of a folded channel.
+ * A ground behind the columns in which a signal is at a level: the direction under the steps of a folded channel, the
+ * line's bytes where they are too dense to be told apart.
  * @param {CanvasRenderingContext2D} context  In device pixels.
- * @param {PulseColumns} columns
+ * @param {Picture} picture
  * @param {number} bit
- * @param {{left: number, top: number, height: number, ink: string}} place  Device pixels.
+ * @param {boolean} high
+ * @param {{top: number, height: number, ink: string}} place  Device pixels.
  */
-export function paintTint(context, columns, bit, { left, top, height, ink }) {
-  const path = new Path2D();
-  const total = columns.high.length / 2;
-  for (let i = 0; i < total; i++) if (has(columns.high, i, bit)) path.rect(left + i, top, 1, height);
+export function paintTint(context, picture, bit, high, { top, height, ink }) {
+  const words = high ? picture.columns.high : picture.columns.low;
   context.fillStyle = ink;
   context.globalAlpha = 0.22;
-  context.fill(path);
+  runs(picture, (i) => has(words, i, bit), (x, width) => context.fillRect(x, top, width, height));
   context.globalAlpha = 1;
+}
+
+/** Widths of texts that were measured, in device pixels. @type {Map<string, number>} */
+const widths = new Map();
+let widthsFont = "";
+
+/** @param {CanvasRenderingContext2D} context @param {string} text */
+function widthOf(context, text) {
+  if (widthsFont !== context.font || widths.size > 5000) {
+    widths.clear();
+    widthsFont = context.font;
+  }
+  const width = widths.get(text) ?? context.measureText(text).width;
+  widths.set(text, width);
+  return width;
 }
 
 /**
  * Spans with a text in them, as a decoder shows them: the longest text that fits.
  * @param {CanvasRenderingContext2D} context  In device pixels.
- * @param {{from: number, to: number, texts: string[], marked: boolean, ink: string | null}[]} spans  Device pixels; an ink of their own where they are not as usual.
- * @param {{top: number, height: number, ratio: number, ink: string, left: number, right: number}} place
+ * @param {{from: number, to: number, texts: string[], marked: boolean, ink: string | null, sample?: number | null}[]} spans  Device pixels; an ink of their own where they are not as usual.
+ * @param {{top: number, height: number, ratio: number, ink: string, left: number, right: number, font: string}} place
  */
-export function paintSpans(context, spans, { top, height, ratio, ink, left, right }) {
-  context.font = `${11 * ratio}px ${getComputedStyle(document.body).fontFamily}`;
+export function paintSpans(context, spans, { top, height, ratio, ink, left, right, font }) {
+  context.font = font;
   context.textAlign = "center";
   context.textBaseline = "middle";
-  for (const { from, to, texts, marked, ink: own } of spans) {
+  const [plain, reverse] = [color("--ink"), color("--pane")];
+  for (const { from, to, texts, marked, ink: own, sample } of spans) {
     const a = Math.max(left, from);
     const b = Math.min(right, Math.max(to, from + ratio));
     if (b <= a) continue;
@@ -96,28 +120,23 @@ export function paintSpans(context, spans, { top, height, ratio, ink, left, righ
     context.fillRect(a, top, width, height);
     context.globalAlpha = 1;
     context.fillRect(a, top, Math.min(width, Math.max(1, Math.round(ratio))), height);
-    const text = texts.find((candidate) => context.measureText(candidate).width < width - 6 * ratio);
+    if (typeof sample === "number" && sample >= left && sample <= right) context.fillRect(Math.round(sample - ratio), top + height - 3 * ratio, 2 * ratio, 3 * ratio);
+    const text = width < 8 * ratio ? undefined : texts.find((candidate) => widthOf(context, candidate) < width - 4 * ratio);
     if (!text) continue;
-    context.fillStyle = color(marked ? "--pane" : "--ink");
+    context.fillStyle = marked ? reverse : plain;
     context.fillText(text, (a + b) / 2, top + height / 2 + ratio * 0.5);
   }
 }
 
 /** One thin strip: how busy each column of the whole run is. @param {CanvasRenderingContext2D} context @param {PulseColumns} columns @param {{left: number, height: number}} place */
 export function paintOverview(context, columns, { left, height }) {
-  const total = columns.high.length / 2;
-  const lanes = [{ mask: 0x0000ffff, ink: "--step" }, { mask: 0xffff0000, ink: "--dir" }];
-  for (const [lane, { mask, ink }] of lanes.entries()) {
-    const path = new Path2D();
-    for (let i = 0; i < total; i++) {
-      const busy = columns.high[2 * i] & columns.low[2 * i] & mask;
-      if (busy !== 0) path.rect(left + i, (0.08 + lane * 0.3) * height, 1, 0.24 * height);
-    }
+  const picture = { columns, from: 0, to: columns.high.length / 2, at: (/** @type {number} */ i) => left + i };
+  const lane = (/** @type {number} */ index, /** @type {string} */ ink, /** @type {(column: number) => boolean} */ holds) => {
     context.fillStyle = color(ink);
-    context.fill(path);
-  }
-  const wire = new Path2D();
-  for (let i = 0; i < total; i++) if (has(columns.low, i, RX) || has(columns.low, i, TX)) wire.rect(left + i, 0.68 * height, 1, 0.24 * height);
-  context.fillStyle = color("--wire");
-  context.fill(wire);
+    runs(picture, holds, (x, width) => context.fillRect(x, (0.08 + index * 0.3) * height, width, 0.24 * height));
+  };
+  const busy = (/** @type {number} */ mask) => (/** @type {number} */ i) => (columns.high[2 * i] & columns.low[2 * i] & mask) !== 0;
+  lane(0, "--step", busy(0x0000ffff));
+  lane(1, "--dir", busy(0xffff0000));
+  lane(2, "--wire", (i) => has(columns.low, i, RX) || has(columns.low, i, TX));
 }

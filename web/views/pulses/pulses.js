@@ -1,21 +1,22 @@
-/** The pulses view: a logic analyser over all signals of the bus, with the ticks and packets decoded between them. */
+/** The pulses view: a logic analyser over all signals of the bus, with the line and the ticks decoded between them. */
 import { byId, options, say } from "../../dom.js";
 import { time } from "../../state/number.js";
 import { unlessDropped } from "../../engine/engine.js";
+import { createEdges } from "./edges.js";
+import { createMarkers } from "./markers.js";
 import { createOverview } from "./overview.js";
-import { paintSignal, paintSpans, paintTint } from "./paint.js";
-import { GUTTER, MARGIN, color, fit, ratio, watch } from "../../time/plot.js";
+import { drawLit, paintRows } from "./picture.js";
+import { GUTTER, MARGIN, fit, ratio, watch } from "../../time/plot.js";
 import { createRange } from "../../time/range.js";
 import { createReading } from "./reading.js";
-import { ROW_PX, allFolded, channelOf, idle, isFolded, rowsOf, shows, signalsOf } from "./rows.js";
+import { ROW_PX, allFolded, channelOf, idle, isFolded, nameOf, rowsOf, shows, signalsOf } from "./rows.js";
 import { createSpans } from "./spans.js";
 import { lookedAt, shown } from "../../state/state.js";
 import { listen } from "../../shell/commands.js";
 import { drawCursors, overlaid } from "../../time/cursors.js";
-import { cycleAt, gestures, pixelOf, reveal } from "../../time/timeline.js";
+import { cycleAt, gestures, reveal } from "../../time/timeline.js";
 
 /** @typedef {import("../../state/types.js").State} State */
-/** @typedef {import("../../state/types.js").PulseColumns} PulseColumns */
 
 /** A cursor that is set this near to an edge is set on it, in CSS pixels. */
 const SNAP_PX = 6;
@@ -36,8 +37,11 @@ export function createPulses({ engine, dispatch, now }) {
   const overview = createOverview({ engine, ...page });
   const reading = createReading({ engine, now });
   const spans = createSpans({ engine });
-  /** @type {PulseColumns | null} */
-  let shownColumns = null;
+  const markers = createMarkers({ ...page, speak: reading.speak });
+  const edges = createEdges({ engine, now });
+  /** @type {import("./picture.js").Answer | null} */
+  let answer = null;
+  let frame = 0;
   let plot = { left: GUTTER, right: GUTTER + 1 };
 
   gestures(canvas, () => plot, { ...page, click: pick });
@@ -54,8 +58,11 @@ export function createPulses({ engine, dispatch, now }) {
     { keys: ["ArrowDown"], text: "choose the row below", run: () => step(1) },
     { keys: ["Enter"], text: "fold or unfold the chosen row's channel", run: () => fold(channelOf(now().row)) },
   ]);
-  canvas.addEventListener("pointermove", (event) => reading.hover(rowAt(event)));
-  canvas.addEventListener("pointerleave", reading.leave);
+  canvas.addEventListener("pointermove", (event) => { if (event.buttons === 0) point(event); });
+  canvas.addEventListener("pointerleave", () => {
+    light(null);
+    reading.span("");
+  });
 
   /** @param {number} by */
   function step(by) {
@@ -69,7 +76,40 @@ export function createPulses({ engine, dispatch, now }) {
     if (channel === null) return;
     const folded = !isFolded(now(), channel);
     dispatch({ type: "fold", channel, folded });
-    say(byId("pulses-sentence"), `Channel ${channel} ${folded ? "folded" : "unfolded"}.`);
+    reading.speak(`${channel < 16 ? `Channel ${channel}` : `What ${nameOf(now(), channel)} carries`} ${folded ? "folded" : "unfolded"}.`);
+  }
+
+  /** @param {{start: number, end: number, packet?: number | null, bit?: number} | null} what */
+  function light(what) {
+    dispatch({ type: "light", lit: what && { start: what.start, end: what.end, from: "pulses", packet: what.packet ?? null, bit: what.bit ?? null } });
+  }
+
+  /** What is pointed at is lit in all views: a span, or an edge that is near. @param {PointerEvent} event */
+  async function point(event) {
+    const row = rowAt(event);
+    const { hover } = now();
+    if (!row || hover === null) {
+      light(null);
+      return reading.span("");
+    }
+    if (!("bit" in row)) {
+      const span = spanAt(row, event);
+      light(span && { ...span });
+      return reading.span(span ? `${row.name}: ${span.texts[0]}` : "");
+    }
+    const pulse = await reading.signal(row.bit);
+    if (!pulse || now().hover !== hover) return;
+    const { start, end } = shown(now());
+    const reach = (SNAP_PX * (end - start)) / (plot.right - plot.left);
+    const near = [pulse.begin, pulse.end].find((edge) => edge !== null && Math.abs(edge - hover) <= reach) ?? null;
+    light(near === null ? null : { start: near, end: near, bit: row.bit });
+  }
+
+  /** @param {import("./spans.js").DecodedRow} row @param {MouseEvent} event */
+  function spanAt(row, event) {
+    if (spans.isDense(row)) return null;
+    const cycle = cycleAt(now(), plot, event.clientX - canvas.getBoundingClientRect().left);
+    return spans.spansOf(now(), row).find(({ start, end }) => start <= cycle && cycle < end) ?? null;
   }
 
   /** The row under a pointer. @param {MouseEvent} event */
@@ -99,8 +139,7 @@ export function createPulses({ engine, dispatch, now }) {
     if ("bit" in row && !shows(row, now().row)) dispatch({ type: "row", row: row.bit });
     if (x < plot.left) return true;
     if ("bit" in row) return snapped(row.bit, at);
-    const cycle = cycleAt(now(), plot, x);
-    const found = spans.spansOf(now(), row.kind).find(({ start, end }) => start <= cycle && cycle < end)?.packet ?? null;
+    const found = spanAt(row, event)?.packet ?? null;
     if (found !== null) dispatch({ type: "packet", packet: found });
     return found !== null;
   }
@@ -113,65 +152,46 @@ export function createPulses({ engine, dispatch, now }) {
     const { a } = state.cursors;
     const from = a !== null && a >= start && a <= end ? a : forward ? start : end;
     const edge = await engine.ask("next_edge", state.row, from, forward, kindSelect.value).catch(unlessDropped);
-    const name = signalsOf(state).find(({ bit }) => bit === state.row)?.name ?? "";
-    if (edge === undefined || edge === null) return say(byId("pulses-sentence"), `${name}: no ${forward ? "later" : "earlier"} edge.`);
+    const name = nameOf(state, state.row);
+    const kind = { rise: "rising ", fall: "falling " }[kindSelect.value] ?? "";
+    if (edge === undefined || edge === null) return reading.speak(`${name}: no ${forward ? "later" : "earlier"} ${kind}edge.`);
     dispatch({ type: "cursor", which: "a", cycle: edge });
     reveal(page, edge);
-    say(byId("pulses-sentence"), `${name}: edge at ${time(edge / state.result.summary.clock_hz)}, cycle ${edge}.`);
+    reading.speak(`${name}: ${kind}edge at ${time(edge / state.result.summary.clock_hz)}, cycle ${edge}.`);
   }
 
-  /** @param {State} state */
+  /** Asks for what the shown time needs; until it is there the last picture is drawn where it belongs by now. @param {State} state */
   async function refresh(state) {
     plot = { left: GUTTER, right: Math.max(GUTTER + 1, stack.clientWidth - MARGIN) };
     if (!state.result || stack.clientWidth < 60) return;
     const { start, end } = shown(state);
     const wanted = Math.max(16, Math.round((plot.right - plot.left) * ratio()));
-    const asked = engine.latest("pulses", "pulses", start, end, wanted).catch(unlessDropped);
-    const [columns, decoded] = await Promise.all([asked, spans.fetch(state)]);
-    if (!columns || !decoded) return;
-    shownColumns = columns;
-    paint(now());
+    const margin = Math.round(wanted / 4);
+    if (answer) soon();
+    const asked = engine.latest("pulses", "pulses", start, end, wanted, margin).catch(unlessDropped).then((columns) => {
+      if (!columns) return false;
+      answer = { columns, start, end, count: wanted, margin };
+      soon();
+      return true;
+    });
+    const all = await Promise.all([asked, spans.fetch(state, plot.right - plot.left, soon)]);
+    // Whoever waits for the drawing waits for this.
+    if (all.every(Boolean)) paint(now());
+  }
+
+  /** Paints in the next frame, however much has changed until then. */
+  function soon() {
+    frame ||= requestAnimationFrame(() => paint(now()));
   }
 
   /** @param {State} state */
   function paint(state) {
-    if (!shownColumns || !state.result) return;
-    const columns = shownColumns;
-    const { width, ratio: scale } = fit(canvas);
-    const context = canvas.getContext("2d");
-    if (!context) return;
-    const left = Math.round(plot.left * scale);
-    const right = Math.round(plot.right * scale);
-    context.font = `${11 * scale}px ${getComputedStyle(document.body).fontFamily}`;
-    for (const [index, row] of rowsOf(state).entries()) {
-      const top = Math.round((index * ROW_PX + 4) * scale);
-      const height = Math.round((ROW_PX - 6) * scale);
-      const chosen = shows(row, state.row);
-      if (chosen) {
-        context.fillStyle = color("--chosen");
-        context.fillRect(0, top - 3 * scale, width * scale, ROW_PX * scale);
-      }
-      context.fillStyle = color(chosen ? "--ink" : "--quiet");
-      context.textAlign = "right";
-      context.textBaseline = "middle";
-      context.font = `${chosen ? "bold " : ""}${11 * scale}px ${getComputedStyle(document.body).fontFamily}`;
-      context.fillText(row.name, left - 8 * scale, top + height / 2);
-      if (row.kind === "folded" || (row.kind === "signal" && row.name.startsWith("DIR"))) {
-        context.textAlign = "left";
-        context.fillText(row.kind === "folded" ? "▸" : "▾", 8 * scale, top + height / 2);
-      }
-      const place = { left, right, top, height, ratio: scale, ink: color(row.ink) };
-      if (row.kind === "folded") paintTint(context, columns, row.dir, { ...place, ink: color("--dir") });
-      if ("bit" in row) paintSignal(context, columns, row.bit, place);
-      else paintSpans(context, spans.spansOf(state, row.kind).map((span) => placed(state, span)), place);
-    }
+    cancelAnimationFrame(frame);
+    frame = 0;
+    if (!answer || !state.result) return;
+    paintRows(canvas, state, plot, answer, spans);
     describe(state);
     paintCursor(state);
-  }
-
-  /** A span in device pixels. @param {State} state @param {import("./spans.js").Span} span */
-  function placed(state, { start, end, ...rest }) {
-    return { ...rest, from: pixelOf(state, plot, start) * ratio(), to: pixelOf(state, plot, end) * ratio() };
   }
 
   /** @param {State} state */
@@ -181,6 +201,7 @@ export function createPulses({ engine, dispatch, now }) {
     if (!context || !state.result) return;
     context.scale(scale, scale);
     drawCursors(context, state, plot, height);
+    drawLit(context, state, plot, spans);
     reading.render(state);
   }
 
@@ -188,7 +209,7 @@ export function createPulses({ engine, dispatch, now }) {
   function describe(state) {
     const { start, end } = shown(state);
     const clock = state.result?.summary.clock_hz ?? 1;
-    canvas.setAttribute("aria-label", `Logic analyser, ${rowsOf(state).length} rows, ${time(start / clock)} to ${time(end / clock)}`);
+    canvas.setAttribute("aria-label", `Logic analyser, ${rowsOf(state).length} rows, ${time(start / clock)} to ${time(end / clock)}, row ${nameOf(state, state.row)}`);
   }
 
   /** The head's choices and the height that the rows take. @param {State} state */
@@ -217,14 +238,18 @@ export function createPulses({ engine, dispatch, now }) {
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
     range.render(state, before);
+    markers.render(state, before);
+    edges.render(state, before);
     const strip = overview.render(state, before);
     const arranged = before?.result !== state.result || before?.row !== state.row || before?.folds !== state.folds || before?.allSignals !== state.allSignals;
     if (arranged) layout(state);
     if (before && before.row !== state.row) follow(state);
+    const walked = before && (before.cursors.a !== state.cursors.a || before.row !== state.row);
+    if (walked && document.activeElement === canvas && before.result === state.result) reading.speakCursor();
     if (before?.window !== state.window || before?.result !== state.result) return Promise.all([refresh(state), strip]);
     if (arranged || before?.packet !== state.packet) paint(state);
     else if (overlaid(before, state)) paintCursor(state);
     return undefined;
   }
-  return { render };
+  return { render, speak: reading.speak };
 }

@@ -1,15 +1,24 @@
-/** The line under the pulses: the pointer's time, the pulse under it, the cursors and what lies between them. */
+/** The line under the pulses: the pointer's time, the pulse or span under it, the cursors and what lies between them; and what is spoken. */
 import { byId, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
-import { count, si, time } from "../../state/number.js";
-import { signalsOf } from "./rows.js";
+import { count, short, si, time } from "../../state/number.js";
+import { nameOf } from "./rows.js";
 
 /** @typedef {import("../../state/types.js").State} State */
+/** @typedef {import("../../state/types.js").Pulse} Pulse */
+
+/** Rest before a sentence is spoken, in ms: keys that are held down say what they come to. */
+const SPEAK_MS = 250;
 
 /** @param {{engine: import("../../engine/engine.js").Engine, now: () => State}} page */
 export function createReading({ engine, now }) {
-  /** @type {{bit: number, begin?: number, end?: number, next?: number, cycle: number} | null} */
-  let pulse = null;
+  /** What is under the pointer, in words. */
+  let pointed = "";
+  /** What was said last, shown until the pointer moves. */
+  let said = "";
+  let timer = 0;
+  /** Counts the sentences: what comes to be known after a newer one is not said. */
+  let sentences = 0;
 
   /** @param {State} state */
   function cursors(state) {
@@ -23,46 +32,73 @@ export function createReading({ engine, now }) {
     say(byId("cursor-readings"), texts.join(" · "));
   }
 
-  /** Width and period of the pulse under the pointer. @param {import("./rows.js").Row | undefined} row */
-  async function hover(row) {
-    const state = now();
-    if (!row || !("bit" in row) || !state.result || state.hover === null) {
-      pulse = null;
-      return foot(state);
-    }
-    const cycle = state.hover;
-    const answer = await engine.latest("pulse", "pulse_at", row.bit, cycle).catch(unlessDropped);
-    if (!answer) return;
-    pulse = { ...answer, bit: row.bit, cycle };
+  /** Width, period, frequency and duty cycle of the pulse under the pointer. @param {number} bit @returns {Promise<Pulse | undefined>} */
+  async function signal(bit) {
+    const { hover } = now();
+    if (hover === null) return span("");
+    const answer = await engine.latest("pulse", "pulse_at", bit, hover).catch(unlessDropped);
+    if (answer) span(measured(now(), bit, answer));
+    return answer ?? undefined;
+  }
+
+  /** A span, or nothing, is under the pointer. @param {string} text @returns {undefined} */
+  function span(text) {
+    pointed = text;
+    said = "";
     foot(now());
   }
 
   /** @param {State} state */
   function foot(state) {
     const clock = state.result?.summary.clock_hz ?? 1;
-    const parts = [];
-    if (state.hover !== null) parts.push(`${time(state.hover / clock)} · cycle ${count(state.hover)}`);
-    const name = pulse && signalsOf(state).find(({ bit }) => bit === pulse?.bit)?.name;
-    if (pulse && name && state.hover !== null) {
-      const { begin, end, next } = pulse;
-      if (begin !== undefined && end !== undefined) {
-        parts.push(`${name} stays ${time((end - begin) / clock)} (${count(end - begin)} cycles)`);
-        if (next !== undefined) parts.push(`period ${time((next - begin) / clock)} = ${si(clock / (next - begin), "Hz", 5)}`);
-      } else if (begin === undefined && end === undefined) parts.push(`${name} never changes`);
-      else parts.push(`${name} ${end === undefined ? "stays so to the end" : `first changes at ${time(end / clock)}`}`);
-    }
-    say(byId("hover-reading"), parts.length ? parts.join(" · ") : "wheel zooms, dragging moves, double click shows the whole run");
+    const under = state.hover === null ? [] : [`${time(state.hover / clock)} · cycle ${count(state.hover)}`, pointed];
+    const text = said || under.filter(Boolean).join(" · ");
+    say(byId("hover-reading"), text || "wheel zooms, dragging moves, double click shows the whole run");
+    byId("hover-reading").classList.toggle("said", said !== "");
   }
 
-  function leave() {
-    pulse = null;
+  /** Shows a sentence at once and lets it be spoken. @param {string} text */
+  function speak(text) {
+    said = text;
+    sentences++;
     foot(now());
+    clearTimeout(timer);
+    timer = window.setTimeout(() => say(byId("pulses-sentence"), text), SPEAK_MS);
   }
+
+  /** Speaks what the chosen row does at cursor A. */
+  async function speakCursor() {
+    const { row, cursors: { a } } = now();
+    if (a === null) return;
+    const asked = sentences;
+    const answer = await engine.latest("spoken", "pulse_at", row, a).catch(unlessDropped);
+    if (asked !== sentences) return;
+    const state = now();
+    const clock = state.result?.summary.clock_hz ?? 1;
+    if (answer) speak(`${time(a / clock)}, cycle ${a}: ${measured(state, row, answer)}.`);
+  }
+
+  /** What `said` is about. @type {State["result"]} */
+  let about = null;
 
   /** @param {State} state */
   function render(state) {
+    if (about !== state.result) said = "";
+    about = state.result;
     foot(state);
     cursors(state);
   }
-  return { hover, leave, render };
+  return { signal, span, speak, speakCursor, render };
+}
+
+/** A level and what is around it in words. @param {State} state @param {number} bit @param {Pulse} pulse */
+function measured(state, bit, { high, begin, end, next }) {
+  const clock = state.result?.summary.clock_hz ?? 1;
+  const level = `${nameOf(state, bit)} ${high ? "high" : "low"}`;
+  if (begin === null) return end === null ? `${level}, never changes` : `${level}, first edge at ${time(end / clock)}`;
+  if (end === null) return `${level} from ${time(begin / clock)} to the end`;
+  const width = `${level} for ${time((end - begin) / clock)} (${count(end - begin)} cycles)`;
+  if (next === null) return width;
+  const duty = (100 * (high ? end - begin : next - end)) / (next - begin);
+  return `${width} · period ${time((next - begin) / clock)} = ${si(clock / (next - begin), "Hz", 5)} · duty ${short(duty, 3)} %`;
 }

@@ -1,7 +1,8 @@
-/** The decoded rows of the logic view: packets and frames, replies, ticks, and what breaks the driver's timing. */
+/** The decoded rows of the logic view: bits, bytes and fields, packets and frames, replies, ticks, and what breaks the driver's timing. */
 import { unlessDropped } from "../../engine/engine.js";
 import { si } from "../../state/number.js";
 import { ruleName } from "../rules.js";
+import { hasLine } from "./rows.js";
 import { lookedAt, shown } from "../../state/state.js";
 import { asked } from "../timing.js";
 
@@ -9,11 +10,16 @@ import { asked } from "../timing.js";
 /** @typedef {import("../../state/types.js").PacketRow} PacketRow */
 /** @typedef {import("../../state/types.js").TickRow} TickRow */
 /** @typedef {import("../../state/types.js").Timing} Timing */
-/** @typedef {import("./rows.js").SpanRow["kind"]} Kind */
-/** @typedef {{start: number, end: number, texts: string[], marked: boolean, ink: string | null, packet: number | null}} Span  Cycles; the texts from the longest to the shortest. */
+/** @typedef {import("../../state/types.js").Decoded} Decoded */
+/** @typedef {import("./rows.js").SpanRow | import("./rows.js").LineRow} DecodedRow */
+/** @typedef {{start: number, end: number, texts: string[], marked: boolean, ink: string | null, packet: number | null, sample?: number | null}} Span  Cycles; the texts from the longest to the shortest. */
 
 /** Spans that are drawn one by one; more than that are too narrow to be told apart. */
-const MOST = 400;
+const MOST = 250;
+/** A bit is drawn from this width on, in CSS pixels. */
+const BIT_PX = 6;
+/** @type {Decoded} */
+const NOTHING = { rx: { bits: [], bytes: [], fields: [] }, tx: { bits: [], bytes: [], fields: [] }, more: false };
 
 /** Colours of what is not as usual. @type {{[mark: string]: string}} */
 const INKS = { bad: "--error", repeated: "--warning", foreign: "--quiet" };
@@ -29,31 +35,53 @@ export function createSpans({ engine }) {
   /** @type {State["result"]} What `timing` is about. */
   let checked = null;
 
-  /** Asks for what lies in the shown time; false where a newer question took its place. @param {State} state @returns {Promise<boolean>} */
-  async function fetch(state) {
+  let decoded = NOTHING;
+
+  /** Asks for what lies in the shown time, and calls `ready` as each answer comes; false where a newer question took their place. @param {State} state @param {number} width  CSS pixels. @param {() => void} ready @returns {Promise<boolean>} */
+  async function fetch(state, width, ready) {
     const { start, end } = shown(state);
+    const margin = (end - start) / 4;
+    const [from, to] = [Math.max(0, start - margin), end + margin];
+    const line = hasLine(state);
     const known = checked === state.result;
+    /** @template T @param {Promise<T> | T} answer @param {(answer: T) => void} keep */
+    const taken = async (answer, keep) => {
+      const given = await Promise.resolve(answer).catch(unlessDropped);
+      if (given === undefined || given === null) return false;
+      keep(/** @type {T} */ (given));
+      ready();
+      return true;
+    };
     const answers = await Promise.all([
-      engine.latest("spans", "packets_in", start, end, MOST),
-      engine.latest("ticks", "ticks_in", start, end, MOST),
-      known ? timing : lookedAt(state)?.violations ? engine.latest("violations", "timing") : null,
-    ]).catch(unlessDropped);
-    if (!answers?.[0]) return false;
-    [packets, ticks, timing] = answers;
-    checked = state.result;
-    return true;
+      taken(line ? engine.latest("spans", "packets_in", from, to, MOST) : { rows: [], more: false }, (answer) => { packets = answer; }),
+      taken(engine.latest("ticks", "ticks_in", from, to, MOST), (answer) => { ticks = answer; }),
+      taken(line ? engine.latest("decoded", "decoded", from, to, MOST, Math.floor(width / (7 * BIT_PX))) : NOTHING, (answer) => { decoded = answer; }),
+      known || taken(lookedAt(state)?.violations ? engine.latest("violations", "timing") : { driver: null, total: 0, rules: [], violations: [] }, (answer) => { timing = answer; }),
+    ]);
+    if (answers[3]) checked = state.result;
+    return answers.every(Boolean);
   }
 
-  /** @param {State} state @param {Kind} kind @returns {Span[]} */
-  function spansOf(state, kind) {
+  /** Whether a decoder has too much in the shown time to tell it apart. @param {DecodedRow} row */
+  function isDense(row) {
+    if (row.kind === "ticks") return ticks.more;
+    if (!("lane" in row)) return row.kind !== "violations" && packets.more;
+    return decoded.more || (row.kind === "bits" && decoded[row.lane].bits.length === 0 && decoded[row.lane].bytes.length > 0);
+  }
+
+  /** @param {State} state @param {DecodedRow} row @returns {Span[]} */
+  function spansOf(state, row) {
+    if (row.kind === "violations") return violations(state);
     const { start, end } = shown(state);
-    const { more } = kind === "ticks" ? ticks : packets;
-    const list = kind === "ticks" ? ticks.rows.map((tick) => ofTick(state, tick))
-      : kind === "violations" ? violations(state)
-        : packets.rows.filter((row) => (kind === "replies") === onReplies(row)).map((row) => ofPacket(state, row));
-    if (kind === "violations" || !more) return list;
-    const what = kind === "ticks" ? "ticks" : state.result?.summary.framed ? "frames" : "packets";
-    return [{ start, end, texts: [`more than ${MOST} ${what}: zoom in to see each`, "zoom in"], marked: false, ink: null, packet: null }];
+    if (isDense(row)) {
+      const what = row.kind === "packets" && state.result?.summary.framed ? "frames" : row.kind;
+      return [{ start, end, texts: [`zoom in to see each of the ${what}`, "zoom in"], marked: false, ink: null, packet: null }];
+    }
+    if ("lane" in row) {
+      return decoded[row.lane][row.kind].map((span) => ({ ...span, marked: span.packet !== null && span.packet === state.packet, ink: span.bad ? "--error" : null }));
+    }
+    if (row.kind === "ticks") return ticks.rows.map((tick) => ofTick(state, tick));
+    return packets.rows.filter((each) => (row.kind === "replies") === onReplies(each)).map((each) => ofPacket(state, each));
   }
 
   /** Violations in the shown time, each as long as what was measured. @param {State} state @returns {Span[]} */
@@ -68,7 +96,7 @@ export function createSpans({ engine }) {
     }));
   }
 
-  return { fetch, spansOf };
+  return { fetch, spansOf, isDense };
 }
 
 /** What the controller itself sends, on TX. @param {PacketRow} row */

@@ -1,0 +1,65 @@
+//! `stepscope open --verify`: whether a run is the one that the sender of a link saw.
+
+use crate::{failure::Failure, progress::Progress};
+use std::path::PathBuf;
+use stepscope_core::{
+    run::Experiment,
+    scenario::Scenario,
+    trace::{Comparison, Likeness, Proof, Shorter, VERSION},
+    units::Instant,
+};
+
+/// Records between two looks at how far the run is.
+const SLICE: u64 = 1 << 16;
+
+/// Runs the scenario and says on standard error how it stands to the link's part `d`.
+pub(crate) fn verify(scenario: &Scenario, part: Option<&str>) -> Result<(), Failure> {
+    let proof = part.ok_or(Failure::NoProof)?;
+    let proof = Proof::parse(proof).map_err(Failure::Proof)?;
+    let experiment = Experiment::new(scenario)
+        .map_err(|problems| Failure::Scenario(PathBuf::from("the link"), problems))?;
+    let (sent, own) = (proof.controllers.len(), experiment.controllers());
+    if sent != own {
+        return Err(Failure::OtherRun(format!(
+            "the link's digests are of {sent} controllers, its scenario has {own}"
+        )));
+    }
+    let mut comparisons: Vec<Comparison<'_>> = proof.controllers.iter().map(Comparison::with).collect();
+    let mut progress = Progress::new("verify", false);
+    let mut run = experiment.start();
+    while !run.advance_each(SLICE, &mut comparisons) {
+        progress.tell(run.cycles().0, experiment.cost().end_cycle);
+    }
+    let clock_hz = experiment.config().clock_hz();
+    let mut edges = 0;
+    for (index, comparison) in comparisons.into_iter().enumerate() {
+        match comparison.finish() {
+            Likeness::Same(mark) => edges += mark.edges,
+            Likeness::Differs { after, until, shorter } => {
+                let at = |cycle: Instant| format!("cycle {} ({} s)", cycle.0, cycle.seconds(clock_hz));
+                let controller = if own > 1 { format!(" of controller {index}") } else { String::new() };
+                let ends = match shorter {
+                    Some(Shorter::This) => "; this run ends there",
+                    Some(Shorter::Other) => "; the sender's run ends there",
+                    None => "",
+                };
+                let version = if proof.version == VERSION {
+                    String::new()
+                } else {
+                    format!("; it was made with version {}, this is {VERSION}", proof.version)
+                };
+                return Err(Failure::OtherRun(format!(
+                    "not the link's run: the first difference{controller} comes after edge {}, {}, and by edge {}, {}{ends}{version}",
+                    after.edges,
+                    at(after.cycle),
+                    until.edges,
+                    at(until.cycle),
+                )));
+            }
+        }
+    }
+    let digests: Vec<String> =
+        proof.controllers.iter().map(|fingerprint| format!("{:016x}", fingerprint.digest)).collect();
+    eprintln!("reproduced bit-exactly: {edges} edges, digest {}", digests.join(" "));
+    Ok(())
+}

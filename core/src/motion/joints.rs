@@ -1,0 +1,252 @@
+//! Where the formula of a motion changes: between two joints its position, speed and acceleration
+//! are smooth, and each rises or falls or stays. So the values at both ends of such a stretch are
+//! its least and its greatest, and three points of Gauss and Legendre integrate it and its square.
+//!
+//! ```text
+//! |   .----.     | a trapezoid has a joint at each end of its ramps and in its middle,
+//! |  /|  | |\    | a table or a staircase at each change of its rate,
+//! +-'-+--+-+-'-- | a cosine 64 in each ramp: no polynomial, so it is cut small
+//! ```
+
+use super::{AxisPlan, Curve, Profile, cosine::Cosine, polyline::POINTS, sine_segments::SineSegments};
+use alloc::vec::Vec;
+
+/// Parts that a cosine's ramp is cut into; even, so that the middle of the ramp, where its
+/// acceleration is greatest, is a joint.
+const RAMP_PARTS: u32 = 64;
+
+/// A stretch of time in which a motion is smooth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piece {
+    /// Its start in s on the axis' time.
+    pub from_s: f64,
+    /// Its end in s.
+    pub to_s: f64,
+    /// How many such stretches, one whole period of a sine apart, it stands for.
+    pub times: f64,
+}
+
+/// The joints of one move.
+#[derive(Clone, Debug)]
+struct Joined {
+    start_s: f64,
+    end_s: f64,
+    /// Joints of the first period, from the move's start, rising.
+    joints: Vec<f64>,
+    /// The time after which the move repeats itself, where it does.
+    period_s: Option<f64>,
+}
+
+/// The joints of an axis' whole motion.
+#[derive(Clone, Debug)]
+pub struct Joints {
+    moves: Vec<Joined>,
+}
+
+impl Joints {
+    /// Of a plan.
+    #[must_use]
+    pub fn of(plan: &AxisPlan) -> Self {
+        let moves = plan.moves().iter().map(|planned| {
+            let period_s = match &planned.profile {
+                Profile::SineSegments(sine) => Some(sine.period_s()),
+                _ => None,
+            };
+            let end_s = planned.start_s + planned.profile.duration_s();
+            Joined { start_s: planned.start_s, end_s, joints: joints(&planned.profile), period_s }
+        });
+        Self { moves: moves.collect() }
+    }
+
+    /// The first period of the move that the stretch lies in, as (start, end) in s, where it has one and
+    /// the stretch is no shorter: then a curve's extremes in both are the same.
+    #[must_use]
+    pub fn period_within(&self, from_s: f64, to_s: f64) -> Option<(f64, f64)> {
+        let joined = self.moves.get(self.moves.partition_point(|each| each.end_s <= from_s))?;
+        let period_s = joined.period_s.filter(|period_s| to_s - from_s >= *period_s)?;
+        let inside = from_s >= joined.start_s && to_s <= joined.end_s;
+        inside.then_some((joined.start_s, joined.start_s + period_s))
+    }
+
+    /// The smooth pieces of a stretch of time, in order but for a sine's whole periods, of which only
+    /// the first is cut and stands for all.
+    pub fn pieces(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Piece)) {
+        let once = |from_s: f64, to_s: f64, each: &mut dyn FnMut(Piece)| {
+            if to_s > from_s {
+                each(Piece { from_s, to_s, times: 1.0 });
+            }
+        };
+        let begin = self.moves.first().map_or(f64::INFINITY, |first| first.start_s);
+        let end = self.moves.last().map_or(f64::INFINITY, |last| last.end_s);
+        once(from_s, least(begin, to_s), each);
+        let first = self.moves.partition_point(|each| each.end_s <= from_s);
+        for joined in self.moves.iter().skip(first).take_while(|joined| joined.start_s < to_s) {
+            joined.pieces(greatest(from_s, joined.start_s), least(to_s, joined.end_s), each);
+        }
+        once(greatest(from_s, end), to_s, each);
+    }
+}
+
+impl Joined {
+    fn pieces(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Piece)) {
+        let Some(period_s) = self.period_s else { return self.cut(from_s, to_s, 0.0, 1.0, each) };
+        // Whole periods from the end of the one that is begun to the start of the one not ended.
+        let (first, last) =
+            (libm::ceil((from_s - self.start_s) / period_s), libm::floor((to_s - self.start_s) / period_s));
+        if last - first < 1.0 {
+            let middle = least(to_s, greatest(from_s, self.start_s + first * period_s));
+            self.cut(from_s, middle, (first - 1.0) * period_s, 1.0, each);
+            return self.cut(middle, to_s, first * period_s, 1.0, each);
+        }
+        let (begin, end) = (first * period_s, last * period_s);
+        self.cut(from_s, self.start_s + begin, begin - period_s, 1.0, each);
+        self.cut(self.start_s + begin, self.start_s + begin + period_s, begin, last - first, each);
+        self.cut(self.start_s + end, to_s, end, 1.0, each);
+    }
+
+    /// Cuts at the joints, which begin anew `shift_s` after the start of the move.
+    fn cut(&self, from_s: f64, to_s: f64, shift_s: f64, times: f64, each: &mut dyn FnMut(Piece)) {
+        let zero_s = self.start_s + shift_s;
+        let mut from = from_s;
+        let first = self.joints.partition_point(|joint| zero_s + joint <= from_s);
+        for joint in self.joints.iter().skip(first).map(|joint| zero_s + joint) {
+            if joint >= to_s {
+                break;
+            }
+            if joint > from {
+                each(Piece { from_s: from, to_s: joint, times });
+                from = joint;
+            }
+        }
+        if to_s > from {
+            each(Piece { from_s: from, to_s, times });
+        }
+    }
+}
+
+fn least(a: f64, b: f64) -> f64 {
+    if b < a { b } else { a }
+}
+
+fn greatest(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
+}
+
+/// Joints of a move between its ends, rising; of a sine those of its first period.
+fn joints(profile: &Profile) -> Vec<f64> {
+    match profile {
+        Profile::Trapezoid(curve) => mirrored([curve.ramp_s()].into_iter(), curve.duration_s()),
+        Profile::Cosine(curve) => mirrored(ramp(curve), curve.duration_s()),
+        Profile::TrapezoidTable(curve) => {
+            // One interval more than the ramp: its slope to the next shows the ramp's end.
+            let count = curve.steps().unsigned_abs();
+            let near = curve.kept_rows().min(count);
+            let far = count.saturating_sub(curve.kept_rows()).max(near + 1);
+            (1..=near).chain(far..count).map(|k| curve.step_s(k)).collect()
+        }
+        Profile::Staircase(curve) => {
+            // The first interval climbs half a step only.
+            let rows = curve.starts_s.iter().skip(1).copied();
+            mirrored([curve.step_s(1)].into_iter().chain(rows), curve.duration_s())
+        }
+        Profile::SineSegments(sine) => quarters(sine),
+        Profile::Constant(_) | Profile::Dwell(_) => Vec::new(),
+    }
+}
+
+fn ramp(curve: &Cosine) -> impl Iterator<Item = f64> {
+    let ramp_s = curve.ramp_s;
+    (1..=RAMP_PARTS).map(move |part| ramp_s * f64::from(part) / f64::from(RAMP_PARTS))
+}
+
+/// These of the first half, the middle, and their mirror images.
+fn mirrored(first_half: impl Iterator<Item = f64>, duration_s: f64) -> Vec<f64> {
+    let mut all: Vec<f64> = first_half.filter(|joint| *joint < duration_s / 2.0).collect();
+    let second_half: Vec<f64> = all.iter().rev().map(|joint| duration_s - joint).collect();
+    all.push(duration_s / 2.0);
+    all.extend(second_half);
+    all
+}
+
+/// The ends of a sine's segments in its first period, the last of them the period's.
+fn quarters(sine: &SineSegments) -> Vec<f64> {
+    let point_s = sine.period_s() / f64::from(POINTS);
+    let quarter = POINTS / 4;
+    (0..4_u16)
+        .flat_map(|index| {
+            let segments = sine.segments();
+            let (base, count) = (index * quarter, segments.len());
+            (0..count).filter_map(move |place| {
+                // Every other quarter goes from the middle to the extreme.
+                let point = if index % 2 == 0 {
+                    segments.get(place)?.to
+                } else {
+                    quarter - segments.get(count - 1 - place)?.from
+                };
+                Some(f64::from(base + point) * point_s)
+            })
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{super::plan_axis, *};
+    use crate::scenario::Axis;
+
+    /// Plans an axis from the JSON of its moves.
+    fn plan(moves: &str) -> AxisPlan {
+        let json = alloc::format!(r#"{{"source":{{"motion":{{"axes":[{{"moves":[{moves}]}}]}}}}}}"#);
+        let scenario = crate::scenario::Scenario::from_json(&json).expect("reads");
+        let crate::scenario::Source::Motion(motion) = &scenario.source else { panic!("a motion") };
+        let axis: &Axis = motion.axes.first().expect("an axis");
+        plan_axis(axis, "axis").expect("plans")
+    }
+
+    const MOVES: &[&str] = &[
+        r#"{"trapezoid":{"distance":{"steps":3000}}}"#,
+        r#"{"trapezoid":{"distance":{"steps":-41},"method":"table"}}"#,
+        r#"{"trapezoid":{"distance":{"steps":2000},"method":"table"}}"#,
+        r#"{"staircase":{"distance":{"steps":3000}}}"#,
+        r#"{"cosine":{"distance":{"steps":3200},"duration_s":0.4,"ramp_s":0.1}}"#,
+        r#"{"constant":{"distance":{"steps":100},"speed":{"steps_s":1000}}}"#,
+        r#"{"dwell":{"duration_s":0.1}},{"sine_segments":{"amplitude":{"steps":500},"period_s":0.2,"periods":3}},{"dwell":{"duration_s":0.05}}"#,
+    ];
+
+    #[test]
+    fn between_two_joints_every_curve_is_smooth() {
+        for moves in MOVES {
+            let plan = plan(moves);
+            let (from, to) = (-0.01, plan.duration_s() + 0.01);
+            let mut covered = 0.0;
+            Joints::of(&plan).pieces(from, to, &mut |piece| {
+                let length = piece.to_s - piece.from_s;
+                covered += length * piece.times;
+                let at = |part: f64| piece.from_s + length * part;
+                // Its speed is straight, or bends as little as a 64th of a cosine's ramp does.
+                let [a, b, c] = [0.001, 0.5, 0.999].map(|part| plan.speed(at(part)));
+                let bend = (b - (a + c) / 2.0).abs();
+                assert!(bend <= 1e-3 * plan.peaks().speed, "{moves}: {piece:?} bends by {bend}");
+                let [a, b, c] = [0.001, 0.5, 0.999].map(|part| plan.acceleration(at(part)));
+                let within = (a.min(c)..=a.max(c)).contains(&b);
+                assert!(within || (b - a).abs() <= 1e-6 * plan.peaks().acceleration, "{moves}: {piece:?}");
+            });
+            assert!((covered - (to - from)).abs() < 1e-9, "{moves}: {covered} of {}", to - from);
+        }
+    }
+
+    #[test]
+    fn whole_periods_are_cut_once_and_stand_for_all() {
+        let plan = plan(MOVES[6]);
+        let joints = Joints::of(&plan);
+        for (from, to, wholes) in [(0.09, 0.71, 3.0), (0.15, 0.71, 2.0), (0.15, 0.6, 1.0), (0.15, 0.4, 1.0)] {
+            let (mut most, mut covered) = (0.0_f64, 0.0);
+            joints.pieces(from, to, &mut |piece| {
+                most = most.max(piece.times);
+                covered += piece.times * (piece.to_s - piece.from_s);
+            });
+            assert_eq!(most, wholes, "{from} to {to}");
+            assert!((covered - (to - from)).abs() < 1e-12, "{from} to {to}: {covered}");
+        }
+    }
+}

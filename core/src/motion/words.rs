@@ -1,0 +1,48 @@
+//! What there is to say of a move, in words: numbers as people write them.
+
+use super::Peaks;
+use alloc::{format, string::String};
+
+/// A whole number with groups of three digits and a true minus, as the page prints them.
+#[must_use]
+pub fn grouped(value: f64) -> String {
+    let digits = format!("{value:.0}");
+    let whole = digits.trim_start_matches('-');
+    let mut text = String::from(if whole.len() < digits.len() { "\u{2212}" } else { "" });
+    for (index, digit) in whole.chars().enumerate() {
+        if index > 0 && (whole.len() - index) % 3 == 0 {
+            text.push('\u{202f}');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// The greatest speed and acceleration of a move.
+pub(super) fn in_words(peaks: Peaks) -> String {
+    format!("peak {} steps/s, {} steps/s\u{b2}", grouped(peaks.speed), grouped(peaks.acceleration))
+}
+
+/// So many of something, with its plural where it is one.
+pub(super) fn count(number: u64, one: &str, several: &str) -> String {
+    format!("{} {}", grouped(number as f64), if number == 1 { one } else { several })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_grouped_by_thousands() {
+        let rows = [
+            (0.0, "0"),
+            (999.4, "999"),
+            (1000.0, "1\u{202f}000"),
+            (-1_234_567.0, "\u{2212}1\u{202f}234\u{202f}567"),
+        ];
+        for (given, expected) in rows {
+            assert_eq!(grouped(given), expected);
+        }
+        assert_eq!((count(1, "row", "rows"), count(0, "row", "rows")), ("1 row".into(), "0 rows".into()));
+    }
+}

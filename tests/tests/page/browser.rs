@@ -1,0 +1,116 @@
+//! The three browser engines: each one's driver, what a session asks of it, and how its console is heard.
+
+use std::{env, ffi::OsString, net::TcpListener, path::Path};
+
+use anyhow::{Context, Result, bail};
+use serde_json::{Map, Value, json};
+use tokio::process::Command;
+
+/// Flags of every Chromium: no window, and no word to any other host.
+const FLAGS: &[&str] = &[
+    "--headless",
+    // The browser ends when the driver does.
+    "--remote-debugging-pipe",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--disable-dev-shm-usage",
+    "--force-device-scale-factor=1",
+    "--window-size=1440,900",
+    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1, EXCLUDE localhost",
+];
+
+/// A browser engine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Browser {
+    /// All tests run here.
+    Chromium,
+    /// Without a window, like Chromium.
+    Firefox,
+    /// WebKitGTK's MiniBrowser, which needs a display.
+    WebKit,
+}
+
+/// How a driver says where it listens.
+pub(crate) enum Says {
+    /// In the line that holds this; the port stands behind it.
+    Port(&'static str),
+    /// Nothing: it was given this port.
+    Nothing(u16),
+}
+
+impl Browser {
+    /// The driver's call, with `temporary` as its folder for what it leaves behind.
+    pub(crate) fn driver(self, temporary: &Path) -> Result<(Command, Says)> {
+        let variable = match self {
+            Self::Chromium => "STEPSCOPE_CHROMEDRIVER",
+            Self::Firefox => "STEPSCOPE_GECKODRIVER",
+            Self::WebKit => "STEPSCOPE_WEBKITDRIVER",
+        };
+        let mut command = Command::new(named(variable)?);
+        command.env("TMPDIR", temporary);
+        let says = match self {
+            Self::Chromium => {
+                command.arg("--port=0");
+                Says::Port("started successfully on port ")
+            }
+            Self::Firefox => {
+                command.args(["--port", "0"]);
+                Says::Port("Listening on 127.0.0.1:")
+            }
+            Self::WebKit => {
+                named("DISPLAY").context("WebKit draws on a display only")?;
+                // It takes no 0 for a free port. The listener ends here and leaves the port to the driver.
+                let port = TcpListener::bind("127.0.0.1:0")?.local_addr()?.port();
+                command.args(["--host=127.0.0.1", &format!("--port={port}")]);
+                Says::Nothing(port)
+            }
+        };
+        Ok((command, says))
+    }
+
+    /// What a new session asks for; Chromium keeps its files in `profile`, the others in folders of their drivers.
+    pub(crate) fn capabilities(self, profile: &Path) -> Result<Map<String, Value>> {
+        let wanted = match self {
+            Self::Chromium => {
+                let mut args: Vec<String> = FLAGS.iter().map(|&flag| flag.to_owned()).collect();
+                args.push(format!("--user-data-dir={}", profile.display()));
+                json!({
+                    "browserName": "chrome",
+                    "goog:loggingPrefs": { "browser": "ALL" },
+                    "goog:chromeOptions": { "binary": Path::new(&named("STEPSCOPE_CHROMIUM")?), "args": args },
+                })
+            }
+            Self::Firefox => json!({
+                "browserName": "firefox",
+                "moz:firefoxOptions": {
+                    "binary": Path::new(&named("STEPSCOPE_FIREFOX")?),
+                    "args": ["-headless"],
+                    "prefs": { "network.dns.disabled": true, "browser.dom.window.dump.enabled": true },
+                },
+            }),
+            // The driver knows its own browser.
+            Self::WebKit => json!({}),
+        };
+        let Value::Object(wanted) = wanted else { bail!("the capabilities are an object") };
+        Ok(wanted)
+    }
+
+    /// Whether a line of the driver's output is an error of a page at this address.
+    pub(crate) fn complains(self, line: &str, page: &str) -> bool {
+        self == Self::Firefox && line.starts_with(&format!("JavaScript error: {page}"))
+    }
+}
+
+/// The value of an environment variable that `cargo xtask test` sets.
+pub(crate) fn named(variable: &str) -> Result<OsString> {
+    env::var_os(variable).with_context(|| {
+        format!(
+            "{variable} is not set; `cargo xtask test --only page --only engines` sets what these tests need"
+        )
+    })
+}

@@ -1,0 +1,98 @@
+//! What a session asks of its browser beyond WebDriver: Chromium by the DevTools protocol, the others as well as they can.
+
+use anyhow::{Result, bail};
+use fantoccini::{error::CmdError, wd::WebDriverCompatibleCommand};
+use http::Method;
+use serde_json::{Value, json};
+use url::{ParseError, Url};
+
+use crate::{browser::Browser, session::Session};
+
+impl Session {
+    /// Size of the window's inside in CSS pixels.
+    pub(crate) async fn screen(&self, width: u32, height: u32) -> Result<()> {
+        if self.bench.browser != Browser::Chromium {
+            return self.window(width, height).await;
+        }
+        let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
+        self.devtools("Emulation.setDeviceMetricsOverride", size).await.map(drop)
+    }
+
+    /// The same where nothing but the window can be sized: its frame is found by a first attempt.
+    async fn window(&self, width: u32, height: u32) -> Result<()> {
+        self.client.set_window_size(width, height).await?;
+        let inside: (u32, u32) = self.eval("[innerWidth, innerHeight]").await?;
+        let frame = (width.saturating_sub(inside.0), height.saturating_sub(inside.1));
+        Ok(self.client.set_window_size(width + frame.0, height + frame.1).await?)
+    }
+
+    /// What the system says it prefers, `light` or `dark`.
+    pub(crate) async fn system_colours(&self, scheme: &str) -> Result<()> {
+        let features = json!({ "features": [{ "name": "prefers-color-scheme", "value": scheme }] });
+        self.devtools("Emulation.setEmulatedMedia", features).await.map(drop)
+    }
+
+    /// A script that runs in every document to come, before the document's own.
+    pub(crate) async fn before_scripts(&self, source: &str) -> Result<()> {
+        self.devtools("Page.addScriptToEvaluateOnNewDocument", json!({ "source": source })).await.map(drop)
+    }
+
+    /// A command of the Chrome DevTools protocol.
+    pub(crate) async fn devtools(&self, method: &str, parameters: Value) -> Result<Value> {
+        let body = json!({ "cmd": method, "params": parameters });
+        Ok(self.chrome("goog/cdp/execute", body).await?)
+    }
+
+    /// Errors in the browser's console: exceptions, refused loads, breaches of the content security policy.
+    /// Chromium tells all of them, Firefox the exceptions; WebKit, and the others' refused loads, from when the page
+    /// has loaded.
+    pub(crate) async fn complaints(&self) -> Result<Vec<String>> {
+        if self.bench.browser != Browser::Chromium {
+            let mut heard: Vec<String> = self.eval("window.heard ?? []").await?;
+            heard.extend(self.bench.heard());
+            return Ok(heard);
+        }
+        let entries = self.chrome("se/log", json!({ "type": "browser" })).await?;
+        let Value::Array(entries) = entries else { bail!("the console gave {entries}") };
+        let severe = entries.iter().filter(|entry| entry["level"] == "SEVERE");
+        Ok(severe.map(|entry| entry["message"].to_string()).collect())
+    }
+
+    /// Collects the errors of the page that was loaded where the browser does not tell them.
+    pub(crate) async fn listen(&self) -> Result<()> {
+        if self.bench.browser == Browser::Chromium {
+            Ok(())
+        } else {
+            self.js::<bool>(LISTEN, Vec::new()).await.map(drop)
+        }
+    }
+
+    async fn chrome(&self, place: &'static str, body: Value) -> Result<Value, CmdError> {
+        self.client.issue_cmd(ChromeCommand { place, body }).await
+    }
+}
+
+const LISTEN: &str = "
+    window.heard = [];
+    const say = (text) => window.heard.push(String(text));
+    addEventListener('error', (event) => say(event.message ?? event.target?.src));
+    addEventListener('unhandledrejection', (event) => say(event.reason));
+    document.addEventListener('securitypolicyviolation', (event) => say(`${event.violatedDirective}: ${event.blockedURI}`));
+    return true;";
+
+/// A command that only chromedriver knows.
+#[derive(Debug)]
+struct ChromeCommand {
+    place: &'static str,
+    body: Value,
+}
+
+impl WebDriverCompatibleCommand for ChromeCommand {
+    fn endpoint(&self, base: &Url, session: Option<&str>) -> Result<Url, ParseError> {
+        base.join(&format!("session/{}/{}", session.unwrap_or_default(), self.place))
+    }
+
+    fn method_and_body(&self, _: &Url) -> (Method, Option<String>) {
+        (Method::POST, Some(self.body.to_string()))
+    }
+}

@@ -1,0 +1,128 @@
+//! The page's main job and the golden digests, in every engine: `cargo xtask test --only engines`.
+
+use anyhow::{Context, Result, ensure};
+use serde_json::json;
+use stepscope_core::scenario::presets::PRESETS;
+use stepscope_tests::golden::CASES;
+
+use crate::{
+    bench::in_engine,
+    browser::Browser,
+    native::{Known, with_distance},
+    session::Session,
+};
+
+const DISTANCE: &str = "source.motion.axes[0].moves[0].cosine.distance";
+
+/// What a visitor does with the page, from its loading to the link that another visitor opens.
+async fn main_job(page: Session) -> Result<()> {
+    let (default, typed) = (Known::of("{}")?, Known::of(&with_distance(1200.0))?);
+    page.open("").await?;
+    page.until_digest(&default.digest).await?;
+    page.canvas("chart-position").await?.has_curve("--ideal")?;
+
+    page.fill(DISTANCE, "1.2k").await?;
+    page.until_digest(&typed.digest).await?;
+    page.click("#undo").await?;
+    page.until_digest(&default.digest).await?;
+    page.click("#redo").await?;
+    page.until_digest(&typed.digest).await?;
+
+    // Zoom, a cursor on the next edge, a packet.
+    let shown = "document.getElementById('window-start').value";
+    page.click("#zoom-in").await?;
+    page.until(&format!("{shown} !== '0 s'")).await?;
+    page.click("#zoom-fit").await?;
+    page.until(&format!("{shown} === '0 s'")).await?;
+    page.press("#pulses", "n").await?;
+    page.until("document.getElementById('cursor-readings').textContent.includes('A')").await?;
+    page.click("#packet-3 td").await?;
+    page.until("document.querySelector('#packet-3').ariaSelected === 'true'").await?;
+    page.until(&format!("{shown} !== '0 s'")).await?;
+    ensure!(page.pulses().await?.ink("--step").pixels > 200, "the pulses are drawn");
+    page.click("#zoom-fit").await?;
+
+    // Where the clipboard is refused the page offers the link to be copied by hand.
+    page.click("#share").await?;
+    page.until("!document.getElementById('copy-link').disabled").await?;
+    page.click("#copy-link").await?;
+    page.until(
+        "document.getElementById('copy-link').textContent === 'Copied' || \
+         document.getElementById('link-about').textContent.includes('The link is selected')",
+    )
+    .await?;
+    page.until_equal("location.hash", &json!(format!("#{}", typed.link))).await?;
+    let form = page.form().await?;
+
+    let stranger = page.next_visitor().await?;
+    stranger.open(&format!("#{}", typed.link)).await?;
+    stranger.until_digest(&typed.digest).await?;
+    assert_eq!(stranger.form().await?, form);
+
+    for preset in PRESETS {
+        let known = Known::preset(preset)?;
+        stranger.choose("#preset", preset.id).await?;
+        stranger.until_digest(&known.digest).await.with_context(|| preset.id)?;
+    }
+    Ok(())
+}
+
+/// A second engine, as the page makes it, in a worker of its own.
+const ENGINE: &str = "
+    return import(new URL('engine/engine.js', document.baseURI)).then(({ Engine }) => {
+        let end;
+        const engine = new Engine({
+            progress() {}, done: (_, summary) => end(summary.controllers.map(({ digest }) => digest).join('\\n')),
+            failed: (_, message) => end(message), crashed: (message) => end(message),
+        });
+        let number = 0;
+        window.digests = (json) => new Promise((resolve) => { end = resolve; engine.run(number++, json); });
+        return true;
+    });";
+
+/// Every golden case gives its digests in the page's own engine.
+async fn golden(page: Session) -> Result<()> {
+    page.open("").await?;
+    page.js::<bool>(ENGINE, vec![]).await?;
+    let mut wrong = Vec::new();
+    for case in CASES {
+        let json = case.json().map_err(anyhow::Error::msg)?;
+        let found: String = page.js("return digests(arguments[0]);", vec![json!(json)]).await?;
+        let wanted = case.file("digest").context(case.name)?.trim();
+        if found != wanted {
+            wrong.push(format!("{}: {found}, wanted {wanted}", case.name));
+        }
+    }
+    ensure!(wrong.is_empty(), "{}", wrong.join("\n"));
+    Ok(())
+}
+
+#[test]
+fn chromium_does_the_main_job() -> Result<()> {
+    in_engine(Browser::Chromium, main_job)
+}
+
+#[test]
+fn firefox_does_the_main_job() -> Result<()> {
+    in_engine(Browser::Firefox, main_job)
+}
+
+#[test]
+fn webkit_does_the_main_job() -> Result<()> {
+    in_engine(Browser::WebKit, main_job)
+}
+
+#[test]
+fn chromium_gives_the_golden_digests() -> Result<()> {
+    in_engine(Browser::Chromium, golden)
+}
+
+#[test]
+fn firefox_gives_the_golden_digests() -> Result<()> {
+    in_engine(Browser::Firefox, golden)
+}
+
+#[test]
+fn webkit_gives_the_golden_digests() -> Result<()> {
+    in_engine(Browser::WebKit, golden)
+}

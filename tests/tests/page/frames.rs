@@ -1,0 +1,197 @@
+//! The logic view's picture against every record of the trace, also after it was dragged about; and, asked for
+//! with `--ignored`, the time of its frames over ten million edges.
+
+use anyhow::{Result, ensure};
+use serde::Deserialize;
+use serde_json::{Value, json};
+use stepscope_core::trace::columns;
+
+use crate::{
+    bench::in_browser,
+    native::Known,
+    session::{ENTER, Session},
+};
+
+/// Height of a row, and of a signal in it, in pixels.
+const ROW_PX: usize = 19;
+/// Width of the labels' column and of the free space at the right.
+const BESIDE_PX: usize = 68 + 26;
+/// Rows of one unfolded channel on a raw line, and the bits of those that are signals but EN, which is the chosen one.
+const ROWS: &[(usize, u32, &str)] = &[(1, 33, "RX"), (7, 16, "DIR 0"), (8, 0, "STEP 0")];
+
+/// A dense train of steps on a line on which one cycle is pulled low while it rests.
+const GLITCHED: &str = r#"{"line":{"glitches":[{"start_cycle":1000000,"length_cycles":1,"level":0}]},
+    "source":{"motion":{"axes":[{"moves":[{"constant":{"distance":{"steps":2000},"speed":{"steps_s":20000}}},
+    {"dwell":{"duration_s":0.02}},{"constant":{"distance":{"steps":-1},"speed":{"steps_s":100}}}]}]}}}"#;
+
+/// Where there is ink at the top, in the middle and at the bottom of one row, a character a pixel column.
+#[derive(Deserialize)]
+struct Row {
+    top: String,
+    middle: String,
+    bottom: String,
+}
+
+const READ: &str = "
+    const [row, height, beside] = arguments;
+    const canvas = document.getElementById('pulses');
+    const line = (y) => {
+        const { data } = canvas.getContext('2d').getImageData(68, y, canvas.width - beside, 1);
+        return Array.from({ length: canvas.width - beside }, (_, x) => data[4 * x + 3] > 100 ? '#' : '.').join('');
+    };
+    const top = row * height + 4;
+    return { top: line(top), middle: line(top + 6), bottom: line(top + 12) };";
+
+/// What the row must look like by the levels of its columns: a bar where it was high and low, a line where it was
+/// one of them, and an edge in the first column of another level.
+fn expected(known: &Known, bit: u32, window: (u64, u64), count: usize) -> Row {
+    let found = columns(&known.recording.trace, window.0, window.1, count);
+    let level = |words: &[u64], i: usize| words[i] >> bit & 1 == 1;
+    let mut row = Row { top: String::new(), middle: String::new(), bottom: String::new() };
+    for i in 0..count {
+        let (high, low) = (level(&found.high, i), level(&found.low, i));
+        let before = i.checked_sub(1).map(|i| (level(&found.high, i), level(&found.low, i)));
+        let edge = high && low || before.is_some_and(|before| before == (low, high) && high != low);
+        let ink = |drawn: bool| if drawn { '#' } else { '.' };
+        row.top.push(ink(high || edge));
+        row.middle.push(ink(edge));
+        row.bottom.push(ink(low || edge));
+    }
+    row
+}
+
+/// Types the shown time in s and waits until the picture stands.
+async fn show(page: &Session, from: &str, to: &str) -> Result<()> {
+    page.click("#zoom-fit").await?;
+    for (field, text) in [("#window-end", to), ("#window-start", from)] {
+        page.press(field, &format!("{}a{}{text}{ENTER}", '\u{e009}', '\u{e000}')).await?;
+    }
+    page.js::<Value>("document.activeElement.blur(); return null;", vec![]).await.map(drop)
+}
+
+async fn is_brute_force(page: &Session, known: &Known, window: (u64, u64)) -> Result<()> {
+    let count: usize = page.eval(&format!("document.getElementById('pulses').width - {BESIDE_PX}")).await?;
+    for &(place, bit, name) in ROWS {
+        let wanted = expected(known, bit, window, count);
+        page.eventually(&format!("{name} of {window:?} as {}", wanted.middle), async || {
+            let row: Row = page.js(READ, vec![json!(place), json!(ROW_PX), json!(BESIDE_PX)]).await?;
+            let same = row.top == wanted.top && row.middle == wanted.middle && row.bottom == wanted.bottom;
+            Ok(same.then_some(()))
+        })
+        .await?;
+    }
+    Ok(())
+}
+
+#[test]
+fn the_picture_is_that_of_every_record_dense_or_lone() -> Result<()> {
+    in_browser(|page| async move {
+        let known = Known::of(GLITCHED)?;
+        page.open(&format!("#{}", known.link)).await?;
+        page.until_digest(&known.digest).await?;
+        page.choose("#edge-row", "32").await?;
+        let last = known.recording.trace.last().map_or(0, |record| record.cycle.0);
+        let hz = u64::from(known.scenario.clock_hz);
+        // A glitch of one cycle in a column of many thousand, and trains that fill theirs.
+        let whole = expected(&known, 33, (0, last), 1000).middle;
+        ensure!(whole.contains(".#."), "a lone glitch: {whole}");
+        ensure!(expected(&known, 0, (0, last), 1000).middle.contains(&"#".repeat(100)), "a dense train");
+
+        let rows = [
+            ("0.01", "0.1", (hz / 100, hz / 10)),
+            ("0.0624", "0.0626", (hz * 624 / 10_000, hz * 626 / 10_000)),
+            ("0.062499", "0.062501", (hz / 1_000_000 * 62_499, hz / 1_000_000 * 62_501)),
+            ("0.02", "0.03", (hz / 50, hz * 3 / 100)),
+        ];
+        for (from, to, window) in rows {
+            show(&page, from, to).await?;
+            is_brute_force(&page, &known, window).await?;
+        }
+        // Dragged about, and back to the same place.
+        let moved: bool = page
+            .js(
+                "const canvas = document.getElementById('pulses');
+                 for (let i = 0; i < 60; i++) canvas.dispatchEvent(new WheelEvent('wheel', { deltaX: i % 3 ? 40 : -80, deltaY: 0, cancelable: true,
+                   clientX: canvas.getBoundingClientRect().left + 400 }));
+                 return true;",
+                vec![],
+            )
+            .await?;
+        ensure!(moved);
+        is_brute_force(&page, &known, (hz / 50, hz * 3 / 100)).await
+    })
+}
+
+#[test]
+#[ignore = "takes a minute and prints times; run it by its name"]
+fn frames_over_ten_million_edges() -> Result<()> {
+    in_browser(|page| async move {
+        let axes: Vec<Value> = (0..16)
+            .map(|axis| {
+                let speed = 90_000 - 700 * axis;
+                json!({"moves":[{"constant":{"distance":{"steps":4 * speed},"speed":{"steps_s":speed}}}]})
+            })
+            .collect();
+        let scenario = json!({"clock_hz":100_000_000,"bus":{"channels":16,"slots":100,"step_period_cycles":1000,
+            "pulse_width_cycles":20,"pulses":"staggered","settle_cycles":60},
+            "line":{"baud":4_000_000},"source":{"motion":{"axes":axes}}});
+        let known = Known::of(&scenario.to_string())?;
+        page.open(&format!("#{}", known.link)).await?;
+        page.click("#run-anyway").await?;
+        page.until_digest(&known.digest).await?;
+        println!("{} records", known.recording.trace.len());
+        for view in ["all views", "pulses alone"] {
+            if view == "pulses alone" {
+                page.js::<Value>(
+                    "document.getElementById('view-motion').hidden = true; return null;",
+                    vec![],
+                )
+                .await?;
+            }
+            for (what, zoom) in [("zoom", 0), ("pan", 3), ("pan", 12)] {
+                page.click("#zoom-fit").await?;
+                page.js::<Value>(WHEEL, vec![json!(zoom)]).await?;
+                page.js::<Value>(FRAMES, vec![json!(what)]).await?;
+                let mut times: Vec<f64> = page
+                    .eventually("180 frames", async || {
+                        page.eval::<Option<Vec<f64>>>("window.frameTimes ?? null").await
+                    })
+                    .await?;
+                times.sort_by(f64::total_cmp);
+                let at = |part: f64| times[((times.len() - 1) as f64 * part) as usize];
+                println!(
+                    "{view}, {what} at {zoom}: p50 {:.1} ms, p95 {:.1} ms, longest {:.1} ms",
+                    at(0.5),
+                    at(0.95),
+                    at(1.0)
+                );
+            }
+        }
+        Ok(())
+    })
+}
+
+const WHEEL: &str = "
+    const canvas = document.getElementById('pulses');
+    const { left, width } = canvas.getBoundingClientRect();
+    for (let i = 0; i < arguments[0]; i++) canvas.dispatchEvent(new WheelEvent('wheel', { deltaY: -300, cancelable: true, clientX: left + width / 2 }));
+    return null;";
+
+/// Moves by a wheel's step a frame and keeps the times between frames.
+const FRAMES: &str = "
+    const [what] = arguments;
+    const canvas = document.getElementById('pulses');
+    const { left, width } = canvas.getBoundingClientRect();
+    const times = [];
+    let last = null;
+    delete window.frameTimes;
+    const next = (now) => {
+        if (last !== null) times.push(now - last);
+        last = now;
+        if (times.length === 180) { window.frameTimes = times; return; }
+        const there = times.length % 120 < 60 ? 1 : -1;
+        canvas.dispatchEvent(new WheelEvent('wheel', { deltaX: what === 'pan' ? 25 * there : 0, deltaY: what === 'pan' ? 0 : -60 * there, cancelable: true, clientX: left + width * 0.6 }));
+        requestAnimationFrame(next);
+    };
+    requestAnimationFrame(next);
+    return null;";

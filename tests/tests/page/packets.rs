@@ -1,0 +1,324 @@
+//! The packets: search, filters, the inspector against the core's own reading, and what lights what.
+
+use anyhow::{Context, Result, ensure};
+use serde_json::{Value, json};
+use stepscope_core::{
+    protocol::FrameFate,
+    scenario::{Protocol, presets::PRESETS},
+    trace::{Meaning, Reading, Verdict},
+};
+
+use crate::{
+    bench::in_browser,
+    native::Known,
+    session::{CONTROL, ENTER, RELEASE, Session},
+};
+
+/// A preset by its name, natively.
+fn preset(id: &str) -> Result<Known> {
+    Known::preset(PRESETS.iter().find(|preset| preset.id == id).with_context(|| id.to_owned())?)
+}
+
+/// Opens a preset and waits for its run.
+async fn open(page: &Session, known: &Known) -> Result<()> {
+    page.open(&format!("#{}", known.link)).await?;
+    page.until_digest(&known.digest).await
+}
+
+/// The core's reading of a row.
+fn meaning(known: &Known, index: usize) -> Meaning {
+    let config = known.experiment.config();
+    let channels = |address| {
+        let named = known.experiment.configs().find(|config| config.address() == Some(address));
+        named.unwrap_or(config).channels()
+    };
+    let log = &known.recording.packets;
+    Reading { protocol: config.protocol(), addressed: config.packet_address().is_some(), channels: &channels }
+        .of(log.bytes(index), log.rows()[index].verdict)
+}
+
+/// Types into the search, in place of what stands there.
+async fn search(page: &Session, text: &str) -> Result<()> {
+    page.press("#packets-search", &format!("{CONTROL}a{RELEASE}{text}")).await
+}
+
+/// Numbers of the rows in the document.
+const ROWS: &str =
+    "[...document.querySelectorAll('#packets tbody tr')].map((row) => Number(row.dataset.index))";
+const CURRENT: &str = "Number(document.querySelector('#packets tr.current')?.dataset.index ?? -1)";
+const FOUND: &str = "document.getElementById('packets-found').textContent";
+const COUNT: &str = "document.getElementById('packets-count').textContent";
+const LIT: &str =
+    "[...document.querySelectorAll('#packet-bytes > .lit')].map((cell) => Number(cell.id.slice(5)))";
+
+#[test]
+fn a_search_goes_from_match_to_match_and_a_filter_leaves_the_others_out() -> Result<()> {
+    let known = preset("framed-noisy-line")?;
+    in_browser(move |page| async move {
+        open(&page, &known).await?;
+        let log = &known.recording.packets;
+        let with = |wanted: &dyn Fn(usize) -> bool| {
+            (0..log.rows().len()).filter(|&row| wanted(row)).collect::<Vec<_>>()
+        };
+        let bad = with(&|row| matches!(log.rows()[row].verdict, Verdict::Frame(FrameFate::BadCheck { .. })));
+        ensure!(bad.len() > 2, "the noise breaks frames");
+        let all = log.rows().len();
+
+        // Words: the first match, the next ones, and round again.
+        search(&page, "crc").await?;
+        for (rank, row) in bad.iter().enumerate().chain([(0, &bad[0])]) {
+            page.until_equal(FOUND, &json!(format!("{} of {}", rank + 1, bad.len()))).await?;
+            page.until_equal(CURRENT, &json!(row)).await?;
+            page.press("#packets-search", &ENTER.to_string()).await?;
+        }
+        page.until_equal(COUNT, &json!(format!("{all} on the line"))).await?;
+
+        // Only the matches are left, and go away with the filter.
+        page.click("#packets-filters").await?;
+        page.click("#packets-only").await?;
+        page.until_equal(COUNT, &json!(format!("{} of {all} on the line", bad.len()))).await?;
+        page.press("#packets", "\u{e011}").await?;
+        page.until_equal(&format!("({ROWS})[0]"), &json!(bad[0])).await?;
+        let shown: Vec<usize> = page.eval(ROWS).await?;
+        ensure!(shown.iter().zip(&bad).all(|(a, b)| a == b), "{shown:?}, wanted {bad:?}");
+
+        // The bytes of a frame, without spaces, are on all of its repetitions.
+        let bytes = log.bytes(2);
+        let hex: String = bytes.iter().take(8).map(|byte| format!("{byte:02x}")).collect();
+        let same = with(&|row| log.bytes(row).windows(8).any(|part| part == &bytes[..8]));
+        search(&page, &hex).await?;
+        page.until_equal(COUNT, &json!(format!("{} of {all} on the line", same.len()))).await?;
+        // What is no hex is said, and not silently found nowhere.
+        search(&page, "0x8z").await?;
+        page.until("document.getElementById('packets-note').textContent.includes('is no hex')").await?;
+        page.until("document.getElementById('packets-empty').textContent.startsWith('No row matches.')")
+            .await?;
+        page.click("#packets-unmatched").await?;
+        page.until_equal(COUNT, &json!(format!("{all} on the line"))).await?;
+
+        // Outcome, and kind with outcome.
+        page.choose("#packets-by-outcome", "repeated").await?;
+        let repeated = with(&|row| log.rows()[row].verdict == Verdict::Frame(FrameFate::Repeated));
+        page.until_equal(COUNT, &json!(format!("{} of {all} on the line", repeated.len()))).await?;
+        page.choose("#packets-by-kind", "reply").await?;
+        page.until_equal(COUNT, &json!(format!("0 of {all} on the line"))).await?;
+        page.choose("#packets-by-outcome", "good").await?;
+        let replies =
+            with(&|row| matches!(log.rows()[row].verdict, Verdict::Reply(reply) if reply.answer.is_ok()));
+        page.until_equal(COUNT, &json!(format!("{} of {all} on the line", replies.len()))).await?;
+        page.picture("packets-filtered").await
+    })
+}
+
+#[test]
+fn an_address_leaves_the_packets_of_the_others_out() -> Result<()> {
+    let known = preset("patent-2019-addressed")?;
+    in_browser(move |page| async move {
+        open(&page, &known).await?;
+        let log = &known.recording.packets;
+        let foreign = (0..log.rows().len()).filter(|&row| log.bytes(row)[0] == 8).count();
+        ensure!(foreign > 0);
+        page.click("#packets-filters").await?;
+        page.choose("#packets-by-address", "8").await?;
+        page.until_equal(COUNT, &json!(format!("{foreign} of {} on the line", log.rows().len()))).await
+    })
+}
+
+/// Goes through the rows and holds the inspector against the core.
+async fn inspected(page: &Session, known: &Known, rows: usize) -> Result<()> {
+    let log = &known.recording.packets;
+    for index in 0..rows {
+        search(page, &format!("#{index}")).await?;
+        page.until(&format!("document.getElementById('packet-detail').textContent.startsWith('#{index} ')"))
+            .await?;
+        let bytes: Vec<String> = page
+            .eval("[...document.querySelectorAll('#packet-bytes > *')].map((cell) => cell.textContent)")
+            .await?;
+        let expected: Vec<String> = log.bytes(index).iter().map(|byte| format!("{byte:02x}")).collect();
+        assert_eq!(bytes, expected, "row {index}");
+        let told: Vec<String> = page
+            .eval("[...document.querySelectorAll('#packet-fields > *')].map((cell) => cell.textContent)")
+            .await?;
+        let fields = meaning(known, index).fields;
+        let expected: Vec<String> = fields
+            .iter()
+            .map(|field| {
+                let (first, last) = (field.bytes.start, field.bytes.end - 1);
+                let range = if first == last { first.to_string() } else { format!("{first}\u{2013}{last}") };
+                format!("{} {} [{range}]", field.name, field.value)
+            })
+            .collect();
+        assert_eq!(told, expected, "row {index}");
+    }
+    Ok(())
+}
+
+#[test]
+fn the_inspector_reads_frames_and_replies_as_the_core_does() -> Result<()> {
+    let known = preset("framed-link")?;
+    in_browser(move |page| async move {
+        assert_eq!(known.experiment.config().protocol(), Protocol::Framed);
+        open(&page, &known).await?;
+        inspected(&page, &known, 4).await?;
+        let facts = page.text("#packet-facts").await?;
+        ensure!(
+            facts.contains("turnaround") && facts.contains("of #2") && facts.contains("holds"),
+            "{facts}"
+        );
+        Ok(())
+    })
+}
+
+#[test]
+fn the_inspector_reads_raw_packets_as_the_core_does() -> Result<()> {
+    let known = preset("patent-2019-addressed")?;
+    in_browser(move |page| async move {
+        open(&page, &known).await?;
+        inspected(&page, &known, known.recording.packets.rows().len()).await?;
+        let facts = page.text("#packet-facts").await?;
+        ensure!(facts.contains("raw packets carry none"), "{facts}");
+        Ok(())
+    })
+}
+
+#[test]
+fn a_field_lights_its_bytes_and_its_place_on_the_wave_and_the_wave_lights_the_byte() -> Result<()> {
+    let known = preset("framed-link")?;
+    in_browser(move |page| async move {
+        open(&page, &known).await?;
+        // The packet alone in the window.
+        page.click("#packet-2 td").await?;
+        page.until("document.getElementById('packet-detail').textContent.startsWith('#2 ')").await?;
+        let fields = meaning(&known, 2).fields;
+        let check = fields.iter().position(|field| field.name == "check").context("a check")?;
+        page.press("#packet-fields", "\u{e010}\u{e012}").await?;
+        let bytes: Vec<usize> = fields[check].bytes.clone().collect();
+        page.until_equal(LIT, &json!(bytes)).await?;
+        page.until(&format!(
+            "document.getElementById('packet-fields').getAttribute('aria-activedescendant') === 'field-{check}'"
+        ))
+        .await?;
+        let reading = page.text("#packet-reading").await?;
+        ensure!(reading.starts_with(&format!("bytes {} to {}", bytes[0], bytes[3])), "{reading}");
+        // The same mark lies over the pulses.
+        let marked = "(() => { const canvas = document.getElementById('pulses-cursor'); const { data } = canvas.getContext('2d')
+            .getImageData(0, 0, canvas.width, canvas.height); return data.some((value) => value !== 0); })()";
+        page.until(marked).await?;
+        page.press("#packet-fields", "\u{e00c}").await?;
+        page.until_equal(LIT, &json!([])).await?;
+        page.until(&format!("!({marked})")).await?;
+        // A row lights its stretch, too; it is marked itself.
+        let over = "document.querySelector('#packet-2').dispatchEvent(new PointerEvent('pointerover', { bubbles: true }));";
+        page.js::<Value>(over, Vec::new()).await?;
+        page.until("document.querySelector('#packet-2').classList.contains('lit')").await?;
+        page.until(marked).await
+    })
+}
+
+#[test]
+fn bytes_are_copied_as_hex_and_selected_where_the_browser_refuses() -> Result<()> {
+    let known = preset("framed-link")?;
+    in_browser(move |page| async move {
+        let clipboard = "globalThis.copied = []; globalThis.refuses = false;
+            Object.defineProperty(navigator, 'clipboard', { value: { writeText: async (text) => {
+                if (globalThis.refuses) throw new Error('refused');
+                globalThis.copied.push(text); } } });";
+        page.before_scripts(clipboard).await?;
+        open(&page, &known).await?;
+        let log = &known.recording.packets;
+        let hex = |row: usize| {
+            log.bytes(row).iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().join(" ")
+        };
+        page.press("#packets", "\u{e015}c").await?;
+        page.until_equal("globalThis.copied", &json!([hex(1)])).await?;
+        page.press("#packets-copy-all", &ENTER.to_string()).await?;
+        let all: String = (0..log.rows().len()).map(|row| hex(row) + "\n").collect();
+        page.until_equal("globalThis.copied.at(-1)", &json!(all)).await?;
+        page.js::<Value>("globalThis.refuses = true;", Vec::new()).await?;
+        page.press("#packets", "c").await?;
+        page.until("document.activeElement.id === 'packets-copied-text'").await?;
+        page.until_equal(
+            "getSelection().toString() || document.getElementById('packets-copied-text').value",
+            &json!(hex(1)),
+        )
+        .await
+    })
+}
+
+#[test]
+fn files_hold_all_rows_those_on_show_or_those_between_the_cursors() -> Result<()> {
+    let known = preset("framed-noisy-line")?;
+    in_browser(move |page| async move {
+        open(&page, &known).await?;
+        let log = &known.recording.packets;
+        let made = "const { packetFiles } = await import('./views/packets/files.js');
+            const { Engine } = await import('./engine/engine.js');
+            const engine = new Engine({ progress() {}, failed() {}, crashed() {}, done: () => ready() });
+            let ready; const ran = new Promise((resolve) => { ready = resolve; });
+            engine.run(0, arguments[0]); await ran;
+            const filter = { text: '', kind: '', address: null, outcome: 'bad', only: false };
+            await engine.ask('filter', '', '', null, 'bad', false);
+            const state = { result: {}, filter, cursors: { a: arguments[2], b: arguments[1] } };
+            const files = {};
+            for (const { name, make } of packetFiles(state, engine)) {
+                const bytes = new Uint8Array(await new Blob(await make()).arrayBuffer());
+                files[name] = name.endsWith('bin') ? bytes.length : new TextDecoder().decode(bytes).trimEnd().split('\\n').length;
+            }
+            return files;";
+        let (a, b) = (log.rows()[5].start.0, log.rows()[9].start.0);
+        let script = format!("return (async () => {{ {} }})()", made.replace("arguments", "given"));
+        let script = format!("const given = arguments; {script}");
+        let files: Value =
+            page.js(&script, vec![json!(known.scenario.to_json()), json!(a), json!(b)]).await?;
+        let bytes: usize = (0..log.rows().len()).map(|row| log.bytes(row).len()).sum();
+        let all = log.rows().len();
+        assert_eq!(
+            (&files["stepscope-packets.csv"], &files["stepscope-packets.txt"]),
+            (&json!(all + 1), &json!(all))
+        );
+        assert_eq!(files["stepscope-packets.bin"], json!(bytes));
+        let between = files["stepscope-packets-a-b.csv"].as_u64().context("a table")?;
+        ensure!((6..=7).contains(&between), "rows 5 to 9 and the head, and one that ends there: {between}");
+        page.click("#packets-filters").await?;
+        page.choose("#packets-by-outcome", "bad").await?;
+        let shown = files["stepscope-packets-shown.txt"].as_u64().context("lines")?;
+        page.until_equal(COUNT, &json!(format!("{shown} of {all} on the line"))).await?;
+        Ok(())
+    })
+}
+
+#[test]
+fn a_table_without_rows_says_why() -> Result<()> {
+    let known = preset("sonobe-2011-segments")?;
+    in_browser(move |page| async move {
+        open(&page, &known).await?;
+        page.until("document.getElementById('packets-empty').checkVisibility()").await?;
+        let said = page.text("#packets-empty").await?;
+        assert_eq!(said, "Segments come from the controller itself: nothing is on the line.");
+        ensure!(!page.visible("#packet-inspector").await? && !page.visible("#packets-unmatched").await?);
+        Ok(())
+    })
+}
+
+#[test]
+fn little_room_needs_no_scrolling_sideways() -> Result<()> {
+    let known = preset("framed-noisy-line")?;
+    in_browser(move |page| async move {
+        open(&page, &known).await?;
+        for (width, height) in [(1440, 900), (1024, 768), (390, 844)] {
+            page.screen(width, height).await?;
+            if width < 900 {
+                page.click("#tab-packets").await?;
+            }
+            page.until("document.getElementById('packets-scroll').clientHeight > 90").await?;
+            page.until("['packets-scroll', 'packet-inspector'].every((id) => { const box = document.getElementById(id); \
+                return box.scrollWidth <= box.clientWidth; })")
+                .await?;
+            // The outcome is never cut.
+            page.until("[...document.querySelectorAll('#packets td:nth-child(5)')].every((cell) => cell.scrollWidth <= cell.clientWidth)")
+                .await?;
+            page.picture(&format!("packets-{width}")).await?;
+        }
+        Ok(())
+    })
+}

@@ -1,0 +1,419 @@
+//! What helps people: the guide, terms, help, remedies, panes; and what they rely on: a history of 50 steps, every
+//! digit of a number.
+
+use std::collections::BTreeSet;
+
+use anyhow::{Context, Result, ensure};
+use serde::Deserialize;
+use serde_json::{Value, json};
+use stepscope_core::{
+    motion::grouped,
+    run::BUDGET_RECORDS,
+    scenario::{Move, Scenario, Source, presets::PRESETS},
+};
+
+use crate::{
+    bench::in_browser,
+    native::{Known, problems},
+    session::{ENTER, SHIFT, Session, field},
+};
+
+/// See [`ENTER`].
+const ESCAPE: char = '\u{e00c}';
+/// See [`ENTER`].
+const F1: char = '\u{e031}';
+/// See [`ENTER`].
+const RIGHT: char = '\u{e014}';
+
+const FOCUS: &str = "document.activeElement.id";
+
+#[test]
+fn a_new_visitor_is_offered_the_guide_once_and_it_points_at_what_is_there() -> Result<()> {
+    in_browser(|page| async move {
+        for (width, height) in [(1440, 900), (390, 844)] {
+            page.screen(width, height).await?;
+            page.js::<Value>("localStorage.clear(); return null;", vec![]).await.ok();
+            page.open("").await?;
+            page.js::<Value>("localStorage.clear(); return null;", vec![]).await?;
+            page.open("").await?;
+            ensure!(page.visible("#welcome").await?, "the guide is not offered at {width} px");
+            page.click("#welcome-start").await?;
+            let steps: u32 =
+                page.eval("import('./help/guide.js').then((guide) => guide.STEPS.length)").await?;
+            for step in 1..=steps {
+                let said = page.text("#guide h2").await?;
+                ensure!(said.starts_with(&format!("{step} of {steps}")), "step {step}: {said}");
+                assert_eq!(page.eval::<String>(FOCUS).await?, "guide-title", "step {step}");
+                let pointed: Vec<bool> = page
+                    .eval(
+                        "[...document.querySelectorAll('.pointed')].map((node) => node.checkVisibility() && \
+                         node.getBoundingClientRect().top < innerHeight && node.getBoundingClientRect().bottom > 0)",
+                    )
+                    .await?;
+                assert_eq!(pointed, [true], "step {step} at {width} px");
+                if step == 2 {
+                    page.picture(&format!("guide-{width}")).await?;
+                }
+                if step < steps {
+                    page.click("#guide [aria-label=Next]").await?;
+                }
+            }
+            page.press("#guide-title", &format!("{ESCAPE}")).await?;
+            ensure!(!page.visible("#guide").await?, "Escape leaves the guide open");
+            assert_eq!(page.eval::<String>(FOCUS).await?, "guide-start");
+            page.open("").await?;
+            ensure!(!page.visible("#welcome").await?, "the guide is offered twice");
+        }
+        page.js::<Value>("localStorage.clear(); return null;", vec![]).await?;
+        page.screen(1440, 900).await?;
+        page.open("").await?;
+        page.click("#welcome-never").await?;
+        page.open("").await?;
+        ensure!(!page.visible("#welcome").await?, "no is not taken for an answer");
+        Ok(())
+    })
+}
+
+/// All fields that the form's tables know, and all that is said of them.
+const FIELDS: &str = "Promise.all(['./form/fields.js', './form/moves/index.js', './help/terms.js'].map((name) => import(name)))
+    .then(([tables, { MOVES }, { TERMS, VIEWS, DOCUMENTS }]) => {
+        const fields = [];
+        const seek = (value) => {
+            if (typeof value !== 'object' || value === null) return;
+            if ('kind' in value && 'label' in value && 'key' in value) fields.push(value.term ?? value.key);
+            for (const inner of Object.values(value)) seek(inner);
+        };
+        seek({ ...tables }); seek(MOVES);
+        const all = [...Object.values(TERMS), ...Object.values(VIEWS).flatMap(({ terms }) => Object.values(terms))];
+        return { fields, unsaid: fields.filter((id) => !TERMS[id]?.text || !TERMS[id]?.name), names: all.map(({ name }) => name),
+            unknown: all.filter(({ from }) => from && !DOCUMENTS[from]).map(({ name }) => name),
+            moves: Object.fromEntries(Object.entries(MOVES).map(([kind, { fields }]) => [kind, fields.map(({ key }) => key)])) };
+    })";
+
+#[derive(Deserialize)]
+struct Fields {
+    fields: Vec<String>,
+    unsaid: Vec<String>,
+    names: Vec<Option<String>>,
+    unknown: Vec<Option<String>>,
+    moves: std::collections::BTreeMap<String, BTreeSet<String>>,
+}
+
+#[test]
+fn every_field_is_explained_and_names_its_document() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        let found: Fields = page.eval(FIELDS).await?;
+        ensure!(found.fields.len() > 60, "{} fields", found.fields.len());
+        assert_eq!(found.unsaid, [""; 0], "without a term");
+        assert_eq!(found.unknown, [None::<String>; 0], "from a document that is not known");
+        // What stands in the form is what the tables say, for every source and driver.
+        for id in
+            ["driver-timing-broken", "sonobe-2011-segments", "glitches-and-breaks", "two-controllers-raw"]
+        {
+            page.choose("#preset", id).await?;
+            page.ready().await?;
+            let dumb: Vec<String> = page
+                .eval(
+                    "import('./help/terms.js').then(({ TERMS }) => [...document.querySelectorAll('#form .term')]\
+                     .filter((word) => !TERMS[word.dataset.term]?.text).map((word) => word.dataset.term))",
+                )
+                .await?;
+            assert_eq!(dumb, [""; 0], "{id}");
+        }
+        Ok(())
+    })
+}
+
+#[test]
+fn every_kind_of_move_has_a_form_with_all_of_its_fields() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        let found: Fields = page.eval(FIELDS).await?;
+        for kind in Move::KINDS {
+            let json = format!(r#"{{"source":{{"motion":{{"axes":[{{"moves":[{{"{kind}":{{}}}}]}}]}}}}}}"#);
+            let full: Value = serde_json::from_str(&Known::of(&json)?.scenario.to_json())?;
+            let fields = &full["source"]["motion"]["axes"][0]["moves"][0][kind];
+            let fields: BTreeSet<String> = fields.as_object().context("a map")?.keys().cloned().collect();
+            assert_eq!(found.moves.get(*kind), Some(&fields), "{kind}");
+        }
+        assert_eq!(found.moves.len(), Move::KINDS.len());
+        Ok(())
+    })
+}
+
+#[test]
+fn a_word_opens_its_card_by_pointer_and_by_key_and_escape_closes_it() -> Result<()> {
+    const OPEN: &str = "document.getElementById('term-card').matches(':popover-open')";
+    in_browser(|page| async move {
+        page.open("").await?;
+        page.click(".derived [data-term=line_load]").await?;
+        page.until(OPEN).await?;
+        let said = page.text("#term-card").await?;
+        ensure!(said.contains("RU 2704486"), "{said}");
+        page.press(".derived [data-term=line_load]", &format!("{ESCAPE}")).await?;
+        page.until(&format!("!{OPEN}")).await?;
+        page.press(&field("bus.slots"), &format!("{F1}")).await?;
+        page.until(OPEN).await?;
+        let said = page.text("#term-card").await?;
+        ensure!(said.contains("A tick is divided into slots") && said.contains("1 to 127"), "{said}");
+        ensure!(
+            !page.eval::<bool>("document.getElementById('keys').open").await?,
+            "F1 in a field opens the help"
+        );
+        page.press(&field("bus.slots"), &format!("{ESCAPE}")).await?;
+        page.until(&format!("!{OPEN}")).await?;
+        // Every view's heading explains what stands in it.
+        for (view, says) in
+            [("motion", "Ideal"), ("pulses", "Digest"), ("packets", "seq"), ("spectrum", "THD")]
+        {
+            // With the card of the one before still open.
+            page.press(&format!("#title-{view} .term"), &format!("{ENTER}")).await?;
+            page.until(OPEN).await?;
+            let said = page.text("#term-card").await?;
+            ensure!(said.contains(says), "{view}: {said}");
+        }
+        // A second click on the same word closes it.
+        page.click("#title-spectrum .term").await?;
+        page.until(&format!("!{OPEN}")).await?;
+        Ok(())
+    })
+}
+
+#[test]
+fn the_help_lists_every_key_and_the_help_page_every_term_and_document() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        for (at, key) in [("#charts", F1), ("#pulses", '?')] {
+            page.press(at, &key.to_string()).await?;
+            page.until("document.getElementById('keys').open").await?;
+            let unsaid: Vec<String> = page
+                .eval(
+                    "import('./shell/commands.js').then(({ listed }) => listed().flatMap(({ commands }) => commands)\
+                     .filter(({ text }) => ![...document.querySelectorAll('#keys dd')].some((dd) => dd.textContent === text))\
+                     .map(({ text }) => text))",
+                )
+                .await?;
+            assert_eq!(unsaid, [""; 0]);
+            page.click("#keys-close").await?;
+            page.until("!document.getElementById('keys').open").await?;
+        }
+        let names: Vec<String> = page.eval::<Fields>(FIELDS).await?.names.into_iter().flatten().collect();
+        page.load("help.html").await?;
+        page.until("document.querySelectorAll('#terms dt').length > 0").await?;
+        let said: String = page.eval("document.body.textContent").await?;
+        for name in names {
+            ensure!(said.contains(&name), "the help page has no {name}");
+        }
+        let documents: u32 = page.eval("document.querySelectorAll('#documents li').length").await?;
+        ensure!(documents >= 5, "{documents} documents");
+        // The same figure as the core's, grouped as people write it.
+        let budget = grouped(BUDGET_RECORDS as f64).replace('\u{202f}', " ");
+        ensure!(
+            said.contains(&format!("more than {budget} edges")),
+            "the help page does not say {budget} edges"
+        );
+        page.picture("help").await
+    })
+}
+
+#[test]
+fn what_went_wrong_on_purpose_is_told_and_mended_in_one_step() -> Result<()> {
+    let mended: [(&str, &str, fn(&mut Scenario)); 2] = [
+        ("driver-timing-broken", "STEP high", |scenario| {
+            scenario.bus.pulse_width_cycles = 31;
+            scenario.bus.dir_setup_cycles = 11;
+        }),
+        ("raw-noisy-line", "no check", |scenario| {
+            scenario.line.protocol = stepscope_core::scenario::Protocol::Framed;
+        }),
+    ];
+    in_browser(move |page| async move {
+        page.open("").await?;
+        ensure!(!page.visible("#remedy").await?, "a remedy for what is not broken");
+        for (id, says, mend) in mended {
+            let preset = PRESETS.iter().find(|preset| preset.id == id).context("the preset is there")?;
+            let broken = Known::preset(preset)?;
+            let mut scenario = preset.scenario();
+            mend(&mut scenario);
+            page.choose("#preset", id).await?;
+            page.until_digest(&broken.digest).await?;
+            let said = page.text("#remedy").await?;
+            ensure!(said.contains(says), "{id}: {said}");
+            page.click("#remedy button").await?;
+            page.until_digest(&Known::of(&scenario.to_json())?.digest).await.context(id)?;
+            ensure!(!page.visible("#remedy").await?, "{id} is not mended");
+            page.click("#undo").await?;
+            page.until_digest(&broken.digest).await?;
+            ensure!(page.visible("#remedy").await?, "{id} is broken again, and nothing is said");
+        }
+        Ok(())
+    })
+}
+
+#[test]
+fn an_axis_is_copied_to_all_others_in_one_step() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        page.choose("#preset", "framed-link").await?;
+        page.ready().await?;
+        let before = page.form().await?;
+        let preset = PRESETS.iter().find(|preset| preset.id == "framed-link").context("it is there")?;
+        let mut scenario = preset.scenario();
+        if let Source::Motion(motion) = &mut scenario.source {
+            motion.axes = vec![motion.axes[1].clone(); motion.axes.len()];
+        }
+        page.click("[aria-label=\"Copy axis 1 to all others\"]").await?;
+        page.until_digest(&Known::of(&scenario.to_json())?.digest).await?;
+        page.click("#undo").await?;
+        page.until_digest(&Known::preset(preset)?.digest).await?;
+        assert_eq!(page.form().await?, before);
+        Ok(())
+    })
+}
+
+#[test]
+fn fifty_changes_can_be_undone_and_a_typed_number_is_one_of_them() -> Result<()> {
+    const FIELDS: [&str; 2] = ["bus.slots", "bus.queue_depth"];
+    in_browser(|page| async move {
+        page.open("").await?;
+        // Two digits each; a change of the other field ends the one before.
+        for value in 41..=95 {
+            page.fill(FIELDS[value % 2], &value.to_string()).await?;
+        }
+        let undone: u32 = page
+            .eval(
+                "(() => { const undo = document.getElementById('undo'); let steps = 0; \
+                 while (!undo.disabled && steps < 99) { undo.click(); steps += 1; } return steps; })()",
+            )
+            .await?;
+        assert_eq!(undone, 50);
+        // The fifty last are gone: 46 to 95.
+        assert_eq!(page.field(FIELDS[1]).await?.value, "45");
+        assert_eq!(page.field(FIELDS[0]).await?.value, "44");
+        Ok(())
+    })
+}
+
+#[test]
+fn times_of_segments_keep_every_digit() -> Result<()> {
+    const LIST: &str = "source.segments.channels[0].segments";
+    // 2^53 + 1 is no number of JavaScript.
+    const TYPED: &str = "2 9007199254740993 0 right";
+    let json = r#"{"source":{"segments":{"channels":[{"segments":[{"steps":{"count":2,"interval_q16":9007199254740993}}]}]}}}"#;
+    in_browser(move |page| async move {
+        let known = Known::of(json)?;
+        page.open("").await?;
+        page.choose(&field("source#kind"), "segments").await?;
+        page.ready().await?;
+        page.fill(LIST, TYPED).await?;
+        page.until_digest(&known.digest).await?;
+        // Kept on this device, and read again.
+        page.open("").await?;
+        page.until_digest(&known.digest).await?;
+        assert_eq!(page.field(LIST).await?.value, TYPED);
+        page.fill(LIST, "dwell 99999999999999999999").await?;
+        page.ready().await?;
+        let shown = page.field(LIST).await?;
+        ensure!(shown.invalid && shown.error.contains("18446744073709551615"), "{shown:?}");
+        Ok(())
+    })
+}
+
+#[test]
+fn where_segments_run_alone_the_form_asks_for_nothing_of_the_line() -> Result<()> {
+    let has = async |page: &Session, path: &str| {
+        page.eval::<bool>(&format!("document.querySelector('{}') !== null", field(path))).await
+    };
+    in_browser(move |page| async move {
+        page.open("").await?;
+        for (path, there) in [("line.baud", true), ("bus.slots", true), ("bus.pulse_width_cycles", true)] {
+            assert_eq!(has(&page, path).await?, there, "{path}");
+        }
+        page.choose(&field("source.motion.engine"), "segments").await?;
+        page.ready().await?;
+        for (path, there) in [("line.baud", false), ("bus.slots", false), ("bus.pulse_width_cycles", true)] {
+            assert_eq!(has(&page, path).await?, there, "{path}");
+        }
+        assert_eq!(page.derived("On the line").await?, "nothing");
+        Ok(())
+    })
+}
+
+#[test]
+fn hex_that_is_no_bytes_is_told_with_its_place_and_the_remedy() -> Result<()> {
+    const PACKETS: &str = "source.packets.packets";
+    in_browser(|page| async move {
+        page.open("").await?;
+        page.choose(&field("source#kind"), "packets").await?;
+        page.ready().await?;
+        page.fill(PACKETS, "8a\n8g").await?;
+        page.ready().await?;
+        let shown = page.field(PACKETS).await?;
+        let wanted = problems(r#"{"source":{"packets":{"packets":["8a","8g"]}}}"#)[0].cause.to_string();
+        ensure!(wanted.contains("\u{201c}g\u{201d} in byte 1"), "{wanted}");
+        ensure!(shown.invalid && shown.error.contains(&format!("Line 2: {wanted}")), "{shown:?}");
+        Ok(())
+    })
+}
+
+/// Inner size of an element in CSS pixels.
+async fn size(page: &Session, css: &str) -> Result<(f64, f64)> {
+    let script = "const { width, height } = document.querySelector(arguments[0]).getBoundingClientRect(); return [width, height];";
+    page.js(script, vec![json!(css)]).await
+}
+
+#[test]
+fn panes_are_resized_folded_and_maximised_by_keys_and_stay_so() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        let now = async |id: &str| {
+            page.eval::<String>(&format!("document.getElementById('{id}').ariaValueNow")).await
+        };
+        for (edge, pane, across) in [
+            ("edge-form", "#sheet", true),
+            ("edge-motion", "#view-motion", false),
+            ("edge-pulses", "#view-pulses", false),
+            ("edge-packets", "#view-packets", true),
+        ] {
+            let of =
+                async || size(&page, pane).await.map(|(width, height)| if across { width } else { height });
+            let (before, value) = (of().await?, now(edge).await?);
+            page.press(&format!("#{edge}"), &format!("{SHIFT}{RIGHT}")).await?;
+            let after = page
+                .eventually(&format!("{edge} moves"), async || {
+                    let after = of().await?;
+                    Ok((after > before + 20.0).then_some(after))
+                })
+                .await?;
+            ensure!(after < before + 120.0, "{edge}: {before} px became {after} px");
+            ensure!(now(edge).await? != value, "{edge} says {value} as before");
+        }
+        let wide = size(&page, "#sheet").await?.0;
+        page.click("#view-packets .fold").await?;
+        page.until("!document.getElementById('packets').checkVisibility()").await?;
+        page.open("").await?;
+        ensure!((size(&page, "#sheet").await?.0 - wide).abs() < 2.0, "the form's width is not kept");
+        ensure!(!page.visible("#packets").await?, "the folded view is not kept");
+        ensure!(page.visible("#title-packets").await?, "nothing is left of the folded view");
+        page.click("#view-packets .fold").await?;
+        page.until("document.getElementById('packets').checkVisibility()").await?;
+
+        page.press("#edge-form", &format!("{ENTER}")).await?;
+        page.until("!document.getElementById('sheet').checkVisibility()").await?;
+        page.press("#edge-form", &format!("{ENTER}")).await?;
+        page.until("document.getElementById('sheet').checkVisibility()").await?;
+
+        let small = size(&page, "#view-pulses").await?.1;
+        page.press("#pulses", "f").await?;
+        page.until("!document.getElementById('view-motion').checkVisibility()").await?;
+        ensure!(size(&page, "#view-pulses").await?.1 > 2.0 * small, "the view does not take the place");
+        page.pulses().await?;
+        page.press("#pulses", "f").await?;
+        page.until("document.getElementById('view-motion').checkVisibility()").await?;
+        // In a field a letter is a letter.
+        page.press("#window-start", "f").await?;
+        ensure!(page.visible("#view-motion").await?);
+        Ok(())
+    })
+}

@@ -1,0 +1,197 @@
+//! Small screens and large letters: nothing is cut off, nothing lies on something else, all can be hit by a finger.
+
+use anyhow::{Context, Result, ensure};
+use serde_json::json;
+
+use crate::{bench::in_browser, session::Session};
+
+/// Targets smaller than 24 CSS pixels either way (WCAG 2.5.8). Links within a sentence are exempt, and so is what has
+/// a label around it that is large enough.
+const SMALL: &str = "
+    const wanted = 'button, input, select, textarea, summary, a[href], [role=tab], [role=button], canvas[tabindex]';
+    return [...document.querySelectorAll(wanted)].filter((node) => node.checkVisibility({ visibilityProperty: true }) && !node.closest('.unseen, .skip, p a'))
+        .map((node) => [node, (node.closest('label') ?? node).getBoundingClientRect()])
+        .filter(([, box]) => box.width < 23.9 || box.height < 23.9)
+        .map(([node, box]) => `${node.id || node.ariaLabel || node.textContent.trim().slice(0, 30) || node.dataset.path} is ${box.width.toFixed(1)} x ${box.height.toFixed(1)}`);";
+
+/// Texts that a box without a scroll bar cuts off. A table's cell, a choice and what ends in an ellipsis tell the rest otherwise.
+const CUT: &str = "
+    const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+    const found = new Set();
+    for (let text = walker.nextNode(); text; text = walker.nextNode()) {
+        const parent = text.parentElement;
+        if (!text.data.trim() || !parent.checkVisibility({ visibilityProperty: true }) || parent.closest('.unseen, .skip, td, option, noscript, script')) continue;
+        const range = document.createRange();
+        range.selectNodeContents(text);
+        const box = range.getBoundingClientRect();
+        const around = parent.closest('button')?.getBoundingClientRect();
+        if (around && (box.right > around.right + 1 || box.left < around.left - 1)) found.add(`${text.data.trim()} beyond its button`);
+        for (let at = parent; at && at !== document.documentElement; at = at.parentElement) {
+            const style = getComputedStyle(at);
+            if (style.position === 'absolute' && at.parentElement === document.body) break;
+            if (style.textOverflow === 'ellipsis') break;
+            const clip = at.getBoundingClientRect();
+            // What can be scrolled to is not lost.
+            const [x, y] = [style.overflowX, style.overflowY];
+            if (/auto|scroll/.test(x) && /auto|scroll/.test(y)) break;
+            const lost = (/hidden|clip/.test(x) && (box.right > clip.right + 2 || box.left < clip.left - 2))
+                || (/hidden|clip/.test(y) && (box.bottom > clip.bottom + 2 || box.top < clip.top - 2));
+            if (lost) { found.add(`${text.data.trim().slice(0, 40)} in ${at.id || at.className || at.tagName}`); break; }
+        }
+    }
+    return [...found];";
+
+/// Controls and labels that lie on each other.
+const OVERLAPS: &str = "
+    const nodes = [...document.querySelectorAll('button, input, select, textarea, summary, label, h1, h2, legend, .unit, output, .legend, #status')]
+        .filter((node) => node.checkVisibility({ visibilityProperty: true }) && !node.closest('.unseen, .skip, .caption') && !node.querySelector(':scope > .unseen'))
+        .map((node) => [node, node.getBoundingClientRect()]).filter(([, box]) => box.width > 0 && box.height > 0);
+    const clip = (node, box) => {
+        let { left, right, top, bottom } = box;
+        for (let at = node.parentElement; at; at = at.parentElement) {
+            if (getComputedStyle(at).overflow === 'visible') continue;
+            const outer = at.getBoundingClientRect();
+            left = Math.max(left, outer.left); right = Math.min(right, outer.right);
+            top = Math.max(top, outer.top); bottom = Math.min(bottom, outer.bottom);
+        }
+        return { left, right, top, bottom };
+    };
+    const name = (node) => node.id || node.ariaLabel || node.dataset.path || node.textContent.trim().slice(0, 30);
+    const seen = nodes.map(([node, box]) => [node, clip(node, box)]);
+    const found = [];
+    for (const [index, [one, a]] of seen.entries()) for (const [other, b] of seen.slice(index + 1)) {
+        if (one.contains(other) || other.contains(one)) continue;
+        const across = Math.min(a.right, b.right) - Math.max(a.left, b.left);
+        const down = Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top);
+        if (across > 2 && down > 2) found.push(`${name(one)} and ${name(other)} by ${across.toFixed(0)} x ${down.toFixed(0)}`);
+    }
+    return found;";
+
+/// Everything that is wrong with what is on show, each with the place where it was seen.
+async fn look(page: &Session, place: &str, wrong: &mut Vec<String>) -> Result<()> {
+    for (rule, script) in [("small", SMALL), ("cut off", CUT), ("overlap", OVERLAPS)] {
+        let found: Vec<String> = page.js(script, vec![]).await.with_context(|| rule.to_owned())?;
+        wrong.extend(found.into_iter().map(|text| format!("{place}, {rule}: {text}")));
+    }
+    let (content, window): (u32, u32) =
+        page.eval("[document.documentElement.scrollWidth, innerWidth]").await?;
+    if content > window {
+        wrong.push(format!("{place}: {content} px wide in a window of {window} px"));
+    }
+    Ok(())
+}
+
+/// Looks at the whole page: on a narrow screen at every tab, and at the form.
+async fn everywhere(page: &Session, what: &str, wrong: &mut Vec<String>) -> Result<()> {
+    let tabs: Vec<String> = page
+        .eval("[...document.querySelectorAll('[role=tab]')].filter((tab) => tab.checkVisibility()).map((tab) => tab.id)")
+        .await?;
+    for tab in &tabs {
+        page.click(&format!("#{tab}")).await?;
+        look(page, &format!("{what}, {tab}"), wrong).await?;
+    }
+    if tabs.is_empty() {
+        return look(page, what, wrong).await;
+    }
+    page.click("#sheet > summary").await?;
+    look(page, &format!("{what}, form"), wrong).await
+}
+
+/// Opens the page in a window of this size and looks at it, with the quiet default and with the fullest preset.
+async fn at_size(page: &Session, what: &str, wrong: &mut Vec<String>) -> Result<()> {
+    for preset in ["", "driver-timing-broken", "four-controllers-framed"] {
+        page.open("").await?;
+        if !preset.is_empty() {
+            page.choose("#preset", preset).await?;
+            page.ready().await?;
+        }
+        everywhere(page, &format!("{what} {preset}"), wrong).await?;
+    }
+    Ok(())
+}
+
+fn none(wrong: &[String]) -> Result<()> {
+    ensure!(wrong.is_empty(), "{} things are wrong:\n{}", wrong.len(), wrong.join("\n"));
+    Ok(())
+}
+
+#[test]
+fn on_any_screen_nothing_is_cut_off_and_every_target_is_large_enough() -> Result<()> {
+    in_browser(|page| async move {
+        let mut wrong = Vec::new();
+        for (width, height) in [(1440, 900), (1024, 768), (320, 640)] {
+            page.screen(width, height).await?;
+            at_size(&page, &format!("{width} px"), &mut wrong).await?;
+        }
+        none(&wrong)
+    })
+}
+
+#[test]
+fn at_twice_the_zoom_nothing_is_cut_off() -> Result<()> {
+    in_browser(|page| async move {
+        let mut wrong = Vec::new();
+        // A window of 1280 x 1024 at 200 %: half the CSS pixels, each of four device pixels (WCAG 1.4.4).
+        let size = json!({ "width": 640, "height": 512, "deviceScaleFactor": 2, "mobile": false });
+        page.devtools("Emulation.setDeviceMetricsOverride", size).await?;
+        at_size(&page, "200 % zoom", &mut wrong).await?;
+        none(&wrong)
+    })
+}
+
+#[test]
+fn with_letters_of_twice_the_size_nothing_is_cut_off() -> Result<()> {
+    in_browser(|page| async move {
+        let mut wrong = Vec::new();
+        page.before_scripts(
+            "addEventListener('DOMContentLoaded', () => { const root = document.documentElement; \
+             root.style.fontSize = `${2 * parseFloat(getComputedStyle(root).fontSize)}px`; });",
+        )
+        .await?;
+        for (width, height) in [(1440, 900), (390, 844)] {
+            page.screen(width, height).await?;
+            at_size(&page, &format!("large letters at {width} px"), &mut wrong).await?;
+        }
+        none(&wrong)
+    })
+}
+
+#[test]
+fn forced_colours_leave_every_control_and_every_curve_to_be_seen() -> Result<()> {
+    in_browser(|page| async move {
+        let features = json!({ "features": [{ "name": "forced-colors", "value": "active" }] });
+        page.devtools("Emulation.setEmulatedMedia", features).await?;
+        page.open("").await?;
+        page.picture("forced").await?;
+        ensure!(page.eval::<bool>("matchMedia('(forced-colors: active)').matches").await?);
+        // A border is what is left of a button or a field there.
+        let bare: Vec<String> = page
+            .eval(
+                "[...document.querySelectorAll('button, input, select, textarea')].filter((node) => node.checkVisibility() && \
+                 node.type !== 'checkbox' && !node.closest('.problems, summary') && getComputedStyle(node).borderTopStyle === 'none')\
+                 .map((node) => node.id || node.ariaLabel || node.textContent)",
+            )
+            .await?;
+        ensure!(bare.is_empty(), "no border: {bare:?}");
+        for (canvas, least) in [("chart-position", 300), ("pulses", 300), ("spectrum-chart", 100)] {
+            let differs: u32 = page.js(DRAWN, vec![json!(canvas)]).await?;
+            ensure!(differs > least, "{canvas}: {differs} pixels differ clearly from the ground");
+        }
+        Ok(())
+    })
+}
+
+/// Pixels of a canvas with a contrast of 3:1 or more to the ground that it lies on.
+const DRAWN: &str = "
+    const canvas = document.getElementById(arguments[0]);
+    const part = (c) => (c / 255 <= 0.04045 ? c / 255 / 12.92 : ((c / 255 + 0.055) / 1.055) ** 2.4);
+    const light = (r, g, b) => 0.2126 * part(r) + 0.7152 * part(g) + 0.0722 * part(b);
+    const ground = light(...getComputedStyle(canvas.closest('.view')).backgroundColor.match(/[\\d.]+/g).slice(0, 3).map(Number));
+    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    let pixels = 0;
+    for (let at = 0; at < data.length; at += 4) {
+        if (data[at + 3] < 200) continue;
+        const own = light(data[at], data[at + 1], data[at + 2]);
+        if ((Math.max(own, ground) + 0.05) / (Math.min(own, ground) + 0.05) >= 3) pixels++;
+    }
+    return pixels;";

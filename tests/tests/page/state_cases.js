@@ -1,0 +1,138 @@
+// Cases of the page's state, run in the page by `state.rs`: each row has a name, the messages, and what is wanted of
+// the state that they lead to. Gives the rows that failed, as sentences; no document is touched.
+return import(new URL("state/state.js", document.baseURI)).then(({ DEPTH, LEAST_SPAN, clamp, endOf, held, initial, isStale, set, shown, update }) => {
+  const first = { a: { b: 1 }, list: [{ c: 1 }, { c: 2 }] };
+  const begin = () => initial(structuredClone(first));
+  const play = (messages, from = begin()) => messages.flat().reduce(update, from);
+
+  const edit = (path, value, joins) => ({ type: "edit", path, value, joins });
+  const undo = { type: "undo" };
+  const redo = { type: "redo" };
+  const judged = (revision, { problems = [], over = false, derived = null } = {}) =>
+    ({ type: "judged", revision, judgement: { problems, scenario: "{}", derived, cost: { over_budget: over } } });
+  const controller = (channels) => ({ digest: "d", channels });
+  const done = (revision, end = 1000, { clock = 10, controllers = [controller(4)] } = {}) =>
+    ({ type: "done", revision, ms: 1, summary: { end_cycle: end, clock_hz: clock, controllers } });
+  const window = (start, end) => ({ type: "window", window: { start, end } });
+  const open = (start, end) => ({ type: "open", view: { window: { start, end } } });
+  const view = (parts) => ({ type: "open", view: parts });
+  const seen = { type: "seen", text: "x" };
+  const compared = (text = "x") => ({ type: "compared", text, verdict: { same: true } });
+  const cursor = (which, cycle) => ({ type: "cursor", which, cycle });
+  const marker = (digit, cycle) => ({ type: "marker", digit, cycle });
+  const replace = (scenario, origin = "preset:x") => ({ type: "replace", scenario, origin });
+  const draft = (path) => ({ type: "draft", path, text: "x", message: "no number" });
+  const many = (count) => Array.from({ length: count }, (_, at) => edit("a.b", at + 100));
+  const b = (state) => state.scenario.a.b;
+
+  /** @type {[string, any[], (state: any) => any, any][]} name, messages, what is looked at, what it must be */
+  const cases = [
+    // History.
+    ["an edit changes one value", [edit("a.b", 2)], (s) => s.scenario, { ...first, a: { b: 2 } }],
+    ["an edit in a list changes one entry", [edit("list[1].c", 9)], (s) => s.scenario.list, [{ c: 1 }, { c: 9 }]],
+    ["an edit counts a revision", [edit("a.b", 2), edit("a.b", 3)], (s) => s.revision, 2],
+    ["an edit to the same value is none", [edit("a.b", 1)], (s) => [s.revision, s.past.length], [0, 0]],
+    ["undo takes an edit back", [edit("a.b", 2), undo], (s) => [b(s), s.past.length, s.future.length], [1, 0, 1]],
+    ["redo brings it again", [edit("a.b", 2), undo, redo], (s) => [b(s), s.past.length, s.future.length], [2, 1, 0]],
+    ["undo and redo are revisions of their own", [edit("a.b", 2), undo, redo], (s) => s.revision, 3],
+    ["undo with no past does nothing", [undo, redo], (s) => [b(s), s.revision], [1, 0]],
+    ["an edit after undo ends the future", [edit("a.b", 2), undo, edit("a.b", 3), redo], (s) => [b(s), s.future.length], [3, 0]],
+    ["typing in one field is one step", [edit("a.b", 2, true), edit("a.b", 23, true), undo], b, 1],
+    ["typing in another field is another step", [edit("a.b", 2, true), edit("list[0].c", 5, true), undo], (s) => [b(s), s.scenario.list[0].c], [2, 1]],
+    ["leaving the field ends the step", [edit("a.b", 2, true), { type: "seal" }, edit("a.b", 3, true), undo], b, 2],
+    ["undo ends the step", [edit("a.b", 2, true), undo, edit("a.b", 3, true), edit("a.b", 4, true), undo], b, 1],
+    ["the history is as deep as it says", [many(DEPTH + 20)], (s) => s.past.length, DEPTH],
+    ["fifty steps back", [many(DEPTH), Array(DEPTH).fill(undo)], (s) => [b(s), s.past.length, s.future.length], [1, 0, DEPTH]],
+    ["fifty steps back and forth", [many(DEPTH), Array(DEPTH).fill(undo), Array(DEPTH).fill(redo)], (s) => [b(s), s.past.length, s.future.length], [99 + DEPTH, DEPTH, 0]],
+    ["beyond fifty the oldest is lost", [many(DEPTH + 1), Array(DEPTH + 5).fill(undo)], b, 100],
+    ["undo brings the origin back", [replace({ a: { b: 7 } }), undo], (s) => [b(s), s.origin], [1, "own"]],
+    ["an edit makes a preset one's own", [replace({ a: { b: 7 } }), edit("a.b", 8)], (s) => s.origin, "own"],
+    ["a preset is one step", [replace({ a: { b: 7 } }), replace({ a: { b: 8 } }), undo], (s) => [b(s), s.origin], [7, "preset:x"]],
+    ["a preset begins with fresh views", [done(0), window(10, 50), cursor("a", 3), marker(4, 9), { type: "packet", packet: 2 }, { type: "row", row: 3 }, replace({ a: { b: 7 } })],
+      (s) => [s.window, s.cursors.a, s.markers[4], s.packet, s.row], [null, null, null, null, 0]],
+    // Drafts: texts that are no number yet.
+    ["a draft holds the run", [judged(0), draft("a.b")], (s) => [held(s), isStale(s)], ["problems", true]],
+    ["undo takes drafts away first", [edit("a.b", 2), draft("a.b"), undo], (s) => [b(s), Object.keys(s.drafts).length], [2, 0]],
+    ["a number takes its draft's place", [draft("a.b"), edit("a.b", 2)], (s) => Object.keys(s.drafts), []],
+    ["the same number again takes the draft away", [draft("a.b"), edit("a.b", 1)], (s) => [Object.keys(s.drafts), s.revision], [[], 0]],
+    ["an edit of the whole takes drafts of its parts", [draft("list[0].c"), draft("a.b"), edit("list", [{ c: 1 }])], (s) => Object.keys(s.drafts), ["a.b"]],
+    // Judgements.
+    ["a judgement is taken", [judged(0)], (s) => [s.judged, held(s)], [0, null]],
+    ["a stale judgement is ignored", [edit("a.b", 2), judged(0, { problems: [{ path: "", message: "" }] })], (s) => [s.judgement, s.judged, held(s)], [null, -1, "unjudged"]],
+    ["a judgement of a state before undo is ignored", [edit("a.b", 2), undo, judged(1)], held, "unjudged"],
+    ["problems hold the run", [judged(0, { problems: [{ path: "", message: "" }] })], held, "problems"],
+    ["a budget holds the run", [judged(0, { over: true })], held, "budget"],
+    ["an approved budget does not", [judged(0, { over: true }), { type: "approve" }], held, null],
+    ["the approval is of one revision", [judged(0, { over: true }), { type: "approve" }, edit("a.b", 2), judged(1, { over: true })], held, "budget"],
+    ["what follows stays while nothing new does", [judged(0, { derived: "d" }), edit("a.b", 2), judged(1)], (s) => s.derived, "d"],
+    // Results.
+    ["a result is taken", [{ type: "running" }, done(0)], (s) => [s.result.revision, s.run.phase, isStale(s), endOf(s)], [0, "done", false, 1000]],
+    ["a result of an old revision is ignored", [edit("a.b", 2), { type: "running" }, done(0)], (s) => [s.result, s.run.phase], [null, "running"]],
+    ["a result is stale after an edit", [done(0), edit("a.b", 2)], (s) => [s.result.revision, isStale(s)], [0, true]],
+    ["undo to the same scenario is another revision", [done(0), edit("a.b", 2), undo], isStale, true],
+    ["a failed run keeps the last result", [done(0), edit("a.b", 2), { type: "failed", message: "m" }], (s) => [s.result.revision, s.run.phase, s.run.message], [0, "failed", "m"]],
+    ["a shorter run clamps the window", [done(0), window(800, 900), edit("a.b", 2), done(1, 500)], (s) => s.window, { start: 400, end: 500 }],
+    ["another clock drops the window and the cursors", [done(0), window(80, 90), cursor("a", 3), edit("a.b", 2), done(1, 1000, { clock: 11 })], (s) => [s.window, s.cursors.a], [null, null]],
+    ["cursors and markers behind the end go", [done(0), cursor("a", 700), cursor("b", 300), marker(1, 700), marker(2, 300), edit("a.b", 2), done(1, 500)],
+      (s) => [s.cursors.a, s.cursors.b, s.markers[1], s.markers[2]], [null, 300, null, 300]],
+    ["a row of a channel that is gone is left", [done(0), { type: "row", row: 3 }, edit("a.b", 2), done(1, 1000, { controllers: [controller(2)] })], (s) => s.row, 0],
+    ["an axis that is gone is left", [done(0), { type: "axis", axis: 3 }, edit("a.b", 2), done(1, 1000, { controllers: [controller(2)] })], (s) => s.axis, 1],
+    ["a controller that is gone is left", [done(0, 1000, { controllers: [controller(1), controller(1)] }), { type: "controller", controller: 1 }, edit("a.b", 2), done(1)],
+      (s) => [s.controller, s.result.controller], [1, 0]],
+    ["and found again when it is back", [done(0, 1000, { controllers: [controller(1), controller(1)] }), { type: "controller", controller: 1 }, edit("a.b", 2), done(1),
+      edit("a.b", 3), done(2, 1000, { controllers: [controller(1), controller(1)] })], (s) => s.result.controller, 1],
+    // The shown time.
+    ["without a window all is shown", [done(0)], shown, { start: 0, end: 1000 }],
+    ["before a result the least is shown", [], shown, { start: 0, end: LEAST_SPAN }],
+    ["a window is kept inside the run", [done(0), window(-50, 100)], (s) => s.window, { start: 0, end: 150 }],
+    ["on the right as well", [done(0), window(950, 1050)], (s) => s.window, { start: 900, end: 1000 }],
+    ["a window is no longer than the run", [done(0), window(-5000, 5000)], (s) => s.window, { start: 0, end: 1000 }],
+    ["a window has a least length", [done(0), window(500, 500)], (s) => s.window, { start: 500, end: 500 + LEAST_SPAN }],
+    ["a window of no numbers is none", [done(0), window(NaN, 5)], (s) => s.window, null],
+    ["a window is whole cycles", [done(0), window(10.4, 99.6)], (s) => s.window, { start: 10, end: 99 }],
+    ["a link's window waits for the result", [open(10, 50), done(0)], (s) => [s.window, s.awaited], [{ start: 10, end: 50 }, null]],
+    ["a link's window beyond the run is left", [open(10, 5000), done(0)], (s) => s.window, null],
+    ["a link's cursors, axis and unit are taken as far as the run has them", [view({ a: 5, b: 5000, axis: 9, unit: "mm", side: "timing" }), done(0)],
+      (s) => [s.cursors, s.axis, s.unit, s.side, s.awaited], [{ a: 5, b: null }, 3, "mm", "timing", null]],
+    ["a link to the run on show is taken at once", [done(0), view({ a: 7, controller: 4 })], (s) => [s.cursors.a, s.result.controller], [7, 0]],
+    ["what a sender saw is kept until the run is compared", [seen, done(0), compared()], (s) => s.seen, { text: "x", verdict: { same: true } }],
+    ["another comparison is not this link's", [seen, done(0), compared("y")], (s) => s.seen.verdict, null],
+    ["another run is compared anew", [seen, done(0), compared(), done(0)], (s) => s.seen.verdict, null],
+    ["an edit forgets what a sender saw", [seen, done(0), compared(), edit("a.b", 2)], (s) => s.seen, null],
+    ["so does undo", [edit("a.b", 2), seen, undo], (s) => s.seen, null],
+    ["an edit forgets a link's window", [open(10, 50), edit("a.b", 2), done(1)], (s) => s.window, null],
+    // What is pointed at.
+    ["the same light is no change", [{ type: "light", lit: { start: 1, end: 2 } }, { type: "light", lit: { start: 1, end: 2 } }], (s) => s.lit, { start: 1, end: 2 }],
+    ["all channels fold at once", [{ type: "fold-all", folded: true }, { type: "fold", channel: 3, folded: false }], (s) => [s.folds[2], s.folds[3], s.folds[15]], [true, false, true]],
+  ];
+
+  const failures = [];
+  const check = (name, found, wanted) => {
+    const [seen, due] = [JSON.stringify(found), JSON.stringify(wanted)];
+    if (seen !== due) failures.push(`${name}: ${seen}, wanted ${due}`);
+  };
+  for (const [name, messages, look, wanted] of cases) check(name, look(play(messages)), wanted);
+
+  // A state that was given is never changed.
+  const frozen = (value) => { if (value && typeof value === "object") { Object.values(value).forEach(frozen); Object.freeze(value); } return value; };
+  for (const [name, messages] of cases) {
+    try {
+      messages.flat().reduce((state, message) => frozen(update(state, message)), frozen(begin()));
+    } catch (error) {
+      failures.push(`${name}: changes a state that it was given: ${error}`);
+    }
+  }
+  // What an edit does not touch is shared, so that views can tell what changed by identity.
+  const base = begin();
+  check("untouched parts are shared", play([edit("a.b", 2)], base).scenario.list === base.scenario.list, true);
+  check("a message without effect gives the same state", ["hover", "seal", "undo"].map((type) => update(base, { type, cycle: null }) === base), [true, true, true]);
+  for (const [given, last, wanted] of [
+    [{ start: 5, end: 100 }, 1000, { start: 5, end: 100 }],
+    [{ start: 0, end: 1 }, 3, { start: 0, end: LEAST_SPAN }],
+    [{ start: 1e300, end: 2e300 }, 1000, { start: 0, end: 1000 }],
+    [{ start: -Infinity, end: 5 }, 1000, { start: 0, end: 1000 }],
+    [{ start: 0, end: NaN }, 1000, null],
+  ]) check(`clamp ${JSON.stringify(given)} to ${last}`, clamp(given, last), wanted);
+  check("set makes no list of an object", set({ x: [1, 2] }, "x[0]", 9), { x: [9, 2] });
+  return { cases: cases.length, failures };
+});

@@ -1,0 +1,123 @@
+//! Whole charts as text: `wasm/tests/pictures/*.svg` are what the drawing code gives, in the page's light
+//! and dark colours. `STEPSCOPE_BLESS=1 cargo test -p stepscope-wasm --lib pictures` writes them anew; look
+//! at them before they are kept.
+
+use super::{Axis, Colors, Series, Shape, Spec, draw};
+use plotters::prelude::{IntoDrawingArea, SVGBackend};
+use std::{env, fs, path::Path};
+
+/// The page's colours of a theme.
+struct Theme {
+    name: &'static str,
+    label: &'static str,
+    axis: &'static str,
+    grid: &'static str,
+    ideal: &'static str,
+    made: &'static str,
+    kept: &'static str,
+}
+
+const THEMES: [Theme; 2] = [
+    Theme {
+        name: "light",
+        label: "#535d69",
+        axis: "#76808c",
+        grid: "#e6e9ed",
+        ideal: "#d55e00",
+        made: "#0072b2",
+        kept: "#00704f",
+    },
+    Theme {
+        name: "dark",
+        label: "#a4afbd",
+        axis: "#8590a0",
+        grid: "#262c35",
+        ideal: "#e69f00",
+        made: "#56b4e9",
+        kept: "#3ad3a5",
+    },
+];
+
+type Drawing = fn(&Theme) -> Spec;
+
+fn axis(min: f64, max: f64, unit: &str, prefix: bool, label_px: f64) -> Axis {
+    Axis { min, max, unit: unit.into(), prefix, label_px }
+}
+
+fn series(color: &str, opacity: f64, width: f64, dash: f64, x: &[f64], shape: Shape) -> Series {
+    Series { color: color.into(), opacity, width, dash, x: x.to_vec(), shape }
+}
+
+fn chart(theme: &Theme, x: Axis, y: Axis, series: Vec<Series>) -> Spec {
+    let colors = Colors { label: theme.label.into(), axis: theme.axis.into(), grid: theme.grid.into() };
+    Spec { ratio: 2.0, font: "sans-serif".into(), font_px: 11.0, x, y, colors, series }
+}
+
+/// The speed of a trapezoid over 0.4 s, with a staircase around it and another trapezoid dashed.
+fn motion(theme: &Theme) -> Spec {
+    let x: Vec<f64> = (0..200).map(|column| (f64::from(column) + 0.5) * 0.002).collect();
+    let trapezoid = |ramp_s: f64, top: f64| {
+        x.iter().map(|t| (t.min(0.4 - t) / ramp_s).min(1.0) * top).collect::<Vec<f64>>()
+    };
+    let ideal = trapezoid(0.1, 12_000.0);
+    let made: Vec<f64> = ideal.iter().map(|speed| (speed / 1000.0).round() * 1000.0).collect();
+    let rises: Vec<f64> = made.iter().skip(1).chain(made.last()).copied().collect();
+    let low = made.iter().zip(&rises).map(|(a, b)| a.min(*b)).collect();
+    let high = made.iter().zip(&rises).map(|(a, b)| a.max(*b)).collect();
+    let series = vec![
+        series(theme.made, 0.55, 4.0, 0.0, &x, Shape::Band { min: low, max: high }),
+        series(theme.ideal, 1.0, 1.6, 0.0, &x, Shape::Line { y: ideal }),
+        series(theme.kept, 1.0, 1.8, 5.0, &x, Shape::Line { y: trapezoid(0.18, 15_000.0) }),
+    ];
+    chart(theme, axis(0.0, 0.4, "s", true, 20.0), axis(-1200.0, 16_200.0, "", true, 68.0), series)
+}
+
+/// A curve that swings in every column, with a gap, one lone spike, and values on both sides of zero.
+fn band(theme: &Theme) -> Spec {
+    let x: Vec<f64> = (0..120).map(f64::from).collect();
+    let swing = |column: usize| {
+        if column == 60 { f64::NAN } else { 20.0 + ((column * 37) % 50) as f64 }
+    };
+    let max = (0..120).map(|column| if column == 90 { 400.0 } else { swing(column) }).collect();
+    let min = (0..120).map(|column| -swing(column)).collect();
+    let series = vec![series(theme.made, 1.0, 1.6, 0.0, &x, Shape::Band { min, max })];
+    chart(theme, axis(0.0, 119.0, "", false, 20.0), axis(-108.0, 432.0, "", true, 68.0), series)
+}
+
+/// Two series of stems side by side over dB.
+fn spectrum(theme: &Theme) -> Spec {
+    let x: Vec<f64> = (1..=40).map(f64::from).collect();
+    let level = |odd: f64| {
+        let level = |n: &f64| if n % 2.0 == 0.0 { f64::NEG_INFINITY } else { (1.0 - n) * odd };
+        x.iter().map(level).collect::<Vec<f64>>()
+    };
+    let series = vec![
+        series(theme.ideal, 1.0, 3.0, 0.0, &x, Shape::Stems { y: level(2.0), shift: -2.0 }),
+        series(theme.made, 1.0, 3.0, 0.0, &x, Shape::Stems { y: level(1.8), shift: 2.0 }),
+    ];
+    chart(theme, axis(0.0, 41.0, "", false, 20.0), axis(-120.0, 10.0, "dB", false, 58.0), series)
+}
+
+#[test]
+fn pictures_are_those_that_were_looked_at() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pictures");
+    let drawings: [(&str, Drawing); 3] = [("motion", motion), ("band", band), ("spectrum", spectrum)];
+    for theme in &THEMES {
+        for (name, make) in drawings {
+            let mut text = String::new();
+            let area = SVGBackend::with_string(&mut text, (1200, 400)).into_drawing_area();
+            let plot = draw(&area, &make(theme));
+            drop(area);
+            assert!(plot.is_ok(), "{name}: {plot:?}");
+            let file = folder.join(format!("{name}-{}.svg", theme.name));
+            if env::var_os("STEPSCOPE_BLESS").is_some() {
+                fs::create_dir_all(&folder).expect("a folder");
+                fs::write(&file, &text).expect("writes");
+            }
+            let known = fs::read_to_string(&file).unwrap_or_default();
+            let differs = known.lines().zip(text.lines()).find(|(known, now)| known != now);
+            assert_eq!(differs, None, "{} (STEPSCOPE_BLESS=1 writes it)", file.display());
+            assert_eq!(known.lines().count(), text.lines().count(), "{}", file.display());
+        }
+    }
+}

@@ -1,0 +1,186 @@
+//! The motion view's questions: curves in columns, what lies between two cursors, and another run
+//! beside this one.
+
+use crate::{
+    convert::{field, numbers, object},
+    simulation::{Simulation, config},
+};
+use js_sys::Object;
+use serde::Serialize;
+use stepscope_core::{
+    analysis::{
+        between::{self, Between},
+        curves::{self, Window},
+        difference::{self, Scaled},
+        made::Pulses,
+    },
+    motion::AxisPlan,
+};
+use wasm_bindgen::prelude::*;
+
+/// What is read at two cursors and between them: position, speed, acceleration; an acceleration that
+/// there is not is left out.
+#[derive(Serialize)]
+struct Readings {
+    at_a: Vec<f64>,
+    at_b: Vec<f64>,
+    mean: Vec<f64>,
+    rms: Vec<f64>,
+}
+
+#[derive(Serialize)]
+struct BothReadings {
+    ideal: Option<Readings>,
+    made: Readings,
+}
+
+#[derive(Serialize)]
+struct Compared {
+    common_s: f64,
+    largest: f64,
+    at_s: f64,
+    rms: f64,
+}
+
+impl Readings {
+    fn new(at: [Vec<f64>; 2], Between { position, speed, acceleration }: Between) -> Self {
+        let moments = [Some(position), Some(speed), acceleration];
+        let [at_a, at_b] = at;
+        Self {
+            at_a,
+            at_b,
+            mean: moments.iter().flatten().map(|moments| moments.mean).collect(),
+            rms: moments.iter().flatten().map(|moments| moments.rms).collect(),
+        }
+    }
+}
+
+#[wasm_bindgen]
+impl Simulation {
+    /// Position, speed and acceleration of an axis over a stretch of time, in columns.
+    #[must_use]
+    pub fn motion(&mut self, axis: u8, t0_s: f64, t1_s: f64, columns: u32) -> Object {
+        let window = window(t0_s, t1_s, columns);
+        let result = Object::new();
+        let centres: Vec<f64> = (0..window.columns).map(|column| window.centre_s(column)).collect();
+        numbers(&result, "x", &centres);
+        let plan = self.plan(axis);
+        field(&result, "has_ideal", &plan.is_some().into());
+        if let Some(plan) = plan {
+            let ideal = curves::ideal(plan, self.zero_s(), window);
+            for (name, band) in
+                [("position", ideal.position), ("speed", ideal.speed), ("acceleration", ideal.acceleration)]
+            {
+                numbers(&result, &format!("{name}_min"), &band.min);
+                numbers(&result, &format!("{name}_max"), &band.max);
+            }
+        }
+        let made = curves::made(&self.pulses_of(axis), window);
+        for (name, band) in [("made_position", made.position), ("made_speed", made.speed)] {
+            numbers(&result, &format!("{name}_min"), &band.min);
+            numbers(&result, &format!("{name}_max"), &band.max);
+        }
+        result
+    }
+
+    /// What is read at two cursors, given in cycles, and the mean and root mean square between them:
+    /// `{ideal: {at_a, at_b, mean, rms} | null, made: {…}}`, each of position, speed and acceleration in
+    /// steps and s. The pulses have no acceleration.
+    ///
+    /// # Errors
+    /// Never in practice.
+    pub fn between(&mut self, axis: u8, a_cycle: f64, b_cycle: f64) -> Result<JsValue, JsError> {
+        let hz = f64::from(self.experiment.config().clock_hz());
+        let at = [a_cycle / hz, b_cycle / hz];
+        // One cycle at least: nothing lies between a cursor and itself.
+        let (from, to) = (at[0].min(at[1]), at[0].max(at[1]).max(at[0].min(at[1]) + 1.0 / hz));
+        let zero_s = self.zero_s();
+        let ideal = self.plan(axis).map(|plan| {
+            let read = |t: f64| {
+                Vec::from([plan.position(t - zero_s), plan.speed(t - zero_s), plan.acceleration(t - zero_s)])
+            };
+            Readings::new(at.map(read), between::ideal(plan, zero_s, from, to))
+        });
+        let pulses = self.pulses_of(axis);
+        let read = |t: f64| Vec::from([f64::from(pulses.position_at(t)), pulses.speed_at(t)]);
+        let made = Readings::new(at.map(read), between::made(&pulses, from, to));
+        object(&BothReadings { ideal, made })
+    }
+
+    /// The difference of this run's position and another's in columns, `{min, max}`, over a stretch of
+    /// start and end in s; `units` are what a step of this run and of the other is in the answer's unit.
+    #[must_use]
+    pub fn difference(
+        &mut self,
+        other: &mut Simulation,
+        axis: u8,
+        other_axis: u8,
+        units: &[f64],
+        span_s: &[f64],
+        columns: u32,
+    ) -> Object {
+        let &[from, to] = span_s else { return Object::new() };
+        let common_s = self.end_s().min(other.end_s());
+        let (first, second) = (self.scaled(axis, units.first()), other.scaled(other_axis, units.get(1)));
+        let band = difference::difference(first, second, common_s, window(from, to, columns));
+        let result = Object::new();
+        numbers(&result, "min", &band.min);
+        numbers(&result, "max", &band.max);
+        result
+    }
+
+    /// How far this run's position is from another's: `{common_s, largest, at_s, rms}`.
+    ///
+    /// # Errors
+    /// Never in practice.
+    pub fn apart(
+        &mut self,
+        other: &mut Simulation,
+        axis: u8,
+        other_axis: u8,
+        units: &[f64],
+    ) -> Result<JsValue, JsError> {
+        let common_s = self.end_s().min(other.end_s());
+        let (first, second) = (self.scaled(axis, units.first()), other.scaled(other_axis, units.get(1)));
+        let difference::Apart { largest, at_s, rms } = difference::apart(first, second, common_s);
+        object(&Compared { common_s, largest, at_s, rms })
+    }
+}
+
+impl Simulation {
+    fn plan(&self, axis: u8) -> Option<&AxisPlan> {
+        self.experiment.plans_of(self.looked_at).get(usize::from(axis))
+    }
+
+    /// When the motions begin, in s.
+    fn zero_s(&self) -> f64 {
+        let first = self.looked_at().recording.first_tick();
+        first.map_or(0.0, |start| start.seconds(self.experiment.config().clock_hz()))
+    }
+
+    fn end_s(&self) -> f64 {
+        self.run.cycles().0.max(1) as f64 / f64::from(self.experiment.config().clock_hz())
+    }
+
+    /// What the run made of a channel.
+    fn pulses_of(&mut self, channel: u8) -> Pulses<'_> {
+        self.kept[self.looked_at].count_steps(channel);
+        let kept = self.looked_at();
+        Pulses {
+            channel,
+            steps: kept.steps_of(channel),
+            ticks: kept.recording.packets.ticks(),
+            segments: self.experiment.segments().and_then(|all| all.lists().get(usize::from(channel))),
+            config: config(&self.experiment, self.looked_at),
+        }
+    }
+
+    fn scaled(&mut self, channel: u8, unit: Option<&f64>) -> Scaled<'_> {
+        let pulses = self.pulses_of(channel);
+        Scaled { steps: pulses.steps, hz: pulses.hz(), unit: unit.copied().unwrap_or(1.0) }
+    }
+}
+
+fn window(start_s: f64, end_s: f64, columns: u32) -> Window {
+    Window { start_s, end_s, columns: columns.clamp(1, 10_000) as usize }
+}

@@ -1,0 +1,43 @@
+//! The fields of a packet or frame as spans of the line, each over the bytes that carry it.
+
+use super::{Placed, Span};
+use crate::simulation::Simulation;
+use stepscope_core::trace::{Check, Field, Verdict};
+
+impl Simulation {
+    /// The fields of a row of the packets.
+    pub(super) fn fields_of(&self, packet: usize) -> Vec<Span> {
+        let Some(row) = self.looked_at().recording.packets.rows().get(packet) else { return Vec::new() };
+        let bytes = self.placed(packet);
+        let Some(meaning) = self.meaning(packet) else { return Vec::new() };
+        let broken = matches!(meaning.check, Check::Compared { found, expected } if found != expected);
+        let span =
+            |start, end, texts, bad| Span { start, end, texts, bad, packet: Some(packet), sample: None };
+        let mut spans: Vec<Span> = meaning
+            .fields
+            .iter()
+            .filter_map(|field| {
+                let carriers: &[Placed] = bytes.get(field.bytes.clone())?;
+                let bad = row.verdict == Verdict::Ignored
+                    || field.name == "reason"
+                    || (broken && field.name == "check");
+                Some(span(carriers.first()?.start, carriers.last()?.end, in_words(field, bad), bad))
+            })
+            .collect();
+        if let (Verdict::Short, Some(last)) = (row.verdict, bytes.last()) {
+            let texts = vec!["SHORT_PACKET: cut by a gap".into(), "SHORT_PACKET".into(), "!".into()];
+            spans.push(span(last.end, row.end.0.max(last.end), texts, true));
+        }
+        spans
+    }
+}
+
+/// A field from its longest text to its shortest.
+fn in_words(Field { name, value, .. }: &Field, bad: bool) -> Vec<String> {
+    let mut texts = vec![format!("{name}: {value}"), value.clone()];
+    texts.extend(value.split([' ', ',']).next().filter(|first| first.len() < value.len()).map(str::to_owned));
+    if bad {
+        texts.push("!".into());
+    }
+    texts
+}

@@ -1,0 +1,160 @@
+//! A run held against another one: what a link's sender saw, and a trace that was saved.
+
+use crate::{
+    convert::object,
+    simulation::{Simulation, config},
+};
+use serde::Serialize;
+use stepscope_core::signal::Sink;
+use stepscope_core::{
+    signal,
+    trace::{Against, Comparison, Fingerprint, Likeness, Mark, Proof, Shorter, VERSION},
+};
+use wasm_bindgen::prelude::*;
+
+/// A place in a run.
+#[derive(Serialize)]
+struct Place {
+    edge: u64,
+    cycle: u64,
+}
+
+impl From<Mark> for Place {
+    fn from(mark: Mark) -> Self {
+        Self { edge: mark.edges, cycle: mark.cycle.0 }
+    }
+}
+
+/// How the run stands to the sender's.
+#[derive(Serialize, Default)]
+struct Judged {
+    /// Why it cannot be told.
+    error: Option<String>,
+    same: bool,
+    /// Of all controllers.
+    edges: u64,
+    /// The sender's version, where it is another.
+    version: Option<String>,
+    own_version: &'static str,
+    /// The controller that differs.
+    controller: usize,
+    after: Option<Place>,
+    until: Option<Place>,
+    /// `this` or `other` run ends within the other.
+    shorter: Option<&'static str>,
+}
+
+/// How the run stands to a file.
+#[derive(Serialize)]
+struct Held {
+    /// Rows that are the run's own.
+    same: u64,
+    start_cycle: u64,
+    end_cycle: u64,
+    goes_on: bool,
+    difference: Option<Differs>,
+}
+
+#[derive(Serialize)]
+struct Differs {
+    line: u64,
+    cycle: u64,
+    /// Of each signal that differs its name, and its level in the file and in the run.
+    signals: Vec<(String, u8, u8)>,
+}
+
+#[wasm_bindgen]
+impl Simulation {
+    /// The part `d` of a link: the digests of all controllers.
+    #[must_use]
+    pub fn proof(&self) -> String {
+        Proof::of(self.kept.iter().map(|kept| Fingerprint::of(&kept.recording.trace)).collect()).emit()
+    }
+
+    /// Holds the run against the part `d` of a link: `{error, same, edges, version, own_version,
+    /// controller, after, until, shorter}`. `after` and `until` are places `{edge, cycle}` that the first
+    /// difference lies between, `version` is the sender's where it is another than this.
+    ///
+    /// # Errors
+    /// Never for any text.
+    pub fn judge_proof(&self, text: &str) -> Result<JsValue, JsError> {
+        object(&self.judged(text))
+    }
+
+    /// Begins to hold the trace of a controller against a file.
+    pub fn against_begin(&mut self, controller: u32) {
+        let index = (controller as usize).min(self.kept.len() - 1);
+        self.against = Some((index, Against::new(config(&self.experiment, index).channels())));
+    }
+
+    /// Takes a piece of the file; true if the rest is not needed.
+    ///
+    /// # Errors
+    /// With the first line that cannot be read.
+    pub fn against_feed(&mut self, piece: &[u8]) -> Result<bool, JsError> {
+        let Some((index, against)) = &mut self.against else { return Ok(true) };
+        Ok(against.feed(&self.kept[*index].recording.trace, piece)?)
+    }
+
+    /// The file is over: `{same, start_cycle, end_cycle, goes_on, difference: {line, cycle, signals: [[name,
+    /// level in the file, level in the run]]} | null}`; null if none was begun.
+    ///
+    /// # Errors
+    /// If there was nothing in it, or its last line cannot be read.
+    pub fn against_end(&mut self) -> Result<JsValue, JsError> {
+        let Some((index, against)) = self.against.take() else { return Ok(JsValue::NULL) };
+        let outcome = against.finish(&self.kept[index].recording.trace)?;
+        object(&Held {
+            same: outcome.same,
+            start_cycle: outcome.stretch.0.0,
+            end_cycle: outcome.stretch.1.0,
+            goes_on: outcome.goes_on,
+            difference: outcome.difference.map(|difference| Differs {
+                line: difference.line,
+                cycle: difference.cycle.0,
+                signals: (0..36)
+                    .filter(|bit| difference.signals() >> bit & 1 == 1)
+                    .map(|bit| {
+                        let level = |levels: signal::Levels| u8::from(levels.has(1 << bit));
+                        let name = signal::name(bit).unwrap_or_default();
+                        (name, level(difference.file), level(difference.run))
+                    })
+                    .collect(),
+            }),
+        })
+    }
+}
+
+impl Simulation {
+    fn judged(&self, text: &str) -> Judged {
+        let proof = match Proof::parse(text) {
+            Ok(proof) => proof,
+            Err(error) => return Judged { error: Some(error.to_string()), ..Judged::default() },
+        };
+        let version = (proof.version != VERSION).then(|| proof.version.clone());
+        let mut judged = Judged { version, own_version: VERSION, same: true, ..Judged::default() };
+        if proof.controllers.len() != self.kept.len() {
+            let (sent, own) = (proof.controllers.len(), self.kept.len());
+            let error = format!(
+                "the sender's digests are of {sent} controllers, this experiment has {own}; they are left out"
+            );
+            return Judged { error: Some(error), ..judged };
+        }
+        for (index, (sent, kept)) in proof.controllers.iter().zip(&self.kept).enumerate() {
+            let mut comparison = Comparison::with(sent);
+            kept.recording.trace.iter().for_each(|record| comparison.record(*record));
+            match comparison.finish() {
+                Likeness::Same(mark) => judged.edges += mark.edges,
+                Likeness::Differs { after, until, shorter } => {
+                    let shorter = shorter.map(|shorter| match shorter {
+                        Shorter::This => "this",
+                        Shorter::Other => "other",
+                    });
+                    let (after, until) = (Some(after.into()), Some(until.into()));
+                    return Judged { same: false, controller: index, after, until, shorter, ..judged };
+                }
+            }
+        }
+        judged
+    }
+}

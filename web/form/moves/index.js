@@ -1,0 +1,13 @@
+/**
+ * What a move can be, in the order of the menu: a file a kind. All that the page knows of a kind stands in its
+ * file; docs/adding_a_motion.md has the way to a new one.
+ */
+import { constant } from "./constant.js";
+import { cosine } from "./cosine.js";
+import { dwell } from "./dwell.js";
+import { sine_segments } from "./sine_segments.js";
+import { staircase } from "./staircase.js";
+import { trapezoid } from "./trapezoid.js";
+
+/** By their names in the scenario. @type {{[kind: string]: import("../field.js").Kind}} */
+export const MOVES = { cosine, trapezoid, staircase, sine_segments, constant, dwell };

@@ -1,0 +1,91 @@
+/**
+ * A word that explains itself: a button with a dotted line under it that opens a small card, with what the word
+ * means and which document it comes from. One card serves all of them; a click elsewhere and Escape close it.
+ */
+import { element, fill } from "../dom.js";
+import { DOCUMENTS, TERMS, VIEWS } from "./terms.js";
+
+/** @typedef {import("../form/field.js").Term} Term */
+
+const CARD = "term-card";
+/** From the word to its card, and from the card to the window's edges, in CSS pixels. */
+const GAP_PX = 4;
+
+/**
+ * The button for a term. In the form it is no stop of the tab key, which would double them: F1 in its field opens it.
+ * @param {string} text  What it says.
+ * @param {string} term  Its name in `TERMS`, or of a view in `VIEWS` as `view:motion`.
+ * @param {{[name: string]: string}} [attributes]
+ */
+export function termButton(text, term, attributes = {}) {
+  return element("button", { type: "button", class: "term", "aria-expanded": "false", "aria-controls": CARD, "data-term": term, ...attributes }, text);
+}
+
+/** Opens the card of the word that explains an element, if there is one. @param {Element} at */
+export function explain(at) {
+  const word = /** @type {HTMLElement | null} */ (at.closest(".field, .item")?.querySelector(".term") ?? null);
+  if (!word) return false;
+  show(word);
+  return true;
+}
+
+/** Makes the card, and the headings of the views words of it. */
+export function createCard() {
+  const card = element("div", { id: CARD, class: "term-card", popover: "auto", role: "note", "aria-live": "polite" });
+  document.body.append(card);
+  // A press anywhere closes the card before the click comes: one on the card's own word must not open it again.
+  /** @type {HTMLElement | null} */
+  let closing = null;
+  document.addEventListener("pointerdown", () => { closing = card.matches(":popover-open") ? opener : null; }, { capture: true });
+  document.addEventListener("click", (event) => {
+    const word = /** @type {HTMLElement | null} */ (/** @type {Element} */ (event.target).closest?.(".term"));
+    if (word && word !== closing && !(word === opener && card.matches(":popover-open"))) show(word);
+    else if (word) card.hidePopover();
+    closing = null;
+  });
+  card.addEventListener("toggle", (event) => {
+    const open = /** @type {ToggleEvent} */ (event).newState === "open";
+    opener?.setAttribute("aria-expanded", String(open));
+  });
+  for (const view of Object.keys(VIEWS)) {
+    const title = document.getElementById(`title-${view}`);
+    if (title) fill(title, termButton(title.textContent ?? "", `view:${view}`));
+  }
+}
+
+/** The word whose card is on show, or was last. @type {HTMLElement | null} */
+let opener = null;
+
+/** Fills the card for a word and shows it there. @param {HTMLElement} word */
+function show(word) {
+  const card = document.getElementById(CARD);
+  if (!card) return;
+  if (opener !== word) opener?.setAttribute("aria-expanded", "false");
+  opener = word;
+  const name = word.dataset.term ?? "";
+  const view = VIEWS[name.replace("view:", "")];
+  const hint = word.closest(".field")?.querySelector(".hint")?.textContent;
+  fill(card, ...(name.startsWith("view:") && view
+    ? [element("p", {}, view.about), element("dl", {}, ...Object.values(view.terms).flatMap((term) => [element("dt", {}, term.name ?? ""), meaning("dd", term)]))]
+    : [element("strong", {}, TERMS[name]?.name ?? word.textContent ?? ""), meaning("p", TERMS[name] ?? { text: "" }), ...(hint ? [element("p", { class: "range" }, hint)] : [])]));
+  card.hidePopover();
+  card.showPopover();
+  place(card, word);
+  word.setAttribute("aria-expanded", "true");
+}
+
+/** What is meant, with where it comes from. @param {"p" | "dd"} tag @param {Term} term */
+export function meaning(tag, { text, from }) {
+  return element(tag, {}, text, ...(from ? [" ", element("span", { class: "from" }, `(${DOCUMENTS[from].short})`)] : []));
+}
+
+/** Puts the card under its word, or above it where there is more room. @param {HTMLElement} card @param {HTMLElement} word */
+function place(card, word) {
+  const { left, top, bottom } = word.getBoundingClientRect();
+  const { width, height } = card.getBoundingClientRect();
+  const room = document.documentElement;
+  const under = bottom + GAP_PX;
+  const above = top - GAP_PX - height;
+  card.style.left = `${Math.max(GAP_PX, Math.min(left, room.clientWidth - width - GAP_PX))}px`;
+  card.style.top = `${Math.max(GAP_PX, under + height <= room.clientHeight || above < GAP_PX ? Math.min(under, room.clientHeight - height - GAP_PX) : above)}px`;
+}

@@ -1,0 +1,33 @@
+/** Panels that open under a button of the header. The browser closes them on Escape and on a click elsewhere. */
+import { byId } from "../dom.js";
+
+/** Least distance of a panel from the window's edge, in CSS pixels. */
+const EDGE = 8;
+
+/**
+ * @param {string} button  Id of the button that opens it.
+ * @param {string} panel   Id of the panel, an element with `popover`.
+ * @param {() => void} opened  Called when it is about to open.
+ */
+export function dropDown(button, panel, opened) {
+  const opener = /** @type {HTMLButtonElement} */ (byId(button));
+  const box = byId(panel);
+  opener.popoverTargetElement = box;
+  opener.setAttribute("aria-expanded", "false");
+  box.addEventListener("beforetoggle", (event) => {
+    const open = /** @type {ToggleEvent} */ (event).newState === "open";
+    opener.setAttribute("aria-expanded", String(open));
+    if (open) opened();
+  });
+  const place = () => {
+    const { right, bottom } = opener.getBoundingClientRect();
+    const wide = document.documentElement.clientWidth;
+    box.style.top = `${Math.max(EDGE, bottom + 4)}px`;
+    box.style.left = `${Math.max(EDGE, Math.min(right, wide - EDGE) - box.offsetWidth)}px`;
+    box.style.maxHeight = `calc(100vh - ${Math.max(EDGE, bottom + 4) + EDGE}px)`;
+  };
+  box.addEventListener("toggle", (event) => { if (/** @type {ToggleEvent} */ (event).newState === "open") place(); });
+  window.addEventListener("resize", () => { if (isOpen()) place(); });
+  const isOpen = () => box.matches(":popover-open");
+  return { isOpen, close: () => { if (isOpen()) box.hidePopover(); } };
+}

@@ -1,0 +1,191 @@
+/**
+ * What the motion and the spectrum view show, as files: PNG, SVG and CSV. The pictures are drawn by the same
+ * code as the charts on the page, with a title, a legend and the quantities' names around them.
+ */
+import { unlessDropped } from "../engine/engine.js";
+import { baseName } from "../shell/exports.js";
+import { shown } from "../state/state.js";
+import { si, time } from "../state/number.js";
+import { color, drawing, font, picture } from "../time/plot.js";
+import { ask } from "./motion/ask.js";
+import { QUANTITIES, bandsOf, chartOf } from "./motion/bands.js";
+import { distortion, given } from "./spectrum/harmonics.js";
+import { chosenSpectrum, spectrumChart } from "./spectrum/spectrum.js";
+
+/** @typedef {import("../state/types.js").State} State */
+/** @typedef {import("../engine/engine.js").Engine} Engine */
+/** @typedef {{name: string, ink: string, dash: number}} Key */
+/** @typedef {{title: string, note: string, legend: Key[], panels: {caption: string, chart: import("../time/plot.js").Chart, height: number}[]}} Sheet */
+/** @typedef {{name: string, type: string, label: string, make: () => Promise<BlobPart[]>}} ChartFile */
+
+/** Size of a picture in CSS pixels; it is drawn at twice that. */
+const WIDTH = 1000;
+const PANEL = 190;
+/** Over the charts: title and legend; over each chart: its caption. */
+const HEAD = 54;
+const CAPTION = 20;
+const COLUMNS = WIDTH - 94;
+
+/** What can be saved of the two views as they are. @param {State} state @param {Engine} engine @returns {ChartFile[]} */
+export function chartFiles(state, engine) {
+  if (!state.result) return [];
+  const [png, svg, csv] = ["image/png", "image/svg+xml", "text/csv"];
+  const base = baseName(state);
+  const motion = () => motionSheet(state, engine);
+  const spectrum = () => spectrumSheet(state, engine);
+  return [
+    { name: `${base}-motion.png`, type: png, label: "Motion, picture (PNG)", make: async () => [await bitmap(await motion())] },
+    { name: `${base}-motion.svg`, type: svg, label: "Motion, picture (SVG)", make: async () => [vector(await motion())] },
+    { name: `${base}-motion.csv`, type: csv, label: "Motion, values (CSV)", make: async () => [motionTable(state, await seen(state, engine))] },
+    { name: `${base}-spectrum.png`, type: png, label: "Spectrum, picture (PNG)", make: async () => [await bitmap(await spectrum())] },
+    { name: `${base}-spectrum.svg`, type: svg, label: "Spectrum, picture (SVG)", make: async () => [vector(await spectrum())] },
+  ];
+}
+
+/** @param {State} state @param {Engine} engine */
+async function seen(state, engine) {
+  const answer = await ask(engine, state, shown(state), COLUMNS, "file").catch(unlessDropped);
+  if (!answer) throw new Error("there is no motion to save");
+  return answer;
+}
+
+/** @param {Engine} engine @returns {Promise<import("../state/types.js").Spectra>} */
+async function spectra(engine) {
+  const answer = await engine.ask("spectrum");
+  if (!answer?.ideal && !answer?.pulses) throw new Error(answer?.note || "there is no spectrum to save");
+  return answer;
+}
+
+/** @param {State} state */
+function titleOf({ scenario, result }) {
+  const digest = result?.summary.controllers[result.controller].digest ?? "";
+  return { title: scenario.title || "Stepscope", note: `digest ${digest}` };
+}
+
+/** @param {State} state @param {Engine} engine @returns {Promise<Sheet>} */
+async function motionSheet(state, engine) {
+  const columns = await seen(state, engine);
+  const charts = QUANTITIES.map((quantity) => chartOf(state, columns, quantity));
+  const { start, end } = shown(state);
+  const clock = state.result?.summary.clock_hz ?? 1;
+  const { title, note } = titleOf(state);
+  const legend = new Map(charts.flatMap(({ bands }) => bands.map(({ name, ink, dash }) => [name, { name: name === "kept" ? `kept: ${state.reference?.title}` : name, ink, dash }])));
+  return {
+    title, note: `axis ${state.axis} · ${time(start / clock)} to ${time(end / clock)} · ${note}`, legend: [...legend.values()],
+    panels: charts.map(({ caption, unit, chart }) => ({ caption: `${caption}, ${unit}`, chart, height: PANEL + chart.x.label_px })),
+  };
+}
+
+/** @param {State} state @param {Engine} engine @returns {Promise<Sheet>} */
+async function spectrumSheet(state, engine) {
+  const found = await spectra(engine);
+  const { quantity, db } = chosenSpectrum();
+  const { title, note } = titleOf(state);
+  const all = given(found);
+  const thd = all[0][1].periodic ? `${distortion(found, quantity)} · ` : "";
+  return {
+    title, note: `${thd}${note}`, legend: all.map(([name]) => ({ name, ink: name === "ideal" ? "--ideal" : "--made", dash: 0 })),
+    panels: [{ caption: `amplitude of ${quantity} over the order of the harmonic, fundamental ${si(all[0][1].fundamental_hz, "Hz", 5)}`,
+      chart: spectrumChart(found, quantity, db, WIDTH), height: 2 * PANEL }],
+  };
+}
+
+/** @param {Sheet} sheet */
+function heightOf({ panels }) {
+  return panels.reduce((sum, { height }) => sum + CAPTION + height, HEAD + 8);
+}
+
+/**
+ * Puts title, legend, captions and charts in their places.
+ * @param {Sheet} sheet
+ * @param {{text: (text: string, x: number, y: number, bold: boolean, ink: string) => number, key: (key: Key, x: number, y: number) => void,
+ *   chart: (chart: import("../time/plot.js").Chart, x: number, y: number, width: number, height: number) => void}} pen  `text` gives the text's width.
+ */
+function lay({ title, note, legend, panels }, pen) {
+  pen.text(title, 12, 20, true, "--ink");
+  let x = 12;
+  for (const key of legend) {
+    pen.key(key, x, 36);
+    x += 26 + pen.text(key.name, x + 26, 40, false, "--ink") + 18;
+  }
+  pen.text(note, x, 40, false, "--quiet");
+  let y = HEAD;
+  for (const { caption, chart, height } of panels) {
+    pen.text(caption, 68, y + 12, false, "--quiet");
+    pen.chart(chart, 0, y + CAPTION, WIDTH, height);
+    y += CAPTION + height;
+  }
+}
+
+/** A picture of points. @param {Sheet} sheet @returns {Promise<Blob>} */
+function bitmap(sheet) {
+  const canvas = document.createElement("canvas");
+  [canvas.width, canvas.height] = [2 * WIDTH, 2 * heightOf(sheet)];
+  const context = canvas.getContext("2d");
+  if (!context) throw new Error("this browser gave no canvas to draw on");
+  context.scale(2, 2);
+  context.fillStyle = color("--pane");
+  context.fillRect(0, 0, WIDTH, heightOf(sheet));
+  lay(sheet, {
+    text: (text, x, y, bold, ink) => {
+      context.font = fontOf(bold);
+      context.fillStyle = color(ink);
+      context.fillText(text, x, y);
+      return context.measureText(text).width;
+    },
+    key: ({ ink, dash }, x, y) => {
+      context.strokeStyle = color(ink);
+      context.lineWidth = 3;
+      context.setLineDash(dash ? [dash, dash] : []);
+      context.beginPath();
+      context.moveTo(x, y);
+      context.lineTo(x + 20, y);
+      context.stroke();
+    },
+    chart: (chart, x, y, width, height) => context.drawImage(picture(chart, width, height), x, y, width, height),
+  });
+  return new Promise((resolve, reject) => canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("this browser made no picture"))), "image/png"));
+}
+
+/** @param {boolean} bold */
+function fontOf(bold) {
+  return `${bold ? "bold 14px" : "12px"} ${font()}`;
+}
+
+/** A picture of lines, as the text of an SVG file. @param {Sheet} sheet */
+function vector(sheet) {
+  const measure = document.createElement("canvas").getContext("2d");
+  const parts = [`<rect width="100%" height="100%" fill="${color("--pane")}"/>`];
+  lay(sheet, {
+    text: (text, x, y, bold, ink) => {
+      parts.push(`<text x="${x}" y="${y}" fill="${color(ink)}" font-family="${escaped(font())}" font-size="${bold ? 14 : 12}"${bold ? ' font-weight="bold"' : ""}>${escaped(text)}</text>`);
+      if (measure) measure.font = fontOf(bold);
+      return measure?.measureText(text).width ?? text.length * 7;
+    },
+    key: ({ ink, dash }, x, y) => parts.push(`<path d="M${x} ${y}h20" stroke="${color(ink)}" stroke-width="3"${dash ? ` stroke-dasharray="${dash}"` : ""}/>`),
+    chart: (chart, x, y, width, height) => parts.push(drawing(chart, x, y, width, height)),
+  });
+  const height = heightOf(sheet);
+  return `<svg xmlns="http://www.w3.org/2000/svg" width="${WIDTH}" height="${height}" viewBox="0 0 ${WIDTH} ${height}">\n${parts.join("\n")}\n</svg>\n`;
+}
+
+/** @param {string} text */
+function escaped(text) {
+  return text.replace(/[&<>"]/g, (sign) => `&#${sign.charCodeAt(0)};`);
+}
+
+/** One line of a CSV file; a text that holds a separator or a quote is quoted. @param {(string | number)[]} cells */
+function line(cells) {
+  return `${cells.map((cell) => (/[",\n]/.test(String(cell)) ? `"${String(cell).replaceAll('"', '""')}"` : cell)).join(",")}\r\n`;
+}
+
+/** Time and the least and greatest value of each curve, a row a column of the picture. @param {State} state @param {import("./motion/bands.js").Seen} columns */
+function motionTable(state, columns) {
+  const bands = QUANTITIES.flatMap((quantity) => {
+    const { unit } = chartOf(state, columns, quantity);
+    return bandsOf(state, columns, quantity).reverse().map((band) => ({ ...band, head: `${band.name} ${quantity}`, unit }));
+  });
+  const cell = (/** @type {number} */ value) => (Number.isFinite(value) ? value : "");
+  const head = line(["time (s)", ...bands.flatMap(({ head: name, unit }) => [`${name} min (${unit})`, `${name} max (${unit})`])]);
+  return head + [...columns.columns.x].map((seconds, row) => line([seconds, ...bands.flatMap(({ min, max }) => [cell(min[row]), cell(max[row])])])).join("");
+}

@@ -1,0 +1,123 @@
+/** What the three charts of a motion show: which curves, in which unit and colour, over which range. */
+import { color, GUTTER } from "../../time/plot.js";
+import { shown } from "../../state/state.js";
+
+/** @typedef {import("../../state/types.js").State} State */
+/** @typedef {import("../../state/types.js").MotionColumns} MotionColumns */
+/** @typedef {{min: Float64Array, max: Float64Array}} Columns */
+/** @typedef {"position" | "speed" | "acceleration"} Quantity */
+/** @typedef {{name: string, ink: string, opacity: number, width: number, dash: number} & Columns} Band */
+/** @typedef {{columns: MotionColumns, kept: MotionColumns | null, apart: Columns | null}} Seen  This run, the kept one, and the difference of their positions where that is shown. */
+/** @typedef {{low: number, high: number, min: number, max: number}} Range */
+
+export const QUANTITIES = /** @type {const} */ (["position", "speed", "acceleration"]);
+/** Height of the time axis's labels under the lowest chart, in CSS pixels. */
+export const TIME_PX = 20;
+
+/** What follows from the axis on show. @param {State} state */
+function axisOnShow(state) {
+  return state.derived?.controllers[state.result?.controller ?? 0]?.axes[state.axis];
+}
+
+/** The same axis of the kept run, or the last that it has. @param {State} state */
+export function keptAxis({ reference, axis }) {
+  const channels = reference?.summary.controllers[reference.controller]?.channels ?? 1;
+  const index = Math.min(axis, channels - 1);
+  return { index, derived: reference?.derived?.axes[index] };
+}
+
+/** @param {State} state @returns {[string, string][]} */
+export function unitsOf(state) {
+  const axis = axisOnShow(state);
+  return [["steps", "steps"], ...(axis?.step_mm ? [["mm", "mm"]] : []), ...(axis?.step_deg ? [["deg", "°"]] : [])]
+    .map(([name, text]) => [name, text]);
+}
+
+/** The chosen unit, or steps where the axis has no such unit; what a step is in it, here and in the kept run. @param {State} state */
+export function unitOf(state) {
+  const axis = axisOnShow(state);
+  const { derived } = keptAxis(state);
+  if (state.unit === "mm" && axis?.step_mm) return { name: "mm", unit: "mm", scale: axis.step_mm, kept: derived?.step_mm ?? axis.step_mm };
+  if (state.unit === "deg" && axis?.step_deg) return { name: "deg", unit: "°", scale: axis.step_deg, kept: derived?.step_deg ?? axis.step_deg };
+  return { name: "steps", unit: "steps", scale: 1, kept: 1 };
+}
+
+/** The unit of a quantity. @param {State} state @param {Quantity} quantity */
+export function unitFor(state, quantity) {
+  return unitOf(state).unit + { position: "", speed: "/s", acceleration: "/s²" }[quantity];
+}
+
+/** @param {Float64Array} values @param {number} scale */
+function scaled(values, scale) {
+  return scale === 1 ? values : values.map((value) => value * scale);
+}
+
+/** The ideal curve's columns, and those of what the pulses make, where there are such. @param {MotionColumns} columns @param {Quantity} quantity @param {number} scale */
+function curves(columns, quantity, scale) {
+  const of = (/** @type {string} */ name) => {
+    const [min, max] = ["min", "max"].map((end) => /** @type {any} */ (columns)[`${name}_${end}`]);
+    return { min: scaled(min, scale), max: scaled(max, scale) };
+  };
+  return { ideal: columns.has_ideal ? of(quantity) : null, made: quantity === "acceleration" ? null : of(`made_${quantity}`) };
+}
+
+/** From the back to the front. @param {State} state @param {Seen} seen @param {Quantity} quantity @returns {Band[]} */
+export function bandsOf(state, { columns, kept, apart }, quantity) {
+  if (quantity === "position" && apart) return [{ name: "difference", ink: "--made", opacity: 1, width: 1.6, dash: 0, ...apart }];
+  const { scale, kept: keptScale } = unitOf(state);
+  const { ideal, made } = curves(columns, quantity, scale);
+  const other = kept ? curves(kept, quantity, keptScale) : null;
+  return [
+    made && { name: "made", ink: "--made", opacity: 0.55, width: 4, dash: 0, ...made },
+    ideal && { name: "ideal", ink: "--ideal", opacity: 1, width: 1.6, dash: 0, ...ideal },
+    // Dashed: of two plans the plans are compared, of what has none what was made.
+    other && (other.ideal ?? other.made) && { name: "kept", ink: "--kept", opacity: 1, width: 1.8, dash: 5, .../** @type {Columns} */ (other.ideal ?? other.made) },
+  ].filter((band) => band !== null);
+}
+
+/** Least and greatest value, and a range around them that leaves air. @param {Columns[]} bands @param {boolean} zero @returns {Range} */
+export function rangeOf(bands, zero) {
+  let [low, high] = [Infinity, -Infinity];
+  for (const { min, max } of bands) {
+    for (const value of min) if (value < low) low = value;
+    for (const value of max) if (value > high) high = value;
+  }
+  if (low > high) [low, high] = [0, 1];
+  const [from, to] = zero ? [Math.min(0, low), Math.max(0, high)] : [low, high];
+  const air = (to - from) * 0.08 || Math.abs(to) * 1e-3 || 1;
+  return { low, high, min: from - air, max: to + air };
+}
+
+/** One chart, as it is drawn. @param {State} state @param {Seen} seen @param {Quantity} quantity */
+export function chartOf(state, seen, quantity) {
+  const bands = bandsOf(state, seen, quantity);
+  const range = rangeOf(bands, quantity !== "position" || seen.apart !== null);
+  const { start, end } = shown(state);
+  const clock = state.result?.summary.clock_hz ?? 1;
+  const label_px = quantity === "acceleration" ? TIME_PX : 0;
+  return {
+    bands, range, unit: unitFor(state, quantity),
+    caption: quantity === "position" && seen.apart ? "position less the kept run’s, by the pulses" : quantity,
+    chart: {
+      x: { min: start / clock, max: end / clock, unit: "s", prefix: true, label_px },
+      y: { min: range.min, max: range.max, unit: "", prefix: true, label_px: GUTTER },
+      series: bands.map(({ ink, opacity, width, dash, min, max }) => ({ color: color(ink), opacity, width, dash, x: seen.columns.x, shape: { band: { min, max } } })),
+    },
+  };
+}
+
+/** Why the chart of the acceleration looks empty, if so. @param {MotionColumns} columns */
+export function withoutAcceleration({ has_ideal, acceleration_min, acceleration_max, speed_min, speed_max }) {
+  if (!has_ideal) return "No motion is planned for this channel, so it has no ideal curve and no acceleration.";
+  const still = (/** @type {number} */ value) => !(Math.abs(value) > 0);
+  if (!acceleration_min.every(still) || !acceleration_max.every(still)) return "";
+  const [low, high] = [Math.min(...speed_min), Math.max(...speed_max)];
+  return high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high)) ? "The speed only jumps here; between the jumps there is no acceleration." : "The speed does not change here; no acceleration.";
+}
+
+/** The column of a time. @param {MotionColumns} columns @param {number} seconds */
+export function columnAt({ x }, seconds) {
+  if (x.length < 2) return x.length - 1;
+  const index = Math.round((seconds - x[0]) / (x[1] - x[0]));
+  return Math.min(x.length - 1, Math.max(0, index));
+}

@@ -1,0 +1,37 @@
+/** Bytes for the clipboard, as hex; where the browser refuses, as a text that is selected. */
+import { byId, say } from "../../dom.js";
+import { count } from "../../state/number.js";
+
+/** More than this is for a file, in characters. */
+const MOST = 8_000_000;
+/** Rows that are asked for at a time. */
+const ROWS = 20_000;
+
+byId("packets-copied-close").addEventListener("click", () => { byId("packets-copied").hidden = true; });
+
+/** @param {string} hex @param {string} what */
+export async function copyHex(hex, what) {
+  try {
+    await navigator.clipboard.writeText(hex);
+    byId("packets-copied").hidden = true;
+    say(byId("packets-note"), `${what}: copied as hex.`);
+  } catch {
+    const text = /** @type {HTMLTextAreaElement} */ (byId("packets-copied-text"));
+    byId("packets-copied").hidden = false;
+    text.value = hex;
+    text.focus();
+    text.select();
+  }
+}
+
+/** All rows on show, a line each. @param {import("../../engine/engine.js").Engine} engine */
+export async function copyAll(engine) {
+  let hex = "";
+  for (let from = 0; from !== undefined;) {
+    const { part, next } = await engine.ask("packet_file", "hex", true, from, ROWS);
+    hex += part;
+    from = next;
+    if (hex.length > MOST) return say(byId("packets-note"), "That is more than a clipboard is for: save a file of the packets, or filter them first.");
+  }
+  return copyHex(hex, `${count(hex.split("\n").length - 1)} rows`);
+}

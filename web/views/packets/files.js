@@ -1,0 +1,42 @@
+/** Packets as files, for the menu of exports. */
+import { isFiltering } from "../../state/state.js";
+
+/** @typedef {import("../../state/types.js").State} State */
+/** @typedef {{name: string, type: string, label: string, make: () => Promise<BlobPart[]>}} PacketFile */
+
+/** Rows that are asked for at a time. */
+const ROWS = 20_000;
+const FORMATS = [
+  { ending: "csv", format: "csv", type: "text/csv", said: "table (CSV)" },
+  { ending: "txt", format: "hex", type: "text/plain", said: "bytes as hex, a line each" },
+  { ending: "bin", format: "bin", type: "application/octet-stream", said: "bytes (binary)" },
+];
+
+/**
+ * The files that the packets of the run on show can be saved as: of all rows, of those that the filter shows, of
+ * those on the line between the cursors; each as a table, as hex and as bytes. Nothing is made before `make`.
+ * @param {State} state
+ * @param {import("../../engine/engine.js").Engine} engine
+ * @returns {PacketFile[]}  None without a result.
+ */
+export function packetFiles(state, engine) {
+  if (!state.result) return [];
+  const { a, b } = state.cursors;
+  const scopes = [{ name: "packets", said: "Packets, all", shown: false, between: /** @type {number[]} */ ([]) }];
+  if (isFiltering(state.filter)) scopes.push({ name: "packets-shown", said: "Packets, the rows on show", shown: true, between: [] });
+  if (a !== null && b !== null) {
+    scopes.push({ name: "packets-a-b", said: "Packets between the cursors", shown: false, between: [Math.min(a, b), Math.max(a, b)] });
+  }
+  return scopes.flatMap((scope) => FORMATS.map(({ ending, format, type, said }) => ({
+    name: `stepscope-${scope.name}.${ending}`, type, label: `${scope.said}: ${said}`,
+    make: async () => {
+      const parts = [];
+      for (let from = 0; from !== undefined;) {
+        const { part, next } = await engine.ask("packet_file", format, scope.shown, from, ROWS, ...scope.between);
+        parts.push(part);
+        from = next;
+      }
+      return parts;
+    },
+  })));
+}

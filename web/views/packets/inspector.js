@@ -1,0 +1,157 @@
+/**
+ * The inspector: all of one row. Its bytes, its fields with the bytes that they stand in, its check, and the times
+ * around it. What is pointed at, or has the focus, is lit in all views; what others point at is lit here.
+ */
+import { byId, element, fill, say } from "../../dom.js";
+import { unlessDropped } from "../../engine/engine.js";
+import { listen } from "../../shell/commands.js";
+import { count, time } from "../../state/number.js";
+import { worded } from "./table.js";
+
+/** @typedef {import("../../state/types.js").State} State */
+/** @typedef {import("../../state/types.js").PacketDetail} PacketDetail */
+
+/** Signal bits of the line (contract A3). */
+const [RX, TX] = [33, 34];
+/** Bytes whose bits are written out. */
+const MOST_BITS = 4;
+
+/** @param {import("./packets.js").Page} page */
+export function createInspector({ engine, dispatch, now }) {
+  const bytes = byId("packet-bytes");
+  const fields = byId("packet-fields");
+  /** @type {PacketDetail | null} */
+  let row = null;
+  let wanted = -1;
+
+  for (const list of [bytes, fields]) {
+    list.addEventListener("pointerover", (event) => {
+      const cell = /** @type {HTMLElement} */ (event.target).closest("[role=option]");
+      if (cell) point(list, [...list.children].indexOf(cell));
+    });
+    list.addEventListener("pointerleave", () => point(list, -1));
+    list.addEventListener("focus", () => { if (list.matches(":focus-visible")) point(list, at(list) ?? 0); });
+    list.addEventListener("blur", () => point(list, -1));
+    listen(list, "Bytes and fields of a packet", [
+      { keys: ["ArrowLeft", "ArrowUp"], text: "the one before", run: () => step(list, -1) },
+      { keys: ["ArrowRight", "ArrowDown"], text: "the next one", run: () => step(list, 1) },
+      { keys: ["Home"], text: "the first one", run: () => step(list, -Infinity) },
+      { keys: ["End"], text: "the last one", run: () => step(list, Infinity) },
+      { keys: ["Escape"], text: "point at nothing", run: () => point(list, -1) },
+    ]);
+  }
+
+  /** Which cell of a list the keys are at. @param {HTMLElement} list */
+  function at(list) {
+    const cell = document.getElementById(list.getAttribute("aria-activedescendant") ?? "");
+    return cell ? [...list.children].indexOf(cell) : null;
+  }
+
+  /** @param {HTMLElement} list @param {number} by */
+  function step(list, by) {
+    point(list, Math.min(list.children.length - 1, Math.max(0, (at(list) ?? 0) + by)));
+  }
+
+  /** Points at a cell, -1 at none. @param {HTMLElement} list @param {number} place */
+  function point(list, place) {
+    const cell = list.children[place];
+    for (const each of list.children) each.setAttribute("aria-selected", String(each === cell));
+    if (!row || !cell) {
+      list.removeAttribute("aria-activedescendant");
+      return dispatch({ type: "light", lit: null });
+    }
+    list.setAttribute("aria-activedescendant", cell.id);
+    if (list.matches(":focus")) cell.scrollIntoView({ block: "nearest" });
+    const { from, until } = list === bytes ? { from: place, until: place + 1 } : row.layout[place];
+    const start = row.byte_cycles[from];
+    const last = row.byte_cycles[until - 1];
+    if (start === undefined || last === undefined) return undefined;
+    const own = row.kind === "reply" && row.mark !== "foreign";
+    dispatch({ type: "light", lit: { start, end: last + row.byte_length, from: "packets", packet: row.index, bit: own ? TX : RX } });
+  }
+
+  /** Shows a row. @param {number} index */
+  async function show(index) {
+    if (index === wanted) return;
+    wanted = index;
+    const answer = await engine.latest("packet", "packet", index).catch(unlessDropped);
+    if (!answer || index !== wanted) return;
+    row = /** @type {PacketDetail} */ (answer);
+    byId("packet-inspector").hidden = false;
+    paint(row, now());
+    light(now());
+  }
+
+  /** @param {PacketDetail} told @param {State} state */
+  function paint(told, state) {
+    const clock = state.result?.summary.clock_hz ?? 1;
+    const said = (/** @type {number} */ cycles) => time(cycles / clock);
+    say(byId("packet-detail"), [`#${count(told.index)}`, worded(told), told.outcome].filter(Boolean).join(" · "));
+    fill(byId("packet-facts"), ...facts(told, said).map(([name, value, bad]) =>
+      element("div", bad ? { class: "bad" } : {}, element("dt", {}, name), element("dd", {}, value))));
+    const hex = told.hex === "" ? [] : told.hex.split(" ");
+    const named = hex.map((_, place) => told.layout.find(({ from, until }) => from <= place && place < until)?.name ?? "");
+    fill(bytes, ...hex.map((byte, place) => element("span", { role: "option", id: `byte-${place}`, "aria-selected": "false",
+      "aria-label": `byte ${place}: ${byte}, ${named[place]}`, title: `byte ${place}: ${named[place]}` }, byte)));
+    fill(fields, ...told.layout.map(({ name, value, from, until }, place) => {
+      const range = until - from > 1 ? `${from}–${until - 1}` : String(from);
+      return element("span", { role: "option", id: `field-${place}`, "aria-selected": "false", title: until - from > 1 ? `bytes ${range}` : `byte ${range}`,
+        class: name === "check" && told.check === "fails" ? "bad" : "" }, element("b", {}, name), " ", value, " ", element("small", {}, `[${range}]`));
+    }));
+    bytes.hidden = fields.hidden = hex.length === 0;
+  }
+
+  /** Lights the bytes and fields that something points at. @param {State} state */
+  function light({ lit, result }) {
+    const told = row;
+    const over = lit && told && (lit.packet === null || lit.packet === told.index)
+      ? told.byte_cycles.map((start) => start < lit.end && start + told.byte_length > lit.start) : [];
+    // All of a row is said by the row itself.
+    const some = over.includes(false) || over.length === 1 ? over : [];
+    [...bytes.children].forEach((cell, place) => cell.classList.toggle("lit", some[place] === true));
+    [...fields.children].forEach((cell, place) => {
+      const { from, until } = told?.layout[place] ?? { from: 0, until: 0 };
+      cell.classList.toggle("lit", some.slice(from, until).includes(true));
+    });
+    const [first, last] = [some.indexOf(true), some.lastIndexOf(true)];
+    if (told) say(byId("packet-reading"), reading(told, first, last, result?.summary.clock_hz ?? 1));
+  }
+
+  return {
+    show, light,
+    row: () => row,
+    reset: () => {
+      row = null;
+      wanted = -1;
+    },
+  };
+}
+
+/** The bytes that are pointed at: hex, bits, and when they are on the line; with none, when all of them are. @param {PacketDetail} row @param {number} first @param {number} last @param {number} clock */
+function reading(row, first, last, clock) {
+  if (first < 0) return `on the line ${time(row.start_cycle / clock)} to ${time(row.line_end_cycle / clock)}`;
+  const hex = row.hex.split(" ").slice(first, last + 1);
+  const bits = hex.map((byte) => parseInt(byte, 16).toString(2).padStart(8, "0")).map((eight) => `${eight.slice(0, 4)}\u2009${eight.slice(4)}`);
+  const when = `${time(row.byte_cycles[first] / clock)} to ${time((row.byte_cycles[last] + row.byte_length) / clock)}`;
+  return [first === last ? `byte ${first}` : `bytes ${first} to ${last}`, hex.length <= MOST_BITS ? hex.join(" ") : "",
+    hex.length <= MOST_BITS ? `bits ${bits.join(" ")}` : "", when].filter(Boolean).join(" · ");
+}
+
+/** @param {PacketDetail} row @param {(cycles: number) => string} said @returns {[string, string, boolean?][]} */
+function facts(row, said) {
+  const { check, check_found: found, check_expected: expected } = row;
+  const cobs = row.layout.filter(({ name }) => name === "COBS" || name === "end mark").length;
+  const size = row.byte_cycles.length;
+  /** @type {[string, string, boolean?]} */
+  const checked = check === "holds" ? ["CRC-32/ISCSI", `${found}, holds`]
+    : check === "fails" ? ["CRC-32/ISCSI", `✕ ${found} found, ${expected} expected`, true]
+      : check === "none" ? ["check", "none: raw packets carry none"] : ["check", "none: not a whole frame"];
+  const tick = row.tick_start_cycle === null ? [] : [["tick", `${said(row.tick_start_cycle)}${row.tick_end_cycle === null ? ", not ended" : ` to ${said(row.tick_end_cycle)}`}`]];
+  const turnaround = row.turnaround_cycles === null ? [] : [["turnaround", `${said(row.turnaround_cycles)} after the end of #${count(row.answers ?? 0)}; DE rises after ${said(row.drive_cycles ?? 0)}`]];
+  const all = [
+    ["gap before", row.gap_cycles === null ? "–" : said(row.gap_cycles)],
+    ...turnaround, ...tick,
+    ...(row.kind === "collision" ? [] : [["size", `${count(size)} ${size === 1 ? "byte" : "bytes"}${cobs ? `, ${cobs} of them COBS` : ""}`], checked]),
+  ];
+  return /** @type {[string, string, boolean?][]} */ (all);
+}

@@ -1,0 +1,111 @@
+/**
+ * The packets view: what went over the line, a row a packet, frame or reply; a search and filters over all
+ * of them, which the worker judges; and an inspector of the current row.
+ */
+import { byId, say } from "../../dom.js";
+import { unlessDropped } from "../../engine/engine.js";
+import { listen } from "../../shell/commands.js";
+import { count } from "../../state/number.js";
+import { shown } from "../../state/state.js";
+import { copyAll, copyHex } from "./copy.js";
+import { createInspector } from "./inspector.js";
+import { createSearch } from "./search.js";
+import { createTable } from "./table.js";
+
+/** @typedef {import("../../state/types.js").State} State */
+/** @typedef {import("../../state/types.js").PacketRow} PacketRow */
+/** @typedef {{engine: import("../../engine/engine.js").Engine} & import("../../time/timeline.js").Page} Page */
+
+/** @param {Page} page */
+export function createPackets(page) {
+  const { engine, dispatch, now } = page;
+  const inspector = createInspector(page);
+  const table = createTable(page, { inspect: (row) => inspector.show(row.index), choose, counted });
+  const search = createSearch(page, { place: table.place, reload: table.reload, moveTo: table.moveTo });
+
+  /** Marks a packet and brings its time into the pulses. @param {PacketRow} row @param {boolean} [go]  Also where the pulses are another tab. */
+  function choose(row, go = false) {
+    dispatch({ type: "packet", packet: row.index });
+    say(byId("packet-sentence"), `Row ${row.index} is chosen and shown in the pulses: ${row.kind}, ${row.fields}, ${row.outcome}.`);
+    reveal(row);
+    if (go && byId("tab-pulses").checkVisibility()) dispatch({ type: "view", view: "pulses" });
+  }
+
+  /** A window that shows a row and its tick, where they are not to be seen well already. @param {PacketRow} row */
+  function reveal(row) {
+    const begin = row.start_cycle;
+    const end = Math.max(row.end_cycle, row.tick_end_cycle ?? 0);
+    const { start: from, end: to } = shown(now());
+    const length = end - begin;
+    const apart = begin < from || end > to;
+    if (!apart && length > (to - from) / 12) return;
+    dispatch({ type: "window", window: { start: begin - length * 0.15, end: end + length * 0.15 } });
+  }
+
+  /** @param {import("../../state/types.js").PacketPage} answer */
+  function counted({ total, shown: rows }) {
+    const state = now();
+    say(byId("packets-count"), rows === total ? `${count(total)} on the line` : `${count(rows)} of ${count(total)} on the line`);
+    const why = total === 0 ? whyNone(state) : rows === 0 ? "No row matches." : "";
+    say(/** @type {Element} */ (byId("packets-empty").firstElementChild), why);
+    byId("packets-empty").hidden = why === "";
+    byId("packets-unmatched").hidden = total === 0;
+    byId("packet-inspector").hidden = total === 0 || (rows === 0 && state.packet === null);
+    byId("packets-scroll").classList.toggle("none", rows === 0);
+    for (const id of ["packets-search", "packets-filters"]) /** @type {HTMLButtonElement} */ (byId(id)).disabled = total === 0;
+  }
+
+  byId("packet-show").addEventListener("click", () => { const row = inspector.row(); if (row) choose(row, true); });
+  byId("packet-copy").addEventListener("click", () => copyRow(inspector.row()));
+  byId("packets-copy-all").addEventListener("click", () => copyAll(engine));
+  /** @param {PacketRow | null} row */
+  async function copyRow(row) {
+    if (row) await copyHex(row.hex, `Row ${row.index}`);
+  }
+
+  listen(byId("packets"), "Packets", [
+    { keys: ["ArrowUp"], text: "the row before", run: () => table.move(-1) },
+    { keys: ["ArrowDown"], text: "the next row", run: () => table.move(1) },
+    { keys: ["PageUp"], text: "a page of rows back", run: () => table.move(-table.page()) },
+    { keys: ["PageDown"], text: "a page of rows on", run: () => table.move(table.page()) },
+    { keys: ["Home"], text: "the first row", run: () => table.move(-Infinity) },
+    { keys: ["End"], text: "the last row", run: () => table.move(Infinity) },
+    { keys: ["Enter", "Space"], text: "choose the row and show it in the pulses", run: () => { table.current().then((row) => row && choose(row, true)); } },
+    { keys: ["c"], text: "copy the row's bytes as hex", run: () => { table.current().then(copyRow); } },
+    { keys: ["/"], text: "search", run: () => byId("packets-search").focus() },
+    { keys: ["n"], text: "next match", run: () => { search.next(true); } },
+    { keys: ["Shift+N"], text: "previous match", run: () => { search.next(false); } },
+  ]);
+
+  /** @param {State} state @param {State | undefined} before */
+  async function render(state, before) {
+    if (before?.lit !== state.lit) {
+      table.light(state);
+      inspector.light(state);
+    }
+    search.render(state, before);
+    if (before?.result !== state.result) {
+      table.reset();
+      inspector.reset();
+      return search.start(state);
+    }
+    if (before?.filter !== state.filter) return search.filter(state);
+    if (before?.packet !== state.packet) {
+      if (state.packet === null) return table.reload();
+      const position = await engine.ask("packet_position", state.packet).catch(unlessDropped);
+      // A row that the filter leaves out is still told.
+      if (typeof position === "number") return table.moveTo(position);
+      await inspector.show(state.packet);
+      return table.reload();
+    }
+    return undefined;
+  }
+  return { render };
+}
+
+/** Why nothing went over the line. @param {State} state */
+function whyNone({ scenario: { source } }) {
+  if ("segments" in source || source.motion?.engine === "segments") return "Segments come from the controller itself: nothing is on the line.";
+  if ("line" in source) return "The line script sends nothing that this controller hears.";
+  return "Nothing was sent: there is nothing to do.";
+}

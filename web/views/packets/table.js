@@ -1,0 +1,192 @@
+/** The table: only the rows on show are in the document, the scroll bar stands for all of them. */
+import { byId, element, fill, say } from "../../dom.js";
+import { unlessDropped } from "../../engine/engine.js";
+import { count } from "../../state/number.js";
+
+/** @typedef {import("../../state/types.js").State} State */
+/** @typedef {import("../../state/types.js").PacketRow} PacketRow */
+/** @typedef {import("../../state/types.js").PacketPage} PacketPage */
+
+const ROW_PX = 24;
+/** Browsers refuse boxes taller than some ten million pixels; a longer list scrolls in larger steps. */
+const MOST_PX = 6_000_000;
+/** Air at both sides of a cell's text. */
+const CELL_PX = 17;
+/** Most of the column of bytes where words say more than they do. */
+const FRAMED_BYTES_PX = 104;
+/** Texts of a row's cells, each with what its pointer tells where that is more. @type {((row: PacketRow) => [string, string?])[]} */
+const COLUMNS = [({ index }) => [count(index)], ({ start }) => [start], ({ hex }) => [hex], (row) => [worded(row)],
+  ({ short, outcome }) => [short, outcome], ({ gap }) => [gap || "–"]];
+const ruler = /** @type {CanvasRenderingContext2D} */ (document.createElement("canvas").getContext("2d"));
+
+/**
+ * @param {import("./packets.js").Page} page
+ * @param {{inspect: (row: PacketRow) => void, choose: (row: PacketRow, go?: boolean) => void, counted: (page: PacketPage) => void}} told
+ */
+export function createTable({ engine, dispatch, now }, { inspect, choose, counted }) {
+  const scroller = byId("packets-scroll");
+  const space = byId("packets-space");
+  const table = byId("packets");
+  const body = /** @type {HTMLTableSectionElement} */ (table.querySelector("tbody"));
+  /** @type {PacketPage} */
+  let answer = { total: 0, shown: 0, matches: 0, unit: "ms", rows: [] };
+  /** Position of the current row among those on show. */
+  let current = 0;
+  /** Widest texts of the columns so far, in CSS pixels: columns do not jump while the table scrolls. @type {{[column: string]: number}} */
+  let widest = {};
+
+  scroller.addEventListener("scroll", reload);
+  new ResizeObserver(reload).observe(scroller);
+  const rowAt = (/** @type {Event} */ event) => {
+    const row = /** @type {HTMLElement} */ (event.target).closest("tr");
+    return row ? answer.rows.find(({ index }) => index === Number(row.dataset.index)) : undefined;
+  };
+  body.addEventListener("click", (event) => {
+    const row = rowAt(event);
+    if (!row) return;
+    current = row.position;
+    choose(row);
+  });
+  body.addEventListener("pointerover", (event) => {
+    const row = rowAt(event);
+    if (row) dispatch({ type: "light", lit: { start: row.start_cycle, end: row.line_end_cycle, from: "packets", packet: row.index, bit: null } });
+  });
+  body.addEventListener("pointerleave", () => dispatch({ type: "light", lit: null }));
+
+  const visible = () => Math.max(1, Math.floor((scroller.clientHeight - ROW_PX) / ROW_PX));
+
+  function first() {
+    const path = space.offsetHeight - scroller.clientHeight;
+    if (path <= 0) return 0;
+    const last = Math.max(0, answer.shown - visible());
+    return Math.min(last, Math.round((scroller.scrollTop / path) * last));
+  }
+
+  /** @param {number} position */
+  function scrollTo(position) {
+    const from = first();
+    if (position >= from && position < from + visible()) return;
+    const target = position < from ? position : position - visible() + 1;
+    const last = Math.max(1, answer.shown - visible());
+    scroller.scrollTop = (target / last) * (space.offsetHeight - scroller.clientHeight);
+  }
+
+  /** Makes another row the current one. @param {number} position */
+  function moveTo(position) {
+    current = Math.min(Math.max(0, answer.shown - 1), Math.max(0, position));
+    scrollTo(current);
+    return reload();
+  }
+
+  /** The current row, also where the table has not drawn it yet. @returns {Promise<PacketRow | null>} */
+  async function currentRow() {
+    const page = await engine.ask("packets", current, 1).catch(unlessDropped);
+    return page?.rows[0] ?? null;
+  }
+
+  /** Asks for the rows on show. */
+  async function reload() {
+    if (!now().result || scroller.clientHeight < ROW_PX) return;
+    const from = first();
+    const page = await engine.latest("packets", "packets", from, visible() + 2).catch(unlessDropped);
+    if (!page) return;
+    const others = page.shown !== answer.shown || page.total !== answer.total;
+    answer = page;
+    if (others) {
+      current = Math.min(current, Math.max(0, answer.shown - 1));
+      table.setAttribute("aria-rowcount", String(answer.shown + 1));
+      space.style.height = `${Math.min(MOST_PX, (answer.shown + 1) * ROW_PX + 2)}px`;
+      // Fewer rows may have moved the scroll bar.
+      if (first() !== from) return reload();
+    }
+    counted(answer);
+    paint(now());
+  }
+
+  /** @param {State} state */
+  function paint(state) {
+    const { rows, unit } = answer;
+    say(byId("packets-time"), `start, ${unit}`);
+    say(byId("packets-gap"), `gap, ${unit}`);
+    say(byId("packets-meaning"), state.result?.summary.framed ? "meaning" : "steps");
+    // A row that stays keeps its element: a click that began on it ends on it.
+    const nodes = new Map([...body.rows].map((node) => [node.id, node]));
+    fill(body, ...rows.map((row) => {
+      const id = `packet-${row.index}`;
+      const node = nodes.get(id) ?? element("tr", { id, "data-index": String(row.index) }, ...COLUMNS.map(() => element("td")));
+      node.setAttribute("aria-rowindex", String(row.position + 2));
+      node.setAttribute("aria-selected", String(row.index === state.packet));
+      node.className = [row.position === current ? "current" : "", row.rank === null ? "" : "found", row.kind, row.mark].join(" ").trim();
+      for (const [place, column] of COLUMNS.entries()) {
+        const [text, title = text] = column(row);
+        say(node.cells[place], text);
+        node.cells[place].title = title;
+      }
+      return node;
+    }));
+    const row = rows.find(({ position }) => position === current);
+    if (row) table.setAttribute("aria-activedescendant", `packet-${row.index}`);
+    else table.removeAttribute("aria-activedescendant");
+    light(state);
+    widen();
+    if (row) inspect(row);
+  }
+
+  /** Marks the rows that another view, or this one, points at. @param {State} state */
+  function light({ lit }) {
+    for (const [place, node] of [...body.rows].entries()) {
+      const row = answer.rows[place];
+      const over = lit && row && (lit.packet === null ? lit.start < row.line_end_cycle && lit.end > row.start_cycle : lit.packet === row.index);
+      node.classList.toggle("lit", Boolean(over));
+    }
+  }
+
+  /** Columns as wide as their texts; the meaning takes what is left. */
+  function widen() {
+    const fontOf = (/** @type {string} */ cell) => {
+      const { fontWeight, fontSize, fontFamily } = getComputedStyle(table.querySelector(cell) ?? table);
+      return `${fontWeight} ${fontSize} ${fontFamily}`;
+    };
+    const measure = (/** @type {string} */ column, /** @type {string} */ font, /** @type {string[]} */ ...texts) => {
+      ruler.font = font;
+      widest[column] = Math.max(widest[column] ?? 0, ...texts.map((text) => Math.ceil(ruler.measureText(text).width) + CELL_PX));
+    };
+    const { rows, unit } = answer;
+    const [head, plain, hex] = [fontOf("th"), fontOf("td"), fontOf("td:nth-child(3)")];
+    measure("index", plain, count(Math.max(0, answer.total - 1)), "00");
+    measure("time", plain, ...rows.map(({ start }) => start));
+    measure("time", head, `start, ${unit}`);
+    measure("gap", plain, ...rows.map(({ gap }) => gap));
+    measure("gap", head, `gap, ${unit}`);
+    measure("outcome", plain, ...rows.map(({ short }) => short));
+    measure("outcome", head, "outcome");
+    measure("bytes", hex, ...rows.map((row) => row.hex));
+    measure("bytes", head, "bytes (hex)");
+    // Of a frame the bytes say less than the words.
+    const spare = table.clientWidth - widest.index - widest.time - widest.gap - widest.outcome;
+    const framed = now().result?.summary.framed;
+    const bytes = Math.min(widest.bytes, framed ? Math.min(FRAMED_BYTES_PX, Math.max(spare / 3, 60)) : Math.max(spare / 2, 96));
+    for (const [column, width] of Object.entries({ ...widest, bytes })) table.style.setProperty(`--${column}-px`, `${width}px`);
+  }
+
+  return {
+    reload, moveTo, light, current: currentRow,
+    /** @param {number} by  Rows. */
+    move: (by) => { moveTo(current + by); },
+    page: () => Math.max(1, visible() - 1),
+    place: () => ({ position: current, row: answer.rows.find(({ position }) => position === current) ?? null }),
+    /** Another run. */
+    reset: () => {
+      current = 0;
+      widest = {};
+      scroller.scrollTop = 0;
+    },
+  };
+}
+
+/** What a row says, and which way it went. @param {PacketRow} row */
+export function worded({ kind, fields }) {
+  if (kind === "packet") return fields;
+  const arrow = { frame: "→", reply: "←", collision: "↯" }[kind];
+  return `${arrow} ${fields || kind}`;
+}

@@ -1,0 +1,59 @@
+/** The edges as a table, a page at a time: what the logic view shows, in words. */
+import { byId, element, fill, say } from "../../dom.js";
+import { unlessDropped } from "../../engine/engine.js";
+import { count, time } from "../../state/number.js";
+import { shown } from "../../state/state.js";
+import { nameOf } from "./rows.js";
+
+/** @typedef {import("../../state/types.js").State} State */
+/** @typedef {import("../../state/types.js").EdgeRow} EdgeRow */
+
+/** Edges of a page; with the last one come all of its cycle. */
+const PAGE = 50;
+
+/** @param {{engine: import("../../engine/engine.js").Engine, now: () => State}} page */
+export function createEdges({ engine, now }) {
+  const panel = /** @type {HTMLDetailsElement} */ (byId("edge-panel"));
+  const which = /** @type {HTMLSelectElement} */ (byId("edges-of"));
+  const [earlier, later] = /** @type {HTMLButtonElement[]} */ ([byId("edges-earlier"), byId("edges-later")]);
+  /** @type {EdgeRow[]} */
+  let rows = [];
+
+  panel.addEventListener("toggle", () => { if (panel.open) fromShown(); });
+  which.addEventListener("change", fromShown);
+  byId("edges-from").addEventListener("click", fromShown);
+  earlier.addEventListener("click", () => turn(rows[0]?.cycle ?? 0, false));
+  later.addEventListener("click", () => turn(rows[rows.length - 1]?.cycle ?? -1, true));
+
+  function fromShown() {
+    return turn(shown(now()).start - 1, true);
+  }
+
+  /** Shows the edges after a cycle, or before it. @param {number} cycle @param {boolean} forward */
+  async function turn(cycle, forward) {
+    const bit = which.value === "row" ? now().row : undefined;
+    const answer = await engine.latest("edges", "edges", bit, cycle, forward, PAGE).catch(unlessDropped);
+    if (!answer) return;
+    ({ rows } = answer);
+    // At the last page there may still be edges the other way.
+    earlier.disabled = forward ? cycle < 0 : !answer.more;
+    later.disabled = forward && !answer.more;
+    paint(now());
+  }
+
+  /** @param {State} state */
+  function paint(state) {
+    const clock = state.result?.summary.clock_hz ?? 1;
+    say(byId("edges-count"), rows.length === 0 ? "No edge there." : `${rows.length} edges, from ${time(rows[0].cycle / clock)} to ${time(rows[rows.length - 1].cycle / clock)}`);
+    fill(/** @type {Element} */ (panel.querySelector("tbody")), ...rows.map(({ cycle, bit, high }) => element("tr", {},
+      ...[time(cycle / clock), count(cycle)].map((text) => element("td", { class: "number" }, text)),
+      element("td", {}, nameOf(state, bit)), element("td", {}, high ? "high" : "low"))));
+  }
+
+  /** @param {State} state @param {State | undefined} before */
+  function render(state, before) {
+    if (!panel.open) return;
+    if (before?.result !== state.result || (before?.row !== state.row && which.value === "row")) fromShown();
+  }
+  return { render };
+}

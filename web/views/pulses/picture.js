@@ -1,0 +1,96 @@
+/** The picture of the logic view: its rows, one below the other, and what is lit in them. */
+import { paintSignal, paintSpans, paintTint } from "./paint.js";
+import { color, fit, ratio } from "../../time/plot.js";
+import { ROW_PX, rowsOf, shows } from "./rows.js";
+import { shown } from "../../state/state.js";
+import { pixelOf } from "../../time/timeline.js";
+
+/** @typedef {import("../../state/types.js").State} State */
+/** @typedef {import("../../state/types.js").PulseColumns} PulseColumns */
+/** @typedef {{left: number, right: number}} Plot  Plotting area in CSS pixels. */
+/** @typedef {ReturnType<typeof import("./spans.js").createSpans>} Spans */
+/** @typedef {{columns: PulseColumns, start: number, end: number, count: number, margin: number}} Answer  Columns of a stretch of cycles and of a margin at each side. */
+
+/**
+ * Where the columns lie by now: one on each device pixel where they are those of the shown time, shifted where it was
+ * moved since, stretched where it was zoomed.
+ * @param {State} state @param {Answer} last @param {number} left @param {number} right  Device pixels. @returns {import("./paint.js").Picture}
+ */
+function placedColumns(state, { columns, start, end, count, margin }, left, right) {
+  const window = shown(state);
+  const pixels = (right - left) / (window.end - window.start);
+  const same = end - start === window.end - window.start && count === right - left;
+  const width = same ? 1 : ((end - start) / count) * pixels;
+  const shift = (start - window.start) * pixels - margin * width;
+  const first = left + (same ? Math.round(shift) : shift);
+  const column = (/** @type {number} */ x) => Math.min(count + 2 * margin, Math.max(0, (x - first) / width));
+  return { columns, from: Math.floor(column(left)), to: Math.ceil(column(right)), at: (i) => first + i * width };
+}
+
+/** @param {HTMLCanvasElement} canvas @param {State} state @param {Plot} plot @param {Answer} answer @param {Spans} spans */
+export function paintRows(canvas, state, plot, answer, spans) {
+  const { width, ratio: scale } = fit(canvas);
+  const context = canvas.getContext("2d");
+  if (!context) return;
+  const left = Math.round(plot.left * scale);
+  const right = Math.round(plot.right * scale);
+  const picture = placedColumns(state, answer, left, right);
+  const font = `${11 * scale}px ${getComputedStyle(document.body).fontFamily}`;
+  for (const [index, row] of rowsOf(state).entries()) {
+    const top = Math.round((index * ROW_PX + 4) * scale);
+    const height = Math.round((ROW_PX - 6) * scale);
+    const chosen = shows(row, state.row);
+    if (chosen) {
+      context.fillStyle = color("--chosen");
+      context.fillRect(0, top - 3 * scale, width * scale, ROW_PX * scale);
+    }
+    context.fillStyle = color(chosen ? "--ink" : "--quiet");
+    context.textAlign = "right";
+    context.textBaseline = "middle";
+    context.font = `${chosen ? "bold " : ""}${font}`;
+    context.fillText(row.name, left - 8 * scale, top + height / 2);
+    if ("open" in row && row.open !== undefined) {
+      context.textAlign = "left";
+      context.fillText(row.open ? "▾" : "▸", 8 * scale, top + height / 2);
+    }
+    const place = { left, right, top, height, ratio: scale, ink: color(row.ink), font };
+    context.save();
+    context.beginPath();
+    context.rect(left, 0, right - left, canvas.height);
+    context.clip();
+    if (row.kind === "folded") paintTint(context, picture, row.dir, true, { ...place, ink: color("--dir") });
+    if ("bit" in row) paintSignal(context, picture, row.bit, place);
+    else if ("lane" in row && spans.isDense(row)) paintTint(context, picture, row.line, false, place);
+    else paintSpans(context, spans.spansOf(state, row).map((span) => placed(state, plot, span)), place);
+    context.restore();
+  }
+}
+
+/** A span in device pixels. @param {State} state @param {Plot} plot @param {import("./spans.js").Span} span */
+function placed(state, plot, { start, end, sample, ...rest }) {
+  const x = (/** @type {number} */ cycle) => pixelOf(state, plot, cycle) * ratio();
+  return { ...rest, from: x(start), to: x(end), sample: typeof sample === "number" ? x(sample + 0.5) : null };
+}
+
+/** A frame around the spans that are lit, whoever points at them, and around a lit edge. @param {CanvasRenderingContext2D} context  In CSS pixels. @param {State} state @param {Plot} plot @param {Spans} spans */
+export function drawLit(context, state, plot, spans) {
+  const { lit } = state;
+  if (!lit) return;
+  context.setLineDash([]);
+  context.strokeStyle = color("--ink");
+  context.lineWidth = 1.5;
+  for (const [index, row] of rowsOf(state).entries()) {
+    const top = index * ROW_PX;
+    if ("bit" in row) {
+      if (lit.bit === null || !shows(row, lit.bit)) continue;
+      context.strokeRect(pixelOf(state, plot, lit.start) - 3, top + 3, 6, ROW_PX - 4);
+    } else if (!spans.isDense(row)) {
+      for (const { start, end, packet } of spans.spansOf(state, row)) {
+        const same = start === lit.start && end === lit.end;
+        if (!same && (packet === null || packet !== lit.packet || "lane" in row)) continue;
+        const [from, to] = [Math.max(plot.left, pixelOf(state, plot, start)), Math.min(plot.right, pixelOf(state, plot, end))];
+        if (to > from) context.strokeRect(from, top + 3, Math.max(2, to - from), ROW_PX - 5);
+      }
+    }
+  }
+}

@@ -1,0 +1,77 @@
+/** The figures of a spectrum: harmonics beside their parts of the fundamental, the distortion, and how both are defined. */
+import { short, si } from "../../state/number.js";
+
+/** @typedef {import("../../state/types.js").Spectrum} Spectrum */
+/** @typedef {import("../../state/types.js").Spectra} Spectra */
+/** @typedef {"position" | "speed" | "acceleration"} Quantity */
+/** @typedef {{name: string, amplitude: number, part: number}} Part  Part of the fundamental; 0 where there is nothing but rounding. */
+
+/** Lowest level of the dB scale. */
+export const FLOOR_DB = -120;
+/** Below this part of the fundamental a harmonic is the arithmetic's own noise. */
+const NOISE = 1e-11;
+/** And so it is below this many steps, steps/s or steps/s². */
+const LEAST = 1e-9;
+
+export const UNITS = { position: "steps", speed: "steps/s", acceleration: "steps/s²" };
+
+/** What the parts are parts of: the fundamental, or the greatest line where there is no fundamental. @param {Spectrum} spectrum @param {Quantity} quantity */
+export function reference(spectrum, quantity) {
+  return Math.max(LEAST, spectrum.periodic ? spectrum[quantity][0] : Math.max(...spectrum[quantity]));
+}
+
+/** @param {number} amplitude */
+export function heard(amplitude) {
+  return amplitude < LEAST ? 0 : amplitude;
+}
+
+/** The spectra that there are, by name. @param {Spectra} spectra @returns {[string, Spectrum][]} */
+export function given({ ideal, pulses }) {
+  return [.../** @type {[string, Spectrum][]} */ (ideal ? [["ideal", ideal]] : []), .../** @type {[string, Spectrum][]} */ (pulses ? [["pulses", pulses]] : [])];
+}
+
+/** @param {Spectra} spectra @param {Quantity} quantity @returns {{n: number, hz: number, parts: Part[]}[]} */
+export function harmonics(spectra, quantity) {
+  const all = given(spectra);
+  const length = Math.max(0, ...all.map(([, spectrum]) => spectrum[quantity].length));
+  return Array.from({ length }, (_, i) => ({
+    n: i + 1,
+    hz: all[0][1].fundamental_hz * (i + 1),
+    parts: all.map(([name, spectrum]) => {
+      const part = heard(spectrum[quantity][i]) / reference(spectrum, quantity);
+      return part >= NOISE ? { name, amplitude: spectrum[quantity][i], part } : { name, amplitude: 0, part: 0 };
+    }),
+  }));
+}
+
+/** @param {number} part */
+export function decibels(part) {
+  return part > 0 ? `${short(20 * Math.log10(part), 4)} dB` : "nothing";
+}
+
+/** A harmonic on the scale that is chosen. @param {Part} part @param {Quantity} quantity @param {boolean} db */
+export function value({ amplitude, part }, quantity, db) {
+  return db ? decibels(part) : `${short(amplitude, 4)} ${UNITS[quantity]}`;
+}
+
+/** One harmonic in words. @param {ReturnType<typeof harmonics>[number]} row @param {Quantity} quantity @param {boolean} periodic */
+export function told({ n, hz, parts }, quantity, periodic) {
+  const each = parts.map(({ name, amplitude, part }) => `${name} ${short(amplitude, 4)} ${UNITS[quantity]}, ${short(100 * part, 3)} %, ${decibels(part)}`);
+  return `${periodic ? "harmonic" : "line"} ${n} · ${si(hz, "Hz", 5)} · ${each.join(" · ")}`;
+}
+
+/** @param {Spectra} spectra @param {Quantity} quantity */
+export function distortion(spectra, quantity) {
+  const parts = given(spectra).map(([name, spectrum]) => {
+    const value = spectrum[/** @type {const} */ (`thd_${quantity}`)];
+    return `${name} ${value === null ? "none" : `${short(value * 100, 5)} %`}`;
+  });
+  return `THD of ${quantity}, axis ${spectra.axis}: ${parts.join(", ")}`;
+}
+
+/** How the distortion is defined. @param {Spectrum} some */
+export function method(some) {
+  if (!some.periodic) return `Lines at multiples of ${si(some.fundamental_hz, "Hz", 5)}, the run taken as one period (not coherent), no window.`;
+  const periods = some.periods === 1 ? "one whole period" : `${some.periods} whole periods`;
+  return `THD is the root of the sum of squares of harmonics 2 to ${some.order} over the fundamental of ${si(some.fundamental_hz, "Hz", 5)}; coherent: ${periods}, no window.`;
+}

@@ -1,0 +1,83 @@
+//! Firefox and WebKit with their drivers, and a display for WebKit, which has no mode without a window.
+
+use std::env;
+use std::path::PathBuf;
+use std::process::Stdio;
+
+use anyhow::{Context, Result};
+use tokio::process::Command;
+
+use crate::{apt, run, tools};
+
+/// Environment variables that name the programs where PATH does not, and by which tests are told of them.
+pub(crate) const FIREFOX: &str = "STEPSCOPE_FIREFOX";
+/// See [`FIREFOX`].
+pub(crate) const GECKODRIVER: &str = "STEPSCOPE_GECKODRIVER";
+/// See [`FIREFOX`].
+pub(crate) const WEBKITDRIVER: &str = "STEPSCOPE_WEBKITDRIVER";
+
+/// Firefox and its driver.
+pub(crate) struct Firefox {
+    pub(crate) firefox: PathBuf,
+    pub(crate) geckodriver: PathBuf,
+}
+
+impl Firefox {
+    /// Finds the two; installs them where nobody needs to be asked.
+    pub(crate) async fn ready() -> Result<Self> {
+        let firefox = program(FIREFOX, &["firefox", "firefox-esr"], "firefox-esr").await.with_context(|| {
+            format!(
+                "tests in Firefox need it: install it (Debian: `apt-get install firefox-esr` as root) so that it is \
+                 on PATH, or name it in {FIREFOX}"
+            )
+        })?;
+        let geckodriver = match env::var_os(GECKODRIVER) {
+            Some(named) => named.into(),
+            None => tools::geckodriver().await.with_context(|| {
+                format!("tests in Firefox need geckodriver: install it so that it is on PATH, or name it in {GECKODRIVER}")
+            })?,
+        };
+        Ok(Self { firefox, geckodriver })
+    }
+}
+
+/// WebKit's driver, which starts its own browser, and the display that it draws on as long as this lives.
+pub(crate) struct WebKit {
+    pub(crate) driver: PathBuf,
+    /// As `DISPLAY` has it.
+    pub(crate) display: String,
+    _server: run::Group,
+}
+
+impl WebKit {
+    /// Finds the driver and starts a display; installs both programs where nobody needs to be asked.
+    pub(crate) async fn ready() -> Result<Self> {
+        let driver = program(WEBKITDRIVER, &["WebKitWebDriver"], "webkit2gtk-driver").await.with_context(|| {
+            format!(
+                "tests in WebKit need WebKitGTK's MiniBrowser and its driver: install them (Debian: `apt-get install \
+                 webkit2gtk-driver` as root) so that WebKitWebDriver is on PATH, or name it in {WEBKITDRIVER}"
+            )
+        })?;
+        let server = program("STEPSCOPE_XVFB", &["Xvfb"], "xvfb").await.context(
+            "tests in WebKit need a display that nobody looks at: install Xvfb (Debian: `apt-get install xvfb` as \
+             root) so that it is on PATH",
+        )?;
+        let mut command = Command::new(server);
+        // It takes a free number and says which.
+        command.args(["-displayfd", "1", "-screen", "0", "1600x1200x24", "-nolisten", "tcp"]);
+        command.stdout(Stdio::piped()).stderr(Stdio::null());
+        let mut server = run::start(command)?;
+        let number = server.first_line().await.context("Xvfb did not say which display it serves")?;
+        Ok(Self { driver, display: format!(":{number}"), _server: server })
+    }
+}
+
+/// The program that a variable names, or the first of these that is on PATH, or what Debian's package brings there.
+async fn program(variable: &str, names: &[&str], package: &str) -> Result<PathBuf> {
+    let on_path = || names.iter().find_map(|name| which::which(name).ok());
+    if let Some(found) = env::var_os(variable).map(PathBuf::from).or_else(on_path) {
+        return Ok(found);
+    }
+    apt::install(&[package]).await?;
+    on_path().with_context(|| format!("{package} was installed, but has no {}", names.join(" and no ")))
+}
