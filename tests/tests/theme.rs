@@ -1,5 +1,7 @@
 //! Contrasts of the page's colours (WCAG 1.4.3 and 1.4.11), computed from `web/style/theme.css`.
 #![cfg(not(any(target_arch = "wasm32", target_os = "none")))]
+// A file without its rules is a test that fails.
+#![allow(clippy::expect_used, clippy::panic)]
 
 use std::{collections::BTreeMap, fs, path::Path};
 
@@ -90,7 +92,8 @@ fn text_has_four_and_a_half_to_one() {
 
 #[test]
 fn what_is_drawn_and_where_the_focus_is_has_three_to_one() {
-    let curves = ["ideal", "made", "step", "dir", "enable", "wire", "packet", "reply", "tick", "axis", "kept"];
+    let curves =
+        ["ideal", "made", "step", "dir", "enable", "wire", "packet", "reply", "tick", "axis", "kept"];
     at_least(3.0, &curves, &["pane"]);
     at_least(3.0, &["cursor-a", "cursor-b", "accent"], &["pane", "ground"]);
     at_least(3.0, &["focus"], &["pane", "ground", "raised"]);

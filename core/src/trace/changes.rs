@@ -134,7 +134,7 @@ impl Changes {
         while at < after {
             let (mut whole, mut size) = (None, BLOCK);
             for level in &self.levels {
-                if at % size != 0 || at + size > after {
+                if !at.is_multiple_of(size) || at + size > after {
                     break;
                 }
                 let Some(block) = level.get(at / size) else { break };
@@ -188,7 +188,7 @@ impl Changes {
             let (mut over, mut size) = (0, BLOCK);
             for level in &self.levels {
                 match level.get(at / size) {
-                    Some(block) if at % size == 0 && !block.has(mask, high) => over = size,
+                    Some(block) if at.is_multiple_of(size) && !block.has(mask, high) => over = size,
                     _ => break,
                 }
                 size *= FAN;
@@ -213,7 +213,7 @@ impl Changes {
             let (mut over, mut size) = (0, BLOCK);
             for level in &self.levels {
                 match (end / size).checked_sub(1).and_then(|index| level.get(index)) {
-                    Some(block) if end % size == 0 && !block.has(mask, high) => over = size,
+                    Some(block) if end.is_multiple_of(size) && !block.has(mask, high) => over = size,
                     _ => break,
                 }
                 size *= FAN;

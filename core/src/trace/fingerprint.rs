@@ -202,7 +202,7 @@ impl Sink for Comparison<'_> {
             self.digest.value() == self.other.digest
         } else if records > self.other.records {
             false
-        } else if records % self.spacing == 0 {
+        } else if records.is_multiple_of(self.spacing) {
             let index = (records / self.spacing - 1) as usize;
             self.other.checkpoints.get(index).is_none_or(|known| *known == high_half(&self.digest))
         } else {

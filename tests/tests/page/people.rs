@@ -18,6 +18,9 @@ use crate::{
     session::{ENTER, SHIFT, Session, field},
 };
 
+/// What a remedy does to a scenario.
+type Mend = fn(&mut Scenario);
+
 /// See [`ENTER`].
 const ESCAPE: char = '\u{e00c}';
 /// See [`ENTER`].
@@ -219,7 +222,7 @@ fn the_help_lists_every_key_and_the_help_page_every_term_and_document() -> Resul
 
 #[test]
 fn what_went_wrong_on_purpose_is_told_and_mended_in_one_step() -> Result<()> {
-    let mended: [(&str, &str, fn(&mut Scenario)); 2] = [
+    let mended: [(&str, &str, Mend); 2] = [
         ("driver-timing-broken", "STEP high", |scenario| {
             scenario.bus.pulse_width_cycles = 31;
             scenario.bus.dir_setup_cycles = 11;
