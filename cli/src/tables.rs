@@ -10,7 +10,7 @@ use std::{
 use stepscope_core::{
     motion::{AxisPlan, plan_lists, round_half_up},
     quantise::{
-        EntryFormat, Form, MOST_TOLERANCE, Stored, Tolerance,
+        EntryFormat, Form, Stored, Tolerance,
         source_code::{Language, Source, is_name},
         stored,
     },
@@ -140,10 +140,8 @@ impl Axes {
         };
         let config = Config::of_segments(clock_hz, &bus, &line).map_err(wrong)?;
         let plans = plan_lists([("source.motion.axes".to_owned(), axes.as_slice())]).map_err(wrong)?;
-        let cycles = arguments.error_us * 1e-6 * f64::from(clock_hz);
-        // What is beyond the greatest tolerance is refused with its numbers.
-        let cycles =
-            Cycles(if cycles > MOST_TOLERANCE.0 as f64 { cycles as u64 } else { cycles.floor() as u64 });
+        // One division, so that 25 us of 16 MHz are 400 cycles and not 399.
+        let cycles = Cycles((arguments.error_us * f64::from(clock_hz) / 1e6) as u64);
         let tolerance = Tolerance { cycles, interval_part: arguments.interval_part };
         let plans = plans.into_iter().flatten().collect();
         Ok(Self { pulse: PulseTimes::from(&config), path, title, clock_hz, plans, tolerance })
