@@ -31,7 +31,7 @@ async fn look(page: &Session, state: &str, wrong: &mut Vec<String>) -> Result<()
         page.js::<bool>(&format!("{script}\nreturn true;"), vec![]).await?;
     }
     let Answer { rules, found } = page.js(RUN, vec![]).await.with_context(|| state.to_owned())?;
-    ensure!(rules > 20, "axe looked at {rules} rules only");
+    ensure!(rules > 12, "axe looked at {rules} rules only");
     wrong.extend(found.into_iter().map(|text| format!("{state}: {text}")));
     Ok(())
 }

@@ -58,6 +58,9 @@ fn bytes_and_fields_are_decoded_lit_in_all_views_and_choose_their_packet() -> Re
     in_browser(|page| async move {
         let known = preset("glitches-and-breaks")?;
         open(&page, &known).await?;
+        // The decoders begin folded.
+        page.choose("#edge-row", "33").await?;
+        page.press("#pulses", &ENTER.to_string()).await?;
         let log = &known.recording.packets;
         // The second packet's first byte was sent as 83 and heard as 87.
         assert_eq!(log.bytes(1), [0x87, 0x05]);

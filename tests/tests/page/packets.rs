@@ -22,7 +22,8 @@ fn preset(id: &str) -> Result<Known> {
 /// Opens a preset and waits for its run.
 async fn open(page: &Session, known: &Known) -> Result<()> {
     page.open(&format!("#{}", known.link)).await?;
-    page.until_digest(&known.digest).await
+    page.until_digest(&known.digest).await?;
+    page.js::<bool>("return document.getElementById('packet-inspector').open = true;", vec![]).await.map(drop)
 }
 
 /// The core's reading of a row.

@@ -18,7 +18,7 @@ import { lookedAt } from "../../state/state.js";
 export const ROW_PX = 19;
 /** Signal bits (contract A3). */
 const [DIR, EN, RX, TX, DE] = [16, 32, 33, 34, 35];
-/** With more channels than these, all begin folded, and so does RX. */
+/** With more channels than these, all begin folded. The decoders do so too: the curves need the room. */
 const MOST_UNFOLDED = 4;
 
 /** Signals of the line, that a run may leave as they are. */
@@ -31,7 +31,7 @@ function channelsOf(state) {
 
 /** Whether a channel is one row, or the decoders of RX or TX are put away. @param {State} state @param {number} channel */
 export function isFolded(state, channel) {
-  return state.folds[channel] ?? (channel === TX || channelsOf(state) > MOST_UNFOLDED);
+  return state.folds[channel] ?? (channel === RX || channel === TX || channelsOf(state) > MOST_UNFOLDED);
 }
 
 /** Whether every channel is folded. @param {State} state */
