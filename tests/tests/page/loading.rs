@@ -16,7 +16,8 @@ const OBSERVE: &str = "{
         .observe({ type, buffered: true, ...options });
     observe('largest-contentful-paint', (entry) => { seen.lcp = entry.startTime; seen.lcpOf = String(entry.element?.id || entry.element?.className || entry.element?.tagName); });
     observe('layout-shift', (entry) => { if (!entry.hadRecentInput) { seen.cls += entry.value;
-        seen.shifted.push(...entry.sources.map(({ node }) => String(node?.id || node?.className || node?.nodeName))); } });
+        seen.shifted.push(...entry.sources.map(({ node, previousRect: from, currentRect: to }) => `${node?.id || node?.className || node?.nodeName} in ${node?.parentElement?.className} \
+        ${[from.x, from.y, from.width, from.height]} to ${[to.x, to.y, to.width, to.height]}`)); } });
     observe('event', (entry) => { if (entry.interactionId && entry.duration > seen.inp) { seen.inp = entry.duration; seen.inpOf = entry.name; } }, { durationThreshold: 16 });
     const { fetch } = window;
     window.fetch = (...given) => { seen.fetched.push(String(given[0]?.url ?? given[0])); return fetch(...given); };
