@@ -125,7 +125,8 @@ fn the_table_of_packets_is_read_back_field_by_field() {
     let mut reader = csv::Reader::from_path(&table).expect("a table");
     assert_eq!(
         reader.headers().expect("a head"),
-        ["start_cycle", "end_cycle", "bytes", "outcome", "tick_start_cycle", "tick_end_cycle"].as_slice()
+        ["start_cycle", "end_cycle", "bytes", "outcome", "tick_start_cycle", "tick_end_cycle", "kind"]
+            .as_slice()
     );
     let rows: Vec<csv::StringRecord> = reader.records().map(|row| row.expect("six fields")).collect();
     let with_commas = rows.iter().filter(|row| row[3].starts_with("ACK TICKS: ") && row[3].contains(", "));
