@@ -56,6 +56,8 @@ const engine = new Engine({
     dispatch({ type: "reference", reference: null });
     dispatch({ type: "failed", message: `The engine stopped and was started again; the form is as it was (${message}).` });
   },
+  // All views ask once more: to them it is another result.
+  restored: () => { if (state.result) dispatch({ type: "controller", controller: state.result.controller }); },
   stopped: () => {
     dispatch({ type: "reference", reference: null });
     if (held(state) === "unjudged") judge();
@@ -77,7 +79,7 @@ function follow(before) {
     judge();
     if (state.origin === "own") {
       // An edited link or preset becomes the visitor's own work; what was so before is set aside.
-      if (before && before.origin !== "own") setAside();
+      if (before && before.origin !== "own") setAside(JSON.stringify(scenario));
       saveScenario(JSON.stringify(scenario));
     }
   }

@@ -169,7 +169,7 @@ impl Simulation {
         Pulses {
             channel,
             steps: kept.steps_of(channel),
-            ticks: kept.recording.packets.ticks(),
+            log: &kept.recording.packets,
             segments: self.experiment.segments().and_then(|all| all.lists().get(usize::from(channel))),
             config: config(&self.experiment, self.looked_at),
         }

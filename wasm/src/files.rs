@@ -72,7 +72,9 @@ impl Simulation {
         end: f64,
         from: u32,
     ) -> Result<Object, JsError> {
-        let (start, end) = (start.max(0.0) as u64, end.max(0.0) as u64);
+        // Nothing of a file lies behind the run.
+        let last = self.run.cycles().0.saturating_sub(1);
+        let (start, end) = ((start.max(0.0) as u64).min(last), (end.max(0.0) as u64).min(last));
         let index = controller as usize;
         let none = || JsError::new("there is no such controller");
         let recording = &self.kept.get(index).ok_or_else(none)?.recording;

@@ -75,7 +75,7 @@ impl Simulation {
         let end = self.edge(bit, at, true, Edge::Any);
         object(&Pulse {
             high: self.level(bit, at),
-            begin: self.edge(bit, at + 1, false, Edge::Any),
+            begin: self.edge(bit, at.saturating_add(1), false, Edge::Any),
             end,
             next: end.and_then(|end| self.edge(bit, end, true, Edge::Any)),
         })

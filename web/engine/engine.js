@@ -14,6 +14,7 @@ import { compiled } from "./wasm.js";
  * @property {(revision: number, summary: Summary, ms: number) => void} done
  * @property {(revision: number, message: string) => void} failed
  * @property {(message: string) => void} crashed  A new worker is there already.
+ * @property {() => void} restored  After a crash the last good run is there again; what was asked meanwhile is to be asked anew.
  * @property {() => void} stopped  The worker did not hear a cancel; a new one is there, and open questions are dropped.
  */
 
@@ -130,7 +131,7 @@ export class Engine {
       case "progress": return this.#listener.progress(data.run, data.progress);
       case "restored":
         this.#good ??= this.#restoring;
-        return;
+        return this.#listener.restored();
       case "cancelled": return clearTimeout(this.#cancelling);
       case "done":
         if (this.#running?.run === data.run) [this.#good, this.#running] = [this.#running, null];

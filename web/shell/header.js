@@ -36,8 +36,8 @@ export function createHeader({ presets, cancel, retry, dispatch, now }) {
   byId("cancel").addEventListener("click", cancel);
   byId("try-again").addEventListener("click", retry);
   listen(document, "Everywhere", [
-    { keys: ["Ctrl+z"], text: "undo", run: () => dispatch({ type: "undo" }) },
-    { keys: ["Ctrl+Shift+z", "Ctrl+y"], text: "redo", run: () => dispatch({ type: "redo" }) },
+    { keys: ["Ctrl+z"], text: "undo", run: (event) => isElsewhere(event) ? false : dispatch({ type: "undo" }) },
+    { keys: ["Ctrl+Shift+z", "Ctrl+y"], text: "redo", run: (event) => isElsewhere(event) ? false : dispatch({ type: "redo" }) },
   ]);
 
   /** @param {State} state @param {State | undefined} before */
@@ -77,6 +77,11 @@ export function createHeader({ presets, cancel, retry, dispatch, now }) {
 function line(id, text) {
   say(byId(id), text);
   if (byId(id).title !== text) byId(id).title = text;
+}
+
+/** Whether a key is meant for a text that is no part of the experiment. @param {KeyboardEvent} event */
+function isElsewhere({ target }) {
+  return target instanceof Element && target.matches("input, textarea") && !target.closest("#form");
 }
 
 /** @param {State} state @param {boolean} long */

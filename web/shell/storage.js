@@ -28,10 +28,10 @@ function save(key, value) {
 export const loadScenario = () => load(SCENARIO);
 /** @param {string} json */
 export const saveScenario = (json) => save(SCENARIO, json);
-/** Keeps the saved scenario beside the one that is about to take its place. */
-export function setAside() {
+/** Keeps the saved scenario beside the one that is about to take its place, if that is another. @param {string} next */
+export function setAside(next) {
   const saved = load(SCENARIO);
-  if (saved !== null) save(PREVIOUS, saved);
+  if (saved !== null && saved !== next) save(PREVIOUS, saved);
 }
 export const loadPrevious = () => load(PREVIOUS);
 /** The last own scenario that ran to its end. */

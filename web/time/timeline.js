@@ -118,6 +118,8 @@ export function gestures(target, plot, page) {
     if (pointers.size === 1) drag = null;
     if (pointers.size > 1 && now().picked) dispatch({ type: "pick", picked: null });
     begin();
+    // Also a press that leaves the element before it is a drag ends here.
+    target.setPointerCapture(event.pointerId);
     if (drag && pointers.size === 1) drag.box = (now().box || event.shiftKey || event.button === 2) && xOf(event) >= plot().left;
   });
   // The right button's drag is a box; a press of it alone is still the browser's menu.
@@ -135,7 +137,6 @@ export function gestures(target, plot, page) {
     const points = [...pointers.values()];
     const middle = points.reduce((sum, point) => sum + point.x, 0) / points.length;
     if (!drag.moved && Math.abs(middle - drag.x) < CLICK_PX && points.length === 1) return;
-    if (!drag.moved) target.setPointerCapture(event.pointerId);
     drag.moved = true;
     if (drag.box && points.length === 1) {
       const [from, to] = [drag.x, x].sort((a, b) => a - b).map((at) => cycleAt(now(), area, Math.min(area.right, Math.max(area.left, at))));

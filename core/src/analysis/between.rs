@@ -153,7 +153,7 @@ mod tests {
             let pulses = Pulses {
                 channel: 0,
                 steps: &ran.steps,
-                ticks: ran.recording.packets.ticks(),
+                log: &ran.recording.packets,
                 segments: None,
                 config: ran.experiment.config(),
             };
@@ -200,7 +200,7 @@ mod tests {
         let pulses = Pulses {
             channel: 0,
             steps: &ran.steps,
-            ticks: &[],
+            log: &ran.recording.packets,
             segments: ran.experiment.segments().and_then(|lists| lists.lists().first()),
             config: ran.experiment.config(),
         };

@@ -11,7 +11,7 @@
 use crate::{
     scenario::Config,
     segment::{FRACTION_BITS, Segment, SegmentList},
-    trace::{LoggedTick, Step},
+    trace::{LoggedTick, PacketLog, Step},
     wire::packet::Order,
 };
 
@@ -22,8 +22,8 @@ pub struct Pulses<'a> {
     pub channel: u8,
     /// All of its steps.
     pub steps: &'a [Step],
-    /// The ticks of its controller.
-    pub ticks: &'a [LoggedTick],
+    /// With the ticks of its controller.
+    pub log: &'a PacketLog,
     /// What it runs by itself, where segments run it; then there are no ticks.
     pub segments: Option<&'a SegmentList>,
     /// Of its controller.
@@ -85,13 +85,15 @@ impl Pulses<'_> {
     /// Of the ticks.
     fn orders(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Rate)) {
         let hz = self.hz();
-        let length = self.config.tick().0;
+        let length = self.config.tick();
         let start = |tick: &LoggedTick| tick.start.0 as f64 / hz;
-        let end = |tick: &LoggedTick| (tick.start.0 + length) as f64 / hz;
-        let first = self.ticks.partition_point(|tick| end(tick) < from_s);
-        for tick in self.ticks.iter().skip(first).take_while(|tick| start(tick) <= to_s) {
+        // STOP ends a tick before its time.
+        let end = |tick: &LoggedTick| self.log.tick_end(tick, length).0 as f64 / hz;
+        let ticks = self.log.ticks();
+        let first = ticks.partition_point(|tick| end(tick) < from_s);
+        for tick in ticks.iter().skip(first).take_while(|tick| start(tick) <= to_s) {
             let order = Order::parse(tick.orders.get(usize::from(self.channel)).copied().unwrap_or(0));
-            let speed = f64::from(order.steps) * hz / length as f64;
+            let speed = f64::from(order.steps) * hz / length.0 as f64;
             let speed = if order.right { speed } else { 0.0 - speed };
             each(Rate { from_s: start(tick), to_s: end(tick), speed });
         }
@@ -140,4 +142,30 @@ fn first_not(count: u32, before: impl Fn(u32) -> bool) -> u32 {
         if before(middle) { from = middle + 1 } else { to = middle }
     }
     from
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        scenario::{Bus, Line},
+        signal::{Event, Sink},
+        units::Instant,
+    };
+
+    #[test]
+    fn a_tick_that_stop_ends_has_no_speed_afterwards() {
+        let config = Config::new(16_000_000, &Bus::default(), &Line::default()).expect("the defaults hold");
+        let mut log = PacketLog::default();
+        let mut orders = [0; 16];
+        orders[0] = 0x80 | 10;
+        log.event(Instant(16_000), Event::TickStart { orders });
+        log.event(Instant(24_000), Event::Stopped);
+        let pulses = Pulses { channel: 0, steps: &[], log: &log, segments: None, config: &config };
+        let speed = 10.0 * 16e6 / config.tick().0 as f64;
+        assert_eq!(
+            [0.000_9, 0.001, 0.001_4, 0.001_5, 0.002].map(|at| pulses.speed_at(at)),
+            [0.0, speed, speed, 0.0, 0.0]
+        );
+    }
 }

@@ -17,7 +17,7 @@ const ROW_PX: usize = 19;
 /// Width of the labels' column and of the free space at the right.
 const BESIDE_PX: usize = 68 + 26;
 /// Rows of one unfolded channel on a raw line, and the bits of those that are signals but EN, which is the chosen one.
-const ROWS: &[(usize, u32, &str)] = &[(1, 33, "RX"), (7, 16, "DIR 0"), (8, 0, "STEP 0")];
+const ROWS: &[(usize, u32, &str)] = &[(1, 33, "RX"), (4, 16, "DIR 0"), (5, 0, "STEP 0")];
 
 /// A dense train of steps on a line on which one cycle is pulled low while it rests.
 const GLITCHED: &str = r#"{"line":{"glitches":[{"start_cycle":1000000,"length_cycles":1,"level":0}]},

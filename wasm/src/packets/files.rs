@@ -49,6 +49,7 @@ impl Simulation {
         let file = Object::new();
         let part = if format == "bin" { Uint8Array::from(bytes.as_slice()).into() } else { text.into() };
         field(&file, "part", &part);
+        field(&file, "rows", &total.into());
         field(&file, "next", &if until < total { until.into() } else { JsValue::UNDEFINED });
         file
     }

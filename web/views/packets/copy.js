@@ -1,5 +1,6 @@
 /** Bytes for the clipboard, as hex; where the browser refuses, as a text that is selected. */
 import { byId, say } from "../../dom.js";
+import { unlessDropped } from "../../engine/engine.js";
 import { count } from "../../state/number.js";
 
 /** More than this is for a file, in characters. */
@@ -28,9 +29,10 @@ export async function copyHex(hex, what) {
 export async function copyAll(engine) {
   let hex = "";
   for (let from = 0; from !== undefined;) {
-    const { part, next } = await engine.ask("packet_file", "hex", true, from, ROWS);
-    hex += part;
-    from = next;
+    const answer = await engine.ask("packet_file", "hex", true, from, ROWS).catch(unlessDropped);
+    if (!answer) return say(byId("packets-note"), "Nothing was copied: the engine was started again; copy once more.");
+    hex += answer.part;
+    from = answer.next;
     if (hex.length > MOST) return say(byId("packets-note"), "That is more than a clipboard is for: save a file of the packets, or filter them first.");
   }
   return copyHex(hex, `${count(hex.split("\n").length - 1)} rows`);

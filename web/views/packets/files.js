@@ -2,7 +2,7 @@
 import { isFiltering } from "../../state/state.js";
 
 /** @typedef {import("../../state/types.js").State} State */
-/** @typedef {{name: string, type: string, label: string, make: () => Promise<BlobPart[]>}} PacketFile */
+/** @typedef {{name: string, type: string, label: string, make: (pace: (part: number) => void) => Promise<BlobPart[]>}} PacketFile */
 
 /** Rows that are asked for at a time. */
 const ROWS = 20_000;
@@ -29,11 +29,12 @@ export function packetFiles(state, engine) {
   }
   return scopes.flatMap((scope) => FORMATS.map(({ ending, format, type, said }) => ({
     name: `stepscope-${scope.name}.${ending}`, type, label: `${scope.said}: ${said}`,
-    make: async () => {
+    make: async (/** @type {(part: number) => void} */ pace) => {
       const parts = [];
       for (let from = 0; from !== undefined;) {
-        const { part, next } = await engine.ask("packet_file", format, scope.shown, from, ROWS, ...scope.between);
+        const { part, next, rows } = await engine.ask("packet_file", format, scope.shown, from, ROWS, ...scope.between);
         parts.push(part);
+        pace(Math.min(1, parts.length * ROWS / Math.max(1, rows)));
         from = next;
       }
       return parts;

@@ -29,7 +29,7 @@ impl Ran {
         Pulses {
             channel: 0,
             steps: &self.steps,
-            ticks: self.recording.packets.ticks(),
+            log: &self.recording.packets,
             segments: self.experiment.segments().and_then(|lists| lists.lists().first()),
             config: self.experiment.config(),
         }
