@@ -139,7 +139,7 @@ export const SECTIONS = [
   {
     title: "Clock and run", open: false,
     blocks: [{ path: "", fields: [
-      integer("clock_hz", "Clock", "Hz", "Of the peripheral, 1 Hz to 1 GHz; all cycles count it."),
+      integer("clock_hz", "Clock", "Hz", "Of the peripheral, 11 Hz to 1 GHz; all cycles count it."),
       { key: "run_cycles", label: "Length of the run", unit: "cycles", kind: "optional-cycles", hint: "Empty: until nothing can change any more. A time such as 20 ms is taken too." },
     ] }],
   },

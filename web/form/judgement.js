@@ -12,7 +12,8 @@ import { runsAlone } from "./sources.js";
 export function showProblems(state, controls, groups) {
   const problems = [
     ...Object.entries(state.drafts).map(([path, { message }]) => ({ path, message })),
-    ...(state.judgement?.problems ?? []),
+    // What the core says of a field that holds no number is about the value before.
+    ...(state.judgement?.problems ?? []).filter(({ path }) => !Object.keys(state.drafts).some((at) => `${path}.`.startsWith(`${at}.`) || `${at}.`.startsWith(`${path}.`))),
   ];
   /** @type {Map<string, string>} */
   const atField = new Map();

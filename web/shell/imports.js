@@ -99,7 +99,7 @@ export function createImports({ engine, openLink, dispatch, now }) {
   /** @param {File} file */
   async function packets(file) {
     const text = await engine.ask("replay", await whole(file, MOST_TABLE), JSON.stringify(now().scenario));
-    await take(text, file, (scenario) => `${count(scenario.source.line.sends.length)} packets of ${file.name} are sent again, each at its time, to the controllers of the experiment before.`);
+    await take(text, file, (scenario) => `${count(scenario.source.line.sends.length)} packets of ${file.name} are sent again, each at its time, to the controllers of the experiment before. The times are those at which the bytes were heard, and replies are not sent again, so the run can differ.`);
   }
 
   /** Shows a scenario that is right in every respect. @param {string} json @param {File} file @param {(scenario: any) => string} words */

@@ -21,6 +21,10 @@ export function parseNumber(text, unit, options = {}) {
   if (plain === "") return { message: `A number is missing; give one, such as ${example}.` };
   const match = NUMBER.exec(plain);
   if (!match) return { message: `“${text.trim()}” is not a number; give one, such as ${example}.` };
+  // Groups of three after a comma are thousands to some readers and parts to others.
+  if (/^[-+−]?[1-9]\d{0,2}(,\d{3})+$/.test(match[1])) {
+    return { message: `“${match[1]}” can be read as ${match[1].replaceAll(",", "")} or as ${match[1].replace(",", ".")}; write it without a comma.` };
+  }
   const mantissa = match[1].replace("−", "-").replace(",", ".");
   const suffix = match[2].trim();
   const shifted = shift(mantissa, suffix, unit);

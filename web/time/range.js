@@ -31,20 +31,23 @@ export function createRange({ dispatch, now }) {
     });
     const wrong = "message" in start ? start.message : "message" in end ? end.message : "";
     if (wrong || "message" in start || "message" in end) return say(byId("window-error"), wrong);
-    if (end.value <= start.value) return say(byId("window-error"), "“to” lies before “from”.");
+    const last = endOf(state) / clockHz;
+    if (start.value < 0) return say(byId("window-error"), "Time begins at 0; give that or more for “from”.");
+    if (start.value >= last) return say(byId("window-error"), `The run ends at ${time(last)}; give less for “from”.`);
+    if (end.value <= start.value) return say(byId("window-error"), "“to” is to lie after “from”.");
     say(byId("window-error"), "");
     const inRun = (/** @type {number} */ s) => Math.min(Math.max(0, s * clockHz), endOf(state));
     dispatch({ type: "window", window: { start: inRun(start.value), end: inRun(end.value) } });
-    fields(now());
+    fields(now(), true);
   }
 
-  /** @param {State} state */
-  function fields(state) {
+  /** @param {State} state @param {boolean} [all]  Also the one that has the focus: what it asked for is done. */
+  function fields(state, all = false) {
     const { start, end } = shown(state);
     const clock = state.result?.summary.clock_hz ?? 1;
     for (const [id, cycle] of /** @type {[string, number][]} */ ([["window-start", start], ["window-end", end]])) {
       const input = /** @type {HTMLInputElement} */ (byId(id));
-      if (document.activeElement !== input) input.value = time(cycle / clock);
+      if (all || document.activeElement !== input) input.value = time(cycle / clock);
     }
   }
 

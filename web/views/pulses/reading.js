@@ -53,7 +53,7 @@ export function createReading({ engine, now }) {
     const clock = state.result?.summary.clock_hz ?? 1;
     const under = state.hover === null ? [] : [`${time(state.hover / clock)} · cycle ${count(state.hover)}`, pointed];
     const text = said || under.filter(Boolean).join(" · ");
-    say(byId("hover-reading"), text || "wheel zooms, dragging moves, double click shows the whole run");
+    say(byId("hover-reading"), text || (matchMedia("(pointer: coarse)").matches ? "two fingers zoom, dragging moves, a double tap shows the whole run" : "wheel zooms, dragging moves, double click shows the whole run"));
     byId("hover-reading").classList.toggle("said", said !== "");
   }
 
