@@ -195,7 +195,7 @@ async function start() {
   byId("form").addEventListener("submit", (event) => event.preventDefault());
   const link = createLink(page);
   createImports({ openLink: link.openLink, ...page });
-  const retry = () => { ran = -1; judge(); };
+  const retry = () => { engine.revive(); ran = -1; judge(); };
   const pulses = createPulses(page);
   views = [createHeader({ presets, cancel, retry, ...page }), createForm({ root: byId("fields"), samples: made, drivers, dispatch }),
     createTabs(page), createPanes(page), createGuide(page), createMotion(page), pulses, createPackets(page), createSpectrum(page),
@@ -211,6 +211,7 @@ async function start() {
 }
 
 start().catch((error) => {
+  byId("try-again").addEventListener("click", () => location.reload());
   byId("status").textContent = "the engine could not be started";
   byId("engine-message").hidden = false;
   /** @type {Element} */ (byId("engine-message").firstElementChild).textContent = `The engine could not be started: ${error instanceof Error ? error.message : error}`;

@@ -152,6 +152,13 @@ export class Engine {
     this.#listener.crashed(message);
   }
 
+  /** Tries once more with a new worker, where crash after crash has left none. */
+  revive() {
+    if (this.#crashes <= 2) return;
+    this.#crashes = 0;
+    this.#renew("started again");
+  }
+
   /** Another worker in the place of this one. @param {string} why */
   #renew(why) {
     this.#drop(why);
