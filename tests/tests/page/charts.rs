@@ -45,7 +45,7 @@ fn between_two_cursors_are_the_means_that_the_core_computes() -> Result<()> {
         let pulses = Pulses {
             channel: 0,
             steps: &steps,
-            ticks: known.recording.packets.ticks(),
+            log: &known.recording.packets,
             segments: None,
             config: known.experiment.config(),
         };
