@@ -262,7 +262,7 @@ fn files_hold_all_rows_those_on_show_or_those_between_the_cursors() -> Result<()
             const state = { result: {}, filter, cursors: { a: arguments[2], b: arguments[1] } };
             const files = {};
             for (const { name, make } of packetFiles(state, engine)) {
-                const bytes = new Uint8Array(await new Blob(await make()).arrayBuffer());
+                const bytes = new Uint8Array(await new Blob(await make(() => {})).arrayBuffer());
                 files[name] = name.endsWith('bin') ? bytes.length : new TextDecoder().decode(bytes).trimEnd().split('\\n').length;
             }
             return files;";
