@@ -105,9 +105,7 @@ where
         let (heard, silent) = (Heard::default(), Heard::default());
         let (server, page) = start(serve, Says::Port("serving "), &silent).await.context("the server")?;
         let profiles = Folder::temporary()?;
-        let (drive, says) = browser.driver(&profiles.0)?;
-        let (mut driver, port) =
-            start(drive, says, &heard).await.with_context(|| format!("{browser:?}'s driver"))?;
+        let (mut driver, port) = driven(browser, &profiles.0, &heard).await?;
         let driver_address = format!("http://127.0.0.1:{}", port.trim_end_matches('.'));
         let bench = Arc::new(Bench {
             page,
@@ -127,6 +125,20 @@ where
         bench.stop_server().await;
         outcome
     })
+}
+
+/// A driver that listens, with its port. Another program may take the free port that it chose before it does: then
+/// it chooses once more.
+async fn driven(browser: Browser, temporary: &Path, heard: &Heard) -> Result<(Child, String)> {
+    let mut tried = 0;
+    loop {
+        let (drive, says) = browser.driver(temporary)?;
+        tried += 1;
+        match start(drive, says, heard).await {
+            Err(_) if tried < 3 => {}
+            done => return done.with_context(|| format!("{browser:?}'s driver")),
+        }
+    }
 }
 
 /// A test's work as a task of its own, so that a panic and an endless wait come back as errors.
