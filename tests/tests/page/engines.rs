@@ -51,7 +51,7 @@ async fn main_job(page: Session) -> Result<()> {
          document.getElementById('link-about').textContent.includes('The link is selected')",
     )
     .await?;
-    page.until_equal("location.hash.split('location.hash"')[0]", &json!(format!("#{}", typed.link))).await?;
+    page.until_equal("location.hash.split('&')[0]", &json!(format!("#{}", typed.link))).await?;
     let form = page.form().await?;
 
     let stranger = page.next_visitor().await?;
