@@ -101,7 +101,11 @@ fn measured() -> Result<()> {
             for key in ["\u{e014}", "\u{e012}"] {
                 page.press("#charts", key).await?;
             }
-            page.fill("bus.queue_depth", "9").await?;
+            // Segments that run alone have no queue.
+            let queue = page
+                .eval::<bool>("Boolean(document.querySelector('[data-path=\"bus.queue_depth\"]'))")
+                .await?;
+            page.fill(if queue { "bus.queue_depth" } else { "bus.pulse_width_cycles" }, "9").await?;
             page.ready().await?;
             page.press("body", &format!("{CONTROL}z")).await?;
             page.ready().await?;

@@ -18,6 +18,9 @@ import { createRecord } from "./record.js";
 /** Rest after a cursor moved by keys before its values are spoken, in ms. */
 const SPEAK_MS = 500;
 
+/** While the shown time moves, the charts follow at most so often, in ms. */
+const FOLLOW_MS = 80;
+
 /** @param {{engine: import("../../engine/engine.js").Engine} & import("../../time/timeline.js").Page} page */
 export function createMotion({ engine, dispatch, now }) {
   const stack = byId("charts");
@@ -40,10 +43,13 @@ export function createMotion({ engine, dispatch, now }) {
   stack.addEventListener("keydown", () => { byKeys = true; }, { capture: true });
   stack.addEventListener("pointerdown", () => { byKeys = false; });
   gestures(stack, () => plot, { dispatch, now });
+  /** When the charts were asked for last, and the timer that will ask again. */
+  let [asked, later] = [0, 0];
   watch(stack, () => refresh(now()));
 
   /** @param {State} state */
   async function refresh(state) {
+    asked = performance.now();
     plot = { left: GUTTER, right: Math.max(GUTTER + 1, stack.clientWidth - MARGIN) };
     if (!state.result || stack.clientWidth < 60) return;
     const wanted = Math.max(16, Math.round(plot.right - plot.left));
@@ -131,6 +137,17 @@ export function createMotion({ engine, dispatch, now }) {
     }, SPEAK_MS);
   }
 
+  /** Follows the shown time, but leaves the frames between to the pulses. */
+  function follow() {
+    const wait = asked + FOLLOW_MS - performance.now();
+    if (wait <= 0) return refresh(now());
+    later ||= window.setTimeout(() => {
+      later = 0;
+      refresh(now());
+    }, wait);
+    return undefined;
+  }
+
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
     if (before?.result !== state.result || before?.derived !== state.derived || before?.axis !== state.axis || before?.unit !== state.unit) {
@@ -145,6 +162,7 @@ export function createMotion({ engine, dispatch, now }) {
     if (before?.window !== state.window || other || before?.unit !== state.unit) record.render(state);
     if (before && byKeys && before.cursors !== state.cursors) speak(state, before.cursors.b === state.cursors.b ? "a" : "b");
     if (before?.cursors !== state.cursors || other || before?.unit !== state.unit) between.render(state).then(() => say(byId("motion-sentence"), sentence(now())), unlessDropped);
+    if (before && !other && before.window !== state.window && before.difference === state.difference) return follow();
     if (moved || before?.difference !== state.difference || (state.difference && before?.unit !== state.unit)) return refresh(state);
     if (before?.unit !== state.unit) paint(state);
     else if (overlaid(before, state)) paintCursor(state);
