@@ -143,9 +143,12 @@ impl Simulation {
         let log = &self.looked_at().recording.packets;
         let mut bytes = Vec::new();
         for packet in log.touching(Instant(start), Instant(end)) {
-            let placed = self.placed(packet);
-            let first = placed.partition_point(|byte| byte.end <= start);
-            bytes.extend(placed.into_iter().skip(first).take_while(|byte| byte.start < end));
+            // Of a row of megabytes only what is on show is looked at.
+            let seen = log.seen(packet);
+            let before = if is_reply(log, packet) { 0 } else { seen.partition_point(|at| at.0 < start) };
+            let placed =
+                self.placed_from(packet, before.saturating_sub(1)).skip_while(|byte| byte.end <= start);
+            bytes.extend(placed.take_while(|byte| byte.start < end).take(most + 1));
             if bytes.len() > most {
                 return None;
             }
@@ -155,25 +158,25 @@ impl Simulation {
 
     /// The bytes of a row with their places.
     pub(crate) fn placed(&self, packet: usize) -> Vec<Placed> {
+        self.placed_from(packet, 0).collect()
+    }
+
+    /// The bytes of a row from the one of this index on.
+    fn placed_from(&self, packet: usize, first: usize) -> impl Iterator<Item = Placed> {
         let log = &self.looked_at().recording.packets;
         let reply = is_reply(log, packet);
         let seen = log.seen(packet);
         let length = BITS * self.own().bit().0;
-        log.bytes(packet)
-            .iter()
-            .zip(seen)
-            .enumerate()
-            .map(|(index, (&byte, seen))| {
-                let (start, end) = if reply {
-                    let baud = self.own().reply_baud();
-                    (seen.0 + self.offset(index, baud), seen.0 + self.offset(index + 1, baud))
-                } else {
-                    let next = seen.0 + length;
-                    (seen.0, seen_after(log.seen(packet), index).map_or(next, |after| next.min(after)))
-                };
-                Placed { packet, byte, start, end }
-            })
-            .collect()
+        log.bytes(packet).iter().zip(seen).enumerate().skip(first).map(move |(index, (&byte, seen))| {
+            let (start, end) = if reply {
+                let baud = self.own().reply_baud();
+                (seen.0 + self.offset(index, baud), seen.0 + self.offset(index + 1, baud))
+            } else {
+                let next = seen.0 + length;
+                (seen.0, seen_after(log.seen(packet), index).map_or(next, |after| next.min(after)))
+            };
+            Placed { packet, byte, start, end }
+        })
     }
 
     /// The bits of a byte as the receiver looked at them.

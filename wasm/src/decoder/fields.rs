@@ -4,10 +4,17 @@ use super::{Placed, Span};
 use crate::simulation::Simulation;
 use stepscope_core::trace::{Check, Field, Verdict};
 
+/// Bytes of the longest row whose fields are told; a frame has at most 600 before COBS.
+const MOST_BYTES: usize = 1024;
+
 impl Simulation {
     /// The fields of a row of the packets.
     pub(super) fn fields_of(&self, packet: usize) -> Vec<Span> {
         let Some(row) = self.looked_at().recording.packets.rows().get(packet) else { return Vec::new() };
+        // No packet and no frame is longer: what is, was ignored or is none.
+        if self.looked_at().recording.packets.bytes(packet).len() > MOST_BYTES {
+            return Vec::new();
+        }
         let bytes = self.placed(packet);
         let Some(meaning) = self.meaning(packet) else { return Vec::new() };
         let broken = matches!(meaning.check, Check::Compared { found, expected } if found != expected);
