@@ -10,6 +10,9 @@
 //! staircase        B3          _-_           rates that are each held for some steps
 //! cosine           B4, exact:  ( S-curve )   so many steps in so much time
 //! sine_segments    B5          \/\/          a sine as segments of fixed rate
+//! sine             B6          ~~            a sine with every step in its place
+//! jerk_limited     B6          ( 7 phases )  rest to rest under limits of speed, acceleration and jerk
+//! points           B6          . ' .         a curve through points, straight or smooth
 //! steady           B6          ---           constant rate, dwell
 //! ```
 //!
@@ -22,17 +25,22 @@ mod asked;
 mod axis;
 pub mod cosine;
 mod due;
+mod hermite;
+pub mod jerk_limited;
 mod joints;
 mod mirrored;
 mod plan;
+pub mod points;
 pub(crate) mod polyline;
 mod profile;
+pub mod sine;
 pub mod sine_segments;
 pub mod staircase;
 pub mod staircase_table;
 pub mod steady;
 mod step_times;
 mod stepped;
+mod swing;
 pub mod trapezoid;
 pub mod trapezoid_table;
 mod words;

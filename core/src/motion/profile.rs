@@ -2,6 +2,9 @@
 
 use super::{
     cosine::Cosine,
+    jerk_limited::JerkLimited,
+    points::Points,
+    sine::Sine,
     sine_segments::SineSegments,
     staircase::Staircase,
     steady::{Constant, Dwell},
@@ -90,6 +93,12 @@ pub enum Profile {
     Cosine(Cosine),
     /// Sine by segments (B5).
     SineSegments(SineSegments),
+    /// Exact sine (B6).
+    Sine(Sine),
+    /// Seven phases from rest to rest (B6).
+    JerkLimited(JerkLimited),
+    /// A curve through points (B6).
+    Points(Points),
     /// One rate (B6).
     Constant(Constant),
     /// Standing still (B6).
@@ -104,10 +113,36 @@ macro_rules! each {
             Profile::Staircase($curve) => $what,
             Profile::Cosine($curve) => $what,
             Profile::SineSegments($curve) => $what,
+            Profile::Sine($curve) => $what,
+            Profile::JerkLimited($curve) => $what,
+            Profile::Points($curve) => $what,
             Profile::Constant($curve) => $what,
             Profile::Dwell($curve) => $what,
         }
     };
+}
+
+impl Profile {
+    /// The period in s and how many of them, of a move that repeats itself.
+    #[must_use]
+    pub fn repeats(&self) -> Option<(f64, u32)> {
+        match self {
+            Self::SineSegments(sine) => Some((sine.period_s(), sine.periods())),
+            Self::Sine(sine) => Some((sine.period_s(), sine.periods())),
+            _ => None,
+        }
+    }
+
+    /// Steps of the move, whichever way they go.
+    #[must_use]
+    pub fn step_count(&self) -> u64 {
+        match self {
+            Self::SineSegments(sine) => sine.step_count(),
+            Self::Sine(sine) => sine.step_count(),
+            Self::Points(points) => points.step_count(),
+            one_way => one_way.steps().unsigned_abs(),
+        }
+    }
 }
 
 impl Curve for Profile {

@@ -69,7 +69,11 @@ pub(super) fn document_bytes(plan: &AxisPlan) -> Option<u64> {
             Profile::SineSegments(sine) => sine.memory().segments,
             Profile::Constant(_) => 8,
             Profile::Dwell(_) => 4,
-            Profile::Trapezoid(_) | Profile::Cosine(_) => return None,
+            Profile::Trapezoid(_)
+            | Profile::Cosine(_)
+            | Profile::Sine(_)
+            | Profile::JerkLimited(_)
+            | Profile::Points(_) => return None,
         };
         Some(sum + bytes)
     })
@@ -112,7 +116,11 @@ fn rates(profile: &Profile, clock_hz: u32) -> Result<Box<dyn Iterator<Item = Rat
             Box::new([Rate { first: each / 2.0, ..held(each, profile.steps().unsigned_abs()) }].into_iter())
         }
         Profile::Dwell(_) => Box::new(core::iter::empty()),
-        Profile::Trapezoid(_) | Profile::Cosine(_) => {
+        Profile::Trapezoid(_)
+        | Profile::Cosine(_)
+        | Profile::Sine(_)
+        | Profile::JerkLimited(_)
+        | Profile::Points(_) => {
             let detail = "a move of this kind has no table of its own; ask for the exact or a compressed list, or plan \
                           the move with a table";
             return Err(Cause::Conflict { detail });

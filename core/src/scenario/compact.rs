@@ -128,6 +128,8 @@ words! {
     super::Pulses { Simultaneous = "simultaneous", Staggered = "staggered", }
     super::MotionEngine { Ticks = "ticks", Segments = "segments", }
     super::ShortMove { Document = "document", TurnRound = "turn_round", }
+    super::Interpolation { Straight = "straight", Smooth = "smooth", }
+    super::PointUnit { Steps = "steps", Millimetres = "mm", Degrees = "deg", }
     super::TrapezoidMethod { Table = "table", Exact = "exact", }
     super::DriverModel {
         A4988 = "a4988",
