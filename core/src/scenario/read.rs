@@ -218,6 +218,14 @@ mod tests {
                 ],
             ),
             (
+                r#"{"source":{"motion":{"axes":[{"moves":[{"points":{"points":[[0,0],"x",[1,"y"],[1,2,3],[2,1]]}}]}]}}}"#,
+                &[
+                    "source.motion.axes[0].moves[0].points.points[1]",
+                    "source.motion.axes[0].moves[0].points.points[2][1]",
+                    "source.motion.axes[0].moves[0].points.points[3]",
+                ],
+            ),
+            (
                 r#"{"source":{"packets":{"packets":["00",1,"zz","0"]}}}"#,
                 &["source.packets.packets[1]", "source.packets.packets[2]", "source.packets.packets[3]"],
             ),
