@@ -13,10 +13,7 @@
 //! last ones, of the tick of its end the first ones, as many as it asks for there. Where the two
 //! go opposite ways in such a tick, only the difference is made, and what cancels is no one's.
 
-use crate::{
-    motion::{AxisPlan, Profile},
-    quantise::TickClock,
-};
+use crate::{motion::AxisPlan, quantise::TickClock};
 use alloc::vec::Vec;
 
 /// Longest transform.
@@ -40,14 +37,12 @@ impl Stretch {
     /// motion that takes no time.
     #[must_use]
     pub fn of(plan: &AxisPlan) -> Option<Self> {
-        let sine = plan.moves().iter().find_map(|planned| match &planned.profile {
-            Profile::SineSegments(sine) => Some((planned.start_s, sine)),
-            _ => None,
-        });
-        let stretch = match sine {
-            Some((start_s, sine)) => {
-                Self { start_s, period_s: sine.period_s(), periods: sine.periods(), periodic: true }
-            }
+        let repeating = plan
+            .moves()
+            .iter()
+            .find_map(|planned| planned.profile.repeats().map(|repeats| (planned.start_s, repeats)));
+        let stretch = match repeating {
+            Some((start_s, (period_s, periods))) => Self { start_s, period_s, periods, periodic: true },
             None => Self { start_s: 0.0, period_s: plan.duration_s(), periods: 1, periodic: false },
         };
         (stretch.period_s > 0.0).then_some(stretch)

@@ -3,6 +3,7 @@
 //! A number is judged where it stands, with the path of its field; what only follows from several
 //! (a top speed, a table's length) is judged when the curve is made.
 
+mod points;
 mod staircase;
 
 use super::{
@@ -10,8 +11,10 @@ use super::{
     acceleration_table::AccelerationTable,
     asked::Asked,
     cosine::Cosine,
+    jerk_limited::{JerkLimited, Limits},
     ramp::Ramp,
     ramps::Ramps,
+    sine::Sine,
     sine_segments::SineSegments,
     sliced::{NotSliced, Sliced},
     steady::{Constant, Dwell},
@@ -124,6 +127,9 @@ fn plan_move(asked: &mut Asked<'_>, given: &Move, path: &str, left: &mut Left) -
         Move::Cosine(given) => plan_cosine(asked, given, &format!("{path}.cosine"), left),
         Move::Ramps(given) => plan_ramps(asked, given, &format!("{path}.ramps")),
         Move::SineSegments(given) => plan_sine(asked, given, &format!("{path}.sine_segments"), left),
+        Move::Sine(given) => plan_exact_sine(asked, given, &format!("{path}.sine")),
+        Move::JerkLimited(given) => plan_jerk_limited(asked, given, &format!("{path}.jerk_limited")),
+        Move::Points(given) => points::plan(asked, given, &format!("{path}.points")),
         Move::Constant(given) => {
             let steps = asked.distance(format!("{path}.constant.distance"), &given.distance);
             let speed = asked.speed(format!("{path}.constant.speed"), &given.speed);
@@ -287,6 +293,24 @@ fn plan_sine(
     left.segments = still_left;
     hold_speed(asked, format!("{path}.period_s"), curve.peaks().speed)?;
     Some(Profile::SineSegments(curve))
+}
+
+fn plan_exact_sine(asked: &mut Asked<'_>, given: &scenario::Sine, path: &str) -> Option<Profile> {
+    let amplitude = asked.distance(format!("{path}.amplitude"), &given.amplitude);
+    let period_s = asked.duration(format!("{path}.period_s"), given.period_s);
+    asked.range(format!("{path}.periods"), given.periods.into(), 1.0, MOST_PERIODS, "")?;
+    let curve = Sine::new(amplitude?, period_s?, given.periods);
+    hold_speed(asked, format!("{path}.period_s"), curve.peaks().speed)?;
+    Some(Profile::Sine(curve))
+}
+
+fn plan_jerk_limited(asked: &mut Asked<'_>, given: &scenario::JerkLimited, path: &str) -> Option<Profile> {
+    let steps = asked.distance(format!("{path}.distance"), &given.distance);
+    let speed = asked.speed(format!("{path}.max_speed"), &given.max_speed);
+    let acceleration = asked.acceleration(format!("{path}.max_acceleration"), &given.max_acceleration);
+    let jerk = asked.jerk(format!("{path}.max_jerk"), &given.max_jerk);
+    let limits = Limits { speed: speed?, acceleration: acceleration?, jerk: jerk? };
+    Some(Profile::JerkLimited(JerkLimited::new(steps?, limits)))
 }
 
 /// Refuses a speed that no one gave but that follows from the numbers.

@@ -4,10 +4,11 @@ use proptest::prelude::*;
 use stepscope_core::analysis::drivers::DRIVERS;
 use stepscope_core::scenario::{
     Acceleration, Analysis, Axis, Bus, ChannelSegments, Constant, Controller, Cosine, CosineMethod, DirLine,
-    Direct, Distance, Distribution, Driver, Dwell, DwellSegment, Glitch, Hex, Host, Line, LineScript,
-    Mechanics, Motion, MotionEngine, Move, Noise, Packets, Protocol, Pulses, RampShape, Ramps, Rotary,
-    Scenario, Screw, ScriptedSend, Segment, SegmentLists, ShortMove, SineSegments, Source, Speed, Staircase,
-    StepSegment, TimingRules, Trapezoid, TrapezoidMethod, Wheel,
+    Direct, Distance, Distribution, Driver, Dwell, DwellSegment, Glitch, Hex, Host, Interpolation, Jerk,
+    JerkLimited, Line, LineScript, Mechanics, Motion, MotionEngine, Move, Noise, Packets, Point, PointUnit,
+    Points, Protocol, Pulses, RampShape, Ramps, Rotary, Scenario, Screw, ScriptedSend, Segment, SegmentLists,
+    ShortMove, Sine, SineSegments, Source, Speed, Staircase, StepSegment, TimingRules, Trapezoid,
+    TrapezoidMethod, Wheel,
 };
 
 /// Any scenario of this version that JSON can carry: no number in it is infinite or none at all.
@@ -258,6 +259,22 @@ fn ramp_shape() -> impl Strategy<Value = RampShape> {
     prop::sample::select(vec![Sigmoid, Bezier, Straight, Exponential])
 }
 
+fn jerk() -> impl Strategy<Value = Jerk> + Clone {
+    prop_oneof![
+        4 => number(2e6).prop_map(Jerk::StepsPerSecond3),
+        1 => number(1e3).prop_map(Jerk::MillimetresPerSecond3),
+        1 => number(1e4).prop_map(Jerk::DegreesPerSecond3),
+    ]
+}
+
+fn curve() -> impl Strategy<Value = Points> {
+    let point = (number(0.0), number(1000.0)).prop_map(|(time_s, position)| Point { time_s, position });
+    let unit = prop::sample::select(vec![PointUnit::Steps, PointUnit::Millimetres, PointUnit::Degrees]);
+    let interpolation = prop::sample::select(vec![Interpolation::Straight, Interpolation::Smooth]);
+    (unit, interpolation, prop::collection::vec(point, 0..6))
+        .prop_map(|(unit, interpolation, points)| Points { unit, interpolation, points })
+}
+
 fn one_move() -> impl Strategy<Value = Move> {
     prop_oneof![
         (
@@ -300,6 +317,14 @@ fn one_move() -> impl Strategy<Value = Move> {
                 Move::SineSegments(SineSegments { amplitude, period_s, periods, max_deviation })
             }
         ),
+        (distance(1000.0), number(0.5), small_or_any(4))
+            .prop_map(|(amplitude, period_s, periods)| Move::Sine(Sine { amplitude, period_s, periods })),
+        (distance(3200.0), speed(10_000.0), acceleration(), jerk()).prop_map(
+            |(distance, max_speed, max_acceleration, max_jerk)| {
+                Move::JerkLimited(JerkLimited { distance, max_speed, max_acceleration, max_jerk })
+            }
+        ),
+        curve().prop_map(Move::Points),
         (distance(1000.0), speed(1000.0))
             .prop_map(|(distance, speed)| Move::Constant(Constant { distance, speed })),
         number(0.1).prop_map(|duration_s| Move::Dwell(Dwell { duration_s })),
