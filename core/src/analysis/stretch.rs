@@ -101,14 +101,9 @@ impl Stretch {
     }
 }
 
-/// A transform's length: a power of two, not beyond all bounds.
-pub(super) fn transform_points(points: usize) -> usize {
-    points.clamp(16, MOST_POINTS).next_power_of_two()
-}
-
 /// The ideal position over the stretch less its straight line, at equal steps of time.
 pub(super) fn sampled(plan: &AxisPlan, stretch: &Stretch, points: usize) -> Vec<f64> {
-    let points = transform_points(points);
+    let points = points.clamp(16, MOST_POINTS);
     let at = |part: f64| plan.position(stretch.start_s + stretch.length_s() * part);
     let first = at(0.0);
     let way = if stretch.periodic { 0.0 } else { at(1.0) - first };
