@@ -36,7 +36,8 @@ pub(crate) fn spectrum(
         return Ok(result.into());
     };
     let ideal = Spectrum::ideal(plan, analysis.order, analysis.fft_length);
-    field(&result, "ideal", &ideal.map_or(Ok(JsValue::NULL), |spectrum| told(&spectrum))?);
+    let felt = |spectrum: Spectrum| told(&spectrum.felt_by(analysis.sensor_hz));
+    field(&result, "ideal", &ideal.map_or(Ok(JsValue::NULL), felt)?);
     let zero = recording.first_tick().map_or(0, |start| start.0);
     let pulses: Vec<(u64, i8)> = steps
         .iter()
@@ -47,7 +48,7 @@ pub(crate) fn spectrum(
         .collect();
     let ticks = TickClock::new(config.tick().0, config.clock_hz());
     let pulses = stretch.own_pulses(plan, ticks, &pulses);
-    field(&result, "pulses", &told(&Spectrum::of_pulses(&pulses, stretch, analysis.order))?);
+    field(&result, "pulses", &felt(Spectrum::of_pulses(&pulses, stretch, analysis.order))?);
     let note = if stretch.periodic {
         ""
     } else {
@@ -81,5 +82,8 @@ fn told(spectrum: &Spectrum) -> Result<JsValue, JsError> {
         numbers(target, name, amplitudes);
         field(target, &format!("thd_{name}"), &distortion.map_or(JsValue::NULL, JsValue::from));
     }
+    // A figure of its own, without amplitudes: they are the acceleration's times the low pass.
+    let felt = spectrum.acceleration_felt.as_ref().and_then(|felt| felt.distortion);
+    field(target, "thd_acceleration_felt", &felt.map_or(JsValue::NULL, JsValue::from));
     Ok(told)
 }
