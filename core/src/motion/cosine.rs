@@ -109,9 +109,11 @@ impl Curve for Cosine {
     fn peaks(&self) -> Peaks {
         let speed = self.top_speed;
         if self.ramp_s > 0.0 {
-            Peaks { speed, acceleration: speed * PI / (2.0 * self.ramp_s), jump: 0.0 }
+            let acceleration = speed * PI / (2.0 * self.ramp_s);
+            // f_max*pi^2/(2*t_s^2), at both ends of each ramp.
+            Peaks { speed, acceleration, jerk: acceleration * PI / self.ramp_s, ..Peaks::default() }
         } else {
-            Peaks { speed, acceleration: 0.0, jump: 0.0 }
+            Peaks { speed, ..Peaks::default() }
         }
     }
 
