@@ -179,16 +179,21 @@ impl Row {
 }
 
 fn euclidean(points: &[u16]) -> f64 {
-    let mut square = 0.0;
-    for (&from, &to) in points.iter().zip(points.iter().skip(1)) {
-        let (near, far) = (cosine_at(from), cosine_at(to));
-        for point in from..to {
-            let line = near + (far - near) * f64::from(point - from) / f64::from(to - from);
-            let off = line - cosine_at(point);
-            square += off * off;
-        }
-    }
+    let square: f64 = differences(points).map(|(_, off)| off * off).sum();
     libm::sqrt(square)
+}
+
+/// The cosine at the quarter's 512 points, from its extreme on, and what the line through these breakpoints
+/// has more there, in parts of the amplitude.
+pub(super) fn differences(points: &[u16]) -> impl Iterator<Item = (f64, f64)> + '_ {
+    points.iter().zip(points.iter().skip(1)).flat_map(|(&from, &to)| {
+        let (near, far) = (cosine_at(from), cosine_at(to));
+        (from..to).map(move |point| {
+            let line = near + (far - near) * f64::from(point - from) / f64::from(to - from);
+            let cosine = cosine_at(point);
+            (cosine, line - cosine)
+        })
+    })
 }
 
 /// `count` values of d1 evenly from `from` to `to`, each with what it gives: one call of `next` is one row, so who
