@@ -3,11 +3,12 @@
 use crate::convert::{field, numbers, object};
 use js_sys::Object;
 use stepscope_core::{
-    analysis::spectrum::{Harmonics, Spectrum, Stretch},
+    analysis::{
+        made::Pulses,
+        spectrum::{Harmonics, Spectrum, Stretch},
+    },
     motion::AxisPlan,
-    quantise::TickClock,
-    scenario::{Config, Scenario, Source},
-    trace::{Recording, Step},
+    scenario::{Scenario, Source},
 };
 use wasm_bindgen::prelude::*;
 
@@ -15,9 +16,7 @@ use wasm_bindgen::prelude::*;
 pub(crate) fn spectrum(
     scenario: &Scenario,
     plan: Option<&AxisPlan>,
-    config: &Config,
-    recording: &Recording,
-    steps: &[Step],
+    run: &Pulses<'_>,
 ) -> Result<JsValue, JsError> {
     let analysis = &scenario.analysis;
     let result = Object::new();
@@ -38,16 +37,7 @@ pub(crate) fn spectrum(
     let ideal = Spectrum::ideal(plan, analysis.order, analysis.fft_length);
     let felt = |spectrum: Spectrum| told(&spectrum.felt_by(analysis.sensor_hz));
     field(&result, "ideal", &ideal.map_or(Ok(JsValue::NULL), felt)?);
-    let zero = recording.first_tick().map_or(0, |start| start.0);
-    let pulses: Vec<(u64, i8)> = steps
-        .iter()
-        .enumerate()
-        .filter_map(|(index, step)| {
-            Some((step.cycle.checked_sub(zero)?, Step::direction(steps, index).signum() as i8))
-        })
-        .collect();
-    let ticks = TickClock::new(config.tick().0, config.clock_hz());
-    let pulses = stretch.own_pulses(plan, ticks, &pulses);
+    let pulses = stretch.pulses_of(plan, run);
     field(&result, "pulses", &felt(Spectrum::of_pulses(&pulses, stretch, analysis.order))?);
     let note = if stretch.periodic {
         ""

@@ -13,9 +13,11 @@
 //! last ones, of the tick of its end the first ones, as many as it asks for there. Where the two
 //! go opposite ways in such a tick, only the difference is made, and what cancels is no one's.
 
+use super::made::Pulses;
 use crate::{
     motion::{AxisPlan, Profile},
     quantise::TickClock,
+    trace::Step,
 };
 use alloc::vec::Vec;
 
@@ -63,6 +65,18 @@ impl Stretch {
     #[must_use]
     pub fn fundamental_hz(&self) -> f64 {
         1.0 / self.period_s
+    }
+
+    /// The pulses of a run that belong to the stretch, as [`Self::own_pulses`] tells them.
+    #[must_use]
+    pub fn pulses_of(&self, plan: &AxisPlan, run: &Pulses<'_>) -> Vec<(f64, i8)> {
+        let zero = run.zero();
+        let pulse = |(index, step): (usize, &Step)| {
+            let way = Step::direction(run.steps, index).signum() as i8;
+            Some((step.cycle.checked_sub(zero)?, way))
+        };
+        let pulses: Vec<(u64, i8)> = run.steps.iter().enumerate().filter_map(pulse).collect();
+        self.own_pulses(plan, TickClock::new(run.config.tick().0, run.config.clock_hz()), &pulses)
     }
 
     /// The pulses that belong to the stretch, see the module, as (time in s, +1 right or -1 left).

@@ -30,7 +30,8 @@ pub struct Comparison {
     pub rms_steps: f64,
     /// Area between the two: the integral of |second - first|, in steps times s.
     pub area_steps_s: f64,
-    /// Difference of their areas: the integral of second - first, in steps times s.
+    /// Difference of their areas: the integral of second - first, in steps times s; 0 where only the rounding of
+    /// areas that cancel is left.
     pub area_difference_steps_s: f64,
     /// Points at which both are sampled, evenly from the start on, for the two figures that follow.
     pub points: u32,
@@ -110,7 +111,7 @@ impl Sums {
             largest_at_s: self.largest_at_s,
             rms_steps: libm::sqrt(mean(self.off_square)),
             area_steps_s: self.area,
-            area_difference_steps_s: self.off,
+            area_difference_steps_s: if libm::fabs(self.off) > 1e-12 * self.area { self.off } else { 0.0 },
             points: self.points,
             sum_of_squares_steps2: self.sampled_square,
             euclidean_steps: libm::sqrt(self.sampled_square),
