@@ -3,12 +3,13 @@
  * open, on a narrow one it is a tab. Its own tabs are modules beside this one, each `createX(page)`, made when it is
  * first opened, and drawn only while it is open:
  *
- *     page     the engine, the state's `now` and `dispatch`, and `panel`, the element that the tab fills
+ *     page     the engine, the state's `now` and `dispatch`, `samples` of all moves, and `panel`, the element that the tab fills
  *     render   (state, before) as any view's; `before` is the state that this tab was last drawn of, none at first
  */
-import { byId, element } from "../../dom.js";
+import { byId, element, options } from "../../dom.js";
 import { listen } from "../../shell/commands.js";
 import { arrows, choose } from "../../shell/tabs.js";
+import { lookedAt } from "../../state/state.js";
 import { STUDIES } from "../../shell/view_part.js";
 import { createCompare } from "./compare.js";
 import { createMeasures } from "./measures.js";
@@ -17,7 +18,8 @@ import { createTables } from "./tables.js";
 import { createTorque } from "./torque.js";
 
 /** @typedef {import("../../state/types.js").State} State */
-/** @typedef {{engine: import("../../engine/engine.js").Engine, panel: HTMLElement} & import("../../time/timeline.js").Page} StudyPage */
+/** @typedef {{engine: import("../../engine/engine.js").Engine, samples: import("../../form/kit.js").Samples} & import("../../time/timeline.js").Page} Given */
+/** @typedef {{panel: HTMLElement} & Given} StudyPage */
 /** @typedef {{render: (state: State, before: State | undefined) => any}} StudyTab */
 
 /** @type {{[name in import("../../state/types.js").StudyName]: {title: string, create: (page: StudyPage) => StudyTab}}} */
@@ -29,7 +31,7 @@ const TABS = {
   torque: { title: "Torque", create: createTorque },
 };
 
-/** @param {{engine: import("../../engine/engine.js").Engine} & import("../../time/timeline.js").Page} page */
+/** @param {Given} page */
 export function createStudy(page) {
   const { dispatch, now } = page;
   const view = byId("view-study");
@@ -43,6 +45,8 @@ export function createStudy(page) {
   byId("study-tabs").append(...all.map(({ tab }) => tab));
   arrows(all.map(({ tab }) => tab));
 
+  const axes = /** @type {HTMLSelectElement} */ (byId("study-axis"));
+  axes.addEventListener("change", () => dispatch({ type: "axis", axis: Number(axes.value) }));
   const isOpen = () => now().view === "study";
   /** Opens or closes it; what has the focus must not go out of sight with it. @param {boolean} [open] */
   function toggle(open = !isOpen()) {
@@ -66,6 +70,9 @@ export function createStudy(page) {
     }
     const each = all.find(({ name }) => name === state.study);
     if (!open || !each) return undefined;
+    const channels = lookedAt(state)?.channels ?? 1;
+    options(axes, Array.from({ length: channels }, (_, axis) => [String(axis), String(axis)]), String(state.axis));
+    /** @type {HTMLElement} */ (axes.parentElement).hidden = channels < 2;
     each.made ??= TABS[each.name].create({ ...page, panel: each.panel });
     const before = each.drawn;
     each.drawn = state;
