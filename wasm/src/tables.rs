@@ -8,7 +8,7 @@ use stepscope_core::{
     motion::{AxisPlan, plan_lists},
     quantise::{
         EntryFormat, Form, Stored, Tolerance,
-        source_code::{Language, Source},
+        source_code::{Language, Source, headline},
         stored,
     },
     scenario::{Config, Problem, Scenario, Source as ScenarioSource},
@@ -132,8 +132,7 @@ pub fn step_source(
         "csv" => Language::Csv,
         _ => Language::C,
     };
-    let what = format!("axis {axis}, {form} step table");
-    let title = if asked.title.is_empty() { what } else { format!("{}: {what}", asked.title) };
+    let title = headline(&asked.title, axis, form);
     let name = format!("axis_{axis}");
     let source = Source { name: &name, title: &title, clock_hz: asked.clock_hz, table: &table };
     let mut text = String::new();

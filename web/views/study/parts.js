@@ -43,14 +43,14 @@ export function choice(label, choices, change) {
   return { root: element("label", {}, `${label} `, select), value: () => select.value };
 }
 
-/** A table; a column whose head begins with `#` has numbers. @param {string} label @param {string[]} head */
+/** A table that scrolls; a column whose head begins with `#` has numbers, one with `~` before it is left out on a narrow screen. @param {string} label @param {string[]} head */
 export function table(label, head) {
-  const numbers = head.map((text) => text.startsWith("#"));
+  const kinds = head.map((text) => `${text.includes("#") ? "number" : ""} ${text.startsWith("~") ? "roomy" : ""}`.trim());
   const body = element("tbody");
-  const root = element("table", { "aria-label": label }, element("thead", {}, element("tr", {}, ...head.map((text, at) =>
-    element("th", numbers[at] ? { scope: "col", class: "number" } : { scope: "col" }, text.replace(/^#/, ""))))), body);
+  const root = element("div", { class: "study-scroll", tabindex: "0", role: "group", "aria-label": label }, element("table", { "aria-label": label }, element("thead", {}, element("tr", {}, ...head.map((text, at) =>
+    element(text ? "th" : "td", { ...(text ? { scope: "col" } : {}), class: kinds[at] }, text.replace(/^~?#?/, ""))))), body));
   /** A row; its first cell is its head. @param {(string | Node)[]} cells */
-  const row = (cells) => element("tr", {}, ...cells.map((cell, at) => element(at === 0 ? "th" : "td", { ...(at === 0 ? { scope: "row" } : {}), ...(numbers[at] ? { class: "number" } : {}) }, cell)));
+  const row = (cells) => element("tr", {}, ...cells.map((cell, at) => element(at === 0 ? "th" : "td", { ...(at === 0 ? { scope: "row" } : {}), class: kinds[at] }, cell)));
   /** @param {(string | Node)[][]} rows */
   const show = (rows) => fill(body, ...rows.map(row));
   return { root, body, show };

@@ -24,7 +24,7 @@ const NAMES = /** @type {(keyof Rows)[]} */ (["d1", "segments", "position", "spe
 /** A d1 as the scenario takes it: with few digits, and not below where its polyline begins. @param {number} d1 */
 const rounded = (d1) => Math.ceil(d1 * 1e8 - 1e-4) / 1e8;
 /** @param {number} ratio */
-const percent = (ratio) => `${short(100 * ratio, 5)} %`;
+const percent = (ratio) => `${short(100 * ratio, 4)} %`;
 
 /** @param {import("./study.js").StudyPage} page @returns {import("./study.js").StudyTab} */
 export function createSine({ engine, samples, dispatch, now, panel }) {
@@ -41,17 +41,17 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   const distanceCaption = element("div", { class: "caption" }, element("span", {}, "Euclidean distance Ev against d1, both in parts of the amplitude"));
   const charts = element("div", { class: "charts study-charts", id: "sine-charts", tabindex: "0", role: "slider", "aria-label": "d1", "aria-valuemin": "0", "aria-valuemax": "0", "aria-valuenow": "0" },
     element("div", { class: "chart" }, thdCaption, thdCanvas), element("div", { class: "chart" }, distanceCaption, distanceCanvas), overlay);
-  const list = table("What a d1 gives", ["d1 of", "#d1", "#segments", "#THD position", "#speed", "#acceleration", "#Ev", ""]);
+  const list = table("What a d1 gives", ["of", "#d1", "#segments", "#THD position", "~#speed", "~#acceleration", "#Ev", ""]);
   const note = element("p", { class: "study-note", "aria-live": "polite" });
   const segments = field("segments of a quarter", "", 6, { least: 1, most: 32, integer: true }, vertices);
   const verticesJob = createJob("Vertices");
-  const bestOf = table("Best d1 of each number of segments", ["segments", "#best d1", "#THD position", "#Ev", ""]);
+  const bestOf = table("Best d1 of each number of segments", ["segments", "#best d1", "#THD position", "~#Ev", ""]);
   const best = table("Best vertices", ["vertex", "#on the curve", "#height", "#free", "#height"]);
   const bestNote = element("p", { class: "study-note", id: "sine-vertices" });
   fill(panel, element("div", { class: "study-bar" }, from.root, to.root, points.root, order.root, quantity.root, job.root),
     element("div", { class: "study-split" },
-      element("div", { class: "study-column" }, charts, element("div", { class: "study-scroll" }, list.root), note),
-      element("div", { class: "study-column study-side" }, element("h3", {}, "Best d1 of each number of segments"), element("div", { class: "study-scroll", tabindex: "0", role: "group", "aria-label": "Best d1 of each number of segments" }, bestOf.root), element("h3", {}, "Best vertices"), element("div", { class: "study-bar" }, segments.root, verticesJob.root), bestNote, element("div", { class: "study-scroll", tabindex: "0", role: "group", "aria-label": "Best vertices" }, best.root))));
+      element("div", { class: "study-column" }, charts, list.root, note),
+      element("div", { class: "study-column study-side" }, element("h3", {}, "Best d1 of each number of segments"), bestOf.root, element("h3", {}, "Best vertices"), element("div", { class: "study-bar" }, segments.root, verticesJob.root), bestNote, best.root)));
 
   /** @type {Rows | null} What the charts show, as far as it is made. */
   let rows = null;
@@ -202,14 +202,14 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     charts.setAttribute("aria-valuenow", String(at ?? 0));
     charts.setAttribute("aria-valuetext", pointed ? `d1 ${short(pointed.d1)}, ${pointed.segments} segments, THD of ${quantity.value()} ${percent(pointed[/** @type {Quantity} */ (quantity.value())])}, Ev ${short(pointed.euclidean)}; Enter takes it` : "no d1 chosen");
     const cells = (/** @type {string} */ name, /** @type {Row | null} */ row, /** @type {string} */ none, usable = true) => {
-      return [name, ...(row ? [short(row.d1, 6), String(row.segments), percent(row.position), percent(row.speed), percent(row.acceleration), short(row.euclidean, 5)] : [none, "", "", "", "", ""]), usable && row ? use(row, name) : ""];
+      return [name, ...(row ? [short(row.d1, 6), String(row.segments), percent(row.position), percent(row.speed), percent(row.acceleration), short(row.euclidean, 4)] : [none, "", "", "", "", ""]), usable && row ? use(row, name) : ""];
     };
-    list.show([cells("the chart, pointed at", pointed, "–"), cells("the scenario", own, "none", false), cells("the best in the range", least, "–")]);
+    list.show([cells("pointed at", pointed, "–"), cells("the scenario", own, "none", false), cells("best in range", least, "–")]);
     const layer = cleared(overlay);
     if (!layer || !plot || !rows) return;
-    const { left, right } = plot;
+    const { left, right, top, bottom } = plot;
     const [low, high] = [rows.d1[0], rows.d1[rows.d1.length - 1]];
-    const { context, height } = layer;
+    const { context } = layer;
     /** @type {[Row | null, string, number[], string][]} */
     const lines = [[own, "--ink", [5, 4], "now"], [least, "--enable", [2, 3], "best"], [pointed, "--axis", [], ""]];
     context.font = "11px system-ui, sans-serif";
@@ -218,11 +218,14 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
       const x = Math.round(left + ((row.d1 - low) / (high - low)) * (right - left)) + 0.5;
       context.strokeStyle = context.fillStyle = color(ink);
       context.setLineDash(dash);
-      context.beginPath();
-      context.moveTo(x, plot.top);
-      context.lineTo(x, height - 20);
-      context.stroke();
-      if (name) context.fillText(name, x + 4, plot.top + (name === "now" ? 11 : 24));
+      for (const canvas of [thdCanvas, distanceCanvas]) {
+        const down = canvas.offsetTop + (canvas.parentElement?.offsetTop ?? 0);
+        context.beginPath();
+        context.moveTo(x, down + top);
+        context.lineTo(x, down + bottom);
+        context.stroke();
+      }
+      if (name) context.fillText(name, x + 4, thdCanvas.offsetTop + top + (name === "now" ? 11 : 24));
     }
     context.setLineDash([]);
   }

@@ -48,10 +48,10 @@ export function createTables({ engine, now, panel }) {
   const job = createJob("Tables");
   const about = element("p", { class: "study-note" });
   const note = element("p", { class: "study-note" });
-  const list = table("Stored forms", ["form", "entries of", "#entries", "#bytes", "#steps an entry", "#largest error", "#r.m.s. error", "#steps"]);
+  const list = table("Stored forms", ["form", "widths", "#entries", "#bytes", "~#steps an entry", "#largest error", "#r.m.s. error", "~#steps"]);
   const saves = element("p", { class: "study-bar", role: "group", "aria-label": "Save the chosen table" });
   const said = element("span", { "aria-live": "polite" });
-  fill(panel, element("div", { class: "study-bar" }, error.root, job.root), about, element("div", { class: "study-scroll" }, list.root), note, saves);
+  fill(panel, element("div", { class: "study-bar" }, error.root, job.root), about, list.root, note, saves);
   /** What the table shows, and what it was made of. @type {Told[]} */
   let told = [];
   let key = "";
@@ -104,7 +104,7 @@ export function createTables({ engine, now, panel }) {
       const name = element("label", { class: "check" }, pick, FORMS[form]);
       const cells = why !== null ? [why] : [count(entries), count(bytes), entries ? short(steps / entries, 4) : "–", si(largest_s, "s"), si(rms_s, "s"), `${count(steps)}, exact`];
       if (form === "document" && document_bytes !== null && why === null) cells[1] += ` (${count(document_bytes)})`;
-      return [name, alike(at) ? "any width" : `${widths}: ${WIDTHS[widths]}`, ...cells];
+      return [name, alike(at) ? "all" : element("span", {}, widths, element("span", { class: "roomy" }, `: ${WIDTHS[widths]}`)), ...cells];
     }));
     kept.forEach((at, row) => {
       const cell = list.body.children[row].children[2];
