@@ -197,15 +197,21 @@ pub(super) fn differences(points: &[u16]) -> impl Iterator<Item = (f64, f64)> + 
 }
 
 /// `count` values of d1 evenly from `from` to `to`, each with what it gives: one call of `next` is one row, so who
-/// asks can show how far it is, stop, or share the rows out.
+/// asks can show how far it is, or stop.
 pub fn sweep(
     from: f64,
     to: f64,
     count: u32,
     bounds: impl Into<Bounds>,
 ) -> impl ExactSizeIterator<Item = Row> {
-    let (parts, bounds) = (f64::from(count.max(2) - 1), bounds.into());
-    (0..count).map(move |index| Row::of(from + (to - from) * (f64::from(index) / parts), bounds))
+    let bounds = bounds.into();
+    (0..count).map(move |index| Row::of(swept(from, to, count, index), bounds))
+}
+
+/// The d1 of row `index` of a sweep: who shares the rows out makes each by itself.
+#[must_use]
+pub fn swept(from: f64, to: f64, count: u32, index: u32) -> f64 {
+    from + (to - from) * (f64::from(index) / f64::from(count.max(2) - 1))
 }
 
 /// Every polyline that some d1 in a range gives, each once and with its least d1, rising.
