@@ -9,6 +9,7 @@ mod failure;
 mod faults;
 mod files;
 mod line;
+mod measures;
 mod progress;
 mod run;
 mod scenarios;
@@ -39,6 +40,9 @@ enum Command {
     /// Writes the step times of an axis as a table for a firmware (C, AVR, Rust, CSV), or what each form of
     /// table costs and how far its steps are off.
     Tables(tables::Arguments),
+    /// Runs a scenario and tells how good an axis is, in numbers: the ideal curve, the steps that are made of
+    /// it and the pulses as they come held against each other, peaks, durations, distortion.
+    Measures(measures::Arguments),
     /// Looks for the segments that make a sine with least distortion.
     #[command(subcommand)]
     Sine(sine::Command),
@@ -65,6 +69,7 @@ fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Faults(arguments) => faults::faults(&arguments),
         Command::Tables(arguments) => tables::tables(&arguments),
+        Command::Measures(arguments) => measures::measures(&arguments),
         Command::Sine(command) => sine::sine(&command),
         Command::Open { link, verify } => scenarios::open(&link, verify),
         Command::Presets { id } => scenarios::presets(id.as_deref()),

@@ -8,6 +8,7 @@ pub mod drivers;
 #[cfg(feature = "std")]
 mod fourier;
 pub mod made;
+pub mod measures;
 pub mod sine_optimum;
 pub mod sine_polyline;
 #[cfg(feature = "std")]

@@ -31,10 +31,17 @@ impl AxisPlan {
 
     /// All steps in the order of their times, in cycles of a clock of `clock_hz`.
     pub fn due_steps(&self, clock_hz: u32) -> impl Iterator<Item = DueStep> + '_ {
+        self.due_instants(clock_hz).map(|(_, due)| due)
+    }
+
+    /// All steps, each with its instant before B1 rounds it, in cycles of a clock of `clock_hz`.
+    pub fn due_instants(&self, clock_hz: u32) -> impl Iterator<Item = (f64, DueStep)> + '_ {
         self.moves().iter().flat_map(move |planned| {
             let start = planned.start_s * f64::from(clock_hz);
-            due(&planned.profile, clock_hz)
-                .map(move |(cycles, right)| DueStep { cycle: cycle(start + cycles), right })
+            due(&planned.profile, clock_hz).map(move |(cycles, right)| {
+                let instant = start + cycles;
+                (instant, DueStep { cycle: cycle(instant), right })
+            })
         })
     }
 }

@@ -566,7 +566,10 @@ settings! {
         pub axis: u8 = 0,
         /// Highest harmonic that counts for the distortion, 2 to 1000.
         pub order: u16 = 40,
-        /// Length of the transform a period of the motion, a power of two, 256 to 65536.
+        /// Length of the transform a period of the motion, 16 to 65536.
         pub fft_length: u32 = 4096,
+        /// Bandwidth (-3 dB, first order) in Hz of the sensor that feels the acceleration, 0.001 to 1e9;
+        /// without it nothing is felt.
+        pub sensor_hz: Option<f64> = None,
     }
 }

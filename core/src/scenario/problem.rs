@@ -70,11 +70,6 @@ pub enum Cause {
         /// Unit of all three, empty for a plain count.
         unit: &'static str,
     },
-    /// A number that is none of the allowed ones.
-    NotPowerOfTwo {
-        /// The number.
-        given: u32,
-    },
     /// A text, list or byte string of a length that is not allowed.
     Length {
         /// Its length.
@@ -363,7 +358,6 @@ impl Cause {
                 | Self::Type { .. }
                 | Self::NewerVersion { .. }
                 | Self::Range { .. }
-                | Self::NotPowerOfTwo { .. }
                 | Self::NoSteps { .. }
                 | Self::NoSegmentSteps
         )
@@ -388,9 +382,6 @@ impl fmt::Display for Cause {
                     write!(f, " to {}", Short(*most))?;
                 }
                 write!(f, "{space}{unit}")
-            }
-            Self::NotPowerOfTwo { given } => {
-                write!(f, "{given} is not a power of two; give 256, 512, 1024 … 65536")
             }
             Self::Length { given, least, most, of } if least == most => {
                 write!(f, "{given} {of}; give {least}")

@@ -14,7 +14,8 @@ use stepscope_core::scenario::{
 /// Any scenario of this version that JSON can carry: no number in it is infinite or none at all.
 pub fn typed() -> impl Strategy<Value = Scenario> {
     let texts = (text(), text());
-    let analysis = (small_or_any(0), small_or_any(40), small_or_any(4096));
+    let analysis =
+        (small_or_any(0), small_or_any(40), small_or_any(4096), prop::option::weighted(0.3, number(50.0)));
     let line = (line(), controllers());
     let run = (any::<Option<u64>>(), prop::option::weighted(0.3, driver()));
     (texts, small_or_any(16_000_000), bus(), line, source(), run, analysis).prop_map(
@@ -25,7 +26,7 @@ pub fn typed() -> impl Strategy<Value = Scenario> {
             (line, controllers),
             source,
             (run_cycles, driver),
-            (axis, order, fft_length),
+            (axis, order, fft_length, sensor_hz),
         )| {
             Scenario {
                 title,
@@ -35,7 +36,7 @@ pub fn typed() -> impl Strategy<Value = Scenario> {
                 line,
                 source,
                 run_cycles,
-                analysis: Analysis { axis, order, fft_length },
+                analysis: Analysis { axis, order, fft_length, sensor_hz },
                 controllers,
                 driver,
                 ..Scenario::default()
