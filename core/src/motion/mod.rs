@@ -22,6 +22,7 @@ mod asked;
 mod axis;
 pub mod cosine;
 mod due;
+pub mod excitation;
 mod joints;
 mod mirrored;
 mod plan;

@@ -18,6 +18,7 @@ mod drive;
 mod hex;
 mod judge;
 pub mod link;
+mod motor;
 pub mod presets;
 mod problem;
 mod quantity;
@@ -33,6 +34,7 @@ pub use config::Config;
 pub(crate) use config::most_baud;
 pub use drive::{Driver, DriverModel, TimingRules};
 pub use hex::Hex;
+pub use motor::{MOST_PEAK_CURRENT, Motor};
 pub use problem::{Cause, Problem};
 pub use quantity::{Acceleration, Direct, Distance, Mechanics, NoSuchUnit, Rotary, Screw, Speed, Wheel};
 pub use recorded::{BadTable, MOST_TABLE_BYTES};
@@ -302,6 +304,8 @@ settings! {
         pub mechanics: Mechanics = Mechanics::default(),
         /// Up to 64 moves.
         pub moves: Vec<Move> = vec![Move::default()],
+        /// Its motor, driver supply and load; without it nothing is said of torque.
+        pub motor: Option<Motor> = None,
     }
 }
 
