@@ -13,12 +13,16 @@ mod link;
 mod packets;
 mod pulses;
 mod simulation;
+mod sine;
 mod spectrum;
 mod summary;
+mod tables;
 mod timing;
 mod witness;
 
 pub use judge::{check, default_scenario, presets, version};
 pub use link::{decode_link, encode_link, link_part, link_with, replay};
 pub use simulation::Simulation;
+pub use sine::{sine_best, sine_rows, sine_vertices};
+pub use tables::{step_source, step_table};
 pub use timing::drivers;

@@ -161,10 +161,15 @@ fn euclidean(points: &[u16]) -> f64 {
 }
 
 /// `count` values of d1 evenly from `from` to `to`, each with what it gives: one call of `next` is one row, so who
-/// asks can show how far it is, stop, or share the rows out.
+/// asks can show how far it is, or stop.
 pub fn sweep(from: f64, to: f64, count: u32, order: u16) -> impl ExactSizeIterator<Item = Row> {
-    let parts = f64::from(count.max(2) - 1);
-    (0..count).map(move |index| Row::of(from + (to - from) * (f64::from(index) / parts), order))
+    (0..count).map(move |index| Row::of(swept(from, to, count, index), order))
+}
+
+/// The d1 of row `index` of a sweep: who shares the rows out makes each by itself.
+#[must_use]
+pub fn swept(from: f64, to: f64, count: u32, index: u32) -> f64 {
+    from + (to - from) * (f64::from(index) / f64::from(count.max(2) - 1))
 }
 
 /// Every polyline that some d1 in a range gives, each once and with its least d1, rising.
