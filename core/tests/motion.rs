@@ -255,7 +255,7 @@ proptest! {
         tick_cycles in any::<u64>(), clock_hz in any::<u32>(), slots in any::<u8>(),
     ) {
         for mechanics in [Mechanics::default(), Mechanics::Direct(Direct { step_mm })] {
-            match plan_axis(&Axis { mechanics, moves: moves.clone() }, "axis") {
+            match plan_axis(&Axis { mechanics, moves: moves.clone(), ..Axis::default() }, "axis") {
                 Ok(plan) => {
                     prop_assert!(plan.duration_s() <= 1e6 && plan.duration_s() >= 0.0);
                     prop_assert_eq!(plan.position(plan.duration_s()), plan.steps() as f64);

@@ -1,7 +1,8 @@
 //! What a run and its ideal come to: curves for the eye, spectra and distortion, which segments
-//! make the best sine, and whether a driver could follow the pulses.
+//! make the best sine, and whether a driver could follow the pulses and a motor the plan.
 
 pub mod between;
+pub mod calibration;
 pub mod curves;
 pub mod difference;
 pub mod drivers;
@@ -16,3 +17,4 @@ pub mod spectrum;
 #[cfg(feature = "std")]
 mod stretch;
 pub mod timing;
+pub mod torque;

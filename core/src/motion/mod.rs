@@ -27,6 +27,7 @@ mod asked;
 mod axis;
 pub mod cosine;
 mod due;
+pub mod excitation;
 mod hermite;
 pub mod jerk_limited;
 mod joints;

@@ -3,6 +3,7 @@
 //! A number is judged where it stands, with the path of its field; what only follows from several
 //! (a top speed, a table's length) is judged when the curve is made.
 
+mod motor;
 mod points;
 mod staircase;
 
@@ -98,6 +99,7 @@ pub fn plan_axis(axis: &Axis, path: &str) -> Result<AxisPlan, Vec<Problem>> {
 
 fn plan_within(axis: &Axis, path: &str, left: &mut Left) -> Result<AxisPlan, Vec<Problem>> {
     let mut asked = Asked::new(&axis.mechanics, &format!("{path}.mechanics"));
+    motor::judge(&mut asked, axis, path);
     let moves_path = format!("{path}.moves");
     let given = axis.moves.len();
     if !(1..=MOST_MOVES).contains(&given) {

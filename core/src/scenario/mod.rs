@@ -18,6 +18,7 @@ mod drive;
 mod hex;
 mod judge;
 pub mod link;
+mod motor;
 mod points;
 pub mod presets;
 mod problem;
@@ -35,6 +36,7 @@ pub use config::Config;
 pub(crate) use config::most_baud;
 pub use drive::{Driver, DriverModel, TimingRules};
 pub use hex::Hex;
+pub use motor::{MOST_PEAK_CURRENT, Motor};
 pub(crate) use points::MOST_POINTS;
 pub use points::{Interpolation, Point, PointUnit, Points};
 pub use problem::{Cause, Problem};
@@ -308,6 +310,8 @@ settings! {
         pub mechanics: Mechanics = Mechanics::default(),
         /// Up to 64 moves.
         pub moves: Vec<Move> = vec![Move::default()],
+        /// Its motor, driver supply and load; without it nothing is said of torque.
+        pub motor: Option<Motor> = None,
     }
 }
 

@@ -70,6 +70,17 @@ settings! {
 }
 
 impl Mechanics {
+    /// Full step of the motor in degrees, where the mechanics have one.
+    #[must_use]
+    pub fn full_step_deg(&self) -> Option<f64> {
+        match self {
+            Self::Rotary(m) => Some(m.full_step_deg),
+            Self::Wheel(m) => Some(m.full_step_deg),
+            Self::Screw(m) => Some(m.full_step_deg),
+            Self::Direct(_) => None,
+        }
+    }
+
     /// Angle of one step in degrees, where the mechanics have one.
     #[must_use]
     pub fn step_deg(&self) -> Option<f64> {

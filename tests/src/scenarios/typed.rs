@@ -5,10 +5,10 @@ use stepscope_core::analysis::drivers::DRIVERS;
 use stepscope_core::scenario::{
     Acceleration, Analysis, Axis, Bus, ChannelSegments, Constant, Controller, Cosine, CosineMethod, DirLine,
     Direct, Distance, Distribution, Driver, Dwell, DwellSegment, Glitch, Hex, Host, Interpolation, Jerk,
-    JerkLimited, Line, LineScript, Mechanics, Motion, MotionEngine, Move, Noise, Packets, Point, PointUnit,
-    Points, Protocol, Pulses, RampShape, Ramps, Rotary, Scenario, Screw, ScriptedSend, Segment, SegmentLists,
-    ShortMove, Sine, SineSegments, Source, Speed, Staircase, StepSegment, TimingRules, Trapezoid,
-    TrapezoidMethod, Wheel,
+    JerkLimited, Line, LineScript, Mechanics, Motion, MotionEngine, Motor, Move, Noise, Packets, Point,
+    PointUnit, Points, Protocol, Pulses, RampShape, Ramps, Rotary, Scenario, Screw, ScriptedSend, Segment,
+    SegmentLists, ShortMove, Sine, SineSegments, Source, Speed, Staircase, StepSegment, TimingRules,
+    Trapezoid, TrapezoidMethod, Wheel,
 };
 
 /// Any scenario of this version that JSON can carry: no number in it is infinite or none at all.
@@ -226,8 +226,35 @@ fn axis() -> impl Strategy<Value = Axis> {
         }),
         1 => number(0.01).prop_map(|step_mm| Mechanics::Direct(Direct { step_mm })),
     ];
-    (mechanics, prop::collection::vec(one_move(), 0..4))
-        .prop_map(|(mechanics, moves)| Axis { mechanics, moves })
+    (mechanics, prop::collection::vec(one_move(), 0..4), prop::option::weighted(0.2, motor()))
+        .prop_map(|(mechanics, moves, motor)| Axis { mechanics, moves, motor })
+}
+
+fn motor() -> impl Strategy<Value = Motor> {
+    let data = (number(1.5), number(1.6), number(4.3), number(400.0), number(45.0));
+    let driven = (
+        number(24.0),
+        prop::option::of(number(1.5)),
+        number(100.0),
+        number(50.0),
+        prop::option::of(number(1e4)),
+    );
+    (data, driven).prop_map(|(data, driven)| {
+        let (rated_current_a, resistance_ohm, inductance_mh, holding_torque_mn_m, rotor_inertia_g_cm2) = data;
+        let (supply_v, peak_current_a, load_inertia_g_cm2, load_torque_mn_m, working_rate_hz) = driven;
+        Motor {
+            rated_current_a,
+            resistance_ohm,
+            inductance_mh,
+            holding_torque_mn_m,
+            rotor_inertia_g_cm2,
+            supply_v,
+            peak_current_a,
+            load_inertia_g_cm2,
+            load_torque_mn_m,
+            working_rate_hz,
+        }
+    })
 }
 
 fn distance(steps: f64) -> impl Strategy<Value = Distance> + Clone {
