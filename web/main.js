@@ -29,6 +29,8 @@ import { EARLIER, held, initial, isStale, update } from "./state/state.js";
 import { loadGood, loadPrevious, loadScenario, saveGood, saveScenario, setAside } from "./shell/storage.js";
 import { createTabs } from "./shell/tabs.js";
 import { readJson } from "./state/json.js";
+import { createStudy } from "./views/study/study.js";
+import { tableFiles } from "./views/study/tables.js";
 import { createTiming } from "./views/timing.js";
 
 /** @typedef {import("./state/types.js").State} State */
@@ -199,8 +201,8 @@ async function start() {
   const pulses = createPulses(page);
   views = [createHeader({ presets, cancel, retry, ...page }), createForm({ root: byId("fields"), samples: made, drivers, dispatch }),
     createTabs(page), createPanes(page), createGuide(page), createMotion(page), pulses, createPackets(page), createSpectrum(page),
-    createTiming({ drivers, speak: pulses.speak, ...page }), createNotices(page), createShare({ shared: link.shared, ...page }),
-    createExports(page, [["Charts", chartFiles], ["Packets", packetFiles]]), link];
+    createTiming({ drivers, speak: pulses.speak, ...page }), createStudy({ samples: made, ...page }), createNotices(page), createShare({ shared: link.shared, ...page }),
+    createExports(page, [["Charts", chartFiles], ["Packets", packetFiles], ["Step tables", tableFiles]]), link];
   createKeys();
   await link.start(loadScenario() !== null);
   if (state.revision === 0) {

@@ -11,7 +11,7 @@ use stepscope_core::{
     motion::{AxisPlan, plan_lists, round_half_up},
     quantise::{
         EntryFormat, Form, Stored, Tolerance,
-        source_code::{Language, Source, is_name},
+        source_code::{Language, Source, headline, is_name},
         stored,
     },
     scenario::{Cause, Config, Motion, Problem, Scenario, Source as ScenarioSource},
@@ -177,8 +177,7 @@ pub(crate) fn tables(arguments: &Arguments) -> Result<(), Failure> {
     let format = arguments.entries.unwrap_or(EntryFormat::Q16);
     let table = axes.kept(plan, form, format).map_err(|cause| axes.refused(axis, cause))?;
     let name = arguments.name.clone().unwrap_or_else(|| format!("axis_{axis}"));
-    let what = format!("axis {axis}, {} step table", form.name());
-    let title = if axes.title.is_empty() { what } else { format!("{}: {what}", axes.title) };
+    let title = headline(&axes.title, axis, form.name());
     let source = Source { name: &name, title: &title, clock_hz: axes.clock_hz, table: &table };
     let mut text = String::new();
     source.write(language, &mut text).map_err(|error| failed(io::Error::other(error)))?;

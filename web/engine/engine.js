@@ -1,7 +1,8 @@
 /**
  * The only module that talks to the worker: questions with answers, one run at a time, and a new
  * worker after a crash, or where a cancel is not heard in time. A new worker makes the last good run
- * once more, so that the views that show it can still ask.
+ * once more, so that the views that show it can still ask. Long questions that need no run are shared
+ * out to further workers, as many as the machine has room for.
  */
 import { compiled } from "./wasm.js";
 
@@ -21,6 +22,13 @@ import { compiled } from "./wasm.js";
 /** How long a cancel may go unanswered, in ms: one long call hears nothing. */
 const PATIENCE_MS = 1000;
 
+/** Most further workers. */
+const MOST_FURTHER = 4;
+/** A further worker that is not needed ends after this time, in ms: it holds memory. */
+const IDLE_MS = 20_000;
+/** And one whose piece was left off, if it does not come to the piece's end in this time. */
+const LEFT_MS = 300;
+
 /** Thrown into questions that no longer matter: a newer one took their place, or the worker is gone. */
 export class Dropped extends Error {}
 
@@ -37,6 +45,9 @@ export class Engine {
   /** The controller that the worker was told to look at. */
   #selected = 0;
   #cancelling = 0;
+  /** Further workers with nothing to do. @type {Worker[]} */
+  #idle = [];
+  #resting = 0;
   /** Crashes since the worker last answered; one that cannot even start is not started for ever. */
   #crashes = 0;
   /** @type {Map<number, {resolve: (value: any) => void, reject: (error: Error) => void}>} */
@@ -116,12 +127,52 @@ export class Engine {
   }
 
   #start() {
-    const worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
+    const worker = another();
     worker.onmessage = ({ data }) => this.#heard(data);
     worker.onerror = (event) => this.#restart(event.message || "the engine could not be loaded");
-    // What goes wrong with it is told by who waits for the charts.
-    compiled().then((module) => worker.postMessage({ module }), () => {});
     return worker;
+  }
+
+  /**
+   * Shares a long question out: each piece is one call of the core, and further workers make them beside each other.
+   * Neither the run nor the views' questions wait for it.
+   * @param {string} method @param {any[][]} pieces  The arguments of each call.
+   * @param {AbortSignal} signal  Ends it at once, in `Dropped`.
+   * @param {(at: number, answer: any) => void} [told]  Hears each answer as it comes.
+   * @returns {Promise<any[]>}  All answers, in the order of the pieces.
+   */
+  async share(method, pieces, signal, told = () => {}) {
+    /** @type {any[]} */
+    const answers = Array(pieces.length);
+    let next = 0;
+    const help = async () => {
+      const worker = this.#idle.pop() ?? another();
+      try {
+        while (next < pieces.length) {
+          const at = next++;
+          answers[at] = await call(worker, method, pieces[at], signal);
+          told(at, answers[at]);
+        }
+        this.#rest(worker);
+      } catch (error) {
+        next = pieces.length;
+        const timer = setTimeout(() => worker.terminate(), error instanceof Dropped ? LEFT_MS : 0);
+        worker.onmessage = () => {
+          clearTimeout(timer);
+          this.#rest(worker);
+        };
+        throw error;
+      }
+    };
+    await Promise.all(Array.from({ length: Math.min(MOST_FURTHER, navigator.hardwareConcurrency || 1, pieces.length) }, help));
+    return answers;
+  }
+
+  /** Keeps a further worker for the next question that comes soon. @param {Worker} worker */
+  #rest(worker) {
+    this.#idle.push(worker);
+    clearTimeout(this.#resting);
+    this.#resting = window.setTimeout(() => { for (const each of this.#idle.splice(0)) each.terminate(); }, IDLE_MS);
   }
 
   /** @param {any} data */
@@ -176,6 +227,30 @@ export class Engine {
     this.#asked.clear();
     for (const { reject } of asked) reject(new Dropped(why));
   }
+}
+
+/** A worker that has the core. */
+function another() {
+  const worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
+  // What goes wrong with it is told by who waits for the charts.
+  compiled().then((module) => worker.postMessage({ module }), () => {});
+  return worker;
+}
+
+/** One question to a further worker. @param {Worker} worker @param {string} method @param {any[]} args @param {AbortSignal} signal @returns {Promise<any>} */
+function call(worker, method, args, signal) {
+  return new Promise((resolve, reject) => {
+    const drop = () => reject(new Dropped(method));
+    if (signal.aborted) return drop();
+    signal.addEventListener("abort", drop, { once: true });
+    worker.onerror = (event) => reject(new Error(event.message || "the engine could not be loaded"));
+    worker.onmessage = ({ data }) => {
+      signal.removeEventListener("abort", drop);
+      if ("value" in data) resolve(data.value);
+      else reject(new Error(data.error ?? data.message));
+    };
+    worker.postMessage({ id: 0, method, args });
+  });
 }
 
 /** Lets `Dropped` pass in silence and everything else through. @param {unknown} error */

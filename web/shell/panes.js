@@ -154,14 +154,15 @@ export function createPanes({ dispatch, now }) {
   function tell(edge, made) {
     const { both } = limits(edge);
     const { panes } = now();
-    const gone = !wide.matches || (edge.pane !== "form" && (panes.largest !== null || [edge.before, edge.after].some((css) => panes.folded.some((view) => css.includes(`view-${view}`)))));
+    const gone = !wide.matches || (edge.pane !== "form" && (largestOf(now()) !== null || [edge.before, edge.after].some((css) => panes.folded.some((view) => css.includes(`view-${view}`)))));
     made.hidden = gone;
     if (both > 0) made.setAttribute("aria-valuenow", String(Math.round((100 * size(edge)) / both)));
   }
 
   /** @param {State} state */
   function apply(state) {
-    const { form, rows, columns, folded, largest } = state.panes;
+    const { form, rows, columns, folded } = state.panes;
+    const largest = largestOf(state);
     const side = byId("views").classList.contains("timing-open") ? "timing" : "spectrum";
     const isFolded = (/** @type {string} */ view) => wide.matches && largest === null && folded.includes(view);
     main.classList.toggle("formless", wide.matches && form === 0);
@@ -181,7 +182,7 @@ export function createPanes({ dispatch, now }) {
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    const changed = before?.panes !== state.panes || before?.result !== state.result || before?.side !== state.side;
+    const changed = before?.panes !== state.panes || before?.result !== state.result || before?.side !== state.side || before?.view !== state.view;
     if (!changed) return;
     // After the timing check has taken or left the spectrum's place.
     queueMicrotask(() => {
@@ -192,6 +193,9 @@ export function createPanes({ dispatch, now }) {
   }
   return { render };
 }
+
+/** What takes the whole place: the study, while it is open, or a view made to. @param {State} state */
+const largestOf = ({ view, panes }) => (view === "study" ? view : panes.largest);
 
 /** @param {HTMLElement} node @param {string} text @param {string} said */
 function label(node, text, said) {

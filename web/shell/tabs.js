@@ -4,23 +4,15 @@ import { lookedAt } from "../state/state.js";
 
 /** @typedef {import("../state/types.js").State} State */
 
-const VIEWS = ["motion", "pulses", "packets", "spectrum", "timing"];
+const VIEWS = ["motion", "pulses", "packets", "spectrum", "timing", "study"];
 
 /** @param {import("../time/timeline.js").Page} page */
 export function createTabs({ dispatch }) {
   const tab = (/** @type {string} */ view) => byId(`tab-${view}`);
   for (const view of VIEWS) {
     tab(view).addEventListener("click", () => dispatch({ type: "view", view }));
-    tab(view).addEventListener("keydown", (event) => {
-      const by = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-      if (by === undefined) return;
-      event.preventDefault();
-      const offered = VIEWS.filter((name) => !tab(name).hidden);
-      const next = offered[(offered.indexOf(view) + by + offered.length) % offered.length];
-      dispatch({ type: "view", view: next });
-      tab(next).focus();
-    });
   }
+  arrows(VIEWS.map(tab));
   const narrow = matchMedia("(max-width: 899px)");
   const sheet = /** @type {HTMLDetailsElement} */ (byId("sheet"));
   const fold = () => { sheet.open = !narrow.matches; };
@@ -34,10 +26,28 @@ export function createTabs({ dispatch }) {
     const shown = state.view === "timing" && !driver ? "spectrum" : state.view;
     for (const view of VIEWS) {
       const open = view === shown;
-      tab(view).setAttribute("aria-selected", String(open));
-      tab(view).tabIndex = open ? 0 : -1;
+      choose(tab(view), open);
       byId(`view-${view}`).classList.toggle("open", open);
     }
   }
   return { render };
+}
+
+/** The arrow keys go from tab to tab, round, and open what they come to. @param {HTMLElement[]} tabs */
+export function arrows(tabs) {
+  tabs.forEach((tab) => tab.addEventListener("keydown", (event) => {
+    const by = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+    if (by === undefined) return;
+    event.preventDefault();
+    const offered = tabs.filter((each) => !each.hidden);
+    const next = offered[(offered.indexOf(tab) + by + offered.length) % offered.length];
+    next.click();
+    next.focus();
+  }));
+}
+
+/** Marks the open one of some tabs; it alone is in the order of the Tab key. @param {HTMLElement} tab @param {boolean} open */
+export function choose(tab, open) {
+  tab.setAttribute("aria-selected", String(open));
+  tab.tabIndex = open ? 0 : -1;
 }

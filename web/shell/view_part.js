@@ -12,6 +12,7 @@
  * | `tpackets` | tab on a narrow screen |
  * | `stiming` | which of spectrum and driver timing is open |
  * | `umm` | unit of the motion view |
+ * | `ysine` | tab of the study |
  *
  * What is as on a fresh page is left out; parts that cannot be read, or are not known (a later version's), are
  * ignored, of two of one kind the first counts. A part that was published keeps its meaning for ever.
@@ -20,7 +21,9 @@
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").ViewPart} ViewPart */
 
-const VIEWS = ["motion", "pulses", "packets", "spectrum", "timing"];
+const VIEWS = ["motion", "pulses", "packets", "spectrum", "timing", "study"];
+/** Tabs of the study, in their order. @type {import("../state/types.js").StudyName[]} */
+export const STUDIES = ["compare", "measures", "tables", "sine", "torque"];
 const SIDES = ["spectrum", "timing"];
 const UNITS = ["steps", "mm", "deg"];
 /** No part is longer, and there are not more kinds of them. */
@@ -35,6 +38,7 @@ const PARTS = {
   t: ["view", (text) => known(text, VIEWS)],
   s: ["side", (text) => known(text, SIDES)],
   u: ["unit", (text) => known(text, UNITS)],
+  y: ["study", (text) => known(text, STUDIES)],
 };
 
 /** @param {string} text @param {number} [most] */
@@ -73,9 +77,9 @@ export function writeView(view) {
 export function viewOf(state) {
   if (!state) return "";
   if (state.awaited) return writeView(state.awaited);
-  const { window, controller, axis, cursors, view, side, unit } = state;
+  const { window, controller, axis, cursors, view, side, unit, study } = state;
   return writeView({
     window: window ?? undefined, controller: controller || undefined, axis: axis || undefined, a: cursors.a ?? undefined, b: cursors.b ?? undefined,
-    view: view === "motion" ? undefined : view, side: side ?? undefined, unit: unit === "steps" ? undefined : unit,
+    view: view === "motion" ? undefined : view, side: side ?? undefined, unit: unit === "steps" ? undefined : unit, study: study === "compare" ? undefined : study,
   });
 }

@@ -36,7 +36,7 @@
  *   | {type: "controller", controller: number} | {type: "side", side: "spectrum" | "timing"}
  *   | {type: "axis", axis: number} | {type: "unit", unit: State["unit"]}
  *   | {type: "pane", panes: Partial<import("./types.js").Panes>}
- *   | {type: "view", view: string} | {type: "notice", notice: State["notice"]}} Message
+ *   | {type: "view", view: string} | {type: "study", study: import("./types.js").StudyName} | {type: "notice", notice: State["notice"]}} Message
  */
 
 /** Steps of history that are kept. */
@@ -65,7 +65,7 @@ export function initial(scenario) {
     controller: 0, window: null, awaited: null, axis: 0, unit: "steps", hover: null, lit: null,
     cursors: { a: null, b: null }, markers: NO_MARKERS, row: 0, folds: {}, allSignals: false,
     packet: null, filter: NO_FILTER,
-    view: "motion", side: null, notice: null,
+    view: "motion", study: "compare", side: null, notice: null,
     panes: { form: null, rows: null, columns: null, folded: [], largest: null },
     seen: null,
   };
@@ -121,6 +121,7 @@ export function update(state, message) {
     case "unit": return { ...state, unit: message.unit };
     case "pane": return { ...state, panes: { ...state.panes, ...message.panes } };
     case "view": return { ...state, view: message.view };
+    case "study": return { ...state, study: message.study };
     case "notice": return { ...state, notice: message.notice };
   }
 }
@@ -208,7 +209,7 @@ function opened(state, view) {
   const inside = (/** @type {number | undefined} */ cycle) => (cycle !== undefined && cycle <= last ? cycle : null);
   const looked = lookAt(state, view.controller ?? 0);
   return { ...looked, awaited: null, window: view.window ? within(view.window, last) : null, cursors: { a: inside(view.a), b: inside(view.b) },
-    axis: Math.min(view.axis ?? 0, (lookedAt(looked)?.channels ?? 1) - 1), view: view.view ?? state.view, side: view.side ?? null, unit: view.unit ?? "steps" };
+    axis: Math.min(view.axis ?? 0, (lookedAt(looked)?.channels ?? 1) - 1), view: view.view ?? state.view, side: view.side ?? null, study: view.study ?? state.study, unit: view.unit ?? "steps" };
 }
 
 /** The result as another of its controllers shows it: for the views another result. @param {State} state @param {number} controller @returns {State} */

@@ -73,7 +73,9 @@
  * @typedef {{error: string | null, same: boolean, edges: number, version: string | null, own_version: string, controller: number,
  *   after: Mark | null, until: Mark | null, shorter: "this" | "other" | null}} Verdict  How a run stands to a link's sender's.
  * @typedef {{window?: Span, controller?: number, axis?: number, a?: number, b?: number, view?: string, side?: "spectrum" | "timing",
- *   unit?: "steps" | "mm" | "deg"}} ViewPart  What a link says of the view; what it leaves out is as on a fresh page.
+ *   unit?: "steps" | "mm" | "deg", study?: StudyName}} ViewPart  What a link says of the view; what it leaves out is as on a fresh page.
+ *
+ * @typedef {"compare" | "measures" | "tables" | "sine" | "torque"} StudyName  Tabs of the study.
  *
  * @typedef {object} State
  * @property {Scenario} scenario
@@ -111,7 +113,8 @@
  * @property {boolean} allSignals   Also the signals that never change.
  * @property {number | null} packet Selected packet.
  * @property {{text: string, kind: string, address: number | null, outcome: string, only: boolean}} filter  Of the packets: what is searched for, and which rows are shown; `only` leaves out what the search does not find.
- * @property {string} view          Tab on a narrow screen.
+ * @property {string} view          Tab on a narrow screen; "study" takes the place of all views on a wide one, too.
+ * @property {StudyName} study      Open tab of the study.
  * @property {Panes} panes          Of a wide screen.
  * @property {"spectrum" | "timing" | null} side  Which of the two shares their place on a wide screen; null: the timing check, if there is one.
  * @property {{text: string, kind: "info" | "error", place?: Place | null} | null} notice  About links, files and the engine.

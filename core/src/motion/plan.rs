@@ -3,6 +3,8 @@
 //! A number is judged where it stands, with the path of its field; what only follows from several
 //! (a top speed, a table's length) is judged when the curve is made.
 
+mod motor;
+mod points;
 mod staircase;
 mod timed;
 
@@ -10,6 +12,8 @@ use super::{
     AxisPlan, Curve, MOST_SPEED, Profile,
     acceleration_table::AccelerationTable,
     asked::Asked,
+    jerk_limited::{JerkLimited, Limits},
+    sine::Sine,
     sine_segments::SineSegments,
     steady::{Constant, Dwell},
     trapezoid::Trapezoid,
@@ -85,6 +89,7 @@ pub fn plan_axis(axis: &Axis, path: &str) -> Result<AxisPlan, Vec<Problem>> {
 
 fn plan_within(axis: &Axis, path: &str, left: &mut Left) -> Result<AxisPlan, Vec<Problem>> {
     let mut asked = Asked::new(&axis.mechanics, &format!("{path}.mechanics"));
+    motor::judge(&mut asked, axis, path);
     let moves_path = format!("{path}.moves");
     let given = axis.moves.len();
     if !(1..=MOST_MOVES).contains(&given) {
@@ -114,6 +119,9 @@ fn plan_move(asked: &mut Asked<'_>, given: &Move, path: &str, left: &mut Left) -
         Move::Cosine(given) => timed::plan_cosine(asked, given, &format!("{path}.cosine"), left),
         Move::Ramps(given) => timed::plan_ramps(asked, given, &format!("{path}.ramps")),
         Move::SineSegments(given) => plan_sine(asked, given, &format!("{path}.sine_segments"), left),
+        Move::Sine(given) => plan_exact_sine(asked, given, &format!("{path}.sine")),
+        Move::JerkLimited(given) => plan_jerk_limited(asked, given, &format!("{path}.jerk_limited")),
+        Move::Points(given) => points::plan(asked, given, &format!("{path}.points")),
         Move::Constant(given) => {
             let steps = asked.distance(format!("{path}.constant.distance"), &given.distance);
             let speed = asked.speed(format!("{path}.constant.speed"), &given.speed);
@@ -201,6 +209,24 @@ fn plan_sine(
     left.segments = still_left;
     hold_speed(asked, format!("{path}.period_s"), curve.peaks().speed)?;
     Some(Profile::SineSegments(curve))
+}
+
+fn plan_exact_sine(asked: &mut Asked<'_>, given: &scenario::Sine, path: &str) -> Option<Profile> {
+    let amplitude = asked.distance(format!("{path}.amplitude"), &given.amplitude);
+    let period_s = asked.duration(format!("{path}.period_s"), given.period_s);
+    asked.range(format!("{path}.periods"), given.periods.into(), 1.0, MOST_PERIODS, "")?;
+    let curve = Sine::new(amplitude?, period_s?, given.periods);
+    hold_speed(asked, format!("{path}.period_s"), curve.peaks().speed)?;
+    Some(Profile::Sine(curve))
+}
+
+fn plan_jerk_limited(asked: &mut Asked<'_>, given: &scenario::JerkLimited, path: &str) -> Option<Profile> {
+    let steps = asked.distance(format!("{path}.distance"), &given.distance);
+    let speed = asked.speed(format!("{path}.max_speed"), &given.max_speed);
+    let acceleration = asked.acceleration(format!("{path}.max_acceleration"), &given.max_acceleration);
+    let jerk = asked.jerk(format!("{path}.max_jerk"), &given.max_jerk);
+    let limits = Limits { speed: speed?, acceleration: acceleration?, jerk: jerk? };
+    Some(Profile::JerkLimited(JerkLimited::new(steps?, limits)))
 }
 
 /// Refuses a speed that no one gave but that follows from the numbers.

@@ -10,7 +10,7 @@
 
 use super::{Entry, Stored};
 use crate::motion::round_half_up;
-use alloc::format;
+use alloc::{format, string::String};
 use core::fmt::{self, Write};
 
 /// Numbers in a line.
@@ -51,6 +51,13 @@ pub fn is_name(name: &str) -> bool {
         && name.len() <= 32
         && name.chars().all(fits)
         && !name.chars().all(|c| c.is_ascii_lowercase())
+}
+
+/// What a file says that it is: the scenario's title, if it has one, the axis and the form of its table.
+#[must_use]
+pub fn headline(title: &str, axis: usize, form: &str) -> String {
+    let separator = if title.is_empty() { "" } else { ": " };
+    format!("{title}{separator}axis {axis}, {form} step table")
 }
 
 impl Source<'_> {

@@ -1,0 +1,68 @@
+//! Which segments make a sine with least distortion (DESIGN B5, figure 4): rows of a sweep, the best d1 of a range, the
+//! best vertices. Each call is a piece of a longer question, which workers share.
+
+use crate::convert::{field, numbers};
+use js_sys::Object;
+use std::ops::Range;
+use stepscope_core::analysis::{
+    sine_optimum::{Freedom, optimum},
+    sine_polyline::{Distinct, Row, swept},
+};
+use wasm_bindgen::prelude::*;
+
+/// Columns of rows.
+fn columns(rows: &[Row]) -> Object {
+    let made = Object::new();
+    let put = |name: &str, of: &dyn Fn(&Row) -> f64| {
+        numbers(&made, name, &rows.iter().map(of).collect::<Vec<f64>>());
+    };
+    put("d1", &|row| row.d1);
+    put("segments", &|row| row.segments as f64);
+    put("position", &|row| row.distortion.position);
+    put("speed", &|row| row.distortion.speed);
+    put("acceleration", &|row| row.distortion.acceleration);
+    put("euclidean", &|row| row.euclidean);
+    made
+}
+
+/// Rows `first` to before `end` of the sweep over `count` values of d1, as columns `d1`, `segments`, `position`, `speed`,
+/// `acceleration` (THD as ratios) and `euclidean`.
+#[wasm_bindgen]
+#[must_use]
+pub fn sine_rows(from: f64, to: f64, count: u32, order: u16, first: u32, end: u32) -> Object {
+    let Range { start, end } = first..end.min(count);
+    let rows: Vec<Row> = (start..end).map(|index| Row::of(swept(from, to, count, index), order)).collect();
+    columns(&rows)
+}
+
+/// For each number of segments the d1 with least distortion of the position, of all polylines that a range has: columns
+/// as [`sine_rows`].
+#[wasm_bindgen]
+#[must_use]
+pub fn sine_best(from: f64, to: f64, order: u16) -> Object {
+    let mut all: Vec<Row> = Vec::new();
+    for row in Distinct::new(from, to, order) {
+        match all.iter_mut().find(|best| best.segments == row.segments) {
+            Some(best) if row.distortion.position < best.distortion.position => *best = row,
+            Some(_) => {}
+            None => all.push(row),
+        }
+    }
+    columns(&all)
+}
+
+/// The vertices of `segments` a quarter with least distortion of the position, on the curve or free: `angle_deg` and
+/// `height` of each, and `thd`; undefined for another number of segments than 1 to 32.
+#[wasm_bindgen]
+#[must_use]
+pub fn sine_vertices(segments: usize, free: bool, order: u16) -> Option<Object> {
+    let freedom = if free { Freedom::Free } else { Freedom::OnCurve };
+    let found = optimum(segments, freedom, order)?;
+    let made = Object::new();
+    let angles: Vec<f64> = found.vertices.iter().map(|vertex| vertex.angle.to_degrees()).collect();
+    let heights: Vec<f64> = found.vertices.iter().map(|vertex| vertex.height).collect();
+    numbers(&made, "angle_deg", &angles);
+    numbers(&made, "height", &heights);
+    field(&made, "thd", &found.distortion.position.into());
+    Some(made)
+}

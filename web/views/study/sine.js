@@ -1,0 +1,263 @@
+/**
+ * The tab Sine of the study: what each largest deviation d1 makes of a sine in segments (the document's figure 4), the best
+ * d1 of a range, and the best vertices for a number of segments. What a tab is, says study.js.
+ */
+import { button, element, fill, say } from "../../dom.js";
+import { short } from "../../state/number.js";
+import { listen } from "../../shell/commands.js";
+import { cleared, color, draw, fit, watch } from "../../time/plot.js";
+import { choice, createJob, field, subject, table } from "./parts.js";
+
+/** @typedef {import("../../state/types.js").State} State */
+/** @typedef {"position" | "speed" | "acceleration"} Quantity */
+/** @typedef {{d1: Float64Array, segments: Float64Array, position: Float64Array, speed: Float64Array, acceleration: Float64Array, euclidean: Float64Array}} Rows */
+/** @typedef {{[name in keyof Rows]: number}} Row */
+/** @typedef {{angle_deg: Float64Array, height: Float64Array, thd: number}} Vertices */
+
+/** Points of one piece of the sweep: a few ms. */
+const PIECE = 10;
+/** Pieces of the range in which the best d1 of each number of segments is looked for. */
+const STRETCHES = 16;
+const GUTTER = 58;
+const NAMES = /** @type {(keyof Rows)[]} */ (["d1", "segments", "position", "speed", "acceleration", "euclidean"]);
+
+/** A d1 as the scenario takes it: with few digits, and not below where its polyline begins. @param {number} d1 */
+const rounded = (d1) => Math.ceil(d1 * 1e8 - 1e-4) / 1e8;
+/** @param {number} ratio */
+const percent = (ratio) => `${short(100 * ratio, 4)} %`;
+
+/** @param {import("./study.js").StudyPage} page @returns {import("./study.js").StudyTab} */
+export function createSine({ engine, samples, dispatch, now, panel }) {
+  const from = field("d1 from", "", 0.002, { least: 1e-5, most: 1 }, refresh);
+  const to = field("to", "", 0.06, { least: 1e-5, most: 1 }, refresh);
+  const points = field("points", "", 500, { least: 2, most: 20000, integer: true }, refresh);
+  const order = field("harmonics to", "", 399, { least: 3, most: 9999, integer: true }, () => { refresh(); vertices(); });
+  const quantity = choice("THD of", { position: "position", speed: "speed", acceleration: "acceleration" }, paint);
+  const job = createJob("Sweep");
+  const thdCanvas = element("canvas", { role: "img", "aria-label": "THD against d1" });
+  const distanceCanvas = element("canvas", { role: "img", "aria-label": "Euclidean distance against d1" });
+  const overlay = element("canvas", { class: "overlay", "aria-hidden": "true" });
+  const thdCaption = element("div", { class: "caption" });
+  const distanceCaption = element("div", { class: "caption" }, element("span", {}, "Euclidean distance Ev against d1, both in parts of the amplitude"));
+  const charts = element("div", { class: "charts study-charts", id: "sine-charts", tabindex: "0", role: "slider", "aria-label": "d1", "aria-valuemin": "0", "aria-valuemax": "0", "aria-valuenow": "0" },
+    element("div", { class: "chart" }, thdCaption, thdCanvas), element("div", { class: "chart" }, distanceCaption, distanceCanvas), overlay);
+  const list = table("What a d1 gives", ["of", "#d1", "#segments", "#THD position", "~#speed", "~#acceleration", "#Ev", ""]);
+  const note = element("p", { class: "study-note", "aria-live": "polite" });
+  const segments = field("segments of a quarter", "", 6, { least: 1, most: 32, integer: true }, vertices);
+  const verticesJob = createJob("Vertices");
+  const bestOf = table("Best d1 of each number of segments", ["segments", "#best d1", "#THD position", "~#Ev", ""]);
+  const best = table("Best vertices", ["vertex", "#on the curve", "#height", "#free", "#height"]);
+  const bestNote = element("p", { class: "study-note", id: "sine-vertices" });
+  fill(panel, element("div", { class: "study-bar" }, from.root, to.root, points.root, order.root, quantity.root, job.root),
+    element("div", { class: "study-split" },
+      element("div", { class: "study-column" }, charts, list.root, note),
+      element("div", { class: "study-column study-side" }, element("h3", {}, "Best d1 of each number of segments"), bestOf.root, element("h3", {}, "Best vertices"), element("div", { class: "study-bar" }, segments.root, verticesJob.root), bestNote, best.root)));
+
+  /** @type {Rows | null} What the charts show, as far as it is made. */
+  let rows = null;
+  /** @type {Row | null} */
+  let least = null;
+  /** Of the scenario's d1. @type {Row | null} */
+  let own = null;
+  /** The row that is pointed at. @type {number | null} */
+  let at = null;
+  /** @type {import("../../state/types.js").Plot | null} */
+  let plot = null;
+  let swept = false;
+
+  watch(charts, paint);
+  charts.addEventListener("pointermove", (event) => point(rowAt(event)));
+  charts.addEventListener("click", (event) => {
+    point(rowAt(event));
+    take();
+  });
+  const move = (/** @type {number} */ by) => point(Math.min((rows?.d1.length ?? 1) - 1, Math.max(0, (at ?? (by > 0 ? -1 : 1)) + by)));
+  listen(charts, "Sine: figure 4", [
+    { keys: ["ArrowRight", "ArrowUp"], text: "the next d1", run: () => move(1) },
+    { keys: ["ArrowLeft", "ArrowDown"], text: "the d1 before", run: () => move(-1) },
+    { keys: ["PageUp"], text: "twenty further", run: () => move(20) },
+    { keys: ["PageDown"], text: "twenty back", run: () => move(-20) },
+    { keys: ["Home"], text: "the least d1", run: () => point(0) },
+    { keys: ["End"], text: "the greatest d1", run: () => move(1e9) },
+    { keys: ["Enter", "Space"], text: "take this d1 into the scenario", run: take },
+  ]);
+
+  /** @param {PointerEvent | MouseEvent} event */
+  function rowAt({ clientX }) {
+    if (!plot || !rows) return null;
+    const part = (clientX - charts.getBoundingClientRect().left - plot.left) / (plot.right - plot.left);
+    return part < -0.02 || part > 1.02 ? at : Math.min(rows.d1.length - 1, Math.max(0, Math.round(part * (rows.d1.length - 1))));
+  }
+
+  /** @param {number | null} index */
+  function point(index) {
+    if (index === at) return;
+    at = index;
+    mark();
+  }
+
+  function take() {
+    const row = at === null ? null : rowOf(rows, at);
+    if (row) put(row.d1);
+  }
+
+  /** The sine of the looked-at axis. @param {State} state */
+  function sineOf(state) {
+    const of = subject(state);
+    if (typeof of === "string") return { of: null, move: -1 };
+    return { of, move: of.moves.findIndex((/** @type {any} */ each) => each.sine_segments) };
+  }
+
+  /** Puts a d1 into the scenario. @param {number} d1 */
+  function put(d1) {
+    const { of, move } = sineOf(now());
+    if (!of) return say(note, "The scenario has no axis that could take it.");
+    if (move < 0) return offer(of, d1);
+    dispatch({ type: "edit", path: `${of.path}.moves[${move}].sine_segments.max_deviation`, value: rounded(d1) });
+    say(note, `Move ${move + 1} of axis ${of.axis} has d1 = ${rounded(d1)} now; undo brings the one before back.`);
+    return undefined;
+  }
+
+  /** @param {Row} row @param {string} name */
+  const use = (row, name) => button("Use", `Use: ${name}`, () => put(row.d1));
+
+  /** Where there is no sine. @param {import("./parts.js").Subject} of @param {number} d1 */
+  function offer({ axis, path, moves }, d1) {
+    const press = element("button", { type: "button" }, `Add one with d1 = ${rounded(d1)}`);
+    press.addEventListener("click", () => {
+      dispatch({ type: "edit", path: `${path}.moves`, value: [...moves, { sine_segments: { ...samples.moves.sine_segments, max_deviation: rounded(d1) } }] });
+      say(note, `Axis ${axis} ends with a sine in segments now; undo takes it away.`);
+    });
+    fill(note, `Axis ${axis} has no sine in segments that could take it. `, press);
+  }
+
+  /** Sweeps the range, and looks for the best of it. */
+  function refresh() {
+    const [low, high, number, highest] = [from, to, points, order].map((each) => each.value());
+    if (low >= high) return say(note, `d1 goes from the smaller to the greater: ${low} is not below ${high}.`);
+    say(note, "");
+    swept = true;
+    job.run(async (signal, tell) => {
+      const pieces = Array.from({ length: Math.ceil(number / PIECE) }, (_, index) => [low, high, number, highest, PIECE * index, PIECE * (index + 1)]);
+      // The smaller d1, the more polylines are beside it.
+      const edge = (/** @type {number} */ index) => (index === STRETCHES ? high : low * (high / low) ** (index / STRETCHES));
+      const stretches = Array.from({ length: STRETCHES }, (_, index) => [edge(index), edge(index + 1), highest]);
+      let done = 0;
+      const all = pieces.length + STRETCHES;
+      const told = () => tell(++done / all, done < pieces.length ? `${Math.min(number, done * PIECE)} of ${number} points` : "the best d1 of the range");
+      tell(0, `0 of ${number} points`);
+      [rows, at, least] = [null, null, null];
+      // Those that are there are shown.
+      const answers = await engine.share("sine_rows", pieces, signal, told);
+      rows = joined(answers);
+      paint();
+      const found = await engine.share("sine_best", stretches, signal, told);
+      return joined(found);
+    }, (found) => {
+      /** @type {Map<number, Row>} */
+      const bests = new Map();
+      for (let index = 0; index < found.d1.length; index++) {
+        const row = /** @type {Row} */ (rowOf(found, index));
+        if (!(row.position >= (bests.get(row.segments)?.position ?? Infinity))) bests.set(row.segments, row);
+      }
+      const sorted = [...bests.values()].sort((one, other) => one.segments - other.segments);
+      bestOf.show(sorted.map((row) => [String(row.segments), short(row.d1, 6), percent(row.position), short(row.euclidean, 4), use(row, `${row.segments} segments, the best d1`)]));
+      least = sorted.reduce((best, row) => (row.position < best.position ? row : best));
+      paint();
+    });
+    return undefined;
+  }
+
+  /** The best vertices, on the curve and free. */
+  function vertices() {
+    const number = segments.value();
+    verticesJob.run((signal, tell) => {
+      tell(0, `${number} segments`);
+      return engine.share("sine_vertices", [[number, false, order.value()], [number, true, order.value()]], signal);
+    }, ([onCurve, free]) => {
+      say(bestNote, `Least THD of position with ${number} segments: ${percent(onCurve.thd)} with vertices on the curve, ${percent(free.thd)} with free ones.`);
+      best.show(Array.from(onCurve.angle_deg, (_, i) => [String(i), ...[onCurve, free].flatMap(({ angle_deg, height }) => [`${angle_deg[i].toFixed(3)}°`, height[i].toFixed(5)])]));
+    });
+  }
+
+  function paint() {
+    const chosen = /** @type {Quantity} */ (quantity.value());
+    fill(thdCaption, element("span", {}, `THD of ${chosen} against d1, harmonics 2 to ${order.value()}, %`));
+    if (rows && rows.d1.length > 1) {
+      const { d1 } = rows;
+      const x = { min: d1[0], max: d1[d1.length - 1], unit: "", prefix: false, label_px: 20 };
+      const line = (/** @type {HTMLCanvasElement} */ canvas, /** @type {Float64Array} */ y, /** @type {string} */ ink) => draw(canvas, { x,
+        y: { min: 0, max: 1.05 * Math.max(...y), unit: "", prefix: false, label_px: GUTTER }, series: [{ color: color(ink), opacity: 1, width: 1.5, x: d1, shape: { line: { y } } }] });
+      plot = line(thdCanvas, rows[chosen].map((ratio) => 100 * ratio), "--ideal");
+      line(distanceCanvas, rows.euclidean, "--made");
+      fit(overlay);
+    }
+    mark();
+  }
+
+  /** The rows below, and where they are in the charts. */
+  function mark() {
+    const pointed = at === null ? null : rowOf(rows, at);
+    charts.setAttribute("aria-valuemax", String((rows?.d1.length ?? 1) - 1));
+    charts.setAttribute("aria-valuenow", String(at ?? 0));
+    charts.setAttribute("aria-valuetext", pointed ? `d1 ${short(pointed.d1)}, ${pointed.segments} segments, THD of ${quantity.value()} ${percent(pointed[/** @type {Quantity} */ (quantity.value())])}, Ev ${short(pointed.euclidean)}; Enter takes it` : "no d1 chosen");
+    const cells = (/** @type {string} */ name, /** @type {Row | null} */ row, /** @type {string} */ none, usable = true) => {
+      return [name, ...(row ? [short(row.d1, 6), String(row.segments), percent(row.position), percent(row.speed), percent(row.acceleration), short(row.euclidean, 4)] : [none, "", "", "", "", ""]), usable && row ? use(row, name) : ""];
+    };
+    list.show([cells("pointed at", pointed, "–"), cells("the scenario", own, "none", false), cells("best in range", least, "–")]);
+    const layer = cleared(overlay);
+    if (!layer || !plot || !rows) return;
+    const { left, right, top, bottom } = plot;
+    const [low, high] = [rows.d1[0], rows.d1[rows.d1.length - 1]];
+    const { context } = layer;
+    /** @type {[Row | null, string, number[], string][]} */
+    const lines = [[own, "--ink", [5, 4], "now"], [least, "--enable", [2, 3], "best"], [pointed, "--axis", [], ""]];
+    context.font = "11px system-ui, sans-serif";
+    for (const [row, ink, dash, name] of lines) {
+      if (!row || row.d1 < low || row.d1 > high) continue;
+      const x = Math.round(left + ((row.d1 - low) / (high - low)) * (right - left)) + 0.5;
+      context.strokeStyle = context.fillStyle = color(ink);
+      context.setLineDash(dash);
+      for (const canvas of [thdCanvas, distanceCanvas]) {
+        const down = canvas.offsetTop + (canvas.parentElement?.offsetTop ?? 0);
+        context.beginPath();
+        context.moveTo(x, down + top);
+        context.lineTo(x, down + bottom);
+        context.stroke();
+      }
+      if (name) context.fillText(name, x + 4, thdCanvas.offsetTop + top + (name === "now" ? 11 : 24));
+    }
+    context.setLineDash([]);
+  }
+
+  /** What the scenario's own d1 gives. @param {State} state */
+  async function current(state) {
+    const { of, move } = sineOf(state);
+    if (!of) return;
+    const d1 = of.moves[move]?.sine_segments.max_deviation ?? null;
+    if (d1 === (own?.d1 ?? null)) return;
+    own = d1 === null ? null : rowOf(await engine.ask("sine_rows", d1, d1, 1, order.value(), 0, 1), 0);
+    mark();
+  }
+
+  /** @param {State} state @param {State | undefined} before */
+  function render(state, before) {
+    if (!swept) {
+      refresh();
+      vertices();
+    }
+    if (before?.view !== state.view || before?.study !== state.study) paint();
+    return current(state);
+  }
+  return { render };
+}
+
+/** @param {Rows | null} rows @param {number} index @returns {Row | null} */
+function rowOf(rows, index) {
+  return rows && index < rows.d1.length ? /** @type {any} */ (Object.fromEntries(NAMES.map((name) => [name, rows[name][index]]))) : null;
+}
+
+/** @param {Rows[]} pieces @returns {Rows} */
+function joined(pieces) {
+  return /** @type {any} */ (Object.fromEntries(NAMES.map((name) => [name, Float64Array.from(pieces.flatMap((piece) => [...piece[name]]))])));
+}

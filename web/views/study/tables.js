@@ -1,0 +1,154 @@
+/**
+ * The tab Tables of the study: how the step times of the looked-at axis can be stored, what each form costs, how good it is,
+ * and each as a file for a firmware. What a tab is, says study.js.
+ */
+import { element, fill, say } from "../../dom.js";
+import { count, plain, short, si } from "../../state/number.js";
+import { baseName } from "../../shell/exports.js";
+import { save } from "../../shell/save.js";
+import { createJob, field, subject, table } from "./parts.js";
+
+/** @typedef {import("../../state/types.js").State} State */
+/** @typedef {import("../../engine/engine.js").Engine} Engine */
+/** @typedef {import("./parts.js").Subject} Subject */
+/** @typedef {{steps: number, entries: number, bytes: number, document_bytes: number | null, largest_s: number, rms_s: number, why: string | null}} Told */
+/** @typedef {{form: string, widths: string, us: number}} Choice */
+
+/** @type {{[form: string]: string}} */
+const FORMS = { exact: "Exact list", document: "Document's table", compressed: "Compressed" };
+/** @type {{[widths: string]: string}} */
+const WIDTHS = { q16: "20 bytes, 1/65536 cycle", q8: "8 bytes, 1/256 cycle", ticks: "8 bytes, whole cycles" };
+/** @type {{[language: string]: [string, string, string]}} Label, ending of the file and its type. */
+const LANGUAGES = {
+  c: ["C", ".c", "text/x-c"], avr: ["C for AVR (PROGMEM)", "-avr.c", "text/x-c"], rust: ["Rust", ".rs", "text/rust"], csv: ["CSV", ".csv", "text/csv"],
+};
+const ROWS = Object.keys(FORMS).flatMap((form) => Object.keys(WIDTHS).map((widths) => ({ form, widths })));
+/** What the export panel offers, too. @type {Choice} */
+const chosen = { form: "compressed", widths: "q16", us: 25 };
+
+/** Files of the table that is chosen, for the export panel. @param {State} state @param {Engine} engine @returns {import("../../shell/exports.js").Offer[]} */
+export function tableFiles(state, engine) {
+  const of = subject(state);
+  return typeof of === "string" ? [] : files(state, engine, of);
+}
+
+/** @param {State} state @param {Engine} engine @param {Subject} of */
+function files(state, engine, { json, controller, axis }) {
+  const { form, widths, us } = chosen;
+  const part = controller > 0 ? `-controller-${controller + 1}` : "";
+  return Object.entries(LANGUAGES).map(([language, [label, ending, type]]) => ({
+    name: `${baseName(state)}${part}-axis-${axis}-${form}-${widths}${ending}`, type, label: `${label}: axis ${axis}, ${form}, ${widths}`, language,
+    make: () => engine.share("step_source", [[json, controller, axis, form, widths, us, language]], new AbortController().signal),
+  }));
+}
+
+/** @param {import("./study.js").StudyPage} page @returns {import("./study.js").StudyTab} */
+export function createTables({ engine, now, panel }) {
+  const error = field("Largest error of compressed", "us", chosen.us, { least: 0, most: 1e6 }, () => refresh(now()));
+  const job = createJob("Tables");
+  const about = element("p", { class: "study-note" });
+  const note = element("p", { class: "study-note" });
+  const list = table("Stored forms", ["form", "widths", "#entries", "#bytes", "~#steps an entry", "#largest error", "#r.m.s. error", "~#steps"]);
+  const saves = element("p", { class: "study-bar", role: "group", "aria-label": "Save the chosen table" });
+  const said = element("span", { "aria-live": "polite" });
+  fill(panel, element("div", { class: "study-bar" }, error.root, job.root), about, list.root, note, saves);
+  /** What the table shows, and what it was made of. @type {Told[]} */
+  let told = [];
+  let key = "";
+  list.body.addEventListener("click", ({ target }) => {
+    const row = /** @type {Element} */ (target).closest("tr");
+    const pick = row?.querySelector("input");
+    if (pick && !pick.disabled) choose(pick.value);
+  });
+  list.body.addEventListener("change", ({ target }) => choose(/** @type {HTMLInputElement} */ (target).value));
+
+  /** @param {string} id */
+  function choose(id) {
+    [chosen.form, chosen.widths] = id.split("-");
+    mark();
+  }
+
+  function mark() {
+    for (const pick of list.body.querySelectorAll("input")) {
+      pick.checked = pick.value === `${chosen.form}-${chosen.widths}`;
+      pick.closest("tr")?.classList.toggle("chosen", pick.checked);
+    }
+    const of = subject(now());
+    const none = typeof of === "string" || told[ROWS.findIndex(({ form, widths }) => form === chosen.form && widths === chosen.widths)]?.why !== null;
+    say(said, "");
+    fill(saves, element("span", {}, none ? "" : `Save ${FORMS[chosen.form].toLowerCase()}, ${chosen.widths}, as`), ...(none ? [] : files(now(), engine, of).map(({ name, type, language, make }) => {
+      const press = element("button", { type: "button", "data-language": language, title: name }, LANGUAGES[language][0]);
+      press.addEventListener("click", async () => {
+        say(said, `Making ${name}…`);
+        try {
+          save(name, type, await make());
+          say(said, `Saved ${name}.`);
+        } catch (failed) {
+          say(said, `No ${name}: ${failed instanceof Error ? failed.message : failed}`);
+        }
+      });
+      return press;
+    })), said);
+  }
+
+  function show() {
+    const steps = told[0].steps;
+    // What is refused in all widths for one reason is one row.
+    const alike = (/** @type {number} */ at) => ROWS.every(({ form }, other) => form !== ROWS[at].form || (told[other].why !== null && told[other].why === told[at].why));
+    const kept = told.map((_, at) => at).filter((at) => !alike(at) || ROWS[at].widths === "q16");
+    list.show(kept.map((at) => {
+      const { entries, bytes, document_bytes, largest_s, rms_s, why } = told[at];
+      const { form, widths } = ROWS[at];
+      const pick = element("input", { type: "radio", name: "study-table", value: `${form}-${widths}` });
+      pick.disabled = why !== null;
+      const name = element("label", { class: "check" }, pick, FORMS[form]);
+      const cells = why !== null ? [why] : [count(entries), count(bytes), entries ? short(steps / entries, 4) : "–", si(largest_s, "s"), si(rms_s, "s"), `${count(steps)}, exact`];
+      if (form === "document" && document_bytes !== null && why === null) cells[1] += ` (${count(document_bytes)})`;
+      return [name, alike(at) ? "all" : element("span", {}, widths, element("span", { class: "roomy" }, `: ${WIDTHS[widths]}`)), ...cells];
+    }));
+    kept.forEach((at, row) => {
+      const cell = list.body.children[row].children[2];
+      if (told[at].why === null) return;
+      cell.setAttribute("colspan", "6");
+      cell.className = "why";
+    });
+    const own = told.find(({ document_bytes }) => document_bytes !== null);
+    say(note, `One interval of 4 bytes for each step would take ${count(4 * steps)} bytes.${own ? " In brackets: bytes of the table as the motion's document keeps it." : ""} No step is ever lost or added: a list that has not all of them is refused.`);
+    mark();
+  }
+
+  /** @param {State} state */
+  function refresh(state) {
+    const of = subject(state);
+    panel.classList.toggle("stale", of === "");
+    if (of === "") return;
+    if (typeof of === "string") {
+      key = "";
+      say(about, of);
+      for (const each of [list.root, note, saves]) each.hidden = true;
+      return;
+    }
+    chosen.us = error.value();
+    const next = JSON.stringify([of.json, of.controller, of.axis, chosen.us]);
+    if (next === key) return mark();
+    key = next;
+    job.run(async (signal, tell) => {
+      let done = 0;
+      tell(0, `0 of ${ROWS.length} tables`);
+      const pieces = ROWS.map(({ form, widths }) => [of.json, of.controller, of.axis, form, widths, chosen.us]);
+      return engine.share("step_table", pieces, signal, () => tell(++done / pieces.length, `${done} of ${pieces.length} tables`));
+    }, (made) => {
+      told = made;
+      for (const each of [list.root, note, saves]) each.hidden = false;
+      const derived = now().derived?.controllers[of.controller]?.axes[of.axis];
+      say(about, `Axis ${of.axis}: ${count(made[0].steps)} steps${derived ? ` in ${si(derived.duration_s, "s")}, up to ${plain(derived.peak_speed_steps_s, "steps/s")}` : ""}.`);
+      show();
+    });
+  }
+
+  /** @param {State} state @param {State | undefined} before */
+  function render(state, before) {
+    if (before?.judgement !== state.judgement || before?.revision !== state.revision || before?.axis !== state.axis || before?.result !== state.result) refresh(state);
+  }
+  return { render };
+}
