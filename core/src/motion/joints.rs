@@ -5,11 +5,12 @@
 //! ```text
 //! |   .----.     | a trapezoid has a joint at each end of its ramps and in its middle,
 //! |  /|  | |\    | a table or a staircase at each change of its rate,
-//! +-'-+--+-+-'-- | a cosine 64 in each ramp, a sine 128 a period: no polynomials, so they are cut small
+//! +-'-+--+-+-'-- | a cosine 64 in each ramp, another shape as many or more, a sine 128 a period: these are
+//!                  no polynomials, so they are cut small
 //! ```
 
 use super::{
-    AxisPlan, Curve, Profile, cosine::Cosine, jerk_limited::JerkLimited, polyline::POINTS, sine::Sine,
+    AxisPlan, Curve, Profile, jerk_limited::JerkLimited, polyline::POINTS, sine::Sine,
     sine_segments::SineSegments,
 };
 use alloc::vec::Vec;
@@ -142,7 +143,16 @@ fn greatest(a: f64, b: f64) -> f64 {
 fn joints(profile: &Profile) -> Vec<f64> {
     match profile {
         Profile::Trapezoid(curve) => mirrored([curve.ramp_s()].into_iter(), curve.duration_s()),
-        Profile::Cosine(curve) => mirrored(ramp(curve), curve.duration_s()),
+        Profile::Cosine(curve) => mirrored(ramp(curve.ramp_s, RAMP_PARTS), curve.duration_s()),
+        Profile::Sliced(curve) => {
+            let inside = 1..curve.starts_s.len().saturating_sub(1);
+            curve.starts_s.get(inside).map_or_else(Vec::new, <[f64]>::to_vec)
+        }
+        Profile::Ramps(curve) => {
+            // A shape that bends more than a cosine is cut into more pieces, and its middle stays a joint.
+            let times = 1 + (curve.ramp.sharpness() / 8.0) as u32;
+            mirrored(ramp(curve.ramp_s, times * RAMP_PARTS), curve.duration_s())
+        }
         Profile::TrapezoidTable(curve) => {
             // One interval more than the ramp: its slope to the next shows the ramp's end.
             let count = curve.steps().unsigned_abs();
@@ -177,9 +187,8 @@ fn phases(curve: &JerkLimited) -> Vec<f64> {
     parts(0.0, rising_s).chain([steady_s]).chain(parts(steady_s, ramp_s)).collect()
 }
 
-fn ramp(curve: &Cosine) -> impl Iterator<Item = f64> {
-    let ramp_s = curve.ramp_s;
-    (1..=RAMP_PARTS).map(move |part| ramp_s * f64::from(part) / f64::from(RAMP_PARTS))
+fn ramp(ramp_s: f64, parts: u32) -> impl Iterator<Item = f64> {
+    (1..=parts).map(move |part| ramp_s * f64::from(part) / f64::from(parts))
 }
 
 /// These of the first half, the middle, and their mirror images.
@@ -236,6 +245,11 @@ mod tests {
         r#"{"jerk_limited":{"distance":{"steps":40}}}"#,
         r#"{"points":{"points":[[0,0],[0.1,50],[0.2,50],[0.5,-300]],"interpolation":"straight"}}"#,
         r#"{"points":{"points":[[0,0],[0.1,50],[0.2,60],[0.5,-300]],"interpolation":"smooth"}}"#,
+        r#"{"cosine":{"distance":{"steps":3201},"ramp_s":0.1,"method":"sliced"}}"#,
+        r#"{"ramps":{"shape":"sigmoid","ramp_s":0.1}}"#,
+        r#"{"ramps":{"shape":"bezier"}}"#,
+        r#"{"ramps":{"shape":"straight","ramp_s":0.1}}"#,
+        r#"{"ramps":{"shape":"exponential","ramp_s":0.1}}"#,
         r#"{"constant":{"distance":{"steps":100},"speed":{"steps_s":1000}}}"#,
         r#"{"dwell":{"duration_s":0.1}},{"sine":{"amplitude":{"steps":500},"period_s":0.2,"periods":3}},{"dwell":{"duration_s":0.05}}"#,
         r#"{"dwell":{"duration_s":0.1}},{"sine_segments":{"amplitude":{"steps":500},"period_s":0.2,"periods":3}},{"dwell":{"duration_s":0.05}}"#,

@@ -4,8 +4,10 @@ use super::{
     cosine::Cosine,
     jerk_limited::JerkLimited,
     points::Points,
+    ramps::Ramps,
     sine::Sine,
     sine_segments::SineSegments,
+    sliced::Sliced,
     staircase::Staircase,
     steady::{Constant, Dwell},
     trapezoid::Trapezoid,
@@ -91,6 +93,10 @@ pub enum Profile {
     Staircase(Staircase),
     /// Cosine S-curve (B4, `exact`).
     Cosine(Cosine),
+    /// Cosine S-curve in slices (B4, `sliced`).
+    Sliced(Sliced),
+    /// Ramps of another shape (B4).
+    Ramps(Ramps),
     /// Sine by segments (B5).
     SineSegments(SineSegments),
     /// Exact sine (B6).
@@ -112,6 +118,8 @@ macro_rules! each {
             Profile::TrapezoidTable($curve) => $what,
             Profile::Staircase($curve) => $what,
             Profile::Cosine($curve) => $what,
+            Profile::Sliced($curve) => $what,
+            Profile::Ramps($curve) => $what,
             Profile::SineSegments($curve) => $what,
             Profile::Sine($curve) => $what,
             Profile::JerkLimited($curve) => $what,
