@@ -235,6 +235,7 @@ impl Curve for SineSegments {
         0.0
     }
 
+    /// Between two segments the speed jumps; the acceleration is 0 throughout, and so is the jerk.
     fn peaks(&self) -> Peaks {
         let mut peaks = Peaks::default();
         let mut before = None;
