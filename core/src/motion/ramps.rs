@@ -62,7 +62,9 @@ impl Ramps {
     }
 
     /// When the curve is at `place`, in s; `place` in steps without sign, 0 to all.
-    pub(super) fn time_s(&self, place: f64) -> f64 {
+    /// Step k falls due at k - 1/2 (B1).
+    #[must_use]
+    pub fn time_s(&self, place: f64) -> f64 {
         self.halves.time_s(place, |place| self.climb_s(place))
     }
 

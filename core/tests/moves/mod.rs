@@ -20,12 +20,15 @@ pub(crate) fn sane_move() -> impl Strategy<Value = Move> {
         (steps.clone(), 0.02..2.0, 0.0..=0.5).prop_map(|(distance, duration_s, ramp)| {
             Move::Cosine(Cosine { distance, duration_s, ramp_s: duration_s * ramp, ..Cosine::default() })
         }),
-        // Some three steps a slice at least.
-        (steps.clone(), 0.0..=0.5, 0.001..=0.003).prop_map(|(distance, ramp, slice_s)| {
-            let duration_s = distance.value().abs() * 0.0003;
-            let (ramp_s, method) = (duration_s * ramp, CosineMethod::Sliced);
-            Move::Cosine(Cosine { distance, duration_s, ramp_s, method, slice_s })
-        }),
+        // Ten slices at least, of three steps each.
+        (100..=3000_i32, any::<bool>(), 0.0..=0.5, 0.001..=0.003).prop_map(
+            |(steps, right, ramp, slice_s)| {
+                let duration_s = f64::from(steps) * 0.0003;
+                let distance = Distance::Steps(f64::from(if right { steps } else { -steps }));
+                let (ramp_s, method) = (duration_s * ramp, CosineMethod::Sliced);
+                Move::Cosine(Cosine { distance, duration_s, ramp_s, method, slice_s })
+            }
+        ),
         (steps.clone(), 0.02..2.0, 0.0..=0.5, ramp_shape(), 0.1..=20.0).prop_map(
             |(distance, duration_s, ramp, shape, parameter)| {
                 let (ramp_s, sigmoid_range, time_constants) = (duration_s * ramp, parameter, parameter);
