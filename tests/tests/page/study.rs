@@ -4,6 +4,7 @@ use anyhow::{Context, Result, anyhow, ensure};
 use serde_json::{Value, json};
 use stepscope_core::{
     analysis::{
+        comparison::{Asked, compare},
         sine_optimum::{Freedom, optimum},
         sine_polyline::{Distinct, Row, best, sweep},
     },
@@ -289,5 +290,77 @@ fn the_tables_numbers_and_files_are_the_cores() -> Result<()> {
         page.choose("#preset", "raw-noisy-line").await?;
         page.ready().await?;
         page.until("document.querySelector('#study-tables .study-note').textContent.length > 0").await
+    })
+}
+
+const MOVE: &str = "source.motion.axes[0].moves[0]";
+
+#[test]
+fn the_comparison_is_the_cores_and_a_shape_is_taken_and_given_back() -> Result<()> {
+    in_browser(|page| async move {
+        let given = r#"{"source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":6400},"duration_s":0.4,"ramp_s":0.1}}]}]}}}"#;
+        let known = Known::of(given)?;
+        page.open(&format!("#{}&v=tstudy", known.link)).await?;
+        page.until("document.querySelectorAll('table[aria-label=\"Shapes\"] tbody tr').length === 6").await?;
+        let names = ["Cosine, exact", "Cosine, in slices", "Sigmoid", "Bezier", "Straight", "Exponential"];
+        for (name, row) in names.into_iter().zip(compare(&Asked::new(6400, 0.4, 0.1))) {
+            let shown = cells(&page, "Shapes", name).await?;
+            ensure!(shown.len() == 7, "{shown:?}");
+            let cost = row.cost.map_err(|problems| anyhow!("{problems:?}"))?;
+            let peaks = cost.peaks;
+            // Written to the whole step.
+            let whole = |text: &str, wanted: f64| -> Result<()> {
+                ensure!((value(text)? - wanted).abs() <= 0.5, "{text} is not {wanted}");
+                Ok(())
+            };
+            let jumps = |text: &str, wanted: f64| -> Result<()> {
+                let number =
+                    text.strip_prefix("unbounded, jumps by ").and_then(|rest| rest.split(' ').next());
+                whole(number.context("no jump")?, wanted).with_context(|| text.to_owned())
+            };
+            whole(&shown[1], peaks.speed)?;
+            if peaks.jump > 0.0 {
+                jumps(&shown[2], peaks.jump)?;
+                ensure!(shown[3] == "unbounded", "{shown:?}");
+            } else {
+                whole(&shown[2], peaks.acceleration)?;
+                if peaks.acceleration_jump > 0.0 {
+                    jumps(&shown[3], peaks.acceleration_jump)?;
+                } else {
+                    whole(&shown[3], peaks.jerk)?;
+                }
+            }
+            ensure!((shown[4] == "none") == (cost.time_error_s == 0.0), "{shown:?}");
+            close(&shown[5], cost.last_step_s)?;
+            ensure!((shown[6] == "in use") == (name == "Cosine, exact"), "{shown:?}");
+        }
+        page.canvas("compare-speeds").await?.has_curve("--made")?;
+
+        page.click("[aria-label='Use: Bezier']").await?;
+        page.until(&format!(
+            "document.querySelector('[data-path=\"{MOVE}.ramps.shape\"]')?.value === 'bezier'"
+        ))
+        .await?;
+        let bezier = r#"{"source":{"motion":{"axes":[{"moves":[{"ramps":{"distance":{"steps":6400},"duration_s":0.4,"ramp_s":0.1,"shape":"bezier"}}]}]}}}"#;
+        page.until_digest(&Known::of(bezier)?.digest).await?;
+        page.until("document.querySelector('#study-compare tr.chosen').innerText.startsWith('Bezier')")
+            .await?;
+        page.click("#undo").await?;
+        page.until_digest(&known.digest).await?;
+
+        // A move of another kind gives its steps and its time; the ramp is given here.
+        let constant = r#"{"source":{"motion":{"axes":[{"moves":[{"constant":{"distance":{"steps":1000},"speed":{"steps_s":2000}}}]}]}}}"#;
+        page.open(&format!("#{}&v=tstudy", Known::of(constant)?.link)).await?;
+        fill(&page, "Ramp", "50 ms").await?;
+        page.until("document.querySelector('[aria-label=\"Use: Straight\"]')").await?;
+        let straight = compare(&Asked::new(1000, 0.5, 0.05))
+            .remove(4)
+            .cost
+            .map_err(|problems| anyhow!("{problems:?}"))?;
+        let peak = format!("{}", straight.peaks.acceleration.round());
+        page.until(&format!(
+            "[...document.querySelectorAll('#study-compare tr')].some((row) => row.innerText.includes('Straight') && row.cells[2].textContent.replace(/\\s/g, '') === '{peak}')"
+        ))
+        .await
     })
 }

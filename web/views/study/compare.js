@@ -21,6 +21,8 @@ const LOOKS = [
 ];
 const POINTS = 401;
 const GUTTER = 68;
+/** A number whose unit stands over it. @param {number} value */
+const bare = (value) => plain(value, "").trim();
 
 /** Which of the rows a move of a scenario is. @param {{[kind: string]: any}} move */
 function kindOf({ cosine, ramps }) {
@@ -34,11 +36,11 @@ export function createCompare({ engine, dispatch, now, panel }) {
   const moveLabel = element("label", {}, "move ", moves);
   const ramp = field("Ramp", "s", 0.2, { least: 0, most: 1e6 }, () => { own = false; refresh(now()); });
   const bar = element("div", { class: "study-bar" }, moveLabel, ramp.root, about);
-  const speeds = element("canvas", { role: "img", "aria-label": "Speed of every shape over time" });
-  const list = table("Shapes", ["shape", "#peak rate", "#peak acceleration", "#peak jerk", "#time error", "#last step", ""]);
+  const speeds = element("canvas", { id: "compare-speeds", role: "img", "aria-label": "Speed of every shape over time" });
+  const list = table("Shapes", ["shape", "#peak rate, steps/s", "#peak acceleration, steps/s²", "#peak jerk, steps/s³", "#time error", "#last step", ""]);
   const small = LOOKS.map(([name]) => ({ name, canvas: element("canvas", { role: "img", "aria-label": `Acceleration, ${name}` }), key: element("canvas", { class: "study-key", "aria-hidden": "true" }) }));
-  const multiples = element("div", { class: "study-multiples" }, ...small.map(({ name, canvas, key }) => element("div", {}, element("p", { class: "study-caption" }, key, ` ${name}: acceleration`), canvas)));
-  const all = element("div", { class: "study-compare" }, element("p", { class: "study-caption" }, "Speed, steps/s, over time"), element("div", { class: "study-speeds" }, speeds), list.root, multiples);
+  const multiples = element("div", { class: "study-multiples" }, ...small.map(({ name, canvas, key }) => element("div", {}, element("p", { class: "study-caption" }, key, name), canvas)));
+  const all = element("div", { class: "study-compare" }, element("p", { class: "study-caption" }, "Speed, steps/s, over time"), element("div", { class: "study-speeds" }, speeds), list.root, element("p", { class: "study-caption" }, "Acceleration, steps/s², over time"), multiples);
   fill(panel, bar, all);
   moves.addEventListener("change", () => { own = true; refresh(now()); });
   watch(speeds, paint);
@@ -94,9 +96,8 @@ export function createCompare({ engine, dispatch, now, panel }) {
       const name = element("span", { class: "study-name" }, element("canvas", { class: "study-key", "aria-hidden": "true" }), LOOKS[at][0]);
       if (why !== null) return [name, why, "", "", "", "", ""];
       const jump = (/** @type {number} */ by, /** @type {string} */ unit) => `unbounded, jumps by ${plain(by, unit)}`;
-      return [name, plain(cost.speed, "steps/s"),
-        cost.jump > 0 ? jump(cost.jump, "steps/s") : plain(cost.acceleration, "steps/s²"),
-        cost.jump > 0 ? "unbounded" : cost.acceleration_jump > 0 ? jump(cost.acceleration_jump, "steps/s²") : plain(cost.jerk, "steps/s³"),
+      return [name, bare(cost.speed), cost.jump > 0 ? jump(cost.jump, "steps/s") : bare(cost.acceleration),
+        cost.jump > 0 ? "unbounded" : cost.acceleration_jump > 0 ? jump(cost.acceleration_jump, "steps/s²") : bare(cost.jerk),
         cost.time_error_s === 0 ? "none" : `${si(cost.time_error_s, "s")} (${short((100 * cost.time_error_s) / duration, 3)} %)`,
         si(cost.last_step_s, "s", 5), press];
     }));
