@@ -33,7 +33,7 @@ const LEFT: char = '\u{e012}';
 /// Texts of a row's cells, digits without their groups, by the text that its head begins with.
 async fn cells(page: &Session, table: &str, head: &str) -> Result<Vec<String>> {
     let script = "const row = [...document.querySelectorAll(`table[aria-label='${arguments[0]}'] tbody tr`)].find((row) => row.innerText.replace(/\\s+/g, ' ').trim().startsWith(arguments[1]));
-        return row ? [...row.cells].map((cell) => cell.textContent.replace(/\\u202f/g, '')) : [];";
+        return row ? [...row.cells].map((cell) => cell.textContent.replace(/\\u202f/g, '').replace(/\\u00a0/g, ' ')) : [];";
     page.js(script, vec![json!(table), json!(head)]).await
 }
 

@@ -95,7 +95,7 @@ export function createCompare({ engine, dispatch, now, panel }) {
         : button("Use", `Use: ${LOOKS[at][0]}`, () => dispatch({ type: "edit", path: `${path}.moves[${move}]`, value: { [kind]: { ...values, distance: distance ?? values.distance } } }));
       const name = element("span", { class: "study-name" }, element("canvas", { class: "study-key", "aria-hidden": "true" }), LOOKS[at][0]);
       if (why !== null) return [name, why, "", "", "", "", ""];
-      const jump = (/** @type {number} */ by, /** @type {string} */ unit) => `unbounded, jumps by ${plain(by, unit)}`;
+      const jump = (/** @type {number} */ by, /** @type {string} */ unit) => element("span", { class: "jump" }, `unbounded, jumps by ${plain(by, unit).replace(" ", "\u00a0")}`);
       return [name, bare(cost.speed), cost.jump > 0 ? jump(cost.jump, "steps/s") : bare(cost.acceleration),
         cost.jump > 0 ? "unbounded" : cost.acceleration_jump > 0 ? jump(cost.acceleration_jump, "steps/s²") : bare(cost.jerk),
         cost.time_error_s === 0 ? "none" : `${si(cost.time_error_s, "s")} (${short((100 * cost.time_error_s) / duration, 3)} %)`,
