@@ -56,8 +56,9 @@ export function createCompare({ engine, dispatch, now, panel }) {
   /** @param {State} state */
   async function refresh(state) {
     const of = subject(state);
+    if (of === null) return undefined;
     panel.classList.toggle("stale", of === "");
-    if (of === "") return;
+    if (of === "") return undefined;
     all.hidden = typeof of === "string";
     if (typeof of === "string") return say(about, of);
     move = Math.min(Number(moves.value || 0), of.moves.length - 1);
@@ -79,11 +80,11 @@ export function createCompare({ engine, dispatch, now, panel }) {
     say(about, `Axis ${of.axis}, move ${move + 1}: ${count(steps)} steps in ${si(duration, "s")}${ramp_s === undefined ? "; it has no ramp of its own, so give one" : ""}.`);
     const question = [steps, duration, ramp.value(), slice_s, sigmoid_range, time_constants, POINTS];
     const answer = await engine.latest("compare", "compare_ramps", ...question).catch(unlessDropped);
-    if (!answer) return;
+    if (!answer) return undefined;
     rows = answer;
     key = kindOf(asked);
     show(of.path, asked);
-    paint();
+    return paint();
   }
 
   /** @param {string} path @param {{[kind: string]: any}} asked */

@@ -104,7 +104,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   /** The sine of the looked-at axis. @param {State} state */
   function sineOf(state) {
     const of = subject(state);
-    if (typeof of === "string") return { of: null, move: -1 };
+    if (!of || typeof of === "string") return { of: null, move: -1 };
     return { of, move: of.moves.findIndex((/** @type {any} */ each) => each.sine_segments) };
   }
 
