@@ -30,6 +30,8 @@ pub(crate) enum Failure {
     Controller(PathBuf, usize, usize),
     /// The scenario has no axis of this number, but so many.
     Axis(PathBuf, usize, usize),
+    /// A table cannot be used, and why.
+    Table(PathBuf, String),
     /// The timing check found this many violations, and none was to be.
     Violations(u64),
     /// So many seeds of a campaign with the framed protocol went wrong, and none was to.
@@ -54,7 +56,8 @@ impl Failure {
             | Self::Preset(_)
             | Self::NoDriver(_)
             | Self::Controller(..)
-            | Self::Axis(..) => ExitCode::from(2),
+            | Self::Axis(..)
+            | Self::Table(..) => ExitCode::from(2),
             Self::OtherRun(_) | Self::Violations(_) | Self::WrongSteps(_) => ExitCode::from(3),
         }
     }
@@ -102,6 +105,7 @@ impl fmt::Display for Failure {
                     path.display()
                 )
             }
+            Self::Table(path, what) => write!(f, "{}: {what}", path.display()),
             Self::Violations(count) => {
                 let s = if *count == 1 { "" } else { "s" };
                 write!(f, "{count} violation{s} of the driver's timing")

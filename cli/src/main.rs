@@ -5,10 +5,12 @@
 //! hold and does not: `--strict` and the timing check found violations, `faults` found wrong steps on a
 //! framed line, or `open --verify` found another run than the link's.
 
+mod calibrate;
 mod failure;
 mod faults;
 mod files;
 mod line;
+mod measures;
 mod progress;
 mod run;
 mod scenarios;
@@ -16,6 +18,7 @@ mod sine;
 mod status;
 mod tables;
 mod timing;
+mod torque;
 mod verify;
 
 use clap::{Parser, Subcommand};
@@ -39,6 +42,14 @@ enum Command {
     /// Writes the step times of an axis as a table for a firmware (C, AVR, Rust, CSV), or what each form of
     /// table costs and how far its steps are off.
     Tables(tables::Arguments),
+    /// Runs a scenario and tells how good an axis is, in numbers: the ideal curve, the steps that are made of
+    /// it and the pulses as they come held against each other, peaks, durations, distortion.
+    Measures(measures::Arguments),
+    /// Says whether the motors have the torque that a scenario's plans ask for, and which ramps they can
+    /// follow; or writes a motor's torque over its rate.
+    Torque(torque::Arguments),
+    /// Steps a millimetre by least squares, from measured lengths and the steps that made them.
+    Calibrate(calibrate::Arguments),
     /// Looks for the segments that make a sine with least distortion.
     #[command(subcommand)]
     Sine(sine::Command),
@@ -65,6 +76,9 @@ fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Faults(arguments) => faults::faults(&arguments),
         Command::Tables(arguments) => tables::tables(&arguments),
+        Command::Measures(arguments) => measures::measures(&arguments),
+        Command::Torque(arguments) => torque::torque(&arguments),
+        Command::Calibrate(arguments) => calibrate::calibrate(&arguments),
         Command::Sine(command) => sine::sine(&command),
         Command::Open { link, verify } => scenarios::open(&link, verify),
         Command::Presets { id } => scenarios::presets(id.as_deref()),

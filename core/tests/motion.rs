@@ -12,8 +12,9 @@ use stepscope_core::{
     motion::{AxisPlan, Curve, Profile, plan_axis, round_half_up},
     quantise::{exact_segments, ticks},
     scenario::{
-        Acceleration, Axis, Constant, Cosine, CosineMethod, Direct, Distance, Dwell, Mechanics, Move, Ramps,
-        SineSegments, Speed, Staircase, Trapezoid, TrapezoidMethod,
+        Acceleration, Axis, Constant, Cosine, CosineMethod, Direct, Distance, Dwell, Interpolation, Jerk,
+        JerkLimited, Mechanics, Move, Point, PointUnit, Points, Ramps, Sine, SineSegments, Speed, Staircase,
+        Trapezoid, TrapezoidMethod,
     },
     segment::PulseTimes,
     signal::Record,
@@ -93,6 +94,29 @@ fn wild_move() -> impl Strategy<Value = Move> {
                 Move::SineSegments(SineSegments { amplitude, period_s, periods, max_deviation })
             }
         ),
+        (distance.clone(), number(), any::<u32>())
+            .prop_map(|(amplitude, period_s, periods)| { Move::Sine(Sine { amplitude, period_s, periods }) }),
+        (distance.clone(), speed.clone(), number(), number()).prop_map(
+            |(distance, max_speed, acceleration, jerk)| {
+                Move::JerkLimited(JerkLimited {
+                    distance,
+                    max_speed,
+                    max_acceleration: Acceleration::StepsPerSecond2(acceleration),
+                    max_jerk: Jerk::StepsPerSecond3(jerk),
+                })
+            }
+        ),
+        (prop::collection::vec((number(), number()), 0..6), any::<bool>(), any::<bool>()).prop_map(
+            |(points, smooth, rises)| {
+                let mut points: Vec<Point> =
+                    points.into_iter().map(|(time_s, position)| Point { time_s, position }).collect();
+                if rises {
+                    points.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
+                }
+                let interpolation = if smooth { Interpolation::Smooth } else { Interpolation::Straight };
+                Move::Points(Points { unit: PointUnit::Steps, interpolation, points })
+            }
+        ),
         (distance, speed).prop_map(|(distance, speed)| Move::Constant(Constant { distance, speed })),
         number().prop_map(|duration_s| Move::Dwell(Dwell { duration_s })),
     ]
@@ -107,6 +131,12 @@ fn mirrored(given: &Move) -> Move {
         Move::Trapezoid(m) => Move::Trapezoid(Trapezoid { distance: back(&m.distance), ..m }),
         Move::Staircase(m) => Move::Staircase(Staircase { distance: back(&m.distance), ..m }),
         Move::SineSegments(m) => Move::SineSegments(SineSegments { amplitude: back(&m.amplitude), ..m }),
+        Move::Sine(m) => Move::Sine(Sine { amplitude: back(&m.amplitude), ..m }),
+        Move::JerkLimited(m) => Move::JerkLimited(JerkLimited { distance: back(&m.distance), ..m }),
+        Move::Points(m) => {
+            let points = m.points.iter().map(|point| Point { position: -point.position, ..*point });
+            Move::Points(Points { points: points.collect(), ..m })
+        }
         Move::Constant(m) => Move::Constant(Constant { distance: back(&m.distance), ..m }),
         Move::Dwell(m) => Move::Dwell(m),
     }
@@ -179,7 +209,7 @@ proptest! {
 
     #[test]
     fn a_move_one_way_never_turns_round(
-        given in sane_move().prop_filter("goes one way", |m| !matches!(m, Move::SineSegments(_))),
+        given in sane_move().prop_filter("goes one way", |m| !matches!(m, Move::SineSegments(_) | Move::Sine(_) | Move::Points(_))),
         tick_cycles in 300..4000_u64,
     ) {
         let plan = plan(vec![given]);
@@ -225,7 +255,7 @@ proptest! {
         tick_cycles in any::<u64>(), clock_hz in any::<u32>(), slots in any::<u8>(),
     ) {
         for mechanics in [Mechanics::default(), Mechanics::Direct(Direct { step_mm })] {
-            match plan_axis(&Axis { mechanics, moves: moves.clone() }, "axis") {
+            match plan_axis(&Axis { mechanics, moves: moves.clone(), ..Axis::default() }, "axis") {
                 Ok(plan) => {
                     prop_assert!(plan.duration_s() <= 1e6 && plan.duration_s() >= 0.0);
                     prop_assert_eq!(plan.position(plan.duration_s()), plan.steps() as f64);

@@ -3,14 +3,14 @@
 //! What a curve or a table says by itself (B2's rates, B4's top speed, B5's breakpoints and distortion) is pinned beside
 //! it in the core; here is what comes out at the STEP lines.
 #![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
+#![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
 
-use std::f64::consts::PI;
+use std::{f64::consts::PI, fs, path::Path};
 use stepscope_core::{
     analysis::spectrum::Spectrum,
-    motion::Profile,
+    motion::{Profile, plan_axis, sine_segments::SineSegments},
     run::Experiment,
-    scenario::{Packets, Pulses, Scenario, Source, presets::PRESETS},
+    scenario::{self, Axis, Distance, Move, Packets, Pulses, Scenario, Source, presets::PRESETS},
     trace::{Recording, Step, steps},
 };
 
@@ -88,6 +88,45 @@ fn zhang_2012_ends_after_the_ramps_and_the_plateau_of_its_formulas() {
     // A ramp has (f_1 + f_s)/2*t_r steps.
     within_a_tick(&made, made.time_s(&all[3_999]), t_r);
     within_a_tick(&made, made.time_s(&all[17_232 - 4_000]), t_r + t_m);
+}
+
+/// Zhang 2012's four cases at the STEP line: t_r = (f_s - f_1)/a, t_m = (L - (f_1 + f_s)*t_r)/f_s, f_1 = 1000, a = 3000;
+/// alone at one rate f the move takes L/f. A row holds the rate of its start, so ramps are a little late.
+#[test]
+fn zhang_2012s_four_cases_take_the_times_of_its_formulas() {
+    // L, f_s, the rule; the rate that the formulas have for f_s, None for the whole move at the last number
+    let rows: [(u32, u32, &str, Option<f64>, f64); 7] = [
+        // f_s <= f_1
+        (5000, 800, "document", None, 800.0),
+        (5000, 1000, "turn_round", None, 1000.0),
+        // L > 2*S
+        (17_233, 5000, "document", Some(5000.0), 0.0),
+        (17_233, 5000, "turn_round", Some(5000.0), 0.0),
+        // L = 2*S: 36 rows from 1000 have 4200 steps before the row of sqrt(f_1^2 + 2*a*4200) = 5119 steps/s.
+        (8400, 5119, "document", Some(5119.0), 0.0),
+        // L < 2*S: at f_1, or to the rate after the 2430 steps of the 26 rows that fit twice.
+        (5000, 5000, "document", None, 1000.0),
+        (5000, 5000, "turn_round", Some(3947.0), 0.0),
+    ];
+    for (steps, top, rule, reached, alone) in rows {
+        let json = format!(
+            r#"{{"source":{{"motion":{{"engine":"segments","axes":[{{"moves":[{{"staircase":{{"distance":{{"steps":{steps}}},"top_speed":{{"steps_s":{top}}},"short_move":"{rule}"}}}}]}}]}}}}}}"#
+        );
+        let made = Made::of(Scenario::from_json(&json).expect("it reads"));
+        let all = made.steps(0);
+        assert_eq!(all.len(), steps as usize);
+        let last_s = (all[all.len() - 1].cycle - 1) as f64 / 16e6;
+        let length = f64::from(steps);
+        match reached {
+            None => close(last_s, length / alone, 1e-6),
+            Some(f_s) => {
+                let t_r = (f_s - 1000.0) / 3000.0;
+                let t_m = (length - (1000.0 + f_s) * t_r) / f_s;
+                let late = last_s / (2.0 * t_r + t_m) - 1.0;
+                assert!((0.0..0.03).contains(&late), "{steps} steps at {top}, {rule}: {late} late");
+            }
+        }
+    }
 }
 
 /// Sonobe 2011: 0.393 mm a step, 300 mm there, 0.1 s, 60 mm back, at most 700 mm/s.
@@ -195,6 +234,9 @@ fn song_2021s_table_2_has_6400_steps_in_0_4_s_without_and_with_a_plateau() {
         // Near its top a cosine is flat, too: some ticks more.
         assert!(plateau_s >= 0.4 - 2.0 * ramp_s && plateau_s < 0.45 - 2.0 * ramp_s, "{plateau_s} s at {top}");
     }
+    // Figures 7 and 8: without a plateau the rate is higher and the acceleration gentler.
+    let [without, with] = [0, 1].map(|channel: usize| made.experiment.plans()[channel].peaks());
+    assert!(without.speed > with.speed && without.acceleration < with.acceleration);
 }
 
 /// SWorldJournal, issue 11: amplitude 20 mm; distortions 0.26913 % and 0.26710 %, and the remark on the 7th harmonic.
@@ -223,6 +265,62 @@ fn the_sines_return_and_their_pulses_have_the_documents_distortion() {
     });
     let [first, second] = spectra.map(|spectrum| spectrum.position.amplitudes[6]);
     assert!(first * first > 22.0 * second * second, "the 7th harmonics {first} and {second} steps");
+}
+
+/// The segments of a quarter for a largest deviation d1, of an amplitude of so many steps.
+fn sine(amplitude: f64, d1: f64) -> SineSegments {
+    let given = scenario::SineSegments {
+        amplitude: Distance::Steps(amplitude),
+        max_deviation: d1,
+        ..scenario::SineSegments::default()
+    };
+    let axis = Axis { moves: vec![Move::SineSegments(given)], ..Axis::default() };
+    let plan = plan_axis(&axis, "axis").expect("it plans");
+    let Profile::SineSegments(sine) = &plan.moves()[0].profile else { panic!("a sine by segments") };
+    sine.clone()
+}
+
+/// SWorldJournal, issue 11: its figures 2 and 3 have 4 and 10 segments, on a grid of 360/2048 = 0.17578125 degrees.
+#[test]
+fn the_sines_figures_have_4_and_10_segments_on_the_documents_grid() {
+    for (d1, segments) in [(0.015, 4), (0.002, 10)] {
+        let sine = sine(1000.0, d1);
+        assert_eq!(sine.segments().len(), segments);
+        for segment in sine.segments() {
+            assert_eq!(segment.to_deg, f64::from(segment.to) * 0.175_781_25);
+        }
+        assert_eq!(sine.segments().last().map(|last| last.to_deg), Some(90.0));
+    }
+}
+
+/// SWorldJournal, issue 11: intervals of a quarter take 100 kB and more, segments hundreds of times less.
+#[test]
+fn the_sines_segments_take_hundreds_of_times_less_memory_than_intervals() {
+    for d1 in [0.015, 0.006, 0.0054, 0.002] {
+        let memory = sine(25_000.0, d1).memory();
+        assert_eq!(memory.intervals, 100_000);
+        let ratio = memory.intervals / memory.segments;
+        assert!((1000..5000).contains(&ratio), "{d1}: {ratio} times");
+    }
+}
+
+/// SWorldJournal, issue 11, explains the 7th harmonic for d1 = 0.0054 by breakpoints 49.5 and 52 degrees apart. Its own
+/// breakpoints have no such distances: the nearest to the 51.4 degrees of that harmonic are 50.4 and 53.4.
+#[test]
+fn the_sines_distances_of_49_5_and_52_degrees_do_not_come_out() {
+    let sine = sine(1000.0, 0.0054);
+    let quarter: Vec<f64> = sine.segments().iter().map(|segment| segment.from_deg).collect();
+    let next = quarter.iter().rev().map(|angle| 180.0 - angle);
+    let vertices: Vec<f64> = quarter.iter().copied().chain([90.0]).chain(next).collect();
+    let mut near: Vec<f64> = vertices
+        .iter()
+        .flat_map(|from| vertices.iter().map(move |to| to - from))
+        .filter(|apart| (47.0..55.0).contains(apart))
+        .collect();
+    near.sort_by(f64::total_cmp);
+    near.dedup();
+    let grid = 0.175_781_25;
+    assert_eq!(near, [287.0 * grid, 304.0 * grid], "50.4 and 53.4 degrees");
 }
 
 /// RU 2704486: four motors, a step every 2.048 ms, all at once.
@@ -285,4 +383,33 @@ fn assert_ticks_follow_each_other(made: &Made) {
     for pair in rows.windows(2) {
         assert_eq!(pair[0].tick_end, pair[1].tick_start, "without a pause");
     }
+}
+
+/// Every `.rs` file below a folder, whole.
+fn sources(folder: &Path, into: &mut String) {
+    for entry in fs::read_dir(folder).expect("the folder can be read") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            sources(&path, into);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            into.push_str(&fs::read_to_string(&path).expect("it is text"));
+        }
+    }
+}
+
+#[test]
+fn every_test_that_the_list_of_figures_names_exists() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let list = fs::read_to_string(root.join("docs/documents.md")).expect("the list");
+    let mut all = String::new();
+    for folder in ["core/src", "cli/tests", "tests/src", "tests/tests"] {
+        sources(&root.join(folder), &mut all);
+    }
+    // Every second piece between marks of code; names of tests have no spaces, and at least three words.
+    let names = list.split('`').skip(1).step_by(2).filter(|name| {
+        name.matches('_').count() > 2 && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+    });
+    let (found, gone): (Vec<&str>, Vec<&str>) = names.partition(|name| all.contains(&format!("fn {name}(")));
+    assert!(found.len() > 15, "{found:?}");
+    assert!(gone.is_empty(), "docs/documents.md names tests that are not there: {gone:?}");
 }

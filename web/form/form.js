@@ -46,7 +46,12 @@ export function createForm({ root, samples, drivers, dispatch }) {
   function focusOf(active) {
     const { path } = active.dataset;
     const selector = path ? `[data-path="${CSS.escape(path)}"]` : `button[aria-label="${CSS.escape(active.getAttribute("aria-label") ?? "")}"]`;
-    return { selector, nth: [...root.querySelectorAll(selector)].indexOf(active) };
+    return { selector, nth: [...root.querySelectorAll(selector)].indexOf(active), place: reachable().indexOf(active) };
+  }
+
+  /** What the focus can go to, in the order of the form. @returns {HTMLElement[]} */
+  function reachable() {
+    return [...root.querySelectorAll("button:enabled, input:enabled, select:enabled, textarea:enabled, summary")].map((each) => /** @type {HTMLElement} */ (each));
   }
 
   /** @param {Scenario} scenario */
@@ -62,7 +67,11 @@ export function createForm({ root, samples, drivers, dispatch }) {
       ...(list ? LISTS[list](scenario) : []),
     ]));
     fill(root, kit.part("Source", true, source(scenario)), ...sections);
-    if (focus) /** @type {HTMLElement | undefined} */ (root.querySelectorAll(focus.selector)[focus.nth])?.focus();
+    if (!focus) return;
+    const again = /** @type {HTMLElement | undefined} */ (root.querySelectorAll(focus.selector)[focus.nth]);
+    // What was removed with the focus on it leaves it to what stands there now.
+    const there = reachable();
+    (again?.matches(":enabled, summary") ? again : there[Math.min(focus.place, there.length - 1)])?.focus();
   }
 
   /** @param {State} next */

@@ -3,9 +3,10 @@
 /** @typedef {import("../state/types.js").Spectra} Spectra */
 /** @typedef {import("../state/types.js").Timing} Timing */
 
-/** @param {(string | number | null | undefined)[][]} rows */
-function csv(rows) {
-  return rows.map((row) => `${row.map((field) => field ?? "").join(",")}\n`).join("");
+/** Rows as CSV; a text that holds a separator or a quote is quoted. @param {(string | number | null | undefined)[][]} rows */
+export function csv(rows) {
+  const field = (/** @type {string} */ text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+  return rows.map((row) => `${row.map((value) => field(String(value ?? ""))).join(",")}\n`).join("");
 }
 
 /** Amplitudes of the harmonics (peak), and the total distortion to the highest one in the row `thd`. @param {Spectra} spectra */

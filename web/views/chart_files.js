@@ -4,6 +4,7 @@
  */
 import { unlessDropped } from "../engine/engine.js";
 import { baseName } from "../shell/exports.js";
+import { csv } from "../shell/tables.js";
 import { shown } from "../state/state.js";
 import { si, time } from "../state/number.js";
 import { color, drawing, font, picture } from "../time/plot.js";
@@ -174,11 +175,6 @@ function escaped(text) {
   return text.replace(/[&<>"]/g, (sign) => `&#${sign.charCodeAt(0)};`);
 }
 
-/** One line of a CSV file; a text that holds a separator or a quote is quoted. @param {(string | number)[]} cells */
-function line(cells) {
-  return `${cells.map((cell) => (/[",\n]/.test(String(cell)) ? `"${String(cell).replaceAll('"', '""')}"` : cell)).join(",")}\r\n`;
-}
-
 /** Time and the least and greatest value of each curve, a row a column of the picture. @param {State} state @param {import("./motion/bands.js").Seen} columns */
 function motionTable(state, columns) {
   const bands = QUANTITIES.flatMap((quantity) => {
@@ -186,6 +182,6 @@ function motionTable(state, columns) {
     return bandsOf(state, columns, quantity).reverse().map((band) => ({ ...band, head: `${band.name} ${quantity}`, unit }));
   });
   const cell = (/** @type {number} */ value) => (Number.isFinite(value) ? value : "");
-  const head = line(["time (s)", ...bands.flatMap(({ head: name, unit }) => [`${name} min (${unit})`, `${name} max (${unit})`])]);
-  return head + [...columns.columns.x].map((seconds, row) => line([seconds, ...bands.flatMap(({ min, max }) => [cell(min[row]), cell(max[row])])])).join("");
+  const head = ["time (s)", ...bands.flatMap(({ head: name, unit }) => [`${name} min (${unit})`, `${name} max (${unit})`])];
+  return csv([head, ...[...columns.columns.x].map((seconds, row) => [seconds, ...bands.flatMap(({ min, max }) => [cell(min[row]), cell(max[row])])])]);
 }

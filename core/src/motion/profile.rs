@@ -2,7 +2,10 @@
 
 use super::{
     cosine::Cosine,
+    jerk_limited::JerkLimited,
+    points::Points,
     ramps::Ramps,
+    sine::Sine,
     sine_segments::SineSegments,
     sliced::Sliced,
     staircase::Staircase,
@@ -96,6 +99,12 @@ pub enum Profile {
     Ramps(Ramps),
     /// Sine by segments (B5).
     SineSegments(SineSegments),
+    /// Exact sine (B6).
+    Sine(Sine),
+    /// Seven phases from rest to rest (B6).
+    JerkLimited(JerkLimited),
+    /// A curve through points (B6).
+    Points(Points),
     /// One rate (B6).
     Constant(Constant),
     /// Standing still (B6).
@@ -112,10 +121,36 @@ macro_rules! each {
             Profile::Sliced($curve) => $what,
             Profile::Ramps($curve) => $what,
             Profile::SineSegments($curve) => $what,
+            Profile::Sine($curve) => $what,
+            Profile::JerkLimited($curve) => $what,
+            Profile::Points($curve) => $what,
             Profile::Constant($curve) => $what,
             Profile::Dwell($curve) => $what,
         }
     };
+}
+
+impl Profile {
+    /// The period in s and how many of them, of a move that repeats itself.
+    #[must_use]
+    pub fn repeats(&self) -> Option<(f64, u32)> {
+        match self {
+            Self::SineSegments(sine) => Some((sine.period_s(), sine.periods())),
+            Self::Sine(sine) => Some((sine.period_s(), sine.periods())),
+            _ => None,
+        }
+    }
+
+    /// Steps of the move, whichever way they go.
+    #[must_use]
+    pub fn step_count(&self) -> u64 {
+        match self {
+            Self::SineSegments(sine) => sine.step_count(),
+            Self::Sine(sine) => sine.step_count(),
+            Self::Points(points) => points.step_count(),
+            one_way => one_way.steps().unsigned_abs(),
+        }
+    }
 }
 
 impl Curve for Profile {

@@ -1,8 +1,9 @@
 //! Trapezoid by acceleration table (DESIGN B2, Sonobe 2011).
 //!
 //! The [`AccelerationTable`] has a reload of the timer for each row. The timer's interrupt makes one
-//! step and loads the next interval. Of a move of n steps, interval i (from 0) has row min(i, n - 1 - i, top), so a short move is a triangle, and step k falls at
-//! the sum of the first k reloads; the move ends with its last step:
+//! step and loads the next interval. Of a move of n steps, interval i (from 0) has row min(i, n - 1 - i, top),
+//! so a short move is a triangle, and step k falls at the sum of the first k reloads; the move ends with its
+//! last step:
 //!
 //! ```text
 //! rate |      _______
@@ -11,6 +12,11 @@
 //!      |_|               |_
 //!       ^ ^ ^^^^^^^^^^^ ^ ^ steps
 //! ```
+//!
+//! The document's main program sets the interrupt's target to the top and, once what is left is the steps to stop,
+//! to 0. How many these are it leaves open; here they are those that let the last interval be row 0, as the first is:
+//! index + 1. Where a triangle has an even count its two middle intervals share the highest row: to climb once more would
+//! make the last step at row 1.
 //!
 //! Only the ramp is kept, as sums of reloads: integers up to the last division by `timer_hz`.
 
@@ -267,17 +273,82 @@ mod tests {
         TrapezoidTable::new(steps, table, 1_000_000).unwrap()
     }
 
+    /// The document's program as it runs: the interrupt counts a step, moves the index by at most one towards its
+    /// target and loads the reload; `target` is what the main program has set by then. Returned are the timer's
+    /// ticks at each step.
+    fn program(table: &AccelerationTable, count: u64, target: impl Fn(u64, u64) -> u64) -> Vec<u64> {
+        let (mut now, mut index, mut made) = (0, 0, 0);
+        let mut reload = table.reload(index);
+        let mut ticks = Vec::new();
+        while made < count {
+            now += reload;
+            made += 1;
+            ticks.push(now);
+            let aim = target(made, index);
+            if index < aim {
+                index += 1;
+            } else if index > aim {
+                index -= 1;
+            }
+            reload = table.reload(index);
+        }
+        ticks
+    }
+
     #[test]
     fn the_steps_are_those_of_the_interrupt_program() {
-        for (count, top_speed) in (1..60).map(|n| (n, 700.0)).chain([(500, 700.0), (501, 1e5), (7, 250.0)]) {
+        let short = (1..200).map(|n| (n, 700.0)).chain([(500, 700.0), (501, 1e5), (7, 250.0)]);
+        let mut seed = 2011_u64;
+        let any = core::iter::from_fn(|| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            Some((1 + (seed >> 33) % 3000, 250.0 + ((seed >> 20) % 4000) as f64))
+        });
+        for (count, top_speed) in short.chain(any.take(200)) {
             let table = table(count as i64, top_speed);
             let top = table.table().top();
-            let mut ticks = 0;
-            for i in 0..count {
-                ticks += table.table().reload(i.min(count - 1 - i).min(top));
-                assert_eq!(table.step_ticks(i + 1), ticks, "step {} of {count}", i + 1);
+            // Steps that are left after the interval to come: from an index no higher the program can still stop.
+            let expected = program(table.table(), count, |made, _| top.min(count.saturating_sub(made + 1)));
+            let found: Vec<u64> = (1..=count).map(|k| table.step_ticks(k)).collect();
+            assert_eq!(found, expected, "{count} steps to {top_speed}");
+            assert_eq!(found.first(), Some(&table.table().reload(0)), "the first reload");
+            let before = found.iter().rev().nth(1).unwrap_or(&0);
+            assert_eq!(
+                found.last().map(|last| last - before),
+                Some(table.table().reload(0)),
+                "the last reload"
+            );
+            assert_eq!(table.duration_s(), *expected.last().unwrap() as f64 / 1e6);
+        }
+    }
+
+    /// The document's main program knows two targets only, the top and 0, and looks between two interrupts whether the
+    /// steps to stop are all that is left. The same steps come out, except that a triangle of an even count climbs one
+    /// row more and makes its last step at row 1, not at row 0.
+    #[test]
+    fn with_two_targets_an_even_triangle_alone_ends_one_row_too_fast() {
+        for count in 2..300 {
+            let table = table(count as i64, 700.0);
+            let top = table.table().top();
+            // The index that the last interrupt has loaded is known to the main program: it looks after it.
+            let looked = core::cell::Cell::new(top);
+            let two = program(table.table(), count, |made, index| {
+                let aim = looked.get();
+                let next = if index < aim { index + 1 } else { index.saturating_sub(u64::from(index > aim)) };
+                if made + next + 1 >= count {
+                    looked.set(0);
+                }
+                aim
+            });
+            let found: Vec<u64> = (1..=count).map(|k| table.step_ticks(k)).collect();
+            let even_triangle = count % 2 == 0 && count / 2 <= top;
+            if even_triangle {
+                let half = count / 2;
+                let (last, rate) = (*two.last().unwrap(), |row| table.table().reload(row));
+                assert_eq!(last + rate(0), found.last().unwrap() + rate(half), "{count} steps");
+                assert_eq!(two[..half as usize], found[..half as usize]);
+            } else {
+                assert_eq!(two, found, "{count} steps");
             }
-            assert_eq!(table.duration_s(), ticks as f64 / 1e6);
         }
     }
 

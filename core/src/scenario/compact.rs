@@ -135,6 +135,8 @@ words! {
         Exponential = "exponential",
     }
     super::ShortMove { Document = "document", TurnRound = "turn_round", }
+    super::Interpolation { Straight = "straight", Smooth = "smooth", }
+    super::PointUnit { Steps = "steps", Millimetres = "mm", Degrees = "deg", }
     super::TrapezoidMethod { Table = "table", Exact = "exact", }
     super::DriverModel {
         A4988 = "a4988",

@@ -18,12 +18,15 @@ mod drive;
 mod hex;
 mod judge;
 pub mod link;
+mod motor;
+mod points;
 pub mod presets;
 mod problem;
 mod quantity;
 mod read;
 mod recorded;
 mod segments;
+mod table;
 mod tracked;
 
 pub(crate) use check::MOST_FURTHER;
@@ -33,10 +36,15 @@ pub use config::Config;
 pub(crate) use config::most_baud;
 pub use drive::{Driver, DriverModel, TimingRules};
 pub use hex::Hex;
+pub use motor::{MOST_PEAK_CURRENT, Motor};
+pub(crate) use points::MOST_POINTS;
+pub use points::{Interpolation, Point, PointUnit, Points};
 pub use problem::{Cause, Problem};
-pub use quantity::{Acceleration, Direct, Distance, Mechanics, NoSuchUnit, Rotary, Screw, Speed, Wheel};
-pub use recorded::{BadTable, MOST_TABLE_BYTES};
+pub use quantity::{
+    Acceleration, Direct, Distance, Jerk, Mechanics, NoSuchUnit, Rotary, Screw, Speed, Wheel,
+};
 pub use segments::{ChannelSegments, DwellSegment, Segment, SegmentLists, StepSegment};
+pub use table::{BadTable, MOST_TABLE_BYTES};
 
 use alloc::{string::String, vec, vec::Vec};
 use compact::{choices, settings};
@@ -302,6 +310,8 @@ settings! {
         pub mechanics: Mechanics = Mechanics::default(),
         /// Up to 64 moves.
         pub moves: Vec<Move> = vec![Move::default()],
+        /// Its motor, driver supply and load; without it nothing is said of torque.
+        pub motor: Option<Motor> = None,
     }
 }
 
@@ -318,6 +328,12 @@ choices! {
         Ramps(Ramps) = "ramps",
         /// Sine as segments of fixed rate (B5).
         SineSegments(SineSegments) = "sine_segments",
+        /// Sine with every step in its place (B6).
+        Sine(Sine) = "sine",
+        /// Seven phases from rest to rest (B6).
+        JerkLimited(JerkLimited) = "jerk_limited",
+        /// A curve through points (B6).
+        Points(Points) = "points",
         /// One rate from end to end (B6).
         Constant(Constant) = "constant",
         /// Standing still (B6).
@@ -465,6 +481,32 @@ settings! {
 }
 
 settings! {
+    /// Exact sine (B6, B1's rule), from the right extreme to the left one and back.
+    pub struct Sine {
+        /// From the middle to an extreme.
+        pub amplitude: Distance = Distance::Steps(1000.0),
+        /// Time of one period in s.
+        pub period_s: f64 = 0.5,
+        /// How many whole periods.
+        pub periods: u32 = 4,
+    }
+}
+
+settings! {
+    /// Jerk-limited move of seven phases (B6): from rest to rest as fast as its limits let it.
+    pub struct JerkLimited {
+        /// How far; negative is left.
+        pub distance: Distance = Distance::Steps(3200.0),
+        /// Greatest speed.
+        pub max_speed: Speed = Speed::StepsPerSecond(10_000.0),
+        /// Greatest acceleration and deceleration.
+        pub max_acceleration: Acceleration = Acceleration::StepsPerSecond2(100_000.0),
+        /// Greatest change of the acceleration in a second.
+        pub max_jerk: Jerk = Jerk::StepsPerSecond3(2_000_000.0),
+    }
+}
+
+settings! {
     /// One rate from end to end (B6).
     pub struct Constant {
         /// How far; negative is left.
@@ -528,7 +570,10 @@ settings! {
         pub axis: u8 = 0,
         /// Highest harmonic that counts for the distortion, 2 to 1000.
         pub order: u16 = 40,
-        /// Length of the transform a period of the motion, a power of two, 256 to 65536.
+        /// Length of the transform a period of the motion, 16 to 65536.
         pub fft_length: u32 = 4096,
+        /// Bandwidth (-3 dB, first order) in Hz of the sensor that feels the acceleration, 0.001 to 1e9;
+        /// without it nothing is felt.
+        pub sensor_hz: Option<f64> = None,
     }
 }

@@ -70,11 +70,6 @@ pub enum Cause {
         /// Unit of all three, empty for a plain count.
         unit: &'static str,
     },
-    /// A number that is none of the allowed ones.
-    NotPowerOfTwo {
-        /// The number.
-        given: u32,
-    },
     /// A text, list or byte string of a length that is not allowed.
     Length {
         /// Its length.
@@ -200,6 +195,15 @@ pub enum Cause {
     NoSteps {
         /// The distance in steps, before rounding.
         steps: f64,
+    },
+    /// A point whose time does not come after that of the one before (B6).
+    NotRising {
+        /// Its time in s.
+        given: f64,
+        /// That of the point before.
+        before: f64,
+        /// The least time between both.
+        least: f64,
     },
     /// A tick that needs more steps than it has slots (B7).
     TooManySteps {
@@ -336,6 +340,9 @@ fn shown(unit: &str) -> &str {
         "steps_s2" => "steps/s^2",
         "mm_s2" => "mm/s^2",
         "deg_s2" => "deg/s^2",
+        "steps_s3" => "steps/s^3",
+        "mm_s3" => "mm/s^3",
+        "deg_s3" => "deg/s^3",
         other => other,
     }
 }
@@ -351,7 +358,6 @@ impl Cause {
                 | Self::Type { .. }
                 | Self::NewerVersion { .. }
                 | Self::Range { .. }
-                | Self::NotPowerOfTwo { .. }
                 | Self::NoSteps { .. }
                 | Self::NoSegmentSteps
         )
@@ -376,9 +382,6 @@ impl fmt::Display for Cause {
                     write!(f, " to {}", Short(*most))?;
                 }
                 write!(f, "{space}{unit}")
-            }
-            Self::NotPowerOfTwo { given } => {
-                write!(f, "{given} is not a power of two; give 256, 512, 1024 … 65536")
             }
             Self::Length { given, least, most, of } if least == most => {
                 write!(f, "{given} {of}; give {least}")
@@ -443,6 +446,11 @@ impl fmt::Display for Cause {
             Self::NoSteps { steps } => {
                 write!(f, "{} steps is less than one step; give at least one step, or a dwell", Short(*steps))
             }
+            Self::NotRising { given, before, least } => write!(
+                f,
+                "a time of {given} s after one of {before} s; give times that rise by {} s at least",
+                Short(*least)
+            ),
             Self::TooManySteps { tick, steps, slots, rate, limit } => write!(
                 f,
                 "tick {tick} needs {steps} steps ({} steps/s), its {slots} slots give at most {} steps/s; slow the motion, or give a shorter step period",

@@ -5,8 +5,9 @@ use proptest::prelude::*;
 use stepscope_core::{
     motion::{AxisPlan, plan_axis},
     scenario::{
-        Acceleration, Axis, Constant, Cosine, CosineMethod, Distance, Dwell, Move, RampShape, Ramps,
-        ShortMove, SineSegments, Speed, Staircase, Trapezoid, TrapezoidMethod,
+        Acceleration, Axis, Constant, Cosine, CosineMethod, Distance, Dwell, Interpolation, Jerk,
+        JerkLimited, Move, Point, PointUnit, Points, RampShape, Ramps, ShortMove, Sine, SineSegments, Speed,
+        Staircase, Trapezoid, TrapezoidMethod,
     },
 };
 
@@ -63,6 +64,17 @@ pub(crate) fn sane_move() -> impl Strategy<Value = Move> {
                 Move::SineSegments(SineSegments { amplitude, period_s, periods, max_deviation })
             }
         ),
+        (steps.clone(), 0.05..2.0, 1..4_u32)
+            .prop_map(|(amplitude, period_s, periods)| { Move::Sine(Sine { amplitude, period_s, periods }) }),
+        (steps.clone(), 100.0..1e4, 1e3..1e6, 1e3..1e8).prop_map(|(distance, speed, acceleration, jerk)| {
+            Move::JerkLimited(JerkLimited {
+                distance,
+                max_speed: Speed::StepsPerSecond(speed),
+                max_acceleration: Acceleration::StepsPerSecond2(acceleration),
+                max_jerk: Jerk::StepsPerSecond3(jerk),
+            })
+        }),
+        curve(),
         (steps, 100.0..1e4).prop_map(|(distance, speed)| {
             Move::Constant(Constant { distance, speed: Speed::StepsPerSecond(speed) })
         }),
@@ -73,6 +85,23 @@ pub(crate) fn sane_move() -> impl Strategy<Value = Move> {
 pub(crate) fn ramp_shape() -> impl Strategy<Value = RampShape> {
     use RampShape::{Bezier, Exponential, Sigmoid, Straight};
     prop::sample::select(vec![Sigmoid, Bezier, Straight, Exponential])
+}
+
+/// A curve through a few points that a person could have recorded, some of them on whole and half steps.
+fn curve() -> impl Strategy<Value = Move> {
+    let position = prop_oneof![-500.0..500.0, (-20..20).prop_map(|half| f64::from(half) / 2.0)];
+    let interpolation = prop_oneof![Just(Interpolation::Straight), Just(Interpolation::Smooth)];
+    let rest = prop::collection::vec((0.05..0.5, position), 0..8);
+    (rest, interpolation, prop_oneof![Just(0.0), -1e3..1e3]).prop_map(|(rest, interpolation, start_s)| {
+        // The first way is more than a step, so that the move has one.
+        let mut points = vec![(start_s, 3.25), (start_s + 0.1, 5.0)];
+        for (later_s, position) in rest {
+            let last_s = points[points.len() - 1].0;
+            points.push((last_s + later_s, position));
+        }
+        let points = points.into_iter().map(|(time_s, position)| Point { time_s, position }).collect();
+        Move::Points(Points { unit: PointUnit::Steps, interpolation, points })
+    })
 }
 
 pub(crate) fn short_move(turns: bool) -> ShortMove {

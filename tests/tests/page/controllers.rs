@@ -122,6 +122,10 @@ fn a_copied_controller_has_an_address_of_its_own_and_can_be_removed() -> Result<
         page.click("[aria-label='Remove controller 2']").await?;
         // Two are left: the views look at the last one.
         let left = r#"{"line":{"address":0},"controllers":[{"address":2,"axes":[{}]}]}"#;
-        page.until_digest(&Known::digest_of(left, 1)?).await
+        page.until_digest(&Known::digest_of(left, 1)?).await?;
+        page.click("[aria-label='Remove controller 2']").await?;
+        page.until_digest(&Known::digest_of(r#"{"line":{"address":0}}"#, 0)?).await?;
+        // Where a button is gone the focus stays in the form.
+        page.until("document.activeElement.closest('#form')").await
     })
 }

@@ -4,6 +4,7 @@ use super::words;
 use crate::{convert::field, simulation::Simulation};
 use js_sys::{Object, Uint8Array};
 use std::fmt::Write as _;
+use stepscope_core::trace::Quoted;
 use wasm_bindgen::prelude::*;
 
 const COLUMNS: &str = "number,kind,start_s,end_s,gap_s,bytes,meaning,outcome,tick_start_s,tick_end_s\r\n";
@@ -69,19 +70,13 @@ impl Simulation {
             seconds(self.gap(index)),
             row.hex
         );
-        quoted(&row.fields, text);
-        text.push(',');
-        quoted(&row.outcome, text);
         let _ = write!(
             text,
-            ",{},{}\r\n",
+            "{},{},{},{}\r\n",
+            Quoted(&row.fields),
+            Quoted(&row.outcome),
             seconds(logged.tick_start.map(|at| at.0)),
             seconds(row.tick_end_cycle)
         );
     }
-}
-
-/// A cell that may hold commas.
-fn quoted(cell: &str, text: &mut String) {
-    let _ = write!(text, "\"{}\"", cell.replace('"', "\"\""));
 }

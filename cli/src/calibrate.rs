@@ -1,0 +1,78 @@
+//! `stepscope calibrate`: steps a millimetre from measured lengths (DESIGN B3, Zhang 2012).
+
+use crate::{failure::Failure, scenarios};
+use clap::Args;
+use std::{
+    io::{self, Write},
+    path::PathBuf,
+};
+use stepscope_core::analysis::calibration::{Calibration, Fit, Pair};
+
+/// Columns that a length may stand in, with mm in one of its units.
+const LENGTHS: [(&str, f64); 3] = [("length_mm", 1.0), ("length_cm", 10.0), ("length_m", 1000.0)];
+
+/// What `stepscope calibrate` takes.
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// A CSV file with the columns length_mm (or length_cm, length_m) and steps, a measurement a row; `-` reads
+    /// standard input.
+    table: PathBuf,
+}
+
+/// Fits the lines and prints them.
+pub(crate) fn calibrate(arguments: &Arguments) -> Result<(), Failure> {
+    let text = scenarios::text(&arguments.table)?;
+    let bad = |what| Failure::Table(arguments.table.clone(), what);
+    let pairs = pairs(&text).map_err(bad)?;
+    let found = Calibration::of(&pairs).map_err(|error| bad(error.to_string()))?;
+    print(&found, &pairs).map_err(Failure::output)
+}
+
+/// The pairs of a table, lengths in mm.
+fn pairs(text: &str) -> Result<Vec<Pair>, String> {
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
+    let head = reader.headers().map_err(|error| error.to_string())?.clone();
+    let place = |name: &str| head.iter().position(|field| field == name);
+    let length = LENGTHS.iter().find_map(|(name, mm)| Some((place(name)?, *name, *mm)));
+    let missing = "give a first row that names the columns length_mm (or length_cm, length_m) and steps";
+    let (length, length_name, mm) =
+        length.ok_or_else(|| format!("there is no column of lengths; {missing}"))?;
+    let steps = place("steps").ok_or_else(|| format!("there is no column steps; {missing}"))?;
+    let mut pairs = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|error| error.to_string())?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let number = |at: usize, name: &str| {
+            let given = record.get(at).unwrap_or_default();
+            let number = given.parse::<f64>().ok().filter(|number| number.is_finite());
+            number.ok_or_else(|| format!("line {line}: {name} is “{given}”; give a number, with a point"))
+        };
+        pairs.push(Pair { length: mm * number(length, length_name)?, steps: number(steps, "steps")? });
+    }
+    Ok(pairs)
+}
+
+fn print(found: &Calibration, pairs: &[Pair]) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    writeln!(out, "pairs               {}", pairs.len())?;
+    writeln!(out, "steps = k*length")?;
+    fit(&found.through_origin, pairs, &mut out)?;
+    writeln!(out, "steps = k*length + offset")?;
+    let beside = &found.with_offset;
+    let offset_mm = beside.offset_steps / beside.steps_per_unit;
+    writeln!(out, "  offset            {:.3} steps, {offset_mm:.6} mm", beside.offset_steps)?;
+    fit(beside, pairs, &mut out)?;
+    let step_mm = 1.0 / found.through_origin.steps_per_unit;
+    writeln!(out, "\"mechanics\": {{ \"direct\": {{ \"step_mm\": {step_mm} }} }}")
+}
+
+fn fit(fit: &Fit, pairs: &[Pair], out: &mut impl Write) -> io::Result<()> {
+    let k = fit.steps_per_unit;
+    writeln!(out, "  k                 {k:.6} steps/mm, {:.9} mm a step", 1.0 / k)?;
+    writeln!(out, "  r.m.s. residual   {:.3} steps, {:.6} mm", fit.rms(), fit.rms() / k)?;
+    let Some((index, largest)) = fit.largest() else { return Ok(()) };
+    let length = pairs.get(index).map_or(0.0, |pair| pair.length);
+    writeln!(out, "  largest residual  {largest:.3} steps, {:.6} mm, at {length} mm", largest / k)
+}

@@ -1,0 +1,211 @@
+//! `stepscope torque`: does a motor have what a plan asks of it, and which ramps can it follow?
+
+use crate::{failure::Failure, files, scenarios};
+use clap::{Args, ValueEnum};
+use std::{
+    io::{self, Write},
+    path::PathBuf,
+};
+use stepscope_core::{
+    analysis::torque::{Demand, Machine, Moment, Ramps},
+    motion::{AxisPlan, Curve, PlannedMove, Profile, cosine::Cosine, plan_lists},
+    scenario::{Cause, Motion, Problem, Scenario, Source},
+};
+
+/// Shortages that the screen shows of an axis.
+const MOST_SHOWN: usize = 20;
+/// Rates of the curve.
+const POINTS: u32 = 201;
+
+/// What `stepscope torque` takes.
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// The scenario, a JSON file whose source is a motion with a motor; `-` reads standard input.
+    scenario: PathBuf,
+    /// Only this axis, from 0; the curve is of axis 0 without it.
+    #[arg(long, value_name = "K")]
+    axis: Option<usize>,
+    /// What is written: what each axis asks of its motor, or the curve of one motor as CSV.
+    #[arg(long, value_enum, default_value = "text")]
+    format: Written,
+    /// Where it goes (`-`: standard output).
+    #[arg(long, value_name = "FILE", default_value = "-")]
+    out: PathBuf,
+}
+
+/// What is written.
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Written {
+    /// Words and numbers.
+    Text,
+    /// Available torque over rate.
+    Csv,
+}
+
+/// An axis with a motor.
+struct Driven {
+    axis: usize,
+    machine: Machine,
+    plan: AxisPlan,
+}
+
+/// Writes what the motors have and what is asked of them.
+pub(crate) fn torque(arguments: &Arguments) -> Result<(), Failure> {
+    let driven = driven(arguments)?;
+    let write = || {
+        let mut out = files::create(&arguments.out)?;
+        match arguments.format {
+            Written::Text => driven.iter().try_for_each(|driven| report(driven, &mut out))?,
+            Written::Csv => driven.first().map_or(Ok(()), |driven| curve(driven, &mut out))?,
+        }
+        out.flush()
+    };
+    write().map_err(|error| Failure::File(arguments.out.clone(), error))
+}
+
+/// The axes that are asked for and have a motor: at least one.
+fn driven(arguments: &Arguments) -> Result<Vec<Driven>, Failure> {
+    let path = &arguments.scenario;
+    let wrong = |problems| Failure::Scenario(path.clone(), problems);
+    let refused = |path: String, detail| wrong(vec![Problem::new(path, Cause::Conflict { detail })]);
+    let scenario: Scenario = scenarios::read(path)?;
+    let Source::Motion(Motion { axes, .. }) = &scenario.source else {
+        let detail = "no motion, so no motor is asked for anything; give a scenario with source.motion";
+        return Err(refused("source".to_owned(), detail));
+    };
+    let plans = plan_lists([("source.motion.axes".to_owned(), axes.as_slice())]).map_err(wrong)?;
+    let only = match (arguments.axis, arguments.format) {
+        (None, Written::Csv) => Some(0),
+        (axis, _) => axis,
+    };
+    if let Some(axis) = only
+        && axis >= axes.len()
+    {
+        return Err(Failure::Axis(path.clone(), axis, axes.len()));
+    }
+    let all = axes.iter().zip(plans.into_iter().flatten()).enumerate();
+    let asked = all.filter(|(axis, _)| only.is_none_or(|only| only == *axis));
+    let found: Vec<Driven> = asked
+        .filter_map(|(axis, (given, plan))| Some(Driven { axis, machine: Machine::of(given)?, plan }))
+        .collect();
+    if found.is_empty() {
+        let detail = "no motor; give one, such as \"motor\": {} for that of Song, Han and Lu 2021";
+        return Err(refused(format!("source.motion.axes[{}].motor", only.unwrap_or(0)), detail));
+    }
+    Ok(found)
+}
+
+fn curve(driven: &Driven, out: &mut impl Write) -> io::Result<()> {
+    writeln!(out, "rate_hz,available_mn_m")?;
+    let most = driven.machine.shown_rate(driven.plan.peaks().speed);
+    driven
+        .machine
+        .curve(most, POINTS)
+        .try_for_each(|(rate, available)| writeln!(out, "{rate:.3},{available:.6}"))
+}
+
+fn report(driven: &Driven, out: &mut impl Write) -> io::Result<()> {
+    let Driven { axis, machine, plan } = driven;
+    writeln!(out, "axis {axis}")?;
+    let standing = machine.available_mn_m(0.0);
+    let corner = rate(machine.corner_rate());
+    writeln!(out, "  full torque      {standing:.1} mN*m, up to {corner}")?;
+    writeln!(
+        out,
+        "  greatest rate    {} with a load of {:.1} mN*m",
+        rate(machine.torque_rate()),
+        machine.load_mn_m()
+    )?;
+    if let Some(stated) = machine.working_rate() {
+        writeln!(out, "  working rate     {stated:.0} steps/s, as stated")?;
+    }
+    let demand = Demand::of(machine, plan);
+    if let Some(least) = &demand.least {
+        let margin = least.margin_mn_m();
+        writeln!(out, "  least margin     {margin:.1} mN*m: {}", moment(least))?;
+    }
+    if demand.jump > 0.0 {
+        let jump = demand.jump;
+        writeln!(
+            out,
+            "  jump of speed    {jump:.0} steps/s at once; the motor's start-stop rate has to be higher"
+        )?;
+    }
+    shortages(&demand, machine, out)?;
+    for (index, planned) in plan.moves().iter().enumerate() {
+        if let PlannedMove { profile: Profile::Cosine(cosine), .. } = planned {
+            ramps(index, cosine, machine, out)?;
+        }
+    }
+    Ok(())
+}
+
+fn rate(found: Option<f64>) -> String {
+    found.map_or_else(|| "any rate".to_owned(), |rate| format!("{rate:.0} steps/s"))
+}
+
+fn moment(moment: &Moment) -> String {
+    format!(
+        "at {:.6} s, {:.0} steps/s, {:.1} needed of {:.1} mN*m",
+        moment.at_s, moment.rate, moment.needed_mn_m, moment.available_mn_m
+    )
+}
+
+fn shortages(demand: &Demand, machine: &Machine, out: &mut impl Write) -> io::Result<()> {
+    if demand.is_met() {
+        return writeln!(out, "  enough torque throughout");
+    }
+    if let (Some(given), Some(most)) = (demand.over_working_rate, machine.working_rate()) {
+        writeln!(
+            out,
+            "  warning: {given:.0} steps/s are above the working rate of {most:.0} steps/s; give more time, or shorter ramps"
+        )?;
+    }
+    if demand.total == 0 {
+        return Ok(());
+    }
+    writeln!(
+        out,
+        "  warning: too little torque in {} stretch{}; give more time, gentler ramps, less load, or a higher supply voltage",
+        demand.total,
+        if demand.total == 1 { "" } else { "es" }
+    )?;
+    for found in demand.shortages.iter().take(MOST_SHOWN) {
+        let (from, to, short) = (found.from_s, found.to_s, -found.worst.margin_mn_m());
+        write!(out, "    {from:.6} to {to:.6} s: {short:.1} mN*m short {}", moment(&found.worst))?;
+        match found.times {
+            times if times > 1.0 => writeln!(out, "; so in {times:.0} periods")?,
+            _ => writeln!(out)?,
+        }
+    }
+    match demand.total.saturating_sub(MOST_SHOWN as u64) {
+        0 => Ok(()),
+        more => writeln!(out, "    and {more} more"),
+    }
+}
+
+fn ramps(index: usize, cosine: &Cosine, machine: &Machine, out: &mut impl Write) -> io::Result<()> {
+    let (steps, duration_s) = (cosine.steps(), cosine.duration_s());
+    let found = Ramps::of(machine, steps, duration_s, |ramp_s| Cosine::new(steps, duration_s, ramp_s));
+    writeln!(out, "  move {index}, cosine  {} steps in {duration_s} s", steps.unsigned_abs())?;
+    if let Some(greatest) = found.greatest_rate {
+        write!(out, "    under {greatest:.0} steps/s  ")?;
+        match found.longest_s {
+            Some(longest_s) if longest_s > found.room_s => {
+                let room_s = found.room_s;
+                writeln!(out, "a ramp of at most {longest_s:.4} s; the move has room for {room_s:.4} s")?;
+            }
+            Some(longest_s) => writeln!(out, "a ramp of at most {longest_s:.4} s")?,
+            None => {
+                let least_s = steps.unsigned_abs() as f64 / greatest;
+                writeln!(out, "even without ramps the move is faster; give at least {least_s:.4} s")?;
+            }
+        }
+    }
+    match found.enough_s {
+        Some((shortest, longest)) => {
+            writeln!(out, "    enough torque with ramps of {shortest:.4} to {longest:.4} s")
+        }
+        None => writeln!(out, "    no ramp leaves enough torque; give more time or less load"),
+    }
+}

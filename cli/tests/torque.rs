@@ -1,0 +1,119 @@
+//! `stepscope torque` and `stepscope calibrate`, as a script sees them.
+#![cfg(not(target_arch = "wasm32"))]
+#![allow(clippy::expect_used, reason = "what is missing fails the test")]
+
+use std::{
+    io::Write,
+    process::{Command, Stdio},
+};
+
+/// Exit code, standard output, standard error.
+fn stepscope(arguments: &[&str], input: &str) -> (Option<i32>, String, String) {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_stepscope"))
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("it starts");
+    // A command that does not read it may be gone already.
+    let _ = child.stdin.take().expect("it is piped").write_all(input.as_bytes());
+    let output = child.wait_with_output().expect("it ends");
+    let text = |bytes| String::from_utf8(bytes).expect("it is text");
+    (output.status.code(), text(output.stdout), text(output.stderr))
+}
+
+fn axes(axes: &str) -> String {
+    format!(r#"{{"bus":{{"channels":2}},"source":{{"motion":{{"axes":[{axes}]}}}}}}"#)
+}
+
+#[test]
+fn an_axis_with_torque_to_spare_says_so_and_names_the_longest_ramp() {
+    let scenario = axes(r#"{"moves":[{"cosine":{}}],"motor":{"working_rate_hz":19200}},{}"#);
+    let (code, out, err) = stepscope(&["torque", "-"], &scenario);
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    let expected = "\
+axis 0
+  full torque      282.8 mN*m, up to 30945 steps/s
+  greatest rate    any rate with a load of 0.0 mN*m
+  working rate     19200 steps/s, as stated
+  least margin     281.7 mN*m: at 0.100000 s, 8000 steps/s, 1.1 needed of 282.8 mN*m
+  enough torque throughout
+  move 0, cosine  3200 steps in 0.4 s
+    under 19200 steps/s  a ramp of at most 0.2333 s; the move has room for 0.2000 s
+    enough torque with ramps of 0.0004 to 0.2000 s
+";
+    assert_eq!(out, expected);
+}
+
+#[test]
+fn a_shortage_is_a_warning_with_numbers_and_a_remedy() {
+    let scenario = axes(
+        r#"{},{"moves":[{"cosine":{}},{"trapezoid":{}}],"motor":{"load_inertia_g_cm2":9955,"load_torque_mn_m":100}}"#,
+    );
+    let (code, out, _) = stepscope(&["torque", "-"], &scenario);
+    assert_eq!(code, Some(0), "a warning is no error");
+    for line in [
+        "  least margin     -63.9 mN*m: at 0.100000 s, 8000 steps/s, 346.7 needed of 282.8 mN*m",
+        "  jump of speed    250 steps/s at once; the motor's start-stop rate has to be higher",
+        "  warning: too little torque in 1 stretch; give more time, gentler ramps, less load, or a higher supply voltage",
+        "    0.053133 to 0.146867 s: 63.9 mN*m short at 0.100000 s, 8000 steps/s, 346.7 needed of 282.8 mN*m",
+        "    no ramp leaves enough torque; give more time or less load",
+    ] {
+        assert!(out.lines().any(|found| found == line), "{line}\nis not in\n{out}");
+    }
+    let (code, _, err) = stepscope(&["torque", "-", "--axis", "0"], &scenario);
+    assert_eq!(code, Some(2));
+    assert!(err.contains("source.motion.axes[0].motor: no motor; give one"), "{err}");
+    assert_eq!(stepscope(&["torque", "-", "--axis", "2"], &scenario).0, Some(2));
+    let direct = axes(r#"{"mechanics":{"direct":{}},"motor":{}}"#);
+    let (code, _, err) = stepscope(&["torque", "-"], &direct);
+    assert!(code == Some(2) && err.contains("choose rotary, wheel or screw"), "{err}");
+}
+
+#[test]
+fn the_curve_is_a_table_that_starts_full_and_falls() {
+    let scenario = axes(r#"{"motor":{}}"#);
+    let (code, out, _) = stepscope(&["torque", "-", "--format", "csv"], &scenario);
+    assert_eq!(code, Some(0));
+    let mut lines = out.lines();
+    assert_eq!(lines.next(), Some("rate_hz,available_mn_m"));
+    let rows: Vec<(f64, f64)> = lines
+        .map(|line| line.split_once(',').expect("two columns"))
+        .map(|(rate, torque)| (rate.parse().expect("a rate"), torque.parse().expect("a torque")))
+        .collect();
+    assert_eq!((rows.len(), rows[0]), (201, (0.0, 282.842_712)));
+    assert!(rows.windows(2).all(|pair| pair[1].0 > pair[0].0 && pair[1].1 <= pair[0].1));
+    assert!(rows[200].1 < 200.0);
+}
+
+#[test]
+fn steps_a_millimetre_are_fitted_and_made_into_mechanics() {
+    let table = "length_cm, steps\n10,5650\n30.5,17232.5\n45,25425\n";
+    let (code, out, err) = stepscope(&["calibrate", "-"], table);
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    assert!(out.contains("  k                 56.500000 steps/mm, 0.017699115 mm a step\n"), "{out}");
+    assert!(out.contains("  offset            0.000 steps, 0.000000 mm\n"), "{out}");
+    let mechanics = out.lines().last().expect("a last line");
+    // It is what a scenario takes.
+    let scenario = axes(&format!(r#"{{{mechanics},"moves":[{{"cosine":{{"distance":{{"mm":100}}}}}}]}}"#));
+    let (code, status, _) = stepscope(&["run", "-"], &scenario);
+    assert_eq!(code, Some(0));
+    assert!(status.contains("5650"), "{status}");
+}
+
+#[test]
+fn a_table_without_a_line_is_refused() {
+    for (table, expected) in [
+        ("a,b\n1,2\n", "there is no column of lengths; give a first row"),
+        ("length_mm\n1\n", "there is no column steps; give a first row"),
+        ("length_mm,steps\n1,2\n", "1 pair of length and steps; give at least 2"),
+        ("length_mm,steps\n1,2\n1,3\n", "all pairs have length 1; measure at least one of another length"),
+        ("length_mm,steps\n1,2\n2,x\n", "line 3: steps is “x”; give a number, with a point"),
+        ("length_mm,steps\n1,2\n2,nan\n", "line 3: steps is “nan”; give a number, with a point"),
+    ] {
+        let (code, _, err) = stepscope(&["calibrate", "-"], table);
+        assert_eq!(code, Some(2), "{table}");
+        assert!(err.contains(expected), "{err}");
+    }
+}

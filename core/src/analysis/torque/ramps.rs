@@ -1,0 +1,98 @@
+//! Which ramps of a move of n steps in T (DESIGN B4) a motor can follow. A short ramp needs much torque to
+//! accelerate, a long one a high rate, where there is little:
+//!
+//! ```text
+//! f_max = n/(T - t_s), so t_s <= T - n/f_s keeps it under f_s; the acceleration falls up to t_s = T/2
+//! ```
+
+use super::{HALVINGS, Machine};
+use crate::motion::Curve;
+
+/// Ramps that are tried, evenly from none to half of the time.
+const TRIED: u32 = 512;
+/// Times within a ramp that are looked at.
+const LOOKS: u32 = 128;
+
+/// Which ramps a motor can follow, in s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ramps {
+    /// f_s: the greatest rate in steps/s that the motor can do with its load; `None` where nothing limits it.
+    pub greatest_rate: Option<f64>,
+    /// T - n/f_s: the longest ramp under that rate, which may be more than the move has room for; `None`
+    /// where nothing limits it, or where even no ramp is too fast ([`Self::too_fast`]).
+    pub longest_s: Option<f64>,
+    /// Even at one rate throughout the move is faster than f_s: it needs more time.
+    pub too_fast: bool,
+    /// T/2: the longest ramp that the move has room for.
+    pub room_s: f64,
+    /// The shortest and the longest ramp with which the torque suffices throughout; `None` where it does
+    /// with none.
+    pub enough_s: Option<(f64, f64)>,
+}
+
+impl Ramps {
+    /// Of a move of `steps` in `duration_s` with two equal ramps, whose curve with a ramp of so many s
+    /// `of` gives.
+    #[must_use]
+    pub fn of<C: Curve>(machine: &Machine, steps: i64, duration_s: f64, of: impl Fn(f64) -> C) -> Self {
+        let room_s = duration_s / 2.0;
+        let count = steps.unsigned_abs() as f64;
+        let greatest_rate = machine.greatest_rate();
+        let by_rate = greatest_rate.map(|rate| duration_s - count / rate);
+        let longest_s = by_rate.filter(|longest_s| *longest_s >= 0.0);
+        let enough = |ramp_s: f64| suffices(machine, &of(ramp_s), ramp_s);
+        Self {
+            greatest_rate,
+            longest_s,
+            too_fast: by_rate.is_some() && longest_s.is_none(),
+            room_s,
+            enough_s: widest(room_s, enough),
+        }
+    }
+}
+
+/// Whether there is enough torque all the way up and on the plateau: on the way down the load helps.
+fn suffices(machine: &Machine, curve: &impl Curve, ramp_s: f64) -> bool {
+    let top = libm::fabs(curve.speed(curve.duration_s() / 2.0));
+    if machine.working_rate().is_some_and(|most| top > most) {
+        return false;
+    }
+    let ramp = (0..=LOOKS).map(|look| ramp_s * f64::from(look) / f64::from(LOOKS));
+    ramp.chain([curve.duration_s() / 2.0]).all(|t| {
+        let (speed, acceleration) = (curve.speed(t), curve.acceleration(t));
+        machine.needed_mn_m(speed, acceleration) <= machine.available_mn_m(speed)
+    })
+}
+
+/// The longest run of ramps up to `room_s` that are `enough`, its ends found by halving.
+fn widest(room_s: f64, enough: impl Fn(f64) -> bool) -> Option<(f64, f64)> {
+    let ramp = |index: u32| room_s * f64::from(index) / f64::from(TRIED);
+    // The run that is open, and the widest so far: first and last index.
+    let (mut open, mut widest): (Option<u32>, Option<(u32, u32)>) = (None, None);
+    for index in 1..=TRIED {
+        if !enough(ramp(index)) {
+            open = None;
+            continue;
+        }
+        let first = *open.get_or_insert(index);
+        if widest.is_none_or(|(from, to)| index - first > to - from) {
+            widest = Some((first, index));
+        }
+    }
+    let (first, last) = widest?;
+    // The end of the run between an index in it and the one beside it.
+    let end = |inside: u32, outside: u32| {
+        let (mut good, mut bad) = (ramp(inside), ramp(outside));
+        for _ in 0..HALVINGS {
+            let middle = good + (bad - good) / 2.0;
+            if enough(middle) {
+                good = middle;
+            } else {
+                bad = middle;
+            }
+        }
+        good
+    };
+    let longest = if last == TRIED { room_s } else { end(last, last + 1) };
+    Some((end(first, first - 1), longest))
+}
