@@ -33,7 +33,14 @@ export function field(label, unit, start, { least, most, integer = false }, chan
     value = read.value;
     change();
   });
-  return { root, value: () => value };
+  /** @param {number} next */
+  const set = (next) => {
+    value = next;
+    input.value = String(next);
+    say(error, "");
+    input.removeAttribute("aria-invalid");
+  };
+  return { root, value: () => value, set };
 }
 
 /** A choice. @param {string} label @param {{[value: string]: string}} choices @param {() => void} change */
@@ -124,10 +131,11 @@ export function createJob(label) {
 
 /**
  * The axis that the study is about. @param {State} state
- * @returns {Subject | string}  Why there is none; empty while the form is being judged or has problems, when what was shown may stay.
+ * @returns {Subject | string | null}  Why there is none: empty where the form has problems, and what was shown may stay; null until it is judged.
  */
 export function subject({ judgement, judged, revision, scenario, result, axis: wanted }) {
-  if (judged !== revision || !judgement || judgement.problems.length > 0) return "";
+  if (judged !== revision || !judgement) return null;
+  if (judgement.problems.length > 0) return "";
   const controller = result?.controller ?? 0;
   const list = controller > 0 ? `controllers[${controller - 1}].axes` : "source.motion.axes";
   const axes = scenario.source?.motion ? get(scenario, list) ?? [] : [];

@@ -3,6 +3,7 @@
  * d1 of a range, and the best vertices for a number of segments. What a tab is, says study.js.
  */
 import { button, element, fill, say } from "../../dom.js";
+import { unlessDropped } from "../../engine/engine.js";
 import { short } from "../../state/number.js";
 import { listen } from "../../shell/commands.js";
 import { cleared, color, draw, fit, watch } from "../../time/plot.js";
@@ -31,7 +32,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   const from = field("d1 from", "", 0.002, { least: 1e-5, most: 1 }, refresh);
   const to = field("to", "", 0.06, { least: 1e-5, most: 1 }, refresh);
   const points = field("points", "", 500, { least: 2, most: 20000, integer: true }, refresh);
-  const order = field("harmonics to", "", 399, { least: 3, most: 9999, integer: true }, () => { refresh(); vertices(); });
+  const order = field("harmonics to", "", 399, { least: 3, most: 9999, integer: true }, () => { refresh(); vertices(); current(now()); });
   const quantity = choice("THD of", { position: "position", speed: "speed", acceleration: "acceleration" }, paint);
   const job = createJob("Sweep");
   const thdCanvas = element("canvas", { role: "img", "aria-label": "THD against d1" });
@@ -59,6 +60,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   let least = null;
   /** Of the scenario's d1. @type {Row | null} */
   let own = null;
+  let ownKey = "";
   /** The row that is pointed at. @type {number | null} */
   let at = null;
   /** @type {import("../../state/types.js").Plot | null} */
@@ -104,7 +106,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   /** The sine of the looked-at axis. @param {State} state */
   function sineOf(state) {
     const of = subject(state);
-    if (typeof of === "string") return { of: null, move: -1 };
+    if (!of || typeof of === "string") return { of: null, move: -1 };
     return { of, move: of.moves.findIndex((/** @type {any} */ each) => each.sine_segments) };
   }
 
@@ -235,8 +237,12 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     const { of, move } = sineOf(state);
     if (!of) return;
     const d1 = of.moves[move]?.sine_segments.max_deviation ?? null;
-    if (d1 === (own?.d1 ?? null)) return;
-    own = d1 === null ? null : rowOf(await engine.ask("sine_rows", d1, d1, 1, order.value(), 0, 1), 0);
+    const next = `${d1} ${order.value()}`;
+    if (next === ownKey) return;
+    ownKey = next;
+    const found = d1 === null ? null : rowOf(await engine.ask("sine_rows", d1, d1, 1, order.value(), 0, 1).catch(unlessDropped), 0);
+    if (next !== ownKey) return;
+    own = found;
     mark();
   }
 
@@ -252,7 +258,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   return { render };
 }
 
-/** @param {Rows | null} rows @param {number} index @returns {Row | null} */
+/** @param {Rows | null | undefined} rows @param {number} index @returns {Row | null} */
 function rowOf(rows, index) {
   return rows && index < rows.d1.length ? /** @type {any} */ (Object.fromEntries(NAMES.map((name) => [name, rows[name][index]]))) : null;
 }

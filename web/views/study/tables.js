@@ -29,7 +29,7 @@ const chosen = { form: "compressed", widths: "q16", us: 25 };
 /** Files of the table that is chosen, for the export panel. @param {State} state @param {Engine} engine @returns {import("../../shell/exports.js").Offer[]} */
 export function tableFiles(state, engine) {
   const of = subject(state);
-  return typeof of === "string" ? [] : files(state, engine, of);
+  return of && typeof of !== "string" ? files(state, engine, of) : [];
 }
 
 /** @param {State} state @param {Engine} engine @param {Subject} of */
@@ -74,7 +74,8 @@ export function createTables({ engine, now, panel }) {
       pick.closest("tr")?.classList.toggle("chosen", pick.checked);
     }
     const of = subject(now());
-    const none = typeof of === "string" || told[ROWS.findIndex(({ form, widths }) => form === chosen.form && widths === chosen.widths)]?.why !== null;
+    if (!of || typeof of === "string") return fill(saves);
+    const none = told[ROWS.findIndex(({ form, widths }) => form === chosen.form && widths === chosen.widths)]?.why !== null;
     say(said, "");
     fill(saves, element("span", {}, none ? "" : `Save ${FORMS[chosen.form].toLowerCase()}, ${chosen.widths}, as`), ...(none ? [] : files(now(), engine, of).map(({ name, type, language, make }) => {
       const press = element("button", { type: "button", "data-language": language, title: name }, LANGUAGES[language][0]);
@@ -102,7 +103,7 @@ export function createTables({ engine, now, panel }) {
       const pick = element("input", { type: "radio", name: "study-table", value: `${form}-${widths}` });
       pick.disabled = why !== null;
       const name = element("label", { class: "check" }, pick, FORMS[form]);
-      const cells = why !== null ? [why] : [count(entries), count(bytes), entries ? short(steps / entries, 4) : "–", si(largest_s, "s"), si(rms_s, "s"), `${count(steps)}, exact`];
+      const cells = why !== null ? [why] : [count(entries), count(bytes), entries === 0 ? "–" : steps < 1000 * entries ? short(steps / entries, 4) : count(steps / entries), si(largest_s, "s"), si(rms_s, "s"), `${count(steps)}, exact`];
       if (form === "document" && document_bytes !== null && why === null) cells[1] += ` (${count(document_bytes)})`;
       return [name, alike(at) ? "all" : element("span", {}, widths, element("span", { class: "roomy" }, `: ${WIDTHS[widths]}`)), ...cells];
     }));
@@ -120,6 +121,7 @@ export function createTables({ engine, now, panel }) {
   /** @param {State} state */
   function refresh(state) {
     const of = subject(state);
+    if (of === null) return;
     panel.classList.toggle("stale", of === "");
     if (of === "") return;
     if (typeof of === "string") {
