@@ -4,7 +4,7 @@
 
 mod moves;
 
-use moves::{CLOCK_HZ, plan, sane_move, short_move};
+use moves::{CLOCK_HZ, plan, ramp_shape, sane_move, short_move};
 use proptest::prelude::*;
 use std::rc::Rc;
 use stepscope_core::{
@@ -12,8 +12,8 @@ use stepscope_core::{
     motion::{AxisPlan, Curve, Profile, plan_axis, round_half_up},
     quantise::{exact_segments, ticks},
     scenario::{
-        Acceleration, Axis, Constant, Cosine, Direct, Distance, Dwell, Mechanics, Move, SineSegments, Speed,
-        Staircase, Trapezoid, TrapezoidMethod,
+        Acceleration, Axis, Constant, Cosine, CosineMethod, Direct, Distance, Dwell, Mechanics, Move, Ramps,
+        SineSegments, Speed, Staircase, Trapezoid, TrapezoidMethod,
     },
     segment::PulseTimes,
     signal::Record,
@@ -58,8 +58,17 @@ fn wild_move() -> impl Strategy<Value = Move> {
     });
     let method = prop_oneof![Just(TrapezoidMethod::Table), Just(TrapezoidMethod::Exact)];
     prop_oneof![
-        (distance.clone(), number(), number())
-            .prop_map(|(distance, duration_s, ramp_s)| Move::Cosine(Cosine { distance, duration_s, ramp_s })),
+        (distance.clone(), number(), number(), any::<bool>(), number()).prop_map(
+            |(distance, duration_s, ramp_s, sliced, slice_s)| {
+                let method = if sliced { CosineMethod::Sliced } else { CosineMethod::Exact };
+                Move::Cosine(Cosine { distance, duration_s, ramp_s, method, slice_s })
+            }
+        ),
+        (distance.clone(), number(), number(), ramp_shape(), number(), number()).prop_map(
+            |(distance, duration_s, ramp_s, shape, sigmoid_range, time_constants)| {
+                Move::Ramps(Ramps { distance, duration_s, ramp_s, shape, sigmoid_range, time_constants })
+            }
+        ),
         (distance.clone(), speed.clone(), speed.clone(), number(), method, any::<u32>()).prop_map(
             |(distance, start_speed, top_speed, acceleration, method, timer_hz)| {
                 let acceleration = Acceleration::StepsPerSecond2(acceleration);
@@ -94,6 +103,7 @@ fn mirrored(given: &Move) -> Move {
     let back = |distance: &Distance| Distance::Steps(-distance.value());
     match given.clone() {
         Move::Cosine(m) => Move::Cosine(Cosine { distance: back(&m.distance), ..m }),
+        Move::Ramps(m) => Move::Ramps(Ramps { distance: back(&m.distance), ..m }),
         Move::Trapezoid(m) => Move::Trapezoid(Trapezoid { distance: back(&m.distance), ..m }),
         Move::Staircase(m) => Move::Staircase(Staircase { distance: back(&m.distance), ..m }),
         Move::SineSegments(m) => Move::SineSegments(SineSegments { amplitude: back(&m.amplitude), ..m }),

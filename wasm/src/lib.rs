@@ -4,6 +4,7 @@
 //! written and [`Simulation`] runs, and on the main thread, where the charts are drawn.
 
 mod charts;
+mod compare;
 mod convert;
 mod curves;
 mod decoder;
@@ -21,6 +22,7 @@ mod tables;
 mod timing;
 mod witness;
 
+pub use compare::compare_ramps;
 pub use judge::{check, default_scenario, presets, version};
 pub use link::{decode_link, encode_link, link_part, link_with, replay};
 pub use simulation::Simulation;

@@ -1,7 +1,8 @@
 //! What a run and its ideal come to: curves for the eye, spectra and distortion, which segments
-//! make the best sine, and whether a driver could follow the pulses.
+//! make the best sine, what each shape of a ramp costs, and whether a driver could follow the pulses.
 
 pub mod between;
+pub mod comparison;
 pub mod curves;
 pub mod difference;
 pub mod drivers;

@@ -237,7 +237,8 @@ mod tests {
 
     #[test]
     fn a_motion_that_does_not_repeat_has_lines_but_no_distortion() {
-        let cosine = Cosine { distance: Distance::Steps(6400.0), duration_s: 0.4, ramp_s: 0.2 };
+        let cosine =
+            Cosine { distance: Distance::Steps(6400.0), duration_s: 0.4, ramp_s: 0.2, ..Cosine::default() };
         let plan = plan(vec![Move::Cosine(cosine)]);
         let spectrum = Spectrum::ideal(&plan, 5, 4096).unwrap();
         assert!(!spectrum.stretch.periodic && spectrum.position.distortion.is_none());

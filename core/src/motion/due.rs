@@ -68,6 +68,8 @@ fn due(profile: &Profile, clock_hz: u32) -> Due<'_> {
         }
         Profile::Staircase(staircase) => Box::new(steps.map(move |k| (staircase.step_s(k) * clock, right))),
         Profile::Cosine(curve) => Box::new(places.map(move |place| (curve.time_s(place) * clock, right))),
+        Profile::Sliced(curve) => Box::new(places.map(move |place| (curve.time_s(place) * clock, right))),
+        Profile::Ramps(curve) => Box::new(places.map(move |place| (curve.time_s(place) * clock, right))),
         Profile::SineSegments(sine) => {
             let cycles_per_point = sine.point_s() * clock;
             Box::new(sine.due_points().map(move |(point, right)| (point * cycles_per_point, right)))

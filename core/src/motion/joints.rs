@@ -5,10 +5,10 @@
 //! ```text
 //! |   .----.     | a trapezoid has a joint at each end of its ramps and in its middle,
 //! |  /|  | |\    | a table or a staircase at each change of its rate,
-//! +-'-+--+-+-'-- | a cosine 64 in each ramp: no polynomial, so it is cut small
+//! +-'-+--+-+-'-- | a cosine 64 in each ramp, another shape as many or more: no polynomial, so it is cut small
 //! ```
 
-use super::{AxisPlan, Curve, Profile, cosine::Cosine, polyline::POINTS, sine_segments::SineSegments};
+use super::{AxisPlan, Curve, Profile, polyline::POINTS, sine_segments::SineSegments};
 use alloc::vec::Vec;
 
 /// Parts that a cosine's ramp is cut into; even, so that the middle of the ramp, where its
@@ -136,7 +136,16 @@ fn greatest(a: f64, b: f64) -> f64 {
 fn joints(profile: &Profile) -> Vec<f64> {
     match profile {
         Profile::Trapezoid(curve) => mirrored([curve.ramp_s()].into_iter(), curve.duration_s()),
-        Profile::Cosine(curve) => mirrored(ramp(curve), curve.duration_s()),
+        Profile::Cosine(curve) => mirrored(ramp(curve.ramp_s, RAMP_PARTS), curve.duration_s()),
+        Profile::Sliced(curve) => {
+            let inside = 1..curve.starts_s.len().saturating_sub(1);
+            curve.starts_s.get(inside).map_or_else(Vec::new, <[f64]>::to_vec)
+        }
+        Profile::Ramps(curve) => {
+            // A shape that bends more than a cosine is cut into more pieces, and its middle stays a joint.
+            let times = 1 + (curve.ramp.sharpness() / 8.0) as u32;
+            mirrored(ramp(curve.ramp_s, times * RAMP_PARTS), curve.duration_s())
+        }
         Profile::TrapezoidTable(curve) => {
             // One interval more than the ramp: its slope to the next shows the ramp's end.
             let count = curve.steps().unsigned_abs();
@@ -154,9 +163,8 @@ fn joints(profile: &Profile) -> Vec<f64> {
     }
 }
 
-fn ramp(curve: &Cosine) -> impl Iterator<Item = f64> {
-    let ramp_s = curve.ramp_s;
-    (1..=RAMP_PARTS).map(move |part| ramp_s * f64::from(part) / f64::from(RAMP_PARTS))
+fn ramp(ramp_s: f64, parts: u32) -> impl Iterator<Item = f64> {
+    (1..=parts).map(move |part| ramp_s * f64::from(part) / f64::from(parts))
 }
 
 /// These of the first half, the middle, and their mirror images.
@@ -209,6 +217,11 @@ mod tests {
         r#"{"trapezoid":{"distance":{"steps":2000},"method":"table"}}"#,
         r#"{"staircase":{"distance":{"steps":3000}}}"#,
         r#"{"cosine":{"distance":{"steps":3200},"duration_s":0.4,"ramp_s":0.1}}"#,
+        r#"{"cosine":{"distance":{"steps":3201},"ramp_s":0.1,"method":"sliced"}}"#,
+        r#"{"ramps":{"shape":"sigmoid","ramp_s":0.1}}"#,
+        r#"{"ramps":{"shape":"bezier"}}"#,
+        r#"{"ramps":{"shape":"straight","ramp_s":0.1}}"#,
+        r#"{"ramps":{"shape":"exponential","ramp_s":0.1}}"#,
         r#"{"constant":{"distance":{"steps":100},"speed":{"steps_s":1000}}}"#,
         r#"{"dwell":{"duration_s":0.1}},{"sine_segments":{"amplitude":{"steps":500},"period_s":0.2,"periods":3}},{"dwell":{"duration_s":0.05}}"#,
     ];
@@ -237,7 +250,7 @@ mod tests {
 
     #[test]
     fn whole_periods_are_cut_once_and_stand_for_all() {
-        let plan = plan(MOVES[6]);
+        let plan = plan(MOVES[MOVES.len() - 1]);
         let joints = Joints::of(&plan);
         for (from, to, wholes) in [(0.09, 0.71, 3.0), (0.15, 0.71, 2.0), (0.15, 0.6, 1.0), (0.15, 0.4, 1.0)] {
             let (mut most, mut covered) = (0.0_f64, 0.0);

@@ -9,6 +9,8 @@
 //! trapezoid_table  B2, table:  / staircase \ whole pulse rates and a timer's whole reloads
 //! staircase        B3          _-_           rates that are each held for some steps
 //! cosine           B4, exact:  ( S-curve )   so many steps in so much time
+//! sliced           B4, sliced: ( _-^-_ )     the same in slices of whole steps, as the document runs it
+//! ramps            B4          ( _/ \\_ )  the same with ramps of another shape (`ramp`)
 //! sine_segments    B5          \/\/          a sine as segments of fixed rate
 //! steady           B6          ---           constant rate, dwell
 //! ```
@@ -27,7 +29,10 @@ mod mirrored;
 mod plan;
 pub(crate) mod polyline;
 mod profile;
+pub mod ramp;
+pub mod ramps;
 pub mod sine_segments;
+pub mod sliced;
 pub mod staircase;
 pub mod staircase_table;
 pub mod steady;

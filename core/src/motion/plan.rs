@@ -10,13 +10,16 @@ use super::{
     acceleration_table::AccelerationTable,
     asked::Asked,
     cosine::Cosine,
+    ramp::Ramp,
+    ramps::Ramps,
     sine_segments::SineSegments,
+    sliced::{NotSliced, Sliced},
     steady::{Constant, Dwell},
     trapezoid::Trapezoid,
     trapezoid_table::{NoTable, TrapezoidTable},
 };
 use crate::{
-    scenario::{self, Axis, Cause, Move, Problem, TrapezoidMethod},
+    scenario::{self, Axis, Cause, CosineMethod, Distance, Move, Problem, RampShape, TrapezoidMethod},
     signal::MAX_CHANNELS,
 };
 use alloc::{format, string::String, vec::Vec};
@@ -27,8 +30,17 @@ const MOST_MOVES: usize = 64;
 const MOST_TABLE_ROWS: u64 = 1_000_000;
 /// Most segments that the quarters of all sines of a scenario may have together.
 const MOST_SEGMENTS: usize = 65_536;
+/// Most slices that all sliced cosines of a scenario may have together.
+const MOST_SLICES: u64 = 100_000;
+/// Lengths of a slice in s.
+const LEAST_SLICE_S: f64 = 1e-5;
+const MOST_SLICE_S: f64 = 0.1;
 /// Longest time of an axis in s.
 const MOST_DURATION_S: f64 = 1e6;
+/// How much of its curve a ramp of a sigmoid or an exponential may be: below this it is straight to a part in a
+/// thousand, above it stands still but for a small part of its time.
+const LEAST_PARAMETER: f64 = 0.1;
+const MOST_PARAMETER: f64 = 20.0;
 /// Most periods of a sine.
 const MOST_PERIODS: f64 = 1e6;
 
@@ -36,11 +48,12 @@ const MOST_PERIODS: f64 = 1e6;
 struct Left {
     table_rows: u64,
     segments: usize,
+    slices: u64,
 }
 
 impl Default for Left {
     fn default() -> Self {
-        Self { table_rows: MOST_TABLE_ROWS, segments: MOST_SEGMENTS }
+        Self { table_rows: MOST_TABLE_ROWS, segments: MOST_SEGMENTS, slices: MOST_SLICES }
     }
 }
 
@@ -108,7 +121,8 @@ fn plan_move(asked: &mut Asked<'_>, given: &Move, path: &str, left: &mut Left) -
     match given {
         Move::Trapezoid(given) => plan_trapezoid(asked, given, &format!("{path}.trapezoid"), left),
         Move::Staircase(given) => staircase::plan(asked, given, &format!("{path}.staircase"), left),
-        Move::Cosine(given) => plan_cosine(asked, given, &format!("{path}.cosine")),
+        Move::Cosine(given) => plan_cosine(asked, given, &format!("{path}.cosine"), left),
+        Move::Ramps(given) => plan_ramps(asked, given, &format!("{path}.ramps")),
         Move::SineSegments(given) => plan_sine(asked, given, &format!("{path}.sine_segments"), left),
         Move::Constant(given) => {
             let steps = asked.distance(format!("{path}.constant.distance"), &given.distance);
@@ -174,18 +188,80 @@ fn plan_trapezoid(
     }
 }
 
-fn plan_cosine(asked: &mut Asked<'_>, given: &scenario::Cosine, path: &str) -> Option<Profile> {
-    let steps = asked.distance(format!("{path}.distance"), &given.distance);
-    let duration_s = asked.duration(format!("{path}.duration_s"), given.duration_s);
-    let ramp_s = asked.pause(format!("{path}.ramp_s"), given.ramp_s);
+fn plan_cosine(
+    asked: &mut Asked<'_>,
+    given: &scenario::Cosine,
+    path: &str,
+    left: &mut Left,
+) -> Option<Profile> {
+    let front = front(asked, path, &given.distance, given.duration_s, given.ramp_s);
+    let slice_s = match given.method {
+        CosineMethod::Sliced => {
+            let range = (LEAST_SLICE_S, MOST_SLICE_S);
+            asked.range(format!("{path}.slice_s"), given.slice_s, range.0, range.1, "s")
+        }
+        CosineMethod::Exact => Some(0.0),
+    };
+    let (steps, duration_s, ramp_s) = front?;
+    let slice_s = slice_s?;
+    let curve = Cosine::new(steps, duration_s, ramp_s);
+    hold_speed(asked, format!("{path}.duration_s"), curve.top_speed())?;
+    if given.method == CosineMethod::Exact {
+        return Some(Profile::Cosine(curve));
+    }
+    let cause = match Sliced::new(steps, duration_s, ramp_s, slice_s, left.slices) {
+        Ok(curve) => {
+            left.slices -= curve.slice_count();
+            hold_speed(asked, format!("{path}.duration_s"), curve.peaks().speed)?;
+            return Some(Profile::Sliced(curve));
+        }
+        Err(NotSliced::Slices { needed }) => {
+            let given = (MOST_SLICES - left.slices).saturating_add(needed);
+            Cause::TooMuch { given: given as f64, most: MOST_SLICES as f64, of: "slices" }
+        }
+        Err(NotSliced::TooShort { rate }) => Cause::SliceTooShort { rate, slice_s },
+        Err(NotSliced::TooFew { slices }) => {
+            Cause::SlicesTooFew { slices, slice_s, steps: steps.unsigned_abs(), rate: MOST_SPEED }
+        }
+    };
+    asked.refuse(format!("{path}.slice_s"), cause);
+    None
+}
+
+fn plan_ramps(asked: &mut Asked<'_>, given: &scenario::Ramps, path: &str) -> Option<Profile> {
+    let front = front(asked, path, &given.distance, given.duration_s, given.ramp_s);
+    let mut parameter = |key: &str, value: f64| {
+        asked.range(format!("{path}.{key}"), value, LEAST_PARAMETER, MOST_PARAMETER, "")
+    };
+    let ramp = match given.shape {
+        RampShape::Sigmoid => Ramp::sigmoid(parameter("sigmoid_range", given.sigmoid_range)?),
+        RampShape::Bezier => Ramp::Bezier,
+        RampShape::Straight => Ramp::Straight,
+        RampShape::Exponential => Ramp::exponential(parameter("time_constants", given.time_constants)?),
+    };
+    let (steps, duration_s, ramp_s) = front?;
+    let curve = Ramps::new(steps, duration_s, ramp_s, ramp);
+    hold_speed(asked, format!("{path}.duration_s"), curve.top_speed())?;
+    Some(Profile::Ramps(curve))
+}
+
+/// B4's front: so many steps in so much time with two ramps.
+fn front(
+    asked: &mut Asked<'_>,
+    path: &str,
+    distance: &Distance,
+    duration_s: f64,
+    ramp_s: f64,
+) -> Option<(i64, f64, f64)> {
+    let steps = asked.distance(format!("{path}.distance"), distance);
+    let duration_s = asked.duration(format!("{path}.duration_s"), duration_s);
+    let ramp_s = asked.pause(format!("{path}.ramp_s"), ramp_s);
     let (steps, duration_s, ramp_s) = (steps, duration_s?, ramp_s?);
     if ramp_s > duration_s / 2.0 {
         asked.refuse(format!("{path}.ramp_s"), Cause::RampTooLong { ramp_s, duration_s });
         return None;
     }
-    let curve = Cosine::new(steps?, duration_s, ramp_s);
-    hold_speed(asked, format!("{path}.duration_s"), curve.top_speed())?;
-    Some(Profile::Cosine(curve))
+    Some((steps?, duration_s, ramp_s))
 }
 
 fn plan_sine(
@@ -291,6 +367,34 @@ mod tests {
                 "axis.moves[0].sine_segments.periods: 0 is out of range; give 1 to 1000000",
                 "axis.moves[0].sine_segments.max_deviation: 2 is out of range; give 0 to 1",
                 "axis.moves[1].sine_segments.period_s: this needs 61870287 steps/s, at most 10000000 are allowed; give more time or less distance",
+            ],
+        );
+    }
+
+    #[test]
+    fn every_problem_of_slices_and_shapes_is_told_with_its_path() {
+        check(
+            r#"{"moves":[{"cosine":{"distance":{"steps":0},"method":"sliced","slice_s":0}},{"cosine":{"slice_s":0}},{"cosine":{"distance":{"steps":100},"method":"sliced"}}]}"#,
+            &[
+                "axis.moves[0].cosine.distance: 0 steps is less than one step; give at least one step, or a dwell",
+                "axis.moves[0].cosine.slice_s: 0 s is out of range; give 1e-5 to 0.1 s",
+                "axis.moves[2].cosine.slice_s: at the top speed of 500 steps/s a slice of 0.001 s has 0.5 steps, so none would have one; give slices of at least 0.002 s, more distance or less time, or choose the exact method",
+            ],
+        );
+        check(
+            r#"{"moves":[{"cosine":{"distance":{"steps":100},"duration_s":0.1,"ramp_s":0.05,"method":"sliced","slice_s":0.1}},{"cosine":{"distance":{"steps":990000},"duration_s":99,"ramp_s":0,"method":"sliced"}},{"cosine":{"distance":{"steps":1e6},"duration_s":2,"method":"sliced"}}]}"#,
+            &[
+                "axis.moves[0].cosine.slice_s: slices of 0.1 s, of which there are 1, never have 100 steps together, not even at 10000000 steps/s: a slice has the rate of its start; give shorter slices, or choose the exact method",
+                "axis.moves[2].cosine.slice_s: 101000 slices are more than one run may have; at most 100000 are allowed: give longer slices or less time, or choose the exact method",
+            ],
+        );
+        check(
+            r#"{"moves":[{"ramps":{"ramp_s":0.3,"sigmoid_range":21}},{"ramps":{"shape":"bezier","sigmoid_range":0,"time_constants":0}},{"ramps":{"shape":"exponential","sigmoid_range":0,"time_constants":0}},{"ramps":{"distance":{"steps":1e9}}}]}"#,
+            &[
+                "axis.moves[0].ramps.ramp_s: two ramps of 0.3 s do not fit in 0.4 s; give a ramp of at most 0.2 s",
+                "axis.moves[0].ramps.sigmoid_range: 21 is out of range; give 0.1 to 20",
+                "axis.moves[2].ramps.time_constants: 0 is out of range; give 0.1 to 20",
+                "axis.moves[3].ramps.duration_s: this needs 5000000000 steps/s, at most 10000000 are allowed; give more time or less distance",
             ],
         );
     }

@@ -2,7 +2,9 @@
 
 use super::{
     cosine::Cosine,
+    ramps::Ramps,
     sine_segments::SineSegments,
+    sliced::Sliced,
     staircase::Staircase,
     steady::{Constant, Dwell},
     trapezoid::Trapezoid,
@@ -88,6 +90,10 @@ pub enum Profile {
     Staircase(Staircase),
     /// Cosine S-curve (B4, `exact`).
     Cosine(Cosine),
+    /// Cosine S-curve in slices (B4, `sliced`).
+    Sliced(Sliced),
+    /// Ramps of another shape (B4).
+    Ramps(Ramps),
     /// Sine by segments (B5).
     SineSegments(SineSegments),
     /// One rate (B6).
@@ -103,6 +109,8 @@ macro_rules! each {
             Profile::TrapezoidTable($curve) => $what,
             Profile::Staircase($curve) => $what,
             Profile::Cosine($curve) => $what,
+            Profile::Sliced($curve) => $what,
+            Profile::Ramps($curve) => $what,
             Profile::SineSegments($curve) => $what,
             Profile::Constant($curve) => $what,
             Profile::Dwell($curve) => $what,

@@ -192,6 +192,7 @@ mod tests {
                 distance: Distance::Steps(f64::from(1000 + 137 * i)),
                 duration_s: 0.4 + f64::from(i) / 64.0,
                 ramp_s: 0.1 + f64::from(i) / 100.0,
+                ..Cosine::default()
             })],
             ..Axis::default()
         };

@@ -314,6 +314,8 @@ choices! {
         Staircase(Staircase) = "staircase",
         /// Cosine S-curve with exact distance and exact time (B4).
         Cosine(Cosine) = "cosine",
+        /// Ramps of another shape with exact distance and exact time (B4).
+        Ramps(Ramps) = "ramps",
         /// Sine as segments of fixed rate (B5).
         SineSegments(SineSegments) = "sine_segments",
         /// One rate from end to end (B6).
@@ -396,7 +398,56 @@ settings! {
         pub duration_s: f64 = 0.4,
         /// Time of each ramp in s, at most half of the duration.
         pub ramp_s: f64 = 0.2,
+        /// Whose step times.
+        pub method: CosineMethod = CosineMethod::Exact,
+        /// Length of a slice in s, the document's TS, 0.00001 to 0.1; only `sliced` uses it.
+        pub slice_s: f64 = 0.001,
     }
+}
+
+/// Whose step times a cosine S-curve has (B4).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CosineMethod {
+    /// Every step where the ideal curve crosses its half-integer (B1).
+    #[default]
+    Exact,
+    /// The document's: slices of whole steps, compensated until their sum is right.
+    Sliced,
+}
+
+settings! {
+    /// Ramps of a shape (B4): so many steps in so much time, as the cosine S-curve has it.
+    pub struct Ramps {
+        /// How far; negative is left.
+        pub distance: Distance = Distance::Steps(3200.0),
+        /// Time of the whole move in s.
+        pub duration_s: f64 = 0.4,
+        /// Time of each ramp in s, at most half of the duration.
+        pub ramp_s: f64 = 0.2,
+        /// What the ramps look like.
+        pub shape: RampShape = RampShape::Sigmoid,
+        /// The x of 1/(1 + e^-x) goes from minus to plus this over a ramp, 0.1 to 20; only the sigmoid uses it.
+        pub sigmoid_range: f64 = 6.0,
+        /// Time constants of the exponential within a ramp, 0.1 to 20; only the exponential uses it.
+        pub time_constants: f64 = 4.0,
+    }
+}
+
+/// What a ramp looks like (B4; Song, Han, Lu 2021, table 1).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RampShape {
+    /// The middle of 1/(1 + e^-x), shifted and stretched so that it begins at rest and ends at top speed: one that
+    /// is only cut off never gets there.
+    #[default]
+    Sigmoid,
+    /// 3x^2 - 2x^3: a cubic Bezier curve with the control values 0, 0, 1, 1.
+    Bezier,
+    /// Uniform acceleration, a trapezoid.
+    Straight,
+    /// The approach of an exponential: steep at first, as a motor's torque falls with its rate.
+    Exponential,
 }
 
 settings! {

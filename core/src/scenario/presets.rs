@@ -43,6 +43,8 @@ macro_rules! presets {
 presets! {
     SONG => "song-2021-one-turn";
     SONG => "song-2021-plateau";
+    SONG => "song-2021-sliced";
+    SONG => "song-2021-ramps";
     SONOBE => "sonobe-2011-table";
     SONOBE => "sonobe-2011-segments";
     ZHANG => "zhang-2012-fixed-length";

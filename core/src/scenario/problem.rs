@@ -173,6 +173,24 @@ pub enum Cause {
         /// Greatest allowed.
         most: f64,
     },
+    /// Slices so short that at top speed none has a step (B4).
+    SliceTooShort {
+        /// Top speed in steps/s.
+        rate: f64,
+        /// A slice in s.
+        slice_s: f64,
+    },
+    /// Slices that cannot have all steps, however high the rate (B4).
+    SlicesTooFew {
+        /// How many slices.
+        slices: u64,
+        /// A slice in s.
+        slice_s: f64,
+        /// Steps of the move.
+        steps: u64,
+        /// The highest rate that was tried, in steps/s.
+        rate: f64,
+    },
     /// A distance that is less than a step.
     NoSteps {
         /// The distance in steps, before rounding.
@@ -472,6 +490,20 @@ impl fmt::Display for Cause {
                 f,
                 "ticks of {tick_cycles} cycles beside ticks of {first_cycles} on the first controller; paced packets need one length (slots x step period): change one of them, or choose the framed protocol"
             ),
+            Self::SliceTooShort { rate, slice_s } => write!(
+                f,
+                "at the top speed of {} steps/s a slice of {} s has {} steps, so none would have one; give slices of at least {} s, more distance or less time, or choose the exact method",
+                Short(*rate),
+                Short(*slice_s),
+                Short(rate * slice_s),
+                Short(1.0 / rate)
+            ),
+            Self::SlicesTooFew { slices, slice_s, steps, rate } => write!(
+                f,
+                "slices of {} s, of which there are {slices}, never have {steps} steps together, not even at {} steps/s: a slice has the rate of its start; give shorter slices, or choose the exact method",
+                Short(*slice_s),
+                Short(*rate)
+            ),
             Self::Conflict { detail } => f.write_str(detail),
             Self::TooMuch { given, most, of } => write!(
                 f,
@@ -482,6 +514,7 @@ impl fmt::Display for Cause {
                     "table rows" => "give a higher acceleration or a lower top speed",
                     "moves" => "give fewer moves",
                     "steps" => "give a shorter motion, or run it by ticks",
+                    "slices" => "give longer slices or less time, or choose the exact method",
                     "sine segments" => "give a greater largest deviation or fewer sines",
                     "bytes of all frames and their repetitions" => {
                         "give a shorter motion, longer ticks, more ticks a frame or fewer attempts"

@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use stepscope_core::{
     motion::{AxisPlan, plan_axis},
     scenario::{
-        Acceleration, Axis, Constant, Cosine, Distance, Dwell, Move, ShortMove, SineSegments, Speed,
-        Staircase, Trapezoid, TrapezoidMethod,
+        Acceleration, Axis, Constant, Cosine, CosineMethod, Distance, Dwell, Move, RampShape, Ramps,
+        ShortMove, SineSegments, Speed, Staircase, Trapezoid, TrapezoidMethod,
     },
 };
 
@@ -18,8 +18,23 @@ pub(crate) fn sane_move() -> impl Strategy<Value = Move> {
     let method = prop_oneof![Just(TrapezoidMethod::Table), Just(TrapezoidMethod::Exact)];
     prop_oneof![
         (steps.clone(), 0.02..2.0, 0.0..=0.5).prop_map(|(distance, duration_s, ramp)| {
-            Move::Cosine(Cosine { distance, duration_s, ramp_s: duration_s * ramp })
+            Move::Cosine(Cosine { distance, duration_s, ramp_s: duration_s * ramp, ..Cosine::default() })
         }),
+        // Ten slices at least, of three steps each.
+        (100..=3000_i32, any::<bool>(), 0.0..=0.5, 0.001..=0.003).prop_map(
+            |(steps, right, ramp, slice_s)| {
+                let duration_s = f64::from(steps) * 0.0003;
+                let distance = Distance::Steps(f64::from(if right { steps } else { -steps }));
+                let (ramp_s, method) = (duration_s * ramp, CosineMethod::Sliced);
+                Move::Cosine(Cosine { distance, duration_s, ramp_s, method, slice_s })
+            }
+        ),
+        (steps.clone(), 0.02..2.0, 0.0..=0.5, ramp_shape(), 0.1..=20.0).prop_map(
+            |(distance, duration_s, ramp, shape, parameter)| {
+                let (ramp_s, sigmoid_range, time_constants) = (duration_s * ramp, parameter, parameter);
+                Move::Ramps(Ramps { distance, duration_s, ramp_s, shape, sigmoid_range, time_constants })
+            }
+        ),
         (steps.clone(), 100.0..2000.0, 0.0..4000.0, 1.0..1e5, method).prop_map(
             |(distance, start, climb, acceleration, method)| {
                 Move::Trapezoid(Trapezoid {
@@ -53,6 +68,11 @@ pub(crate) fn sane_move() -> impl Strategy<Value = Move> {
         }),
         (0.0..1.0).prop_map(|duration_s| Move::Dwell(Dwell { duration_s })),
     ]
+}
+
+pub(crate) fn ramp_shape() -> impl Strategy<Value = RampShape> {
+    use RampShape::{Bezier, Exponential, Sigmoid, Straight};
+    prop::sample::select(vec![Sigmoid, Bezier, Straight, Exponential])
 }
 
 pub(crate) fn short_move(turns: bool) -> ShortMove {

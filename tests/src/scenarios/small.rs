@@ -130,7 +130,12 @@ fn axis(peripheral: &Scenario) -> impl Strategy<Value = Axis> + use<> {
         (steps.clone(), part.clone(), 0.0..=0.5_f64).prop_map(move |(steps, part, ramp)| {
             // The top speed is steps/(duration - ramp), at most rate.
             let duration_s = steps.abs() / (rate * part * (1.0 - ramp));
-            Move::Cosine(Cosine { distance: Distance::Steps(steps), duration_s, ramp_s: duration_s * ramp })
+            Move::Cosine(Cosine {
+                distance: Distance::Steps(steps),
+                duration_s,
+                ramp_s: duration_s * ramp,
+                ..Cosine::default()
+            })
         }),
         (steps.clone(), part.clone(), part, 1.0..50.0_f64, any::<bool>()).prop_map(
             move |(steps, start, top, climb, table)| {

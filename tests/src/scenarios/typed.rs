@@ -3,11 +3,11 @@
 use proptest::prelude::*;
 use stepscope_core::analysis::drivers::DRIVERS;
 use stepscope_core::scenario::{
-    Acceleration, Analysis, Axis, Bus, ChannelSegments, Constant, Controller, Cosine, DirLine, Direct,
-    Distance, Distribution, Driver, Dwell, DwellSegment, Glitch, Hex, Host, Line, LineScript, Mechanics,
-    Motion, MotionEngine, Move, Noise, Packets, Protocol, Pulses, Rotary, Scenario, Screw, ScriptedSend,
-    Segment, SegmentLists, ShortMove, SineSegments, Source, Speed, Staircase, StepSegment, TimingRules,
-    Trapezoid, TrapezoidMethod, Wheel,
+    Acceleration, Analysis, Axis, Bus, ChannelSegments, Constant, Controller, Cosine, CosineMethod, DirLine,
+    Direct, Distance, Distribution, Driver, Dwell, DwellSegment, Glitch, Hex, Host, Line, LineScript,
+    Mechanics, Motion, MotionEngine, Move, Noise, Packets, Protocol, Pulses, RampShape, Ramps, Rotary,
+    Scenario, Screw, ScriptedSend, Segment, SegmentLists, ShortMove, SineSegments, Source, Speed, Staircase,
+    StepSegment, TimingRules, Trapezoid, TrapezoidMethod, Wheel,
 };
 
 /// Any scenario of this version that JSON can carry: no number in it is infinite or none at all.
@@ -254,6 +254,11 @@ fn acceleration() -> impl Strategy<Value = Acceleration> + Clone {
     ]
 }
 
+fn ramp_shape() -> impl Strategy<Value = RampShape> {
+    use RampShape::{Bezier, Exponential, Sigmoid, Straight};
+    prop::sample::select(vec![Sigmoid, Bezier, Straight, Exponential])
+}
+
 fn one_move() -> impl Strategy<Value = Move> {
     prop_oneof![
         (
@@ -280,9 +285,17 @@ fn one_move() -> impl Strategy<Value = Move> {
                 let short_move = if turns { ShortMove::TurnRound } else { ShortMove::Document };
                 Move::Staircase(Staircase { distance, top_speed, level, short_move, start_speed, max_speed })
             }),
-        (distance(3200.0), number(0.4), number(0.2)).prop_map(|(distance, duration_s, ramp_s)| {
-            Move::Cosine(Cosine { distance, duration_s, ramp_s })
-        }),
+        (distance(3200.0), number(0.4), number(0.2), any::<bool>(), number(0.001)).prop_map(
+            |(distance, duration_s, ramp_s, sliced, slice_s)| {
+                let method = if sliced { CosineMethod::Sliced } else { CosineMethod::Exact };
+                Move::Cosine(Cosine { distance, duration_s, ramp_s, method, slice_s })
+            }
+        ),
+        (distance(3200.0), number(0.4), number(0.2), ramp_shape(), number(6.0), number(4.0)).prop_map(
+            |(distance, duration_s, ramp_s, shape, sigmoid_range, time_constants)| {
+                Move::Ramps(Ramps { distance, duration_s, ramp_s, shape, sigmoid_range, time_constants })
+            }
+        ),
         (distance(1000.0), number(0.5), small_or_any(4), number(0.006)).prop_map(
             |(amplitude, period_s, periods, max_deviation)| {
                 Move::SineSegments(SineSegments { amplitude, period_s, periods, max_deviation })

@@ -73,6 +73,23 @@ fn axe_finds_nothing_in_any_kind_of_experiment() -> Result<()> {
 }
 
 #[test]
+fn axe_finds_nothing_in_any_tab_of_the_study() -> Result<()> {
+    in_browser(|page| async move {
+        let mut wrong = Vec::new();
+        page.open("").await?;
+        page.choose("#preset", "sine-2022-d0006").await?;
+        page.ready().await?;
+        page.click("#study").await?;
+        for tab in ["compare", "measures", "tables", "sine", "torque"] {
+            page.click(&format!("#study-tab-{tab}")).await?;
+            page.until(&format!("[...document.querySelectorAll('#study-{tab} .study-job')].every((job) => job.hidden)")).await?;
+            look(&page, tab, &mut wrong).await?;
+        }
+        none(&wrong)
+    })
+}
+
+#[test]
 fn axe_finds_nothing_on_a_narrow_screen_at_any_tab() -> Result<()> {
     in_browser(|page| async move {
         let mut wrong = Vec::new();

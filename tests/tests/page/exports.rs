@@ -11,7 +11,7 @@ use stepscope_core::{
 use crate::{bench::in_browser, exchange::drop_file, native::Known, session::Session};
 
 /// Keeps every file that is saved, by its name, in place of a download.
-const KEEP: &str = "window.saved = {}; const make = URL.createObjectURL;
+pub(crate) const KEEP: &str = "window.saved = {}; const make = URL.createObjectURL;
     URL.createObjectURL = (blob) => { window.last = blob; return make.call(URL, blob); };
     HTMLAnchorElement.prototype.click = function () { window.saved[this.download] = window.last; };";
 

@@ -55,5 +55,6 @@ mod reflow;
 mod screens;
 mod session;
 mod state;
+mod study;
 mod time_axis;
 mod timing;

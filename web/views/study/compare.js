@@ -1,12 +1,156 @@
-/** The tab Compare of the study: all S-curves side by side. What a tab is, says study.js. */
+/**
+ * The tab Compare of the study: the looked-at move's steps in its time, with ramps of every shape side by side: their curves,
+ * and what each costs. What a tab is, says study.js.
+ */
+import { button, element, fill, say } from "../../dom.js";
+import { unlessDropped } from "../../engine/engine.js";
+import { count, plain, short, si } from "../../state/number.js";
+import { color, draw, watch } from "../../time/plot.js";
+import { field, subject, table } from "./parts.js";
+
+/** @typedef {import("../../state/types.js").State} State */
+/**
+ * @typedef {{move: {[kind: string]: any}, why: string | null, speed: number, jump: number, acceleration: number, jerk: number, acceleration_jump: number,
+ *   time_error_s: number, last_step_s: number, at_speed?: Float64Array, at_acceleration?: Float64Array}} Told
+ */
+
+/** In the order of the core's rows: name, colour and dash, which tells them apart where colour does not. @type {[string, string, number][]} */
+const LOOKS = [
+  ["Cosine, exact", "--made", 0], ["Cosine, in slices", "--ideal", 2], ["Sigmoid", "--enable", 4],
+  ["Bezier", "--wire", 7], ["Straight", "--ink", 10], ["Exponential", "--reply", 15],
+];
+const POINTS = 401;
+const GUTTER = 68;
+
+/** Which of the rows a move of a scenario is. @param {{[kind: string]: any}} move */
+function kindOf({ cosine, ramps }) {
+  return cosine ? `cosine ${cosine.method}` : ramps ? `ramps ${ramps.shape}` : "";
+}
 
 /** @param {import("./study.js").StudyPage} page @returns {import("./study.js").StudyTab} */
-export function createCompare({ panel }) {
-  panel.replaceChildren();
+export function createCompare({ engine, dispatch, now, panel }) {
+  const about = element("span", { class: "study-note" });
+  const moves = element("select");
+  const moveLabel = element("label", {}, "move ", moves);
+  const ramp = field("Ramp", "s", 0.2, { least: 0, most: 1e6 }, () => { own = false; refresh(now()); });
+  const bar = element("div", { class: "study-bar" }, moveLabel, ramp.root, about);
+  const speeds = element("canvas", { role: "img", "aria-label": "Speed of every shape over time" });
+  const list = table("Shapes", ["shape", "#peak rate", "#peak acceleration", "#peak jerk", "#time error", "#last step", ""]);
+  const small = LOOKS.map(([name]) => ({ name, canvas: element("canvas", { role: "img", "aria-label": `Acceleration, ${name}` }), key: element("canvas", { class: "study-key", "aria-hidden": "true" }) }));
+  const multiples = element("div", { class: "study-multiples" }, ...small.map(({ name, canvas, key }) => element("div", {}, element("p", { class: "study-caption" }, key, ` ${name}: acceleration`), canvas)));
+  const all = element("div", { class: "study-compare" }, element("p", { class: "study-caption" }, "Speed, steps/s, over time"), element("div", { class: "study-speeds" }, speeds), list.root, multiples);
+  fill(panel, bar, all);
+  moves.addEventListener("change", () => { own = true; refresh(now()); });
+  watch(speeds, paint);
+  /** @type {Told[]} */
+  let rows = [];
+  let duration = 0;
+  let key = "";
+  /** Whether the ramp follows the move's own. */
+  let own = true;
+  let move = 0;
+  let shown = "";
 
-  /** @param {import("../../state/types.js").State} state @param {import("../../state/types.js").State | undefined} before */
+  /** @param {State} state */
+  async function refresh(state) {
+    const of = subject(state);
+    panel.classList.toggle("stale", of === "");
+    if (of === "") return;
+    all.hidden = typeof of === "string";
+    if (typeof of === "string") return say(about, of);
+    move = Math.min(Number(moves.value || 0), of.moves.length - 1);
+    if (moves.options.length !== of.moves.length) fill(moves, ...of.moves.map((_, at) => element("option", { value: String(at) }, String(at + 1))));
+    moves.value = String(move);
+    moveLabel.hidden = of.moves.length < 2;
+    const asked = of.moves[move];
+    const { duration_s, ramp_s, slice_s, sigmoid_range, time_constants } = asked.cosine ?? asked.ramps ?? {};
+    const derived = state.derived?.controllers[of.controller]?.axes[of.axis]?.moves[move];
+    const steps = derived?.steps ?? 0;
+    duration = duration_s ?? derived?.duration_s ?? 0;
+    // Another move, or an edit of this one, brings its own ramp back.
+    const next = JSON.stringify([of.path, move, asked]);
+    if (next !== shown) own = true;
+    shown = next;
+    if (own) ramp.set(ramp_s ?? Number(short(duration / 4, 4)));
+    all.hidden = steps === 0;
+    if (steps === 0) return say(about, `Move ${move + 1} of axis ${of.axis} ends where it begins: choose one that goes somewhere to compare shapes for it.`);
+    say(about, `Axis ${of.axis}, move ${move + 1}: ${count(steps)} steps in ${si(duration, "s")}${ramp_s === undefined ? "; it has no ramp of its own, so give one" : ""}.`);
+    const question = [steps, duration, ramp.value(), slice_s, sigmoid_range, time_constants, POINTS];
+    const answer = await engine.latest("compare", "compare_ramps", ...question).catch(unlessDropped);
+    if (!answer) return;
+    rows = answer;
+    key = kindOf(asked);
+    show(of.path, asked);
+    paint();
+  }
+
+  /** @param {string} path @param {{[kind: string]: any}} asked */
+  function show(path, asked) {
+    const { distance } = Object.values(asked)[0];
+    list.show(rows.map(({ move: made, why, ...cost }, at) => {
+      const [kind, values] = Object.entries(made)[0];
+      const press = kindOf(made) === key && (values.ramp_s === asked[kind]?.ramp_s) ? "in use"
+        : button("Use", `Use: ${LOOKS[at][0]}`, () => dispatch({ type: "edit", path: `${path}.moves[${move}]`, value: { [kind]: { ...values, distance: distance ?? values.distance } } }));
+      const name = element("span", { class: "study-name" }, element("canvas", { class: "study-key", "aria-hidden": "true" }), LOOKS[at][0]);
+      if (why !== null) return [name, why, "", "", "", "", ""];
+      const jump = (/** @type {number} */ by, /** @type {string} */ unit) => `unbounded, jumps by ${plain(by, unit)}`;
+      return [name, plain(cost.speed, "steps/s"),
+        cost.jump > 0 ? jump(cost.jump, "steps/s") : plain(cost.acceleration, "steps/s²"),
+        cost.jump > 0 ? "unbounded" : cost.acceleration_jump > 0 ? jump(cost.acceleration_jump, "steps/s²") : plain(cost.jerk, "steps/s³"),
+        cost.time_error_s === 0 ? "none" : `${si(cost.time_error_s, "s")} (${short((100 * cost.time_error_s) / duration, 3)} %)`,
+        si(cost.last_step_s, "s", 5), press];
+    }));
+    rows.forEach(({ why }, at) => {
+      list.body.children[at].classList.toggle("chosen", kindOf(rows[at].move) === key);
+      if (why === null) return;
+      const row = /** @type {HTMLTableRowElement} */ (list.body.children[at]);
+      while (row.cells.length > 2) row.deleteCell(-1);
+      row.cells[1].colSpan = 6;
+      row.cells[1].className = "why";
+    });
+  }
+
+  function paint() {
+    if (rows.length === 0) return;
+    const x = Float64Array.from({ length: POINTS }, (_, at) => (duration * at) / (POINTS - 1));
+    const axis = { min: 0, max: duration, unit: "s", prefix: true, label_px: 20 };
+    const of = (/** @type {"at_speed" | "at_acceleration"} */ what, /** @type {number[]} */ which) => which.flatMap((at) => {
+      const y = rows[at][what];
+      return y ? [{ color: color(LOOKS[at][1]), opacity: 1, width: 1.8, dash: LOOKS[at][2], x, shape: { line: { y } } }] : [];
+    });
+    const every = rows.map((_, at) => at);
+    const range = (/** @type {"at_speed" | "at_acceleration"} */ what) => {
+      const values = rows.flatMap((row) => [...(row[what] ?? [])]);
+      const [min, max] = [Math.min(0, ...values), Math.max(0, ...values)];
+      return { min: min * 1.05, max: max * 1.05 || 1, unit: "", prefix: true, label_px: GUTTER };
+    };
+    draw(speeds, { x: axis, y: range("at_speed"), series: of("at_speed", every) });
+    const accelerations = { ...range("at_acceleration"), label_px: 44 };
+    small.forEach(({ canvas, key }, at) => {
+      /** @type {HTMLElement} */ (canvas.parentElement).hidden = !rows[at].at_acceleration || rows[at].jump > 0;
+      draw(canvas, { x: axis, y: accelerations, series: of("at_acceleration", [at]).map((line) => ({ ...line, dash: 0 })) });
+      drawKey(key, at);
+    });
+    list.body.querySelectorAll("canvas").forEach((canvas, at) => drawKey(canvas, at));
+  }
+  /** A piece of a curve's line. @param {HTMLCanvasElement} canvas @param {number} at */
+  function drawKey(canvas, at) {
+    const [, ink, dash] = LOOKS[at];
+    [canvas.width, canvas.height] = [88, 16];
+    const context = canvas.getContext("2d");
+    if (!context) return;
+    context.strokeStyle = color(ink);
+    context.lineWidth = 4;
+    context.setLineDash([2 * dash, 2 * dash]);
+    context.moveTo(0, 8);
+    context.lineTo(88, 8);
+    context.stroke();
+  }
+
+  /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    return before?.result === state.result ? undefined : null;
+    if (before?.judgement !== state.judgement || before?.revision !== state.revision || before?.axis !== state.axis || before?.result !== state.result) return refresh(state);
+    return undefined;
   }
   return { render };
 }

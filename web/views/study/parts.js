@@ -33,7 +33,14 @@ export function field(label, unit, start, { least, most, integer = false }, chan
     value = read.value;
     change();
   });
-  return { root, value: () => value };
+  /** @param {number} next */
+  const set = (next) => {
+    value = next;
+    input.value = String(next);
+    say(error, "");
+    input.removeAttribute("aria-invalid");
+  };
+  return { root, value: () => value, set };
 }
 
 /** A choice. @param {string} label @param {{[value: string]: string}} choices @param {() => void} change */

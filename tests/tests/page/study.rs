@@ -1,0 +1,293 @@
+//! The study: its tabs, its ways in and out, and its numbers against the core's.
+
+use anyhow::{Context, Result, anyhow, ensure};
+use serde_json::{Value, json};
+use stepscope_core::{
+    analysis::{
+        sine_optimum::{Freedom, optimum},
+        sine_polyline::{Distinct, Row, best, sweep},
+    },
+    quantise::{
+        EntryFormat, Form, Stored, Tolerance,
+        source_code::{Language, Source, headline},
+        stored,
+    },
+    segment::PulseTimes,
+    units::Cycles,
+};
+
+use crate::{bench::in_browser, exports::KEEP, native::Known, session::Session};
+
+/// A sine whose d1 can be changed, with a title.
+const SINE: &str = r#"{"title":"A sine","source":{"motion":{"axes":[{"moves":[
+    {"sine_segments":{"amplitude":{"steps":800},"period_s":0.5,"periods":2,"max_deviation":0.0054}}]}]}}}"#;
+const D1: &str = "source.motion.axes[0].moves[0].sine_segments.max_deviation";
+/// F2, as WebDriver types it.
+const F2: char = '\u{e032}';
+const ESCAPE: char = '\u{e00c}';
+const ENTER: char = '\u{e007}';
+const RIGHT: char = '\u{e014}';
+const LEFT: char = '\u{e012}';
+
+/// Texts of a row's cells, digits without their groups, by the text that its head begins with.
+async fn cells(page: &Session, table: &str, head: &str) -> Result<Vec<String>> {
+    let script = "const row = [...document.querySelectorAll(`table[aria-label='${arguments[0]}'] tbody tr`)].find((row) => row.innerText.replace(/\\s+/g, ' ').trim().startsWith(arguments[1]));
+        return row ? [...row.cells].map((cell) => cell.textContent.replace(/\\u202f/g, '')) : [];";
+    page.js(script, vec![json!(table), json!(head)]).await
+}
+
+/// A number with its unit, in the unit without prefix.
+fn value(text: &str) -> Result<f64> {
+    let (number, unit) = text.split_once(' ').unwrap_or((text, ""));
+    let scale = match unit {
+        "" | "s" => 1.0,
+        "ms" => 1e-3,
+        "µs" => 1e-6,
+        "ns" => 1e-9,
+        "%" => 0.01,
+        other => return Err(anyhow!("{other} is no unit of the study")),
+    };
+    Ok(number.parse::<f64>().with_context(|| text.to_owned())? * scale)
+}
+
+/// Holds a text of four digits against a number.
+fn close(text: &str, wanted: f64) -> Result<()> {
+    let found = value(text)?;
+    ensure!((found - wanted).abs() <= 6e-4 * wanted.abs(), "{text} is not {wanted}");
+    Ok(())
+}
+
+async fn fill(page: &Session, label: &str, text: &str) -> Result<()> {
+    let id: String = page
+        .js(
+            "return [...document.querySelectorAll('.study-field label')].find((label) => label.textContent.startsWith(arguments[0])).htmlFor;",
+            vec![json!(label)],
+        )
+        .await?;
+    page.eval::<Value>(&format!("document.getElementById('{id}').select() ?? null")).await?;
+    page.press(&format!("#{id}"), &format!("{text}{ENTER}")).await
+}
+
+#[test]
+fn the_study_opens_and_closes_by_button_key_and_link() -> Result<()> {
+    in_browser(|page| async move {
+        let known = Known::of("{}")?;
+        page.open("").await?;
+        ensure!(!page.visible("#view-study").await?, "the views come first");
+        page.click("#study").await?;
+        page.until("document.activeElement.id === 'study-tab-compare'").await?;
+        ensure!(page.visible("#view-study").await? && !page.visible("#view-motion").await?);
+        ensure!(page.visible("#fields").await?, "the form stays beside it");
+        page.press("#study-tab-compare", &LEFT.to_string()).await?;
+        page.until_equal("document.activeElement.id", &json!("study-tab-torque")).await?;
+        page.press("#study-tab-torque", &format!("{LEFT}")).await?;
+        page.until_equal("document.activeElement.id", &json!("study-tab-sine")).await?;
+        ensure!(page.visible("#study-sine").await? && !page.visible("#study-torque").await?);
+        page.until_equal("location.hash", &json!(format!("#{}&v=tstudy.ysine", known.link))).await?;
+        page.press("#study-tab-sine", &ESCAPE.to_string()).await?;
+        page.until("document.activeElement.id === 'study'").await?;
+        ensure!(!page.visible("#view-study").await? && page.visible("#view-motion").await?);
+        page.canvas("chart-position").await?.has_curve("--ideal")?;
+        page.press("#charts", &F2.to_string()).await?;
+        page.until("document.activeElement.id === 'study-tab-sine'").await?;
+        page.click("#study-close").await?;
+        ensure!(page.visible("#view-motion").await?);
+
+        page.open(&format!("#{}&v=tstudy.ytables", known.link)).await?;
+        ensure!(page.visible("#study-tables").await? && !page.visible("#view-motion").await?);
+        page.open(&format!("#{}&v=tstudy.ynothing", known.link)).await?;
+        ensure!(page.visible("#study-compare").await?, "an unknown tab is ignored");
+        Ok(())
+    })
+}
+
+#[test]
+fn the_sweep_is_the_cores_and_a_d1_is_taken_and_given_back() -> Result<()> {
+    in_browser(|page| async move {
+        let known = Known::of(SINE)?;
+        page.open(&format!("#{}&v=tstudy.ysine", known.link)).await?;
+        for (label, text) in [("d1 from", "0.004"), ("to", "0.012"), ("points", "33"), ("harmonics to", "99")]
+        {
+            fill(&page, label, text).await?;
+        }
+        page.until("document.getElementById('sine-charts').ariaValueMax === '32'").await?;
+        let rows: Vec<Row> = sweep(0.004, 0.012, 33, 99).collect();
+        page.press("#sine-charts", &format!("{RIGHT}{RIGHT}{RIGHT}{LEFT}")).await?;
+        let pointed = cells(&page, "What a d1 gives", "pointed at").await?;
+        let same = |cells: &[String], row: &Row| -> Result<()> {
+            ensure!(cells.len() > 6, "{cells:?}");
+            ensure!(cells[2] == row.segments.to_string(), "{cells:?} are not {row:?}");
+            let Row { d1, distortion, euclidean, .. } = row;
+            let wanted = [*d1, distortion.position, distortion.speed, distortion.acceleration, *euclidean];
+            [1, 3, 4, 5, 6].into_iter().zip(wanted).try_for_each(|(at, wanted)| close(&cells[at], wanted))
+        };
+        same(&pointed, &rows[1])?;
+        same(&cells(&page, "What a d1 gives", "the scenario").await?, &Row::of(0.0054, 99))?;
+        // All polylines of the range, not those of the sweep alone.
+        page.until("document.querySelectorAll('table[aria-label=\"Best d1 of each number of segments\"] tbody tr').length > 1").await?;
+        let six =
+            best(Distinct::new(0.004, 0.012, 99).filter(|row| row.segments == 6)).context("none of six")?;
+        let shown = cells(&page, "Best d1 of each number of segments", "6").await?;
+        ensure!(shown.len() > 2, "{shown:?}");
+        close(&shown[1], six.d1)?;
+        close(&shown[2], six.distortion.position)?;
+        let vertices = page.text("#sine-vertices").await?;
+        for freedom in [Freedom::OnCurve, Freedom::Free] {
+            let percent = 100.0 * optimum(6, freedom, 99).context("none of six")?.distortion.position;
+            let start = percent.to_string()[..5].to_owned();
+            ensure!(vertices.contains(&start), "{start} is not in: {vertices}");
+        }
+
+        page.press("#sine-charts", &ENTER.to_string()).await?;
+        page.until(&format!("document.querySelector('[data-path=\"{D1}\"]').value === '0.00425'")).await?;
+        page.ready().await?;
+        page.until_equal(
+            "document.getElementById('digest').textContent",
+            &json!(Known::of(&SINE.replace("0.0054", "0.00425"))?.digest),
+        )
+        .await?;
+        same(&cells(&page, "What a d1 gives", "the scenario").await?, &rows[1])?;
+        page.click("#undo").await?;
+        page.until_digest(&known.digest).await?;
+        // By the pointer: the last one is at the right end of the plot.
+        page.js::<Value>(
+            "const box = document.getElementById('sine-charts').getBoundingClientRect();
+             document.getElementById('sine-charts').dispatchEvent(new MouseEvent('click', { clientX: box.right - 27, clientY: box.top + 60 })); return null;",
+            vec![],
+        )
+        .await?;
+        page.until(&format!("document.querySelector('[data-path=\"{D1}\"]').value === '0.012'")).await
+    })
+}
+
+#[test]
+fn without_a_sine_the_axis_is_offered_one() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("#v=tstudy.ysine").await?;
+        page.click("#study").await?;
+        page.click("#study-tab-sine").await?;
+        page.until("document.getElementById('sine-charts').ariaValueMax === '499'").await?;
+        page.press("#sine-charts", &format!("{RIGHT}{ENTER}")).await?;
+        page.until("document.querySelector('#study-sine .study-note button')?.textContent === 'Add one with d1 = 0.002'").await?;
+        page.click("#study-sine .study-note button").await?;
+        page.until("document.querySelector('[data-path=\"source.motion.axes[0].moves[1].sine_segments.max_deviation\"]')?.value === '0.002'").await?;
+        page.ready().await
+    })
+}
+
+#[test]
+fn a_long_sweep_says_how_far_it_is_and_is_left_off() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        page.click("#study").await?;
+        page.click("#study-tab-sine").await?;
+        fill(&page, "harmonics to", "9999").await?;
+        fill(&page, "points", "20000").await?;
+        page.until(
+            "/^[1-9]\\d* of 20000 points/.test(document.querySelector('#study-sine .study-job').innerText)",
+        )
+        .await?;
+        page.click("#study-sine .study-job button").await?;
+        let left: String = page.text("#study-sine .study-job").await?;
+        ensure!(left.starts_with("Left off: "), "{left}");
+        // Nothing goes on behind it, and what comes next is whole.
+        fill(&page, "harmonics to", "9").await?;
+        fill(&page, "points", "12").await?;
+        page.until("document.getElementById('sine-charts').ariaValueMax === '11'").await?;
+        page.until("document.querySelector('#study-sine .study-job').hidden").await
+    })
+}
+
+/// A table natively, as the page asks for it.
+fn native(known: &Known, form: &str, format: EntryFormat, error_us: u64) -> Result<Stored> {
+    let config = known.experiment.config();
+    let form = match form {
+        "exact" => Form::Exact,
+        "document" => Form::Document,
+        _ => Form::Compressed(Tolerance::of(Cycles(error_us * u64::from(config.clock_hz()) / 1_000_000))),
+    };
+    let plan = known.experiment.plans().first().context("no axis")?;
+    stored(plan, form, format, PulseTimes::from(config), config.clock_hz())
+        .map_err(|cause| anyhow!("{cause}"))
+}
+
+async fn tables_are_the_cores(page: &Session, known: &Known, error_us: u64) -> Result<()> {
+    for (name, form) in
+        [("Exact list", "exact"), ("Document's table", "document"), ("Compressed", "compressed")]
+    {
+        for format in EntryFormat::ALL {
+            let shown = cells(page, "Stored forms", &format!("{name} {}", format.name)).await?;
+            let Ok(table) = native(known, form, format, error_us) else {
+                let why = cells(page, "Stored forms", name).await?;
+                ensure!(why.len() == 3 && why[2].len() > 20, "{why:?}");
+                continue;
+            };
+            ensure!(shown.len() == 8, "{name} {}: {shown:?}", format.name);
+            let (entries, bytes) = (table.entries.len(), table.bytes());
+            ensure!(shown[2] == entries.to_string(), "{shown:?}");
+            let own = table.document_bytes.filter(|_| form == "document");
+            ensure!(shown[3] == own.map_or(bytes.to_string(), |own| format!("{bytes} ({own})")), "{shown:?}");
+            close(&shown[4], table.error.steps as f64 / entries as f64)?;
+            close(&shown[5], known.seconds(table.error.greatest))?;
+            close(&shown[6], table.error.rms() / f64::from(known.experiment.config().clock_hz()))?;
+            ensure!(shown[7] == format!("{}, exact", table.error.steps), "{shown:?}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn the_tables_numbers_and_files_are_the_cores() -> Result<()> {
+    in_browser(|page| async move {
+        let known = Known::of(SINE)?;
+        page.before_scripts(KEEP).await?;
+        page.open(&format!("#{}&v=tstudy.ytables", known.link)).await?;
+        let made = "document.querySelectorAll('table[aria-label=\"Stored forms\"] tbody tr').length > 5 && document.querySelector('#study-tables .study-job').hidden";
+        page.until(made).await?;
+        tables_are_the_cores(&page, &known, 25).await?;
+        let coarse = native(&known, "compressed", EntryFormat::Q16, 100)?.entries.len();
+        fill(&page, "Largest error", "100 us").await?;
+        page.until(&format!(
+            "[...document.querySelectorAll('#study-tables tr')].some((row) => row.innerText.includes('Compressed') && row.cells[2].textContent === '{coarse}')"
+        ))
+        .await?;
+        tables_are_the_cores(&page, &known, 100).await?;
+
+        page.click("input[value='document-q8']").await?;
+        let table = native(&known, "document", EntryFormat::Q8, 100)?;
+        let title = headline("A sine", 0, "document");
+        let source = Source {
+            name: "axis_0",
+            title: &title,
+            clock_hz: known.experiment.config().clock_hz(),
+            table: &table,
+        };
+        for (language, id, ending) in [
+            (Language::C, "c", ".c"),
+            (Language::Avr, "avr", "-avr.c"),
+            (Language::Rust, "rust", ".rs"),
+            (Language::Csv, "csv", ".csv"),
+        ] {
+            let mut text = String::new();
+            source.write(language, &mut text)?;
+            let name = format!("a-sine-axis-0-document-q8{ending}");
+            page.click(&format!("#study-tables [data-language={id}]")).await?;
+            page.until(&format!("window.saved['{name}']")).await?;
+            let found: String =
+                page.js("return window.saved[arguments[0]].text();", vec![json!(name)]).await?;
+            ensure!(found == text, "{name} has other bytes");
+        }
+        // The export panel has the chosen table, too.
+        page.click("#export").await?;
+        page.until("document.querySelector('[data-file=\"a-sine-axis-0-document-q8-avr.c\"]')").await?;
+
+        // A motion without a table of its own says why; a source without axes has nothing to keep.
+        let cosine = Known::of("{}")?;
+        page.open(&format!("#{}&v=tstudy.ytables", cosine.link)).await?;
+        page.until(made).await?;
+        tables_are_the_cores(&page, &cosine, 25).await?;
+        page.choose("#preset", "raw-noisy-line").await?;
+        page.ready().await?;
+        page.until("document.querySelector('#study-tables .study-note').textContent.length > 0").await
+    })
+}
