@@ -82,7 +82,10 @@ fn axe_finds_nothing_in_any_tab_of_the_study() -> Result<()> {
         page.click("#study").await?;
         for tab in ["compare", "measures", "tables", "sine", "torque"] {
             page.click(&format!("#study-tab-{tab}")).await?;
-            page.until(&format!("[...document.querySelectorAll('#study-{tab} .study-job')].every((job) => job.hidden)")).await?;
+            page.until(&format!(
+                "[...document.querySelectorAll('#study-{tab} .study-job')].every((job) => job.hidden)"
+            ))
+            .await?;
             look(&page, tab, &mut wrong).await?;
         }
         none(&wrong)
