@@ -20,8 +20,8 @@ import { table } from "./parts.js";
  *   sine: {segments: number, euclidean: number, quarter: Comparison} | null}} Measures
  */
 
-/** @param {number | null} value @param {string} unit */
-const digits = (value, unit) => (value === null ? "–" : `${short(value, 4)} ${unit}`.trim());
+/** @param {number | null} value */
+const digits = (value) => (value === null ? "–" : short(value, 4));
 /** @param {number | null} value */
 const seconds = (value) => (value === null ? "–" : si(value, "s"));
 /** @param {number | null} value */
@@ -29,24 +29,24 @@ const percent = (value) => (value === null ? "–" : `${short(100 * value, 5)} %
 
 /** The sine document's list. @type {[string, (of: Comparison) => string, string][]} */
 const COMPARED = [
-  ["largest deviation", (of) => digits(of.largest_steps, "steps"), "How far the second is ahead of the first where they are farthest apart."],
-  ["at", (of) => time(of.largest_at_s), "When that first is so."],
-  ["r.m.s. deviation", (of) => digits(of.rms_steps, "steps"), "Root of the mean square over the time; 1/√12 = 0.2887 for whole steps at an even rate."],
-  ["area between", (of) => digits(of.area_steps_s, "steps·s"), "Integral of the deviation's magnitude."],
-  ["difference of areas", (of) => digits(of.area_difference_steps_s, "steps·s"), "Integral of the deviation with its sign: what is ahead and what is behind cancel."],
-  ["sum of squares", (of) => digits(of.sum_of_squares_steps2, "steps²"), "Of the deviations at the points."],
-  ["Euclidean distance", (of) => digits(of.euclidean_steps, "steps"), "Root of that sum, the sine document's Ev; it grows with the root of the number of points."],
-  ["correlation", (of) => (of.correlation === null ? "–" : short(of.correlation, 10)), "1 where one follows the other in all it does."],
-  ["1 − correlation", (of) => digits(of.uncorrelated, ""), "The same with digits, where the correlation is all nines."],
+  ["largest deviation, steps", (of) => digits(of.largest_steps), "How far the second is ahead of the first where they are farthest apart."],
+  ["at", (of) => si(of.largest_at_s, "s", 5), "When that first is so."],
+  ["r.m.s. deviation, steps", (of) => digits(of.rms_steps), "Root of the mean square over the time; 1/√12 = 0.2887 for whole steps at an even rate."],
+  ["area between, steps·s", (of) => digits(of.area_steps_s), "Integral of the deviation's magnitude."],
+  ["difference of areas, steps·s", (of) => digits(of.area_difference_steps_s), "Integral of the deviation with its sign: what is ahead and what is behind cancel."],
+  ["sum of squares, steps²", (of) => digits(of.sum_of_squares_steps2), "Of the deviations at the points."],
+  ["Euclidean distance, steps", (of) => digits(of.euclidean_steps), "Root of that sum, the sine document's Ev; it grows with the root of the number of points."],
+  ["correlation", (of) => (of.correlation === null ? "–" : short(of.correlation, 7)), "1 where one follows the other in all it does."],
+  ["1 − correlation", (of) => digits(of.uncorrelated), "The same with digits, where the correlation is all nines."],
 ];
 /** @type {[string, (of: Errors) => string, string][]} */
 const ERRORS = [
   ["largest time error", (of) => seconds(of.largest_s), "Of a pulse; late is above 0. Whole cycles are off by half a cycle at most."],
-  ["at", (of) => time(of.largest_at_s), "When that pulse comes."],
+  ["at", (of) => si(of.largest_at_s, "s", 5), "When that pulse comes."],
   ["mean time error", (of) => seconds(of.mean_s), "A delay of all pulses alike."],
   ["r.m.s. time error", (of) => seconds(of.rms_s), "Root of the mean square of the pulses' time errors."],
-  ["largest position error", (of) => digits(of.largest_steps, "steps"), "How far the ideal motion goes within a pulse's time error."],
-  ["r.m.s. position error", (of) => digits(of.rms_steps, "steps"), "Root of the mean square of those."],
+  ["largest position error, steps", (of) => digits(of.largest_steps), "How far the ideal motion goes within a pulse's time error."],
+  ["r.m.s. position error, steps", (of) => digits(of.rms_steps), "Root of the mean square of those."],
 ];
 /** @type {[string, string, string, string][]} Name, key, unit, meaning. */
 const PEAKS = [
