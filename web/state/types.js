@@ -51,7 +51,7 @@
  * @typedef {{driver: string | null, total: number, rules: RuleResult[], violations: Violation[]}} Timing
  * @typedef {{fundamental_hz: number, periods: number, order: number, periodic: boolean,
  *   position: Float64Array, speed: Float64Array, acceleration: Float64Array,
- *   thd_position: number | null, thd_speed: number | null, thd_acceleration: number | null}} Spectrum
+ *   thd_position: number | null, thd_speed: number | null, thd_acceleration: number | null, thd_acceleration_felt: number | null}} Spectrum
  * @typedef {{axis: number, ideal: Spectrum | null, pulses: Spectrum | null, note: string}} Spectra
  *
  * @typedef {{at_a: number[], at_b: number[], mean: number[], rms: number[]}} Readings  Position, speed, acceleration; of pulses the first two.

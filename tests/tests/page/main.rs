@@ -45,6 +45,7 @@ mod keyboard;
 mod links;
 mod loading;
 mod logic;
+mod measures;
 mod native;
 mod offline;
 mod packets;
