@@ -18,6 +18,7 @@ mod spectrum;
 mod summary;
 mod tables;
 mod timing;
+mod torque;
 mod witness;
 
 pub use judge::{check, default_scenario, presets, version};
@@ -26,3 +27,4 @@ pub use simulation::Simulation;
 pub use sine::{sine_best, sine_rows, sine_vertices};
 pub use tables::{step_source, step_table};
 pub use timing::drivers;
+pub use torque::torque;
