@@ -104,8 +104,7 @@ export function showDerived(state, form) {
   }
   for (const note of /** @type {NodeListOf<HTMLElement>} */ (form.querySelectorAll("[data-note]"))) {
     const { text, warning } = moveNote(note.dataset.note ?? "", state);
-    say(note, text + warning);
-    note.classList.toggle("short", warning !== "");
+    if (note.textContent !== text + warning) fill(note, text, ...(warning ? [element("strong", { class: "short" }, warning)] : []));
   }
 }
 

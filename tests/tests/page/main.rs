@@ -57,3 +57,4 @@ mod session;
 mod state;
 mod time_axis;
 mod timing;
+mod torque;

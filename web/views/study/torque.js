@@ -32,12 +32,13 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
   const about = element("p", { class: "study-note", "aria-live": "polite" });
   const verdict = element("p", { id: "torque-verdict", "aria-live": "polite" });
   const canvas = element("canvas", { role: "img", "aria-label": "Torque against rate" });
-  const key = (/** @type {string} */ kind, /** @type {string} */ text) => element("span", {}, element("span", { class: `swatch ${kind}`, "aria-hidden": "true" }), text);
-  const caption = element("div", { class: "caption" }, element("span", {}, "Torque in mN·m against rate: "), key("line", "available"), key("stems", "needed, driving or braking"));
+  const key = (/** @type {string} */ kind, /** @type {string} */ text) => element("span", {}, element("span", { class: `key ${kind}` }), ` ${text} `);
+  const stated = element("span", {}, "; dashed: the stated working rate");
+  const caption = element("div", { class: "caption" }, element("span", {}, "Torque in mN·m against rate: "), key("ideal", "available"), key("made", "needed, driving or braking"), stated);
   const chart = element("div", { class: "chart torque-chart" }, caption, canvas);
-  const facts = table("The motor", ["", "#"]);
+  const facts = table("The motor", ["of the motor", "#value"]);
   const lacks = table("Too little torque", ["from", "#to", "#short of", "#at", "#rate", "~#needed", "~#available", "~#periods"]);
-  const ramps = table("Ramps of cosine moves", ["move", "#steps", "#in", "#ramps with torque enough", "#longest under the greatest rate", "~#room"]);
+  const ramps = table("Ramps of cosine moves", ["move", "#enough torque", "#longest by rate", "#room"]);
   const ramped = element("h3", {}, "Ramps of cosine moves");
   const note = element("p", { class: "study-note" });
   const body = element("div", { class: "study-split" }, element("div", { class: "study-column" }, chart, verdict, lacks.root), element("div", { class: "study-column study-side" }, facts.root, ramped, ramps.root, note));
@@ -50,13 +51,15 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
 
   function paint() {
     if (!made || body.hidden) return;
-    const { rate, available, needed } = made;
+    const { rate, available, needed, told: { working_rate: working } } = made;
+    stated.hidden = working === null;
     const most = Math.max(...available, ...needed.filter((torque) => !Number.isNaN(torque)));
     draw(canvas, {
       x: { min: 0, max: rate[rate.length - 1], unit: "steps/s", prefix: true, label_px: 20 },
       y: { min: 0, max: 1.08 * most, unit: "", prefix: false, label_px: 58 },
       series: [{ color: color("--made"), opacity: 0.75, width: 2, x: rate, shape: { stems: { y: needed, shift: 0 } } },
-        { color: color("--ideal"), opacity: 1, width: 2, x: rate, shape: { line: { y: available } } }],
+        { color: color("--ideal"), opacity: 1, width: 2, x: rate, shape: { line: { y: available } } },
+        ...(working === null ? [] : [{ color: color("--axis"), opacity: 1, width: 1.5, dash: 4, x: [working, working], shape: { line: { y: [0, 2 * most] } } }])],
     });
   }
 
@@ -78,9 +81,9 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
     lacks.show(shortages.map(({ from_s, to_s, times, worst: { at_s, rate, needed_mn_m, available_mn_m } }) => [si(from_s, "s"), si(to_s, "s"), torques(Math.abs(needed_mn_m) - available_mn_m),
       si(at_s, "s"), rates(rate), torques(needed_mn_m), torques(available_mn_m), count(times)]));
     ramped.hidden = ramps.root.hidden = told.ramps.length === 0;
-    ramps.show(told.ramps.map(({ index, steps, duration_s, longest_s, too_fast, room_s, enough_s }) => [String(index + 1), count(steps), si(duration_s, "s"),
-      enough_s ? `${ramp(enough_s[0])} to ${ramp(enough_s[1])}` : "none", longest_s === null ? (too_fast ? "too fast without any" : "any") : ramp(longest_s), ramp(room_s)]));
-    say(note, `${jump > 0 ? "A motor follows a jump of speed up to its start-stop rate, which these data do not tell. " : ""}The model: fundamental waves only, no saturation, no losses of iron and friction in the motor, no resonance.`);
+    ramps.show(told.ramps.map(({ index, duration_s, longest_s, too_fast, room_s, enough_s }) => [`${index + 1}, ${si(duration_s, "s")}`,
+      enough_s ? `${enough_s[0].toFixed(4)} to ${ramp(enough_s[1])}` : "none", longest_s === null ? (too_fast ? "too fast" : "any") : ramp(longest_s), ramp(room_s)]));
+    say(note, `${told.ramps.length ? "Enough torque: ramps with which it suffices throughout. Longest by rate: T − n/f_s, with the motor's greatest rate for its load as f_s; the move has room for T/2. " : ""}${jump > 0 ? "A motor follows a jump of speed up to its start-stop rate, which these data do not tell. " : ""}The model: fundamental waves only, no saturation, no losses of iron and friction in the motor, no resonance.`);
   }
 
   /** @param {string} path */

@@ -270,6 +270,8 @@ fn a_move_that_is_short_of_torque_is_warned_of_and_its_neighbours_are_not() {
     );
     assert_eq!(
         warn(0.0, 1.0, 30_001.0).as_deref(),
-        Some("30\u{202f}001 steps/s are above the motor's working rate of 30\u{202f}000; give more time, or shorter ramps")
+        Some(
+            "30\u{202f}001 steps/s are above the motor's working rate of 30\u{202f}000; give more time, or shorter ramps"
+        )
     );
 }
