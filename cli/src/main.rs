@@ -10,6 +10,7 @@ mod failure;
 mod faults;
 mod files;
 mod line;
+mod measures;
 mod progress;
 mod run;
 mod scenarios;
@@ -41,6 +42,9 @@ enum Command {
     /// Writes the step times of an axis as a table for a firmware (C, AVR, Rust, CSV), or what each form of
     /// table costs and how far its steps are off.
     Tables(tables::Arguments),
+    /// Runs a scenario and tells how good an axis is, in numbers: the ideal curve, the steps that are made of
+    /// it and the pulses as they come held against each other, peaks, durations, distortion.
+    Measures(measures::Arguments),
     /// Says whether the motors have the torque that a scenario's plans ask for, and which ramps they can
     /// follow; or writes a motor's torque over its rate.
     Torque(torque::Arguments),
@@ -72,6 +76,7 @@ fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Faults(arguments) => faults::faults(&arguments),
         Command::Tables(arguments) => tables::tables(&arguments),
+        Command::Measures(arguments) => measures::measures(&arguments),
         Command::Torque(arguments) => torque::torque(&arguments),
         Command::Calibrate(arguments) => calibrate::calibrate(&arguments),
         Command::Sine(command) => sine::sine(&command),

@@ -8,7 +8,7 @@ use std::{
 };
 use stepscope_core::analysis::{
     sine_optimum::{Freedom, MOST_SEGMENTS, optimum},
-    sine_polyline::{self, Distinct, Row},
+    sine_polyline::{self, Bounds, Distinct, Row},
 };
 
 /// What `stepscope sine` does.
@@ -52,8 +52,22 @@ pub(crate) struct Range {
     /// Greatest d1.
     #[arg(long, value_name = "D1", default_value = "0.06", value_parser = part)]
     to: f64,
+    /// Bandwidth (-3 dB, first order) of the accelerometer on the rig, in Hz: one more column tells the
+    /// distortion of the acceleration that it feels.
+    #[arg(long, value_name = "HZ", value_parser = positive, requires = "period_s")]
+    sensor_hz: Option<f64>,
+    /// Time of one period in s, which the sensor's bandwidth is held against.
+    #[arg(long, value_name = "S", value_parser = positive, requires = "sensor_hz")]
+    period_s: Option<f64>,
     #[command(flatten)]
     common: Common,
+}
+
+impl Range {
+    fn bounds(&self) -> Bounds {
+        let sensor = self.sensor_hz.zip(self.period_s).map(|(sensor_hz, period_s)| sensor_hz * period_s);
+        Bounds { order: self.common.order, sensor }
+    }
 }
 
 /// What all of them take.
@@ -72,6 +86,11 @@ fn part(text: &str) -> Result<f64, String> {
     if (1e-6..=1.0).contains(&value) { Ok(value) } else { Err("give 0.000001 to 1".to_owned()) }
 }
 
+fn positive(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|error| format!("{error}"))?;
+    if (1e-6..=1e9).contains(&value) { Ok(value) } else { Err("give 0.000001 to 1e9".to_owned()) }
+}
+
 /// Writes the table.
 pub(crate) fn sine(command: &Command) -> Result<(), Failure> {
     let common = match command {
@@ -83,9 +102,8 @@ pub(crate) fn sine(command: &Command) -> Result<(), Failure> {
         match command {
             Command::Sweep { range, points } => sweep(range, *points, &mut out)?,
             Command::Best { range, segments } => {
-                let Range { from, to, common } = range;
-                head(&mut out)?;
-                let rows = Distinct::new(*from, *to, common.order);
+                head(range, &mut out)?;
+                let rows = Distinct::new(range.from, range.to, range.bounds());
                 let asked = |row: &Row| segments.is_none_or(|segments| segments == row.segments);
                 let best = sine_polyline::best(rows.filter(asked));
                 best.iter().try_for_each(|best| row(best, &mut out))?;
@@ -101,9 +119,9 @@ pub(crate) fn sine(command: &Command) -> Result<(), Failure> {
 }
 
 fn sweep(range: &Range, points: u32, out: &mut impl Write) -> io::Result<()> {
-    head(out)?;
+    head(range, out)?;
     let mut progress = Progress::new("sweep", false);
-    let rows = sine_polyline::sweep(range.from, range.to, points, range.common.order);
+    let rows = sine_polyline::sweep(range.from, range.to, points, range.bounds());
     for (done, found) in (1..).zip(rows) {
         row(&found, out)?;
         progress.tell(done, points.into());
@@ -111,10 +129,11 @@ fn sweep(range: &Range, points: u32, out: &mut impl Write) -> io::Result<()> {
     Ok(())
 }
 
-fn head(out: &mut impl Write) -> io::Result<()> {
+fn head(range: &Range, out: &mut impl Write) -> io::Result<()> {
+    let felt = if range.sensor_hz.is_some() { ",thd_acceleration_felt_percent" } else { "" };
     writeln!(
         out,
-        "d1,segments,thd_position_percent,thd_speed_percent,thd_acceleration_percent,euclidean_distance"
+        "d1,segments,thd_position_percent,thd_speed_percent,thd_acceleration_percent,euclidean_distance{felt}"
     )
 }
 
@@ -122,11 +141,15 @@ fn row(row: &Row, out: &mut impl Write) -> io::Result<()> {
     let distortion = row.distortion;
     let [position, speed, acceleration] =
         [distortion.position, distortion.speed, distortion.acceleration].map(|ratio| ratio * 100.0);
-    writeln!(
+    write!(
         out,
         "{},{},{position:.6},{speed:.6},{acceleration:.6},{:.9}",
         row.d1, row.segments, row.euclidean
-    )
+    )?;
+    if let Some(felt) = distortion.acceleration_felt {
+        write!(out, ",{:.6}", felt * 100.0)?;
+    }
+    writeln!(out)
 }
 
 fn vertices(segments: usize, freedom: Freedom, order: u16, out: &mut impl Write) -> io::Result<()> {

@@ -4,7 +4,7 @@
 
 mod moves;
 
-use moves::{CLOCK_HZ, plan, sane_move, short_move};
+use moves::{CLOCK_HZ, plan, ramp_shape, sane_move, short_move};
 use proptest::prelude::*;
 use std::rc::Rc;
 use stepscope_core::{
@@ -12,8 +12,9 @@ use stepscope_core::{
     motion::{AxisPlan, Curve, Profile, plan_axis, round_half_up},
     quantise::{exact_segments, ticks},
     scenario::{
-        Acceleration, Axis, Constant, Cosine, Direct, Distance, Dwell, Mechanics, Move, SineSegments, Speed,
-        Staircase, Trapezoid, TrapezoidMethod,
+        Acceleration, Axis, Constant, Cosine, CosineMethod, Direct, Distance, Dwell, Interpolation, Jerk,
+        JerkLimited, Mechanics, Move, Point, PointUnit, Points, Ramps, Sine, SineSegments, Speed, Staircase,
+        Trapezoid, TrapezoidMethod,
     },
     segment::PulseTimes,
     signal::Record,
@@ -58,8 +59,17 @@ fn wild_move() -> impl Strategy<Value = Move> {
     });
     let method = prop_oneof![Just(TrapezoidMethod::Table), Just(TrapezoidMethod::Exact)];
     prop_oneof![
-        (distance.clone(), number(), number())
-            .prop_map(|(distance, duration_s, ramp_s)| Move::Cosine(Cosine { distance, duration_s, ramp_s })),
+        (distance.clone(), number(), number(), any::<bool>(), number()).prop_map(
+            |(distance, duration_s, ramp_s, sliced, slice_s)| {
+                let method = if sliced { CosineMethod::Sliced } else { CosineMethod::Exact };
+                Move::Cosine(Cosine { distance, duration_s, ramp_s, method, slice_s })
+            }
+        ),
+        (distance.clone(), number(), number(), ramp_shape(), number(), number()).prop_map(
+            |(distance, duration_s, ramp_s, shape, sigmoid_range, time_constants)| {
+                Move::Ramps(Ramps { distance, duration_s, ramp_s, shape, sigmoid_range, time_constants })
+            }
+        ),
         (distance.clone(), speed.clone(), speed.clone(), number(), method, any::<u32>()).prop_map(
             |(distance, start_speed, top_speed, acceleration, method, timer_hz)| {
                 let acceleration = Acceleration::StepsPerSecond2(acceleration);
@@ -84,6 +94,29 @@ fn wild_move() -> impl Strategy<Value = Move> {
                 Move::SineSegments(SineSegments { amplitude, period_s, periods, max_deviation })
             }
         ),
+        (distance.clone(), number(), any::<u32>())
+            .prop_map(|(amplitude, period_s, periods)| { Move::Sine(Sine { amplitude, period_s, periods }) }),
+        (distance.clone(), speed.clone(), number(), number()).prop_map(
+            |(distance, max_speed, acceleration, jerk)| {
+                Move::JerkLimited(JerkLimited {
+                    distance,
+                    max_speed,
+                    max_acceleration: Acceleration::StepsPerSecond2(acceleration),
+                    max_jerk: Jerk::StepsPerSecond3(jerk),
+                })
+            }
+        ),
+        (prop::collection::vec((number(), number()), 0..6), any::<bool>(), any::<bool>()).prop_map(
+            |(points, smooth, rises)| {
+                let mut points: Vec<Point> =
+                    points.into_iter().map(|(time_s, position)| Point { time_s, position }).collect();
+                if rises {
+                    points.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
+                }
+                let interpolation = if smooth { Interpolation::Smooth } else { Interpolation::Straight };
+                Move::Points(Points { unit: PointUnit::Steps, interpolation, points })
+            }
+        ),
         (distance, speed).prop_map(|(distance, speed)| Move::Constant(Constant { distance, speed })),
         number().prop_map(|duration_s| Move::Dwell(Dwell { duration_s })),
     ]
@@ -94,9 +127,16 @@ fn mirrored(given: &Move) -> Move {
     let back = |distance: &Distance| Distance::Steps(-distance.value());
     match given.clone() {
         Move::Cosine(m) => Move::Cosine(Cosine { distance: back(&m.distance), ..m }),
+        Move::Ramps(m) => Move::Ramps(Ramps { distance: back(&m.distance), ..m }),
         Move::Trapezoid(m) => Move::Trapezoid(Trapezoid { distance: back(&m.distance), ..m }),
         Move::Staircase(m) => Move::Staircase(Staircase { distance: back(&m.distance), ..m }),
         Move::SineSegments(m) => Move::SineSegments(SineSegments { amplitude: back(&m.amplitude), ..m }),
+        Move::Sine(m) => Move::Sine(Sine { amplitude: back(&m.amplitude), ..m }),
+        Move::JerkLimited(m) => Move::JerkLimited(JerkLimited { distance: back(&m.distance), ..m }),
+        Move::Points(m) => {
+            let points = m.points.iter().map(|point| Point { position: -point.position, ..*point });
+            Move::Points(Points { points: points.collect(), ..m })
+        }
         Move::Constant(m) => Move::Constant(Constant { distance: back(&m.distance), ..m }),
         Move::Dwell(m) => Move::Dwell(m),
     }
@@ -169,7 +209,7 @@ proptest! {
 
     #[test]
     fn a_move_one_way_never_turns_round(
-        given in sane_move().prop_filter("goes one way", |m| !matches!(m, Move::SineSegments(_))),
+        given in sane_move().prop_filter("goes one way", |m| !matches!(m, Move::SineSegments(_) | Move::Sine(_) | Move::Points(_))),
         tick_cycles in 300..4000_u64,
     ) {
         let plan = plan(vec![given]);

@@ -69,7 +69,12 @@ const PGMSPACE: &str = "#define PROGMEM __attribute__((aligned(8)))\n";
 fn table(form: Form, format: EntryFormat) -> Stored {
     let sine = SineSegments { amplitude: Distance::Steps(200.0), period_s: 0.2, ..SineSegments::default() };
     let moves = vec![
-        Move::Cosine(Cosine { distance: Distance::Steps(-900.0), duration_s: 0.5, ramp_s: 0.2 }),
+        Move::Cosine(Cosine {
+            distance: Distance::Steps(-900.0),
+            duration_s: 0.5,
+            ramp_s: 0.2,
+            ..Cosine::default()
+        }),
         Move::Dwell(Dwell { duration_s: 400.0 }),
         Move::SineSegments(sine),
         Move::Constant(Constant {

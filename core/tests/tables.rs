@@ -251,7 +251,12 @@ fn a_documents_table_has_its_own_bytes_and_its_own_error() {
 fn what_has_no_table_or_no_end_is_refused_with_its_numbers() {
     let refused =
         |given: Move, form| stored(&plan(vec![given]), form, EntryFormat::TICKS, PULSE, CLOCK_HZ).err();
-    let curve = Move::Cosine(Cosine { distance: Distance::Steps(100.0), duration_s: 1.0, ramp_s: 0.5 });
+    let curve = Move::Cosine(Cosine {
+        distance: Distance::Steps(100.0),
+        duration_s: 1.0,
+        ramp_s: 0.5,
+        ..Cosine::default()
+    });
     assert!(matches!(refused(curve, Form::Document), Some(Cause::Conflict { .. })));
     let quick = Move::Constant(Constant { distance: Distance::Steps(9.0), speed: steps_s(9e6) });
     for form in [Form::Exact, Form::Compressed(Tolerance::of(Cycles(5)))] {

@@ -75,6 +75,7 @@ impl Simulation {
                 numbers(&result, &format!("{name}_max"), &band.max);
             }
         }
+        self.count_steps(axis);
         let made = curves::made(&self.pulses_of(axis), window);
         for (name, band) in [("made_position", made.position), ("made_speed", made.speed)] {
             numbers(&result, &format!("{name}_min"), &band.min);
@@ -101,6 +102,7 @@ impl Simulation {
             };
             Readings::new(at.map(read), between::ideal(plan, zero_s, from, to))
         });
+        self.count_steps(axis);
         let pulses = self.pulses_of(axis);
         let read = |t: f64| Vec::from([f64::from(pulses.position_at(t)), pulses.speed_at(t)]);
         let made = Readings::new(at.map(read), between::made(&pulses, from, to));
@@ -148,7 +150,7 @@ impl Simulation {
 }
 
 impl Simulation {
-    fn plan(&self, axis: u8) -> Option<&AxisPlan> {
+    pub(crate) fn plan(&self, axis: u8) -> Option<&AxisPlan> {
         self.experiment.plans_of(self.looked_at).get(usize::from(axis))
     }
 
@@ -162,9 +164,12 @@ impl Simulation {
         self.run.cycles().0.max(1) as f64 / f64::from(self.experiment.config().clock_hz())
     }
 
-    /// What the run made of a channel.
-    fn pulses_of(&mut self, channel: u8) -> Pulses<'_> {
+    pub(crate) fn count_steps(&mut self, channel: u8) {
         self.kept[self.looked_at].count_steps(channel);
+    }
+
+    /// What the run made of a channel whose steps are counted.
+    pub(crate) fn pulses_of(&self, channel: u8) -> Pulses<'_> {
         let kept = self.looked_at();
         Pulses {
             channel,
@@ -176,6 +181,7 @@ impl Simulation {
     }
 
     fn scaled(&mut self, channel: u8, unit: Option<&f64>) -> Scaled<'_> {
+        self.count_steps(channel);
         let pulses = self.pulses_of(channel);
         Scaled { steps: pulses.steps, hz: pulses.hz(), unit: unit.copied().unwrap_or(1.0) }
     }

@@ -10,6 +10,7 @@ mod decoder;
 mod files;
 mod judge;
 mod link;
+mod measures;
 mod packets;
 mod pulses;
 mod simulation;

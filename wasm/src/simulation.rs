@@ -153,17 +153,8 @@ impl Simulation {
     /// Never in practice.
     pub fn spectrum(&mut self) -> Result<JsValue, JsError> {
         let axis = self.scenario.analysis.axis;
-        let plan = self.experiment.plans_of(self.looked_at).get(usize::from(axis));
-        let config = config(&self.experiment, self.looked_at);
-        self.kept[self.looked_at].count_steps(axis);
-        let Kept { recording, .. } = &self.kept[self.looked_at];
-        crate::spectrum::spectrum(
-            &self.scenario,
-            plan,
-            config,
-            recording,
-            self.kept[self.looked_at].steps_of(axis),
-        )
+        self.count_steps(axis);
+        crate::spectrum::spectrum(&self.scenario, self.plan(axis), &self.pulses_of(axis))
     }
 }
 

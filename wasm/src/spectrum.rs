@@ -3,11 +3,12 @@
 use crate::convert::{field, numbers, object};
 use js_sys::Object;
 use stepscope_core::{
-    analysis::spectrum::{Harmonics, Spectrum, Stretch},
+    analysis::{
+        made::Pulses,
+        spectrum::{Harmonics, Spectrum, Stretch},
+    },
     motion::AxisPlan,
-    quantise::TickClock,
-    scenario::{Config, Scenario, Source},
-    trace::{Recording, Step},
+    scenario::{Scenario, Source},
 };
 use wasm_bindgen::prelude::*;
 
@@ -15,9 +16,7 @@ use wasm_bindgen::prelude::*;
 pub(crate) fn spectrum(
     scenario: &Scenario,
     plan: Option<&AxisPlan>,
-    config: &Config,
-    recording: &Recording,
-    steps: &[Step],
+    run: &Pulses<'_>,
 ) -> Result<JsValue, JsError> {
     let analysis = &scenario.analysis;
     let result = Object::new();
@@ -36,18 +35,10 @@ pub(crate) fn spectrum(
         return Ok(result.into());
     };
     let ideal = Spectrum::ideal(plan, analysis.order, analysis.fft_length);
-    field(&result, "ideal", &ideal.map_or(Ok(JsValue::NULL), |spectrum| told(&spectrum))?);
-    let zero = recording.first_tick().map_or(0, |start| start.0);
-    let pulses: Vec<(u64, i8)> = steps
-        .iter()
-        .enumerate()
-        .filter_map(|(index, step)| {
-            Some((step.cycle.checked_sub(zero)?, Step::direction(steps, index).signum() as i8))
-        })
-        .collect();
-    let ticks = TickClock::new(config.tick().0, config.clock_hz());
-    let pulses = stretch.own_pulses(plan, ticks, &pulses);
-    field(&result, "pulses", &told(&Spectrum::of_pulses(&pulses, stretch, analysis.order))?);
+    let felt = |spectrum: Spectrum| told(&spectrum.felt_by(analysis.sensor_hz));
+    field(&result, "ideal", &ideal.map_or(Ok(JsValue::NULL), felt)?);
+    let pulses = stretch.pulses_of(plan, run);
+    field(&result, "pulses", &felt(Spectrum::of_pulses(&pulses, stretch, analysis.order))?);
     let note = if stretch.periodic {
         ""
     } else {
@@ -81,5 +72,8 @@ fn told(spectrum: &Spectrum) -> Result<JsValue, JsError> {
         numbers(target, name, amplitudes);
         field(target, &format!("thd_{name}"), &distortion.map_or(JsValue::NULL, JsValue::from));
     }
+    // A figure of its own, without amplitudes: they are the acceleration's times the low pass.
+    let felt = spectrum.acceleration_felt.as_ref().and_then(|felt| felt.distortion);
+    field(target, "thd_acceleration_felt", &felt.map_or(JsValue::NULL, JsValue::from));
     Ok(told)
 }

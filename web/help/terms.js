@@ -88,7 +88,8 @@ const COMMON = {
   // What is looked at.
   axis: { name: "Axis", text: "Which axis the spectrum is taken of; axis 0 drives channel 0." },
   order: { name: "Order", text: "Up to which harmonic the distortion is summed.", from: "sine" },
-  fft_length: { name: "Samples", text: "Points at which one period is looked at for the transform.", from: "sine" },
+  fft_length: { name: "Samples", text: "Points at which one period is looked at for the transform; they fill the period, so nothing leaks, whatever their number.", from: "sine" },
+  sensor_hz: { name: "Sensor's bandwidth", text: "An accelerometer is a low pass: at this frequency it feels 71 % of the acceleration, |H| = 1/√(1 + (f/f_b)²). So the distortion it feels does not grow with the order.", from: "own" },
   clock_hz: { name: "Clock", text: "All that the controller does happens on a beat of this clock; one beat is a cycle, and times are counted in whole cycles.", from: "patent" },
   run_cycles: { name: "Length of the run", text: "When to stop looking. By itself a run ends when nothing can change any more." },
   title: { name: "Name", text: "A name for the experiment, that travels with its link." },

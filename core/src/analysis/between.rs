@@ -51,7 +51,7 @@ impl Sums {
 }
 
 /// The points of Gauss and Legendre in -1..1 and their weights.
-const POINTS: [(f64, f64); 3] =
+pub(super) const POINTS: [(f64, f64); 3] =
     [(-0.774_596_669_241_483_4, 5.0 / 18.0), (0.0, 8.0 / 18.0), (0.774_596_669_241_483_4, 5.0 / 18.0)];
 
 /// Of the ideal motion, whose time 0 is at `zero_s`, from one time to a later one, in s.

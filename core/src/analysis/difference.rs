@@ -32,7 +32,7 @@ impl Scaled<'_> {
 }
 
 /// The first run's position less the second's, from change to change.
-struct Difference<'a> {
+pub(super) struct Difference<'a> {
     runs: [Scaled<'a>; 2],
     /// Steps of each that have come.
     next: [usize; 2],
@@ -40,20 +40,26 @@ struct Difference<'a> {
 
 impl<'a> Difference<'a> {
     /// From a time on: what happened before is in [`Self::now`].
-    fn from(runs: [Scaled<'a>; 2], from_s: f64) -> Self {
+    pub(super) fn from(runs: [Scaled<'a>; 2], from_s: f64) -> Self {
         let next = runs.map(|run| run.steps.partition_point(|step| step.cycle as f64 / run.hz <= from_s));
         Self { runs, next }
     }
 
     /// The difference as it stands.
     fn now(&self) -> f64 {
-        let [a, b] = self.runs;
-        let [after_a, after_b] = self.next;
-        a.place(after_a) - b.place(after_b)
+        let [a, b] = self.places();
+        a - b
     }
 
-    /// The changes up to a time, that time left out.
-    fn changes(&mut self, to_s: f64, each: &mut dyn FnMut(f64, f64)) {
+    /// Both positions as they stand.
+    pub(super) fn places(&self) -> [f64; 2] {
+        let [a, b] = self.runs;
+        let [after_a, after_b] = self.next;
+        [a.place(after_a), b.place(after_b)]
+    }
+
+    /// The changes up to a time, that time left out: when, and both positions then.
+    pub(super) fn changes(&mut self, to_s: f64, each: &mut dyn FnMut(f64, [f64; 2])) {
         loop {
             let [a, b] = self.runs;
             let times = [a.time_s(self.next[0]), b.time_s(self.next[1])].map(|t| t.unwrap_or(f64::INFINITY));
@@ -64,7 +70,7 @@ impl<'a> Difference<'a> {
             for (next, time) in self.next.iter_mut().zip(times) {
                 *next += usize::from(time == at);
             }
-            each(at, self.now());
+            each(at, self.places());
         }
     }
 }
@@ -80,7 +86,7 @@ pub fn difference(first: Scaled<'_>, second: Scaled<'_>, common_s: f64, window: 
             break;
         }
         band.take(column, walk.now());
-        walk.changes(window.edge_s(column + 1), &mut |_, now| band.take(column, now));
+        walk.changes(window.edge_s(column + 1), &mut |_, [a, b]| band.take(column, a - b));
     }
     band
 }
@@ -102,7 +108,8 @@ pub fn apart(first: Scaled<'_>, second: Scaled<'_>, common_s: f64) -> Apart {
     let mut walk = Difference::from([first, second], 0.0);
     let (mut since_s, mut difference) = (0.0, walk.now());
     let (mut largest, mut at_s, mut square) = (difference, 0.0, 0.0);
-    walk.changes(common_s, &mut |time_s, now| {
+    walk.changes(common_s, &mut |time_s, [a, b]| {
+        let now = a - b;
         square += difference * difference * (time_s - since_s);
         (since_s, difference) = (time_s, now);
         if libm::fabs(now) > libm::fabs(largest) {

@@ -21,9 +21,13 @@
 //! pulses' weight. So the time is [`MOMENTS`] products a pulse, whatever the order, and as many
 //! transforms of N points.
 
-use alloc::{vec, vec::Vec};
+use alloc::{sync::Arc, vec, vec::Vec};
 use core::f64::consts::TAU;
-use rustfft::{Fft, FftDirection, algorithm::Radix4, num_complex::Complex};
+use rustfft::{
+    Fft, FftDirection,
+    algorithm::{BluesteinsAlgorithm, Radix4},
+    num_complex::Complex,
+};
 
 /// Terms of the exponential's series: (pi/16)^12/12! < 1e-17.
 const MOMENTS: usize = 12;
@@ -72,19 +76,77 @@ fn moments(pulses: impl Iterator<Item = (f64, f64)>, points: usize) -> Vec<[f64;
 
 /// Amplitudes of harmonics 1 ..= `order` of samples that fill one period, by rustfft.
 ///
-/// `samples` is a power of two long; harmonics from half of it on do not exist and are left out.
+/// There may be any number of samples; harmonics from half of it on do not exist and are left out.
 pub(super) fn amplitudes(samples: &[f64], order: usize) -> Vec<f64> {
     let mut line: Vec<Complex<f64>> = samples.iter().map(|&re| Complex { re, im: 0.0 }).collect();
-    if line.len().is_power_of_two() {
-        // Radix4 alone, not the planner: a third of the code in the page, and no SIMD variants,
-        // whose last bits differ.
-        Radix4::new(line.len(), FftDirection::Forward).process(&mut line);
-    }
-    let (half, scale) = (line.len() / 2, 2.0 / line.len() as f64);
+    transform(&mut line);
+    let (half, scale) = (line.len().div_ceil(2), 2.0 / line.len() as f64);
     line.iter().take(half).skip(1).take(order).map(|c| magnitude(*c) * scale).collect()
+}
+
+/// The Fourier transform of a line of any length, in place.
+///
+/// Radix4 alone or as the inner transform of Bluestein's algorithm, not the planner: a third of the code
+/// in the page, and no SIMD variants, whose last bits differ.
+fn transform(line: &mut [Complex<f64>]) {
+    let points = line.len();
+    if points.is_power_of_two() {
+        Radix4::new(points, FftDirection::Forward).process(line);
+    } else if points > 0 {
+        let inner = Radix4::new((2 * points - 1).next_power_of_two(), FftDirection::Forward);
+        BluesteinsAlgorithm::new(points, Arc::new(inner)).process(line);
+    }
 }
 
 /// |c|.
 pub(super) fn magnitude(c: Complex<f64>) -> f64 {
     libm::sqrt(c.re * c.re + c.im * c.im)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Amplitude of harmonic `k` by the sum that defines it, its angles in whole parts of a turn.
+    fn by_definition(samples: &[f64], k: usize) -> f64 {
+        let points = samples.len();
+        let (mut re, mut im) = (0.0, 0.0);
+        for (i, sample) in samples.iter().enumerate() {
+            let (sine, cosine) = libm::sincos(TAU * (i * k % points) as f64 / points as f64);
+            re += sample * cosine;
+            im -= sample * sine;
+        }
+        2.0 * magnitude(Complex { re, im }) / points as f64
+    }
+
+    #[test]
+    fn amplitudes_of_any_length_are_those_of_the_plain_sum() {
+        // Powers of two, primes, odd, even, and the shortest.
+        for points in [16, 17, 18, 100, 127, 255, 256, 360, 1000, 1009, 2048, 3000, 4099] {
+            let samples: Vec<f64> =
+                (0..points).map(|i| f64::from(i * i % 4093) / 4093.0 + f64::from(i % 7)).collect();
+            let points = samples.len();
+            let found = amplitudes(&samples, 10_000);
+            assert_eq!(found.len(), (points - 1) / 2, "all below half of {points}");
+            for (k, amplitude) in (1..).zip(&found).step_by(1 + points / 100) {
+                let expected = by_definition(&samples, k);
+                assert!((amplitude - expected).abs() < 1e-11, "{points} points, {k}: {amplitude} {expected}");
+            }
+        }
+        assert!(amplitudes(&[1.0], 5).is_empty());
+        assert!(amplitudes(&[], 5).is_empty());
+    }
+
+    #[test]
+    fn one_line_stays_one_line_whatever_the_length() {
+        for points in [16, 25, 97, 1000, 65_535] {
+            let samples: Vec<f64> = (0..points)
+                .map(|i| 3.0 * libm::sin(TAU * f64::from(i * 5 % points) / f64::from(points)))
+                .collect();
+            for (k, amplitude) in (1..).zip(amplitudes(&samples, 1000)) {
+                let expected = if k == 5 { 3.0 } else { 0.0 };
+                assert!((amplitude - expected).abs() < 1e-11, "{points} points, {k}: {amplitude}");
+            }
+        }
+    }
 }

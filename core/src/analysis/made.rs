@@ -48,6 +48,14 @@ impl Pulses<'_> {
         f64::from(self.config.clock_hz())
     }
 
+    /// Cycle in which the motion's time 0 is: the start of the list of segments, or of the first tick; 0
+    /// where none began.
+    #[must_use]
+    pub fn zero(&self) -> u64 {
+        let first_tick = || self.log.ticks().first().map_or(0, |tick| tick.start.0);
+        self.segments.map_or_else(first_tick, |list| list.start.0)
+    }
+
     /// Position after all steps up to a time, that time included.
     #[must_use]
     pub fn position_at(&self, time_s: f64) -> i32 {

@@ -11,7 +11,9 @@
 //! ```
 //!
 //! Nothing is sampled, so nothing folds back. Speed and acceleration have k and k^2 times the harmonics; those of the
-//! acceleration do not fall, so its distortion belongs to its highest order, which a sensor's bandwidth sets.
+//! acceleration do not fall, so its distortion grows with the order. What an accelerometer on the rig feels of it has
+//! |H| = 1/sqrt(1 + (k/b)^2) times that, b being the sensor's bandwidth (-3 dB, a low pass of first order) over the
+//! frequency of the oscillation, and its distortion hardly changes once the order is well above b.
 
 use crate::motion::polyline::{POINTS, QUARTER, breakpoints, cosine_at, next_deviation};
 use alloc::vec::Vec;
@@ -26,7 +28,27 @@ pub struct Vertex {
     pub height: f64,
 }
 
-/// Distortion to one order.
+/// What bounds a distortion; an order alone is one without a sensor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Highest harmonic that counts, 1 to 65535.
+    pub order: u16,
+    /// Bandwidth (-3 dB) of the sensor over the frequency of the oscillation, above 0.
+    pub sensor: Option<f64>,
+}
+
+impl From<u16> for Bounds {
+    fn from(order: u16) -> Self {
+        Self { order, sensor: None }
+    }
+}
+
+/// |H| of a low pass of first order at `part` of its bandwidth.
+pub(super) fn low_pass(part: f64) -> f64 {
+    1.0 / libm::sqrt(1.0 + part * part)
+}
+
+/// Distortion within its bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distortion {
     /// THD_F of the position, as a ratio.
@@ -35,6 +57,8 @@ pub struct Distortion {
     pub speed: f64,
     /// Of the acceleration.
     pub acceleration: f64,
+    /// Of what the sensor feels of the acceleration.
+    pub acceleration_felt: Option<f64>,
 }
 
 /// The vertices that B5 puts on the curve for the largest deviation `d1`, in parts of the amplitude.
@@ -102,12 +126,14 @@ impl Iterator for OddCosines {
     }
 }
 
-/// THD of position, speed and acceleration up to harmonic `order` (1 to 65535).
+/// THD of position, speed and acceleration within bounds.
 #[must_use]
-pub fn distortion(vertices: &[Vertex], order: u16) -> Distortion {
+pub fn distortion(vertices: &[Vertex], bounds: impl Into<Bounds>) -> Distortion {
+    let Bounds { order, sensor } = bounds.into();
     let harmonics = odd_harmonics(vertices, order);
     let first = harmonics.first().copied().unwrap_or(0.0);
-    let mut squares = [0.0; 3];
+    let felt = |k: f64| sensor.map_or(1.0, |sensor| low_pass(k / sensor));
+    let (mut squares, mut felt_square) = ([0.0; 3], 0.0);
     for (index, harmonic) in harmonics.iter().enumerate().skip(1) {
         let k = (2 * index + 1) as f64;
         let mut amplitude = *harmonic;
@@ -115,9 +141,14 @@ pub fn distortion(vertices: &[Vertex], order: u16) -> Distortion {
             *square += amplitude * amplitude;
             amplitude *= k;
         }
+        // k^3 times the harmonic by now.
+        let amplitude = amplitude / k * felt(k);
+        felt_square += amplitude * amplitude;
     }
-    let [position, speed, acceleration] = squares.map(|square| libm::sqrt(square) / libm::fabs(first));
-    Distortion { position, speed, acceleration }
+    let over_first = |square: f64| libm::sqrt(square) / libm::fabs(first);
+    let [position, speed, acceleration] = squares.map(over_first);
+    let acceleration_felt = sensor.map(|_| over_first(felt_square) / felt(1.0));
+    Distortion { position, speed, acceleration, acceleration_felt }
 }
 
 /// What a d1 gives: a row of figure 4.
@@ -127,7 +158,7 @@ pub struct Row {
     pub d1: f64,
     /// Segments of a quarter.
     pub segments: usize,
-    /// THD to the order that was asked for.
+    /// THD within the bounds that were asked for.
     pub distortion: Distortion,
     /// Root of the sum of the squared differences of line and cosine over the quarter's 512 points, in parts of the
     /// amplitude.
@@ -137,33 +168,44 @@ pub struct Row {
 impl Row {
     /// That of one d1.
     #[must_use]
-    pub fn of(d1: f64, order: u16) -> Self {
-        Self::of_points(d1, &breakpoints(d1), order)
+    pub fn of(d1: f64, bounds: impl Into<Bounds>) -> Self {
+        Self::of_points(d1, &breakpoints(d1), bounds.into())
     }
 
-    fn of_points(d1: f64, points: &[u16], order: u16) -> Self {
-        let distortion = distortion(&on_points(points), order);
+    fn of_points(d1: f64, points: &[u16], bounds: Bounds) -> Self {
+        let distortion = distortion(&on_points(points), bounds);
         Self { d1, segments: points.len() - 1, distortion, euclidean: euclidean(points) }
     }
 }
 
 fn euclidean(points: &[u16]) -> f64 {
-    let mut square = 0.0;
-    for (&from, &to) in points.iter().zip(points.iter().skip(1)) {
-        let (near, far) = (cosine_at(from), cosine_at(to));
-        for point in from..to {
-            let line = near + (far - near) * f64::from(point - from) / f64::from(to - from);
-            let off = line - cosine_at(point);
-            square += off * off;
-        }
-    }
+    let square: f64 = differences(points).map(|(_, off)| off * off).sum();
     libm::sqrt(square)
+}
+
+/// The cosine at the quarter's 512 points, from its extreme on, and what the line through these breakpoints
+/// has more there, in parts of the amplitude.
+pub(super) fn differences(points: &[u16]) -> impl Iterator<Item = (f64, f64)> + '_ {
+    points.iter().zip(points.iter().skip(1)).flat_map(|(&from, &to)| {
+        let (near, far) = (cosine_at(from), cosine_at(to));
+        (from..to).map(move |point| {
+            let line = near + (far - near) * f64::from(point - from) / f64::from(to - from);
+            let cosine = cosine_at(point);
+            (cosine, line - cosine)
+        })
+    })
 }
 
 /// `count` values of d1 evenly from `from` to `to`, each with what it gives: one call of `next` is one row, so who
 /// asks can show how far it is, or stop.
-pub fn sweep(from: f64, to: f64, count: u32, order: u16) -> impl ExactSizeIterator<Item = Row> {
-    (0..count).map(move |index| Row::of(swept(from, to, count, index), order))
+pub fn sweep(
+    from: f64,
+    to: f64,
+    count: u32,
+    bounds: impl Into<Bounds>,
+) -> impl ExactSizeIterator<Item = Row> {
+    let bounds = bounds.into();
+    (0..count).map(move |index| Row::of(swept(from, to, count, index), bounds))
 }
 
 /// The d1 of row `index` of a sweep: who shares the rows out makes each by itself.
@@ -180,14 +222,14 @@ pub fn swept(from: f64, to: f64, count: u32, index: u32) -> f64 {
 pub struct Distinct {
     next: Option<f64>,
     to: f64,
-    order: u16,
+    bounds: Bounds,
 }
 
 impl Distinct {
     /// Those of `from` <= d1 <= `to`.
     #[must_use]
-    pub fn new(from: f64, to: f64, order: u16) -> Self {
-        Self { next: Some(from), to, order }
+    pub fn new(from: f64, to: f64, bounds: impl Into<Bounds>) -> Self {
+        Self { next: Some(from), to, bounds: bounds.into() }
     }
 }
 
@@ -198,7 +240,7 @@ impl Iterator for Distinct {
         let d1 = self.next.take().filter(|d1| *d1 <= self.to)?;
         let points = breakpoints(d1);
         self.next = next_deviation(&points);
-        Some(Row::of_points(d1, &points, self.order))
+        Some(Row::of_points(d1, &points, self.bounds))
     }
 }
 
@@ -252,6 +294,33 @@ mod tests {
             let expected = 4.0 / PI * sum * FRAC_PI_2 / f64::from(parts);
             assert!((harmonic - expected).abs() < 1e-9, "{k}: {harmonic} {expected}");
         }
+    }
+
+    #[test]
+    fn what_a_sensor_feels_of_the_acceleration_does_not_grow_with_the_order() {
+        let of = |order: u16, sensor: Option<f64>| Row::of(0.006, Bounds { order, sensor }).distortion;
+        let [low, high] = [999, 9999].map(|order| of(order, Some(20.0)));
+        assert!(high.acceleration > 3.0 * low.acceleration, "{low:?} {high:?}");
+        let [low, high] = [low, high].map(|found| found.acceleration_felt.unwrap());
+        assert!(high > low && high < 1.01 * low, "{low} {high}");
+        // By the definition, over the harmonics themselves.
+        let vertices = vertices(0.006);
+        let squares: Vec<f64> = (1..)
+            .step_by(2)
+            .zip(odd_harmonics(&vertices, 999))
+            .map(|(k, harmonic)| {
+                let k = f64::from(k);
+                let felt = harmonic * k * k / libm::sqrt(1.0 + k * k / 400.0);
+                felt * felt
+            })
+            .collect();
+        let expected = libm::sqrt(squares[1..].iter().sum::<f64>() / squares[0]);
+        assert!((low - expected).abs() < 1e-9 * expected, "{low} {expected}");
+        // A sensor without bounds feels all of it; without a sensor nothing is felt.
+        let all = of(99, Some(1e9));
+        assert!((all.acceleration_felt.unwrap() - all.acceleration).abs() < 1e-9);
+        assert_eq!(of(99, None), Row::of(0.006, 99).distortion);
+        assert_eq!(of(99, None).acceleration_felt, None);
     }
 
     #[test]

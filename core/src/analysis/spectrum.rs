@@ -11,7 +11,13 @@
 //! ```
 //!
 //! The order belongs to the figure: segments of fixed rate have jumps of speed, so the harmonics
-//! of their acceleration do not fall at all and its distortion grows with the order.
+//! of their acceleration do not fall at all and its distortion grows with the order. An accelerometer
+//! on the rig does not feel all of that: it is a low pass, of first order here, with the bandwidth f_b
+//! (-3 dB), and what it feels has a distortion that the order hardly changes any more:
+//!
+//! ```text
+//! felt  A_k*(2*pi*k*f0)^2 * |H(k*f0)|        |H(f)| = 1/sqrt(1 + (f/f_b)^2)
+//! ```
 //!
 //! A motion that is not periodic is looked at as a whole; the straight line from its first to its
 //! last point is taken off its position, for otherwise the jump back at the end would be in all
@@ -21,6 +27,7 @@ pub use super::stretch::Stretch;
 
 use super::{
     fourier::{amplitudes, magnitude, sums},
+    sine_polyline::low_pass,
     stretch::sampled,
 };
 use crate::motion::AxisPlan;
@@ -63,6 +70,9 @@ pub struct Spectrum {
     pub speed: Harmonics,
     /// Acceleration, in steps/s^2.
     pub acceleration: Harmonics,
+    /// What of the acceleration a sensor feels, in steps/s^2; `None` without one
+    /// ([`Self::felt_by`]).
+    pub acceleration_felt: Option<Harmonics>,
 }
 
 impl Spectrum {
@@ -77,14 +87,29 @@ impl Spectrum {
             position: Harmonics::new(position, stretch.periodic),
             speed: Harmonics::new(speed, stretch.periodic),
             acceleration: Harmonics::new(acceleration, stretch.periodic),
+            acceleration_felt: None,
         }
+    }
+
+    /// With what a sensor of the bandwidth `sensor_hz` (-3 dB, in Hz, above 0) feels of the acceleration;
+    /// without one as it is.
+    #[must_use]
+    pub fn felt_by(mut self, sensor_hz: Option<f64>) -> Self {
+        self.acceleration_felt = sensor_hz.map(|sensor_hz| {
+            let harmonics = (1..).zip(&self.acceleration.amplitudes);
+            let line_hz = |k: u32| f64::from(k) * self.stretch.fundamental_hz();
+            let felt = harmonics.map(|(k, amplitude)| amplitude * low_pass(line_hz(k) / sensor_hz)).collect();
+            Harmonics::new(felt, self.stretch.periodic)
+        });
+        self
     }
 
     /// Of the ideal curve over [`Stretch::of`] it, up to harmonic `order`; `None` where that is.
     ///
-    /// `points`, a power of two (256 to 65536 in a scenario; the next one is taken), are the
-    /// samples of a period. One period is sampled, because the others are the same. Harmonics from
-    /// half of the points on do not exist: the order is cut to that and stated in the result.
+    /// `points` (16 to 65536 in a scenario, any number) are the samples of a period. One period is
+    /// sampled, because the others are the same, so the samples fill it and nothing leaks, whatever
+    /// their number. Harmonics from half of the points on do not exist: the order is cut to that and
+    /// stated in the result.
     #[must_use]
     pub fn ideal(plan: &AxisPlan, order: u16, points: u32) -> Option<Self> {
         let stretch = Stretch::of(plan)?;
@@ -177,8 +202,43 @@ mod tests {
     }
 
     #[test]
+    fn any_number_of_samples_has_the_harmonics_of_the_polyline() {
+        let plan = plan(vec![sine(5e5, 0.006)]);
+        let exact = |order| super::super::sine_polyline::Row::of(0.006, order).distortion;
+        for (points, order) in [(1000, 40), (4099, 99), (4096, 99), (65_535, 399), (17, 40)] {
+            let found = Spectrum::ideal(&plan, order, points).unwrap();
+            assert_eq!(u32::from(found.order), u32::from(order).min((points - 1) / 2));
+            let expected = exact(found.order);
+            // Of a few points nearly all is what folds back from beyond half of them.
+            if points >= 1000 {
+                close(found.position.distortion.unwrap(), expected.position, 0.01);
+                close(found.speed.distortion.unwrap(), expected.speed, 0.01);
+                close(found.acceleration.distortion.unwrap(), expected.acceleration, 0.02);
+            }
+        }
+    }
+
+    #[test]
+    fn what_a_sensor_feels_of_segments_has_a_distortion_that_the_order_hardly_changes() {
+        let plan = plan(vec![sine(5e5, 0.006)]);
+        // 2 Hz felt with 40 Hz.
+        let of = |order| Spectrum::ideal(&plan, order, 65_536).unwrap().felt_by(Some(40.0));
+        let [low, high] = [of(300), of(1000)];
+        let thd = |found: &Harmonics| found.distortion.unwrap();
+        assert!(thd(&high.acceleration) > 1.7 * thd(&low.acceleration));
+        let [low, high] = [low, high].map(|found| found.acceleration_felt.unwrap());
+        assert!(thd(&high) < 1.03 * thd(&low), "{} {}", thd(&low), thd(&high));
+        let acceleration = of(40).acceleration;
+        // At the bandwidth itself, harmonic 20, half of the power is left; 19 is an odd one.
+        let part = low.amplitudes[18] / acceleration.amplitudes[18];
+        close(part, 1.0 / libm::sqrt(1.0 + 0.95 * 0.95), 1e-9);
+        assert_eq!(of(40).felt_by(None).acceleration_felt, None);
+    }
+
+    #[test]
     fn a_motion_that_does_not_repeat_has_lines_but_no_distortion() {
-        let cosine = Cosine { distance: Distance::Steps(6400.0), duration_s: 0.4, ramp_s: 0.2 };
+        let cosine =
+            Cosine { distance: Distance::Steps(6400.0), duration_s: 0.4, ramp_s: 0.2, ..Cosine::default() };
         let plan = plan(vec![Move::Cosine(cosine)]);
         let spectrum = Spectrum::ideal(&plan, 5, 4096).unwrap();
         assert!(!spectrum.stretch.periodic && spectrum.position.distortion.is_none());

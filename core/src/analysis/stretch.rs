@@ -13,10 +13,8 @@
 //! last ones, of the tick of its end the first ones, as many as it asks for there. Where the two
 //! go opposite ways in such a tick, only the difference is made, and what cancels is no one's.
 
-use crate::{
-    motion::{AxisPlan, Profile},
-    quantise::TickClock,
-};
+use super::made::Pulses;
+use crate::{motion::AxisPlan, quantise::TickClock, trace::Step};
 use alloc::vec::Vec;
 
 /// Longest transform.
@@ -40,14 +38,12 @@ impl Stretch {
     /// motion that takes no time.
     #[must_use]
     pub fn of(plan: &AxisPlan) -> Option<Self> {
-        let sine = plan.moves().iter().find_map(|planned| match &planned.profile {
-            Profile::SineSegments(sine) => Some((planned.start_s, sine)),
-            _ => None,
-        });
-        let stretch = match sine {
-            Some((start_s, sine)) => {
-                Self { start_s, period_s: sine.period_s(), periods: sine.periods(), periodic: true }
-            }
+        let repeating = plan
+            .moves()
+            .iter()
+            .find_map(|planned| planned.profile.repeats().map(|repeats| (planned.start_s, repeats)));
+        let stretch = match repeating {
+            Some((start_s, (period_s, periods))) => Self { start_s, period_s, periods, periodic: true },
             None => Self { start_s: 0.0, period_s: plan.duration_s(), periods: 1, periodic: false },
         };
         (stretch.period_s > 0.0).then_some(stretch)
@@ -63,6 +59,18 @@ impl Stretch {
     #[must_use]
     pub fn fundamental_hz(&self) -> f64 {
         1.0 / self.period_s
+    }
+
+    /// The pulses of a run that belong to the stretch, as [`Self::own_pulses`] tells them.
+    #[must_use]
+    pub fn pulses_of(&self, plan: &AxisPlan, run: &Pulses<'_>) -> Vec<(f64, i8)> {
+        let zero = run.zero();
+        let pulse = |(index, step): (usize, &Step)| {
+            let way = Step::direction(run.steps, index).signum() as i8;
+            Some((step.cycle.checked_sub(zero)?, way))
+        };
+        let pulses: Vec<(u64, i8)> = run.steps.iter().enumerate().filter_map(pulse).collect();
+        self.own_pulses(plan, TickClock::new(run.config.tick().0, run.config.clock_hz()), &pulses)
     }
 
     /// The pulses that belong to the stretch, see the module, as (time in s, +1 right or -1 left).
@@ -101,14 +109,9 @@ impl Stretch {
     }
 }
 
-/// A transform's length: a power of two, not beyond all bounds.
-pub(super) fn transform_points(points: usize) -> usize {
-    points.clamp(16, MOST_POINTS).next_power_of_two()
-}
-
 /// The ideal position over the stretch less its straight line, at equal steps of time.
 pub(super) fn sampled(plan: &AxisPlan, stretch: &Stretch, points: usize) -> Vec<f64> {
-    let points = transform_points(points);
+    let points = points.clamp(16, MOST_POINTS);
     let at = |part: f64| plan.position(stretch.start_s + stretch.length_s() * part);
     let first = at(0.0);
     let way = if stretch.periodic { 0.0 } else { at(1.0) - first };

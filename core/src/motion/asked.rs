@@ -2,7 +2,7 @@
 //! in a unit that the axis has, and every problem kept with its path.
 
 use super::MOST_SPEED;
-use crate::scenario::{Acceleration, Cause, Distance, Mechanics, NoSuchUnit, Problem, Speed};
+use crate::scenario::{Acceleration, Cause, Distance, Jerk, Mechanics, NoSuchUnit, Problem, Speed};
 use alloc::{format, string::String, vec::Vec};
 
 /// Longest way of a move in steps.
@@ -12,6 +12,9 @@ const LEAST_SPEED: f64 = 1e-6;
 /// Accelerations in steps/s^2.
 const LEAST_ACCELERATION: f64 = 1e-6;
 const MOST_ACCELERATION: f64 = 1e13;
+/// Jerks in steps/s^3.
+const LEAST_JERK: f64 = 1e-6;
+const MOST_JERK: f64 = 1e19;
 /// Times of a move in s.
 const LEAST_DURATION_S: f64 = 1e-6;
 const MOST_DURATION_S: f64 = 86_400.0;
@@ -115,6 +118,27 @@ impl<'s> Asked<'s> {
         let limits = (LEAST_ACCELERATION, MOST_ACCELERATION);
         self.in_own_unit(&path, given.value(), step, limits, given.unit())?;
         Some(acceleration)
+    }
+
+    /// A jerk in steps/s^3 above 0.
+    pub(super) fn jerk(&mut self, path: impl Into<String>, given: &Jerk) -> Option<f64> {
+        let path = path.into();
+        let (step, jerk) = self.convert(&path, given.value(), given.unit(), given.step(self.mechanics))?;
+        self.in_own_unit(&path, given.value(), step, (LEAST_JERK, MOST_JERK), given.unit())?;
+        Some(jerk)
+    }
+
+    /// A step in the unit of a distance, where the axis has that unit.
+    pub(super) fn step_of(&mut self, path: &str, given: &Distance) -> Option<f64> {
+        self.convert(path, given.value(), given.unit(), given.step(self.mechanics)).map(|(step, _)| step)
+    }
+
+    /// A position in steps, not rounded; `step` is one step in its unit.
+    pub(super) fn position(&mut self, path: impl Fn() -> String, given: &Distance, step: f64) -> Option<f64> {
+        if !(-MOST_STEPS * step..=MOST_STEPS * step).contains(&given.value()) {
+            self.in_own_unit(&path(), given.value(), step, (-MOST_STEPS, MOST_STEPS), given.unit())?;
+        }
+        Some(given.value() / step)
     }
 
     /// The size of a step in the quantity's unit, and the quantity in steps.

@@ -12,8 +12,13 @@
 //!
 //! The mirror makes s(T) exactly n. With t_s = 0 the speed jumps to f_max and back.
 
-use super::{Curve, Peaks, mirrored::Mirrored, words::in_words};
-use alloc::{format, string::String};
+use super::{
+    Curve, Peaks,
+    mirrored::Mirrored,
+    ramp::longest_ramp_s,
+    words::{in_words, ramp_up_to},
+};
+use alloc::string::String;
 use core::f64::consts::PI;
 
 /// A cosine S-curve.
@@ -43,8 +48,7 @@ impl Cosine {
     /// T - n/speed (B4), of which it can use up to T/2; `None` where even no ramp is too fast.
     #[must_use]
     pub fn longest_ramp_s(&self, speed: f64) -> Option<f64> {
-        let ramp_s = self.halves.duration_s - self.halves.count() / speed;
-        (ramp_s >= 0.0).then_some(ramp_s)
+        longest_ramp_s(self.halves.steps.unsigned_abs(), self.halves.duration_s, speed, 0.5)
     }
 
     /// Phase of the ramp at `t` after the start or before the end, 0 to pi; `None` in the plateau.
@@ -52,10 +56,20 @@ impl Cosine {
         (t < self.ramp_s).then(|| PI * t / self.ramp_s)
     }
 
+    /// f at `t` in parts of f_max.
+    pub(super) fn part(&self, t: f64) -> f64 {
+        // (1 - cos x)/2 = sin^2(x/2), which keeps its digits near 0.
+        self.phase(self.halves.nearer_end(t)).map_or(1.0, |phase| {
+            let sine = libm::sin(phase / 2.0);
+            sine * sine
+        })
+    }
+
     /// When the curve is at `place`, in s; `place` in steps without sign, 0 to all.
-    pub(super) fn time_s(&self, place: f64) -> f64 {
-        let left = self.halves.count() - place;
-        if place <= left { self.climb_s(place) } else { self.halves.duration_s - self.climb_s(left) }
+    /// Step k falls due at k - 1/2 (B1).
+    #[must_use]
+    pub fn time_s(&self, place: f64) -> f64 {
+        self.halves.time_s(place, |place| self.climb_s(place))
     }
 
     /// When the first half is at `place`: the phase solves x - sin(x) = pi*place/(steps of the ramp).
@@ -109,21 +123,17 @@ impl Curve for Cosine {
     fn peaks(&self) -> Peaks {
         let speed = self.top_speed;
         if self.ramp_s > 0.0 {
-            Peaks { speed, acceleration: speed * PI / (2.0 * self.ramp_s), jump: 0.0 }
+            let acceleration = speed * PI / (2.0 * self.ramp_s);
+            // f_max*pi^2/(2*t_s^2), at both ends of each ramp.
+            Peaks { speed, acceleration, jerk: acceleration * PI / self.ramp_s, ..Peaks::default() }
         } else {
-            Peaks { speed, acceleration: 0.0, jump: 0.0 }
+            Peaks { speed, ..Peaks::default() }
         }
     }
 
     fn detail(&self, limit_steps_s: f64) -> String {
-        let peaks = in_words(self.peaks());
-        match self.longest_ramp_s(limit_steps_s) {
-            Some(longest_s) => {
-                let longest_s = longest_s.min(self.duration_s() / 2.0);
-                format!("{peaks}; with a ramp of up to {longest_s:.4} s the bus can still follow")
-            }
-            None => peaks,
-        }
+        let longest_s = self.longest_ramp_s(limit_steps_s);
+        in_words(self.peaks()) + &ramp_up_to(longest_s, self.duration_s())
     }
 }
 

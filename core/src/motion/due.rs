@@ -26,23 +26,23 @@ impl AxisPlan {
     /// Steps of all moves, whichever way they go.
     #[must_use]
     pub fn step_count(&self) -> u64 {
-        self.moves().iter().fold(0, |sum: u64, planned| sum.saturating_add(step_count(&planned.profile)))
+        self.moves().iter().fold(0, |sum: u64, planned| sum.saturating_add(planned.profile.step_count()))
     }
 
     /// All steps in the order of their times, in cycles of a clock of `clock_hz`.
     pub fn due_steps(&self, clock_hz: u32) -> impl Iterator<Item = DueStep> + '_ {
+        self.due_instants(clock_hz).map(|(_, due)| due)
+    }
+
+    /// All steps, each with its instant before B1 rounds it, in cycles of a clock of `clock_hz`.
+    pub fn due_instants(&self, clock_hz: u32) -> impl Iterator<Item = (f64, DueStep)> + '_ {
         self.moves().iter().flat_map(move |planned| {
             let start = planned.start_s * f64::from(clock_hz);
-            due(&planned.profile, clock_hz)
-                .map(move |(cycles, right)| DueStep { cycle: cycle(start + cycles), right })
+            due(&planned.profile, clock_hz).map(move |(cycles, right)| {
+                let instant = start + cycles;
+                (instant, DueStep { cycle: cycle(instant), right })
+            })
         })
-    }
-}
-
-fn step_count(profile: &Profile) -> u64 {
-    match profile {
-        Profile::SineSegments(sine) => sine.step_count(),
-        one_way => one_way.steps().unsigned_abs(),
     }
 }
 
@@ -61,10 +61,20 @@ fn due(profile: &Profile, clock_hz: u32) -> Due<'_> {
         }
         Profile::Staircase(staircase) => Box::new(steps.map(move |k| (staircase.step_s(k) * clock, right))),
         Profile::Cosine(curve) => Box::new(places.map(move |place| (curve.time_s(place) * clock, right))),
+        Profile::Sliced(curve) => Box::new(places.map(move |place| (curve.time_s(place) * clock, right))),
+        Profile::Ramps(curve) => Box::new(places.map(move |place| (curve.time_s(place) * clock, right))),
         Profile::SineSegments(sine) => {
             let cycles_per_point = sine.point_s() * clock;
             Box::new(sine.due_points().map(move |(point, right)| (point * cycles_per_point, right)))
         }
+        Profile::Sine(sine) => {
+            let cycles_per_half = sine.period_s() / 2.0 * clock;
+            Box::new(sine.due_halves().map(move |(half, right)| (half * cycles_per_half, right)))
+        }
+        Profile::JerkLimited(curve) => {
+            Box::new(places.map(move |place| (curve.time_s(place) * clock, right)))
+        }
+        Profile::Points(points) => Box::new(points.due_s().map(move |(t, right)| (t * clock, right))),
         Profile::Constant(constant) => {
             let cycles_per_step = clock / libm::fabs(constant.speed(0.0));
             Box::new(places.map(move |place| (place * cycles_per_step, right)))

@@ -5,15 +5,25 @@
 //! ```text
 //! |   .----.     | a trapezoid has a joint at each end of its ramps and in its middle,
 //! |  /|  | |\    | a table or a staircase at each change of its rate,
-//! +-'-+--+-+-'-- | a cosine 64 in each ramp: no polynomial, so it is cut small
+//! +-'-+--+-+-'-- | a cosine 64 in each ramp, another shape as many or more, a sine 128 a period:
+//!                | these are no polynomials, so they are cut small
 //! ```
 
-use super::{AxisPlan, Curve, Profile, cosine::Cosine, polyline::POINTS, sine_segments::SineSegments};
+use super::{
+    AxisPlan, Curve, Profile, jerk_limited::JerkLimited, polyline::POINTS, sine::Sine,
+    sine_segments::SineSegments,
+};
 use alloc::vec::Vec;
 
 /// Parts that a cosine's ramp is cut into; even, so that the middle of the ramp, where its
 /// acceleration is greatest, is a joint.
 const RAMP_PARTS: u32 = 64;
+/// Parts that a sine's period is cut into; its extremes and its middle are joints.
+const PERIOD_PARTS: u32 = 128;
+/// Parts that a phase of constant jerk is cut into: the speed bends in it.
+const JERK_PARTS: u32 = 16;
+/// Parts that a smooth curve through points is cut into, about: its pieces in 4 to 64 each.
+const CURVE_PARTS: u32 = 256;
 
 /// A stretch of time in which a motion is smooth.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,10 +58,7 @@ impl Joints {
     #[must_use]
     pub fn of(plan: &AxisPlan) -> Self {
         let moves = plan.moves().iter().map(|planned| {
-            let period_s = match &planned.profile {
-                Profile::SineSegments(sine) => Some(sine.period_s()),
-                _ => None,
-            };
+            let period_s = planned.profile.repeats().map(|(period_s, _)| period_s);
             let end_s = planned.start_s + planned.profile.duration_s();
             Joined { start_s: planned.start_s, end_s, joints: joints(&planned.profile), period_s }
         });
@@ -136,7 +143,16 @@ fn greatest(a: f64, b: f64) -> f64 {
 fn joints(profile: &Profile) -> Vec<f64> {
     match profile {
         Profile::Trapezoid(curve) => mirrored([curve.ramp_s()].into_iter(), curve.duration_s()),
-        Profile::Cosine(curve) => mirrored(ramp(curve), curve.duration_s()),
+        Profile::Cosine(curve) => mirrored(ramp(curve.ramp_s, RAMP_PARTS), curve.duration_s()),
+        Profile::Sliced(curve) => {
+            let inside = 1..curve.starts_s.len().saturating_sub(1);
+            curve.starts_s.get(inside).map_or_else(Vec::new, <[f64]>::to_vec)
+        }
+        Profile::Ramps(curve) => {
+            // A shape that bends more than a cosine is cut into more pieces, and its middle stays a joint.
+            let times = 1 + (curve.ramp.sharpness() / 8.0) as u32;
+            mirrored(ramp(curve.ramp_s, times * RAMP_PARTS), curve.duration_s())
+        }
         Profile::TrapezoidTable(curve) => {
             // One interval more than the ramp: its slope to the next shows the ramp's end.
             let count = curve.steps().unsigned_abs();
@@ -150,13 +166,29 @@ fn joints(profile: &Profile) -> Vec<f64> {
             mirrored([curve.step_s(1)].into_iter().chain(rows), curve.duration_s())
         }
         Profile::SineSegments(sine) => quarters(sine),
+        Profile::Sine(sine) => period(sine),
+        Profile::JerkLimited(curve) => mirrored(phases(curve).into_iter(), curve.duration_s()),
+        Profile::Points(points) => points.joints_s(CURVE_PARTS).collect(),
         Profile::Constant(_) | Profile::Dwell(_) => Vec::new(),
     }
 }
 
-fn ramp(curve: &Cosine) -> impl Iterator<Item = f64> {
-    let ramp_s = curve.ramp_s;
-    (1..=RAMP_PARTS).map(move |part| ramp_s * f64::from(part) / f64::from(RAMP_PARTS))
+fn period(sine: &Sine) -> Vec<f64> {
+    let part_s = sine.period_s() / f64::from(PERIOD_PARTS);
+    (1..=PERIOD_PARTS).map(|part| f64::from(part) * part_s).collect()
+}
+
+/// The ends of the first three phases, and the parts of those of constant jerk.
+fn phases(curve: &JerkLimited) -> Vec<f64> {
+    let [rising_s, steady_s, ramp_s] = curve.joints_s();
+    let parts = |from_s: f64, to_s: f64| {
+        (1..=JERK_PARTS).map(move |part| from_s + (to_s - from_s) * f64::from(part) / f64::from(JERK_PARTS))
+    };
+    parts(0.0, rising_s).chain([steady_s]).chain(parts(steady_s, ramp_s)).collect()
+}
+
+fn ramp(ramp_s: f64, parts: u32) -> impl Iterator<Item = f64> {
+    (1..=parts).map(move |part| ramp_s * f64::from(part) / f64::from(parts))
 }
 
 /// These of the first half, the middle, and their mirror images.
@@ -209,7 +241,17 @@ mod tests {
         r#"{"trapezoid":{"distance":{"steps":2000},"method":"table"}}"#,
         r#"{"staircase":{"distance":{"steps":3000}}}"#,
         r#"{"cosine":{"distance":{"steps":3200},"duration_s":0.4,"ramp_s":0.1}}"#,
+        r#"{"cosine":{"distance":{"steps":3201},"ramp_s":0.1,"method":"sliced"}}"#,
+        r#"{"ramps":{"shape":"sigmoid","ramp_s":0.1}}"#,
+        r#"{"ramps":{"shape":"bezier"}}"#,
+        r#"{"ramps":{"shape":"straight","ramp_s":0.1}}"#,
+        r#"{"ramps":{"shape":"exponential","ramp_s":0.1}}"#,
+        r#"{"jerk_limited":{"distance":{"steps":-3000}}}"#,
+        r#"{"jerk_limited":{"distance":{"steps":40}}}"#,
+        r#"{"points":{"points":[[0,0],[0.1,50],[0.2,50],[0.5,-300]],"interpolation":"straight"}}"#,
+        r#"{"points":{"points":[[0,0],[0.1,50],[0.2,60],[0.5,-300]],"interpolation":"smooth"}}"#,
         r#"{"constant":{"distance":{"steps":100},"speed":{"steps_s":1000}}}"#,
+        r#"{"dwell":{"duration_s":0.1}},{"sine":{"amplitude":{"steps":500},"period_s":0.2,"periods":3}},{"dwell":{"duration_s":0.05}}"#,
         r#"{"dwell":{"duration_s":0.1}},{"sine_segments":{"amplitude":{"steps":500},"period_s":0.2,"periods":3}},{"dwell":{"duration_s":0.05}}"#,
     ];
 
@@ -237,16 +279,20 @@ mod tests {
 
     #[test]
     fn whole_periods_are_cut_once_and_stand_for_all() {
-        let plan = plan(MOVES[6]);
-        let joints = Joints::of(&plan);
-        for (from, to, wholes) in [(0.09, 0.71, 3.0), (0.15, 0.71, 2.0), (0.15, 0.6, 1.0), (0.15, 0.4, 1.0)] {
-            let (mut most, mut covered) = (0.0_f64, 0.0);
-            joints.pieces(from, to, &mut |piece| {
-                most = most.max(piece.times);
-                covered += piece.times * (piece.to_s - piece.from_s);
-            });
-            assert_eq!(most, wholes, "{from} to {to}");
-            assert!((covered - (to - from)).abs() < 1e-12, "{from} to {to}: {covered}");
+        for moves in MOVES.iter().filter(|moves| moves.contains(r#""sine"#)) {
+            let plan = plan(moves);
+            let joints = Joints::of(&plan);
+            for (from, to, wholes) in
+                [(0.09, 0.71, 3.0), (0.15, 0.71, 2.0), (0.15, 0.6, 1.0), (0.15, 0.4, 1.0)]
+            {
+                let (mut most, mut covered) = (0.0_f64, 0.0);
+                joints.pieces(from, to, &mut |piece| {
+                    most = most.max(piece.times);
+                    covered += piece.times * (piece.to_s - piece.from_s);
+                });
+                assert_eq!(most, wholes, "{from} to {to}");
+                assert!((covered - (to - from)).abs() < 1e-12, "{from} to {to}: {covered}");
+            }
         }
     }
 }

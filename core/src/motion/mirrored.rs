@@ -48,6 +48,13 @@ impl Mirrored {
         self.signed(if self.is_first_half(t) { travelled } else { self.count() - travelled })
     }
 
+    /// When the move is at `place`, in s, of when its first half is at a place; both in steps without
+    /// sign, `place` 0 to all.
+    pub(super) fn time_s(&self, place: f64, climb_s: impl Fn(f64) -> f64) -> f64 {
+        let left = self.count() - place;
+        if place <= left { climb_s(place) } else { self.duration_s - climb_s(left) }
+    }
+
     /// The acceleration at `t`, of its magnitude there.
     pub(super) fn acceleration(&self, t: f64, magnitude: f64) -> f64 {
         self.signed(if self.is_first_half(t) { magnitude } else { -magnitude })

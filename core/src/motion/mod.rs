@@ -9,7 +9,12 @@
 //! trapezoid_table  B2, table:  / staircase \ whole pulse rates and a timer's whole reloads
 //! staircase        B3          _-_           rates that are each held for some steps
 //! cosine           B4, exact:  ( S-curve )   so many steps in so much time
+//! sliced           B4, sliced: ( _-^-_ )     the same in slices of whole steps, as the document runs it
+//! ramps            B4          ( _/ \\_ )  the same with ramps of another shape (`ramp`)
 //! sine_segments    B5          \/\/          a sine as segments of fixed rate
+//! sine             B6          ~~            a sine with every step in its place
+//! jerk_limited     B6          ( 7 phases )  rest to rest under limits of speed, acceleration and jerk
+//! points           B6          . ' .         a curve through points, straight or smooth
 //! steady           B6          ---           constant rate, dwell
 //! ```
 //!
@@ -23,17 +28,25 @@ mod axis;
 pub mod cosine;
 mod due;
 pub mod excitation;
+mod hermite;
+pub mod jerk_limited;
 mod joints;
 mod mirrored;
 mod plan;
+pub mod points;
 pub(crate) mod polyline;
 mod profile;
+pub mod ramp;
+pub mod ramps;
+pub mod sine;
 pub mod sine_segments;
+pub mod sliced;
 pub mod staircase;
 pub mod staircase_table;
 pub mod steady;
 mod step_times;
 mod stepped;
+mod swing;
 pub mod trapezoid;
 pub mod trapezoid_table;
 mod words;

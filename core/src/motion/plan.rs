@@ -4,13 +4,16 @@
 //! (a top speed, a table's length) is judged when the curve is made.
 
 mod motor;
+mod points;
 mod staircase;
+mod timed;
 
 use super::{
     AxisPlan, Curve, MOST_SPEED, Profile,
     acceleration_table::AccelerationTable,
     asked::Asked,
-    cosine::Cosine,
+    jerk_limited::{JerkLimited, Limits},
+    sine::Sine,
     sine_segments::SineSegments,
     steady::{Constant, Dwell},
     trapezoid::Trapezoid,
@@ -28,6 +31,8 @@ const MOST_MOVES: usize = 64;
 const MOST_TABLE_ROWS: u64 = 1_000_000;
 /// Most segments that the quarters of all sines of a scenario may have together.
 const MOST_SEGMENTS: usize = 65_536;
+/// Most slices that all sliced cosines of a scenario may have together.
+const MOST_SLICES: u64 = 100_000;
 /// Longest time of an axis in s.
 const MOST_DURATION_S: f64 = 1e6;
 /// Most periods of a sine.
@@ -37,11 +42,12 @@ const MOST_PERIODS: f64 = 1e6;
 struct Left {
     table_rows: u64,
     segments: usize,
+    slices: u64,
 }
 
 impl Default for Left {
     fn default() -> Self {
-        Self { table_rows: MOST_TABLE_ROWS, segments: MOST_SEGMENTS }
+        Self { table_rows: MOST_TABLE_ROWS, segments: MOST_SEGMENTS, slices: MOST_SLICES }
     }
 }
 
@@ -110,8 +116,12 @@ fn plan_move(asked: &mut Asked<'_>, given: &Move, path: &str, left: &mut Left) -
     match given {
         Move::Trapezoid(given) => plan_trapezoid(asked, given, &format!("{path}.trapezoid"), left),
         Move::Staircase(given) => staircase::plan(asked, given, &format!("{path}.staircase"), left),
-        Move::Cosine(given) => plan_cosine(asked, given, &format!("{path}.cosine")),
+        Move::Cosine(given) => timed::plan_cosine(asked, given, &format!("{path}.cosine"), left),
+        Move::Ramps(given) => timed::plan_ramps(asked, given, &format!("{path}.ramps")),
         Move::SineSegments(given) => plan_sine(asked, given, &format!("{path}.sine_segments"), left),
+        Move::Sine(given) => plan_exact_sine(asked, given, &format!("{path}.sine")),
+        Move::JerkLimited(given) => plan_jerk_limited(asked, given, &format!("{path}.jerk_limited")),
+        Move::Points(given) => points::plan(asked, given, &format!("{path}.points")),
         Move::Constant(given) => {
             let steps = asked.distance(format!("{path}.constant.distance"), &given.distance);
             let speed = asked.speed(format!("{path}.constant.speed"), &given.speed);
@@ -176,20 +186,6 @@ fn plan_trapezoid(
     }
 }
 
-fn plan_cosine(asked: &mut Asked<'_>, given: &scenario::Cosine, path: &str) -> Option<Profile> {
-    let steps = asked.distance(format!("{path}.distance"), &given.distance);
-    let duration_s = asked.duration(format!("{path}.duration_s"), given.duration_s);
-    let ramp_s = asked.pause(format!("{path}.ramp_s"), given.ramp_s);
-    let (steps, duration_s, ramp_s) = (steps, duration_s?, ramp_s?);
-    if ramp_s > duration_s / 2.0 {
-        asked.refuse(format!("{path}.ramp_s"), Cause::RampTooLong { ramp_s, duration_s });
-        return None;
-    }
-    let curve = Cosine::new(steps?, duration_s, ramp_s);
-    hold_speed(asked, format!("{path}.duration_s"), curve.top_speed())?;
-    Some(Profile::Cosine(curve))
-}
-
 fn plan_sine(
     asked: &mut Asked<'_>,
     given: &scenario::SineSegments,
@@ -213,6 +209,24 @@ fn plan_sine(
     left.segments = still_left;
     hold_speed(asked, format!("{path}.period_s"), curve.peaks().speed)?;
     Some(Profile::SineSegments(curve))
+}
+
+fn plan_exact_sine(asked: &mut Asked<'_>, given: &scenario::Sine, path: &str) -> Option<Profile> {
+    let amplitude = asked.distance(format!("{path}.amplitude"), &given.amplitude);
+    let period_s = asked.duration(format!("{path}.period_s"), given.period_s);
+    asked.range(format!("{path}.periods"), given.periods.into(), 1.0, MOST_PERIODS, "")?;
+    let curve = Sine::new(amplitude?, period_s?, given.periods);
+    hold_speed(asked, format!("{path}.period_s"), curve.peaks().speed)?;
+    Some(Profile::Sine(curve))
+}
+
+fn plan_jerk_limited(asked: &mut Asked<'_>, given: &scenario::JerkLimited, path: &str) -> Option<Profile> {
+    let steps = asked.distance(format!("{path}.distance"), &given.distance);
+    let speed = asked.speed(format!("{path}.max_speed"), &given.max_speed);
+    let acceleration = asked.acceleration(format!("{path}.max_acceleration"), &given.max_acceleration);
+    let jerk = asked.jerk(format!("{path}.max_jerk"), &given.max_jerk);
+    let limits = Limits { speed: speed?, acceleration: acceleration?, jerk: jerk? };
+    Some(Profile::JerkLimited(JerkLimited::new(steps?, limits)))
 }
 
 /// Refuses a speed that no one gave but that follows from the numbers.

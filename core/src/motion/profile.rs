@@ -2,7 +2,12 @@
 
 use super::{
     cosine::Cosine,
+    jerk_limited::JerkLimited,
+    points::Points,
+    ramps::Ramps,
+    sine::Sine,
     sine_segments::SineSegments,
+    sliced::Sliced,
     staircase::Staircase,
     steady::{Constant, Dwell},
     trapezoid::Trapezoid,
@@ -32,7 +37,7 @@ pub trait Curve {
     /// Acceleration at `t` in steps/s^2; where the speed jumps it has no value, and none is given.
     fn acceleration(&self, t: f64) -> f64;
 
-    /// The greatest values within the move.
+    /// The greatest values within the move; what its start and its end jump by is the axis' to know.
     fn peaks(&self) -> Peaks;
 
     /// What a user wants to know of the move beside its times, in a few words, on a bus that can
@@ -51,6 +56,11 @@ pub struct Peaks {
     pub acceleration: f64,
     /// Jump of speed in steps/s: what a motor has to follow at once (its start-stop rate).
     pub jump: f64,
+    /// Jerk in steps/s^3 where the acceleration has no jump; 0 where the acceleration only jumps.
+    pub jerk: f64,
+    /// Jump of acceleration in steps/s^2; there the jerk has no bound. At a jump of speed it is that from
+    /// the acceleration before to the one after.
+    pub acceleration_jump: f64,
 }
 
 impl Peaks {
@@ -61,6 +71,8 @@ impl Peaks {
             speed: greater(self.speed, other.speed),
             acceleration: greater(self.acceleration, other.acceleration),
             jump: greater(self.jump, other.jump),
+            jerk: greater(self.jerk, other.jerk),
+            acceleration_jump: greater(self.acceleration_jump, other.acceleration_jump),
         }
     }
 }
@@ -81,8 +93,18 @@ pub enum Profile {
     Staircase(Staircase),
     /// Cosine S-curve (B4, `exact`).
     Cosine(Cosine),
+    /// Cosine S-curve in slices (B4, `sliced`).
+    Sliced(Sliced),
+    /// Ramps of another shape (B4).
+    Ramps(Ramps),
     /// Sine by segments (B5).
     SineSegments(SineSegments),
+    /// Exact sine (B6).
+    Sine(Sine),
+    /// Seven phases from rest to rest (B6).
+    JerkLimited(JerkLimited),
+    /// A curve through points (B6).
+    Points(Points),
     /// One rate (B6).
     Constant(Constant),
     /// Standing still (B6).
@@ -96,11 +118,39 @@ macro_rules! each {
             Profile::TrapezoidTable($curve) => $what,
             Profile::Staircase($curve) => $what,
             Profile::Cosine($curve) => $what,
+            Profile::Sliced($curve) => $what,
+            Profile::Ramps($curve) => $what,
             Profile::SineSegments($curve) => $what,
+            Profile::Sine($curve) => $what,
+            Profile::JerkLimited($curve) => $what,
+            Profile::Points($curve) => $what,
             Profile::Constant($curve) => $what,
             Profile::Dwell($curve) => $what,
         }
     };
+}
+
+impl Profile {
+    /// The period in s and how many of them, of a move that repeats itself.
+    #[must_use]
+    pub fn repeats(&self) -> Option<(f64, u32)> {
+        match self {
+            Self::SineSegments(sine) => Some((sine.period_s(), sine.periods())),
+            Self::Sine(sine) => Some((sine.period_s(), sine.periods())),
+            _ => None,
+        }
+    }
+
+    /// Steps of the move, whichever way they go.
+    #[must_use]
+    pub fn step_count(&self) -> u64 {
+        match self {
+            Self::SineSegments(sine) => sine.step_count(),
+            Self::Sine(sine) => sine.step_count(),
+            Self::Points(points) => points.step_count(),
+            one_way => one_way.steps().unsigned_abs(),
+        }
+    }
 }
 
 impl Curve for Profile {

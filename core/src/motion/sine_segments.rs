@@ -18,6 +18,7 @@ use super::{
     polyline::{Folded, POINTS, QUARTER, breakpoints, cosine_at, fold},
     profile::greater,
     round_half_up,
+    swing::Swing,
     words::grouped,
 };
 use alloc::{format, string::String, vec::Vec};
@@ -69,12 +70,7 @@ pub struct Memory {
 /// A sine by segments.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SineSegments {
-    /// Distance from the middle to an extreme in whole steps.
-    amplitude: u64,
-    /// The motion starts at the right extreme; with a negative amplitude at the left one.
-    starts_right: bool,
-    period_s: f64,
-    periods: u32,
+    swing: Swing,
     /// The first quarter.
     ///
     /// Invariant: begins at point 0, ends at [`QUARTER`], without gaps.
@@ -107,7 +103,7 @@ impl SineSegments {
                 })
             })
             .collect();
-        Self { amplitude: steps, starts_right: amplitude >= 0, period_s, periods, segments }
+        Self { swing: Swing::new(amplitude, period_s, periods), segments }
     }
 
     /// The segments of the first quarter, from the extreme to the middle.
@@ -121,27 +117,28 @@ impl SineSegments {
     pub fn memory(&self) -> Memory {
         let long = self.segments.iter().any(|segment| segment.steps > u16::MAX.into());
         let each = if long { 8 } else { 6 };
-        Memory { segments: self.segments.len() as u64 * each, intervals: self.amplitude * 4 }
+        Memory { segments: self.segments.len() as u64 * each, intervals: self.swing.amplitude * 4 }
     }
 
     /// Time of a period in s.
     #[must_use]
     pub fn period_s(&self) -> f64 {
-        self.period_s
+        self.swing.period_s
     }
 
     /// How many periods.
     #[must_use]
     pub fn periods(&self) -> u32 {
-        self.periods
+        self.swing.periods
     }
 
     /// The segments of all quarters, one after another.
     pub(crate) fn pieces(&self) -> impl Iterator<Item = Piece> + '_ {
-        let quarters = (0..self.periods).flat_map(|period| (0..4_u16).map(move |quarter| (period, quarter)));
+        let quarters =
+            (0..self.swing.periods).flat_map(|period| (0..4_u16).map(move |quarter| (period, quarter)));
         quarters.flat_map(move |(period, quarter)| {
             let origin = f64::from(period) * f64::from(POINTS);
-            let right = self.starts_right == (quarter >= 2);
+            let right = self.swing.starts_right == (quarter >= 2);
             (0..self.segments.len()).map(move |index| {
                 // Every other quarter goes through the segments from the middle to the extreme.
                 let (mirrored, last) = (quarter % 2 == 1, self.segments.len() - 1);
@@ -170,20 +167,18 @@ impl SineSegments {
 
     /// Time of a point of the angle in s.
     pub(crate) fn point_s(&self) -> f64 {
-        self.period_s / f64::from(POINTS)
+        self.swing.period_s / f64::from(POINTS)
     }
 
     /// Steps of all periods, there and back.
     #[must_use]
     pub fn step_count(&self) -> u64 {
-        4 * self.amplitude * u64::from(self.periods)
+        self.swing.step_count()
     }
 
     /// Place within a period at `t`, and the segment there.
     fn place(&self, t: f64) -> (Folded, Option<&Segment>) {
-        let turns = t / self.period_s;
-        let part = greater(0.0, turns - libm::floor(turns));
-        let folded = fold(part * f64::from(POINTS));
+        let folded = fold(self.swing.part(t) * f64::from(POINTS));
         let found = self.segments.partition_point(|segment| {
             // A boundary belongs to the segment after it in time.
             let end = f64::from(segment.to);
@@ -191,10 +186,6 @@ impl SineSegments {
         });
         let segment = self.segments.get(found).or(self.segments.last());
         (folded, segment)
-    }
-
-    fn signed(&self, rightwards: f64) -> f64 {
-        if self.starts_right { rightwards } else { -rightwards }
     }
 
     /// Speed in the segment at `t`, right positive where the start is the right extreme.
@@ -207,7 +198,7 @@ impl SineSegments {
 
 impl Curve for SineSegments {
     fn duration_s(&self) -> f64 {
-        self.period_s * f64::from(self.periods)
+        self.swing.duration_s()
     }
 
     fn steps(&self) -> i64 {
@@ -223,18 +214,19 @@ impl Curve for SineSegments {
         let along = (folded.point - f64::from(segment.from)) / f64::from(segment.to - segment.from);
         let from_middle = segment.from_steps as f64 - segment.steps as f64 * along;
         let place = if folded.right { from_middle } else { -from_middle };
-        self.signed(place - self.amplitude as f64)
+        self.swing.signed(place - self.swing.amplitude as f64)
     }
 
     fn speed(&self, t: f64) -> f64 {
         let last = self.segments.first().map_or(0.0, |segment| segment.rate);
-        if t >= self.duration_s() { self.signed(last) } else { self.signed(self.rate_at(t)) }
+        self.swing.signed(if t >= self.duration_s() { last } else { self.rate_at(t) })
     }
 
     fn acceleration(&self, _: f64) -> f64 {
         0.0
     }
 
+    /// Between two segments the speed jumps; the acceleration is 0 throughout, and so is the jerk.
     fn peaks(&self) -> Peaks {
         let mut peaks = Peaks::default();
         let mut before = None;

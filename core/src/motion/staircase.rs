@@ -205,13 +205,14 @@ impl Curve for Staircase {
         0.0
     }
 
+    /// Between two rows the speed jumps; the acceleration is 0 throughout, and so is the jerk.
     fn peaks(&self) -> Peaks {
         let rates = (1..=self.ramp_rows()).map(|n| self.table.rate(n)).chain(self.plateau_rate());
         let mut peaks = Peaks::default();
         let mut before = None;
         for rate in rates {
             let jump = before.map_or(0.0, |before| rate.abs_diff(before) as f64);
-            peaks = peaks.or(Peaks { speed: rate as f64, acceleration: 0.0, jump });
+            peaks = peaks.or(Peaks { speed: rate as f64, jump, ..Peaks::default() });
             before = Some(rate);
         }
         peaks
@@ -342,7 +343,7 @@ mod tests {
     #[test]
     fn peaks_are_the_highest_rate_and_the_greatest_jump() {
         let made = staircase(-500, 1.0, 1100, ShortMove::Document);
-        assert_eq!(made.peaks(), Peaks { speed: 1100.0, acceleration: 0.0, jump: 30.0 });
+        assert_eq!(made.peaks(), Peaks { speed: 1100.0, jump: 30.0, ..Peaks::default() });
         assert_eq!((made.speed(0.0), made.speed(made.duration_s())), (-1000.0, -1000.0));
         assert_eq!(made.speed(made.duration_s() / 2.0), -1100.0);
         let made = staircase(240, 1.0, 1100, ShortMove::Document);

@@ -57,7 +57,7 @@ impl Curve for Constant {
     }
 
     fn peaks(&self) -> Peaks {
-        Peaks { speed: self.speed, acceleration: 0.0, jump: 0.0 }
+        Peaks { speed: self.speed, ..Peaks::default() }
     }
 
     fn detail(&self, _: f64) -> String {

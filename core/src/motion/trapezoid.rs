@@ -106,7 +106,10 @@ impl Curve for Trapezoid {
 
     fn peaks(&self) -> Peaks {
         let acceleration = if self.ramp_s > 0.0 { self.acceleration } else { 0.0 };
-        Peaks { speed: self.peak_speed, acceleration, jump: 0.0 }
+        // At the tip of a triangle the acceleration turns round; else it ends where the plateau begins.
+        let turns = 2.0 * self.ramp_s >= self.halves.duration_s;
+        let acceleration_jump = if turns { 2.0 * acceleration } else { acceleration };
+        Peaks { speed: self.peak_speed, acceleration, acceleration_jump, ..Peaks::default() }
     }
 }
 

@@ -240,11 +240,19 @@ impl Curve for TrapezoidTable {
         self.signed(if i + 1 < self.count() { self.acceleration_into(i + 1) } else { 0.0 })
     }
 
+    /// The slope that stands for the acceleration is held for an interval and then jumps; between its
+    /// jumps there is no jerk.
     fn peaks(&self) -> Peaks {
         let mut peaks = Peaks::default();
+        // The second half of the table is the first, mirrored; the slope after the ramp is where they meet.
         for i in 0..=self.ramp {
+            let (slope, next) = (self.acceleration_into(i), self.acceleration_into(i + 1));
             peaks.speed = greater(peaks.speed, self.interval_speed(i));
-            peaks.acceleration = greater(peaks.acceleration, libm::fabs(self.acceleration_into(i)));
+            peaks.acceleration = greater(peaks.acceleration, libm::fabs(slope));
+            if i > 0 {
+                let jump = libm::fabs(next - slope);
+                peaks.acceleration_jump = greater(peaks.acceleration_jump, jump);
+            }
             let jump = self.interval_speed(i) - self.interval_speed(i.saturating_sub(1));
             peaks.jump = greater(peaks.jump, libm::fabs(jump));
         }

@@ -23,6 +23,14 @@ pub(super) fn in_words(peaks: Peaks) -> String {
     format!("peak {} steps/s, {} steps/s\u{b2}", grouped(peaks.speed), grouped(peaks.acceleration))
 }
 
+/// The longest ramp with which a bus still follows a move of `duration_s`, where there is one.
+pub(super) fn ramp_up_to(longest_s: Option<f64>, duration_s: f64) -> String {
+    longest_s.map_or_else(String::new, |longest_s| {
+        let longest_s = longest_s.min(duration_s / 2.0);
+        format!("; with a ramp of up to {longest_s:.4} s the bus can still follow")
+    })
+}
+
 /// So many of something, with its plural where it is one.
 pub(super) fn count(number: u64, one: &str, several: &str) -> String {
     format!("{} {}", grouped(number as f64), if number == 1 { one } else { several })

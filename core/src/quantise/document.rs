@@ -29,6 +29,8 @@ struct Rate {
     each: f64,
     count: u64,
     right: bool,
+    /// From the end of the rate before to its own.
+    lasts: f64,
 }
 
 /// The plan's own table, with times in units of `format`.
@@ -50,7 +52,7 @@ pub(super) fn document(plan: &AxisPlan, format: EntryFormat, clock_hz: u32) -> R
                 table.rate(Rate { first, ..rate })?;
                 last = now + rate.first + (rate.count - 1) as f64 * rate.each;
             }
-            now += rate.count as f64 * rate.each;
+            now += rate.lasts;
         }
     }
     Ok(SegmentList { start: START, segments: table.segments })
@@ -60,16 +62,23 @@ pub(super) fn document(plan: &AxisPlan, format: EntryFormat, clock_hz: u32) -> R
 ///
 /// A row of an acceleration table is a reload of 2 bytes, or of 4 where one needs them; one of a staircase a rate and its
 /// steps, 4 bytes together; sine segments are those of a quarter ([`SineSegments::memory`]). A constant rate is a row of a
-/// 4-byte interval and a 4-byte count, a dwell a 4-byte time.
+/// 4-byte interval and a 4-byte count, a dwell a 4-byte time. A sliced move has its steps and their rate, 2 bytes each, for each
+/// slice.
 pub(super) fn document_bytes(plan: &AxisPlan) -> Option<u64> {
     plan.moves().iter().try_fold(0, |sum: u64, planned| {
         let bytes = match &planned.profile {
             Profile::TrapezoidTable(table) => table.kept_rows() * reload_bytes(table),
             Profile::Staircase(staircase) => 4 * (staircase.ramp_rows() + 1),
             Profile::SineSegments(sine) => sine.memory().segments,
+            Profile::Sliced(sliced) => 4 * sliced.slice_count(),
             Profile::Constant(_) => 8,
             Profile::Dwell(_) => 4,
-            Profile::Trapezoid(_) | Profile::Cosine(_) => return None,
+            Profile::Trapezoid(_)
+            | Profile::Cosine(_)
+            | Profile::Ramps(_)
+            | Profile::Sine(_)
+            | Profile::JerkLimited(_)
+            | Profile::Points(_) => return None,
         };
         Some(sum + bytes)
     })
@@ -83,7 +92,8 @@ fn reload_bytes(table: &TrapezoidTable) -> u64 {
 fn rates(profile: &Profile, clock_hz: u32) -> Result<Box<dyn Iterator<Item = Rate> + '_>, Cause> {
     let clock = f64::from(clock_hz);
     let right = profile.steps() >= 0;
-    let held = move |each: f64, count: u64| Rate { first: each, each, count, right };
+    let held =
+        move |each: f64, count: u64| Rate { first: each, each, count, right, lasts: count as f64 * each };
     Ok(match profile {
         Profile::TrapezoidTable(table) => {
             let rows = table.kept_rows() - 1;
@@ -106,13 +116,23 @@ fn rates(profile: &Profile, clock_hz: u32) -> Result<Box<dyn Iterator<Item = Rat
                 staircase.plateau_rate().map(|rate| held(clock / rate as f64, staircase.plateau_steps()));
             Box::new((1..=rows).map(row).chain(plateau).chain((1..=rows).rev().map(row)))
         }
+        Profile::Sliced(sliced) => Box::new(sliced.slices().map(move |(from, to, count)| {
+            let lasts = (to - from) * clock;
+            let each = lasts / f64::from(count.max(1));
+            Rate { first: each / 2.0, each, count: count.into(), right, lasts }
+        })),
         Profile::SineSegments(sine) => Box::new(sine_rates(sine, clock)),
         Profile::Constant(constant) => {
             let each = clock / libm::fabs(constant.speed(0.0));
             Box::new([Rate { first: each / 2.0, ..held(each, profile.steps().unsigned_abs()) }].into_iter())
         }
         Profile::Dwell(_) => Box::new(core::iter::empty()),
-        Profile::Trapezoid(_) | Profile::Cosine(_) => {
+        Profile::Trapezoid(_)
+        | Profile::Cosine(_)
+        | Profile::Ramps(_)
+        | Profile::Sine(_)
+        | Profile::JerkLimited(_)
+        | Profile::Points(_) => {
             let detail = "a move of this kind has no table of its own; ask for the exact or a compressed list, or plan \
                           the move with a table";
             return Err(Cause::Conflict { detail });
@@ -124,7 +144,8 @@ fn sine_rates(sine: &SineSegments, clock: f64) -> impl Iterator<Item = Rate> + '
     let cycles_per_point = sine.point_s() * clock;
     sine.pieces().filter(|piece| piece.steps > 0).map(move |piece| {
         let each = (piece.to - piece.from) * cycles_per_point / piece.steps as f64;
-        Rate { first: each / 2.0, each, count: piece.steps, right: piece.right }
+        let lasts = piece.steps as f64 * each;
+        Rate { first: each / 2.0, each, count: piece.steps, right: piece.right, lasts }
     })
 }
 

@@ -62,7 +62,8 @@ impl Campaign {
     #[must_use]
     pub fn small(protocol: Protocol) -> Scenario {
         let axis = |steps, ramp_s| {
-            let cosine = Cosine { distance: Distance::Steps(steps), duration_s: 0.08, ramp_s };
+            let cosine =
+                Cosine { distance: Distance::Steps(steps), duration_s: 0.08, ramp_s, ..Cosine::default() };
             Axis { moves: vec![Move::Cosine(cosine)], ..Axis::default() }
         };
         let mut line = Line { protocol, ..Line::default() };

@@ -292,9 +292,10 @@ impl Scenario {
         };
         judge.range("analysis.axis", analysis.axis, 0, axes.clamp(1, MAX_CHANNELS) as u64 - 1, "");
         judge.range("analysis.order", analysis.order, 2, 1000, "");
-        judge.range("analysis.fft_length", analysis.fft_length, 256, 65_536, "");
-        if (256..=65_536).contains(&analysis.fft_length) && !analysis.fft_length.is_power_of_two() {
-            judge.add("analysis.fft_length", Cause::NotPowerOfTwo { given: analysis.fft_length });
+        judge.range("analysis.fft_length", analysis.fft_length, 16, 65_536, "");
+        let (least, most) = (1e-3, 1e9);
+        if let Some(given) = analysis.sensor_hz.filter(|given| !(least..=most).contains(given)) {
+            judge.add("analysis.sensor_hz", Cause::Range { given, least, most, unit: "Hz" });
         }
     }
 }
@@ -355,9 +356,15 @@ mod tests {
             (r#"{"bus":{"pulse_width_cycles":281,"dir_setup_cycles":40}}"#, &["bus.step_period_cycles"]),
             (r#"{"bus":{"pulse_width_cycles":320,"dir_setup_cycles":0}}"#, &["bus.step_period_cycles"]),
             (
-                r#"{"analysis":{"axis":1,"order":1,"fft_length":1000}}"#,
-                &["analysis.axis", "analysis.order", "analysis.fft_length"],
+                r#"{"analysis":{"axis":1,"order":1,"fft_length":15,"sensor_hz":0}}"#,
+                &["analysis.axis", "analysis.order", "analysis.fft_length", "analysis.sensor_hz"],
             ),
+            (
+                r#"{"analysis":{"fft_length":65537,"sensor_hz":1e10}}"#,
+                &["analysis.fft_length", "analysis.sensor_hz"],
+            ),
+            (r#"{"analysis":{"fft_length":1000,"sensor_hz":0.001}}"#, &[]),
+            (r#"{"analysis":{"fft_length":16,"sensor_hz":null}}"#, &[]),
             (r#"{"source":{"packets":{"packets":["80","8001"]}}}"#, &["source.packets.packets[1]"]),
             (
                 r#"{"source":{"line":{"sends":[{"start_cycle":0,"bytes":"00"}]}}}"#,

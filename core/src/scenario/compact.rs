@@ -127,7 +127,16 @@ words! {
     super::Protocol { Raw = "raw", Framed = "framed", }
     super::Pulses { Simultaneous = "simultaneous", Staggered = "staggered", }
     super::MotionEngine { Ticks = "ticks", Segments = "segments", }
+    super::CosineMethod { Exact = "exact", Sliced = "sliced", }
+    super::RampShape {
+        Sigmoid = "sigmoid",
+        Bezier = "bezier",
+        Straight = "straight",
+        Exponential = "exponential",
+    }
     super::ShortMove { Document = "document", TurnRound = "turn_round", }
+    super::Interpolation { Straight = "straight", Smooth = "smooth", }
+    super::PointUnit { Steps = "steps", Millimetres = "mm", Degrees = "deg", }
     super::TrapezoidMethod { Table = "table", Exact = "exact", }
     super::DriverModel {
         A4988 = "a4988",

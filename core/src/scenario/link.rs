@@ -192,6 +192,7 @@ mod tests {
                 distance: Distance::Steps(f64::from(1000 + 137 * i)),
                 duration_s: 0.4 + f64::from(i) / 64.0,
                 ramp_s: 0.1 + f64::from(i) / 100.0,
+                ..Cosine::default()
             })],
             ..Axis::default()
         };
@@ -300,7 +301,7 @@ mod tests {
     #[test]
     fn a_message_names_some_problems_and_counts_the_others() {
         let problem =
-            |count| Problem::new("bus.slots", crate::scenario::Cause::NotPowerOfTwo { given: count });
+            |count: u32| Problem::new("bus.slots", crate::scenario::Cause::NoSteps { steps: count.into() });
         let told = |count| LinkError::Scenario((0..count).map(problem).collect()).to_string();
         assert!(told(8).matches("bus.slots").count() == 8 && !told(8).contains("more"));
         assert!(told(1000).matches("bus.slots").count() == 8 && told(1000).ends_with("; and 992 more"));

@@ -19,12 +19,14 @@ mod hex;
 mod judge;
 pub mod link;
 mod motor;
+mod points;
 pub mod presets;
 mod problem;
 mod quantity;
 mod read;
 mod recorded;
 mod segments;
+mod table;
 mod tracked;
 
 pub(crate) use check::MOST_FURTHER;
@@ -35,10 +37,14 @@ pub(crate) use config::most_baud;
 pub use drive::{Driver, DriverModel, TimingRules};
 pub use hex::Hex;
 pub use motor::{MOST_PEAK_CURRENT, Motor};
+pub(crate) use points::MOST_POINTS;
+pub use points::{Interpolation, Point, PointUnit, Points};
 pub use problem::{Cause, Problem};
-pub use quantity::{Acceleration, Direct, Distance, Mechanics, NoSuchUnit, Rotary, Screw, Speed, Wheel};
-pub use recorded::{BadTable, MOST_TABLE_BYTES};
+pub use quantity::{
+    Acceleration, Direct, Distance, Jerk, Mechanics, NoSuchUnit, Rotary, Screw, Speed, Wheel,
+};
 pub use segments::{ChannelSegments, DwellSegment, Segment, SegmentLists, StepSegment};
+pub use table::{BadTable, MOST_TABLE_BYTES};
 
 use alloc::{string::String, vec, vec::Vec};
 use compact::{choices, settings};
@@ -318,8 +324,16 @@ choices! {
         Staircase(Staircase) = "staircase",
         /// Cosine S-curve with exact distance and exact time (B4).
         Cosine(Cosine) = "cosine",
+        /// Ramps of another shape with exact distance and exact time (B4).
+        Ramps(Ramps) = "ramps",
         /// Sine as segments of fixed rate (B5).
         SineSegments(SineSegments) = "sine_segments",
+        /// Sine with every step in its place (B6).
+        Sine(Sine) = "sine",
+        /// Seven phases from rest to rest (B6).
+        JerkLimited(JerkLimited) = "jerk_limited",
+        /// A curve through points (B6).
+        Points(Points) = "points",
         /// One rate from end to end (B6).
         Constant(Constant) = "constant",
         /// Standing still (B6).
@@ -400,7 +414,56 @@ settings! {
         pub duration_s: f64 = 0.4,
         /// Time of each ramp in s, at most half of the duration.
         pub ramp_s: f64 = 0.2,
+        /// Whose step times.
+        pub method: CosineMethod = CosineMethod::Exact,
+        /// Length of a slice in s, the document's TS, 0.00001 to 0.1; only `sliced` uses it.
+        pub slice_s: f64 = 0.001,
     }
+}
+
+/// Whose step times a cosine S-curve has (B4).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CosineMethod {
+    /// Every step where the ideal curve crosses its half-integer (B1).
+    #[default]
+    Exact,
+    /// The document's: slices of whole steps, compensated until their sum is right.
+    Sliced,
+}
+
+settings! {
+    /// Ramps of a shape (B4): so many steps in so much time, as the cosine S-curve has it.
+    pub struct Ramps {
+        /// How far; negative is left.
+        pub distance: Distance = Distance::Steps(3200.0),
+        /// Time of the whole move in s.
+        pub duration_s: f64 = 0.4,
+        /// Time of each ramp in s, at most half of the duration.
+        pub ramp_s: f64 = 0.2,
+        /// What the ramps look like.
+        pub shape: RampShape = RampShape::Sigmoid,
+        /// The x of 1/(1 + e^-x) goes from minus to plus this over a ramp, 0.1 to 20; only the sigmoid uses it.
+        pub sigmoid_range: f64 = 6.0,
+        /// Time constants of the exponential within a ramp, 0.1 to 20; only the exponential uses it.
+        pub time_constants: f64 = 4.0,
+    }
+}
+
+/// What a ramp looks like (B4; Song, Han, Lu 2021, table 1).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RampShape {
+    /// The middle of 1/(1 + e^-x), shifted and stretched so that it begins at rest and ends at top speed: one that
+    /// is only cut off never gets there.
+    #[default]
+    Sigmoid,
+    /// 3x^2 - 2x^3: a cubic Bezier curve with the control values 0, 0, 1, 1.
+    Bezier,
+    /// Uniform acceleration, a trapezoid.
+    Straight,
+    /// The approach of an exponential: steep at first, as a motor's torque falls with its rate.
+    Exponential,
 }
 
 settings! {
@@ -414,6 +477,32 @@ settings! {
         pub periods: u32 = 4,
         /// Largest deviation of a segment from the sine, d1, in parts of the amplitude.
         pub max_deviation: f64 = 0.006,
+    }
+}
+
+settings! {
+    /// Exact sine (B6, B1's rule), from the right extreme to the left one and back.
+    pub struct Sine {
+        /// From the middle to an extreme.
+        pub amplitude: Distance = Distance::Steps(1000.0),
+        /// Time of one period in s.
+        pub period_s: f64 = 0.5,
+        /// How many whole periods.
+        pub periods: u32 = 4,
+    }
+}
+
+settings! {
+    /// Jerk-limited move of seven phases (B6): from rest to rest as fast as its limits let it.
+    pub struct JerkLimited {
+        /// How far; negative is left.
+        pub distance: Distance = Distance::Steps(3200.0),
+        /// Greatest speed.
+        pub max_speed: Speed = Speed::StepsPerSecond(10_000.0),
+        /// Greatest acceleration and deceleration.
+        pub max_acceleration: Acceleration = Acceleration::StepsPerSecond2(100_000.0),
+        /// Greatest change of the acceleration in a second.
+        pub max_jerk: Jerk = Jerk::StepsPerSecond3(2_000_000.0),
     }
 }
 
@@ -481,7 +570,10 @@ settings! {
         pub axis: u8 = 0,
         /// Highest harmonic that counts for the distortion, 2 to 1000.
         pub order: u16 = 40,
-        /// Length of the transform a period of the motion, a power of two, 256 to 65536.
+        /// Length of the transform a period of the motion, 16 to 65536.
         pub fft_length: u32 = 4096,
+        /// Bandwidth (-3 dB, first order) in Hz of the sensor that feels the acceleration, 0.001 to 1e9;
+        /// without it nothing is felt.
+        pub sensor_hz: Option<f64> = None,
     }
 }

@@ -27,6 +27,7 @@ const SONOBE: &str = "Sonobe 2011: acceleration table";
 const PATENT: &str = "RU 2704486, 2019: tick packets";
 const ZHANG: &str = "Zhang 2012: fixed-length controller";
 const FRAMED: &str = "The framed protocol: checked, answered, repeated";
+const PROFILES: &str = "Further profiles: exact sine, jerk-limited, points";
 const DRIVERS: &str = "Drivers' data sheets: timing";
 
 macro_rules! presets {
@@ -43,12 +44,17 @@ macro_rules! presets {
 presets! {
     SONG => "song-2021-one-turn";
     SONG => "song-2021-plateau";
+    SONG => "song-2021-sliced";
+    SONG => "song-2021-ramps";
     SONOBE => "sonobe-2011-table";
     SONOBE => "sonobe-2011-segments";
     ZHANG => "zhang-2012-fixed-length";
     ZHANG => "zhang-2012-staircase";
     SINE => "sine-2022-d00054";
     SINE => "sine-2022-d0006";
+    PROFILES => "exact-sine";
+    PROFILES => "jerk-limited";
+    PROFILES => "points";
     PATENT => "patent-2019-four-motors";
     PATENT => "patent-2019-sixteen-motors";
     PATENT => "patent-2019-staggered";

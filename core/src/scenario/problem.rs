@@ -70,11 +70,6 @@ pub enum Cause {
         /// Unit of all three, empty for a plain count.
         unit: &'static str,
     },
-    /// A number that is none of the allowed ones.
-    NotPowerOfTwo {
-        /// The number.
-        given: u32,
-    },
     /// A text, list or byte string of a length that is not allowed.
     Length {
         /// Its length.
@@ -178,10 +173,37 @@ pub enum Cause {
         /// Greatest allowed.
         most: f64,
     },
+    /// Slices so short that at top speed none has a step (B4).
+    SliceTooShort {
+        /// Top speed in steps/s.
+        rate: f64,
+        /// A slice in s.
+        slice_s: f64,
+    },
+    /// Slices that cannot have all steps, however high the rate (B4).
+    SlicesTooFew {
+        /// How many slices.
+        slices: u64,
+        /// A slice in s.
+        slice_s: f64,
+        /// Steps of the move.
+        steps: u64,
+        /// The highest rate that was tried, in steps/s.
+        rate: f64,
+    },
     /// A distance that is less than a step.
     NoSteps {
         /// The distance in steps, before rounding.
         steps: f64,
+    },
+    /// A point whose time does not come after that of the one before (B6).
+    NotRising {
+        /// Its time in s.
+        given: f64,
+        /// That of the point before.
+        before: f64,
+        /// The least time between both.
+        least: f64,
     },
     /// A tick that needs more steps than it has slots (B7).
     TooManySteps {
@@ -318,6 +340,9 @@ fn shown(unit: &str) -> &str {
         "steps_s2" => "steps/s^2",
         "mm_s2" => "mm/s^2",
         "deg_s2" => "deg/s^2",
+        "steps_s3" => "steps/s^3",
+        "mm_s3" => "mm/s^3",
+        "deg_s3" => "deg/s^3",
         other => other,
     }
 }
@@ -333,7 +358,6 @@ impl Cause {
                 | Self::Type { .. }
                 | Self::NewerVersion { .. }
                 | Self::Range { .. }
-                | Self::NotPowerOfTwo { .. }
                 | Self::NoSteps { .. }
                 | Self::NoSegmentSteps
         )
@@ -358,9 +382,6 @@ impl fmt::Display for Cause {
                     write!(f, " to {}", Short(*most))?;
                 }
                 write!(f, "{space}{unit}")
-            }
-            Self::NotPowerOfTwo { given } => {
-                write!(f, "{given} is not a power of two; give 256, 512, 1024 … 65536")
             }
             Self::Length { given, least, most, of } if least == most => {
                 write!(f, "{given} {of}; give {least}")
@@ -425,6 +446,11 @@ impl fmt::Display for Cause {
             Self::NoSteps { steps } => {
                 write!(f, "{} steps is less than one step; give at least one step, or a dwell", Short(*steps))
             }
+            Self::NotRising { given, before, least } => write!(
+                f,
+                "a time of {given} s after one of {before} s; give times that rise by {} s at least",
+                Short(*least)
+            ),
             Self::TooManySteps { tick, steps, slots, rate, limit } => write!(
                 f,
                 "tick {tick} needs {steps} steps ({} steps/s), its {slots} slots give at most {} steps/s; slow the motion, or give a shorter step period",
@@ -481,6 +507,20 @@ impl fmt::Display for Cause {
                 f,
                 "ticks of {tick_cycles} cycles beside ticks of {first_cycles} on the first controller; paced packets need one length (slots x step period): change one of them, or choose the framed protocol"
             ),
+            Self::SliceTooShort { rate, slice_s } => write!(
+                f,
+                "at the top speed of {} steps/s a slice of {} s has {} steps, so none would have one; give slices of at least {} s, more distance or less time, or choose the exact method",
+                Short(*rate),
+                Short(*slice_s),
+                Short(rate * slice_s),
+                Short(1.0 / rate)
+            ),
+            Self::SlicesTooFew { slices, slice_s, steps, rate } => write!(
+                f,
+                "slices of {} s, of which there are {slices}, never have {steps} steps together, not even at {} steps/s: a slice has the rate of its start; give shorter slices, or choose the exact method",
+                Short(*slice_s),
+                Short(*rate)
+            ),
             Self::Conflict { detail } => f.write_str(detail),
             Self::TooMuch { given, most, of } => write!(
                 f,
@@ -491,6 +531,7 @@ impl fmt::Display for Cause {
                     "table rows" => "give a higher acceleration or a lower top speed",
                     "moves" => "give fewer moves",
                     "steps" => "give a shorter motion, or run it by ticks",
+                    "slices" => "give longer slices or less time, or choose the exact method",
                     "sine segments" => "give a greater largest deviation or fewer sines",
                     "bytes of all frames and their repetitions" => {
                         "give a shorter motion, longer ticks, more ticks a frame or fewer attempts"

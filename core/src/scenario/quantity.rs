@@ -1,4 +1,4 @@
-//! Lengths, speeds and accelerations with their units, and the mechanics that turn them into steps
+//! Lengths, speeds, accelerations and jerks with their units, and the mechanics that turn them into steps
 //! (DESIGN B1).
 //!
 //! `{"mm": 250}` and `{"steps": 6400}` are both distances. Millimetres and degrees need mechanics
@@ -148,7 +148,7 @@ macro_rules! quantity {
                 }
             }
 
-            /// One step (a second, a second squared) in this quantity's unit.
+            /// One step (a second, a second squared or cubed) in this quantity's unit.
             ///
             /// # Errors
             /// [`NoSuchUnit`] where the mechanics have no millimetres or no degrees.
@@ -162,7 +162,7 @@ macro_rules! quantity {
                 step.ok_or(NoSuchUnit { unit: self.unit(), mechanics: mechanics.name() })
             }
 
-            /// The quantity in steps (a second, a second squared), not rounded.
+            /// The quantity in steps (a second, a second squared or cubed), not rounded.
             ///
             /// # Errors
             /// [`NoSuchUnit`] where the mechanics have no millimetres or no degrees.
@@ -206,4 +206,15 @@ quantity! {
     MillimetresPerSecond2 = "mm_s2" per Mechanics::step_mm;
     /// In degrees a second squared.
     DegreesPerSecond2 = "deg_s2" per Mechanics::step_deg;
+}
+
+quantity! {
+    /// A jerk along an axis: the change of an acceleration in a second.
+    Jerk,
+    /// In steps a second cubed.
+    StepsPerSecond3 = "steps_s3" per |_| Some(1.0);
+    /// In millimetres a second cubed.
+    MillimetresPerSecond3 = "mm_s3" per Mechanics::step_mm;
+    /// In degrees a second cubed.
+    DegreesPerSecond3 = "deg_s3" per Mechanics::step_deg;
 }

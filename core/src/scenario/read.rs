@@ -57,6 +57,9 @@ impl Scenario {
     }
 }
 
+/// The name of a list that stands in another.
+const NUMBERS: &str = "[]";
+
 fn parse(text: &str) -> Result<Value, Vec<Problem>> {
     // Some editors put a byte order mark before the text.
     serde_json::from_str(text.trim_start_matches('\u{feff}')).map_err(|error| {
@@ -134,7 +137,11 @@ fn value_in<'v>(value: &'v mut Value, step: &Step) -> Option<&'v mut Value> {
 /// places. False if nothing of the path exists.
 fn put_right(value: &mut Value, path: &[Step], list: &str) -> bool {
     let Some((step, rest)) = path.split_first() else { return false };
-    let name = if let Step::Key(key) = step { key } else { list };
+    // What a list in a list holds are numbers: the points of a curve.
+    let name = match step {
+        Step::Key(key) => key,
+        Step::Index(_) => NUMBERS,
+    };
     if value_in(value, step).is_some_and(|inner| put_right(inner, rest, name)) {
         return true;
     }
@@ -144,6 +151,8 @@ fn put_right(value: &mut Value, path: &[Step], list: &str) -> bool {
             let default = match list {
                 "moves" | "segments" => serde_json::json!({ "dwell": {} }),
                 "packets" => Value::from(""),
+                "points" => serde_json::json!([0, 0]),
+                NUMBERS => Value::from(0),
                 _ => serde_json::json!({}),
             };
             core::mem::replace(entry, default.clone()) != default
@@ -206,6 +215,14 @@ mod tests {
                     "source.motion.axes[0].moves[1]",
                     "source.motion.axes[0].moves[2]",
                     "source.motion.axes[1]",
+                ],
+            ),
+            (
+                r#"{"source":{"motion":{"axes":[{"moves":[{"points":{"points":[[0,0],"x",[1,"y"],[1,2,3],[2,1]]}}]}]}}}"#,
+                &[
+                    "source.motion.axes[0].moves[0].points.points[1]",
+                    "source.motion.axes[0].moves[0].points.points[2][1]",
+                    "source.motion.axes[0].moves[0].points.points[3]",
                 ],
             ),
             (

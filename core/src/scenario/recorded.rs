@@ -4,36 +4,11 @@
 //! any order; others are left alone. Rows whose `kind` is `reply` or `collision` came from a controller and are not
 //! sent. A packet's bytes go back to back from its start bit on; pauses within it are not in the table.
 
-use super::{Hex, LineScript, ScriptedSend};
-use alloc::{
-    borrow::ToOwned,
-    format,
-    string::{String, ToString},
-    vec,
-    vec::Vec,
+use super::{
+    Hex, LineScript, ScriptedSend,
+    table::{BadTable, Rows, short},
 };
-use core::fmt;
-use csv_core::{ReadRecordResult, Reader};
-
-/// Most bytes of a table that is read.
-pub const MOST_TABLE_BYTES: usize = 32 << 20;
-
-/// Why a table is no recording.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct BadTable {
-    /// Line of the text, from 1.
-    pub line: usize,
-    /// What is wrong there.
-    pub what: String,
-}
-
-impl fmt::Display for BadTable {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "line {}: {}", self.line, self.what)
-    }
-}
-
-impl core::error::Error for BadTable {}
+use alloc::{borrow::ToOwned, format, string::String, vec::Vec};
 
 impl LineScript {
     /// The bytes of a recorded table, each packet at its time; times in s become cycles of `clock_hz`.
@@ -42,12 +17,7 @@ impl LineScript {
     /// [`BadTable`] with the first line that cannot be used. Whether the packets follow one another
     /// without overlapping is judged with the scenario that they become a part of.
     pub fn recorded(table: &str, clock_hz: u32) -> Result<Self, BadTable> {
-        let mut rows = Rows { text: table.trim_start_matches('\u{feff}'), at: 0, reader: Reader::new() };
-        if table.len() > MOST_TABLE_BYTES {
-            return Err(
-                rows.bad(0, format!("{} bytes are too many; at most {MOST_TABLE_BYTES}", table.len()))
-            );
-        }
+        let mut rows = Rows::new(table, b',')?;
         let (_, head) = rows.next().unwrap_or_default();
         let place = |name: &str| head.iter().position(|field| field.trim() == name);
         let missing = |name: &str| {
@@ -96,60 +66,10 @@ fn cycle_at(seconds: &str, clock_hz: u32) -> Option<u64> {
     (1.0..9e15).contains(&cycle).then_some(cycle as u64)
 }
 
-/// The beginning of a text that a message quotes.
-fn short(text: &str) -> String {
-    text.chars().take(20).chain((text.chars().count() > 20).then_some('…')).collect()
-}
-
-/// The rows of a table, each with the place where it begins.
-struct Rows<'a> {
-    text: &'a str,
-    at: usize,
-    reader: Reader,
-}
-
-impl Rows<'_> {
-    fn bad(&self, at: usize, what: String) -> BadTable {
-        // Line ends before a row belong to the one before it.
-        let rest = self.text.get(at..).unwrap_or_default();
-        let begin = at + rest.len() - rest.trim_start_matches(['\r', '\n']).len();
-        let before = self.text.get(..begin).unwrap_or_default();
-        BadTable { line: 1 + before.matches('\n').count(), what }
-    }
-
-    fn next(&mut self) -> Option<(usize, Vec<String>)> {
-        let begin = self.at;
-        let (mut out, mut ends) = (vec![0; 256], vec![0; 16]);
-        let (mut written, mut fields) = (0, 0);
-        loop {
-            let (result, read, wrote, ended) = self.reader.read_record(
-                self.text.as_bytes().get(self.at..).unwrap_or_default(),
-                out.get_mut(written..).unwrap_or_default(),
-                ends.get_mut(fields..).unwrap_or_default(),
-            );
-            (self.at, written, fields) = (self.at + read, written + wrote, fields + ended);
-            match result {
-                // Once more without input: that is how the reader learns of the end.
-                ReadRecordResult::InputEmpty => {}
-                ReadRecordResult::OutputFull => out.resize(out.len() * 2, 0),
-                ReadRecordResult::OutputEndsFull => ends.resize(ends.len() * 2, 0),
-                ReadRecordResult::End => return None,
-                ReadRecordResult::Record => break,
-            }
-        }
-        let mut from = 0;
-        let row = ends.iter().take(fields).map(|&end| {
-            let field = out.get(from..end).unwrap_or_default();
-            from = end;
-            String::from_utf8_lossy(field).to_string()
-        });
-        Some((begin, row.collect()))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use alloc::{string::ToString, vec};
 
     fn sends(table: &str) -> Result<Vec<(u64, Vec<u8>)>, String> {
         let script = LineScript::recorded(table, 16_000_000).map_err(|bad| bad.to_string())?;

@@ -72,7 +72,10 @@ pub(crate) fn table_axis(steps: u32) -> Axis {
 fn s_curve(duration_s: f64, top_speed: f64) -> Axis {
     let ramp_s = duration_s / 2.0;
     let distance = Distance::Steps((top_speed * ramp_s).round());
-    Axis { moves: vec![Move::Cosine(Cosine { distance, duration_s, ramp_s })], ..Axis::default() }
+    Axis {
+        moves: vec![Move::Cosine(Cosine { distance, duration_s, ramp_s, ..Cosine::default() })],
+        ..Axis::default()
+    }
 }
 
 /// Sixteen channels at 100 kHz each for 10 s: every tick orders the same.

@@ -2,9 +2,10 @@
 
 use proptest::prelude::*;
 use stepscope_core::scenario::{
-    Axis, Bus, Constant, Cosine, DirLine, Distance, Distribution, Dwell, Glitch, Hex, Line, LineScript,
-    Motion, Move, Packets, Pulses, Scenario, ScriptedSend, ShortMove, SineSegments, Source, Speed, Staircase,
-    Trapezoid, TrapezoidMethod, line_time,
+    Acceleration, Axis, Bus, Constant, Cosine, DirLine, Distance, Distribution, Dwell, Glitch, Hex,
+    Interpolation, Jerk, JerkLimited, Line, LineScript, Motion, Move, Packets, Point, PointUnit, Points,
+    Pulses, Scenario, ScriptedSend, ShortMove, Sine, SineSegments, Source, Speed, Staircase, Trapezoid,
+    TrapezoidMethod, line_time,
 };
 
 /// Scenarios of all three sources, of which nearly all run, for some ten thousand cycles.
@@ -130,18 +131,21 @@ fn axis(peripheral: &Scenario) -> impl Strategy<Value = Axis> + use<> {
         (steps.clone(), part.clone(), 0.0..=0.5_f64).prop_map(move |(steps, part, ramp)| {
             // The top speed is steps/(duration - ramp), at most rate.
             let duration_s = steps.abs() / (rate * part * (1.0 - ramp));
-            Move::Cosine(Cosine { distance: Distance::Steps(steps), duration_s, ramp_s: duration_s * ramp })
+            Move::Cosine(Cosine {
+                distance: Distance::Steps(steps),
+                duration_s,
+                ramp_s: duration_s * ramp,
+                ..Cosine::default()
+            })
         }),
-        (steps.clone(), part.clone(), part, 1.0..50.0_f64, any::<bool>()).prop_map(
+        (steps.clone(), part.clone(), part.clone(), 1.0..50.0_f64, any::<bool>()).prop_map(
             move |(steps, start, top, climb, table)| {
                 let method = if table { TrapezoidMethod::Table } else { TrapezoidMethod::Exact };
                 Move::Trapezoid(Trapezoid {
                     distance: Distance::Steps(steps),
                     start_speed: speed((rate * start * top).max(1.0)),
                     top_speed: speed((rate * top).max(1.0)),
-                    acceleration: stepscope_core::scenario::Acceleration::StepsPerSecond2(
-                        climb * rate * rate,
-                    ),
+                    acceleration: Acceleration::StepsPerSecond2(climb * rate * rate),
                     method,
                     timer_hz: 1_000_000,
                 })
@@ -160,6 +164,27 @@ fn axis(peripheral: &Scenario) -> impl Strategy<Value = Axis> + use<> {
                 })
             }
         ),
+        (steps.clone(), 1..3_u32).prop_map(move |(steps, periods)| {
+            let (amplitude, period_s) = (Distance::Steps(steps), 8.0 * steps.abs() / rate);
+            Move::Sine(Sine { amplitude, period_s, periods })
+        }),
+        (steps.clone(), part, 0.5..20.0_f64, 0.5..50.0_f64).prop_map(move |(steps, part, climb, jerk)| {
+            Move::JerkLimited(JerkLimited {
+                distance: Distance::Steps(steps),
+                max_speed: speed(rate * part),
+                max_acceleration: Acceleration::StepsPerSecond2(climb * rate * rate),
+                max_jerk: Jerk::StepsPerSecond3(jerk * climb * rate * rate * rate),
+            })
+        }),
+        (steps.clone(), steps.clone(), any::<bool>()).prop_map(move |(there, back, smooth)| {
+            // A smooth curve is up to twice as quick as a straight one.
+            let time_s = |way: f64| 2.5 * way.abs() / rate;
+            let points =
+                [(0.0, 0.0), (time_s(there), there), (time_s(there) + time_s(back - there).max(0.01), back)];
+            let points = points.map(|(time_s, position)| Point { time_s, position }).to_vec();
+            let interpolation = if smooth { Interpolation::Smooth } else { Interpolation::Straight };
+            Move::Points(Points { unit: PointUnit::Steps, interpolation, points })
+        }),
         (steps, 1..3_u32, prop_oneof![Just(0.006), 0.001..1.0_f64]).prop_map(
             move |(steps, periods, max_deviation)| {
                 let period_s = 8.0 * steps.abs() / rate;

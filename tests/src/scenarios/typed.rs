@@ -3,17 +3,19 @@
 use proptest::prelude::*;
 use stepscope_core::analysis::drivers::DRIVERS;
 use stepscope_core::scenario::{
-    Acceleration, Analysis, Axis, Bus, ChannelSegments, Constant, Controller, Cosine, DirLine, Direct,
-    Distance, Distribution, Driver, Dwell, DwellSegment, Glitch, Hex, Host, Line, LineScript, Mechanics,
-    Motion, MotionEngine, Motor, Move, Noise, Packets, Protocol, Pulses, Rotary, Scenario, Screw,
-    ScriptedSend, Segment, SegmentLists, ShortMove, SineSegments, Source, Speed, Staircase, StepSegment,
-    TimingRules, Trapezoid, TrapezoidMethod, Wheel,
+    Acceleration, Analysis, Axis, Bus, ChannelSegments, Constant, Controller, Cosine, CosineMethod, DirLine,
+    Direct, Distance, Distribution, Driver, Dwell, DwellSegment, Glitch, Hex, Host, Interpolation, Jerk,
+    JerkLimited, Line, LineScript, Mechanics, Motion, MotionEngine, Motor, Move, Noise, Packets, Point,
+    PointUnit, Points, Protocol, Pulses, RampShape, Ramps, Rotary, Scenario, Screw, ScriptedSend, Segment,
+    SegmentLists, ShortMove, Sine, SineSegments, Source, Speed, Staircase, StepSegment, TimingRules,
+    Trapezoid, TrapezoidMethod, Wheel,
 };
 
 /// Any scenario of this version that JSON can carry: no number in it is infinite or none at all.
 pub fn typed() -> impl Strategy<Value = Scenario> {
     let texts = (text(), text());
-    let analysis = (small_or_any(0), small_or_any(40), small_or_any(4096));
+    let analysis =
+        (small_or_any(0), small_or_any(40), small_or_any(4096), prop::option::weighted(0.3, number(50.0)));
     let line = (line(), controllers());
     let run = (any::<Option<u64>>(), prop::option::weighted(0.3, driver()));
     (texts, small_or_any(16_000_000), bus(), line, source(), run, analysis).prop_map(
@@ -24,7 +26,7 @@ pub fn typed() -> impl Strategy<Value = Scenario> {
             (line, controllers),
             source,
             (run_cycles, driver),
-            (axis, order, fft_length),
+            (axis, order, fft_length, sensor_hz),
         )| {
             Scenario {
                 title,
@@ -34,7 +36,7 @@ pub fn typed() -> impl Strategy<Value = Scenario> {
                 line,
                 source,
                 run_cycles,
-                analysis: Analysis { axis, order, fft_length },
+                analysis: Analysis { axis, order, fft_length, sensor_hz },
                 controllers,
                 driver,
                 ..Scenario::default()
@@ -280,6 +282,27 @@ fn acceleration() -> impl Strategy<Value = Acceleration> + Clone {
     ]
 }
 
+fn ramp_shape() -> impl Strategy<Value = RampShape> {
+    use RampShape::{Bezier, Exponential, Sigmoid, Straight};
+    prop::sample::select(vec![Sigmoid, Bezier, Straight, Exponential])
+}
+
+fn jerk() -> impl Strategy<Value = Jerk> + Clone {
+    prop_oneof![
+        4 => number(2e6).prop_map(Jerk::StepsPerSecond3),
+        1 => number(1e3).prop_map(Jerk::MillimetresPerSecond3),
+        1 => number(1e4).prop_map(Jerk::DegreesPerSecond3),
+    ]
+}
+
+fn curve() -> impl Strategy<Value = Points> {
+    let point = (number(0.0), number(1000.0)).prop_map(|(time_s, position)| Point { time_s, position });
+    let unit = prop::sample::select(vec![PointUnit::Steps, PointUnit::Millimetres, PointUnit::Degrees]);
+    let interpolation = prop::sample::select(vec![Interpolation::Straight, Interpolation::Smooth]);
+    (unit, interpolation, prop::collection::vec(point, 0..6))
+        .prop_map(|(unit, interpolation, points)| Points { unit, interpolation, points })
+}
+
 fn one_move() -> impl Strategy<Value = Move> {
     prop_oneof![
         (
@@ -306,14 +329,30 @@ fn one_move() -> impl Strategy<Value = Move> {
                 let short_move = if turns { ShortMove::TurnRound } else { ShortMove::Document };
                 Move::Staircase(Staircase { distance, top_speed, level, short_move, start_speed, max_speed })
             }),
-        (distance(3200.0), number(0.4), number(0.2)).prop_map(|(distance, duration_s, ramp_s)| {
-            Move::Cosine(Cosine { distance, duration_s, ramp_s })
-        }),
+        (distance(3200.0), number(0.4), number(0.2), any::<bool>(), number(0.001)).prop_map(
+            |(distance, duration_s, ramp_s, sliced, slice_s)| {
+                let method = if sliced { CosineMethod::Sliced } else { CosineMethod::Exact };
+                Move::Cosine(Cosine { distance, duration_s, ramp_s, method, slice_s })
+            }
+        ),
+        (distance(3200.0), number(0.4), number(0.2), ramp_shape(), number(6.0), number(4.0)).prop_map(
+            |(distance, duration_s, ramp_s, shape, sigmoid_range, time_constants)| {
+                Move::Ramps(Ramps { distance, duration_s, ramp_s, shape, sigmoid_range, time_constants })
+            }
+        ),
         (distance(1000.0), number(0.5), small_or_any(4), number(0.006)).prop_map(
             |(amplitude, period_s, periods, max_deviation)| {
                 Move::SineSegments(SineSegments { amplitude, period_s, periods, max_deviation })
             }
         ),
+        (distance(1000.0), number(0.5), small_or_any(4))
+            .prop_map(|(amplitude, period_s, periods)| Move::Sine(Sine { amplitude, period_s, periods })),
+        (distance(3200.0), speed(10_000.0), acceleration(), jerk()).prop_map(
+            |(distance, max_speed, max_acceleration, max_jerk)| {
+                Move::JerkLimited(JerkLimited { distance, max_speed, max_acceleration, max_jerk })
+            }
+        ),
+        curve().prop_map(Move::Points),
         (distance(1000.0), speed(1000.0))
             .prop_map(|(distance, speed)| Move::Constant(Constant { distance, speed })),
         number(0.1).prop_map(|duration_s| Move::Dwell(Dwell { duration_s })),

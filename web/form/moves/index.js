@@ -5,9 +5,10 @@
 import { constant } from "./constant.js";
 import { cosine } from "./cosine.js";
 import { dwell } from "./dwell.js";
+import { ramps } from "./ramps.js";
 import { sine_segments } from "./sine_segments.js";
 import { staircase } from "./staircase.js";
 import { trapezoid } from "./trapezoid.js";
 
 /** By their names in the scenario. @type {{[kind: string]: import("../field.js").Kind}} */
-export const MOVES = { cosine, trapezoid, staircase, sine_segments, constant, dwell };
+export const MOVES = { cosine, ramps, trapezoid, staircase, sine_segments, constant, dwell };

@@ -66,7 +66,9 @@ export function distortion(spectra, quantity) {
     const value = spectrum[/** @type {const} */ (`thd_${quantity}`)];
     return `${name} ${value === null ? "none" : `${short(value * 100, 5)} %`}`;
   });
-  return `THD of ${quantity}, axis ${spectra.axis}: ${parts.join(", ")}`;
+  const felt = quantity === "acceleration" ? given(spectra).filter(([, spectrum]) => spectrum.thd_acceleration_felt !== null) : [];
+  const through = felt.map(([name, spectrum]) => `${name} ${short(Number(spectrum.thd_acceleration_felt) * 100, 5)} %`).join(", ");
+  return `THD of ${quantity}, axis ${spectra.axis}: ${parts.join(", ")}${through && `; felt by the sensor: ${through}`}`;
 }
 
 /** How the distortion is defined. @param {Spectrum} some */

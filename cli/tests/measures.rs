@@ -1,0 +1,92 @@
+//! `stepscope measures`, as a script sees it.
+#![cfg(not(target_arch = "wasm32"))]
+#![allow(clippy::expect_used, reason = "what is missing fails the test")]
+
+use std::{
+    io::Write,
+    process::{Command, Stdio},
+};
+
+const MOTION: &str = r#"{ "bus": { "channels": 2 }, "source": { "motion": { "axes": [
+    { "moves": [ { "constant": { "distance": { "steps": 100 }, "speed": { "steps_s": 1000 } } } ] },
+    { "moves": [ { "sine_segments": { "amplitude": { "steps": 1000 }, "max_deviation": 0.006, "period_s": 0.5, "periods": 2 } } ] } ] } },
+    "analysis": { "order": 99, "fft_length": 1000, "sensor_hz": 40 } }"#;
+
+/// Exit code, standard output, standard error.
+fn measures(options: &[&str], input: &str) -> (Option<i32>, String, String) {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_stepscope"))
+        .args([&["measures", "-"], options].concat())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("it starts");
+    // A command that does not read it may be gone already.
+    let _ = child.stdin.take().expect("it is piped").write_all(input.as_bytes());
+    let output = child.wait_with_output().expect("it ends");
+    let text = |bytes| String::from_utf8(bytes).expect("it is text");
+    (output.status.code(), text(output.stdout), text(output.stderr))
+}
+
+#[test]
+fn the_three_formats_have_the_same_figures() {
+    let (code, json, err) = measures(&["--axis", "1", "--format", "json"], MOTION);
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    let json: serde_json::Value = serde_json::from_str(&json).expect("it is JSON");
+    assert_eq!(json["axis"], 1);
+    let (_, csv, _) = measures(&["--axis", "1", "--format", "csv"], MOTION);
+    let mut reader = csv::Reader::from_reader(csv.as_bytes());
+    let rows: Vec<Vec<String>> =
+        reader.records().map(|row| row.expect("a row").iter().map(str::to_owned).collect()).collect();
+    let (_, text, _) = measures(&["--axis", "1"], MOTION);
+    // group, measure, of; where it is in JSON, and how much of that it is
+    let checks = [
+        (["deviation", "r.m.s.", "steps"], "/steps/rms_steps", 1.0),
+        (["deviation", "1 - correlation", "pulses"], "/pulses/uncorrelated", 1.0),
+        (["deviation", "area between", "ticks"], "/ticks/area_steps_s", 1.0),
+        (["deviation", "Euclidean (2048 points)", "pulses"], "/pulses/euclidean_steps", 1.0),
+        (["pulses", "largest time error", "ticks"], "/tick_errors/largest_s", 1e6),
+        (["duration", "asked", ""], "/duration/asked_s", 1.0),
+        (["peaks", "start-stop rate", ""], "/peaks/start_stop_steps_s", 1.0),
+        (["distortion", "acceleration felt", "ideal"], "/distortion/acceleration_felt/ideal", 100.0),
+        (["sine", "Ev in parts of the amplitude", "sine"], "/sine/euclidean", 1.0),
+    ];
+    for (names, pointer, factor) in checks {
+        let row = rows.iter().find(|row| row[..3] == names);
+        let Some(row) = row else { panic!("{names:?} in {csv}") };
+        let found: f64 = row[3].parse().expect("a number");
+        let expected = json.pointer(pointer).and_then(serde_json::Value::as_f64).expect("a number") * factor;
+        assert!(found == expected && found != 0.0, "{names:?}: {found} {expected}");
+        assert!(text.lines().any(|line| line.trim_start().starts_with(names[1])), "{names:?} in {text}");
+    }
+    // What was asked for: the document's segments, felt by a sensor, to the order that was asked for.
+    assert_eq!((&json["sine"]["segments"], &json["distortion"]["order"]), (&6.into(), &99.into()));
+    let ratio = |name: &str| json["distortion"][name]["ideal"].as_f64().expect("a ratio");
+    assert!(ratio("position") < ratio("speed") && ratio("speed") < ratio("acceleration_felt"));
+    assert!(ratio("acceleration_felt") < ratio("acceleration"));
+}
+
+#[test]
+fn a_motion_without_a_period_has_no_distortion_and_its_columns_are_aligned() {
+    let (code, text, err) = measures(&[], MOTION);
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    assert!(!text.contains("THD") && !text.contains("Ev"), "{text}");
+    let rows: Vec<&str> = text.lines().skip_while(|line| !line.starts_with("deviation over 0.1 s")).collect();
+    let ends: Vec<usize> = rows[..10].iter().map(|row| row.len()).collect();
+    assert!(ends.iter().all(|end| *end == ends[0]), "{ends:?} in {text}");
+    assert!(rows[1].contains(" 0.5"), "half a step: {}", rows[1]);
+}
+
+#[test]
+fn what_cannot_be_measured_ends_with_2_and_says_why() {
+    let rows: [(&[&str], &str, &str); 3] = [
+        (&["--axis", "2"], MOTION, "there is no axis 2; the scenario has 2 axes, from 0"),
+        (&[], r#"{ "source": { "line": {} } }"#, "source: no motion, so there is no curve"),
+        (&[], r#"{ "analysis": { "sensor_hz": -1 } }"#, "analysis.sensor_hz: -1 Hz is out of range"),
+    ];
+    for (options, scenario, part) in rows {
+        let (code, out, err) = measures(options, scenario);
+        assert_eq!((code, out.as_str()), (Some(2), ""), "{options:?}: {err}");
+        assert!(err.contains(part), "{options:?}: {err}");
+    }
+}
