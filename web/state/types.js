@@ -4,7 +4,7 @@
  *
  * @typedef {{[key: string]: any}} Scenario  Full JSON of one experiment, every field written.
  * @typedef {{path: string, message: string}} Problem
- * @typedef {{start_s: number, duration_s: number, steps: number, detail: string}} DerivedMove
+ * @typedef {{start_s: number, duration_s: number, steps: number, detail: string, warning: string}} DerivedMove
  * @typedef {{steps: number, duration_s: number, peak_speed_steps_s: number, peak_acceleration_steps_s2: number,
  *   step_mm: number | null, step_deg: number | null, moves: DerivedMove[]}} DerivedAxis
  * @typedef {{tick_s: number, limit_steps_s: number, ticks: number, axes: DerivedAxis[]}} DerivedController

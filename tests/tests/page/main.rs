@@ -59,3 +59,4 @@ mod state;
 mod study;
 mod time_axis;
 mod timing;
+mod torque;

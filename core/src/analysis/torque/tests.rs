@@ -248,7 +248,30 @@ fn a_curve_and_the_moments_of_a_plan_can_be_drawn() {
     assert_eq!(curve.iter().map(|point| point.0).collect::<Vec<_>>(), [0.0, 1e4, 2e4, 3e4, 4e4]);
     assert!(motor.shown_rate(16_000.0) > motor.torque_rate().unwrap());
     let plan = plan_axis(&axis("{}", TURN), "axis").unwrap();
-    let all = moments(&motor, &plan, 100);
-    assert_eq!(all.len(), 100);
-    assert!(all.iter().all(|moment| moment.rate <= 16_000.0 && moment.at_s < 0.4));
+    // Of 20 bins of 1000 steps/s the last ones are never reached; the middle of the ramp needs most.
+    let needed = needed_over_rate(&motor, &plan, 20_000.0, 20);
+    assert!(needed[..16].iter().all(|needed| *needed > 100.0), "{needed:?}");
+    assert!(needed[17..].iter().all(|needed| needed.is_nan()));
+    assert!(needed[8] > needed[2] && needed[8] > needed[14] && needed[8] < 102.0);
+}
+
+#[test]
+fn a_move_that_is_short_of_torque_is_warned_of_and_its_neighbours_are_not() {
+    let motor = r#"{"load_inertia_g_cm2":9955,"load_torque_mn_m":100,"working_rate_hz":30000}"#;
+    let moves = r#"{"constant":{}},{"cosine":{}},{"dwell":{}}"#;
+    let found = demand(motor, moves);
+    let warn = |from: f64, to: f64, peak: f64| found.warning(&machine(motor), from, to, peak);
+    assert_eq!((warn(0.0, 1.0, 1000.0), warn(1.4, 1.5, 0.0)), (None, None));
+    assert_eq!(
+        warn(1.0, 1.4, 16_000.0).as_deref(),
+        Some(
+            "too little torque: 346.7 mN*m needed of 282.8 at 1.1000 s and 8\u{202f}000 steps/s; give more time, gentler ramps, less load or a higher supply voltage"
+        )
+    );
+    assert_eq!(
+        warn(0.0, 1.0, 30_001.0).as_deref(),
+        Some(
+            "30\u{202f}001 steps/s are above the motor's working rate of 30\u{202f}000; give more time, or shorter ramps"
+        )
+    );
 }
