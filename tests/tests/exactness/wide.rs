@@ -131,7 +131,7 @@ impl Wide {
     pub(crate) fn sin(self) -> Self {
         let square = self * self;
         let mut sum = Self::from(1.0);
-        for k in (1..20).rev() {
+        for k in (1..28).rev() {
             let k = f64::from(k);
             sum = Self::from(1.0) - sum * square / Self::from((2.0 * k) * (2.0 * k + 1.0));
         }
