@@ -245,6 +245,11 @@ proptest! {
         given in own_curve(), clock_hz in prop::sample::select(CLOCKS[1..].to_vec()),
     ) {
         let Some(plan) = plan(given.clone())? else { return Ok(()) };
+        let peak_speed = plan.peaks().speed;
+        // A polyline that turns within a cycle is not where it was, one cycle after a step.
+        if matches!(given, Move::SineSegments(_)) && peak_speed * 8.0 > f64::from(clock_hz) {
+            return Ok(());
+        }
         let profile = &plan.moves()[0].profile;
         let (mut made, mut last, mut walked) = (0_i64, 0, 0_u64);
         for due in plan.due_steps(clock_hz).take(3000) {
@@ -252,7 +257,7 @@ proptest! {
             let past = |cycle: f64| (plan.position(cycle / f64::from(clock_hz)) - made as f64) * way - 0.5;
             let cycle = due.cycle as f64;
             // The digits of the time and of the position in f64, and what a table's curve stands past its steps.
-            let digits = 1e-14 * (plan.peaks().speed * (cycle + 1.0) / f64::from(clock_hz)) + 2e-6;
+            let digits = 1e-14 * (peak_speed * (cycle + 1.0) / f64::from(clock_hz)) + 2e-6;
             prop_assert!(past(cycle - 1.0) <= digits, "{:?}: {:?} late by {}", given, due, past(cycle - 1.0));
             prop_assert!(past(cycle + 1.0) >= -digits, "{:?}: {:?} early by {}", given, due, past(cycle + 1.0));
             prop_assert!(due.cycle >= last);
