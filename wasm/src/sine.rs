@@ -6,7 +6,7 @@ use js_sys::Object;
 use std::ops::Range;
 use stepscope_core::analysis::{
     sine_optimum::{Freedom, optimum},
-    sine_polyline::{Distinct, Row, swept},
+    sine_polyline::{Bounds, Distinct, Row, swept},
 };
 use wasm_bindgen::prelude::*;
 
@@ -21,17 +21,28 @@ fn columns(rows: &[Row]) -> Object {
     put("position", &|row| row.distortion.position);
     put("speed", &|row| row.distortion.speed);
     put("acceleration", &|row| row.distortion.acceleration);
+    put("felt", &|row| row.distortion.acceleration_felt.unwrap_or(f64::NAN));
     put("euclidean", &|row| row.euclidean);
     made
 }
 
 /// Rows `first` to before `end` of the sweep over `count` values of d1, as columns `d1`, `segments`, `position`, `speed`,
-/// `acceleration` (THD as ratios) and `euclidean`.
+/// `acceleration` (THD as ratios), `felt` (that of the acceleration through a sensor whose bandwidth is `sensor` times the
+/// fundamental, NaN without one) and `euclidean`.
 #[wasm_bindgen]
 #[must_use]
-pub fn sine_rows(from: f64, to: f64, count: u32, order: u16, first: u32, end: u32) -> Object {
+pub fn sine_rows(
+    from: f64,
+    to: f64,
+    count: u32,
+    order: u16,
+    sensor: Option<f64>,
+    first: u32,
+    end: u32,
+) -> Object {
+    let bounds = Bounds { order, sensor };
     let Range { start, end } = first..end.min(count);
-    let rows: Vec<Row> = (start..end).map(|index| Row::of(swept(from, to, count, index), order)).collect();
+    let rows: Vec<Row> = (start..end).map(|index| Row::of(swept(from, to, count, index), bounds)).collect();
     columns(&rows)
 }
 
@@ -39,9 +50,9 @@ pub fn sine_rows(from: f64, to: f64, count: u32, order: u16, first: u32, end: u3
 /// as [`sine_rows`].
 #[wasm_bindgen]
 #[must_use]
-pub fn sine_best(from: f64, to: f64, order: u16) -> Object {
+pub fn sine_best(from: f64, to: f64, order: u16, sensor: Option<f64>) -> Object {
     let mut all: Vec<Row> = Vec::new();
-    for row in Distinct::new(from, to, order) {
+    for row in Distinct::new(from, to, Bounds { order, sensor }) {
         match all.iter_mut().find(|best| best.segments == row.segments) {
             Some(best) if row.distortion.position < best.distortion.position => *best = row,
             Some(_) => {}

@@ -10,8 +10,8 @@ import { cleared, color, draw, fit, watch } from "../../time/plot.js";
 import { choice, createJob, field, subject, table } from "./parts.js";
 
 /** @typedef {import("../../state/types.js").State} State */
-/** @typedef {"position" | "speed" | "acceleration"} Quantity */
-/** @typedef {{d1: Float64Array, segments: Float64Array, position: Float64Array, speed: Float64Array, acceleration: Float64Array, euclidean: Float64Array}} Rows */
+/** @typedef {"position" | "speed" | "acceleration" | "felt"} Quantity */
+/** @typedef {{d1: Float64Array, segments: Float64Array, position: Float64Array, speed: Float64Array, acceleration: Float64Array, felt: Float64Array, euclidean: Float64Array}} Rows */
 /** @typedef {{[name in keyof Rows]: number}} Row */
 /** @typedef {{angle_deg: Float64Array, height: Float64Array, thd: number}} Vertices */
 
@@ -20,12 +20,12 @@ const PIECE = 10;
 /** Pieces of the range in which the best d1 of each number of segments is looked for. */
 const STRETCHES = 16;
 const GUTTER = 58;
-const NAMES = /** @type {(keyof Rows)[]} */ (["d1", "segments", "position", "speed", "acceleration", "euclidean"]);
+const NAMES = /** @type {(keyof Rows)[]} */ (["d1", "segments", "position", "speed", "acceleration", "felt", "euclidean"]);
 
 /** A d1 as the scenario takes it: with few digits, and not below where its polyline begins. @param {number} d1 */
 const rounded = (d1) => Math.ceil(d1 * 1e8 - 1e-4) / 1e8;
 /** @param {number} ratio */
-const percent = (ratio) => `${short(100 * ratio, 4)} %`;
+const percent = (ratio) => (Number.isFinite(ratio) ? `${short(100 * ratio, 4)} %` : "–");
 
 /** @param {import("./study.js").StudyPage} page @returns {import("./study.js").StudyTab} */
 export function createSine({ engine, samples, dispatch, now, panel }) {
@@ -33,7 +33,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   const to = field("to", "", 0.06, { least: 1e-5, most: 1 }, refresh);
   const points = field("points", "", 500, { least: 2, most: 20000, integer: true }, refresh);
   const order = field("harmonics to", "", 399, { least: 3, most: 9999, integer: true }, () => { refresh(); vertices(); current(now()); });
-  const quantity = choice("THD of", { position: "position", speed: "speed", acceleration: "acceleration" }, paint);
+  const quantity = choice("THD of", { position: "position", speed: "speed", acceleration: "acceleration", felt: "acceleration, felt" }, paint);
   const job = createJob("Sweep");
   const thdCanvas = element("canvas", { role: "img", "aria-label": "THD against d1" });
   const distanceCanvas = element("canvas", { role: "img", "aria-label": "Euclidean distance against d1" });
@@ -42,7 +42,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   const distanceCaption = element("div", { class: "caption" }, element("span", {}, "Euclidean distance Ev against d1, both in parts of the amplitude"));
   const charts = element("div", { class: "charts study-charts", id: "sine-charts", tabindex: "0", role: "slider", "aria-label": "d1", "aria-valuemin": "0", "aria-valuemax": "0", "aria-valuenow": "0" },
     element("div", { class: "chart" }, thdCaption, thdCanvas), element("div", { class: "chart" }, distanceCaption, distanceCanvas), overlay);
-  const list = table("What a d1 gives", ["of", "#d1", "#segments", "#THD position", "~#speed", "~#acceleration", "#Ev", ""]);
+  const list = table("What a d1 gives", ["of", "#d1", "#segments", "#THD position", "~#speed", "~#acceleration", "~#felt", "#Ev", ""]);
   const note = element("p", { class: "study-note", "aria-live": "polite" });
   const segments = field("segments of a quarter", "", 6, { least: 1, most: 32, integer: true }, vertices);
   const verticesJob = createJob("Vertices");
@@ -66,6 +66,8 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   /** @type {import("../../state/types.js").Plot | null} */
   let plot = null;
   let swept = false;
+  /** Bandwidth of the sensor that feels the acceleration, in harmonics. @type {number | undefined} */
+  let sensor;
 
   watch(charts, paint);
   charts.addEventListener("pointermove", (event) => point(rowAt(event)));
@@ -140,10 +142,10 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     say(note, "");
     swept = true;
     job.run(async (signal, tell) => {
-      const pieces = Array.from({ length: Math.ceil(number / PIECE) }, (_, index) => [low, high, number, highest, PIECE * index, PIECE * (index + 1)]);
+      const pieces = Array.from({ length: Math.ceil(number / PIECE) }, (_, index) => [low, high, number, highest, sensor, PIECE * index, PIECE * (index + 1)]);
       // The smaller d1, the more polylines are beside it.
       const edge = (/** @type {number} */ index) => (index === STRETCHES ? high : low * (high / low) ** (index / STRETCHES));
-      const stretches = Array.from({ length: STRETCHES }, (_, index) => [edge(index), edge(index + 1), highest]);
+      const stretches = Array.from({ length: STRETCHES }, (_, index) => [edge(index), edge(index + 1), highest, sensor]);
       let done = 0;
       const all = pieces.length + STRETCHES;
       const told = () => tell(++done / all, done < pieces.length ? `${Math.min(number, done * PIECE)} of ${number} points` : "the best d1 of the range");
@@ -184,12 +186,13 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
 
   function paint() {
     const chosen = /** @type {Quantity} */ (quantity.value());
-    fill(thdCaption, element("span", {}, `THD of ${chosen} against d1, harmonics 2 to ${order.value()}, %`));
+    const what = chosen !== "felt" ? chosen : sensor === undefined ? "acceleration, felt: give the sensor's bandwidth in the form, and a sine its period" : `the acceleration that a sensor of ${short(sensor, 4)} harmonics feels`;
+    fill(thdCaption, element("span", {}, `THD of ${what}, against d1, harmonics 2 to ${order.value()}, %`));
     if (rows && rows.d1.length > 1) {
       const { d1 } = rows;
       const x = { min: d1[0], max: d1[d1.length - 1], unit: "", prefix: false, label_px: 20 };
       const line = (/** @type {HTMLCanvasElement} */ canvas, /** @type {Float64Array} */ y, /** @type {string} */ ink) => draw(canvas, { x,
-        y: { min: 0, max: 1.05 * Math.max(...y), unit: "", prefix: false, label_px: GUTTER }, series: [{ color: color(ink), opacity: 1, width: 1.5, x: d1, shape: { line: { y } } }] });
+        y: { min: 0, max: 1.05 * Math.max(1e-9, ...y.filter(Number.isFinite)), unit: "", prefix: false, label_px: GUTTER }, series: Number.isFinite(y[0]) ? [{ color: color(ink), opacity: 1, width: 1.5, x: d1, shape: { line: { y } } }] : [] });
       plot = line(thdCanvas, rows[chosen].map((ratio) => 100 * ratio), "--ideal");
       line(distanceCanvas, rows.euclidean, "--made");
       fit(overlay);
@@ -204,7 +207,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     charts.setAttribute("aria-valuenow", String(at ?? 0));
     charts.setAttribute("aria-valuetext", pointed ? `d1 ${short(pointed.d1)}, ${pointed.segments} segments, THD of ${quantity.value()} ${percent(pointed[/** @type {Quantity} */ (quantity.value())])}, Ev ${short(pointed.euclidean)}; Enter takes it` : "no d1 chosen");
     const cells = (/** @type {string} */ name, /** @type {Row | null} */ row, /** @type {string} */ none, usable = true) => {
-      return [name, ...(row ? [short(row.d1, 6), String(row.segments), percent(row.position), percent(row.speed), percent(row.acceleration), short(row.euclidean, 4)] : [none, "", "", "", "", ""]), usable && row ? use(row, name) : ""];
+      return [name, ...(row ? [short(row.d1, 6), String(row.segments), percent(row.position), percent(row.speed), percent(row.acceleration), percent(row.felt), short(row.euclidean, 4)] : [none, "", "", "", "", "", ""]), usable && row ? use(row, name) : ""];
     };
     list.show([cells("pointed at", pointed, "–"), cells("the scenario", own, "none", false), cells("best in range", least, "–")]);
     const layer = cleared(overlay);
@@ -237,10 +240,10 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     const { of, move } = sineOf(state);
     if (!of) return;
     const d1 = of.moves[move]?.sine_segments.max_deviation ?? null;
-    const next = `${d1} ${order.value()}`;
+    const next = `${d1} ${order.value()} ${sensor}`;
     if (next === ownKey) return;
     ownKey = next;
-    const found = d1 === null ? null : rowOf(await engine.ask("sine_rows", d1, d1, 1, order.value(), 0, 1).catch(unlessDropped), 0);
+    const found = d1 === null ? null : rowOf(await engine.ask("sine_rows", d1, d1, 1, order.value(), sensor, 0, 1).catch(unlessDropped), 0);
     if (next !== ownKey) return;
     own = found;
     mark();
@@ -248,10 +251,13 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    if (!swept) {
-      refresh();
-      vertices();
-    }
+    const { of, move } = sineOf(state);
+    const { analysis } = state.scenario;
+    const wanted = of && move >= 0 && analysis?.sensor_hz ? analysis.sensor_hz * of.moves[move].sine_segments.period_s : undefined;
+    const other = of !== null && wanted !== sensor;
+    if (other) sensor = wanted;
+    if (!swept) vertices();
+    if (!swept || other) refresh();
     if (before?.view !== state.view || before?.study !== state.study) paint();
     return current(state);
   }
