@@ -5,7 +5,7 @@ use js_sys::Object;
 use serde::Serialize;
 use stepscope_core::{
     analysis::torque::{Demand, Machine, Moment, Ramps, Shortage, needed_over_rate},
-    motion::{Curve, Profile, cosine::Cosine, plan_axis},
+    motion::{Curve, plan_axis},
     scenario::{Problem, Scenario, Source},
 };
 use wasm_bindgen::prelude::*;
@@ -46,13 +46,11 @@ struct ToldShortage {
     worst: ToldMoment,
 }
 
-/// Of a cosine move.
+/// Of a move whose ramps have a shape.
 #[derive(Serialize)]
 struct ToldRamps {
     index: usize,
-    steps: i64,
     duration_s: f64,
-    greatest_rate: Option<f64>,
     longest_s: Option<f64>,
     too_fast: bool,
     room_s: f64,
@@ -72,11 +70,9 @@ impl From<&Shortage> for ToldShortage {
 }
 
 impl ToldRamps {
-    fn of(index: usize, cosine: &Cosine, machine: &Machine) -> Self {
-        let (steps, duration_s) = (cosine.steps(), cosine.duration_s());
-        let found = Ramps::of(machine, steps, duration_s, |ramp_s| Cosine::new(steps, duration_s, ramp_s));
-        let Ramps { greatest_rate, longest_s, too_fast, room_s, enough_s } = found;
-        Self { index, steps, duration_s, greatest_rate, longest_s, too_fast, room_s, enough_s }
+    fn of(index: usize, duration_s: f64, found: Ramps) -> Self {
+        let Ramps { longest_s, too_fast, room_s, enough_s, .. } = found;
+        Self { index, duration_s, longest_s, too_fast, room_s, enough_s }
     }
 }
 
@@ -102,9 +98,9 @@ pub fn torque(json: &str, controller: usize, axis: usize) -> Result<Option<Objec
     let plan = plan_axis(&axis, "axis").map_err(listed)?;
     let Some(machine) = Machine::of(&axis) else { return Ok(None) };
     let demand = Demand::of(&machine, &plan);
-    let cosines = plan.moves().iter().enumerate().filter_map(|(index, planned)| match &planned.profile {
-        Profile::Cosine(cosine) => Some(ToldRamps::of(index, cosine, &machine)),
-        _ => None,
+    let ramps = plan.moves().iter().enumerate().filter_map(|(index, planned)| {
+        let found = Ramps::of(&machine, &planned.profile)?;
+        Some(ToldRamps::of(index, planned.profile.duration_s(), found))
     });
     let told = Told {
         standing_mn_m: machine.available_mn_m(0.0),
@@ -117,7 +113,7 @@ pub fn torque(json: &str, controller: usize, axis: usize) -> Result<Option<Objec
         least: demand.least.as_ref().map(ToldMoment::from),
         total: demand.total,
         shortages: demand.shortages.iter().take(MOST_SHOWN).map(ToldShortage::from).collect(),
-        ramps: cosines.collect(),
+        ramps: ramps.collect(),
     };
     let made = Object::new();
     field(&made, "told", &object(&told)?);

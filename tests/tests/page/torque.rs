@@ -88,7 +88,10 @@ fn the_tab_torque_has_the_cores_numbers_and_its_curves() -> Result<()> {
         )
         .await?;
         page.fill("source.motion.axes[1].motor.working_rate_hz", "19200").await?;
-        page.until("document.querySelector(\"table[aria-label='Ramps of cosine moves'] tbody\").textContent.includes('0.2333 s')").await?;
+        page.until(
+            "document.querySelector(\"table[aria-label='Ramps'] tbody\").textContent.includes('0.2333 s')",
+        )
+        .await?;
         Ok(())
     })
 }

@@ -1,6 +1,6 @@
 /**
  * The tab Torque of the study: the torque that the looked-at axis' motor has at each rate, what the plan needs of it, where that is
- * too much, and which ramps of a cosine move leave enough. What a tab is, says study.js.
+ * too much, and which ramps leave enough. What a tab is, says study.js.
  */
 import { button, element, fill, say } from "../../dom.js";
 import { count, plain, short, si } from "../../state/number.js";
@@ -9,7 +9,7 @@ import { createJob, subject, table } from "./parts.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{at_s: number, rate: number, needed_mn_m: number, available_mn_m: number}} Moment */
-/** @typedef {{index: number, steps: number, duration_s: number, greatest_rate: number | null, longest_s: number | null, too_fast: boolean, room_s: number, enough_s: [number, number] | null}} Ramps */
+/** @typedef {{index: number, duration_s: number, longest_s: number | null, too_fast: boolean, room_s: number, enough_s: [number, number] | null}} Ramps */
 /**
  * @typedef {{standing_mn_m: number, load_mn_m: number, corner_rate: number | null, torque_rate: number | null, working_rate: number | null,
  *   over_working_rate: number | null, jump: number, least: Moment | null, total: number,
@@ -38,8 +38,8 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
   const chart = element("div", { class: "chart torque-chart" }, caption, canvas);
   const facts = table("The motor", ["of the motor", "#value"]);
   const lacks = table("Too little torque", ["from", "#to", "#short of", "#at", "#rate", "~#needed", "~#available", "~#periods"]);
-  const ramps = table("Ramps of cosine moves", ["move", "#enough torque", "#longest by rate", "#room"]);
-  const ramped = element("h3", {}, "Ramps of cosine moves");
+  const ramps = table("Ramps", ["move", "#enough torque", "#longest by rate", "#room"]);
+  const ramped = element("h3", {}, "Ramps");
   const note = element("p", { class: "study-note" });
   const body = element("div", { class: "study-split" }, element("div", { class: "study-column" }, chart, verdict, lacks.root), element("div", { class: "study-column study-side" }, facts.root, ramped, ramps.root, note));
   fill(panel, element("div", { class: "study-bar" }, about, job.root), body);
@@ -83,7 +83,7 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
     ramped.hidden = ramps.root.hidden = told.ramps.length === 0;
     ramps.show(told.ramps.map(({ index, duration_s, longest_s, too_fast, room_s, enough_s }) => [`${index + 1}, ${si(duration_s, "s")}`,
       enough_s ? `${enough_s[0].toFixed(4)} to ${ramp(enough_s[1])}` : "none", longest_s === null ? (too_fast ? "too fast" : "any") : ramp(longest_s), ramp(room_s)]));
-    say(note, `${told.ramps.length ? "Enough torque: ramps with which it suffices throughout. Longest by rate: T − n/f_s, with the motor's greatest rate for its load as f_s; the move has room for T/2. " : ""}${jump > 0 ? "A motor follows a jump of speed up to its start-stop rate, which these data do not tell. " : ""}The model: fundamental waves only, no saturation, no losses of iron and friction in the motor, no resonance.`);
+    say(note, `${told.ramps.length ? "Enough torque: ramps with which it suffices throughout. Longest by rate: T − n/f_s (for ramps of area 1/2), with the motor's greatest rate for its load as f_s; the move has room for T/2. " : ""}${jump > 0 ? "A motor follows a jump of speed up to its start-stop rate, which these data do not tell. " : ""}The model: fundamental waves only, no saturation, no losses of iron and friction in the motor, no resonance.`);
   }
 
   /** @param {string} path */

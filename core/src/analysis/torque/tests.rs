@@ -1,6 +1,6 @@
 use super::*;
 use crate::{
-    motion::{Curve, cosine::Cosine, plan_axis},
+    motion::{Curve, Profile, cosine::Cosine, plan_axis},
     scenario::Axis,
 };
 use alloc::format;
@@ -201,7 +201,7 @@ fn a_stated_working_rate_is_kept_beside_the_torque() {
 #[test]
 fn song_2021s_longest_ramp_comes_out_of_its_working_rate() {
     let ramps = |motor: &str, steps: i64, duration_s: f64| {
-        Ramps::of(&machine(motor), steps, duration_s, |ramp_s| Cosine::new(steps, duration_s, ramp_s))
+        Ramps::of(&machine(motor), &Profile::Cosine(Cosine::new(steps, duration_s, 0.1))).unwrap()
     };
     let found = ramps(r#"{"working_rate_hz":19200}"#, 3200, 0.4);
     close(found.longest_s.unwrap(), 0.233_333_333, 1e-8);
@@ -225,20 +225,27 @@ fn song_2021s_longest_ramp_comes_out_of_its_working_rate() {
 #[test]
 fn of_ramps_that_suffice_both_ends_are_found() {
     let motor = r#"{"load_inertia_g_cm2":300,"load_torque_mn_m":180,"supply_v":13}"#;
-    let (steps, duration_s) = (8000, 0.4);
-    let of = |ramp_s: f64| Cosine::new(steps, duration_s, ramp_s);
-    let found = Ramps::of(&machine(motor), steps, duration_s, of);
-    let (shortest, longest) = found.enough_s.unwrap();
-    assert!(shortest > 0.0 && longest < found.room_s, "{found:?}");
-    for (ramp_s, met) in [
-        (shortest * 0.999, false),
-        (shortest * 1.001, true),
-        (longest * 0.999, true),
-        (longest * 1.001, false),
-    ] {
-        let moves = format!(r#"{{"cosine":{{"distance":{{"steps":8000}},"ramp_s":{ramp_s}}}}}"#);
-        assert_eq!(demand(motor, &moves).is_met(), met, "{ramp_s} of {found:?}");
+    // The cosine, and two other shapes with its front.
+    for (kind, shape) in
+        [("cosine", ""), ("ramps", r#","shape":"straight""#), ("ramps", r#","shape":"sigmoid""#)]
+    {
+        let with =
+            |ramp_s: f64| format!(r#"{{"{kind}":{{"distance":{{"steps":8000}},"ramp_s":{ramp_s}{shape}}}}}"#);
+        let plan = plan_axis(&axis(motor, &with(0.1)), "axis").unwrap();
+        let found = Ramps::of(&machine(motor), &plan.moves()[0].profile).unwrap();
+        let (shortest, longest) = found.enough_s.unwrap();
+        assert!(shortest > 0.0 && longest < found.room_s, "{found:?}");
+        for (ramp_s, met) in [
+            (shortest * 0.998, false),
+            (shortest * 1.002, true),
+            (longest * 0.998, true),
+            (longest * 1.002, false),
+        ] {
+            assert_eq!(demand(motor, &with(ramp_s)).is_met(), met, "{shape} {ramp_s} of {found:?}");
+        }
     }
+    let dwell = plan_axis(&axis(motor, r#"{"dwell":{}}"#), "axis").unwrap();
+    assert_eq!(Ramps::of(&machine(motor), &dwell.moves()[0].profile), None);
 }
 
 #[test]
