@@ -93,7 +93,7 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
   function refresh(state) {
     const of = subject(state);
     panel.classList.toggle("stale", of === "");
-    if (of === "") return;
+    if (!of) return;
     if (typeof of === "string") {
       asked = "";
       body.hidden = true;
