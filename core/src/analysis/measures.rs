@@ -164,8 +164,13 @@ fn asked_s(axis: &Axis, plan: &AxisPlan) -> Option<f64> {
         Move::Cosine(cosine) => Some(cosine.duration_s),
         Move::Ramps(ramps) => Some(ramps.duration_s),
         Move::SineSegments(sine) => Some(sine.period_s * f64::from(sine.periods)),
+        Move::Sine(sine) => Some(sine.period_s * f64::from(sine.periods)),
+        Move::Points(given) => {
+            let (first, last) = (given.points.first()?, given.points.last()?);
+            Some(last.time_s - first.time_s)
+        }
         Move::Dwell(dwell) => Some(dwell.duration_s),
-        _ => None,
+        Move::Trapezoid(_) | Move::Staircase(_) | Move::JerkLimited(_) | Move::Constant(_) => None,
     };
     let names_one = axis.moves.iter().any(|asked| named(asked).is_some());
     let times = axis.moves.iter().zip(plan.moves());
