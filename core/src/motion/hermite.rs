@@ -102,11 +102,11 @@ impl Cubic {
         }
     }
 
-    fn from_start(&self) -> Seen {
+    fn seen_from_start(&self) -> Seen {
         self.seen(self.from_speed, self.to_speed)
     }
 
-    fn from_end(&self) -> Seen {
+    fn seen_from_end(&self) -> Seen {
         self.seen(self.to_speed, self.from_speed)
     }
 
@@ -114,9 +114,9 @@ impl Cubic {
     pub(super) fn position(&self, t: f64) -> f64 {
         let (since, until) = (t - self.from_s, self.to_s - t);
         if since <= until {
-            self.from + self.from_start().way(greater(0.0, since))
+            self.from + self.seen_from_start().way(greater(0.0, since))
         } else {
-            self.to - self.from_end().way(greater(0.0, until))
+            self.to - self.seen_from_end().way(greater(0.0, until))
         }
     }
 
@@ -124,26 +124,26 @@ impl Cubic {
     pub(super) fn speed(&self, t: f64) -> f64 {
         let (since, until) = (t - self.from_s, self.to_s - t);
         if since <= until {
-            self.from_start().speed(greater(0.0, since))
+            self.seen_from_start().speed(greater(0.0, since))
         } else {
-            self.from_end().speed(greater(0.0, until))
+            self.seen_from_end().speed(greater(0.0, until))
         }
     }
 
     /// Acceleration at `t`.
     pub(super) fn acceleration(&self, t: f64) -> f64 {
-        let seen = self.from_start();
+        let seen = self.seen_from_start();
         2.0 * seen.square + 6.0 * seen.cube * (t - self.from_s)
     }
 
     /// Acceleration's rate, the same everywhere in it.
     pub(super) fn jerk(&self) -> f64 {
-        6.0 * self.from_start().cube
+        6.0 * self.seen_from_start().cube
     }
 
     /// When the speed is greatest or least within it, if that is at neither end.
     pub(super) fn turn_s(&self) -> Option<f64> {
-        let seen = self.from_start();
+        let seen = self.seen_from_start();
         let turn_s = self.from_s - seen.square / (3.0 * seen.cube);
         (turn_s > self.from_s && turn_s < self.to_s).then_some(turn_s)
     }
@@ -158,9 +158,9 @@ impl Cubic {
             Seen { near_speed: sign * seen.near_speed, square: sign * seen.square, cube: sign * seen.cube }
         };
         if libm::fabs(behind) <= libm::fabs(ahead) {
-            self.from_s + right(self.from_start()).time(libm::fabs(behind), self.length_s())
+            self.from_s + right(self.seen_from_start()).time(libm::fabs(behind), self.length_s())
         } else {
-            self.to_s - right(self.from_end()).time(libm::fabs(ahead), self.length_s())
+            self.to_s - right(self.seen_from_end()).time(libm::fabs(ahead), self.length_s())
         }
     }
 }

@@ -247,11 +247,14 @@ mod tests {
         due
     }
 
+    /// Points, and the times of their steps, right or left.
+    type Row<'a> = (&'a [(f64, f64)], &'a [(f64, bool)]);
+
     #[test]
     fn steps_fall_due_where_the_polyline_crosses_a_half() {
         let (right, left) = (true, false);
         // Shifted in time and place: both count from the first point.
-        let rows: [(&[(f64, f64)], &[(f64, bool)]); 6] = [
+        let rows: [Row; 6] = [
             (&[(10.0, -5.0), (11.0, -3.0)], &[(0.25, right), (0.75, right)]),
             (
                 &[(0.0, 0.0), (1.0, 2.0), (2.0, 0.0)],

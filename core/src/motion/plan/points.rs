@@ -70,10 +70,13 @@ mod tests {
     };
     use alloc::{string::ToString, vec, vec::Vec};
 
+    /// Unit, points, and the problems that they have.
+    type Row<'a> = (PointUnit, Vec<(f64, f64)>, &'a [&'a str]);
+
     #[test]
     fn every_problem_of_points_is_told_with_its_place() {
         let straight = Interpolation::Straight;
-        let rows: [(PointUnit, Vec<(f64, f64)>, &[&str]); 9] = [
+        let rows: [Row; 9] = [
             (PointUnit::Steps, vec![(5.0, 3.0), (5.5, 4.0)], &[]),
             (PointUnit::Steps, vec![(0.0, 0.0)], &["points: 1 points; give 2 to 4096"]),
             (PointUnit::Steps, vec![(0.0, 0.0); MOST_POINTS + 1], &["points: 4097 points; give 2 to 4096"]),
