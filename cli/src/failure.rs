@@ -2,7 +2,7 @@
 
 use std::{fmt, io, path::PathBuf, process::ExitCode};
 use stepscope_core::{
-    scenario::{BadTable, Problem, link::LinkError},
+    scenario::{Problem, link::LinkError},
     trace::ProofError,
 };
 
@@ -14,8 +14,6 @@ pub(crate) enum Failure {
     NotText(PathBuf),
     /// The scenario is wrong.
     Scenario(PathBuf, Vec<Problem>),
-    /// The table of points is wrong.
-    Table(PathBuf, BadTable),
     /// The link is wrong, or the scenario does not fit in one.
     Link(LinkError),
     /// A link to be verified does not carry its sender's digests.
@@ -52,7 +50,6 @@ impl Failure {
             Self::File(..) => ExitCode::from(1),
             Self::NotText(_)
             | Self::Scenario(..)
-            | Self::Table(..)
             | Self::Link(_)
             | Self::NoProof
             | Self::Proof(_)
@@ -79,7 +76,6 @@ impl fmt::Display for Failure {
                 write!(f, "{}: {count} problem{s}", path.display())?;
                 problems.iter().try_for_each(|problem| write!(f, "\n  {problem}"))
             }
-            Self::Table(path, error) => write!(f, "{}: {error}", path.display()),
             Self::Link(error) => write!(f, "{error}"),
             Self::NoProof => f.write_str(
                 "the link carries no digests of its sender (no d= in it), so there is nothing to verify; make it with the page's Share or with `stepscope run --link`",

@@ -36,8 +36,8 @@ enum UnitName {
 /// Writes the scenario of a table as JSON.
 pub(crate) fn points(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.table;
-    let points =
-        Points::of_table(&scenarios::text(path)?).map_err(|error| Failure::Table(path.clone(), error))?;
+    let points = Points::of_table(&scenarios::text(path)?)
+        .map_err(|error| Failure::Table(path.clone(), error.to_string()))?;
     let unit = match arguments.unit {
         UnitName::Steps => PointUnit::Steps,
         UnitName::Mm => PointUnit::Millimetres,
@@ -49,7 +49,7 @@ pub(crate) fn points(arguments: &Arguments) -> Result<(), Failure> {
         None => Mechanics::default(),
     };
     let moves = vec![Move::Points(Points { unit, interpolation, points })];
-    let axis = Axis { mechanics, moves };
+    let axis = Axis { mechanics, moves, ..Axis::default() };
     plan_axis(&axis, "source.motion.axes[0]")
         .map_err(|problems| Failure::Scenario(path.clone(), problems))?;
     let title =
