@@ -162,7 +162,7 @@ async function samples() {
     moves: Object.assign({}, ...axes[0].moves),
     mechanics: Object.assign({}, ...axes.map((/** @type {any} */ axis) => axis.mechanics)),
     sources: Object.assign({}, ...sources.map(({ source }) => source)),
-    glitch: all.line.glitches[0], send: line.source.line.sends[0], controller: all.controllers[0], rules: all.driver.rules,
+    glitch: all.line.glitches[0], send: line.source.line.sends[0], controller: all.controllers[0], rules: all.driver.rules, motor: axes[0].motor,
   };
 }
 

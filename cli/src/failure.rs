@@ -2,7 +2,7 @@
 
 use std::{fmt, io, path::PathBuf, process::ExitCode};
 use stepscope_core::{
-    scenario::{Problem, link::LinkError},
+    scenario::{BadTable, Problem, link::LinkError},
     trace::ProofError,
 };
 
@@ -14,6 +14,8 @@ pub(crate) enum Failure {
     NotText(PathBuf),
     /// The scenario is wrong.
     Scenario(PathBuf, Vec<Problem>),
+    /// The table of points is wrong.
+    Table(PathBuf, BadTable),
     /// The link is wrong, or the scenario does not fit in one.
     Link(LinkError),
     /// A link to be verified does not carry its sender's digests.
@@ -50,6 +52,7 @@ impl Failure {
             Self::File(..) => ExitCode::from(1),
             Self::NotText(_)
             | Self::Scenario(..)
+            | Self::Table(..)
             | Self::Link(_)
             | Self::NoProof
             | Self::Proof(_)
@@ -68,7 +71,7 @@ impl fmt::Display for Failure {
         match self {
             Self::File(path, error) => write!(f, "{}: {error}", path.display()),
             Self::NotText(path) => {
-                write!(f, "{}: not UTF-8 text; save the scenario as UTF-8", path.display())
+                write!(f, "{}: not UTF-8 text; save it as UTF-8", path.display())
             }
             Self::Scenario(path, problems) => {
                 let count = problems.len();
@@ -76,6 +79,7 @@ impl fmt::Display for Failure {
                 write!(f, "{}: {count} problem{s}", path.display())?;
                 problems.iter().try_for_each(|problem| write!(f, "\n  {problem}"))
             }
+            Self::Table(path, error) => write!(f, "{}: {error}", path.display()),
             Self::Link(error) => write!(f, "{error}"),
             Self::NoProof => f.write_str(
                 "the link carries no digests of its sender (no d= in it), so there is nothing to verify; make it with the page's Share or with `stepscope run --link`",

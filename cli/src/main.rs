@@ -11,6 +11,7 @@ mod faults;
 mod files;
 mod line;
 mod measures;
+mod points;
 mod progress;
 mod run;
 mod scenarios;
@@ -53,6 +54,8 @@ enum Command {
     /// Looks for the segments that make a sine with least distortion.
     #[command(subcommand)]
     Sine(sine::Command),
+    /// Writes a scenario whose one move is the curve through the points of a table (CSV of time, position).
+    Points(points::Arguments),
     /// Writes the scenario of a share link as JSON.
     Open {
         /// The link, or what stands behind its `#`.
@@ -80,6 +83,7 @@ fn main() -> ExitCode {
         Command::Torque(arguments) => torque::torque(&arguments),
         Command::Calibrate(arguments) => calibrate::calibrate(&arguments),
         Command::Sine(command) => sine::sine(&command),
+        Command::Points(arguments) => points::points(&arguments),
         Command::Open { link, verify } => scenarios::open(&link, verify),
         Command::Presets { id } => scenarios::presets(id.as_deref()),
         Command::Drivers => timing::drivers(),

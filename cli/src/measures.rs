@@ -57,7 +57,8 @@ impl Distortion {
 
     /// Name, and the ratios of the ideal curve and of the pulses.
     fn rows(&self) -> impl Iterator<Item = (&'static str, [Option<f64>; 2])> + '_ {
-        let of: [(_, fn(&Spectrum) -> Option<&Harmonics>); 4] = [
+        type Of = fn(&Spectrum) -> Option<&Harmonics>;
+        let of: [(_, Of); 4] = [
             ("position", |spectrum| Some(&spectrum.position)),
             ("speed", |spectrum| Some(&spectrum.speed)),
             ("acceleration", |spectrum| Some(&spectrum.acceleration)),

@@ -50,6 +50,7 @@ pub(crate) fn presets(id: Option<&str>) -> Result<(), Failure> {
     print(preset.ok_or_else(|| Failure::Preset(id.to_owned()))?.json.trim_end())
 }
 
-fn print(text: &str) -> Result<(), Failure> {
+/// Writes a text to standard output.
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
     writeln!(io::stdout(), "{text}").map_err(Failure::output)
 }

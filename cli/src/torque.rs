@@ -8,7 +8,7 @@ use std::{
 };
 use stepscope_core::{
     analysis::torque::{Demand, Machine, Moment, Ramps},
-    motion::{AxisPlan, Curve, PlannedMove, Profile, cosine::Cosine, plan_lists},
+    motion::{AxisPlan, Curve, PlannedMove, plan_lists},
     scenario::{Cause, Motion, Problem, Scenario, Source},
 };
 
@@ -133,8 +133,8 @@ fn report(driven: &Driven, out: &mut impl Write) -> io::Result<()> {
     }
     shortages(&demand, machine, out)?;
     for (index, planned) in plan.moves().iter().enumerate() {
-        if let PlannedMove { profile: Profile::Cosine(cosine), .. } = planned {
-            ramps(index, cosine, machine, out)?;
+        if let Some(found) = Ramps::of(machine, &planned.profile) {
+            ramps(index, planned, &found, out)?;
         }
     }
     Ok(())
@@ -184,10 +184,9 @@ fn shortages(demand: &Demand, machine: &Machine, out: &mut impl Write) -> io::Re
     }
 }
 
-fn ramps(index: usize, cosine: &Cosine, machine: &Machine, out: &mut impl Write) -> io::Result<()> {
-    let (steps, duration_s) = (cosine.steps(), cosine.duration_s());
-    let found = Ramps::of(machine, steps, duration_s, |ramp_s| Cosine::new(steps, duration_s, ramp_s));
-    writeln!(out, "  move {index}, cosine  {} steps in {duration_s} s", steps.unsigned_abs())?;
+fn ramps(index: usize, planned: &PlannedMove, found: &Ramps, out: &mut impl Write) -> io::Result<()> {
+    let (steps, duration_s) = (planned.profile.steps(), planned.profile.duration_s());
+    writeln!(out, "  move {index:<11} {} steps in {duration_s} s", steps.unsigned_abs())?;
     if let Some(greatest) = found.greatest_rate {
         write!(out, "    under {greatest:.0} steps/s  ")?;
         match found.longest_s {

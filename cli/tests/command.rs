@@ -209,6 +209,31 @@ fn the_timing_check_prints_writes_and_is_strict_when_asked() {
 }
 
 #[test]
+fn a_table_of_points_becomes_a_scenario_that_runs() {
+    let table = "time_s,position\n0,0\n0.5,12.5\n1,0\n";
+    let made = stepscope(&["points", "-", "--unit", "mm", "--step-mm", "0.05", "--straight"], table)
+        .expect("it runs");
+    assert_eq!((made.code, made.err.as_str()), (Some(0), ""));
+    let status = stepscope(&["run", "-", "--status"], &made.out).expect("it runs");
+    assert!(status.out.contains("positions 0\n"), "{}", status.out);
+    for (table, options, expected) in [
+        (
+            "0,0\n1,x\n",
+            &[][..],
+            "-: line 2: the position is \u{201c}x\u{201d}; give a number, such as 0.25\n",
+        ),
+        (
+            "0,0\n1,5\n1,6\n",
+            &["--unit", "deg"],
+            "-: 1 problem\n  source.motion.axes[0].moves[0].points.points[2]: a time of 1 s after one of 1 s; give times that rise by 1e-9 s at least\n",
+        ),
+    ] {
+        let answer = stepscope(&[&["points", "-"], options].concat(), table).expect("it runs");
+        assert_eq!(answer.parts(), (Some(2), "", expected));
+    }
+}
+
+#[test]
 fn drivers_are_listed_with_their_figures() {
     let answer = stepscope(&["drivers"], "").expect("it runs");
     assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));

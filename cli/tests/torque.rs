@@ -39,7 +39,7 @@ axis 0
   working rate     19200 steps/s, as stated
   least margin     281.7 mN*m: at 0.100000 s, 8000 steps/s, 1.1 needed of 282.8 mN*m
   enough torque throughout
-  move 0, cosine  3200 steps in 0.4 s
+  move 0           3200 steps in 0.4 s
     under 19200 steps/s  a ramp of at most 0.2333 s; the move has room for 0.2000 s
     enough torque with ramps of 0.0004 to 0.2000 s
 ";

@@ -4,7 +4,8 @@ use crate::convert::object;
 use serde::Serialize;
 use std::iter::once;
 use stepscope_core::{
-    motion::{AxisPlan, Curve, grouped},
+    analysis::torque::{Demand, Machine},
+    motion::{AxisPlan, Curve, PlannedMove, grouped},
     run::{BUDGET_RECORDS, Cost, Experiment},
     scenario::{Axis, Problem, Scenario, Source, presets as core_presets},
 };
@@ -98,6 +99,8 @@ struct DerivedMove {
     duration_s: f64,
     steps: i64,
     detail: String,
+    /// What the axis' motor cannot do of it; empty where there is enough torque, or no motor.
+    warning: String,
 }
 
 #[derive(Serialize)]
@@ -192,11 +195,17 @@ fn derive_axis(axis: &Axis, plan: &AxisPlan, limit_steps_s: f64) -> DerivedAxis 
         peak_acceleration_steps_s2: plan.peaks().acceleration,
         step_mm: axis.mechanics.step_mm(),
         step_deg: axis.mechanics.step_deg(),
-        moves: moves(plan, limit_steps_s),
+        moves: moves(axis, plan, limit_steps_s),
     }
 }
 
-fn moves(plan: &AxisPlan, limit_steps_s: f64) -> Vec<DerivedMove> {
+fn moves(axis: &Axis, plan: &AxisPlan, limit_steps_s: f64) -> Vec<DerivedMove> {
+    let driven = Machine::of(axis).map(|machine| (Demand::of(&machine, plan), machine));
+    let warning = |planned: &PlannedMove| {
+        let (demand, machine) = driven.as_ref()?;
+        let (from_s, profile) = (planned.start_s, &planned.profile);
+        demand.warning(machine, from_s, from_s + profile.duration_s(), profile.peaks().speed)
+    };
     plan.moves()
         .iter()
         .map(|planned| DerivedMove {
@@ -204,6 +213,7 @@ fn moves(plan: &AxisPlan, limit_steps_s: f64) -> Vec<DerivedMove> {
             duration_s: planned.profile.duration_s(),
             steps: planned.profile.steps(),
             detail: planned.profile.detail(limit_steps_s),
+            warning: warning(planned).unwrap_or_default(),
         })
         .collect()
 }

@@ -20,6 +20,7 @@ mod spectrum;
 mod summary;
 mod tables;
 mod timing;
+mod torque;
 mod witness;
 
 pub use compare::compare_ramps;
@@ -29,3 +30,4 @@ pub use simulation::Simulation;
 pub use sine::{sine_best, sine_rows, sine_vertices};
 pub use tables::{step_source, step_table};
 pub use timing::drivers;
+pub use torque::torque;

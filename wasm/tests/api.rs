@@ -413,3 +413,16 @@ fn a_host_that_gives_up_says_why() {
     assert!(get(&summary, "host").is_null(), "nobody waits for replies to a script");
     assert_eq!(text(&list(&summary, "controllers")[0], "state"), "STOPPED");
 }
+
+#[wasm_bindgen_test]
+fn measures_are_those_of_the_axis_that_is_asked_for() {
+    let mut simulation = finished(
+        r#"{"bus":{"channels":2},"source":{"motion":{"axes":[{},{"moves":[{"constant":{"distance":{"steps":100}}}]}]}}}"#,
+    );
+    let counts = |measures: &JsValue| number(&get(measures, "counts"), "due");
+    assert_eq!([0, 1].map(|axis| counts(&sure(simulation.measures(axis)))), [3200.0, 100.0]);
+    let measures = sure(simulation.measures(1));
+    assert!((number(&get(&measures, "steps"), "rms_steps") - 0.288_675).abs() < 1e-5);
+    assert!(get(&measures, "sine").is_null() && get(&get(&measures, "duration"), "asked_s").is_null());
+    assert!(sure(simulation.measures(2)).is_null(), "there is no third axis");
+}

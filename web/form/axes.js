@@ -2,6 +2,7 @@
 import { button, element } from "../dom.js";
 import { MECHANICS } from "./fields.js";
 import { labels } from "./kit.js";
+import { motorItems } from "./motor.js";
 import { MOVES } from "./moves/index.js";
 import { MOST_CHANNELS, get, set } from "../state/state.js";
 
@@ -15,7 +16,7 @@ export function axisItems(kit, place) {
   const { samples, now } = kit;
   /** @type {any[]} */
   const axes = get(now().scenario, place.axes) ?? [];
-  const fresh = () => ({ mechanics: { rotary: samples.mechanics.rotary }, moves: [{ cosine: samples.moves.cosine }] });
+  const fresh = () => ({ mechanics: { rotary: samples.mechanics.rotary }, moves: [{ cosine: samples.moves.cosine }], motor: null });
   return [...axes.map((_, index) => axisItem(kit, place, axes, index)),
     button("Add axis", `Add axis${place.whose}`, () => addAxis(kit, place, axes, structuredClone(axes[axes.length - 1] ?? fresh())), axes.length >= MOST_CHANNELS)];
 }
@@ -37,7 +38,7 @@ function axisItem(kit, place, axes, index) {
   const moves = axis.moves.map((/** @type {any} */ _, /** @type {number} */ i) => moveItem(kit, list, axis.moves, i));
   const last = axis.moves[axis.moves.length - 1];
   const add = button("Add move", `Add move to ${name}`, () => put(list, [...axis.moves, structuredClone(last ?? { cosine: samples.moves.cosine })]), axis.moves.length >= MOST_MOVES);
-  return item(`Axis ${index} · channel ${index}`, path, [head, ...fields, ...moves, add], kind);
+  return item(`Axis ${index} · channel ${index}`, path, [head, ...fields, ...motorItems(kit, path, axis, name), ...moves, add], kind);
 }
 
 /** @param {Kit} kit @param {string} list @param {any[]} moves @param {number} index */

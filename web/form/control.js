@@ -2,9 +2,10 @@
  * One field of the form: a label, an input (or select), its unit, a hint, its error. What is typed goes out
  * as a value, or as a draft while it is no number yet.
  */
-import { element, flash, say } from "../dom.js";
+import { button, element, flash, say } from "../dom.js";
 import { termButton } from "../help/card.js";
 import { parseNumber, si } from "../state/number.js";
+import { printPoints, readPoints } from "./points.js";
 import { printSegments, readSegments } from "./segments.js";
 import { derivedAxis, get } from "../state/state.js";
 
@@ -34,7 +35,7 @@ export function control(path, field, { dispatch, now }) {
   const also = element("span", { class: "also" });
   const labels = { "aria-labelledby": field.unit ? `${id}-label ${id}-unit` : `${id}-label` };
   const described = { id, ...labels, "aria-describedby": `${id}-error ${id}-hint`, "aria-keyshortcuts": "F1", "data-path": path };
-  const long = field.kind === "lines" || field.kind === "segments" || field.rows !== undefined;
+  const long = field.kind === "lines" || field.kind === "segments" || field.kind === "points" || field.rows !== undefined;
   const wide = long || field.kind === "text" || isHex(field);
   const input = field.kind === "choice"
     ? element("select", described, ...Object.entries(field.choices ?? {}).map(([value, text]) => element("option", { value }, text)))
@@ -43,7 +44,12 @@ export function control(path, field, { dispatch, now }) {
   const unitSelect = field.units ? element("select", { "aria-label": `Unit of ${field.label}`, "data-path": `${path}#unit` },
     ...Object.entries(field.units).map(([value, text]) => element("option", { value }, text))) : null;
   const unit = field.unit ? element("span", { class: "unit", id: `${id}-unit` }, field.unit) : null;
-  const box = element("div", { class: "box" }, input, ...(unitSelect ? [unitSelect] : unit ? [unit] : []));
+  const chooser = field.kind === "points" ? fileChooser(field.label, (text) => {
+    input.value = text;
+    input.dispatchEvent(new Event("input"));
+    input.dispatchEvent(new Event("change"));
+  }, (message) => draft(message)) : [];
+  const box = element("div", { class: "box" }, input, ...(unitSelect ? [unitSelect] : unit ? [unit] : []), ...chooser);
   const root = element("div", { class: wide ? "field wide" : "field" },
     termButton(field.label, field.term ?? field.key, { id: `${id}-label`, tabindex: "-1" }), box, also, hint, error);
 
@@ -110,6 +116,26 @@ export function control(path, field, { dispatch, now }) {
   };
 }
 
+/** Most bytes of a file whose text goes into a field. */
+const MOST_FILE = 1 << 20;
+
+/** A button that puts a file's text into a field. @param {string} label @param {(text: string) => void} put @param {(message: string) => void} refuse */
+function fileChooser(label, put, refuse) {
+  const file = element("input", { type: "file", accept: ".csv,.txt,.tsv,text/csv,text/plain", hidden: "" });
+  file.addEventListener("change", async () => {
+    const [chosen] = file.files ?? [];
+    file.value = "";
+    if (!chosen) return;
+    if (chosen.size > MOST_FILE) return refuse(`${chosen.name} has ${chosen.size} bytes; give at most ${MOST_FILE}.`);
+    try {
+      put(await chosen.text());
+    } catch {
+      refuse(`${chosen.name} cannot be read.`);
+    }
+  });
+  return [button("Choose CSV…", `Choose a CSV for ${label}`, () => file.click()), file];
+}
+
 /** @param {any} a @param {any} b */
 function same(a, b) {
   return a === b || (typeof a === "object" && JSON.stringify(a) === JSON.stringify(b));
@@ -121,6 +147,7 @@ function print(value, field) {
   if (field.kind === "quantity") return String(Object.values(value)[0]);
   if (field.kind === "lines") return value.map(spaced).join("\n");
   if (field.kind === "segments") return printSegments(value);
+  if (field.kind === "points") return printPoints(value);
   return isHex(field) ? spaced(value) : String(value);
 }
 
@@ -147,6 +174,7 @@ function read(text, field, state, before) {
     case "choice": return { value: /^\d+$/.test(text) ? Number(text) : text };
     case "text": return { value: text };
     case "segments": return readSegments(text);
+    case "points": return readPoints(text);
     case "hex": return { value: bare(text) };
     case "optional-hex": return { value: bare(text) || null };
     case "lines": return { value: text.split("\n").map(bare).filter((line) => line !== "") };
@@ -166,7 +194,7 @@ function readQuantity(text, field, before) {
   const chosen = Object.keys(before ?? units)[0];
   const named = Object.entries(units).find(([name, printed]) => {
     const tail = text.trim().match(/[^\d.,\s+−-].*$/)?.[0] ?? "";
-    return tail === printed || tail === name || tail === printed.replace("²", "2") || tail === printed.replace("°", "deg");
+    return tail === printed || tail === name || tail === printed.replace("²", "2").replace("³", "3") || tail === printed.replace("°", "deg");
   });
   const unit = named?.[0] ?? chosen;
   const result = parseNumber(named ? text.trim().replace(/[^\d.,\s+−-].*$/, "") : text, units[chosen] ?? "");

@@ -5,9 +5,9 @@
  * @property {string} key     Name in the scenario.
  * @property {string} label
  * @property {string} hint    How it is given, and its range.
- * @property {"number" | "integer" | "optional" | "cycles" | "optional-cycles" | "choice" | "quantity" | "text" | "hex" | "optional-hex" | "lines" | "segments"} kind
+ * @property {"number" | "integer" | "optional" | "cycles" | "optional-cycles" | "choice" | "quantity" | "text" | "hex" | "optional-hex" | "lines" | "segments" | "points"} kind
  *   `optional…` may be empty (null); `cycles` also takes a time; `lines` is one hex packet a line, `segments` one
- *   segment.
+ *   segment, `points` one point of a curve.
  * @property {string} [term]  Its explanation in `help/terms.js`, where it is not that of its key.
  * @property {string} [unit]
  * @property {{[value: string]: string}} [choices]
@@ -23,6 +23,7 @@
 export const DISTANCE = { steps: "steps", mm: "mm", deg: "°" };
 export const SPEED = { steps_s: "steps/s", mm_s: "mm/s", deg_s: "°/s", rpm: "rpm" };
 export const ACCELERATION = { steps_s2: "steps/s²", mm_s2: "mm/s²", deg_s2: "°/s²" };
+export const JERK = { steps_s3: "steps/s³", mm_s3: "mm/s³", deg_s3: "°/s³" };
 
 /** @param {string} key @param {string} label @param {string} unit @param {string} hint @returns {Field} */
 export const number = (key, label, unit, hint) => ({ key, label, unit, hint, kind: "number" });

@@ -159,6 +159,6 @@ export const SECTIONS = [
  */
 export const SAMPLES = {
   all: { bus: { channels: 5 }, line: { glitches: [{}] }, controllers: [{}], driver: { rules: {} },
-    source: { motion: { axes: Object.keys(MECHANICS).map((kind) => ({ mechanics: { [kind]: {} }, moves: Object.keys(MOVES).map((move) => ({ [move]: {} })) })) } } },
+    source: { motion: { axes: Object.keys(MECHANICS).map((kind) => ({ mechanics: { [kind]: {} }, motor: {}, moves: Object.keys(MOVES).map((move) => ({ [move]: {} })) })) } } },
   line: { source: { line: { sends: [{}] } } },
 };

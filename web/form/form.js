@@ -110,7 +110,7 @@ function used(group) {
 /** What decides which fields there are; values do not. @param {Scenario} scenario */
 function shapeOf({ source, controllers, driver, line }) {
   const kinds = (/** @type {any[]} */ axes) => axes.map((axis) =>
-    [Object.keys(axis.mechanics)[0], ...axis.moves.map((/** @type {any} */ move) => Object.keys(move)[0])]);
+    [Object.keys(axis.mechanics)[0], Boolean(axis.motor), ...axis.moves.map((/** @type {any} */ move) => Object.keys(move)[0])]);
   return JSON.stringify([Object.keys(source)[0], runsAlone({ source }), kinds(source.motion?.axes ?? []), source.line?.sends?.length, source.segments?.channels?.length, line.glitches.length,
     controllers.map((/** @type {any} */ { axes }) => kinds(axes)), driver && (driver.preset ?? "rules")]);
 }

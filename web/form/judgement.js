@@ -102,7 +102,10 @@ export function showDerived(state, form) {
       flash(value);
     }
   }
-  for (const note of /** @type {NodeListOf<HTMLElement>} */ (form.querySelectorAll("[data-note]"))) say(note, moveNote(note.dataset.note ?? "", state));
+  for (const note of /** @type {NodeListOf<HTMLElement>} */ (form.querySelectorAll("[data-note]"))) {
+    const { text, warning } = moveNote(note.dataset.note ?? "", state);
+    if (note.textContent !== text + warning) fill(note, text, ...(warning ? [element("strong", { class: "short" }, warning)] : []));
+  }
 }
 
 /** Name, value, `over` where it is too much, and the term that explains it. @param {State} state @param {import("../state/types.js").Derived} derived @returns {[string, string, string, string][]} */
@@ -150,7 +153,10 @@ function sent({ scenario: { source, line }, result, revision }, { sends, line_lo
 function moveNote(path, state) {
   const [, index] = path.match(/\.moves\[(\d+)\]/) ?? [];
   const move = derivedAxis(state, path)?.moves[Number(index)];
-  if (!move) return "";
+  if (!move) return { text: "", warning: "" };
   const steps = `${count(move.steps)} steps`;
-  return [`${si(move.start_s, "s")} to ${si(move.start_s + move.duration_s, "s")}`, steps, move.detail].filter(Boolean).join(" · ");
+  return {
+    text: [`${si(move.start_s, "s")} to ${si(move.start_s + move.duration_s, "s")}`, steps, move.detail].filter(Boolean).join(" · "),
+    warning: move.warning && ` ⚠ Motor: ${move.warning.replaceAll("mN*m", "mN·m")}.`,
+  };
 }

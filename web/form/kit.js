@@ -8,7 +8,7 @@ import { termButton } from "../help/card.js";
 /** @typedef {import("./control.js").Control} Control */
 /**
  * @typedef {{moves: {[kind: string]: any}, mechanics: {[kind: string]: any}, sources: {[kind: string]: any},
- *   glitch: any, send: any, controller: any, rules: any}} Samples  One of everything, with the core's defaults.
+ *   glitch: any, send: any, controller: any, rules: any, motor: any}} Samples  One of everything, with the core's defaults.
  */
 /** @typedef {ReturnType<typeof createKit>} Kit */
 

@@ -9,7 +9,7 @@ export function csv(rows) {
   return rows.map((row) => `${row.map((value) => field(String(value ?? ""))).join(",")}\n`).join("");
 }
 
-/** Amplitudes of the harmonics (peak), and the total distortion to the highest one in the row `thd`. @param {Spectra} spectra */
+/** Amplitudes of the harmonics (peak), and the total distortion to the highest one in the row `thd`, and what a sensor feels of it in the row `thd_felt`. @param {Spectra} spectra */
 export function harmonicsTable({ ideal, pulses }) {
   const some = ideal ?? pulses;
   const names = /** @type {const} */ (["position", "speed", "acceleration"]);
@@ -18,7 +18,8 @@ export function harmonicsTable({ ideal, pulses }) {
   if (!some) return csv([head]);
   const rows = Array.from(some.position, (_, i) => [i + 1, (i + 1) * some.fundamental_hz, ...kinds.flatMap((kind) => names.map((name) => kind?.[name][i]))]);
   const total = kinds.flatMap((kind) => [kind?.thd_position, kind?.thd_speed, kind?.thd_acceleration]);
-  return csv([head, ...rows, ["thd", "", ...total]]);
+  const felt = kinds.flatMap((kind) => [null, null, kind?.thd_acceleration_felt]);
+  return csv([head, ...rows, ["thd", "", ...total], ...(felt.some((part) => part) ? [["thd_felt", "", ...felt]] : [])]);
 }
 
 /** @param {Timing | null} timing */

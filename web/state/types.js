@@ -4,7 +4,7 @@
  *
  * @typedef {{[key: string]: any}} Scenario  Full JSON of one experiment, every field written.
  * @typedef {{path: string, message: string}} Problem
- * @typedef {{start_s: number, duration_s: number, steps: number, detail: string}} DerivedMove
+ * @typedef {{start_s: number, duration_s: number, steps: number, detail: string, warning: string}} DerivedMove
  * @typedef {{steps: number, duration_s: number, peak_speed_steps_s: number, peak_acceleration_steps_s2: number,
  *   step_mm: number | null, step_deg: number | null, moves: DerivedMove[]}} DerivedAxis
  * @typedef {{tick_s: number, limit_steps_s: number, ticks: number, axes: DerivedAxis[]}} DerivedController
@@ -51,7 +51,7 @@
  * @typedef {{driver: string | null, total: number, rules: RuleResult[], violations: Violation[]}} Timing
  * @typedef {{fundamental_hz: number, periods: number, order: number, periodic: boolean,
  *   position: Float64Array, speed: Float64Array, acceleration: Float64Array,
- *   thd_position: number | null, thd_speed: number | null, thd_acceleration: number | null}} Spectrum
+ *   thd_position: number | null, thd_speed: number | null, thd_acceleration: number | null, thd_acceleration_felt: number | null}} Spectrum
  * @typedef {{axis: number, ideal: Spectrum | null, pulses: Spectrum | null, note: string}} Spectra
  *
  * @typedef {{at_a: number[], at_b: number[], mean: number[], rms: number[]}} Readings  Position, speed, acceleration; of pulses the first two.

@@ -36,6 +36,9 @@ impl Group {
     }
 }
 
+/// A figure of a comparison, or of errors.
+type Figure<T> = fn(&T) -> Option<f64>;
+
 /// Of a group with one column.
 const ONE: &[(&str, &str)] = &[("", "")];
 
@@ -92,7 +95,7 @@ fn deviation(found: &Measures) -> Group {
 
 fn compared(group: &mut Group, pairs: &[&Comparison]) {
     let points = pairs.first().map_or(0, |pair| pair.points);
-    let rows: [(String, _, fn(&Comparison) -> Option<f64>); 9] = [
+    let rows: [(String, _, Figure<Comparison>); 9] = [
         ("largest".into(), "steps", |pair| Some(pair.largest_steps)),
         ("largest at".into(), "s", |pair| Some(pair.largest_at_s)),
         ("r.m.s.".into(), "steps", |pair| Some(pair.rms_steps)),
@@ -111,17 +114,17 @@ fn compared(group: &mut Group, pairs: &[&Comparison]) {
 fn errors(found: &Measures) -> Group {
     let columns = [("steps", "whole cycles"), ("ticks", "ticks and link")];
     let mut group = Group::new("pulses", "pulses off their places by", &columns);
-    let rows: [(_, _, fn(&PulseErrors) -> f64); 7] = [
-        ("largest time error", "us", |errors| errors.largest_s * 1e6),
-        ("largest at", "s", |errors| errors.largest_at_s),
-        ("mean time error", "us", |errors| errors.mean_s * 1e6),
-        ("r.m.s. time error", "us", |errors| errors.rms_s * 1e6),
-        ("largest position error", "steps", |errors| errors.largest_steps),
-        ("r.m.s. position error", "steps", |errors| errors.rms_steps),
-        ("pulses that count", "", |errors| errors.pulses as f64),
+    let rows: [(_, _, Figure<PulseErrors>); 7] = [
+        ("largest time error", "us", |errors| Some(errors.largest_s * 1e6)),
+        ("largest at", "s", |errors| Some(errors.largest_at_s)),
+        ("mean time error", "us", |errors| Some(errors.mean_s * 1e6)),
+        ("r.m.s. time error", "us", |errors| Some(errors.rms_s * 1e6)),
+        ("largest position error", "steps", |errors| Some(errors.largest_steps)),
+        ("r.m.s. position error", "steps", |errors| Some(errors.rms_steps)),
+        ("pulses that count", "", |errors| Some(errors.pulses as f64)),
     ];
     for (measure, unit, of) in rows {
-        group.row(measure, unit, vec![Some(of(&found.step_errors)), Some(of(&found.tick_errors))]);
+        group.row(measure, unit, vec![of(&found.step_errors), of(&found.tick_errors)]);
     }
     group.row("pulses without a step", "", vec![Some(0.0), Some(found.counts.stray as f64)]);
     group

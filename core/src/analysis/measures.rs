@@ -162,6 +162,7 @@ impl Measures {
 fn asked_s(axis: &Axis, plan: &AxisPlan) -> Option<f64> {
     let named = |asked: &Move| match asked {
         Move::Cosine(cosine) => Some(cosine.duration_s),
+        Move::Ramps(ramps) => Some(ramps.duration_s),
         Move::SineSegments(sine) => Some(sine.period_s * f64::from(sine.periods)),
         Move::Dwell(dwell) => Some(dwell.duration_s),
         _ => None,

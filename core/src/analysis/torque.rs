@@ -36,11 +36,13 @@ mod ramps;
 pub use machine::Machine;
 pub use ramps::Ramps;
 
-use crate::motion::{AxisPlan, Joints, Piece};
-use alloc::vec::Vec;
+use crate::motion::{AxisPlan, Curve, Joints, Piece, grouped};
+use alloc::{format, string::String, vec::Vec};
 
 /// Shortages that are listed.
-const MOST_SHORTAGES: usize = 64;
+const MOST_SHORTAGES: usize = 1024;
+/// Times of each move that a chart's needed torque is taken at.
+const LOOKS_A_MOVE: u32 = 2048;
 /// A plan is looked at so often, beside both sides of each of its joints.
 const LOOKS: f64 = 512.0;
 /// Halvings that leave of a stretch less than a double tells apart.
@@ -83,7 +85,7 @@ pub struct Shortage {
 /// What a plan asks of a motor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Demand {
-    /// Where there is too little torque, in order; the first 64.
+    /// Where there is too little torque, in order; the first 1024.
     pub shortages: Vec<Shortage>,
     /// How many stretches there are.
     pub total: u64,
@@ -115,6 +117,30 @@ impl Demand {
         walk.demand
     }
 
+    /// What is to be said of the move from `from_s` to `to_s` of `peak_rate` steps/s: too high a rate, or where most
+    /// torque is missing, and what to change; `None` where there is enough.
+    #[must_use]
+    pub fn warning(&self, machine: &Machine, from_s: f64, to_s: f64, peak_rate: f64) -> Option<String> {
+        if let Some(most) = machine.working_rate().filter(|most| peak_rate > *most) {
+            return Some(format!(
+                "{} steps/s are above the motor's working rate of {}; give more time, or shorter ramps",
+                grouped(peak_rate),
+                grouped(most)
+            ));
+        }
+        let inside = self.shortages.iter().filter(|found| found.from_s < to_s && found.to_s > from_s);
+        let worst = inside
+            .map(|found| found.worst)
+            .reduce(|worst, other| if other.margin_mn_m() < worst.margin_mn_m() { other } else { worst })?;
+        Some(format!(
+            "too little torque: {:.1} mN*m needed of {:.1} at {:.4} s and {} steps/s; give more time, gentler ramps, less load or a higher supply voltage",
+            libm::fabs(worst.needed_mn_m),
+            worst.available_mn_m,
+            worst.at_s,
+            grouped(worst.rate)
+        ))
+    }
+
     /// Whether the motor can follow all of it, jumps aside.
     #[must_use]
     pub fn is_met(&self) -> bool {
@@ -122,12 +148,21 @@ impl Demand {
     }
 }
 
-/// What is needed and what there is at `looks` times spread evenly over a plan, for a chart.
+/// The most torque in mN*m, driving or braking, that a plan needs at each rate, for a chart: of `bins` stretches of the
+/// rate from 0 to `most_rate` steps/s; not-a-number where the plan has no such rate.
 #[must_use]
-pub fn moments(machine: &Machine, plan: &AxisPlan, looks: u32) -> Vec<Moment> {
-    let looks = looks.max(1);
-    let step_s = plan.duration_s() / f64::from(looks);
-    (0..looks).map(|look| machine.at(plan, (f64::from(look) + 0.5) * step_s)).collect()
+pub fn needed_over_rate(machine: &Machine, plan: &AxisPlan, most_rate: f64, bins: usize) -> Vec<f64> {
+    let mut needed = alloc::vec![f64::NAN; bins];
+    for planned in plan.moves() {
+        let part_s = planned.profile.duration_s() / f64::from(LOOKS_A_MOVE);
+        for look in 0..LOOKS_A_MOVE {
+            let moment = machine.at(plan, planned.start_s + (f64::from(look) + 0.5) * part_s);
+            if let Some(most) = needed.get_mut((moment.rate / most_rate * bins as f64) as usize) {
+                *most = libm::fmax(*most, libm::fabs(moment.needed_mn_m));
+            }
+        }
+    }
+    needed
 }
 
 /// A walk along a plan.

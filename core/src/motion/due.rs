@@ -46,6 +46,32 @@ impl AxisPlan {
     }
 }
 
+impl Profile {
+    /// The cycle of step `k` (from 1) after the move's start, of a clock of `clock_hz`, without walking to
+    /// it; `None` past the last one, and for sine segments, whose steps are only known in their order.
+    #[must_use]
+    pub fn step_cycle(&self, k: u64, clock_hz: u32) -> Option<u64> {
+        if k == 0 || k > self.step_count() {
+            return None;
+        }
+        let (clock, place) = (f64::from(clock_hz), k as f64 - 0.5);
+        let cycles = match self {
+            Self::Trapezoid(curve) => return curve.step_times(clock_hz).nth(usize::try_from(k - 1).ok()?),
+            Self::TrapezoidTable(table) => table.step_cycles(k, clock_hz),
+            Self::Staircase(staircase) => staircase.step_s(k) * clock,
+            Self::Cosine(curve) => curve.time_s(place) * clock,
+            Self::Sliced(curve) => curve.time_s(place) * clock,
+            Self::Ramps(curve) => curve.time_s(place) * clock,
+            Self::Sine(sine) => sine.due_half(k) * (sine.period_s() / 2.0 * clock),
+            Self::JerkLimited(curve) => curve.time_s(place) * clock,
+            Self::Points(points) => points.step_s(k)? * clock,
+            Self::Constant(constant) => place * (clock / libm::fabs(constant.speed(0.0))),
+            Self::SineSegments(_) | Self::Dwell(_) => return None,
+        };
+        Some(cycle(cycles))
+    }
+}
+
 fn due(profile: &Profile, clock_hz: u32) -> Due<'_> {
     let clock = f64::from(clock_hz);
     let (right, steps) = (profile.steps() >= 0, 1..=profile.steps().unsigned_abs());

@@ -153,8 +153,7 @@ impl JerkLimited {
 
     /// When the curve is at `place`, in s; `place` in steps without sign, 0 to all.
     pub(super) fn time_s(&self, place: f64) -> f64 {
-        let left = self.halves.count() - place;
-        if place <= left { self.climb_s(place) } else { self.halves.duration_s - self.climb_s(left) }
+        self.halves.time_s(place, |place| self.climb_s(place))
     }
 
     /// When the first half is at `place`.

@@ -98,12 +98,19 @@ impl Points {
     pub(super) fn due_s(&self) -> impl Iterator<Item = (f64, bool)> + '_ {
         self.ways().flat_map(|(piece, from, to)| {
             let right = to > from;
-            (0..from.abs_diff(to)).map(move |index| {
-                let index = index as f64;
-                let place = from as f64 + if right { 0.5 + index } else { -0.5 - index };
-                (piece.time_s(place), right)
-            })
+            (0..from.abs_diff(to)).map(move |index| (piece.time_s(place(from, to, index)), right))
         })
+    }
+
+    /// When step `k` (from 1) of all falls due, in s.
+    pub(super) fn step_s(&self, k: u64) -> Option<f64> {
+        let mut before = 0;
+        let (piece, from, to) = self.ways().find(|(_, from, to)| {
+            let among = k <= before + from.abs_diff(*to);
+            before += if among { 0 } else { from.abs_diff(*to) };
+            among
+        })?;
+        Some(piece.time_s(place(from, to, k - before - 1)))
     }
 
     /// Times at which the curve changes its formula or its speed turns, and parts of each smooth piece
@@ -129,6 +136,12 @@ impl Points {
     fn piece(&self, t: f64) -> Option<&Cubic> {
         self.pieces.get(self.pieces.partition_point(|piece| piece.to_s <= t)).or(self.pieces.last())
     }
+}
+
+/// Where step `index` (from 0) of those between two counts of steps falls due.
+fn place(from: i64, to: i64, index: u64) -> f64 {
+    let past = index as f64 + 0.5;
+    from as f64 + if to > from { past } else { -past }
 }
 
 /// Gives the ends of the pieces the slopes of Steffen's curve.

@@ -43,6 +43,12 @@ impl Ramps {
         Self { halves: Mirrored { steps, duration_s }, ramp_s, ramp, area, top_speed }
     }
 
+    /// The same move with ramps of another time in s, 0 to half of its duration.
+    #[must_use]
+    pub fn with_ramp_s(&self, ramp_s: f64) -> Self {
+        Self::new(self.halves.steps, self.halves.duration_s, ramp_s, self.ramp)
+    }
+
     /// f_max in steps/s, the speed of the plateau.
     #[must_use]
     pub fn top_speed(&self) -> f64 {

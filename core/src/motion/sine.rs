@@ -58,6 +58,12 @@ impl Sine {
         })
     }
 
+    /// When step `k` (from 1) of all falls due, in half periods from the start.
+    pub(super) fn due_half(&self, k: u64) -> f64 {
+        let of_half = 2 * self.swing.amplitude;
+        ((k - 1) / of_half) as f64 + part_of_half((k - 1) % of_half + 1, self.swing.amplitude)
+    }
+
     fn amplitude(&self) -> f64 {
         self.swing.amplitude as f64
     }

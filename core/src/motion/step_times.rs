@@ -144,6 +144,12 @@ impl Iterator for StepTimes {
         self.next_unrounded().map(cycle)
     }
 
+    /// Passes by `n` steps without forming their times.
+    fn nth(&mut self, n: usize) -> Option<u64> {
+        self.place += n as f64;
+        self.next()
+    }
+
     fn size_hint(&self) -> (usize, Option<usize>) {
         let left = round_half_up(self.count - self.place + 0.5).unsigned_abs() as usize;
         (left, Some(left))

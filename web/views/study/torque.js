@@ -1,12 +1,121 @@
-/** The tab Torque of the study: torque against rate. What a tab is, says study.js. */
+/**
+ * The tab Torque of the study: the torque that the looked-at axis' motor has at each rate, what the plan needs of it, where that is
+ * too much, and which ramps leave enough. What a tab is, says study.js.
+ */
+import { button, element, fill, say } from "../../dom.js";
+import { count, plain, short, si } from "../../state/number.js";
+import { color, draw, watch } from "../../time/plot.js";
+import { createJob, subject, table } from "./parts.js";
+
+/** @typedef {import("../../state/types.js").State} State */
+/** @typedef {{at_s: number, rate: number, needed_mn_m: number, available_mn_m: number}} Moment */
+/** @typedef {{index: number, duration_s: number, longest_s: number | null, too_fast: boolean, room_s: number, enough_s: [number, number] | null}} Ramps */
+/**
+ * @typedef {{standing_mn_m: number, load_mn_m: number, corner_rate: number | null, torque_rate: number | null, working_rate: number | null,
+ *   over_working_rate: number | null, jump: number, least: Moment | null, total: number,
+ *   shortages: {from_s: number, to_s: number, times: number, worst: Moment}[], ramps: Ramps[]}} Told
+ * @typedef {{told: Told, rate: Float64Array, available: Float64Array, needed: Float64Array}} Torque
+ */
+
+/** @param {number} torque In mN·m. */
+const torques = (torque) => `${short(torque, 4)} mN·m`;
+/** @param {number} rate */
+const rates = (rate) => plain(rate, "steps/s");
+/** @param {number | null} rate */
+const upTo = (rate) => (rate === null ? "any rate" : rates(Math.floor(rate)));
+/** @param {number} seconds */
+const ramp = (seconds) => `${seconds.toFixed(4)} s`;
 
 /** @param {import("./study.js").StudyPage} page @returns {import("./study.js").StudyTab} */
-export function createTorque({ panel }) {
-  panel.replaceChildren();
+export function createTorque({ engine, samples, dispatch, now, panel }) {
+  const job = createJob("Torque");
+  const about = element("p", { class: "study-note", "aria-live": "polite" });
+  const verdict = element("p", { id: "torque-verdict", "aria-live": "polite" });
+  const canvas = element("canvas", { role: "img", "aria-label": "Torque against rate" });
+  const key = (/** @type {string} */ kind, /** @type {string} */ text) => element("span", {}, element("span", { class: `key ${kind}` }), ` ${text} `);
+  const stated = element("span", {}, "; dashed: the stated working rate");
+  const caption = element("div", { class: "caption" }, element("span", {}, "Torque in mN·m against rate: "), key("ideal", "available"), key("made", "needed, driving or braking"), stated);
+  const chart = element("div", { class: "chart torque-chart" }, caption, canvas);
+  const facts = table("The motor", ["of the motor", "#value"]);
+  const lacks = table("Too little torque", ["from", "#to", "#short of", "#at", "#rate", "~#needed", "~#available", "~#periods"]);
+  const ramps = table("Ramps", ["move", "#enough torque", "#longest by rate", "#room"]);
+  const ramped = element("h3", {}, "Ramps");
+  const note = element("p", { class: "study-note" });
+  const body = element("div", { class: "study-split" }, element("div", { class: "study-column" }, chart, verdict, lacks.root), element("div", { class: "study-column study-side" }, facts.root, ramped, ramps.root, note));
+  fill(panel, element("div", { class: "study-bar" }, about, job.root), body);
+  body.hidden = true;
+  /** @type {Torque | null} */
+  let made = null;
+  let asked = "";
+  watch(chart, paint);
 
-  /** @param {import("../../state/types.js").State} state @param {import("../../state/types.js").State | undefined} before */
+  function paint() {
+    if (!made || body.hidden) return;
+    const { rate, available, needed, told: { working_rate: working } } = made;
+    stated.hidden = working === null;
+    const most = Math.max(...available, ...needed.filter((torque) => !Number.isNaN(torque)));
+    draw(canvas, {
+      x: { min: 0, max: rate[rate.length - 1], unit: "steps/s", prefix: true, label_px: 20 },
+      y: { min: 0, max: 1.08 * most, unit: "", prefix: false, label_px: 58 },
+      series: [{ color: color("--made"), opacity: 0.75, width: 2, x: rate, shape: { stems: { y: needed, shift: 0 } } },
+        { color: color("--ideal"), opacity: 1, width: 2, x: rate, shape: { line: { y: available } } },
+        ...(working === null ? [] : [{ color: color("--axis"), opacity: 1, width: 1.5, dash: 4, x: [working, working], shape: { line: { y: [0, 2 * most] } } }])],
+    });
+  }
+
+  /** @param {Told} told */
+  function show(told) {
+    const { least, jump, total, shortages, over_working_rate, working_rate } = told;
+    facts.show([
+      ["Full torque", torques(told.standing_mn_m)], ["as far as", upTo(told.corner_rate)],
+      ["Load", torques(told.load_mn_m)], ["torque for it up to", upTo(told.torque_rate)],
+      ...(working_rate === null ? [] : [["Stated working rate", rates(working_rate)]]),
+      ...(least ? [["Least margin", torques(least.available_mn_m - Math.abs(least.needed_mn_m))], ["at", `${si(least.at_s, "s")}, ${rates(least.rate)}`]] : []),
+      ...(jump > 0 ? [["Greatest jump of speed", rates(jump)]] : []),
+    ]);
+    const fast = over_working_rate === null ? "" : `⚠ ${rates(over_working_rate)} are above the stated working rate: give more time, or shorter ramps. `;
+    const lack = total === 0 ? "" : `⚠ Too little torque in ${total === 1 ? "one stretch" : `${count(total)} stretches`}: give more time, gentler ramps, less load or a higher supply voltage.`;
+    say(verdict, fast + lack || "Enough torque throughout.");
+    verdict.classList.toggle("error", fast + lack !== "");
+    lacks.root.hidden = total === 0;
+    lacks.show(shortages.map(({ from_s, to_s, times, worst: { at_s, rate, needed_mn_m, available_mn_m } }) => [si(from_s, "s"), si(to_s, "s"), torques(Math.abs(needed_mn_m) - available_mn_m),
+      si(at_s, "s"), rates(rate), torques(needed_mn_m), torques(available_mn_m), count(times)]));
+    ramped.hidden = ramps.root.hidden = told.ramps.length === 0;
+    ramps.show(told.ramps.map(({ index, duration_s, longest_s, too_fast, room_s, enough_s }) => [`${index + 1}, ${si(duration_s, "s")}`,
+      enough_s ? `${enough_s[0].toFixed(4)} to ${ramp(enough_s[1])}` : "none", longest_s === null ? (too_fast ? "too fast" : "any") : ramp(longest_s), ramp(room_s)]));
+    say(note, `${told.ramps.length ? "Enough torque: ramps with which it suffices throughout. Longest by rate: T − n/f_s (for ramps of area 1/2), with the motor's greatest rate for its load as f_s; the move has room for T/2. " : ""}${jump > 0 ? "A motor follows a jump of speed up to its start-stop rate, which these data do not tell. " : ""}The model: fundamental waves only, no saturation, no losses of iron and friction in the motor, no resonance.`);
+  }
+
+  /** @param {string} path */
+  const add = (path) => button("Add the document's motor", "Add the motor of Song, Han and Lu 2021", () => dispatch({ type: "edit", path: `${path}.motor`, value: samples.motor }));
+
+  /** @param {State} state */
+  function refresh(state) {
+    const of = subject(state);
+    panel.classList.toggle("stale", of === "");
+    if (!of) return;
+    if (typeof of === "string") {
+      asked = "";
+      body.hidden = true;
+      return say(about, of);
+    }
+    const next = JSON.stringify([of.json, of.controller, of.axis]);
+    if (next === asked) return;
+    asked = next;
+    job.run(async (signal) => (await engine.share("torque", [[of.json, of.controller, of.axis]], signal))[0], (/** @type {Torque | undefined} */ answer) => {
+      made = answer ?? null;
+      body.hidden = made === null;
+      if (!made) return fill(about, `Axis ${of.axis} has no motor yet: the form has its data under the axis' mechanics. `, add(of.path));
+      say(about, `Axis ${of.axis}: what its motor has, and what its plan needs. Its data are in the form.`);
+      show(made.told);
+      paint();
+    });
+  }
+
+  /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    return before?.result === state.result ? undefined : null;
+    if (before?.judgement !== state.judgement || before?.revision !== state.revision || before?.axis !== state.axis || before?.result !== state.result) refresh(state);
+    if (before?.view !== state.view || before?.study !== state.study) paint();
   }
   return { render };
 }

@@ -109,6 +109,8 @@ const MOTIONS: &[&str] = &[
     r#"{"staircase":{"distance":{"steps":1500}}}"#,
     r#"{"cosine":{"distance":{"steps":-3200},"duration_s":0.4,"ramp_s":0.1}}"#,
     r#"{"dwell":{"duration_s":0.1}},{"sine_segments":{"amplitude":{"steps":200},"period_s":0.2,"periods":3}}"#,
+    r#"{"cosine":{"distance":{"steps":3100},"duration_s":0.4,"ramp_s":0.2,"method":"sliced"}}"#,
+    r#"{"ramps":{"distance":{"steps":1500},"duration_s":0.4,"ramp_s":0.1,"shape":"exponential"}}"#,
 ];
 
 #[test]
@@ -270,6 +272,12 @@ fn a_duration_is_held_against_the_one_that_was_asked_for() {
     // The last pulse comes before the end of the last tick, 0.4 s.
     assert!(found.last_pulse_s.unwrap() < 0.4 && found.last_due_s.unwrap() < 0.4);
     assert_eq!(found.end_error_s, Some(found.last_pulse_s.unwrap() - found.last_due_s.unwrap()));
+    // The document's slices miss the time by up to 0.8 %.
+    let sliced = r#"{"cosine":{"distance":{"steps":3111},"duration_s":0.4,"ramp_s":0.15,"method":"sliced"}}"#;
+    let found = measured(sliced).duration;
+    let error = found.plan_error_s.unwrap();
+    assert!(error != 0.0 && error.abs() < 0.008 * 0.4, "{found:?}");
+    assert_eq!((found.asked_s, error), (Some(0.4), found.planned_s - 0.4));
     let trapezoid = r#"{"trapezoid":{"distance":{"steps":3000}}}"#;
     assert_eq!(measured(trapezoid).duration.asked_s, None);
     let found = measured(&format!("{trapezoid},{cosine}")).duration;

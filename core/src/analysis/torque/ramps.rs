@@ -4,9 +4,11 @@
 //! ```text
 //! f_max = n/(T - t_s), so t_s <= T - n/f_s keeps it under f_s; the acceleration falls up to t_s = T/2
 //! ```
+//!
+//! (For shapes that are not symmetric f_max has their area in it: `motion::ramp`.)
 
 use super::{HALVINGS, Machine};
-use crate::motion::Curve;
+use crate::motion::{Curve, Profile, cosine::Cosine};
 
 /// Ramps that are tried, evenly from none to half of the time.
 const TRIED: u32 = 512;
@@ -31,20 +33,38 @@ pub struct Ramps {
 }
 
 impl Ramps {
-    /// Of a move of `steps` in `duration_s` with two equal ramps, whose curve with a ramp of so many s
-    /// `of` gives.
+    /// Of a move of B4: a cosine, or ramps of another shape; `None` for any other.
     #[must_use]
-    pub fn of<C: Curve>(machine: &Machine, steps: i64, duration_s: f64, of: impl Fn(f64) -> C) -> Self {
-        let room_s = duration_s / 2.0;
-        let count = steps.unsigned_abs() as f64;
+    pub fn of(machine: &Machine, profile: &Profile) -> Option<Self> {
+        match profile {
+            Profile::Cosine(curve) => {
+                let (steps, duration_s) = (curve.steps(), curve.duration_s());
+                let of = |ramp_s| Cosine::new(steps, duration_s, ramp_s);
+                Some(Self::with(machine, curve, |rate| curve.longest_ramp_s(rate), of))
+            }
+            Profile::Ramps(curve) => {
+                let of = |ramp_s| curve.with_ramp_s(ramp_s);
+                Some(Self::with(machine, curve, |rate| curve.longest_ramp_s(rate), of))
+            }
+            _ => None,
+        }
+    }
+
+    /// Of a move, its longest ramp under a rate, and the same move with a ramp of so many s.
+    fn with<C: Curve>(
+        machine: &Machine,
+        curve: &C,
+        longest: impl Fn(f64) -> Option<f64>,
+        of: impl Fn(f64) -> C,
+    ) -> Self {
+        let room_s = curve.duration_s() / 2.0;
         let greatest_rate = machine.greatest_rate();
-        let by_rate = greatest_rate.map(|rate| duration_s - count / rate);
-        let longest_s = by_rate.filter(|longest_s| *longest_s >= 0.0);
+        let longest_s = greatest_rate.and_then(longest);
         let enough = |ramp_s: f64| suffices(machine, &of(ramp_s), ramp_s);
         Self {
             greatest_rate,
             longest_s,
-            too_fast: by_rate.is_some() && longest_s.is_none(),
+            too_fast: greatest_rate.is_some() && longest_s.is_none(),
             room_s,
             enough_s: widest(room_s, enough),
         }
@@ -57,7 +77,8 @@ fn suffices(machine: &Machine, curve: &impl Curve, ramp_s: f64) -> bool {
     if machine.working_rate().is_some_and(|most| top > most) {
         return false;
     }
-    let ramp = (0..=LOOKS).map(|look| ramp_s * f64::from(look) / f64::from(LOOKS));
+    // The last look is just before the ramp's end, where a straight ramp still accelerates.
+    let ramp = (0..=LOOKS).map(|look| ramp_s * (1.0 - 1e-9) * f64::from(look) / f64::from(LOOKS));
     ramp.chain([curve.duration_s() / 2.0]).all(|t| {
         let (speed, acceleration) = (curve.speed(t), curve.acceleration(t));
         machine.needed_mn_m(speed, acceleration) <= machine.available_mn_m(speed)

@@ -1,6 +1,6 @@
 use super::*;
 use crate::{
-    motion::{Curve, cosine::Cosine, plan_axis},
+    motion::{Curve, Profile, cosine::Cosine, plan_axis},
     scenario::Axis,
 };
 use alloc::format;
@@ -201,7 +201,7 @@ fn a_stated_working_rate_is_kept_beside_the_torque() {
 #[test]
 fn song_2021s_longest_ramp_comes_out_of_its_working_rate() {
     let ramps = |motor: &str, steps: i64, duration_s: f64| {
-        Ramps::of(&machine(motor), steps, duration_s, |ramp_s| Cosine::new(steps, duration_s, ramp_s))
+        Ramps::of(&machine(motor), &Profile::Cosine(Cosine::new(steps, duration_s, 0.1))).unwrap()
     };
     let found = ramps(r#"{"working_rate_hz":19200}"#, 3200, 0.4);
     close(found.longest_s.unwrap(), 0.233_333_333, 1e-8);
@@ -225,20 +225,27 @@ fn song_2021s_longest_ramp_comes_out_of_its_working_rate() {
 #[test]
 fn of_ramps_that_suffice_both_ends_are_found() {
     let motor = r#"{"load_inertia_g_cm2":300,"load_torque_mn_m":180,"supply_v":13}"#;
-    let (steps, duration_s) = (8000, 0.4);
-    let of = |ramp_s: f64| Cosine::new(steps, duration_s, ramp_s);
-    let found = Ramps::of(&machine(motor), steps, duration_s, of);
-    let (shortest, longest) = found.enough_s.unwrap();
-    assert!(shortest > 0.0 && longest < found.room_s, "{found:?}");
-    for (ramp_s, met) in [
-        (shortest * 0.999, false),
-        (shortest * 1.001, true),
-        (longest * 0.999, true),
-        (longest * 1.001, false),
-    ] {
-        let moves = format!(r#"{{"cosine":{{"distance":{{"steps":8000}},"ramp_s":{ramp_s}}}}}"#);
-        assert_eq!(demand(motor, &moves).is_met(), met, "{ramp_s} of {found:?}");
+    // The cosine, and two other shapes with its front.
+    for (kind, shape) in
+        [("cosine", ""), ("ramps", r#","shape":"straight""#), ("ramps", r#","shape":"sigmoid""#)]
+    {
+        let with =
+            |ramp_s: f64| format!(r#"{{"{kind}":{{"distance":{{"steps":8000}},"ramp_s":{ramp_s}{shape}}}}}"#);
+        let plan = plan_axis(&axis(motor, &with(0.1)), "axis").unwrap();
+        let found = Ramps::of(&machine(motor), &plan.moves()[0].profile).unwrap();
+        let (shortest, longest) = found.enough_s.unwrap();
+        assert!(shortest > 0.0 && longest < found.room_s, "{found:?}");
+        for (ramp_s, met) in [
+            (shortest * 0.998, false),
+            (shortest * 1.002, true),
+            (longest * 0.998, true),
+            (longest * 1.002, false),
+        ] {
+            assert_eq!(demand(motor, &with(ramp_s)).is_met(), met, "{shape} {ramp_s} of {found:?}");
+        }
     }
+    let dwell = plan_axis(&axis(motor, r#"{"dwell":{}}"#), "axis").unwrap();
+    assert_eq!(Ramps::of(&machine(motor), &dwell.moves()[0].profile), None);
 }
 
 #[test]
@@ -248,7 +255,30 @@ fn a_curve_and_the_moments_of_a_plan_can_be_drawn() {
     assert_eq!(curve.iter().map(|point| point.0).collect::<Vec<_>>(), [0.0, 1e4, 2e4, 3e4, 4e4]);
     assert!(motor.shown_rate(16_000.0) > motor.torque_rate().unwrap());
     let plan = plan_axis(&axis("{}", TURN), "axis").unwrap();
-    let all = moments(&motor, &plan, 100);
-    assert_eq!(all.len(), 100);
-    assert!(all.iter().all(|moment| moment.rate <= 16_000.0 && moment.at_s < 0.4));
+    // Of 20 bins of 1000 steps/s the last ones are never reached; the middle of the ramp needs most.
+    let needed = needed_over_rate(&motor, &plan, 20_000.0, 20);
+    assert!(needed[..16].iter().all(|needed| *needed > 100.0), "{needed:?}");
+    assert!(needed[17..].iter().all(|needed| needed.is_nan()));
+    assert!(needed[8] > needed[2] && needed[8] > needed[14] && needed[8] < 102.0);
+}
+
+#[test]
+fn a_move_that_is_short_of_torque_is_warned_of_and_its_neighbours_are_not() {
+    let motor = r#"{"load_inertia_g_cm2":9955,"load_torque_mn_m":100,"working_rate_hz":30000}"#;
+    let moves = r#"{"constant":{}},{"cosine":{}},{"dwell":{}}"#;
+    let found = demand(motor, moves);
+    let warn = |from: f64, to: f64, peak: f64| found.warning(&machine(motor), from, to, peak);
+    assert_eq!((warn(0.0, 1.0, 1000.0), warn(1.4, 1.5, 0.0)), (None, None));
+    assert_eq!(
+        warn(1.0, 1.4, 16_000.0).as_deref(),
+        Some(
+            "too little torque: 346.7 mN*m needed of 282.8 at 1.1000 s and 8\u{202f}000 steps/s; give more time, gentler ramps, less load or a higher supply voltage"
+        )
+    );
+    assert_eq!(
+        warn(0.0, 1.0, 30_001.0).as_deref(),
+        Some(
+            "30\u{202f}001 steps/s are above the motor's working rate of 30\u{202f}000; give more time, or shorter ramps"
+        )
+    );
 }

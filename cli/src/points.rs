@@ -1,0 +1,59 @@
+//! `stepscope points`: a table of times and positions as a scenario whose one move is the curve through them.
+
+use crate::{failure::Failure, scenarios};
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+use stepscope_core::{
+    motion::plan_axis,
+    scenario::{Axis, Direct, Interpolation, Mechanics, Motion, Move, PointUnit, Points, Scenario, Source},
+};
+
+/// What `stepscope points` takes.
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// The table: two columns, time in s and position, with or without a line of names; `-` reads
+    /// standard input.
+    table: PathBuf,
+    /// Unit of the positions.
+    #[arg(long, value_enum, default_value = "steps")]
+    unit: UnitName,
+    /// Length of one step in mm, for positions in mm.
+    #[arg(long, required_if_eq("unit", "mm"))]
+    step_mm: Option<f64>,
+    /// Straight from point to point, in place of a smooth curve from rest to rest.
+    #[arg(long)]
+    straight: bool,
+}
+
+/// Units of positions on the command line.
+#[derive(Clone, Copy, ValueEnum)]
+enum UnitName {
+    Steps,
+    Mm,
+    Deg,
+}
+
+/// Writes the scenario of a table as JSON.
+pub(crate) fn points(arguments: &Arguments) -> Result<(), Failure> {
+    let path = &arguments.table;
+    let points =
+        Points::of_table(&scenarios::text(path)?).map_err(|error| Failure::Table(path.clone(), error))?;
+    let unit = match arguments.unit {
+        UnitName::Steps => PointUnit::Steps,
+        UnitName::Mm => PointUnit::Millimetres,
+        UnitName::Deg => PointUnit::Degrees,
+    };
+    let interpolation = if arguments.straight { Interpolation::Straight } else { Interpolation::Smooth };
+    let mechanics = match arguments.step_mm {
+        Some(step_mm) => Mechanics::Direct(Direct { step_mm }),
+        None => Mechanics::default(),
+    };
+    let moves = vec![Move::Points(Points { unit, interpolation, points })];
+    let axis = Axis { mechanics, moves };
+    plan_axis(&axis, "source.motion.axes[0]")
+        .map_err(|problems| Failure::Scenario(path.clone(), problems))?;
+    let title =
+        path.file_name().map_or_else(String::new, |name| name.to_string_lossy().chars().take(120).collect());
+    let source = Source::Motion(Motion { axes: vec![axis], ..Motion::default() });
+    scenarios::print(&Scenario { title, source, ..Scenario::default() }.to_json())
+}

@@ -1,0 +1,157 @@
+//! The study's tab Measures, its figures against the core's, and the sensor beside the spectrum.
+
+use anyhow::{Result, ensure};
+use serde_json::json;
+use stepscope_core::{
+    analysis::{
+        made::Pulses,
+        measures::Measures,
+        spectrum::{Spectrum, Stretch},
+    },
+    scenario::Source,
+    trace::steps,
+};
+
+use crate::{bench::in_browser, native::Known, session::Session};
+
+/// A sine that goes so fast that ticks show, its spectrum of a number of samples that is no power of two.
+const SINE: &str = r#"{"analysis":{"order":99,"fft_length":1000,"sensor_hz":40},"source":{"motion":{"axes":[{"moves":[
+    {"sine_segments":{"amplitude":{"steps":800},"period_s":0.5,"periods":2,"max_deviation":0.0054}}]}]}}}"#;
+
+/// Texts of the cells of the `nth` row with this head, digits without their groups.
+async fn cells(page: &Session, table: &str, head: &str, nth: usize) -> Result<Vec<String>> {
+    let script = "const row = [...document.querySelectorAll(`table[aria-label='${arguments[0]}'] tbody tr`)].filter((row) => row.cells[0].textContent === arguments[1])[arguments[2]];
+        return row ? [...row.cells].slice(1).map((cell) => cell.textContent.replace(/\\u202f/g, '').replace('−', '-')) : [];";
+    page.js(script, vec![json!(table), json!(head), json!(nth)]).await
+}
+
+/// Holds a text of four digits against a number, whatever the prefix of its unit.
+fn close(text: &str, wanted: f64) -> Result<()> {
+    let (number, unit) = text.split_once(' ').unwrap_or((text, ""));
+    let scale = match unit {
+        "ms" => 1e-3,
+        "µs" => 1e-6,
+        "ns" => 1e-9,
+        "%" => 1e-2,
+        _ => 1.0,
+    };
+    let found = number.parse::<f64>()? * scale;
+    ensure!((found - wanted).abs() <= 6e-4 * wanted.abs(), "{text} is not {wanted}");
+    Ok(())
+}
+
+fn measured(known: &Known) -> (Measures, [Spectrum; 2]) {
+    let steps = steps(&known.recording.trace, 0);
+    let run = Pulses {
+        channel: 0,
+        steps: &steps,
+        log: &known.recording.packets,
+        segments: None,
+        config: known.experiment.config(),
+    };
+    let (plan, analysis) = (&known.experiment.plans()[0], &known.scenario.analysis);
+    let Source::Motion(motion) = &known.scenario.source else { panic!("a motion") };
+    let stretch = Stretch::of(plan).expect("it takes time");
+    let ideal = Spectrum::ideal(plan, analysis.order, analysis.fft_length).expect("it takes time");
+    let pulses = Spectrum::of_pulses(&stretch.pulses_of(plan, &run), stretch, analysis.order);
+    let spectra = [ideal, pulses].map(|spectrum| spectrum.felt_by(analysis.sensor_hz));
+    (Measures::of(plan, &run, motion.axes.first()), spectra)
+}
+
+#[test]
+fn measures_stand_side_by_side_as_the_core_has_them() -> Result<()> {
+    in_browser(|page| async move {
+        let known = Known::of(SINE)?;
+        let (found, [ideal, pulses]) = measured(&known);
+        page.open(&format!("#{}", known.link)).await?;
+        page.until_digest(&known.digest).await?;
+        page.click("#study").await?;
+        page.click("#study-tab-measures").await?;
+        page.until("document.querySelector(\"table[aria-label='Sine by segments'] tbody tr\") !== null")
+            .await?;
+        let all = [found.steps, found.ticks, found.pulses];
+        let rows = [
+            ("r.m.s. deviation, steps", all.map(|pair| pair.rms_steps)),
+            ("area between, steps·s", all.map(|pair| pair.area_steps_s)),
+            ("Euclidean distance, steps", all.map(|pair| pair.euclidean_steps)),
+            ("1 − correlation", all.map(|pair| pair.uncorrelated.expect("both move"))),
+        ];
+        for (name, wanted) in rows {
+            let cells = cells(&page, "Steps and ticks", name, 0).await?;
+            // The last cell says what it means.
+            ensure!(cells.len() == 4 && cells[3].len() > 10, "{name}: {cells:?}");
+            cells.iter().zip(wanted).try_for_each(|(text, wanted)| close(text, wanted))?;
+        }
+        let errors = cells(&page, "Steps and ticks", "largest time error", 0).await?;
+        close(&errors[0], found.step_errors.largest_s)?;
+        close(&errors[1], found.tick_errors.largest_s)?;
+        assert_eq!(errors[2], "", "both together have no instants of their own");
+        let late = cells(&page, "Duration", "last pulse late by", 0).await?;
+        close(&late[0], found.duration.end_error_s.expect("there are pulses"))?;
+        let start_stop = cells(&page, "Peaks of the ideal curve", "start-stop rate", 0).await?;
+        ensure!(
+            (start_stop[0].replace(" steps/s", "").parse::<f64>()? - found.peaks.start_stop_steps_s).abs()
+                <= 0.5,
+            "{start_stop:?}"
+        );
+        let distortions = [
+            ("position", ideal.position.distortion, pulses.position.distortion),
+            ("acceleration felt", felt(&ideal), felt(&pulses)),
+        ];
+        for (name, ideal, pulses) in distortions {
+            let cells = cells(&page, "Distortion", name, 0).await?;
+            close(&cells[0], ideal.expect("a ratio"))?;
+            close(&cells[1], pulses.expect("a ratio"))?;
+        }
+        let distance = cells(&page, "Sine by segments", "Ev", 0).await?;
+        close(&distance[0], found.sine.expect("a sine").euclidean)?;
+
+        // Another run, other figures; and none for an axis without a motion.
+        page.fill("source.motion.axes[0].moves[0].sine_segments.max_deviation", "0.02").await?;
+        page.until(&format!(
+            "document.querySelector(\"table[aria-label='Sine by segments'] td\").textContent !== '{}'",
+            found.sine.expect("a sine").segments
+        ))
+        .await?;
+        page.fill("bus.channels", "2").await?;
+        page.until("!document.getElementById('study-axis').parentElement.hidden").await?;
+        page.choose("#study-axis", "1").await?;
+        page.until("document.getElementById('study-measures').textContent.includes('Axis 1 has no motion')")
+            .await?;
+        ensure!(!page.visible("table[aria-label='Duration']").await?);
+        Ok(())
+    })
+}
+
+fn felt(spectrum: &Spectrum) -> Option<f64> {
+    spectrum.acceleration_felt.as_ref()?.distortion
+}
+
+#[test]
+fn the_sensors_bandwidth_is_a_field_and_its_distortion_stands_beside_the_accelerations() -> Result<()> {
+    in_browser(|page| async move {
+        let known = Known::of(&SINE.replace(",\"sensor_hz\":40", ""))?;
+        page.open(&format!("#{}", known.link)).await?;
+        page.until_digest(&known.digest).await?;
+        page.choose("#spectrum-quantity", "acceleration").await?;
+        page.until("document.getElementById('thd').textContent.startsWith('THD of acceleration')").await?;
+        ensure!(!page.text("#thd").await?.contains("felt"));
+        assert_eq!(page.field("analysis.sensor_hz").await?.value, "", "nothing is felt by itself");
+        page.fill("analysis.sensor_hz", "40").await?;
+        page.until("document.getElementById('thd').textContent.includes('felt by the sensor: ideal')")
+            .await?;
+        let said = page.text("#thd").await?;
+        let (_, [ideal, _]) = measured(&Known::of(SINE)?);
+        let wanted = 100.0 * felt(&ideal).expect("a ratio");
+        let text =
+            said.rsplit_once("ideal ").map(|(_, rest)| rest.split(' ').next().unwrap_or("")).unwrap_or("");
+        ensure!((text.parse::<f64>()? - wanted).abs() < 1e-3 * wanted, "{said} is not {wanted}");
+        page.fill("analysis.sensor_hz", "-1").await?;
+        page.ready().await?;
+        ensure!(page.field("analysis.sensor_hz").await?.invalid);
+        page.fill("analysis.fft_length", "15").await?;
+        page.ready().await?;
+        ensure!(page.field("analysis.fft_length").await?.error.contains("16"));
+        Ok(())
+    })
+}

@@ -1,0 +1,97 @@
+//! The motor of an axis: its fields, the warning beside a move, and the study's tab Torque against the core's numbers.
+
+use anyhow::{Result, ensure};
+use serde_json::{Value, json};
+use stepscope_core::{
+    analysis::torque::{Demand, Machine},
+    scenario::{Axis, Scenario, Source},
+};
+
+use crate::{bench::in_browser, native::Known, session::Session};
+
+/// Two axes, the first with a motor that the load of its move is too much for.
+const SHORT: &str = r#"{"title":"A heavy load","bus":{"channels":2},"source":{"motion":{"axes":[
+    {"moves":[{"cosine":{}},{"dwell":{}}],"motor":{"load_inertia_g_cm2":9955,"load_torque_mn_m":100}},{}]}}}"#;
+const AXIS: &str = "source.motion.axes[0]";
+
+/// Texts of a table's cells, row by row, digits without their groups.
+async fn cells(page: &Session, table: &str) -> Result<Vec<Vec<String>>> {
+    let script = "return [...document.querySelectorAll(`table[aria-label='${arguments[0]}'] tbody tr`)].map((row) => [...row.cells].map((cell) => cell.textContent.replace(/\\u202f/g, '')));";
+    page.js(script, vec![json!(table)]).await
+}
+
+/// The notes beside the moves of the first axis.
+const NOTES: &str =
+    "[...document.querySelectorAll(`[data-note^='source.motion.axes[0]']`)].map((note) => note.textContent)";
+
+fn first_axis(json: &str) -> Axis {
+    let Ok(Source::Motion(motion)) = Scenario::from_json(json).map(|scenario| scenario.source) else {
+        panic!("{json} is no motion");
+    };
+    motion.axes[0].clone()
+}
+
+#[test]
+fn a_move_without_torque_enough_is_warned_of_and_more_torque_takes_the_warning_away() -> Result<()> {
+    in_browser(|page| async move {
+        let known = Known::of(SHORT)?;
+        page.open(&format!("#{}", known.link)).await?;
+        let notes: Vec<String> = page.eval(NOTES).await?;
+        let short = "too little torque: 346.7 mN·m needed of 282.8 at 0.1000 s";
+        ensure!(notes.len() == 2 && notes[0].contains(short) && !notes[1].contains('⚠'), "{notes:?}");
+        page.fill(&format!("{AXIS}.motor.peak_current_a"), "2.12").await?;
+        page.until(&format!("{NOTES}.every((note) => !note.includes('⚠'))")).await?;
+        // A run is the same with and without a motor.
+        page.until_digest(&known.digest).await?;
+        // The motor of the document as it is.
+        page.click(&format!("[data-path='{AXIS}.motor#kind']")).await?;
+        page.until(&format!("!document.querySelector(`[data-path='{AXIS}.motor.supply_v']`)")).await?;
+        page.click(&format!("[data-path='{AXIS}.motor#kind']")).await?;
+        page.until(&format!("document.querySelector(`[data-path='{AXIS}.motor.supply_v']`).value === '24'"))
+            .await?;
+        page.fill(&format!("{AXIS}.motor.supply_v"), "0").await?;
+        page.until("document.getElementById('problems').hidden === false").await?;
+        Ok(())
+    })
+}
+
+#[test]
+fn the_tab_torque_has_the_cores_numbers_and_its_curves() -> Result<()> {
+    in_browser(|page| async move {
+        let known = Known::of(SHORT)?;
+        page.open(&format!("#{}&v=tstudy.ytorque", known.link)).await?;
+        page.until("document.getElementById('torque-verdict')?.textContent !== ''").await?;
+        let axis = first_axis(SHORT);
+        let machine = Machine::of(&axis).expect("a motor");
+        let demand = Demand::of(&machine, &known.experiment.plans()[0]);
+        let shortage = demand.shortages[0];
+        let rows = cells(&page, "Too little torque").await?;
+        ensure!(rows.len() == 1 && demand.total == 1, "{rows:?}");
+        let expected = [
+            format!("{:.2} ms", shortage.from_s * 1e3),
+            format!("{:.1} ms", shortage.to_s * 1e3),
+            format!("{:.1} mN·m", -shortage.worst.margin_mn_m()),
+        ];
+        ensure!(rows[0][..3] == expected, "{rows:?} is not {expected:?}");
+        let facts = cells(&page, "The motor").await?;
+        let corner = format!("{} steps/s", machine.corner_rate().expect("a corner") as u64);
+        ensure!(facts[1][1] == corner, "{facts:?}");
+        let verdict: String = page.eval("document.getElementById('torque-verdict').textContent").await?;
+        ensure!(verdict.starts_with("⚠ Too little torque in one stretch"), "{verdict}");
+        // The other axis has no motor; the button gives it the document's.
+        page.eval::<Value>("(() => { const axes = document.getElementById('study-axis'); axes.value = '1'; axes.dispatchEvent(new Event('change')); return null; })()").await?;
+        page.until("document.querySelector('#study-torque button[aria-label^=\"Add the motor\"]')").await?;
+        page.click("#study-torque button[aria-label^='Add the motor']").await?;
+        page.until_equal(
+            "document.getElementById('torque-verdict').textContent",
+            &json!("Enough torque throughout."),
+        )
+        .await?;
+        page.fill("source.motion.axes[1].motor.working_rate_hz", "19200").await?;
+        page.until(
+            "document.querySelector(\"table[aria-label='Ramps'] tbody\").textContent.includes('0.2333 s')",
+        )
+        .await?;
+        Ok(())
+    })
+}

@@ -1,0 +1,52 @@
+/**
+ * Points as a person types or pastes them, a pair a line: time in s and position, between them a comma, a
+ * semicolon, a tab or spaces. A table's line of names is left out, as the core does when it reads one.
+ */
+
+/** @typedef {[number, number]} Point */
+
+/** The most that a scenario may have; the core has the same. */
+const MOST = 4096;
+
+/** @param {Point[]} points */
+export function printPoints(points) {
+  return points.map((point) => point.join(", ")).join("\n");
+}
+
+/** @param {string} text @returns {{value: Point[]} | {message: string}} */
+export function readPoints(text) {
+  const lines = text.replace(/^\ufeff/, "").split(/\r\n|\r|\n/);
+  const first = lines.find((line) => line.trim() !== "") ?? "";
+  const mark = [";", "\t", ","].find((mark) => first.includes(mark)) ?? /\s+/;
+  const rows = lines.map((line) => line.trim()).map((line) => (line === "" ? [] : line.split(mark).map((cell) => bare(cell, mark))));
+  /** @type {Point[]} */
+  const value = [];
+  let [time, position] = [0, 1];
+  let names = true;
+  for (const [index, cells] of rows.entries()) {
+    if (cells.length === 0) continue;
+    const head = names && cells.every((cell) => numberIn(cell) === null);
+    names = false;
+    if (head) {
+      const named = ["time_s", "position"].map((name) => cells.findIndex((cell) => cell.toLowerCase() === name));
+      if (named.every((place) => place >= 0)) [time, position] = named;
+      continue;
+    }
+    const point = [numberIn(cells[time] ?? ""), numberIn(cells[position] ?? "")];
+    if (point[0] === null || point[1] === null) return { message: `Line ${index + 1}: “${lines[index].trim().slice(0, 40)}” is no point; give its time in s and its position, such as 0.25, 12.5.` };
+    value.push([point[0], point[1]]);
+    if (value.length > MOST) return { message: `Line ${index + 1}: more than ${MOST} points; give fewer.` };
+  }
+  return { value };
+}
+
+/** A cell without quotes; beside semicolons and tabs a number may have a decimal comma. @param {string} cell @param {string | RegExp} mark */
+function bare(cell, mark) {
+  const text = cell.trim().replace(/^"(.*)"$/, "$1").trim().replace("−", "-");
+  return mark === "," ? text : text.replace(",", ".");
+}
+
+/** @param {string} text @returns {number | null} */
+function numberIn(text) {
+  return /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i.test(text) && Number.isFinite(Number(text)) ? Number(text) : null;
+}
