@@ -91,7 +91,16 @@ async fn everywhere(page: &Session, what: &str, wrong: &mut Vec<String>) -> Resu
         look(page, &format!("{what}, {tab}"), wrong).await?;
     }
     if tabs.is_empty() {
-        return look(page, what, wrong).await;
+        look(page, what, wrong).await?;
+        page.click("#study").await?;
+    }
+    for tab in ["compare", "measures", "tables", "sine", "torque"] {
+        page.click(&format!("#study-tab-{tab}")).await?;
+        page.until("[...document.querySelectorAll('.study-job')].every((job) => job.hidden)").await?;
+        look(page, &format!("{what}, study, {tab}"), wrong).await?;
+    }
+    if tabs.is_empty() {
+        return page.click("#study").await;
     }
     page.click("#sheet > summary").await?;
     look(page, &format!("{what}, form"), wrong).await

@@ -338,7 +338,11 @@ fn the_comparison_is_the_cores_and_a_shape_is_taken_and_given_back() -> Result<(
             close(&shown[5], cost.last_step_s)?;
             ensure!((shown[6] == "in use") == (name == "Cosine, exact"), "{shown:?}");
         }
-        page.canvas("compare-speeds").await?.has_curve("--made")?;
+        // They lie over each other, and each is to be seen.
+        let speeds = page.canvas("compare-speeds").await?;
+        for ink in ["--made", "--ideal", "--enable", "--wire"] {
+            ensure!(speeds.ink(ink).columns > 100.0, "{ink} has {} columns", speeds.ink(ink).columns);
+        }
 
         page.click("[aria-label='Use: Bezier']").await?;
         page.until(&format!(

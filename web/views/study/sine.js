@@ -39,7 +39,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   const distanceCanvas = element("canvas", { role: "img", "aria-label": "Euclidean distance against d1" });
   const overlay = element("canvas", { class: "overlay", "aria-hidden": "true" });
   const thdCaption = element("div", { class: "caption" });
-  const distanceCaption = element("div", { class: "caption" }, element("span", {}, "Euclidean distance Ev against d1, both in parts of the amplitude"));
+  const distanceCaption = element("div", { class: "caption" }, element("span", {}, "Euclidean distance Ev against d1"));
   const charts = element("div", { class: "charts study-charts", id: "sine-charts", tabindex: "0", role: "slider", "aria-label": "d1", "aria-valuemin": "0", "aria-valuemax": "0", "aria-valuenow": "0" },
     element("div", { class: "chart" }, thdCaption, thdCanvas), element("div", { class: "chart" }, distanceCaption, distanceCanvas), overlay);
   const list = table("What a d1 gives", ["of", "#d1", "#segments", "#THD position", "~#speed", "~#acceleration", "~#felt", "#Ev", ""]);
