@@ -87,7 +87,7 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
   }
 
   /** @param {string} path */
-  const add = (path) => button("Add the document's motor", "Add the motor of Song, Han and Lu 2021", () => dispatch({ type: "edit", path: `${path}.motor`, value: samples.motor }));
+  const add = (path) => button("Add the document's motor", "Add the document's motor: Song, Han and Lu 2021", () => dispatch({ type: "edit", path: `${path}.motor`, value: samples.motor }));
 
   /** @param {State} state */
   function refresh(state) {
