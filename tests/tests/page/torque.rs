@@ -80,8 +80,8 @@ fn the_tab_torque_has_the_cores_numbers_and_its_curves() -> Result<()> {
         ensure!(verdict.starts_with("⚠ Too little torque in one stretch"), "{verdict}");
         // The other axis has no motor; the button gives it the document's.
         page.eval::<Value>("(() => { const axes = document.getElementById('study-axis'); axes.value = '1'; axes.dispatchEvent(new Event('change')); return null; })()").await?;
-        page.until("document.querySelector('#study-torque button[aria-label^=\"Add the motor\"]')").await?;
-        page.click("#study-torque button[aria-label^='Add the motor']").await?;
+        page.until("document.querySelector('#study-torque button[aria-label^=\"Add the \"]')").await?;
+        page.click("#study-torque button[aria-label^='Add the ']").await?;
         page.until_equal(
             "document.getElementById('torque-verdict').textContent",
             &json!("Enough torque throughout."),
