@@ -1,7 +1,7 @@
 //! A run in the worker: made in slices, kept for the views' questions. The views look at one
 //! controller at a time.
 
-use crate::{convert::object, packets::Filter};
+use crate::{convert::object, packets::Filter, subject::listed};
 use serde::Serialize;
 use stepscope_core::{
     analysis::timing::TimingCheck,
@@ -94,10 +94,6 @@ impl Simulation {
     /// If the scenario has problems; `check` lists them.
     #[wasm_bindgen(constructor)]
     pub fn new(json: &str) -> Result<Simulation, JsError> {
-        let listed = |problems: Vec<_>| {
-            let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
-            JsError::new(&lines.join("\n"))
-        };
         let scenario = Scenario::from_json(json).map_err(listed)?;
         let experiment = Experiment::new(&scenario).map_err(listed)?;
         let run = experiment.start();

@@ -1,12 +1,21 @@
 //! Which segments make a sine with least distortion (DESIGN B5, figure 4): rows of a sweep, the best d1 of a range, the
 //! best vertices. Each call is a piece of a longer question, which workers share.
 
-use crate::convert::{field, numbers};
+use crate::{
+    convert::{field, numbers},
+    subject::Subject,
+};
 use js_sys::Object;
 use std::ops::Range;
-use stepscope_core::analysis::{
-    sine_optimum::{Freedom, optimum},
-    sine_polyline::{Bounds, Distinct, Row, swept},
+use stepscope_core::{
+    analysis::{
+        sine_optimum::{Freedom, optimum},
+        sine_polyline::{Bounds, Distinct, Row, swept},
+    },
+    motion::{
+        Profile,
+        sine_segments::{Memory, Segment},
+    },
 };
 use wasm_bindgen::prelude::*;
 
@@ -76,4 +85,33 @@ pub fn sine_vertices(segments: usize, free: bool, order: u16) -> Option<Object> 
     numbers(&made, "height", &heights);
     field(&made, "thd", &found.distortion.position.into());
     Some(made)
+}
+
+/// The segments of a quarter of the first sine in segments that an axis has: columns `from_deg`, `to_deg`, `steps`,
+/// `rate` (steps/s) and `duration_s`, and the bytes of a quarter as segments (`segment_bytes`) and with one interval a
+/// step (`interval_bytes`); undefined where the axis has none.
+///
+/// # Errors
+/// If the axis has problems, or is not there.
+#[wasm_bindgen]
+pub fn sine_segments(json: &str, controller: usize, axis: usize) -> Result<Option<Object>, JsError> {
+    let plan = Subject::of(json, controller, axis)?.plan;
+    let found = plan.moves().iter().find_map(|planned| match &planned.profile {
+        Profile::SineSegments(sine) => Some(sine),
+        _ => None,
+    });
+    let Some(sine) = found else { return Ok(None) };
+    let made = Object::new();
+    let put = |name: &str, of: &dyn Fn(&Segment) -> f64| {
+        numbers(&made, name, &sine.segments().iter().map(of).collect::<Vec<f64>>());
+    };
+    put("from_deg", &|segment| segment.from_deg);
+    put("to_deg", &|segment| segment.to_deg);
+    put("steps", &|segment| segment.steps as f64);
+    put("rate", &|segment| segment.rate);
+    put("duration_s", &|segment| segment.duration_s);
+    let Memory { segments, intervals } = sine.memory();
+    field(&made, "segment_bytes", &(segments as f64).into());
+    field(&made, "interval_bytes", &(intervals as f64).into());
+    Ok(Some(made))
 }

@@ -1,17 +1,18 @@
 //! The step times of an axis as tables for a firmware: what each form costs, and its source code (DESIGN B8, Part D).
-//!
-//! Made of the scenario's text alone, so that further workers can make them beside each other, and beside the run.
 
-use crate::convert::object;
+use crate::{
+    convert::object,
+    subject::{Subject, listed},
+};
 use serde::Serialize;
 use stepscope_core::{
-    motion::{AxisPlan, plan_lists},
+    motion::AxisPlan,
     quantise::{
         EntryFormat, Form, Stored, Tolerance,
         source_code::{Language, Source, headline},
         stored,
     },
-    scenario::{Config, Problem, Scenario, Source as ScenarioSource},
+    scenario::Config,
     segment::PulseTimes,
     units::Cycles,
 };
@@ -42,19 +43,8 @@ struct Asked {
 
 impl Asked {
     fn new(json: &str, controller: usize, axis: usize) -> Result<Self, JsError> {
-        let listed = |problems: Vec<Problem>| {
-            let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
-            JsError::new(&lines.join("\n"))
-        };
-        let Scenario { title, clock_hz, bus, line, source, controllers, .. } =
-            Scenario::from_json(json).map_err(listed)?;
-        let further = controller.checked_sub(1).and_then(|index| controllers.into_iter().nth(index));
-        let own = if let ScenarioSource::Motion(motion) = source { motion.axes } else { Vec::new() };
-        let (bus, axes) = further.map_or((bus, own), |further| (further.bus, further.axes));
+        let Subject { title, clock_hz, line, bus, plan, .. } = Subject::of(json, controller, axis)?;
         let config = Config::of_segments(clock_hz, &bus, &line).map_err(listed)?;
-        let plans = plan_lists([("axes".to_owned(), axes.as_slice())]).map_err(listed)?;
-        let plan = plans.into_iter().flatten().nth(axis);
-        let plan = plan.ok_or_else(|| JsError::new("there is no such axis"))?;
         Ok(Self { title, clock_hz, pulse: PulseTimes::from(&config), plan })
     }
 

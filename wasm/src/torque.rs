@@ -1,12 +1,14 @@
 //! Torque against rate of an axis' motor, what its plan needs, and which ramps it can follow.
 
-use crate::convert::{field, numbers, object};
+use crate::{
+    convert::{field, numbers, object},
+    subject::Subject,
+};
 use js_sys::Object;
 use serde::Serialize;
 use stepscope_core::{
     analysis::torque::{Demand, Machine, Moment, Ramps, Shortage, needed_over_rate},
-    motion::{Curve, plan_axis},
-    scenario::{Problem, Scenario, Source},
+    motion::Curve,
 };
 use wasm_bindgen::prelude::*;
 
@@ -83,19 +85,7 @@ impl ToldRamps {
 /// If the axis has problems, or is not there.
 #[wasm_bindgen]
 pub fn torque(json: &str, controller: usize, axis: usize) -> Result<Option<Object>, JsError> {
-    let listed = |problems: Vec<Problem>| {
-        let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
-        JsError::new(&lines.join("\n"))
-    };
-    let Scenario { source, controllers, .. } = Scenario::from_json(json).map_err(listed)?;
-    let axes = match (controller.checked_sub(1), source) {
-        (Some(index), _) => controllers.into_iter().nth(index).map(|further| further.axes),
-        (None, Source::Motion(motion)) => Some(motion.axes),
-        _ => None,
-    };
-    let axis = axes.and_then(|axes| axes.into_iter().nth(axis));
-    let axis = axis.ok_or_else(|| JsError::new("there is no such axis"))?;
-    let plan = plan_axis(&axis, "axis").map_err(listed)?;
+    let Subject { axis, plan, .. } = Subject::of(json, controller, axis)?;
     let Some(machine) = Machine::of(&axis) else { return Ok(None) };
     let demand = Demand::of(&machine, &plan);
     let ramps = plan.moves().iter().enumerate().filter_map(|(index, planned)| {
