@@ -44,7 +44,7 @@ fn on_a_narrow_screen_tabs_switch_the_views_and_nothing_scrolls_sideways() -> Re
                     assert_eq!(visible, other == view, "{other} at the tab {view}");
                 }
                 let selected: Vec<String> = page
-                    .eval("[...document.querySelectorAll('[role=tab][aria-selected=true]')].map((t) => t.id)")
+                    .eval("[...document.querySelectorAll('.tabs [role=tab][aria-selected=true]')].map((t) => t.id)")
                     .await?;
                 assert_eq!(selected, [format!("tab-{view}")]);
                 no_sideways_scrolling(&page, &format!("{view} at {width} px")).await?;
