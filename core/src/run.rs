@@ -17,9 +17,11 @@ mod net;
 mod orders;
 mod script;
 mod talk;
+mod watched;
 
 pub use cost::{BUDGET_RECORDS, Cost};
 pub use script::{replayed, scripted};
+pub use watched::Watched;
 
 use crate::{
     device::{Device, Faults, SegmentEngine},

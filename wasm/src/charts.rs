@@ -14,18 +14,17 @@
 mod curve;
 #[cfg(all(test, not(target_arch = "wasm32")))]
 mod pictures;
+mod surface;
 mod ticks;
 
 use plotters::{
-    coord::{
-        Shift,
-        ranged1d::{DefaultFormatting, KeyPointHint, Ranged},
-    },
+    coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged},
     prelude::*,
     style::{FontStyle, RGBColor, ShapeStyle, TextStyle},
 };
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
+use surface::Surface;
 use ticks::Ticks;
 
 /// What to draw, and with which colours.
@@ -134,7 +133,8 @@ pub(crate) struct Plot {
 ///
 /// # Errors
 /// The backend's own message, or that an axis has no length.
-pub(crate) fn draw<DB: DrawingBackend>(root: &DrawingArea<DB, Shift>, spec: &Spec) -> Result<Plot, String> {
+pub(crate) fn draw(surface: Surface<'_>, spec: &Spec) -> Result<Plot, String> {
+    let root = surface.into_drawing_area();
     for (name, axis) in [("x", &spec.x), ("y", &spec.y)] {
         // Also refuses what is not a number.
         if !(axis.max - axis.min).is_normal() || axis.max < axis.min {
@@ -151,7 +151,7 @@ pub(crate) fn draw<DB: DrawingBackend>(root: &DrawingArea<DB, Shift>, spec: &Spe
     let y_ticks = ((tall / 22.0) as usize).clamp(2, 10);
     let x_format = Ticks::new(&spec.x, x_ticks, x_ticks);
     let y_format = Ticks::new(&spec.y, y_ticks, ((tall / 14.0) as usize).max(2));
-    let mut chart = ChartBuilder::on(root)
+    let mut chart = ChartBuilder::on(&root)
         .margin_top(px(6.0))
         .margin_right(px(26.0))
         .margin_bottom(px(if spec.x.label_px > 0.0 { 2.0 } else { 6.0 }))
@@ -242,8 +242,8 @@ fn color(text: &str) -> RGBColor {
 
 #[cfg(target_arch = "wasm32")]
 mod page {
-    use super::{Spec, draw};
-    use plotters::prelude::{IntoDrawingArea, SVGBackend};
+    use super::{Spec, draw, surface::Surface};
+    use plotters::prelude::SVGBackend;
     use plotters_canvas::CanvasBackend;
     use serde::Serialize as _;
     use wasm_bindgen::{JsError, JsValue, prelude::wasm_bindgen};
@@ -260,7 +260,7 @@ mod page {
         let spec: Spec = serde_wasm_bindgen::from_value(spec)?;
         let backend = CanvasBackend::with_canvas_object(canvas)
             .ok_or_else(|| JsError::new("this canvas has no 2D context"))?;
-        let plot = draw(&backend.into_drawing_area(), &spec).map_err(|message| JsError::new(&message))?;
+        let plot = draw(Surface::Canvas(backend), &spec).map_err(|message| JsError::new(&message))?;
         Ok(plot.serialize(&serde_wasm_bindgen::Serializer::json_compatible())?)
     }
 
@@ -273,9 +273,8 @@ mod page {
     pub fn chart_svg(width: u32, height: u32, spec: JsValue) -> Result<String, JsError> {
         let spec: Spec = serde_wasm_bindgen::from_value(spec)?;
         let mut text = String::new();
-        let area = SVGBackend::with_string(&mut text, (width, height)).into_drawing_area();
-        draw(&area, &spec).map_err(|message| JsError::new(&message))?;
-        drop(area);
+        let surface = Surface::Svg(SVGBackend::with_string(&mut text, (width, height)));
+        draw(surface, &spec).map_err(|message| JsError::new(&message))?;
         Ok(text)
     }
 }
@@ -303,7 +302,7 @@ mod tests {
 
     fn svg(spec: &Spec) -> (String, Result<Plot, String>) {
         let mut text = String::new();
-        let plot = draw(&SVGBackend::with_string(&mut text, (800, 400)).into_drawing_area(), spec);
+        let plot = draw(Surface::Svg(SVGBackend::with_string(&mut text, (800, 400))), spec);
         (text, plot)
     }
 

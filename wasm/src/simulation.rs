@@ -3,13 +3,12 @@
 
 use crate::{convert::object, packets::Filter, subject::listed};
 use serde::Serialize;
+use std::mem::take;
 use stepscope_core::{
     analysis::timing::TimingCheck,
-    run::{Experiment, Run},
+    run::{Experiment, Run, Watched},
     scenario::{Config, Scenario},
-    signal::{Event, Record, Sink},
     trace::{Against, Changes, Recording, Step, steps},
-    units::Instant,
 };
 use wasm_bindgen::prelude::*;
 
@@ -42,20 +41,6 @@ pub(crate) struct Kept {
     pub(crate) timing: Option<TimingCheck>,
     /// Steps of each channel, as far as they were asked for after the end.
     steps: Vec<Option<Vec<Step>>>,
-}
-
-impl Sink for Kept {
-    #[inline]
-    fn record(&mut self, record: Record) {
-        self.recording.record(record);
-        if let Some(check) = &mut self.timing {
-            check.record(record);
-        }
-    }
-
-    fn event(&mut self, at: Instant, event: Event) {
-        self.recording.event(at, event);
-    }
 }
 
 impl Kept {
@@ -113,8 +98,14 @@ impl Simulation {
     /// # Errors
     /// If the run makes more records than a page can keep.
     pub fn advance(&mut self, max_records: u32) -> Result<JsValue, JsError> {
-        let done = self.run.advance_each(u64::from(max_records.max(1)), &mut self.kept);
-        self.kept.iter_mut().for_each(|kept| kept.changes.extend(&kept.recording.trace));
+        let watched =
+            |kept: &mut Kept| Watched { recording: take(&mut kept.recording), timing: kept.timing.take() };
+        let mut watched: Vec<Watched> = self.kept.iter_mut().map(watched).collect();
+        let done = self.run.advance_watched(u64::from(max_records.max(1)), &mut watched);
+        for (kept, Watched { recording, timing }) in self.kept.iter_mut().zip(watched) {
+            kept.changes.extend(&recording.trace);
+            (kept.recording, kept.timing) = (recording, timing);
+        }
         let records: u64 = self.kept.iter().map(|kept| kept.recording.digest.records()).sum();
         if records > MOST_RECORDS {
             return Err(JsError::new(&format!(

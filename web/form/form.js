@@ -7,9 +7,9 @@ import { element, fill } from "../dom.js";
 import { driverItems } from "./driver.js";
 import { GLITCH, OF_SEGMENTS, SECTIONS } from "./fields.js";
 import { showAbout, showDerived, showProblems } from "./judgement.js";
-import { TERMS } from "../help/terms.js";
 import { createKit, labels } from "./kit.js";
 import { showRemedy } from "./remedies.js";
+import { SOURCE_TERMS } from "./source_terms.js";
 import { SOURCES, runsAlone, withSource } from "./sources.js";
 import { get, held } from "../state/state.js";
 
@@ -31,7 +31,7 @@ export function createForm({ root, samples, drivers, dispatch }) {
     const kind = Object.keys(scenario.source)[0];
     const select = kit.kindSelect("What the host sends", "source", kind, labels(SOURCES), (chosen) => kit.put("", withSource(state.scenario, chosen, samples)));
     return [kit.errorOf("source"), element("div", { class: "item-head" }, select),
-      element("p", { class: "item-note" }, TERMS[SOURCES[kind].term].text), ...SOURCES[kind].form(kit, scenario)];
+      element("p", { class: "item-note" }, SOURCE_TERMS[SOURCES[kind].term].text), ...SOURCES[kind].form(kit, scenario)];
   }
 
   /** Lists whose length changes, by the name that a section gives them. @type {{[list: string]: (scenario: Scenario) => Node[]}} */

@@ -3,7 +3,7 @@
  * means and which document it comes from. One card serves all of them; a click elsewhere and Escape close it.
  */
 import { element, fill } from "../dom.js";
-import { DOCUMENTS, TERMS, VIEWS } from "./terms.js";
+import { termsOf } from "./terms.js";
 
 /** @typedef {import("../form/field.js").Term} Term */
 
@@ -47,36 +47,44 @@ export function createCard() {
     const open = /** @type {ToggleEvent} */ (event).newState === "open";
     opener?.setAttribute("aria-expanded", String(open));
   });
-  for (const view of Object.keys(VIEWS)) {
-    const title = document.getElementById(`title-${view}`);
-    if (title) fill(title, termButton(title.textContent ?? "", `view:${view}`));
+  for (const title of document.querySelectorAll("h2[id^='title-']")) {
+    fill(title, termButton(title.textContent ?? "", title.id.replace("title-", "view:")));
   }
 }
 
 /** The word whose card is on show, or was last. @type {HTMLElement | null} */
 let opener = null;
 
+/** What the cards say. @type {Promise<typeof import("./texts.js")> | null} */
+let loading = null;
+
 /** Fills the card for a word and shows it there. @param {HTMLElement} word */
-function show(word) {
+async function show(word) {
   const card = document.getElementById(CARD);
   if (!card) return;
   if (opener !== word) opener?.setAttribute("aria-expanded", "false");
   opener = word;
+  loading ??= import("./texts.js");
+  const texts = await loading.catch(() => { loading = null; return null; });
+  // Another word was asked for meanwhile.
+  if (opener !== word || !word.isConnected) return;
+  const { DOCUMENTS, VIEWS } = texts ?? { DOCUMENTS: {}, VIEWS: {} };
+  const TERMS = texts ? termsOf(texts) : {};
   const name = word.dataset.term ?? "";
   const view = VIEWS[name.replace("view:", "")];
   const hint = word.closest(".field")?.querySelector(".hint")?.textContent;
   fill(card, ...(name.startsWith("view:") && view
-    ? [element("p", {}, view.about), element("dl", {}, ...Object.values(view.terms).flatMap((term) => [element("dt", {}, term.name ?? ""), meaning("dd", term)]))]
-    : [element("strong", {}, TERMS[name]?.name ?? word.textContent ?? ""), meaning("p", TERMS[name] ?? { text: "" }), ...(hint ? [element("p", { class: "range" }, hint)] : [])]));
+    ? [element("p", {}, view.about), element("dl", {}, ...Object.values(view.terms).flatMap((term) => [element("dt", {}, term.name ?? ""), meaning("dd", term, DOCUMENTS)]))]
+    : [element("strong", {}, TERMS[name]?.name ?? word.textContent ?? ""), meaning("p", TERMS[name] ?? { text: texts ? "" : "The text could not be loaded; try again when the network is there." }, DOCUMENTS), ...(hint ? [element("p", { class: "range" }, hint)] : [])]));
   card.hidePopover();
   card.showPopover();
   place(card, word);
   word.setAttribute("aria-expanded", "true");
 }
 
-/** What is meant, with where it comes from. @param {"p" | "dd"} tag @param {Term} term */
-export function meaning(tag, { text, from }) {
-  return element(tag, {}, text, ...(from ? [" ", element("span", { class: "from" }, `(${DOCUMENTS[from].short})`)] : []));
+/** What is meant, with where it comes from. @param {"p" | "dd"} tag @param {Term} term @param {{[id: string]: {short: string}}} documents */
+export function meaning(tag, { text, from }, documents) {
+  return element(tag, {}, text, ...(from && documents[from] ? [" ", element("span", { class: "from" }, `(${documents[from].short})`)] : []));
 }
 
 /** Puts the card under its word, or above it where there is more room. @param {HTMLElement} card @param {HTMLElement} word */

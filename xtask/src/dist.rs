@@ -53,7 +53,7 @@ pub(crate) async fn make(web: &Path, dist: &Path) -> Result<()> {
 }
 
 /// The files of `dist` that load when the page is opened, by their paths: not what is kept beside it for other
-/// pages and for installing.
+/// pages, for installing, and for when something asks for it.
 pub(crate) fn loaded(dist: &Path) -> Result<BTreeSet<String>> {
     let mut loaded = BTreeSet::from([SERVICE_WORKER.to_owned()]);
     let mut waiting = vec![PAGE.to_owned()];
@@ -65,7 +65,8 @@ pub(crate) fn loaded(dist: &Path) -> Result<BTreeSet<String>> {
             let file = dist.join(&path);
             let text = std::fs::read_to_string(&file)
                 .with_context(|| format!("{} can't be read", file.display()))?;
-            waiting.extend(references(&path, &text)?.into_iter().map(|reference| reference.file));
+            let named = references(&path, &text)?.into_iter().filter(|reference| !reference.later);
+            waiting.extend(named.map(|reference| reference.file));
         }
     }
     Ok(loaded)
@@ -173,7 +174,13 @@ impl Site {
         let scripts = named.map(|named| named.file.as_str());
         let scripts: BTreeSet<&str> = scripts
             .filter(|file| Kind::of(file) == Kind::Script && !is_entry(file) && !file.starts_with(SHARED))
+            // What imports nothing is one script as it is, and may export.
+            .filter(|file| self.reached(file, true).len() > 1)
             .collect();
+        let later = self.files.values().flat_map(|file| &file.references).filter(|named| named.later);
+        for Reference { file, .. } in later {
+            ensure!(!scripts.contains(file.as_str()), "{file} comes later, so it can't import others");
+        }
         let bundles: Vec<(String, String)> = scripts
             .into_iter()
             .map(|script| Ok((script.to_owned(), self.bundle_of(script)?)))
@@ -209,9 +216,7 @@ impl Site {
         for (path, text) in order.iter().zip(&texts) {
             let file = &self.files[*path];
             let mut imports = BTreeMap::new();
-            for Reference { place, file: target, at_once: _ } in
-                file.references.iter().filter(|it| it.at_once)
-            {
+            for Reference { place, file: target, .. } in file.references.iter().filter(|it| it.at_once) {
                 let specifier = std::str::from_utf8(&file.bytes[place.clone()])?;
                 let origin = match order.iter().position(|other| other == target) {
                     Some(number) => Origin::Within(number),

@@ -4,22 +4,97 @@
 //! reading with every field optional and unknown ones refused, and [`Compact`]: the canonical form
 //! that a link carries, fixed in order, with what equals its default left out.
 
-use alloc::{string::String, vec::Vec};
+use alloc::{
+    string::{String, ToString},
+    vec::Vec,
+};
 use serde_json::{Map, Value};
 
-/// The canonical JSON of a value: fixed order, defaults left out.
+/// What a value of a scenario is made of: all that writing it needs to know, so that writing is code of its
+/// own and not of every type.
+pub enum Parts<'a> {
+    /// A value in one piece.
+    Whole(Value),
+    /// A number that may be -0.0.
+    Number(f64),
+    /// A list.
+    List(Vec<&'a dyn Compact>),
+    /// Names, their values, and whether the value differs from its default.
+    Fields(Vec<(&'static str, &'a dyn Compact, bool)>),
+}
+
+/// A value with a canonical JSON: fixed order, defaults left out.
 ///
 /// Reading it back gives an equal value, and equal values have the same canonical form.
 pub trait Compact {
+    /// What it is made of.
+    fn parts(&self) -> Parts<'_>;
+
     /// The canonical form.
-    fn compact(&self) -> Value;
+    fn compact(&self) -> Value
+    where
+        Self: Sized,
+    {
+        compacted(self.parts())
+    }
+}
+
+fn compacted(parts: Parts<'_>) -> Value {
+    match parts {
+        Parts::Whole(value) => value,
+        // -0.0 equals 0.0, so it is written like it.
+        Parts::Number(number) => Value::from(number + 0.0),
+        Parts::List(entries) => entries.into_iter().map(|entry| compacted(entry.parts())).collect(),
+        Parts::Fields(fields) => {
+            let mut map = Map::new();
+            for (name, value, _) in fields.into_iter().filter(|(_, _, differs)| *differs) {
+                map.insert(name.into(), compacted(value.parts()));
+            }
+            Value::Object(map)
+        }
+    }
+}
+
+/// Writes a value with all its fields in the order of their declaration, as
+/// `serde_json::to_string_pretty` does; `indent` is the depth of the line that it begins in.
+pub(super) fn write_whole(out: &mut String, value: &dyn Compact, indent: usize) {
+    let begin_line = |out: &mut String, first: bool| {
+        out.push_str(if first { "\n" } else { ",\n" });
+        (0..=indent).for_each(|_| out.push_str("  "));
+    };
+    let brackets = match value.parts() {
+        Parts::Whole(value) => return out.push_str(&value.to_string()),
+        Parts::Number(number) => return out.push_str(&Value::from(number).to_string()),
+        Parts::List(entries) if entries.is_empty() => return out.push_str("[]"),
+        Parts::Fields(fields) if fields.is_empty() => return out.push_str("{}"),
+        Parts::List(entries) => {
+            out.push('[');
+            for (index, entry) in entries.into_iter().enumerate() {
+                begin_line(out, index == 0);
+                write_whole(out, entry, indent + 1);
+            }
+            ']'
+        }
+        Parts::Fields(fields) => {
+            out.push('{');
+            for (index, (name, value, _)) in fields.into_iter().enumerate() {
+                begin_line(out, index == 0);
+                out.push_str(&alloc::format!("\"{name}\": "));
+                write_whole(out, value, indent + 1);
+            }
+            '}'
+        }
+    };
+    out.push('\n');
+    (0..indent).for_each(|_| out.push_str("  "));
+    out.push(brackets);
 }
 
 macro_rules! plain {
     ($($ty:ty),*) => {$(
         impl Compact for $ty {
-            fn compact(&self) -> Value {
-                Value::from(self.clone())
+            fn parts(&self) -> Parts<'_> {
+                Parts::Whole(Value::from(self.clone()))
             }
         }
     )*};
@@ -27,29 +102,21 @@ macro_rules! plain {
 plain!(u8, u16, u32, u64, i64, String);
 
 impl Compact for f64 {
-    /// -0.0 equals 0.0, so it is written like it.
-    fn compact(&self) -> Value {
-        Value::from(*self + 0.0)
+    fn parts(&self) -> Parts<'_> {
+        Parts::Number(*self)
     }
 }
 
 impl<T: Compact> Compact for Option<T> {
-    fn compact(&self) -> Value {
-        self.as_ref().map_or(Value::Null, Compact::compact)
+    fn parts(&self) -> Parts<'_> {
+        self.as_ref().map_or(Parts::Whole(Value::Null), Compact::parts)
     }
 }
 
 impl<T: Compact> Compact for Vec<T> {
-    fn compact(&self) -> Value {
-        self.iter().map(Compact::compact).collect()
+    fn parts(&self) -> Parts<'_> {
+        Parts::List(self.iter().map(|entry| entry as &dyn Compact).collect())
     }
-}
-
-/// A map of one key: how a choice is written.
-pub(super) fn chosen(name: &str, value: Value) -> Value {
-    let mut map = Map::new();
-    map.insert(name.into(), value);
-    Value::Object(map)
 }
 
 macro_rules! settings {
@@ -70,13 +137,11 @@ macro_rules! settings {
         }
 
         impl $crate::scenario::Compact for $name {
-            fn compact(&self) -> serde_json::Value {
+            fn parts(&self) -> $crate::scenario::Parts<'_> {
                 let default = Self::default();
-                let mut map = serde_json::Map::new();
-                $(if self.$field != default.$field {
-                    map.insert(stringify!($field).into(), self.$field.compact());
-                })*
-                serde_json::Value::Object(map)
+                $crate::scenario::Parts::Fields(alloc::vec![
+                    $((stringify!($field), &self.$field, self.$field != default.$field),)*
+                ])
             }
         }
     };
@@ -98,9 +163,10 @@ macro_rules! choices {
         }
 
         impl $crate::scenario::Compact for $name {
-            fn compact(&self) -> serde_json::Value {
+            // A map of one key.
+            fn parts(&self) -> $crate::scenario::Parts<'_> {
                 match self {
-                    $(Self::$variant(inner) => $crate::scenario::compact::chosen($key, inner.compact()),)*
+                    $(Self::$variant(inner) => $crate::scenario::Parts::Fields(alloc::vec![($key, inner, true)]),)*
                 }
             }
         }
@@ -112,10 +178,10 @@ pub(crate) use {choices, settings};
 macro_rules! words {
     ($($ty:ty { $($variant:ident = $word:literal,)* })*) => {$(
         impl Compact for $ty {
-            fn compact(&self) -> Value {
-                Value::from(match self {
+            fn parts(&self) -> Parts<'_> {
+                Parts::Whole(Value::from(match self {
                     $(Self::$variant => $word,)*
-                })
+                }))
             }
         }
     )*};
@@ -145,5 +211,21 @@ words! {
         Tmc2209 = "tmc2209",
         Tmc262 = "tmc262",
         Tb6600Class = "tb6600_class",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Scenario, presets::PRESETS};
+
+    #[test]
+    fn the_whole_is_written_as_serde_writes_it() {
+        let scenarios = PRESETS.iter().map(|preset| preset.scenario());
+        let odd = r#"{"title":"\"a\\\n\u0001ü","source":{"motion":{"axes":[]}},"run_cycles":18446744073709551615,"controllers":[{"axes":[{"moves":[{"dwell":{"duration_s":-0.0}},{"cosine":{"duration_s":1e300,"ramp_s":1e-7}}]}]}]}"#;
+        let odd = Scenario::from_json(odd).expect("reads");
+        for scenario in scenarios.chain([Scenario::default(), odd]) {
+            let expected = serde_json::to_string_pretty(&scenario).expect("writes");
+            assert_eq!(scenario.to_json(), expected);
+        }
     }
 }

@@ -35,8 +35,8 @@ fn wrong_in(digits: &str) -> String {
 }
 
 impl super::Compact for Hex {
-    fn compact(&self) -> Value {
-        Value::from(lower::encode_string(&self.0))
+    fn parts(&self) -> super::Parts<'_> {
+        super::Parts::Whole(Value::from(lower::encode_string(&self.0)))
     }
 }
 

@@ -32,7 +32,7 @@ mod tracked;
 
 pub(crate) use check::MOST_FURTHER;
 pub use check::{Checked, END_OF_TIME, Forced, line_time};
-pub use compact::Compact;
+pub use compact::{Compact, Parts};
 pub use config::Config;
 pub(crate) use config::most_baud;
 pub use drive::{Driver, DriverModel, TimingRules};

@@ -7,13 +7,12 @@
 //! Both columns count from the first point: a record may begin at any time and place.
 
 use super::{
-    Compact, Distance,
+    Compact, Distance, Parts,
     compact::settings,
     table::{BadTable, Rows, short},
 };
 use alloc::{borrow::ToOwned, format, string::String, vec, vec::Vec};
 use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
-use serde_json::Value;
 
 /// Most points of a move.
 pub(crate) const MOST_POINTS: usize = 4096;
@@ -97,8 +96,8 @@ impl<'de> Deserialize<'de> for Point {
 }
 
 impl Compact for Point {
-    fn compact(&self) -> Value {
-        Value::from([self.time_s.compact(), self.position.compact()].to_vec())
+    fn parts(&self) -> Parts<'_> {
+        Parts::List(vec![&self.time_s, &self.position])
     }
 }
 

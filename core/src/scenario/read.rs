@@ -4,7 +4,7 @@
 //! takes its place, and the reading begins again, until it succeeds.
 
 use super::{
-    Cause, Problem, Scenario, VERSION,
+    Cause, Problem, Scenario, VERSION, compact,
     judge::MOST_PROBLEMS,
     tracked::{self, Step},
 };
@@ -53,7 +53,9 @@ impl Scenario {
     /// The whole scenario as JSON, every field written.
     #[must_use]
     pub fn to_json(&self) -> String {
-        serde_json::to_string_pretty(self).unwrap_or_default()
+        let mut text = String::new();
+        compact::write_whole(&mut text, self, 0);
+        text
     }
 }
 

@@ -1,7 +1,8 @@
 //! JSON as a scenario's types, with the place where it went wrong.
 //!
 //! A deserializer of its own, because the page carries it: `serde_path_to_error` wraps the visitor of every
-//! type, and that is 14 kB more in the compressed page. It is also stricter than serde, which reads a
+//! type, and that is 14 kB more in the compressed page. For the same reason its functions stay functions: in
+//! each place where a type has a field of one kind, the same code would stand again. It is also stricter than serde, which reads a
 //! map's fields from a list, by their order; a scenario has names.
 
 use alloc::{
@@ -46,11 +47,13 @@ struct Place<'p> {
 }
 
 impl Place<'_> {
+    #[inline(never)]
     fn below(&self, step: Step) -> Place<'_> {
         Place { outer: Some(self), step: Some(step), wrong: self.wrong }
     }
 
     /// Notes this place, unless one within it is noted already; gives the error on.
+    #[inline(never)]
     fn note(&self, error: Error) -> Error {
         let mut wrong = self.wrong.borrow_mut();
         if wrong.is_none() {
@@ -72,6 +75,7 @@ struct Tracked<'de, 'p> {
 }
 
 impl<'de> Tracked<'de, '_> {
+    #[inline(never)]
     fn map<V: Visitor<'de>>(
         self,
         fields: &'de serde_json::Map<String, Value>,
@@ -84,6 +88,7 @@ impl<'de> Tracked<'de, '_> {
 impl<'de> Deserializer<'de> for Tracked<'de, '_> {
     type Error = Error;
 
+    #[inline(never)]
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
         match self.value {
             Value::Null => visitor.visit_unit(),
@@ -101,6 +106,7 @@ impl<'de> Deserializer<'de> for Tracked<'de, '_> {
         }
     }
 
+    #[inline(never)]
     fn deserialize_struct<V: Visitor<'de>>(
         self,
         _name: &'static str,
@@ -114,6 +120,7 @@ impl<'de> Deserializer<'de> for Tracked<'de, '_> {
         }
     }
 
+    #[inline(never)]
     fn deserialize_enum<V: Visitor<'de>>(
         self,
         _name: &'static str,
@@ -131,6 +138,7 @@ impl<'de> Deserializer<'de> for Tracked<'de, '_> {
         visitor.visit_enum(Choice { name, content, place: self.place })
     }
 
+    #[inline(never)]
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
         if self.value.is_null() { visitor.visit_none() } else { visitor.visit_some(self) }
     }
@@ -174,6 +182,7 @@ struct Entries<'de, 'p> {
 impl<'de> SeqAccess<'de> for Entries<'de, '_> {
     type Error = Error;
 
+    #[inline(never)]
     fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, Error> {
         let Some(value) = self.rest.next() else { return Ok(None) };
         let place = self.place.below(Step::Index(self.index));
@@ -195,6 +204,7 @@ struct Fields<'de, 'p> {
 impl<'de> MapAccess<'de> for Fields<'de, '_> {
     type Error = Error;
 
+    #[inline(never)]
     fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, Error> {
         self.current = self.rest.next();
         let Some((name, _)) = self.current else { return Ok(None) };
@@ -203,6 +213,7 @@ impl<'de> MapAccess<'de> for Fields<'de, '_> {
             .map_err(|error| self.place.below(Step::Key(name.clone())).note(error))
     }
 
+    #[inline(never)]
     fn next_value_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<T::Value, Error> {
         let Some((name, value)) = self.current.take() else {
             return Err(Error::custom("a value without a name"));
@@ -238,6 +249,7 @@ impl<'de> VariantAccess<'de> for Choice<'de, '_> {
         }
     }
 
+    #[inline(never)]
     fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<T::Value, Error> {
         let Some(value) = self.content else {
             return Err(Error::invalid_type(Unexpected::UnitVariant, &"newtype variant"));

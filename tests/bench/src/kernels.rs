@@ -3,6 +3,10 @@
 use core::hint::black_box;
 
 use stepscope_core::{
+    analysis::{
+        sine_optimum::{Freedom, optimum},
+        sine_polyline::sweep,
+    },
     motion::{AxisPlan, DueStep, plan_axis, trapezoid::Trapezoid},
     quantise::{Compressed, EntryFormat, Form, Stored, Tolerance, compressed, stored},
     run::Experiment,
@@ -13,7 +17,7 @@ use stepscope_core::{
     units::{Cycles, Instant},
 };
 
-use crate::motions;
+use crate::{motions, planners::Planner};
 
 /// Steps of the planner's move: a triangle, so that every step has its square root.
 const STEPS: u32 = 1_000_000;
@@ -26,6 +30,11 @@ const TOLERANCE: Tolerance = Tolerance::of(Cycles(400));
 const PULSE: PulseTimes = PulseTimes { width: Cycles(16), setup: Cycles(0), hold: Cycles(0) };
 /// How often the short motion is run at the fast speed, so that it takes a time that can be told.
 const SHORT_RUNS: u64 = 200;
+/// Harmonics up to which a sine is judged.
+const ORDER: u16 = 399;
+/// The range of d1 that the page offers, and the rows of the sine document's figure 4.
+const SWEEP: (f64, f64) = (0.002, 0.06);
+const SWEEP_ROWS: u32 = 500;
 
 /// Something that is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,6 +85,16 @@ pub enum Kernel {
     PlannedCompressed,
     /// Planned and compressed into entries of whole cycles.
     PlannedTicks,
+    /// Planned and compressed into short entries with eight bits of a fraction.
+    PlannedQ8,
+    /// A trapezoid's own table as its document keeps it, and how far its steps are from it.
+    Document,
+    /// The cycles in which the steps of a planner's move fall due, summed.
+    Plan(Planner),
+    /// The vertices with least distortion, so many segments a quarter.
+    Optimum(u8),
+    /// The sweep of the sine document's figure 4.
+    Sweep,
 }
 
 /// What there is to say of a kernel.
@@ -97,7 +116,7 @@ pub struct Facts {
 
 impl Kernel {
     /// All kernels, each yardstick right before what is compared with it.
-    pub const ALL: [Self; 23] = [
+    pub const ALL: [Self; 44] = [
         Self::Write,
         Self::Copy,
         Self::Stored,
@@ -121,6 +140,27 @@ impl Kernel {
         Self::Compressed,
         Self::PlannedCompressed,
         Self::PlannedTicks,
+        Self::PlannedQ8,
+        Self::Document,
+        Self::Plan(Planner::TrapezoidTable),
+        Self::Plan(Planner::TrapezoidExact),
+        Self::Plan(Planner::Staircase),
+        Self::Plan(Planner::Cosine),
+        Self::Plan(Planner::Sliced),
+        Self::Plan(Planner::Sigmoid),
+        Self::Plan(Planner::Bezier),
+        Self::Plan(Planner::Straight),
+        Self::Plan(Planner::Exponential),
+        Self::Plan(Planner::SineSegments),
+        Self::Plan(Planner::Sine),
+        Self::Plan(Planner::JerkLimited),
+        Self::Plan(Planner::Points),
+        Self::Plan(Planner::Constant),
+        Self::Optimum(3),
+        Self::Optimum(4),
+        Self::Optimum(5),
+        Self::Optimum(6),
+        Self::Sweep,
     ];
 
     /// What there is to say of it.
@@ -180,6 +220,23 @@ impl Kernel {
             Self::PlannedTicks => {
                 Facts { name: "planned_ticks", yardstick: Some(Self::Roots), aim: Some(0.075), ..steps }
             }
+            Self::PlannedQ8 => {
+                Facts { name: "planned_q8", yardstick: Some(Self::Roots), aim: Some(0.075), ..steps }
+            }
+            Self::Document => Facts { name: "document_table", yardstick: Some(Self::Roots), ..steps },
+            Self::Plan(planner) => Facts { name: planner.name(), yardstick: Some(Self::Roots), ..steps },
+            Self::Optimum(segments) => Facts {
+                name: match segments {
+                    3 => "optimum_3_segments",
+                    4 => "optimum_4_segments",
+                    5 => "optimum_5_segments",
+                    _ => "optimum_6_segments",
+                },
+                unit: "optima",
+                in_browser: true,
+                ..plain
+            },
+            Self::Sweep => Facts { name: "sweep_500_rows", unit: "rows", in_browser: true, ..plain },
         }
     }
 }
@@ -202,6 +259,8 @@ pub struct Kernels {
     /// The move whose tables are made, and its steps.
     move_of_tables: AxisPlan,
     due: Vec<DueStep>,
+    /// A move of each planner, in their order.
+    plans: Vec<AxisPlan>,
     /// The steady motion's trace.
     source: Vec<Record>,
     /// What is written: room for the longest trace, every page of it touched before.
@@ -245,6 +304,7 @@ impl Kernels {
             ramp: Trapezoid::new(i64::from(STEPS), START_SPEED, TOP_SPEED, ACCELERATION),
             move_of_tables,
             due,
+            plans: Planner::ALL.into_iter().map(Planner::plan).collect::<Result<_, _>>()?,
             source,
             target: vec![Record { cycle: Instant::NEVER, levels: Levels::RESET }; most],
         })
@@ -266,6 +326,22 @@ impl Kernels {
             }
             Kernel::PlannedCompressed => self.planned(EntryFormat::Q16),
             Kernel::PlannedTicks => self.planned(EntryFormat::TICKS),
+            Kernel::PlannedQ8 => self.planned(EntryFormat::Q8),
+            Kernel::Document => entries(stored(
+                self.plan(Planner::TrapezoidTable),
+                Form::Document,
+                EntryFormat::Q16,
+                PULSE,
+                CLOCK_HZ,
+            )),
+            Kernel::Plan(planner) => {
+                let due = black_box(self.plan(planner)).due_steps(CLOCK_HZ);
+                due.fold(0, |sum: u64, step| sum.wrapping_add(step.cycle))
+            }
+            Kernel::Optimum(segments) => optimum(black_box(segments.into()), Freedom::Free, ORDER)
+                .map_or(0, |found| found.distortion.position.to_bits()),
+            Kernel::Sweep => sweep(black_box(SWEEP.0), SWEEP.1, SWEEP_ROWS, ORDER)
+                .fold(0, |sum, row| sum ^ row.distortion.position.to_bits()),
             Kernel::Digest => digest(&self.steady),
             Kernel::VariedDigest => digest(&self.varied),
             Kernel::Stored => store(&self.steady, &mut self.target),
@@ -298,7 +374,12 @@ impl Kernels {
             | Kernel::Exact
             | Kernel::Compressed
             | Kernel::PlannedCompressed
-            | Kernel::PlannedTicks => (u64::from(STEPS), None),
+            | Kernel::PlannedTicks
+            | Kernel::PlannedQ8
+            | Kernel::Document
+            | Kernel::Plan(_) => (u64::from(STEPS), None),
+            Kernel::Optimum(_) => (1, None),
+            Kernel::Sweep => (u64::from(SWEEP_ROWS), None),
             Kernel::Write | Kernel::Copy => (result, None),
             Kernel::Motors16 | Kernel::Motors512 => (result, None),
             Kernel::Digest => return self.work(Kernel::Stored),
@@ -307,6 +388,11 @@ impl Kernels {
             _ => (result, stored()),
         };
         Work { units, edges }
+    }
+
+    /// The move of a planner.
+    fn plan(&self, planner: Planner) -> &AxisPlan {
+        &self.plans[planner as usize]
     }
 
     /// Segments of the move, planned and compressed.
@@ -416,8 +502,16 @@ mod tests {
     #[test]
     fn every_table_is_made_and_a_compressed_one_is_short() {
         let mut kernels = Kernels::new().unwrap();
-        let tables = [Kernel::Exact, Kernel::Compressed, Kernel::PlannedCompressed, Kernel::PlannedTicks];
-        let [exact, before, planned, ticks] = tables.map(|kernel| kernels.call(kernel));
+        let tables = [
+            Kernel::Exact,
+            Kernel::Compressed,
+            Kernel::PlannedCompressed,
+            Kernel::PlannedTicks,
+            Kernel::PlannedQ8,
+            Kernel::Document,
+        ];
+        let [exact, before, planned, ticks, q8, document] = tables.map(|kernel| kernels.call(kernel));
+        assert!(q8 > 0 && q8 < exact && document > 0, "{q8} {document}");
         assert_eq!(before, planned);
         // Klipper's step compression makes about 1289 entries of this move.
         assert!(planned > 0 && planned < ticks && ticks < 1289 && ticks < exact, "{exact} {planned} {ticks}");

@@ -4,6 +4,7 @@
 //! | file | what it holds |
 //! | --- | --- |
 //! | `motions` | the experiments that are run |
+//! | `planners` | a move of each planner |
 //! | `kernels` | the kernels, what each is compared with, and the aim |
 //! | `rounds` | all kernels in turn, over and over, each timed; the report of it |
 //! | `page` (wasm) | such rounds for the worker in `page/` |
@@ -14,6 +15,7 @@
 
 pub mod kernels;
 pub mod motions;
+pub mod planners;
 pub mod rounds;
 
 #[cfg(target_arch = "wasm32")]

@@ -78,8 +78,10 @@ fn a_new_visitor_is_offered_the_guide_once_and_it_points_at_what_is_there() -> R
 }
 
 /// All fields that the form's tables know, and all that is said of them.
-const FIELDS: &str = "Promise.all(['./form/fields.js', './form/moves/index.js', './help/terms.js'].map((name) => import(name)))
-    .then(([tables, { MOVES }, { TERMS, VIEWS, DOCUMENTS }]) => {
+const FIELDS: &str = "Promise.all(['./form/fields.js', './form/moves/index.js', './help/terms.js', './help/texts.js'].map((name) => import(name)))
+    .then(([tables, { MOVES }, { termsOf }, texts]) => {
+        const { VIEWS, DOCUMENTS } = texts;
+        const TERMS = termsOf(texts);
         const fields = [];
         const seek = (value) => {
             if (typeof value !== 'object' || value === null) return;
@@ -118,8 +120,8 @@ fn every_field_is_explained_and_names_its_document() -> Result<()> {
             page.ready().await?;
             let dumb: Vec<String> = page
                 .eval(
-                    "import('./help/terms.js').then(({ TERMS }) => [...document.querySelectorAll('#form .term')]\
-                     .filter((word) => !TERMS[word.dataset.term]?.text).map((word) => word.dataset.term))",
+                    "Promise.all([import('./help/terms.js'), import('./help/texts.js')]).then(([{ termsOf }, texts]) => [...document.querySelectorAll('#form .term')]\
+                     .filter((word) => !termsOf(texts)[word.dataset.term]?.text).map((word) => word.dataset.term))",
                 )
                 .await?;
             assert_eq!(dumb, [""; 0], "{id}");

@@ -2,8 +2,8 @@
 //! and dark colours. `STEPSCOPE_BLESS=1 cargo test -p stepscope-wasm --lib pictures` writes them anew; look
 //! at them before they are kept.
 
-use super::{Axis, Colors, Series, Shape, Spec, draw};
-use plotters::prelude::{IntoDrawingArea, SVGBackend};
+use super::{Axis, Colors, Series, Shape, Spec, draw, surface::Surface};
+use plotters::prelude::SVGBackend;
 use std::{env, fs, path::Path};
 
 /// The page's colours of a theme.
@@ -105,9 +105,8 @@ fn pictures_are_those_that_were_looked_at() {
     for theme in &THEMES {
         for (name, make) in drawings {
             let mut text = String::new();
-            let area = SVGBackend::with_string(&mut text, (1200, 400)).into_drawing_area();
-            let plot = draw(&area, &make(theme));
-            drop(area);
+            let surface = Surface::Svg(SVGBackend::with_string(&mut text, (1200, 400)));
+            let plot = draw(surface, &make(theme));
             assert!(plot.is_ok(), "{name}: {plot:?}");
             let file = folder.join(format!("{name}-{}.svg", theme.name));
             if env::var_os("STEPSCOPE_BLESS").is_some() {

@@ -43,7 +43,7 @@ pub(super) struct Needle {
 impl Needle {
     /// Reads what was typed; none for nothing. Beside it what has to be said of it, if anything.
     pub(super) fn parse(typed: &str) -> (Option<Self>, String) {
-        let text = typed.trim().to_lowercase();
+        let text = typed.trim().to_ascii_lowercase();
         if text.is_empty() {
             return (None, String::new());
         }

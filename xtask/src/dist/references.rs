@@ -39,6 +39,8 @@ pub(super) struct Reference {
     pub(super) file: String,
     /// A module that is loaded before the naming one runs.
     pub(super) at_once: bool,
+    /// A module that loads only when something asks for it.
+    pub(super) later: bool,
 }
 
 fn pattern(kind: Kind) -> Option<&'static Regex> {
@@ -52,7 +54,7 @@ fn pattern(kind: Kind) -> Option<&'static Regex> {
     // Minified scripts: imports, and new URL(…, import.meta.url).
     static SCRIPT: LazyLock<Option<Regex>> = LazyLock::new(|| {
         compiled(
-            r#"(?<static>\bfrom|\bimport)["'`](?<name>\.{1,2}/[^"'`]+)["'`]|new URL\(["'`](?<url>[^"'`]+)["'`],import\.meta\.url\)"#,
+            r#"(?<static>\bfrom|\bimport)["'`](?<name>\.{1,2}/[^"'`]+)["'`]|\bimport\(["'`](?<later>[^"'`]+)["'`]\)|new URL\(["'`](?<url>[^"'`]+)["'`],import\.meta\.url\)"#,
         )
     });
     static STYLE: LazyLock<Option<Regex>> =
@@ -72,7 +74,7 @@ fn pattern(kind: Kind) -> Option<&'static Regex> {
 /// The page itself, `./`, is none.
 ///
 /// # Errors
-/// If a name leads out of the page's folder, a style sheet imports another, or a module comes later.
+/// If a name leads out of the page's folder, a style sheet imports another, or a module comes later without a name.
 pub(super) fn references(path: &str, text: &str) -> Result<Vec<Reference>> {
     let kind = Kind::of(path);
     if kind == Kind::Style && text.contains("@import") {
@@ -80,15 +82,16 @@ pub(super) fn references(path: &str, text: &str) -> Result<Vec<Reference>> {
             "{path} has an @import; link the style sheet in the page, so that it does not wait for this one"
         );
     }
-    if kind == Kind::Script && text.contains("import(") {
-        bail!("{path} imports a module later by import(…); import it at its beginning");
-    }
     let mut found = Vec::new();
     for captures in pattern(kind).into_iter().flat_map(|pattern| pattern.captures_iter(text)) {
-        let named = ["name", "url"].iter().find_map(|group| captures.name(group));
+        let named = ["name", "later", "url"].iter().find_map(|group| captures.name(group));
         let Some(name) = named.filter(|name| name.as_str() != "./") else { continue };
         let file = resolve(path, name.as_str())?;
-        found.push(Reference { place: name.range(), file, at_once: captures.name("static").is_some() });
+        let [at_once, later] = ["static", "later"].map(|group| captures.name(group).is_some());
+        found.push(Reference { place: name.range(), file, at_once, later });
+    }
+    if kind == Kind::Script && text.matches("import(").count() > found.iter().filter(|it| it.later).count() {
+        bail!("{path} imports a module by import(…) without naming it there");
     }
     Ok(found)
 }
@@ -127,13 +130,14 @@ mod tests {
         check(
             "views/a.js",
             "import\"../dom.js\";import{a as b}from'./b/c.js';export*from`./d.js`;\
-             new Worker(new URL(\"../engine/w.js\",import.meta.url));new URL(`x.wasm`,import.meta.url);f(\"./g.js\")",
+             new Worker(new URL(\"../engine/w.js\",import.meta.url));new URL(`x.wasm`,import.meta.url);import(\"./e.js\");f(\"./g.js\")",
             &[
                 ("../dom.js", "dom.js", true),
                 ("./b/c.js", "views/b/c.js", true),
                 ("./d.js", "views/d.js", true),
                 ("../engine/w.js", "engine/w.js", false),
                 ("x.wasm", "views/x.wasm", false),
+                ("./e.js", "views/e.js", false),
             ],
         );
         check(
@@ -157,7 +161,7 @@ mod tests {
         assert_eq!(error, "a.js names ../b.js, which lies outside of the page's folder");
         let error = references("a.css", "@import 'b.css';").unwrap_err().to_string();
         assert!(error.starts_with("a.css has an @import"), "{error}");
-        let error = references("a.js", "import('./b.js')").unwrap_err().to_string();
-        assert!(error.starts_with("a.js imports a module later"), "{error}");
+        let error = references("a.js", "import(b)").unwrap_err().to_string();
+        assert!(error.starts_with("a.js imports a module by import(…)"), "{error}");
     }
 }
