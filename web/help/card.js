@@ -68,10 +68,10 @@ async function show(word) {
   const texts = await loading.catch(() => { loading = null; return null; });
   // Another word was asked for meanwhile.
   if (opener !== word || !word.isConnected) return;
-  const { DOCUMENTS, VIEWS } = texts ?? { DOCUMENTS: {}, VIEWS: {} };
+  const DOCUMENTS = texts?.DOCUMENTS ?? {};
   const TERMS = texts ? termsOf(texts) : {};
   const name = word.dataset.term ?? "";
-  const view = VIEWS[name.replace("view:", "")];
+  const view = texts?.VIEWS[name.replace("view:", "")];
   const hint = word.closest(".field")?.querySelector(".hint")?.textContent;
   fill(card, ...(name.startsWith("view:") && view
     ? [element("p", {}, view.about), element("dl", {}, ...Object.values(view.terms).flatMap((term) => [element("dt", {}, term.name ?? ""), meaning("dd", term, DOCUMENTS)]))]

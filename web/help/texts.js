@@ -156,4 +156,12 @@ export const VIEWS = {
       slack: { name: "Slack", text: "By how much the shortest time is longer than required; below 0 the rule is broken.", from: "sheets" },
     },
   },
+  study: {
+    about: "Which profile, stored how, for this motor? The questions that a design begins with, for the looked-at axis.",
+    terms: {
+      exact_list: { name: "Exact list", text: "Every step in its cycle. Steps whose intervals differ by a constant share an entry.", from: "own" },
+      compressed: { name: "Compressed list", text: "Few entries, each for many steps, none of which is off by more than the error that is allowed.", from: "own" },
+      ev: { name: "Ev", text: "Euclidean distance: root of the sum of squares of what lies between the segments and the sine, over a quarter's 512 points.", from: "sine" },
+    },
+  },
 };

@@ -11,38 +11,41 @@ use stepscope_core::scenario::{
     Trapezoid, TrapezoidMethod, Wheel,
 };
 
-/// Any scenario of this version that JSON can carry: no number in it is infinite or none at all.
-pub fn typed() -> impl Strategy<Value = Scenario> {
+/// Any scenario of this version that JSON can carry: no number in it is infinite or none at all. The parts are boxed: a
+/// scenario's whole tree does not fit on a test's stack.
+pub fn typed() -> BoxedStrategy<Scenario> {
     let texts = (text(), text());
     let analysis =
         (small_or_any(0), small_or_any(40), small_or_any(4096), prop::option::weighted(0.3, number(50.0)));
     let line = (line(), controllers());
     let run = (any::<Option<u64>>(), prop::option::weighted(0.3, driver()));
-    (texts, small_or_any(16_000_000), bus(), line, source(), run, analysis).prop_map(
-        |(
-            (title, note),
-            clock_hz,
-            bus,
-            (line, controllers),
-            source,
-            (run_cycles, driver),
-            (axis, order, fft_length, sensor_hz),
-        )| {
-            Scenario {
-                title,
-                note,
+    (texts, small_or_any(16_000_000), bus(), line, source(), run, analysis)
+        .prop_map(
+            |(
+                (title, note),
                 clock_hz,
                 bus,
-                line,
+                (line, controllers),
                 source,
-                run_cycles,
-                analysis: Analysis { axis, order, fft_length, sensor_hz },
-                controllers,
-                driver,
-                ..Scenario::default()
-            }
-        },
-    )
+                (run_cycles, driver),
+                (axis, order, fft_length, sensor_hz),
+            )| {
+                Scenario {
+                    title,
+                    note,
+                    clock_hz,
+                    bus,
+                    line,
+                    source,
+                    run_cycles,
+                    analysis: Analysis { axis, order, fft_length, sensor_hz },
+                    controllers,
+                    driver,
+                    ..Scenario::default()
+                }
+            },
+        )
+        .boxed()
 }
 
 /// The default often, else small numbers, the ends of the type, or any.
@@ -86,12 +89,12 @@ fn text() -> impl Strategy<Value = String> {
     prop_oneof![2 => Just(String::new()), 1 => any::<String>(), 1 => "[ -~]{0,130}"]
 }
 
-fn bus() -> impl Strategy<Value = Bus> {
+fn bus() -> BoxedStrategy<Bus> {
     let modes = any::<[bool; 3]>();
     let counts = (small_or_any(1), small_or_any(100), small_or_any(16));
     let times = (small_or_any(320), small_or_any(40), small_or_any(40), small_or_any(0), small_or_any(0));
-    (modes, counts, times, small_or_any(1600)).prop_map(
-        |([burst, common, staggered], (channels, slots, queue_depth), times, boot_cycles)| {
+    (modes, counts, times, small_or_any(1600))
+        .prop_map(|([burst, common, staggered], (channels, slots, queue_depth), times, boot_cycles)| {
             let (step_period_cycles, pulse_width_cycles, dir_setup_cycles, dir_hold_cycles, settle_cycles) =
                 times;
             Bus {
@@ -108,11 +111,11 @@ fn bus() -> impl Strategy<Value = Bus> {
                 queue_depth,
                 boot_cycles,
             }
-        },
-    )
+        })
+        .boxed()
 }
 
-fn driver() -> impl Strategy<Value = Driver> {
+fn driver() -> BoxedStrategy<Driver> {
     let models = prop::sample::select(DRIVERS.map(|sheet| sheet.model).to_vec());
     let nanos = || small_or_any(0);
     let rules = (nanos(), nanos(), nanos(), nanos(), nanos()).prop_map(
@@ -124,18 +127,18 @@ fn driver() -> impl Strategy<Value = Driver> {
             enable_wake_ns,
         },
     );
-    prop_oneof![models.prop_map(Driver::Preset), rules.prop_map(Driver::Rules)]
+    prop_oneof![models.prop_map(Driver::Preset), rules.prop_map(Driver::Rules)].boxed()
 }
 
-fn line() -> impl Strategy<Value = Line> {
+fn line() -> BoxedStrategy<Line> {
     let glitch = (small_or_any(1), small_or_any(1), small_or_any(0))
         .prop_map(|(start_cycle, length_cycles, level)| Glitch { start_cycle, length_cycles, level });
     let glitches = prop::collection::vec(glitch, 0..4);
     let receiver_baud = prop::option::weighted(0.2, small_or_any(115_200));
     let address = prop::option::weighted(0.2, any::<u8>());
     let protocol = prop_oneof![Just(Protocol::Raw), Just(Protocol::Framed)];
-    (small_or_any(115_200), receiver_baud, address, glitches, protocol, host(), noise()).prop_map(
-        |(baud, receiver_baud, address, glitches, protocol, host, noise)| Line {
+    (small_or_any(115_200), receiver_baud, address, glitches, protocol, host(), noise())
+        .prop_map(|(baud, receiver_baud, address, glitches, protocol, host, noise)| Line {
             baud,
             receiver_baud,
             address,
@@ -143,8 +146,8 @@ fn line() -> impl Strategy<Value = Line> {
             protocol,
             host,
             noise,
-        },
-    )
+        })
+        .boxed()
 }
 
 fn host() -> impl Strategy<Value = Host> {
@@ -172,7 +175,7 @@ fn noise() -> impl Strategy<Value = Noise> {
     )
 }
 
-fn controllers() -> impl Strategy<Value = Vec<Controller>> {
+fn controllers() -> BoxedStrategy<Vec<Controller>> {
     let hex = prop::collection::vec(any::<u8>(), 0..3).prop_map(Hex);
     let (axes, packets) = (prop::collection::vec(axis(), 0..2), prop::collection::vec(hex, 0..2));
     let receiver_baud = prop::option::weighted(0.2, small_or_any(115_200));
@@ -185,10 +188,10 @@ fn controllers() -> impl Strategy<Value = Vec<Controller>> {
             packets,
         },
     );
-    prop_oneof![4 => Just(Vec::new()), 1 => prop::collection::vec(controller, 0..3)]
+    prop_oneof![4 => Just(Vec::new()), 1 => prop::collection::vec(controller, 0..3)].boxed()
 }
 
-fn source() -> impl Strategy<Value = Source> {
+fn source() -> BoxedStrategy<Source> {
     let hex = prop_oneof![
         3 => prop::collection::vec(any::<u8>(), 1),
         1 => prop::collection::vec(any::<u8>(), 0..40),
@@ -212,9 +215,10 @@ fn source() -> impl Strategy<Value = Source> {
         1 => prop::collection::vec(hex, 0..20).prop_map(|packets| Source::Packets(Packets { packets })),
         1 => prop::collection::vec(send, 0..6).prop_map(|sends| Source::Line(LineScript { sends })),
     ]
+    .boxed()
 }
 
-fn axis() -> impl Strategy<Value = Axis> {
+fn axis() -> BoxedStrategy<Axis> {
     let shaft = || (number(1.8), small_or_any(16));
     let mechanics = prop_oneof![
         3 => shaft().prop_map(|(full_step_deg, microsteps)| Mechanics::Rotary(Rotary { full_step_deg, microsteps })),
@@ -228,9 +232,10 @@ fn axis() -> impl Strategy<Value = Axis> {
     ];
     (mechanics, prop::collection::vec(one_move(), 0..4), prop::option::weighted(0.2, motor()))
         .prop_map(|(mechanics, moves, motor)| Axis { mechanics, moves, motor })
+        .boxed()
 }
 
-fn motor() -> impl Strategy<Value = Motor> {
+fn motor() -> BoxedStrategy<Motor> {
     let data = (number(1.5), number(1.6), number(4.3), number(400.0), number(45.0));
     let driven = (
         number(24.0),
@@ -239,22 +244,25 @@ fn motor() -> impl Strategy<Value = Motor> {
         number(50.0),
         prop::option::of(number(1e4)),
     );
-    (data, driven).prop_map(|(data, driven)| {
-        let (rated_current_a, resistance_ohm, inductance_mh, holding_torque_mn_m, rotor_inertia_g_cm2) = data;
-        let (supply_v, peak_current_a, load_inertia_g_cm2, load_torque_mn_m, working_rate_hz) = driven;
-        Motor {
-            rated_current_a,
-            resistance_ohm,
-            inductance_mh,
-            holding_torque_mn_m,
-            rotor_inertia_g_cm2,
-            supply_v,
-            peak_current_a,
-            load_inertia_g_cm2,
-            load_torque_mn_m,
-            working_rate_hz,
-        }
-    })
+    (data, driven)
+        .prop_map(|(data, driven)| {
+            let (rated_current_a, resistance_ohm, inductance_mh, holding_torque_mn_m, rotor_inertia_g_cm2) =
+                data;
+            let (supply_v, peak_current_a, load_inertia_g_cm2, load_torque_mn_m, working_rate_hz) = driven;
+            Motor {
+                rated_current_a,
+                resistance_ohm,
+                inductance_mh,
+                holding_torque_mn_m,
+                rotor_inertia_g_cm2,
+                supply_v,
+                peak_current_a,
+                load_inertia_g_cm2,
+                load_torque_mn_m,
+                working_rate_hz,
+            }
+        })
+        .boxed()
 }
 
 fn distance(steps: f64) -> impl Strategy<Value = Distance> + Clone {
@@ -303,7 +311,7 @@ fn curve() -> impl Strategy<Value = Points> {
         .prop_map(|(unit, interpolation, points)| Points { unit, interpolation, points })
 }
 
-fn one_move() -> impl Strategy<Value = Move> {
+fn one_move() -> BoxedStrategy<Move> {
     prop_oneof![
         (
             distance(2000.0),
@@ -357,4 +365,5 @@ fn one_move() -> impl Strategy<Value = Move> {
             .prop_map(|(distance, speed)| Move::Constant(Constant { distance, speed })),
         number(0.1).prop_map(|duration_s| Move::Dwell(Dwell { duration_s })),
     ]
+    .boxed()
 }
