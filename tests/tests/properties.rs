@@ -76,6 +76,9 @@ proptest! {
         for json in [scenario.to_json(), scenario.compact().to_string()] {
             let read = Scenario::from_json(&json);
             prop_assert_eq!(read.as_ref(), Ok(&scenario), "{}", json);
+            // Whoever reads it by serde reads the same.
+            let by_serde = serde_json::from_str::<Scenario>(&json).ok();
+            prop_assert_eq!(by_serde.as_ref(), Some(&scenario), "{}", json);
         }
         match encode(&scenario) {
             Ok(link) => {

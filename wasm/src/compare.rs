@@ -1,21 +1,18 @@
 //! So many steps in so much time, with ramps of every shape side by side (DESIGN B4).
 
-use crate::convert::{numbers, object};
-use js_sys::{Array, Object};
+use crate::convert::{field, numbers, object};
+use js_sys::{Array, JSON, Object};
 use serde::Serialize;
 use stepscope_core::{
     analysis::comparison::{Asked, Cost, compare},
     motion::{Curve, Peaks, plan_axis},
-    scenario::{Axis, Move},
+    scenario::{Axis, to_json},
 };
 use wasm_bindgen::prelude::*;
 
 /// A row without its curves.
 #[derive(Serialize)]
 struct Told {
-    /// As a scenario has it.
-    #[serde(rename = "move")]
-    asked: Move,
     /// Why it cannot be.
     why: Option<String>,
     /// Peaks in steps and s.
@@ -68,7 +65,6 @@ pub fn compare_ramps(
         let curve = plan.as_ref().and_then(|plan| plan.moves().first()).map(|planned| &planned.profile);
         let Cost { peaks, time_error_s, last_step_s, .. } = cost;
         let told = Told {
-            asked: wanted,
             why,
             speed: peaks.speed,
             jump: peaks.jump,
@@ -79,6 +75,8 @@ pub fn compare_ramps(
             last_step_s,
         };
         let shown: Object = object(&told)?.into();
+        let wanted = JSON::parse(&to_json(&wanted)).map_err(|_| JsError::new("a move is no JSON"))?;
+        field(&shown, "move", &wanted);
         let sampled = |of: &dyn Fn(f64) -> f64| -> Vec<f64> {
             let time = |index| duration_s * f64::from(index) / f64::from(points.max(2) - 1);
             (0..points).map(|index| of(time(index))).collect()

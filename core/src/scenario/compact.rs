@@ -1,9 +1,10 @@
 //! How the scenario's types are declared: once, with their defaults.
 //!
 //! [`settings!`] declares a struct and its defaults in one place; from that follow `Default`,
-//! reading with every field optional and unknown ones refused, and [`Compact`]: the canonical form
+//! [`Read`], with every field optional and unknown ones refused, and [`Compact`]: the canonical form
 //! that a link carries, fixed in order, with what equals its default left out.
 
+use super::{Read, Reader};
 use alloc::{
     string::{String, ToString},
     vec::Vec,
@@ -144,6 +145,16 @@ macro_rules! settings {
                 ])
             }
         }
+
+        impl $crate::scenario::Read for $name {
+            fn read(&mut self, value: &serde_json::Value, reader: &mut $crate::scenario::Reader) -> bool {
+                reader.fields(value, &mut [$((stringify!($field), &mut self.$field),)*])
+            }
+
+            fn blank() -> Self {
+                Self::default()
+            }
+        }
     };
 }
 
@@ -170,10 +181,42 @@ macro_rules! choices {
                 }
             }
         }
+
+        impl $crate::scenario::Read for $name {
+            fn read(&mut self, value: &serde_json::Value, reader: &mut $crate::scenario::Reader) -> bool {
+                let Some((name, content)) = reader.choice(value, Self::KINDS) else { return false };
+                match name {
+                    $($key => {
+                        let mut inner = <$ty as $crate::scenario::Read>::blank();
+                        let taken = reader.below(name, content, &mut inner);
+                        if taken {
+                            *self = Self::$variant(inner);
+                        }
+                        taken
+                    })*
+                    _ => false,
+                }
+            }
+
+            /// The last kind: the one that asks least.
+            fn blank() -> Self {
+                $crate::scenario::last!($($variant($ty)),*)
+            }
+        }
     };
 }
 
-pub(crate) use {choices, settings};
+/// The last of a choice's kinds, blank.
+macro_rules! last {
+    ($variant:ident($ty:ty)) => {
+        Self::$variant(<$ty as $crate::scenario::Read>::blank())
+    };
+    ($variant:ident($ty:ty), $($rest:tt)+) => {
+        $crate::scenario::last!($($rest)+)
+    };
+}
+
+pub(crate) use {choices, last, settings};
 
 macro_rules! words {
     ($($ty:ty { $($variant:ident = $word:literal,)* })*) => {$(
@@ -182,6 +225,21 @@ macro_rules! words {
                 Parts::Whole(Value::from(match self {
                     $(Self::$variant => $word,)*
                 }))
+            }
+        }
+
+        impl Read for $ty {
+            fn read(&mut self, value: &Value, reader: &mut Reader) -> bool {
+                let found = reader.word(value, &[$($word),*]);
+                let kinds = [$(Self::$variant),*];
+                let found = found.and_then(|place| kinds.into_iter().nth(place));
+                *self = found.unwrap_or(*self);
+                found.is_some()
+            }
+
+            fn blank() -> Self {
+                let [first, ..] = [$(Self::$variant),*];
+                first
             }
         }
     )*};

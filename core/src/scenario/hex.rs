@@ -1,5 +1,6 @@
 //! Bytes as hexadecimal text.
 
+use super::{Read, Reader};
 use alloc::{format, string::String, vec::Vec};
 use base16ct::{lower, mixed};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error as _};
@@ -18,9 +19,34 @@ impl Serialize for Hex {
 
 impl<'de> Deserialize<'de> for Hex {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let text = String::deserialize(deserializer)?;
+        Self::of_text(&String::deserialize(deserializer)?).map_err(D::Error::custom)
+    }
+}
+
+impl Read for Hex {
+    fn read(&mut self, value: &Value, reader: &mut Reader) -> bool {
+        let Some(text) = value.as_str() else {
+            return reader.refuse(value, "bytes in hex, such as \"80 01 7f\"");
+        };
+        match Self::of_text(text) {
+            Ok(bytes) => {
+                *self = bytes;
+                true
+            }
+            Err(wrong) => reader.wrong(wrong),
+        }
+    }
+
+    fn blank() -> Self {
+        Self::default()
+    }
+}
+
+impl Hex {
+    /// The bytes of a text, or what is wrong with it.
+    fn of_text(text: &str) -> Result<Self, String> {
         let digits: String = text.chars().filter(|c| !c.is_ascii_whitespace()).collect();
-        mixed::decode_vec(&digits).map(Self).map_err(|_| D::Error::custom(wrong_in(&digits)))
+        mixed::decode_vec(&digits).map(Self).map_err(|_| wrong_in(&digits))
     }
 }
 

@@ -25,10 +25,10 @@ pub mod presets;
 mod problem;
 mod quantity;
 mod read;
+mod reader;
 mod recorded;
 mod segments;
 mod table;
-mod tracked;
 
 pub(crate) use check::MOST_FURTHER;
 pub use check::{Checked, END_OF_TIME, Forced, line_time};
@@ -52,7 +52,9 @@ pub use segments::{ChannelSegments, DwellSegment, Segment, SegmentLists, StepSeg
 pub use table::{BadTable, MOST_TABLE_BYTES};
 
 use alloc::{string::String, vec, vec::Vec};
-use compact::{choices, settings};
+use compact::{choices, last, settings};
+pub use read::to_json;
+pub use reader::{Read, Reader};
 use serde::{Deserialize, Serialize};
 
 /// The scenario version that this crate writes, and the newest that it reads.

@@ -7,12 +7,13 @@
 //! Both columns count from the first point: a record may begin at any time and place.
 
 use super::{
-    Compact, Distance, Parts,
+    Compact, Distance, Parts, Read, Reader,
     compact::settings,
     table::{BadTable, Rows, short},
 };
 use alloc::{borrow::ToOwned, format, string::String, vec, vec::Vec};
 use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
+use serde_json::Value;
 
 /// Most points of a move.
 pub(crate) const MOST_POINTS: usize = 4096;
@@ -92,6 +93,23 @@ impl<'de> Deserialize<'de> for Point {
                 other.len()
             ))),
         }
+    }
+}
+
+impl Read for Point {
+    fn read(&mut self, value: &Value, reader: &mut Reader) -> bool {
+        let wanted = "a point's time in s and its position, such as [0.25, 12.5]";
+        let Some(numbers) = value.as_array() else { return reader.refuse(value, wanted) };
+        let [time_s, position] = &numbers[..] else {
+            return reader.wrong(format!("a point of {} numbers; give {wanted}", numbers.len()));
+        };
+        reader.below("[0]", time_s, &mut self.time_s);
+        reader.below("[1]", position, &mut self.position);
+        true
+    }
+
+    fn blank() -> Self {
+        Self::default()
     }
 }
 

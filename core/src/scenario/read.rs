@@ -1,13 +1,6 @@
-//! Reads a scenario from JSON and finds every field of the wrong type at once.
-//!
-//! serde stops at the first error. So the offending value is taken out of the JSON, its default
-//! takes its place, and the reading begins again, until it succeeds.
+//! Reads a scenario from JSON text, of any version, and writes it.
 
-use super::{
-    Cause, Problem, Scenario, VERSION, compact,
-    judge::MOST_PROBLEMS,
-    tracked::{self, Step},
-};
+use super::{Cause, Compact, Problem, Scenario, VERSION, compact, judge::MOST_PROBLEMS, reader::read_into};
 use alloc::{
     string::{String, ToString},
     vec::Vec,
@@ -37,7 +30,7 @@ impl Scenario {
     }
 
     fn strictly(value: Value) -> Result<Self, Vec<Problem>> {
-        let (scenario, problems) = read(upgrade(value)?);
+        let (scenario, problems) = read(&upgrade(value)?);
         if problems.is_empty() { Ok(scenario) } else { Err(problems) }
     }
 
@@ -45,7 +38,7 @@ impl Scenario {
     #[must_use]
     pub fn from_json_lenient(text: &str) -> (Self, Vec<Problem>) {
         match parse(text).and_then(upgrade) {
-            Ok(value) => read(value),
+            Ok(value) => read(&value),
             Err(problems) => (Self::default(), problems),
         }
     }
@@ -53,14 +46,17 @@ impl Scenario {
     /// The whole scenario as JSON, every field written.
     #[must_use]
     pub fn to_json(&self) -> String {
-        let mut text = String::new();
-        compact::write_whole(&mut text, self, 0);
-        text
+        to_json(self)
     }
 }
 
-/// The name of a list that stands in another.
-const NUMBERS: &str = "[]";
+/// A part of a scenario as JSON, every field written.
+#[must_use]
+pub fn to_json(part: &dyn Compact) -> String {
+    let mut text = String::new();
+    compact::write_whole(&mut text, part, 0);
+    text
+}
 
 fn parse(text: &str) -> Result<Value, Vec<Problem>> {
     // Some editors put a byte order mark before the text.
@@ -83,100 +79,12 @@ fn upgrade(value: Value) -> Result<Value, Vec<Problem>> {
     }
 }
 
-fn read(mut value: Value) -> (Scenario, Vec<Problem>) {
-    let mut problems: Vec<Problem> = Vec::new();
-    for _ in 0..MOST_PROBLEMS {
-        if problems.len() >= MOST_PROBLEMS {
-            break;
-        }
-        let (path, error) = match tracked::read(&value) {
-            Ok(scenario) => return (scenario, problems),
-            Err(wrong) => wrong,
-        };
-        let at = print(&path);
-        // What is left of a choice whose only value was taken out is no new problem.
-        if !problems.iter().any(|earlier| earlier.path.len() > at.len() && earlier.path.starts_with(&at)) {
-            problems.push(Problem::new(at, Cause::Type { detail: in_words(&error.to_string()) }));
-        }
-        if !put_right(&mut value, &path, "") {
-            break;
-        }
-    }
-    (Scenario::default(), problems)
-}
-
-/// serde's message without Rust's names for types.
-fn in_words(message: &str) -> String {
-    const CHOICE: &str = "expected a map of one key that names the choice, such as {\"mm\": 250}";
-    const WORDS: [(&str, &str); 10] = [
-        ("expected u8", "expected a whole number from 0 to 255"),
-        ("expected u16", "expected a whole number from 0 to 65535"),
-        ("expected u32", "expected a whole number from 0 to 4294967295"),
-        ("expected u64", "expected a whole number from 0 to 18446744073709551615"),
-        ("expected i64", "expected a whole number from -9223372036854775808 to 9223372036854775807"),
-        ("expected f64", "expected a number"),
-        ("expected struct ", "expected a map of names and values for "),
-        ("expected map with a single key", CHOICE),
-        ("unit variant, expected newtype variant", CHOICE),
-        ("expected string or map", "expected a word or a map of one key"),
-    ];
-    match WORDS.iter().find(|(rust, _)| message.contains(rust)) {
-        Some((rust, words)) => message.replace(rust, words),
-        None => message.into(),
-    }
-}
-
-/// The value one step further in.
-fn value_in<'v>(value: &'v mut Value, step: &Step) -> Option<&'v mut Value> {
-    match step {
-        Step::Key(key) => value.get_mut(key),
-        Step::Index(index) => value.get_mut(index),
-    }
-}
-
-/// Takes out the value at the longest part of `path` that exists, so that its default takes its
-/// place; in the list `list`, an entry is replaced by a default one, so that the others keep their
-/// places. False if nothing of the path exists.
-fn put_right(value: &mut Value, path: &[Step], list: &str) -> bool {
-    let Some((step, rest)) = path.split_first() else { return false };
-    // What a list in a list holds are numbers: the points of a curve.
-    let name = match step {
-        Step::Key(key) => key,
-        Step::Index(_) => NUMBERS,
-    };
-    if value_in(value, step).is_some_and(|inner| put_right(inner, rest, name)) {
-        return true;
-    }
-    match (step, value) {
-        (Step::Key(key), Value::Object(map)) => map.remove(key).is_some(),
-        (Step::Index(index), Value::Array(entries)) => entries.get_mut(*index).is_some_and(|entry| {
-            let default = match list {
-                "moves" | "segments" => serde_json::json!({ "dwell": {} }),
-                "packets" => Value::from(""),
-                "points" => serde_json::json!([0, 0]),
-                NUMBERS => Value::from(0),
-                _ => serde_json::json!({}),
-            };
-            core::mem::replace(entry, default.clone()) != default
-        }),
-        _ => false,
-    }
-}
-
-fn print(path: &[Step]) -> String {
-    let mut text = String::new();
-    for step in path {
-        match step {
-            Step::Key(key) => {
-                if !text.is_empty() {
-                    text.push('.');
-                }
-                text.push_str(key);
-            }
-            Step::Index(index) => text.push_str(&alloc::format!("[{index}]")),
-        }
-    }
-    text
+/// What can be read, and what is wrong with the rest; of too much of that nothing is read.
+fn read(value: &Value) -> (Scenario, Vec<Problem>) {
+    let mut scenario = Scenario::default();
+    let problems = read_into(&mut scenario, value);
+    let read = if problems.len() < MOST_PROBLEMS { scenario } else { Scenario::default() };
+    (read, problems)
 }
 
 #[cfg(test)]
