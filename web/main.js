@@ -30,7 +30,7 @@ import { loadGood, loadPrevious, loadScenario, saveGood, saveScenario, setAside 
 import { createTabs } from "./shell/tabs.js";
 import { readJson } from "./state/json.js";
 import { createStudy } from "./views/study/study.js";
-import { tableFiles } from "./views/study/tables.js";
+import { tableFiles } from "./views/study/table_files.js";
 import { createTiming } from "./views/timing.js";
 
 /** @typedef {import("./state/types.js").State} State */

@@ -6,8 +6,8 @@
 //! | `assets/` | all else that these name, directly or not; the hash in a name changes with what the file and all that it names hold, so hosts and browsers may keep it for ever |
 //! | `_headers` | `web/_headers` and the rules for keeping |
 //!
-//! The modules that a page or a worker begins with are one script, minified; what wasm-bindgen wrote stays beside,
-//! because page and worker share it. The result depends on the files and the commit alone.
+//! The modules that a page or a worker begins with are one script, minified, and so are those that come later, when
+//! something asks for them; what wasm-bindgen wrote stays beside, because page and worker share it. The result depends on the files and the commit alone.
 
 mod bundle;
 mod licences;
@@ -22,7 +22,7 @@ use twox_hash::XxHash64;
 use walkdir::WalkDir;
 
 use crate::{root, run};
-use bundle::{Module, Origin, bundled};
+use bundle::{Module, Origin, Role, bundled};
 use references::{Kind, Reference, references};
 
 /// Where what has a hash in its name lies.
@@ -168,23 +168,38 @@ impl Site {
         reached
     }
 
-    /// Makes one script of each that a page or a worker begins with, and leaves out what nobody names any more.
+    /// Makes one script of each that a page or a worker begins with, and one of each that comes later, and leaves out
+    /// what nobody names any more.
     fn bundle(&mut self) -> Result<()> {
         let named = self.files.values().flat_map(|file| &file.references).filter(|named| !named.at_once);
-        let scripts = named.map(|named| named.file.as_str());
-        let scripts: BTreeSet<&str> = scripts
-            .filter(|file| Kind::of(file) == Kind::Script && !is_entry(file) && !file.starts_with(SHARED))
+        let scripts: BTreeMap<&str, bool> = named
+            .map(|named| (named.file.as_str(), named.later))
+            .filter(|(file, _)| {
+                Kind::of(file) == Kind::Script && !is_entry(file) && !file.starts_with(SHARED)
+            })
             // What imports nothing is one script as it is, and may export.
-            .filter(|file| self.reached(file, true).len() > 1)
+            .filter(|(file, _)| self.reached(file, true).len() > 1)
             .collect();
-        let later = self.files.values().flat_map(|file| &file.references).filter(|named| named.later);
-        for Reference { file, .. } in later {
-            ensure!(!scripts.contains(file.as_str()), "{file} comes later, so it can't import others");
+        let (later, first): (Vec<_>, Vec<_>) = scripts.into_iter().partition(|(_, later)| *later);
+        let mut bundles = Vec::new();
+        let mut bundled: BTreeSet<&str> = BTreeSet::new();
+        for (script, _) in first {
+            let order = self.order(script);
+            let named = order.iter().flat_map(|path| &self.files[*path].references);
+            let asked: BTreeSet<&str> = named.filter(|it| it.later).map(|it| it.file.as_str()).collect();
+            let mut shared = BTreeSet::new();
+            for (script, _) in later.iter().filter(|(script, _)| asked.contains(script)) {
+                ensure!(bundled.insert(script), "{script} comes later in two bundles");
+                let own: Vec<&str> =
+                    self.order(script).into_iter().filter(|path| !order.contains(path)).collect();
+                let imports = own.iter().flat_map(|path| &self.files[*path].references);
+                let taken = imports.filter(|it| it.at_once).map(|it| it.file.as_str());
+                shared.extend(taken.filter_map(|file| order.iter().position(|other| *other == file)));
+                bundles.push(((*script).to_owned(), self.bundle_of(script, &own, &order, Role::Later)?));
+            }
+            let bundle = self.bundle_of(script, &order, &[], Role::First(&shared))?;
+            bundles.push((script.to_owned(), bundle));
         }
-        let bundles: Vec<(String, String)> = scripts
-            .into_iter()
-            .map(|script| Ok((script.to_owned(), self.bundle_of(script)?)))
-            .collect::<Result<_>>()?;
         for (path, bundle) in bundles {
             self.add(&path, bundle.into_bytes())?;
         }
@@ -195,17 +210,23 @@ impl Site {
         Ok(())
     }
 
-    /// The modules that load with `script`, as one.
-    fn bundle_of(&self, script: &str) -> Result<String> {
+    /// `script` and all modules that it imports, in the order in which they would be evaluated.
+    fn order(&self, script: &str) -> Vec<&str> {
         let mut order = Vec::new();
         self.follow(script, &mut order, &mut BTreeSet::new());
+        order
+    }
+
+    /// The modules of `order` as one, which stands in the place of `script`; those of `asking` are in the bundle that
+    /// asks for it.
+    fn bundle_of(&self, script: &str, order: &[&str], asking: &[&str], role: Role<'_>) -> Result<String> {
         // Names mean the same from the bundle's own place as they did from the module's.
         let from_bundle = |file: &str| match script.matches('/').count() {
             0 => format!("./{file}"),
             folders => format!("{}{file}", "../".repeat(folders)),
         };
         let mut texts = Vec::new();
-        for path in &order {
+        for path in order {
             let file = &self.files[*path];
             let moved = |named: &Reference| (!named.at_once).then(|| from_bundle(&named.file));
             texts.push(String::from_utf8(replaced(file, moved))?);
@@ -218,15 +239,17 @@ impl Site {
             let mut imports = BTreeMap::new();
             for Reference { place, file: target, .. } in file.references.iter().filter(|it| it.at_once) {
                 let specifier = std::str::from_utf8(&file.bytes[place.clone()])?;
-                let origin = match order.iter().position(|other| other == target) {
-                    Some(number) => Origin::Within(number),
-                    None => Origin::Beside(&beside[target.as_str()]),
+                let number = |among: &[&str]| among.iter().position(|other| other == target);
+                let origin = match (number(order), number(asking)) {
+                    (Some(number), _) => Origin::Within(number),
+                    (None, Some(number)) => Origin::Asking(number),
+                    (None, None) => Origin::Beside(&beside[target.as_str()]),
                 };
                 imports.insert(specifier, origin);
             }
             modules.push(Module { name: path, text, imports });
         }
-        bundled(&modules)
+        bundled(&modules, role)
     }
 
     /// Adds `path` to `order` after all modules that it imports, in the order in which they would be evaluated.

@@ -6,7 +6,8 @@ import { button, element, fill, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count, plain, short, si } from "../../state/number.js";
 import { color, draw, watch } from "../../time/plot.js";
-import { field, subject, table } from "./parts.js";
+import { field, table } from "./parts.js";
+import { subject } from "./subject.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /**

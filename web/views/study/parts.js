@@ -1,11 +1,7 @@
-/** What the tabs of the study are built with: fields, tables, the axis that they are about, and long work that tells how far it is. */
+/** What the tabs of the study are built with: fields, tables, and long work that tells how far it is. */
 import { element, fill, say } from "../../dom.js";
 import { Dropped } from "../../engine/engine.js";
 import { parseNumber } from "../../state/number.js";
-import { get } from "../../state/state.js";
-
-/** @typedef {import("../../state/types.js").State} State */
-/** @typedef {{json: string, controller: number, axis: number, path: string, moves: any[]}} Subject  Scenario as text, and one of its axes: its path there, its moves. */
 
 /** Work that is done within this time, in ms, says nothing of its progress. */
 const PATIENCE_MS = 100;
@@ -127,19 +123,4 @@ export function createJob(label) {
     }
   }
   return { root, run };
-}
-
-/**
- * The axis that the study is about. @param {State} state
- * @returns {Subject | string | null}  Why there is none: empty where the form has problems, and what was shown may stay; null until it is judged.
- */
-export function subject({ judgement, judged, revision, scenario, result, axis: wanted }) {
-  if (judged !== revision || !judgement) return null;
-  if (judgement.problems.length > 0) return "";
-  const controller = result?.controller ?? 0;
-  const list = controller > 0 ? `controllers[${controller - 1}].axes` : "source.motion.axes";
-  const axes = scenario.source?.motion ? get(scenario, list) ?? [] : [];
-  const axis = Math.min(wanted, axes.length - 1);
-  if (axis < 0) return "There is no axis with moves here: choose a motion of axes as the source in the form.";
-  return { json: judgement.scenario, controller, axis, path: `${list}[${axis}]`, moves: axes[axis].moves };
 }

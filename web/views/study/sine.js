@@ -7,7 +7,8 @@ import { unlessDropped } from "../../engine/engine.js";
 import { short } from "../../state/number.js";
 import { listen } from "../../shell/commands.js";
 import { cleared, color, draw, fit, watch } from "../../time/plot.js";
-import { choice, createJob, field, subject, table } from "./parts.js";
+import { choice, createJob, field, table } from "./parts.js";
+import { subject } from "./subject.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {"position" | "speed" | "acceleration" | "felt"} Quantity */
@@ -125,7 +126,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   /** @param {Row} row @param {string} name */
   const use = (row, name) => button("Use", `Use: ${name}`, () => put(row.d1));
 
-  /** Where there is no sine. @param {import("./parts.js").Subject} of @param {number} d1 */
+  /** Where there is no sine. @param {import("./subject.js").Subject} of @param {number} d1 */
   function offer({ axis, path, moves }, d1) {
     const press = element("button", { type: "button" }, `Add one with d1 = ${rounded(d1)}`);
     press.addEventListener("click", () => {

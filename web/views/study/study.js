@@ -1,42 +1,31 @@
 /**
  * The study: "which profile, stored how, for my motor?" On a wide screen it takes the place of all views while it is
- * open, on a narrow one it is a tab. Its own tabs are modules beside this one, each `createX(page)`, made when it is
- * first opened, and drawn only while it is open:
+ * open, on a narrow one it is a tab. Its own tabs are modules beside this one (tabs.js), which load when the study is
+ * first opened: each `createX(page)`, made when it is first shown, and drawn only while it is:
  *
  *     page     the engine, the state's `now` and `dispatch`, `samples` of all moves, and `panel`, the element that the tab fills
  *     render   (state, before) as any view's; `before` is the state that this tab was last drawn of, none at first
  */
-import { byId, element, options } from "../../dom.js";
+import { byId, element, fill, options } from "../../dom.js";
 import { listen } from "../../shell/commands.js";
 import { arrows, choose } from "../../shell/tabs.js";
 import { lookedAt } from "../../state/state.js";
 import { STUDIES } from "../../shell/view_part.js";
-import { createCompare } from "./compare.js";
-import { createMeasures } from "./measures.js";
-import { createSine } from "./sine.js";
-import { createTables } from "./tables.js";
-import { createTorque } from "./torque.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{engine: import("../../engine/engine.js").Engine, samples: import("../../form/kit.js").Samples} & import("../../time/timeline.js").Page} Given */
 /** @typedef {{panel: HTMLElement} & Given} StudyPage */
 /** @typedef {{render: (state: State, before: State | undefined) => any}} StudyTab */
 
-/** @type {{[name in import("../../state/types.js").StudyName]: {title: string, create: (page: StudyPage) => StudyTab}}} */
-const TABS = {
-  compare: { title: "Compare", create: createCompare },
-  measures: { title: "Measures", create: createMeasures },
-  tables: { title: "Tables", create: createTables },
-  sine: { title: "Sine", create: createSine },
-  torque: { title: "Torque", create: createTorque },
-};
+/** @type {{[name in import("../../state/types.js").StudyName]: string}} */
+const TITLES = { compare: "Compare", measures: "Measures", tables: "Tables", sine: "Sine", torque: "Torque" };
 
 /** @param {Given} page */
 export function createStudy(page) {
   const { dispatch, now } = page;
   const view = byId("view-study");
   const all = STUDIES.map((name) => {
-    const tab = element("button", { type: "button", role: "tab", id: `study-tab-${name}`, "aria-controls": `study-${name}` }, TABS[name].title);
+    const tab = element("button", { type: "button", role: "tab", id: `study-tab-${name}`, "aria-controls": `study-${name}` }, TITLES[name]);
     const panel = element("div", { role: "tabpanel", id: `study-${name}`, class: "study-panel", "aria-labelledby": tab.id });
     tab.addEventListener("click", () => dispatch({ type: "study", study: name }));
     view.append(panel);
@@ -60,7 +49,22 @@ export function createStudy(page) {
   listen(view, "Study", [key, { keys: ["Escape"], text: "in the study: show the views again", run: ({ target }) => (target instanceof HTMLInputElement ? false : toggle(false)) }]);
   listen(document, "Study", [key]);
 
-  /** @param {State} state */
+  /** @type {typeof import("./tabs.js").TABS | null} */
+  let tabs = null;
+  /** Loads the tabs, and draws the open one. @param {HTMLElement} panel */
+  async function load(panel) {
+    try {
+      tabs = (await import("./tabs.js")).TABS;
+      for (const each of all) fill(each.panel);
+    } catch {
+      const press = element("button", { type: "button" }, "Try again");
+      press.addEventListener("click", () => render(now()));
+      return fill(panel, element("p", { class: "study-note" }, "The study could not be loaded; try again when the network is there. ", press));
+    }
+    return render(now());
+  }
+
+  /** @param {State} state @returns {any} */
   function render(state) {
     const open = state.view === "study";
     byId("study").setAttribute("aria-pressed", String(open));
@@ -73,7 +77,8 @@ export function createStudy(page) {
     const channels = lookedAt(state)?.channels ?? 1;
     options(axes, Array.from({ length: channels }, (_, axis) => [String(axis), String(axis)]), String(state.axis));
     /** @type {HTMLElement} */ (axes.parentElement).hidden = channels < 2;
-    each.made ??= TABS[each.name].create({ ...page, panel: each.panel });
+    if (!tabs) return load(each.panel);
+    each.made ??= tabs[each.name]({ ...page, panel: each.panel });
     const before = each.drawn;
     each.drawn = state;
     return each.made.render(state, before);

@@ -4,43 +4,17 @@
  */
 import { element, fill, say } from "../../dom.js";
 import { count, plain, short, si } from "../../state/number.js";
-import { baseName } from "../../shell/exports.js";
 import { save } from "../../shell/save.js";
-import { createJob, field, subject, table } from "./parts.js";
+import { createJob, field, table } from "./parts.js";
+import { subject } from "./subject.js";
+import { FORMS, LANGUAGES, chosen, files } from "./table_files.js";
 
 /** @typedef {import("../../state/types.js").State} State */
-/** @typedef {import("../../engine/engine.js").Engine} Engine */
-/** @typedef {import("./parts.js").Subject} Subject */
 /** @typedef {{steps: number, entries: number, bytes: number, document_bytes: number | null, largest_s: number, rms_s: number, why: string | null}} Told */
-/** @typedef {{form: string, widths: string, us: number}} Choice */
 
-/** @type {{[form: string]: string}} */
-const FORMS = { exact: "Exact list", document: "Document's table", compressed: "Compressed" };
 /** @type {{[widths: string]: string}} */
 const WIDTHS = { q16: "20 bytes, 1/65536 cycle", q8: "8 bytes, 1/256 cycle", ticks: "8 bytes, whole cycles" };
-/** @type {{[language: string]: [string, string, string]}} Label, ending of the file and its type. */
-const LANGUAGES = {
-  c: ["C", ".c", "text/x-c"], avr: ["C for AVR (PROGMEM)", "-avr.c", "text/x-c"], rust: ["Rust", ".rs", "text/rust"], csv: ["CSV", ".csv", "text/csv"],
-};
 const ROWS = Object.keys(FORMS).flatMap((form) => Object.keys(WIDTHS).map((widths) => ({ form, widths })));
-/** What the export panel offers, too. @type {Choice} */
-const chosen = { form: "compressed", widths: "q16", us: 25 };
-
-/** Files of the table that is chosen, for the export panel. @param {State} state @param {Engine} engine @returns {import("../../shell/exports.js").Offer[]} */
-export function tableFiles(state, engine) {
-  const of = subject(state);
-  return of && typeof of !== "string" ? files(state, engine, of) : [];
-}
-
-/** @param {State} state @param {Engine} engine @param {Subject} of */
-function files(state, engine, { json, controller, axis }) {
-  const { form, widths, us } = chosen;
-  const part = controller > 0 ? `-controller-${controller + 1}` : "";
-  return Object.entries(LANGUAGES).map(([language, [label, ending, type]]) => ({
-    name: `${baseName(state)}${part}-axis-${axis}-${form}-${widths}${ending}`, type, label: `${label}: axis ${axis}, ${form}, ${widths}`, language,
-    make: () => engine.share("step_source", [[json, controller, axis, form, widths, us, language]], new AbortController().signal),
-  }));
-}
 
 /** @param {import("./study.js").StudyPage} page @returns {import("./study.js").StudyTab} */
 export function createTables({ engine, now, panel }) {

@@ -5,7 +5,8 @@
 import { button, element, fill, say } from "../../dom.js";
 import { count, plain, short, si } from "../../state/number.js";
 import { color, draw, watch } from "../../time/plot.js";
-import { createJob, subject, table } from "./parts.js";
+import { createJob, table } from "./parts.js";
+import { subject } from "./subject.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{at_s: number, rate: number, needed_mn_m: number, available_mn_m: number}} Moment */

@@ -8,10 +8,18 @@
 //! const $1 = (() => { const { one: first } = $0; …; return {}; })();
 //! ```
 //!
+//! Modules that load when something asks for them are a later bundle, which takes from the first what it has:
+//!
+//! ```js
+//! globalThis.$modules = { 0: $0 };                              // the first
+//! const $0 = (() => { const { two } = globalThis.$modules[0]; …; return { show }; })();
+//! export const { show } = $0;                                   // the later
+//! ```
+//!
 //! That is the same only where modules don't wait for each other in a circle and don't export what changes:
 //! what is otherwise is refused, as is every form of import and export that the page does not use.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use anyhow::{Context, Result, bail, ensure};
 use oxc_allocator::Allocator;
@@ -21,6 +29,9 @@ use oxc_ast::ast::{
 };
 use oxc_parser::Parser;
 use oxc_span::{GetSpan, SourceType};
+
+/// Where a first bundle keeps the modules that later ones ask for.
+const ASKING: &str = "globalThis.$modules";
 
 /// A module on its way into a bundle.
 pub(super) struct Module<'a> {
@@ -35,17 +46,43 @@ pub(super) struct Module<'a> {
 pub(super) enum Origin<'a> {
     /// The bundle's module of this number.
     Within(usize),
+    /// The module of this number of the bundle that asks for this one.
+    Asking(usize),
     /// A module that stays by itself, and its specifier in the bundle.
     Beside(&'a str),
 }
 
-/// The modules, each after all that it imports, as one module that exports nothing.
-pub(super) fn bundled(modules: &[Module<'_>]) -> Result<String> {
+/// Which kind of bundle it is to be.
+#[derive(Clone, Copy)]
+pub(super) enum Role<'a> {
+    /// One that a page or a worker begins with; it exports nothing. Bundles that come later find its modules of
+    /// these numbers.
+    First(&'a BTreeSet<usize>),
+    /// One that comes later, when the first asks for it; it exports what its last module does.
+    Later,
+}
+
+/// The modules, each after all that it imports, as one module.
+pub(super) fn bundled(modules: &[Module<'_>], role: Role<'_>) -> Result<String> {
     let mut beside: Vec<&str> = Vec::new();
     let mut bundle = String::new();
+    let mut given = Vec::new();
     for (number, module) in modules.iter().enumerate() {
-        let body = wrapped(module, number, &mut beside).with_context(|| module.name.to_owned())?;
+        let body;
+        (body, given) = wrapped(module, number, &mut beside).with_context(|| module.name.to_owned())?;
         bundle.push_str(&format!("const ${number} = (() => {{ {body} }})();\n"));
+    }
+    match role {
+        Role::First(asked) if asked.is_empty() => {}
+        Role::First(asked) => {
+            let modules: String = asked.iter().map(|number| format!("{number}: ${number}, ")).collect();
+            bundle.push_str(&format!("{ASKING} = {{ {modules}}};\n"));
+        }
+        Role::Later => {
+            let names: Vec<&str> = given.iter().filter_map(|field| field.split(": ").next()).collect();
+            let last = modules.len().saturating_sub(1);
+            bundle.push_str(&format!("export const {{ {} }} = ${last};\n", names.join(", ")));
+        }
     }
     let imports = beside.iter().enumerate();
     let imports: String =
@@ -53,8 +90,12 @@ pub(super) fn bundled(modules: &[Module<'_>]) -> Result<String> {
     Ok(imports + &bundle)
 }
 
-/// A module's text as a function's, which gives its exports.
-fn wrapped<'a>(module: &Module<'a>, number: usize, beside: &mut Vec<&'a str>) -> Result<String> {
+/// A module's text as a function's, which gives its exports; and these, as fields of an object.
+fn wrapped<'a>(
+    module: &Module<'a>,
+    number: usize,
+    beside: &mut Vec<&'a str>,
+) -> Result<(String, Vec<String>)> {
     let allocator = Allocator::default();
     let parsed = Parser::new(&allocator, module.text, SourceType::mjs()).parse();
     ensure!(parsed.diagnostics.is_empty(), "is no script");
@@ -70,6 +111,7 @@ fn wrapped<'a>(module: &Module<'a>, number: usize, beside: &mut Vec<&'a str>) ->
                         ensure!(other < number, "waits in a circle with {}", import.source.value);
                         format!("${other}")
                     }
+                    Origin::Asking(other) => format!("{ASKING}[{other}]"),
                     Origin::Beside(specifier) => {
                         let known = beside.iter().position(|other| *other == specifier);
                         let index = known.unwrap_or_else(|| {
@@ -100,7 +142,7 @@ fn wrapped<'a>(module: &Module<'a>, number: usize, beside: &mut Vec<&'a str>) ->
             }
         }
     }
-    Ok(format!("{before}{body}return {{ {} }};", exports.join(", ")))
+    Ok((format!("{before}{body}return {{ {} }};", exports.join(", ")), exports))
 }
 
 /// An import as a declaration of what it takes.
@@ -162,15 +204,15 @@ mod tests {
                    const x = 5; export { x as five };";
         let two = "import { one, two as second } from './one.js'; import * as all from './one.js'; \
                    import init, { draw } from './glue.js'; import './one.js'; init(one, second, all, draw);";
-        let bundle = bundled(&[
+        let modules = [
             module("one.js", one, &[]),
             module(
                 "two.js",
                 two,
                 &[("./one.js", Origin::Within(0)), ("./glue.js", Origin::Beside("./pkg/glue.js"))],
             ),
-        ])
-        .unwrap();
+        ];
+        let bundle = bundled(&modules, Role::First(&BTreeSet::from([0]))).unwrap();
         for part in [
             "import * as $$$0 from \"./pkg/glue.js\";",
             "return { one, two, three, Four, five: x };",
@@ -179,10 +221,21 @@ mod tests {
             "const { default: init } = $$$0;",
             "const { draw: draw } = $$$0;",
             "init(one, second, all, draw);",
+            "globalThis.$modules = { 0: $0, };",
         ] {
             assert!(bundle.contains(part), "{part} in\n{bundle}");
         }
         assert!(!bundle.contains("export"), "{bundle}");
+    }
+
+    #[test]
+    fn what_comes_later_takes_from_the_first_and_exports() {
+        let text = "import { two } from './one.js'; const x = two; export { x as show };";
+        let later = [module("three.js", text, &[("./one.js", Origin::Asking(7))])];
+        let bundle = bundled(&later, Role::Later).unwrap();
+        for part in ["const { two: two } = globalThis.$modules[7];", "export const { show } = $0;"] {
+            assert!(bundle.contains(part), "{part} in\n{bundle}");
+        }
     }
 
     #[test]
@@ -195,7 +248,8 @@ mod tests {
             ("import './a.js';", "waits in a circle with ./a.js"),
             ("import './c.js';", "imports ./c.js"),
         ] {
-            let error = bundled(&[module("a.js", text, &[("./a.js", Origin::Within(0))])]).unwrap_err();
+            let modules = [module("a.js", text, &[("./a.js", Origin::Within(0))])];
+            let error = bundled(&modules, Role::First(&BTreeSet::new())).unwrap_err();
             let error = format!("{error:#}");
             assert!(error.starts_with("a.js: ") && error.contains(expected), "{text}: {error}");
         }
