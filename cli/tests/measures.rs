@@ -70,7 +70,9 @@ fn the_three_formats_have_the_same_figures() {
 fn more_steps_than_can_be_kept_are_refused_before_the_run() {
     let sine = |steps: u32| {
         let sine = format!(r#"{{"sine":{{"amplitude":{{"steps":{steps}}},"period_s":1000,"periods":1}}}}"#);
-        format!(r#"{{"source":{{"motion":{{"axes":[{{"moves":[{sine}]}},{{"moves":[{sine}]}}]}}}}}}"#)
+        format!(
+            r#"{{"bus":{{"channels":2}},"source":{{"motion":{{"axes":[{{"moves":[{sine}]}},{{"moves":[{sine}]}}]}}}}}}"#
+        )
     };
     // 4 times the amplitude on each of two axes.
     let (code, out, err) = measures(&[], &sine(2_500_001));
