@@ -72,6 +72,44 @@ fn a_shortage_is_a_warning_with_numbers_and_a_remedy() {
 }
 
 #[test]
+fn what_limits_a_moves_ramps_is_named() {
+    let of = |moved: &str, motor: &str| {
+        let (code, out, err) =
+            stepscope(&["torque", "-"], &axes(&format!(r#"{{"moves":[{moved}],"motor":{motor}}}"#)));
+        assert_eq!((code, err.as_str()), (Some(0), ""));
+        out
+    };
+    let by_rate = "    the torque would suffice for ramps of 0.0004 to 0.2000 s, but they are above the working rate; give more time\n";
+    let out = of(r#"{"cosine":{"ramp_s":0}}"#, r#"{"working_rate_hz":8000}"#);
+    let without = "    enough torque without ramps, if the motor starts and stops at that rate\n";
+    assert!(
+        out.contains("  enough torque throughout\n") && out.contains(&(without.to_owned() + by_rate)),
+        "{out}"
+    );
+    let out = of(r#"{"cosine":{"ramp_s":0.1}}"#, r#"{"working_rate_hz":8000}"#);
+    assert!(out.contains("above the working rate of 8000 steps/s") && out.contains(by_rate), "{out}");
+    assert!(!out.contains("no ramp"), "{out}");
+    let out = of(r#"{"cosine":{}}"#, r#"{"load_torque_mn_m":1e6}"#);
+    assert!(out.contains("  greatest rate    none with a load of 1000000.0 mN*m\n"), "{out}");
+    assert!(
+        out.contains("    the load needs more torque than the motor has at any rate; give less load\n"),
+        "{out}"
+    );
+    assert!(!out.contains("inf"), "{out}");
+    // No current that 0.1 V leave drives at this rate.
+    let out = of(r#"{"constant":{"speed":{"steps_s":100000}}}"#, r#"{"supply_v":0.1}"#);
+    assert!(
+        out.contains("  standing torque  11.8 mN*m; the supply is too low for the whole current"),
+        "{out}"
+    );
+    assert!(out.contains("  greatest rate    271 steps/s with a load of 0.0 mN*m\n"), "{out}");
+    assert!(
+        out.contains("  warning: too little torque in 1 stretch") && !out.contains("throughout"),
+        "{out}"
+    );
+}
+
+#[test]
 fn the_curve_is_a_table_that_starts_full_and_falls() {
     let scenario = axes(r#"{"motor":{}}"#);
     let (code, out, _) = stepscope(&["torque", "-", "--format", "csv"], &scenario);
