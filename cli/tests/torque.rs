@@ -141,12 +141,26 @@ fn steps_a_millimetre_are_fitted_and_made_into_mechanics() {
 }
 
 #[test]
+fn very_few_steps_a_millimetre_keep_their_digits() {
+    let (code, out, _) = stepscope(&["calibrate", "-"], "length_mm,steps\n0,0\n1e12,1\n");
+    assert_eq!(code, Some(0));
+    assert!(
+        out.contains("  k                 1.000000000e-12 steps/mm, 1.000000000e12 mm a step\n"),
+        "{out}"
+    );
+}
+
+#[test]
 fn a_table_without_a_line_is_refused() {
     for (table, expected) in [
         ("a,b\n1,2\n", "there is no column of lengths; give a first row"),
         ("length_mm\n1\n", "there is no column steps; give a first row"),
         ("length_mm,steps\n1,2\n", "1 pair of length and steps; give at least 2"),
         ("length_mm,steps\n1,2\n1,3\n", "all pairs have length 1; measure at least one of another length"),
+        (
+            "length_mm,steps\n1e-200,1\n2e-200,2\n",
+            "pair 1 has length 1e-200 and 1.0 steps; give numbers from 1e-12",
+        ),
         ("length_mm,steps\n1,2\n2,x\n", "line 3: steps is “x”; give a number, with a point"),
         ("length_mm,steps\n1,2\n2,nan\n", "line 3: steps is “nan”; give a number, with a point"),
     ] {
