@@ -20,6 +20,8 @@ const MOST_SLICE_S: f64 = 0.1;
 /// A slice's length is a decimal number and seldom whole in binary digits, so a rate that is exactly the highest may
 /// come out higher by its last digits, in parts of it.
 const DIGITS: f64 = 1e-12;
+/// Ramps in s under this are none: it is the shortest cycle that a clock may have.
+const LEAST_RAMP_S: f64 = 1e-9;
 /// How much of its curve a ramp of a sigmoid or an exponential may be: below this it is straight to a part in a
 /// thousand, above it stands still but for a small part of its time.
 const LEAST_PARAMETER: f64 = 0.1;
@@ -84,7 +86,7 @@ pub(super) fn plan_ramps(asked: &mut Asked<'_>, given: &scenario::Ramps, path: &
     Some(Profile::Ramps(curve))
 }
 
-/// B4's front: so many steps in so much time with two ramps.
+/// B4's front: so many steps in so much time with two ramps, none where they are too short for any clock.
 fn front(
     asked: &mut Asked<'_>,
     path: &str,
@@ -100,13 +102,13 @@ fn front(
         asked.refuse(format!("{path}.ramp_s"), Cause::RampTooLong { ramp_s, duration_s });
         return None;
     }
-    Some((steps?, duration_s, ramp_s))
+    Some((steps?, duration_s, if ramp_s < LEAST_RAMP_S { 0.0 } else { ramp_s }))
 }
 
 #[cfg(test)]
 mod tests {
     use crate::{
-        motion::plan_axis,
+        motion::{Curve, plan_axis},
         scenario::{Scenario, Source},
     };
     use alloc::{format, string::ToString, vec::Vec};
@@ -119,6 +121,35 @@ mod tests {
         let plan = plan_axis(motion.axes.first().unwrap(), "axis");
         let found: Vec<_> = plan.err().unwrap_or_default().iter().map(ToString::to_string).collect();
         assert_eq!(found, expected, "{json}");
+    }
+
+    /// Else its acceleration and jerk would have no end.
+    #[test]
+    fn a_ramp_shorter_than_any_clocks_cycle_is_none() {
+        let plan = |kind: &str, rest: &str, ramp_s: &str| {
+            let json = format!(r#"{{"moves":[{{"{kind}":{{"ramp_s":{ramp_s}{rest}}}}}]}}"#);
+            plan_axis(&serde_json::from_str(&json).unwrap(), "axis").unwrap()
+        };
+        for (kind, rest) in [
+            ("cosine", ""),
+            ("cosine", r#","method":"sliced""#),
+            ("ramps", r#","shape":"sigmoid""#),
+            ("ramps", r#","shape":"bezier""#),
+            ("ramps", r#","shape":"straight""#),
+            ("ramps", r#","shape":"exponential""#),
+        ] {
+            let none = plan(kind, rest, "0");
+            for ramp_s in ["1e-300", "1e-200", "5e-324", "9.99e-10"] {
+                assert_eq!(plan(kind, rest, ramp_s), none, "{kind}{rest} {ramp_s}");
+            }
+            let peaks = none.peaks();
+            assert!(
+                (peaks.jump, peaks.acceleration, peaks.jerk) == (8000.0, 0.0, 0.0) || rest.contains("sliced")
+            );
+            let least = plan(kind, rest, "1e-9");
+            let peaks = least.moves()[0].profile.peaks();
+            assert!(least != none && peaks.jerk.is_finite() && peaks.acceleration.is_finite(), "{peaks:?}");
+        }
     }
 
     #[test]
