@@ -40,7 +40,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   const thdCanvas = element("canvas", { role: "img", "aria-label": "THD against d1" });
   const distanceCanvas = element("canvas", { role: "img", "aria-label": "Euclidean distance against d1" });
   const overlay = element("canvas", { class: "overlay", "aria-hidden": "true" });
-  const noThd = element("p", { class: "study-note" });
+  const noThd = element("p", { class: "study-note no-chart" });
   noThd.hidden = true;
   const thdCaption = element("div", { class: "caption" });
   const distanceCaption = element("div", { class: "caption" }, element("span", {}, "Euclidean distance Ev against d1"));
@@ -50,7 +50,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   const note = element("p", { class: "study-note", id: "sine-note", "aria-live": "polite", tabindex: "-1" });
   const segments = field("segments of a quarter", "", 6, { least: 1, most: 32, integer: true }, vertices);
   const verticesJob = createJob("Vertices");
-  const bestOf = table("Best d1 of each number of segments", ["segments", "#best d1 by position", "#THD position", "~#Ev", ""]);
+  const bestOf = table("Best d1 of each number of segments", ["segments", "#best d1", "#THD position", "~#Ev", ""]);
   const best = table("Best vertices", ["vertex", "#on the curve", "#height", "#free", "#height"]);
   const bestNote = element("p", { class: "study-note", id: "sine-vertices" });
   fill(panel, element("div", { class: "study-bar" }, from.root, to.root, points.root, order.root, quantity.root, job.root),
@@ -232,6 +232,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     const cells = (/** @type {string} */ name, /** @type {Row | null} */ row, /** @type {string} */ none, usable = true) => {
       return [name, ...(row ? [short(row.d1, 6), String(row.segments), percent(row.position), percent(row.speed), percent(row.acceleration), percent(row.felt), short(row.euclidean, 4)] : [none, "", "", "", "", "", ""]), usable && row ? use(row, name) : ""];
     };
+    list.root.classList.toggle("unfelt", sensor === undefined);
     list.show([cells("pointed at", pointed, "–"), cells("the scenario", own, "none", false), cells(`best by position${least && rows && atEnd(least.d1, rows.d1) ? ": the range's end" : ""}`, least, "–")]);
     const layer = cleared(overlay);
     if (!layer || !plot || !rows) return;
