@@ -1,8 +1,8 @@
 /** Shows what the core says about the scenario: problems beside their fields, and what follows from it. */
 import { button, byId, element, fill, flash, say } from "../dom.js";
 import { termButton } from "../help/card.js";
-import { count, plain, short, si } from "../state/number.js";
-import { derivedAxis } from "../state/state.js";
+import { count, counted, plain, pretty, short, si } from "../state/number.js";
+import { derivedAxis, get } from "../state/state.js";
 import { runsAlone } from "./sources.js";
 
 /** @typedef {import("../state/types.js").State} State */
@@ -13,8 +13,8 @@ export function showProblems(state, controls, groups) {
   const problems = [
     ...Object.entries(state.drafts).map(([path, { message }]) => ({ path, message })),
     // What the core says of a field that holds no number is about the value before.
-    ...(state.judgement?.problems ?? []).filter(({ path }) => !Object.keys(state.drafts).some((at) => `${path}.`.startsWith(`${at}.`) || `${at}.`.startsWith(`${path}.`))),
-  ];
+    ...(state.judgement?.problems ?? []).filter(({ path }) => !Object.keys(state.drafts).some((at) => within(path, at) || within(at, path))),
+  ].map(({ path, message }) => ({ path, message: pretty(message) }));
   /** @type {Map<string, string>} */
   const atField = new Map();
   /** @type {Map<string, string>} */
@@ -49,6 +49,11 @@ export function showProblems(state, controls, groups) {
     })));
   }
   fill(/** @type {Element} */ (list.querySelector("ul")), ...items);
+}
+
+/** Whether a path is another one, or of something in it. @param {string} path @param {string} other */
+function within(path, other) {
+  return path.startsWith(other) && /^([.[]|$)/.test(path.slice(other.length));
 }
 
 /** The longest path that is the problem's own or leads to it. @param {string} path @param {Map<string, unknown>} places */
@@ -154,9 +159,10 @@ function moveNote(path, state) {
   const [, index] = path.match(/\.moves\[(\d+)\]/) ?? [];
   const move = derivedAxis(state, path)?.moves[Number(index)];
   if (!move) return { text: "", warning: "" };
-  const steps = `${count(move.steps)} steps`;
+  const [kind] = Object.keys(get(state.scenario, path) ?? {});
+  const steps = move.steps === 0 && kind?.startsWith("sine") ? "back at the start" : counted(move.steps, "step");
   return {
-    text: [`${si(move.start_s, "s")} to ${si(move.start_s + move.duration_s, "s")}`, steps, move.detail].filter(Boolean).join(" · "),
-    warning: move.warning && ` ⚠ Motor: ${move.warning.replaceAll("mN*m", "mN·m")}.`,
+    text: [`${si(move.start_s, "s")} to ${si(move.start_s + move.duration_s, "s")}`, steps, pretty(move.detail ?? "")].filter(Boolean).join(" · "),
+    warning: move.warning && ` ⚠ Motor: ${pretty(move.warning)}.`,
   };
 }

@@ -33,14 +33,15 @@ export function createTabs({ dispatch }) {
   return { render };
 }
 
-/** The arrow keys go from tab to tab, round, and open what they come to. @param {HTMLElement[]} tabs */
+/** The arrow keys go from tab to tab, round, Home and End to the first and the last, and open what they come to. @param {HTMLElement[]} tabs */
 export function arrows(tabs) {
   tabs.forEach((tab) => tab.addEventListener("keydown", (event) => {
-    const by = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-    if (by === undefined) return;
-    event.preventDefault();
     const offered = tabs.filter((each) => !each.hidden);
-    const next = offered[(offered.indexOf(tab) + by + offered.length) % offered.length];
+    const at = offered.indexOf(tab);
+    const to = { ArrowLeft: at - 1, ArrowRight: at + 1, Home: 0, End: -1 }[event.key];
+    if (to === undefined) return;
+    event.preventDefault();
+    const next = offered[(to + offered.length) % offered.length];
     next.click();
     next.focus();
   }));

@@ -12,12 +12,12 @@ const NUMBER = /^([-+−]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][-+]?\d+)?)\s*(.*)$/;
  * Reads a number in `unit`. A field that counts cycles also takes a time, which `clockHz` turns into cycles.
  * @param {string} text
  * @param {string} unit  Unit that the number is wanted in, such as "s", "Hz", "cycles"; "" for a plain number.
- * @param {{integer?: boolean, clockHz?: number}} [options]
+ * @param {{integer?: boolean, clockHz?: number, least?: number, most?: number}} [options]  The range is for what is proposed only.
  * @returns {{value: number} | {message: string}}
  */
 export function parseNumber(text, unit, options = {}) {
   const plain = text.trim().replace(/(\d)[\s\u202f\u00a0](?=\d)/g, "$1");
-  const example = unit === "ns" ? "1900 or 1.9 us" : options.integer ? "1200 or 1.2k" : unit === "s" ? "0.4 or 400 ms" : "2.5 or 1.2k";
+  const example = unit === "ns" ? "1900 or 1.9 us" : unit === "µs" ? "25 or 0.1 ms" : options.integer ? "1200 or 1.2k" : unit === "s" ? "0.4 or 400 ms" : "2.5 or 1.2k";
   if (plain === "") return { message: `A number is missing; give one, such as ${example}.` };
   const match = NUMBER.exec(plain);
   if (!match) return { message: `“${text.trim()}” is not a number; give one, such as ${example}.` };
@@ -45,7 +45,7 @@ export function parseNumber(text, unit, options = {}) {
  */
 function shift(mantissa, suffix, unit) {
   // A millimetre is a metre with a prefix: "3 m" is 3000 mm, never 3 thousandths of one; so is a nanosecond a second.
-  const [base, own] = unit.startsWith("mm") ? [unit.slice(1), 3] : unit === "ns" ? ["s", 9] : [unit, 0];
+  const [base, own] = unit.startsWith("mm") ? [unit.slice(1), 3] : unit === "ns" ? ["s", 9] : unit === "µs" ? ["s", 6] : [unit, 0];
   if (suffix === "") return Number(mantissa);
   for (const tail of new Set([base, own ? base : ""])) {
     if (!suffix.endsWith(tail)) continue;
@@ -64,14 +64,15 @@ function addExponent(mantissa, power) {
 
 /**
  * @param {number} value
- * @param {{integer?: boolean}} options
+ * @param {{integer?: boolean, least?: number, most?: number}} options
  * @param {string} text
  * @returns {{value: number} | {message: string}}
  */
-function whole(value, options, text) {
+function whole(value, { integer, least = -Infinity, most = Infinity }, text) {
   if (!Number.isFinite(value)) return { message: `“${text.trim()}” is too large for a number.` };
-  if (options.integer && !Number.isInteger(value)) {
-    return { message: `${value} is not a whole number; give ${Math.floor(value)} or ${Math.ceil(value)}.` };
+  if (integer && !Number.isInteger(value)) {
+    const beside = [Math.floor, Math.ceil].map((round) => Math.min(most, Math.max(least, round(value))));
+    return { message: `${value} is not a whole number; give ${[...new Set(beside)].join(" or ")}.` };
   }
   return { value };
 }
@@ -119,8 +120,19 @@ export function count(value) {
 
 /** @param {string} text */
 function trim(text) {
-  const plain = text.includes("e") ? String(Number(text)) : text;
+  // From 10¹² on nobody counts the noughts.
+  const plain = text.includes("e") ? (Math.abs(Number(text)) < 1e12 ? String(Number(text)) : text.replace(/\.?0*e\+?/, "e")) : text;
   return (plain.includes(".") && !plain.includes("e") ? plain.replace(/\.?0+$/, "") : plain).replace("-", "−");
+}
+
+/** A number of things, in words that go with it. @param {number} number @param {string} thing */
+export function counted(number, thing) {
+  return `${count(number)} ${thing}${number === 1 ? "" : "s"}`;
+}
+
+/** The core's words as they are printed elsewhere on the page: units with their signs. @param {string} text */
+export function pretty(text) {
+  return text.replace(/\bs\^2\b/g, "s²").replace(/\bs\^3\b/g, "s³").replaceAll("mN*m", "mN·m");
 }
 
 /** Time with enough digits to tell one cycle from the next. @param {number} seconds */

@@ -29,6 +29,8 @@ const ESCAPE: char = '\u{e00c}';
 const ENTER: char = '\u{e007}';
 const RIGHT: char = '\u{e014}';
 const LEFT: char = '\u{e012}';
+const HOME: char = '\u{e011}';
+const END: char = '\u{e010}';
 
 /// Texts of a row's cells, digits without their groups, by the text that its head begins with.
 async fn cells(page: &Session, table: &str, head: &str) -> Result<Vec<String>> {
@@ -82,6 +84,12 @@ fn the_study_opens_and_closes_by_button_key_and_link() -> Result<()> {
         page.press("#study-tab-compare", &LEFT.to_string()).await?;
         page.until_equal("document.activeElement.id", &json!("study-tab-torque")).await?;
         page.press("#study-tab-torque", &format!("{LEFT}")).await?;
+        page.until_equal("document.activeElement.id", &json!("study-tab-sine")).await?;
+        page.press("#study-tab-sine", &HOME.to_string()).await?;
+        page.until_equal("document.activeElement.id", &json!("study-tab-compare")).await?;
+        page.press("#study-tab-compare", &END.to_string()).await?;
+        page.until_equal("document.activeElement.id", &json!("study-tab-torque")).await?;
+        page.press("#study-tab-torque", &LEFT.to_string()).await?;
         page.until_equal("document.activeElement.id", &json!("study-tab-sine")).await?;
         ensure!(page.visible("#study-sine").await? && !page.visible("#study-torque").await?);
         page.until_equal("location.hash", &json!(format!("#{}&v=tstudy.ysine", known.link))).await?;
@@ -173,7 +181,22 @@ fn without_a_sine_the_axis_is_offered_one() -> Result<()> {
         page.until("document.querySelector('#study-sine .study-note button')?.textContent === 'Add one with d1 = 0.002'").await?;
         page.click("#study-sine .study-note button").await?;
         page.until("document.querySelector('[data-path=\"source.motion.axes[0].moves[1].sine_segments.max_deviation\"]')?.value === '0.002'").await?;
-        page.ready().await
+        page.ready().await?;
+        // The button has gone; what it says has the focus, until an undo makes it untrue.
+        ensure!(page.eval::<bool>("document.activeElement.id === 'sine-note'").await?);
+        ensure!(page.text("#sine-note").await?.starts_with("Axis 0 ends with a sine"));
+        page.until("document.querySelector(\"[aria-label='Use: 6 segments, the best d1']\")").await?;
+        page.press("[aria-label='Use: 6 segments, the best d1']", &ENTER.to_string()).await?;
+        page.until(
+            "document.getElementById('sine-note').textContent.startsWith('Move 2 of axis 0 has d1 = ')",
+        )
+        .await?;
+        page.ready().await?;
+        ensure!(
+            page.eval::<bool>("document.activeElement.ariaLabel === 'Use: 6 segments, the best d1'").await?
+        );
+        page.click("#undo").await?;
+        page.until("document.getElementById('sine-note').textContent === ''").await
     })
 }
 
@@ -183,6 +206,8 @@ fn a_long_sweep_says_how_far_it_is_and_is_left_off() -> Result<()> {
         page.open("").await?;
         page.click("#study").await?;
         page.click("#study-tab-sine").await?;
+        page.until("document.getElementById('sine-charts').ariaValueMax === '499'").await?;
+        page.until("document.querySelector('#study-sine .study-job').hidden").await?;
         fill(&page, "harmonics to", "9999").await?;
         fill(&page, "points", "20000").await?;
         page.until(
@@ -192,6 +217,12 @@ fn a_long_sweep_says_how_far_it_is_and_is_left_off() -> Result<()> {
         page.click("#study-sine .study-job button").await?;
         let left: String = page.text("#study-sine .study-job").await?;
         ensure!(left.starts_with("Left off: "), "{left}");
+        // The sweep before is there still: it can be pointed at, and its best be taken.
+        page.press("#sine-charts", &RIGHT.to_string()).await?;
+        for head in ["pointed at", "best by position"] {
+            let row = cells(&page, "What a d1 gives", head).await?;
+            ensure!(row.len() == 9 && row[1].starts_with("0.0") && row[8] == "Use", "{row:?}");
+        }
         // Nothing goes on behind it, and what comes next is whole.
         fill(&page, "harmonics to", "9").await?;
         fill(&page, "points", "12").await?;
@@ -370,5 +401,87 @@ fn the_comparison_is_the_cores_and_a_shape_is_taken_and_given_back() -> Result<(
             "[...document.querySelectorAll('#study-compare tr')].some((row) => row.innerText.includes('Straight') && row.cells[2].textContent.replace(/\\s/g, '') === '{peak}')"
         ))
         .await
+    })
+}
+
+const ROWS: &str = "document.querySelectorAll('#study-compare tbody tr').length";
+const USABLE: &str = "document.querySelectorAll('#study-compare tbody button:enabled').length";
+
+/// Chooses in a select as a person does.
+async fn choose(page: &Session, selector: &str, value: &str) -> Result<()> {
+    let script = "const select = document.querySelector(arguments[0]); select.value = arguments[1];
+        select.dispatchEvent(new Event('change', { bubbles: true })); return null;";
+    page.js::<Value>(script, vec![json!(selector), json!(value)]).await?;
+    Ok(())
+}
+
+#[test]
+fn a_shape_goes_into_the_axis_that_is_looked_at_or_nowhere() -> Result<()> {
+    in_browser(|page| async move {
+        let one = r#"{"moves":[{"cosine":{"distance":{"steps":6400},"duration_s":0.4,"ramp_s":0.1}}]}"#;
+        let known = Known::of(&format!(
+            r#"{{"bus":{{"channels":2}},"source":{{"motion":{{"axes":[{one},{one}]}}}}}}"#
+        ))?;
+        page.open(&format!("#{}&v=tstudy", known.link)).await?;
+        page.until_equal(ROWS, &json!(6)).await?;
+        choose(&page, "#study-axis", "1").await?;
+        page.until(
+            "document.querySelector('#study-compare .study-bar').textContent.includes('Axis 1, move 1')",
+        )
+        .await?;
+        page.until_equal(USABLE, &json!(5)).await?;
+        page.press("[aria-label='Use: Bezier']", &ENTER.to_string()).await?;
+        page.until("document.querySelector('[data-path=\"source.motion.axes[1].moves[0].ramps.shape\"]')?.value === 'bezier'").await?;
+        ensure!(
+            page.eval::<bool>(
+                "!document.querySelector('[data-path=\"source.motion.axes[0].moves[0].ramps.shape\"]')"
+            )
+            .await?
+        );
+        // The button has gone: its row has the focus.
+        page.until("document.querySelector('#study-compare tr.chosen')?.innerText.startsWith('Bezier')")
+            .await?;
+        page.until("document.activeElement.matches('#study-compare tr.chosen')").await?;
+
+        // A form with a problem takes nothing.
+        page.fill("source.motion.axes[1].moves[0].ramps.duration_s", "0").await?;
+        page.until_equal(USABLE, &json!(0)).await?;
+        page.fill("source.motion.axes[1].moves[0].ramps.duration_s", "0.4").await?;
+        page.until_equal(USABLE, &json!(5)).await?;
+        // A ramp that no shape can have is told once, at its field.
+        fill(&page, "Ramp", "0.5").await?;
+        page.until(
+            "document.querySelector('#study-compare .study-field .error').textContent.includes('0.5 s')",
+        )
+        .await?;
+        page.until_equal(ROWS, &json!(0)).await?;
+        fill(&page, "Ramp", "100 ms").await?;
+        page.until_equal(ROWS, &json!(6)).await?;
+        // Another source leaves no rows of the axis before.
+        choose(&page, "[data-path='source#kind']", "packets").await?;
+        page.until_equal(ROWS, &json!(0)).await?;
+        page.until("document.querySelector('#study-compare .study-field').hidden").await
+    })
+}
+
+#[test]
+fn the_focus_stays_in_the_tab_where_a_button_goes() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        page.click("#study").await?;
+        page.click("#study-tab-torque").await?;
+        page.until("document.querySelector('#study-torque .study-note button')").await?;
+        page.press("#study-torque .study-note button", &ENTER.to_string()).await?;
+        page.until("document.getElementById('torque-verdict').textContent !== ''").await?;
+        ensure!(page.eval::<bool>("document.activeElement.matches('#study-torque .study-note')").await?);
+        // Work that ends under its Cancel button.
+        page.click("#study-tab-sine").await?;
+        fill(&page, "points", "20000").await?;
+        page.until(
+            "(() => { const press = document.querySelector('#study-sine .study-job button'); press.focus(); return document.activeElement === press && press.textContent === 'Cancel'; })()",
+        )
+        .await?;
+        page.until("document.querySelector('#study-sine .study-job').hidden").await?;
+        page.until_equal("document.activeElement.id", &json!("study-sine")).await
     })
 }

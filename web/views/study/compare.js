@@ -4,10 +4,10 @@
  */
 import { button, element, fill, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
-import { count, plain, short, si } from "../../state/number.js";
-import { color, draw, watch } from "../../time/plot.js";
-import { field, table } from "./parts.js";
-import { subject } from "./subject.js";
+import { count, plain, pretty, short, si } from "../../state/number.js";
+import { cleared, color, draw, watch } from "../../time/plot.js";
+import { field, focusRow, table } from "./parts.js";
+import { place, subject } from "./subject.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /**
@@ -53,15 +53,25 @@ export function createCompare({ engine, dispatch, now, panel }) {
   let own = true;
   let move = 0;
   let shown = "";
+  /** What was asked last; and the axis and move of the rows, which they are put into. */
+  let asking = 0;
+  let rowsOf = "";
 
   /** @param {State} state */
   async function refresh(state) {
     const of = subject(state);
+    const turn = ++asking;
+    // Rows of another axis must not be put into this one.
+    if (!rowsOf.startsWith(`${placeOf(state)} `)) empty();
+    hold();
     if (of === null) return undefined;
     panel.classList.toggle("stale", of === "");
     if (of === "") return undefined;
-    all.hidden = typeof of === "string";
-    if (typeof of === "string") return say(about, of);
+    ramp.root.hidden = all.hidden = typeof of === "string";
+    if (typeof of === "string") {
+      moveLabel.hidden = true;
+      return say(about, of);
+    }
     move = Math.min(Number(moves.value || 0), of.moves.length - 1);
     if (moves.options.length !== of.moves.length) fill(moves, ...of.moves.map((_, at) => element("option", { value: String(at) }, String(at + 1))));
     moves.value = String(move);
@@ -81,22 +91,57 @@ export function createCompare({ engine, dispatch, now, panel }) {
     say(about, `Axis ${of.axis}, move ${move + 1}: ${count(steps)} steps in ${si(duration, "s")}${ramp_s === undefined ? "; it has no ramp of its own, so give one" : ""}.`);
     const question = [steps, duration, ramp.value(), slice_s, sigmoid_range, time_constants, POINTS];
     const answer = await engine.latest("compare", "compare_ramps", ...question).catch(unlessDropped);
-    if (!answer) return undefined;
+    if (!answer || turn !== asking) return undefined;
     rows = answer;
     key = kindOf(asked);
-    show(of.path, asked);
+    rowsOf = `${placeOf(state)} ${move}`;
+    // What is wrong with the ramp for every shape is told once, at its field.
+    const [{ why }] = rows;
+    const refused = why !== null && rows.every((row) => row.why === why);
+    ramp.fail(refused ? pretty(why) : "");
+    all.hidden = refused;
+    if (refused) return empty();
+    show(asked);
     return paint();
   }
 
-  /** @param {string} path @param {{[kind: string]: any}} asked */
-  function show(path, asked) {
-    const { distance } = Object.values(asked)[0];
+  /** Which axis a state looks at. @param {State} state */
+  function placeOf(state) {
+    const { controller, path } = place(state);
+    return `${controller}:${path}`;
+  }
+
+  function empty() {
+    [rows, rowsOf] = [[], ""];
+    list.show([]);
+    for (const { canvas } of [{ canvas: speeds }, ...small]) cleared(canvas);
+  }
+
+  /** Nothing can be taken before the answer is there; the focus stays in its row. */
+  function hold() {
+    for (const press of list.body.querySelectorAll("button")) {
+      if (press === document.activeElement) focusRow(press.closest("tr"));
+      press.disabled = true;
+    }
+  }
+
+  /** Puts a shape into the scenario as it is now. @param {{[kind: string]: any}} made */
+  function take(made) {
+    const of = subject(now());
+    if (!of || typeof of === "string" || rowsOf !== `${placeOf(now())} ${move}` || !of.moves[move]) return;
+    const [kind, values] = Object.entries(made)[0];
+    const { distance } = /** @type {any} */ (Object.values(of.moves[move])[0]);
+    dispatch({ type: "edit", path: `${of.path}.moves[${move}]`, value: { [kind]: { ...values, distance: distance ?? values.distance } } });
+  }
+
+  /** @param {{[kind: string]: any}} asked */
+  function show(asked) {
     list.show(rows.map(({ move: made, why, ...cost }, at) => {
       const [kind, values] = Object.entries(made)[0];
       const press = kindOf(made) === key && (values.ramp_s === asked[kind]?.ramp_s) ? "in use"
-        : button("Use", `Use: ${LOOKS[at][0]}`, () => dispatch({ type: "edit", path: `${path}.moves[${move}]`, value: { [kind]: { ...values, distance: distance ?? values.distance } } }));
+        : button("Use", `Use: ${LOOKS[at][0]}`, () => take(made));
       const name = element("span", { class: "study-name" }, element("canvas", { class: "study-key", "aria-hidden": "true" }), LOOKS[at][0]);
-      if (why !== null) return [name, why, "", "", "", "", ""];
+      if (why !== null) return [name, pretty(why), "", "", "", "", ""];
       const jump = (/** @type {number} */ by, /** @type {string} */ unit) => element("span", { class: "jump" }, `unbounded, jumps by ${plain(by, unit).replace(" ", "\u00a0")}`);
       return [name, bare(cost.speed), cost.jump > 0 ? jump(cost.jump, "steps/s") : bare(cost.acceleration),
         cost.jump > 0 ? "unbounded" : cost.acceleration_jump > 0 ? jump(cost.acceleration_jump, "steps/s²") : bare(cost.jerk),

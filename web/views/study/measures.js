@@ -4,7 +4,7 @@
  */
 import { element, fill, say } from "../../dom.js";
 import { Dropped } from "../../engine/engine.js";
-import { count, plain, short, si, time } from "../../state/number.js";
+import { count, counted, plain, short, si, time } from "../../state/number.js";
 import { isStale } from "../../state/state.js";
 import { table } from "./parts.js";
 
@@ -43,7 +43,7 @@ const COMPARED = [
 const ERRORS = [
   ["largest time error", (of) => seconds(of.largest_s), "Of a pulse; late is above 0. Whole cycles are off by half a cycle at most."],
   ["at", (of) => si(of.largest_at_s, "s", 5), "When that pulse comes."],
-  ["mean time error", (of) => seconds(of.mean_s), "A delay of all pulses alike."],
+  ["mean time error", (of) => seconds(Math.abs(of.mean_s) < 1e-6 * of.rms_s ? 0 : of.mean_s), "A delay of all pulses alike."],
   ["r.m.s. time error", (of) => seconds(of.rms_s), "Root of the mean square of the pulses' time errors."],
   ["largest position error, steps", (of) => digits(of.largest_steps), "How far the ideal motion goes within a pulse's time error."],
   ["r.m.s. position error, steps", (of) => digits(of.rms_steps), "Root of the mean square of those."],
@@ -88,7 +88,7 @@ export function createMeasures({ engine, panel }) {
   /** @param {Measures} found */
   function show(found) {
     const { steps, ticks, pulses, step_errors, tick_errors, counts } = found;
-    say(compared.note, `Over ${si(found.length_s, "s", 6)}. Ideal → steps: whole steps at whole cycles, step quantisation. Steps → pulses: what ticks, queue and line add. Sums are over ${count(pulses.points)} points, all else over the curves themselves.`);
+    say(compared.note, `Over ${si(found.length_s, "s", 6)}. Ideal → steps: whole steps at whole cycles, step quantisation. Steps → pulses: what ticks, queue and line add. Sums are over ${counted(pulses.points, "point")}, all else over the curves themselves.`);
     compared.show([
       ...COMPARED.map(([name, of, text]) => [name, of(steps), of(ticks), of(pulses), text]),
       ...ERRORS.map(([name, of, text]) => [name, of(step_errors), of(tick_errors), "", text]),
@@ -103,7 +103,7 @@ export function createMeasures({ engine, panel }) {
     sine.root.hidden = !found.sine;
     if (found.sine) {
       const { segments, euclidean, quarter } = found.sine;
-      say(sine.note, `The document's polyline against the exact sine, at the ${count(quarter.points)} points of a quarter; all figures are of these points.`);
+      say(sine.note, `The document's polyline against the exact sine, at the ${counted(quarter.points, "point")} of a quarter; all figures are of these points.`);
       sine.show([
         ["segments", count(segments), "Of a quarter of the period."],
         ["Ev", short(euclidean, 5), "The document's Euclidean distance, in parts of the amplitude."],

@@ -20,12 +20,18 @@ export function field(label, unit, start, { least, most, integer = false }, chan
   const error = element("span", { id: `${id}-error`, class: "error" });
   const root = element("span", { class: "study-field" }, element("label", { for: id }, unit ? `${label}, ${unit}` : label), input, error);
   let value = start;
+  /** What is wrong with what is typed; and with its value, beside others. */
+  let [wrong, amiss] = ["", ""];
+  const tell = () => {
+    say(error, wrong || amiss);
+    if (wrong || amiss) input.setAttribute("aria-invalid", "true");
+    else input.removeAttribute("aria-invalid");
+  };
   input.addEventListener("change", () => {
-    const read = parseNumber(input.value, unit, { integer });
-    const message = "message" in read ? read.message : read.value >= least && read.value <= most ? "" : `Give ${least} to ${most}.`;
-    say(error, message);
-    input.setAttribute("aria-invalid", String(message !== ""));
-    if (message || !("value" in read) || read.value === value) return;
+    const read = parseNumber(input.value, unit, { integer, least, most });
+    wrong = "message" in read ? read.message : read.value >= least && read.value <= most ? "" : `Give ${least} to ${most}.`;
+    tell();
+    if (wrong || !("value" in read) || read.value === value) return;
     value = read.value;
     change();
   });
@@ -33,10 +39,15 @@ export function field(label, unit, start, { least, most, integer = false }, chan
   const set = (next) => {
     value = next;
     input.value = String(next);
-    say(error, "");
-    input.removeAttribute("aria-invalid");
+    [wrong, amiss] = ["", ""];
+    tell();
   };
-  return { root, value: () => value, set };
+  /** @param {string} message */
+  const fail = (message) => {
+    amiss = message;
+    tell();
+  };
+  return { root, value: () => value, set, fail };
 }
 
 /** A choice. @param {string} label @param {{[value: string]: string}} choices @param {() => void} change */
@@ -46,7 +57,13 @@ export function choice(label, choices, change) {
   return { root: element("label", {}, `${label} `, select), value: () => select.value };
 }
 
-/** A table that scrolls; a column whose head begins with `#` has numbers, one with `~` before it is left out on a narrow screen. @param {string} label @param {string[]} head */
+/** Puts the focus on a row of a table: what had it in there has gone, or is of no use now. @param {HTMLElement | null} row */
+export function focusRow(row) {
+  row?.setAttribute("tabindex", "-1");
+  row?.focus({ preventScroll: true });
+}
+
+/** A table that scrolls, and keeps the focus in its row when it is filled anew; a column whose head begins with `#` has numbers, one with `~` before it is left out on a narrow screen. @param {string} label @param {string[]} head */
 export function table(label, head) {
   const kinds = head.map((text) => `${text.includes("#") ? "number" : ""} ${text.startsWith("~") ? "roomy" : ""}`.trim());
   const body = element("tbody");
@@ -55,15 +72,26 @@ export function table(label, head) {
   /** A row; its first cell is its head. @param {(string | Node)[]} cells */
   const row = (cells) => element("tr", {}, ...cells.map((cell, at) => element(at === 0 ? "th" : "td", { ...(at === 0 ? { scope: "row" } : {}), class: kinds[at] }, cell)));
   /** @param {(string | Node)[][]} rows */
-  const show = (rows) => fill(body, ...rows.map(row));
+  const show = (rows) => {
+    const had = document.activeElement;
+    const at = [...body.children].findIndex((each) => each.contains(had));
+    const onRow = had === body.children[at];
+    fill(body, ...rows.map(row));
+    if (at < 0) return;
+    const same = /** @type {HTMLElement | undefined} */ (body.children[at]);
+    const control = /** @type {HTMLElement | null | undefined} */ (onRow ? null : same?.querySelector("button, input"));
+    if (control) control.focus({ preventScroll: true });
+    else if (same) focusRow(same);
+    else root.focus({ preventScroll: true });
+  };
   return { root, body, show };
 }
 
 /**
  * Long work of a tab, one at a time: newer work ends the older. After a moment it says how far it is, and it can be left off and begun anew.
- * @param {string} label
+ * @param {string} label @param {() => string} [left]  What is told of what stays when it is left off.
  */
-export function createJob(label) {
+export function createJob(label, left = () => "") {
   const bar = element("progress", { max: "1", value: "0", "aria-label": label });
   const text = element("span");
   const press = element("button", { type: "button" });
@@ -78,7 +106,7 @@ export function createJob(label) {
     going.abort();
     going = null;
     bar.hidden = true;
-    say(text, `Left off: ${text.textContent}.`);
+    say(text, `Left off: ${text.textContent}.${left()}`);
     say(press, "Start again");
   });
 
@@ -108,6 +136,12 @@ export function createJob(label) {
       });
       if (going !== own) return;
       going = null;
+      // The button that has the focus goes: its tab takes it.
+      if (root.contains(document.activeElement)) {
+        const panel = /** @type {HTMLElement | null} */ (root.closest("[role=tabpanel]"));
+        panel?.setAttribute("tabindex", "-1");
+        panel?.focus({ preventScroll: true });
+      }
       root.hidden = true;
       done(result);
     } catch (error) {

@@ -4,8 +4,9 @@
  */
 import { button, element, fill, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
-import { short } from "../../state/number.js";
+import { counted, short } from "../../state/number.js";
 import { listen } from "../../shell/commands.js";
+import { get } from "../../state/state.js";
 import { cleared, color, draw, fit, watch } from "../../time/plot.js";
 import { choice, createJob, field, table } from "./parts.js";
 import { subject } from "./subject.js";
@@ -35,16 +36,18 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   const points = field("points", "", 500, { least: 2, most: 20000, integer: true }, refresh);
   const order = field("harmonics to", "", 399, { least: 3, most: 9999, integer: true }, () => { refresh(); vertices(); current(now()); });
   const quantity = choice("THD of", { position: "position", speed: "speed", acceleration: "acceleration", felt: "acceleration, felt" }, paint);
-  const job = createJob("Sweep");
+  const job = createJob("Sweep", () => (rows ? " The charts show the sweep before." : ""));
   const thdCanvas = element("canvas", { role: "img", "aria-label": "THD against d1" });
   const distanceCanvas = element("canvas", { role: "img", "aria-label": "Euclidean distance against d1" });
   const overlay = element("canvas", { class: "overlay", "aria-hidden": "true" });
+  const noThd = element("p", { class: "study-note no-chart" });
+  noThd.hidden = true;
   const thdCaption = element("div", { class: "caption" });
   const distanceCaption = element("div", { class: "caption" }, element("span", {}, "Euclidean distance Ev against d1"));
   const charts = element("div", { class: "charts study-charts", id: "sine-charts", tabindex: "0", role: "slider", "aria-label": "d1", "aria-valuemin": "0", "aria-valuemax": "0", "aria-valuenow": "0" },
-    element("div", { class: "chart" }, thdCaption, thdCanvas), element("div", { class: "chart" }, distanceCaption, distanceCanvas), overlay);
+    element("div", { class: "chart" }, thdCaption, thdCanvas, noThd), element("div", { class: "chart" }, distanceCaption, distanceCanvas), overlay);
   const list = table("What a d1 gives", ["of", "#d1", "#segments", "#THD position", "~#speed", "~#acceleration", "~#felt", "#Ev", ""]);
-  const note = element("p", { class: "study-note", "aria-live": "polite" });
+  const note = element("p", { class: "study-note", id: "sine-note", "aria-live": "polite", tabindex: "-1" });
   const segments = field("segments of a quarter", "", 6, { least: 1, most: 32, integer: true }, vertices);
   const verticesJob = createJob("Vertices");
   const bestOf = table("Best d1 of each number of segments", ["segments", "#best d1", "#THD position", "~#Ev", ""]);
@@ -53,7 +56,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   fill(panel, element("div", { class: "study-bar" }, from.root, to.root, points.root, order.root, quantity.root, job.root),
     element("div", { class: "study-split" },
       element("div", { class: "study-column" }, charts, list.root, note),
-      element("div", { class: "study-column study-side" }, element("h3", {}, "Best d1 of each number of segments"), bestOf.root, element("h3", {}, "Best vertices"), element("div", { class: "study-bar" }, segments.root, verticesJob.root), bestNote, best.root)));
+      element("div", { class: "study-column study-side" }, element("h3", {}, "Best d1 of each number of segments, by position"), bestOf.root, element("h3", {}, "Best vertices"), element("div", { class: "study-bar" }, segments.root, verticesJob.root), bestNote, best.root)));
 
   /** @type {Rows | null} What the charts show, as far as it is made. */
   let rows = null;
@@ -64,8 +67,12 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   let ownKey = "";
   /** The row that is pointed at. @type {number | null} */
   let at = null;
-  /** @type {import("../../state/types.js").Plot | null} */
+  /** Where the charts are on their canvases; the one of the THD may be without. @type {import("../../state/types.js").Plot | null} */
   let plot = null;
+  /** The highest harmonic of the rows. */
+  let sweptOrder = 0;
+  /** What the note tells of the scenario, which it does only as long as that is so. @type {{path: string, json: string} | null} */
+  let claim = null;
   let swept = false;
   /** Bandwidth of the sensor that feels the acceleration, in harmonics. @type {number | undefined} */
   let sensor;
@@ -116,32 +123,44 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   /** Puts a d1 into the scenario. @param {number} d1 */
   function put(d1) {
     const { of, move } = sineOf(now());
-    if (!of) return say(note, "The scenario has no axis that could take it.");
-    if (move < 0) return offer(of, d1);
-    dispatch({ type: "edit", path: `${of.path}.moves[${move}].sine_segments.max_deviation`, value: rounded(d1) });
+    claim = null;
+    if (!of) return say(note, subject(now()) ? "The scenario has no axis that could take it." : "Not while the form has a problem, or is being looked at.");
+    if (move < 0) return offer(d1);
+    const path = `${of.path}.moves[${move}].sine_segments.max_deviation`;
+    edit(path, rounded(d1));
     say(note, `Move ${move + 1} of axis ${of.axis} has d1 = ${rounded(d1)} now; undo brings the one before back.`);
     return undefined;
+  }
+
+  /** @param {string} path @param {any} value */
+  function edit(path, value) {
+    claim = { path, json: JSON.stringify(value) };
+    dispatch({ type: "edit", path, value });
   }
 
   /** @param {Row} row @param {string} name */
   const use = (row, name) => button("Use", `Use: ${name}`, () => put(row.d1));
 
-  /** Where there is no sine. @param {import("./subject.js").Subject} of @param {number} d1 */
-  function offer({ axis, path, moves }, d1) {
+  /** Where there is no sine. @param {number} d1 */
+  function offer(d1) {
     const press = element("button", { type: "button" }, `Add one with d1 = ${rounded(d1)}`);
     press.addEventListener("click", () => {
-      dispatch({ type: "edit", path: `${path}.moves`, value: [...moves, { sine_segments: { ...samples.moves.sine_segments, max_deviation: rounded(d1) } }] });
-      say(note, `Axis ${axis} ends with a sine in segments now; undo takes it away.`);
+      // What the axis is by now.
+      const { of, move } = sineOf(now());
+      note.focus({ preventScroll: true });
+      if (!of || move >= 0) return put(d1);
+      edit(`${of.path}.moves`, [...of.moves, { sine_segments: { ...samples.moves.sine_segments, max_deviation: rounded(d1) } }]);
+      return say(note, `Axis ${of.axis} ends with a sine in segments now; undo takes it away.`);
     });
-    fill(note, `Axis ${axis} has no sine in segments that could take it. `, press);
+    fill(note, `Axis ${sineOf(now()).of?.axis} has no sine in segments that could take it. `, press);
   }
 
   /** Sweeps the range, and looks for the best of it. */
   function refresh() {
     const [low, high, number, highest] = [from, to, points, order].map((each) => each.value());
-    if (low >= high) return say(note, `d1 goes from the smaller to the greater: ${low} is not below ${high}.`);
-    say(note, "");
     swept = true;
+    to.fail(low >= high ? `Give more than ${low}, where the range begins.` : "");
+    if (low >= high) return undefined;
     job.run(async (signal, tell) => {
       const pieces = Array.from({ length: Math.ceil(number / PIECE) }, (_, index) => [low, high, number, highest, sensor, PIECE * index, PIECE * (index + 1)]);
       // The smaller d1, the more polylines are beside it.
@@ -151,10 +170,9 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
       const all = pieces.length + STRETCHES;
       const told = () => tell(++done / all, done < pieces.length ? `${Math.min(number, done * PIECE)} of ${number} points` : "the best d1 of the range");
       tell(0, `0 of ${number} points`);
-      [rows, at, least] = [null, null, null];
-      // Those that are there are shown.
-      const answers = await engine.share("sine_rows", pieces, signal, told);
-      rows = joined(answers);
+      // The rows before stay until these are there.
+      const answers = joined(await engine.share("sine_rows", pieces, signal, told));
+      [rows, at, least, sweptOrder] = [answers, null, null, highest];
       paint();
       const found = await engine.share("sine_best", stretches, signal, told);
       return joined(found);
@@ -166,8 +184,8 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
         if (!(row.position >= (bests.get(row.segments)?.position ?? Infinity))) bests.set(row.segments, row);
       }
       const sorted = [...bests.values()].sort((one, other) => one.segments - other.segments);
-      bestOf.show(sorted.map((row) => [String(row.segments), short(row.d1, 6), percent(row.position), short(row.euclidean, 4), use(row, `${row.segments} segments, the best d1`)]));
-      least = sorted.reduce((best, row) => (row.position < best.position ? row : best));
+      bestOf.show(sorted.map((row) => [String(row.segments), short(row.d1, 6), percent(row.position), short(row.euclidean, 4), use(row, `${counted(row.segments, "segment")}, the best d1`)]));
+      least = sorted.reduce((best, row) => (row.position < best.position ? row : best), sorted[0]) ?? null;
       paint();
     });
     return undefined;
@@ -177,25 +195,29 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   function vertices() {
     const number = segments.value();
     verticesJob.run((signal, tell) => {
-      tell(0, `${number} segments`);
+      tell(0, counted(number, "segment"));
       return engine.share("sine_vertices", [[number, false, order.value()], [number, true, order.value()]], signal);
     }, ([onCurve, free]) => {
-      say(bestNote, `Least THD of position with ${number} segments: ${percent(onCurve.thd)} with vertices on the curve, ${percent(free.thd)} with free ones.`);
+      say(bestNote, `Least THD of position with ${counted(number, "segment")}: ${percent(onCurve.thd)} with vertices on the curve, ${percent(free.thd)} with free ones.`);
       best.show(Array.from(onCurve.angle_deg, (_, i) => [String(i), ...[onCurve, free].flatMap(({ angle_deg, height }) => [`${angle_deg[i].toFixed(3)}°`, height[i].toFixed(5)])]));
     });
   }
 
   function paint() {
     const chosen = /** @type {Quantity} */ (quantity.value());
-    const what = chosen !== "felt" ? chosen : sensor === undefined ? "acceleration, felt: give the sensor's bandwidth in the form, and a sine its period" : `the acceleration that a sensor of ${short(sensor, 4)} harmonics feels`;
-    fill(thdCaption, element("span", {}, `THD of ${what}, against d1, harmonics 2 to ${order.value()}, %`));
+    const what = chosen !== "felt" ? chosen : sensor === undefined ? "acceleration, felt" : `the acceleration that a sensor of ${short(sensor, 4)} harmonics feels`;
+    fill(thdCaption, element("span", {}, `THD of ${what}, against d1, harmonics 2 to ${sweptOrder || order.value()}, %`));
+    // Without a sensor there is nothing that it feels.
+    const none = rows !== null && !rows[chosen].some(Number.isFinite);
+    [thdCanvas.hidden, noThd.hidden] = [none, !none];
+    say(noThd, !none ? "" : sensor === undefined ? "What a sensor feels: give its bandwidth in the form, under Spectrum, and the axis a sine in segments, which has the period." : "The sweep with the sensor is not made yet.");
     if (rows && rows.d1.length > 1) {
       const { d1 } = rows;
       const x = { min: d1[0], max: d1[d1.length - 1], unit: "", prefix: false, label_px: 20 };
       const line = (/** @type {HTMLCanvasElement} */ canvas, /** @type {Float64Array} */ y, /** @type {string} */ ink) => draw(canvas, { x,
         y: { min: 0, max: 1.05 * Math.max(1e-9, ...y.filter(Number.isFinite)), unit: "", prefix: false, label_px: GUTTER }, series: Number.isFinite(y[0]) ? [{ color: color(ink), opacity: 1, width: 1.5, x: d1, shape: { line: { y } } }] : [] });
-      plot = line(thdCanvas, rows[chosen].map((ratio) => 100 * ratio), "--ideal");
-      line(distanceCanvas, rows.euclidean, "--made");
+      if (!none) line(thdCanvas, rows[chosen].map((ratio) => 100 * ratio), "--ideal");
+      plot = line(distanceCanvas, rows.euclidean, "--made");
       fit(overlay);
     }
     mark();
@@ -210,28 +232,29 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     const cells = (/** @type {string} */ name, /** @type {Row | null} */ row, /** @type {string} */ none, usable = true) => {
       return [name, ...(row ? [short(row.d1, 6), String(row.segments), percent(row.position), percent(row.speed), percent(row.acceleration), percent(row.felt), short(row.euclidean, 4)] : [none, "", "", "", "", "", ""]), usable && row ? use(row, name) : ""];
     };
-    list.show([cells("pointed at", pointed, "–"), cells("the scenario", own, "none", false), cells("best in range", least, "–")]);
+    list.root.classList.toggle("unfelt", sensor === undefined);
+    list.show([cells("pointed at", pointed, "–"), cells("the scenario", own, "none", false), cells(`best by position${least && rows && atEnd(least.d1, rows.d1) ? ": the range's end" : ""}`, least, "–")]);
     const layer = cleared(overlay);
     if (!layer || !plot || !rows) return;
     const { left, right, top, bottom } = plot;
     const [low, high] = [rows.d1[0], rows.d1[rows.d1.length - 1]];
     const { context } = layer;
     /** @type {[Row | null, string, number[], string][]} */
-    const lines = [[own, "--ink", [5, 4], "now"], [least, "--enable", [2, 3], "best"], [pointed, "--axis", [], ""]];
+    const lines = [[own, "--ink", [5, 4], "now"], [least, "--enable", [2, 3], "best by position"], [pointed, "--axis", [], ""]];
     context.font = "11px system-ui, sans-serif";
     for (const [row, ink, dash, name] of lines) {
       if (!row || row.d1 < low || row.d1 > high) continue;
       const x = Math.round(left + ((row.d1 - low) / (high - low)) * (right - left)) + 0.5;
       context.strokeStyle = context.fillStyle = color(ink);
       context.setLineDash(dash);
-      for (const canvas of [thdCanvas, distanceCanvas]) {
+      for (const canvas of [thdCanvas, distanceCanvas].filter(({ hidden }) => !hidden)) {
         const down = canvas.offsetTop + (canvas.parentElement?.offsetTop ?? 0);
         context.beginPath();
         context.moveTo(x, down + top);
         context.lineTo(x, down + bottom);
         context.stroke();
       }
-      if (name) context.fillText(name, x + 4, thdCanvas.offsetTop + top + (name === "now" ? 11 : 24));
+      if (name) context.fillText(name, x + 4, (thdCanvas.hidden ? distanceCanvas.offsetTop + (distanceCanvas.parentElement?.offsetTop ?? 0) : thdCanvas.offsetTop) + top + (name === "now" ? 11 : 24));
     }
     context.setLineDash([]);
   }
@@ -257,6 +280,11 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     const wanted = of && move >= 0 && analysis?.sensor_hz ? analysis.sensor_hz * of.moves[move].sine_segments.period_s : undefined;
     const other = of !== null && wanted !== sensor;
     if (other) sensor = wanted;
+    // An undo takes away what the note tells of.
+    if (claim && JSON.stringify(get(state.scenario, claim.path)) !== claim.json) {
+      claim = null;
+      say(note, "");
+    }
     if (!swept) vertices();
     if (!swept || other) refresh();
     if (before?.view !== state.view || before?.study !== state.study) paint();
@@ -268,6 +296,11 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
 /** @param {Rows | null | undefined} rows @param {number} index @returns {Row | null} */
 function rowOf(rows, index) {
   return rows && index < rows.d1.length ? /** @type {any} */ (Object.fromEntries(NAMES.map((name) => [name, rows[name][index]]))) : null;
+}
+
+/** Whether a d1 is the first or the last of the range, beyond which there may be better ones. @param {number} d1 @param {Float64Array} range */
+function atEnd(d1, range) {
+  return [range[0], range[range.length - 1]].some((end) => Math.abs(d1 - end) <= 1e-6 * end);
 }
 
 /** @param {Rows[]} pieces @returns {Rows} */

@@ -4,17 +4,24 @@ import { get } from "../../state/state.js";
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{json: string, controller: number, axis: number, path: string, moves: any[]}} Subject  Scenario as text, and one of its axes: its path there, its moves. */
 
-/**
- * The axis that the study is about. @param {State} state
- * @returns {Subject | string | null}  Why there is none: empty where the form has problems, and what was shown may stay; null until it is judged.
- */
-export function subject({ judgement, judged, revision, scenario, result, axis: wanted }) {
-  if (judged !== revision || !judgement) return null;
-  if (judgement.problems.length > 0) return "";
+/** Where the looked-at axis is in the scenario, whether or not the form has problems; no path where there is none. @param {State} state */
+export function place({ scenario, result, axis: wanted }) {
   const controller = result?.controller ?? 0;
   const list = controller > 0 ? `controllers[${controller - 1}].axes` : "source.motion.axes";
   const axes = scenario.source?.motion ? get(scenario, list) ?? [] : [];
   const axis = Math.min(wanted, axes.length - 1);
-  if (axis < 0) return "There is no axis with moves here: choose a motion of axes as the source in the form.";
-  return { json: judgement.scenario, controller, axis, path: `${list}[${axis}]`, moves: axes[axis].moves };
+  return { controller, axis, path: axis < 0 ? "" : `${list}[${axis}]`, moves: axes[axis]?.moves };
+}
+
+/**
+ * The axis that the study is about. @param {State} state
+ * @returns {Subject | string | null}  Why there is none: empty where the form has problems, and what was shown may stay; null until it is judged.
+ */
+export function subject(state) {
+  const { judgement, judged, revision } = state;
+  if (judged !== revision || !judgement) return null;
+  if (judgement.problems.length > 0) return "";
+  const found = place(state);
+  if (!found.path) return "There is no axis with moves here: choose a motion of axes as the source in the form.";
+  return { json: judgement.scenario, ...found };
 }

@@ -3,7 +3,7 @@
  * and each as a file for a firmware. What a tab is, says study.js.
  */
 import { element, fill, say } from "../../dom.js";
-import { count, plain, short, si } from "../../state/number.js";
+import { count, counted, plain, pretty, short, si } from "../../state/number.js";
 import { save } from "../../shell/save.js";
 import { createJob, field, table } from "./parts.js";
 import { subject } from "./subject.js";
@@ -18,7 +18,7 @@ const ROWS = Object.keys(FORMS).flatMap((form) => Object.keys(WIDTHS).map((width
 
 /** @param {import("./study.js").StudyPage} page @returns {import("./study.js").StudyTab} */
 export function createTables({ engine, now, panel }) {
-  const error = field("Largest error of compressed", "us", chosen.us, { least: 0, most: 1e6 }, () => refresh(now()));
+  const error = field("Largest error of compressed", "µs", chosen.us, { least: 0, most: 1e6 }, () => refresh(now()));
   const job = createJob("Tables");
   const about = element("p", { class: "study-note" });
   const note = element("p", { class: "study-note" });
@@ -71,14 +71,18 @@ export function createTables({ engine, now, panel }) {
     // What is refused in all widths for one reason is one row.
     const alike = (/** @type {number} */ at) => ROWS.every(({ form }, other) => form !== ROWS[at].form || (told[other].why !== null && told[other].why === told[at].why));
     const kept = told.map((_, at) => at).filter((at) => !alike(at) || ROWS[at].widths === "q16");
+    const fewest = Math.min(...told.filter(({ why }) => why === null).map(({ bytes }) => bytes));
+    const best = told.findIndex(({ why, bytes }) => why === null && bytes === fewest);
     list.show(kept.map((at) => {
       const { entries, bytes, document_bytes, largest_s, rms_s, why } = told[at];
       const { form, widths } = ROWS[at];
       const pick = element("input", { type: "radio", name: "study-table", value: `${form}-${widths}` });
       pick.disabled = why !== null;
       const name = element("label", { class: "check" }, pick, FORMS[form]);
-      const cells = why !== null ? [why] : [count(entries), count(bytes), entries === 0 ? "–" : steps < 1000 * entries ? short(steps / entries, 4) : count(steps / entries), si(largest_s, "s"), si(rms_s, "s"), `${count(steps)}, exact`];
+      /** @type {(string | Node)[]} */
+      const cells = why !== null ? [pretty(why)] : [count(entries), count(bytes), entries === 0 ? "–" : steps < 1000 * entries ? short(steps / entries, 4) : count(steps / entries), si(largest_s, "s"), si(rms_s, "s"), `${count(steps)}, exact`];
       if (form === "document" && document_bytes !== null && why === null) cells[1] += ` (${count(document_bytes)})`;
+      if (why === null && bytes === fewest) cells[1] = element("strong", {}, cells[1]);
       return [name, alike(at) ? "all" : element("span", {}, widths, element("span", { class: "roomy" }, `: ${WIDTHS[widths]}`)), ...cells];
     }));
     kept.forEach((at, row) => {
@@ -88,7 +92,7 @@ export function createTables({ engine, now, panel }) {
       cell.className = "why";
     });
     const own = told.find(({ document_bytes }) => document_bytes !== null);
-    say(note, `One interval of 4 bytes for each step would take ${count(4 * steps)} bytes.${own ? " In brackets: bytes of the table as the motion's document keeps it." : ""} No step is ever lost or added: a list that has not all of them is refused.`);
+    say(note, `${best < 0 ? "" : `Fewest bytes, in bold: ${FORMS[ROWS[best].form].toLowerCase()}, ${ROWS[best].widths}. `}The exact list takes the next step into an entry only where the entry foretells its interval, the compressed one searches for the longest entry: so the exact list can be longer even than a compressed one with error 0. One interval of 4 bytes for each step would take ${count(4 * steps)} bytes.${own ? " In brackets: bytes of the table as the motion's document keeps it." : ""} No step is ever lost or added: a list that has not all of them is refused.`);
     mark();
   }
 
@@ -117,7 +121,7 @@ export function createTables({ engine, now, panel }) {
       told = made;
       for (const each of [list.root, note, saves]) each.hidden = false;
       const derived = now().derived?.controllers[of.controller]?.axes[of.axis];
-      say(about, `Axis ${of.axis}: ${count(made[0].steps)} steps${derived ? ` in ${si(derived.duration_s, "s")}, up to ${plain(derived.peak_speed_steps_s, "steps/s")}` : ""}.`);
+      say(about, `Axis ${of.axis}: ${counted(made[0].steps, "step")}${derived ? ` in ${si(derived.duration_s, "s")}, up to ${plain(derived.peak_speed_steps_s, "steps/s")}` : ""}.`);
       show();
     });
   }

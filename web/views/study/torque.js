@@ -4,6 +4,7 @@
  */
 import { button, element, fill, say } from "../../dom.js";
 import { count, plain, short, si } from "../../state/number.js";
+import { get } from "../../state/state.js";
 import { color, draw, watch } from "../../time/plot.js";
 import { createJob, table } from "./parts.js";
 import { subject } from "./subject.js";
@@ -37,7 +38,7 @@ function enough({ enough_s, too_fast_s, without_ramps }) {
 /** @param {import("./study.js").StudyPage} page @returns {import("./study.js").StudyTab} */
 export function createTorque({ engine, samples, dispatch, now, panel }) {
   const job = createJob("Torque");
-  const about = element("p", { class: "study-note", "aria-live": "polite" });
+  const about = element("p", { class: "study-note", "aria-live": "polite", tabindex: "-1" });
   const verdict = element("p", { id: "torque-verdict", "aria-live": "polite" });
   const canvas = element("canvas", { role: "img", "aria-label": "Torque against rate" });
   const key = (/** @type {string} */ kind, /** @type {string} */ text) => element("span", {}, element("span", { class: `key ${kind}` }), ` ${text} `);
@@ -95,8 +96,13 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
     say(note, `${told.ramps.length ? "Enough torque: ramps with which it suffices throughout. Longest by rate: T − n/f_s (for ramps of area 1/2), with the motor's greatest rate for its load as f_s; the move has room for T/2. " : ""}${jump > 0 ? "A motor follows a jump of speed up to its start-stop rate, which these data do not tell. " : ""}The model: fundamental waves only, no saturation, no losses of iron and friction in the motor, no resonance.`);
   }
 
-  /** @param {string} path */
-  const add = (path) => button("Add the document's motor", "Add the document's motor: Song, Han and Lu 2021", () => dispatch({ type: "edit", path: `${path}.motor`, value: samples.motor }));
+  const add = () => button("Add the document's motor", "Add the document's motor: Song, Han and Lu 2021", () => {
+    // What is looked at by now; the button goes with the answer.
+    const of = subject(now());
+    if (!of || typeof of === "string" || get(now().scenario, `${of.path}.motor`)) return;
+    about.focus({ preventScroll: true });
+    dispatch({ type: "edit", path: `${of.path}.motor`, value: samples.motor });
+  });
 
   /** @param {State} state */
   function refresh(state) {
@@ -114,7 +120,7 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
     job.run(async (signal) => (await engine.share("torque", [[of.json, of.controller, of.axis]], signal))[0], (/** @type {Torque | undefined} */ answer) => {
       made = answer ?? null;
       body.hidden = made === null;
-      if (!made) return fill(about, `Axis ${of.axis} has no motor yet: the form has its data under the axis' mechanics. `, add(of.path));
+      if (!made) return fill(about, `Axis ${of.axis} has no motor yet: the form has its data under the axis' mechanics. `, add());
       say(about, `Axis ${of.axis}: what its motor has, and what its plan needs. Its data are in the form.`);
       show(made.told);
       paint();
