@@ -101,7 +101,7 @@ impl Simulation {
         let watched =
             |kept: &mut Kept| Watched { recording: take(&mut kept.recording), timing: kept.timing.take() };
         let mut watched: Vec<Watched> = self.kept.iter_mut().map(watched).collect();
-        let done = self.run.advance_watched(u64::from(max_records.max(1)), &mut watched);
+        let done = stepscope_loops::advance(&mut self.run, u64::from(max_records.max(1)), &mut watched);
         for (kept, Watched { recording, timing }) in self.kept.iter_mut().zip(watched) {
             kept.changes.extend(&recording.trace);
             (kept.recording, kept.timing) = (recording, timing);

@@ -61,6 +61,7 @@ impl Rule {
 
     /// The rule's word in tables and on the page.
     #[must_use]
+    #[inline]
     pub const fn name(self) -> &'static str {
         match self {
             Self::StepHigh => "step_high",
@@ -73,6 +74,7 @@ impl Rule {
 
     /// What the rules ask for under this one, in ns; 0 asks for nothing.
     #[must_use]
+    #[inline]
     pub const fn nanos(self, rules: &TimingRules) -> u32 {
         match self {
             Self::StepHigh => rules.step_high_ns,
@@ -86,6 +88,7 @@ impl Rule {
 
 /// Fewest cycles that last at least `nanos`; no product of two `u32` leaves `u64`.
 #[must_use]
+#[inline]
 pub const fn cycles_at_least(nanos: u32, clock_hz: u32) -> Cycles {
     Cycles((nanos as u64 * clock_hz as u64).div_ceil(1_000_000_000))
 }
@@ -135,6 +138,7 @@ pub struct RuleResult {
 impl RuleResult {
     /// Violations of all channels.
     #[must_use]
+    #[inline]
     pub fn total(&self) -> u64 {
         self.violations.iter().sum()
     }
@@ -166,6 +170,7 @@ impl TimingCheck {
     /// A check before the first record, for a run at `clock_hz`. It counts all violations and keeps
     /// the first `most_kept` of them in full.
     #[must_use]
+    #[inline]
     pub fn new(rules: &TimingRules, clock_hz: u32, most_kept: usize) -> Self {
         let result = |rule: Rule| {
             let nanos = rule.nanos(rules);
@@ -185,12 +190,14 @@ impl TimingCheck {
 
     /// What the run came to under each rule, in the order of [`Rule::ALL`].
     #[must_use]
+    #[inline]
     pub const fn results(&self) -> &[RuleResult] {
         &self.results
     }
 
     /// All violations, also those that are not kept.
     #[must_use]
+    #[inline]
     pub fn total(&self) -> u64 {
         self.results.iter().map(RuleResult::total).sum()
     }
@@ -198,12 +205,14 @@ impl TimingCheck {
     /// The first violations, in the order of their cycles; within one cycle by channel, and of one
     /// channel hold, high, low, set-up, wake-up.
     #[must_use]
+    #[inline]
     pub fn violations(&self) -> &[Violation] {
         &self.violations
     }
 
     /// Index of the first kept violation after `at`, or with `forward` false of the last one before.
     #[must_use]
+    #[inline]
     pub fn next(&self, at: Instant, forward: bool) -> Option<usize> {
         if forward {
             let index = self.violations.partition_point(|violation| violation.at <= at);
@@ -214,6 +223,7 @@ impl TimingCheck {
     }
 
     /// Signals of `changed` have new levels from `at` on.
+    #[inline]
     fn change(&mut self, at: Instant, changed: Levels) {
         if changed.has(Levels::EN) {
             self.enabled = at;
@@ -228,6 +238,7 @@ impl TimingCheck {
         }
     }
 
+    #[inline]
     fn change_channel(&mut self, at: Instant, channel: usize, dir_changed: bool, step_changed: bool) {
         let Some(edges) = self.edges.get_mut(channel) else { return };
         let before = *edges;

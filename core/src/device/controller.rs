@@ -25,6 +25,7 @@ pub(super) struct Controller {
 }
 
 impl Controller {
+    #[inline]
     pub(super) fn new(config: &Config) -> Self {
         Self {
             address: config.address.unwrap_or(0),
@@ -36,11 +37,13 @@ impl Controller {
     }
 
     /// Sequence number that the next TICKS must have.
+    #[inline]
     pub(super) const fn expected_seq(&self) -> u8 {
         self.expected_seq
     }
 
     /// A byte delivered in cycle `now`.
+    #[inline]
     pub(super) fn byte(&mut self, now: Instant, byte: u8, machine: &mut Machine, sink: &mut impl Sink) {
         let mut answered = false;
         let fate = match self.deframer.byte(byte) {
@@ -86,6 +89,7 @@ struct Judge<'a> {
 }
 
 impl Judge<'_> {
+    #[inline]
     fn frame(&mut self, frame: Frame<'_>) -> FrameFate {
         let Some(kind) = Kind::parse(frame.kind) else { return FrameFate::Refused(Reason::UnknownKind) };
         if kind == Kind::Ticks {
@@ -107,6 +111,7 @@ impl Judge<'_> {
         FrameFate::Taken(kind)
     }
 
+    #[inline]
     fn ticks(&mut self, body: &[u8]) -> FrameFate {
         let Some(ticks) = Ticks::parse(body, self.channels) else {
             return FrameFate::Refused(Reason::BadBody);

@@ -165,6 +165,7 @@ impl Sliced {
     }
 
     /// Slice `index`; past the last none.
+    #[inline(always)]
     fn slice(&self, index: usize) -> Option<(f64, f64, u32, u32)> {
         let (from, to) = (self.starts_s.get(index)?, self.starts_s.get(index + 1)?);
         let (before, after) = (self.sums.get(index)?, self.sums.get(index + 1)?);
@@ -201,6 +202,7 @@ fn slices_in(ratio: f64) -> u64 {
 }
 
 /// floor, of a number from 0 on.
+#[inline(always)]
 fn whole_steps(steps: f64) -> u64 {
     (steps + NEARLY) as u64
 }
@@ -225,6 +227,7 @@ impl Slices {
     }
 
     /// Steps of a slice at a top speed; in the plateau all have the same.
+    #[inline(always)]
     fn steps(&self, index: usize, top_speed: f64) -> u64 {
         let weight = self.weights.get(index).copied().unwrap_or(0.0);
         whole_steps(top_speed * if self.plateau.contains(&index) { self.slice_s } else { weight })
@@ -323,7 +326,8 @@ impl Curve for Sliced {
     /// Between two slices the speed jumps; the acceleration is 0 throughout, and so is the jerk.
     fn peaks(&self) -> Peaks {
         let (mut peaks, mut before) = (Peaks::default(), None);
-        for (from, to, count) in self.slices() {
+        for index in 0..self.starts_s.len() {
+            let Some((from, to, _, count)) = self.slice(index) else { break };
             let rate = f64::from(count) / (to - from);
             let jump = before.map_or(0.0, |before: f64| libm::fabs(rate - before));
             peaks = peaks.or(Peaks { speed: rate, jump, ..Peaks::default() });

@@ -13,30 +13,36 @@ pub(super) struct Listener {
 }
 
 impl Listener {
+    #[inline]
     pub(super) const fn new(line: Line, device: Device) -> Self {
         Self { line, device, start: Instant::RESET, until: Instant::RESET }
     }
 
+    #[inline]
     pub(super) const fn line(&self) -> &Line {
         &self.line
     }
 
+    #[inline]
     pub(super) const fn device(&self) -> &Device {
         &self.device
     }
 
     /// Whether nothing can change any more.
+    #[inline]
     pub(super) fn is_over(&self) -> bool {
         self.device.at_rest() && self.line.is_over()
     }
 
     /// Whether it has run the cycles before `end`.
+    #[inline]
     pub(super) fn has_reached(&self, end: Instant) -> bool {
         self.start >= end
     }
 
     /// Runs to cycle `end`, or with [`Instant::NEVER`] until nothing can change any more, or until the
     /// sink asks for a pause: the inner loop of a long run.
+    #[inline]
     pub(super) fn run(&mut self, end: Instant, sink: &mut impl Sink) {
         while self.start < end {
             if self.start == self.until {
@@ -62,6 +68,7 @@ impl Listener {
     }
 
     /// One cycle.
+    #[inline]
     pub(super) fn clock(&mut self, sink: &mut impl Sink) {
         self.enter();
         self.device.clock(self.line.heard(true), sink);
@@ -70,11 +77,13 @@ impl Listener {
     }
 
     /// The last cycle in which something happened.
+    #[inline]
     pub(super) fn last_active(&self) -> Instant {
         self.device.last_active()
     }
 
     /// At rest: cycle `now` is the first that has not been run.
+    #[inline]
     pub(super) fn settle(&mut self, now: Instant) {
         self.device.settle(now);
         (self.start, self.until) = (now, Instant::NEVER);

@@ -23,10 +23,12 @@ pub(super) enum Net {
 pub(super) struct Ignored;
 
 impl Sink for Ignored {
+    #[inline]
     fn record(&mut self, _: Record) {}
 }
 
 impl Net {
+    #[inline]
     pub(super) fn new(line: Line, host: Option<FramedHost>, devices: Vec<Device>) -> Self {
         if host.is_some() || devices.iter().any(Device::answers) {
             return Self::Framed(Box::new(Talk::new(line, host, devices)));
@@ -34,6 +36,7 @@ impl Net {
         Self::Raw(devices.into_iter().map(|device| Listener::new(line.clone(), device)).collect())
     }
 
+    #[inline]
     pub(super) fn line(&self) -> &Line {
         match self {
             Self::Raw(listeners) => listeners[0].line(),
@@ -41,6 +44,7 @@ impl Net {
         }
     }
 
+    #[inline]
     pub(super) const fn host(&self) -> Option<&FramedHost> {
         match self {
             Self::Raw(_) => None,
@@ -48,6 +52,7 @@ impl Net {
         }
     }
 
+    #[inline]
     pub(super) fn first(&self) -> &Device {
         match self {
             Self::Raw(listeners) => listeners[0].device(),
@@ -55,6 +60,7 @@ impl Net {
         }
     }
 
+    #[inline]
     pub(super) fn device(&self, index: usize) -> Option<&Device> {
         match self {
             Self::Raw(listeners) => listeners.get(index).map(Listener::device),
@@ -62,11 +68,13 @@ impl Net {
         }
     }
 
+    #[inline]
     pub(super) fn devices(&self) -> impl Iterator<Item = &Device> {
         (0..).map_while(|index| self.device(index))
     }
 
     /// Whether nothing can change any more.
+    #[inline]
     pub(super) fn is_over(&self) -> bool {
         match self {
             Self::Raw(listeners) => listeners.iter().all(Listener::is_over),
@@ -75,6 +83,7 @@ impl Net {
     }
 
     /// Whether all have run the cycles before `end`.
+    #[inline]
     pub(super) fn has_reached(&self, end: Instant) -> bool {
         match self {
             Self::Raw(listeners) => listeners.iter().all(|listener| listener.has_reached(end)),
@@ -83,12 +92,14 @@ impl Net {
     }
 
     /// First cycle that nobody has run.
+    #[inline]
     pub(super) fn now(&self) -> Instant {
         self.devices().map(Device::now).max().unwrap_or(Instant::RESET)
     }
 
     /// Runs to cycle `end`, or with [`Instant::NEVER`] until nothing can change any more, or until a
     /// sink asks for a pause.
+    #[inline]
     pub(super) fn run(&mut self, end: Instant, sinks: &mut [impl Sink]) {
         match self {
             Self::Raw(listeners) => {
@@ -107,6 +118,7 @@ impl Net {
     }
 
     /// At rest: the last cycle that was run is the last one in which something happened.
+    #[inline]
     fn settle(&mut self) {
         match self {
             Self::Raw(listeners) => {
@@ -122,6 +134,7 @@ impl Net {
     }
 
     /// One cycle.
+    #[inline]
     pub(super) fn clock(&mut self, sinks: &mut [impl Sink]) {
         match self {
             Self::Raw(listeners) => {

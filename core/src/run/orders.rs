@@ -6,10 +6,11 @@ use crate::{
     protocol::seal,
     quantise::{exact_segments, ticks},
     scenario::{
-        Cause, Checked, Config, Controller, Forced, MOST_FURTHER, Problem, Protocol, Scenario, Source,
+        Cause, Checked, Config, Controller, Forced, Hex, MOST_FURTHER, Problem, Protocol, Scenario, Source,
         line_time,
     },
     segment::{CheckedSegments, PulseTimes},
+    signal::MAX_CHANNELS,
     units::Instant,
     wire::{
         Schedule,
@@ -176,27 +177,52 @@ fn start(checked: &Checked) -> Instant {
 
 /// Packet j of all controllers in ascending address, back to back from start + j*M*Ts.
 fn paced(checked: &Checked, orders: &[Orders]) -> Schedule {
-    let packets: Vec<Vec<Vec<u8>>> =
-        orders.iter().enumerate().map(|(index, orders)| packets_of(checked, index, orders)).collect();
-    let mut turn: Vec<usize> = (0..orders.len()).collect();
-    turn.sort_by_key(|&index| orders.get(index).map(|orders| orders.config.address()));
-    let last = packets.iter().map(Vec::len).max().unwrap_or(0);
-    let joined = (0..last).map(|tick| -> Vec<u8> {
-        turn.iter().filter_map(|&index| packets.get(index)?.get(tick)).flatten().copied().collect()
-    });
+    let mut turn: Vec<Packets<'_>> =
+        orders.iter().enumerate().map(|(index, orders)| Packets::of(checked, index, orders)).collect();
+    let last = turn.iter().map(Packets::count).max().unwrap_or(0);
+    turn.sort_by_key(|packets| packets.orders.config.address());
     let Some(first) = checked.configs.first() else { return Schedule::default() };
+    let joined = (0..last).map(|tick| {
+        let mut packet = Vec::with_capacity(turn.len() * (1 + MAX_CHANNELS));
+        turn.iter().for_each(|packets| packets.put(tick, &mut packet));
+        packet
+    });
     Schedule::paced(start(checked), first.tick(), joined)
 }
 
 /// The packets of one controller as they go over a raw line.
-fn packets_of(checked: &Checked, index: usize, orders: &Orders) -> Vec<Vec<u8>> {
-    if let Source::Packets(source) = &checked.source {
+struct Packets<'a> {
+    orders: &'a Orders,
+    /// Where they are given as they are.
+    given: Option<&'a [Hex]>,
+}
+
+impl<'a> Packets<'a> {
+    fn of(checked: &'a Checked, index: usize, orders: &'a Orders) -> Self {
         let further = index.checked_sub(1).and_then(|index| checked.further.get(index));
-        let packets = further.map_or(&source.packets, |further| &further.packets);
-        return packets.iter().map(|packet| packet.0.clone()).collect();
+        let given = match &checked.source {
+            Source::Packets(source) => Some(&further.map_or(&source.packets, |further| &further.packets)[..]),
+            _ => None,
+        };
+        Self { orders, given }
     }
-    let address = orders.config.packet_address();
-    orders.each_tick().map(|tick| address.into_iter().chain(tick.iter().copied()).collect()).collect()
+
+    fn count(&self) -> usize {
+        self.given.map_or_else(|| self.orders.each_tick().len(), <[Hex]>::len)
+    }
+
+    /// Adds the bytes of packet `index`, if there is one.
+    fn put(&self, index: usize, bytes: &mut Vec<u8>) {
+        if let Some(given) = self.given {
+            bytes.extend_from_slice(given.get(index).map_or(&[], |packet| &packet.0));
+            return;
+        }
+        let width = usize::from(self.orders.config.channels());
+        if let Some(tick) = self.orders.ticks.get(index * width..(index + 1) * width) {
+            bytes.extend(self.orders.config.packet_address());
+            bytes.extend_from_slice(tick);
+        }
+    }
 }
 
 /// The host of a framed line.
@@ -266,6 +292,11 @@ fn frame_bits(checked: &Checked, config: &Config) -> u128 {
 }
 
 /// One tick's orders, from its bytes.
+#[inline]
 pub(super) fn pulses(tick: &[u8]) -> u64 {
-    tick.iter().take(Tick::default().len()).map(|&byte| u64::from(Order::parse(byte).steps)).sum()
+    let mut sum = 0;
+    for byte in tick.get(..Tick::default().len()).unwrap_or(tick) {
+        sum += u64::from(Order::parse(*byte).steps);
+    }
+    sum
 }

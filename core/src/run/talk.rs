@@ -38,12 +38,14 @@ struct Station {
 
 impl Station {
     /// Whether it has not come to the end of the window, and has something to do there.
+    #[inline]
     fn is_behind(&self, until: Instant) -> bool {
         self.device.now() < until && !(until == Instant::NEVER && self.device.at_rest())
     }
 }
 
 impl Talk {
+    #[inline]
     pub(super) fn new(line: Line, host: Option<FramedHost>, devices: Vec<Device>) -> Self {
         let station = |device| Station { device, hears: true, collides: false };
         Self {
@@ -55,24 +57,29 @@ impl Talk {
         }
     }
 
+    #[inline]
     pub(super) const fn line(&self) -> &Line {
         &self.line
     }
 
+    #[inline]
     pub(super) const fn host(&self) -> Option<&FramedHost> {
         self.host.as_ref()
     }
 
+    #[inline]
     pub(super) fn first(&self) -> &Device {
         // There is one at least.
         &self.stations[0].device
     }
 
+    #[inline]
     pub(super) fn device(&self, index: usize) -> Option<&Device> {
         self.stations.get(index).map(|station| &station.device)
     }
 
     /// Whether nothing can change any more.
+    #[inline]
     pub(super) fn is_over(&self) -> bool {
         self.host.as_ref().is_none_or(FramedHost::is_over)
             && self.stations.iter().all(|station| station.device.at_rest())
@@ -80,11 +87,13 @@ impl Talk {
     }
 
     /// Whether all have run the cycles before `end`.
+    #[inline]
     pub(super) fn has_reached(&self, end: Instant) -> bool {
         self.start >= end
     }
 
     /// Enters cycle `self.start`: what each hears in it, and what the host does.
+    #[inline]
     fn enter(&mut self, sinks: &mut [impl Sink]) {
         let Self { line, host, stations, start, .. } = self;
         let now = *start;
@@ -115,6 +124,7 @@ impl Talk {
     }
 
     /// First cycle after the window that begins at `self.start`, at most `end`.
+    #[inline]
     fn window(&self, end: Instant) -> Instant {
         let driven = |station: &Station| station.device.next_driven(station.hears);
         let driven = self.stations.iter().map(driven).fold(Instant::NEVER, Instant::min);
@@ -128,6 +138,7 @@ impl Talk {
 
     /// Runs to cycle `end`, or with [`Instant::NEVER`] until nothing can change any more, or until a
     /// sink asks for a pause.
+    #[inline]
     pub(super) fn run(&mut self, end: Instant, sinks: &mut [impl Sink]) {
         while self.until < end || self.start < self.until {
             if !self.run_window(end, sinks) {
@@ -137,6 +148,7 @@ impl Talk {
     }
 
     /// Runs to the end of a window, which may have begun; false where a sink asked for a pause.
+    #[inline]
     fn run_window(&mut self, end: Instant, sinks: &mut [impl Sink]) -> bool {
         if self.start == self.until {
             self.enter(sinks);
@@ -157,6 +169,7 @@ impl Talk {
     }
 
     /// The last cycle in which something happened.
+    #[inline]
     pub(super) fn last_active(&self) -> Instant {
         let device = self.stations.iter().map(|station| station.device.last_active()).max();
         let host = self.host.as_ref().map(FramedHost::last_active);
@@ -164,12 +177,14 @@ impl Talk {
     }
 
     /// At rest: cycle `now` is the first that has not been run.
+    #[inline]
     pub(super) fn settle(&mut self, now: Instant) {
         self.stations.iter_mut().for_each(|station| station.device.settle(now));
         (self.start, self.until) = (now, Instant::NEVER);
     }
 
     /// One cycle.
+    #[inline]
     pub(super) fn clock(&mut self, sinks: &mut [impl Sink]) {
         self.enter(sinks);
         for (index, station) in self.stations.iter_mut().enumerate() {
@@ -185,6 +200,7 @@ impl Talk {
 }
 
 /// Tells of a collision where it begins.
+#[inline]
 fn collide(station: &mut Station, collides: bool, now: Instant, sink: Option<&mut impl Sink>) {
     if collides
         && !station.collides

@@ -1,6 +1,5 @@
 //! A run as the page makes it: kept for its views, and the pulses checked on the way.
 
-use super::Run;
 use crate::{
     analysis::timing::TimingCheck,
     signal::{Event, Record, Sink},
@@ -18,7 +17,7 @@ pub struct Watched {
 }
 
 impl Sink for Watched {
-    #[inline]
+    #[inline(always)]
     fn record(&mut self, record: Record) {
         self.recording.record(record);
         if let Some(check) = &mut self.timing {
@@ -26,17 +25,8 @@ impl Sink for Watched {
         }
     }
 
+    #[inline]
     fn event(&mut self, at: Instant, event: Event) {
         self.recording.event(at, event);
-    }
-}
-
-impl Run {
-    /// [`Self::advance_each`] with every controller watched.
-    ///
-    /// It stands here so that this loop is made for speed, though what calls it, the page's crate, is made
-    /// small.
-    pub fn advance_watched(&mut self, records: u64, sinks: &mut [Watched]) -> bool {
-        self.advance_each(records, sinks)
     }
 }

@@ -27,6 +27,7 @@ pub struct Line {
 impl Line {
     /// The line before cycle 1: idle. A rate of 0 counts as 1 baud.
     #[must_use]
+    #[inline]
     pub fn new(schedule: Rc<Schedule>, forced: &[Forced], clock_hz: u32, baud: u32) -> Self {
         let sender = Sender::new(schedule, clock_hz, baud);
         let mut line = Self {
@@ -44,11 +45,13 @@ impl Line {
 
     /// What the host has sent and will send, as far as it is known.
     #[must_use]
+    #[inline]
     pub fn schedule(&self) -> &Schedule {
         self.sender.schedule()
     }
 
     /// Adds a send, after all that were added before.
+    #[inline]
     pub fn send(&mut self, start: Instant, bytes: &[u8]) {
         self.sender.send(start, bytes);
         self.look_ahead();
@@ -56,6 +59,7 @@ impl Line {
     }
 
     /// Forces a level in cycles that are still to come; where another one is forced too, this one wins.
+    #[inline]
     pub fn force(&mut self, new: Forced) {
         let forced = Rc::make_mut(&mut self.forced);
         let first = forced.partition_point(|one| one.end <= new.start);
@@ -72,6 +76,7 @@ impl Line {
 
     /// What has been forced and will be, as far as it is known: rising in time and not overlapping.
     #[must_use]
+    #[inline]
     pub fn forced(&self) -> &[Forced] {
         &self.forced
     }
@@ -85,12 +90,14 @@ impl Line {
 
     /// Level in the current cycle as the host hears it: what controllers send, or what is forced.
     #[must_use]
+    #[inline]
     pub fn replied(&self, others: bool) -> bool {
         self.force.unwrap_or(others)
     }
 
     /// Whether the host holds the line low.
     #[must_use]
+    #[inline]
     pub const fn is_pulled_low(&self) -> bool {
         !self.sender.level()
     }
@@ -112,6 +119,7 @@ impl Line {
     }
 
     /// Looks for the next change that is heard.
+    #[inline]
     fn find_heard(&mut self) {
         if self.passed == self.forced.len() {
             return;
@@ -151,6 +159,7 @@ impl Line {
         self.look_ahead();
     }
 
+    #[inline]
     fn follow_forced(&mut self, now: Instant) {
         while self.forced.get(self.passed).is_some_and(|forced| forced.end <= now) {
             self.passed += 1;
@@ -170,6 +179,7 @@ impl Line {
 }
 
 /// Makes disjoint, rising spans of forced levels that overlap: the later entry wins.
+#[inline]
 fn flatten(forced: &[Forced]) -> Vec<Forced> {
     let mut bounds: Vec<(Instant, usize)> =
         forced.iter().enumerate().flat_map(|(i, f)| [(f.start, i), (f.end, i)]).collect();

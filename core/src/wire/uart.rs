@@ -51,6 +51,7 @@ pub struct Receiver {
 impl Receiver {
     /// A receiver of bit time `bit_cycles`, armed.
     #[must_use]
+    #[inline]
     pub const fn new(bit_cycles: Cycles) -> Self {
         let seen = Instant::RESET;
         Self { bit_cycles, state: State::Armed, seen, bit: 0, at: Instant::NEVER, byte: 0 }
@@ -58,6 +59,7 @@ impl Receiver {
 
     /// Where the latest start bit was seen.
     #[must_use]
+    #[inline]
     pub const fn seen(&self) -> Instant {
         self.seen
     }
@@ -102,6 +104,7 @@ impl Receiver {
     }
 
     /// Takes the line's level for the bit that is due.
+    #[inline]
     fn take(&mut self, rx: bool) {
         if let Some(place) = self.bit.checked_sub(1) {
             self.byte |= u8::from(rx).checked_shl(place.into()).unwrap_or(0);
@@ -111,6 +114,7 @@ impl Receiver {
     }
 
     /// The look that is due in this cycle.
+    #[inline]
     fn look(&mut self, rx: bool) -> Option<Heard> {
         match (self.bit, rx) {
             (0, true) => self.state = State::Armed,

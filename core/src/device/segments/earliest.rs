@@ -23,6 +23,7 @@ pub(super) struct Earliest {
 
 impl Earliest {
     /// `channels` channels, at most 16, for which nothing is due.
+    #[inline]
     pub(super) fn new(channels: usize) -> Self {
         Self { keys: [NEVER; ENTRIES], size: channels.clamp(1, MAX_CHANNELS).next_power_of_two() }
     }

@@ -21,6 +21,7 @@ pub(super) struct Falls {
 }
 
 impl Default for Falls {
+    #[inline]
     fn default() -> Self {
         let none = Fall { cycle: Instant::NEVER, steps: 0 };
         Self { ring: [none; MAX_CHANNELS], first: 0, count: 0, cycle: Instant::NEVER }
