@@ -68,9 +68,15 @@ fn print(found: &Calibration, pairs: &[Pair]) -> io::Result<()> {
     writeln!(out, "\"mechanics\": {{ \"direct\": {{ \"step_mm\": {step_mm} }} }}")
 }
 
+/// A number above 0 with so many decimals; with a power of ten where those would cut off what counts of it, or
+/// it is long.
+fn digits(number: f64, decimals: usize) -> String {
+    if (1e-3..1e9).contains(&number) { format!("{number:.decimals$}") } else { format!("{number:.9e}") }
+}
+
 fn fit(fit: &Fit, pairs: &[Pair], out: &mut impl Write) -> io::Result<()> {
     let k = fit.steps_per_unit;
-    writeln!(out, "  k                 {k:.6} steps/mm, {:.9} mm a step", 1.0 / k)?;
+    writeln!(out, "  k                 {} steps/mm, {} mm a step", digits(k, 6), digits(1.0 / k, 9))?;
     writeln!(out, "  r.m.s. residual   {:.3} steps, {:.6} mm", fit.rms(), fit.rms() / k)?;
     let Some((index, largest)) = fit.largest() else { return Ok(()) };
     let length = pairs.get(index).map_or(0.0, |pair| pair.length);

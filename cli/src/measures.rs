@@ -11,7 +11,7 @@ use std::{
 use stepscope_core::{
     analysis::{
         made::Pulses,
-        measures::Measures,
+        measures::{Measures, within_bounds},
         spectrum::{Harmonics, Spectrum, Stretch},
     },
     motion::AxisPlan,
@@ -86,6 +86,9 @@ pub(crate) fn measures(arguments: &Arguments) -> Result<(), Failure> {
     let axis = arguments.axis.unwrap_or(scenario.analysis.axis.into());
     let plan = experiment.plans().get(axis);
     let plan = plan.ok_or_else(|| Failure::Axis(path.clone(), axis, experiment.plans().len()))?;
+    // The recording has the steps of all axes.
+    let plans = (0..experiment.controllers()).flat_map(|controller| experiment.plans_of(controller));
+    within_bounds(plans).map_err(|cause| wrong(vec![Problem::new("source.motion", cause)]))?;
     let mut recording = Recording::default();
     experiment.run(&mut recording);
     // There are at most 16 axes.

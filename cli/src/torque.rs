@@ -14,6 +14,8 @@ use stepscope_core::{
 
 /// Shortages that the screen shows of an axis.
 const MOST_SHOWN: usize = 20;
+/// The most time in s that a move may have (docs/scenario.md).
+const MOST_DURATION_S: f64 = 86_400.0;
 /// Rates of the curve.
 const POINTS: u32 = 201;
 
@@ -108,8 +110,13 @@ fn report(driven: &Driven, out: &mut impl Write) -> io::Result<()> {
     let Driven { axis, machine, plan } = driven;
     writeln!(out, "axis {axis}")?;
     let standing = machine.available_mn_m(0.0);
-    let corner = rate(machine.corner_rate());
-    writeln!(out, "  full torque      {standing:.1} mN*m, up to {corner}")?;
+    match machine.corner_rate() {
+        Some(0.0) => writeln!(
+            out,
+            "  standing torque  {standing:.1} mN*m; the supply is too low for the whole current at any rate"
+        )?,
+        corner => writeln!(out, "  full torque      {standing:.1} mN*m, up to {}", rate(corner))?,
+    }
     writeln!(
         out,
         "  greatest rate    {} with a load of {:.1} mN*m",
@@ -141,7 +148,11 @@ fn report(driven: &Driven, out: &mut impl Write) -> io::Result<()> {
 }
 
 fn rate(found: Option<f64>) -> String {
-    found.map_or_else(|| "any rate".to_owned(), |rate| format!("{rate:.0} steps/s"))
+    match found {
+        None => "any rate".to_owned(),
+        Some(0.0) => "none".to_owned(),
+        Some(rate) => format!("{rate:.0} steps/s"),
+    }
 }
 
 fn moment(moment: &Moment) -> String {
@@ -187,6 +198,12 @@ fn shortages(demand: &Demand, machine: &Machine, out: &mut impl Write) -> io::Re
 fn ramps(index: usize, planned: &PlannedMove, found: &Ramps, out: &mut impl Write) -> io::Result<()> {
     let (steps, duration_s) = (planned.profile.steps(), planned.profile.duration_s());
     writeln!(out, "  move {index:<11} {} steps in {duration_s} s", steps.unsigned_abs())?;
+    if found.greatest_rate == Some(0.0) {
+        return writeln!(
+            out,
+            "    the load needs more torque than the motor has at any rate; give less load"
+        );
+    }
     if let Some(greatest) = found.greatest_rate {
         write!(out, "    under {greatest:.0} steps/s  ")?;
         match found.longest_s {
@@ -196,15 +213,27 @@ fn ramps(index: usize, planned: &PlannedMove, found: &Ramps, out: &mut impl Writ
             }
             Some(longest_s) => writeln!(out, "a ramp of at most {longest_s:.4} s")?,
             None => {
-                let least_s = steps.unsigned_abs() as f64 / greatest;
-                writeln!(out, "even without ramps the move is faster; give at least {least_s:.4} s")?;
+                write!(out, "even without ramps the move is faster; ")?;
+                match steps.unsigned_abs() as f64 / greatest {
+                    least_s if least_s <= MOST_DURATION_S => writeln!(out, "give at least {least_s:.4} s")?,
+                    _ => {
+                        writeln!(out, "give less distance or less load: no move may take the time it needs")?
+                    }
+                }
             }
         }
     }
-    match found.enough_s {
-        Some((shortest, longest)) => {
-            writeln!(out, "    enough torque with ramps of {shortest:.4} to {longest:.4} s")
-        }
+    if let Some((shortest, longest)) = found.enough_s {
+        return writeln!(out, "    enough torque with ramps of {shortest:.4} to {longest:.4} s");
+    }
+    if found.without_ramps {
+        writeln!(out, "    enough torque without ramps, if the motor starts and stops at that rate")?;
+    }
+    match found.too_fast_s {
+        Some((shortest, longest)) => writeln!(
+            out,
+            "    the torque would suffice for ramps of {shortest:.4} to {longest:.4} s, but they are above the working rate; give more time"
+        ),
         None => writeln!(out, "    no ramp leaves enough torque; give more time or less load"),
     }
 }

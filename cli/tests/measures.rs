@@ -67,6 +67,21 @@ fn the_three_formats_have_the_same_figures() {
 }
 
 #[test]
+fn more_steps_than_can_be_kept_are_refused_before_the_run() {
+    let sine = |steps: u32| {
+        let sine = format!(r#"{{"sine":{{"amplitude":{{"steps":{steps}}},"period_s":1000,"periods":1}}}}"#);
+        format!(
+            r#"{{"bus":{{"channels":2}},"source":{{"motion":{{"axes":[{{"moves":[{sine}]}},{{"moves":[{sine}]}}]}}}}}}"#
+        )
+    };
+    // 4 times the amplitude on each of two axes.
+    let (code, out, err) = measures(&[], &sine(2_500_001));
+    assert_eq!((code, out.as_str()), (Some(2), ""));
+    let expected = "20000008 steps to be measured are more than one run may have; at most 20000000 are allowed: give a shorter motion";
+    assert!(err.contains(expected), "{err}");
+}
+
+#[test]
 fn a_motion_without_a_period_has_no_distortion_and_its_columns_are_aligned() {
     let (code, text, err) = measures(&[], MOTION);
     assert_eq!((code, err.as_str()), (Some(0), ""));

@@ -49,6 +49,22 @@ fn a_summary_has_a_row_for_each_axis_form_and_width() {
 }
 
 #[test]
+fn a_table_of_too_many_steps_is_refused_before_one_is_looked_at() {
+    let motion = r#"{"source":{"motion":{"axes":[{"moves":[{"sine_segments":{"amplitude":{"steps":1e9},"period_s":86400,"periods":1}}]}]}}}"#;
+    let (code, out, err) = stepscope(&["tables", "-"], motion);
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    let refused = |form: &str, most: &str| {
+        let told = format!(
+            "4000000000 steps of a table are more than one run may have; at most {most} are allowed: give a shorter motion, or make a table of each part of it"
+        );
+        out.lines().filter(|row| row.contains(form) && row.contains(&told)).count()
+    };
+    let found =
+        [refused("exact", "4000000"), refused("document", "100000000"), refused("compressed", "100000000")];
+    assert_eq!(found, [3; 3], "{out}");
+}
+
+#[test]
 fn a_table_is_written_in_each_language() {
     let rows: [(&[&str], &[&str]); 4] = [
         (&["--format", "c"], &["A table: axis 0, compressed step table", "const uint64_t axis_0_interval["]),

@@ -72,6 +72,44 @@ fn a_shortage_is_a_warning_with_numbers_and_a_remedy() {
 }
 
 #[test]
+fn what_limits_a_moves_ramps_is_named() {
+    let of = |moved: &str, motor: &str| {
+        let (code, out, err) =
+            stepscope(&["torque", "-"], &axes(&format!(r#"{{"moves":[{moved}],"motor":{motor}}}"#)));
+        assert_eq!((code, err.as_str()), (Some(0), ""));
+        out
+    };
+    let by_rate = "    the torque would suffice for ramps of 0.0004 to 0.2000 s, but they are above the working rate; give more time\n";
+    let out = of(r#"{"cosine":{"ramp_s":0}}"#, r#"{"working_rate_hz":8000}"#);
+    let without = "    enough torque without ramps, if the motor starts and stops at that rate\n";
+    assert!(
+        out.contains("  enough torque throughout\n") && out.contains(&(without.to_owned() + by_rate)),
+        "{out}"
+    );
+    let out = of(r#"{"cosine":{"ramp_s":0.1}}"#, r#"{"working_rate_hz":8000}"#);
+    assert!(out.contains("above the working rate of 8000 steps/s") && out.contains(by_rate), "{out}");
+    assert!(!out.contains("no ramp"), "{out}");
+    let out = of(r#"{"cosine":{}}"#, r#"{"load_torque_mn_m":1e6}"#);
+    assert!(out.contains("  greatest rate    none with a load of 1000000.0 mN*m\n"), "{out}");
+    assert!(
+        out.contains("    the load needs more torque than the motor has at any rate; give less load\n"),
+        "{out}"
+    );
+    assert!(!out.contains("inf"), "{out}");
+    // No current that 0.1 V leave drives at this rate.
+    let out = of(r#"{"constant":{"speed":{"steps_s":100000}}}"#, r#"{"supply_v":0.1}"#);
+    assert!(
+        out.contains("  standing torque  11.8 mN*m; the supply is too low for the whole current"),
+        "{out}"
+    );
+    assert!(out.contains("  greatest rate    271 steps/s with a load of 0.0 mN*m\n"), "{out}");
+    assert!(
+        out.contains("  warning: too little torque in 1 stretch") && !out.contains("throughout"),
+        "{out}"
+    );
+}
+
+#[test]
 fn the_curve_is_a_table_that_starts_full_and_falls() {
     let scenario = axes(r#"{"motor":{}}"#);
     let (code, out, _) = stepscope(&["torque", "-", "--format", "csv"], &scenario);
@@ -103,12 +141,26 @@ fn steps_a_millimetre_are_fitted_and_made_into_mechanics() {
 }
 
 #[test]
+fn very_few_steps_a_millimetre_keep_their_digits() {
+    let (code, out, _) = stepscope(&["calibrate", "-"], "length_mm,steps\n0,0\n1e12,1\n");
+    assert_eq!(code, Some(0));
+    assert!(
+        out.contains("  k                 1.000000000e-12 steps/mm, 1.000000000e12 mm a step\n"),
+        "{out}"
+    );
+}
+
+#[test]
 fn a_table_without_a_line_is_refused() {
     for (table, expected) in [
         ("a,b\n1,2\n", "there is no column of lengths; give a first row"),
         ("length_mm\n1\n", "there is no column steps; give a first row"),
         ("length_mm,steps\n1,2\n", "1 pair of length and steps; give at least 2"),
         ("length_mm,steps\n1,2\n1,3\n", "all pairs have length 1; measure at least one of another length"),
+        (
+            "length_mm,steps\n1e-200,1\n2e-200,2\n",
+            "pair 1 has length 1e-200 and 1.0 steps; give numbers from 1e-12",
+        ),
         ("length_mm,steps\n1,2\n2,x\n", "line 3: steps is “x”; give a number, with a point"),
         ("length_mm,steps\n1,2\n2,nan\n", "line 3: steps is “nan”; give a number, with a point"),
     ] {

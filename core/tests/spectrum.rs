@@ -3,7 +3,10 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use stepscope_core::{
-    analysis::spectrum::{Spectrum, Stretch},
+    analysis::{
+        made::Pulses,
+        spectrum::{Spectrum, Stretch},
+    },
     quantise::TickClock,
     run::Experiment,
     trace::{Recording, Step, steps},
@@ -42,5 +45,47 @@ fn a_pause_that_is_no_whole_tick_takes_no_pulse_from_the_period_after_it() {
         // Pulses come with their ticks, so where these lie moves the last digits.
         assert!((distortion - 0.262).abs() < 1e-3, "{pause_s} s: {distortion} %");
         assert_eq!(end, 0, "{pause_s} s: as many to the right as to the left");
+    }
+}
+
+#[test]
+fn with_segments_every_step_of_the_sine_counts_whatever_the_ticks_are() {
+    let moves = |kind: &str, period_s: &str, periods: u32| {
+        let sine = format!(
+            r#"{{"{kind}":{{"amplitude":{{"steps":10}},"period_s":{period_s},"periods":{periods}}}}}"#
+        );
+        let one = r#"{"constant":{"distance":{"steps":-7},"speed":{"steps_s":9000}}}"#;
+        format!(r#"{one},{sine},{one}"#)
+    };
+    // Ticks of 3.1 ms, of 500 us, and of 6 us, within which nothing cancels.
+    for bus in [r#""bus":{}"#, r#""bus":{"slots":16}"#, r#""bus":{"slots":1,"step_period_cycles":100}"#] {
+        for kind in ["sine", "sine_segments"] {
+            for (period_s, periods) in [("0.0031", 1), ("0.001", 4)] {
+                let moves = moves(kind, period_s, periods);
+                let json = format!(
+                    r#"{{{bus},"source":{{"motion":{{"engine":"segments","axes":[{{"moves":[{moves}]}}]}}}}}}"#
+                );
+                let experiment = Experiment::from_json(&json).unwrap();
+                let mut recording = Recording::default();
+                experiment.run(&mut recording);
+                let steps = steps(&recording.trace, 0);
+                let segments = experiment.segments().and_then(|lists| lists.lists().first());
+                let (config, log) = (experiment.config(), &recording.packets);
+                let run = Pulses { channel: 0, steps: &steps, log, segments, config };
+                let plan = &experiment.plans()[0];
+                let stretch = Stretch::of(plan).unwrap();
+                let own = stretch.pulses_of(plan, &run);
+                let hz = f64::from(config.clock_hz());
+                let due: Vec<(f64, i8)> = plan
+                    .due_steps(config.clock_hz())
+                    .skip(7)
+                    .take(40 * periods as usize)
+                    .map(|due| (due.cycle as f64 / hz, if due.right { 1 } else { -1 }))
+                    .collect();
+                assert_eq!(own, due, "{json}");
+                let distortion = Spectrum::of_pulses(&own, stretch, 40).position.distortion.unwrap();
+                assert!(distortion < 0.03, "{json}: {distortion}");
+            }
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::{convert::object, simulation::Simulation};
 use stepscope_core::{
-    analysis::measures::Measures,
+    analysis::measures::{Measures, within_bounds},
     scenario::{Axis, Source},
 };
 use wasm_bindgen::prelude::*;
@@ -12,8 +12,9 @@ impl Simulation {
     /// All measures of an axis, an object with the core's names; `null` where it has no motion.
     ///
     /// # Errors
-    /// Never in practice.
+    /// More steps than are measured ([`within_bounds`]).
     pub fn measures(&mut self, axis: u8) -> Result<JsValue, JsError> {
+        within_bounds(self.plan(axis)).map_err(|cause| JsError::new(&cause.to_string()))?;
         self.count_steps(axis);
         let measures =
             self.plan(axis).map(|plan| Measures::of(plan, &self.pulses_of(axis), self.asked(axis)));

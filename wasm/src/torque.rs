@@ -57,6 +57,8 @@ struct ToldRamps {
     too_fast: bool,
     room_s: f64,
     enough_s: Option<(f64, f64)>,
+    too_fast_s: Option<(f64, f64)>,
+    without_ramps: bool,
 }
 
 impl From<&Moment> for ToldMoment {
@@ -73,8 +75,8 @@ impl From<&Shortage> for ToldShortage {
 
 impl ToldRamps {
     fn of(index: usize, duration_s: f64, found: Ramps) -> Self {
-        let Ramps { longest_s, too_fast, room_s, enough_s, .. } = found;
-        Self { index, duration_s, longest_s, too_fast, room_s, enough_s }
+        let Ramps { longest_s, too_fast, room_s, enough_s, too_fast_s, without_ramps, .. } = found;
+        Self { index, duration_s, longest_s, too_fast, room_s, enough_s, too_fast_s, without_ramps }
     }
 }
 

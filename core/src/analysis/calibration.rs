@@ -11,8 +11,10 @@
 use alloc::vec::Vec;
 use core::fmt;
 
-/// Greatest length or number of steps of a pair: its square and sums of them stay finite.
+/// Greatest length or number of steps of a pair, and the least but for 0: squares and sums of them are finite, and
+/// above 0.
 const MOST: f64 = 1e12;
+const LEAST: f64 = 1e-12;
 
 /// A measured length, in any unit, and the steps that made it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,7 +79,7 @@ pub enum BadPairs {
         /// How many.
         given: usize,
     },
-    /// Not a number, or beyond 10^12.
+    /// Not a number, beyond 10^12, or nearer to 0 than 10^-12 and not 0.
     Number {
         /// Which pair, from 0.
         index: usize,
@@ -106,7 +108,7 @@ impl fmt::Display for BadPairs {
             ),
             Self::Number { index, pair } => write!(
                 f,
-                "pair {} has length {} and {} steps; give numbers from -1e12 to 1e12",
+                "pair {} has length {:?} and {:?} steps; give numbers from 1e-12 to 1e12, or from -1e12 to -1e-12, or 0",
                 index + 1,
                 pair.length,
                 pair.steps
@@ -116,7 +118,7 @@ impl fmt::Display for BadPairs {
             }
             Self::NotRising { steps_per_unit } => write!(
                 f,
-                "{steps_per_unit} steps a unit: more length should come with more steps; give both the same sign, and check the columns"
+                "{steps_per_unit:?} steps a unit: more length should come with more steps; give both the same sign, and check the columns"
             ),
         }
     }
@@ -129,13 +131,13 @@ impl Calibration {
     /// the same bits everywhere.
     ///
     /// # Errors
-    /// [`BadPairs`] for fewer than two pairs, for numbers that are none or beyond 10^12, for equal lengths, and
-    /// where the steps do not grow with the length.
+    /// [`BadPairs`] for fewer than two pairs, for numbers that are none, beyond 10^12 or under 10^-12 in size (but
+    /// for 0), for equal lengths, and where the steps do not grow with the length.
     pub fn of(pairs: &[Pair]) -> Result<Self, BadPairs> {
         if pairs.len() < 2 {
             return Err(BadPairs::TooFew { given: pairs.len() });
         }
-        let good = |value: f64| (-MOST..=MOST).contains(&value);
+        let good = |value: f64| value == 0.0 || (LEAST..=MOST).contains(&libm::fabs(value));
         if let Some((index, pair)) =
             pairs.iter().enumerate().find(|(_, pair)| !good(pair.length) || !good(pair.steps))
         {
@@ -225,26 +227,41 @@ mod tests {
     }
 
     #[test]
+    fn the_least_and_the_greatest_numbers_have_a_line() {
+        for (length, steps) in [(1e-12, 1e12), (1e12, 1e-12)] {
+            let found = Calibration::of(&pairs(&[(0.0, 0.0), (length, steps)])).unwrap();
+            for fit in [&found.through_origin, &found.with_offset] {
+                assert!((fit.steps_per_unit / (steps / length) - 1.0).abs() < 1e-12, "{found:?}");
+            }
+        }
+    }
+
+    #[test]
     fn pairs_without_a_line_are_refused_with_their_numbers() {
-        let rows: [(&[(f64, f64)], &str); 7] = [
+        let rows: [(&[(f64, f64)], &str); 8] = [
             (&[], "0 pairs of length and steps; give at least 2, of different lengths"),
             (&[(1.0, 2.0)], "1 pair of length and steps; give at least 2, of different lengths"),
             (
                 &[(1.0, 2.0), (f64::NAN, 2.0)],
-                "pair 2 has length NaN and 2 steps; give numbers from -1e12 to 1e12",
+                "pair 2 has length NaN and 2.0 steps; give numbers from 1e-12 to 1e12, or from -1e12 to -1e-12, or 0",
+            ),
+            // Their squares are 0.
+            (
+                &[(1e-200, 1.0), (2e-200, 2.0)],
+                "pair 1 has length 1e-200 and 1.0 steps; give numbers from 1e-12 to 1e12, or from -1e12 to -1e-12, or 0",
             ),
             (
                 &[(1.0, f64::INFINITY), (2.0, 2.0)],
-                "pair 1 has length 1 and inf steps; give numbers from -1e12 to 1e12",
+                "pair 1 has length 1.0 and inf steps; give numbers from 1e-12 to 1e12, or from -1e12 to -1e-12, or 0",
             ),
             (&[(3.0, 2.0), (3.0, 4.0)], "all pairs have length 3; measure at least one of another length"),
             (
                 &[(1.0, -2.0), (2.0, -4.0)],
-                "-2 steps a unit: more length should come with more steps; give both the same sign, and check the columns",
+                "-2.0 steps a unit: more length should come with more steps; give both the same sign, and check the columns",
             ),
             (
                 &[(1.0, 5.0), (2.0, 5.0)],
-                "0 steps a unit: more length should come with more steps; give both the same sign, and check the columns",
+                "0.0 steps a unit: more length should come with more steps; give both the same sign, and check the columns",
             ),
         ];
         for (given, expected) in rows {

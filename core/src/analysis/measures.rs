@@ -22,7 +22,7 @@ pub use pulse_errors::PulseErrors;
 use super::{made::Pulses, sine_polyline::differences};
 use crate::{
     motion::{AxisPlan, Joints, Profile, sine_segments},
-    scenario::{Axis, Move},
+    scenario::{Axis, Cause, Move},
     trace::Step,
 };
 use alloc::vec::Vec;
@@ -32,6 +32,25 @@ use serde::Serialize;
 
 /// Points at which curves are sampled: the document's 512 of a quarter, for a whole run.
 pub const POINTS: u32 = 2048;
+
+/// Most steps of a run that is measured: all of them are kept, those due beside those made, some 82 bytes each.
+pub const MOST_STEPS: u64 = 20_000_000;
+
+/// Whether the steps of these plans can be measured, which is known before any of them is made.
+///
+/// # Errors
+/// More than [`MOST_STEPS`] of all of them together.
+pub fn within_bounds<'p>(plans: impl IntoIterator<Item = &'p AxisPlan>) -> Result<(), Cause> {
+    let steps = plans.into_iter().fold(0, |sum: u64, plan| sum.saturating_add(plan.step_count()));
+    if steps > MOST_STEPS {
+        return Err(Cause::TooMuch {
+            given: steps as f64,
+            most: MOST_STEPS as f64,
+            of: "steps to be measured",
+        });
+    }
+    Ok(())
+}
 
 /// All measures of one axis of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -118,7 +137,8 @@ pub struct SineMeasures {
 impl Measures {
     /// Of an axis: its plan, what the run made of it, and the moves that were asked for, where they are known.
     ///
-    /// The time grows with the steps, some microseconds each.
+    /// The time grows with the steps, some microseconds each, and the memory too: [`within_bounds`] says whether
+    /// there are too many.
     #[must_use]
     pub fn of(plan: &AxisPlan, pulses: &Pulses<'_>, asked: Option<&Axis>) -> Self {
         let (zero, hz) = (pulses.zero(), pulses.hz());

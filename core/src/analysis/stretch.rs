@@ -12,9 +12,16 @@
 //! moves share the pulses of the move before come first: of the tick of its start a move has the
 //! last ones, of the tick of its end the first ones, as many as it asks for there. Where the two
 //! go opposite ways in such a tick, only the difference is made, and what cancels is no one's.
+//!
+//! Segments make every step in its own cycle, in the order of the moves, and nothing cancels: a move's
+//! pulses are as many as it has steps, after those of the moves before it.
 
 use super::made::Pulses;
-use crate::{motion::AxisPlan, quantise::TickClock, trace::Step};
+use crate::{
+    motion::{AxisPlan, Curve, PlannedMove},
+    quantise::TickClock,
+    trace::Step,
+};
 use alloc::vec::Vec;
 
 /// Longest transform.
@@ -61,7 +68,8 @@ impl Stretch {
         1.0 / self.period_s
     }
 
-    /// The pulses of a run that belong to the stretch, as [`Self::own_pulses`] tells them.
+    /// The pulses of a run that belong to the stretch, as (time in s, +1 right or -1 left): of a run by
+    /// ticks as [`Self::own_pulses`] tells them, of one by segments those of the steps of its moves.
     #[must_use]
     pub fn pulses_of(&self, plan: &AxisPlan, run: &Pulses<'_>) -> Vec<(f64, i8)> {
         let zero = run.zero();
@@ -70,7 +78,26 @@ impl Stretch {
             Some((step.cycle.checked_sub(zero)?, way))
         };
         let pulses: Vec<(u64, i8)> = run.steps.iter().enumerate().filter_map(pulse).collect();
+        if run.segments.is_some() {
+            let hz = run.hz();
+            let own = self.own_steps(plan, &pulses).iter();
+            return own.map(|&(cycle, way)| (cycle as f64 / hz, way)).collect();
+        }
         self.own_pulses(plan, TickClock::new(run.config.tick().0, run.config.clock_hz()), &pulses)
+    }
+
+    /// Of pulses that are the steps of `plan`, one by one, those of the moves within the stretch.
+    fn own_steps<'p>(&self, plan: &AxisPlan, pulses: &'p [(u64, i8)]) -> &'p [(u64, i8)] {
+        // A move's middle, which no rounding of its ends takes into another.
+        let middle_s = |planned: &PlannedMove| planned.start_s + planned.profile.duration_s() / 2.0;
+        let steps_before = |time_s: f64| {
+            let before = plan.moves().iter().take_while(|planned| middle_s(planned) < time_s);
+            let steps: u64 = before.map(|planned| planned.profile.step_count()).sum();
+            // A run that is cut short has fewer.
+            usize::try_from(steps).map_or(pulses.len(), |steps| steps.min(pulses.len()))
+        };
+        let own = steps_before(self.start_s)..steps_before(self.start_s + self.length_s());
+        pulses.get(own).unwrap_or_default()
     }
 
     /// The pulses that belong to the stretch, see the module, as (time in s, +1 right or -1 left).

@@ -15,7 +15,8 @@
 //!
 //! Available is the most torque of all currents with |i| <= the regulated peak and |V| <= the supply, that is of
 //! the points that two discs in the plane of i have in common: one of radius I around 0, one of radius
-//! V/|Z| around -E/Z, Z = R + j*X.
+//! V/|Z| around -E/Z, Z = R + j*X. Where all of these brake, or there is none, it is negative: the motor
+//! has no torque of its own at that rate.
 //!
 //! ```text
 //! torque |--------.               up to the corner the driver holds the current: k*I
@@ -57,7 +58,8 @@ pub struct Moment {
     pub rate: f64,
     /// Torque in the direction of the motion that the plan needs, in mN*m; negative where the motor brakes.
     pub needed_mn_m: f64,
-    /// Torque that the motor has at that rate, in mN*m.
+    /// Torque that the motor has at that rate, in mN*m ([`Machine::available_mn_m`]); negative where it only
+    /// brakes.
     pub available_mn_m: f64,
 }
 

@@ -12,8 +12,9 @@
 //! it, and 0 where these differ in sign: so between two points the curve goes one way.
 //!
 //! Steps fall due where the curve crosses a half-integer (B1), so R(x) = floor(x + 1/2) of a point's
-//! position counts those before it. A turn that only touches a half-integer from below does not cross
-//! it. From its end on the axis stands at R of the last position.
+//! position counts those before it. A turn that only touches a half-integer from below, for an instant
+//! or by standing there, does not cross it: no step falls due, though R of a position at it is one more.
+//! From its end on the axis stands at R of the last position.
 
 use super::{Curve, Peaks, hermite::Cubic, profile::greater, round_half_up, words::grouped, words::in_words};
 use alloc::{format, string::String, vec::Vec};
@@ -58,14 +59,7 @@ impl Points {
         if between == Between::Smooth {
             smoothen(&mut pieces);
         }
-        let turns = pieces.windows(2).map(|pair| matches!(pair, [a, b] if a.to > a.from && b.to < b.from));
-        let turns = turns.chain([false]);
-        let made = pieces.iter().zip(turns).map(|(piece, turns)| {
-            let due = round_half_up(piece.to);
-            // A half that is touched from below alone is not crossed.
-            if turns && due as f64 - 0.5 == piece.to { due - 1 } else { due }
-        });
-        let made = made.collect();
+        let made = made(&pieces);
         Some(Self { pieces, made, between })
     }
 
@@ -142,6 +136,26 @@ impl Points {
 fn place(from: i64, to: i64, index: u64) -> f64 {
     let past = index as f64 + 0.5;
     from as f64 + if to > from { past } else { -past }
+}
+
+/// Steps that are made by the end of each piece.
+fn made(pieces: &[Cubic]) -> Vec<i64> {
+    // Whether the curve goes left from the end of each piece, at once or after it has stood there.
+    let mut falls_next = false;
+    let mut falls: Vec<bool> = Vec::with_capacity(pieces.len());
+    for piece in pieces.iter().rev() {
+        falls.push(falls_next);
+        falls_next = piece.to < piece.from || (piece.to == piece.from && falls_next);
+    }
+    let mut rose = false;
+    let ends = pieces.iter().zip(falls.into_iter().rev());
+    let made = ends.map(|(piece, falls)| {
+        rose = piece.to > piece.from || (piece.to == piece.from && rose);
+        let due = round_half_up(piece.to);
+        // A half that is touched from below alone is not crossed.
+        if rose && falls && due as f64 - 0.5 == piece.to { due - 1 } else { due }
+    });
+    made.collect()
 }
 
 /// Gives the ends of the pieces the slopes of Steffen's curve.
@@ -254,7 +268,7 @@ mod tests {
     fn steps_fall_due_where_the_polyline_crosses_a_half() {
         let (right, left) = (true, false);
         // Shifted in time and place: both count from the first point.
-        let rows: [Row; 6] = [
+        let rows: [Row; 11] = [
             (&[(10.0, -5.0), (11.0, -3.0)], &[(0.25, right), (0.75, right)]),
             (
                 &[(0.0, 0.0), (1.0, 2.0), (2.0, 0.0)],
@@ -262,8 +276,18 @@ mod tests {
             ),
             // 1.5 is only touched by the turn; left at once after it is not a step either.
             (&[(0.0, 0.0), (1.5, 1.5), (3.0, 0.0)], &[(0.5, right), (2.5, left)]),
-            // Stood upon, it is a step; R rounds it up.
-            (&[(0.0, 0.0), (0.5, 0.5), (1.0, 0.5), (1.5, 0.0)], &[(0.5, right), (1.0, left)]),
+            // Nor if it stands there before it goes back, in one piece or in several.
+            (&[(0.0, 0.0), (0.5, 0.5), (1.0, 0.5), (1.5, 0.0)], &[]),
+            (
+                &[(0.0, 0.0), (1.0, 1.5), (2.0, 1.5), (3.0, 1.5), (6.0, 0.0)],
+                &[(1.0 / 3.0, right), (5.0, left)],
+            ),
+            // Where it goes on afterwards, or ends there, it is one as it arrives.
+            (&[(0.0, 0.0), (1.0, 0.5), (2.0, 0.5), (3.0, 1.0)], &[(1.0, right)]),
+            (&[(0.0, 0.0), (1.0, 0.5), (2.0, 0.5)], &[(1.0, right)]),
+            // From above it is none, and one to the left as it leaves downwards.
+            (&[(0.0, 0.0), (1.0, -0.5), (2.0, -0.5), (3.0, 0.0)], &[]),
+            (&[(0.0, 0.0), (1.0, -0.5), (2.0, -0.5), (3.0, -1.0)], &[(2.0, left)]),
             // The end at 0.5 is one step, at -0.5 none.
             (&[(0.0, 0.0), (1.0, 0.5)], &[(1.0, right)]),
             (&[(0.0, 0.0), (1.0, -0.5)], &[]),
@@ -271,6 +295,19 @@ mod tests {
         for (points, expected) in rows {
             assert_eq!(due(points, Between::Straight), expected, "{points:?}");
         }
+    }
+
+    #[test]
+    fn a_smooth_turn_that_rests_at_a_half_makes_no_step() {
+        for points in [
+            &[(0.0, 0.0), (1.0, 0.5), (2.0, 0.5), (3.0, 0.0)][..],
+            &[(0.0, 0.0), (1.0, 0.5), (3.0, 0.0)],
+            &[(0.0, 0.0), (1.0, -0.5), (2.0, -0.5), (3.0, 0.0)],
+        ] {
+            assert_eq!(due(points, Between::Smooth), [], "{points:?}");
+        }
+        let goes_on = [(0.0, 0.0), (1.0, 0.5), (2.0, 0.5), (3.0, 1.0)];
+        assert_eq!(due(&goes_on, Between::Smooth), [(1.0, true)]);
     }
 
     #[test]

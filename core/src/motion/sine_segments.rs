@@ -23,6 +23,9 @@ use super::{
 };
 use alloc::{format, string::String, vec::Vec};
 
+/// Segments that are told one by one.
+const MOST_TOLD: usize = 12;
+
 /// One segment of a quarter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
@@ -244,13 +247,15 @@ impl Curve for SineSegments {
         let points: Vec<String> = self
             .segments
             .iter()
+            .take(MOST_TOLD)
             .map(|segment| format!("{:.2}\u{b0} {}/s", segment.from_deg, grouped(segment.rate)))
             .collect();
         let memory = self.memory();
         format!(
-            "{} segments a quarter: {}; {} bytes, against {} with an interval a step",
-            points.len(),
+            "{} segments a quarter: {}{}; {} bytes, against {} with an interval a step",
+            self.segments.len(),
             points.join(", "),
+            if self.segments.len() > MOST_TOLD { ", \u{2026}" } else { "" },
             grouped(memory.segments as f64),
             grouped(memory.intervals as f64)
         )

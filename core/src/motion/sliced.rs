@@ -50,6 +50,7 @@ pub struct Sliced {
     ///
     /// Invariant: as long as `starts_s`, from 0 to the move's steps, not falling.
     sums: Vec<u32>,
+    top_rate: f64,
 }
 
 /// Why a move cannot be sliced.
@@ -117,8 +118,8 @@ impl Sliced {
         let slices = Slices::of(&exact, needed, slice_s);
         let (compensated, top_speed) =
             slices.coarse(&exact, ramp_s).ok_or(NotSliced::TooFew { slices: needed })?;
-        let (starts_s, sums) = slices.fine(top_speed, &exact);
-        Ok(Self { exact, compensated, starts_s, sums })
+        let (starts_s, sums, top_rate) = slices.fine(top_speed, &exact);
+        Ok(Self { exact, compensated, starts_s, sums, top_rate })
     }
 
     /// The exact curve of the same steps in the same time.
@@ -131,6 +132,13 @@ impl Sliced {
     #[must_use]
     pub fn compensated_steps(&self) -> u64 {
         self.compensated
+    }
+
+    /// The highest rate of a slice in steps/s, floor(f*TS)/TS: from its steps and its length, neither of which has
+    /// the digits that the difference of two late times has lost.
+    #[must_use]
+    pub fn top_rate(&self) -> f64 {
+        self.top_rate
     }
 
     /// How many slices the move has; those that the plateau lost do not count.
@@ -247,8 +255,8 @@ impl Slices {
         }
     }
 
-    /// The fine compensation: the starts of the slices that are left, and the steps before each.
-    fn fine(&self, top_speed: f64, exact: &Cosine) -> (Vec<f64>, Vec<u32>) {
+    /// The fine compensation: the starts of the slices that are left, the steps before each, and the highest rate.
+    fn fine(&self, top_speed: f64, exact: &Cosine) -> (Vec<f64>, Vec<u32>, f64) {
         let all = self.weights.len();
         let mut counts: Vec<u64> = (0..all).map(|index| self.steps(index, top_speed)).collect();
         let held = whole_steps(top_speed * self.slice_s);
@@ -261,7 +269,7 @@ impl Slices {
             above -= taken;
         }
         let (mut starts_s, mut sums) = (Vec::with_capacity(all + 1), Vec::with_capacity(all + 1));
-        let (mut shorter_s, mut sum) = (0.0, 0);
+        let (mut shorter_s, mut sum, mut top_rate) = (0.0, 0, 0.0);
         for (index, count) in counts.iter().enumerate() {
             let shortened = self.plateau.contains(&index) && *count < held;
             if !(shortened && *count == 0) {
@@ -271,11 +279,18 @@ impl Slices {
             if shortened {
                 shorter_s += self.slice_s * ((held - count) as f64 / held as f64);
             }
+            if *count > 0 {
+                // Rounded down, no slice has more than the top speed; a shortened one has the plateau's rate.
+                let left_s = exact.duration_s() - index as f64 * self.slice_s;
+                let length_s = if left_s < self.slice_s { left_s } else { self.slice_s };
+                let steps = if shortened { held } else { *count };
+                top_rate = greater(top_rate, libm::fmin(steps as f64 / length_s, top_speed));
+            }
             sum += count;
         }
         starts_s.push(exact.duration_s() - shorter_s);
         sums.push(sum as u32);
-        (starts_s, sums)
+        (starts_s, sums, top_rate)
     }
 }
 

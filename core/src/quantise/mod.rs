@@ -17,5 +17,5 @@ mod ticks;
 pub use compressed::{Compressed, MOST_TOLERANCE, Tolerance, compressed};
 pub use entry_format::{Entry, EntryFormat};
 pub use segments::exact_segments;
-pub use stored::{Form, Stored, TimingError, stored};
+pub use stored::{Form, MOST_TABLE_STEPS, Stored, TimingError, stored};
 pub use ticks::{TickClock, Ticks, ticks};

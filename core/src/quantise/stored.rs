@@ -19,6 +19,9 @@ use crate::{
 };
 use alloc::{vec, vec::Vec};
 
+/// Most steps of one axis' compressed list or of its document's table: each step is looked at.
+pub const MOST_TABLE_STEPS: u64 = 100_000_000;
+
 /// How step times are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
@@ -28,6 +31,15 @@ pub enum Form {
     Document,
     /// With few entries.
     Compressed(Tolerance),
+}
+
+impl Form {
+    const fn most_steps(self) -> u64 {
+        match self {
+            Self::Exact => MOST_STEPS,
+            Self::Document | Self::Compressed(_) => MOST_TABLE_STEPS,
+        }
+    }
 }
 
 /// The step times of one axis in one form.
@@ -57,8 +69,9 @@ impl Stored {
 /// Keeps the step times of `plan` in a form.
 ///
 /// # Errors
-/// What [`compressed`] refuses; more than 4 000 000 steps for the exact list; a move without a table of its own for the
-/// document's, or a rate of it that is too high for `pulse`.
+/// What [`compressed`] refuses; more than 4 000 000 steps for the exact list, or [`MOST_TABLE_STEPS`] for another; a
+/// move without a table of its own for the document's, or a rate of it that is too high for `pulse`. A number of steps
+/// is refused before one of them is looked at.
 pub fn stored(
     plan: &AxisPlan,
     form: Form,
@@ -66,14 +79,12 @@ pub fn stored(
     pulse: PulseTimes,
     clock_hz: u32,
 ) -> Result<Stored, Cause> {
+    let (steps, most) = (plan.step_count(), form.most_steps());
+    if steps > most {
+        return Err(Cause::TooMuch { given: steps as f64, most: most as f64, of: "steps of a table" });
+    }
     let (list, error) = match form {
-        Form::Exact => {
-            let steps = plan.step_count();
-            if steps > MOST_STEPS {
-                return Err(Cause::TooMuch { given: steps as f64, most: MOST_STEPS as f64, of: "steps" });
-            }
-            (exact(plan, pulse, clock_hz)?, None)
-        }
+        Form::Exact => (exact(plan, pulse, clock_hz)?, None),
         Form::Document => (document(plan, format, clock_hz)?, None),
         Form::Compressed(tolerance) => {
             let made = compressed(plan.due_steps(clock_hz), tolerance, format, pulse)?;

@@ -531,6 +531,8 @@ impl fmt::Display for Cause {
                     "table rows" => "give a higher acceleration or a lower top speed",
                     "moves" => "give fewer moves",
                     "steps" => "give a shorter motion, or run it by ticks",
+                    "steps of a table" => "give a shorter motion, or make a table of each part of it",
+                    "steps to be measured" => "give a shorter motion",
                     "slices" => "give longer slices or less time, or choose the exact method",
                     "sine segments" => "give a greater largest deviation or fewer sines",
                     "bytes of all frames and their repetitions" => {

@@ -3,7 +3,7 @@
  * the pulses as they come are held against each other. What a tab is, says study.js.
  */
 import { element, fill, say } from "../../dom.js";
-import { unlessDropped } from "../../engine/engine.js";
+import { Dropped } from "../../engine/engine.js";
 import { count, counted, plain, short, si, time } from "../../state/number.js";
 import { isStale } from "../../state/state.js";
 import { table } from "./parts.js";
@@ -129,7 +129,14 @@ export function createMeasures({ engine, panel }) {
   /** @param {State} state */
   async function refresh({ result, axis }) {
     if (!result) return;
-    const [found, spectra] = await Promise.all([engine.latest("measures", "measures", axis), engine.latest("measures-thd", "spectrum")]).catch(unlessDropped) ?? [];
+    const [found, spectra] = await Promise.all([engine.latest("measures", "measures", axis), engine.latest("measures-thd", "spectrum")]).catch((error) => {
+      if (!(error instanceof Dropped)) {
+        // Too many steps to be measured, say.
+        rest.hidden = true;
+        say(about, error instanceof Error ? error.message : String(error));
+      }
+      return [];
+    });
     if (found === undefined) return;
     rest.hidden = !found;
     say(about, found ? `Axis ${axis} of the run that the views show.` : `Axis ${axis} has no motion, so there is no curve to measure the pulses by.`);

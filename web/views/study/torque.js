@@ -11,7 +11,8 @@ import { subject } from "./subject.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{at_s: number, rate: number, needed_mn_m: number, available_mn_m: number}} Moment */
-/** @typedef {{index: number, duration_s: number, longest_s: number | null, too_fast: boolean, room_s: number, enough_s: [number, number] | null}} Ramps */
+/** @typedef {{index: number, duration_s: number, longest_s: number | null, too_fast: boolean, room_s: number, enough_s: [number, number] | null,
+ *   too_fast_s: [number, number] | null, without_ramps: boolean}} Ramps */
 /**
  * @typedef {{standing_mn_m: number, load_mn_m: number, corner_rate: number | null, torque_rate: number | null, working_rate: number | null,
  *   over_working_rate: number | null, jump: number, least: Moment | null, total: number,
@@ -24,9 +25,15 @@ const torques = (torque) => `${short(torque, 4)} mN·m`;
 /** @param {number} rate */
 const rates = (rate) => plain(rate, "steps/s");
 /** @param {number | null} rate */
-const upTo = (rate) => (rate === null ? "any rate" : rates(Math.floor(rate)));
+const upTo = (rate) => (rate === null ? "any rate" : rate === 0 ? "no rate" : rates(Math.floor(rate)));
 /** @param {number} seconds */
 const ramp = (seconds) => `${seconds.toFixed(4)} s`;
+/** What limits where no ramp is enough: the stated rate or the torque. @param {Ramps} ramps */
+function enough({ enough_s, too_fast_s, without_ramps }) {
+  if (enough_s) return `${enough_s[0].toFixed(4)} to ${ramp(enough_s[1])}`;
+  const all = too_fast_s ? "all above the working rate" : "none";
+  return without_ramps ? `without ramps only; with ramps ${all}` : all;
+}
 
 /** @param {import("./study.js").StudyPage} page @returns {import("./study.js").StudyTab} */
 export function createTorque({ engine, samples, dispatch, now, panel }) {
@@ -60,7 +67,7 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
       x: { min: 0, max: rate[rate.length - 1], unit: "steps/s", prefix: true, label_px: 20 },
       y: { min: 0, max: 1.08 * most, unit: "", prefix: false, label_px: 58 },
       series: [{ color: color("--made"), opacity: 0.75, width: 2, x: rate, shape: { stems: { y: needed, shift: 0 } } },
-        { color: color("--ideal"), opacity: 1, width: 2, x: rate, shape: { line: { y: available } } },
+        { color: color("--ideal"), opacity: 1, width: 2, x: rate, shape: { line: { y: available.map((torque) => Math.max(torque, 0)) } } },
         ...(working === null ? [] : [{ color: color("--axis"), opacity: 1, width: 1.5, dash: 4, x: [working, working], shape: { line: { y: [0, 2 * most] } } }])],
     });
   }
@@ -69,7 +76,8 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
   function show(told) {
     const { least, jump, total, shortages, over_working_rate, working_rate } = told;
     facts.show([
-      ["Full torque", torques(told.standing_mn_m)], ["as far as", upTo(told.corner_rate)],
+      ...(told.corner_rate === 0 ? [["Torque at standstill", torques(told.standing_mn_m)], ["whole current up to", "no rate: the supply is too low"]]
+        : [["Full torque", torques(told.standing_mn_m)], ["as far as", upTo(told.corner_rate)]]),
       ["Load", torques(told.load_mn_m)], ["torque for it up to", upTo(told.torque_rate)],
       ...(working_rate === null ? [] : [["Stated working rate", rates(working_rate)]]),
       ...(least ? [["Least margin", torques(least.available_mn_m - Math.abs(least.needed_mn_m))], ["at", `${si(least.at_s, "s")}, ${rates(least.rate)}`]] : []),
@@ -83,8 +91,8 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
     lacks.show(shortages.map(({ from_s, to_s, times, worst: { at_s, rate, needed_mn_m, available_mn_m } }) => [si(from_s, "s"), si(to_s, "s"), torques(Math.abs(needed_mn_m) - available_mn_m),
       si(at_s, "s"), rates(rate), torques(needed_mn_m), torques(available_mn_m), count(times)]));
     ramped.hidden = ramps.root.hidden = told.ramps.length === 0;
-    ramps.show(told.ramps.map(({ index, duration_s, longest_s, too_fast, room_s, enough_s }) => [`${index + 1}, ${si(duration_s, "s")}`,
-      enough_s ? `${enough_s[0].toFixed(4)} to ${ramp(enough_s[1])}` : "none", longest_s === null ? (too_fast ? "too fast" : "any") : ramp(longest_s), ramp(room_s)]));
+    ramps.show(told.ramps.map((found) => [`${found.index + 1}, ${si(found.duration_s, "s")}`, enough(found),
+      found.longest_s === null ? (found.too_fast ? "too fast" : "any") : ramp(found.longest_s), ramp(found.room_s)]));
     say(note, `${told.ramps.length ? "Enough torque: ramps with which it suffices throughout. Longest by rate: T − n/f_s (for ramps of area 1/2), with the motor's greatest rate for its load as f_s; the move has room for T/2. " : ""}${jump > 0 ? "A motor follows a jump of speed up to its start-stop rate, which these data do not tell. " : ""}The model: fundamental waves only, no saturation, no losses of iron and friction in the motor, no resonance.`);
   }
 

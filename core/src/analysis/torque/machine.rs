@@ -62,7 +62,9 @@ impl Machine {
         self.load_n_m * MILLI
     }
 
-    /// The most torque in mN*m with which the motor stays in step at `rate` steps/s, from 0 on.
+    /// The most torque in mN*m that the driver can make at `rate` steps/s. Below 0 the motor brakes
+    /// whatever the driver does: no current that the supply leaves it drives, so it cannot stay in step, not even
+    /// without a load.
     #[must_use]
     pub fn available_mn_m(&self, rate: f64) -> f64 {
         let speed = libm::fabs(rate) * self.step_rad;
@@ -72,8 +74,7 @@ impl Machine {
         // The voltage's disc: around -E/Z = -E*(R - j*X)/|Z|^2.
         let centre = (-back_emf * r / square, back_emf * x / square);
         let radius = self.supply_v / libm::sqrt(square);
-        let current = most_real(self.current_a, centre, radius).unwrap_or(0.0);
-        MILLI * self.constant * libm::fmax(current, 0.0)
+        MILLI * self.constant * most_real(self.current_a, centre, radius)
     }
 
     /// The torque in mN*m in the direction of the motion that `speed` steps/s and `acceleration` steps/s^2,
@@ -150,24 +151,25 @@ impl Machine {
 }
 
 /// The greatest real part of the points that the disc of radius `own` around 0 and that of `radius` around
-/// `centre` have in common; `None` where they have none.
-fn most_real(own: f64, centre: (f64, f64), radius: f64) -> Option<f64> {
+/// `centre` have in common; where they have none, that of the second's point nearest to the first: the
+/// back-EMF drives more current than the driver would regulate, at least so much.
+fn most_real(own: f64, centre: (f64, f64), radius: f64) -> f64 {
     let (re, im) = centre;
     let distance = libm::sqrt(re * re + im * im);
     let far = |x: f64, y: f64| libm::sqrt(x * x + y * y);
     if far(own - re, im) <= radius {
-        return Some(own);
+        return own;
     }
     if far(re + radius, im) <= own {
-        return Some(re + radius);
+        return re + radius;
     }
-    if distance > own + radius || distance == 0.0 {
-        return None;
+    if distance > own + radius {
+        return re * (1.0 - radius / distance);
     }
     // Both circles' crossing whose real part is the greater.
     let along = (own * own - radius * radius + distance * distance) / (2.0 * distance);
     let across = libm::sqrt(libm::fmax(own * own - along * along, 0.0));
-    Some((along * re + across * libm::fabs(im)) / distance)
+    (along * re + across * libm::fabs(im)) / distance
 }
 
 /// The greatest rate that `holds`, which it does up to some rate and not above; 0 where it never does,

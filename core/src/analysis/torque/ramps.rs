@@ -27,9 +27,14 @@ pub struct Ramps {
     pub too_fast: bool,
     /// T/2: the longest ramp that the move has room for.
     pub room_s: f64,
-    /// The shortest and the longest ramp with which the torque suffices throughout; `None` where it does
-    /// with none.
+    /// The shortest and the longest ramp above 0 with which the torque suffices throughout and the stated rate
+    /// is kept; `None` where there is none.
     pub enough_s: Option<(f64, f64)>,
+    /// Where there is none: those whose torque would suffice, all above the stated rate.
+    pub too_fast_s: Option<(f64, f64)>,
+    /// Without ramps the torque suffices at the one rate, and the stated rate is kept; the motor has to start
+    /// and to stop at it at once.
+    pub without_ramps: bool,
 }
 
 impl Ramps {
@@ -60,23 +65,33 @@ impl Ramps {
         let room_s = curve.duration_s() / 2.0;
         let greatest_rate = machine.greatest_rate();
         let longest_s = greatest_rate.and_then(longest);
-        let enough = |ramp_s: f64| suffices(machine, &of(ramp_s), ramp_s);
+        let torque = |ramp_s: f64| suffices(machine, &of(ramp_s), ramp_s);
+        let enough = |ramp_s: f64| keeps_rate(machine, &of(ramp_s)) && torque(ramp_s);
+        let too_fast = greatest_rate.is_some() && longest_s.is_none();
+        // Any longer one is too fast.
+        let longest_tried_s =
+            if too_fast { 0.0 } else { longest_s.map_or(room_s, |most| libm::fmin(most, room_s)) };
+        let enough_s = widest(longest_tried_s, enough);
         Self {
             greatest_rate,
             longest_s,
-            too_fast: greatest_rate.is_some() && longest_s.is_none(),
+            too_fast,
             room_s,
-            enough_s: widest(room_s, enough),
+            enough_s,
+            too_fast_s: if enough_s.is_none() { widest(room_s, torque) } else { None },
+            without_ramps: enough(0.0),
         }
     }
 }
 
+/// Whether the stated rate, if there is one, is kept.
+fn keeps_rate(machine: &Machine, curve: &impl Curve) -> bool {
+    let top = libm::fabs(curve.speed(curve.duration_s() / 2.0));
+    machine.working_rate().is_none_or(|most| top <= most)
+}
+
 /// Whether there is enough torque all the way up and on the plateau: on the way down the load helps.
 fn suffices(machine: &Machine, curve: &impl Curve, ramp_s: f64) -> bool {
-    let top = libm::fabs(curve.speed(curve.duration_s() / 2.0));
-    if machine.working_rate().is_some_and(|most| top > most) {
-        return false;
-    }
     // The last look is just before the ramp's end, where a straight ramp still accelerates.
     let ramp = (0..=LOOKS).map(|look| ramp_s * (1.0 - 1e-9) * f64::from(look) / f64::from(LOOKS));
     ramp.chain([curve.duration_s() / 2.0]).all(|t| {
@@ -85,8 +100,11 @@ fn suffices(machine: &Machine, curve: &impl Curve, ramp_s: f64) -> bool {
     })
 }
 
-/// The longest run of ramps up to `room_s` that are `enough`, its ends found by halving.
+/// The longest run of ramps above 0 and up to `room_s` that are `enough`, its ends found by halving.
 fn widest(room_s: f64, enough: impl Fn(f64) -> bool) -> Option<(f64, f64)> {
+    if room_s <= 0.0 {
+        return None;
+    }
     let ramp = |index: u32| room_s * f64::from(index) / f64::from(TRIED);
     // The run that is open, and the widest so far: first and last index.
     let (mut open, mut widest): (Option<u32>, Option<(u32, u32)>) = (None, None);

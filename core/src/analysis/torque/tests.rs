@@ -70,9 +70,13 @@ fn far_above_the_corner_it_is_the_textbooks_pull_out_torque() {
 /// An independent search: all currents within the limit, by size and angle, whose voltage the supply has.
 #[test]
 fn no_allowed_current_has_more_torque_and_one_has_as_much() {
-    for json in
-        ["{}", r#"{"supply_v":12}"#, r#"{"resistance_ohm":12,"supply_v":30}"#, r#"{"inductance_mh":0.2}"#]
-    {
+    for json in [
+        "{}",
+        r#"{"supply_v":0.1}"#,
+        r#"{"supply_v":12}"#,
+        r#"{"resistance_ohm":12,"supply_v":30}"#,
+        r#"{"inductance_mh":0.2}"#,
+    ] {
         let axis = axis(json, "");
         let motor = axis.motor.clone().unwrap();
         let model = Machine::of(&axis).unwrap();
@@ -81,12 +85,12 @@ fn no_allowed_current_has_more_torque_and_one_has_as_much() {
         for rate in (0..60).map(|index| 2500.0 * f64::from(index)) {
             let speed = rate * 2.0 * PI / 3200.0;
             let (r, x) = (motor.resistance_ohm, 50.0 * speed * motor.inductance_mh / 1000.0);
-            let mut most = 0.0_f64;
+            let mut most = f64::NEG_INFINITY;
             for size in 0..=200 {
-                for angle in -200..=200 {
+                for angle in -400..=400 {
                     let current = motor.rated_current_a * f64::from(size) / 200.0;
-                    let (sine, cosine) = (libm::sin(PI / 2.0 * f64::from(angle) / 200.0), {
-                        libm::cos(PI / 2.0 * f64::from(angle) / 200.0)
+                    let (sine, cosine) = (libm::sin(PI * f64::from(angle) / 400.0), {
+                        libm::cos(PI * f64::from(angle) / 400.0)
                     });
                     let (re, im) = (current * cosine, current * sine);
                     let (v_re, v_im) = (constant * speed + r * re - x * im, r * im + x * re);
@@ -97,8 +101,11 @@ fn no_allowed_current_has_more_torque_and_one_has_as_much() {
             }
             let found = model.available_mn_m(rate);
             assert!(found >= most - 1e-9, "{json} at {rate}: {found} under {most}");
-            assert!(found <= most + 4.0, "{json} at {rate}: {found} over {most}");
-            assert!(found <= last + 1e-9, "{json}: more at {rate} than below");
+            // Where no current is allowed, there is no torque to drive with.
+            let above = if most.is_finite() { most + 4.0 } else { 0.0 };
+            assert!(found <= above, "{json} at {rate}: {found} over {most}");
+            // It falls until there is none.
+            assert!(found <= last.max(0.0) + 1e-9, "{json}: more at {rate} than below");
             last = found;
         }
     }
@@ -185,6 +192,30 @@ fn whole_periods_of_a_sine_are_told_once_with_their_number() {
     assert!(found.jump > 0.0);
 }
 
+/// Without a load, too, a motor that the supply leaves no driving current is short of torque.
+#[test]
+fn where_every_current_brakes_no_load_is_light_enough() {
+    let weak = r#"{"supply_v":0.1}"#;
+    // V/|Z| = k*w*R/|Z|^2, so w^2*(k^2*R^2 - V^2*p^2*L^2) = V^2*R^2.
+    let (k, r, pl) = (0.4 / (2.0_f64.sqrt() * 1.5), 1.6, 50.0 * 4.3e-3);
+    let speed = 0.1 * r / (k * k * r * r - 0.01 * pl * pl).sqrt();
+    let most = machine(weak).torque_rate().unwrap();
+    close(most, speed * 3200.0 / (2.0 * PI), 1e-9);
+    assert!(machine(weak).available_mn_m(most * 1.001) < 0.0);
+    let constant = r#"{"constant":{"speed":{"steps_s":100000}}}"#;
+    let found = demand(weak, constant);
+    assert_eq!(found.total, 1, "{found:?}");
+    assert!(found.shortages[0].worst.margin_mn_m() < 0.0 && found.least == Some(found.shortages[0].worst));
+    assert!(machine(weak).curve(100_000.0, 3).last().unwrap().1 < 0.0);
+    // At far less than there is, all is well.
+    assert!(demand(weak, r#"{"constant":{"speed":{"steps_s":200}}}"#).is_met());
+    // 24 V drive at every rate, so without a load nothing limits.
+    assert!(machine("{}").available_mn_m(1e7) > 0.0);
+    // Where the driver cannot regulate the current, what flows anyway is less than none: here more than 10 mA.
+    let strong = r#"{"supply_v":0.1,"peak_current_a":0.01}"#;
+    assert!(machine(strong).available_mn_m(100_000.0) < 0.0);
+}
+
 #[test]
 fn a_stated_working_rate_is_kept_beside_the_torque() {
     let found = demand(r#"{"working_rate_hz":15999}"#, TURN);
@@ -220,6 +251,30 @@ fn song_2021s_longest_ramp_comes_out_of_its_working_rate() {
     assert_eq!((found.longest_s, found.too_fast, found.enough_s), (None, true, None));
     // A load that asks for more than there is at every ramp.
     assert_eq!(ramps(r#"{"load_torque_mn_m":283}"#, 3200, 0.4).enough_s, None);
+}
+
+#[test]
+fn where_no_ramp_is_enough_what_limits_is_told() {
+    let ramps =
+        |motor: &str| Ramps::of(&machine(motor), &Profile::Cosine(Cosine::new(3200, 0.4, 0.0))).unwrap();
+    // 8000 steps/s are the least that the move can do, and only without ramps.
+    let found = ramps(r#"{"working_rate_hz":8000}"#);
+    assert_eq!((found.longest_s, found.enough_s, found.without_ramps), (Some(0.0), None, true));
+    let free = ramps("{}");
+    assert_eq!((found.too_fast_s, free.too_fast_s), (free.enough_s, None));
+    let found = ramps(r#"{"working_rate_hz":7999}"#);
+    assert!(found.too_fast && !found.without_ramps && found.too_fast_s == free.enough_s);
+    // Ramps far shorter than a part of the room are found: a bare rotor of 0.01 g*cm^2 follows them.
+    let found = ramps(r#"{"working_rate_hz":8001,"rotor_inertia_g_cm2":0.01}"#);
+    let (shortest, longest) = found.enough_s.unwrap();
+    assert!(shortest < 1e-6, "{found:?}");
+    close(longest, 0.4 - 3200.0 / 8001.0, 1e-9);
+    // No torque at all.
+    let found = ramps(r#"{"load_torque_mn_m":283}"#);
+    assert_eq!((found.enough_s, found.too_fast_s, found.without_ramps), (None, None, false));
+    // Too much inertia to set off with any ramp, but enough for the rate itself.
+    let found = ramps(r#"{"load_inertia_g_cm2":100000}"#);
+    assert_eq!((found.enough_s, found.too_fast_s, found.without_ramps), (None, None, true));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::{Left, MOST_SLICES, hold_speed};
 use crate::{
     motion::{
-        Curve, MOST_SPEED, Profile,
+        MOST_SPEED, Profile,
         asked::Asked,
         cosine::Cosine,
         ramp::Ramp,
@@ -17,6 +17,11 @@ use alloc::format;
 /// Lengths of a slice in s.
 const LEAST_SLICE_S: f64 = 1e-5;
 const MOST_SLICE_S: f64 = 0.1;
+/// A slice's length is a decimal number and seldom whole in binary digits, so a rate that is exactly the highest may
+/// come out higher by its last digits, in parts of it.
+const DIGITS: f64 = 1e-12;
+/// Ramps in s under this are none: it is the shortest cycle that a clock may have.
+const LEAST_RAMP_S: f64 = 1e-9;
 /// How much of its curve a ramp of a sigmoid or an exponential may be: below this it is straight to a part in a
 /// thousand, above it stands still but for a small part of its time.
 const LEAST_PARAMETER: f64 = 0.1;
@@ -46,7 +51,9 @@ pub(super) fn plan_cosine(
     let cause = match Sliced::new(steps, duration_s, ramp_s, slice_s, left.slices) {
         Ok(curve) => {
             left.slices -= curve.slice_count();
-            hold_speed(asked, format!("{path}.duration_s"), curve.peaks().speed)?;
+            let rate = curve.top_rate();
+            let rate = if rate <= MOST_SPEED * (1.0 + DIGITS) { libm::fmin(rate, MOST_SPEED) } else { rate };
+            hold_speed(asked, format!("{path}.duration_s"), rate)?;
             return Some(Profile::Sliced(curve));
         }
         Err(NotSliced::Slices { needed }) => {
@@ -79,7 +86,7 @@ pub(super) fn plan_ramps(asked: &mut Asked<'_>, given: &scenario::Ramps, path: &
     Some(Profile::Ramps(curve))
 }
 
-/// B4's front: so many steps in so much time with two ramps.
+/// B4's front: so many steps in so much time with two ramps, none where they are too short for any clock.
 fn front(
     asked: &mut Asked<'_>,
     path: &str,
@@ -95,13 +102,13 @@ fn front(
         asked.refuse(format!("{path}.ramp_s"), Cause::RampTooLong { ramp_s, duration_s });
         return None;
     }
-    Some((steps?, duration_s, ramp_s))
+    Some((steps?, duration_s, if ramp_s < LEAST_RAMP_S { 0.0 } else { ramp_s }))
 }
 
 #[cfg(test)]
 mod tests {
     use crate::{
-        motion::plan_axis,
+        motion::{Curve, plan_axis},
         scenario::{Scenario, Source},
     };
     use alloc::{format, string::ToString, vec::Vec};
@@ -114,6 +121,61 @@ mod tests {
         let plan = plan_axis(motion.axes.first().unwrap(), "axis");
         let found: Vec<_> = plan.err().unwrap_or_default().iter().map(ToString::to_string).collect();
         assert_eq!(found, expected, "{json}");
+    }
+
+    /// Else its acceleration and jerk would have no end.
+    #[test]
+    fn a_ramp_shorter_than_any_clocks_cycle_is_none() {
+        let plan = |kind: &str, rest: &str, ramp_s: &str| {
+            let json = format!(r#"{{"moves":[{{"{kind}":{{"ramp_s":{ramp_s}{rest}}}}}]}}"#);
+            plan_axis(&serde_json::from_str(&json).unwrap(), "axis").unwrap()
+        };
+        for (kind, rest) in [
+            ("cosine", ""),
+            ("cosine", r#","method":"sliced""#),
+            ("ramps", r#","shape":"sigmoid""#),
+            ("ramps", r#","shape":"bezier""#),
+            ("ramps", r#","shape":"straight""#),
+            ("ramps", r#","shape":"exponential""#),
+        ] {
+            let none = plan(kind, rest, "0");
+            for ramp_s in ["1e-300", "1e-200", "5e-324", "9.99e-10"] {
+                assert_eq!(plan(kind, rest, ramp_s), none, "{kind}{rest} {ramp_s}");
+            }
+            let peaks = none.peaks();
+            assert!(
+                (peaks.jump, peaks.acceleration, peaks.jerk) == (8000.0, 0.0, 0.0) || rest.contains("sliced")
+            );
+            let least = plan(kind, rest, "1e-9");
+            let peaks = least.moves()[0].profile.peaks();
+            assert!(least != none && peaks.jerk.is_finite() && peaks.acceleration.is_finite(), "{peaks:?}");
+        }
+    }
+
+    #[test]
+    fn slices_may_have_the_highest_speed_exactly_and_no_more() {
+        // In slices of 10 us, 30 us (the last is of 10 us), 10 ms and 70 ms.
+        for (steps, duration_s, slice_s) in [
+            (100_000, "0.01", "1e-5"),
+            (100_000, "0.01", "3e-5"),
+            (990_000_000, "99", "0.01"),
+            (4_900_000, "0.49", "0.07"),
+        ] {
+            let cosine = |method: &str| {
+                format!(
+                    r#"{{"moves":[{{"cosine":{{"distance":{{"steps":{steps}}},"duration_s":{duration_s},"ramp_s":0,"method":"{method}","slice_s":{slice_s}}}}}]}}"#
+                )
+            };
+            check(&cosine("exact"), &[]);
+            check(&cosine("sliced"), &[]);
+        }
+        // 105.5 steps a slice are 105, so in the plateau each has to have 106.
+        check(
+            r#"{"moves":[{"cosine":{"distance":{"steps":10550},"duration_s":0.001055,"ramp_s":0,"method":"sliced","slice_s":1.055e-5}}]}"#,
+            &[
+                "axis.moves[0].cosine.duration_s: this needs 10047394 steps/s, at most 10000000 are allowed; give more time or less distance",
+            ],
+        );
     }
 
     #[test]
