@@ -407,14 +407,6 @@ fn the_comparison_is_the_cores_and_a_shape_is_taken_and_given_back() -> Result<(
 const ROWS: &str = "document.querySelectorAll('#study-compare tbody tr').length";
 const USABLE: &str = "document.querySelectorAll('#study-compare tbody button:enabled').length";
 
-/// Chooses in a select as a person does.
-async fn choose(page: &Session, selector: &str, value: &str) -> Result<()> {
-    let script = "const select = document.querySelector(arguments[0]); select.value = arguments[1];
-        select.dispatchEvent(new Event('change', { bubbles: true })); return null;";
-    page.js::<Value>(script, vec![json!(selector), json!(value)]).await?;
-    Ok(())
-}
-
 #[test]
 fn a_shape_goes_into_the_axis_that_is_looked_at_or_nowhere() -> Result<()> {
     in_browser(|page| async move {
@@ -424,7 +416,7 @@ fn a_shape_goes_into_the_axis_that_is_looked_at_or_nowhere() -> Result<()> {
         ))?;
         page.open(&format!("#{}&v=tstudy", known.link)).await?;
         page.until_equal(ROWS, &json!(6)).await?;
-        choose(&page, "#study-axis", "1").await?;
+        page.choose("#study-axis", "1").await?;
         page.until(
             "document.querySelector('#study-compare .study-bar').textContent.includes('Axis 1, move 1')",
         )
@@ -458,7 +450,7 @@ fn a_shape_goes_into_the_axis_that_is_looked_at_or_nowhere() -> Result<()> {
         fill(&page, "Ramp", "100 ms").await?;
         page.until_equal(ROWS, &json!(6)).await?;
         // Another source leaves no rows of the axis before.
-        choose(&page, "[data-path='source#kind']", "packets").await?;
+        page.choose("[data-path='source#kind']", "packets").await?;
         page.until_equal(ROWS, &json!(0)).await?;
         page.until("document.querySelector('#study-compare .study-field').hidden").await
     })

@@ -37,6 +37,8 @@ export function field(label, unit, start, { least, most, integer = false }, chan
   });
   /** @param {number} next */
   const set = (next) => {
+    // What is being typed stays where nothing changes.
+    if (next === value) return;
     value = next;
     input.value = String(next);
     [wrong, amiss] = ["", ""];
