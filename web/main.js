@@ -9,7 +9,7 @@ import { createForm } from "./form/form.js";
 import { createCard } from "./help/card.js";
 import { createGuide, offerGuide } from "./help/guide.js";
 import { createKeys } from "./help/keys.js";
-import { chartFiles } from "./views/chart_files.js";
+import { chartFiles } from "./views/chart_offers.js";
 import { createExports } from "./shell/exports.js";
 import { createHeader, createTheme } from "./shell/header.js";
 import { keepOffline } from "./shell/offline.js";

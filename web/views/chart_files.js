@@ -3,7 +3,6 @@
  * code as the charts on the page, with a title, a legend and the quantities' names around them.
  */
 import { unlessDropped } from "../engine/engine.js";
-import { baseName } from "../shell/exports.js";
 import { csv } from "../shell/tables.js";
 import { shown } from "../state/state.js";
 import { si, time } from "../state/number.js";
@@ -17,7 +16,6 @@ import { chosenSpectrum, spectrumChart } from "./spectrum/spectrum.js";
 /** @typedef {import("../engine/engine.js").Engine} Engine */
 /** @typedef {{name: string, ink: string, dash: number}} Key */
 /** @typedef {{title: string, note: string, legend: Key[], panels: {caption: string, chart: import("../time/plot.js").Chart, height: number}[]}} Sheet */
-/** @typedef {{name: string, type: string, label: string, make: () => Promise<BlobPart[]>}} ChartFile */
 
 /** Size of a picture in CSS pixels; it is drawn at twice that. */
 const WIDTH = 1000;
@@ -26,22 +24,6 @@ const PANEL = 190;
 const HEAD = 54;
 const CAPTION = 20;
 const COLUMNS = WIDTH - 94;
-
-/** What can be saved of the two views as they are. @param {State} state @param {Engine} engine @returns {ChartFile[]} */
-export function chartFiles(state, engine) {
-  if (!state.result) return [];
-  const [png, svg, csv] = ["image/png", "image/svg+xml", "text/csv"];
-  const base = baseName(state);
-  const motion = () => motionSheet(state, engine);
-  const spectrum = () => spectrumSheet(state, engine);
-  return [
-    { name: `${base}-motion.png`, type: png, label: "Motion, picture (PNG)", make: async () => [await bitmap(await motion())] },
-    { name: `${base}-motion.svg`, type: svg, label: "Motion, picture (SVG)", make: async () => [vector(await motion())] },
-    { name: `${base}-motion.csv`, type: csv, label: "Motion, values (CSV)", make: async () => [motionTable(state, await seen(state, engine))] },
-    { name: `${base}-spectrum.png`, type: png, label: "Spectrum, picture (PNG)", make: async () => [await bitmap(await spectrum())] },
-    { name: `${base}-spectrum.svg`, type: svg, label: "Spectrum, picture (SVG)", make: async () => [vector(await spectrum())] },
-  ];
-}
 
 /** @param {State} state @param {Engine} engine */
 async function seen(state, engine) {
@@ -64,7 +46,7 @@ function titleOf({ scenario, result }) {
 }
 
 /** @param {State} state @param {Engine} engine @returns {Promise<Sheet>} */
-async function motionSheet(state, engine) {
+export async function motionSheet(state, engine) {
   const columns = await seen(state, engine);
   const charts = QUANTITIES.map((quantity) => chartOf(state, columns, quantity));
   const { start, end } = shown(state);
@@ -78,7 +60,7 @@ async function motionSheet(state, engine) {
 }
 
 /** @param {State} state @param {Engine} engine @returns {Promise<Sheet>} */
-async function spectrumSheet(state, engine) {
+export async function spectrumSheet(state, engine) {
   const found = await spectra(engine);
   const { quantity, db } = chosenSpectrum();
   const { title, note } = titleOf(state);
@@ -119,7 +101,7 @@ function lay({ title, note, legend, panels }, pen) {
 }
 
 /** A picture of points. @param {Sheet} sheet @returns {Promise<Blob>} */
-function bitmap(sheet) {
+export function bitmap(sheet) {
   const canvas = document.createElement("canvas");
   [canvas.width, canvas.height] = [2 * WIDTH, 2 * heightOf(sheet)];
   const context = canvas.getContext("2d");
@@ -154,7 +136,7 @@ function fontOf(bold) {
 }
 
 /** A picture of lines, as the text of an SVG file. @param {Sheet} sheet */
-function vector(sheet) {
+export function vector(sheet) {
   const measure = document.createElement("canvas").getContext("2d");
   const parts = [`<rect width="100%" height="100%" fill="${color("--pane")}"/>`];
   lay(sheet, {
@@ -184,4 +166,9 @@ function motionTable(state, columns) {
   const cell = (/** @type {number} */ value) => (Number.isFinite(value) ? value : "");
   const head = ["time (s)", ...bands.flatMap(({ head: name, unit }) => [`${name} min (${unit})`, `${name} max (${unit})`])];
   return csv([head, ...[...columns.columns.x].map((seconds, row) => [seconds, ...bands.flatMap(({ min, max }) => [cell(min[row]), cell(max[row])])])]);
+}
+
+/** The curves of the motion view as they are shown, as a table. @param {State} state @param {Engine} engine */
+export async function motionValues(state, engine) {
+  return motionTable(state, await seen(state, engine));
 }

@@ -54,7 +54,9 @@ export function createStudy(page) {
   /** Loads the tabs, and draws the open one. @param {HTMLElement} panel */
   async function load(panel) {
     try {
-      tabs = (await import("./tabs.js")).TABS;
+      const { TABS, dress } = await import("./tabs.js");
+      await dress();
+      tabs = TABS;
       for (const each of all) fill(each.panel);
     } catch {
       const press = element("button", { type: "button" }, "Try again");
