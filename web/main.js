@@ -200,10 +200,11 @@ async function start() {
   const retry = () => { engine.revive(); ran = -1; judge(); };
   const pulses = createPulses(page);
   views = [createHeader({ presets, cancel, retry, ...page }), createForm({ root: byId("fields"), samples: made, drivers, dispatch }),
-    createTabs(page), createPanes(page), createGuide(page), createMotion(page), pulses, createPackets(page), createSpectrum(page),
+    createTabs(page), createPanes(page), createMotion(page), pulses, createPackets(page), createSpectrum(page),
     createTiming({ drivers, speak: pulses.speak, ...page }), createStudy({ samples: made, ...page }), createNotices(page), createShare({ shared: link.shared, ...page }),
     createExports(page, [["Charts", chartFiles], ["Packets", packetFiles], ["Step tables", tableFiles]]), link];
   createKeys();
+  createGuide(page);
   await link.start(loadScenario() !== null);
   if (state.revision === 0) {
     follow(undefined);
