@@ -9,6 +9,7 @@ import { listen } from "../../shell/commands.js";
 import { get } from "../../state/state.js";
 import { cleared, color, draw, fit, watch } from "../../time/plot.js";
 import { choice, createJob, field, table } from "./parts.js";
+import { createSegments } from "./segments.js";
 import { subject } from "./subject.js";
 
 /** @typedef {import("../../state/types.js").State} State */
@@ -52,11 +53,12 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   const verticesJob = createJob("Vertices");
   const bestOf = table("Best d1 of each number of segments", ["segments", "#best d1", "#THD position", "~#Ev", ""]);
   const best = table("Best vertices", ["vertex", "#on the curve", "#height", "#free", "#height"]);
+  const quarter = createSegments({ engine });
   const bestNote = element("p", { class: "study-note", id: "sine-vertices" });
   fill(panel, element("div", { class: "study-bar" }, from.root, to.root, points.root, order.root, quantity.root, job.root),
     element("div", { class: "study-split" },
       element("div", { class: "study-column" }, charts, list.root, note),
-      element("div", { class: "study-column study-side" }, element("h3", {}, "Best d1 of each number of segments, by position"), bestOf.root, element("h3", {}, "Best vertices"), element("div", { class: "study-bar" }, segments.root, verticesJob.root), bestNote, best.root)));
+      element("div", { class: "study-column study-side" }, element("h3", {}, "Best d1 of each number of segments, by position"), bestOf.root, element("h3", {}, "Best vertices"), element("div", { class: "study-bar" }, segments.root, verticesJob.root), bestNote, best.root, quarter.root)));
 
   /** @type {Rows | null} What the charts show, as far as it is made. */
   let rows = null;
@@ -263,6 +265,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   async function current(state) {
     const { of, move } = sineOf(state);
     if (!of) return;
+    quarter.show(move < 0 ? null : of);
     const d1 = of.moves[move]?.sine_segments.max_deviation ?? null;
     const next = `${d1} ${order.value()} ${sensor}`;
     if (next === ownKey) return;

@@ -1,0 +1,31 @@
+/** The segments of a quarter of the scenario's sine: where they break, their steps and rates, and the memory that they save. */
+import { element, say } from "../../dom.js";
+import { unlessDropped } from "../../engine/engine.js";
+import { count, plain, si } from "../../state/number.js";
+import { table } from "./parts.js";
+
+/** @typedef {{from_deg: Float64Array, to_deg: Float64Array, steps: Float64Array, rate: Float64Array, duration_s: Float64Array, segment_bytes: number, interval_bytes: number}} Segments */
+
+/** @param {{engine: import("../../engine/engine.js").Engine}} page */
+export function createSegments({ engine }) {
+  const list = table("Segments of the scenario's sine", ["from", "#to", "#steps", "#rate, steps/s", "~#time"]);
+  const note = element("p", { class: "study-note" });
+  const root = element("div", {}, element("h3", {}, "The scenario's segments"), note, list.root);
+  root.hidden = true;
+  let asked = "";
+
+  /** @param {import("./subject.js").Subject | null} of */
+  async function show(of) {
+    const key = of ? `${of.controller} ${of.axis} ${of.json}` : "";
+    if (key === asked) return;
+    asked = key;
+    /** @type {Segments | null | undefined} */
+    const made = of ? await engine.ask("sine_segments", of.json, of.controller, of.axis).catch(unlessDropped) : null;
+    if (key !== asked) return;
+    root.hidden = !made;
+    if (!made) return;
+    say(note, `Of a quarter, the others follow by symmetry: ${count(made.segment_bytes)} bytes, against ${count(made.interval_bytes)} with an interval for each step.`);
+    list.show(Array.from(made.steps, (steps, i) => [`${made.from_deg[i].toFixed(3)}°`, `${made.to_deg[i].toFixed(3)}°`, count(steps), plain(made.rate[i], ""), si(made.duration_s[i], "s")]));
+  }
+  return { root, show };
+}
