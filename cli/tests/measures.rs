@@ -2,30 +2,17 @@
 #![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
-use std::{
-    io::Write,
-    process::{Command, Stdio},
-};
+mod program;
+
+use program::stepscope;
 
 const MOTION: &str = r#"{ "bus": { "channels": 2 }, "source": { "motion": { "axes": [
     { "moves": [ { "constant": { "distance": { "steps": 100 }, "speed": { "steps_s": 1000 } } } ] },
     { "moves": [ { "sine_segments": { "amplitude": { "steps": 1000 }, "max_deviation": 0.006, "period_s": 0.5, "periods": 2 } } ] } ] } },
     "analysis": { "order": 99, "fft_length": 1000, "sensor_hz": 40 } }"#;
 
-/// Exit code, standard output, standard error.
 fn measures(options: &[&str], input: &str) -> (Option<i32>, String, String) {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_stepscope"))
-        .args([&["measures", "-"], options].concat())
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("it starts");
-    // A command that does not read it may be gone already.
-    let _ = child.stdin.take().expect("it is piped").write_all(input.as_bytes());
-    let output = child.wait_with_output().expect("it ends");
-    let text = |bytes| String::from_utf8(bytes).expect("it is text");
-    (output.status.code(), text(output.stdout), text(output.stderr))
+    stepscope(&[&["measures", "-"], options].concat(), input)
 }
 
 #[test]

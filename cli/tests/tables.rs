@@ -2,31 +2,14 @@
 #![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
-use std::{
-    io::Write,
-    process::{Command, Stdio},
-};
+mod program;
+
+use program::stepscope;
 
 const MOTION: &str = r#"{ "title": "A table", "bus": { "channels": 2 }, "source": { "motion": { "axes": [
     { "moves": [ { "trapezoid": { "distance": { "steps": 20000 }, "start_speed": { "steps_s": 250 },
         "top_speed": { "steps_s": 5000 }, "acceleration": { "steps_s2": 9000 }, "method": "table" } } ] },
     { "moves": [ { "cosine": { "distance": { "steps": -6400 }, "duration_s": 2, "ramp_s": 0.5 } } ] } ] } } }"#;
-
-/// Exit code, standard output, standard error.
-fn stepscope(arguments: &[&str], input: &str) -> (Option<i32>, String, String) {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_stepscope"))
-        .args(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("it starts");
-    // A command that does not read it may be gone already.
-    let _ = child.stdin.take().expect("it is piped").write_all(input.as_bytes());
-    let output = child.wait_with_output().expect("it ends");
-    let text = |bytes| String::from_utf8(bytes).expect("it is text");
-    (output.status.code(), text(output.stdout), text(output.stderr))
-}
 
 #[test]
 fn a_summary_has_a_row_for_each_axis_form_and_width() {

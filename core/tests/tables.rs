@@ -267,7 +267,7 @@ fn what_has_no_table_or_no_end_is_refused_with_its_numbers() {
     let cause = Cause::SegmentInterval { step: 0, interval, pulse: PULSE };
     assert_eq!(refused(quick, Form::Document), Some(cause));
     let many = Move::Constant(Constant { distance: Distance::Steps(5e6), speed: steps_s(1e5) });
-    let cause = Cause::TooMuch { given: 5e6, most: 4e6, of: "steps" };
+    let cause = Cause::TooMuch { given: 5e6, most: 4e6, of: "steps of a table" };
     assert_eq!(refused(many, Form::Exact), Some(cause));
     let rest = Move::Dwell(Dwell { duration_s: 1.0 });
     let wide = Tolerance::of(Cycles(MOST_TOLERANCE.0 + 1));
