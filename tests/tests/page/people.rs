@@ -42,7 +42,8 @@ fn a_new_visitor_is_offered_the_guide_once_and_it_points_at_what_is_there() -> R
             ensure!(page.visible("#welcome").await?, "the guide is not offered at {width} px");
             page.click("#welcome-start").await?;
             let steps: u32 =
-                page.eval("import('./help/guide.js').then((guide) => guide.STEPS.length)").await?;
+                page.eval("import('./help/guide_steps.js').then((guide) => guide.STEPS.length)").await?;
+            page.until("document.querySelector('#guide h2')").await?;
             for step in 1..=steps {
                 let said = page.text("#guide h2").await?;
                 ensure!(said.starts_with(&format!("{step} of {steps}")), "step {step}: {said}");
