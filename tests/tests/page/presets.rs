@@ -74,7 +74,7 @@ fn a_periodic_motions_distortion_is_the_cores() -> Result<()> {
                 if let Some(distortion) = harmonics.distortion {
                     let (shown, wanted) = (percent_after(&said, "ideal ")?, 100.0 * distortion);
                     ensure!(
-                        (shown - wanted).abs() <= 1e-4 * wanted.abs() + 1e-9,
+                        (shown - wanted).abs() <= 1e-4 * wanted.abs() + 1e-7,
                         "{}: {said}, wanted {wanted}",
                         preset.id
                     );

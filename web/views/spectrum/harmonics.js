@@ -60,14 +60,17 @@ export function told({ n, hz, parts }, quantity, periodic) {
   return `${periodic ? "harmonic" : "line"} ${n} · ${si(hz, "Hz", 5)} · ${each.join(" · ")}`;
 }
 
+/** A distortion in percent; what is left of an exact sine is rounding. @param {number} ratio */
+const percent = (ratio) => `${ratio < 1e-9 ? 0 : short(ratio * 100, 5)} %`;
+
 /** @param {Spectra} spectra @param {Quantity} quantity */
 export function distortion(spectra, quantity) {
   const parts = given(spectra).map(([name, spectrum]) => {
     const value = spectrum[/** @type {const} */ (`thd_${quantity}`)];
-    return `${name} ${value === null ? "none" : `${short(value * 100, 5)} %`}`;
+    return `${name} ${value === null ? "none" : percent(value)}`;
   });
   const felt = quantity === "acceleration" ? given(spectra).filter(([, spectrum]) => spectrum.thd_acceleration_felt !== null) : [];
-  const through = felt.map(([name, spectrum]) => `${name} ${short(Number(spectrum.thd_acceleration_felt) * 100, 5)} %`).join(", ");
+  const through = felt.map(([name, spectrum]) => `${name} ${percent(Number(spectrum.thd_acceleration_felt))}`).join(", ");
   return `THD of ${quantity}, axis ${spectra.axis}: ${parts.join(", ")}${through && `; felt by the sensor: ${through}`}`;
 }
 
