@@ -178,6 +178,9 @@ function read(text, field, state, before) {
     case "hex": return { value: bare(text) };
     case "optional-hex": return { value: bare(text) || null };
     case "lines": return { value: text.split("\n").map(bare).filter((line) => line !== "") };
+    case "optional-number":
+      if (text.trim() === "") return { value: null };
+      return parseNumber(text, unit);
     case "optional":
     case "optional-cycles":
       if (text.trim() === "") return { value: null };

@@ -5,7 +5,7 @@
  * @property {string} key     Name in the scenario.
  * @property {string} label
  * @property {string} hint    How it is given, and its range.
- * @property {"number" | "integer" | "optional" | "cycles" | "optional-cycles" | "choice" | "quantity" | "text" | "hex" | "optional-hex" | "lines" | "segments" | "points"} kind
+ * @property {"number" | "integer" | "optional" | "optional-number" | "cycles" | "optional-cycles" | "choice" | "quantity" | "text" | "hex" | "optional-hex" | "lines" | "segments" | "points"} kind
  *   `optional…` may be empty (null); `cycles` also takes a time; `lines` is one hex packet a line, `segments` one
  *   segment, `points` one point of a curve.
  * @property {string} [term]  Its explanation in `help/terms.js`, where it is not that of its key.

@@ -134,7 +134,7 @@ export const SECTIONS = [
       integer("axis", "Axis", "", "Axis of the motion, or the channel: from 0, below the number of channels."),
       integer("order", "Order", "", "Highest harmonic that counts for the distortion, 2 to 1000."),
       integer("fft_length", "Samples", "a period", "Length of the transform over one period of the ideal motion, 16 to 65536; any number is coherent."),
-      { key: "sensor_hz", label: "Sensor's bandwidth", unit: "Hz", kind: "optional", hint: "Of the accelerometer on the rig (−3 dB, first order), 0.001 to 10⁹; empty for none. The distortion of what it feels is told beside that of the acceleration." },
+      { key: "sensor_hz", label: "Sensor's bandwidth", unit: "Hz", kind: "optional-number", hint: "Of the accelerometer on the rig (−3 dB, first order), 0.001 to 10⁹; empty for none. The distortion of what it feels is told beside that of the acceleration." },
     ] }],
   },
   {
