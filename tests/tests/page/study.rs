@@ -119,7 +119,7 @@ fn the_sweep_is_the_cores_and_a_d1_is_taken_and_given_back() -> Result<()> {
         {
             fill(&page, label, text).await?;
         }
-        page.until("document.getElementById('sine-charts').ariaValueMax === '32'").await?;
+        page.until("document.getElementById('sine-charts')?.ariaValueMax === '32'").await?;
         let rows: Vec<Row> = sweep(0.004, 0.012, 33, 99).collect();
         page.press("#sine-charts", &format!("{RIGHT}{RIGHT}{RIGHT}{LEFT}")).await?;
         let pointed = cells(&page, "What a d1 gives", "pointed at").await?;
@@ -176,7 +176,7 @@ fn without_a_sine_the_axis_is_offered_one() -> Result<()> {
         page.open("").await?;
         page.click("#study").await?;
         page.click("#study-tab-sine").await?;
-        page.until("document.getElementById('sine-charts').ariaValueMax === '499'").await?;
+        page.until("document.getElementById('sine-charts')?.ariaValueMax === '499'").await?;
         page.press("#sine-charts", &format!("{RIGHT}{ENTER}")).await?;
         page.until("document.querySelector('#study-sine .study-note button')?.textContent === 'Add one with d1 = 0.002'").await?;
         page.click("#study-sine .study-note button").await?;
@@ -206,7 +206,7 @@ fn a_long_sweep_says_how_far_it_is_and_is_left_off() -> Result<()> {
         page.open("").await?;
         page.click("#study").await?;
         page.click("#study-tab-sine").await?;
-        page.until("document.getElementById('sine-charts').ariaValueMax === '499'").await?;
+        page.until("document.getElementById('sine-charts')?.ariaValueMax === '499'").await?;
         page.until("document.querySelector('#study-sine .study-job').hidden").await?;
         fill(&page, "harmonics to", "9999").await?;
         fill(&page, "points", "20000").await?;
@@ -226,7 +226,7 @@ fn a_long_sweep_says_how_far_it_is_and_is_left_off() -> Result<()> {
         // Nothing goes on behind it, and what comes next is whole.
         fill(&page, "harmonics to", "9").await?;
         fill(&page, "points", "12").await?;
-        page.until("document.getElementById('sine-charts').ariaValueMax === '11'").await?;
+        page.until("document.getElementById('sine-charts')?.ariaValueMax === '11'").await?;
         page.until("document.querySelector('#study-sine .study-job').hidden").await
     })
 }

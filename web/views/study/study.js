@@ -51,14 +51,18 @@ export function createStudy(page) {
 
   /** @type {typeof import("./tabs.js").TABS | null} */
   let tabs = null;
-  /** Loads the tabs, and draws the open one. @param {HTMLElement} panel */
+  /** @type {Promise<void> | null} */
+  let loading = null;
+  /** Loads the tabs once, and draws the open one. @param {HTMLElement} panel */
   async function load(panel) {
-    try {
-      const { TABS, dress } = await import("./tabs.js");
+    loading ??= import("./tabs.js").then(async ({ TABS, dress }) => {
       await dress();
       tabs = TABS;
-      for (const each of all) fill(each.panel);
+    });
+    try {
+      await loading;
     } catch {
+      loading = null;
       const press = element("button", { type: "button" }, "Try again");
       press.addEventListener("click", () => render(now()));
       return fill(panel, element("p", { class: "study-note" }, "The study could not be loaded; try again when the network is there. ", press));
