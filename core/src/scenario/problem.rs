@@ -448,7 +448,9 @@ impl fmt::Display for Cause {
             }
             Self::NotRising { given, before, least } => write!(
                 f,
-                "a time of {given} s after one of {before} s; give times that rise by {} s at least",
+                "a time of {} s after one of {} s; give times that rise by {} s at least",
+                Short(*given),
+                Short(*before),
                 Short(*least)
             ),
             Self::TooManySteps { tick, steps, slots, rate, limit } => write!(
