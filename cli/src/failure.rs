@@ -2,8 +2,8 @@
 
 use std::{fmt, io, path::PathBuf, process::ExitCode};
 use stepscope_core::{
+    inspect::run_fingerprint::ProofError,
     scenario::{Problem, link::LinkError},
-    trace::ProofError,
 };
 
 /// Why there is no result.

@@ -14,8 +14,9 @@ use std::{
     thread,
 };
 use stepscope_core::{
-    run::campaign::{Campaign, Tally},
-    scenario::{Problem, Protocol, Scenario, link},
+    peripheral::config::Protocol,
+    scenario::{Problem, Scenario, link},
+    sim::fault_sweep::{Campaign, Tally},
 };
 
 /// Seeds that a thread takes at once.
@@ -23,7 +24,7 @@ const BATCH: u64 = 64;
 /// The name of the protocol that nothing may go wrong with.
 const FRAMED: &str = "framed";
 /// Seeds that are named where something went wrong.
-const MOST_NAMED: usize = 8;
+const MAX_NAMED: usize = 8;
 
 /// What `stepscope faults` takes.
 #[derive(Args)]
@@ -99,7 +100,7 @@ impl Report {
         self.tally += other.tally;
         self.wrong.append(&mut other.wrong);
         self.wrong.sort_unstable();
-        self.wrong.truncate(MOST_NAMED);
+        self.wrong.truncate(MAX_NAMED);
     }
 }
 

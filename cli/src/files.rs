@@ -6,13 +6,17 @@ use std::{
     path::{Path, PathBuf},
 };
 use stepscope_core::{
-    analysis::timing::TimingCheck,
-    signal::{Event, Record, Sink},
-    trace::{
-        Digest, Fingerprinter, PacketLog, VcdWriter, write_edges_head, write_edges_row, write_packets_head,
-        write_packets_row, write_record,
+    inspect::{
+        fingerprint::Fingerprinter,
+        tables::{write_edges_head, write_edges_row, write_packets_head, write_packets_row},
+        timing::TimingCheck,
+        vcd::VcdWriter,
     },
-    units::Instant,
+    peripheral::{
+        signal::{Event, Record, Sink},
+        trace::{Digest, PacketLog, write_record},
+        units::Instant,
+    },
 };
 
 /// Where a file goes: its path, or standard output for `-`.

@@ -3,8 +3,8 @@
 use crate::{failure::Failure, files};
 use std::{io::Write, path::Path};
 use stepscope_core::{
-    run::{Experiment, Run, scripted},
     scenario::Scenario,
+    sim::{Experiment, Run, scripted},
 };
 
 /// Writes the scenario that gives the same traces without host, noise and motion.

@@ -9,15 +9,15 @@ use std::{
     path::PathBuf,
 };
 use stepscope_core::{
-    analysis::{
+    inspect::{
         made::Pulses,
         measures::{Measures, within_bounds},
         spectrum::{Harmonics, Spectrum, Stretch},
     },
     motion::AxisPlan,
-    run::Experiment,
-    scenario::{Analysis, Cause, Problem, Scenario, Source},
-    trace::{Recording, steps},
+    peripheral::trace::{Recording, steps},
+    scenario::{Analysis, Problem, Scenario, Source, ValueError},
+    sim::Experiment,
 };
 
 /// What `stepscope measures` takes.
@@ -81,7 +81,7 @@ pub(crate) fn measures(arguments: &Arguments) -> Result<(), Failure> {
     let Source::Motion(motion) = &scenario.source else {
         let detail =
             "no motion, so there is no curve to measure the pulses by; give a scenario with source.motion";
-        return Err(wrong(vec![Problem::new("source", Cause::Conflict { detail })]));
+        return Err(wrong(vec![Problem::new("source", ValueError::Conflict { detail })]));
     };
     let axis = arguments.axis.unwrap_or(scenario.analysis.axis.into());
     let plan = experiment.plans().get(axis);

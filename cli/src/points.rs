@@ -4,8 +4,12 @@ use crate::{failure::Failure, scenarios};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use stepscope_core::{
-    motion::plan_axis,
-    scenario::{Axis, Direct, Interpolation, Mechanics, Motion, Move, PointUnit, Points, Scenario, Source},
+    motion::{
+        mechanics::{Direct, Mechanics},
+        moves::{Axis, Interpolation, Move, PointUnit, Points},
+        plan_axis,
+    },
+    scenario::{Motion, Scenario, Source, of_motion, points_of_table},
 };
 
 /// What `stepscope points` takes.
@@ -36,7 +40,7 @@ enum UnitName {
 /// Writes the scenario of a table as JSON.
 pub(crate) fn points(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.table;
-    let points = Points::of_table(&scenarios::text(path)?)
+    let points = points_of_table(&scenarios::text(path)?)
         .map_err(|error| Failure::Table(path.clone(), error.to_string()))?;
     let unit = match arguments.unit {
         UnitName::Steps => PointUnit::Steps,
@@ -51,7 +55,7 @@ pub(crate) fn points(arguments: &Arguments) -> Result<(), Failure> {
     let moves = vec![Move::Points(Points { unit, interpolation, points })];
     let axis = Axis { mechanics, moves, ..Axis::default() };
     plan_axis(&axis, "source.motion.axes[0]")
-        .map_err(|problems| Failure::Scenario(path.clone(), problems))?;
+        .map_err(|problems| Failure::Scenario(path.clone(), of_motion(problems)))?;
     let title =
         path.file_name().map_or_else(String::new, |name| name.to_string_lossy().chars().take(120).collect());
     let source = Source::Motion(Motion { axes: vec![axis], ..Motion::default() });

@@ -15,9 +15,10 @@ use std::{
     path::PathBuf,
 };
 use stepscope_core::{
-    run::{Experiment, Run},
-    scenario::{Config, Scenario, link},
-    trace::{Fingerprinter, Proof},
+    inspect::{fingerprint::Fingerprinter, run_fingerprint::Proof},
+    peripheral::config::Config,
+    scenario::{Scenario, link},
+    sim::{Experiment, Run},
 };
 
 /// Records between two looks at how far a run is.

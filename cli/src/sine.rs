@@ -6,8 +6,8 @@ use std::{
     io::{self, Write},
     path::PathBuf,
 };
-use stepscope_core::analysis::{
-    sine_optimum::{Freedom, MOST_SEGMENTS, optimum},
+use stepscope_core::inspect::{
+    sine_optimum::{Freedom, MAX_SEGMENTS, optimum},
     sine_polyline::{self, Bounds, Distinct, Row},
 };
 
@@ -33,7 +33,7 @@ pub(crate) enum Command {
     /// The vertices of so many segments a quarter that give least distortion, on the curve or free.
     Vertices {
         /// Segments of a quarter.
-        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MOST_SEGMENTS as i64))]
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_SEGMENTS as i64))]
         segments: u8,
         /// Vertices may leave the curve.
         #[arg(long)]

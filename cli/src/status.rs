@@ -2,7 +2,7 @@
 
 use crate::files::Station;
 use std::io::{self, Write};
-use stepscope_core::run::{Experiment, Run};
+use stepscope_core::sim::{Experiment, Run};
 
 /// A run that is over.
 pub(crate) struct Shown<'a> {

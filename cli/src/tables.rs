@@ -8,15 +8,14 @@ use std::{
     path::PathBuf,
 };
 use stepscope_core::{
-    motion::{AxisPlan, plan_lists, round_half_up},
-    quantise::{
-        EntryFormat, Form, Stored, Tolerance,
-        source_code::{Language, Source, headline, is_name},
-        stored,
+    inspect::source_code::{Language, Source, headline, is_name},
+    motion::{
+        AxisPlan, Cause, plan_lists,
+        quantise::{EntryFormat, Form, Stored, Tolerance, stored},
+        round_half_up,
     },
-    scenario::{Cause, Config, Motion, Problem, Scenario, Source as ScenarioSource},
-    segment::PulseTimes,
-    units::Cycles,
+    peripheral::{config::Config, segment::PulseTimes, units::Cycles},
+    scenario::{Motion, Problem, Scenario, Source as ScenarioSource, ValueError, of_config, of_motion},
 };
 
 /// What `stepscope tables` takes.
@@ -136,10 +135,12 @@ impl Axes {
         let ScenarioSource::Motion(Motion { axes, .. }) = &source else {
             let detail =
                 "no motion, so there is nothing to make tables of; give a scenario with source.motion";
-            return Err(wrong(vec![Problem::new("source", Cause::Conflict { detail })]));
+            return Err(wrong(vec![Problem::new("source", ValueError::Conflict { detail })]));
         };
-        let config = Config::of_segments(clock_hz, &bus, &line).map_err(wrong)?;
-        let plans = plan_lists([("source.motion.axes".to_owned(), axes.as_slice())]).map_err(wrong)?;
+        let config = Config::of_segments(clock_hz, &bus, &line.serial()).map_err(of_config).map_err(wrong)?;
+        let plans = plan_lists([("source.motion.axes".to_owned(), axes.as_slice())])
+            .map_err(of_motion)
+            .map_err(wrong)?;
         // One division, so that 25 us of 16 MHz are 400 cycles and not 399.
         let cycles = Cycles((arguments.error_us * f64::from(clock_hz) / 1e6) as u64);
         let tolerance = Tolerance { cycles, interval_part: arguments.interval_part };

@@ -7,18 +7,18 @@ use std::{
     path::{Path, PathBuf},
 };
 use stepscope_core::{
-    analysis::{
+    inspect::{
         drivers::{self, DRIVERS, Sheet},
         timing::{Rule, RuleResult, TimingCheck},
     },
+    peripheral::units::{Cycles, Instant},
     scenario::{Scenario, TimingRules},
-    units::{Cycles, Instant},
 };
 
 /// Violations that the screen shows.
-const MOST_SHOWN: usize = 20;
+const MAX_SHOWN: usize = 20;
 /// Violations that a file holds.
-const MOST_WRITTEN: usize = 1_000_000;
+const MAX_WRITTEN: usize = 1_000_000;
 
 /// What `stepscope run` takes about the timing check.
 #[derive(Args)]
@@ -55,10 +55,10 @@ impl Options {
         if !self.asked() {
             return Ok(None);
         }
-        let own = || scenario.driver.as_ref().map(drivers::rules);
+        let own = || scenario.driver_timing.as_ref().map(drivers::rules);
         let rules = self.driver.map(|sheet| sheet.rules.clone()).or_else(own);
         let rules = rules.ok_or_else(|| Failure::NoDriver(path.to_owned()))?;
-        let kept = if self.violations.is_some() { MOST_WRITTEN } else { MOST_SHOWN };
+        let kept = if self.violations.is_some() { MAX_WRITTEN } else { MAX_SHOWN };
         Ok(Some(TimingCheck::new(&rules, scenario.clock_hz, kept)))
     }
 
@@ -117,7 +117,7 @@ fn print(check: &TimingCheck, clock_hz: u32) -> io::Result<()> {
         writeln!(out, "{name:12} {required:>11} {least:>12} {spare:>12} {at:>15} {channel:>8} {total:>11}")?;
     }
     writeln!(out, "violations {}", check.total())?;
-    for found in check.violations().iter().take(MOST_SHOWN) {
+    for found in check.violations().iter().take(MAX_SHOWN) {
         let (cycle, channel, rule) = (found.at.0, found.channel, found.rule.name());
         let (measured, required) = (found.measured.0, found.required.0);
         writeln!(
@@ -125,7 +125,7 @@ fn print(check: &TimingCheck, clock_hz: u32) -> io::Result<()> {
             "cycle {cycle} channel {channel} {rule}: {measured} cycles, at least {required} required"
         )?;
     }
-    match check.total().saturating_sub(MOST_SHOWN as u64) {
+    match check.total().saturating_sub(MAX_SHOWN as u64) {
         0 => Ok(()),
         more => writeln!(out, "and {more} more"),
     }

@@ -7,15 +7,15 @@ use std::{
     path::PathBuf,
 };
 use stepscope_core::{
-    analysis::torque::{Demand, Machine, Moment, Ramps},
+    inspect::torque::{Demand, Machine, Moment, Ramps},
     motion::{AxisPlan, Curve, PlannedMove, plan_lists},
-    scenario::{Cause, Motion, Problem, Scenario, Source},
+    scenario::{Motion, Problem, Scenario, Source, ValueError, of_motion},
 };
 
 /// Shortages that the screen shows of an axis.
-const MOST_SHOWN: usize = 20;
+const MAX_SHOWN: usize = 20;
 /// The most time in s that a move may have (docs/scenario.md).
-const MOST_DURATION_S: f64 = 86_400.0;
+const MAX_DURATION_S: f64 = 86_400.0;
 /// Rates of the curve.
 const POINTS: u32 = 201;
 
@@ -69,13 +69,14 @@ pub(crate) fn torque(arguments: &Arguments) -> Result<(), Failure> {
 fn driven(arguments: &Arguments) -> Result<Vec<Driven>, Failure> {
     let path = &arguments.scenario;
     let wrong = |problems| Failure::Scenario(path.clone(), problems);
-    let refused = |path: String, detail| wrong(vec![Problem::new(path, Cause::Conflict { detail })]);
+    let refused = |path: String, detail| wrong(vec![Problem::new(path, ValueError::Conflict { detail })]);
     let scenario: Scenario = scenarios::read(path)?;
     let Source::Motion(Motion { axes, .. }) = &scenario.source else {
         let detail = "no motion, so no motor is asked for anything; give a scenario with source.motion";
         return Err(refused("source".to_owned(), detail));
     };
-    let plans = plan_lists([("source.motion.axes".to_owned(), axes.as_slice())]).map_err(wrong)?;
+    let plans =
+        plan_lists([("source.motion.axes".to_owned(), axes.as_slice())]).map_err(of_motion).map_err(wrong)?;
     let only = match (arguments.axis, arguments.format) {
         (None, Written::Csv) => Some(0),
         (axis, _) => axis,
@@ -181,7 +182,7 @@ fn shortages(demand: &Demand, machine: &Machine, out: &mut impl Write) -> io::Re
         demand.total,
         if demand.total == 1 { "" } else { "es" }
     )?;
-    for found in demand.shortages.iter().take(MOST_SHOWN) {
+    for found in demand.shortages.iter().take(MAX_SHOWN) {
         let (from, to, short) = (found.from_s, found.to_s, -found.worst.margin_mn_m());
         write!(out, "    {from:.6} to {to:.6} s: {short:.1} mN*m short {}", moment(&found.worst))?;
         match found.times {
@@ -189,7 +190,7 @@ fn shortages(demand: &Demand, machine: &Machine, out: &mut impl Write) -> io::Re
             _ => writeln!(out)?,
         }
     }
-    match demand.total.saturating_sub(MOST_SHOWN as u64) {
+    match demand.total.saturating_sub(MAX_SHOWN as u64) {
         0 => Ok(()),
         more => writeln!(out, "    and {more} more"),
     }
@@ -215,7 +216,7 @@ fn ramps(index: usize, planned: &PlannedMove, found: &Ramps, out: &mut impl Writ
             None => {
                 write!(out, "even without ramps the move is faster; ")?;
                 match steps.unsigned_abs() as f64 / greatest {
-                    least_s if least_s <= MOST_DURATION_S => writeln!(out, "give at least {least_s:.4} s")?,
+                    least_s if least_s <= MAX_DURATION_S => writeln!(out, "give at least {least_s:.4} s")?,
                     _ => {
                         writeln!(out, "give less distance or less load: no move may take the time it needs")?
                     }

@@ -3,10 +3,13 @@
 use crate::{failure::Failure, progress::Progress};
 use std::path::PathBuf;
 use stepscope_core::{
-    run::Experiment,
+    inspect::{
+        fingerprint::{Comparison, Likeness, Shorter},
+        run_fingerprint::{Proof, VERSION},
+    },
+    peripheral::units::Instant,
     scenario::Scenario,
-    trace::{Comparison, Likeness, Proof, Shorter, VERSION},
-    units::Instant,
+    sim::Experiment,
 };
 
 /// Records between two looks at how far the run is.

@@ -8,7 +8,7 @@ use std::{
     path::PathBuf,
     process::{Command, Stdio},
 };
-use stepscope_core::analysis::drivers::DRIVERS;
+use stepscope_core::inspect::drivers::DRIVERS;
 use stepscope_tests::golden::{CASES, Case};
 
 /// What a call gave.

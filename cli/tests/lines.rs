@@ -9,8 +9,8 @@ const NOISY: &str = r#"{
     "bus": { "channels": 2 },
     "line": { "baud": 230400, "protocol": "framed", "address": 5, "host": { "attempts": 100 },
         "glitches": [ { "start_cycle": 400000, "length_cycles": 3000, "level": 0 } ],
-        "noise": { "seed": 11, "flipped_bits_ppm": 1000, "lost_bytes_ppm": 5000, "doubled_bytes_ppm": 5000,
-            "glitches_ppm": 10000, "lost_replies_ppm": 100000, "deaths_ppm": 50000 } },
+        "noise": { "seed": 11, "flipped_bits_ppm": 1000, "lost_bytes_ppm": 5000, "duplicated_bytes_ppm": 5000,
+            "glitches_ppm": 10000, "lost_replies_ppm": 100000, "host_crashes_ppm": 50000 } },
     "source": { "motion": { "axes": [
         { "moves": [ { "constant": { "distance": { "steps": 60 }, "speed": { "steps_s": 1000 } } } ] },
         { "moves": [ { "constant": { "distance": { "steps": -30 }, "speed": { "steps_s": 700 } } } ] } ] } },
@@ -98,7 +98,7 @@ fn a_noisy_line_run_in_its_turn_gives_every_controller_the_same_trace() {
     let raw = r#"{ "bus": { "channels": 2 }, "line": { "address": 3,
             "glitches": [ { "start_cycle": 90000, "length_cycles": 90000, "level": 1 } ],
             "noise": { "seed": 5, "flipped_bits_ppm": 5000, "lost_bytes_ppm": 20000,
-                "doubled_bytes_ppm": 20000, "glitches_ppm": 50000, "deaths_ppm": 50000 } },
+                "duplicated_bytes_ppm": 20000, "glitches_ppm": 50000, "host_crashes_ppm": 50000 } },
         "controllers": [ { "address": 4, "bus": { "channels": 2 } } ] }"#;
     let cut = NOISY.replacen("\"bus\"", "\"run_cycles\": 500000, \"bus\"", 1);
     for (title, json) in [("framed", NOISY), ("raw", raw), ("cut", &cut)] {

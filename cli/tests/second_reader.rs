@@ -12,9 +12,11 @@ use std::{
     process::Command,
 };
 use stepscope_core::{
+    peripheral::{
+        signal::{Record, name},
+        trace::{parse_line, shown_signals},
+    },
     scenario::presets::PRESETS,
-    signal::{Record, name},
-    trace::{parse_line, shown_signals},
 };
 use vcd::{Command as Entry, IdCode, Parser, ScopeItem, Value};
 

@@ -1,41 +1,37 @@
-//! The model behind Stepscope: a stepper-motion peripheral to the clock cycle, and the motions that
-//! drive it.
+//! The door to Stepscope: a stepper-motion peripheral to the clock cycle, and the motions that drive it.
 //!
-//! The way of the data is one line, and the modules stand in its order. A module may use what
-//! stands to its left or below the line, never what stands to its right:
+//! Each room is a crate of its own, re-exported here by features. The way of the data is one line; a room may use what
+//! stands to its left, never what stands to its right:
 //!
 //! ```text
-//! scenario -> motion -> quantise -> wire -> device -> trace -> analysis -> run
-//! below: units, signal, segment, protocol
+//! registers -> peripheral -> motion -> scenario -> sim -> inspect
 //! ```
 //!
-//! `device` never learns of motions and `motion` never of devices: they meet in ticks and in
-//! segments. `run` is the front that walks the whole line, from a scenario to its trace.
+//! | room | what it holds | feature |
+//! | --- | --- | --- |
+//! | [`registers`] | the register map, and the bus that drivers are written against | always |
+//! | [`peripheral`] | the device: serial line, packets, pulses, trace, digest | always |
+//! | [`motion`] | profiles, planners, their steps as ticks, segments and tables | `motion` |
+//! | [`scenario`] | what a file, a link and the form hold | `scenario` |
+//! | [`sim`] | a scenario judged, planned and run | `sim` |
+//! | [`inspect`] | what one looks at: packets, spectra, measures, timing, torque | `inspect` |
 //!
-//! Invariants that hold everywhere: time is an integer count of clock cycles; nothing that decides
-//! an edge depends on the platform (transcendental functions come from `libm`); no panic is
-//! reachable from any scenario, link, file or byte stream.
-#![cfg_attr(not(feature = "std"), no_std)]
+//! Invariants that hold everywhere: time is an integer count of clock cycles; nothing that decides an edge depends on
+//! the platform (transcendental functions come from `libm`); no panic is reachable from any scenario, link, file or byte
+//! stream.
+#![no_std]
 
-extern crate alloc;
+pub use stepscope_peripheral as peripheral;
+pub use stepscope_registers as registers;
 
-pub mod scenario;
+#[cfg(feature = "motion")]
+pub use stepscope_motion as motion;
 
-pub mod motion;
+#[cfg(feature = "scenario")]
+pub use stepscope_scenario as scenario;
 
-pub mod quantise;
+#[cfg(feature = "sim")]
+pub use stepscope_sim as sim;
 
-pub mod wire;
-
-pub mod device;
-
-pub mod trace;
-
-pub mod analysis;
-
-pub mod run;
-
-pub mod protocol;
-pub mod segment;
-pub mod signal;
-pub mod units;
+#[cfg(feature = "inspect")]
+pub use stepscope_inspect as inspect;

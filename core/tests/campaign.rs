@@ -3,8 +3,9 @@
 #![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
 use stepscope_core::{
-    run::campaign::{Campaign, Tally},
-    scenario::{Noise, Protocol, Scenario},
+    peripheral::config::Protocol,
+    scenario::{Noise, Scenario},
+    sim::fault_sweep::{Campaign, Tally},
 };
 
 fn campaign(protocol: Protocol) -> Campaign {

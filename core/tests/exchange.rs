@@ -2,9 +2,13 @@
 #![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
 use stepscope_core::{
-    run::{Experiment, replayed},
+    inspect::{
+        tables::{write_edges_head, write_edges_row, write_packets_head, write_packets_row},
+        trace_diff::Against,
+    },
+    peripheral::trace::Recording,
     scenario::{LineScript, Scenario, presets::PRESETS},
-    trace::{Against, Recording, write_edges_head, write_edges_row, write_packets_head, write_packets_row},
+    sim::{Experiment, replayed},
 };
 
 fn recorded(scenario: &Scenario) -> (Experiment, Recording) {

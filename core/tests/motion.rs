@@ -8,18 +8,24 @@ use moves::{CLOCK_HZ, plan, ramp_shape, sane_move, short_move};
 use proptest::prelude::*;
 use std::rc::Rc;
 use stepscope_core::{
-    device::SegmentEngine,
-    motion::{AxisPlan, Curve, Profile, plan_axis, round_half_up},
-    quantise::{exact_segments, ticks},
-    scenario::{
-        Acceleration, Axis, Constant, Cosine, CosineMethod, Direct, Distance, Dwell, Interpolation, Jerk,
-        JerkLimited, Mechanics, Move, Point, PointUnit, Points, Ramps, Sine, SineSegments, Speed, Staircase,
-        Trapezoid, TrapezoidMethod,
+    motion::{
+        AxisPlan, Curve, Profile,
+        mechanics::{Acceleration, Direct, Distance, Jerk, Mechanics, Speed},
+        moves::{
+            Axis, Constant, Cosine, CosineMethod, Dwell, Interpolation, JerkLimited, Move, Point, PointUnit,
+            Points, Ramps, Sine, SineSegments, Staircase, Trapezoid, TrapezoidMethod,
+        },
+        plan_axis,
+        quantise::{AxesPath, exact_segments, ticks},
+        round_half_up,
     },
-    segment::PulseTimes,
-    signal::Record,
-    trace::steps,
-    units::{Cycles, Instant},
+    peripheral::{
+        device::SegmentEngine,
+        segment::PulseTimes,
+        signal::Record,
+        trace::steps,
+        units::{Cycles, Instant},
+    },
 };
 
 /// Any number, with the absurd ones often.
@@ -144,7 +150,7 @@ fn mirrored(given: &Move) -> Move {
 
 /// Signed steps of each tick of channel 0.
 fn counts(plan: &AxisPlan, tick_cycles: u64) -> Vec<i64> {
-    let made = ticks(std::slice::from_ref(plan), 1, 127, tick_cycles, CLOCK_HZ);
+    let made = ticks(std::slice::from_ref(plan), AxesPath::MOTION, 1, 127, tick_cycles, CLOCK_HZ);
     let made = made.unwrap_or_else(|problems| panic!("{problems:?}"));
     made.bytes().iter().map(|byte| i64::from(byte & 127) * if byte & 128 == 0 { -1 } else { 1 }).collect()
 }
@@ -194,7 +200,7 @@ proptest! {
     ) {
         let plans = [plan(moves), plan(vec![other])];
         let pulse = PulseTimes { width: Cycles(1), setup: Cycles(1), hold: Cycles(0) };
-        let lists = exact_segments(&plans, 2, pulse, CLOCK_HZ).unwrap_or_else(|problems| panic!("{problems:?}"));
+        let lists = exact_segments(&plans, AxesPath::MOTION, 2, pulse, CLOCK_HZ).unwrap_or_else(|problems| panic!("{problems:?}"));
         prop_assert_eq!(lists.steps(), plans[0].step_count() + plans[1].step_count());
         let mut trace: Vec<Record> = Vec::new();
         let mut engine = SegmentEngine::new(Rc::new(lists));
@@ -272,10 +278,10 @@ proptest! {
                     prop_assert!(first.is_sorted());
                     let pulse = PulseTimes { width: Cycles(1), setup: Cycles(0), hold: Cycles(0) };
                     if plan.step_count() <= 20_000 {
-                        let _ = exact_segments(std::slice::from_ref(&plan), 1, pulse, clock_hz);
+                        let _ = exact_segments(std::slice::from_ref(&plan), AxesPath::MOTION, 1, pulse, clock_hz);
                     }
                     let few_ticks = plan.duration_s() / 1000.0 * f64::from(clock_hz);
-                    let _ = ticks(&[plan], 1, slots, tick_cycles.max(few_ticks as u64), clock_hz);
+                    let _ = ticks(&[plan], AxesPath::MOTION, 1, slots, tick_cycles.max(few_ticks as u64), clock_hz);
                 }
                 Err(problems) => {
                     prop_assert!(!problems.is_empty());

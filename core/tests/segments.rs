@@ -4,7 +4,7 @@
 
 use proptest::prelude::*;
 use std::{collections::BTreeMap, rc::Rc};
-use stepscope_core::{
+use stepscope_core::peripheral::{
     device::SegmentEngine,
     segment::{CheckedSegments, PulseTimes, Segment, SegmentList},
     signal::{Levels, Record, Sink},
@@ -107,7 +107,7 @@ proptest! {
         prop_assert_eq!(lists.end().0, end);
         prop_assert!(lists.most_records() >= expected.len() as u64);
         let done = |engine: &SegmentEngine| {
-            (engine.at_rest(), engine.quiet(), engine.now().0, engine.positions()) == (true, None, end + 1, positions)
+            (engine.at_rest(), engine.cycles_until_event(), engine.now().0, engine.positions()) == (true, None, end + 1, positions)
         };
 
         let (mut fast, mut engine) = (Vec::new(), SegmentEngine::new(Rc::clone(&lists)));
@@ -133,8 +133,8 @@ proptest! {
         prop_assert!(done(&engine), "{:?}", engine);
 
         let (mut skipped, mut engine) = (Vec::new(), SegmentEngine::new(Rc::clone(&lists)));
-        while let Some(quiet) = engine.quiet() {
-            engine.skip(Cycles(quiet.0 * hurry / 100));
+        while let Some(quiet) = engine.cycles_until_event() {
+            engine.advance(Cycles(quiet.0 * hurry / 100));
             engine.clock(&mut skipped);
         }
         prop_assert_eq!(&skipped, &expected);
@@ -154,7 +154,7 @@ proptest! {
 /// Positions by the edges before a cycle (DESIGN A3).
 fn steps_before(trace: &[Record], cycle: u64) -> [i32; 16] {
     std::array::from_fn(|channel| {
-        let steps = stepscope_core::trace::steps(trace, channel as u8);
+        let steps = stepscope_core::peripheral::trace::steps(trace, channel as u8);
         steps.iter().rev().find(|step| step.cycle < cycle).map_or(0, |step| step.position)
     })
 }

@@ -9,14 +9,16 @@ mod moves;
 use moves::{CLOCK_HZ, plan};
 use std::{env, fmt::Write, fs, path::PathBuf, process::Command};
 use stepscope_core::{
-    quantise::{
-        EntryFormat, Form, Stored, Tolerance,
-        source_code::{Language, Source},
-        stored,
+    inspect::source_code::{Language, Source},
+    motion::{
+        mechanics::{Distance, Speed},
+        moves::{Constant, Cosine, Dwell, Move, SineSegments},
+        quantise::{EntryFormat, Form, Stored, Tolerance, stored},
     },
-    scenario::{Constant, Cosine, Distance, Dwell, Move, SineSegments, Speed},
-    segment::{FRACTION_BITS, PulseTimes, Segment},
-    units::Cycles,
+    peripheral::{
+        segment::{FRACTION_BITS, PulseTimes, Segment},
+        units::Cycles,
+    },
 };
 
 /// Walks a table as its comment says, and prints the cycle and the way of each step.

@@ -3,13 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use stepscope_core::{
-    analysis::{
+    inspect::{
         made::Pulses,
         spectrum::{Spectrum, Stretch},
     },
-    quantise::TickClock,
-    run::Experiment,
-    trace::{Recording, Step, steps},
+    motion::quantise::TickClock,
+    peripheral::trace::{Recording, Step, steps},
+    sim::Experiment,
 };
 
 /// Distortion of the position that the pulses of a scenario's first axis make, in per cent, and

@@ -8,17 +8,19 @@ use moves::{CLOCK_HZ, plan, sane_move};
 use proptest::prelude::*;
 use std::{num::NonZeroU32, rc::Rc};
 use stepscope_core::{
-    device::SegmentEngine,
-    motion::DueStep,
-    quantise::{EntryFormat, Form, MOST_TOLERANCE, Stored, TimingError, Tolerance, compressed, stored},
-    scenario::{
-        Acceleration, Cause, Constant, Cosine, Distance, Dwell, Move, SineSegments, Speed, Staircase,
-        Trapezoid, TrapezoidMethod,
+    motion::{
+        Cause, ScheduledStep, ValueError,
+        mechanics::{Acceleration, Distance, Speed},
+        moves::{Constant, Cosine, Dwell, Move, SineSegments, Staircase, Trapezoid, TrapezoidMethod},
+        quantise::{EntryFormat, Form, MAX_TOLERANCE, Stored, TimingError, Tolerance, compressed, stored},
     },
-    segment::{CheckedSegments, PulseTimes, Segment, SegmentList},
-    signal::Record,
-    trace::steps,
-    units::{Cycles, Instant},
+    peripheral::{
+        device::SegmentEngine,
+        segment::{CheckedSegments, PulseTimes, Segment, SegmentList},
+        signal::Record,
+        trace::steps,
+        units::{Cycles, Instant},
+    },
 };
 
 const PULSE: PulseTimes = PulseTimes { width: Cycles(1), setup: Cycles(1), hold: Cycles(0) };
@@ -64,7 +66,7 @@ fn format() -> impl Strategy<Value = EntryFormat> {
 }
 
 fn tolerance() -> impl Strategy<Value = Tolerance> {
-    let cycles = prop_oneof![0..4_u64, 0..500_u64, 0..=MOST_TOLERANCE.0];
+    let cycles = prop_oneof![0..4_u64, 0..500_u64, 0..=MAX_TOLERANCE.0];
     (cycles, prop::option::of(2..9_u32)).prop_map(|(cycles, part)| Tolerance {
         cycles: Cycles(cycles),
         interval_part: part.and_then(NonZeroU32::new),
@@ -79,7 +81,7 @@ proptest! {
         moves in prop::collection::vec(sane_move(), 1..4), tolerance in tolerance(), format in format(),
     ) {
         let plan = plan(moves);
-        let due: Vec<DueStep> = plan.due_steps(CLOCK_HZ).collect();
+        let due: Vec<ScheduledStep> = plan.due_steps(CLOCK_HZ).collect();
         let made = stored(&plan, Form::Compressed(tolerance), format, PULSE, CLOCK_HZ);
         let made = made.unwrap_or_else(|cause| panic!("{cause}"));
         let found = run(&made.list);
@@ -119,7 +121,7 @@ proptest! {
                 }
                 // Only what has no table of its own is refused.
                 Err(cause) => {
-                    let refused = form == Form::Document && matches!(cause, Cause::Conflict { .. });
+                    let refused = form == Form::Document && matches!(cause, Cause::Value(ValueError::Conflict { .. }));
                     prop_assert!(refused, "{}", cause);
                 }
             }
@@ -132,9 +134,9 @@ proptest! {
         tolerance in tolerance(), format in format(),
     ) {
         let mut cycle = 0_u64;
-        let due: Vec<DueStep> = gaps.iter().map(|&(gap, right)| {
+        let due: Vec<ScheduledStep> = gaps.iter().map(|&(gap, right)| {
             cycle = cycle.saturating_add(gap);
-            DueStep { cycle, right }
+            ScheduledStep { cycle, right }
         }).collect();
         match compressed(due.iter().copied(), tolerance, format, PULSE) {
             Ok(made) => {
@@ -144,7 +146,7 @@ proptest! {
                 prop_assert!(CheckedSegments::new(PULSE, vec![made.list], 1).is_ok());
             }
             Err(cause) => {
-                let refused = matches!(cause, Cause::StepTooSoon { .. } | Cause::TooMuch { .. });
+                let refused = matches!(cause, Cause::StepTooSoon { .. } | Cause::Value(ValueError::TooMuch { .. }));
                 prop_assert!(refused, "{}", cause);
             }
         }
@@ -197,7 +199,7 @@ fn a_long_trapezoid_takes_fewer_entries_than_klippers_compression() {
 fn a_hundred_million_steps_do_not_drift() {
     let count = 100_000_000_u64;
     let due = |k: u64| (k * 2 - 1) * 1000 * 3 / (7 * 2);
-    let steps = (1..=count).map(|k| DueStep { cycle: due(k), right: true });
+    let steps = (1..=count).map(|k| ScheduledStep { cycle: due(k), right: true });
     let made = compressed(steps, Tolerance::of(Cycles(16)), EntryFormat::Q16, PULSE);
     let made = made.unwrap_or_else(|cause| panic!("{cause}"));
     assert!(made.error.greatest <= 16 && made.error.steps == count);
@@ -257,7 +259,7 @@ fn what_has_no_table_or_no_end_is_refused_with_its_numbers() {
         ramp_s: 0.5,
         ..Cosine::default()
     });
-    assert!(matches!(refused(curve, Form::Document), Some(Cause::Conflict { .. })));
+    assert!(matches!(refused(curve, Form::Document), Some(Cause::Value(ValueError::Conflict { .. }))));
     let quick = Move::Constant(Constant { distance: Distance::Steps(9.0), speed: steps_s(9e6) });
     for form in [Form::Exact, Form::Compressed(Tolerance::of(Cycles(5)))] {
         let cause = Cause::StepTooSoon { step: 1, interval: 1, pulse: PULSE };
@@ -267,12 +269,13 @@ fn what_has_no_table_or_no_end_is_refused_with_its_numbers() {
     let cause = Cause::SegmentInterval { step: 0, interval, pulse: PULSE };
     assert_eq!(refused(quick, Form::Document), Some(cause));
     let many = Move::Constant(Constant { distance: Distance::Steps(5e6), speed: steps_s(1e5) });
-    let cause = Cause::TooMuch { given: 5e6, most: 4e6, of: "steps of a table" };
+    let cause = Cause::Value(ValueError::TooMuch { given: 5e6, most: 4e6, of: "steps of a table" });
     assert_eq!(refused(many, Form::Exact), Some(cause));
     let rest = Move::Dwell(Dwell { duration_s: 1.0 });
-    let wide = Tolerance::of(Cycles(MOST_TOLERANCE.0 + 1));
-    let cause = Cause::TooMuch { given: 16_777_217.0, most: 16_777_216.0, of: "cycles of tolerance" };
+    let wide = Tolerance::of(Cycles(MAX_TOLERANCE.0 + 1));
+    let cause =
+        ValueError::TooMuch { given: 16_777_217.0, most: 16_777_216.0, of: "cycles of tolerance" }.into();
     assert_eq!(refused(rest.clone(), Form::Compressed(wide)), Some(cause));
-    let nothing = kept(vec![rest], Form::Compressed(Tolerance::of(MOST_TOLERANCE)), EntryFormat::Q8);
+    let nothing = kept(vec![rest], Form::Compressed(Tolerance::of(MAX_TOLERANCE)), EntryFormat::Q8);
     assert_eq!((nothing.entries.len(), nothing.error.rms()), (0, 0.0));
 }

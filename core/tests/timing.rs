@@ -5,14 +5,16 @@
 
 use proptest::prelude::*;
 use stepscope_core::{
-    analysis::{
+    inspect::{
         drivers,
         timing::{Rule, TimingCheck},
     },
-    run::Experiment,
+    peripheral::{
+        signal::{Levels, Record, Sink},
+        units::Instant,
+    },
     scenario::{Scenario, TimingRules, presets::PRESETS},
-    signal::{Levels, Record, Sink},
-    units::Instant,
+    sim::Experiment,
 };
 
 const CHANNELS: [u8; 3] = [0, 7, 15];
@@ -131,7 +133,7 @@ proptest! {
 
 /// What the pulses of a scenario come to under its own driver's rules: violations of each rule.
 fn violations(scenario: &Scenario) -> [u64; 5] {
-    let rules = scenario.driver.as_ref().map(drivers::rules).unwrap_or_default();
+    let rules = scenario.driver_timing.as_ref().map(drivers::rules).unwrap_or_default();
     let mut check = TimingCheck::new(&rules, scenario.clock_hz, 0);
     Experiment::new(scenario).expect("has no problems").run(&mut check);
     let mut totals = [0; 5];

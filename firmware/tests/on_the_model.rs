@@ -1,9 +1,9 @@
 //! The driver, unchanged, on the model of the peripheral: what it orders is what the STEP lines do.
 #![allow(clippy::expect_used, reason = "what is refused fails the test")]
 
-use stepscope_core::{
+use stepscope_core::peripheral::{
+    config::{Bus, Config, Protocol, SerialLine},
     device::ModelBus,
-    scenario::{Bus, Config, Line, Protocol},
     signal::{Levels, Record},
     trace::steps,
     units::Cycles,
@@ -33,7 +33,7 @@ const TICK: u64 = 1_000;
 
 /// A driver after the self-test, on a bus whose accesses take so many cycles.
 fn driver(access: u64) -> Driver<Model> {
-    let line = Line { protocol: Protocol::Framed, ..Line::default() };
+    let line = SerialLine { protocol: Protocol::Framed, ..SerialLine::default() };
     let config = Config::new(16_000_000, &bus(), &line).expect("it holds");
     let mut driver = Driver::new(ModelBus::new(&config, Cycles(access), Vec::new())).expect("it is there");
     driver.wait_for_self_test();
@@ -152,7 +152,7 @@ fn a_driver_waits_for_the_self_test_and_finds_only_its_own_peripheral() {
     assert_eq!(Driver::new(Other(0xffff_ffff)).err(), Some(Error::NotFound(0xffff_ffff)));
     assert_eq!(Driver::new(Other(0x5354_4550)).err(), Some(Error::UnknownVersion(0x50)));
 
-    let config = Config::new(16_000_000, &bus(), &Line::default()).expect("it holds");
+    let config = Config::new(16_000_000, &bus(), &SerialLine::default()).expect("it holds");
     let mut driver = Driver::new(ModelBus::new(&config, Cycles(10), Vec::new())).expect("it is there");
     assert_eq!(driver.push(&[Order::right(1)]), Err(Error::Busy));
     driver.wait_for_self_test();

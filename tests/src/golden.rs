@@ -19,18 +19,23 @@ use alloc::{
 };
 use core::fmt::Write as _;
 use stepscope_core::{
-    run::{Experiment, Run},
-    scenario::{Config, presets::PRESETS},
-    signal::{self, Record, Sink},
-    trace::{Digest, parse_line, write_record},
-    wire::framed_host::{Counts, FramedHost},
+    peripheral::{
+        config::Config,
+        signal::{self, Record, Sink},
+        trace::{Digest, parse_line, write_record},
+    },
+    scenario::presets::PRESETS,
+    sim::{
+        Experiment, Run,
+        framed_host::{Counts, FramedHost},
+    },
 };
 
 /// Most records of a trace that is kept as text.
-pub const MOST_RECORDS: u64 = 400;
+pub const MAX_RECORDS: u64 = 400;
 
 /// Runs up to which a case is also run clock by clock, in cycles.
-const MOST_CYCLES_CLOCK_BY_CLOCK: u64 = 2_000_000;
+const MAX_CYCLES_CLOCK_BY_CLOCK: u64 = 2_000_000;
 
 /// All cases, by name.
 pub const CASES: &[Case] = include!(concat!(env!("OUT_DIR"), "/golden.rs"));
@@ -102,7 +107,7 @@ impl Case {
             run
         };
         let fast = Outcome::of(go, &experiment);
-        let slow = (cycles < MOST_CYCLES_CLOCK_BY_CLOCK)
+        let slow = (cycles < MAX_CYCLES_CLOCK_BY_CLOCK)
             .then(|| Outcome::of(|sinks| experiment.run_each_clock_by_clock(sinks), &experiment));
         Ok((fast, slow))
     }
@@ -204,7 +209,7 @@ impl Outcome {
         for record in &self.trace {
             write_record(&mut text, *record).ok()?;
         }
-        (self.trace.len() as u64 <= MOST_RECORDS).then_some(text)
+        (self.trace.len() as u64 <= MAX_RECORDS).then_some(text)
     }
 }
 
@@ -217,7 +222,7 @@ pub struct Keep {
 
 impl Sink for Keep {
     fn record(&mut self, record: Record) {
-        if self.digest.records() <= MOST_RECORDS {
+        if self.digest.records() <= MAX_RECORDS {
             self.first.push(record);
         }
         self.digest.record(record);
@@ -264,7 +269,7 @@ fn describe(record: Option<Record>, before: Option<&Record>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stepscope_core::{signal::Levels, units::Instant};
+    use stepscope_core::peripheral::{signal::Levels, units::Instant};
 
     fn record(cycle: u64, levels: u64) -> Record {
         Record { cycle: Instant(cycle), levels: Levels(levels) }

@@ -1,7 +1,10 @@
 //! What the slow model is configured with and given, in the core's words.
 
 use crate::oracle::Config;
-use stepscope_core::scenario::{Bus, DirLine, Distribution, Glitch, Hex, Pulses, ScriptedSend};
+use stepscope_core::{
+    peripheral::config::{Bus, DirLine, Distribution, PulsePhasing},
+    scenario::{Glitch, Hex, ScriptedSend},
+};
 
 /// The driver bus of a configuration.
 #[must_use]
@@ -15,7 +18,7 @@ pub fn bus(config: &Config) -> Bus {
         dir_hold_cycles: config.dir_hold as u32,
         distribution: if config.spread { Distribution::Spread } else { Distribution::Burst },
         dir_line: if config.common_dir { DirLine::Common } else { DirLine::PerChannel },
-        pulses: if config.staggered { Pulses::Staggered } else { Pulses::Simultaneous },
+        pulse_phasing: if config.staggered { PulsePhasing::Staggered } else { PulsePhasing::Simultaneous },
         settle_cycles: config.settle as u32,
         queue_depth: config.queue_depth as u8,
         boot_cycles: config.boot as u32,

@@ -5,13 +5,16 @@
 
 use std::rc::Rc;
 use stepscope_core::{
-    device::Device,
-    run::{Experiment, Run},
-    scenario::{Config, Forced, Noise, Protocol, Scenario},
-    signal::{Event, Fate, Levels, MAX_CHANNELS, Record, Sink},
-    trace::{Digest, Recording, steps},
-    units::{Cycles, Instant},
-    wire::Line,
+    peripheral::{
+        config::{Config, Protocol},
+        device::Device,
+        signal::{Event, Levels, MAX_CHANNELS, PacketOutcome, Record, Sink},
+        trace::{Digest, Recording, steps},
+        units::{Cycles, Instant},
+        wire::{Forced, Line},
+    },
+    scenario::{Noise, Scenario},
+    sim::{Experiment, Run},
 };
 
 /// All that a run leaves.
@@ -159,7 +162,7 @@ fn counted(left: &Left, config: &Config, positions: [i32; MAX_CHANNELS], ticks_d
     let ended = count(|event| matches!(event, Event::TickEnd));
     assert_eq!(ticks_done as usize, ended, "ticks done, as counted and as events");
     if config.protocol() == Protocol::Raw {
-        let queued = count(|event| matches!(event, Event::Packet(Fate::Queued)));
+        let queued = count(|event| matches!(event, Event::Packet(PacketOutcome::Queued)));
         assert!(begun == ended || begun == ended + 1, "{begun} ticks began, {ended} ended");
         assert!(begun <= queued, "{begun} ticks began, {queued} packets were queued");
     } else {
@@ -178,8 +181,8 @@ fn by_hand(config: &Config, mut line: Line, cycles: Cycles, hurry: u64) -> (Left
         }
         device.clock(line.heard(true), &mut left);
         let horizon = line.next_change().0.min(cycles.0).saturating_sub(device.now().0);
-        let quiet = device.quiet().map_or(horizon, |quiet| quiet.0.min(horizon));
-        device.skip(Cycles((u128::from(quiet) * u128::from(hurry) / 100) as u64));
+        let quiet = device.cycles_until_event().map_or(horizon, |quiet| quiet.0.min(horizon));
+        device.advance(Cycles((u128::from(quiet) * u128::from(hurry) / 100) as u64));
     }
     (left, device)
 }

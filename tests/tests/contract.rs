@@ -7,13 +7,9 @@ use std::rc::Rc;
 
 use proptest::prelude::*;
 use stepscope_core::{
-    device::Device,
-    run::{Experiment, Run},
+    peripheral::{device::Device, signal::Record, trace::Digest, units::Cycles, wire},
     scenario::{Hex, Line, LineScript, Packets, Problem, Scenario, Source},
-    signal::Record,
-    trace::Digest,
-    units::Cycles,
-    wire,
+    sim::{Experiment, Run},
 };
 use stepscope_tests::{
     cases::{cases, configs, every_mode},
@@ -82,8 +78,8 @@ fn clocked_and_skipped(experiment: &Experiment, scenario_line: wire::Line, cycle
         }
         device.clock(line.heard(true), &mut trace);
         let to_line = line.next_change().0.min(cycles).saturating_sub(device.now().0);
-        let quiet = device.quiet().map_or(to_line, |quiet| quiet.0.min(to_line));
-        device.skip(Cycles(quiet));
+        let quiet = device.cycles_until_event().map_or(to_line, |quiet| quiet.0.min(to_line));
+        device.advance(Cycles(quiet));
     }
     outcome(&device, &trace)
 }
@@ -93,9 +89,9 @@ fn line(experiment: &Experiment, config: &oracle::Config, input: &oracle::Input)
     let forced: Vec<_> = input
         .forced
         .iter()
-        .map(|&(start, length, level)| stepscope_core::scenario::Forced {
-            start: stepscope_core::units::Instant(start),
-            end: stepscope_core::units::Instant(start + length),
+        .map(|&(start, length, level)| stepscope_core::peripheral::wire::Forced {
+            start: stepscope_core::peripheral::units::Instant(start),
+            end: stepscope_core::peripheral::units::Instant(start + length),
             level,
         })
         .collect();

@@ -5,13 +5,12 @@
 
 use proptest::prelude::*;
 use stepscope_core::{
-    protocol::State,
-    run::{Experiment, Run},
+    peripheral::{config::Protocol, protocol::State, signal::Record},
     scenario::{
-        ChannelSegments, Controller, DwellSegment, Line, LineScript, Problem, Protocol, Scenario, Segment,
+        ChannelSegments, Controller, DwellSegment, Line, LineScript, Problem, Scenario, Segment,
         SegmentLists, Source, StepSegment,
     },
-    signal::Record,
+    sim::{Experiment, Run},
 };
 use stepscope_tests::{
     cases::{SegmentCase, every_mode, framed_lines, framed_lines_of_one_address, raw_lines, segment_lists},
@@ -47,7 +46,7 @@ fn experiment(line: &[oracle::Config], input: &oracle::Input) -> Result<Experime
 
 /// What the core leaves behind, in the model's words; of a raw controller no status.
 fn outcomes(run: &Run, traces: &[Vec<Record>]) -> Vec<oracle::Run> {
-    let one = |(device, trace): (&stepscope_core::device::Device, &Vec<Record>)| {
+    let one = |(device, trace): (&stepscope_core::peripheral::device::Device, &Vec<Record>)| {
         let status = device.status();
         oracle::Run {
             trace: trace.iter().map(|record| (record.cycle.0, record.levels.0)).collect(),

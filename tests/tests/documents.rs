@@ -7,11 +7,20 @@
 
 use std::{f64::consts::PI, fs, path::Path};
 use stepscope_core::{
-    analysis::spectrum::Spectrum,
-    motion::{Profile, plan_axis, sine_segments::SineSegments},
-    run::Experiment,
-    scenario::{self, Axis, Distance, Move, Packets, Pulses, Scenario, Source, presets::PRESETS},
-    trace::{Recording, Step, steps},
+    inspect::spectrum::Spectrum,
+    motion::{
+        Profile,
+        mechanics::Distance,
+        moves::{self, Axis, Move},
+        plan_axis,
+        sine_segments::SineSegments,
+    },
+    peripheral::{
+        config::PulsePhasing,
+        trace::{Recording, Step, steps},
+    },
+    scenario::{Packets, Scenario, Source, presets::PRESETS},
+    sim::Experiment,
 };
 
 /// A scenario that was run to its end.
@@ -269,10 +278,10 @@ fn the_sines_return_and_their_pulses_have_the_documents_distortion() {
 
 /// The segments of a quarter for a largest deviation d1, of an amplitude of so many steps.
 fn sine(amplitude: f64, d1: f64) -> SineSegments {
-    let given = scenario::SineSegments {
+    let given = moves::SineSegments {
         amplitude: Distance::Steps(amplitude),
         max_deviation: d1,
-        ..scenario::SineSegments::default()
+        ..moves::SineSegments::default()
     };
     let axis = Axis { moves: vec![Move::SineSegments(given)], ..Axis::default() };
     let plan = plan_axis(&axis, "axis").expect("it plans");
@@ -340,7 +349,7 @@ fn the_patents_four_motors_step_together() {
 #[test]
 fn the_patents_four_motors_step_one_after_the_other() {
     let mut scenario = Made::preset("patent-2019-four-motors").scenario;
-    scenario.bus.pulses = Pulses::Staggered;
+    scenario.bus.pulse_phasing = PulsePhasing::Staggered;
     scenario.bus.settle_cycles = 8_288;
     let made = Made::of(scenario.clone());
     let first = |channel: u8| made.steps(channel).first().map_or(0, |step| step.cycle);

@@ -9,7 +9,7 @@ use proptest::{prelude::*, sample::Index};
 use serde_json::{Map, Value, json};
 use stepscope_core::scenario::{
     Scenario,
-    link::{LinkError, MOST_FRAGMENT_BYTES, MOST_JSON_BYTES, decode, encode},
+    link::{LinkError, MAX_FRAGMENT_BYTES, MAX_JSON_BYTES, decode, encode},
     presets::PRESETS,
 };
 use stepscope_tests::{
@@ -235,11 +235,11 @@ fn every_truncation_and_every_flipped_character_of_every_presets_link_is_refused
 #[test]
 fn a_payload_inflates_to_the_limit_and_not_a_byte_beyond() {
     let padded = |length: usize| compress_to_vec(format!("{{}}{}", " ".repeat(length - 2)).as_bytes(), 10);
-    assert_eq!(decode(&around('z', &padded(MOST_JSON_BYTES))), Ok(Scenario::default()));
-    let refusal = Err(LinkError::Payload { most: MOST_JSON_BYTES });
-    for length in [MOST_JSON_BYTES + 1, 10 * MOST_JSON_BYTES, 10 << 20] {
+    assert_eq!(decode(&around('z', &padded(MAX_JSON_BYTES))), Ok(Scenario::default()));
+    let refusal = Err(LinkError::Payload { most: MAX_JSON_BYTES });
+    for length in [MAX_JSON_BYTES + 1, 10 * MAX_JSON_BYTES, 10 << 20] {
         let bomb = around('z', &padded(length));
-        assert!(bomb.len() <= MOST_FRAGMENT_BYTES, "{length} bytes fit in a fragment");
+        assert!(bomb.len() <= MAX_FRAGMENT_BYTES, "{length} bytes fit in a fragment");
         assert_eq!(decode(&bomb), refusal, "{length} bytes");
     }
 }

@@ -6,13 +6,16 @@
 
 use std::{fmt::Write as _, fs, path::PathBuf};
 use stepscope_core::{
-    run::Experiment,
+    inspect::{
+        fingerprint::{Comparison, Fingerprinter, Likeness},
+        run_fingerprint::Proof,
+    },
     scenario::{
         Compact, Scenario,
         link::{decode, encode, part, with_part},
         presets::PRESETS,
     },
-    trace::{Comparison, Fingerprinter, Likeness, Proof},
+    sim::Experiment,
 };
 
 fn folder() -> PathBuf {

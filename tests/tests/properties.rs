@@ -4,15 +4,12 @@
 
 use proptest::prelude::*;
 use stepscope_core::{
-    device::Device,
-    run::Experiment,
+    peripheral::{config::Config, device::Device, signal::Record, trace::Digest, units::Cycles},
     scenario::{
-        Compact, Config, Scenario,
+        Compact, Scenario,
         link::{LinkError, decode, encode},
     },
-    signal::Record,
-    trace::Digest,
-    units::Cycles,
+    sim::Experiment,
 };
 use stepscope_tests::{
     effort,
@@ -48,7 +45,7 @@ proptest! {
         scenario in small(),
         lengths in prop::collection::vec(prop_oneof![3 => 1..30_u64, 1 => 1..2_000_u64], 0..200),
     ) {
-        let Ok(config) = Config::new(scenario.clock_hz, &scenario.bus, &scenario.line) else { return Ok(()) };
+        let Ok(config) = Config::new(scenario.clock_hz, &scenario.bus, &scenario.line.serial()) else { return Ok(()) };
         let (mut every, mut skipping) = (Left::default(), Left::default());
         let (mut clocked, mut skipped) = (Device::new(&config), Device::new(&config));
         let mut end = 0;
@@ -61,7 +58,7 @@ proptest! {
             while skipped.now().0 < end {
                 skipped.clock(level, &mut skipping);
                 let left = end - skipped.now().0;
-                skipped.skip(skipped.quiet().map_or(Cycles(left), |quiet| Cycles(quiet.0.min(left))));
+                skipped.advance(skipped.cycles_until_event().map_or(Cycles(left), |quiet| Cycles(quiet.0.min(left))));
             }
         }
         same("skipping", (&skipping, &skipped), (&every, &clocked));
@@ -76,9 +73,6 @@ proptest! {
         for json in [scenario.to_json(), scenario.compact().to_string()] {
             let read = Scenario::from_json(&json);
             prop_assert_eq!(read.as_ref(), Ok(&scenario), "{}", json);
-            // Whoever reads it by serde reads the same.
-            let by_serde = serde_json::from_str::<Scenario>(&json).ok();
-            prop_assert_eq!(by_serde.as_ref(), Some(&scenario), "{}", json);
         }
         match encode(&scenario) {
             Ok(link) => {

@@ -5,13 +5,17 @@
 
 use proptest::prelude::*;
 use std::rc::Rc;
+use stepscope_core::peripheral::wire::schedule::line_time;
 use stepscope_core::{
-    device::Device,
-    protocol::{FrameFate, Kind, seal},
-    scenario::{Config, Protocol, Scenario, line_time},
-    signal::{Event, Levels, Record, Sink},
-    units::{Cycles, Instant},
-    wire::{Line, Schedule},
+    peripheral::{
+        config::{Config, Protocol},
+        device::Device,
+        protocol::{FrameOutcome, Kind},
+        signal::{Event, Levels, Record, Sink},
+        units::{Cycles, Instant},
+        wire::{Line, Schedule, frame::encode_frame},
+    },
+    scenario::Scenario,
 };
 use stepscope_registers::{
     self as map, control, faults, orders, pulse_width, push, result, settle, slots, step_period,
@@ -65,8 +69,8 @@ fn access(channels: u8, most_steps: u8) -> impl Strategy<Value = Access> {
 fn sends() -> impl Strategy<Value = Vec<(u64, Vec<u8>)>> {
     let bytes = prop_oneof![
         3 => prop::collection::vec(0..=10_u8, 1..4),
-        2 => (1..=6_u8).prop_map(|kind| seal(&[0, kind])),
-        2 => (0..3_u8, 0..=8_u8).prop_map(|(seq, order)| seal(&[0, 1, seq, 1, order])),
+        2 => (1..=6_u8).prop_map(|kind| encode_frame(&[0, kind])),
+        2 => (0..3_u8, 0..=8_u8).prop_map(|(seq, order)| encode_frame(&[0, 1, seq, 1, order])),
     ];
     prop::collection::vec((0..1_500_u64, bytes), 0..6)
 }
@@ -80,7 +84,7 @@ struct Case {
 }
 
 fn case(scenario: &Scenario, sends: &[(u64, Vec<u8>)], accesses: &[(u64, Access)]) -> Option<Case> {
-    let config = Config::new(scenario.clock_hz, &scenario.bus, &scenario.line).ok()?;
+    let config = Config::new(scenario.clock_hz, &scenario.bus, &scenario.line.serial()).ok()?;
     let mut schedule = Schedule::default();
     let mut start = 1;
     for (pause, bytes) in sends {
@@ -162,8 +166,8 @@ proptest! {
         let skipped = case.run(|device, level, until, left| {
             device.clock(level, left);
             let most = until.0 - device.now().0;
-            let quiet = device.quiet().map_or(most, |quiet| quiet.0.min(most));
-            device.skip(Cycles(quiet * hurry / 100));
+            let quiet = device.cycles_until_event().map_or(most, |quiet| quiet.0.min(most));
+            device.advance(Cycles(quiet * hurry / 100));
         });
         same("skipped", &skipped, &clocked)?;
         let ran = case.run(|device, level, until, left| device.run(level, until, left));
@@ -212,7 +216,7 @@ fn commanded(
     commands: &[(u64, Command)],
     by_frames: bool,
 ) -> (Vec<(u64, u64)>, Vec<u32>, Device) {
-    let config = Config::new(scenario.clock_hz, &scenario.bus, &scenario.line).expect("it holds");
+    let config = Config::new(scenario.clock_hz, &scenario.bus, &scenario.line.serial()).expect("it holds");
     let mut device = Device::new(&config);
     let mut line = Line::new(Rc::default(), &[], scenario.clock_hz, scenario.line.baud);
     let (mut left, mut results) = (Left::default(), Vec::new());
@@ -223,7 +227,7 @@ fn commanded(
             frame[1] = Kind::Status as u8;
         }
         let (start, known) = (Instant(device.now().0 + 1 + pause), left.events.len());
-        line.send(start, &seal(&frame));
+        line.send(start, &encode_frame(&frame));
         let fate = loop {
             if line.next_change() == device.now() {
                 line.change();
@@ -239,7 +243,7 @@ fn commanded(
         };
         if by_frames {
             results.push(match fate {
-                FrameFate::Refused(reason) => reason as u32,
+                FrameOutcome::Refused(reason) => reason as u32,
                 _ => result::CODE_DONE,
             });
         } else {
@@ -279,7 +283,7 @@ proptest! {
         scenario.bus.channels = 2;
         // Room for staggered pulses of two channels.
         scenario.bus.step_period_cycles = scenario.bus.step_period_cycles.max(50);
-        prop_assume!(Config::new(scenario.clock_hz, &scenario.bus, &scenario.line).is_ok());
+        prop_assume!(Config::new(scenario.clock_hz, &scenario.bus, &scenario.line.serial()).is_ok());
         let (trace, results, device) = commanded(&scenario, &commands, false);
         let (expected, reasons, framed) = commanded(&scenario, &commands, true);
         prop_assert_eq!(results, reasons);

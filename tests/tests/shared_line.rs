@@ -4,10 +4,13 @@
 
 use proptest::prelude::*;
 use stepscope_core::{
-    run::{Experiment, Run},
-    scenario::{Forced, Glitch, Hex, LineScript, Noise, Protocol, Scenario, ScriptedSend, Source},
-    signal::{Event, Record},
-    wire::{framed_host::Progress, host::Sent},
+    peripheral::{
+        config::Protocol,
+        signal::{Event, Record},
+        wire::{Forced, schedule::Sent},
+    },
+    scenario::{Glitch, Hex, LineScript, Noise, Scenario, ScriptedSend, Source},
+    sim::{Experiment, Run, framed_host::Progress},
 };
 use stepscope_tests::{
     effort,

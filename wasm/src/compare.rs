@@ -4,9 +4,9 @@ use crate::convert::{field, numbers, object};
 use js_sys::{Array, JSON, Object};
 use serde::Serialize;
 use stepscope_core::{
-    analysis::comparison::{Asked, Cost, compare},
-    motion::{Curve, Peaks, plan_axis},
-    scenario::{Axis, to_json},
+    inspect::comparison::{Asked, Cost, compare},
+    motion::{Curve, Peaks, moves::Axis, plan_axis},
+    scenario::to_json,
 };
 use wasm_bindgen::prelude::*;
 

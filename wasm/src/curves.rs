@@ -8,7 +8,7 @@ use crate::{
 use js_sys::Object;
 use serde::Serialize;
 use stepscope_core::{
-    analysis::{
+    inspect::{
         between::{self, Between},
         curves::{self, Window},
         difference::{self, Scaled},

@@ -11,9 +11,9 @@ use crate::{
     simulation::{Simulation, config},
 };
 use serde::Serialize;
-use stepscope_core::{
-    scenario::Config,
-    trace::{PacketLog, Verdict},
+use stepscope_core::peripheral::{
+    config::Config,
+    trace::{PacketLog, RowOutcome},
     units::Instant,
 };
 use wasm_bindgen::prelude::*;
@@ -125,7 +125,7 @@ impl Simulation {
 }
 
 fn is_reply(log: &PacketLog, row: usize) -> bool {
-    log.rows().get(row).is_some_and(|row| matches!(row.verdict, Verdict::Reply(_)))
+    log.rows().get(row).is_some_and(|row| matches!(row.verdict, RowOutcome::Reply(_)))
 }
 
 impl Simulation {

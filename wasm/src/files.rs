@@ -10,13 +10,19 @@ use crate::{
 use js_sys::{Object, Uint8Array};
 use std::{fmt::Write, io};
 use stepscope_core::{
-    run::scripted,
-    scenario::Config,
-    segment::Segment,
-    signal::{Levels, Record, Sink},
-    trace::{VcdWriter, write_edges_head, write_edges_row, write_record},
-    units::Instant,
-    wire::packet::Order,
+    inspect::{
+        tables::{write_edges_head, write_edges_row},
+        vcd::VcdWriter,
+    },
+    peripheral::{
+        config::Config,
+        segment::Segment,
+        signal::{Levels, Record, Sink},
+        trace::write_record,
+        units::Instant,
+        wire::packet::Order,
+    },
+    sim::scripted,
 };
 use wasm_bindgen::prelude::*;
 

@@ -4,10 +4,10 @@ use crate::convert::object;
 use serde::Serialize;
 use std::iter::once;
 use stepscope_core::{
-    analysis::torque::{Demand, Machine},
-    motion::{AxisPlan, Curve, PlannedMove, grouped},
-    run::{BUDGET_RECORDS, Cost, Experiment},
-    scenario::{Axis, Problem, Scenario, Source, presets as core_presets},
+    inspect::torque::{Demand, Machine},
+    motion::{AxisPlan, Curve, PlannedMove, grouped, moves::Axis},
+    scenario::{Problem, Scenario, Source, presets as core_presets},
+    sim::{BUDGET_RECORDS, Cost, Experiment},
 };
 use wasm_bindgen::prelude::*;
 

@@ -3,11 +3,11 @@
 use crate::{convert::object, judge::cost_message};
 use serde::Serialize;
 use stepscope_core::{
-    run::{Experiment, replayed},
     scenario::{
         LineScript, Scenario,
         link::{LinkError, decode, encode, part, with_part},
     },
+    sim::{Experiment, replayed},
 };
 use wasm_bindgen::prelude::*;
 

@@ -2,8 +2,9 @@
 
 use crate::{convert::object, simulation::Simulation};
 use stepscope_core::{
-    analysis::measures::{Measures, within_bounds},
-    scenario::{Axis, Source},
+    inspect::measures::{Measures, within_bounds},
+    motion::moves::Axis,
+    scenario::Source,
 };
 use wasm_bindgen::prelude::*;
 

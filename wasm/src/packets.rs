@@ -12,8 +12,8 @@ use crate::{
 pub(crate) use filter::Filter;
 use filter::{Asked, Needle};
 use serde::Serialize;
-use stepscope_core::{
-    scenario::Config,
+use stepscope_core::peripheral::{
+    config::Config,
     trace::{LoggedTick, PacketLog},
     units::Instant,
 };

@@ -7,7 +7,7 @@ use crate::{
 };
 use js_sys::Object;
 use serde::Serialize;
-use stepscope_core::{signal::Record, trace::Edge};
+use stepscope_core::{inspect::changes::Edge, peripheral::signal::Record};
 use wasm_bindgen::prelude::*;
 
 #[derive(Serialize)]

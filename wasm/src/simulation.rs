@@ -5,15 +5,18 @@ use crate::{convert::object, packets::Filter, subject::listed};
 use serde::Serialize;
 use std::mem::take;
 use stepscope_core::{
-    analysis::timing::TimingCheck,
-    run::{Experiment, Run, Watched},
-    scenario::{Config, Scenario},
-    trace::{Against, Changes, Recording, Step, steps},
+    inspect::{changes::Changes, timing::TimingCheck, trace_diff::Against, watched::Watched},
+    peripheral::{
+        config::Config,
+        trace::{Recording, Step, steps},
+    },
+    scenario::Scenario,
+    sim::{Experiment, Run},
 };
 use wasm_bindgen::prelude::*;
 
 /// Most records that a page keeps of all controllers together; 16 bytes each.
-const MOST_RECORDS: u64 = 40_000_000;
+const MAX_RECORDS: u64 = 40_000_000;
 
 /// One scenario's run.
 #[wasm_bindgen]
@@ -101,15 +104,15 @@ impl Simulation {
         let watched =
             |kept: &mut Kept| Watched { recording: take(&mut kept.recording), timing: kept.timing.take() };
         let mut watched: Vec<Watched> = self.kept.iter_mut().map(watched).collect();
-        let done = stepscope_loops::advance(&mut self.run, u64::from(max_records.max(1)), &mut watched);
+        let done = self.run.advance_each(u64::from(max_records.max(1)), &mut watched);
         for (kept, Watched { recording, timing }) in self.kept.iter_mut().zip(watched) {
             kept.changes.extend(&recording.trace);
             (kept.recording, kept.timing) = (recording, timing);
         }
         let records: u64 = self.kept.iter().map(|kept| kept.recording.digest.records()).sum();
-        if records > MOST_RECORDS {
+        if records > MAX_RECORDS {
             return Err(JsError::new(&format!(
-                "the run makes more than {MOST_RECORDS} edges, which is more than a page can keep; shorten the motion, or run it with the stepscope command"
+                "the run makes more than {MAX_RECORDS} edges, which is more than a page can keep; shorten the motion, or run it with the stepscope command"
             )));
         }
         if done {

@@ -8,7 +8,7 @@ use crate::{
 use js_sys::Object;
 use std::ops::Range;
 use stepscope_core::{
-    analysis::{
+    inspect::{
         sine_optimum::{Freedom, optimum},
         sine_polyline::{Bounds, Distinct, Row, swept},
     },

@@ -3,7 +3,7 @@
 use crate::convert::{field, numbers, object};
 use js_sys::Object;
 use stepscope_core::{
-    analysis::{
+    inspect::{
         made::Pulses,
         spectrum::{Harmonics, Spectrum, Stretch},
     },

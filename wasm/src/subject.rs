@@ -2,8 +2,9 @@
 //! answer beside each other, and beside the run.
 
 use stepscope_core::{
-    motion::{AxisPlan, plan_axis},
-    scenario::{Axis, Bus, Line, Problem, Scenario, Source},
+    motion::{AxisPlan, moves::Axis, plan_axis},
+    peripheral::config::Bus,
+    scenario::{Line, Problem, Scenario, Source, of_motion},
 };
 use wasm_bindgen::prelude::*;
 
@@ -35,7 +36,7 @@ impl Subject {
             _ => (bus, Vec::new()),
         };
         let axis = axes.into_iter().nth(axis).ok_or_else(|| JsError::new("there is no such axis"))?;
-        let plan = plan_axis(&axis, "axis").map_err(listed)?;
+        let plan = plan_axis(&axis, "axis").map_err(of_motion).map_err(listed)?;
         Ok(Self { title, clock_hz, line, bus, axis, plan })
     }
 }

@@ -6,11 +6,13 @@ use crate::{
 };
 use serde::Serialize;
 use stepscope_core::{
-    analysis::timing::TimingCheck,
-    device::Device,
-    scenario::{Config, Protocol},
-    signal::{MAX_CHANNELS, Record},
-    wire::framed_host::{Counts, FramedHost, Progress},
+    inspect::timing::TimingCheck,
+    peripheral::{
+        config::{Config, Protocol},
+        device::Device,
+        signal::{MAX_CHANNELS, Record},
+    },
+    sim::framed_host::{Counts, FramedHost, Progress},
 };
 use wasm_bindgen::prelude::*;
 

@@ -5,16 +5,14 @@ use crate::{
     subject::{Subject, listed},
 };
 use serde::Serialize;
+use stepscope_core::scenario::of_config;
 use stepscope_core::{
-    motion::AxisPlan,
-    quantise::{
-        EntryFormat, Form, Stored, Tolerance,
-        source_code::{Language, Source, headline},
-        stored,
+    inspect::source_code::{Language, Source, headline},
+    motion::{
+        AxisPlan,
+        quantise::{EntryFormat, Form, Stored, Tolerance, stored},
     },
-    scenario::Config,
-    segment::PulseTimes,
-    units::Cycles,
+    peripheral::{config::Config, segment::PulseTimes, units::Cycles},
 };
 use wasm_bindgen::prelude::*;
 
@@ -44,7 +42,8 @@ struct Asked {
 impl Asked {
     fn new(json: &str, controller: usize, axis: usize) -> Result<Self, JsError> {
         let Subject { title, clock_hz, line, bus, plan, .. } = Subject::of(json, controller, axis)?;
-        let config = Config::of_segments(clock_hz, &bus, &line).map_err(listed)?;
+        let config =
+            Config::of_segments(clock_hz, &bus, &line.serial()).map_err(of_config).map_err(listed)?;
         Ok(Self { title, clock_hz, pulse: PulseTimes::from(&config), plan })
     }
 

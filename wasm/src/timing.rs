@@ -6,24 +6,41 @@ use crate::{
 };
 use serde::Serialize;
 use stepscope_core::{
-    analysis::{
+    inspect::{
         drivers::{self, DRIVERS},
         timing::{RuleResult, TimingCheck, Violation},
     },
-    scenario::{Driver, Scenario, TimingRules},
-    units::Instant,
+    peripheral::units::Instant,
+    scenario::{DriverTiming, Scenario, TimingRules},
 };
 use wasm_bindgen::prelude::*;
 
 /// Violations that the page gets in full.
-const MOST_KEPT: usize = 1000;
+const MAX_KEPT: usize = 1000;
 
 #[derive(Serialize)]
 struct Listed {
     id: &'static str,
     name: &'static str,
     source: &'static str,
-    rules: TimingRules,
+    rules: Rules,
+}
+
+/// Rules as a scenario names them.
+#[derive(Serialize)]
+struct Rules {
+    step_high_ns: u32,
+    step_low_ns: u32,
+    dir_setup_ns: u32,
+    dir_hold_ns: u32,
+    enable_wake_ns: u32,
+}
+
+impl From<&TimingRules> for Rules {
+    fn from(rules: &TimingRules) -> Self {
+        let TimingRules { step_high_ns, step_low_ns, dir_setup_ns, dir_hold_ns, enable_wake_ns } = *rules;
+        Self { step_high_ns, step_low_ns, dir_setup_ns, dir_hold_ns, enable_wake_ns }
+    }
 }
 
 /// All drivers whose figures are known: `{id, name, source, rules}`, the rules as in a scenario.
@@ -38,7 +55,7 @@ pub fn drivers() -> Result<JsValue, JsError> {
             id: sheet.id,
             name: sheet.name,
             source: sheet.source,
-            rules: sheet.rules.clone(),
+            rules: (&sheet.rules).into(),
         })
         .collect();
     object(&listed)
@@ -46,8 +63,8 @@ pub fn drivers() -> Result<JsValue, JsError> {
 
 /// The check that a scenario asks for, before its run.
 pub(crate) fn check(scenario: &Scenario) -> Option<TimingCheck> {
-    let rules = scenario.driver.as_ref().map(drivers::rules)?;
-    Some(TimingCheck::new(&rules, scenario.clock_hz, MOST_KEPT))
+    let rules = scenario.driver_timing.as_ref().map(drivers::rules)?;
+    Some(TimingCheck::new(&rules, scenario.clock_hz, MAX_KEPT))
 }
 
 #[derive(Serialize)]
@@ -100,8 +117,8 @@ impl Simulation {
         let Some(check) = &self.looked_at().timing else { return Ok(JsValue::NULL) };
         let channels = usize::from(config(&self.experiment, self.looked_at).channels());
         object(&Timing {
-            driver: match &self.scenario.driver {
-                Some(Driver::Preset(model)) => Some(drivers::sheet(*model).id),
+            driver: match &self.scenario.driver_timing {
+                Some(DriverTiming::Preset(model)) => Some(drivers::sheet(*model).id),
                 _ => None,
             },
             total: check.total(),

@@ -7,7 +7,7 @@ use crate::{
 use js_sys::Object;
 use serde::Serialize;
 use stepscope_core::{
-    analysis::torque::{Demand, Machine, Moment, Ramps, Shortage, needed_over_rate},
+    inspect::torque::{Demand, Machine, Moment, Ramps, Shortage, needed_over_rate},
     motion::Curve,
 };
 use wasm_bindgen::prelude::*;
@@ -15,7 +15,7 @@ use wasm_bindgen::prelude::*;
 /// Points of the curves.
 const POINTS: u32 = 241;
 /// Shortages that are listed.
-const MOST_SHOWN: usize = 50;
+const MAX_SHOWN: usize = 50;
 
 #[derive(Serialize)]
 struct Told {
@@ -104,7 +104,7 @@ pub fn torque(json: &str, controller: usize, axis: usize) -> Result<Option<Objec
         jump: demand.jump,
         least: demand.least.as_ref().map(ToldMoment::from),
         total: demand.total,
-        shortages: demand.shortages.iter().take(MOST_SHOWN).map(ToldShortage::from).collect(),
+        shortages: demand.shortages.iter().take(MAX_SHOWN).map(ToldShortage::from).collect(),
         ramps: ramps.collect(),
     };
     let made = Object::new();

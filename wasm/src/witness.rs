@@ -5,10 +5,14 @@ use crate::{
     simulation::{Simulation, config},
 };
 use serde::Serialize;
-use stepscope_core::signal::Sink;
+use stepscope_core::peripheral::signal::Sink;
 use stepscope_core::{
-    signal,
-    trace::{Against, Comparison, Fingerprint, Likeness, Mark, Proof, Shorter, VERSION},
+    inspect::{
+        fingerprint::{Comparison, Fingerprint, Likeness, Mark, Shorter},
+        run_fingerprint::{Proof, VERSION},
+        trace_diff::Against,
+    },
+    peripheral::signal,
 };
 use wasm_bindgen::prelude::*;
 

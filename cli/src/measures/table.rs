@@ -7,7 +7,7 @@
 
 use super::Distortion;
 use std::io::{self, Write};
-use stepscope_core::analysis::measures::{Comparison, Measures, PulseErrors};
+use stepscope_core::inspect::measures::{Comparison, Measures, PulseErrors};
 
 /// A figure of a group, with a value for each of its columns; `None` where there is none.
 struct Row {

@@ -2,13 +2,14 @@
 #![allow(dead_code, reason = "each test file uses some of it")]
 
 use proptest::prelude::*;
-use stepscope_core::{
-    motion::{AxisPlan, plan_axis},
-    scenario::{
-        Acceleration, Axis, Constant, Cosine, CosineMethod, Distance, Dwell, Interpolation, Jerk,
-        JerkLimited, Move, Point, PointUnit, Points, RampShape, Ramps, ShortMove, Sine, SineSegments, Speed,
-        Staircase, Trapezoid, TrapezoidMethod,
+use stepscope_core::motion::{
+    AxisPlan,
+    mechanics::{Acceleration, Distance, Jerk, Speed},
+    moves::{
+        Axis, Constant, Cosine, CosineMethod, Dwell, Interpolation, JerkLimited, Move, Point, PointUnit,
+        Points, RampShape, Ramps, ShortMove, Sine, SineSegments, Staircase, Trapezoid, TrapezoidMethod,
     },
+    plan_axis,
 };
 
 pub(crate) const CLOCK_HZ: u32 = 16_000_000;
@@ -105,7 +106,7 @@ fn curve() -> impl Strategy<Value = Move> {
 }
 
 pub(crate) fn short_move(turns: bool) -> ShortMove {
-    if turns { ShortMove::TurnRound } else { ShortMove::Document }
+    if turns { ShortMove::Reverse } else { ShortMove::Document }
 }
 
 /// The plan of moves that have no problems.

@@ -3,18 +3,23 @@
 use core::hint::black_box;
 
 use stepscope_core::{
-    analysis::{
+    inspect::{
         sine_optimum::{Freedom, optimum},
         sine_polyline::sweep,
     },
-    motion::{AxisPlan, DueStep, plan_axis, trapezoid::Trapezoid},
-    quantise::{Compressed, EntryFormat, Form, Stored, Tolerance, compressed, stored},
-    run::Experiment,
-    scenario::{Cause, Problem},
-    segment::PulseTimes,
-    signal::{Levels, Record},
-    trace::Digest,
-    units::{Cycles, Instant},
+    motion::{
+        AxisPlan, Cause, ScheduledStep, plan_axis,
+        quantise::{Compressed, EntryFormat, Form, Stored, Tolerance, compressed, stored},
+        trapezoid::Trapezoid,
+    },
+    peripheral::{
+        segment::PulseTimes,
+        signal::{Levels, Record},
+        trace::Digest,
+        units::{Cycles, Instant},
+    },
+    scenario::{Problem, of_motion},
+    sim::Experiment,
 };
 
 use crate::{motions, planners::Planner};
@@ -258,7 +263,7 @@ pub struct Kernels {
     ramp: Trapezoid,
     /// The move whose tables are made, and its steps.
     move_of_tables: AxisPlan,
-    due: Vec<DueStep>,
+    due: Vec<ScheduledStep>,
     /// A move of each planner, in their order.
     plans: Vec<AxisPlan>,
     /// The steady motion's trace.
@@ -285,7 +290,7 @@ impl Kernels {
         let (steady, varied) = (motions::steady()?, motions::varied()?);
         let mut source = Vec::new();
         steady.run(&mut source);
-        let move_of_tables = plan_axis(&motions::table_axis(STEPS), "axis")?;
+        let move_of_tables = plan_axis(&motions::table_axis(STEPS), "axis").map_err(of_motion)?;
         let due = move_of_tables.due_steps(CLOCK_HZ).collect();
         let most = source.len().max(varied.cost().records as usize);
         Ok(Self {

@@ -1,13 +1,19 @@
 //! The experiments that the kernels run.
 
 use stepscope_core::{
-    run::Experiment,
-    scenario::{
-        Acceleration, Axis, Bus, ChannelSegments, Constant, Controller, Cosine, DirLine, Distance, Hex, Line,
-        LineScript, Motion, Move, Problem, Protocol, Pulses, Scenario, ScriptedSend, Segment, SegmentLists,
-        Source, Speed, StepSegment, Trapezoid, TrapezoidMethod,
+    motion::{
+        mechanics::{Acceleration, Distance, Speed},
+        moves::{Axis, Constant, Cosine, Move, Trapezoid, TrapezoidMethod},
     },
-    wire::host::Sent,
+    peripheral::{
+        config::{Bus, DirLine, Protocol, PulsePhasing},
+        wire::schedule::Sent,
+    },
+    scenario::{
+        ChannelSegments, Controller, Hex, Line, LineScript, Motion, Problem, Scenario, ScriptedSend, Segment,
+        SegmentLists, Source, StepSegment,
+    },
+    sim::Experiment,
 };
 
 /// Sixteen channels, 100 slots of 10 us in a tick of 1 ms: at most 100 kHz a channel.
@@ -124,7 +130,7 @@ pub fn common_dir() -> Result<Experiment, Vec<Problem>> {
 /// # Errors
 /// None, as long as the scenario's rules stay as they are.
 pub fn staggered() -> Result<Experiment, Vec<Problem>> {
-    roomy(Bus { pulses: Pulses::Staggered, settle_cycles: 100, ..Bus::default() })
+    roomy(Bus { pulse_phasing: PulsePhasing::Staggered, settle_cycles: 100, ..Bus::default() })
 }
 
 /// The steady motion over the framed protocol; the line is fast enough for frames and replies.
@@ -135,7 +141,7 @@ pub fn framed() -> Result<Experiment, Vec<Problem>> {
     // Ticks of 1.5 ms: a tick's bytes, with their share of frames and replies, take more than 1 ms.
     let mut scenario = sixteen(vec![constant(1e6, 1e5 * 160.0 / 240.0); 16]);
     scenario.line = Line { baud: 1_400_000, protocol: Protocol::Framed, ..Line::default() };
-    scenario.line.host.ticks_a_frame = 32;
+    scenario.line.host.ticks_per_frame = 32;
     (scenario.bus.queue_depth, scenario.bus.step_period_cycles) = (64, 240);
     Experiment::new(&scenario)
 }

@@ -1,8 +1,8 @@
 //! Every planner with a move of about a million steps: how fast its steps fall due.
 
 use stepscope_core::{
-    motion::{AxisPlan, plan_axis},
-    scenario::{Cause, Problem, Scenario, Source},
+    motion::{AxisPlan, Cause, plan_axis},
+    scenario::{Problem, Scenario, Source, of_motion},
 };
 
 /// A planner, of all that a move can be.
@@ -129,12 +129,16 @@ impl Planner {
         let (_, given) = self.row();
         let scenario = format!(r#"{{"source":{{"motion":{{"axes":[{{"moves":[{given}]}}]}}}}}}"#);
         match Scenario::from_json(&scenario)?.source {
-            Source::Motion(motion) => {
-                motion.axes.iter().map(|axis| plan_axis(axis, "axis")).collect::<Result<Vec<_>, _>>()?.pop()
-            }
+            Source::Motion(motion) => motion
+                .axes
+                .iter()
+                .map(|axis| plan_axis(axis, "axis"))
+                .collect::<Result<Vec<_>, _>>()
+                .map_err(of_motion)?
+                .pop(),
             _ => None,
         }
-        .ok_or_else(|| vec![Problem { path: "axis".to_owned(), cause: Cause::NoSegmentSteps }])
+        .ok_or_else(|| vec![Problem::new("axis", Cause::NoSegmentSteps)])
     }
 }
 

@@ -12,10 +12,13 @@ use embedded_alloc::TlsfHeap;
 // A panic, also that of an allocation for which there is no room, is printed and ends with failure.
 use panic_semihosting as _;
 use stepscope_core::{
-    device::ModelBus,
-    scenario::{Bus, Config, Line},
-    signal::Record,
-    units::Cycles,
+    peripheral::{
+        config::{Bus, Config},
+        device::ModelBus,
+        signal::Record,
+        units::Cycles,
+    },
+    scenario::Line,
 };
 use stepscope_firmware::{Driver, Error, Order};
 use stepscope_tests::golden::CASES;

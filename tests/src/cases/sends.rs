@@ -51,7 +51,7 @@ pub(super) enum To {
     Own,
     All,
     /// The own address plus this, so never the own one.
-    Foreign(u8),
+    OtherAddress(u8),
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -71,7 +71,8 @@ impl Count {
 }
 
 pub(super) fn piece() -> impl Strategy<Value = Piece> {
-    let to = prop_oneof![6 => Just(To::Own), 1 => Just(To::All), 2 => (1..=255_u8).prop_map(To::Foreign)];
+    let to =
+        prop_oneof![6 => Just(To::Own), 1 => Just(To::All), 2 => (1..=255_u8).prop_map(To::OtherAddress)];
     let count = prop_oneof![
         2 => Just(Count::Any(0)),
         1 => Just(Count::Any(1)),
@@ -109,7 +110,7 @@ impl Piece {
             bytes.push(match to {
                 To::Own => own,
                 To::All => 255,
-                To::Foreign(offset) => own.wrapping_add(*offset),
+                To::OtherAddress(offset) => own.wrapping_add(*offset),
             });
         }
         for (count, (right, _)) in counts.iter().zip(orders) {

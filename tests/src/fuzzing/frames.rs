@@ -2,16 +2,16 @@
 //! bytes at once, and frames, ticks and replies are read as they were written.
 
 use crc::{CRC_32_ISCSI, Crc};
-use stepscope_core::wire::frame::{Deframed, Deframer, Frame, Reply, Ticks, emit};
+use stepscope_core::peripheral::wire::frame::{Deframed, Deframer, Frame, Reply, Ticks, emit};
 
 /// Most decoded bytes of a frame, and fewest.
 const MOST: usize = 600;
 const LEAST: usize = 6;
 /// Most bytes of a body: a frame less its address, kind and check.
-const MOST_BODY: usize = MOST - LEAST;
+const MAX_BODY: usize = MOST - LEAST;
 
 /// What a byte completed: its index among all bytes, and the frame or the name of what is none.
-type Verdict = (usize, Result<(u8, u8, Vec<u8>), &'static str>);
+type RowOutcome = (usize, Result<(u8, u8, Vec<u8>), &'static str>);
 
 /// Reads bytes as a stream, and as what one good frame after such a stream holds.
 ///
@@ -24,7 +24,7 @@ pub fn check(data: &[u8]) {
         read_as_written(Frame { address, kind, body: &body });
     }
     if let [address, kind, body @ ..] = data
-        && body.len() <= MOST_BODY
+        && body.len() <= MAX_BODY
     {
         read_as_written(Frame { address: *address, kind: *kind, body });
         let mut stream = data.to_vec();
@@ -45,8 +45,8 @@ pub fn seeds() -> Vec<Vec<u8>> {
     let others = (2..=7).map(|kind| emit(255, kind, &[]));
     let acks = (1..=6).map(|kind| emit(7, kind | 0x80, &status));
     let naks = (1..=7).map(|reason| emit(7, 0xff, &[&[reason][..], &status].concat()));
-    let long = [MOST_BODY - 1, MOST_BODY, MOST_BODY + 1].map(|length| emit(0, 1, &vec![1; length]));
-    let zeros = emit(0, 0, &vec![0; MOST_BODY]);
+    let long = [MAX_BODY - 1, MAX_BODY, MAX_BODY + 1].map(|length| emit(0, 1, &vec![1; length]));
+    let zeros = emit(0, 0, &vec![0; MAX_BODY]);
     let no_frames = [vec![0, 0, 1, 0], vec![5, 1, 0, 6, 1, 2, 3, 4, 5, 0]];
     ticks
         .into_iter()
@@ -60,7 +60,7 @@ pub fn seeds() -> Vec<Vec<u8>> {
 }
 
 /// What the core's decoder says.
-fn verdicts(bytes: &[u8]) -> Vec<Verdict> {
+fn verdicts(bytes: &[u8]) -> Vec<RowOutcome> {
     let mut deframer = Deframer::default();
     let of = |deframed: Deframed<'_>| match deframed {
         Deframed::Frame(frame) => Ok((frame.address, frame.kind, frame.body.to_vec())),
@@ -73,7 +73,7 @@ fn verdicts(bytes: &[u8]) -> Vec<Verdict> {
 }
 
 /// What A6 says: run by run, each up to its end mark.
-fn expected(bytes: &[u8]) -> Vec<Verdict> {
+fn expected(bytes: &[u8]) -> Vec<RowOutcome> {
     let mut verdicts = Vec::new();
     let mut start = 0;
     for run in bytes.split(|byte| *byte == 0) {

@@ -3,18 +3,17 @@
 
 use crate::ways::{self, Ways};
 use arbitrary::{Result, Unstructured};
+use stepscope_core::peripheral::wire::schedule::line_time;
 use stepscope_core::{
-    run::Experiment,
-    scenario::{
-        Bus, Compact, DirLine, Distribution, Glitch, Hex, Line, LineScript, Pulses, Scenario, ScriptedSend,
-        Source, line_time,
-    },
+    peripheral::config::{Bus, DirLine, Distribution, PulsePhasing},
+    scenario::{Compact, Glitch, Hex, Line, LineScript, Scenario, ScriptedSend, Source},
+    sim::Experiment,
 };
 
 /// No run is longer than this, in cycles.
 const LONGEST_RUN: u64 = 10_000;
 /// No scenario has more sends and glitches than this.
-const MOST_ACTS: usize = 40;
+const MAX_ACTS: usize = 40;
 
 /// Runs the scenario that the bytes stand for in every way.
 ///
@@ -84,7 +83,7 @@ fn peripheral(bytes: &mut Unstructured<'_>) -> Result<Scenario> {
             dir_hold_cycles: hold,
             distribution: if burst { Distribution::Burst } else { Distribution::Spread },
             dir_line: if common { DirLine::Common } else { DirLine::PerChannel },
-            pulses: if staggered { Pulses::Staggered } else { Pulses::Simultaneous },
+            pulse_phasing: if staggered { PulsePhasing::Staggered } else { PulsePhasing::Simultaneous },
             settle_cycles: settle,
             queue_depth: queue_depth as u8,
             boot_cycles,
@@ -103,7 +102,7 @@ fn acts(bytes: &mut Unstructured<'_>, scenario: &mut Scenario) -> Result<()> {
     if bytes.arbitrary()? {
         scenario.run_cycles = Some(bytes.int_in_range(1..=LONGEST_RUN)?);
     }
-    for _ in 0..MOST_ACTS {
+    for _ in 0..MAX_ACTS {
         if bytes.is_empty() || free_from > LONGEST_RUN {
             break;
         }

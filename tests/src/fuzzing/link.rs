@@ -1,12 +1,12 @@
 //! Texts as share links (PAGE "Share link"): none makes the opener fail, and what opens is a scenario within the limits
 //! whose own link opens as the same scenario.
 
-use super::scenario::MOST_PROBLEMS;
+use super::scenario::MAX_PROBLEMS;
 use crc::{CRC_32_ISO_HDLC, Crc};
 use data_encoding::BASE64URL_NOPAD;
 use stepscope_core::scenario::{
     Compact, VERSION,
-    link::{LinkError, MOST_FRAGMENT_BYTES, MOST_JSON_BYTES, decode, encode},
+    link::{LinkError, MAX_FRAGMENT_BYTES, MAX_JSON_BYTES, decode, encode},
 };
 
 /// Opens bytes as a link, as it stands and with its check put right, and as what a link with a good check holds.
@@ -53,8 +53,8 @@ fn with_check(text: &str) -> String {
 pub fn open(fragment: &str) {
     match decode(fragment) {
         Ok(scenario) => {
-            assert!(fragment.len() <= MOST_FRAGMENT_BYTES, "{} bytes", fragment.len());
-            assert!(scenario.compact().to_string().len() <= 2 * MOST_JSON_BYTES);
+            assert!(fragment.len() <= MAX_FRAGMENT_BYTES, "{} bytes", fragment.len());
+            assert!(scenario.compact().to_string().len() <= 2 * MAX_JSON_BYTES);
             match encode(&scenario) {
                 Ok(link) => {
                     let again = decode(&link);
@@ -64,7 +64,7 @@ pub fn open(fragment: &str) {
                 Err(error) => assert!(matches!(error, LinkError::TooLong { .. }), "{error:?}"),
             }
         }
-        Err(LinkError::Scenario(problems)) => assert!((1..=MOST_PROBLEMS).contains(&problems.len())),
+        Err(LinkError::Scenario(problems)) => assert!((1..=MAX_PROBLEMS).contains(&problems.len())),
         Err(error) => assert!(!error.to_string().is_empty()),
     }
 }

@@ -3,18 +3,18 @@
 
 use crate::ways::{self, Ways};
 use stepscope_core::{
-    run::Experiment,
     scenario::{Compact, END_OF_TIME, Problem, Scenario},
+    sim::Experiment,
 };
 
 /// Most wrong fields that one reading lists.
-pub const MOST_PROBLEMS: usize = 100;
+pub const MAX_PROBLEMS: usize = 100;
 /// What one run may be at most: packets or bytes of a script, and the records of the busiest ticks.
-const MOST_SENDS: u64 = 4 << 20;
-const MOST_BYTES: u64 = 2_000_000 * 17;
-const MOST_RECORDS: u64 = 1 + (MOST_BYTES + 10_000) * (10 + 16 * 127 * 4);
+const MAX_SENDS: u64 = 4 << 20;
+const MAX_BYTES: u64 = 2_000_000 * 17;
+const MAX_RECORDS: u64 = 1 + (MAX_BYTES + 10_000) * (10 + 16 * 127 * 4);
 /// Of segments: an edge in each cycle of 48 bits on each channel.
-const MOST_SEGMENT_RECORDS: u64 = 16 << 48;
+const MAX_SEGMENT_RECORDS: u64 = 16 << 48;
 
 /// Runs that cost no more records and cycles than these are made, and made again clock by clock.
 const RUN_RECORDS: u64 = 5_000;
@@ -49,7 +49,7 @@ pub fn seeds() -> Vec<Vec<u8>> {
 /// Where a property is broken.
 pub fn judge(text: &str) -> Result<Experiment, Vec<Problem>> {
     let (scenario, unread) = Scenario::from_json_lenient(text);
-    assert!(unread.len() <= MOST_PROBLEMS, "{} problems", unread.len());
+    assert!(unread.len() <= MAX_PROBLEMS, "{} problems", unread.len());
     assert_eq!(Scenario::from_json(text).is_ok(), unread.is_empty());
     let canonical = scenario.compact().to_string();
     for json in [scenario.to_json(), canonical.clone()] {
@@ -68,8 +68,8 @@ pub fn judge(text: &str) -> Result<Experiment, Vec<Problem>> {
 
 fn bounded(experiment: &Experiment) {
     let cost = experiment.cost();
-    assert!(cost.sends <= MOST_SENDS && cost.bytes <= MOST_BYTES.max(MOST_SENDS), "{cost:?}");
-    let most = if experiment.segments().is_some() { MOST_SEGMENT_RECORDS } else { MOST_RECORDS };
+    assert!(cost.sends <= MAX_SENDS && cost.bytes <= MAX_BYTES.max(MAX_SENDS), "{cost:?}");
+    let most = if experiment.segments().is_some() { MAX_SEGMENT_RECORDS } else { MAX_RECORDS };
     assert!(cost.records <= most && cost.end_cycle <= END_OF_TIME, "{cost:?}");
 }
 

@@ -2,8 +2,11 @@
 
 use super::small;
 use proptest::prelude::*;
-use stepscope_core::scenario::{
-    Bus, ChannelSegments, DwellSegment, MotionEngine, Scenario, Segment, SegmentLists, Source, StepSegment,
+use stepscope_core::{
+    peripheral::config::Bus,
+    scenario::{
+        ChannelSegments, DwellSegment, MotionEngine, Scenario, Segment, SegmentLists, Source, StepSegment,
+    },
 };
 
 /// Lists, and motions that are run by an exact list; nearly all run.

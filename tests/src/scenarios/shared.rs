@@ -3,7 +3,10 @@
 
 use super::small;
 use proptest::prelude::*;
-use stepscope_core::scenario::{Controller, Hex, Host, Noise, Protocol, Scenario, ScriptedSend, Source};
+use stepscope_core::{
+    peripheral::config::Protocol,
+    scenario::{Controller, Hex, Host, Noise, Scenario, ScriptedSend, Source},
+};
 
 /// Scenarios of which nearly all run, for some ten thousand cycles to some hundred thousand.
 pub fn shared() -> impl Strategy<Value = Scenario> {
@@ -61,7 +64,11 @@ fn other_address(first: u8, index: usize) -> u8 {
 }
 
 /// What a further controller does: as much as the first, on its own channels.
-fn orders(scenario: &Scenario, index: u8, channels: u8) -> (Vec<stepscope_core::scenario::Axis>, Vec<Hex>) {
+fn orders(
+    scenario: &Scenario,
+    index: u8,
+    channels: u8,
+) -> (Vec<stepscope_core::motion::moves::Axis>, Vec<Hex>) {
     let address = other_address(scenario.line.address.unwrap_or(0), index.into());
     match &scenario.source {
         Source::Motion(motion) => (motion.axes.iter().take(channels.into()).cloned().collect(), Vec::new()),
@@ -94,8 +101,8 @@ fn seal(send: &mut ScriptedSend, index: usize, address: u8) {
 
 fn host() -> impl Strategy<Value = Host> {
     (1..=32_u8, prop::option::weighted(0.2, 100..20_000_u32), 1..12_u8).prop_map(
-        |(ticks_a_frame, reply_timeout_cycles, attempts)| Host {
-            ticks_a_frame,
+        |(ticks_per_frame, reply_timeout_cycles, attempts)| Host {
+            ticks_per_frame,
             reply_timeout_cycles,
             attempts,
         },
@@ -109,10 +116,10 @@ fn noise() -> impl Strategy<Value = Noise> {
             seed,
             flipped_bits_ppm: flipped / 20,
             lost_bytes_ppm: lost,
-            doubled_bytes_ppm: doubled,
+            duplicated_bytes_ppm: doubled,
             glitches_ppm: glitches,
             lost_replies_ppm: replies,
-            deaths_ppm: deaths,
+            host_crashes_ppm: deaths,
         },
     )
 }

@@ -1,11 +1,17 @@
 //! Scenarios that run: slow clocks, short ticks, a few packets, so that every cycle can be visited.
 
 use proptest::prelude::*;
-use stepscope_core::scenario::{
-    Acceleration, Axis, Bus, Constant, Cosine, DirLine, Distance, Distribution, Dwell, Glitch, Hex,
-    Interpolation, Jerk, JerkLimited, Line, LineScript, Motion, Move, Packets, Point, PointUnit, Points,
-    Pulses, Scenario, ScriptedSend, ShortMove, Sine, SineSegments, Source, Speed, Staircase, Trapezoid,
-    TrapezoidMethod, line_time,
+use stepscope_core::peripheral::wire::schedule::line_time;
+use stepscope_core::{
+    motion::{
+        mechanics::{Acceleration, Distance, Jerk, Speed},
+        moves::{
+            Axis, Constant, Cosine, Dwell, Interpolation, JerkLimited, Move, Point, PointUnit, Points,
+            ShortMove, Sine, SineSegments, Staircase, Trapezoid, TrapezoidMethod,
+        },
+    },
+    peripheral::config::{Bus, DirLine, Distribution, PulsePhasing},
+    scenario::{Glitch, Hex, Line, LineScript, Motion, Packets, Scenario, ScriptedSend, Source},
 };
 
 /// Scenarios of all three sources, of which nearly all run, for some ten thousand cycles.
@@ -51,7 +57,11 @@ fn peripheral() -> impl Strategy<Value = Scenario> {
                     dir_hold_cycles: hold,
                     distribution: if burst { Distribution::Burst } else { Distribution::Spread },
                     dir_line: if common { DirLine::Common } else { DirLine::PerChannel },
-                    pulses: if staggered { Pulses::Staggered } else { Pulses::Simultaneous },
+                    pulse_phasing: if staggered {
+                        PulsePhasing::Staggered
+                    } else {
+                        PulsePhasing::Simultaneous
+                    },
                     settle_cycles: room + settle,
                     queue_depth: depth,
                     boot_cycles: boot,
@@ -158,7 +168,7 @@ fn axis(peripheral: &Scenario) -> impl Strategy<Value = Axis> + use<> {
                     distance: Distance::Steps(steps),
                     top_speed: speed(top),
                     level,
-                    short_move: if turns { ShortMove::TurnRound } else { ShortMove::Document },
+                    short_move: if turns { ShortMove::Reverse } else { ShortMove::Document },
                     start_speed: speed((top * start).max(1.0)),
                     max_speed: speed(top),
                 })

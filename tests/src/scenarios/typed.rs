@@ -1,14 +1,22 @@
 //! Scenarios of the right types with any numbers in them: most are refused, some are huge.
 
 use proptest::prelude::*;
-use stepscope_core::analysis::drivers::DRIVERS;
-use stepscope_core::scenario::{
-    Acceleration, Analysis, Axis, Bus, ChannelSegments, Constant, Controller, Cosine, CosineMethod, DirLine,
-    Direct, Distance, Distribution, Driver, Dwell, DwellSegment, Glitch, Hex, Host, Interpolation, Jerk,
-    JerkLimited, Line, LineScript, Mechanics, Motion, MotionEngine, Motor, Move, Noise, Packets, Point,
-    PointUnit, Points, Protocol, Pulses, RampShape, Ramps, Rotary, Scenario, Screw, ScriptedSend, Segment,
-    SegmentLists, ShortMove, Sine, SineSegments, Source, Speed, Staircase, StepSegment, TimingRules,
-    Trapezoid, TrapezoidMethod, Wheel,
+use stepscope_core::inspect::drivers::DRIVERS;
+use stepscope_core::{
+    motion::{
+        mechanics::{Acceleration, Direct, Distance, Jerk, Mechanics, Rotary, Screw, Speed, Wheel},
+        motor::Motor,
+        moves::{
+            Axis, Constant, Cosine, CosineMethod, Dwell, Interpolation, JerkLimited, Move, Point, PointUnit,
+            Points, RampShape, Ramps, ShortMove, Sine, SineSegments, Staircase, Trapezoid, TrapezoidMethod,
+        },
+    },
+    peripheral::config::{Bus, DirLine, Distribution, Protocol, PulsePhasing},
+    scenario::{
+        Analysis, ChannelSegments, Controller, DriverTiming, DwellSegment, Glitch, Hex, Host, Line,
+        LineScript, Motion, MotionEngine, Noise, Packets, Scenario, ScriptedSend, Segment, SegmentLists,
+        Source, StepSegment, TimingRules,
+    },
 };
 
 /// Any scenario of this version that JSON can carry: no number in it is infinite or none at all. The parts are boxed: a
@@ -40,7 +48,7 @@ pub fn typed() -> BoxedStrategy<Scenario> {
                     run_cycles,
                     analysis: Analysis { axis, order, fft_length, sensor_hz },
                     controllers,
-                    driver,
+                    driver_timing: driver,
                     ..Scenario::default()
                 }
             },
@@ -106,7 +114,7 @@ fn bus() -> BoxedStrategy<Bus> {
                 dir_hold_cycles,
                 distribution: if burst { Distribution::Burst } else { Distribution::Spread },
                 dir_line: if common { DirLine::Common } else { DirLine::PerChannel },
-                pulses: if staggered { Pulses::Staggered } else { Pulses::Simultaneous },
+                pulse_phasing: if staggered { PulsePhasing::Staggered } else { PulsePhasing::Simultaneous },
                 settle_cycles,
                 queue_depth,
                 boot_cycles,
@@ -115,7 +123,7 @@ fn bus() -> BoxedStrategy<Bus> {
         .boxed()
 }
 
-fn driver() -> BoxedStrategy<Driver> {
+fn driver() -> BoxedStrategy<DriverTiming> {
     let models = prop::sample::select(DRIVERS.map(|sheet| sheet.model).to_vec());
     let nanos = || small_or_any(0);
     let rules = (nanos(), nanos(), nanos(), nanos(), nanos()).prop_map(
@@ -127,7 +135,7 @@ fn driver() -> BoxedStrategy<Driver> {
             enable_wake_ns,
         },
     );
-    prop_oneof![models.prop_map(Driver::Preset), rules.prop_map(Driver::Rules)].boxed()
+    prop_oneof![models.prop_map(DriverTiming::Preset), rules.prop_map(DriverTiming::Rules)].boxed()
 }
 
 fn line() -> BoxedStrategy<Line> {
@@ -152,8 +160,8 @@ fn line() -> BoxedStrategy<Line> {
 
 fn host() -> impl Strategy<Value = Host> {
     (small_or_any(8), prop::option::weighted(0.2, any::<u32>()), small_or_any(10)).prop_map(
-        |(ticks_a_frame, reply_timeout_cycles, attempts)| Host {
-            ticks_a_frame,
+        |(ticks_per_frame, reply_timeout_cycles, attempts)| Host {
+            ticks_per_frame,
             reply_timeout_cycles,
             attempts,
         },
@@ -167,10 +175,10 @@ fn noise() -> impl Strategy<Value = Noise> {
             seed,
             flipped_bits_ppm: flipped,
             lost_bytes_ppm: lost,
-            doubled_bytes_ppm: doubled,
+            duplicated_bytes_ppm: doubled,
             glitches_ppm: glitches,
             lost_replies_ppm: replies,
-            deaths_ppm: deaths,
+            host_crashes_ppm: deaths,
         },
     )
 }
@@ -334,7 +342,7 @@ fn one_move() -> BoxedStrategy<Move> {
             }),
         (distance(9000.0), speed(5000.0), small_or_any(3), any::<bool>(), speed(1000.0), speed(20_000.0))
             .prop_map(|(distance, top_speed, level, turns, start_speed, max_speed)| {
-                let short_move = if turns { ShortMove::TurnRound } else { ShortMove::Document };
+                let short_move = if turns { ShortMove::Reverse } else { ShortMove::Document };
                 Move::Staircase(Staircase { distance, top_speed, level, short_move, start_speed, max_speed })
             }),
         (distance(3200.0), number(0.4), number(0.2), any::<bool>(), number(0.001)).prop_map(

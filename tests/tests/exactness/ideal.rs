@@ -2,7 +2,7 @@
 //! the planners' ways to get there.
 
 use crate::wide::{PI, Wide};
-use stepscope_core::scenario::{Interpolation, Point};
+use stepscope_core::motion::moves::{Interpolation, Point};
 
 /// The way of a move at a time in s, both from its start; to the right, and within the move.
 pub(crate) type Way = Box<dyn Fn(Wide) -> Wide>;

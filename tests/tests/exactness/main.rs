@@ -16,13 +16,15 @@ mod wide;
 use ideal::Ideal;
 use proptest::prelude::*;
 use std::collections::BTreeSet;
-use stepscope_core::{
-    motion::{AxisPlan, Profile, plan_axis, trapezoid::Trapezoid},
-    scenario::{
-        Acceleration, Axis, Constant, Cosine, CosineMethod, Distance, Interpolation, Jerk, JerkLimited, Move,
-        Point, PointUnit, Points, RampShape, Ramps, ShortMove, Sine, SineSegments, Speed, Staircase,
-        TrapezoidMethod,
+use stepscope_core::motion::{
+    AxisPlan, Profile,
+    mechanics::{Acceleration, Distance, Jerk, Speed},
+    moves::{
+        Axis, Constant, Cosine, CosineMethod, Interpolation, JerkLimited, Move, Point, PointUnit, Points,
+        RampShape, Ramps, ShortMove, Sine, SineSegments, Staircase, TrapezoidMethod,
     },
+    plan_axis,
+    trapezoid::Trapezoid,
 };
 use stepscope_tests::effort;
 use wide::Wide;
@@ -130,7 +132,7 @@ proptest! {
     ) {
         let speed = Speed::StepsPerSecond;
         let top = top.max(start);
-        let given = stepscope_core::scenario::Trapezoid {
+        let given = stepscope_core::motion::moves::Trapezoid {
             distance: Distance::Steps(steps),
             start_speed: speed(start),
             top_speed: speed(top),
@@ -302,7 +304,7 @@ fn own_curve() -> impl Strategy<Value = Move> {
         ),
         (distance.clone(), magnitude(0.5, 1e6), 1.0..100.0_f64, magnitude(1e-3, 1e9), magnitude(1e4, 1e9))
             .prop_map(move |(distance, start, times, acceleration, timer)| {
-                Move::Trapezoid(stepscope_core::scenario::Trapezoid {
+                Move::Trapezoid(stepscope_core::motion::moves::Trapezoid {
                     distance,
                     start_speed: speed(start),
                     top_speed: speed((start * times).min(1e7)),
@@ -317,7 +319,7 @@ fn own_curve() -> impl Strategy<Value = Move> {
                     distance,
                     top_speed: speed(top),
                     level,
-                    short_move: if turns { ShortMove::TurnRound } else { ShortMove::Document },
+                    short_move: if turns { ShortMove::Reverse } else { ShortMove::Document },
                     start_speed: speed(start),
                     max_speed: speed(1e6),
                 })

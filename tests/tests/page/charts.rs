@@ -5,12 +5,12 @@ use anyhow::{Context, Result, ensure};
 use fantoccini::actions::{InputSource, MOUSE_BUTTON_LEFT, MOUSE_BUTTON_RIGHT, MouseActions, PointerAction};
 use serde_json::{Value, json};
 use stepscope_core::{
-    analysis::{
+    inspect::{
         between,
         difference::{self, Scaled},
         made::Pulses,
     },
-    trace::steps,
+    peripheral::trace::steps,
 };
 
 use crate::{bench::in_browser, native::Known, session::Session};

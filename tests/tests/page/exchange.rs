@@ -3,9 +3,13 @@
 use anyhow::{Context, Result, ensure};
 use serde_json::{Value, json};
 use stepscope_core::{
+    inspect::{
+        fingerprint::Fingerprint,
+        run_fingerprint::Proof,
+        tables::{write_edges_head, write_edges_row, write_packets_head, write_packets_row},
+    },
+    peripheral::signal::Record,
     scenario::{link::with_part, presets::PRESETS},
-    signal::Record,
-    trace::{Fingerprint, Proof, write_edges_head, write_edges_row, write_packets_head, write_packets_row},
 };
 
 use crate::{

@@ -3,9 +3,12 @@
 use anyhow::{Context, Result, ensure};
 use serde_json::{Value, json};
 use stepscope_core::{
+    inspect::{
+        tables::{write_edges_head, write_edges_row},
+        vcd::VcdWriter,
+    },
+    peripheral::signal::{Record, Sink},
     scenario::Scenario,
-    signal::{Record, Sink},
-    trace::{VcdWriter, write_edges_head, write_edges_row},
 };
 
 use crate::{bench::in_browser, exchange::drop_file, native::Known, session::Session};
@@ -49,7 +52,7 @@ fn edges(known: &Known, records: &[Record]) -> Result<String> {
 /// What lies between two cycles, both in it: the first record is the one at `start`.
 fn cut(trace: &[Record], start: u64, end: u64) -> Option<Vec<Record>> {
     let before = trace.iter().rfind(|record| record.cycle.0 <= start)?;
-    let first = Record { cycle: stepscope_core::units::Instant(start), ..*before };
+    let first = Record { cycle: stepscope_core::peripheral::units::Instant(start), ..*before };
     let rest = trace.iter().filter(|record| (start + 1..=end).contains(&record.cycle.0));
     Some([first].into_iter().chain(rest.copied()).collect())
 }

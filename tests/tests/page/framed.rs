@@ -1,7 +1,7 @@
 //! The framed protocol on the page: frames, replies, and what becomes of them on a noisy line.
 
 use anyhow::{Result, ensure};
-use stepscope_core::{protocol::FrameFate, trace::Verdict};
+use stepscope_core::peripheral::{protocol::FrameFate, trace::Verdict};
 
 use crate::{
     bench::in_browser,
@@ -40,7 +40,7 @@ fn a_framed_line_shows_frames_with_their_ticks_and_replies() -> Result<()> {
         page.picture("framed").await?;
 
         // The first TICKS frame: its bytes, the reply, and all of its ticks.
-        let first = |row: &&stepscope_core::trace::LoggedPacket| {
+        let first = |row: &&stepscope_core::peripheral::trace::LoggedPacket| {
             matches!(row.verdict, Verdict::Frame(FrameFate::Queued(_)))
         };
         let rows = framed.recording.packets.rows();
@@ -113,10 +113,10 @@ fn a_host_that_gives_up_says_so_in_the_header() -> Result<()> {
 #[test]
 fn what_is_wrong_with_host_and_noise_is_said_at_its_field() -> Result<()> {
     let rows = [
-        ("line.host.ticks_a_frame", "33", r#"{"line":{"host":{"ticks_a_frame":33}}}"#),
+        ("line.host.ticks_per_frame", "33", r#"{"line":{"host":{"ticks_per_frame":33}}}"#),
         ("line.host.attempts", "0", r#"{"line":{"host":{"attempts":0}}}"#),
         ("line.host.reply_timeout_cycles", "0", r#"{"line":{"host":{"reply_timeout_cycles":0}}}"#),
-        ("line.noise.deaths_ppm", "1000001", r#"{"line":{"noise":{"deaths_ppm":1000001}}}"#),
+        ("line.noise.host_crashes_ppm", "1000001", r#"{"line":{"noise":{"host_crashes_ppm":1000001}}}"#),
         ("line.noise.seed", "-1", r#"{"line":{"noise":{"seed":-1}}}"#),
     ];
     in_browser(move |page| async move {

@@ -4,7 +4,7 @@
 use anyhow::{Result, ensure};
 use serde::Deserialize;
 use serde_json::{Value, json};
-use stepscope_core::trace::columns;
+use stepscope_core::inspect::columns::columns;
 
 use crate::{
     bench::in_browser,

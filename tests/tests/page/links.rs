@@ -3,8 +3,8 @@
 use anyhow::{Context, Result, ensure};
 use serde_json::json;
 use stepscope_core::{
+    inspect::{fingerprint::Fingerprint, run_fingerprint::Proof},
     scenario::{link::with_part, presets::PRESETS},
-    trace::{Fingerprint, Proof},
 };
 
 use crate::{

@@ -3,8 +3,8 @@
 use anyhow::{Context, Result, ensure};
 use fantoccini::actions::{InputSource, MOUSE_BUTTON_LEFT, MouseActions, PointerAction};
 use stepscope_core::{
+    peripheral::trace::{Digest, Verdict},
     scenario::presets::PRESETS,
-    trace::{Digest, Verdict},
 };
 
 use crate::{

@@ -4,13 +4,13 @@
 use anyhow::{Result, ensure};
 use serde_json::json;
 use stepscope_core::{
-    analysis::{
+    inspect::{
         made::Pulses,
         measures::Measures,
         spectrum::{Spectrum, Stretch},
     },
+    peripheral::trace::steps,
     scenario::Source,
-    trace::steps,
 };
 
 use crate::{bench::in_browser, native::Known, session::Session};

@@ -4,13 +4,13 @@ use anyhow::{Result, anyhow};
 use crc::{CRC_32_ISO_HDLC, Crc};
 use data_encoding::BASE64URL_NOPAD;
 use stepscope_core::{
-    run::Experiment,
+    peripheral::trace::{Digest, Recording},
     scenario::{
         Problem, Scenario,
         link::{self, LinkError},
         presets::Preset,
     },
-    trace::{Digest, Recording},
+    sim::Experiment,
 };
 
 /// A scenario, and all that the core makes of it.

@@ -3,9 +3,9 @@
 use anyhow::{Context, Result, ensure};
 use serde_json::{Value, json};
 use stepscope_core::{
-    protocol::FrameFate,
-    scenario::{Protocol, presets::PRESETS},
-    trace::{Meaning, Reading, Verdict},
+    inspect::dissector::{Meaning, Reading},
+    peripheral::{config::Protocol, protocol::FrameFate, trace::Verdict},
+    scenario::presets::PRESETS,
 };
 
 use crate::{

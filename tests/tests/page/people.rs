@@ -7,9 +7,9 @@ use anyhow::{Context, Result, ensure};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use stepscope_core::{
-    motion::grouped,
-    run::BUDGET_RECORDS,
-    scenario::{Move, Scenario, Source, presets::PRESETS},
+    motion::{grouped, moves::Move},
+    scenario::{Scenario, Source, presets::PRESETS},
+    sim::BUDGET_RECORDS,
 };
 
 use crate::{
@@ -231,7 +231,7 @@ fn what_went_wrong_on_purpose_is_told_and_mended_in_one_step() -> Result<()> {
             scenario.bus.dir_setup_cycles = 11;
         }),
         ("raw-noisy-line", "no check", |scenario| {
-            scenario.line.protocol = stepscope_core::scenario::Protocol::Framed;
+            scenario.line.protocol = stepscope_core::peripheral::config::Protocol::Framed;
         }),
     ];
     in_browser(move |page| async move {

@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, ensure};
 use stepscope_core::{
-    analysis::spectrum::Spectrum,
+    inspect::spectrum::Spectrum,
     scenario::{Source, presets::PRESETS},
 };
 

@@ -3,18 +3,14 @@
 use anyhow::{Context, Result, anyhow, ensure};
 use serde_json::{Value, json};
 use stepscope_core::{
-    analysis::{
+    inspect::{
         comparison::{Asked, compare},
         sine_optimum::{Freedom, optimum},
         sine_polyline::{Distinct, Row, best, sweep},
-    },
-    quantise::{
-        EntryFormat, Form, Stored, Tolerance,
         source_code::{Language, Source, headline},
-        stored,
     },
-    segment::PulseTimes,
-    units::Cycles,
+    motion::quantise::{EntryFormat, Form, Stored, Tolerance, stored},
+    peripheral::{segment::PulseTimes, units::Cycles},
 };
 
 use crate::{bench::in_browser, exports::KEEP, native::Known, session::Session};

@@ -2,7 +2,7 @@
 
 use anyhow::{Result, ensure};
 use stepscope_core::{
-    analysis::{drivers, timing::TimingCheck},
+    inspect::{drivers, timing::TimingCheck},
     scenario::presets::PRESETS,
 };
 
@@ -21,7 +21,7 @@ fn violations_are_counted_and_gone_through_one_by_one() -> Result<()> {
     in_browser(|page| async move {
         let preset = PRESETS.iter().find(|preset| preset.id == "driver-timing-broken").expect("a preset");
         let known = Known::preset(preset)?;
-        let rules = drivers::rules(known.scenario.driver.as_ref().expect("it names a driver"));
+        let rules = drivers::rules(known.scenario.driver_timing.as_ref().expect("it names a driver"));
         let mut check = TimingCheck::new(&rules, known.scenario.clock_hz, 1000);
         known.experiment.run(&mut check);
         let total = check.total();

@@ -4,8 +4,9 @@
 use anyhow::{Result, ensure};
 use serde_json::{Value, json};
 use stepscope_core::{
-    analysis::torque::{Demand, Machine},
-    scenario::{Axis, Scenario, Source},
+    inspect::torque::{Demand, Machine},
+    motion::moves::Axis,
+    scenario::{Scenario, Source},
 };
 
 use crate::{bench::in_browser, native::Known, session::Session};

@@ -2,17 +2,20 @@
 
 use super::{Placed, Span};
 use crate::simulation::Simulation;
-use stepscope_core::trace::{Check, Field, Verdict};
+use stepscope_core::{
+    inspect::dissector::{Check, Field},
+    peripheral::trace::RowOutcome,
+};
 
 /// Bytes of the longest row whose fields are told; a frame has at most 600 before COBS.
-const MOST_BYTES: usize = 1024;
+const MAX_BYTES: usize = 1024;
 
 impl Simulation {
     /// The fields of a row of the packets.
     pub(super) fn fields_of(&self, packet: usize) -> Vec<Span> {
         let Some(row) = self.looked_at().recording.packets.rows().get(packet) else { return Vec::new() };
         // No packet and no frame is longer: what is, was ignored or is none.
-        if self.looked_at().recording.packets.bytes(packet).len() > MOST_BYTES {
+        if self.looked_at().recording.packets.bytes(packet).len() > MAX_BYTES {
             return Vec::new();
         }
         let bytes = self.placed(packet);
@@ -25,13 +28,13 @@ impl Simulation {
             .iter()
             .filter_map(|field| {
                 let carriers: &[Placed] = bytes.get(field.bytes.clone())?;
-                let bad = row.verdict == Verdict::Ignored
+                let bad = row.verdict == RowOutcome::Ignored
                     || field.name == "reason"
                     || (broken && field.name == "check");
                 Some(span(carriers.first()?.start, carriers.last()?.end, in_words(field, bad), bad))
             })
             .collect();
-        if let (Verdict::Short, Some(last)) = (row.verdict, bytes.last()) {
+        if let (RowOutcome::Short, Some(last)) = (row.verdict, bytes.last()) {
             let texts = vec!["SHORT_PACKET: cut by a gap".into(), "SHORT_PACKET".into(), "!".into()];
             spans.push(span(last.end, row.end.0.max(last.end), texts, true));
         }

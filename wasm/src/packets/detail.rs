@@ -7,8 +7,8 @@ use crate::{
 };
 use serde::Serialize;
 use stepscope_core::{
-    trace::{Check, Meaning, Reading, Verdict},
-    units::Cycles,
+    inspect::dissector::{Check, Meaning, Reading},
+    peripheral::{trace::RowOutcome, units::Cycles},
 };
 use wasm_bindgen::prelude::*;
 
@@ -118,16 +118,16 @@ impl Simulation {
     pub(super) fn line_end(&self, index: usize) -> u64 {
         let Some(row) = self.log().rows().get(index) else { return 0 };
         match row.verdict {
-            Verdict::Reply(_) | Verdict::Collision => row.end.0,
+            RowOutcome::Reply(_) | RowOutcome::Collision => row.end.0,
             // Complete with the look at a stop bit, half a bit and nine after the start bit was seen.
-            Verdict::Packet(_) | Verdict::Frame(_) | Verdict::Framing => {
+            RowOutcome::Packet(_) | RowOutcome::Frame(_) | RowOutcome::Framing => {
                 let config = config(&self.experiment, self.looked_at);
                 let Cycles(bit) = config.bit();
                 let baud = u64::from(self.scenario.line.baud.max(1));
                 let length = BYTE_BITS * u64::from(config.clock_hz()) / baud;
                 (row.end.0 + length).saturating_sub(bit / 2 + 9 * bit)
             }
-            Verdict::Short | Verdict::Ignored | Verdict::Open => {
+            RowOutcome::Short | RowOutcome::Ignored | RowOutcome::Open => {
                 self.placed(index).last().map_or(row.end.0, |byte| byte.end)
             }
         }
@@ -136,8 +136,9 @@ impl Simulation {
     /// Cycles between the end of what was on the line before a row and its start; none where they overlap.
     pub(super) fn gap(&self, index: usize) -> Option<u64> {
         let rows = self.log().rows();
-        let row = rows.get(index).filter(|row| row.verdict != Verdict::Collision)?;
-        let is_sent = |before: &usize| rows.get(*before).is_some_and(|row| row.verdict != Verdict::Collision);
+        let row = rows.get(index).filter(|row| row.verdict != RowOutcome::Collision)?;
+        let is_sent =
+            |before: &usize| rows.get(*before).is_some_and(|row| row.verdict != RowOutcome::Collision);
         let before = (0..index).rev().find(is_sent)?;
         row.start.0.checked_sub(self.line_end(before))
     }
@@ -145,7 +146,7 @@ impl Simulation {
     /// The row that a reply answers.
     fn answered(&self, index: usize) -> Option<usize> {
         let rows = self.log().rows();
-        let reply = rows.get(index).filter(|row| matches!(row.verdict, Verdict::Reply(_)))?;
+        let reply = rows.get(index).filter(|row| matches!(row.verdict, RowOutcome::Reply(_)))?;
         let wait = Cycles(REPLY_BITS * self.line().own.bit().0);
         let is_frame = |at: &usize| {
             rows.get(*at)

@@ -4,7 +4,7 @@ use super::words;
 use crate::{convert::field, simulation::Simulation};
 use js_sys::{Object, Uint8Array};
 use std::fmt::Write as _;
-use stepscope_core::trace::Quoted;
+use stepscope_core::inspect::tables::Quoted;
 use wasm_bindgen::prelude::*;
 
 const COLUMNS: &str = "number,kind,start_s,end_s,gap_s,bytes,meaning,outcome,tick_start_s,tick_end_s\r\n";

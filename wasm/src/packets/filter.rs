@@ -2,7 +2,7 @@
 //! a million rows freeze nothing; the rows' indices stay here.
 
 use super::words::{self, Line, Scale};
-use stepscope_core::trace::{PacketLog, Verdict};
+use stepscope_core::peripheral::trace::{PacketLog, RowOutcome};
 
 /// Rows on show, and matches of the search among them.
 #[derive(Default)]
@@ -110,7 +110,7 @@ fn spelled(text: &str) -> (Vec<u8>, String) {
 }
 
 impl Asked {
-    fn keeps(&self, line: Line<'_>, bytes: &[u8], verdict: Verdict) -> bool {
+    fn keeps(&self, line: Line<'_>, bytes: &[u8], verdict: RowOutcome) -> bool {
         let kind = match self.kind.as_str() {
             "" => true,
             "packet" | "frame" | "reply" | "collision" => self.kind == line.kind(bytes, verdict),

@@ -2,15 +2,17 @@
 
 use std::fmt::Write as _;
 use stepscope_core::{
-    protocol::{FrameFate, Kind, Reply},
-    run::Experiment,
-    scenario::{Config, Protocol},
-    signal::Fate,
-    trace::Verdict,
-    wire::{
-        frame::{Deframed, Deframer, Frame, Ticks},
-        packet::{ALL, Order},
+    peripheral::{
+        config::{Config, Protocol},
+        protocol::{FrameOutcome, Kind, Reply},
+        signal::PacketOutcome,
+        trace::RowOutcome,
+        wire::{
+            frame::{Deframed, Deframer, Frame, Ticks},
+            packet::{ALL, Order},
+        },
     },
+    sim::Experiment,
 };
 
 /// Set in the kind of a frame that is a reply (DESIGN A6).
@@ -26,10 +28,10 @@ pub(super) struct Line<'a> {
 
 impl Line<'_> {
     /// What a row is: `packet`, `frame`, `reply` or `collision`.
-    pub(super) fn kind(self, bytes: &[u8], verdict: Verdict) -> &'static str {
+    pub(super) fn kind(self, bytes: &[u8], verdict: RowOutcome) -> &'static str {
         match verdict {
-            Verdict::Collision => "collision",
-            Verdict::Reply(_) => "reply",
+            RowOutcome::Collision => "collision",
+            RowOutcome::Reply(_) => "reply",
             _ if self.own.protocol() == Protocol::Raw => "packet",
             _ if head(bytes, verdict).is_some_and(|(_, kind)| kind & REPLY != 0) => "reply",
             _ => "frame",
@@ -37,10 +39,10 @@ impl Line<'_> {
     }
 
     /// Address that a row goes to or comes from, where its bytes have one that can be trusted.
-    pub(super) fn address(self, bytes: &[u8], verdict: Verdict) -> Option<u8> {
+    pub(super) fn address(self, bytes: &[u8], verdict: RowOutcome) -> Option<u8> {
         match (self.own.protocol(), verdict) {
-            (_, Verdict::Reply(reply)) => Some(reply.address),
-            (Protocol::Raw, Verdict::Packet(_)) => {
+            (_, RowOutcome::Reply(reply)) => Some(reply.address),
+            (Protocol::Raw, RowOutcome::Packet(_)) => {
                 self.own.packet_address().and_then(|_| bytes.first().copied())
             }
             (Protocol::Raw, _) => None,
@@ -49,13 +51,13 @@ impl Line<'_> {
     }
 
     /// Adds the bytes of a row in words, as far as they are known to mean something.
-    pub(super) fn fields(self, bytes: &[u8], verdict: Verdict, text: &mut String) {
+    pub(super) fn fields(self, bytes: &[u8], verdict: RowOutcome, text: &mut String) {
         match verdict {
-            Verdict::Packet(_) => packet_in_words(bytes, self.own.packet_address().is_some(), text),
-            Verdict::Reply(reply) => {
+            RowOutcome::Packet(_) => packet_in_words(bytes, self.own.packet_address().is_some(), text),
+            RowOutcome::Reply(reply) => {
                 let _ = write!(text, "from {}: {reply}", reply.address);
             }
-            Verdict::Frame(_) => {
+            RowOutcome::Frame(_) => {
                 let mut deframer = Deframer::default();
                 for &byte in bytes {
                     if let Some(Deframed::Frame(frame)) = deframer.byte(byte) {
@@ -103,16 +105,16 @@ impl Line<'_> {
 }
 
 /// Address and kind of a frame, where its check holds.
-pub(super) fn head(bytes: &[u8], verdict: Verdict) -> Option<(u8, u8)> {
+pub(super) fn head(bytes: &[u8], verdict: RowOutcome) -> Option<(u8, u8)> {
     let fate = match verdict {
-        Verdict::Frame(fate) => fate,
-        Verdict::Reply(reply) => {
+        RowOutcome::Frame(fate) => fate,
+        RowOutcome::Reply(reply) => {
             let kind = reply.answer.map_or(u8::MAX, |kind| kind as u8 | REPLY);
             return Some((reply.address, kind));
         }
         _ => return None,
     };
-    if matches!(fate, FrameFate::Short | FrameFate::BadCheck { .. } | FrameFate::Overlong) {
+    if matches!(fate, FrameOutcome::Short | FrameOutcome::BadCheck { .. } | FrameOutcome::Overlong) {
         return None;
     }
     // The row ends with the frame's end mark; what stands before an earlier one is no part of it.
@@ -129,23 +131,23 @@ pub(super) fn head(bytes: &[u8], verdict: Verdict) -> Option<(u8, u8)> {
 }
 
 /// What became of a row, in full.
-pub(super) fn outcome(verdict: Verdict) -> String {
+pub(super) fn outcome(verdict: RowOutcome) -> String {
     match verdict {
-        Verdict::Reply(Reply { answer: Ok(_), .. }) => "acknowledged".to_owned(),
-        Verdict::Reply(Reply { answer: Err(reason), .. }) => format!("refused: {}", reason.name()),
+        RowOutcome::Reply(Reply { answer: Ok(_), .. }) => "acknowledged".to_owned(),
+        RowOutcome::Reply(Reply { answer: Err(reason), .. }) => format!("refused: {}", reason.name()),
         verdict => verdict.to_string(),
     }
 }
 
 /// What became of a row, for a narrow column: a cross for what was not done, and the name of the reason.
-pub(super) fn short(verdict: Verdict) -> String {
+pub(super) fn short(verdict: RowOutcome) -> String {
     match verdict {
-        Verdict::Frame(FrameFate::Repeated) => "\u{21bb} repeated".to_owned(),
-        Verdict::Frame(FrameFate::BadCheck { .. }) => "\u{2715} CRC".to_owned(),
-        Verdict::Packet(Fate::Booting) => "\u{2715} self-test".to_owned(),
-        Verdict::Ignored => "\u{2715} ignored".to_owned(),
-        Verdict::Collision => "\u{2715} collision".to_owned(),
-        Verdict::Open => "\u{2715} not complete".to_owned(),
+        RowOutcome::Frame(FrameOutcome::Repeated) => "\u{21bb} repeated".to_owned(),
+        RowOutcome::Frame(FrameOutcome::BadCheck { .. }) => "\u{2715} CRC".to_owned(),
+        RowOutcome::Packet(PacketOutcome::Booting) => "\u{2715} self-test".to_owned(),
+        RowOutcome::Ignored => "\u{2715} ignored".to_owned(),
+        RowOutcome::Collision => "\u{2715} collision".to_owned(),
+        RowOutcome::Open => "\u{2715} not complete".to_owned(),
         verdict => {
             let full = outcome(verdict);
             match full.strip_prefix("dropped: ").or_else(|| full.strip_prefix("refused: ")) {
@@ -157,13 +159,15 @@ pub(super) fn short(verdict: Verdict) -> String {
 }
 
 /// `good`, `foreign` (not for this controller, or from another), `repeated` or `bad`.
-pub(super) const fn mark(verdict: Verdict) -> &'static str {
+pub(super) const fn mark(verdict: RowOutcome) -> &'static str {
     match verdict {
-        Verdict::Packet(Fate::Queued)
-        | Verdict::Frame(FrameFate::Queued(_) | FrameFate::Taken(_))
-        | Verdict::Reply(Reply { answer: Ok(_), .. }) => "good",
-        Verdict::Packet(Fate::Foreign) | Verdict::Frame(FrameFate::Foreign) => "foreign",
-        Verdict::Frame(FrameFate::Repeated) => "repeated",
+        RowOutcome::Packet(PacketOutcome::Queued)
+        | RowOutcome::Frame(FrameOutcome::Queued(_) | FrameOutcome::Taken(_))
+        | RowOutcome::Reply(Reply { answer: Ok(_), .. }) => "good",
+        RowOutcome::Packet(PacketOutcome::OtherAddress) | RowOutcome::Frame(FrameOutcome::OtherAddress) => {
+            "foreign"
+        }
+        RowOutcome::Frame(FrameOutcome::Repeated) => "repeated",
         _ => "bad",
     }
 }

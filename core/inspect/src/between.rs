@@ -1,0 +1,217 @@
+//! What lies between two cursors: mean and root mean square of position, speed and acceleration,
+//! of the ideal motion and of the one that the pulses make.
+//!
+//! Both are integrals of the curves themselves, never of a picture's columns:
+//!
+//! ```text
+//!          B                 ideal  from joint to joint by three points of Gauss and Legendre: exact
+//!   mean = | x dt / (B - A)         for the polynomials, and for cosines to the last digits
+//!          A                 made   from step to step and from tick to tick, sums of rectangles
+//! ```
+
+use crate::made::Pulses;
+use stepscope_motion::{AxisPlan, Joints};
+
+/// Mean and root mean square over a stretch of time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moments {
+    /// Mean.
+    pub mean: f64,
+    /// Root of the mean square, about 0.
+    pub rms: f64,
+}
+
+/// Of the three quantities, in steps, steps/s and steps/s^2.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Between {
+    /// Position from the start of the run.
+    pub position: Moments,
+    /// Speed.
+    pub speed: Moments,
+    /// Acceleration where the speed has no jump; `None` of pulses, whose speed only jumps.
+    pub acceleration: Option<Moments>,
+}
+
+/// A sum over time of a quantity and of its square.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    of_value: f64,
+    of_square: f64,
+}
+
+impl Sums {
+    fn add(&mut self, value: f64, seconds: f64) {
+        self.of_value += value * seconds;
+        self.of_square += value * value * seconds;
+    }
+
+    fn over(self, seconds: f64) -> Moments {
+        Moments { mean: self.of_value / seconds, rms: libm::sqrt(self.of_square / seconds) }
+    }
+}
+
+/// The points of Gauss and Legendre in -1..1 and their weights.
+pub(super) const POINTS: [(f64, f64); 3] =
+    [(-0.774_596_669_241_483_4, 5.0 / 18.0), (0.0, 8.0 / 18.0), (0.774_596_669_241_483_4, 5.0 / 18.0)];
+
+/// Of the ideal motion, whose time 0 is at `zero_s`, from one time to a later one, in s.
+#[must_use]
+pub fn ideal(plan: &AxisPlan, zero_s: f64, from_s: f64, to_s: f64) -> Between {
+    let [mut position, mut speed, mut acceleration] = [Sums::default(); 3];
+    Joints::of(plan).pieces(from_s - zero_s, to_s - zero_s, &mut |piece| {
+        let (middle, half) = ((piece.from_s + piece.to_s) / 2.0, (piece.to_s - piece.from_s) / 2.0);
+        for (point, weight) in POINTS {
+            let (t, seconds) = (middle + half * point, 2.0 * half * weight * piece.times);
+            position.add(plan.position(t), seconds);
+            speed.add(plan.speed(t), seconds);
+            acceleration.add(plan.acceleration(t), seconds);
+        }
+    });
+    let [position, speed, acceleration] =
+        [position, speed, acceleration].map(|sums| sums.over(to_s - from_s));
+    Between { position, speed, acceleration: Some(acceleration) }
+}
+
+/// Of the motion that the pulses make, from one time to a later one, in s.
+#[must_use]
+pub fn made(pulses: &Pulses<'_>, from_s: f64, to_s: f64) -> Between {
+    let hz = pulses.hz();
+    let (mut position, mut since_s) = (Sums::default(), from_s);
+    let mut place = pulses.position_at(from_s);
+    for step in pulses.steps.iter().skip(pulses.steps_until(from_s)) {
+        let at_s = step.cycle as f64 / hz;
+        if at_s >= to_s {
+            break;
+        }
+        position.add(f64::from(place), at_s - since_s);
+        (since_s, place) = (at_s, step.position);
+    }
+    position.add(f64::from(place), to_s - since_s);
+    let mut speed = Sums::default();
+    pulses.rates(from_s, to_s, &mut |rate| {
+        let seconds = libm::fmin(rate.to_s, to_s) - libm::fmax(rate.from_s, from_s);
+        speed.add(rate.speed, libm::fmax(0.0, seconds));
+    });
+    let [position, speed] = [position, speed].map(|sums| sums.over(to_s - from_s));
+    Between { position, speed, acceleration: None }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec::Vec;
+    use stepscope_peripheral::trace::{Recording, Step, steps};
+    use stepscope_sim::Experiment;
+
+    /// Means over a great number of looks, each in the middle of its part.
+    fn brute(from_s: f64, to_s: f64, looks: u32, value: impl Fn(f64) -> f64) -> Moments {
+        let mut sums = Sums::default();
+        let each = (to_s - from_s) / f64::from(looks);
+        (0..looks).for_each(|look| sums.add(value(from_s + (f64::from(look) + 0.5) * each), each));
+        sums.over(to_s - from_s)
+    }
+
+    #[track_caller]
+    fn near(found: Moments, expected: Moments, scale: f64, what: &str) {
+        for (found, expected) in [(found.mean, expected.mean), (found.rms, expected.rms)] {
+            assert!((found - expected).abs() <= 2e-4 * scale, "{what}: {found} {expected} of {scale}");
+        }
+    }
+
+    struct Ran {
+        experiment: Experiment,
+        recording: Recording,
+        steps: Vec<Step>,
+    }
+
+    fn run(source: &str) -> Ran {
+        let experiment =
+            Experiment::from_json(&alloc::format!(r#"{{"source":{source}}}"#)).expect("no problems");
+        let mut recording = Recording::default();
+        experiment.run(&mut recording);
+        let steps = steps(&recording.trace, 0);
+        Ran { experiment, recording, steps }
+    }
+
+    const MOTIONS: &[&str] = &[
+        r#"{"trapezoid":{"distance":{"steps":3000}}},{"trapezoid":{"distance":{"steps":-500}}}"#,
+        r#"{"trapezoid":{"distance":{"steps":2000},"method":"table"}}"#,
+        r#"{"staircase":{"distance":{"steps":3000}}}"#,
+        r#"{"cosine":{"distance":{"steps":3200},"duration_s":0.4,"ramp_s":0.1}}"#,
+        r#"{"dwell":{"duration_s":0.1}},{"sine_segments":{"amplitude":{"steps":500},"period_s":0.2,"periods":3}}"#,
+    ];
+
+    #[test]
+    fn means_of_both_curves_are_those_of_a_million_looks() {
+        for moves in MOTIONS {
+            let ran = run(&alloc::format!(r#"{{"motion":{{"axes":[{{"moves":[{moves}]}}]}}}}"#));
+            let plan = &ran.experiment.plans()[0];
+            let zero_s =
+                ran.recording.first_tick().expect("ticks").seconds(ran.experiment.config().clock_hz());
+            let pulses = Pulses {
+                channel: 0,
+                steps: &ran.steps,
+                log: &ran.recording.packets,
+                segments: None,
+                config: ran.experiment.config(),
+            };
+            let length = plan.duration_s();
+            for (from, to) in [(-0.01, length + 0.03), (0.1 * length, 0.37 * length), (0.3, 0.300_1)] {
+                let (from, to) = (zero_s + from, zero_s + to);
+                let peaks = plan.peaks();
+                let far = 3000.0;
+                let looks = 1_000_000;
+                let found = ideal(plan, zero_s, from, to);
+                near(found.position, brute(from, to, looks, |t| plan.position(t - zero_s)), far, moves);
+                near(found.speed, brute(from, to, looks, |t| plan.speed(t - zero_s)), peaks.speed, moves);
+                let expected = brute(from, to, looks, |t| plan.acceleration(t - zero_s));
+                let found = found.acceleration.expect("the ideal curve has one");
+                near(found, expected, peaks.acceleration.max(1.0), moves);
+                let (found, looks) = (made(&pulses, from, to), 100_000);
+                let at = |t: f64| f64::from(pulses.position_at(t));
+                near(found.position, brute(from, to, looks, at), far, moves);
+                near(found.speed, brute(from, to, looks, |t| pulses.speed_at(t)), peaks.speed, moves);
+            }
+        }
+    }
+
+    #[test]
+    fn a_whole_moves_means_are_exact() {
+        let ran = run(
+            r#"{"motion":{"axes":[{"moves":[{"constant":{"distance":{"steps":100},"speed":{"steps_s":1000}}},{"dwell":{"duration_s":0.1}}]}]}}"#,
+        );
+        let found = ideal(&ran.experiment.plans()[0], 0.0, 0.0, 0.2);
+        let check =
+            |found: f64, expected: f64| assert!((found - expected).abs() <= 1e-12 * expected, "{found}");
+        check(found.speed.mean, 500.0);
+        check(found.speed.rms, 1000.0 * 0.5_f64.sqrt());
+        check(found.position.mean, 75.0);
+        // The mean of the square: a third of 100^2 over the first half, 100^2 over the second.
+        check(found.position.rms, (10_000.0 * 2.0 / 3.0_f64).sqrt());
+        assert_eq!(found.acceleration, Some(Moments::default()));
+    }
+
+    #[test]
+    fn segments_have_the_speed_of_their_intervals_and_none_in_a_dwell() {
+        let ran = run(r#"{"segments":{"channels":[{"segments":[{"steps":{"count":10}},
+            {"dwell":{"length_q16":5242880000}},{"steps":{"count":10,"interval_q16":524288000,"dir":0}}]}]}}"#);
+        let pulses = Pulses {
+            channel: 0,
+            steps: &ran.steps,
+            log: &ran.recording.packets,
+            segments: ran.experiment.segments().and_then(|lists| lists.lists().first()),
+            config: ran.experiment.config(),
+        };
+        // From cycle 1 on 10 steps of 1 ms, 5 ms of rest, 10 steps back of 0.5 ms.
+        let found = made(&pulses, 0.0, 0.02);
+        assert!(found.speed.mean.abs() < 0.01, "{found:?}");
+        assert!((found.speed.rms - (0.5 * 1e6 + 0.25 * 4e6_f64).sqrt()).abs() < 0.1, "{found:?}");
+        for (time_s, expected) in [(0.005, 1000.0), (0.012, 0.0), (0.017, -2000.0), (0.021, 0.0)] {
+            assert!(
+                (pulses.speed_at(time_s) - expected).abs() < 0.01,
+                "{time_s}: {}",
+                pulses.speed_at(time_s)
+            );
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! Position, speed and acceleration over a stretch of time, as the least and greatest value in
+//! each pixel column: of the ideal motion, and of the one that the simulated pulses make.
+
+use crate::made::Pulses;
+use alloc::{vec, vec::Vec};
+use stepscope_motion::{AxisPlan, Joints, Piece};
+use stepscope_peripheral::trace::Step;
+
+/// Smooth pieces of a column that are all looked at; of more, every 16th and the last. Only a table
+/// of some hundred thousand rows has as many, and its speed rises from row to row.
+const MAX_PIECES: usize = 256;
+
+/// The least and greatest value in each column; NaN where there is none.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Band {
+    /// Least values.
+    pub min: Vec<f64>,
+    /// Greatest values.
+    pub max: Vec<f64>,
+}
+
+impl Band {
+    pub(super) fn new(columns: usize) -> Self {
+        Self { min: vec![f64::NAN; columns], max: vec![f64::NAN; columns] }
+    }
+
+    pub(super) fn take(&mut self, column: usize, value: f64) {
+        if let (Some(min), Some(max)) = (self.min.get_mut(column), self.max.get_mut(column)) {
+            *min = libm::fmin(*min, value);
+            *max = libm::fmax(*max, value);
+        }
+    }
+}
+
+impl Band {
+    /// Nothing moves from one time to another.
+    fn still(&mut self, window: Window, from_s: f64, to_s: f64) {
+        if to_s > from_s {
+            window.columns(from_s, to_s).for_each(|column| self.take(column, 0.0));
+        }
+    }
+}
+
+/// A stretch of time in columns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// Its start in s.
+    pub start_s: f64,
+    /// Its end in s.
+    pub end_s: f64,
+    /// Columns.
+    pub columns: usize,
+}
+
+impl Window {
+    fn width_s(&self) -> f64 {
+        (self.end_s - self.start_s) / self.columns as f64
+    }
+
+    /// The middle of a column in s.
+    #[must_use]
+    pub fn centre_s(&self, column: usize) -> f64 {
+        self.start_s + (column as f64 + 0.5) * self.width_s()
+    }
+
+    /// The column of a time, which may lie outside.
+    fn column(&self, time_s: f64) -> i64 {
+        libm::floor((time_s - self.start_s) / self.width_s()) as i64
+    }
+
+    /// The start of a column in s; the end of the one before.
+    pub(super) fn edge_s(&self, column: usize) -> f64 {
+        self.start_s + column as f64 * self.width_s()
+    }
+
+    /// The columns that a stretch of time has a part in. One of no length has one, unless it lies
+    /// outside.
+    fn columns(&self, from_s: f64, to_s: f64) -> core::ops::Range<usize> {
+        let inside = |column: i64| column.clamp(0, self.columns as i64) as usize;
+        let after = libm::ceil((to_s - self.start_s) / self.width_s()) as i64;
+        inside(self.column(from_s))..inside(after.max(self.column(from_s).saturating_add(1)))
+    }
+}
+
+/// Position in steps, speed in steps/s, acceleration in steps/s^2 of the ideal motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ideal {
+    /// Position in steps from the start.
+    pub position: Band,
+    /// Speed in steps/s.
+    pub speed: Band,
+    /// Acceleration in steps/s^2.
+    pub acceleration: Band,
+}
+
+/// The ideal motion of an axis whose time 0 is at `zero_s`.
+///
+/// Between two joints every curve rises, falls or stays, so a column's extremes are at its own ends
+/// and at either side of the joints in it.
+#[must_use]
+pub fn ideal(plan: &AxisPlan, zero_s: f64, window: Window) -> Ideal {
+    let n = window.columns;
+    let mut bands = Ideal { position: Band::new(n), speed: Band::new(n), acceleration: Band::new(n) };
+    let joints = Joints::of(plan);
+    let mut period = None;
+    for column in 0..n {
+        let (from, to) = (window.edge_s(column) - zero_s, window.edge_s(column + 1) - zero_s);
+        let extremes = match joints.period_within(from, to) {
+            // Thousands of periods over a few columns are one period's work.
+            Some(bounds) => match period {
+                Some((known, extremes)) if known == bounds => extremes,
+                _ => {
+                    let extremes = extremes(plan, &joints, bounds.0, bounds.1);
+                    period = Some((bounds, extremes));
+                    extremes
+                }
+            },
+            None => extremes(plan, &joints, from, to),
+        };
+        let bands = [&mut bands.position, &mut bands.speed, &mut bands.acceleration];
+        for (band, values) in bands.into_iter().zip(extremes) {
+            values.into_iter().for_each(|value| band.take(column, value));
+        }
+    }
+    bands
+}
+
+/// Least and greatest position, speed and acceleration of a stretch.
+fn extremes(plan: &AxisPlan, joints: &Joints, from_s: f64, to_s: f64) -> [[f64; 2]; 3] {
+    let mut found = [[f64::NAN; 2]; 3];
+    let mut look = |piece: Piece| {
+        // Just inside: at a joint itself the value may be that of the other side.
+        let inset = (piece.to_s - piece.from_s) * 1e-9;
+        for t in [piece.from_s + inset, piece.to_s - inset] {
+            let values = [plan.position(t), plan.speed(t), plan.acceleration(t)];
+            for ([least, greatest], value) in found.iter_mut().zip(values) {
+                *least = libm::fmin(*least, value);
+                *greatest = libm::fmax(*greatest, value);
+            }
+        }
+    };
+    let (mut count, mut last) = (0, None);
+    joints.pieces(from_s, to_s, &mut |piece| {
+        count += 1;
+        last = Some(piece);
+        if count <= MAX_PIECES || count % 16 == 0 {
+            look(piece);
+        }
+    });
+    if let Some(last) = last {
+        look(last);
+    }
+    found
+}
+
+/// What the pulses really do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Made {
+    /// Position in steps from the start.
+    pub position: Band,
+    /// Speed in steps/s: of a tick its steps by its length, of a segment's step 1 by its interval,
+    /// and 0 where neither is.
+    pub speed: Band,
+}
+
+/// The motion that the pulses of a channel make.
+#[must_use]
+pub fn made(pulses: &Pulses<'_>, window: Window) -> Made {
+    let mut bands = Made { position: Band::new(window.columns), speed: Band::new(window.columns) };
+    let hz = pulses.hz();
+    let mut next = pulses.steps.partition_point(|step| (step.cycle as f64 / hz) < window.start_s);
+    let before = next.checked_sub(1).and_then(|last| pulses.steps.get(last));
+    let mut position = before.map_or(0, |step| step.position);
+    for column in 0..window.columns {
+        bands.position.take(column, f64::from(position));
+        let comes = |step: &&Step| window.column(step.cycle as f64 / hz) <= column as i64;
+        while let Some(step) = pulses.steps.get(next).filter(comes) {
+            position = step.position;
+            bands.position.take(column, f64::from(position));
+            next += 1;
+        }
+    }
+    let mut moved_to = window.start_s;
+    pulses.rates(window.start_s, window.end_s, &mut |rate| {
+        if rate.to_s <= window.start_s || rate.from_s >= window.end_s {
+            return;
+        }
+        bands.speed.still(window, moved_to, rate.from_s);
+        for column in window.columns(rate.from_s, rate.to_s) {
+            bands.speed.take(column, rate.speed);
+        }
+        moved_to = rate.to_s;
+    });
+    bands.speed.still(window, moved_to, window.end_s);
+    bands
+}
+
+#[cfg(test)]
+mod tests;

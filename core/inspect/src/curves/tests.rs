@@ -1,0 +1,139 @@
+//! Columns against a look at everything in them.
+
+use super::*;
+use alloc::{format, vec::Vec};
+use stepscope_peripheral::trace::{Recording, steps};
+use stepscope_sim::Experiment;
+
+/// A quantity of a plan over time.
+type Value<'a> = &'a dyn Fn(f64) -> f64;
+
+struct Ran {
+    experiment: Experiment,
+    recording: Recording,
+    steps: Vec<Step>,
+}
+
+impl Ran {
+    fn of(source: &str) -> Self {
+        let experiment = Experiment::from_json(&format!(r#"{{"source":{source}}}"#)).expect("no problems");
+        let mut recording = Recording::default();
+        experiment.run(&mut recording);
+        let steps = steps(&recording.trace, 0);
+        Self { experiment, recording, steps }
+    }
+
+    fn pulses(&self) -> Pulses<'_> {
+        Pulses {
+            channel: 0,
+            steps: &self.steps,
+            log: &self.recording.packets,
+            segments: self.experiment.segments().and_then(|lists| lists.lists().first()),
+            config: self.experiment.config(),
+        }
+    }
+}
+
+fn motion(moves: &str) -> Ran {
+    Ran::of(&format!(r#"{{"motion":{{"axes":[{{"moves":[{moves}]}}]}}}}"#))
+}
+
+const MOTIONS: &[&str] = &[
+    r#"{"trapezoid":{"distance":{"steps":3000}}},{"trapezoid":{"distance":{"steps":-500}}}"#,
+    r#"{"trapezoid":{"distance":{"steps":2000},"method":"table"}}"#,
+    r#"{"staircase":{"distance":{"steps":3000}}}"#,
+    r#"{"cosine":{"distance":{"steps":3200},"duration_s":0.4,"ramp_s":0.1}}"#,
+    r#"{"sine_segments":{"amplitude":{"steps":50},"period_s":0.02,"periods":30}}"#,
+];
+/// Lists of segments with a dwell and a ramp.
+const SEGMENTS: &str = r#"{"segments":{"channels":[{"segments":[{"steps":{"count":10}},{"dwell":{"length_q16":5242880000}},
+    {"steps":{"count":40,"interval_q16":524288000,"add_q16":-8000000,"dir":0}},{"dwell":{"length_q16":9000000000}}]}]}}"#;
+
+/// From the whole down to a part of a tick, in parts of the length of the motion.
+const WINDOWS: &[(f64, f64, usize)] =
+    &[(-0.05, 1.1, 37), (0.2, 0.45, 64), (0.5, 0.5003, 9), (-0.1, -0.05, 3)];
+
+fn whole(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+}
+
+#[test]
+fn the_ideal_curves_extremes_are_those_of_a_thousand_looks_a_column() {
+    for moves in MOTIONS {
+        let ran = motion(moves);
+        let plan = &ran.experiment.plans()[0];
+        let (zero_s, length, peaks) = (0.003, plan.duration_s(), plan.peaks());
+        for &(from, to, columns) in WINDOWS {
+            let window = Window { start_s: zero_s + from * length, end_s: zero_s + to * length, columns };
+            let bands = ideal(plan, zero_s, window);
+            let looks: [(&Band, Value<'_>, f64); 3] = [
+                (&bands.position, &|t| plan.position(t), 3000.0),
+                (&bands.speed, &|t| plan.speed(t), peaks.speed),
+                (&bands.acceleration, &|t| plan.acceleration(t), peaks.acceleration.max(1.0)),
+            ];
+            for (band, value, scale) in looks {
+                for column in 0..columns {
+                    let looks = (0..1000)
+                        .map(|k| window.edge_s(column) + (f64::from(k) + 0.5) / 1000.0 * window.width_s());
+                    let (low, high) = whole(looks.map(|t| value(t - zero_s)));
+                    let (found_low, found_high) = (band.min[column], band.max[column]);
+                    // The looks are inside the extremes, and come as near as a thousand can.
+                    let (slack, near) = (1e-6 * scale, 0.006 * scale);
+                    let what = format!(
+                        "{moves} {from}..{to}, column {column}: {low} {high}, found {found_low} {found_high}"
+                    );
+                    assert!(found_low <= low + slack && found_high >= high - slack, "{what}");
+                    assert!(low - found_low <= near && found_high - high <= near, "{what}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_the_pulses_make_is_that_of_every_step_and_every_tick_in_a_column() {
+    let runs = MOTIONS.iter().map(|moves| motion(moves)).chain([Ran::of(SEGMENTS)]);
+    for ran in runs {
+        let pulses = ran.pulses();
+        let length = pulses.steps.last().map_or(0.0, |step| step.cycle as f64 / pulses.hz());
+        let mut rates = Vec::new();
+        pulses.rates(0.0, 1e9, &mut |rate| rates.push(rate));
+        for &(from, to, columns) in WINDOWS {
+            let window = Window { start_s: from * length, end_s: to * length, columns };
+            let Made { position, speed } = made(&pulses, window);
+            for column in 0..columns {
+                let (start, end) = (window.edge_s(column), window.edge_s(column + 1));
+                let before = pulses.steps.iter().rev().find(|step| (step.cycle as f64 / pulses.hz()) < start);
+                let inside = pulses
+                    .steps
+                    .iter()
+                    .filter(|step| (start..end).contains(&(step.cycle as f64 / pulses.hz())));
+                let places = before.map_or(0, |step| step.position);
+                let expected =
+                    whole([places].into_iter().chain(inside.map(|step| step.position)).map(f64::from));
+                assert_eq!((position.min[column], position.max[column]), expected, "{from}..{to}, {column}");
+
+                let touching = || rates.iter().filter(|rate| rate.from_s < end && rate.to_s > start);
+                let covered: f64 = touching().map(|rate| rate.to_s.min(end) - rate.from_s.max(start)).sum();
+                let still = (covered < (end - start) * (1.0 - 1e-9)).then_some(0.0);
+                let expected = whole(touching().map(|rate| rate.speed).chain(still));
+                assert_eq!((speed.min[column], speed.max[column]), expected, "{from}..{to}, {column}");
+            }
+        }
+    }
+}
+
+#[test]
+fn in_a_dwell_of_segments_the_speed_is_none() {
+    // 10 steps right, 1 ms apart, a pause of 5 ms, and 10 back, 0.5 ms apart.
+    let ran = Ran::of(
+        r#"{"segments":{"channels":[{"segments":[{"steps":{"count":10}},{"dwell":{"length_q16":5242880000}},
+            {"steps":{"count":10,"interval_q16":524288000,"dir":0}}]}]}}"#,
+    );
+    let window = Window { start_s: 0.0, end_s: 0.022, columns: 22 };
+    let Made { speed, .. } = made(&ran.pulses(), window);
+    for (column, expected) in [(1, 1000.0), (5, 1000.0), (12, 0.0), (17, -2000.0), (21, 0.0)] {
+        assert!((speed.min[column] - expected).abs() < 0.01, "{column}: {speed:?}");
+        assert!((speed.max[column] - expected).abs() < 0.01, "{column}: {speed:?}");
+    }
+}

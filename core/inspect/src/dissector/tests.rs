@@ -1,0 +1,122 @@
+//! Fields against frames that the host and the controller write themselves.
+
+use super::*;
+use stepscope_peripheral::{
+    protocol::{FrameOutcome, State, Status},
+    signal::PacketOutcome,
+    wire::frame::emit,
+};
+
+const FRAME: RowOutcome = RowOutcome::Frame(FrameOutcome::OtherAddress);
+
+fn read(protocol: Protocol, addressed: bool, bytes: &[u8], verdict: RowOutcome) -> Meaning {
+    let meaning = Reading { protocol, addressed, channels: &|_| 2 }.of(bytes, verdict);
+    let mut end = 0;
+    for field in &meaning.fields {
+        assert!(end <= field.bytes.start && field.bytes.start < field.bytes.end, "{meaning:?}");
+        end = field.bytes.end;
+    }
+    assert!(end <= bytes.len());
+    meaning
+}
+
+/// `name bytes value`, a line each.
+fn told(meaning: &Meaning) -> Vec<String> {
+    let line = |field: &Field| format!("{} {:?} {}", field.name, field.bytes, field.value);
+    meaning.fields.iter().map(line).collect()
+}
+
+#[test]
+fn a_raw_packet_is_its_address_and_an_order_a_channel() {
+    let packet = RowOutcome::Packet(PacketOutcome::Queued);
+    let plain = read(Protocol::Raw, false, &[0x85, 0x05, 0x80], packet);
+    assert_eq!(told(&plain), ["ch0 0..1 +5", "ch1 1..2 \u{2212}5", "ch2 2..3 0, right"]);
+    assert_eq!(plain.check, Check::None);
+    let addressed = read(Protocol::Raw, true, &[255, 0], RowOutcome::Short);
+    assert_eq!(told(&addressed), ["address 0..1 255, all", "ch0 1..2 0, left"]);
+    assert_eq!(told(&read(Protocol::Raw, true, &[1, 2], RowOutcome::Ignored)), ["ignored 0..2 until a gap"]);
+}
+
+#[test]
+fn a_frame_of_ticks_has_each_order_at_its_byte_also_where_cobs_took_its_zero() {
+    let wire = emit(0, 1, &Ticks::emit(7, 2, &[0x81, 0, 0, 3]));
+    let meaning = read(Protocol::Framed, false, &wire, FRAME);
+    let check = u32::from_le_bytes(CHECK.checksum(&[0, 1, 7, 2, 0x81, 0, 0, 3]).to_le_bytes());
+    let lines = told(&meaning);
+    assert_eq!(
+        lines[..9],
+        [
+            "COBS 0..1 0 bytes to the next zero or the end",
+            "address 1..2 0",
+            "kind 2..3 TICKS",
+            "seq 3..4 7",
+            "count 4..5 2",
+            "tick 0 ch0 5..6 +1",
+            "tick 0 ch1 6..7 0, left",
+            "tick 1 ch0 7..8 0, left",
+            "tick 1 ch1 8..9 \u{2212}3",
+        ]
+    );
+    assert_eq!(lines[9], format!("check 9..13 {check:08x}, holds"));
+    assert_eq!(lines[10], "end mark 13..14 00");
+    assert_eq!(meaning.check, Check::Compared { found: check, expected: check });
+}
+
+#[test]
+fn a_reply_tells_its_status_and_a_refusal_its_reason() {
+    let status =
+        Status { state: State::Moving, free: 3, expected_seq: 9, faults: 0x82, ticks_done: 0x0100_0000 };
+    let acknowledged = Reply { address: 4, answer: Ok(Kind::Status), status };
+    let lines = told(&read(Protocol::Framed, false, &acknowledged.emit(), RowOutcome::Reply(acknowledged)));
+    assert_eq!(lines[2], "kind 2..3 ACK STATUS");
+    assert_eq!(
+        lines[3..8],
+        [
+            "state 3..4 MOVING",
+            "free 4..5 3",
+            "expected seq 5..6 9",
+            "faults 6..8 SHORT_PACKET, UNDERRUN",
+            "ticks done 8..12 16777216"
+        ]
+    );
+    let refused = Reply { answer: Err(Reason::Busy), ..acknowledged };
+    let lines = told(&read(Protocol::Framed, false, &refused.emit(), RowOutcome::Reply(refused)));
+    assert_eq!(lines[2..5], ["kind 2..3 NAK", "reason 3..4 4, BUSY", "state 4..5 MOVING"]);
+}
+
+#[test]
+fn a_long_frame_has_its_fields_after_the_byte_that_cobs_adds_every_254() {
+    let orders: Vec<u8> = [1].repeat(600 - 8);
+    let wire = emit(1, 9, &orders);
+    let meaning = read(Protocol::Framed, false, &wire, FRAME);
+    let codes: Vec<_> = meaning.fields.iter().filter(|field| field.name == "COBS").collect();
+    assert_eq!(codes.len(), 1, "the others lie within the body: {meaning:?}");
+    let check = meaning.fields.iter().find(|field| field.name == "check").expect("it has one");
+    assert_eq!(check.bytes, wire.len() - 5..wire.len() - 1);
+    assert!(check.value.ends_with("holds"));
+}
+
+#[test]
+fn what_is_broken_is_read_as_far_as_it_goes() {
+    let wire = emit(1, 4, &[]);
+    let mut flipped = wire.clone();
+    flipped[2] ^= 2;
+    let meaning = read(Protocol::Framed, false, &flipped, FRAME);
+    assert!(matches!(meaning.check, Check::Compared { found, expected } if found != expected));
+    assert!(told(&meaning).iter().any(|line| line.starts_with("check") && line.ends_with("expected")));
+
+    let cut = read(Protocol::Framed, false, &wire[..3], RowOutcome::Open);
+    assert_eq!(told(&cut)[1..], ["address 1..2 1", "kind 2..3 STATUS"]);
+    assert_eq!(cut.check, Check::Missing);
+    let late = [&[3, 9, 0, 0], wire.as_slice()].concat();
+    let after = read(Protocol::Framed, false, &late, FRAME);
+    assert_eq!(told(&after)[0], "before it 0..4 no part of the frame");
+    assert!(matches!(after.check, Check::Compared { found, expected } if found == expected));
+    for len in 0..=9 {
+        for byte in [0, 1, 2, 0x80, 0xff] {
+            let bytes = [byte].repeat(len);
+            read(Protocol::Framed, false, &bytes, FRAME);
+            read(Protocol::Raw, true, &bytes, RowOutcome::Open);
+        }
+    }
+}

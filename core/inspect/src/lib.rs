@@ -1,0 +1,36 @@
+//! What one looks at in a run and its plan: packets and their fields, changes of signals, curves for the eye, spectra and
+//! distortion, which segments make the best sine, what each shape of a ramp costs, whether a driver could follow the
+//! pulses and a motor the plan, and the files of all of it.
+#![cfg_attr(not(any(test, feature = "std")), no_std)]
+
+extern crate alloc;
+
+pub mod between;
+pub mod calibration;
+pub mod changes;
+pub mod columns;
+pub mod comparison;
+pub mod curves;
+pub mod difference;
+pub mod dissector;
+pub mod drivers;
+pub mod fingerprint;
+#[cfg(feature = "std")]
+mod fourier;
+pub mod made;
+pub mod measures;
+pub mod run_fingerprint;
+pub mod sine_optimum;
+pub mod sine_polyline;
+pub mod source_code;
+#[cfg(feature = "std")]
+pub mod spectrum;
+#[cfg(feature = "std")]
+mod stretch;
+pub mod tables;
+pub mod timing;
+pub mod torque;
+pub mod trace_diff;
+#[cfg(feature = "std")]
+pub mod vcd;
+pub mod watched;

@@ -1,0 +1,179 @@
+//! The motion that the pulses of one channel make: its position from edge to edge, its speed from
+//! tick to tick or, where segments run the channel, from interval to interval.
+//!
+//! ```text
+//!            _______                     ______
+//! speed     | tick  |_______      _____|  1/i  |          of a tick its steps by its length,
+//!        ___|       | tick  |___ | dwell|      |___       of a step of a segment 1 by its interval;
+//! STEP      ' |  | |'   |   '    '     '|   |  |'         where neither is, nothing moves
+//! ```
+
+use stepscope_peripheral::{
+    config::Config,
+    segment::{FRACTION_BITS, Segment, SegmentList},
+    trace::{LoggedTick, PacketLog, Step},
+    wire::packet::Order,
+};
+
+/// What a run made of one channel.
+#[derive(Clone, Copy, Debug)]
+pub struct Pulses<'a> {
+    /// The channel, 0 to 15.
+    pub channel: u8,
+    /// All of its steps.
+    pub steps: &'a [Step],
+    /// With the ticks of its controller.
+    pub log: &'a PacketLog,
+    /// What it runs by itself, where segments run it; then there are no ticks.
+    pub segments: Option<&'a SegmentList>,
+    /// Of its controller.
+    pub config: &'a Config,
+}
+
+/// A stretch of time at one speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rate {
+    /// Its start in s.
+    pub from_s: f64,
+    /// Its end in s.
+    pub to_s: f64,
+    /// Steps/s, left negative.
+    pub speed: f64,
+}
+
+impl Pulses<'_> {
+    /// Cycles a second.
+    #[must_use]
+    pub fn hz(&self) -> f64 {
+        f64::from(self.config.clock_hz())
+    }
+
+    /// Cycle in which the motion's time 0 is: the start of the list of segments, or of the first tick; 0
+    /// where none began.
+    #[must_use]
+    pub fn zero(&self) -> u64 {
+        let first_tick = || self.log.ticks().first().map_or(0, |tick| tick.start.0);
+        self.segments.map_or_else(first_tick, |list| list.start.0)
+    }
+
+    /// Position after all steps up to a time, that time included.
+    #[must_use]
+    pub fn position_at(&self, time_s: f64) -> i32 {
+        let after = self.steps_until(time_s);
+        after.checked_sub(1).and_then(|last| self.steps.get(last)).map_or(0, |step| step.position)
+    }
+
+    /// How many steps have risen by a time.
+    pub(super) fn steps_until(&self, time_s: f64) -> usize {
+        let hz = self.hz();
+        self.steps.partition_point(|step| step.cycle as f64 / hz <= time_s)
+    }
+
+    /// Speed at a time in steps/s.
+    #[must_use]
+    pub fn speed_at(&self, time_s: f64) -> f64 {
+        let mut speed = 0.0;
+        // A stretch that begins now counts, one that ends now does not.
+        self.rates(time_s, time_s, &mut |rate| {
+            if rate.from_s <= time_s && time_s < rate.to_s {
+                speed = rate.speed;
+            }
+        });
+        speed
+    }
+
+    /// Every stretch of one speed that touches `from_s..=to_s`, in order; between them nothing moves.
+    pub fn rates(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Rate)) {
+        match self.segments {
+            Some(list) => self.intervals(list, from_s, to_s, each),
+            None => self.orders(from_s, to_s, each),
+        }
+    }
+
+    /// Of the ticks.
+    fn orders(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Rate)) {
+        let hz = self.hz();
+        let length = self.config.tick();
+        let start = |tick: &LoggedTick| tick.start.0 as f64 / hz;
+        // STOP ends a tick before its time.
+        let end = |tick: &LoggedTick| self.log.tick_end(tick, length).0 as f64 / hz;
+        let ticks = self.log.ticks();
+        let first = ticks.partition_point(|tick| end(tick) < from_s);
+        for tick in ticks.iter().skip(first).take_while(|tick| start(tick) <= to_s) {
+            let order = Order::parse(tick.orders.get(usize::from(self.channel)).copied().unwrap_or(0));
+            let speed = f64::from(order.steps) * hz / length.0 as f64;
+            let speed = if order.right { speed } else { 0.0 - speed };
+            each(Rate { from_s: start(tick), to_s: end(tick), speed });
+        }
+    }
+
+    /// Of the intervals of a list of segments: each ends with its step.
+    fn intervals(&self, list: &SegmentList, from_s: f64, to_s: f64, each: &mut dyn FnMut(Rate)) {
+        let (hz, one) = (self.hz(), (1_u64 << FRACTION_BITS) as f64);
+        let seconds = |next: i128| next as f64 / one / hz;
+        let mut next = i128::from(list.start.0) << FRACTION_BITS;
+        for segment in &list.segments {
+            if seconds(next) > to_s {
+                break;
+            }
+            match *segment {
+                Segment::Dwell(dwell) => next += i128::from(dwell),
+                Segment::Steps { count, interval, add, right } => {
+                    // A8's next after k steps of this segment.
+                    let start = next;
+                    let after = |k: u32| {
+                        let (k, add) = (i128::from(k), i128::from(add));
+                        start + k * i128::from(interval) + add * (k * (k - 1) / 2)
+                    };
+                    next = after(count);
+                    let first = first_not(count, |k| seconds(after(k + 1)) < from_s);
+                    for k in first..count {
+                        let (begin, end) = (after(k), after(k + 1));
+                        if seconds(begin) > to_s {
+                            break;
+                        }
+                        let speed = hz * one / (end - begin) as f64;
+                        let speed = if right { speed } else { -speed };
+                        each(Rate { from_s: seconds(begin), to_s: seconds(end), speed });
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The first of `0..count` of which `before` does not hold, or `count`; it holds up to there.
+fn first_not(count: u32, before: impl Fn(u32) -> bool) -> u32 {
+    let (mut from, mut to) = (0, count);
+    while from < to {
+        let middle = from + (to - from) / 2;
+        if before(middle) { from = middle + 1 } else { to = middle }
+    }
+    from
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stepscope_peripheral::{
+        config::{Bus, SerialLine},
+        signal::{Event, Sink},
+        units::Instant,
+    };
+
+    #[test]
+    fn a_tick_that_stop_ends_has_no_speed_afterwards() {
+        let config = Config::new(16_000_000, &Bus::default(), &SerialLine::default()).expect("the defaults hold");
+        let mut log = PacketLog::default();
+        let mut orders = [0; 16];
+        orders[0] = 0x80 | 10;
+        log.event(Instant(16_000), Event::TickStart { orders });
+        log.event(Instant(24_000), Event::Stopped);
+        let pulses = Pulses { channel: 0, steps: &[], log: &log, segments: None, config: &config };
+        let speed = 10.0 * 16e6 / config.tick().0 as f64;
+        assert_eq!(
+            [0.000_9, 0.001, 0.001_4, 0.001_5, 0.002].map(|at| pulses.speed_at(at)),
+            [0.0, speed, speed, 0.0, 0.0]
+        );
+    }
+}

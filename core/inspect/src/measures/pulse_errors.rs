@@ -1,0 +1,152 @@
+//! How far pulses are from where they should be, in time and in place.
+//!
+//! ```text
+//!                ideal instant    whole cycle        pulse
+//! time           |---step error---|----tick error----|
+//! place  s(t) =  k - 1/2          + what the ideal motion goes meanwhile
+//! ```
+//!
+//! A pulse is held against the step that goes the same way over the same place; of a motion that comes by more than
+//! once, against the nearest in time. So steps to and fro that cancel within a tick, or a pulse that was lost, do not
+//! move the others.
+
+use alloc::vec::Vec;
+use serde::Serialize;
+use stepscope_motion::AxisPlan;
+use stepscope_peripheral::trace::Step;
+
+/// Errors of pulses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct PulseErrors {
+    /// Pulses that count.
+    pub pulses: u64,
+    /// The time error of greatest magnitude in s; late is above 0.
+    pub largest_s: f64,
+    /// When that pulse comes, in s from the motion's start.
+    pub largest_at_s: f64,
+    /// Mean of the time errors in s.
+    pub mean_s: f64,
+    /// Root of their mean square in s.
+    pub rms_s: f64,
+    /// Largest position error in steps: how far the ideal motion goes within the time error.
+    pub largest_steps: f64,
+    /// Root of the mean square of those in steps.
+    pub rms_steps: f64,
+}
+
+/// Sums of errors.
+#[derive(Default)]
+struct Errors {
+    found: PulseErrors,
+    time: f64,
+    time_square: f64,
+    place_square: f64,
+}
+
+impl Errors {
+    /// Of a pulse that comes at `at_s`, so much late and so many steps off.
+    fn add(&mut self, at_s: f64, late_s: f64, steps: f64) {
+        self.found.pulses += 1;
+        self.time += late_s;
+        self.time_square += late_s * late_s;
+        self.place_square += steps * steps;
+        if libm::fabs(late_s) > libm::fabs(self.found.largest_s) {
+            (self.found.largest_s, self.found.largest_at_s) = (late_s, at_s);
+        }
+        if libm::fabs(steps) > libm::fabs(self.found.largest_steps) {
+            self.found.largest_steps = steps;
+        }
+    }
+
+    fn ended(self) -> PulseErrors {
+        // At least 1, so that no pulses have no errors.
+        let count = self.found.pulses.max(1) as f64;
+        PulseErrors {
+            mean_s: self.time / count,
+            rms_s: libm::sqrt(self.time_square / count),
+            rms_steps: libm::sqrt(self.place_square / count),
+            ..self.found
+        }
+    }
+}
+
+/// All steps at their whole cycles (B1), and how far these are from the ideal instants.
+pub(super) fn due_steps(plan: &AxisPlan, clock_hz: u32) -> (Vec<Step>, PulseErrors) {
+    let hz = f64::from(clock_hz);
+    let (mut errors, mut position) = (Errors::default(), 0);
+    let steps = plan
+        .due_instants(clock_hz)
+        .map(|(ideal, due)| {
+            let way = if due.right { 1 } else { -1 };
+            position += way;
+            let at_s = due.cycle as f64 / hz;
+            errors.add(at_s, (due.cycle as f64 - ideal) / hz, gone(plan, ideal / hz, at_s, hz));
+            Step { cycle: due.cycle, position }
+        })
+        .collect();
+    (steps, errors.ended())
+}
+
+/// How far the pulses are from the steps that were due, and how many have none.
+pub(super) fn placed(plan: &AxisPlan, due: &[Step], made: &[Step], hz: f64) -> (PulseErrors, u64) {
+    let runs = runs(due);
+    let (mut errors, mut stray) = (Errors::default(), 0);
+    for (index, pulse) in made.iter().enumerate() {
+        match nearest(&runs, due, pulse, Step::direction(made, index)) {
+            Some(step) => {
+                let (at_s, due_s) = (pulse.cycle as f64 / hz, step.cycle as f64 / hz);
+                errors.add(at_s, at_s - due_s, gone(plan, due_s, at_s, hz));
+            }
+            None => stray += 1,
+        }
+    }
+    (errors.ended(), stray)
+}
+
+/// How far the ideal motion goes from one time to another, in steps.
+///
+/// Both are taken a cycle earlier: a table's last step is due at its end, where its curve goes the last half of a
+/// step at once.
+fn gone(plan: &AxisPlan, from_s: f64, to_s: f64, hz: f64) -> f64 {
+    plan.position(to_s - 1.0 / hz) - plan.position(from_s - 1.0 / hz)
+}
+
+/// Steps one way, up to a turn.
+struct Run {
+    /// Index of its first step.
+    first: usize,
+    /// Cycle of that.
+    cycle: u64,
+    /// Its steps.
+    count: usize,
+    /// +1 right, -1 left.
+    way: i32,
+}
+
+/// Runs that are looked at on either side of a pulse's time.
+const BESIDE: usize = 3;
+
+fn runs(due: &[Step]) -> Vec<Run> {
+    let mut runs: Vec<Run> = Vec::new();
+    for (first, step) in due.iter().enumerate() {
+        let way = Step::direction(due, first);
+        match runs.last_mut() {
+            Some(run) if run.way == way => run.count += 1,
+            _ => runs.push(Run { first, cycle: step.cycle, count: 1, way }),
+        }
+    }
+    runs
+}
+
+/// The step that goes over the pulse's place, its way, nearest to its time; of equals the earlier.
+fn nearest<'d>(runs: &[Run], due: &'d [Step], pulse: &Step, way: i32) -> Option<&'d Step> {
+    let after = runs.partition_point(|run| run.cycle <= pulse.cycle);
+    let beside = runs.iter().skip(after.saturating_sub(BESIDE)).take(2 * BESIDE);
+    let steps = beside.filter(|run| run.way == way).filter_map(|run| {
+        let first = due.get(run.first)?;
+        let past = i64::from(pulse.position) - i64::from(first.position);
+        let index = usize::try_from(past * i64::from(way)).ok()?;
+        if index < run.count { due.get(run.first + index) } else { None }
+    });
+    steps.min_by_key(|step| step.cycle.abs_diff(pulse.cycle))
+}

@@ -1,0 +1,219 @@
+//! A monotone cubic between two points (DESIGN B6, points): where it is at a time, and when at a place.
+//!
+//! With the length h, the mean slope d and the slopes m0 and m1 at its ends, none of them against d and
+//! none above 2*d:
+//!
+//! ```text
+//!  y1 |        .-'    from its start   (m0 + (c2 + c3*x)*x)*x   c2 = (2*(d - m0) + (d - m1))/h
+//!     |     /                                                   c3 = ((m0 - d) + (m1 - d))/h^2
+//!  y0 | _.-'          from its end     the same with m0 and m1 exchanged
+//!     0         h     straight         m0 = m1 = d: c2 = c3 = 0, exactly
+//! ```
+//!
+//! Position and time are formed from the nearer end, where both are small, so a step beside a turn
+//! keeps its digits. Within the bound of 2*d the slope is 0 at an end alone, if anywhere: nowhere else
+//! does a place have an uncertain time.
+
+use crate::{profile::greater, square_root};
+
+/// Newton's steps after which a root has all its digits; at most eight do.
+const MAX_NEWTON_STEPS: u32 = 64;
+
+/// A cubic from one point to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Cubic {
+    /// Time of its start in s.
+    pub(super) from_s: f64,
+    /// Time of its end, later.
+    pub(super) to_s: f64,
+    /// Position at its start in steps.
+    pub(super) from: f64,
+    /// Position at its end.
+    pub(super) to: f64,
+    /// Speed at its start in steps/s.
+    pub(super) from_speed: f64,
+    /// Speed at its end.
+    pub(super) to_speed: f64,
+}
+
+/// The cubic as seen from one of its ends: x from there on, the way gone without sign.
+#[derive(Clone, Copy)]
+struct Seen {
+    near_speed: f64,
+    square: f64,
+    cube: f64,
+}
+
+impl Seen {
+    fn way(self, x: f64) -> f64 {
+        (self.near_speed + (self.square + self.cube * x) * x) * x
+    }
+
+    fn speed(self, x: f64) -> f64 {
+        self.near_speed + (2.0 * self.square + 3.0 * self.cube * x) * x
+    }
+
+    /// The x of 0..=`length` at which the way gone is `way`, from 0 to half of all.
+    fn time(self, way: f64, length: f64) -> f64 {
+        // Without the cube; exact for a straight line, and near enough for Newton in the nearer half.
+        let square = self.near_speed * self.near_speed + 4.0 * self.square * way;
+        let slope = self.near_speed + square_root(greater(0.0, square));
+        let mut x = if slope > 0.0 { 2.0 * way / slope } else { length };
+        let (mut low, mut high) = (0.0, length);
+        for _ in 0..MAX_NEWTON_STEPS {
+            if x > high {
+                x = (low + high) / 2.0;
+            }
+            let missing = way - self.way(x);
+            if missing >= 0.0 {
+                low = x
+            } else {
+                high = x
+            }
+            let correction = missing / self.speed(x);
+            let next = x + correction;
+            // Also where there is no slope to divide by.
+            let next = if next >= low && next <= high { next } else { (low + high) / 2.0 };
+            let done = libm::fabs(next - x) <= x * f64::EPSILON;
+            x = next;
+            if done {
+                break;
+            }
+        }
+        x
+    }
+}
+
+impl Cubic {
+    fn length_s(&self) -> f64 {
+        self.to_s - self.from_s
+    }
+
+    fn mean_speed(&self) -> f64 {
+        (self.to - self.from) / self.length_s()
+    }
+
+    fn seen(&self, near_speed: f64, far_speed: f64) -> Seen {
+        let (mean, length) = (self.mean_speed(), self.length_s());
+        Seen {
+            near_speed,
+            square: (2.0 * (mean - near_speed) + (mean - far_speed)) / length,
+            cube: ((near_speed - mean) + (far_speed - mean)) / (length * length),
+        }
+    }
+
+    fn seen_from_start(&self) -> Seen {
+        self.seen(self.from_speed, self.to_speed)
+    }
+
+    fn seen_from_end(&self) -> Seen {
+        self.seen(self.to_speed, self.from_speed)
+    }
+
+    /// Position at `t`, within the cubic.
+    pub(super) fn position(&self, t: f64) -> f64 {
+        let (since, until) = (t - self.from_s, self.to_s - t);
+        if since <= until {
+            self.from + self.seen_from_start().way(greater(0.0, since))
+        } else {
+            self.to - self.seen_from_end().way(greater(0.0, until))
+        }
+    }
+
+    /// Speed at `t`.
+    pub(super) fn speed(&self, t: f64) -> f64 {
+        let (since, until) = (t - self.from_s, self.to_s - t);
+        if since <= until {
+            self.seen_from_start().speed(greater(0.0, since))
+        } else {
+            self.seen_from_end().speed(greater(0.0, until))
+        }
+    }
+
+    /// Acceleration at `t`.
+    pub(super) fn acceleration(&self, t: f64) -> f64 {
+        let seen = self.seen_from_start();
+        2.0 * seen.square + 6.0 * seen.cube * (t - self.from_s)
+    }
+
+    /// Acceleration's rate, the same everywhere in it.
+    pub(super) fn jerk(&self) -> f64 {
+        6.0 * self.seen_from_start().cube
+    }
+
+    /// When the speed is greatest or least within it, if that is at neither end.
+    pub(super) fn turn_s(&self) -> Option<f64> {
+        let seen = self.seen_from_start();
+        let turn_s = self.from_s - seen.square / (3.0 * seen.cube);
+        (turn_s > self.from_s && turn_s < self.to_s).then_some(turn_s)
+    }
+
+    /// When it is at `place`, which lies within it, in s.
+    pub(super) fn time_s(&self, place: f64) -> f64 {
+        let way = self.to - self.from;
+        let (behind, ahead) = (place - self.from, self.to - place);
+        // Turned so that the way goes to the right.
+        let right = |seen: Seen| {
+            let sign = if way < 0.0 { -1.0 } else { 1.0 };
+            Seen { near_speed: sign * seen.near_speed, square: sign * seen.square, cube: sign * seen.cube }
+        };
+        if libm::fabs(behind) <= libm::fabs(ahead) {
+            self.from_s + right(self.seen_from_start()).time(libm::fabs(behind), self.length_s())
+        } else {
+            self.to_s - right(self.seen_from_end()).time(libm::fabs(ahead), self.length_s())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_has_the_time_at_which_the_cubic_is_there() {
+        // Slopes in parts of the mean one, from 0 to 2.
+        let parts = [0.0, 1e-12, 0.3, 1.0, 1.7, 2.0];
+        for (from, to) in [(0.0, 1000.0), (7.25, 7.5), (-3.0, -1e9), (1e9, -1e9)] {
+            for (first, last) in parts.iter().flat_map(|first| parts.map(|last| (*first, last))) {
+                let mean = (to - from) / 0.5;
+                let (from_s, to_s) = (86_000.0, 86_000.5);
+                let (from_speed, to_speed) = (first * mean, last * mean);
+                let cubic = Cubic { from_s, to_s, from, to, from_speed, to_speed };
+                assert_eq!((cubic.time_s(from), cubic.time_s(to)), (from_s, to_s));
+                let mut before = from_s;
+                for part in [1e-15, 1e-9, 1e-3, 0.2, 0.49, 0.5, 0.51, 0.9, 0.999, 1.0 - 1e-9] {
+                    let place = from + (to - from) * part;
+                    let t = cubic.time_s(place);
+                    assert!(t >= before && t <= to_s, "{from} {to} {first} {last} {part}: {t}");
+                    // The time has 1.5e-11 s as its last digit there.
+                    let off = libm::fabs(cubic.position(t) - place);
+                    let digit = (libm::fabs(mean) + 1.0) * 4e-11 + 4e-16 * libm::fabs(place);
+                    assert!(off <= digit, "{from} {to} {first} {last} {part}: {off} {digit}");
+                    before = t;
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn beside_a_turn_the_time_keeps_its_digits() {
+        // y = 3*x^2 - 2*x^3 from its bottom: half a step of a billion is at sqrt(0.5/3e9) and a little.
+        let cubic = Cubic { from_s: 0.0, to_s: 1.0, from: 0.0, to: 1e9, from_speed: 0.0, to_speed: 0.0 };
+        let root = libm::sqrt(0.5 / 3e9);
+        let expected = root * (1.0 + root / 3.0 + 5.0 / 18.0 * root * root);
+        let found = cubic.time_s(0.5);
+        assert!((found / expected - 1.0).abs() < 1e-14, "{found} {expected}");
+        // And from its top down.
+        let falls = Cubic { from: 1e9, to: 0.0, ..cubic };
+        assert!((1.0 - falls.time_s(0.5) - expected).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_straight_line_has_no_curvature_at_all() {
+        let speed = 0.1 / 0.3;
+        let line = Cubic { from_s: 0.1, to_s: 0.4, from: 0.2, to: 0.3, from_speed: speed, to_speed: speed };
+        let mean = line.mean_speed();
+        let line = Cubic { from_speed: mean, to_speed: mean, ..line };
+        assert_eq!((line.acceleration(0.2), line.jerk(), line.turn_s()), (0.0, 0.0, None));
+    }
+}

@@ -1,0 +1,346 @@
+//! Jerk-limited move from rest to rest in seven phases (DESIGN B6): the fastest that keeps under a
+//! speed V, an acceleration A and a jerk J.
+//!
+//! ```text
+//!  jerk    |--.   .--.        .--.  .--   +J  0  -J  0  -J  0  +J
+//!          |  '-'-|  |--------|  '--'
+//!  accel.  | .---.
+//!          |/     \__________          t_j  time of a jerk phase         J*t_j is at most A
+//!          |                 \     /   t_a  constant acceleration, or 0
+//!          |                  '---'    t_v  plateau, or 0
+//!  speed   |     .----------.          v  = J*t_j*(t_j + t_a)            at most V
+//!          |   /              \        t_r = 2*t_j + t_a                 time of a ramp
+//!          | .'                '.      s_r = v*t_r/2                     steps of a ramp
+//!            t_j t_a t_j t_v t_j t_a t_j
+//! ```
+//!
+//! | what the distance n allows | v | t_j |
+//! | --- | --- | --- |
+//! | the speed, and on the way to it the acceleration | V | A/J |
+//! | the speed, below A: no constant acceleration | V | sqrt(V/J) |
+//! | the acceleration, below V: no plateau | from v*(v/A + A/J) = n | A/J |
+//! | neither: jerk phases alone | J*t_j^2 | cbrt(n/(2*J)) |
+//!
+//! The first ramp is s = J*t^3/6, then s1 + v1*x + a*x^2/2, then s_r - (v*u - J*u^3/6) with the time u
+//! that is left of the ramp; the second half mirrors the first. A step's time is the root of its
+//! phase's own polynomial, from the end at which it is small: a cube root, a quadratic in the form
+//! that does not cancel, and Newton's method, which for the last only comes from one side.
+
+use crate::{
+    Curve, Peaks,
+    mirrored::Mirrored,
+    profile::greater,
+    square_root,
+    words::{grouped, in_words},
+};
+use alloc::{format, string::String, vec::Vec};
+
+/// Newton's steps after which a root has all its digits; at most six do.
+const MAX_NEWTON_STEPS: u32 = 12;
+
+/// Limits of a move, each above 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// In steps/s.
+    pub speed: f64,
+    /// In steps/s^2.
+    pub acceleration: f64,
+    /// In steps/s^3.
+    pub jerk: f64,
+}
+
+/// A jerk-limited move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JerkLimited {
+    halves: Mirrored,
+    jerk: f64,
+    /// t_j.
+    jerk_s: f64,
+    /// t_a.
+    steady_s: f64,
+    /// v, the highest speed that is reached.
+    peak_speed: f64,
+    /// t_r.
+    ramp_s: f64,
+    /// s_r, at most half of all steps.
+    ramp_steps: f64,
+}
+
+impl JerkLimited {
+    /// `steps` (left negative, not 0) from rest to rest.
+    #[must_use]
+    pub fn new(steps: i64, limits: Limits) -> Self {
+        let all = steps.unsigned_abs() as f64;
+        let Limits { speed, acceleration, jerk } = limits;
+        // To the top speed: with a phase of constant acceleration, where that is reached before.
+        let full_jerk_s = acceleration / jerk;
+        let (jerk_s, steady_s) = if speed > acceleration * full_jerk_s {
+            (full_jerk_s, greater(0.0, speed / acceleration - full_jerk_s))
+        } else {
+            (square_root(speed / jerk), 0.0)
+        };
+        let ramp_s = 2.0 * jerk_s + steady_s;
+        let ramp_steps = speed * ramp_s / 2.0;
+        if 2.0 * ramp_steps <= all {
+            let halves = Mirrored { steps, duration_s: all / speed + ramp_s };
+            return Self { halves, jerk, jerk_s, steady_s, peak_speed: speed, ramp_s, ramp_steps };
+        }
+        // No plateau: the two ramps are the whole way.
+        let (jerk_s, steady_s, peak_speed) = if all > 2.0 * acceleration * full_jerk_s * full_jerk_s {
+            // v*(v/A + t_j) = n, solved without a difference.
+            let root = square_root(full_jerk_s * full_jerk_s + 4.0 * all / acceleration);
+            let peak_speed = 2.0 * all / (full_jerk_s + root);
+            (full_jerk_s, greater(0.0, peak_speed / acceleration - full_jerk_s), peak_speed)
+        } else {
+            let jerk_s = libm::cbrt(all / (2.0 * jerk));
+            (jerk_s, 0.0, jerk * jerk_s * jerk_s)
+        };
+        let ramp_s = 2.0 * jerk_s + steady_s;
+        let halves = Mirrored { steps, duration_s: 2.0 * ramp_s };
+        Self { halves, jerk, jerk_s, steady_s, peak_speed, ramp_s, ramp_steps: all / 2.0 }
+    }
+
+    /// Highest speed that is reached, in steps/s.
+    #[must_use]
+    pub fn peak_speed(&self) -> f64 {
+        self.peak_speed
+    }
+
+    /// Times of the first four phases in s: jerk, constant acceleration, jerk, plateau. The other
+    /// three are the first three backwards.
+    #[must_use]
+    pub fn phases_s(&self) -> [f64; 4] {
+        let plateau_s = greater(0.0, self.halves.duration_s - 2.0 * self.ramp_s);
+        [self.jerk_s, self.steady_s, self.jerk_s, plateau_s]
+    }
+
+    /// J*t_j, the greatest acceleration that is reached.
+    fn peak_acceleration(&self) -> f64 {
+        self.jerk * self.jerk_s
+    }
+
+    /// Ends of the first three phases in s; the third is t_r.
+    pub(super) fn joints_s(&self) -> [f64; 3] {
+        [self.jerk_s, self.jerk_s + self.steady_s, self.ramp_s]
+    }
+
+    /// Steps of the first phase.
+    fn first_steps(&self) -> f64 {
+        self.jerk * self.jerk_s * self.jerk_s * self.jerk_s / 6.0
+    }
+
+    /// Speed at the end of the first phase.
+    fn first_speed(&self) -> f64 {
+        self.jerk * self.jerk_s * self.jerk_s / 2.0
+    }
+
+    /// s(t) of the first half, in steps without sign.
+    fn first_half(&self, t: f64) -> f64 {
+        let [rising, steady, ramp] = self.joints_s();
+        if t < rising {
+            self.jerk * t * t * t / 6.0
+        } else if t < steady {
+            let x = t - rising;
+            self.first_steps() + (self.first_speed() + self.peak_acceleration() * x / 2.0) * x
+        } else if t < ramp {
+            let left_s = ramp - t;
+            self.ramp_steps - self.way_left(left_s)
+        } else {
+            self.ramp_steps + self.peak_speed * (t - ramp)
+        }
+    }
+
+    /// Steps of the third phase from `left_s` before its end on.
+    fn way_left(&self, left_s: f64) -> f64 {
+        (self.peak_speed - self.jerk * left_s * left_s / 6.0) * left_s
+    }
+
+    /// When the curve is at `place`, in s; `place` in steps without sign, 0 to all.
+    pub(super) fn time_s(&self, place: f64) -> f64 {
+        self.halves.time_s(place, |place| self.climb_s(place))
+    }
+
+    /// When the first half is at `place`.
+    fn climb_s(&self, place: f64) -> f64 {
+        let past_first = place - self.first_steps();
+        if past_first <= 0.0 {
+            return libm::cbrt(6.0 * place / self.jerk);
+        }
+        let left = self.ramp_steps - place;
+        if left <= 0.0 {
+            return self.ramp_s - left / self.peak_speed;
+        }
+        if left > self.way_left(self.jerk_s) {
+            let (speed, acceleration) = (self.first_speed(), self.peak_acceleration());
+            let root = square_root(speed * speed + 2.0 * acceleration * past_first);
+            return self.jerk_s + 2.0 * past_first / (speed + root);
+        }
+        // v*u - J*u^3/6 rises and is concave up to t_j, and its slope stays above v/2: from below,
+        // each of Newton's steps comes nearer and none passes the root.
+        let mut u = left / self.peak_speed;
+        for _ in 0..MAX_NEWTON_STEPS {
+            let slope = self.peak_speed - self.jerk * u * u / 2.0;
+            let correction = (left - self.way_left(u)) / slope;
+            u += correction;
+            if correction <= u * f64::EPSILON {
+                break;
+            }
+        }
+        self.ramp_s - u
+    }
+}
+
+impl Curve for JerkLimited {
+    fn duration_s(&self) -> f64 {
+        self.halves.duration_s
+    }
+
+    fn steps(&self) -> i64 {
+        self.halves.steps
+    }
+
+    fn position(&self, t: f64) -> f64 {
+        self.halves.position(t, |t| self.first_half(t))
+    }
+
+    fn speed(&self, t: f64) -> f64 {
+        let t = self.halves.nearer_end(t);
+        let [rising, steady, ramp] = self.joints_s();
+        self.halves.signed(if t < rising {
+            self.jerk * t * t / 2.0
+        } else if t < steady {
+            self.first_speed() + self.peak_acceleration() * (t - rising)
+        } else if t < ramp {
+            self.peak_speed - self.jerk * (ramp - t) * (ramp - t) / 2.0
+        } else {
+            self.peak_speed
+        })
+    }
+
+    fn acceleration(&self, t: f64) -> f64 {
+        let near = self.halves.nearer_end(t);
+        let [rising, steady, ramp] = self.joints_s();
+        let magnitude = if near < rising {
+            self.jerk * near
+        } else if near < steady {
+            self.peak_acceleration()
+        } else if near < ramp {
+            self.jerk * (ramp - near)
+        } else {
+            0.0
+        };
+        self.halves.acceleration(t, magnitude)
+    }
+
+    fn peaks(&self) -> Peaks {
+        let acceleration = self.peak_acceleration();
+        Peaks { speed: self.peak_speed, acceleration, jump: 0.0, jerk: self.jerk, acceleration_jump: 0.0 }
+    }
+
+    fn detail(&self, _: f64) -> String {
+        let phases: Vec<String> = self.phases_s().iter().map(|phase_s| format!("{phase_s:.4}")).collect();
+        format!(
+            "{}, {} steps/s\u{b3}; phases of {} s and back",
+            in_words(self.peaks()),
+            grouped(self.jerk),
+            phases.join(", ")
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn curve(steps: i64, speed: f64, acceleration: f64, jerk: f64) -> JerkLimited {
+        JerkLimited::new(steps, Limits { speed, acceleration, jerk })
+    }
+
+    /// One of each row of the module's table, the borders between them, and their mirror images.
+    const MOVES: [(i64, f64, f64, f64); 9] = [
+        (10_000, 4000.0, 20_000.0, 400_000.0),
+        (10_000, 1000.0, 20_000.0, 100_000.0),
+        (600, 4000.0, 20_000.0, 400_000.0),
+        (50, 4000.0, 20_000.0, 400_000.0),
+        (1000, 4000.0, 20_000.0, 400_000.0),
+        (100, 4000.0, 20_000.0, 400_000.0),
+        (-10_000, 1000.0, 10_000.0, 100_000.0),
+        (1, 1e7, 1e13, 1e-6),
+        (-1_000_000_000, 1e7, 1e-6, 1e19),
+    ];
+
+    #[test]
+    fn each_row_of_the_table_has_its_phases() {
+        // Phases in s, peak speed.
+        let rows = [
+            ([0.05, 0.15, 0.05, 2.25], 4000.0),
+            ([0.1, 0.0, 0.1, 9.8], 1000.0),
+            ([0.05, 0.100_000_0, 0.05, 0.0], 3000.0),
+            ([0.039_685_0, 0.0, 0.039_685_0, 0.0], 629.960_52),
+            ([0.05, 0.15, 0.05, 0.0], 4000.0),
+            ([0.05, 0.0, 0.05, 0.0], 1000.0),
+            ([0.1, 0.0, 0.1, 9.8], 1000.0),
+        ];
+        for ((steps, speed, acceleration, jerk), (phases_s, peak)) in MOVES.into_iter().zip(rows) {
+            let made = curve(steps, speed, acceleration, jerk);
+            for (found, expected) in made.phases_s().into_iter().zip(phases_s) {
+                assert!((found - expected).abs() < 1e-7, "{steps}: {found} {expected}");
+            }
+            assert!((made.peak_speed() - peak).abs() < 1e-4, "{steps}: {}", made.peak_speed());
+            assert_eq!(made.position(made.duration_s()), steps as f64);
+        }
+    }
+
+    #[test]
+    fn no_limit_is_passed_and_one_is_reached_at_every_time() {
+        for (steps, speed, acceleration, jerk) in MOVES {
+            let made = curve(steps, speed, acceleration, jerk);
+            let (peaks, most) = (made.peaks(), 1.0 + 1e-12);
+            assert!(peaks.speed <= speed * most && peaks.acceleration <= acceleration * most, "{steps}");
+            assert_eq!(peaks.jerk, jerk);
+            // In no phase is there room under all three limits.
+            let [rising, steady, _] = made.joints_s();
+            assert!(steady <= rising || (peaks.acceleration / acceleration - 1.0).abs() < 1e-12, "{steps}");
+            assert!(made.phases_s()[3] <= 0.0 || peaks.speed == speed, "{steps}");
+        }
+    }
+
+    #[test]
+    fn position_is_the_integral_of_speed_and_speed_of_acceleration() {
+        for (steps, speed, acceleration, jerk) in MOVES.into_iter().take(7) {
+            let made = curve(steps, speed, acceleration, jerk);
+            let (slots, end) = (40_000, made.duration_s());
+            let dt = end / f64::from(slots);
+            let (mut at, mut rate) = (0.0, 0.0);
+            for slot in 0..slots {
+                let middle = (f64::from(slot) + 0.5) * dt;
+                at += made.speed(middle) * dt;
+                rate += made.acceleration(middle) * dt;
+                let t = f64::from(slot + 1) * dt;
+                assert!((at - made.position(t)).abs() < 1e-4 * (1.0 + at.abs()), "{steps} at {t}");
+                assert!((rate - made.speed(t)).abs() < 1e-2 * made.peak_speed(), "{steps} at {t}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_curve_is_at_each_place_at_its_time() {
+        for (steps, speed, acceleration, jerk) in MOVES {
+            let made = curve(steps, speed, acceleration, jerk);
+            let count = steps.unsigned_abs() as f64;
+            let mut before = (0.0, 0.0);
+            for i in 0..=4000 {
+                let place = if i < 100 { 0.5 + f64::from(i) } else { count * f64::from(i) / 4000.0 };
+                if place > count {
+                    continue;
+                }
+                let t = made.time_s(place);
+                let off = (made.position(t).abs() - place).abs();
+                // Of the position its digits, and of the time what the speed makes of its digits.
+                assert!(off <= 4e-15 * (count + made.peak_speed() * t), "{place} of {steps}: {off} off");
+                assert!(place < before.0 || t >= before.1, "{place} of {steps}");
+                before = (place, t);
+            }
+        }
+    }
+}

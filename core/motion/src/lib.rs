@@ -1,0 +1,146 @@
+//! Motions: what an axis is asked to do, as position, speed and acceleration over time (DESIGN
+//! Part B), and the ticks, segments and tables that its steps become ([`quantise`]).
+//!
+//! [`plan_lists`] turns axes into an [`AxisPlan`] each: moves one after another, each a
+//! [`Profile`]. One file a family:
+//!
+//! ```text
+//! trapezoid        B2, exact:  / uniform \   every step where the curve crosses its half-integer
+//! trapezoid_table  B2, table:  / staircase \ whole pulse rates and a timer's whole reloads
+//! staircase        B3          _-_           rates that are each held for some steps
+//! cosine           B4, exact:  ( S-curve )   so many steps in so much time
+//! sliced           B4, sliced: ( _-^-_ )     the same in slices of whole steps, as the document runs it
+//! ramps            B4          ( _/ \\_ )  the same with ramps of another shape (`ramp`)
+//! sine_segments    B5          \/\/          a sine as segments of fixed rate
+//! sine             B6          ~~            a sine with every step in its place
+//! jerk_limited     B6          ( 7 phases )  rest to rest under limits of speed, acceleration and jerk
+//! points           B6          . ' .         a curve through points, straight or smooth
+//! steady           B6          ---           constant rate, dwell
+//! ```
+//!
+//! Positions are in steps, f64, and not rounded: [`round_half_up`] is the one rounding (B1's R),
+//! and `quantise` is where it decides. All mathematics that is more than + - * / and the square root
+//! comes from `libm`, so a plan has the same bits on every target.
+#![cfg_attr(not(any(test, feature = "std")), no_std)]
+
+extern crate alloc;
+
+pub mod problem;
+
+mod parameters;
+
+pub mod mechanics;
+
+pub mod motor;
+
+pub mod moves;
+
+pub mod acceleration_table;
+mod axis;
+pub mod cosine;
+mod due;
+pub mod excitation;
+mod hermite;
+pub mod jerk_limited;
+mod joints;
+mod mirrored;
+mod plan;
+pub mod points;
+pub mod polyline;
+mod profile;
+pub mod quantise;
+mod quantities;
+pub mod ramp;
+pub mod ramps;
+pub mod sine;
+pub mod sine_segments;
+pub mod sliced;
+pub mod staircase;
+pub mod staircase_table;
+pub mod steady;
+mod step_times;
+mod stepped;
+mod swing;
+pub mod trapezoid;
+pub mod trapezoid_table;
+mod words;
+
+pub use axis::{AxisPlan, PlannedMove};
+pub use due::ScheduledStep;
+pub use joints::{Joints, Piece};
+pub use plan::{plan_axis, plan_lists};
+pub use problem::{Cause, Problem, Validator, ValueError};
+pub use profile::{Curve, Peaks, Profile};
+pub use step_times::StepTimes;
+pub use words::grouped;
+
+/// Highest speed that a plan may have, in steps/s.
+pub const MAX_SPEED: f64 = 1e7;
+
+/// B1's R(x) = floor(x + 1/2), exact: the sum is not formed, so 0.49999999999999994 gives 0.
+///
+/// Beyond the range of i64 it gives the end of that range, for not-a-number 0.
+#[must_use]
+pub fn round_half_up(x: f64) -> i64 {
+    // Truncation instead of `libm::floor`: the same result, and quick on every target. Both
+    // differences are exact, because |x - truncated| < 1.
+    let truncated = x as i64;
+    let rest = x - truncated as f64;
+    if rest >= 0.5 {
+        truncated.saturating_add(1)
+    } else if rest < -0.5 {
+        truncated.saturating_sub(1)
+    } else {
+        truncated
+    }
+}
+
+/// The square root. IEEE 754 leaves it no choice of bits, so every target may take its own:
+/// wasm has an instruction for it, and `libm` there has ten times its time.
+#[inline]
+fn square_root(x: f64) -> f64 {
+    #[cfg(feature = "std")]
+    let root = x.sqrt();
+    #[cfg(not(feature = "std"))]
+    let root = libm::sqrt(x);
+    root
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{round_half_up, square_root};
+
+    #[test]
+    fn the_square_root_has_the_bits_that_libm_gives_it() {
+        let grid = (0..100_000_u64).map(|i| f64::from_bits(i.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 1));
+        for x in grid.chain([0.0, -0.0, 1e-320, 2.0, -1.0, f64::MAX, f64::INFINITY]) {
+            let (found, expected) = (square_root(x), libm::sqrt(x));
+            assert!(found.to_bits() == expected.to_bits() || (found.is_nan() && expected.is_nan()), "{x}");
+        }
+    }
+
+    #[test]
+    fn halves_are_rounded_up_and_nothing_else_is() {
+        let below_half = 0.499_999_999_999_999_94;
+        let rows = [
+            (0.0, 0),
+            (0.5, 1),
+            (below_half, 0),
+            (-0.5, 0),
+            (-0.500_000_000_000_000_1, -1),
+            (-below_half, 0),
+            (1.5, 2),
+            (-1.5, -1),
+            (2.4, 2),
+            (-2.6, -3),
+            (4_503_599_627_370_497.5, 4_503_599_627_370_498),
+            (1e300, i64::MAX),
+            (-1e300, i64::MIN),
+            (f64::INFINITY, i64::MAX),
+            (f64::NAN, 0),
+        ];
+        for (given, expected) in rows {
+            assert_eq!(round_half_up(given), expected, "{given}");
+        }
+    }
+}

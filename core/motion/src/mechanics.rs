@@ -1,0 +1,218 @@
+//! Lengths, speeds, accelerations and jerks with their units, and the mechanics that turn them into steps
+//! (DESIGN B1).
+//!
+//! `{"mm": 250}` and `{"steps": 6400}` are both distances. Millimetres and degrees need mechanics
+//! that have them; where an axis has none, the quantity is refused with the remedy.
+
+use crate::parameters::parameters;
+use core::f64::consts::PI;
+
+/// What one step is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mechanics {
+    /// A turning shaft: degrees.
+    Rotary(Rotary),
+    /// A wheel, pulley or gear: 2*pi*radius mm a turn, and degrees.
+    Wheel(Wheel),
+    /// A screw: its lead in mm a turn, and degrees.
+    Screw(Screw),
+    /// A measured or given length of one step: mm.
+    Direct(Direct),
+}
+
+impl Default for Mechanics {
+    fn default() -> Self {
+        Self::Rotary(Rotary::default())
+    }
+}
+
+parameters! {
+    /// A turning shaft.
+    pub struct Rotary {
+        /// Full step of the motor in degrees.
+        pub full_step_deg: f64 = 1.8,
+        /// Microsteps in a full step, 1 to 512.
+        pub microsteps: u16 = 16,
+    }
+}
+
+parameters! {
+    /// A wheel, pulley or gear on the shaft.
+    pub struct Wheel {
+        /// Full step of the motor in degrees.
+        pub full_step_deg: f64 = 1.8,
+        /// Microsteps in a full step, 1 to 512.
+        pub microsteps: u16 = 16,
+        /// Radius in mm.
+        pub radius_mm: f64 = 10.0,
+    }
+}
+
+parameters! {
+    /// A screw on the shaft.
+    pub struct Screw {
+        /// Full step of the motor in degrees.
+        pub full_step_deg: f64 = 1.8,
+        /// Microsteps in a full step, 1 to 512.
+        pub microsteps: u16 = 16,
+        /// Way of the nut in one turn, in mm.
+        pub lead_mm: f64 = 8.0,
+    }
+}
+
+parameters! {
+    /// A given length of one step.
+    pub struct Direct {
+        /// Length of one step in mm.
+        pub step_mm: f64 = 0.01,
+    }
+}
+
+impl Mechanics {
+    /// Full step of the motor in degrees, where the mechanics have one.
+    #[must_use]
+    pub fn full_step_deg(&self) -> Option<f64> {
+        match self {
+            Self::Rotary(m) => Some(m.full_step_deg),
+            Self::Wheel(m) => Some(m.full_step_deg),
+            Self::Screw(m) => Some(m.full_step_deg),
+            Self::Direct(_) => None,
+        }
+    }
+
+    /// Angle of one step in degrees, where the mechanics have one.
+    #[must_use]
+    pub fn step_deg(&self) -> Option<f64> {
+        match self {
+            Self::Rotary(m) => Some(m.full_step_deg / f64::from(m.microsteps)),
+            Self::Wheel(m) => Some(m.full_step_deg / f64::from(m.microsteps)),
+            Self::Screw(m) => Some(m.full_step_deg / f64::from(m.microsteps)),
+            Self::Direct(_) => None,
+        }
+    }
+
+    /// Length of one step in mm, where the mechanics have one.
+    #[must_use]
+    pub fn step_mm(&self) -> Option<f64> {
+        match self {
+            Self::Rotary(_) => None,
+            Self::Wheel(m) => self.step_deg().map(|deg| 2.0 * PI * m.radius_mm * deg / 360.0),
+            Self::Screw(m) => self.step_deg().map(|deg| m.lead_mm * deg / 360.0),
+            Self::Direct(m) => Some(m.step_mm),
+        }
+    }
+
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Rotary(_) => "rotary",
+            Self::Wheel(_) => "wheel",
+            Self::Screw(_) => "screw",
+            Self::Direct(_) => "direct",
+        }
+    }
+}
+
+/// A quantity whose unit the axis's mechanics do not have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NoSuchUnit {
+    /// The unit that was given.
+    pub unit: &'static str,
+    /// The kind of the axis's mechanics.
+    pub mechanics: &'static str,
+}
+
+macro_rules! quantity {
+    ($(#[$meta:meta])* $name:ident, $($(#[$variant_meta:meta])* $variant:ident = $key:literal per $factor:expr;)*) => {
+        $(#[$meta])*
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum $name {
+            $($(#[$variant_meta])* $variant(f64),)*
+        }
+
+        impl $name {
+            /// The number as given, in its own unit.
+            #[must_use]
+            pub const fn value(&self) -> f64 {
+                match self {
+                    $(Self::$variant(value) => *value,)*
+                }
+            }
+
+            /// The unit as JSON names it.
+            #[must_use]
+            pub const fn unit(&self) -> &'static str {
+                match self {
+                    $(Self::$variant(_) => $key,)*
+                }
+            }
+
+            /// One step (a second, a second squared or cubed) in this quantity's unit.
+            ///
+            /// # Errors
+            /// [`NoSuchUnit`] where the mechanics have no millimetres or no degrees.
+            pub fn step(&self, mechanics: &Mechanics) -> Result<f64, NoSuchUnit> {
+                let step: Option<f64> = match self {
+                    $(Self::$variant(_) => {
+                        let of: fn(&Mechanics) -> Option<f64> = $factor;
+                        of(mechanics)
+                    })*
+                };
+                step.ok_or(NoSuchUnit { unit: self.unit(), mechanics: mechanics.name() })
+            }
+
+            /// The quantity in steps (a second, a second squared or cubed), not rounded.
+            ///
+            /// # Errors
+            /// [`NoSuchUnit`] where the mechanics have no millimetres or no degrees.
+            pub fn in_steps(&self, mechanics: &Mechanics) -> Result<f64, NoSuchUnit> {
+                self.step(mechanics).map(|step| self.value() / step)
+            }
+        }
+    };
+}
+
+quantity! {
+    /// A way along an axis.
+    Distance,
+    /// In steps.
+    Steps = "steps" per |_| Some(1.0);
+    /// In millimetres.
+    Millimetres = "mm" per Mechanics::step_mm;
+    /// In degrees.
+    Degrees = "deg" per Mechanics::step_deg;
+}
+
+quantity! {
+    /// A speed along an axis.
+    Speed,
+    /// In steps a second (the documents' Hz or pps).
+    StepsPerSecond = "steps_s" per |_| Some(1.0);
+    /// In millimetres a second.
+    MillimetresPerSecond = "mm_s" per Mechanics::step_mm;
+    /// In degrees a second.
+    DegreesPerSecond = "deg_s" per Mechanics::step_deg;
+    /// In turns a minute.
+    TurnsPerMinute = "rpm" per |mechanics| mechanics.step_deg().map(|deg| deg / 6.0);
+}
+
+quantity! {
+    /// An acceleration along an axis.
+    Acceleration,
+    /// In steps a second squared.
+    StepsPerSecond2 = "steps_s2" per |_| Some(1.0);
+    /// In millimetres a second squared.
+    MillimetresPerSecond2 = "mm_s2" per Mechanics::step_mm;
+    /// In degrees a second squared.
+    DegreesPerSecond2 = "deg_s2" per Mechanics::step_deg;
+}
+
+quantity! {
+    /// A jerk along an axis: the change of an acceleration in a second.
+    Jerk,
+    /// In steps a second cubed.
+    StepsPerSecond3 = "steps_s3" per |_| Some(1.0);
+    /// In millimetres a second cubed.
+    MillimetresPerSecond3 = "mm_s3" per Mechanics::step_mm;
+    /// In degrees a second cubed.
+    DegreesPerSecond3 = "deg_s3" per Mechanics::step_deg;
+}

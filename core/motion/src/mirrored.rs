@@ -1,0 +1,62 @@
+//! Moves whose second half mirrors their first (DESIGN B2, B4).
+//!
+//! ```text
+//! n   |        .-'      s(t) = first half(t)           up to T/2
+//! n/2 |      /                = n - first half(T - t)  from there on
+//!     | _.-'
+//!     +-----------      so the end is exactly n, and speed and acceleration need one half alone
+//!       T/2      T
+//! ```
+
+use crate::profile::greater;
+
+/// What the two halves of such a move share.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Mirrored {
+    /// Left negative.
+    pub(super) steps: i64,
+    pub(super) duration_s: f64,
+}
+
+impl Mirrored {
+    /// Steps without sign.
+    pub(super) fn count(&self) -> f64 {
+        self.steps.unsigned_abs() as f64
+    }
+
+    /// A magnitude with the sign of the way.
+    pub(super) fn signed(&self, magnitude: f64) -> f64 {
+        if self.steps < 0 { -magnitude } else { magnitude }
+    }
+
+    /// Whether `t` is in the first half; the middle is.
+    fn is_first_half(&self, t: f64) -> bool {
+        t <= self.duration_s / 2.0
+    }
+
+    /// Time from the nearer end, 0 at both and outside.
+    pub(super) fn nearer_end(&self, t: f64) -> f64 {
+        greater(0.0, if self.is_first_half(t) { t } else { self.duration_s - t })
+    }
+
+    /// s(t), of s in the first half in steps without sign.
+    pub(super) fn position(&self, t: f64, first_half: impl Fn(f64) -> f64) -> f64 {
+        let travelled = first_half(self.nearer_end(t));
+        // The middle belongs to both halves; without this they could pass it by a rounding.
+        let half = self.count() / 2.0;
+        let travelled = if travelled > half { half } else { travelled };
+        self.signed(if self.is_first_half(t) { travelled } else { self.count() - travelled })
+    }
+
+    /// When the move is at `place`, in s, of when its first half is at a place; both in steps without
+    /// sign, `place` 0 to all.
+    pub(super) fn time_s(&self, place: f64, climb_s: impl Fn(f64) -> f64) -> f64 {
+        let left = self.count() - place;
+        if place <= left { climb_s(place) } else { self.duration_s - climb_s(left) }
+    }
+
+    /// The acceleration at `t`, of its magnitude there.
+    pub(super) fn acceleration(&self, t: f64, magnitude: f64) -> f64 {
+        self.signed(if self.is_first_half(t) { magnitude } else { -magnitude })
+    }
+}

@@ -1,0 +1,107 @@
+//! Plans a staircase of rates (DESIGN B3).
+
+use crate::plan::{Left, MAX_TABLE_ROWS};
+use crate::{
+    Profile, moves,
+    problem::{Cause, ValueError},
+    quantities::Quantities,
+    round_half_up,
+    staircase::Staircase,
+    staircase_table::StaircaseTable,
+};
+use alloc::format;
+
+/// Acceleration of level 1, in steps/s^2.
+const LEVEL_ACCELERATION: f64 = 1000.0;
+/// Highest level.
+const MAX_LEVEL: f64 = 5.0;
+/// Least speed: it rounds to a pulse a second.
+const MIN_RATE: f64 = 0.5;
+
+pub(super) fn plan(
+    quantities: &mut Quantities<'_>,
+    given: &moves::Staircase,
+    path: &str,
+    left: &mut Left,
+) -> Option<Profile> {
+    let steps = quantities.distance(format!("{path}.distance"), &given.distance);
+    let top = quantities.speed_from(format!("{path}.top_speed"), &given.top_speed, MIN_RATE);
+    let level = quantities.range(format!("{path}.level"), given.level.into(), 1.0, MAX_LEVEL, "");
+    let start = quantities.speed_from(format!("{path}.start_speed"), &given.start_speed, MIN_RATE);
+    let most = quantities.speed_from(format!("{path}.max_speed"), &given.max_speed, MIN_RATE);
+    if let (Some(start), Some(most)) = (start, most)
+        && most < start
+    {
+        quantities.refuse(format!("{path}.max_speed"), Cause::TopBelowStart { top: most, start });
+        return None;
+    }
+    if let (Some(top), Some(most)) = (top, most)
+        && top > most
+    {
+        quantities.refuse(format!("{path}.top_speed"), Cause::TopAboveTable { top, most });
+        return None;
+    }
+    let table = StaircaseTable::new(start?, most?, level? * LEVEL_ACCELERATION);
+    let top_rate = round_half_up(top?).unsigned_abs();
+    match Staircase::new(steps?, table, top_rate, given.short_move, left.table_rows) {
+        Ok(staircase) => {
+            left.table_rows -= staircase.ramp_rows() + 1;
+            Some(Profile::Staircase(staircase))
+        }
+        Err(needed) => {
+            let (given, most) = ((MAX_TABLE_ROWS - left.table_rows).saturating_add(needed), MAX_TABLE_ROWS);
+            let cause = ValueError::TooMuch { given: given as f64, most: most as f64, of: "table rows" };
+            quantities.refuse(path, cause);
+            None
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{
+        mechanics::{Distance, Speed},
+        moves::{Axis, Move, Staircase},
+        plan_axis,
+    };
+    use alloc::{string::ToString, vec, vec::Vec};
+
+    #[test]
+    fn every_problem_of_a_staircase_is_told_with_its_path() {
+        let speed = Speed::StepsPerSecond;
+        let rows: [(Staircase, &[&str]); 4] = [
+            (Staircase::default(), &[]),
+            (
+                Staircase {
+                    distance: Distance::Millimetres(1.0),
+                    level: 6,
+                    top_speed: speed(0.4),
+                    ..Staircase::default()
+                },
+                &[
+                    "axis.moves[0].staircase.distance: 1 mm, but mechanics of kind rotary have no such unit; give steps, or choose mechanics that have it",
+                    "axis.moves[0].staircase.top_speed: 0.4 steps/s is out of range; give 0.5 to 10000000 steps/s",
+                    "axis.moves[0].staircase.level: 6 is out of range; give 1 to 5",
+                ],
+            ),
+            (
+                Staircase { top_speed: speed(20_001.0), ..Staircase::default() },
+                &[
+                    "axis.moves[0].staircase.top_speed: a top speed of 20001 steps/s is above the table's greatest of 20000 steps/s; give a lower top speed or a higher table",
+                ],
+            ),
+            (
+                Staircase { max_speed: speed(999.0), ..Staircase::default() },
+                &[
+                    "axis.moves[0].staircase.max_speed: a top speed of 999 steps/s is under the start speed of 1000 steps/s; give a higher top speed or a lower start speed",
+                ],
+            ),
+        ];
+        for (given, expected) in rows {
+            let axis = Axis { moves: vec![Move::Staircase(given)], ..Axis::default() };
+            let found: Vec<_> =
+                plan_axis(&axis, "axis").err().unwrap_or_default().iter().map(ToString::to_string).collect();
+            assert_eq!(found, expected);
+        }
+    }
+}

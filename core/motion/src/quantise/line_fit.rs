@@ -1,0 +1,224 @@
+//! One entry of a step table through the windows of some of its steps (DESIGN B8).
+//!
+//! Step n of an entry comes n*interval + n*(n-1)/2*add after the entry's start. Over n this is a straight line of
+//! x = (n - 1)/2, and each step's window a gate in its way:
+//!
+//! ```text
+//! low_n/n <= interval + add*(n-1)/2 <= high_n/n          all numbers integers
+//! ```
+//!
+//! For a given add the intervals that pass all gates are a range, `room` long; over add the room is concave, so where
+//! there is none the two gates that leave none also say on which side of this add there may be some, and from where on.
+//! That bound is exact, whichever gates have been looked at: fewer gates never refuse what all gates would let pass.
+
+/// A step's window, from the start of its entry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Gate {
+    /// The step, from 1.
+    pub(super) n: i64,
+    /// Earliest time in units.
+    pub(super) low: i64,
+    /// Latest time in units.
+    pub(super) high: i64,
+}
+
+/// Intervals and an add that pass all gates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Fit {
+    /// Least interval in units.
+    pub(super) least: i64,
+    /// Greatest interval in units.
+    pub(super) most: i64,
+    /// What each next interval is longer, in units.
+    pub(super) add: i64,
+}
+
+/// Looks at different adds, at most. It is never reached but where the gates leave less than one unit.
+const MAX_LOOKS: u32 = 64;
+
+/// The tightest gates at one add.
+struct Look {
+    add: i64,
+    least: i64,
+    most: i64,
+    /// Twice the slope of the room over add.
+    slope: i64,
+    /// How far the next add with any room is at least, on the side to which the room grows.
+    ahead: i64,
+    /// There is room, but less than one unit, and no whole number in it.
+    between: bool,
+}
+
+impl Look {
+    /// Looks at all gates; None if there are none.
+    fn at(gates: &[Gate], add: i64) -> Option<Self> {
+        let first = gates.first()?.shifted(add);
+        let (mut low, mut high) = (first, first);
+        for gate in gates.iter().skip(1) {
+            let gate = gate.shifted(add);
+            if i128::from(gate.low) * i128::from(low.n) > i128::from(low.low) * i128::from(gate.n) {
+                low = gate;
+            }
+            if i128::from(gate.high) * i128::from(high.n) < i128::from(high.high) * i128::from(gate.n) {
+                high = gate;
+            }
+        }
+        let least = low.low.div_euclid(low.n) + i64::from(low.low.rem_euclid(low.n) > 0);
+        let most = high.high.div_euclid(high.n);
+        let slope = low.n - high.n;
+        // low.low/low.n - high.high/high.n over a common denominator.
+        let short = i128::from(low.low) * i128::from(high.n) - i128::from(high.high) * i128::from(low.n);
+        let mut ahead = 1;
+        if short > 0 && slope != 0 {
+            let each = i128::from(low.n) * i128::from(high.n) * i128::from(slope.abs());
+            let adds = (2 * short).div_euclid(each) + i128::from((2 * short).rem_euclid(each) > 0);
+            ahead = i64::try_from(adds).unwrap_or(i64::MAX).max(1);
+        }
+        Some(Self { add, least, most, slope, ahead, between: least > most && short <= 0 })
+    }
+
+    fn room(&self) -> i64 {
+        self.most - self.least
+    }
+
+    fn fit(&self) -> Option<Fit> {
+        (self.room() >= 0).then_some(Fit { least: self.least, most: self.most, add: self.add })
+    }
+}
+
+impl Gate {
+    /// The gate of interval alone, with add*(n-1)/2 taken off.
+    fn shifted(self, add: i64) -> Self {
+        let part = self.n * (self.n - 1) / 2 * add;
+        Self { n: self.n, low: self.low - part, high: self.high - part }
+    }
+}
+
+/// An interval and an add of `adds` (least, greatest) that pass all gates; None if there are none.
+///
+/// `guess` is where it begins to look. With `centre` it goes on until the room is three quarters of the greatest or
+/// more, without it the first that passes does.
+///
+/// Its sums stay in 64 bits where every gate's times and add*n*(n-1)/2 for `adds` are within 2^60.
+pub(super) fn fit(gates: &[Gate], adds: (i64, i64), guess: i64, centre: bool) -> Option<Fit> {
+    let (mut left, mut right) = adds;
+    let (mut below, mut above): (Option<Look>, Option<Look>) = (None, None);
+    let mut best: Option<Fit> = None;
+    let mut add = guess;
+    for _ in 0..MAX_LOOKS {
+        if left > right {
+            break;
+        }
+        add = add.clamp(left, right);
+        let look = Look::at(gates, add)?;
+        if let Some(fit) = look.fit()
+            && best.is_none_or(|best| look.room() > best.most - best.least)
+        {
+            best = Some(fit);
+            if !centre {
+                break;
+            }
+        }
+        if look.between && best.is_none() {
+            // The next add on the other side may still have a whole number, the one after it has no room.
+            let other = if look.slope > 0 { add.saturating_sub(1) } else { add.saturating_add(1) };
+            if (adds.0..=adds.1).contains(&other) {
+                best = Look::at(gates, other)?.fit();
+            }
+        }
+        // Where nothing passed yet it goes beyond the bound by half, to come to the other side.
+        let far = if best.is_none() { look.ahead.saturating_add(look.ahead / 2) } else { look.step() };
+        if look.slope > 0 {
+            left = add.saturating_add(look.ahead);
+            add = add.saturating_add(far);
+            below = Some(look);
+        } else if look.slope < 0 {
+            right = add.saturating_sub(look.ahead);
+            add = add.saturating_sub(far);
+            above = Some(look);
+        } else {
+            break;
+        }
+        if let (Some(below), Some(above)) = (&below, &above) {
+            let (summit, most) = summit(below, above);
+            if best.is_some_and(|best| most - (best.most - best.least) <= most / 4) {
+                break;
+            }
+            add = summit;
+        }
+    }
+    best
+}
+
+impl Look {
+    /// How far to go on where there is room, towards more.
+    fn step(&self) -> i64 {
+        (2 * self.room()).checked_div(self.slope.abs()).unwrap_or(1).max(1)
+    }
+}
+
+/// Where the tangents of the room at two adds meet, and the room there: the greatest that there can be.
+fn summit(below: &Look, above: &Look) -> (i64, i64) {
+    let apart = i128::from(above.add) - i128::from(below.add);
+    let (up, down) = (i128::from(below.slope), i128::from(-above.slope));
+    let drop = 2 * (i128::from(above.room()) - i128::from(below.room()));
+    let along = (drop + down * apart) / (up + down).max(1);
+    let room = i128::from(below.room()) + up * along / 2;
+    let narrow = |x: i128| i64::try_from(x).unwrap_or(i64::MAX);
+    (narrow(i128::from(below.add) + along), narrow(room))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec::Vec;
+    use rand_xoshiro::{
+        Xoshiro256StarStar,
+        rand_core::{Rng, SeedableRng},
+    };
+
+    /// All adds and their least and greatest interval, one after another.
+    fn all(gates: &[Gate], adds: (i64, i64)) -> Vec<Fit> {
+        let passes = |interval: i64, add: i64| {
+            gates.iter().all(|gate| {
+                let time = gate.n * interval + gate.n * (gate.n - 1) / 2 * add;
+                (gate.low..=gate.high).contains(&time)
+            })
+        };
+        let fit = |add| {
+            let intervals: Vec<i64> = (-400..400).filter(|&interval| passes(interval, add)).collect();
+            Some(Fit { least: *intervals.first()?, most: *intervals.last()?, add })
+        };
+        (adds.0..=adds.1).filter_map(fit).collect()
+    }
+
+    #[test]
+    fn a_fit_is_found_where_trying_all_finds_one_and_nowhere_else() {
+        let mut noise = Xoshiro256StarStar::seed_from_u64(1);
+        let mut draw = |from: i64, to: i64| from + (noise.next_u64() % (to - from + 1) as u64) as i64;
+        let (mut passed, mut refused) = (0, 0);
+        for _ in 0..20_000 {
+            let (interval, add) = (draw(20, 60), draw(-3, 3));
+            let (count, wide, off) = (draw(1, 8), draw(0, 9), draw(0, 12));
+            let gates: Vec<Gate> = (1..=count)
+                .map(|n| {
+                    let middle = n * interval + n * (n - 1) / 2 * add + draw(-off, off);
+                    Gate { n, low: middle - wide / 2, high: middle + wide - wide / 2 }
+                })
+                .collect();
+            let adds = (-12, 12);
+            let expected = all(&gates, adds);
+            let guess = draw(-20, 20);
+            for centre in [false, true] {
+                let found = fit(&gates, adds, guess, centre);
+                match found {
+                    Some(found) => assert!(expected.contains(&found), "{gates:?}: {found:?}"),
+                    None => assert!(expected.is_empty(), "{gates:?}: {expected:?}"),
+                }
+            }
+            passed += usize::from(!expected.is_empty());
+            refused += usize::from(expected.is_empty());
+        }
+        assert!(passed > 4000 && refused > 4000, "{passed} {refused}");
+    }
+}

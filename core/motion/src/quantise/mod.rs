@@ -1,0 +1,40 @@
+//! From motions to what the peripheral runs: the only rounding of positions and of step times
+//! (DESIGN B7, B8).
+//!
+//! `motion` gives positions over time, `wire` and `device` know only ticks and segments; here the one becomes
+//! the other.
+
+mod compressed;
+mod document;
+mod entry_format;
+mod line_fit;
+mod longest;
+mod segments;
+mod stored;
+mod ticks;
+
+pub use compressed::{Compressed, MAX_TOLERANCE, Tolerance, compressed};
+pub use entry_format::{Entry, EntryFormat};
+pub use segments::exact_segments;
+pub use stored::{Form, MAX_TABLE_STEPS, Stored, TimingError, stored};
+pub use ticks::{TickClock, Ticks, ticks};
+
+/// Where a list of axes stands: the paths under which its problems are told.
+#[derive(Clone, Copy, Debug)]
+pub struct AxesPath<'a> {
+    /// Path of the list; axis i is at `[i]`.
+    pub axes: &'a str,
+    /// Path of what the axes are together.
+    pub whole: &'a str,
+}
+
+impl AxesPath<'static> {
+    /// The axes of a scenario's motion.
+    pub const MOTION: Self = Self { axes: "source.motion.axes", whole: "source.motion" };
+}
+
+impl AxesPath<'_> {
+    fn axis(&self, index: usize) -> alloc::string::String {
+        alloc::format!("{}[{index}]", self.axes)
+    }
+}

@@ -1,0 +1,152 @@
+//! A move with two ramps of a given shape, exact in distance and in time (DESIGN B4).
+//!
+//! As the cosine S-curve has it: n steps, the time T of the move and the time t_s of each ramp,
+//! 0 <= t_s <= T/2, with a shape g of the area A (`ramp`) in place of the cosine:
+//!
+//! ```text
+//!  f_max |     .--------.       f_max = n/(T - 2*t_s*(1 - A))      n/(T - t_s) where A is 1/2
+//!        |    /          \      f(t)  = f_max*g(t/t_s)             in the ramp
+//!        | .-'            '-.   s(t)  = f_max*t_s*G(t/t_s)         in the ramp
+//!        +-----------------------     = f_max*(t - t_s*(1 - A))    in the plateau
+//!         t_s           T-t_s  T      = n - s(T - t)               from T/2 on
+//! ```
+//!
+//! Slowing down is speeding up, mirrored in time: with an exponential the speed falls slowly at first
+//! and steeply at the end.
+
+use crate::{
+    Curve, Peaks,
+    mirrored::Mirrored,
+    ramp::{Ramp, longest_ramp_s},
+    words::{grouped, in_words, ramp_up_to},
+};
+use alloc::{format, string::String};
+
+/// A move with ramps of a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ramps {
+    halves: Mirrored,
+    pub(super) ramp_s: f64,
+    pub(super) ramp: Ramp,
+    /// A.
+    area: f64,
+    /// f_max in steps/s.
+    top_speed: f64,
+}
+
+impl Ramps {
+    /// `steps` (left negative) in `duration_s` > 0 with ramps of `ramp_s`, 0 to half of it.
+    #[must_use]
+    pub fn new(steps: i64, duration_s: f64, ramp_s: f64, ramp: Ramp) -> Self {
+        let area = ramp.area();
+        let top_speed = steps.unsigned_abs() as f64 / (duration_s - 2.0 * ramp_s * (1.0 - area));
+        Self { halves: Mirrored { steps, duration_s }, ramp_s, ramp, area, top_speed }
+    }
+
+    /// The same move with ramps of another time in s, 0 to half of its duration.
+    #[must_use]
+    pub fn with_ramp_s(&self, ramp_s: f64) -> Self {
+        Self::new(self.halves.steps, self.halves.duration_s, ramp_s, self.ramp)
+    }
+
+    /// f_max in steps/s, the speed of the plateau.
+    #[must_use]
+    pub fn top_speed(&self) -> f64 {
+        self.top_speed
+    }
+
+    /// The longest ramp in s with which this move keeps its top speed at or under `speed`
+    /// ([`longest_ramp_s`]), of which it can use up to T/2; `None` where even no ramp is too fast.
+    #[must_use]
+    pub fn longest_ramp_s(&self, speed: f64) -> Option<f64> {
+        longest_ramp_s(self.halves.steps.unsigned_abs(), self.halves.duration_s, speed, self.area)
+    }
+
+    /// x of the ramp at `t` after the start or before the end, 0 to 1; `None` in the plateau.
+    fn part(&self, t: f64) -> Option<f64> {
+        (t < self.ramp_s).then(|| t / self.ramp_s)
+    }
+
+    /// When the curve is at `place`, in s; `place` in steps without sign, 0 to all.
+    /// Step k falls due at k - 1/2 (B1).
+    #[must_use]
+    pub fn time_s(&self, place: f64) -> f64 {
+        self.halves.time_s(place, |place| self.climb_s(place))
+    }
+
+    /// When the first half is at `place`.
+    fn climb_s(&self, place: f64) -> f64 {
+        let at_top = self.top_speed * self.ramp_s;
+        if place >= at_top * self.area {
+            self.lost_s() + place / self.top_speed
+        } else {
+            self.ramp_s * self.ramp.at_way(place / at_top)
+        }
+    }
+
+    /// Time that a ramp costs against a start at top speed.
+    fn lost_s(&self) -> f64 {
+        self.ramp_s * (1.0 - self.area)
+    }
+
+    /// s(t) of the first half, in steps without sign.
+    fn first_half(&self, t: f64) -> f64 {
+        match self.part(t) {
+            Some(x) => self.top_speed * self.ramp_s * self.ramp.way(x),
+            None => self.top_speed * (t - self.lost_s()),
+        }
+    }
+}
+
+impl Curve for Ramps {
+    fn duration_s(&self) -> f64 {
+        self.halves.duration_s
+    }
+
+    fn steps(&self) -> i64 {
+        self.halves.steps
+    }
+
+    fn position(&self, t: f64) -> f64 {
+        self.halves.position(t, |t| self.first_half(t))
+    }
+
+    fn speed(&self, t: f64) -> f64 {
+        let part = self.part(self.halves.nearer_end(t));
+        self.halves.signed(part.map_or(self.top_speed, |x| self.top_speed * self.ramp.speed(x)))
+    }
+
+    fn acceleration(&self, t: f64) -> f64 {
+        let Some(x) = self.part(self.halves.nearer_end(t)) else { return 0.0 };
+        self.halves.acceleration(t, self.top_speed / self.ramp_s * self.ramp.slope(x))
+    }
+
+    /// The acceleration jumps where a ramp ends with some of it, twice as far where the other follows
+    /// without a plateau.
+    fn peaks(&self) -> Peaks {
+        if self.ramp_s <= 0.0 {
+            return Peaks { speed: self.top_speed, ..Peaks::default() };
+        }
+        let scale = self.top_speed / self.ramp_s;
+        let turns = 2.0 * self.ramp_s >= self.halves.duration_s;
+        let last = scale * self.ramp.slope(1.0);
+        Peaks {
+            speed: self.top_speed,
+            acceleration: scale * self.ramp.greatest_slope(),
+            jerk: scale / self.ramp_s * self.ramp.greatest_bend(),
+            acceleration_jump: if turns { 2.0 * last } else { last },
+            ..Peaks::default()
+        }
+    }
+
+    fn detail(&self, limit_steps_s: f64) -> String {
+        let peaks = self.peaks();
+        let jerk =
+            if peaks.jerk > 0.0 { format!(", {} steps/s\u{b3}", grouped(peaks.jerk)) } else { String::new() };
+        let longest_s = self.longest_ramp_s(limit_steps_s);
+        in_words(peaks) + &jerk + &ramp_up_to(longest_s, self.duration_s())
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,195 @@
+//! Exact sine (DESIGN B6): every step where the cosine crosses its half-integer (B1).
+//!
+//! It starts at the right extreme, goes left to the other one and comes back, as the sine by segments
+//! does; with the amplitude A in whole steps, the period T and the way d from the extreme behind it:
+//!
+//! ```text
+//!  0   |'-.          .-'    s(t) = -2*A*sin^2(pi*t/T)       keeps its digits where 1 - cos loses them
+//!      |   \        /       d    = 2*A*sin^2(pi*t/T)        of the half period from its extreme on
+//! -2*A |    '-.__.-'        t    = T/pi*asin(sqrt(d/(2*A))) of step k at d = k - 1/2, k = 1..=A
+//!      0     T/2     T           and T/2 less that of the way that is left, k = A+1..=2*A
+//! ```
+//!
+//! So no step's time is a small difference of large numbers: the arc sine is taken up to 45 degrees
+//! alone, and the half periods before are added to it as a whole number, whatever their count.
+
+use crate::{Curve, Peaks, square_root, swing::Swing, words::in_words};
+use alloc::{format, string::String};
+use core::f64::consts::{PI, TAU};
+
+/// A sine, each step in its place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sine {
+    swing: Swing,
+}
+
+impl Sine {
+    /// `periods` whole periods of `period_s` > 0 between `amplitude` steps (not 0) on either side of
+    /// the middle; a negative amplitude starts at the left extreme.
+    #[must_use]
+    pub fn new(amplitude: i64, period_s: f64, periods: u32) -> Self {
+        Self { swing: Swing::new(amplitude, period_s, periods) }
+    }
+
+    /// Time of a period in s.
+    #[must_use]
+    pub fn period_s(&self) -> f64 {
+        self.swing.period_s
+    }
+
+    /// How many periods.
+    #[must_use]
+    pub fn periods(&self) -> u32 {
+        self.swing.periods
+    }
+
+    /// Steps of all periods, there and back: 4*A a period.
+    #[must_use]
+    pub fn step_count(&self) -> u64 {
+        self.swing.step_count()
+    }
+
+    /// Where each step falls due, in half periods from the start, and whether it goes to the right.
+    pub(super) fn due_halves(&self) -> impl Iterator<Item = (f64, bool)> + use<> {
+        let Swing { amplitude, starts_right, periods, .. } = self.swing;
+        (0..2 * u64::from(periods)).flat_map(move |half| {
+            let right = starts_right == (half % 2 == 1);
+            (1..=2 * amplitude).map(move |k| (half as f64 + part_of_half(k, amplitude), right))
+        })
+    }
+
+    /// When step `k` (from 1) of all falls due, in half periods from the start.
+    pub(super) fn due_half(&self, k: u64) -> f64 {
+        let of_half = 2 * self.swing.amplitude;
+        ((k - 1) / of_half) as f64 + part_of_half((k - 1) % of_half + 1, self.swing.amplitude)
+    }
+
+    fn amplitude(&self) -> f64 {
+        self.swing.amplitude as f64
+    }
+
+    /// 2*pi/T.
+    fn angular_speed(&self) -> f64 {
+        TAU / self.swing.period_s
+    }
+}
+
+/// Part of a half period, 0 to 1, after which step `k` of its 2*`amplitude` falls due.
+fn part_of_half(k: u64, amplitude: u64) -> f64 {
+    let way = 2 * amplitude;
+    // Twice the distance of the step's place from the nearer extreme is a whole number.
+    let from_extreme = |twice: u64| 2.0 / PI * libm::asin(square_root(twice as f64 / (2 * way) as f64));
+    if k <= amplitude { from_extreme(2 * k - 1) } else { 1.0 - from_extreme(2 * (way - k) + 1) }
+}
+
+impl Curve for Sine {
+    fn duration_s(&self) -> f64 {
+        self.swing.duration_s()
+    }
+
+    fn steps(&self) -> i64 {
+        0
+    }
+
+    fn position(&self, t: f64) -> f64 {
+        if t <= 0.0 || t >= self.duration_s() {
+            return 0.0;
+        }
+        let sine = libm::sin(PI * self.swing.part(t));
+        self.swing.signed(-2.0 * self.amplitude() * sine * sine)
+    }
+
+    fn speed(&self, t: f64) -> f64 {
+        if t <= 0.0 || t >= self.duration_s() {
+            return 0.0;
+        }
+        let sine = libm::sin(TAU * self.swing.part(t));
+        self.swing.signed(-self.amplitude() * self.angular_speed() * sine)
+    }
+
+    fn acceleration(&self, t: f64) -> f64 {
+        let part = if t >= self.duration_s() { 0.0 } else { self.swing.part(t) };
+        let scale = self.amplitude() * self.angular_speed() * self.angular_speed();
+        self.swing.signed(-scale * libm::cos(TAU * part))
+    }
+
+    fn peaks(&self) -> Peaks {
+        let turning = self.angular_speed();
+        let speed = self.amplitude() * turning;
+        let acceleration = speed * turning;
+        Peaks { speed, acceleration, jump: 0.0, jerk: acceleration * turning, acceleration_jump: 0.0 }
+    }
+
+    fn detail(&self, _: f64) -> String {
+        let hertz = 1.0 / self.swing.period_s;
+        format!("{hertz:.4} Hz; {}", in_words(self.peaks()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec::Vec;
+
+    /// Half periods of the steps of one half period.
+    fn half(amplitude: i64) -> Vec<f64> {
+        let sine = Sine::new(amplitude, 1.0, 1);
+        sine.due_halves().take(2 * amplitude.unsigned_abs() as usize).map(|(at, _)| at).collect()
+    }
+
+    #[test]
+    fn steps_stand_where_the_cosine_is_half_way_between_two() {
+        // One step either side: cos = 1/2 and -1/2, at 60 and 120 degrees.
+        for (found, expected) in half(1).into_iter().zip([1.0 / 3.0, 2.0 / 3.0]) {
+            assert!((found - expected).abs() < 1e-15, "{found}");
+        }
+        // The first step of a large amplitude: cos = 1 - 1/(2*A), so nearly sqrt(1/A).
+        for amplitude in [1_000_000, 1_000_000_000_i64] {
+            let sine = Sine::new(amplitude, 1.0, 1);
+            let first = sine.due_halves().next().unwrap().0 * PI;
+            let x = 1.0 / amplitude as f64;
+            let expected = libm::sqrt(x) * (1.0 + x / 24.0 + 3.0 * x * x / 640.0);
+            assert!((first / expected - 1.0).abs() < 1e-15, "{amplitude}: {first} {expected}");
+        }
+    }
+
+    #[test]
+    fn every_period_has_its_steps_and_both_halves_mirror_each_other() {
+        for amplitude in [1, 2, 3, 1000, -777] {
+            let (sine, steps) = (Sine::new(amplitude, 0.5, 3), 2 * amplitude.unsigned_abs() as usize);
+            let due: Vec<(f64, bool)> = sine.due_halves().collect();
+            assert_eq!((due.len() as u64, due.len()), (sine.step_count(), 6 * steps));
+            for (index, pair) in due.windows(2).enumerate() {
+                assert!(pair[0].0 < pair[1].0, "{amplitude}: {pair:?}");
+                assert_eq!(pair[0].1, (index / steps % 2 == 1) == (amplitude > 0), "{amplitude}");
+            }
+            for k in 0..steps {
+                assert!((due[k].0 + due[steps - 1 - k].0 - 1.0).abs() < 1e-15);
+                assert!((due[5 * steps + k].0 - due[k].0 - 5.0).abs() < 1e-14);
+            }
+        }
+    }
+
+    #[test]
+    fn position_is_the_integral_of_speed_and_speed_of_acceleration() {
+        for amplitude in [1000.0, -1.0] {
+            let sine = Sine::new(amplitude as i64, 0.5, 2);
+            for i in 1..500 {
+                let t = f64::from(i) * 0.002;
+                let slope = |f: &dyn Fn(f64) -> f64| (f(t + 1e-6) - f(t - 1e-6)) / 2e-6;
+                let speed = slope(&|t| sine.position(t));
+                let acceleration = slope(&|t| sine.speed(t));
+                assert!((speed - sine.speed(t)).abs() < 1e-6 * sine.peaks().speed, "{t}");
+                assert!(
+                    (acceleration - sine.acceleration(t)).abs() < 1e-6 * sine.peaks().acceleration,
+                    "{t}"
+                );
+            }
+            assert_eq!((sine.position(0.5), sine.position(1.0), sine.steps()), (0.0, 0.0, 0));
+            assert!((sine.position(0.25) + 2.0 * amplitude).abs() < 1e-9);
+            let omega = 4.0 * PI;
+            assert!((sine.acceleration(0.0) + amplitude * omega * omega).abs() < 1e-6 * omega * omega);
+            assert_eq!(sine.acceleration(0.0), sine.acceleration(1.0));
+        }
+    }
+}

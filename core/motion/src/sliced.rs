@@ -1,0 +1,358 @@
+//! Cosine S-curve as the document runs it: in slices of whole steps (DESIGN B4, `sliced`; Song, Han, Lu
+//! 2021, 2.2).
+//!
+//! Time is cut into slices of TS; slice i has floor(f(i*TS)*TS) steps, f being the cosine S-curve of n'
+//! steps ([`Cosine`]). Rounded down, they are too few, so the document compensates in two stages:
+//!
+//! ```text
+//!        n' = n, N = the sum of all slices
+//! coarse n' grows by n - N, which raises f_max = n'/(T - t_s), until N reaches n
+//! fine   the steps above n are taken out of the plateau, from its end, at its own rate: it is shortened;
+//!        where there is none, the tail's last steps are left out: its last slices stand still then, as
+//!        those after them do, so that the document counts no time error
+//!
+//! steps a slice |      __________....       the move ends earlier than asked by what the plateau lost:
+//!               |    _|          |   |_     its time error
+//!               |  _|            :     |_
+//!               |_|______________:_______|__
+//! ```
+//!
+//! Within a slice the steps are even: they stand in the middles of as many equal parts, so the curve is
+//! straight from slice to slice and crosses its half-integers there (B1). A product that is whole but for
+//! the last digits of its factors counts as whole.
+
+use crate::{
+    Curve, MAX_SPEED, Peaks,
+    cosine::Cosine,
+    profile::greater,
+    round_half_up,
+    words::{grouped, ramp_up_to},
+};
+use alloc::{format, string::String, vec::Vec};
+use core::ops::Range;
+
+/// How near under a whole number of steps a slice still has that many.
+const NEARLY: f64 = 1e-9;
+/// Rounds of the coarse compensation after which its growth is doubled, and again after as many more. The
+/// document's moves need two or three.
+const PATIENCE: u32 = 1000;
+
+/// A cosine S-curve in slices.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sliced {
+    exact: Cosine,
+    compensated: u64,
+    /// Start of each slice in s, and the end of the last; rising.
+    ///
+    /// Invariant: one entry more than there are slices, of which there is at least one.
+    pub(super) starts_s: Vec<f64>,
+    /// Steps before each slice, without sign, and all of them.
+    ///
+    /// Invariant: as long as `starts_s`, from 0 to the move's steps, not falling.
+    sums: Vec<u32>,
+    top_rate: f64,
+}
+
+/// Why a move cannot be sliced.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NotSliced {
+    /// It has more slices than allowed.
+    Slices {
+        /// Slices that it needs.
+        needed: u64,
+    },
+    /// At its top speed a slice has less than one step.
+    TooShort {
+        /// Top speed in steps/s.
+        rate: f64,
+    },
+    /// The slices cannot have all steps, however high the top speed.
+    TooFew {
+        /// Slices that there are.
+        slices: u64,
+    },
+}
+
+/// The time error of a sliced move, against the exact one, which has none; negative is early.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimeError {
+    /// End of the move less that asked for, in s.
+    pub end_s: f64,
+    /// The same in parts of the time asked for: the document's time error.
+    pub relative: f64,
+    /// Time of the last step less that of the exact curve's last, in s.
+    pub last_step_s: f64,
+}
+
+/// Length of each slice and what part of the top speed its start has, as one product in s.
+struct Slices {
+    /// Part of the top speed times length, in s; one a slice.
+    weights: Vec<f64>,
+    /// Those that lie in the plateau; empty, at the start of the second half, where none does.
+    plateau: Range<usize>,
+    slice_s: f64,
+}
+
+impl Sliced {
+    /// `steps` (left negative, not 0, at most 1e9) in `duration_s` > 0 with ramps of `ramp_s`, 0 to half
+    /// of it, in slices of `slice_s` > 0, of which the last may be shorter.
+    ///
+    /// # Errors
+    /// [`NotSliced`] where there would be more than `most_slices`, or where they cannot have the steps.
+    pub fn new(
+        steps: i64,
+        duration_s: f64,
+        ramp_s: f64,
+        slice_s: f64,
+        most_slices: u64,
+    ) -> Result<Self, NotSliced> {
+        let exact = Cosine::new(steps, duration_s, ramp_s);
+        let needed = slices_in(duration_s / slice_s);
+        if needed > most_slices {
+            return Err(NotSliced::Slices { needed });
+        }
+        let rate = exact.top_speed();
+        if rate * slice_s < 1.0 - NEARLY {
+            return Err(NotSliced::TooShort { rate });
+        }
+        let slices = Slices::of(&exact, needed, slice_s);
+        let (compensated, top_speed) =
+            slices.coarse(&exact, ramp_s).ok_or(NotSliced::TooFew { slices: needed })?;
+        let (starts_s, sums, top_rate) = slices.fine(top_speed, &exact);
+        Ok(Self { exact, compensated, starts_s, sums, top_rate })
+    }
+
+    /// The exact curve of the same steps in the same time.
+    #[must_use]
+    pub fn exact(&self) -> &Cosine {
+        &self.exact
+    }
+
+    /// n', the steps of the curve whose slices, rounded down, have at least those that were asked for.
+    #[must_use]
+    pub fn compensated_steps(&self) -> u64 {
+        self.compensated
+    }
+
+    /// The highest rate of a slice in steps/s, floor(f*TS)/TS: from its steps and its length, neither of which has
+    /// the digits that the difference of two late times has lost.
+    #[must_use]
+    pub fn top_rate(&self) -> f64 {
+        self.top_rate
+    }
+
+    /// How many slices the move has; those that the plateau lost do not count.
+    #[must_use]
+    pub fn slice_count(&self) -> u64 {
+        self.starts_s.len().saturating_sub(1) as u64
+    }
+
+    /// Start and end of each slice in s, and its steps without sign.
+    pub fn slices(&self) -> impl Iterator<Item = (f64, f64, u32)> + '_ {
+        let ends = self.starts_s.iter().skip(1).zip(self.sums.iter().skip(1));
+        let starts = self.starts_s.iter().zip(&self.sums);
+        starts.zip(ends).map(|((from, before), (to, after))| (*from, *to, after - before))
+    }
+
+    /// How much earlier it is than asked for, and than the exact curve.
+    #[must_use]
+    pub fn time_error(&self) -> TimeError {
+        let asked_s = self.exact.duration_s();
+        let end_s = self.duration_s() - asked_s;
+        let last = self.exact.steps().unsigned_abs() as f64 - 0.5;
+        let last_step_s = self.time_s(last) - self.exact.time_s(last);
+        TimeError { end_s, relative: end_s / asked_s, last_step_s }
+    }
+
+    /// Slice `index`; past the last none.
+    #[inline(always)]
+    fn slice(&self, index: usize) -> Option<(f64, f64, u32, u32)> {
+        let (from, to) = (self.starts_s.get(index)?, self.starts_s.get(index + 1)?);
+        let (before, after) = (self.sums.get(index)?, self.sums.get(index + 1)?);
+        Some((*from, *to, *before, after - before))
+    }
+
+    /// The slice at `t`; before the start the first, from the end on the last.
+    fn at(&self, t: f64) -> Option<(f64, f64, u32, u32)> {
+        let after = self.starts_s.partition_point(|start_s| *start_s <= t);
+        let last = self.starts_s.len().saturating_sub(2);
+        self.slice(after.saturating_sub(1).min(last))
+    }
+
+    /// When the curve is at `place`, in s; `place` in steps without sign, between two whole ones.
+    /// Step k falls due at k - 1/2 (B1).
+    #[must_use]
+    pub fn time_s(&self, place: f64) -> f64 {
+        let after = self.sums.partition_point(|sum| f64::from(*sum) <= place);
+        let (from, to, before, count) = self.slice(after.saturating_sub(1)).unwrap_or_default();
+        from + (place - f64::from(before)) * (to - from) / f64::from(count.max(1))
+    }
+
+    fn signed(&self, magnitude: f64) -> f64 {
+        if self.steps() < 0 { -magnitude } else { magnitude }
+    }
+}
+
+/// How many slices a time of so many has; one that is whole but for its last digits has no rest.
+fn slices_in(ratio: f64) -> u64 {
+    let whole = round_half_up(ratio);
+    let rest = ratio - whole as f64;
+    let more = rest > NEARLY * greater(1.0, ratio);
+    whole.unsigned_abs() + u64::from(more || whole == 0)
+}
+
+/// floor, of a number from 0 on.
+#[inline(always)]
+fn whole_steps(steps: f64) -> u64 {
+    (steps + NEARLY) as u64
+}
+
+impl Slices {
+    fn of(exact: &Cosine, count: u64, slice_s: f64) -> Self {
+        let (duration_s, ramp_s) = (exact.duration_s(), exact.ramp_s);
+        let start_s = |index: usize| index as f64 * slice_s;
+        let length_s = |index: usize| {
+            let left_s = duration_s - start_s(index);
+            if left_s < slice_s { left_s } else { slice_s }
+        };
+        let count = count as usize;
+        let weights = (0..count).map(|index| exact.part(start_s(index)) * length_s(index)).collect();
+        let digits = duration_s * f64::EPSILON * 4.0;
+        let in_plateau = |index: &usize| {
+            start_s(*index) >= ramp_s - digits && start_s(index + 1) <= duration_s - ramp_s + digits
+        };
+        let first = (0..count).find(in_plateau).unwrap_or(count / 2);
+        let plateau = first..first + (first..count).take_while(in_plateau).count();
+        Self { weights, plateau, slice_s }
+    }
+
+    /// Steps of a slice at a top speed; in the plateau all have the same.
+    #[inline(always)]
+    fn steps(&self, index: usize, top_speed: f64) -> u64 {
+        let weight = self.weights.get(index).copied().unwrap_or(0.0);
+        whole_steps(top_speed * if self.plateau.contains(&index) { self.slice_s } else { weight })
+    }
+
+    /// N, the sum of all.
+    fn sum(&self, top_speed: f64) -> u64 {
+        let held = self.plateau.len() as u64 * whole_steps(top_speed * self.slice_s);
+        let ramps = (0..self.plateau.start).chain(self.plateau.end..self.weights.len());
+        held + ramps.map(|index| self.steps(index, top_speed)).sum::<u64>()
+    }
+
+    /// The coarse compensation: n' and its top speed; `None` where no speed that is allowed is enough.
+    fn coarse(&self, exact: &Cosine, ramp_s: f64) -> Option<(u64, f64)> {
+        let count = exact.steps().unsigned_abs();
+        let (mut compensated, mut round) = (count, 0);
+        loop {
+            let top_speed = compensated as f64 / (exact.duration_s() - ramp_s);
+            let missing = count.saturating_sub(self.sum(top_speed));
+            if missing == 0 {
+                return Some((compensated, top_speed));
+            }
+            if top_speed > MAX_SPEED {
+                return None;
+            }
+            compensated = compensated.saturating_add(missing << (round / PATIENCE).min(30));
+            round += 1;
+        }
+    }
+
+    /// The fine compensation: the starts of the slices that are left, the steps before each, and the highest rate.
+    fn fine(&self, top_speed: f64, exact: &Cosine) -> (Vec<f64>, Vec<u32>, f64) {
+        let all = self.weights.len();
+        let mut counts: Vec<u64> = (0..all).map(|index| self.steps(index, top_speed)).collect();
+        let held = whole_steps(top_speed * self.slice_s);
+        let mut above = counts.iter().sum::<u64>().saturating_sub(exact.steps().unsigned_abs());
+        let Range { start, end } = self.plateau;
+        for index in (start..end).rev().chain((end..all).rev()).chain((0..start).rev()) {
+            let Some(count) = counts.get_mut(index) else { continue };
+            let taken = above.min(*count);
+            *count -= taken;
+            above -= taken;
+        }
+        let (mut starts_s, mut sums) = (Vec::with_capacity(all + 1), Vec::with_capacity(all + 1));
+        let (mut shorter_s, mut sum, mut top_rate) = (0.0, 0, 0.0);
+        for (index, count) in counts.iter().enumerate() {
+            let shortened = self.plateau.contains(&index) && *count < held;
+            if !(shortened && *count == 0) {
+                starts_s.push(index as f64 * self.slice_s - shorter_s);
+                sums.push(sum as u32);
+            }
+            if shortened {
+                shorter_s += self.slice_s * ((held - count) as f64 / held as f64);
+            }
+            if *count > 0 {
+                // Rounded down, no slice has more than the top speed; a shortened one has the plateau's rate.
+                let left_s = exact.duration_s() - index as f64 * self.slice_s;
+                let length_s = if left_s < self.slice_s { left_s } else { self.slice_s };
+                let steps = if shortened { held } else { *count };
+                top_rate = greater(top_rate, libm::fmin(steps as f64 / length_s, top_speed));
+            }
+            sum += count;
+        }
+        starts_s.push(exact.duration_s() - shorter_s);
+        sums.push(sum as u32);
+        (starts_s, sums, top_rate)
+    }
+}
+
+impl Curve for Sliced {
+    fn duration_s(&self) -> f64 {
+        self.starts_s.last().copied().unwrap_or(0.0)
+    }
+
+    fn steps(&self) -> i64 {
+        self.exact.steps()
+    }
+
+    fn position(&self, t: f64) -> f64 {
+        if t >= self.duration_s() {
+            return self.steps() as f64;
+        }
+        let Some((from, to, before, count)) = self.at(t).filter(|_| t > 0.0) else { return 0.0 };
+        self.signed(f64::from(before) + f64::from(count) * ((t - from) / (to - from)))
+    }
+
+    fn speed(&self, t: f64) -> f64 {
+        self.signed(self.at(t).map_or(0.0, |(from, to, _, count)| f64::from(count) / (to - from)))
+    }
+
+    /// Within a slice there is none, between two the speed jumps.
+    fn acceleration(&self, _: f64) -> f64 {
+        0.0
+    }
+
+    /// Between two slices the speed jumps; the acceleration is 0 throughout, and so is the jerk.
+    fn peaks(&self) -> Peaks {
+        let (mut peaks, mut before) = (Peaks::default(), None);
+        for index in 0..self.starts_s.len() {
+            let Some((from, to, _, count)) = self.slice(index) else { break };
+            let rate = f64::from(count) / (to - from);
+            let jump = before.map_or(0.0, |before: f64| libm::fabs(rate - before));
+            peaks = peaks.or(Peaks { speed: rate, jump, ..Peaks::default() });
+            before = Some(rate);
+        }
+        peaks
+    }
+
+    fn detail(&self, limit_steps_s: f64) -> String {
+        let error = self.time_error();
+        let (slices, peak) = (self.slice_count(), self.peaks().speed);
+        format!(
+            "peak {} steps/s, {} slices of a curve of {} steps; ends {:.3} ms early, time error {:.2} % (exact: 0), \
+             the last step {:.3} ms {}{}",
+            grouped(peak),
+            grouped(slices as f64),
+            grouped(self.compensated as f64),
+            0.0 - 1e3 * error.end_s,
+            0.0 - 100.0 * error.relative,
+            1e3 * libm::fabs(error.last_step_s),
+            if error.last_step_s > 0.0 { "late" } else { "early" },
+            ramp_up_to(self.exact.longest_ramp_s(limit_steps_s), self.exact.duration_s())
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,110 @@
+//! The steady moves: constant rate and dwell (DESIGN B6).
+//!
+//! ```text
+//! speed  |-------|            constant: from the first instant to the last
+//!        |       |_________   dwell: none
+//! ```
+
+use crate::{Curve, Peaks};
+use alloc::string::String;
+
+/// One rate from end to end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Constant {
+    steps: i64,
+    /// Magnitude in steps/s, above 0.
+    speed: f64,
+    duration_s: f64,
+}
+
+impl Constant {
+    /// `steps` (left negative) at `speed` steps/s, which is above 0.
+    #[must_use]
+    pub fn new(steps: i64, speed: f64) -> Self {
+        Self { steps, speed, duration_s: steps.unsigned_abs() as f64 / speed }
+    }
+
+    fn signed_speed(&self) -> f64 {
+        if self.steps < 0 { -self.speed } else { self.speed }
+    }
+}
+
+impl Curve for Constant {
+    fn duration_s(&self) -> f64 {
+        self.duration_s
+    }
+
+    fn steps(&self) -> i64 {
+        self.steps
+    }
+
+    fn position(&self, t: f64) -> f64 {
+        if t >= self.duration_s {
+            self.steps as f64
+        } else if t > 0.0 {
+            self.signed_speed() * t
+        } else {
+            0.0
+        }
+    }
+
+    fn speed(&self, _: f64) -> f64 {
+        self.signed_speed()
+    }
+
+    fn acceleration(&self, _: f64) -> f64 {
+        0.0
+    }
+
+    fn peaks(&self) -> Peaks {
+        Peaks { speed: self.speed, ..Peaks::default() }
+    }
+
+    fn detail(&self, _: f64) -> String {
+        String::new()
+    }
+}
+
+/// Standing still for a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dwell {
+    duration_s: f64,
+}
+
+impl Dwell {
+    /// `duration_s` from 0 on.
+    #[must_use]
+    pub fn new(duration_s: f64) -> Self {
+        Self { duration_s }
+    }
+}
+
+impl Curve for Dwell {
+    fn duration_s(&self) -> f64 {
+        self.duration_s
+    }
+
+    fn steps(&self) -> i64 {
+        0
+    }
+
+    fn position(&self, _: f64) -> f64 {
+        0.0
+    }
+
+    fn speed(&self, _: f64) -> f64 {
+        0.0
+    }
+
+    fn acceleration(&self, _: f64) -> f64 {
+        0.0
+    }
+
+    fn peaks(&self) -> Peaks {
+        Peaks::default()
+    }
+
+    fn detail(&self, _: f64) -> String {
+        String::new()
+    }
+}

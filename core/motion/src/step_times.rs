@@ -1,0 +1,233 @@
+//! The exact times of a trapezoid's steps, one after another (DESIGN B1, B2).
+//!
+//! Step k falls at cycle floor(t*clock_hz + 1/2), t being where s(t) = k - 1/2:
+//!
+//! ```text
+//! ramp          v = sqrt(v0^2 + 2*a*s)    t = (v - v0)/a        with s = k - 1/2
+//! plateau       t = t_r + (s - s_r)/v1
+//! deceleration  t = T - (ramp's t of the distance to the end)
+//! ```
+//!
+//! The inner loop is dumb by design: in a ramp one square root and no division, because
+//! clock_hz/a is multiplied with; x = v0^2 + 2*a*s is formed anew for each step, so nothing adds
+//! up. The error of a ramp's time is then at most v*clock_hz/a * 2^-52 cycles. Where that could
+//! reach an eighth of a cycle (a slow acceleration to a high speed) t = 2*s/(v + v0) takes its
+//! place, which divides but keeps the digits that v - v0 loses. Either way a time is within one
+//! cycle of the ideal one.
+
+use crate::{Curve, round_half_up, square_root, trapezoid::Trapezoid};
+
+/// Error of a step's time, in cycles, from which on a ramp divides.
+const MAX_ERROR: f64 = 0.125;
+
+/// Times of a trapezoid's steps in cycles from its start, rising.
+#[derive(Clone, Debug)]
+pub struct StepTimes {
+    /// Place of the next step, k - 1/2.
+    place: f64,
+    /// Last place of the acceleration, and of the plateau.
+    ramp_end: f64,
+    plateau_end: f64,
+    /// All steps.
+    count: f64,
+    ramp: Ramp,
+    /// Cycles at place 0, were the plateau as long as that.
+    plateau_zero: f64,
+    cycles_per_step: f64,
+    /// Cycles of the whole move.
+    end: f64,
+}
+
+/// The ramp from rest or the start speed: cycles over place.
+#[derive(Clone, Copy, Debug)]
+struct Ramp {
+    start_speed: f64,
+    start_squared: f64,
+    twice_acceleration: f64,
+    /// clock_hz/a.
+    cycles_per_speed: f64,
+    twice_clock: f64,
+    divides: bool,
+}
+
+impl Ramp {
+    /// Cycles until `place`, not rounded.
+    #[inline]
+    fn cycles(&self, place: f64) -> f64 {
+        let speed = square_root(self.start_squared + self.twice_acceleration * place);
+        if self.divides {
+            self.twice_clock * place / (speed + self.start_speed)
+        } else {
+            (speed - self.start_speed) * self.cycles_per_speed
+        }
+    }
+}
+
+/// floor(cycles + 1/2), for times from 0 on, where truncation is the floor.
+#[inline]
+pub(super) fn cycle(cycles: f64) -> u64 {
+    (cycles + 0.5) as i64 as u64
+}
+
+impl Trapezoid {
+    /// The cycle of each step, of a clock of `clock_hz`, from the start of the move.
+    #[must_use]
+    pub fn step_times(&self, clock_hz: u32) -> StepTimes {
+        let clock = f64::from(clock_hz);
+        let count = self.steps().unsigned_abs();
+        let half = count / 2;
+        let in_ramp = round_half_up(self.ramp_steps).unsigned_abs();
+        // Of a triangle with an odd number of steps the middle one is both; the climb has it.
+        let slowing = if in_ramp > half { half } else { in_ramp };
+        let cycles_per_speed = clock / self.acceleration;
+        let error = self.peak_speed * cycles_per_speed * f64::EPSILON;
+        let cycles_per_step = clock / self.peak_speed;
+        StepTimes {
+            place: 0.5,
+            ramp_end: in_ramp as f64,
+            plateau_end: (count - slowing) as f64,
+            count: count as f64,
+            ramp: Ramp {
+                start_speed: self.start_speed,
+                start_squared: self.start_speed * self.start_speed,
+                twice_acceleration: 2.0 * self.acceleration,
+                cycles_per_speed,
+                twice_clock: 2.0 * clock,
+                divides: error > MAX_ERROR,
+            },
+            plateau_zero: self.ramp_s * clock - self.ramp_steps * cycles_per_step,
+            cycles_per_step,
+            end: self.duration_s() * clock,
+        }
+    }
+}
+
+impl StepTimes {
+    #[inline]
+    fn climbing(&self, place: f64) -> f64 {
+        self.ramp.cycles(place)
+    }
+
+    #[inline]
+    fn steady(&self, place: f64) -> f64 {
+        self.plateau_zero + place * self.cycles_per_step
+    }
+
+    #[inline]
+    fn slowing(&self, place: f64) -> f64 {
+        self.end - self.ramp.cycles(self.count - place)
+    }
+
+    /// Cycles until the next step, not rounded.
+    #[inline]
+    pub(super) fn next_unrounded(&mut self) -> Option<f64> {
+        let place = self.place;
+        let time = if place < self.ramp_end {
+            self.climbing(place)
+        } else if place < self.plateau_end {
+            self.steady(place)
+        } else if place < self.count {
+            self.slowing(place)
+        } else {
+            return None;
+        };
+        self.place = place + 1.0;
+        Some(time)
+    }
+}
+
+impl Iterator for StepTimes {
+    type Item = u64;
+
+    #[inline]
+    fn next(&mut self) -> Option<u64> {
+        self.next_unrounded().map(cycle)
+    }
+
+    /// Passes by `n` steps without forming their times.
+    fn nth(&mut self, n: usize) -> Option<u64> {
+        self.place += n as f64;
+        self.next()
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        let left = round_half_up(self.count - self.place + 0.5).unsigned_abs() as usize;
+        (left, Some(left))
+    }
+}
+
+impl ExactSizeIterator for StepTimes {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec::Vec;
+    use core::cmp::Ordering;
+
+    const CLOCK: i128 = 16_000_000;
+
+    /// Compares s(half_cycles/2) in the ramp with k - 1/2, in whole numbers: a = num/den.
+    fn compare(half_cycles: i128, k: i128, v0: i128, (num, den): (i128, i128)) -> Ordering {
+        let way = den * 4 * v0 * half_cycles * CLOCK + num * half_cycles * half_cycles;
+        way.cmp(&(den * 4 * (2 * k - 1) * CLOCK * CLOCK))
+    }
+
+    #[test]
+    fn a_ramps_steps_are_where_whole_number_arithmetic_puts_them() {
+        // v0, a = num/den, steps of a triangle
+        let rows = [
+            (250, (9000, 1), 2_000_000),
+            (0, (1, 1), 200_000),
+            (0, (10_000_000, 1), 2_000_000),
+            (1, (1, 1024), 20_000),
+            (1_000_000, (1, 128), 2_000_000),
+        ];
+        for (v0, (num, den), steps) in rows {
+            let a = num as f64 / den as f64;
+            let curve = Trapezoid::new(steps, v0 as f64, 1e7, a);
+            let mut off = 0;
+            for (k, time) in (1..).zip(curve.step_times(CLOCK as u32).take(steps as usize / 2)) {
+                let twice = 2 * i128::from(time);
+                let early = compare(twice + 1, k, v0, (num, den)) != Ordering::Greater;
+                let late = compare(twice - 1, k, v0, (num, den)) == Ordering::Greater;
+                off += usize::from(early || late);
+                assert!(compare(twice + 3, k, v0, (num, den)) == Ordering::Greater, "step {k} early");
+                assert!(compare(twice - 3, k, v0, (num, den)) != Ordering::Greater, "step {k} late");
+            }
+            // Off by the one cycle only where the ideal time is next to the middle of two cycles.
+            assert!(off <= 1 + steps as usize / 100, "{off} steps of {steps} are off, v0 {v0}");
+        }
+    }
+
+    #[test]
+    fn plateau_and_deceleration_are_in_their_places() {
+        // Ramps of 0.5 s and 1500 steps, plateau at 5000 steps/s, 200.4 s in all.
+        let (steps, clock) = (1_000_000_u64, CLOCK as u64);
+        let curve = Trapezoid::new(steps as i64, 1000.0, 5000.0, 8000.0);
+        let times: Vec<u64> = curve.step_times(clock as u32).collect();
+        assert_eq!(times.len() as u64, steps);
+        let end = clock * 2004 / 10;
+        for (k, (&time, &mirrored)) in (1..).zip(times.iter().zip(times.iter().rev())) {
+            assert!((time + mirrored).abs_diff(end) <= 1, "step {k}: {time} {mirrored}");
+            if (1501..=steps - 1500).contains(&k) {
+                let ideal = clock / 2 + (2 * (k - 1500) - 1) * clock / 10_000;
+                assert!(time.abs_diff(ideal) <= 1, "step {k}: {time} {ideal}");
+            }
+        }
+        assert!(times.is_sorted_by(|a, b| a < b));
+    }
+
+    #[test]
+    fn the_curve_has_as_many_steps_due_as_have_fallen() {
+        for steps in [1, 2, 3, 7, 100, 3001, 3002, 6001] {
+            let curve = Trapezoid::new(steps, 1000.0, 5000.0, 8000.0);
+            let times = curve.step_times(CLOCK as u32);
+            assert_eq!(times.len(), steps as usize);
+            assert_eq!(times.clone().count(), steps as usize);
+            for (k, time) in (1..).zip(times) {
+                let at = |cycle: f64| round_half_up(curve.position(cycle / CLOCK as f64));
+                assert_eq!((at(time as f64 - 1.0), at(time as f64 + 1.0)), (k - 1, k), "of {steps}");
+            }
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! Trapezoid with every step in its ideal place (DESIGN B2's ideal curve, B1's rule).
+//!
+//! Uniform acceleration a from the start speed v0 to the top speed v1 and back, v^2 = v0^2 + 2*a*s;
+//! a short move turns round at its middle, a triangle:
+//!
+//! ```text
+//!  v1 |     ________               t_r = (v1 - v0)/a         time of a ramp
+//!     |   /          \             s_r = (v1^2 - v0^2)/(2a)  steps of a ramp
+//!  v0 | /              \           s(t) = v0*t + a*t^2/2     in the ramp
+//!     |                                 = s_r + v1*(t - t_r) in the plateau
+//!     +------------------              = n - s(T - t)        from T/2 on
+//!       t_r        T-t_r  T
+//! ```
+
+use crate::{Curve, Peaks, mirrored::Mirrored, square_root};
+
+/// A trapezoid or triangle of uniform acceleration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trapezoid {
+    pub(super) halves: Mirrored,
+    pub(super) start_speed: f64,
+    pub(super) acceleration: f64,
+    /// Highest speed that is reached: the top speed, or that of the triangle's tip.
+    pub(super) peak_speed: f64,
+    /// Steps of a ramp, at most half of all.
+    pub(super) ramp_steps: f64,
+    pub(super) ramp_s: f64,
+}
+
+impl Trapezoid {
+    /// `steps` (left negative) from `start_speed` >= 0 to `top_speed` >= `start_speed` and back
+    /// with `acceleration` > 0, in steps, s. The top speed is above 0.
+    #[must_use]
+    pub fn new(steps: i64, start_speed: f64, top_speed: f64, acceleration: f64) -> Self {
+        let all = steps.unsigned_abs() as f64;
+        let (v0, v1, a) = (start_speed, top_speed, acceleration);
+        // (v1 - v0)*(v1 + v0) keeps the digits that v1^2 - v0^2 would lose.
+        let whole_ramp = (v1 - v0) * (v1 + v0) / (2.0 * a);
+        let (peak_speed, ramp_steps) = if 2.0 * whole_ramp <= all {
+            (v1, whole_ramp)
+        } else {
+            (square_root(v0 * v0 + a * all), all / 2.0)
+        };
+        // s = (v0 + v)/2 * t, which has no difference of nearly equal numbers in it.
+        let ramp_s = if ramp_steps > 0.0 { 2.0 * ramp_steps / (v0 + peak_speed) } else { 0.0 };
+        let plateau_s = (all - 2.0 * ramp_steps) / peak_speed;
+        let duration_s = 2.0 * ramp_s + plateau_s;
+        let halves = Mirrored { steps, duration_s };
+        Self { halves, start_speed, acceleration, peak_speed, ramp_steps, ramp_s }
+    }
+
+    /// Highest speed that is reached, in steps/s.
+    #[must_use]
+    pub fn peak_speed(&self) -> f64 {
+        self.peak_speed
+    }
+
+    /// Time of each ramp in s.
+    #[must_use]
+    pub fn ramp_s(&self) -> f64 {
+        self.ramp_s
+    }
+
+    /// Steps of each ramp, not rounded.
+    #[must_use]
+    pub fn ramp_steps(&self) -> f64 {
+        self.ramp_steps
+    }
+
+    /// s(t) of the first half, in steps without sign.
+    fn first_half(&self, t: f64) -> f64 {
+        if t < self.ramp_s {
+            (self.start_speed + self.acceleration * t / 2.0) * t
+        } else {
+            self.ramp_steps + self.peak_speed * (t - self.ramp_s)
+        }
+    }
+}
+
+impl Curve for Trapezoid {
+    fn duration_s(&self) -> f64 {
+        self.halves.duration_s
+    }
+
+    fn steps(&self) -> i64 {
+        self.halves.steps
+    }
+
+    fn position(&self, t: f64) -> f64 {
+        self.halves.position(t, |t| self.first_half(t))
+    }
+
+    fn speed(&self, t: f64) -> f64 {
+        let t = self.halves.nearer_end(t);
+        let climbed = self.start_speed + self.acceleration * t;
+        self.halves.signed(if t < self.ramp_s { climbed } else { self.peak_speed })
+    }
+
+    fn acceleration(&self, t: f64) -> f64 {
+        if self.halves.nearer_end(t) >= self.ramp_s {
+            0.0
+        } else {
+            self.halves.acceleration(t, self.acceleration)
+        }
+    }
+
+    fn peaks(&self) -> Peaks {
+        let acceleration = if self.ramp_s > 0.0 { self.acceleration } else { 0.0 };
+        // At the tip of a triangle the acceleration turns round; else it ends where the plateau begins.
+        let turns = 2.0 * self.ramp_s >= self.halves.duration_s;
+        let acceleration_jump = if turns { 2.0 * acceleration } else { acceleration };
+        Peaks { speed: self.peak_speed, acceleration, acceleration_jump, ..Peaks::default() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_moves_have_a_plateau_and_short_ones_turn_round_in_the_middle() {
+        // (steps, start, top, acceleration), (peak speed, ramp s, duration s)
+        let rows = [
+            ((10_000, 1000.0, 5000.0, 8000.0), (5000.0, 0.5, 2.4)),
+            ((3000, 1000.0, 5000.0, 8000.0), (5000.0, 0.5, 1.0)),
+            ((800, 0.0, 5000.0, 8000.0), (2_529.822_128, 0.316_227_766, 0.632_455_532)),
+            ((-4, 1000.0, 5000.0, 8000.0), (1_015.874_007_9, 0.001_984_251, 0.003_968_502)),
+            ((500, 1000.0, 1000.0, 1.0), (1000.0, 0.0, 0.5)),
+        ];
+        for ((steps, start, top, acceleration), (peak, ramp_s, duration_s)) in rows {
+            let curve = Trapezoid::new(steps, start, top, acceleration);
+            let found = [curve.peak_speed(), curve.ramp_s(), curve.duration_s()];
+            for (found, expected) in found.iter().zip([peak, ramp_s, duration_s]) {
+                assert!((found - expected).abs() <= 1e-6 * expected, "{steps}: {found} {expected}");
+            }
+            assert_eq!(curve.position(curve.duration_s()), steps as f64);
+        }
+    }
+
+    #[test]
+    fn the_square_of_the_speed_grows_with_the_way() {
+        let curve = Trapezoid::new(4000, 300.0, 4000.0, 9000.0);
+        for i in 0..100 {
+            let t = curve.ramp_s() * f64::from(i) / 100.0;
+            let (v, s) = (curve.speed(t), curve.position(t));
+            assert!((v * v - (300.0 * 300.0 + 2.0 * 9000.0 * s)).abs() < 1e-6 * v * v);
+            let mirrored = 4000.0 - curve.position(curve.duration_s() - t);
+            assert!((mirrored - s).abs() < 1e-9, "{t}: {s} {mirrored}");
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! What frames (DESIGN A6), raw packets (A5) and registers operate alike: the queue with its
+//! sequencer, the drivers' EN, the state STOPPED and the fault flags. Here ticks are admitted and
+//! commands are carried out, in a cycle p and after everything else in it; what they do to EN, STEP
+//! and the start of ticks shows from p + 1 on.
+
+use crate::device::{Faults, sequencer::Sequencer, transceiver::Transceiver};
+use crate::{
+    config::Config,
+    protocol::{Reason, State, Status},
+    units::Instant,
+    wire::packet::Order,
+};
+
+/// The parts of a controller that work whoever orders.
+#[derive(Clone, Debug)]
+pub(super) struct Machine {
+    slots: u8,
+    boot: Instant,
+    /// From STOP or DISABLE to ENABLE: no tick is taken, so none runs or waits.
+    stopped: bool,
+    pub(super) transceiver: Transceiver,
+    pub(super) sequencer: Sequencer,
+    faults: Faults,
+}
+
+impl Machine {
+    #[inline]
+    pub(super) fn new(config: &Config) -> Self {
+        Self {
+            slots: config.slots,
+            boot: config.boot,
+            stopped: false,
+            transceiver: Transceiver::new(config),
+            sequencer: Sequencer::new(config),
+            faults: Faults::default(),
+        }
+    }
+
+    /// Whether `ticks` ticks of these orders may be queued in cycle `now`: all of them or none.
+    #[inline]
+    pub(super) fn admit(&mut self, now: Instant, orders: &[u8], ticks: usize) -> Result<(), Reason> {
+        if self.stopped {
+            Err(Reason::Stopped)
+        } else if now < self.boot {
+            Err(Reason::Busy)
+        } else if orders.iter().any(|&byte| Order::parse(byte).steps > self.slots) {
+            self.faults.set(Faults::TOO_MANY_STEPS);
+            Err(Reason::TooManySteps)
+        } else if ticks > usize::from(self.sequencer.free()) {
+            self.faults.set(Faults::QUEUE_OVERFLOW);
+            Err(Reason::QueueFull)
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Emergency stop: drivers off, the queue empty, the tick that runs abandoned.
+    #[inline]
+    pub(super) fn stop(&mut self, now: Instant) {
+        self.transceiver.enable(now, false);
+        self.sequencer.stop(now);
+        self.stopped = true;
+    }
+
+    /// Drivers on, and out of STOPPED.
+    #[inline]
+    pub(super) fn enable(&mut self, now: Instant) {
+        self.transceiver.enable(now, true);
+        self.stopped = false;
+    }
+
+    /// Drivers off, if nothing moves: whether it was done.
+    #[inline]
+    pub(super) fn disable(&mut self, now: Instant) -> bool {
+        let idle = !self.sequencer.is_moving();
+        if idle {
+            self.transceiver.enable(now, false);
+            self.stopped = true;
+        }
+        idle
+    }
+
+    /// Another timing of the pulses, for the ticks that start from now on; the caller knows that
+    /// none runs or waits.
+    #[inline]
+    pub(super) fn retime(&mut self, config: &Config) {
+        self.slots = config.slots;
+        self.sequencer.retime(config);
+    }
+
+    #[inline]
+    pub(super) const fn faults(&self) -> Faults {
+        self.faults.union(self.sequencer.faults())
+    }
+
+    #[inline]
+    pub(super) const fn fault(&mut self, fault: Faults) {
+        self.faults.set(fault);
+    }
+
+    /// Takes back the flags of `which`.
+    #[inline]
+    pub(super) fn clear_faults(&mut self, which: Faults) {
+        self.faults.clear(which);
+        self.sequencer.clear_faults(which);
+    }
+
+    /// What the controller tells of itself in cycle `now`.
+    #[inline]
+    pub(super) fn status(&self, now: Instant, expected_seq: u8) -> Status {
+        let state = if self.stopped {
+            State::Stopped
+        } else if now < self.boot {
+            State::Busy
+        } else if self.sequencer.is_moving() {
+            State::Moving
+        } else {
+            State::Ready
+        };
+        Status {
+            state,
+            free: self.sequencer.free(),
+            expected_seq,
+            faults: self.faults().bits(),
+            ticks_done: self.sequencer.ticks_done(),
+        }
+    }
+}

@@ -1,0 +1,357 @@
+//! The motion peripheral, to the clock cycle (DESIGN A2 to A7).
+//!
+//! A synchronous machine: [`Device::clock`] advances it one cycle. Because that is slow,
+//! [`Device::cycles_until_event`] tells for how many cycles nothing can change while the line keeps its level,
+//! and [`Device::advance`] passes them; [`Device::run`] does both as fast as it can. All three give
+//! the same trace.
+//!
+//! # The order within one cycle
+//! 1. EN, TX and DE change, and the line's level is heard (high while DE is);
+//! 2. the sequencer: STEP edges, a tick ends, a tick starts (from commits of earlier cycles);
+//! 3. the gap timer;
+//! 4. the byte delivered in this cycle and what it completes;
+//! 5. the record, if a signal changed;
+//! 6. what firmware reads and writes ([`Device::read`], [`Device::write`]).
+//!
+//! So a place freed by a tick that starts in cycle p is free for the packet that ends in p, and a
+//! byte delivered in the very cycle of a gap begins a new packet.
+
+mod controller;
+mod faults;
+mod machine;
+mod model_bus;
+mod plan;
+mod registers;
+mod segments;
+mod sequencer;
+mod transceiver;
+
+pub use faults::Faults;
+pub use model_bus::ModelBus;
+pub use segments::SegmentEngine;
+
+use crate::{
+    config::{Config, Protocol},
+    protocol::{Reason, Status},
+    signal::{Event, Levels, MAX_CHANNELS, PacketOutcome, Record, Sink},
+    units::{Cycles, Instant},
+    wire::{
+        packet::{Tick, Unpacked, Unpacker},
+        uart::{Heard, Receiver},
+    },
+};
+use controller::Controller;
+use machine::Machine;
+use registers::Latches;
+
+/// The peripheral.
+///
+/// ```
+/// use crate::{device::Device, config::{Bus, Config}, signal::{Levels, Record}};
+/// use stepscope_scenario::Line;
+///
+/// let bus = Bus { channels: 2, slots: 4, ..Bus::default() };
+/// let config = Config::new(16_000_000, &bus, &Line::default()).expect("the defaults hold");
+/// let mut device = Device::new(&config);
+/// let mut trace: Vec<Record> = Vec::new();
+/// assert_eq!(device.clock(true, &mut trace), Levels::RESET);
+/// ```
+#[derive(Clone, Debug)]
+pub struct Device {
+    /// The cycle that the next call of `clock` is, and the one that was run last.
+    now: Instant,
+    last: Instant,
+    /// A cycle that is clocked by itself, whatever rests: reset, or the one after firmware's last write.
+    /// So on a raw line, where nobody else moves it, EN is looked at in no other.
+    wake: Instant,
+    /// The line as others drive it, and as the controller hears it.
+    line: bool,
+    rx: bool,
+    /// Levels in the last record.
+    levels: Levels,
+    receiver: Receiver,
+    framing: Framing,
+    machine: Machine,
+    latches: Latches,
+}
+
+/// How bytes are joined to orders.
+///
+/// It is asked for in every window of a run: a tag of its own is read in fewer instructions than one
+/// that hides in a variant's unused values.
+#[derive(Clone, Debug)]
+#[repr(u8)]
+enum Framing {
+    Raw(Unpacker),
+    Framed(Controller),
+}
+
+impl Device {
+    /// A peripheral before cycle 0.
+    #[must_use]
+    #[inline]
+    pub fn new(config: &Config) -> Self {
+        Self {
+            now: Instant::RESET,
+            last: Instant::RESET,
+            wake: Instant::RESET,
+            line: true,
+            rx: true,
+            levels: Levels(0),
+            receiver: Receiver::new(config.bit()),
+            framing: match config.protocol {
+                Protocol::Raw => Framing::Raw(Unpacker::new(config.channels, config.address, config.bit())),
+                Protocol::Framed => Framing::Framed(Controller::new(config)),
+            },
+            machine: Machine::new(config),
+            latches: Latches::new(config),
+        }
+    }
+
+    /// The cycle that the next call of [`Self::clock`] is; as many have passed.
+    #[must_use]
+    #[inline]
+    pub const fn now(&self) -> Instant {
+        self.now
+    }
+
+    /// Position counters: rising STEP edges, +1 where DIR is 1, -1 where it is 0.
+    #[must_use]
+    #[inline]
+    pub fn positions(&self) -> [i32; MAX_CHANNELS] {
+        self.machine.sequencer.positions()
+    }
+
+    /// Ticks that have ended.
+    #[must_use]
+    #[inline]
+    pub const fn ticks_done(&self) -> u32 {
+        self.machine.sequencer.ticks_done()
+    }
+
+    /// Faults so far.
+    #[must_use]
+    #[inline]
+    pub const fn faults(&self) -> Faults {
+        self.machine.faults()
+    }
+
+    /// Advances one cycle with the line at `line`, as others drive it, and gives the levels of all
+    /// signals in it. Cycle 0 is reset: the line is high in it, whatever is given.
+    #[inline]
+    pub fn clock(&mut self, line: bool, sink: &mut impl Sink) -> Levels {
+        let now = self.now;
+        self.line = line;
+        self.machine.transceiver.clock(now);
+        let deaf = now == Instant::RESET || self.machine.transceiver.levels() & Levels::DE != 0;
+        let before = core::mem::replace(&mut self.rx, line || deaf);
+        self.machine.sequencer.clock(now, sink);
+        if let Framing::Raw(unpacker) = &mut self.framing
+            && now == unpacker.deadline()
+        {
+            let short = unpacker.gap();
+            sink.event(now, Event::Gap { short });
+            if short {
+                self.machine.fault(Faults::SHORT_PACKET);
+            }
+        }
+        match self.receiver.clock(now, before, self.rx) {
+            Some(Heard::Byte(byte)) => self.byte(byte, sink),
+            Some(Heard::FramingError) => {
+                self.machine.fault(Faults::FRAMING);
+                let drops = if let Framing::Raw(unpacker) = &mut self.framing {
+                    unpacker.framing_error(now);
+                    true
+                } else {
+                    false
+                };
+                sink.event(now, Event::FramingError { seen: self.receiver.seen(), drops });
+            }
+            None => {}
+        }
+        (self.now, self.last) = (now.next(), now);
+        let levels = Levels(self.base() | u64::from(self.machine.sequencer.lines()));
+        if levels != self.levels {
+            self.levels = levels;
+            sink.record(Record { cycle: now, levels });
+        }
+        levels
+    }
+
+    #[inline]
+    fn byte(&mut self, byte: u8, sink: &mut impl Sink) {
+        sink.event(self.now, Event::Byte { seen: self.receiver.seen(), byte });
+        let unpacked = match &mut self.framing {
+            Framing::Raw(unpacker) => unpacker.byte(self.now, byte),
+            Framing::Framed(controller) => return controller.byte(self.now, byte, &mut self.machine, sink),
+        };
+        let fate = match unpacked {
+            None => return,
+            Some(Unpacked::OtherAddress) => PacketOutcome::OtherAddress,
+            Some(Unpacked::Own(tick)) => self.commit(tick),
+        };
+        sink.event(self.now, Event::Packet(fate));
+    }
+
+    /// Judges a packet for this controller (A5).
+    #[inline]
+    fn commit(&mut self, tick: Tick) -> PacketOutcome {
+        match self.machine.admit(self.now, &tick, 1) {
+            Ok(()) => {
+                self.machine.sequencer.push(self.now, tick);
+                PacketOutcome::Queued
+            }
+            Err(Reason::Stopped) => PacketOutcome::Stopped,
+            Err(Reason::TooManySteps) => PacketOutcome::TooManySteps,
+            Err(Reason::QueueFull) => PacketOutcome::QueueFull,
+            Err(_) => PacketOutcome::Booting,
+        }
+    }
+
+    /// What the controller would tell of itself in the cycle that was run last (A6); `None` on a raw
+    /// line.
+    #[must_use]
+    #[inline]
+    pub fn status(&self) -> Option<Status> {
+        match &self.framing {
+            Framing::Framed(controller) => {
+                Some(self.machine.status(self.before(), controller.expected_seq()))
+            }
+            Framing::Raw(_) => None,
+        }
+    }
+
+    /// The cycle before [`Self::now`]; before reset, reset.
+    #[inline]
+    const fn before(&self) -> Instant {
+        Instant(self.now.0.saturating_sub(1))
+    }
+
+    /// Signals that do not come from the sequencer.
+    #[inline]
+    const fn base(&self) -> u64 {
+        self.machine.transceiver.levels() | if self.rx { Levels::RX } else { 0 }
+    }
+
+    /// Next cycle, from [`Self::now`] on, in which something can change if the line stays at the
+    /// level of the last cycle.
+    #[inline]
+    fn deadline(&self) -> Instant {
+        if self.now == self.wake {
+            self.now
+        } else {
+            self.machine.sequencer.deadline().min(self.input_deadline())
+        }
+    }
+
+    #[inline(always)]
+    fn input_deadline(&self) -> Instant {
+        let framing = match &self.framing {
+            Framing::Raw(unpacker) => unpacker.deadline(),
+            Framing::Framed(_) => self.machine.transceiver.deadline(),
+        };
+        self.receiver.deadline(self.before(), self.rx).min(framing)
+    }
+
+    /// Whether it ever drives the line.
+    #[must_use]
+    #[inline]
+    pub const fn answers(&self) -> bool {
+        matches!(self.framing, Framing::Framed(_))
+    }
+
+    /// What this controller does to the line in cycle [`Self::now`]: its TX where it drives, `None`
+    /// where it does not.
+    #[must_use]
+    #[inline]
+    pub fn driven(&self) -> Option<bool> {
+        let levels = Levels(self.machine.transceiver.ahead(self.now).0);
+        levels.has(Levels::DE).then(|| levels.has(Levels::TX))
+    }
+
+    /// A cycle after [`Self::now`] up to which this controller does not change what it does to the
+    /// line, while others keep the line at `line`; [`Instant::NEVER`] if it will not.
+    #[must_use]
+    #[inline]
+    pub fn next_driven(&self, line: bool) -> Instant {
+        if !self.answers() {
+            return Instant::NEVER;
+        }
+        let (levels, next) = self.machine.transceiver.ahead(self.now);
+        let heard = self.receiver.deadline(self.before(), line || Levels(levels).has(Levels::DE));
+        // What it may hear then can be answered no sooner than after the turnaround.
+        let answer =
+            if heard == Instant::NEVER { heard } else { heard + self.machine.transceiver.turnaround() };
+        next.min(answer)
+    }
+
+    /// For how many cycles nothing can change while the line stays at the level of the last cycle;
+    /// `None` if it is for ever.
+    #[must_use]
+    #[inline]
+    pub fn cycles_until_event(&self) -> Option<Cycles> {
+        match self.deadline() {
+            Instant::NEVER => None,
+            deadline => Some(deadline - self.now),
+        }
+    }
+
+    /// Passes cycles in which nothing changes: no more than [`Self::cycles_until_event`] says. What goes beyond
+    /// is not skipped.
+    #[inline]
+    pub fn advance(&mut self, cycles: Cycles) {
+        let target = Instant(self.now.0.saturating_add(cycles.0));
+        self.now = target.min(self.deadline());
+    }
+
+    /// Runs until cycle `until` is the next, as fast as the edges allow, while the line stays at
+    /// `line`; with [`Instant::NEVER`], until nothing can change any more ([`Self::last_active`] then
+    /// tells when that was). Stops early where the sink asks for a pause.
+    #[inline(always)]
+    pub fn run(&mut self, line: bool, until: Instant, sink: &mut impl Sink) {
+        if self.now < until && (line != self.line || self.now == self.wake) {
+            self.clock(line, sink);
+        }
+        while self.now < until && !sink.paused() {
+            let quiet = self.input_deadline().min(until);
+            if self.machine.sequencer.deadline() < quiet {
+                self.levels = self.machine.sequencer.run(quiet, self.base(), sink);
+                if self.machine.sequencer.deadline() < quiet {
+                    // Paused: nothing happens before the sequencer's next change.
+                    self.now = self.machine.sequencer.deadline();
+                    return;
+                }
+            }
+            if quiet == Instant::NEVER {
+                return;
+            }
+            self.now = quiet;
+            if quiet < until {
+                self.clock(line, sink);
+            }
+        }
+    }
+
+    /// The last cycle in which something happened, if every cycle that was clocked by itself had a
+    /// reason.
+    #[must_use]
+    #[inline]
+    pub fn last_active(&self) -> Instant {
+        self.last.max(self.machine.sequencer.last_active())
+    }
+
+    /// At rest: the cycle that the next call of [`Self::clock`] is becomes `now`. Otherwise nothing.
+    #[inline]
+    pub fn finish(&mut self, now: Instant) {
+        if self.at_rest() {
+            self.now = now;
+        }
+    }
+
+    /// Whether nothing can change any more while the line stays as it is.
+    #[must_use]
+    #[inline]
+    pub fn at_rest(&self) -> bool {
+        self.deadline() == Instant::NEVER
+    }
+}

@@ -1,0 +1,278 @@
+//! The STEP and DIR lines of one tick, worked out when it starts (DESIGN A7).
+//!
+//! ```text
+//! slot k starts at s = c0 + k*Ts
+//!
+//! per-channel DIR, simultaneous         common DIR, simultaneous
+//! DIR   ═╳═══════════════  at c0        DIR   ─┐_________________┌────────
+//! STEP  ─────┌────┐______               left  ─┼───┌────┐________│________
+//!        | D |  W |                     right ─┼───│────│────────│───┌────┐
+//!        s   rise fall                         s D   W       H     D    W
+//!
+//! staggered: the j-th pulse rises at s + D + j*d, d = min(dp, floor(Ts/nd)), nd firing channels
+//! ```
+//!
+//! The plan is a list of (offset from c0, lines after it), so that running a tick is only walking
+//! along it. Successive ticks with the same orders share it.
+
+use crate::{
+    config::{Config, DirLine, Distribution, PulsePhasing},
+    signal::{Levels, MAX_CHANNELS},
+    wire::packet::{Order, Tick},
+};
+use alloc::vec::Vec;
+
+/// STEP in bits 0..=15, DIR in bits 16..=31: the low half of a trace's levels.
+pub(super) type Lines = u32;
+
+/// STEP bits of [`Lines`].
+pub(super) const STEPS: Lines = 0xffff;
+
+/// The lines from `offset` cycles after the tick's start on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Change {
+    pub(super) offset: u64,
+    pub(super) lines: Lines,
+}
+
+/// The changes of one tick.
+#[derive(Clone, Debug)]
+pub(super) struct Plan {
+    config: Config,
+    /// DIR of the channels in use, all right.
+    all_right: Lines,
+    orders: Tick,
+    changes: Vec<Change>,
+}
+
+impl Plan {
+    #[inline]
+    pub(super) fn new(config: &Config) -> Self {
+        let all_right = !(!0 << config.channels) << Levels::DIR_SHIFT;
+        let orders = [0; MAX_CHANNELS];
+        let mut plan = Self { config: config.clone(), all_right, orders, changes: Vec::new() };
+        plan.rebuild();
+        plan
+    }
+
+    /// The orders that the plan is of.
+    #[inline]
+    pub(super) const fn orders(&self) -> &Tick {
+        &self.orders
+    }
+
+    /// Whether any channel makes a step.
+    #[inline]
+    pub(super) fn has_steps(&self) -> bool {
+        self.orders.iter().any(|&byte| Order::parse(byte).steps > 0)
+    }
+
+    /// Rising offsets. With a common DIR line the first change sets DIR: what it was before the
+    /// tick does not matter.
+    #[inline]
+    pub(super) fn changes(&self) -> &[Change] {
+        &self.changes
+    }
+
+    /// Makes this the plan of `orders`.
+    #[inline]
+    pub(super) fn set(&mut self, orders: Tick) {
+        if orders != self.orders {
+            self.orders = orders;
+            self.rebuild();
+        }
+    }
+
+    #[inline]
+    fn rebuild(&mut self) {
+        let counts = self.orders.map(|byte| Order::parse(byte).steps);
+        let right = tops(u128::from_le_bytes(self.orders));
+        let dir = Lines::from(right) << Levels::DIR_SHIFT & self.all_right;
+        self.changes.clear();
+        if self.config.dir_line == DirLine::PerChannel {
+            self.push(0, dir);
+        }
+        let mut firing = Firing::new(counts, self.config.slots, self.config.distribution);
+        for slot in 0..self.config.slots {
+            let start = u64::from(slot) * self.config.step_period;
+            match (firing.slot(slot), self.config.dir_line, self.config.pulse_phasing) {
+                (0, ..) => {}
+                (fires, DirLine::PerChannel, PulsePhasing::Simultaneous) => {
+                    self.pulse(start + self.config.dir_setup, fires, dir);
+                }
+                (fires, DirLine::PerChannel, PulsePhasing::Staggered) => self.staggered(start, fires, dir),
+                (fires, DirLine::Common, PulsePhasing::Simultaneous) => {
+                    let second =
+                        start + self.config.dir_setup + self.config.pulse_width + self.config.dir_hold;
+                    self.push(start, 0);
+                    self.pulse(start + self.config.dir_setup, fires & !right, 0);
+                    self.push(second, self.all_right);
+                    self.pulse(second + self.config.dir_setup, fires & right, self.all_right);
+                }
+                (fires, DirLine::Common, PulsePhasing::Staggered) => {
+                    self.common_staggered(start, fires, right)
+                }
+            }
+        }
+    }
+
+    /// All of `fires` from `rise` on, for W cycles; DIR stays at `dir`.
+    #[inline]
+    fn pulse(&mut self, rise: u64, fires: u16, dir: Lines) {
+        if fires != 0 {
+            self.push(rise, dir | Lines::from(fires));
+            self.push(rise + self.config.pulse_width, dir);
+        }
+    }
+
+    /// From pulse to pulse of a slot: d = min(dp, floor(Ts/nd)).
+    #[inline]
+    fn distance(&self, fires: u16) -> u64 {
+        self.config.settle.min(self.config.step_period / u64::from(fires.count_ones().max(1)))
+    }
+
+    /// One channel after another, ascending; pulses that are closer than W overlap.
+    #[inline]
+    fn staggered(&mut self, start: u64, fires: u16, dir: Lines) {
+        let (distance, width) = (self.distance(fires), self.config.pulse_width);
+        let first = start + self.config.dir_setup;
+        let pulses = || channels(fires).zip(0_u64..).map(|(bit, j)| (bit, first + j * distance));
+        let (mut rises, mut falls) = (pulses().peekable(), pulses().peekable());
+        let mut lines = dir;
+        while let Some(&(bit, rise)) = falls.peek() {
+            match rises.next_if(|&(_, next)| next <= rise + width) {
+                Some((bit, rise)) => {
+                    lines |= bit;
+                    self.push(rise, lines);
+                }
+                None => {
+                    lines &= !bit;
+                    falls.next();
+                    self.push(rise + width, lines);
+                }
+            }
+        }
+    }
+
+    /// The left ones ascending, then the right ones ascending; L <= d, so no two pulses meet.
+    #[inline]
+    fn common_staggered(&mut self, start: u64, fires: u16, right: u16) {
+        let distance = self.distance(fires);
+        let order = channels(fires & !right).zip([0].into_iter().cycle());
+        let order = order.chain(channels(fires & right).zip([self.all_right].into_iter().cycle()));
+        for ((bit, dir), j) in order.zip(0_u64..) {
+            let at = start + j * distance;
+            self.push(at, dir);
+            self.push(at + self.config.dir_setup, dir | bit);
+            self.push(at + self.config.dir_setup + self.config.pulse_width, dir);
+        }
+    }
+
+    /// Adds a change; of several at the same offset the last counts.
+    #[inline]
+    fn push(&mut self, offset: u64, lines: Lines) {
+        match self.changes.last_mut() {
+            Some(last) if last.offset == offset => last.lines = lines,
+            _ => self.changes.push(Change { offset, lines }),
+        }
+    }
+}
+
+/// The STEP bits of `fires` one by one, ascending.
+#[inline]
+fn channels(fires: u16) -> impl Iterator<Item = Lines> {
+    (0..MAX_CHANNELS).map(|channel| 1 << channel).filter(move |bit| Lines::from(fires) & bit != 0)
+}
+
+/// Which channels fire in a slot.
+///
+/// `spread` fires in slot k if floor(((k+1)*c + h)/M) > floor((k*c + h)/M), h = floor(M/2): each
+/// channel keeps r = (k*c + h) mod M and fires if r >= M - c. `burst` fires if k < c.
+///
+/// All channels go side by side in one number, a byte each. r, c, k and M are at most 127: with bit
+/// 7 set beforehand a subtraction takes nothing from the byte above, and bit 7 is left where it
+/// did not go below 0.
+struct Firing {
+    /// c of each channel.
+    counts: u128,
+    /// r of each channel.
+    remainders: u128,
+    slots: u8,
+    distribution: Distribution,
+}
+
+/// A 1 in each byte.
+const ONES: u128 = u128::from_le_bytes([1; MAX_CHANNELS]);
+/// Bit 7 of each byte.
+const TOPS: u128 = ONES << 7;
+
+impl Firing {
+    #[inline]
+    const fn new(counts: [u8; MAX_CHANNELS], slots: u8, distribution: Distribution) -> Self {
+        let remainders = u128::from_le_bytes([slots / 2; MAX_CHANNELS]);
+        Self { counts: u128::from_le_bytes(counts), remainders, slots, distribution }
+    }
+
+    /// The channels that fire in slot `slot`; slots are asked for in order.
+    #[inline]
+    fn slot(&mut self, slot: u8) -> u16 {
+        match self.distribution {
+            // c - (k + 1) >= 0
+            Distribution::Burst => tops((self.counts | TOPS) - (u128::from(slot) + 1) * ONES),
+            // r - (M - c) >= 0, which then is the next r; that of the others is M more.
+            Distribution::Spread => {
+                let slots = u128::from(self.slots);
+                let rest = (self.remainders | TOPS) - (slots * ONES - self.counts);
+                let fires = rest & TOPS;
+                self.remainders = rest - fires - ((fires ^ TOPS) >> 7) * (128 - slots);
+                tops(fires)
+            }
+        }
+    }
+}
+
+/// Bit i of the result is bit 7 of byte i.
+///
+/// The multiplication moves byte i's bit to bit 56 + i of its half; no two of them meet.
+#[inline]
+fn tops(bytes: u128) -> u16 {
+    let bits = bytes >> 7 & ONES;
+    let half = |bits: u64| (bits.wrapping_mul(0x0102_0408_1020_4080) >> 56) as u16;
+    half(bits as u64) | half((bits >> 64) as u64) << 8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tops_puts_bit_7_of_byte_i_into_bit_i() {
+        for value in [0, 1, 0x8000, 0xffff, 0xa5c3, 0x0180, 0x1234] {
+            let bytes = core::array::from_fn(|i| 0x7f | ((value >> i & 1) as u8) << 7);
+            assert_eq!(tops(u128::from_le_bytes(bytes)), value);
+        }
+    }
+
+    #[test]
+    fn every_count_fires_as_often_as_ordered_and_where_the_formula_says() {
+        for slots in 1..=127_u8 {
+            for first in 0..=slots {
+                // Neighbours with other counts, the extremes among them: none may disturb another.
+                let others = [0, slots, 1, slots - 1, slots / 2, first / 2, slots - first];
+                let counts = core::array::from_fn(|i| if i % 2 == 0 { first } else { others[i / 2 % 7] });
+                let (m, h) = (u32::from(slots), u32::from(slots / 2));
+                let mut spread = Firing::new(counts, slots, Distribution::Spread);
+                let mut burst = Firing::new(counts, slots, Distribution::Burst);
+                for slot in 0..slots {
+                    let k = u32::from(slot);
+                    let of = |fires: &dyn Fn(u32) -> bool| {
+                        (0..).zip(counts).map(|(i, c)| u16::from(fires(c.into())) << i).sum::<u16>()
+                    };
+                    let formula = of(&|c| ((k + 1) * c + h) / m > (k * c + h) / m);
+                    assert_eq!(spread.slot(slot), formula, "{counts:?} of {m}, slot {k}");
+                    assert_eq!(burst.slot(slot), of(&|c| k < c), "{counts:?} of {m}, slot {k}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,269 @@
+//! The peripheral as firmware on the same chip sees it: the registers of [`stepscope_registers`], on
+//! the same queue, drivers and state that packets and frames work on (DESIGN A6, A7).
+//!
+//! An access takes place in the last cycle that was clocked, p, after everything else in it. It reads
+//! what is so in p; what it does to EN, STEP and the start of ticks shows from p + 1 on, as for a
+//! frame that ends in p.
+
+use crate::device::{Device, Faults, Framing};
+use crate::{
+    config::{Bus, Config, DirLine, Distribution, Protocol, PulsePhasing},
+    protocol::Reason,
+    signal::{Event, Levels, MAX_CHANNELS, Sink},
+    units::Instant,
+    wire::packet::Tick,
+};
+use stepscope_registers as map;
+
+/// What only the registers hold.
+#[derive(Clone, Debug)]
+pub(super) struct Latches {
+    /// The timing in force, and what else the peripheral was built with.
+    config: Config,
+    timing: Timing,
+    orders: Tick,
+    result: u32,
+}
+
+/// The timing registers as they were written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Timing {
+    slots: u32,
+    step_period: u32,
+    pulse_width: u32,
+    dir_setup: u32,
+    dir_hold: u32,
+    settle: u32,
+    mode: u32,
+}
+
+impl Timing {
+    /// The registers of a configuration, whose times have 32 bits.
+    fn of(config: &Config) -> Self {
+        let distribution = match config.distribution {
+            Distribution::Burst => map::mode::DISTRIBUTION_BURST,
+            Distribution::Spread => map::mode::DISTRIBUTION_SPREAD,
+        };
+        let pulses = match config.pulse_phasing {
+            PulsePhasing::Simultaneous => map::mode::PULSES_SIMULTANEOUS,
+            PulsePhasing::Staggered => map::mode::PULSES_STAGGERED,
+        };
+        Self {
+            slots: config.slots.into(),
+            step_period: config.step_period as u32,
+            pulse_width: config.pulse_width as u32,
+            dir_setup: config.dir_setup as u32,
+            dir_hold: config.dir_hold as u32,
+            settle: config.settle as u32,
+            mode: map::mode::DISTRIBUTION.with(distribution) | map::mode::PULSES.with(pulses),
+        }
+    }
+
+    /// `config` with this timing, if it holds A7's rules.
+    fn apply(self, config: &Config) -> Option<Config> {
+        let bus = Bus {
+            channels: config.channels,
+            slots: u8::try_from(self.slots).ok()?,
+            step_period_cycles: self.step_period,
+            pulse_width_cycles: self.pulse_width,
+            dir_setup_cycles: self.dir_setup,
+            dir_hold_cycles: self.dir_hold,
+            distribution: match map::mode::DISTRIBUTION.of(self.mode) {
+                map::mode::DISTRIBUTION_BURST => Distribution::Burst,
+                _ => Distribution::Spread,
+            },
+            dir_line: config.dir_line,
+            pulse_phasing: match map::mode::PULSES.of(self.mode) {
+                map::mode::PULSES_SIMULTANEOUS => PulsePhasing::Simultaneous,
+                _ => PulsePhasing::Staggered,
+            },
+            settle_cycles: self.settle,
+            queue_depth: config.queue_depth,
+            boot_cycles: config.boot.0 as u32,
+        };
+        config.with_bus(&bus).ok()
+    }
+
+    /// The register at `offset`, if it is one of these.
+    const fn place(&mut self, offset: u32) -> Option<&mut u32> {
+        match offset {
+            map::slots::OFFSET => Some(&mut self.slots),
+            map::step_period::OFFSET => Some(&mut self.step_period),
+            map::pulse_width::OFFSET => Some(&mut self.pulse_width),
+            map::dir_setup::OFFSET => Some(&mut self.dir_setup),
+            map::dir_hold::OFFSET => Some(&mut self.dir_hold),
+            map::settle::OFFSET => Some(&mut self.settle),
+            map::mode::OFFSET => Some(&mut self.mode),
+            _ => None,
+        }
+    }
+}
+
+impl Latches {
+    pub(super) fn new(config: &Config) -> Self {
+        Self { config: config.clone(), timing: Timing::of(config), orders: [0; MAX_CHANNELS], result: 0 }
+    }
+
+    /// Four channels' orders, the first in the lowest byte.
+    fn orders(&self, index: usize) -> u32 {
+        self.orders.as_chunks::<4>().0.get(index).map_or(0, |four| u32::from_le_bytes(*four))
+    }
+
+    fn set_orders(&mut self, index: usize, value: u32) {
+        let used = usize::from(self.config.channels);
+        if let Some(four) = self.orders.as_chunks_mut::<4>().0.get_mut(index) {
+            *four = value.to_le_bytes();
+        }
+        self.orders.iter_mut().skip(used).for_each(|byte| *byte = 0);
+    }
+}
+
+/// Which of several registers stands at `offset`, if one does.
+fn index(register: &map::table::Register, offset: u32) -> Option<usize> {
+    let within = register.offset <= offset && offset < register.end() && offset.is_multiple_of(4);
+    within.then_some((offset.wrapping_sub(register.offset) / 4) as usize)
+}
+
+impl Device {
+    /// Reads the register at `offset`, in bytes, as firmware on the chip would in the last cycle that
+    /// was run. Where no register is it reads 0; before cycle 0, what they are at reset.
+    #[must_use]
+    pub fn read(&self, offset: u32) -> u32 {
+        let (latches, config) = (&self.latches, &self.latches.config);
+        if let Some(index) = index(&map::position::REGISTER, offset) {
+            return self.positions().get(index).map_or(0, |position| position.cast_unsigned());
+        }
+        if let Some(index) = index(&map::orders::REGISTER, offset) {
+            return latches.orders(index);
+        }
+        match offset {
+            map::id::OFFSET => map::id::MAGIC_STEP,
+            map::capabilities::OFFSET => capabilities(config),
+            map::clock_hz::OFFSET => config.clock_hz,
+            map::boot::OFFSET => config.boot.0 as u32,
+            map::result::OFFSET => latches.result,
+            map::status::OFFSET => self.status_register(),
+            map::faults::OFFSET => self.faults().bits().into(),
+            map::ticks_done::OFFSET => self.ticks_done(),
+            _ => {
+                let mut timing = latches.timing;
+                timing.place(offset).map_or(0, |value| *value)
+            }
+        }
+    }
+
+    /// Writes the register at `offset`, in bytes, as firmware on the chip would in the last cycle that
+    /// was run, after everything else in it; what it does shows from the next cycle on. Where no
+    /// register is, in one that is only read, and before cycle 0 it does nothing.
+    pub fn write(&mut self, offset: u32, value: u32, sink: &mut impl Sink) {
+        if self.now == Instant::RESET {
+            return;
+        }
+        // A write is something that happened: time is not settled to before it.
+        self.last = self.present();
+        self.now = self.last.next();
+        self.wake = self.now;
+        if let Some(index) = index(&map::orders::REGISTER, offset) {
+            return self.latches.set_orders(index, value);
+        }
+        match offset {
+            map::control::OFFSET => self.command(value, sink),
+            map::push::OFFSET => self.push(sink),
+            map::faults::OFFSET => self.machine.clear_faults(Faults::from_bits(value as u16)),
+            map::mode::OFFSET => {
+                self.latches.timing.mode =
+                    value & (map::mode::DISTRIBUTION.mask() | map::mode::PULSES.mask());
+            }
+            _ => {
+                if let Some(place) = self.latches.timing.place(offset) {
+                    *place = value;
+                }
+            }
+        }
+    }
+
+    /// The last cycle that was run. A run to the end of all change leaves `now` behind it.
+    fn present(&self) -> Instant {
+        self.before().max(self.last_active())
+    }
+
+    /// The highest command whose bit is set.
+    fn command(&mut self, value: u32, sink: &mut impl Sink) {
+        let now = self.last;
+        self.latches.result = if map::control::STOP.is_set(value) {
+            self.machine.stop(now);
+            sink.event(now, Event::Stopped);
+            map::result::CODE_DONE
+        } else if map::control::DISABLE.is_set(value) {
+            if self.machine.disable(now) { map::result::CODE_DONE } else { Reason::Busy as u32 }
+        } else if map::control::ENABLE.is_set(value) {
+            self.machine.enable(now);
+            map::result::CODE_DONE
+        } else if map::control::COMMIT.is_set(value) {
+            self.retime()
+        } else {
+            return;
+        };
+    }
+
+    /// Puts the timing registers in force: what the command results in.
+    fn retime(&mut self) -> u32 {
+        if self.machine.sequencer.is_moving() {
+            return Reason::Busy as u32;
+        }
+        let Some(config) = self.latches.timing.apply(&self.latches.config) else {
+            return map::result::CODE_BAD_TIMING;
+        };
+        self.machine.retime(&config);
+        self.latches.config = config;
+        map::result::CODE_DONE
+    }
+
+    fn push(&mut self, sink: &mut impl Sink) {
+        let (now, orders) = (self.last, self.latches.orders);
+        self.latches.result = match self.machine.admit(now, &orders, 1) {
+            Ok(()) => {
+                self.machine.sequencer.push(now, orders);
+                sink.event(now, Event::Pushed);
+                map::result::CODE_DONE
+            }
+            Err(reason) => reason as u32,
+        };
+    }
+
+    fn status_register(&self) -> u32 {
+        use map::status::{EN, EXPECTED_SEQ, FREE, MOVING, PENDING, STATE};
+        let expected_seq = match &self.framing {
+            Framing::Framed(controller) => controller.expected_seq(),
+            Framing::Raw(_) => 0,
+        };
+        let status = self.machine.status(self.present(), expected_seq);
+        let pending = self.latches.timing != Timing::of(&self.latches.config);
+        STATE.with(status.state as u32)
+            | FREE.with(status.free.into())
+            | EXPECTED_SEQ.with(expected_seq.into())
+            | MOVING.with(self.machine.sequencer.is_moving().into())
+            | EN.with((self.machine.transceiver.levels() & Levels::EN != 0).into())
+            | PENDING.with(pending.into())
+    }
+}
+
+fn capabilities(config: &Config) -> u32 {
+    use map::capabilities::{CHANNELS, DIR_LINE, PROTOCOL, QUEUE_DEPTH, VERSION};
+    let dir_line = match config.dir_line {
+        DirLine::PerChannel => map::capabilities::DIR_LINE_PER_CHANNEL,
+        DirLine::Common => map::capabilities::DIR_LINE_COMMON,
+    };
+    let protocol = match config.protocol {
+        Protocol::Raw => map::capabilities::PROTOCOL_RAW,
+        Protocol::Framed => map::capabilities::PROTOCOL_FRAMED,
+    };
+    VERSION.with(map::capabilities::VERSION_1)
+        | CHANNELS.with(config.channels.into())
+        | QUEUE_DEPTH.with(config.queue_depth.into())
+        | DIR_LINE.with(dir_line)
+        | PROTOCOL.with(protocol)
+}
+
+#[cfg(test)]
+mod tests;

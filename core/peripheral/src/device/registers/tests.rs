@@ -1,0 +1,388 @@
+//! What the registers do, against the data sheet's sentences.
+
+use super::*;
+use crate::{signal::Record, units::Cycles};
+use alloc::{vec, vec::Vec};
+use map::{
+    RegisterBus,
+    control::{COMMIT, DISABLE, ENABLE, STOP},
+    result::{CODE_BAD_TIMING, CODE_BUSY, CODE_DONE, CODE_QUEUE_FULL, CODE_STOPPED, CODE_TOO_MANY_STEPS},
+    status::{EN, FREE, MOVING, PENDING, STATE, STATE_BUSY, STATE_MOVING, STATE_READY, STATE_STOPPED},
+    table::{Access, Register, Reset},
+};
+use crate::config::SerialLine;
+
+/// A tick of 4 slots of 20 cycles, pulses of 5 cycles 3 after their slot, 2 places, 100 cycles of self-test.
+const BUS: Bus = Bus {
+    channels: 2,
+    slots: 4,
+    step_period_cycles: 20,
+    pulse_width_cycles: 5,
+    dir_setup_cycles: 3,
+    dir_hold_cycles: 0,
+    distribution: Distribution::Burst,
+    dir_line: DirLine::PerChannel,
+    pulse_phasing: PulsePhasing::Simultaneous,
+    settle_cycles: 0,
+    queue_depth: 2,
+    boot_cycles: 100,
+};
+
+#[derive(Default)]
+struct Left {
+    trace: Vec<Record>,
+    events: Vec<Event>,
+}
+
+impl Sink for Left {
+    fn record(&mut self, record: Record) {
+        self.trace.push(record);
+    }
+
+    fn event(&mut self, _: Instant, event: Event) {
+        self.events.push(event);
+    }
+}
+
+/// A peripheral and what it left; accesses take no time.
+struct Bench {
+    device: Device,
+    left: Left,
+}
+
+impl RegisterBus for Bench {
+    fn read(&mut self, offset: u32) -> u32 {
+        self.device.read(offset)
+    }
+
+    fn write(&mut self, offset: u32, value: u32) {
+        self.device.write(offset, value, &mut self.left);
+    }
+}
+
+impl Bench {
+    fn new(bus: &Bus, line: &SerialLine) -> Self {
+        let config = Config::new(1_600_000, bus, line).expect("it holds");
+        Self { device: Device::new(&config), left: Left::default() }
+    }
+
+    /// Just after the self-test: cycle 100 was run.
+    fn ready() -> Self {
+        let mut bench = Self::new(&BUS, &SerialLine { baud: 100_000, ..SerialLine::default() });
+        bench.run_to(100);
+        bench
+    }
+
+    /// Runs to the end of cycle `last`.
+    fn run_to(&mut self, last: u64) {
+        self.device.run(true, Instant(last + 1), &mut self.left);
+    }
+
+    fn result(&mut self, offset: u32, value: u32) -> u32 {
+        self.write(offset, value);
+        self.read(map::result::OFFSET)
+    }
+
+    fn command(&mut self, command: map::table::Field) -> u32 {
+        self.result(map::control::OFFSET, command.mask())
+    }
+
+    fn push(&mut self, orders: u32) -> u32 {
+        self.write(map::orders::OFFSET, orders);
+        self.result(map::push::OFFSET, 0)
+    }
+
+    fn status(&mut self, field: map::table::Field) -> u32 {
+        field.of(self.read(map::status::OFFSET))
+    }
+
+    /// Cycles and levels of the trace without RX, TX and DE, from a cycle on.
+    fn edges_from(&self, cycle: u64) -> Vec<(u64, u64)> {
+        let records = self.left.trace.iter().filter(|record| record.cycle.0 >= cycle);
+        records.map(|record| (record.cycle.0, record.levels.0 & (Levels::EN | 0xffff_ffff))).collect()
+    }
+}
+
+fn each() -> impl Iterator<Item = (&'static Register, u32)> {
+    map::MAP.iter().flat_map(|register| (0..register.count).map(move |n| (register, register.offset + 4 * n)))
+}
+
+#[test]
+fn every_register_is_as_the_table_says() {
+    let built = [
+        ("CAPABILITIES", 0x0002_1001),
+        ("CLOCK_HZ", 1_600_000),
+        ("BOOT", 100),
+        ("STATUS", 0x0200_0200),
+        ("SLOTS", 4),
+        ("STEP_PERIOD", 20),
+        ("PULSE_WIDTH", 5),
+        ("DIR_SETUP", 3),
+        ("DIR_HOLD", 0),
+        ("SETTLE", 0),
+        ("MODE", 0),
+    ];
+    let mut bench = Bench::new(&Bus { channels: 16, ..BUS }, &SerialLine { baud: 100_000, ..SerialLine::default() });
+    for (register, offset) in each() {
+        let expected = match register.reset {
+            Reset::Is(value) => value,
+            Reset::Built => built.iter().find(|(name, _)| *name == register.name).expect("it is listed").1,
+        };
+        assert_eq!(bench.read(offset), expected, "{}", register.name);
+    }
+    bench.run_to(0);
+    for (register, offset) in each().filter(|(register, _)| register.access != Access::Wo) {
+        let before = bench.read(offset);
+        bench.write(offset, 2);
+        let changes = register.access == Access::Rw;
+        assert_eq!(bench.read(offset), if changes { 2 } else { before }, "{}", register.name);
+    }
+}
+
+#[test]
+fn where_no_register_is_reads_give_0_and_writes_do_nothing() {
+    let mut bench = Bench::ready();
+    let before: Vec<u32> = each().map(|(_, offset)| bench.read(offset)).collect();
+    let known: Vec<u32> = each().map(|(_, offset)| offset).collect();
+    for offset in (0..0x200).chain([u32::MAX - 3, u32::MAX]).filter(|offset| !known.contains(offset)) {
+        bench.write(offset, u32::MAX);
+        assert_eq!(bench.read(offset), 0, "{offset:#x}");
+    }
+    assert_eq!(each().map(|(_, offset)| bench.read(offset)).collect::<Vec<_>>(), before);
+}
+
+#[test]
+fn before_cycle_0_nothing_is_taken_and_in_it_a_push_starts_its_tick_in_cycle_1() {
+    let mut bench = Bench::new(&Bus { boot_cycles: 0, ..BUS }, &SerialLine { baud: 100_000, ..SerialLine::default() });
+    assert_eq!((bench.push(0x01), bench.status(MOVING)), (CODE_DONE, 0), "RESULT is as at reset");
+    bench.run_to(0);
+    assert_eq!(bench.push(0x81), CODE_DONE);
+    bench.run_to(200);
+    let en = Levels::EN;
+    assert_eq!(
+        bench.edges_from(0),
+        [(0, en), (1, en | 0x1_0000), (1 + 3, en | 0x1_0001), (1 + 3 + 5, en | 0x1_0000)]
+    );
+}
+
+#[test]
+fn a_push_is_judged_in_the_data_sheets_order() {
+    let mut bench = Bench::new(&BUS, &SerialLine { baud: 100_000, ..SerialLine::default() });
+    let faults = map::faults::OFFSET;
+    bench.run_to(50);
+    assert_eq!((bench.push(0x7f), bench.status(STATE)), (CODE_BUSY, STATE_BUSY));
+    bench.command(STOP);
+    assert_eq!((bench.push(0x7f), bench.status(STATE)), (CODE_STOPPED, STATE_STOPPED));
+    bench.command(ENABLE);
+    bench.run_to(99);
+    assert_eq!((bench.push(0x01), bench.read(faults)), (CODE_BUSY, 0));
+    bench.run_to(100);
+    assert_eq!((bench.status(STATE), bench.status(FREE)), (STATE_READY, 2));
+    assert_eq!((bench.push(0x81), bench.push(0x81), bench.status(FREE)), (CODE_DONE, CODE_DONE, 0));
+    assert_eq!((bench.push(0x05), bench.read(faults)), (CODE_TOO_MANY_STEPS, 0x20));
+    assert_eq!((bench.push(0x04), bench.read(faults)), (CODE_QUEUE_FULL, 0x30));
+    assert_eq!(bench.status(STATE), STATE_MOVING);
+    bench.run_to(101);
+    assert_eq!(bench.status(FREE), 1, "the first tick left the queue at its start");
+    bench.run_to(101 + 2 * 80 - 1);
+    assert_eq!((bench.status(MOVING), bench.read(map::ticks_done::OFFSET)), (1, 1));
+    bench.run_to(101 + 2 * 80);
+    assert_eq!((bench.status(MOVING), bench.read(map::ticks_done::OFFSET)), (0, 2));
+    assert_eq!(bench.read(map::position::OFFSET), 2);
+}
+
+#[test]
+fn faults_clear_where_a_one_is_written() {
+    let mut bench = Bench::ready();
+    for order in [0x7f, 1, 1, 1] {
+        bench.push(order);
+    }
+    let steps = [(0x10, 0x20), (0, 0x20), (0x40, 0x20), (u32::MAX, 0)];
+    for (written, expected) in steps {
+        bench.write(map::faults::OFFSET, written);
+        assert_eq!(bench.read(map::faults::OFFSET), expected, "{written:#x}");
+    }
+}
+
+#[test]
+fn underrun_is_set_on_a_framed_line_and_can_be_cleared() {
+    let line = SerialLine { baud: 100_000, protocol: Protocol::Framed, ..SerialLine::default() };
+    let mut bench = Bench::new(&BUS, &line);
+    bench.run_to(100);
+    bench.push(1);
+    bench.run_to(300);
+    assert_eq!(bench.read(map::faults::OFFSET), map::faults::UNDERRUN.mask());
+    bench.write(map::faults::OFFSET, map::faults::UNDERRUN.mask());
+    bench.push(0);
+    bench.run_to(500);
+    assert_eq!(bench.read(map::faults::OFFSET), 0, "a tick of zero counts was the last");
+}
+
+#[test]
+fn orders_of_channels_that_are_not_there_are_not_kept() {
+    let mut bench = Bench::ready();
+    assert_eq!(bench.push(0x7f7f_0201), CODE_DONE);
+    assert_eq!(bench.read(map::orders::OFFSET), 0x0201);
+    bench.run_to(200);
+    assert_eq!(bench.device.positions()[..4], [-1, -2, 0, 0]);
+    assert_eq!(bench.read(map::position::OFFSET + 4), u32::MAX - 1, "two's complement");
+}
+
+#[test]
+fn stop_in_mid_pulse_ends_the_pulse_in_the_next_cycle() {
+    let mut bench = Bench::ready();
+    bench.push(0x8202);
+    // The tick starts at 101, STEP rises at 104.
+    bench.run_to(105);
+    assert_eq!(bench.command(STOP), CODE_DONE);
+    assert_eq!((bench.status(EN), bench.status(STATE)), (1, STATE_STOPPED), "EN falls in the next cycle");
+    bench.run_to(400);
+    assert_eq!(bench.edges_from(105), [(106, 0x2_0000)]);
+    assert_eq!(bench.device.positions()[..2], [-1, 1], "a pulse that was cut counts");
+    assert_eq!((bench.status(EN), bench.status(FREE), bench.status(MOVING)), (0, 2, 0));
+    assert_eq!(bench.command(ENABLE), CODE_DONE);
+    bench.run_to(500);
+    assert_eq!(bench.edges_from(107), [(401, Levels::EN | 0x2_0000)]);
+}
+
+#[test]
+fn stop_enable_and_push_in_one_cycle_start_the_tick_in_the_next() {
+    let mut bench = Bench::ready();
+    bench.push(0x04);
+    bench.run_to(105);
+    assert_eq!((bench.command(STOP), bench.command(ENABLE), bench.push(0x81)), (0, 0, CODE_DONE));
+    bench.run_to(300);
+    let right = Levels::EN | 0x1_0000;
+    assert_eq!(bench.edges_from(105), [(106, right), (109, right | 1), (114, right)]);
+    assert_eq!((bench.device.positions()[0], bench.device.ticks_done()), (0, 1));
+}
+
+#[test]
+fn disable_waits_for_the_ticks_end() {
+    let mut bench = Bench::ready();
+    bench.push(0x01);
+    bench.run_to(101 + 80 - 1);
+    assert_eq!((bench.command(DISABLE), bench.status(STATE)), (CODE_BUSY, STATE_MOVING));
+    bench.run_to(101 + 80);
+    assert_eq!((bench.command(DISABLE), bench.status(STATE)), (CODE_DONE, STATE_STOPPED));
+    bench.run_to(200);
+    assert_eq!(bench.edges_from(181), [(182, 0)]);
+}
+
+#[test]
+fn of_several_commands_the_highest_is_carried_out() {
+    let rows = [
+        (0, STATE_READY),
+        (ENABLE.mask() | DISABLE.mask(), STATE_STOPPED),
+        (ENABLE.mask() | COMMIT.mask(), STATE_READY),
+        (0xf, STATE_STOPPED),
+        (0xffff_fff0, STATE_STOPPED),
+        (0, STATE_STOPPED),
+    ];
+    let mut bench = Bench::ready();
+    for (written, state) in rows {
+        bench.write(map::control::OFFSET, written);
+        assert_eq!(bench.status(STATE), state, "{written:#x}");
+    }
+}
+
+#[test]
+fn commit_makes_the_peripheral_one_that_was_built_with_the_timing() {
+    let bus = Bus {
+        slots: 6,
+        step_period_cycles: 44,
+        pulse_width_cycles: 7,
+        dir_setup_cycles: 8,
+        dir_hold_cycles: 2,
+        settle_cycles: 19,
+        distribution: Distribution::Spread,
+        pulse_phasing: PulsePhasing::Staggered,
+        ..BUS
+    };
+    let line = SerialLine { baud: 100_000, ..SerialLine::default() };
+    let (mut bench, mut built) = (Bench::new(&BUS, &line), Bench::new(&bus, &line));
+    bench.run_to(0);
+    built.run_to(0);
+    for register in map::MAP.iter().filter(|r| (map::slots::OFFSET..=map::mode::OFFSET).contains(&r.offset)) {
+        assert_eq!(bench.status(PENDING), u32::from(register.offset != map::slots::OFFSET));
+        bench.write(register.offset, built.read(register.offset));
+    }
+    assert_eq!((bench.command(COMMIT), bench.status(PENDING)), (CODE_DONE, 0));
+    for bench in [&mut bench, &mut built] {
+        bench.run_to(100);
+        assert_eq!((bench.push(0x8605), bench.push(0x0283)), (CODE_DONE, CODE_DONE));
+        bench.run_to(2_000);
+    }
+    assert_eq!(bench.left.trace, built.left.trace);
+    assert_eq!(bench.device.ticks_done(), 2);
+}
+
+#[test]
+fn a_refused_commit_changes_nothing() {
+    let rows = [
+        (map::pulse_width::OFFSET, 18, CODE_BAD_TIMING),
+        (map::pulse_width::OFFSET, 17, CODE_DONE),
+        (map::pulse_width::OFFSET, 0, CODE_BAD_TIMING),
+        (map::slots::OFFSET, 128, CODE_BAD_TIMING),
+        (map::slots::OFFSET, 256 + 4, CODE_BAD_TIMING),
+        (map::slots::OFFSET, 127, CODE_DONE),
+        (map::step_period::OFFSET, 1_000_000_001, CODE_BAD_TIMING),
+        (map::dir_hold::OFFSET, u32::MAX, CODE_BAD_TIMING),
+        (map::mode::OFFSET, map::mode::PULSES.mask(), CODE_DONE),
+    ];
+    for (offset, value, expected) in rows {
+        let (mut bench, mut untouched) = (Bench::ready(), Bench::ready());
+        bench.write(offset, value);
+        assert_eq!(bench.command(COMMIT), expected, "{value} at {offset:#x}");
+        assert_eq!(bench.read(offset), value, "what was written can be put right");
+        assert_eq!(bench.status(PENDING), u32::from(expected != CODE_DONE));
+        if expected != CODE_DONE {
+            for bench in [&mut bench, &mut untouched] {
+                assert_eq!((bench.push(0x04), bench.push(0x05)), (CODE_DONE, CODE_TOO_MANY_STEPS));
+                bench.run_to(300);
+            }
+            assert_eq!(bench.left.trace, untouched.left.trace);
+        }
+    }
+    let mut bench = Bench::ready();
+    bench.write(map::slots::OFFSET, 3);
+    bench.push(0x04);
+    assert_eq!(bench.command(COMMIT), CODE_BUSY, "a tick waits");
+    bench.run_to(180);
+    assert_eq!(bench.command(COMMIT), CODE_BUSY, "a tick runs");
+    bench.run_to(181);
+    assert_eq!((bench.command(COMMIT), bench.push(0x04)), (CODE_DONE, CODE_TOO_MANY_STEPS));
+}
+
+#[test]
+fn a_stopped_controller_drops_raw_packets_without_a_fault() {
+    let mut bench = Bench::ready();
+    bench.command(STOP);
+    // Two bytes of 16 cycles a bit: start bit, data from bit 0 up, stop bit.
+    for byte in [0x01_u32, 0x81] {
+        for bit in 0..10 {
+            let level = (byte << 1 | 1 << 9) >> bit & 1 != 0;
+            let end = bench.device.now() + Cycles(16);
+            bench.device.run(level, end, &mut bench.left);
+        }
+    }
+    let packets = bench.left.events.iter().filter(|event| matches!(event, Event::Packet(_)));
+    assert_eq!(packets.collect::<Vec<_>>(), vec![&Event::Packet(crate::signal::PacketOutcome::Stopped)]);
+    assert_eq!((bench.read(map::faults::OFFSET), bench.status(MOVING)), (0, 0));
+}
+
+#[test]
+fn time_does_not_go_back_behind_a_write() {
+    let mut bench = Bench::ready();
+    bench.push(0x04);
+    bench.device.run(true, Instant::NEVER, &mut bench.left);
+    bench.push(0x01);
+    let end = 101 + 80;
+    assert_eq!(bench.device.now(), Instant(end + 1));
+    bench.run_to(5_000);
+    bench.write(map::faults::OFFSET, 0);
+    let rest = bench.device.last_active().next();
+    bench.device.finish(rest);
+    assert_eq!(bench.device.now(), Instant(5_001));
+    assert_eq!(bench.edges_from(end), [(end + 4, Levels::EN | 1), (end + 9, Levels::EN)]);
+}

@@ -1,0 +1,285 @@
+//! The queue and the tick sequencer (DESIGN A7).
+//!
+//! The tick at the head of the queue starts at c0 = max(p + 1, e): p its commit cycle, e the end of
+//! the tick before. It leaves the queue at c0 and ends at e = c0 + M*Ts; ticks_done counts there.
+//! When the queue is empty at e the sequencer rests: STEP = 0, DIR keeps its level.
+
+use crate::device::{
+    Faults,
+    plan::{Change, Lines, Plan, STEPS},
+};
+use crate::{
+    config::{Config, Protocol},
+    signal::{Event, Levels, MAX_CHANNELS, Record, Sink},
+    units::{Cycles, Instant},
+    wire::packet::{Order, Tick},
+};
+use alloc::collections::VecDeque;
+
+#[derive(Clone, Debug)]
+pub(super) struct Sequencer {
+    tick: Cycles,
+    depth: usize,
+    queue: VecDeque<Tick>,
+    plan: Plan,
+    running: Option<Running>,
+    /// STEP falls in the next cycle, after a stop.
+    halt: bool,
+    /// Whether a tick with steps that none follows is a fault: the framed protocol's rule.
+    framed: bool,
+    faults: Faults,
+    /// Next cycle in which the sequencer does something: the next change of the plan or the end of
+    /// the tick that runs, else the start of the queue's head; [`Instant::NEVER`] at rest.
+    deadline: Instant,
+    lines: Lines,
+    /// Positions as of the end of the last tick.
+    positions: [i32; MAX_CHANNELS],
+    ticks_done: u32,
+    /// Where the last tick ended.
+    last_active: Instant,
+}
+
+/// The tick that runs: the plan's.
+#[derive(Clone, Copy, Debug)]
+struct Running {
+    c0: Instant,
+    end: Instant,
+    /// Next entry of the plan's changes.
+    next: usize,
+}
+
+impl Sequencer {
+    #[inline]
+    pub(super) fn new(config: &Config) -> Self {
+        Self {
+            tick: config.tick(),
+            depth: usize::from(config.queue_depth),
+            queue: VecDeque::with_capacity(usize::from(config.queue_depth)),
+            plan: Plan::new(config),
+            running: None,
+            halt: false,
+            framed: config.protocol == Protocol::Framed,
+            faults: Faults::default(),
+            deadline: Instant::NEVER,
+            lines: 0,
+            positions: [0; MAX_CHANNELS],
+            ticks_done: 0,
+            last_active: Instant::RESET,
+        }
+    }
+
+    /// STEP and DIR now.
+    #[inline]
+    pub(super) const fn lines(&self) -> Lines {
+        self.lines
+    }
+
+    #[inline]
+    pub(super) const fn ticks_done(&self) -> u32 {
+        self.ticks_done
+    }
+
+    /// Where the last tick ended: at rest, the last cycle in which the sequencer did
+    /// something.
+    #[inline]
+    pub(super) const fn last_active(&self) -> Instant {
+        self.last_active
+    }
+
+    /// Positions now: those at the last tick's end and the edges of the one that runs.
+    #[inline]
+    pub(super) fn positions(&self) -> [i32; MAX_CHANNELS] {
+        let mut positions = self.positions;
+        if let Some(running) = self.running {
+            let mut before = 0;
+            for change in self.plan.changes().iter().take(running.next) {
+                let rising = change.lines & !before & STEPS;
+                count(&mut positions, self.plan.orders(), |channel| rising >> channel & 1);
+                before = change.lines;
+            }
+        }
+        positions
+    }
+
+    /// Queues a tick that was committed in cycle `now`; false if there is no place.
+    #[inline]
+    pub(super) fn push(&mut self, now: Instant, tick: Tick) -> bool {
+        if self.queue.len() >= self.depth {
+            return false;
+        }
+        if self.queue.is_empty() && self.running.is_none() {
+            self.deadline = now.next();
+        }
+        self.queue.push_back(tick);
+        true
+    }
+
+    /// UNDERRUN, if it has been.
+    #[inline]
+    pub(super) const fn faults(&self) -> Faults {
+        self.faults
+    }
+
+    #[inline]
+    pub(super) const fn clear_faults(&mut self, which: Faults) {
+        self.faults.clear(which);
+    }
+
+    /// Another timing for the ticks that start from now on; the caller knows that none runs or waits.
+    #[inline]
+    pub(super) fn retime(&mut self, config: &Config) {
+        self.tick = config.tick();
+        self.plan = Plan::new(config);
+    }
+
+    /// Whether a tick runs or waits.
+    #[inline]
+    pub(super) fn is_moving(&self) -> bool {
+        self.running.is_some() || !self.queue.is_empty()
+    }
+
+    /// Free places in the queue.
+    #[inline]
+    pub(super) fn free(&self) -> u8 {
+        (self.depth - self.queue.len()) as u8
+    }
+
+    /// Abandons the tick that runs and those that wait: STEP falls in the cycle after `now`, DIR
+    /// stays. Pulses that rose count.
+    #[inline]
+    pub(super) fn stop(&mut self, now: Instant) {
+        self.positions = self.positions();
+        self.running = None;
+        self.queue.clear();
+        self.halt = true;
+        self.deadline = now.next();
+    }
+
+    /// Next cycle in which the sequencer does something; [`Instant::NEVER`] at rest.
+    #[inline]
+    pub(super) const fn deadline(&self) -> Instant {
+        self.deadline
+    }
+
+    /// Cycle `now`.
+    #[inline(always)]
+    pub(super) fn clock(&mut self, now: Instant, sink: &mut impl Sink) {
+        if self.deadline == now {
+            self.act(now, sink);
+        }
+    }
+
+    /// All that falls due in cycle `now`.
+    #[inline]
+    fn act(&mut self, now: Instant, sink: &mut impl Sink) {
+        while self.deadline == now {
+            match self.running {
+                Some(running) => self.follow(running, now, sink),
+                None if self.halt => self.halt(now),
+                None => self.begin(now, sink),
+            }
+        }
+    }
+
+    /// The plan's change that falls due in cycle `now`, or the tick's end.
+    #[inline]
+    fn follow(&mut self, running: Running, now: Instant, sink: &mut impl Sink) {
+        match self.plan.changes().get(running.next) {
+            Some(change) if running.c0 + Cycles(change.offset) == now => {
+                self.lines = change.lines;
+                self.go_on(Running { next: running.next + 1, ..running });
+            }
+            _ => self.end(now, sink),
+        }
+    }
+
+    #[inline]
+    fn go_on(&mut self, running: Running) {
+        let change = self.plan.changes().get(running.next);
+        self.deadline =
+            change.map_or(running.end, |change| running.c0 + Cycles(change.offset)).min(running.end);
+        self.running = Some(running);
+    }
+
+    #[inline]
+    fn halt(&mut self, now: Instant) {
+        self.halt = false;
+        self.lines &= !STEPS;
+        self.last_active = now;
+        self.deadline = if self.queue.is_empty() { Instant::NEVER } else { now };
+    }
+
+    #[inline]
+    fn end(&mut self, now: Instant, sink: &mut impl Sink) {
+        sink.event(now, Event::TickEnd);
+        self.last_active = now;
+        let orders = self.plan.orders();
+        count(&mut self.positions, orders, |channel| {
+            orders.get(channel).map_or(0, |&byte| u32::from(Order::parse(byte).steps))
+        });
+        self.ticks_done = self.ticks_done.wrapping_add(1);
+        self.running = None;
+        self.deadline = if self.queue.is_empty() { Instant::NEVER } else { now };
+        if self.framed && self.queue.is_empty() && self.plan.has_steps() {
+            self.faults.set(Faults::UNDERRUN);
+            sink.event(now, Event::Underrun);
+        }
+    }
+
+    #[inline]
+    fn begin(&mut self, now: Instant, sink: &mut impl Sink) {
+        self.deadline = Instant::NEVER;
+        if let Some(tick) = self.queue.pop_front() {
+            sink.event(now, Event::TickStart { orders: tick });
+            self.plan.set(tick);
+            self.go_on(Running { c0: now, end: now + self.tick, next: 0 });
+        }
+    }
+
+    /// Runs alone through the cycles before `until`, while nothing else changes: `base` are the
+    /// other signals. Stops after the tick in which the sink asks for a pause. Gives the levels.
+    #[inline]
+    pub(super) fn run(&mut self, until: Instant, base: u64, sink: &mut impl Sink) -> Levels {
+        while self.deadline < until && !sink.paused() {
+            self.run_pulses(until, base, sink);
+            let now = self.deadline;
+            if now < until {
+                let lines = self.lines;
+                self.clock(now, sink);
+                if self.lines != lines {
+                    sink.record(Record { cycle: now, levels: Levels(base | u64::from(self.lines)) });
+                }
+            }
+        }
+        Levels(base | u64::from(self.lines))
+    }
+
+    /// Walks along the plan of the tick that runs: the inner loop of a long run.
+    #[inline]
+    fn run_pulses(&mut self, until: Instant, base: u64, sink: &mut impl Sink) {
+        let Some(mut running) = self.running else { return };
+        let stop = until.min(running.end);
+        for Change { offset, lines } in self.plan.changes().get(running.next..).unwrap_or_default() {
+            let cycle = running.c0 + Cycles(*offset);
+            if cycle >= stop {
+                break;
+            }
+            running.next += 1;
+            if *lines != self.lines {
+                self.lines = *lines;
+                sink.record(Record { cycle, levels: Levels(base | u64::from(*lines)) });
+            }
+        }
+        self.go_on(running);
+    }
+}
+
+/// Adds `steps` of each channel in its direction.
+#[inline]
+fn count(positions: &mut [i32; MAX_CHANNELS], orders: &Tick, steps: impl Fn(usize) -> u32) {
+    for (channel, (position, order)) in positions.iter_mut().zip(orders).enumerate() {
+        let steps = steps(channel) as i32;
+        let change = if Order::parse(*order).right { steps } else { -steps };
+        *position = position.wrapping_add(change);
+    }
+}

@@ -1,0 +1,151 @@
+//! The signals that a frame moves (DESIGN A6): EN, and the reply on TX with DE around it.
+//!
+//! ```text
+//! p            p + 10*B    p + 11*B                     t + floor(10*clock_hz/receiver_baud)
+//! frame's end  DE rises    first start bit … last byte at t … DE falls
+//! ```
+
+use crate::{
+    config::Config,
+    signal::Levels,
+    units::{Cycles, Instant},
+    wire::{Schedule, Sender},
+};
+use alloc::rc::Rc;
+
+/// Bit times from the end of a frame to the rise of DE.
+const TURNAROUND_BITS: u64 = 10;
+
+/// EN, TX and DE of one controller.
+#[derive(Clone, Debug)]
+pub(super) struct Transceiver {
+    clock_hz: u32,
+    /// The rate of replies: the controller's own.
+    baud: u32,
+    bit: Cycles,
+    levels: u64,
+    /// What EN becomes, and when.
+    enable: Option<(Instant, bool)>,
+    reply: Option<Reply>,
+    next: Instant,
+}
+
+#[derive(Clone, Debug)]
+struct Reply {
+    rise: Instant,
+    fall: Instant,
+    sender: Sender,
+}
+
+impl Transceiver {
+    #[inline]
+    pub(super) const fn new(config: &Config) -> Self {
+        Self {
+            clock_hz: config.clock_hz,
+            baud: config.reply_baud,
+            bit: config.bit(),
+            levels: Levels::EN | Levels::TX,
+            enable: None,
+            reply: None,
+            next: Instant::NEVER,
+        }
+    }
+
+    /// EN, TX and DE now.
+    #[inline(always)]
+    pub(super) const fn levels(&self) -> u64 {
+        self.levels
+    }
+
+    /// Next cycle in which a signal changes; [`Instant::NEVER`] if none does.
+    #[inline(always)]
+    pub(super) const fn deadline(&self) -> Instant {
+        self.next
+    }
+
+    /// EN, TX and DE in cycle `now`, which is not after [`Self::deadline`], and the next change
+    /// after it.
+    #[inline]
+    pub(super) fn ahead(&self, now: Instant) -> (u64, Instant) {
+        if self.next != now {
+            return (self.levels, self.next);
+        }
+        let mut then = self.clone();
+        then.act(now);
+        (then.levels, then.next)
+    }
+
+    /// Cycle `now`.
+    #[inline(always)]
+    pub(super) fn clock(&mut self, now: Instant) {
+        if self.next == now {
+            self.act(now);
+        }
+    }
+
+    #[inline]
+    fn act(&mut self, now: Instant) {
+        if let Some((_, high)) = self.enable.take_if(|(at, _)| *at == now) {
+            self.set(Levels::EN, high);
+        }
+        if let Some(reply) = &mut self.reply {
+            if reply.rise == now {
+                self.levels |= Levels::DE;
+            }
+            while reply.sender.next_edge() == now {
+                reply.sender.pass();
+            }
+            let (tx, over) = (reply.sender.level(), reply.fall == now);
+            self.set(Levels::TX, tx);
+            if over {
+                self.set(Levels::DE, false);
+                self.reply = None;
+            }
+        }
+        self.look_ahead(now);
+    }
+
+    #[inline]
+    const fn set(&mut self, mask: u64, high: bool) {
+        self.levels = if high { self.levels | mask } else { self.levels & !mask };
+    }
+
+    /// Finds the next change after `now`.
+    #[inline]
+    fn look_ahead(&mut self, now: Instant) {
+        let enable = self.enable.map_or(Instant::NEVER, |(at, _)| at);
+        let reply = self.reply.as_ref().map_or(Instant::NEVER, |reply| {
+            if now < reply.rise { reply.rise } else { reply.sender.next_edge().min(reply.fall) }
+        });
+        self.next = enable.min(reply);
+    }
+
+    /// From the end of a frame to the rise of DE.
+    #[inline]
+    pub(super) const fn turnaround(&self) -> Cycles {
+        Cycles(TURNAROUND_BITS * self.bit.0)
+    }
+
+    /// EN from the cycle after `now` on.
+    #[inline]
+    pub(super) fn enable(&mut self, now: Instant, high: bool) {
+        self.enable = Some((now.next(), high));
+        self.look_ahead(now);
+    }
+
+    /// Answers a frame that ended in cycle `now`. Gives the first start bit and the fall of DE.
+    #[inline]
+    pub(super) fn reply(&mut self, now: Instant, bytes: &[u8]) -> (Instant, Instant) {
+        let (clock_hz, baud) = (u64::from(self.clock_hz), u64::from(self.baud.max(1)));
+        let rise = now + self.turnaround();
+        let start = rise + self.bit;
+        let last = 10 * (bytes.len() as u64).saturating_sub(1) * clock_hz / baud;
+        let fall = start + Cycles(last + 10 * clock_hz / baud);
+        let mut schedule = Schedule::default();
+        schedule.push(start, bytes);
+        let sender = Sender::new(Rc::new(schedule), self.clock_hz, self.baud);
+        self.reply = Some(Reply { rise, fall, sender });
+        self.look_ahead(now);
+        (start, fall)
+    }
+}

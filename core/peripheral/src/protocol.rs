@@ -1,0 +1,188 @@
+//! The words of the framed protocol (DESIGN A6): what a frame orders, what becomes of it, and what
+//! a controller tells of itself. How frames are encoded and read is in [`crate::wire::frame`].
+
+use core::fmt;
+
+/// Most ticks in one TICKS frame.
+pub const MAX_TICKS: u8 = 32;
+
+/// Declares what one byte of the protocol can mean: each meaning with its byte and its name in DESIGN A6.
+macro_rules! meanings {
+    ($($(#[$meta:meta])* pub enum $name:ident {
+        $($(#[$variant_meta:meta])* $variant:ident = $byte:literal $word:literal,)*
+    })*) => {$(
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[repr(u8)]
+        pub enum $name {
+            $($(#[$variant_meta])* $variant = $byte,)*
+        }
+
+        impl $name {
+            /// All of them, in the order of their bytes.
+            pub const ALL: &[Self] = &[$(Self::$variant),*];
+
+            /// What a byte means, if it means something.
+            #[must_use]
+            pub const fn parse(byte: u8) -> Option<Self> {
+                match byte {
+                    $($byte => Some(Self::$variant),)*
+                    _ => None,
+                }
+            }
+
+            /// Its name in DESIGN A6.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $word,)*
+                }
+            }
+        }
+    )*};
+}
+
+meanings! {
+    /// What a frame orders (DESIGN A6).
+    pub enum Kind {
+        /// Ticks for the queue.
+        Ticks = 1 "TICKS",
+        /// Drivers on; leaves STOPPED.
+        Enable = 2 "ENABLE",
+        /// Drivers off, if nothing moves.
+        Disable = 3 "DISABLE",
+        /// A reply, and nothing else.
+        Status = 4 "STATUS",
+        /// Emergency stop.
+        Stop = 5 "STOP",
+        /// Expected sequence number 0, fault flags cleared.
+        Resync = 6 "RESYNC",
+    }
+
+    /// Why a frame was refused (DESIGN A6).
+    pub enum Reason {
+        /// Neither the expected sequence number nor the one before it.
+        BadSeq = 1 "BAD_SEQ",
+        /// Fewer free places in the queue than ticks.
+        QueueFull = 2 "QUEUE_FULL",
+        /// A byte orders more steps than a tick has slots.
+        TooManySteps = 3 "TOO_MANY_STEPS",
+        /// In the self-test; or, for DISABLE, a tick runs or waits.
+        Busy = 4 "BUSY",
+        /// Stopped: ENABLE comes first.
+        Stopped = 5 "STOPPED",
+        /// The body's length or count is wrong.
+        BadBody = 6 "BAD_BODY",
+        /// No such kind.
+        UnknownKind = 7 "UNKNOWN_KIND",
+    }
+
+    /// What a controller does (DESIGN A6).
+    pub enum State {
+        /// In the self-test after reset.
+        Busy = 0 "BUSY",
+        /// Waits for ticks.
+        Ready = 1 "READY",
+        /// A tick runs or waits.
+        Moving = 2 "MOVING",
+        /// Stopped; ENABLE leaves this state.
+        Stopped = 3 "STOPPED",
+    }
+}
+
+/// What every reply tells of its controller (DESIGN A6).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Status {
+    /// What it does.
+    pub state: State,
+    /// Free places in the queue.
+    pub free: u8,
+    /// Sequence number that the next TICKS must have.
+    pub expected_seq: u8,
+    /// Fault flags.
+    pub faults: u16,
+    /// Ticks that have ended, wrapping.
+    pub ticks_done: u32,
+}
+
+/// A controller's answer to one frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reply {
+    /// The controller's own address.
+    pub address: u8,
+    /// The kind that was taken, or why the frame was refused.
+    pub answer: Result<Kind, Reason>,
+    /// The controller after it.
+    pub status: Status,
+}
+
+/// What the controller did with a frame (DESIGN A6).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrameOutcome {
+    /// So many ticks are in the queue.
+    Queued(u8),
+    /// TICKS that were taken before: acknowledged, and not queued again.
+    Repeated,
+    /// Done.
+    Taken(Kind),
+    /// Refused; nothing but fault flags changed.
+    Refused(Reason),
+    /// It was for another address.
+    OtherAddress,
+    /// Not COBS, or too short for a frame.
+    Short,
+    /// Its check failed.
+    BadCheck {
+        /// The check that came.
+        found: u32,
+        /// The check of what came before it.
+        expected: u32,
+    },
+    /// A byte too many; the rest is dropped to the next end mark.
+    Overlong,
+}
+
+impl FrameOutcome {
+    /// What is answered to it, if anything is.
+    #[must_use]
+    pub const fn answer(self) -> Option<Result<Kind, Reason>> {
+        match self {
+            Self::Queued(_) | Self::Repeated => Some(Ok(Kind::Ticks)),
+            Self::Taken(kind) => Some(Ok(kind)),
+            Self::Refused(reason) => Some(Err(reason)),
+            Self::OtherAddress | Self::Short | Self::BadCheck { .. } | Self::Overlong => None,
+        }
+    }
+}
+
+impl fmt::Display for FrameOutcome {
+    /// What became of the frame, as the page and the command's tables say it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Queued(1) => f.write_str("1 tick queued"),
+            Self::Queued(ticks) => write!(f, "{ticks} ticks queued"),
+            Self::Repeated => f.write_str("repeated: acknowledged, not queued again"),
+            Self::Taken(kind) => write!(f, "{} done", kind.name()),
+            Self::Refused(reason) => write!(f, "refused: {}", reason.name()),
+            Self::OtherAddress => f.write_str("another address"),
+            Self::Short => f.write_str("dropped: SHORT_PACKET"),
+            Self::BadCheck { found, expected } => {
+                write!(f, "dropped: CRC {found:08x} found, {expected:08x} expected")
+            }
+            Self::Overlong => f.write_str("dropped: OVERLONG"),
+        }
+    }
+}
+
+impl fmt::Display for Reply {
+    /// The reply, as the page and the command's tables say it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.answer {
+            Ok(kind) => write!(f, "ACK {}", kind.name())?,
+            Err(reason) => write!(f, "NAK {}", reason.name())?,
+        }
+        let Status { state, free, expected_seq, faults, ticks_done } = self.status;
+        let state = state.name();
+        write!(f, ": {state}, {free} free, seq {expected_seq}, faults {faults:#04x}, {ticks_done} ticks done")
+    }
+}

@@ -1,0 +1,237 @@
+//! The 36 signals of the peripheral, the records of a trace, and the sink that takes them
+//! (DESIGN A3).
+
+use crate::{
+    protocol::{FrameOutcome, Reply},
+    units::Instant,
+};
+use alloc::vec::Vec;
+
+/// Most channels that one controller drives.
+pub const MAX_CHANNELS: usize = 16;
+
+/// Levels of all signals in one cycle, as the bits of DESIGN A3.
+///
+/// | bits | signal |
+/// | --- | --- |
+/// | 0..=15 | STEP of channel 0..=15 |
+/// | 16..=31 | DIR of channel 0..=15 |
+/// | 32 | EN, high = windings powered |
+/// | 33 | RX, the line as the controller hears it |
+/// | 34 | TX, the controller's reply |
+/// | 35 | DE, the transceiver's transmit enable |
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Levels(pub u64);
+
+impl Levels {
+    /// Bit of channel 0's DIR.
+    pub const DIR_SHIFT: u32 = 16;
+    /// EN, common to all drivers.
+    pub const EN: u64 = 1 << 32;
+    /// RX, idle high.
+    pub const RX: u64 = 1 << 33;
+    /// TX, idle high.
+    pub const TX: u64 = 1 << 34;
+    /// DE, high while the controller drives the line.
+    pub const DE: u64 = 1 << 35;
+    /// At reset the drivers are powered and the line is idle.
+    pub const RESET: Self = Self(Self::EN | Self::RX | Self::TX);
+
+    /// STEP levels, channel 0 in bit 0.
+    #[must_use]
+    #[inline]
+    pub const fn step(self) -> u16 {
+        self.0 as u16
+    }
+
+    /// DIR levels, channel 0 in bit 0.
+    #[must_use]
+    #[inline]
+    pub const fn dir(self) -> u16 {
+        (self.0 >> Self::DIR_SHIFT) as u16
+    }
+
+    /// Whether every signal of `mask` is high.
+    #[must_use]
+    #[inline]
+    pub const fn has(self, mask: u64) -> bool {
+        self.0 & mask == mask
+    }
+}
+
+/// Name of the signal that stands at `bit` of the levels, as the page, VCD and CSV print it.
+#[must_use]
+#[inline]
+pub fn name(bit: u32) -> Option<alloc::string::String> {
+    match bit {
+        0..=15 => Some(alloc::format!("STEP{bit}")),
+        16..=31 => Some(alloc::format!("DIR{}", bit - 16)),
+        32 => Some("EN".into()),
+        33 => Some("RX".into()),
+        34 => Some("TX".into()),
+        35 => Some("DE".into()),
+        _ => None,
+    }
+}
+
+/// The levels of all signals from a cycle on, until the next record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub struct Record {
+    /// Cycle in which at least one signal changed.
+    pub cycle: Instant,
+    /// All signals in that cycle.
+    pub levels: Levels,
+}
+
+/// Something that happened in a cycle beside the signals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// A byte was delivered; its start bit was seen at `seen`.
+    Byte {
+        /// Where its start bit was seen.
+        seen: Instant,
+        /// The byte.
+        byte: u8,
+    },
+    /// A byte's stop bit was low; its start bit was seen at `seen`.
+    FramingError {
+        /// Where its start bit was seen.
+        seen: Instant,
+        /// Whether it drops a packet and what follows to the next gap, as on a raw line.
+        drops: bool,
+    },
+    /// A gap cut a packet short, or ended the ignoring of bytes.
+    Gap {
+        /// Whether a packet was cut.
+        short: bool,
+    },
+    /// The byte just delivered completed a packet.
+    Packet(PacketOutcome),
+    /// The byte just delivered completed a frame, or was one too many.
+    Frame(FrameOutcome),
+    /// The frame of this cycle is answered.
+    Reply {
+        /// Where the first start bit falls.
+        start: Instant,
+        /// Where DE falls.
+        end: Instant,
+        /// What is answered.
+        reply: Reply,
+    },
+    /// This controller drives the line while the host or another controller does.
+    Collision,
+    /// A tick with steps ended and none was there to follow (fault UNDERRUN).
+    Underrun,
+    /// Firmware queued a tick.
+    Pushed,
+    /// Firmware stopped the controller: the ticks that waited are gone.
+    Stopped,
+    /// A tick began.
+    TickStart {
+        /// What it orders, a byte a channel (A5).
+        orders: [u8; MAX_CHANNELS],
+    },
+    /// A tick ended.
+    TickEnd,
+}
+
+/// What the controller did with a packet (DESIGN A5).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PacketOutcome {
+    /// Its tick is in the queue.
+    Queued,
+    /// It was for another address.
+    OtherAddress,
+    /// It came during the self-test.
+    Booting,
+    /// Firmware had stopped the controller.
+    Stopped,
+    /// A byte ordered more steps than the tick has slots.
+    TooManySteps,
+    /// The queue was full.
+    QueueFull,
+}
+
+/// Takes the records of a run, in order, and what happened between.
+pub trait Sink {
+    /// A record; cycles rise strictly.
+    fn record(&mut self, record: Record);
+
+    /// Something happened in a cycle. Sinks that only want the signals leave this out.
+    #[inline]
+    fn event(&mut self, _at: Instant, _event: Event) {}
+
+    /// Whether the run should pause here.
+    #[inline]
+    fn paused(&self) -> bool {
+        false
+    }
+}
+
+/// A stored trace.
+impl Sink for Vec<Record> {
+    #[inline(always)]
+    fn record(&mut self, record: Record) {
+        self.push(record);
+    }
+}
+
+/// Two sinks at once.
+impl<A: Sink, B: Sink> Sink for (A, B) {
+    #[inline]
+    fn record(&mut self, record: Record) {
+        self.0.record(record);
+        self.1.record(record);
+    }
+
+    #[inline]
+    fn event(&mut self, at: Instant, event: Event) {
+        self.0.event(at, event);
+        self.1.event(at, event);
+    }
+
+    #[inline]
+    fn paused(&self) -> bool {
+        self.0.paused() || self.1.paused()
+    }
+}
+
+/// A sink that may be missing.
+impl<S: Sink> Sink for Option<S> {
+    #[inline]
+    fn record(&mut self, record: Record) {
+        if let Some(sink) = self {
+            sink.record(record);
+        }
+    }
+
+    #[inline]
+    fn event(&mut self, at: Instant, event: Event) {
+        if let Some(sink) = self {
+            sink.event(at, event);
+        }
+    }
+
+    #[inline]
+    fn paused(&self) -> bool {
+        self.as_ref().is_some_and(Sink::paused)
+    }
+}
+
+impl<S: Sink> Sink for &mut S {
+    #[inline]
+    fn record(&mut self, record: Record) {
+        (**self).record(record);
+    }
+
+    #[inline]
+    fn event(&mut self, at: Instant, event: Event) {
+        (**self).event(at, event);
+    }
+
+    #[inline]
+    fn paused(&self) -> bool {
+        (**self).paused()
+    }
+}

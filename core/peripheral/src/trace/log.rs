@@ -1,0 +1,362 @@
+//! The packets of a run, one row each: when, which bytes, what the controller did with it.
+
+use crate::{
+    protocol::{FrameOutcome, Kind, Reply},
+    signal::{Event, PacketOutcome, Record, Sink},
+    units::{Cycles, Instant},
+    wire::packet::Tick,
+};
+use alloc::{collections::VecDeque, vec::Vec};
+use core::fmt;
+
+/// How a row came to its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RowOutcome {
+    /// A whole packet.
+    Packet(PacketOutcome),
+    /// Cut short by a gap (fault SHORT_PACKET).
+    Short,
+    /// Dropped by a framing error (fault FRAMING); its last byte was not delivered.
+    Framing,
+    /// Bytes that were ignored after a framing error.
+    Ignored,
+    /// A frame, or what was none.
+    Frame(FrameOutcome),
+    /// What the controller answered to the frame before.
+    Reply(Reply),
+    /// The controller drove the line while another did.
+    Collision,
+    /// The run ended within it.
+    Open,
+}
+
+impl RowOutcome {
+    /// What the row is, in a word: `packet`, `frame`, `reply`, `collision`, or `open` where the run ended
+    /// before it was known.
+    #[must_use]
+    #[inline]
+    pub const fn kind(self) -> &'static str {
+        match self {
+            Self::Packet(_) | Self::Short | Self::Framing | Self::Ignored => "packet",
+            Self::Frame(_) => "frame",
+            Self::Reply(_) => "reply",
+            Self::Collision => "collision",
+            Self::Open => "open",
+        }
+    }
+}
+
+impl fmt::Display for RowOutcome {
+    /// What became of the packet, as the page and the command's tables say it.
+    #[inline]
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Packet(PacketOutcome::Queued) => "queued",
+            Self::Packet(PacketOutcome::OtherAddress) => "another address",
+            Self::Packet(PacketOutcome::Booting) => "dropped: self-test after reset",
+            Self::Packet(PacketOutcome::Stopped) => "dropped: stopped",
+            Self::Packet(PacketOutcome::TooManySteps) => "dropped: TOO_MANY_STEPS",
+            Self::Packet(PacketOutcome::QueueFull) => "dropped: QUEUE_OVERFLOW",
+            Self::Short => "dropped: SHORT_PACKET",
+            Self::Framing => "dropped: FRAMING",
+            Self::Ignored => "ignored until a gap",
+            Self::Frame(fate) => return fate.fmt(f),
+            Self::Reply(reply) => return reply.fmt(f),
+            Self::Collision => "collision: the controller and another drive the line",
+            Self::Open => "not complete",
+        })
+    }
+}
+
+/// One row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LoggedPacket {
+    /// Where the start bit of its first byte was seen.
+    pub start: Instant,
+    /// Where it was complete or given up.
+    pub end: Instant,
+    /// What became of it.
+    pub verdict: RowOutcome,
+    /// First cycle of its tick, of a frame's its first tick, if that has begun.
+    pub tick_start: Option<Instant>,
+    /// First cycle after its last tick so far that has ended.
+    pub tick_end: Option<Instant>,
+    /// Where its bytes stand among those of all rows.
+    bytes_start: usize,
+    bytes_end: usize,
+    /// The latest end of all rows to here, once the log is finished: a long row may end after later ones.
+    latest: Instant,
+}
+
+/// A tick that has begun.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LoggedTick {
+    /// Its first cycle.
+    pub start: Instant,
+    /// What it orders, a byte a channel (A5).
+    pub orders: Tick,
+    /// The row that brought it; `None` for one that firmware pushed.
+    pub row: Option<usize>,
+}
+
+/// All packets of a run.
+#[derive(Clone, Debug, Default)]
+pub struct PacketLog {
+    rows: Vec<LoggedPacket>,
+    bytes: Vec<u8>,
+    /// Where the start bit of each byte was seen; of a reply's bytes, where its first one falls.
+    seen: Vec<Instant>,
+    /// Where the start bits of bytes with a framing error were seen.
+    broken: Vec<Instant>,
+    /// Where the packet that is coming began.
+    open: Option<Instant>,
+    last: Instant,
+    ignoring: bool,
+    /// The row of each tick that waits; none for one that firmware pushed.
+    waiting: VecDeque<Option<usize>>,
+    ticks: Vec<LoggedTick>,
+    /// When the controller was stopped.
+    stops: Vec<Instant>,
+}
+
+impl PacketLog {
+    /// Rows: in the order in which they were known while the run goes on, in the order of their starts
+    /// once it is finished. A reply is known before it is sent, and a collision before the packet in which
+    /// it happens.
+    #[must_use]
+    #[inline]
+    pub fn rows(&self) -> &[LoggedPacket] {
+        &self.rows
+    }
+
+    /// The ticks that have begun.
+    #[must_use]
+    #[inline]
+    pub fn ticks(&self) -> &[LoggedTick] {
+        &self.ticks
+    }
+
+    /// First cycle after a tick that lasts `length` where nothing stops it.
+    #[must_use]
+    #[inline]
+    pub fn tick_end(&self, tick: &LoggedTick, length: Cycles) -> Instant {
+        let stop = self.stops.get(self.stops.partition_point(|stop| *stop < tick.start));
+        stop.map_or(tick.start + length, |stop| (tick.start + length).min(*stop))
+    }
+
+    /// Bytes of a row.
+    #[must_use]
+    #[inline]
+    pub fn bytes(&self, index: usize) -> &[u8] {
+        let row = self.rows.get(index);
+        row.and_then(|row| self.bytes.get(row.bytes_start..row.bytes_end)).unwrap_or_default()
+    }
+
+    /// Where the start bits of a row's bytes were seen; of a reply's, for each the start bit of the first.
+    #[must_use]
+    #[inline]
+    pub fn seen(&self, index: usize) -> &[Instant] {
+        let row = self.rows.get(index);
+        row.and_then(|row| self.seen.get(row.bytes_start..row.bytes_end)).unwrap_or_default()
+    }
+
+    /// Where the start bits of bytes were seen whose stop bit was low, rising in time.
+    #[must_use]
+    #[inline]
+    pub fn broken(&self) -> &[Instant] {
+        &self.broken
+    }
+
+    /// Indices of the rows of a finished log whose time on the line touches the cycles `start..=end`, rising.
+    #[inline]
+    pub fn touching(&self, start: Instant, end: Instant) -> impl Iterator<Item = usize> {
+        let first = self.rows.partition_point(|row| row.latest < start);
+        let rows = self.rows.iter().enumerate().skip(first).take_while(move |(_, row)| row.start <= end);
+        rows.filter(move |(_, row)| row.end >= start).map(|(index, _)| index)
+    }
+
+    /// The run is over: what is still open becomes a row, and the rows stand in the order of their starts.
+    #[inline]
+    pub fn finish(&mut self) {
+        if self.open.is_some() {
+            self.close(self.last, if self.ignoring { RowOutcome::Ignored } else { RowOutcome::Open });
+        }
+        if !self.rows.is_sorted_by_key(|row| row.start) {
+            self.sort();
+        }
+        let mut latest = Instant::default();
+        for row in &mut self.rows {
+            latest = latest.max(row.end);
+            row.latest = latest;
+        }
+    }
+
+    #[inline]
+    fn sort(&mut self) {
+        let mut order: Vec<usize> = (0..self.rows.len()).collect();
+        order.sort_by_key(|&index| self.rows.get(index).map(|row| row.start));
+        let mut place = alloc::vec![0; order.len()];
+        for (new, &old) in order.iter().enumerate() {
+            place[old] = new;
+        }
+        self.rows.sort_by_key(|row| row.start);
+        for tick in &mut self.ticks {
+            tick.row = tick.row.and_then(|row| place.get(row).copied());
+        }
+    }
+
+    /// Bytes that belong to no row yet.
+    #[inline]
+    fn bytes_of_open(&self) -> Vec<u8> {
+        let first = self.rows.last().map_or(0, |row| row.bytes_end);
+        self.bytes.get(first..).unwrap_or_default().to_vec()
+    }
+
+    #[inline]
+    fn close(&mut self, end: Instant, verdict: RowOutcome) {
+        let start = self.open.take().unwrap_or(end);
+        let queued = match verdict {
+            RowOutcome::Packet(PacketOutcome::Queued) => 1,
+            RowOutcome::Frame(FrameOutcome::Queued(ticks)) => ticks.into(),
+            _ => 0,
+        };
+        self.waiting.extend(core::iter::repeat_n(Some(self.rows.len()), queued));
+        if verdict == RowOutcome::Frame(FrameOutcome::Taken(Kind::Stop)) {
+            self.stop(end);
+        }
+        let bytes_start = self.rows.last().map_or(0, |row| row.bytes_end);
+        let bytes_end = self.bytes.len();
+        let (tick_start, tick_end) = (None, None);
+        self.rows.push(LoggedPacket {
+            start,
+            end,
+            verdict,
+            tick_start,
+            tick_end,
+            bytes_start,
+            bytes_end,
+            latest: end,
+        });
+    }
+
+    #[inline]
+    fn stop(&mut self, at: Instant) {
+        self.waiting.clear();
+        self.stops.push(at);
+    }
+}
+
+impl Sink for PacketLog {
+    #[inline]
+    fn record(&mut self, _: Record) {}
+
+    fn event(&mut self, at: Instant, event: Event) {
+        match event {
+            Event::Byte { seen, byte } => {
+                self.open.get_or_insert(seen);
+                self.bytes.push(byte);
+                self.seen.push(seen);
+                self.last = at;
+            }
+            // On a framed line only the byte is missing, and the frame's check tells.
+            Event::FramingError { seen, drops: false } => self.broken.push(seen),
+            Event::FramingError { seen, .. } => {
+                self.broken.push(seen);
+                self.open.get_or_insert(seen);
+                self.close(at, RowOutcome::Framing);
+                self.ignoring = true;
+            }
+            Event::Gap { short } => {
+                if self.open.is_some() {
+                    self.close(at, if short { RowOutcome::Short } else { RowOutcome::Ignored });
+                }
+                self.ignoring = false;
+            }
+            Event::Packet(fate) => self.close(at, RowOutcome::Packet(fate)),
+            Event::Frame(fate) => self.close(at, RowOutcome::Frame(fate)),
+            Event::Reply { start, end, reply } => {
+                self.bytes.extend(reply.emit());
+                self.seen.resize(self.bytes.len(), start);
+                self.open = Some(start);
+                self.close(end, RowOutcome::Reply(reply));
+            }
+            Event::Collision => {
+                // The bytes of what is coming stay with it.
+                let (open, coming) = (self.open.take(), self.bytes_of_open());
+                self.bytes.truncate(self.bytes.len() - coming.len());
+                self.open = Some(at);
+                self.close(at, RowOutcome::Collision);
+                self.bytes.extend(coming);
+                self.open = open;
+            }
+            Event::Underrun => {}
+            Event::Pushed => self.waiting.push_back(None),
+            Event::Stopped => self.stop(at),
+            Event::TickStart { orders } => {
+                let row = self.waiting.pop_front().flatten();
+                if let Some(row) = row.and_then(|index| self.rows.get_mut(index)) {
+                    row.tick_start.get_or_insert(at);
+                }
+                self.ticks.push(LoggedTick { start: at, orders, row });
+            }
+            Event::TickEnd => {
+                let row = self.ticks.last().and_then(|tick| tick.row);
+                if let Some(row) = row.and_then(|index| self.rows.get_mut(index)) {
+                    row.tick_end = Some(at);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_that_firmware_pushed_have_no_row_and_those_around_them_their_own() {
+        let packet =
+            |seen| [Event::Byte { seen: Instant(seen), byte: 1 }, Event::Packet(PacketOutcome::Queued)];
+        let [start, pushed] = [Event::TickStart { orders: [0; 16] }, Event::Pushed];
+        let (first, second) = (packet(10), packet(20));
+        let events = [first[0], first[1], pushed, second[0], second[1], start, start, Event::Stopped];
+        let after = [pushed, start];
+        let mut log = PacketLog::default();
+        for (at, event) in events.into_iter().chain(after).enumerate() {
+            log.event(Instant(100 + at as u64), event);
+        }
+        let rows: Vec<_> = log.ticks().iter().map(|tick| tick.row).collect();
+        assert_eq!(rows, [Some(0), None, None], "the second packet's tick was stopped before it began");
+        assert_eq!(log.rows()[1].tick_start, None);
+        let ends = [0, 1].map(|tick| log.tick_end(&log.ticks()[tick], Cycles(2)).0);
+        assert_eq!(ends, [107, 107], "the first by itself, the second by the stop");
+    }
+
+    #[test]
+    fn finished_rows_stand_in_the_order_of_their_starts_with_their_bytes_and_ticks() {
+        let mut log = PacketLog::default();
+        let events = [
+            (20, Event::Byte { seen: Instant(10), byte: 1 }),
+            (25, Event::Collision),
+            (30, Event::Byte { seen: Instant(22), byte: 2 }),
+            (30, Event::Packet(PacketOutcome::Queued)),
+            (31, Event::TickStart { orders: [0; 16] }),
+        ];
+        for (at, event) in events {
+            log.event(Instant(at), event);
+        }
+        assert_eq!(log.rows()[0].verdict, RowOutcome::Collision, "known first");
+        log.finish();
+        let told: Vec<_> = log.rows().iter().map(|row| (row.start.0, row.verdict)).collect();
+        assert_eq!(told, [(10, RowOutcome::Packet(PacketOutcome::Queued)), (25, RowOutcome::Collision)]);
+        assert_eq!((log.bytes(0), log.bytes(1)), ([1, 2].as_slice(), [].as_slice()));
+        assert_eq!(log.seen(0), [Instant(10), Instant(22)]);
+        assert_eq!(
+            log.touching(Instant(28), Instant(29)).collect::<Vec<_>>(),
+            [0],
+            "it began before the collision"
+        );
+        assert_eq!(log.ticks()[0].row, Some(0));
+        assert_eq!(log.rows()[0].tick_start, Some(Instant(31)));
+    }
+}

@@ -1,0 +1,350 @@
+//! Frames (DESIGN A6): what the framed protocol says, with a check and an end mark.
+//!
+//! ```text
+//! wire     COBS( address kind body crc ) 00       COBS keeps 00 for the end mark
+//! check    CRC-32/ISCSI (Castagnoli) over address, kind and body, little-endian
+//! ```
+//!
+//! Both sides of the line read and write here: the controller takes frames and gives replies, the
+//! host the other way round.
+
+pub use crate::protocol::{Kind, MAX_TICKS, Reason, Reply, State, Status};
+use crate::signal::MAX_CHANNELS;
+use crate::wire::packet::Tick;
+use alloc::vec::Vec;
+use cobs::{DecodeResult, DecoderState};
+use crc::{CRC_32_ISCSI, Crc};
+
+/// The CRC of a frame.
+pub const CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISCSI);
+/// The delimiter: the end of a frame.
+pub const DELIMITER: u8 = 0;
+
+/// `content` (address, kind, body) with its CRC, in COBS, with the delimiter.
+#[must_use]
+pub fn encode_frame(content: &[u8]) -> Vec<u8> {
+    let mut content = content.to_vec();
+    content.extend(CHECK.checksum(&content).to_le_bytes());
+    let mut wire = cobs::encode_vec(&content);
+    wire.push(DELIMITER);
+    wire
+}
+
+/// Bytes of the check.
+const CHECK_LEN: usize = 4;
+/// Fewest decoded bytes of a frame: address, kind and check.
+const MIN_DECODED: usize = 2 + CHECK_LEN;
+/// Most decoded bytes of a frame.
+pub const MAX_DECODED: usize = 600;
+/// Bytes of a status.
+pub const STATUS_LEN: usize = 9;
+/// Most bytes of a reply on the wire: a NAK in COBS with its end mark.
+pub const REPLY_LEN: usize = 3 + STATUS_LEN + CHECK_LEN + 2;
+/// Set in the kind of a reply that acknowledges.
+const ACK: u8 = 0x80;
+/// Kind of a reply that refuses.
+const NAK: u8 = 0xff;
+
+fn emit_status(status: &Status) -> [u8; STATUS_LEN] {
+    let [f0, f1] = status.faults.to_le_bytes();
+    let [t0, t1, t2, t3] = status.ticks_done.to_le_bytes();
+    [status.state as u8, status.free, status.expected_seq, f0, f1, t0, t1, t2, t3]
+}
+
+fn parse_status(bytes: &[u8]) -> Option<Status> {
+    let &[state, free, expected_seq, f0, f1, t0, t1, t2, t3] = bytes else { return None };
+    Some(Status {
+        state: State::parse(state)?,
+        free,
+        expected_seq,
+        faults: u16::from_le_bytes([f0, f1]),
+        ticks_done: u32::from_le_bytes([t0, t1, t2, t3]),
+    })
+}
+
+impl Reply {
+    /// The reply as it goes over the line.
+    #[must_use]
+    pub fn emit(&self) -> Vec<u8> {
+        let status = emit_status(&self.status);
+        match self.answer {
+            Ok(kind) => emit(self.address, kind as u8 | ACK, &status),
+            Err(reason) => {
+                let mut body = alloc::vec![reason as u8];
+                body.extend(status);
+                emit(self.address, NAK, &body)
+            }
+        }
+    }
+
+    /// The reply that a frame is, if it is one.
+    #[must_use]
+    pub fn parse(frame: Frame<'_>) -> Option<Self> {
+        let (answer, status) = if frame.kind == NAK {
+            let (&reason, status) = frame.body.split_first()?;
+            (Err(Reason::parse(reason)?), status)
+        } else {
+            (Ok(Kind::parse(frame.kind & !ACK).filter(|_| frame.kind & ACK != 0)?), frame.body)
+        };
+        Some(Self { address: frame.address, answer, status: parse_status(status)? })
+    }
+}
+
+/// A frame whose check held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Frame<'a> {
+    /// To or from which controller; 255 is for all.
+    pub address: u8,
+    /// What it is ([`Kind`] on the way to a controller).
+    pub kind: u8,
+    /// The rest.
+    pub body: &'a [u8],
+}
+
+/// A frame as it goes over the line: checked, in COBS, with its end mark.
+#[must_use]
+pub fn emit(address: u8, kind: u8, body: &[u8]) -> Vec<u8> {
+    let mut content = alloc::vec![address, kind];
+    content.extend_from_slice(body);
+    encode_frame(&content)
+}
+
+/// The body of a TICKS frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ticks<'a> {
+    /// Its sequence number.
+    pub seq: u8,
+    channels: usize,
+    orders: &'a [u8],
+}
+
+impl<'a> Ticks<'a> {
+    /// The ticks that a body means, on a controller of so many channels; `None` is BAD_BODY.
+    #[must_use]
+    pub fn parse(body: &'a [u8], channels: u8) -> Option<Self> {
+        let (&[seq, count], orders) = body.split_first_chunk()?;
+        let channels = usize::from(channels.max(1));
+        let fits = (1..=MAX_TICKS).contains(&count) && orders.len() == usize::from(count) * channels;
+        fits.then_some(Self { seq, channels, orders })
+    }
+
+    /// The body of ticks of `channels` bytes each.
+    #[must_use]
+    pub fn emit(seq: u8, channels: u8, orders: &[u8]) -> Vec<u8> {
+        let mut body = alloc::vec![seq, (orders.len() / usize::from(channels.max(1))) as u8];
+        body.extend_from_slice(orders);
+        body
+    }
+
+    /// How many, 1..=32.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.orders.len() / self.channels
+    }
+
+    /// The orders, a byte a channel, tick after tick.
+    #[must_use]
+    pub const fn orders(&self) -> &'a [u8] {
+        self.orders
+    }
+
+    /// The ticks one by one.
+    pub fn iter(&self) -> impl Iterator<Item = Tick> + use<'a> {
+        self.orders.chunks(self.channels).map(|orders| {
+            let mut tick = [0; MAX_CHANNELS];
+            tick.iter_mut().zip(orders).for_each(|(place, &byte)| *place = byte);
+            tick
+        })
+    }
+}
+
+/// What an end mark, or a byte too many, made of the bytes before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Deframed<'a> {
+    /// A frame whose check holds.
+    Frame(Frame<'a>),
+    /// Not COBS, or too short for a frame.
+    Short,
+    /// The check failed: what stood there, and what would have held.
+    BadCheck {
+        /// The check that came.
+        found: u32,
+        /// The check of what came before it.
+        expected: u32,
+    },
+    /// A byte too many; the rest is dropped to the next end mark.
+    Overlong,
+}
+
+/// Joins bytes to frames.
+#[derive(Debug)]
+pub struct Deframer {
+    cobs: DecoderState,
+    content: Vec<u8>,
+    /// After a byte too many, to the next end mark.
+    dropping: bool,
+}
+
+impl Clone for Deframer {
+    #[allow(clippy::needless_match, reason = "the decoder's state has no Clone of its own")]
+    fn clone(&self) -> Self {
+        let cobs = match self.cobs {
+            DecoderState::Idle => DecoderState::Idle,
+            DecoderState::Grab(left) => DecoderState::Grab(left),
+            DecoderState::GrabChain(left) => DecoderState::GrabChain(left),
+        };
+        Self { cobs, content: self.content.clone(), dropping: self.dropping }
+    }
+}
+
+impl Default for Deframer {
+    fn default() -> Self {
+        Self { cobs: DecoderState::Idle, content: Vec::with_capacity(MAX_DECODED), dropping: false }
+    }
+}
+
+impl Deframer {
+    /// A byte; what it completes.
+    pub fn byte(&mut self, byte: u8) -> Option<Deframed<'_>> {
+        if self.dropping {
+            self.dropping = byte != DELIMITER;
+            return None;
+        }
+        match self.cobs.feed(byte) {
+            Ok(DecodeResult::NoData) => None,
+            Ok(DecodeResult::DataStart) => {
+                self.content.clear();
+                None
+            }
+            Ok(DecodeResult::DataContinue(_)) if self.content.len() == MAX_DECODED => {
+                self.cobs = DecoderState::Idle;
+                self.dropping = true;
+                Some(Deframed::Overlong)
+            }
+            Ok(DecodeResult::DataContinue(decoded)) => {
+                self.content.push(decoded);
+                None
+            }
+            Ok(DecodeResult::DataComplete) => Some(judge(&self.content)),
+            Err(_) => Some(Deframed::Short),
+        }
+    }
+
+    /// Whether bytes since the last end mark wait for theirs.
+    #[must_use]
+    pub const fn is_open(&self) -> bool {
+        self.dropping || !matches!(self.cobs, DecoderState::Idle)
+    }
+}
+
+/// The frame that decoded bytes are, if their check holds.
+fn judge(content: &[u8]) -> Deframed<'_> {
+    match content.split_last_chunk::<CHECK_LEN>() {
+        Some((frame, check)) if content.len() >= MIN_DECODED => {
+            let (found, expected) = (u32::from_le_bytes(*check), CHECK.checksum(frame));
+            match *frame {
+                [address, kind, ref body @ ..] if found == expected => {
+                    Deframed::Frame(Frame { address, kind, body })
+                }
+                _ => Deframed::BadCheck { found, expected },
+            }
+        }
+        _ => Deframed::Short,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn last(deframer: &mut Deframer, bytes: &[u8]) -> Option<(u8, u8, Vec<u8>)> {
+        let mut found = None;
+        for &byte in bytes {
+            if let Some(Deframed::Frame(frame)) = deframer.byte(byte) {
+                found = Some((frame.address, frame.kind, frame.body.to_vec()));
+            }
+        }
+        found
+    }
+
+    #[test]
+    fn emit_and_parse_are_inverses() {
+        let mut deframer = Deframer::default();
+        for len in [0, 1, 7, 246, 247, 248, 249, 250, 251, 252, 253, 254, 255, 508, 594] {
+            for fill in [0_u8, 1, 0xff] {
+                let body: Vec<u8> = (0..len).map(|i| if i % 97 == 5 { !fill } else { fill }).collect();
+                let wire = emit(7, 0x42, &body);
+                assert_eq!(wire.iter().filter(|&&byte| byte == DELIMITER).count(), 1);
+                assert_eq!(last(&mut deframer, &wire), Some((7, 0x42, body)), "{len} x {fill}");
+            }
+        }
+    }
+
+    #[test]
+    fn replies_are_read_as_they_were_written() {
+        let status =
+            Status { state: State::Moving, free: 3, expected_seq: 0, faults: 0x82, ticks_done: 0x0100_0000 };
+        let (kinds, reasons) = (Kind::ALL.iter().copied().map(Ok), Reason::ALL.iter().copied().map(Err));
+        for answer in kinds.chain(reasons) {
+            let reply = Reply { address: 9, answer, status };
+            let wire = reply.emit();
+            assert!(wire.len() <= REPLY_LEN);
+            let mut deframer = Deframer::default();
+            let parsed = wire.iter().find_map(|&byte| match deframer.byte(byte) {
+                Some(Deframed::Frame(frame)) => Reply::parse(frame),
+                _ => None,
+            });
+            assert_eq!(parsed, Some(reply));
+        }
+    }
+
+    /// The last judgement of `bytes`, and which byte made it.
+    fn verdicts(bytes: &[u8]) -> Vec<(usize, &'static str)> {
+        let mut deframer = Deframer::default();
+        let mut found = Vec::new();
+        for (index, &byte) in bytes.iter().enumerate() {
+            let name = match deframer.byte(byte) {
+                None => continue,
+                Some(Deframed::Frame(_)) => "frame",
+                Some(Deframed::Short) => "short",
+                Some(Deframed::BadCheck { .. }) => "check",
+                Some(Deframed::Overlong) => "overlong",
+            };
+            found.push((index, name));
+        }
+        found
+    }
+
+    #[test]
+    fn what_is_no_frame_is_said_in_the_byte_that_shows_it() {
+        assert_eq!(verdicts(&[0, 0, 0]), []);
+        assert_eq!(verdicts(&[1, 0]), [(1, "short")]);
+        assert_eq!(verdicts(&[5, 1, 0]), [(2, "short")], "not COBS");
+        assert_eq!(verdicts(&[6, 1, 2, 3, 4, 5, 0]), [(6, "short")], "five bytes");
+        assert_eq!(verdicts(&[7, 1, 2, 3, 4, 5, 6, 0]), [(7, "check")], "six bytes");
+    }
+
+    #[test]
+    fn the_601st_byte_is_one_too_many_also_where_it_is_a_zero_that_cobs_owes() {
+        // Codes of 2 hold one byte and owe a zero; 300 of them are 600 bytes with the last one owed.
+        let mut owed: Vec<u8> = [2, 1].repeat(300);
+        owed.extend([0]);
+        assert_eq!(verdicts(&owed), [(600, "check")], "599 bytes, the last zero is not owed");
+        let mut owed: Vec<u8> = [2, 1].repeat(300);
+        owed.extend([2, 1, 0, 2, 1, 0]);
+        assert_eq!(
+            verdicts(&owed),
+            [(601, "overlong"), (605, "short")],
+            "the 600th is a zero, the next is too many"
+        );
+        // 254 + 254 + 92 bytes are 600; the code after them owes a zero, the 601st.
+        let mut full = Vec::new();
+        for len in [254_usize, 254, 92] {
+            full.push(len as u8 + 1);
+            full.extend(core::iter::repeat_n(1, len));
+        }
+        let overlong = full.len();
+        full.extend([1, 0]);
+        assert_eq!(verdicts(&full), [(overlong, "overlong")]);
+    }
+}

@@ -1,0 +1,325 @@
+//! The level of the serial line (DESIGN A4, A9): what the host sends, what controllers reply, and
+//! what is forced upon it.
+//!
+//! A level that is forced is heard whatever is sent; else the line is the AND of all that send. The
+//! line tells when what the host sends or what is forced changes next, so a run can skip what lies
+//! between.
+
+use crate::units::Instant;
+use crate::wire::{Schedule, sender::Sender};
+use alloc::{collections::BTreeSet, rc::Rc, vec::Vec};
+
+/// A level forced on the line (A4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Forced {
+    /// First forced cycle.
+    pub start: Instant,
+    /// First cycle after it.
+    pub end: Instant,
+    /// The level.
+    pub level: bool,
+}
+
+/// The line as a run walks along it.
+#[derive(Clone, Debug)]
+pub struct Line {
+    sender: Sender,
+    /// Disjoint and rising; those before `passed` are over.
+    forced: Rc<Vec<Forced>>,
+    passed: usize,
+    /// The level that is forced now.
+    force: Option<bool>,
+    next: Instant,
+    /// Next cycle in which what one hears while no controller sends changes; followed while something is
+    /// left to be forced, because what is forced to the level that the line has is no change.
+    next_heard: Instant,
+}
+
+impl Line {
+    /// The line before cycle 1: idle. A rate of 0 counts as 1 baud.
+    #[must_use]
+    #[inline]
+    pub fn new(schedule: Rc<Schedule>, forced: &[Forced], clock_hz: u32, baud: u32) -> Self {
+        let sender = Sender::new(schedule, clock_hz, baud);
+        let mut line = Self {
+            sender,
+            forced: Rc::new(flatten(forced)),
+            passed: 0,
+            force: None,
+            next: Instant::NEVER,
+            next_heard: Instant::NEVER,
+        };
+        line.look_ahead();
+        line.find_heard();
+        line
+    }
+
+    /// What the host has sent and will send, as far as it is known.
+    #[must_use]
+    #[inline]
+    pub fn schedule(&self) -> &Schedule {
+        self.sender.schedule()
+    }
+
+    /// Adds a send, after all that were added before.
+    #[inline]
+    pub fn send(&mut self, start: Instant, bytes: &[u8]) {
+        self.sender.send(start, bytes);
+        self.look_ahead();
+        self.find_heard();
+    }
+
+    /// Forces a level in cycles that are still to come; where another one is forced too, this one wins.
+    #[inline]
+    pub fn force(&mut self, new: Forced) {
+        let forced = Rc::make_mut(&mut self.forced);
+        let first = forced.partition_point(|one| one.end <= new.start);
+        let end = forced.partition_point(|one| one.start < new.end);
+        let met = forced.get(first..end).unwrap_or_default();
+        let before = met.first().filter(|one| one.start < new.start);
+        let after = met.last().filter(|one| one.end > new.end);
+        let before = before.map(|one| Forced { end: new.start, ..*one });
+        let after = after.map(|one| Forced { start: new.end, ..*one });
+        forced.splice(first..end, [before, Some(new), after].into_iter().flatten());
+        self.look_ahead();
+        self.find_heard();
+    }
+
+    /// What has been forced and will be, as far as it is known: rising in time and not overlapping.
+    #[must_use]
+    #[inline]
+    pub fn forced(&self) -> &[Forced] {
+        &self.forced
+    }
+
+    /// Level in the current cycle as one hears it while all others together send `others`.
+    #[must_use]
+    #[inline(always)]
+    pub fn heard(&self, others: bool) -> bool {
+        self.force.unwrap_or(self.sender.level() && others)
+    }
+
+    /// Level in the current cycle as the host hears it: what controllers send, or what is forced.
+    #[must_use]
+    #[inline]
+    pub fn replied(&self, others: bool) -> bool {
+        self.force.unwrap_or(others)
+    }
+
+    /// Whether the host holds the line low.
+    #[must_use]
+    #[inline]
+    pub const fn is_pulled_low(&self) -> bool {
+        !self.sender.level()
+    }
+
+    /// Next cycle in which what the host sends or what is forced changes; [`Instant::NEVER`] if
+    /// neither does.
+    #[must_use]
+    #[inline(always)]
+    pub const fn next_change(&self) -> Instant {
+        self.next
+    }
+
+    /// Whether no change is left that anyone hears while no controller sends.
+    #[must_use]
+    #[inline(always)]
+    pub fn is_over(&self) -> bool {
+        let next = if self.passed == self.forced.len() { self.next } else { self.next_heard };
+        next == Instant::NEVER
+    }
+
+    /// Looks for the next change that is heard.
+    #[inline]
+    fn find_heard(&mut self) {
+        if self.passed == self.forced.len() {
+            return;
+        }
+        let (mut ahead, level) = (self.clone(), self.heard(true));
+        self.next_heard = loop {
+            let now = ahead.next;
+            if now == Instant::NEVER {
+                break now;
+            }
+            ahead.enter(now);
+            if ahead.heard(true) != level {
+                break now;
+            }
+        };
+    }
+
+    /// Enters the cycle of [`Self::next_change`].
+    #[inline(always)]
+    pub fn change(&mut self) {
+        let now = self.next;
+        self.enter(now);
+        if now == self.next_heard {
+            self.find_heard();
+        }
+    }
+
+    /// Enters cycle `now`, the next one in which something changes.
+    #[inline(always)]
+    fn enter(&mut self, now: Instant) {
+        if self.sender.next_edge() == now {
+            self.sender.pass();
+        }
+        if self.passed < self.forced.len() {
+            self.follow_forced(now);
+        }
+        self.look_ahead();
+    }
+
+    #[inline]
+    fn follow_forced(&mut self, now: Instant) {
+        while self.forced.get(self.passed).is_some_and(|forced| forced.end <= now) {
+            self.passed += 1;
+        }
+        self.force =
+            self.forced.get(self.passed).filter(|forced| forced.start <= now).map(|forced| forced.level);
+    }
+
+    #[inline(always)]
+    fn look_ahead(&mut self) {
+        let force = self
+            .forced
+            .get(self.passed)
+            .map_or(Instant::NEVER, |forced| if self.force.is_some() { forced.end } else { forced.start });
+        self.next = self.sender.next_edge().min(force);
+    }
+}
+
+/// Makes disjoint, rising spans of forced levels that overlap: the later entry wins.
+#[inline]
+fn flatten(forced: &[Forced]) -> Vec<Forced> {
+    let mut bounds: Vec<(Instant, usize)> =
+        forced.iter().enumerate().flat_map(|(i, f)| [(f.start, i), (f.end, i)]).collect();
+    bounds.sort_unstable();
+    let mut active = BTreeSet::new();
+    let mut flat: Vec<Forced> = Vec::new();
+    let mut from = Instant::RESET;
+    for (at, index) in bounds {
+        let top = active.last().and_then(|&i: &usize| forced.get(i));
+        if let Some(top) = top
+            && from < at
+        {
+            match flat.last_mut() {
+                Some(last) if last.end == from && last.level == top.level => last.end = at,
+                _ => flat.push(Forced { start: from, end: at, level: top.level }),
+            }
+        }
+        from = at;
+        if !active.remove(&index) {
+            active.insert(index);
+        }
+    }
+    flat
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec;
+
+    fn changes(sends: &[(u64, &[u8])], forced: &[(u64, u64, bool)], clock_hz: u32, baud: u32) -> Vec<u64> {
+        let mut schedule = Schedule::default();
+        sends.iter().for_each(|(start, bytes)| schedule.push(Instant(*start), bytes));
+        let forced: Vec<Forced> = forced
+            .iter()
+            .map(|&(start, length, level)| Forced {
+                start: Instant(start),
+                end: Instant(start + length),
+                level,
+            })
+            .collect();
+        let mut line = Line::new(Rc::new(schedule), &forced, clock_hz, baud);
+        let mut found = vec![];
+        let mut level = true;
+        while !line.is_over() {
+            let at = line.next_change();
+            line.change();
+            if line.heard(true) != level {
+                level = !level;
+                found.push(at.0);
+            }
+        }
+        assert!(line.heard(true), "the line ends idle");
+        found
+    }
+
+    #[test]
+    fn bits_begin_at_the_floor_of_their_exact_time() {
+        // 10.5 cycles a bit: 0, 10, 21, 31, 42, 52, 63, 73, 84, 94, 105.
+        let rows: &[(&[u8], &[u64])] = &[
+            (&[0x00], &[1, 95]),
+            (&[0xff], &[1, 11]),
+            (&[0x55], &[1, 11, 22, 32, 43, 53, 64, 74, 85, 95]),
+            (&[0xff, 0xff], &[1, 11, 106, 116]),
+        ];
+        for (bytes, expected) in rows {
+            assert_eq!(changes(&[(1, bytes)], &[], 21, 2), *expected, "{bytes:?}");
+        }
+    }
+
+    #[test]
+    fn the_later_of_two_overlapping_glitches_wins() {
+        type Row<'a> = (&'a [(u64, u64, bool)], &'a [u64]);
+        let rows: &[Row<'_>] = &[
+            (&[(5, 10, false)], &[5, 15]),
+            (&[(5, 10, false), (8, 2, true)], &[5, 8, 10, 15]),
+            (&[(8, 2, true), (5, 10, false)], &[5, 15]),
+            (&[(5, 5, false), (10, 5, false)], &[5, 15]),
+            (&[(5, 5, true)], &[]),
+            (&[(5, 10, false), (5, 10, true)], &[]),
+        ];
+        for (forced, expected) in rows {
+            assert_eq!(changes(&[], forced, 100, 10), *expected, "{forced:?}");
+        }
+    }
+
+    /// What is forced while the line runs wins over what was known before, and comes in its turn.
+    #[test]
+    fn what_is_forced_later_finds_its_place() {
+        let span =
+            |(start, length, level)| Forced { start: Instant(start), end: Instant(start + length), level };
+        type Row<'a> = (&'a [(u64, u64, bool)], (u64, u64, bool), &'a [(u64, u64, bool)]);
+        let rows: &[Row<'_>] = &[
+            (&[], (20, 5, false), &[(20, 5, false)]),
+            (&[(50, 5, false)], (20, 5, true), &[(20, 5, true), (50, 5, false)]),
+            (&[(50, 5, false)], (60, 5, true), &[(50, 5, false), (60, 5, true)]),
+            (&[(50, 5, false)], (45, 5, true), &[(45, 5, true), (50, 5, false)]),
+            (&[(50, 9, false)], (52, 2, true), &[(50, 2, false), (52, 2, true), (54, 5, false)]),
+            (&[(50, 9, false)], (45, 9, true), &[(45, 9, true), (54, 5, false)]),
+            (&[(50, 9, false)], (55, 9, true), &[(50, 5, false), (55, 9, true)]),
+            (&[(50, 2, false), (60, 2, true)], (40, 40, true), &[(40, 40, true)]),
+        ];
+        for (before, new, expected) in rows {
+            let before: Vec<Forced> = before.iter().copied().map(span).collect();
+            let mut line = Line::new(Rc::new(Schedule::default()), &before, 100, 10);
+            line.force(span(*new));
+            let expected: Vec<Forced> = expected.iter().copied().map(span).collect();
+            assert_eq!(line.forced(), expected, "{before:?} {new:?}");
+            let low = |at| expected.iter().any(|one| !one.level && one.start <= at && at < one.end);
+            let due: Vec<u64> = (1..100).filter(|&at| low(Instant(at)) != low(Instant(at - 1))).collect();
+            let (mut changes, mut level) = (Vec::new(), true);
+            while line.next_change() != Instant::NEVER {
+                assert_eq!(line.is_over(), changes.len() == due.len(), "{before:?} {new:?} {changes:?}");
+                let at = line.next_change();
+                line.change();
+                if core::mem::replace(&mut level, line.heard(true)) != line.heard(true) {
+                    changes.push(at.0);
+                }
+            }
+            assert_eq!(changes, due, "{before:?} {new:?}");
+        }
+    }
+
+    #[test]
+    fn a_glitch_within_a_byte_covers_what_is_sent() {
+        // Start bit 100..110 and data 0x0f: high from 110 to 150, low to 190.
+        assert_eq!(changes(&[(100, &[0x0f])], &[], 100, 10), [100, 110, 150, 190]);
+        assert_eq!(changes(&[(100, &[0x0f])], &[(105, 10, true)], 100, 10), [100, 105, 150, 190]);
+        assert_eq!(changes(&[(100, &[0x0f])], &[(110, 40, false)], 100, 10), [100, 190]);
+        assert_eq!(changes(&[(100, &[0x0f])], &[(90, 200, true)], 100, 10), [0; 0]);
+    }
+}

@@ -1,0 +1,209 @@
+//! Raw packets (DESIGN A5, RU 2704486): bytes, and the orders that they mean.
+//!
+//! A packet is one byte a channel, bit 7 the direction (1 = right), bits 6..=0 the number of steps;
+//! on an addressed line the controller's address stands first. Raw packets have no end mark: a
+//! pause of more than 45 bit times is a gap, and the next byte begins a packet.
+
+use crate::{
+    signal::MAX_CHANNELS,
+    units::{Cycles, Instant},
+};
+
+/// The address that means every controller.
+pub const ALL: u8 = 255;
+/// Bit times after the last byte that still continue a packet.
+const GAP_BITS: u64 = 45;
+
+/// What one channel is to do in one tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Order {
+    /// Right (DIR high) or left.
+    pub right: bool,
+    /// Steps, 0..=127.
+    pub steps: u8,
+}
+
+impl Order {
+    /// The order that a byte means.
+    #[must_use]
+    #[inline]
+    pub const fn parse(byte: u8) -> Self {
+        Self { right: byte & 0x80 != 0, steps: byte & 0x7f }
+    }
+
+    /// The byte that means the order; `None` if it has more than 127 steps.
+    #[must_use]
+    #[inline]
+    pub const fn emit(self) -> Option<u8> {
+        if self.steps > 127 { None } else { Some((self.right as u8) << 7 | self.steps) }
+    }
+}
+
+/// One tick's orders as they came, a byte a channel; bytes past the channels in use are 0.
+pub type Tick = [u8; MAX_CHANNELS];
+
+/// What a byte, an error or a pause completed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unpacked {
+    /// A packet for this controller.
+    Own(Tick),
+    /// A packet for another controller.
+    OtherAddress,
+}
+
+/// Joins bytes to packets.
+#[derive(Clone, Debug)]
+pub struct Unpacker {
+    channels: u8,
+    address: Option<u8>,
+    gap: Cycles,
+    /// Orders so far, and how many bytes of the packet have come (with the address).
+    orders: Tick,
+    have: u8,
+    foreign: bool,
+    /// After a framing error, until a gap.
+    ignoring: bool,
+    /// When a gap ends what is open.
+    deadline: Instant,
+}
+
+impl Unpacker {
+    /// For `channels` channels; with an address, packets begin with one. `bit` is B.
+    #[must_use]
+    #[inline]
+    pub const fn new(channels: u8, address: Option<u8>, bit: Cycles) -> Self {
+        Self {
+            channels,
+            address,
+            gap: Cycles(GAP_BITS * bit.0 + 1),
+            orders: [0; MAX_CHANNELS],
+            have: 0,
+            foreign: false,
+            ignoring: false,
+            deadline: Instant::NEVER,
+        }
+    }
+
+    /// When a gap ends what is open; [`Instant::NEVER`] if nothing is.
+    #[must_use]
+    #[inline]
+    pub const fn deadline(&self) -> Instant {
+        self.deadline
+    }
+
+    /// The gap has come: true if it cut a packet short.
+    #[inline]
+    pub const fn gap(&mut self) -> bool {
+        let short = self.have > 0;
+        self.have = 0;
+        self.ignoring = false;
+        self.deadline = Instant::NEVER;
+        short
+    }
+
+    /// A framing error in cycle `now`: what has come is dropped, and bytes until a gap.
+    #[inline]
+    pub fn framing_error(&mut self, now: Instant) {
+        self.deadline = now + self.gap;
+        self.have = 0;
+        self.ignoring = true;
+    }
+
+    /// A byte in cycle `now`; the packet that it completes.
+    #[inline]
+    pub fn byte(&mut self, now: Instant, byte: u8) -> Option<Unpacked> {
+        self.deadline = now + self.gap;
+        if self.ignoring {
+            return None;
+        }
+        let addressed = u8::from(self.address.is_some());
+        if self.have == 0 {
+            self.orders = [0; MAX_CHANNELS];
+            self.foreign = self.address.is_some_and(|own| byte != own && byte != ALL);
+        }
+        if self.have >= addressed
+            && let Some(order) = self.orders.get_mut(usize::from(self.have - addressed))
+        {
+            *order = byte;
+        }
+        self.have += 1;
+        if self.have < self.channels + addressed {
+            return None;
+        }
+        self.have = 0;
+        self.deadline = Instant::NEVER;
+        Some(if self.foreign { Unpacked::OtherAddress } else { Unpacked::Own(self.orders) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parse_and_emit_are_inverses() {
+        for byte in 0..=255 {
+            assert_eq!(Order::parse(byte).emit(), Some(byte));
+        }
+        assert_eq!(Order { right: true, steps: 128 }.emit(), None);
+        assert_eq!(Order::parse(0x85), Order { right: true, steps: 5 });
+    }
+
+    fn unpacker(address: Option<u8>) -> Unpacker {
+        Unpacker::new(2, address, Cycles(11))
+    }
+
+    fn own(a: u8, b: u8) -> Option<Unpacked> {
+        let mut tick = [0; MAX_CHANNELS];
+        tick[..2].copy_from_slice(&[a, b]);
+        Some(Unpacked::Own(tick))
+    }
+
+    #[test]
+    fn a_packet_is_complete_with_its_last_byte() {
+        let mut raw = unpacker(None);
+        assert_eq!(raw.byte(Instant(10), 1), None);
+        assert_eq!(raw.byte(Instant(20), 2), own(1, 2));
+        assert_eq!(raw.deadline(), Instant::NEVER);
+    }
+
+    #[test]
+    fn packets_for_others_are_consumed_by_their_length() {
+        let mut addressed = unpacker(Some(7));
+        let rows = [
+            (7, None),
+            (1, None),
+            (2, own(1, 2)),
+            (8, None),
+            (7, None),
+            (7, Some(Unpacked::OtherAddress)),
+            (ALL, None),
+            (3, None),
+            (4, own(3, 4)),
+        ];
+        for (index, (byte, expected)) in rows.into_iter().enumerate() {
+            assert_eq!(addressed.byte(Instant(index as u64), byte), expected, "byte {index}");
+        }
+    }
+
+    #[test]
+    fn a_gap_falls_due_45_bits_and_a_cycle_after_the_last_byte() {
+        let mut raw = unpacker(None);
+        raw.byte(Instant(100), 1);
+        assert_eq!(raw.deadline(), Instant(100 + 45 * 11 + 1));
+        assert!(raw.gap());
+        assert_eq!(raw.deadline(), Instant::NEVER);
+    }
+
+    #[test]
+    fn after_a_framing_error_bytes_are_ignored_until_a_gap_and_hold_it_off() {
+        let mut raw = unpacker(None);
+        raw.byte(Instant(100), 1);
+        raw.framing_error(Instant(200));
+        assert_eq!(raw.byte(Instant(300), 2), None);
+        assert_eq!(raw.deadline(), Instant(300 + 496));
+        assert!(!raw.gap(), "nothing was open: no SHORT_PACKET");
+        raw.byte(Instant(1000), 3);
+        assert_eq!(raw.byte(Instant(1100), 4), own(3, 4));
+    }
+}

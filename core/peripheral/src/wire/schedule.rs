@@ -1,0 +1,87 @@
+//! The host's sends: bytes at cycles (DESIGN A9).
+//!
+//! A recorded line is such a schedule itself; packets are paced: packet j starts at boot + 1 + j*M*Ts, so tick follows
+//! tick without a pause.
+
+use crate::units::{Cycles, Instant};
+use alloc::vec::Vec;
+
+/// Bytes that are sent back to back from a cycle on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sent<'a> {
+    /// Cycle in which the first start bit falls.
+    pub start: Instant,
+    /// The bytes.
+    pub bytes: &'a [u8],
+}
+
+/// Everything that the host sends, rising in time and not overlapping.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Schedule {
+    /// Start of each send, and the end of its bytes in `bytes`.
+    sends: Vec<(Instant, usize)>,
+    bytes: Vec<u8>,
+}
+
+impl Schedule {
+    /// Packets, one a tick of `tick` cycles, as the paced raw host sends them from `start` on.
+    /// Whether the line can carry them is the caller's to judge ([`line_time`]).
+    #[must_use]
+    pub fn paced(start: Instant, tick: Cycles, packets: impl Iterator<Item = impl AsRef<[u8]>>) -> Self {
+        let mut schedule = Self::default();
+        let mut start = start;
+        for packet in packets {
+            schedule.push(start, packet.as_ref());
+            start += tick;
+        }
+        schedule
+    }
+
+    /// Adds a send, after all others.
+    pub fn push(&mut self, start: Instant, bytes: &[u8]) {
+        self.bytes.extend_from_slice(bytes);
+        self.sends.push((start, self.bytes.len()));
+    }
+
+    /// How many sends there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.sends.len()
+    }
+
+    /// Whether nothing is sent.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.sends.is_empty()
+    }
+
+    /// Bytes of all sends.
+    #[must_use]
+    pub fn total_bytes(&self) -> usize {
+        self.bytes.len()
+    }
+
+    /// Send `index`, or `None` past the last.
+    #[must_use]
+    pub fn get(&self, index: usize) -> Option<Sent<'_>> {
+        let &(start, end) = self.sends.get(index)?;
+        let first = index.checked_sub(1).and_then(|before| self.sends.get(before)).map_or(0, |s| s.1);
+        self.bytes.get(first..end).map(|bytes| Sent { start, bytes })
+    }
+
+    /// All sends in order.
+    pub fn iter(&self) -> impl Iterator<Item = Sent<'_>> {
+        (0..self.len()).filter_map(|index| self.get(index))
+    }
+}
+
+/// Cycles that `bytes` bytes sent back to back hold the line, to the end of the last stop bit (A4);
+/// a rate of 0 counts as 1 baud.
+#[must_use]
+pub const fn line_time(bytes: u64, clock_hz: u32, baud: u32) -> u64 {
+    let (clock, baud) = (clock_hz as u64, if baud == 0 { 1 } else { baud as u64 });
+    match bytes {
+        0 => 0,
+        _ => 10 * (bytes - 1) * clock / baud + 10 * clock / baud,
+    }
+}

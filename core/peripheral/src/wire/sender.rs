@@ -1,0 +1,118 @@
+//! The sender of the serial line (DESIGN A4): bytes as edges, exact to the cycle.
+//!
+//! ```text
+//!  idle  start  d0    d1        d7   stop
+//! ──────┐     ┌─────┬─────┬ ─ ┬─────┬─────
+//!       └─────┴─────┴─────┴   ┴─────┘
+//!       t0    |     |  bit k begins at t0 + floor(k*clock_hz/baud)
+//! ```
+//!
+//! The j-th of bytes sent back to back from t0 starts at t0 + floor(10*j*clock_hz/baud). Host and
+//! controllers send by the same rule.
+
+use crate::units::Instant;
+use crate::wire::Schedule;
+use alloc::rc::Rc;
+
+/// Bits of a byte on the line: start, eight data bits, stop.
+const FRAME_BITS: usize = 10;
+
+/// Walks along the edges of a schedule's bytes.
+#[derive(Clone, Debug)]
+pub struct Sender {
+    schedule: Rc<Schedule>,
+    clock_hz: u64,
+    baud: u64,
+    /// floor(k*clock_hz/baud): where bit k begins.
+    bit_starts: [u64; FRAME_BITS],
+    level: bool,
+    send: usize,
+    byte: usize,
+    byte_start: Instant,
+    /// Bits of the byte that differ from the bit before them and have not passed.
+    edges: u16,
+}
+
+impl Sender {
+    /// A sender before its first byte. A rate of 0 counts as 1 baud.
+    #[must_use]
+    #[inline]
+    pub fn new(schedule: Rc<Schedule>, clock_hz: u32, baud: u32) -> Self {
+        let (clock_hz, baud) = (u64::from(clock_hz), u64::from(baud.max(1)));
+        let mut sender = Self {
+            schedule,
+            clock_hz,
+            baud,
+            bit_starts: core::array::from_fn(|k| k as u64 * clock_hz / baud),
+            level: true,
+            send: 0,
+            byte: 0,
+            byte_start: Instant::NEVER,
+            edges: 0,
+        };
+        sender.load();
+        sender
+    }
+
+    /// All that has been sent and will be.
+    #[must_use]
+    #[inline]
+    pub fn schedule(&self) -> &Schedule {
+        &self.schedule
+    }
+
+    /// Adds a send after all others.
+    #[inline]
+    pub fn send(&mut self, start: Instant, bytes: &[u8]) {
+        Rc::make_mut(&mut self.schedule).push(start, bytes);
+        if self.edges == 0 {
+            self.load();
+        }
+    }
+
+    /// What is sent now.
+    #[must_use]
+    #[inline]
+    pub const fn level(&self) -> bool {
+        self.level
+    }
+
+    /// Takes up the byte at (`send`, `byte`), or the first one after it.
+    #[inline]
+    fn load(&mut self) {
+        while let Some(send) = self.schedule.get(self.send) {
+            if let Some(&byte) = send.bytes.get(self.byte) {
+                let offset = 10 * self.byte as u64 * self.clock_hz / self.baud;
+                self.byte_start = Instant(send.start.0 + offset);
+                // Start bit 0, data, stop bit 1; before the start bit the line is high.
+                let frame = u16::from(byte) << 1 | 1 << 9;
+                self.edges = (frame ^ (frame << 1 | 1)) & 0x3ff;
+                return;
+            }
+            self.send += 1;
+            self.byte = 0;
+        }
+        self.edges = 0;
+    }
+
+    /// Cycle of the next edge; [`Instant::NEVER`] without one.
+    #[must_use]
+    #[inline(always)]
+    pub fn next_edge(&self) -> Instant {
+        match self.bit_starts.get(self.edges.trailing_zeros() as usize) {
+            Some(offset) => Instant(self.byte_start.0 + offset),
+            None => Instant::NEVER,
+        }
+    }
+
+    /// Enters the cycle of [`Self::next_edge`].
+    #[inline(always)]
+    pub fn pass(&mut self) {
+        self.level = !self.level;
+        self.edges &= self.edges.wrapping_sub(1);
+        if self.edges == 0 {
+            self.byte += 1;
+            self.load();
+        }
+    }
+}

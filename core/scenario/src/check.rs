@@ -1,0 +1,377 @@
+//! Judges a scenario's numbers: ranges, and the rules of DESIGN A4, A7 and A9 that join several.
+//!
+//! Motions are judged where they are planned (`motion`), because only the plan knows what they ask
+//! for; `sim::Experiment` gathers the problems of both.
+
+use crate::{
+    Cause, Controller, Hex, Host, LineScript, Noise, Problem, Scenario, Source, Validator, ValueError,
+    of_config,
+};
+use alloc::{
+    format,
+    string::{String, ToString},
+    vec::Vec,
+};
+use stepscope_peripheral::{
+    config::{Bus, Config, ConfigProblem, Field, Protocol, SerialLine},
+    protocol::MAX_TICKS,
+    segment::CheckedSegments,
+    signal::MAX_CHANNELS,
+    units::{Cycles, Instant},
+    wire::{Forced, schedule::line_time},
+};
+
+/// First cycle that no run reaches: a JavaScript number is exact up to 2^53, and this is below.
+pub const END_OF_TIME: u64 = 9_000_000_000_000_000;
+/// Most bytes of a line script, and most packets of a packet list.
+const MAX_BYTES: usize = 4 << 20;
+/// Most controllers on a line, the scenario's own first.
+pub const MAX_CONTROLLERS: usize = 32;
+/// Most glitches on a line.
+const MAX_GLITCHES: usize = 10_000;
+
+/// A scenario whose numbers hold, but for its motions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checked {
+    /// The controllers on the line, the scenario's own first.
+    pub configs: Vec<Config>,
+    /// What the further ones do.
+    pub further: Vec<Controller>,
+    /// The host's bit rate.
+    pub baud: u32,
+    /// How the host of a framed line behaves.
+    pub host: Host,
+    /// Random faults of the line.
+    pub noise: Noise,
+    /// Levels forced on the line; where two overlap the later one wins.
+    pub forced: Vec<Forced>,
+    /// What the host sends; its motions are not judged yet.
+    pub source: Source,
+    /// What the segment engine runs, where the source is segments.
+    pub segments: Option<CheckedSegments>,
+    /// Length of the run, if it is given.
+    pub run: Option<Cycles>,
+}
+
+impl Checked {
+    /// Whether the host sends frame after frame, each when the one before is answered.
+    #[must_use]
+    pub fn waits_for_replies(&self) -> bool {
+        let framed = self.configs.first().is_some_and(|config| config.protocol() == Protocol::Framed);
+        framed && self.source.is_ticks()
+    }
+}
+
+impl Scenario {
+    /// Judges everything but the motions.
+    ///
+    /// # Errors
+    /// Every problem, each with its path.
+    pub fn check(&self) -> Result<Checked, Vec<Problem>> {
+        let mut validator = Validator::default();
+        if self.version > crate::VERSION {
+            let given = u64::from(self.version);
+            validator.add("version", Cause::NewerVersion { given, newest: crate::VERSION });
+        } else {
+            validator.whole("version", self.version, 1, crate::VERSION.into(), "");
+        }
+        validator.length("title", self.title.chars().count(), 0, 120, "characters");
+        validator.length("note", self.note.chars().count(), 0, 2000, "characters");
+        let runs_segments = self.source.runs_segments();
+        let configure = if runs_segments { Config::of_segments } else { Config::new };
+        let config = configure(self.clock_hz, &self.bus, &self.line.serial());
+        let config = validator.take(config.map_err(of_config));
+        // Without a rate of its own the receiver has the host's, which is judged above.
+        if self.line.receiver_baud.is_some() && !runs_segments {
+            validator.whole("line.baud", self.line.baud, 1, self.clock_hz.max(1).into(), "baud");
+        }
+        if runs_segments && !self.controllers.is_empty() {
+            let detail = "segments run one controller by itself; take the others out, or choose ticks";
+            validator.add("controllers", ValueError::Conflict { detail });
+        }
+        let further = self.further(config.as_ref(), &mut validator);
+        self.host(&mut validator);
+        if let Some(cycles) = self.run_cycles {
+            validator.whole("run_cycles", cycles, 1, END_OF_TIME, "cycles");
+        }
+        let forced = self.glitches(&mut validator);
+        let mut segments = None;
+        match &self.source {
+            Source::Motion(motion) => {
+                let most = usize::from(self.bus.channels).clamp(1, MAX_CHANNELS);
+                validator.length("source.motion.axes", motion.axes.len(), 1, most, "axes");
+            }
+            Source::Packets(packets) => {
+                let address = usize::from(self.line.protocol == Protocol::Raw && self.line.address.is_some());
+                let len = usize::from(self.bus.channels) + address;
+                let further = self.controllers.iter().map(|controller| &controller.packets);
+                let total: usize =
+                    further.chain([&packets.packets]).flatten().map(|Hex(bytes)| bytes.len()).sum();
+                judge_packets("source.packets.packets", &packets.packets, len, &mut validator);
+                validator.length("source.packets.packets", total, 0, MAX_BYTES, "bytes");
+            }
+            Source::Line(script) => self.script(script, &mut validator),
+            Source::Segments(lists) => segments = validator.take(lists.check(&self.bus)),
+        }
+        self.analysis(&mut validator);
+        if let Some(driver) = &self.driver_timing {
+            driver.check(&mut validator);
+        }
+        validator.end(()).map(|()| Checked {
+            configs: config.into_iter().chain(further).collect(),
+            further: self.controllers.clone(),
+            // Where nothing is sent it has not been judged.
+            baud: self.line.baud.max(1),
+            host: self.line.host.clone(),
+            noise: self.line.noise.clone(),
+            forced,
+            source: self.source.clone(),
+            segments,
+            run: self.run_cycles.map(Cycles),
+        })
+    }
+
+    fn glitches(&self, validator: &mut Validator) -> Vec<Forced> {
+        validator.length("line.glitches", self.line.glitches.len(), 0, MAX_GLITCHES, "glitches");
+        let mut forced = Vec::new();
+        for (index, glitch) in self.line.glitches.iter().enumerate() {
+            let at = |field| format!("line.glitches[{index}].{field}");
+            let start = glitch.start_cycle;
+            validator.whole(&at("start_cycle"), start, 1, END_OF_TIME - 1, "cycles");
+            let room = END_OF_TIME.saturating_sub(start).max(1);
+            validator.whole(&at("length_cycles"), glitch.length_cycles, 1, room, "cycles");
+            validator.whole(&at("level"), glitch.level, 0, 1, "");
+            forced.push(Forced {
+                start: Instant(start),
+                end: Instant(start.saturating_add(glitch.length_cycles)),
+                level: glitch.level != 0,
+            });
+        }
+        forced
+    }
+
+    /// The further controllers' configurations.
+    fn further(&self, first: Option<&Config>, validator: &mut Validator) -> Vec<Config> {
+        validator.length(
+            "controllers",
+            self.controllers.len(),
+            0,
+            MAX_CONTROLLERS - 1,
+            "further controllers",
+        );
+        // Who writes the line himself may also ask what several of one address do.
+        let scripted = matches!(self.source, Source::Line(_));
+        let nameless = self.line.protocol == Protocol::Raw && self.line.address.is_none();
+        if !self.controllers.is_empty() && nameless && !scripted {
+            let detail =
+                "several controllers on a line need an address each; give the first one an address, 0 to 254";
+            validator.add("line.address", ValueError::Conflict { detail });
+        }
+        let mut configs = Vec::new();
+        for (index, controller) in self.controllers.iter().enumerate() {
+            let at = |field: &str| format!("controllers[{index}].{field}");
+            let line = SerialLine {
+                baud: self.line.baud,
+                receiver_baud: controller.receiver_baud,
+                address: Some(controller.address),
+                protocol: self.line.protocol,
+            };
+            match Config::new(self.clock_hz, &controller.bus, &line) {
+                Ok(config) => configs.push(config),
+                Err(broken) => {
+                    for ConfigProblem { field, error } in broken {
+                        let path = match field {
+                            // These are the whole line's, and judged for the first controller too.
+                            Field::ClockHz | Field::Line("baud") => field.to_string(),
+                            Field::Line(own) => at(own),
+                            Field::Bus(_) => at(&field.to_string()),
+                        };
+                        if !validator.has(&path) {
+                            validator.add(path, error);
+                        }
+                    }
+                }
+            }
+            let mut before = self.controllers.iter().take(index).map(|controller| controller.address);
+            let first_address = first.and_then(Config::address);
+            let same =
+                first_address == Some(controller.address) || before.any(|other| other == controller.address);
+            if same && !scripted {
+                validator.add(at("address"), Cause::SameAddress { address: controller.address });
+            }
+            self.orders(controller, &at, validator);
+        }
+        let paced = self.line.protocol == Protocol::Raw && !matches!(self.source, Source::Line(_));
+        if let Some(first) = first.filter(|_| paced && configs.len() == self.controllers.len()) {
+            for (index, config) in configs.iter().enumerate() {
+                let at = |field: &str| format!("controllers[{index}].bus.{field}");
+                let (tick_cycles, first_cycles) = (config.tick().0, first.tick().0);
+                if tick_cycles != first_cycles {
+                    validator.add(at("step_period_cycles"), Cause::OtherTick { tick_cycles, first_cycles });
+                }
+                let (channels, first_channels) = (config.channels(), first.channels());
+                if channels != first_channels {
+                    validator.add(at("channels"), Cause::OtherPackets { channels, first_channels });
+                }
+            }
+        }
+        configs
+    }
+
+    /// What a further controller is to do.
+    fn orders(&self, controller: &Controller, at: &impl Fn(&str) -> String, validator: &mut Validator) {
+        let most = usize::from(controller.bus.channels).clamp(1, MAX_CHANNELS);
+        validator.length(&at("axes"), controller.axes.len(), 0, most, "axes");
+        if !controller.axes.is_empty() && !matches!(self.source, Source::Motion(_)) {
+            let detail = "axes are for a source of kind motion; take them out, or choose that source";
+            validator.add(at("axes"), ValueError::Conflict { detail });
+        }
+        if !controller.packets.is_empty() && !matches!(self.source, Source::Packets(_)) {
+            let detail = "packets are for a source of kind packets; take them out, or choose that source";
+            validator.add(at("packets"), ValueError::Conflict { detail });
+        }
+        let len = usize::from(controller.bus.channels) + usize::from(self.line.protocol == Protocol::Raw);
+        judge_packets(&at("packets"), &controller.packets, len, validator);
+    }
+
+    fn host(&self, validator: &mut Validator) {
+        let Host { ticks_per_frame, reply_timeout_cycles, attempts } = self.line.host;
+        validator.whole("line.host.ticks_per_frame", ticks_per_frame, 1, MAX_TICKS.into(), "ticks");
+        if let Some(cycles) = reply_timeout_cycles {
+            validator.whole("line.host.reply_timeout_cycles", cycles, 1, u32::MAX.into(), "cycles");
+        }
+        validator.whole("line.host.attempts", attempts, 1, 255, "");
+        let noise = &self.line.noise;
+        let rates = [
+            ("flipped_bits_ppm", noise.flipped_bits_ppm),
+            ("lost_bytes_ppm", noise.lost_bytes_ppm),
+            ("duplicated_bytes_ppm", noise.duplicated_bytes_ppm),
+            ("glitches_ppm", noise.glitches_ppm),
+            ("lost_replies_ppm", noise.lost_replies_ppm),
+            ("host_crashes_ppm", noise.host_crashes_ppm),
+        ];
+        for (field, rate) in rates {
+            validator.whole(&format!("line.noise.{field}"), rate, 0, 1_000_000, "ppm");
+        }
+        let hears_replies = self.line.protocol == Protocol::Framed && self.source.is_ticks();
+        if hears_replies && self.line.receiver_baud.is_some() {
+            let host = SerialLine { receiver_baud: None, ..self.line.serial() };
+            let broken = Config::new(self.clock_hz, &Bus::default(), &host).err().unwrap_or_default();
+            for ConfigProblem { field, error } in broken {
+                if field == Field::Line("baud") && !validator.has("line.baud") {
+                    validator.add("line.baud", error);
+                }
+            }
+        }
+    }
+
+    fn script(&self, script: &LineScript, validator: &mut Validator) {
+        let total = script.sends.iter().map(|send| send.wire().len()).sum();
+        validator.length("source.line.sends", total, 0, MAX_BYTES, "bytes");
+        let mut free_from = 1;
+        for (index, send) in script.sends.iter().enumerate() {
+            let path = format!("source.line.sends[{index}].start_cycle");
+            let start = send.start_cycle;
+            validator.whole(&path, start, 1, END_OF_TIME - 1, "cycles");
+            if start < free_from && start >= 1 {
+                validator.add(path, Cause::Overlap { start, free_from });
+            }
+            if send.frame.is_some() && !send.bytes.0.is_empty() {
+                let detail = "a send has bytes or a frame, not both; take one out";
+                validator.add(format!("source.line.sends[{index}].bytes"), ValueError::Conflict { detail });
+            }
+            let bytes = send.wire().len() as u64;
+            let end = start.min(END_OF_TIME) + line_time(bytes, self.clock_hz, self.line.baud);
+            free_from = free_from.max(end);
+        }
+    }
+
+    fn analysis(&self, validator: &mut Validator) {
+        let analysis = &self.analysis;
+        let axes = match &self.source {
+            Source::Motion(motion) => motion.axes.len(),
+            _ => usize::from(self.bus.channels),
+        };
+        validator.whole("analysis.axis", analysis.axis, 0, axes.clamp(1, MAX_CHANNELS) as u64 - 1, "");
+        validator.whole("analysis.order", analysis.order, 2, 1000, "");
+        validator.whole("analysis.fft_length", analysis.fft_length, 16, 65_536, "");
+        let (least, most) = (1e-3, 1e9);
+        if let Some(given) = analysis.sensor_hz.filter(|given| !(least..=most).contains(given)) {
+            validator.add("analysis.sensor_hz", ValueError::Range { given, least, most, unit: "Hz" });
+        }
+    }
+}
+
+/// Packets are of `len` bytes.
+fn judge_packets(path: &str, packets: &[Hex], len: usize, validator: &mut Validator) {
+    for (index, Hex(bytes)) in packets.iter().enumerate() {
+        validator.length(&format!("{path}[{index}]"), bytes.len(), len, len, "bytes");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::string::String;
+
+    fn paths(json: &str) -> Vec<String> {
+        let scenario = Scenario::from_json(json).expect("reads");
+        scenario.check().err().unwrap_or_default().into_iter().map(|p| p.path).collect()
+    }
+
+    #[test]
+    fn every_number_out_of_range_is_listed_with_its_path() {
+        let rows: &[(&str, &[&str])] = &[
+            ("{}", &[]),
+            (
+                r#"{"bus":{"channels":0,"slots":128,"queue_depth":0}}"#,
+                &["bus.channels", "bus.slots", "bus.queue_depth"],
+            ),
+            (r#"{"bus":{"channels":17}}"#, &["bus.channels"]),
+            (r#"{"clock_hz":10}"#, &["clock_hz"]),
+            (r#"{"clock_hz":11,"line":{"baud":1}}"#, &[]),
+            (r#"{"line":{"baud":200000000}}"#, &["line.baud"]),
+            (r#"{"run_cycles":9007199254740993}"#, &["run_cycles"]),
+            (
+                r#"{"line":{"glitches":[{"start_cycle":8999999999999999,"length_cycles":2}]}}"#,
+                &["line.glitches[0].length_cycles"],
+            ),
+            (r#"{"line":{"baud":0}}"#, &["line.baud"]),
+            (r#"{"line":{"baud":0,"receiver_baud":9600}}"#, &["line.baud"]),
+            (r#"{"clock_hz":1000000,"line":{"baud":100000}}"#, &["line.baud"]),
+            (r#"{"clock_hz":1000000,"line":{"baud":95238}}"#, &[]),
+            (r#"{"clock_hz":1000000,"line":{"baud":95239}}"#, &["line.baud"]),
+            (r#"{"line":{"receiver_baud":9000000}}"#, &["line.receiver_baud"]),
+            (r#"{"bus":{"pulse_width_cycles":0}}"#, &["bus.pulse_width_cycles"]),
+            (r#"{"bus":{"pulse_width_cycles":280,"dir_setup_cycles":40}}"#, &[]),
+            (r#"{"bus":{"pulse_width_cycles":281,"dir_setup_cycles":40}}"#, &["bus.step_period_cycles"]),
+            (r#"{"bus":{"pulse_width_cycles":320,"dir_setup_cycles":0}}"#, &["bus.step_period_cycles"]),
+            (
+                r#"{"analysis":{"axis":1,"order":1,"fft_length":15,"sensor_hz":0}}"#,
+                &["analysis.axis", "analysis.order", "analysis.fft_length", "analysis.sensor_hz"],
+            ),
+            (
+                r#"{"analysis":{"fft_length":65537,"sensor_hz":1e10}}"#,
+                &["analysis.fft_length", "analysis.sensor_hz"],
+            ),
+            (r#"{"analysis":{"fft_length":1000,"sensor_hz":0.001}}"#, &[]),
+            (r#"{"analysis":{"fft_length":16,"sensor_hz":null}}"#, &[]),
+            (r#"{"source":{"packets":{"packets":["80","8001"]}}}"#, &["source.packets.packets[1]"]),
+            (
+                r#"{"source":{"line":{"sends":[{"start_cycle":0,"bytes":"00"}]}}}"#,
+                &["source.line.sends[0].start_cycle"],
+            ),
+            (
+                r#"{"clock_hz":1000,"line":{"baud":50},"source":{"line":{"sends":[{"start_cycle":1,"bytes":"0000"},{"start_cycle":400,"bytes":"00"},{"start_cycle":601,"bytes":"00"}]}}}"#,
+                &["source.line.sends[1].start_cycle"],
+            ),
+            (
+                r#"{"line":{"glitches":[{"start_cycle":0,"length_cycles":0,"level":2}]}}"#,
+                &["line.glitches[0].start_cycle", "line.glitches[0].length_cycles", "line.glitches[0].level"],
+            ),
+        ];
+        for (given, expected) in rows {
+            assert_eq!(paths(given), *expected, "{given}");
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Bytes as hexadecimal text.
+
+use crate::{Read, Reader};
+use alloc::{format, string::String, vec::Vec};
+use base16ct::{lower, mixed};
+use serde_json::Value;
+
+/// Bytes that JSON writes as hexadecimal digits. Capital letters and spaces are read, small ones
+/// without spaces are written.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Hex(pub Vec<u8>);
+
+impl Read for Hex {
+    fn read(&mut self, value: &Value, reader: &mut Reader) -> bool {
+        let Some(text) = value.as_str() else {
+            return reader.refuse(value, "bytes in hex, such as \"80 01 7f\"");
+        };
+        match Self::of_text(text) {
+            Ok(bytes) => {
+                *self = bytes;
+                true
+            }
+            Err(wrong) => reader.wrong(wrong),
+        }
+    }
+
+    fn blank() -> Self {
+        Self::default()
+    }
+}
+
+impl Hex {
+    /// The bytes of a text, or what is wrong with it.
+    fn of_text(text: &str) -> Result<Self, String> {
+        let digits: String = text.chars().filter(|c| !c.is_ascii_whitespace()).collect();
+        mixed::decode_vec(&digits).map(Self).map_err(|_| wrong_in(&digits))
+    }
+}
+
+/// What is wrong with digits that are no bytes, and what is allowed.
+fn wrong_in(digits: &str) -> String {
+    let wrong = digits.chars().enumerate().find(|(_, c)| !c.is_ascii_hexdigit());
+    let what = match wrong {
+        Some((index, c)) => format!("\u{201c}{c}\u{201d} in byte {} is no hexadecimal digit", index / 2 + 1),
+        None => format!("byte {} has one digit only", digits.len() / 2 + 1),
+    };
+    format!("{what}; give 0 to 9 and a to f, two a byte, such as 80 01 7f")
+}
+
+impl crate::Compact for Hex {
+    fn parts(&self) -> crate::Parts<'_> {
+        crate::Parts::Whole(Value::from(lower::encode_string(&self.0)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec;
+
+    #[test]
+    fn what_is_no_byte_is_told_by_its_place_with_what_is_allowed() {
+        let rows = [
+            ("80 0g", "\u{201c}g\u{201d} in byte 2 is no"),
+            ("8x", "\u{201c}x\u{201d} in byte 1 is no"),
+            ("\u{fc}0", "\u{201c}\u{fc}\u{201d} in byte 1 is no"),
+            ("80 01 7", "byte 3 has one digit only"),
+        ];
+        for (given, expected) in rows {
+            let error = Hex::of_text(given).unwrap_err();
+            assert!(error.starts_with(expected), "{given}: {error}");
+            assert!(error.ends_with("give 0 to 9 and a to f, two a byte, such as 80 01 7f"), "{error}");
+        }
+        assert_eq!(Hex::of_text("80 01\n7F").unwrap(), Hex(vec![0x80, 1, 0x7f]));
+    }
+}

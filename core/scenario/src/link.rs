@@ -1,0 +1,329 @@
+//! A scenario as the text of a link (PAGE "Share link").
+//!
+//! `c=<version>.<codec>.<base64url payload>.<crc>`: the payload is the canonical JSON, as it is
+//! (codec `j`) or as raw deflate (codec `z`), whichever is shorter; the check is the CRC-32 (as in
+//! zip, ISO-HDLC) of all that stands before its dot, in 8 hexadecimal digits. The same scenario
+//! always gives the same link.
+//!
+//! A link comes from a stranger. It is judged in this order: length, version, alphabet and check,
+//! size after inflating, types and names, then ranges and cost, which the caller judges.
+
+use crate::{Compact, Problem, Scenario, VERSION};
+use alloc::{
+    format,
+    string::{String, ToString},
+    vec::Vec,
+};
+use base64ct::{Base64UrlUnpadded, Encoding};
+use core::fmt;
+use crc::{CRC_32_ISO_HDLC, Crc};
+use miniz_oxide::{deflate::compress_to_vec, inflate::decompress_to_vec_with_limit};
+use percent_encoding::percent_decode_str;
+
+/// Longest fragment that is read, in bytes.
+pub const MAX_FRAGMENT_BYTES: usize = 16 << 10;
+/// Longest canonical JSON that is read, in bytes.
+pub const MAX_JSON_BYTES: usize = 64 << 10;
+/// miniz_oxide's strongest level; part of what makes a scenario's link always the same.
+const DEFLATE_LEVEL: u8 = 10;
+const CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+/// Problems of a stranger's scenario that one message names.
+const MAX_TOLD: usize = 8;
+/// What a chat program or a sentence may have put behind a link.
+const TRAILING: &[char] = &['.', ',', ';', ':', '!', '?', ')', ']', '}', '>', '"', '\''];
+
+/// Why a link does not open.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LinkError {
+    /// Longer than any link.
+    TooLong {
+        /// Bytes of the fragment, or of the JSON of a scenario that is to become a link.
+        given: usize,
+        /// Most allowed.
+        most: usize,
+    },
+    /// No `c=` in it.
+    NoScenario,
+    /// Made with a newer version.
+    Newer {
+        /// The link's version.
+        given: u64,
+        /// The newest that is read here.
+        newest: u32,
+    },
+    /// The check fails: cut short or changed on the way.
+    Damaged,
+    /// The payload is not what its codec says, or inflates to too much.
+    Payload {
+        /// Most bytes that it may inflate to.
+        most: usize,
+    },
+    /// The scenario in it cannot be read.
+    Scenario(Vec<Problem>),
+}
+
+impl fmt::Display for LinkError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooLong { given, most } => {
+                write!(
+                    f,
+                    "the link is too long: {given} bytes, at most {most} are allowed; share the scenario as a file instead"
+                )
+            }
+            Self::NoScenario => {
+                f.write_str("the link holds no scenario: there is no c= behind its #; ask for the whole link")
+            }
+            Self::Newer { given, newest } => write!(
+                f,
+                "the link was made with a newer version of Stepscope (format {given}, this one reads up to {newest}); reload the page to get the newest, or ask for the scenario as a file"
+            ),
+            Self::Damaged => {
+                f.write_str("the link was cut short or changed on the way; ask for the whole link")
+            }
+            Self::Payload { most } => write!(
+                f,
+                "what the link holds is not a scenario, or more than {most} bytes of it; ask for the link again"
+            ),
+            Self::Scenario(problems) => {
+                f.write_str("the link's scenario has problems")?;
+                for (index, problem) in problems.iter().take(MAX_TOLD).enumerate() {
+                    write!(f, "{}{problem}", if index == 0 { ": " } else { "; " })?;
+                }
+                if let Some(more @ 1..) = problems.len().checked_sub(MAX_TOLD) {
+                    write!(f, "; and {more} more")?;
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+impl core::error::Error for LinkError {}
+
+/// The link text of a scenario, without the `#`.
+///
+/// # Errors
+/// [`LinkError::TooLong`] if the scenario's JSON or the link is longer than [`decode`] reads.
+pub fn encode(scenario: &Scenario) -> Result<String, LinkError> {
+    let json = scenario.compact().to_string();
+    if json.len() > MAX_JSON_BYTES {
+        return Err(LinkError::TooLong { given: json.len(), most: MAX_JSON_BYTES });
+    }
+    let deflated = compress_to_vec(json.as_bytes(), DEFLATE_LEVEL);
+    let (codec, payload) =
+        if deflated.len() < json.len() { ('z', deflated.as_slice()) } else { ('j', json.as_bytes()) };
+    let text = format!("{VERSION}.{codec}.{}", Base64UrlUnpadded::encode_string(payload));
+    let link = format!("c={text}.{:08x}", CHECK.checksum(text.as_bytes()));
+    if link.len() > MAX_FRAGMENT_BYTES {
+        return Err(LinkError::TooLong { given: link.len(), most: MAX_FRAGMENT_BYTES });
+    }
+    Ok(link)
+}
+
+/// A link with another part, `&name=text`, behind it; without it where it would be too long to be read.
+#[must_use]
+pub fn with_part(link: String, name: &str, text: &str) -> String {
+    if text.is_empty() || link.len() + name.len() + text.len() + 2 > MAX_FRAGMENT_BYTES {
+        return link;
+    }
+    link + "&" + name + "=" + text
+}
+
+/// The scenario of a link's fragment, with or without its `#`; other parts (`&v=`, `&d=`) are left
+/// alone. Its ranges and its cost are still to be judged.
+///
+/// # Errors
+/// The first that [`LinkError`] lists.
+pub fn decode(fragment: &str) -> Result<Scenario, LinkError> {
+    if fragment.len() > MAX_FRAGMENT_BYTES {
+        return Err(LinkError::TooLong { given: fragment.len(), most: MAX_FRAGMENT_BYTES });
+    }
+    let text = part(fragment, "c").ok_or(LinkError::NoScenario)?;
+    let (version, rest) = text.split_once('.').unwrap_or((&text, ""));
+    let version: u64 = version.parse().map_err(|_| LinkError::Damaged)?;
+    if version == 0 {
+        // Versions count from 1: nobody wrote this.
+        return Err(LinkError::Damaged);
+    }
+    if version > u64::from(VERSION) {
+        return Err(LinkError::Newer { given: version, newest: VERSION });
+    }
+    let (checked, check) = text.rsplit_once('.').ok_or(LinkError::Damaged)?;
+    if check != format!("{:08x}", CHECK.checksum(checked.as_bytes())) {
+        return Err(LinkError::Damaged);
+    }
+    let (codec, payload) =
+        rest.rsplit_once('.').and_then(|(rest, _)| rest.split_once('.')).ok_or(LinkError::Damaged)?;
+    let payload = Base64UrlUnpadded::decode_vec(payload).map_err(|_| LinkError::Damaged)?;
+    let bad = LinkError::Payload { most: MAX_JSON_BYTES };
+    let json = match codec {
+        "z" => decompress_to_vec_with_limit(&payload, MAX_JSON_BYTES).map_err(|_| bad.clone())?,
+        "j" => payload,
+        _ => return Err(LinkError::Damaged),
+    };
+    let json = String::from_utf8(json).map_err(|_| bad)?;
+    Scenario::from_json_of(&json, version).map_err(LinkError::Scenario)
+}
+
+/// Part `name` of a fragment, without what a chat program put behind it. Some programs
+/// percent-encode a link when it is copied, also its `&`; what is wrong with another part does not
+/// matter.
+#[must_use]
+pub fn part(fragment: &str, name: &str) -> Option<String> {
+    fragment.trim().split('&').filter_map(|part| percent_decode_str(part).decode_utf8().ok()).find_map(
+        |part| {
+            part.trim_start_matches('#')
+                .split('&')
+                .find_map(|part| part.strip_prefix(name)?.strip_prefix('='))
+                .map(|part| part.trim_end_matches(TRAILING).to_string())
+        },
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Motion, Source};
+    use stepscope_motion::{
+        mechanics::Distance,
+        moves::{Axis, Cosine, Move},
+    };
+    use stepscope_peripheral::config::Bus;
+
+    fn sixteen_axes() -> Scenario {
+        let axis = |i: i32| Axis {
+            moves: alloc::vec![Move::Cosine(Cosine {
+                distance: Distance::Steps(f64::from(1000 + 137 * i)),
+                duration_s: 0.4 + f64::from(i) / 64.0,
+                ramp_s: 0.1 + f64::from(i) / 100.0,
+                ..Cosine::default()
+            })],
+            ..Axis::default()
+        };
+        Scenario {
+            title: "Sixteen different channels".into(),
+            bus: Bus { channels: 16, ..Bus::default() },
+            source: Source::Motion(Motion { axes: (0..16).map(axis).collect(), ..Motion::default() }),
+            ..Scenario::default()
+        }
+    }
+
+    #[test]
+    fn a_link_gives_back_the_very_scenario_and_the_same_scenario_the_same_link() {
+        for scenario in [Scenario::default(), sixteen_axes()] {
+            let link = encode(&scenario).expect("short enough");
+            assert_eq!(decode(&link), Ok(scenario.clone()));
+            assert_eq!(encode(&decode(&link).expect("opens")), Ok(link));
+        }
+        assert!(encode(&sixteen_axes()).expect("short enough").len() < 900);
+    }
+
+    #[test]
+    fn copies_from_chat_programs_open() {
+        let scenario = sixteen_axes();
+        let link = encode(&scenario).expect("short enough");
+        let encoded = link.replace('=', "%3D").replace('.', "%2E");
+        for copy in [
+            format!("#{link}"),
+            format!("{link}."),
+            format!("{link})."),
+            format!("#{link}&v=broken&d=0"),
+            format!("v=%zz&{link}"),
+            format!("{link}&v=%ff"),
+            format!("v=%ff&{link}"),
+            format!("{link}%26v=1"),
+            format!("  #{link}  "),
+            encoded,
+        ] {
+            assert_eq!(decode(&copy), Ok(scenario.clone()), "{copy}");
+        }
+    }
+
+    #[test]
+    fn parts_are_added_as_long_as_the_link_can_be_read() {
+        let link = encode(&sixteen_axes()).expect("short enough");
+        let whole = with_part(with_part(link.clone(), "v", "1-2"), "d", "1.x");
+        assert_eq!(whole, format!("{link}&v=1-2&d=1.x"));
+        assert_eq!((part(&whole, "v"), part(&whole, "d")), (Some("1-2".into()), Some("1.x".into())));
+        assert_eq!(with_part(link.clone(), "v", ""), link);
+        let room = MAX_FRAGMENT_BYTES - link.len() - 3;
+        assert_eq!(with_part(link.clone(), "d", &"x".repeat(room)).len(), MAX_FRAGMENT_BYTES);
+        assert_eq!(with_part(link.clone(), "d", &"x".repeat(room + 1)), link);
+    }
+
+    #[test]
+    fn every_truncation_is_refused() {
+        let link = encode(&sixteen_axes()).expect("short enough");
+        for length in 0..link.len() {
+            decode(&link[..length]).expect_err(&link[..length]);
+        }
+    }
+
+    #[test]
+    fn every_flipped_character_is_refused() {
+        let link = encode(&sixteen_axes()).expect("short enough");
+        for at in 0..link.len() {
+            for with in ["A", "0", "z", "_", ".", "=", "%", "&", " ", "~"] {
+                if link[at..=at] != *with && link.get(at + 1..).is_some_and(|rest| !rest.is_empty()) {
+                    let flipped = format!("{}{with}{}", &link[..at], &link[at + 1..]);
+                    decode(&flipped).expect_err(&flipped);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_version_is_judged_before_the_check() {
+        let rows = [
+            ("c=2.z.anything.00000000", LinkError::Newer { given: 2, newest: VERSION }),
+            ("c=99", LinkError::Newer { given: 99, newest: VERSION }),
+            ("c=1.z.AAAA.00000000", LinkError::Damaged),
+            ("c=x", LinkError::Damaged),
+            ("c=0.j.e30.0768f5dc", LinkError::Damaged),
+            ("d=1", LinkError::NoScenario),
+            ("", LinkError::NoScenario),
+        ];
+        for (link, expected) in rows {
+            assert_eq!(decode(link), Err(expected), "{link}");
+        }
+        let long = "c=1".repeat(MAX_FRAGMENT_BYTES);
+        assert!(matches!(decode(&long), Err(LinkError::TooLong { .. })));
+    }
+
+    fn link_of(codec: char, payload: &[u8]) -> String {
+        let text = format!("{VERSION}.{codec}.{}", Base64UrlUnpadded::encode_string(payload));
+        format!("c={text}.{:08x}", CHECK.checksum(text.as_bytes()))
+    }
+
+    #[test]
+    fn a_deflate_bomb_is_refused() {
+        let bomb = link_of('z', &compress_to_vec(&alloc::vec![b' '; 10 << 20], DEFLATE_LEVEL));
+        assert!(bomb.len() < MAX_FRAGMENT_BYTES, "{}", bomb.len());
+        assert_eq!(decode(&bomb), Err(LinkError::Payload { most: MAX_JSON_BYTES }));
+    }
+
+    #[test]
+    fn a_message_names_some_problems_and_counts_the_others() {
+        let problem =
+            |count: u32| Problem::new("bus.slots", stepscope_motion::Cause::NoSteps { steps: count.into() });
+        let told = |count| LinkError::Scenario((0..count).map(problem).collect()).to_string();
+        assert!(told(8).matches("bus.slots").count() == 8 && !told(8).contains("more"));
+        assert!(told(1000).matches("bus.slots").count() == 8 && told(1000).ends_with("; and 992 more"));
+    }
+
+    #[test]
+    fn unknown_fields_and_wrong_types_are_refused_with_their_paths() {
+        for (json, path) in [
+            (r#"{"__proto__":{"version":1}}"#, "__proto__"),
+            (r#"{"bus":{"constructor":1}}"#, "bus.constructor"),
+            (r#"{"bus":{"slots":"1"}}"#, "bus.slots"),
+        ] {
+            match decode(&link_of('j', json.as_bytes())) {
+                Err(LinkError::Scenario(problems)) => assert_eq!(problems[0].path, path),
+                other => panic!("{json}: {other:?}"),
+            }
+        }
+        assert_eq!(decode(&link_of('j', &[0xff])), Err(LinkError::Payload { most: MAX_JSON_BYTES }));
+    }
+}

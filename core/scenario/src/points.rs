@@ -1,0 +1,139 @@
+//! A profile given as points (DESIGN B6): as a scenario holds it, and as a table is read.
+//!
+//! ```json
+//! { "points": { "unit": "mm", "interpolation": "smooth", "points": [[0, 0], [0.25, 12.5], [0.5, 0]] } }
+//! ```
+//!
+//! Both columns count from the first point: a record may begin at any time and place.
+
+use crate::{
+    Compact, Parts, Read, Reader,
+    table::{BadTable, Rows, short},
+};
+use alloc::{borrow::ToOwned, format, string::String, vec, vec::Vec};
+use serde_json::Value;
+use stepscope_motion::moves::{MAX_POINTS, Point};
+
+impl Read for Point {
+    fn read(&mut self, value: &Value, reader: &mut Reader) -> bool {
+        let wanted = "a point's time in s and its position, such as [0.25, 12.5]";
+        let Some(numbers) = value.as_array() else { return reader.refuse(value, wanted) };
+        let [time_s, position] = &numbers[..] else {
+            return reader.wrong(format!("a point of {} numbers; give {wanted}", numbers.len()));
+        };
+        reader.below("[0]", time_s, &mut self.time_s);
+        reader.below("[1]", position, &mut self.position);
+        true
+    }
+
+    fn blank() -> Self {
+        Self::default()
+    }
+}
+
+impl Compact for Point {
+    fn parts(&self) -> Parts<'_> {
+        Parts::List(vec![&self.time_s, &self.position])
+    }
+}
+
+/// The points of a table: two columns, time in s and position, with or without a head.
+///
+/// With a head the columns `time_s` and `position` are taken where there are such, else the first
+/// two. Commas, semicolons or tabs stand between the columns, whichever the first row has; beside
+/// semicolons and tabs a number may have a decimal comma.
+///
+/// # Errors
+/// [`BadTable`] with the first line that cannot be used. Whether the times rise is judged with the
+/// scenario that the points become a part of.
+pub fn points_of_table(table: &str) -> Result<Vec<Point>, BadTable> {
+    let first = table.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
+    let separator = [b';', b'\t'].into_iter().find(|mark| first.as_bytes().contains(mark)).unwrap_or(b',');
+    let number = |text: &str| {
+        let text = text.trim().trim_start_matches('+');
+        let text = if separator == b',' { text.to_owned() } else { text.replace(',', ".") };
+        // JSON's reader of numbers is here anyway; the standard library's brings tables of its own.
+        serde_json::from_str::<f64>(&text).ok()
+    };
+    let mut rows = Rows::new(table, separator)?;
+    let (mut points, mut columns, mut is_first) = (Vec::new(), (0, 1), true);
+    while let Some((at, row)) = rows.next() {
+        let head = core::mem::take(&mut is_first) && row.iter().all(|field| number(field).is_none());
+        if head {
+            let place = |name: &str| row.iter().position(|field| field.trim().eq_ignore_ascii_case(name));
+            columns = place("time_s").zip(place("position")).unwrap_or(columns);
+            continue;
+        }
+        let read = |column: usize, what: &str| {
+            let text = row.get(column).map_or("", |field| field.trim());
+            number(text).ok_or_else(|| {
+                let given: String = short(text);
+                rows.bad(at, format!("the {what} is \u{201c}{given}\u{201d}; give a number, such as 0.25"))
+            })
+        };
+        points.push(Point { time_s: read(columns.0, "time in s")?, position: read(columns.1, "position")? });
+        if points.len() > MAX_POINTS {
+            return Err(rows.bad(at, format!("more than {MAX_POINTS} points; give fewer")));
+        }
+    }
+    if points.len() < 2 {
+        return Err(rows.bad(rows.at, format!("{} points; give 2 to {MAX_POINTS}", points.len())));
+    }
+    Ok(points)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::string::ToString;
+
+    fn points(table: &str) -> Result<Vec<(f64, f64)>, String> {
+        let points = points_of_table(table).map_err(|bad| bad.to_string())?;
+        Ok(points.into_iter().map(|point| (point.time_s, point.position)).collect())
+    }
+
+    #[test]
+    fn tables_of_all_kinds_are_the_same_points() {
+        let expected = Ok(vec![(0.0, 1.5), (0.25, -2e3)]);
+        for table in [
+            "0,1.5\n0.25,-2e3\n",
+            "\u{feff}time,way\r\n0,1.5\r\n\r\n0.25,-2000",
+            "name,position,time_s\nfirst,+1.5,0\nsecond,-2000,0.25\n",
+            "t;x\n0;1,5\n0,25;-2000,0\n",
+            "0\t1.5\n0.25\t-2000\n",
+            "\"time_s\",\"position\"\n\"0\",\"1.5\"\n\"0.25\",\"-2000\"\n",
+        ] {
+            assert_eq!(points(table), expected, "{table}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_used_is_told_with_its_line() {
+        for (table, expected) in [
+            ("", "line 1: 0 points; give 2 to 4096"),
+            ("time,position\n1,2\n", "line 3: 1 points; give 2 to 4096"),
+            ("0,0\n\n1,x\n", "line 3: the position is \u{201c}x\u{201d}; give a number, such as 0.25"),
+            (
+                "a,b\n0,0\nNaN,1\n",
+                "line 3: the time in s is \u{201c}NaN\u{201d}; give a number, such as 0.25",
+            ),
+            ("0,0\n1\n", "line 2: the position is \u{201c}\u{201d}; give a number, such as 0.25"),
+            ("0,x\n", "line 1: the position is \u{201c}x\u{201d}; give a number, such as 0.25"),
+        ] {
+            assert_eq!(points(table), Err(expected.into()), "{table:?}");
+        }
+        let many = "0,0\n".repeat(MAX_POINTS + 1);
+        assert_eq!(points(&many), Err("line 4097: more than 4096 points; give fewer".into()));
+    }
+
+    #[test]
+    fn a_point_is_a_pair_of_numbers() {
+        let read =
+            |json: &str| crate::part_from_json::<Point>(json).map_err(|problems| problems[0].to_string());
+        assert_eq!(read("[0.25,-1]"), Ok(Point { time_s: 0.25, position: -1.0 }));
+        for json in ["[1]", "[1,2,3]", "[]"] {
+            assert!(read(json).unwrap_err().starts_with("a point of "), "{json}");
+        }
+        assert_eq!(Point { time_s: 0.5, position: -0.0 }.compact().to_string(), "[0.5,0.0]");
+    }
+}

@@ -1,0 +1,95 @@
+//! The documents' own experiments, as JSON files that tests, native tools and the page share.
+
+use crate::Scenario;
+
+/// One preset.
+#[derive(Clone, Copy, Debug)]
+pub struct Preset {
+    /// Its name in files and on the command line.
+    pub id: &'static str,
+    /// The document that it comes from.
+    pub document: &'static str,
+    /// The scenario's JSON.
+    pub json: &'static str,
+}
+
+impl Preset {
+    /// The scenario. The files are tested, so it is never the default in place of one.
+    #[must_use]
+    pub fn scenario(&self) -> Scenario {
+        Scenario::from_json(self.json).unwrap_or_default()
+    }
+}
+
+const SINE: &str = "SWorldJournal, issue 11: sine by segments";
+const SONG: &str = "Song, Han, Lu 2021: exact S-curve";
+const SONOBE: &str = "Sonobe 2011: acceleration table";
+const PATENT: &str = "RU 2704486, 2019: tick packets";
+const ZHANG: &str = "Zhang 2012: fixed-length controller";
+const FRAMED: &str = "The framed protocol: checked, answered, repeated";
+const PROFILES: &str = "Further profiles: exact sine, jerk-limited, points";
+const DRIVERS: &str = "Drivers' data sheets: timing";
+
+macro_rules! presets {
+    ($($document:expr => $id:literal;)*) => {
+        /// All presets, in the order of the page's menu.
+        pub const PRESETS: &[Preset] = &[$(Preset {
+            id: $id,
+            document: $document,
+            json: include_str!(concat!("../presets/", $id, ".json")),
+        }),*];
+    };
+}
+
+presets! {
+    SONG => "song-2021-one-turn";
+    SONG => "song-2021-plateau";
+    SONG => "song-2021-sliced";
+    SONG => "song-2021-ramps";
+    SONOBE => "sonobe-2011-table";
+    SONOBE => "sonobe-2011-segments";
+    ZHANG => "zhang-2012-fixed-length";
+    ZHANG => "zhang-2012-staircase";
+    SINE => "sine-2022-d00054";
+    SINE => "sine-2022-d0006";
+    PROFILES => "exact-sine";
+    PROFILES => "jerk-limited";
+    PROFILES => "points";
+    PATENT => "patent-2019-four-motors";
+    PATENT => "patent-2019-sixteen-motors";
+    PATENT => "patent-2019-staggered";
+    PATENT => "patent-2019-common-dir";
+    PATENT => "patent-2019-addressed";
+    PATENT => "two-controllers-raw";
+    PATENT => "glitches-and-breaks";
+    FRAMED => "framed-link";
+    FRAMED => "raw-noisy-line";
+    FRAMED => "framed-noisy-line";
+    FRAMED => "four-controllers-framed";
+    DRIVERS => "driver-timing-broken";
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Kinds;
+
+    #[test]
+    fn every_kind_of_move_has_a_preset() {
+        for kind in stepscope_motion::moves::Move::KINDS {
+            let key = alloc::format!("\"{kind}\": {{");
+            assert!(PRESETS.iter().any(|preset| preset.json.contains(&key)), "{kind}");
+        }
+    }
+
+    #[test]
+    fn every_preset_reads_and_holds() {
+        for (index, preset) in PRESETS.iter().enumerate() {
+            let scenario =
+                Scenario::from_json(preset.json).unwrap_or_else(|p| panic!("{}: {p:?}", preset.id));
+            assert!(!scenario.title.is_empty() && !scenario.note.is_empty(), "{}", preset.id);
+            scenario.check().unwrap_or_else(|p| panic!("{}: {p:?}", preset.id));
+            assert!(PRESETS[..index].iter().all(|other| other.id != preset.id), "{} twice", preset.id);
+        }
+    }
+}

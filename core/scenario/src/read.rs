@@ -1,0 +1,190 @@
+//! Reads a scenario from JSON text, of any version, and writes it.
+
+use crate::{Cause, Compact, Problem, Read, Scenario, VERSION, compact, reader::read_into};
+use alloc::{
+    string::{String, ToString},
+    vec::Vec,
+};
+use serde_json::Value;
+use stepscope_motion::problem::MAX_PROBLEMS;
+
+impl Scenario {
+    /// Reads a scenario from JSON text of any version up to [`VERSION`].
+    ///
+    /// # Errors
+    /// Every field of the wrong type or name, with its path; ranges are judged by
+    /// [`Scenario::check`].
+    pub fn from_json(text: &str) -> Result<Self, Vec<Problem>> {
+        Self::strictly(parse(text)?)
+    }
+
+    /// Reads a scenario whose version stands elsewhere, as in a link.
+    ///
+    /// # Errors
+    /// As [`Self::from_json`].
+    pub fn from_json_of(text: &str, version: u64) -> Result<Self, Vec<Problem>> {
+        let mut value = parse(text)?;
+        if let Some(map) = value.as_object_mut() {
+            map.insert("version".into(), version.into());
+        }
+        Self::strictly(value)
+    }
+
+    fn strictly(value: Value) -> Result<Self, Vec<Problem>> {
+        let (scenario, problems) = read(&upgrade(value)?);
+        if problems.is_empty() { Ok(scenario) } else { Err(problems) }
+    }
+
+    /// Reads what can be read and lists the rest: fields that cannot be read have their defaults.
+    #[must_use]
+    pub fn from_json_lenient(text: &str) -> (Self, Vec<Problem>) {
+        match parse(text).and_then(upgrade) {
+            Ok(value) => read(&value),
+            Err(problems) => (Self::default(), problems),
+        }
+    }
+
+    /// The whole scenario as JSON, every field written.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        to_json(self)
+    }
+}
+
+/// Reads a part of a scenario, such as an axis or a move, with this version's names.
+///
+/// # Errors
+/// Every field of the wrong type or name, with its path in the part.
+pub fn part_from_json<T: Read>(text: &str) -> Result<T, Vec<Problem>> {
+    let mut part = T::blank();
+    let problems = read_into(&mut part, &parse(text)?);
+    if problems.is_empty() { Ok(part) } else { Err(problems) }
+}
+
+/// A part of a scenario as JSON, every field written.
+#[must_use]
+pub fn to_json(part: &dyn Compact) -> String {
+    let mut text = String::new();
+    compact::write_whole(&mut text, part, 0);
+    text
+}
+
+fn parse(text: &str) -> Result<Value, Vec<Problem>> {
+    // Some editors put a byte order mark before the text.
+    serde_json::from_str(text.trim_start_matches('\u{feff}')).map_err(|error| {
+        let (line, column) = (error.line(), error.column());
+        let detail = error.to_string();
+        let detail = detail.split(" at line ").next().unwrap_or_default().into();
+        alloc::vec![Problem::new("", Cause::Syntax { line, column, detail })]
+    })
+}
+
+/// Brings a scenario of any older version to [`VERSION`], one version a step; a step that was
+/// published is never removed. Without a version it may have any version's names.
+fn upgrade(mut value: Value) -> Result<Value, Vec<Problem>> {
+    let given = value.get("version").map_or(Some(1), Value::as_u64);
+    match given {
+        Some(given) if given > u64::from(VERSION) => {
+            return Err(alloc::vec![Problem::new("version", Cause::NewerVersion { given, newest: VERSION })]);
+        }
+        Some(1) => crate::upgrade::from_1(&mut value),
+        _ => {}
+    }
+    Ok(value)
+}
+
+/// What can be read, and what is wrong with the rest; of too much of that nothing is read.
+fn read(value: &Value) -> (Scenario, Vec<Problem>) {
+    let mut scenario = Scenario::default();
+    let problems = read_into(&mut scenario, value);
+    let read = if problems.len() < MAX_PROBLEMS { scenario } else { Scenario::default() };
+    (read, problems)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::format;
+
+    fn paths(text: &str) -> Vec<String> {
+        Scenario::from_json_lenient(text).1.into_iter().map(|p| p.path).collect()
+    }
+
+    #[test]
+    fn every_field_of_a_wrong_type_is_listed_with_its_path() {
+        let rows: &[(&str, &[&str])] = &[
+            ("{}", &[]),
+            ("[]", &[""]),
+            (r#"{"bus":[4],"source":{"motion":{"axes":[[]]}}}"#, &["bus", "source.motion.axes[0]"]),
+            ("{", &[""]),
+            (r#"{"version":2}"#, &["version"]),
+            (
+                r#"{"bus":{"slots":"x","channels":-1},"clock_hz":1.5}"#,
+                &["bus.channels", "bus.slots", "clock_hz"],
+            ),
+            (r#"{"bus":{"slot":3,"channels":-1},"clok_hz":1}"#, &["bus.channels", "bus.slot", "clok_hz"]),
+            (
+                r#"{"source":{"motion":{"axes":[{"moves":[{"cosine":{"ramp_s":"a"}},{"dwel":{}},{"dwell":{"duration_s":[]}}]},{"mechanics":{"screw":{"lead_mm":{}}}}]}}}"#,
+                &[
+                    "source.motion.axes[0].moves[0].cosine.ramp_s",
+                    "source.motion.axes[0].moves[1]",
+                    "source.motion.axes[0].moves[2].dwell.duration_s",
+                    "source.motion.axes[1].mechanics.screw.lead_mm",
+                ],
+            ),
+            (
+                r#"{"source":{"motion":{"axes":[{"moves":[{"cosine":5},{"dwel":{}},5]},7]}}}"#,
+                &[
+                    "source.motion.axes[0].moves[0].cosine",
+                    "source.motion.axes[0].moves[1]",
+                    "source.motion.axes[0].moves[2]",
+                    "source.motion.axes[1]",
+                ],
+            ),
+            (
+                r#"{"source":{"motion":{"axes":[{"moves":[{"points":{"points":[[0,0],"x",[1,"y"],[1,2,3],[2,1]]}}]}]}}}"#,
+                &[
+                    "source.motion.axes[0].moves[0].points.points[1]",
+                    "source.motion.axes[0].moves[0].points.points[2][1]",
+                    "source.motion.axes[0].moves[0].points.points[3]",
+                ],
+            ),
+            (
+                r#"{"source":{"packets":{"packets":["00",1,"zz","0"]}}}"#,
+                &["source.packets.packets[1]", "source.packets.packets[2]", "source.packets.packets[3]"],
+            ),
+            (
+                r#"{"source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"mm":"x"}}}]}]}}}"#,
+                &["source.motion.axes[0].moves[0].cosine.distance.mm"],
+            ),
+        ];
+        for (given, expected) in rows {
+            let mut expected = expected.to_vec();
+            let mut found = paths(given);
+            found.sort();
+            expected.sort_unstable();
+            assert_eq!(found, expected, "{given}");
+        }
+    }
+
+    #[test]
+    fn a_hundred_problems_are_enough() {
+        for wrong in ["[],", "7,"] {
+            let axes = wrong.repeat(300);
+            let text = format!(r#"{{"source":{{"motion":{{"axes":[{axes}{{}}]}}}}}}"#);
+            assert_eq!(paths(&text).len(), MAX_PROBLEMS, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn what_can_be_read_is_kept_beside_a_wrong_field() {
+        let (scenario, problems) = Scenario::from_json_lenient(r#"{"title":"kept","clock_hz":"x"}"#);
+        assert_eq!(scenario.title, "kept");
+        assert_eq!(problems.len(), 1);
+        assert!(format!("{}", problems[0]).starts_with("clock_hz: "));
+        // A list in a map's place leaves nothing behind, though serde could read it by its order.
+        let (scenario, problems) = Scenario::from_json_lenient(r#"{"title":"kept","bus":[7]}"#);
+        assert_eq!((scenario.title.as_str(), scenario.bus.channels, problems.len()), ("kept", 1, 1));
+        assert_eq!(Scenario::from_json_lenient("[2]").0, Scenario::default());
+    }
+}

@@ -1,0 +1,110 @@
+//! Packets that were recorded, as a table, made into a line script that sends them again.
+//!
+//! The table is one that a run exports: `bytes`, and `start_cycle` or `start_s`, are among its columns, in
+//! any order; others are left alone. Rows whose `kind` is `reply` or `collision` came from a controller and are not
+//! sent. A packet's bytes go back to back from its start bit on; pauses within it are not in the table.
+
+use crate::{
+    Hex, LineScript, ScriptedSend,
+    table::{BadTable, Rows, short},
+};
+use alloc::{borrow::ToOwned, format, string::String, vec::Vec};
+
+impl LineScript {
+    /// The bytes of a recorded table, each packet at its time; times in s become cycles of `clock_hz`.
+    ///
+    /// # Errors
+    /// [`BadTable`] with the first line that cannot be used. Whether the packets follow one another
+    /// without overlapping is judged with the scenario that they become a part of.
+    pub fn recorded(table: &str, clock_hz: u32) -> Result<Self, BadTable> {
+        let mut rows = Rows::new(table, b',')?;
+        let (_, head) = rows.next().unwrap_or_default();
+        let place = |name: &str| head.iter().position(|field| field.trim() == name);
+        let missing = |name: &str| {
+            rows.bad(0, format!("there is no column {name}; a table of packets has start_cycle and bytes"))
+        };
+        let start = place("start_cycle").map(|at| (at, false)).or(place("start_s").map(|at| (at, true)));
+        let (start, in_seconds) = start.ok_or_else(|| missing("start_cycle"))?;
+        let bytes = place("bytes").ok_or_else(|| missing("bytes"))?;
+        let kind = place("kind");
+        let mut sends = Vec::new();
+        while let Some((at, row)) = rows.next() {
+            let field = |index: usize| row.get(index).map_or("", |field| field.trim());
+            if kind.is_some_and(|kind| ["reply", "collision"].contains(&field(kind))) {
+                continue;
+            }
+            let given = field(start);
+            let start_cycle = if in_seconds { cycle_at(given, clock_hz) } else { given.parse().ok() };
+            let start_cycle = start_cycle.filter(|cycle| *cycle > 0).ok_or_else(|| {
+                let (name, allowed) = if in_seconds {
+                    ("start_s", "a time in s after reset")
+                } else {
+                    ("start_cycle", "a whole number of cycles from 1")
+                };
+                rows.bad(at, format!("{name} is “{}”; give {allowed}", short(given)))
+            })?;
+            let given = field(bytes);
+            let hex: String = given.split_whitespace().collect();
+            let sent = base16ct::mixed::decode_vec(&hex).map_err(|_| {
+                rows.bad(at, format!("bytes are “{}”; give pairs of hexadecimal digits", short(given)))
+            })?;
+            if !sent.is_empty() {
+                sends.push(ScriptedSend { start_cycle, bytes: Hex(sent), frame: None });
+            }
+        }
+        if sends.is_empty() {
+            return Err(rows.bad(rows.at, "the table has no packets".to_owned()));
+        }
+        Ok(Self { sends })
+    }
+}
+
+/// The cycle at a time in s.
+fn cycle_at(seconds: &str, clock_hz: u32) -> Option<u64> {
+    // JSON's reader of numbers is here anyway; the standard library's brings tables of its own.
+    let cycle = libm::round(serde_json::from_str::<f64>(seconds).ok()? * f64::from(clock_hz));
+    (1.0..9e15).contains(&cycle).then_some(cycle as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::{string::ToString, vec};
+
+    fn sends(table: &str) -> Result<Vec<(u64, Vec<u8>)>, String> {
+        let script = LineScript::recorded(table, 16_000_000).map_err(|bad| bad.to_string())?;
+        Ok(script.sends.into_iter().map(|send| (send.start_cycle, send.bytes.0)).collect())
+    }
+
+    #[test]
+    fn packets_are_sent_again_and_replies_are_not() {
+        let table = "\u{feff}kind,start_cycle,outcome,bytes\r\n\
+                     packet,10,queued,8a05\r\nreply,20,\"ACK TICKS: idle, 3 free\",00\r\n\r\nframe,30,\"a\nb\",\"FF 00\"\r\n";
+        assert_eq!(sends(table), Ok(vec![(10, vec![0x8a, 5]), (30, vec![0xff, 0])]));
+        assert_eq!(sends("start_cycle,bytes\n7,01"), Ok(vec![(7, vec![1])]), "no kind, no line's end");
+        assert_eq!(sends("bytes,start_s\n01,0.0000015\n"), Ok(vec![(24, vec![1])]), "24 cycles of 16 MHz");
+        let long = format!("bytes,start_cycle\n{},1\n", "ab".repeat(3000));
+        assert_eq!(sends(&long), Ok(vec![(1, vec![0xab; 3000])]));
+        let wide = format!("{}bytes,start_cycle\n{}ab,1\n", "x,".repeat(100), "x,".repeat(100));
+        assert_eq!(sends(&wide), Ok(vec![(1, vec![0xab])]));
+    }
+
+    #[test]
+    fn what_cannot_be_used_is_told_with_its_line() {
+        for (table, expected) in [
+            ("", "line 1: there is no column start_cycle"),
+            ("start_cycle,hex\n", "line 1: there is no column bytes"),
+            ("start_cycle,bytes\n", "line 2: the table has no packets"),
+            ("start_cycle,bytes\n1,00\n\n0,00\n", "line 4: start_cycle is “0”"),
+            ("start_cycle,bytes\r\n1,00\r\n2.5,00\r\n", "line 3: start_cycle is “2.5”"),
+            ("start_s,bytes\nNaN,00\n", "line 2: start_s is “NaN”"),
+            ("start_s,bytes\n1e300,00\n", "line 2: start_s is “1e300”"),
+            ("start_cycle,bytes\n1,0\n", "line 2: bytes are “0”"),
+            ("start_cycle,bytes\n1,0g\n", "line 2: bytes are “0g”"),
+            ("start_cycle,bytes\n1\n2\n", "line 4: the table has no packets"),
+        ] {
+            let found = sends(table).expect_err(table);
+            assert!(found.starts_with(expected), "{table:?}: {found}");
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! Segment lists as a scenario holds them (DESIGN A8): a list for each channel, run by the
+//! peripheral itself.
+//!
+//! `_q16` counts 1/65536 cycle (48.16 fixed point), `_cycles` whole ones.
+
+use crate::{
+    Cause, Problem, Validator,
+    compact::{choices, settings},
+};
+use alloc::{format, vec::Vec};
+use stepscope_motion::{self as motion, problem::MAX_PROBLEMS};
+use stepscope_peripheral::{
+    config::Bus,
+    segment::{self, CheckedSegments, LAST_CYCLE, PulseTimes, Refusal, Refused, SegmentList},
+    signal::MAX_CHANNELS,
+    units::Instant,
+};
+
+/// Most segments of all channels together.
+const MAX_SEGMENTS: usize = 1_000_000;
+
+settings! {
+    /// A list of segments for each channel; list i drives channel i.
+    pub struct SegmentLists {
+        /// Up to 16 lists, no more than `bus.channels`.
+        pub channels: Vec<ChannelSegments> = Vec::new(),
+    }
+}
+
+settings! {
+    /// The segments of one channel, one after another.
+    pub struct ChannelSegments {
+        /// Cycle in which the list's time begins, from 1.
+        pub start_cycle: u64 = 1,
+        /// The segments.
+        pub segments: Vec<Segment> = Vec::new(),
+    }
+}
+
+choices! {
+    /// One segment (DESIGN A8).
+    pub enum Segment {
+        /// Steps at intervals that grow by a constant.
+        Steps(StepSegment) = "steps",
+        /// Standing still.
+        Dwell(DwellSegment) = "dwell",
+    }
+}
+
+settings! {
+    /// Steps at intervals that grow by a constant.
+    pub struct StepSegment {
+        /// How many, from 1.
+        pub count: u32 = 1,
+        /// Time before the first step, in 1/65536 cycle; 16000 cycles.
+        pub interval_q16: u64 = 16_000 << 16,
+        /// What each next interval is longer, in 1/65536 cycle.
+        pub add_q16: i64 = 0,
+        /// Level of DIR: 1 right, 0 left.
+        pub dir: u8 = 1,
+    }
+}
+
+settings! {
+    /// Standing still.
+    pub struct DwellSegment {
+        /// How long, in 1/65536 cycle, from 0.
+        pub length_q16: u64 = 0,
+    }
+}
+
+impl SegmentLists {
+    /// Judges the lists by A8's rules and makes them what the engine runs.
+    ///
+    /// # Errors
+    /// Every problem, at the path of its segment.
+    pub(crate) fn check(&self, bus: &Bus) -> Result<CheckedSegments, Vec<Problem>> {
+        let mut validator = Validator::default();
+        let most = usize::from(bus.channels).clamp(1, MAX_CHANNELS);
+        validator.length("source.segments.channels", self.channels.len(), 0, most, "lists of segments");
+        let total = self.channels.iter().map(|channel| channel.segments.len()).sum();
+        validator.length("source.segments.channels", total, 0, MAX_SEGMENTS, "segments");
+        for (index, channel) in self.channels.iter().enumerate() {
+            let at = format!("source.segments.channels[{index}]");
+            validator.whole(&format!("{at}.start_cycle"), channel.start_cycle, 1, LAST_CYCLE.0, "cycles");
+            for (index, each) in channel.segments.iter().enumerate() {
+                if let Segment::Steps(StepSegment { dir: dir @ 2.., .. }) = each {
+                    validator.whole(&format!("{at}.segments[{index}].steps.dir"), *dir, 0, 1, "");
+                }
+            }
+        }
+        let pulse = PulseTimes::from(bus);
+        let lists = self.channels.iter().take(MAX_CHANNELS).map(ChannelSegments::plain).collect();
+        match CheckedSegments::new(pulse, lists, MAX_PROBLEMS) {
+            Ok(lists) => validator.end(lists),
+            Err(refused) => {
+                for Refused { channel, segment, refusal } in refused {
+                    // A list's start and the number of lists have been judged above.
+                    if let Some(segment) = segment {
+                        let path = format!("source.segments.channels[{channel}].segments[{segment}]");
+                        validator.add(path, cause(refusal, pulse));
+                    }
+                }
+                Err(validator.problems())
+            }
+        }
+    }
+}
+
+impl ChannelSegments {
+    fn plain(&self) -> SegmentList {
+        let segments = self.segments.iter().map(|each| match each {
+            Segment::Steps(steps) => segment::Segment::Steps {
+                count: steps.count,
+                interval: steps.interval_q16,
+                add: steps.add_q16,
+                right: steps.dir != 0,
+            },
+            Segment::Dwell(dwell) => segment::Segment::Dwell(dwell.length_q16),
+        });
+        SegmentList { start: Instant(self.start_cycle), segments: segments.collect() }
+    }
+}
+
+impl From<&CheckedSegments> for SegmentLists {
+    /// The lists as a scenario writes them.
+    fn from(checked: &CheckedSegments) -> Self {
+        let segment = |each: &segment::Segment| match *each {
+            segment::Segment::Steps { count, interval, add, right } => {
+                Segment::Steps(StepSegment { count, interval_q16: interval, add_q16: add, dir: right.into() })
+            }
+            segment::Segment::Dwell(length_q16) => Segment::Dwell(DwellSegment { length_q16 }),
+        };
+        let channels = checked.lists().iter().map(|list| ChannelSegments {
+            start_cycle: list.start.0,
+            segments: list.segments.iter().map(segment).collect(),
+        });
+        Self { channels: channels.collect() }
+    }
+}
+
+/// A refusal in the words of a scenario.
+fn cause(refusal: Refusal, pulse: PulseTimes) -> Cause {
+    Cause::Motion(match refusal {
+        Refusal::Interval { step, interval } => motion::Cause::SegmentInterval { step, interval, pulse },
+        Refusal::End { next } => motion::Cause::SegmentEnd { next },
+        Refusal::NoSteps | Refusal::NoChannel | Refusal::Start => motion::Cause::NoSegmentSteps,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Compact, Scenario};
+    use alloc::{format, string::ToString, vec::Vec};
+
+    fn problems(source: &str) -> Vec<alloc::string::String> {
+        let json = format!(r#"{{"source":{{"segments":{{"channels":[{source}]}}}}}}"#);
+        let scenario = Scenario::from_json(&json).expect("reads");
+        scenario.check().err().unwrap_or_default().iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn every_refusal_names_its_segment_and_the_numbers() {
+        let rows: [(&str, &[&str]); 7] = [
+            ("", &[]),
+            (r#"{"segments":[{"steps":{}},{"dwell":{}}]}"#, &[]),
+            ("{},{}", &["source.segments.channels: 2 lists of segments; give 0 to 1"]),
+            (
+                r#"{"start_cycle":0,"segments":[{"steps":{"dir":2}}]}"#,
+                &[
+                    "source.segments.channels[0].start_cycle: 0 cycles is out of range; give 1 to 281474976710655 cycles",
+                    "source.segments.channels[0].segments[0].steps.dir: 2 is out of range; give 0 to 1",
+                ],
+            ),
+            (
+                r#"{"segments":[{"dwell":{}},{"steps":{"count":0}},{"steps":{"interval_q16":5242879}},{"steps":{"count":4000000000,"interval_q16":8242880,"add_q16":-1}}]}"#,
+                &[
+                    "source.segments.channels[0].segments[1]: no steps; give a count of at least 1, or a dwell",
+                    "source.segments.channels[0].segments[2]: step 0 has an interval of 5242879/65536 cycles, a pulse needs width 40 + max(hold 0 + setup 40, 1) = 80 cycles; give at least 5242880, or shorter times of the pulse",
+                    "source.segments.channels[0].segments[3]: step 3000001 has an interval of 5242879/65536 cycles, a pulse needs width 40 + max(hold 0 + setup 40, 1) = 80 cycles; give at least 5242880, or shorter times of the pulse",
+                ],
+            ),
+            (
+                r#"{"segments":[{"steps":{"count":3,"interval_q16":18446744073709551615,"add_q16":9223372036854775807}},{"steps":{}}]}"#,
+                &[
+                    "source.segments.channels[0].segments[0]: step 1 has an interval of 27670116110564327422/65536 cycles; give at most 18446744073709551615",
+                ],
+            ),
+            (
+                r#"{"segments":[{"steps":{"count":4000000000}},{"steps":{"count":4000000000,"interval_q16":10485760000}},{"steps":{"count":1}}]}"#,
+                &[
+                    "source.segments.channels[0].segments[1]: ends at 46137344000000065536/65536 cycles; give less time, at most 18446744073709551615/65536 (cycle 281474976710655)",
+                ],
+            ),
+        ];
+        for (given, expected) in rows {
+            assert_eq!(problems(given), *expected, "{given}");
+        }
+    }
+
+    #[test]
+    fn only_the_pulse_and_the_channels_of_the_bus_matter() {
+        // Ticks of no room, a line too fast for the clock: neither is there.
+        let rows = [
+            (
+                r#""bus":{"pulse_width_cycles":1000000000,"dir_setup_cycles":1000000000,"dir_hold_cycles":1000000000}"#,
+                true,
+            ),
+            (r#""clock_hz":11"#, true),
+            (r#""line":{"baud":0}"#, true),
+            (r#""line":{"receiver_baud":4000000000,"baud":4000000000}"#, true),
+            (r#""bus":{"pulse_width_cycles":0}"#, false),
+            (r#""bus":{"channels":0}"#, false),
+            (r#""line":{"protocol":"framed","receiver_baud":0}"#, true),
+            (r#""controllers":[{}],"line":{"address":0}"#, false),
+        ];
+        for (given, expected) in rows {
+            let json = format!(r#"{{{given},"source":{{"segments":{{"channels":[]}}}}}}"#);
+            assert_eq!(Scenario::from_json(&json).expect("reads").check().is_ok(), expected, "{given}");
+        }
+    }
+
+    #[test]
+    fn segments_survive_their_canonical_form() {
+        let json = r#"{"source":{"segments":{"channels":[{"segments":[{"steps":{"add_q16":-12,"dir":0}},{"dwell":{"length_q16":18446744073709551615}},{"steps":{}}]}]}}}"#;
+        let scenario = Scenario::from_json(json).expect("reads");
+        assert_eq!(scenario.compact().to_string(), json);
+        assert_eq!(Scenario::from_json(&scenario.to_json()), Ok(scenario));
+        // A segment that cannot be read leaves the others in their places.
+        let json = r#"{"source":{"segments":{"channels":[{"segments":[5,{"steps":{"count":-1}},{"step":{}},{"steps":{"count":7}}]}]}}}"#;
+        let (scenario, problems) = Scenario::from_json_lenient(json);
+        let mut paths: Vec<_> = problems.iter().map(|problem| problem.path.as_str()).collect();
+        paths.sort_unstable();
+        let at = "source.segments.channels[0].segments";
+        assert_eq!(paths, [format!("{at}[0]"), format!("{at}[1].steps.count"), format!("{at}[2]")]);
+        assert!(scenario.compact().to_string().contains(r#"{"steps":{"count":7}}]"#), "{scenario:?}");
+    }
+}

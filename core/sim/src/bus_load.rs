@@ -1,0 +1,27 @@
+//! Whether the line can carry what is sent for a tick (DESIGN A9).
+
+use stepscope_peripheral::config::most_baud;
+use stepscope_scenario::Cause;
+
+/// Judges whether what is sent for one tick, `bits` bit times at `baud`, fits in its cycles (A9).
+///
+/// # Errors
+/// [`Cause::LineTooSlow`] where it does not, with the rate that would do.
+pub(crate) fn carries(
+    packet_cycles: u128,
+    bits: u128,
+    tick_cycles: u64,
+    clock_hz: u32,
+    baud: u32,
+) -> Result<(), Cause> {
+    let tick = u128::from(tick_cycles.max(1));
+    if packet_cycles <= tick {
+        return Ok(());
+    }
+    // What a message cannot tell exactly is more than any line can do.
+    let told = |value: u128| u64::try_from(value).unwrap_or(u64::MAX);
+    let (packet_cycles, needed_baud) =
+        (told(packet_cycles), told((bits * u128::from(clock_hz)).div_ceil(tick)));
+    let most_baud = u64::from(most_baud(clock_hz));
+    Err(Cause::LineTooSlow { packet_cycles, tick_cycles, baud, needed_baud, most_baud })
+}

@@ -1,0 +1,312 @@
+//! What each controller is to do, and how the host sends it (DESIGN A9): ticks from motions or
+//! packets, a schedule of them on a raw line, a job each for the host of a framed line.
+
+use crate::{
+    bus_load::carries,
+    framed_host::{FramedHost, Job},
+    noise::Noise,
+};
+use alloc::{format, rc::Rc, string::String, vec, vec::Vec};
+use stepscope_motion::{
+    AxisPlan, plan_lists,
+    quantise::{AxesPath, exact_segments, ticks},
+};
+use stepscope_peripheral::wire::schedule::line_time;
+use stepscope_peripheral::{
+    config::{Config, Protocol},
+    segment::{CheckedSegments, PulseTimes},
+    signal::MAX_CHANNELS,
+    units::Instant,
+    wire::{
+        Forced, Schedule,
+        frame::{REPLY_LEN, encode_frame},
+        packet::{Order, Tick},
+    },
+};
+use stepscope_scenario::{
+    Checked, Controller, Hex, MAX_CONTROLLERS, Problem, Scenario, Source, ValueError, of_motion,
+};
+
+/// Bytes of all controllers' ticks together.
+const MAX_BYTES: usize = 8_000_000;
+/// Bit times of an exchange beside its bytes: from a frame to its reply, and from that to the next.
+const EXCHANGE_BITS: u128 = 11 + 10;
+/// Parts of a bit time that loads are counted in.
+const PART_OF_BIT: u128 = 1000;
+
+/// What one controller is to do.
+#[derive(Clone, Debug)]
+pub(super) struct ControllerPlan {
+    config: Config,
+    plans: Vec<AxisPlan>,
+    /// A byte a channel, tick after tick.
+    ticks: Rc<[u8]>,
+}
+
+impl ControllerPlan {
+    pub(super) const fn config(&self) -> &Config {
+        &self.config
+    }
+
+    pub(super) fn plans(&self) -> &[AxisPlan] {
+        &self.plans
+    }
+
+    pub(super) fn ticks(&self) -> &[u8] {
+        &self.ticks
+    }
+
+    pub(super) fn shared_ticks(&self) -> Rc<[u8]> {
+        Rc::clone(&self.ticks)
+    }
+
+    pub(super) fn has_ticks(&self) -> bool {
+        !self.ticks.is_empty()
+    }
+
+    /// The ticks one by one.
+    pub(super) fn each_tick(&self) -> impl ExactSizeIterator<Item = &[u8]> {
+        self.ticks.chunks(usize::from(self.config.channels()))
+    }
+}
+
+/// The plan of each axis of each controller; empty where the source is no motion.
+pub(super) fn plans(scenario: &Scenario) -> Result<Vec<Vec<AxisPlan>>, Vec<Problem>> {
+    let Source::Motion(motion) = &scenario.source else {
+        return Ok(vec![Vec::new(); 1 + scenario.controllers.len()]);
+    };
+    let further = scenario.controllers.iter().take(MAX_CONTROLLERS - 1).enumerate();
+    let further = further.map(|(index, one)| (format!("controllers[{index}].axes"), &one.axes[..]));
+    plan_lists([("source.motion.axes".into(), &motion.axes[..])].into_iter().chain(further))
+        .map_err(of_motion)
+}
+
+/// The ticks of each controller.
+pub(super) fn orders(
+    checked: &Checked,
+    plans: Vec<Vec<AxisPlan>>,
+) -> Result<Vec<ControllerPlan>, Vec<Problem>> {
+    let (mut orders, mut problems, mut total) = (Vec::new(), Vec::new(), 0);
+    for (index, (config, plans)) in checked.configs.iter().zip(plans).enumerate() {
+        match ticks_of(checked, index, config, &plans) {
+            Ok(mut ticks) => {
+                total += ticks.len();
+                if config.protocol() == Protocol::Framed {
+                    end_at_rest(&mut ticks, config.channels());
+                }
+                orders.push(ControllerPlan { config: config.clone(), plans, ticks: ticks.into() });
+            }
+            Err(found) => problems.extend(found),
+        }
+        if total > MAX_BYTES {
+            let cause = ValueError::TooMuch {
+                given: total as f64,
+                most: MAX_BYTES as f64,
+                of: "orders of all channels",
+            };
+            problems.push(Problem::new("controllers", cause));
+            break;
+        }
+    }
+    if problems.is_empty() { Ok(orders) } else { Err(problems) }
+}
+
+/// Path of the axes of an additional controller; `None` for the scenario's own.
+fn further_path(index: usize) -> Option<String> {
+    index.checked_sub(1).map(|index| format!("controllers[{index}].axes"))
+}
+
+fn ticks_of(
+    checked: &Checked,
+    index: usize,
+    config: &Config,
+    plans: &[AxisPlan],
+) -> Result<Vec<u8>, Vec<Problem>> {
+    let further = index.checked_sub(1).and_then(|index| checked.further.get(index));
+    Ok(match &checked.source {
+        source if !source.is_ticks() => Vec::new(),
+        Source::Motion(_) if plans.is_empty() => Vec::new(),
+        Source::Motion(_) => {
+            let tick = config.tick().0;
+            let own = further_path(index);
+            let at = own.as_deref().map_or(AxesPath::MOTION, |axes| AxesPath { axes, whole: axes });
+            let ticks = ticks(plans, at, config.channels(), config.slots(), tick, config.clock_hz());
+            ticks.map_err(of_motion)?.bytes().to_vec()
+        }
+        Source::Packets(source) => {
+            let packets = further.map_or(&source.packets, |further| &further.packets);
+            let address = usize::from(config.packet_address().is_some());
+            packets.iter().flat_map(|packet| packet.0.iter().copied().skip(address)).collect()
+        }
+        Source::Line(_) | Source::Segments(_) => Vec::new(),
+    })
+}
+
+/// What the segment engine runs, where segments run the scenario.
+pub(super) fn segments(
+    checked: &Checked,
+    orders: &[ControllerPlan],
+) -> Result<Option<CheckedSegments>, Vec<Problem>> {
+    match (&checked.source, orders.first()) {
+        (Source::Motion(_), Some(ControllerPlan { config, plans, .. })) if checked.source.runs_segments() => {
+            let pulse = PulseTimes::from(config);
+            let lists = exact_segments(plans, AxesPath::MOTION, config.channels(), pulse, config.clock_hz());
+            lists.map(Some).map_err(of_motion)
+        }
+        _ => Ok(checked.segments.clone()),
+    }
+}
+
+/// A framed job's last tick has no steps: that is how the host says that it was the last (A7).
+fn end_at_rest(ticks: &mut Vec<u8>, channels: u8) {
+    let last = ticks.chunks(usize::from(channels)).last();
+    if let Some(last) = last.filter(|last| last.iter().any(|&byte| Order::parse(byte).steps > 0)) {
+        let rest: Vec<u8> = last.iter().map(|byte| byte & 0x80).collect();
+        ticks.extend(rest);
+    }
+}
+
+/// What the host sends without waiting for replies, and what noise forces on the line meanwhile.
+pub(super) fn schedule(checked: &Checked, orders: &[ControllerPlan]) -> (Schedule, Vec<Forced>) {
+    let schedule = match &checked.source {
+        Source::Line(script) => script.schedule(),
+        _ if checked.waits_for_replies() => return (Schedule::default(), Vec::new()),
+        _ => paced(checked, orders),
+    };
+    let clock_hz = orders.first().map_or(1, |first| first.config.clock_hz());
+    match Noise::new(&checked.noise, clock_hz, checked.baud) {
+        Some(noise) => noise.schedule(&schedule),
+        None => (schedule, Vec::new()),
+    }
+}
+
+/// First cycle after the self-tests of all controllers, in which the host begins.
+fn start(checked: &Checked) -> Instant {
+    checked.configs.iter().map(|config| config.boot()).max().unwrap_or(Instant::RESET).next()
+}
+
+/// Packet j of all controllers in ascending address, back to back from start + j*M*Ts.
+fn paced(checked: &Checked, orders: &[ControllerPlan]) -> Schedule {
+    let mut turn: Vec<Packets<'_>> =
+        orders.iter().enumerate().map(|(index, orders)| Packets::of(checked, index, orders)).collect();
+    let last = turn.iter().map(Packets::count).max().unwrap_or(0);
+    turn.sort_by_key(|packets| packets.orders.config.address());
+    let Some(first) = checked.configs.first() else { return Schedule::default() };
+    let joined = (0..last).map(|tick| {
+        let mut packet = Vec::with_capacity(turn.len() * (1 + MAX_CHANNELS));
+        turn.iter().for_each(|packets| packets.put(tick, &mut packet));
+        packet
+    });
+    Schedule::paced(start(checked), first.tick(), joined)
+}
+
+/// The packets of one controller as they go over a raw line.
+struct Packets<'a> {
+    orders: &'a ControllerPlan,
+    /// Where they are given as they are.
+    given: Option<&'a [Hex]>,
+}
+
+impl<'a> Packets<'a> {
+    fn of(checked: &'a Checked, index: usize, orders: &'a ControllerPlan) -> Self {
+        let further = index.checked_sub(1).and_then(|index| checked.further.get(index));
+        let given = match &checked.source {
+            Source::Packets(source) => Some(&further.map_or(&source.packets, |further| &further.packets)[..]),
+            _ => None,
+        };
+        Self { orders, given }
+    }
+
+    fn count(&self) -> usize {
+        self.given.map_or_else(|| self.orders.each_tick().len(), <[Hex]>::len)
+    }
+
+    /// Adds the bytes of packet `index`, if there is one.
+    fn put(&self, index: usize, bytes: &mut Vec<u8>) {
+        if let Some(given) = self.given {
+            bytes.extend_from_slice(given.get(index).map_or(&[], |packet| &packet.0));
+            return;
+        }
+        let width = usize::from(self.orders.config.channels());
+        if let Some(tick) = self.orders.ticks.get(index * width..(index + 1) * width) {
+            bytes.extend(self.orders.config.packet_address());
+            bytes.extend_from_slice(tick);
+        }
+    }
+}
+
+/// The host of a framed line.
+pub(super) fn framed_host(checked: &Checked, orders: &[ControllerPlan]) -> FramedHost {
+    let jobs =
+        orders.iter().filter(|orders| orders.has_ticks()).map(|orders| job(&orders.config, &orders.ticks));
+    let (clock_hz, baud) = (orders.first().map_or(1, |first| first.config.clock_hz()), checked.baud);
+    let noise = Noise::new(&checked.noise, clock_hz, baud);
+    let start = start(checked);
+    FramedHost::new(
+        jobs.collect(),
+        &checked.host,
+        (clock_hz, baud, Config::bit_of(clock_hz, baud)),
+        start,
+        noise,
+    )
+}
+
+pub(super) fn job(config: &Config, orders: &Rc<[u8]>) -> Job {
+    Job {
+        address: config.address().unwrap_or(0),
+        channels: config.channels(),
+        tick: config.tick(),
+        queue_depth: config.queue_depth(),
+        orders: Rc::clone(orders),
+    }
+}
+
+/// The part of the line's time that is taken while all controllers move; `None` where no ticks are
+/// sent.
+///
+/// # Errors
+/// Where it is more than 1, with the rate that would do.
+pub(super) fn line_load<'a>(checked: &'a Checked) -> Result<Option<f64>, Problem> {
+    let Some(first) = checked.configs.first() else { return Ok(None) };
+    if !checked.source.is_ticks() {
+        return Ok(None);
+    }
+    let (clock_hz, tick) = (first.clock_hz(), first.tick().0);
+    let busy = |(index, config): (usize, &'a Config)| {
+        let further = index.checked_sub(1).and_then(|index| checked.further.get(index));
+        further.is_none_or(Controller::is_busy).then_some(config)
+    };
+    let configs = checked.configs.iter().enumerate().filter_map(busy);
+    let (cycles, bits) = if checked.waits_for_replies() {
+        // Of the first controller's tick, so that ticks may have different lengths.
+        let bits: u128 = configs
+            .map(|config| frame_bits(checked, config) * u128::from(tick) / u128::from(config.tick().0))
+            .sum();
+        let cycles = bits * u128::from(clock_hz) / (PART_OF_BIT * u128::from(checked.baud));
+        (cycles, bits.div_ceil(PART_OF_BIT))
+    } else {
+        let bytes = configs.map(|config| config.packet_len() as u64).sum();
+        (line_time(bytes, clock_hz, checked.baud).into(), u128::from(10 * bytes))
+    };
+    carries(cycles, bits, tick, clock_hz, checked.baud).map_err(|cause| Problem::new("line.baud", cause))?;
+    Ok(Some(cycles as f64 / tick as f64))
+}
+
+/// Bit times, in parts, that one tick of a controller takes on a framed line with its share of the
+/// frame around it and of the reply.
+fn frame_bits(checked: &Checked, config: &Config) -> u128 {
+    let ticks = job(config, &Rc::from([])).ticks_per_frame(&checked.host);
+    let content = vec![0xff; 4 + usize::from(ticks) * usize::from(config.channels())];
+    let bytes = (encode_frame(&content).len() + REPLY_LEN - 1) as u128;
+    PART_OF_BIT * (10 * bytes + EXCHANGE_BITS) / u128::from(ticks)
+}
+
+/// One tick's orders, from its bytes.
+#[inline]
+pub(super) fn pulses(tick: &[u8]) -> u64 {
+    let mut sum = 0;
+    for byte in tick.get(..Tick::default().len()).unwrap_or(tick) {
+        sum += u64::from(Order::parse(*byte).steps);
+    }
+    sum
+}

@@ -1,0 +1,271 @@
+//! What a run costs at most, before it starts: from the host's bytes, what is forced on the line,
+//! and what the receiver can make of both.
+//!
+//! Each byte that is heard begins with a fall of the line, and the next one no earlier than
+//! floor(B/2) + 9*B + 1 cycles later (DESIGN A4). So a receiver hears what is sent only if nothing
+//! is forced and its samples lie in their bits; otherwise one byte can become several, and a forced
+//! level can begin one of its own.
+
+use crate::controller_plan::{ControllerPlan, job, pulses};
+use stepscope_peripheral::wire::schedule::line_time;
+use stepscope_peripheral::{
+    config::{Config, DirLine, Protocol, PulsePhasing},
+    segment::CheckedSegments,
+    units::Cycles,
+    wire::{Schedule, frame::REPLY_LEN},
+};
+use stepscope_scenario::{Checked, Noise, Source};
+
+/// Edges of the line that a byte has at most, and how many of them fall.
+const MAX_EDGES_A_BYTE: u64 = 10;
+const MAX_FALLS_A_BYTE: u64 = 5;
+/// Where the last of them can be: the start of data bit 7.
+const LAST_FALL_BIT: u64 = 8;
+
+/// Bits of a byte that has just begun, rounded up.
+const BYTE_BITS: u64 = 10;
+/// Bits of a byte that has just begun and of the gap after it (45, A5), rounded up.
+const LONGEST_REST_BITS: u64 = 60;
+
+/// Bytes of a frame beside its ticks: address, kind, count, sequence number, check, COBS and end mark.
+const FRAME_OVERHEAD: u64 = 13;
+
+/// What a run costs, known before it starts. Where a host waits for replies the numbers are estimates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cost {
+    /// Records of the trace, at most.
+    pub records: u64,
+    /// Sends of the host.
+    pub sends: u64,
+    /// Bytes that the host sends.
+    pub bytes: u64,
+    /// Cycle by which nothing can change any more, or the run's given end.
+    pub end_cycle: u64,
+}
+
+/// Records up to which a scenario runs without asking.
+pub const BUDGET_RECORDS: u64 = 4_000_000;
+
+impl Cost {
+    /// Whether it is more than runs without asking.
+    #[must_use]
+    pub const fn is_over_budget(&self) -> bool {
+        self.records > BUDGET_RECORDS
+    }
+
+    pub(super) fn of(checked: &Checked, orders: &[ControllerPlan], schedule: &Schedule) -> Self {
+        let sends = if checked.waits_for_replies() {
+            Sends::framed(checked, orders)
+        } else {
+            Sends::scheduled(checked, schedule)
+        };
+        let edges = MAX_EDGES_A_BYTE * (sends.bytes + sends.reply_bytes) + 2 * checked.forced.len() as u64;
+        let records = orders.iter().map(|orders| 1 + edges + tick_records(checked, orders, schedule)).sum();
+        Self {
+            records,
+            sends: sends.count,
+            bytes: sends.bytes,
+            end_cycle: checked.run.map_or_else(
+                || last_cycle(schedule, checked, orders).max(sends.end_cycle),
+                |Cycles(run)| run,
+            ),
+        }
+    }
+}
+
+impl Cost {
+    /// What a run of segments costs: nothing is sent.
+    pub(super) fn of_segments(segments: &CheckedSegments, run: Option<Cycles>) -> Self {
+        let end_cycle = run.map_or(segments.end().0 + 1, |Cycles(run)| run);
+        Self { records: segments.most_records().min(end_cycle), sends: 0, bytes: 0, end_cycle }
+    }
+}
+
+/// What goes over the line.
+struct Sends {
+    count: u64,
+    bytes: u64,
+    reply_bytes: u64,
+    /// When it is over, where that is not told by a schedule.
+    end_cycle: u64,
+}
+
+impl Sends {
+    fn scheduled(checked: &Checked, schedule: &Schedule) -> Self {
+        let bytes = schedule.total_bytes() as u64;
+        let framed = checked.configs.iter().any(|config| config.protocol() == Protocol::Framed);
+        // A frame is seven bytes at least.
+        let replies = if framed { bytes / 7 + checked.forced.len() as u64 } else { 0 };
+        Self { count: schedule.len() as u64, bytes, reply_bytes: replies * REPLY_LEN as u64, end_cycle: 0 }
+    }
+
+    /// Frames of a host that waits for replies. On a line that goes wrong each may be sent as often as
+    /// the host tries, and a host that dies asks every controller again: no bound, but a fair warning.
+    fn framed(checked: &Checked, orders: &[ControllerPlan]) -> Self {
+        let wrong = checked.noise != Noise::default() || !checked.forced.is_empty();
+        let tries = if wrong { u64::from(checked.host.attempts) } else { 1 };
+        let repeats = tries * if checked.noise.host_crashes_ppm > 0 { orders.len() as u64 } else { 1 };
+        let mut sends = Self { count: 0, bytes: 0, reply_bytes: 0, end_cycle: 0 };
+        for orders in orders.iter().filter(|orders| orders.has_ticks()) {
+            let job = job(orders.config(), &orders.shared_ticks());
+            let frames = u64::from(job.ticks()).div_ceil(job.ticks_per_frame(&checked.host).into()) + 2;
+            sends.count += repeats * frames;
+            sends.bytes += repeats * (orders.ticks().len() as u64 + FRAME_OVERHEAD * frames);
+            sends.reply_bytes += repeats * REPLY_LEN as u64 * frames;
+            let ticks = u64::from(job.ticks()) * job.tick.0;
+            sends.end_cycle = sends.end_cycle.max(orders.config().boot().0 + ticks);
+        }
+        let bytes = (sends.bytes + sends.reply_bytes) / repeats;
+        let clock_hz = orders.first().map_or(1, |first| first.config().clock_hz());
+        // The line and the ticks go side by side, but for the first and the last exchange. How long a line
+        // that goes wrong takes is not known; most such jobs still end with their ticks.
+        sends.end_cycle = sends.end_cycle.max(line_time(bytes, clock_hz, checked.baud))
+            + line_time(sends.bytes / sends.count.max(1) + 200, clock_hz, checked.baud);
+        sends
+    }
+}
+
+/// Records of all ticks of one controller at most.
+fn tick_records(checked: &Checked, orders: &ControllerPlan, schedule: &Schedule) -> u64 {
+    let config = orders.config();
+    if checked.waits_for_replies() || comes_as_ordered(checked, config) {
+        if let Source::Packets(_) = &checked.source
+            && config.protocol() == Protocol::Raw
+            && checked.configs.len() > 1
+        {
+            // A list of packets may speak to any controller.
+            let most = schedule.iter().map(|send| pulses(send.bytes)).sum::<u64>();
+            return records_of(config, most) + schedule.total_bytes() as u64;
+        }
+        return orders.each_tick().map(|tick| records_of(config, pulses(tick))).sum();
+    }
+    let most = u64::from(config.slots()) * u64::from(config.channels());
+    most_ticks(checked, config, schedule) * records_of(config, most)
+}
+
+/// Whether each packet comes with its tick and is heard as it was sent.
+fn comes_as_ordered(checked: &Checked, config: &Config) -> bool {
+    checked.source.is_ticks() && is_faithful(checked, config)
+}
+
+fn is_faithful(checked: &Checked, config: &Config) -> bool {
+    checked.forced.is_empty() && checked.noise == Noise::default() && hears(config, checked.baud)
+}
+
+/// Ticks for this controller that can be heard.
+fn most_ticks(checked: &Checked, config: &Config, schedule: &Schedule) -> u64 {
+    let heard = if is_faithful(checked, config) {
+        schedule.total_bytes() as u64
+    } else {
+        let sent: u64 = schedule.iter().map(|send| most_heard(checked, config, send.bytes.len())).sum();
+        sent + checked.forced.len() as u64
+    };
+    heard / config.packet_len() as u64
+}
+
+/// Whether the receiver takes each sample in the bit that it is of, and is armed for the next byte.
+fn hears(config: &Config, baud: u32) -> bool {
+    let (bit, clock_hz, baud) = (config.bit().0, u64::from(config.clock_hz()), u64::from(baud));
+    let starts = |k: u64| k * clock_hz / baud;
+    (0..10).all(|k| (starts(k)..starts(k + 1)).contains(&(bit / 2 + k * bit)))
+}
+
+/// Bytes that can be heard of so many that are sent back to back.
+fn most_heard(checked: &Checked, config: &Config, bytes: usize) -> u64 {
+    let (bytes, bit) = (bytes as u64, config.bit().0);
+    let Some(before) = bytes.checked_sub(1) else { return 0 };
+    let last_fall = (10 * before + LAST_FALL_BIT) * u64::from(config.clock_hz()) / u64::from(checked.baud);
+    (MAX_FALLS_A_BYTE * bytes).min(last_fall / (bit / 2 + 9 * bit + 1) + 1)
+}
+
+/// Records that a tick of `pulses` pulses makes at most: two edges a pulse, or a slot where they
+/// come together, and the changes of DIR.
+fn records_of(config: &Config, pulses: u64) -> u64 {
+    let slots = pulses.min(u64::from(config.slots()));
+    match (config.pulse_phasing(), config.dir_line()) {
+        (PulsePhasing::Simultaneous, DirLine::PerChannel) => 2 * slots + 1,
+        (PulsePhasing::Simultaneous, DirLine::Common) => 6 * slots,
+        (PulsePhasing::Staggered, DirLine::PerChannel) => 2 * pulses + 1,
+        (PulsePhasing::Staggered, DirLine::Common) => 2 * pulses + 2 * slots,
+    }
+}
+
+/// A cycle by which everything has been sent and what can follow it has passed: a byte that is heard
+/// late (by a slow receiver, or begun by a forced level), the tick that runs and those that wait, or
+/// a reply and the gap.
+fn last_cycle(schedule: &Schedule, checked: &Checked, orders: &[ControllerPlan]) -> u64 {
+    let last = schedule.len().checked_sub(1).and_then(|index| schedule.get(index));
+    let clock_hz = orders.first().map_or(1, |first| first.config().clock_hz());
+    let sent =
+        last.map_or(0, |send| send.start.0 + line_time(send.bytes.len() as u64, clock_hz, checked.baud));
+    let forced = checked.forced.iter().map(|forced| forced.end.0).max().unwrap_or(0);
+    let rest = |orders: &ControllerPlan| {
+        let config = orders.config();
+        let ticks = if checked.waits_for_replies() || comes_as_ordered(checked, config) {
+            1
+        } else {
+            most_ticks(checked, config, schedule).min(u64::from(config.queue_depth()) + 1)
+        };
+        let reply = line_time(REPLY_LEN as u64, clock_hz, config.reply_baud());
+        let late = if is_faithful(checked, config) { 0 } else { BYTE_BITS * config.bit().0 };
+        late + (ticks * config.tick().0).max(LONGEST_REST_BITS * config.bit().0 + reply)
+    };
+    sent.max(forced) + orders.iter().map(rest).max().unwrap_or(0) + 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Experiment;
+    use alloc::vec;
+    use stepscope_peripheral::config::Bus;
+    use stepscope_scenario::{Glitch, Line, Scenario};
+
+    fn config(clock_hz: u32, baud: u32, receiver_baud: u32) -> Option<Config> {
+        let line = Line { baud, receiver_baud: Some(receiver_baud), ..Line::default() };
+        Config::new(clock_hz, &Bus::default(), &line.serial()).ok()
+    }
+
+    #[test]
+    fn a_receiver_at_the_senders_rate_hears_what_is_sent() {
+        for clock_hz in [21, 1000, 1603, 16_000_000] {
+            for baud in (1..clock_hz / 10).step_by(1 + clock_hz as usize / 3000) {
+                assert!(config(clock_hz, baud, baud).is_none_or(|c| hears(&c, baud)), "{clock_hz} {baud}");
+            }
+        }
+        // 16 cycles a bit; a receiver's 15 and 17 take a sample in the wrong bit.
+        for (receiver_baud, expected) in [(100, true), (97, true), (107, false), (95, false)] {
+            let config = config(1600, 100, receiver_baud).expect("holds");
+            assert_eq!(hears(&config, 100), expected, "{receiver_baud}");
+        }
+    }
+
+    #[test]
+    fn a_slow_receivers_tick_begins_after_the_byte_has_been_sent() {
+        // 10.4 cycles a bit are sent, 11 heard: the byte ends at 105 and is delivered there.
+        let json = r#"{"clock_hz":1000,"line":{"baud":96,"receiver_baud":94},
+            "bus":{"boot_cycles":0},"source":{"line":{"sends":[{"start_cycle":1,"bytes":"87"}]}}}"#;
+        let experiment = Experiment::from_json(json).expect("runs");
+        let run = experiment.run(&mut vec![]);
+        assert_eq!(run.cycles().0, 105 + 1 + 32_000 + 1);
+        assert!(run.cycles().0 <= experiment.cost().end_cycle);
+    }
+
+    #[test]
+    fn each_forced_level_may_be_heard_as_a_byte() {
+        // A low of half a bit on an idle line is the byte ff: 127 steps, 255 records.
+        let glitch = |k: u64| Glitch { start_cycle: 1 + k * 2000, length_cycles: 80, level: 0 };
+        let mut scenario =
+            Scenario::from_json(r#"{"bus":{"slots":127},"source":{"line":{}}}"#).expect("reads");
+        for glitches in [0, 1, 10] {
+            scenario.line.glitches = (0..glitches).map(glitch).collect();
+            let records = Experiment::new(&scenario).expect("runs").cost().records;
+            assert_eq!(records, 1 + glitches * (2 + 255));
+        }
+        scenario.line = Line { glitches: vec![], receiver_baud: Some(1_000_000), ..Line::default() };
+        let json = r#"{"line":{"sends":[{"bytes":"5555"}]}}"#;
+        scenario.source = stepscope_scenario::part_from_json(json).expect("reads");
+        let records = Experiment::new(&scenario).expect("runs").cost().records;
+        assert_eq!(records, 1 + 2 * 10 + 10 * 255, "every fall of the line may begin a byte");
+    }
+}

@@ -1,0 +1,421 @@
+//! From a scenario to its trace: the whole line in one call.
+
+use crate::{
+    Cost,
+    bus::{Bus, Ignored},
+    controller_plan::{self, ControllerPlan},
+    framed_host::{FramedHost, Progress},
+};
+use alloc::{rc::Rc, vec::Vec};
+use core::slice;
+use stepscope_motion::AxisPlan;
+use stepscope_peripheral::{
+    config::Config,
+    device::{Device, Faults, SegmentEngine},
+    segment::CheckedSegments,
+    signal::{Event, MAX_CHANNELS, Record, Sink},
+    units::{Cycles, Instant},
+    wire::{Forced, Line, Schedule},
+};
+use stepscope_scenario::{Checked, END_OF_TIME, Problem, Scenario, ValueError};
+
+/// Most bytes that a host may have to send: as many as the most ticks of 16 channels take on an addressed
+/// raw line.
+const MAX_LINE_BYTES: u64 = 2_000_000 * 17;
+
+/// A scenario that has been judged in every respect, with its motions planned and its packets made.
+#[derive(Clone, Debug)]
+pub struct Experiment {
+    checked: Checked,
+    /// What each controller is to do.
+    orders: Vec<ControllerPlan>,
+    /// What the host sends without waiting for replies.
+    schedule: Rc<Schedule>,
+    /// What the segment engine runs, where segments run the scenario; then nothing is sent.
+    segments: Option<Rc<CheckedSegments>>,
+    line_load: Option<f64>,
+    cost: Cost,
+}
+
+impl Experiment {
+    /// Judges a scenario and prepares its run.
+    ///
+    /// # Errors
+    /// Every problem of the scenario, each with its path.
+    pub fn new(scenario: &Scenario) -> Result<Self, Vec<Problem>> {
+        let mut problems = Vec::new();
+        let checked = scenario.check().map_err(|found| problems.extend(found)).ok();
+        let plans = controller_plan::plans(scenario).map_err(|found| problems.extend(found)).ok();
+        let Some(mut checked) = checked else { return Err(problems) };
+        let line_load = controller_plan::line_load(&checked).map_err(|problem| problems.push(problem)).ok();
+        let Some(plans) = plans else { return Err(problems) };
+        let orders = match controller_plan::orders(&checked, plans) {
+            Ok(orders) if problems.is_empty() => orders,
+            judged => {
+                problems.extend(judged.err().unwrap_or_default());
+                return Err(problems);
+            }
+        };
+        let (schedule, forced) = controller_plan::schedule(&checked, &orders);
+        checked.forced.extend(forced);
+        let segments = controller_plan::segments(&checked, &orders)?.map(Rc::new);
+        let cost = match &segments {
+            Some(segments) => Cost::of_segments(segments, checked.run),
+            None => Cost::of(&checked, &orders, &schedule),
+        };
+        if cost.bytes > MAX_LINE_BYTES {
+            let (given, most) = (cost.bytes as f64, MAX_LINE_BYTES as f64);
+            let cause = ValueError::TooMuch { given, most, of: "bytes of all frames and their repetitions" };
+            return Err(alloc::vec![Problem::new("source", cause)]);
+        }
+        if cost.end_cycle > END_OF_TIME {
+            let cause =
+                ValueError::TooMuch { given: cost.end_cycle as f64, most: END_OF_TIME as f64, of: "cycles" };
+            return Err(alloc::vec![Problem::new("source", cause)]);
+        }
+        let line_load = line_load.flatten().filter(|_| orders.iter().any(ControllerPlan::has_ticks));
+        Ok(Self { checked, orders, schedule: Rc::new(schedule), segments, line_load, cost })
+    }
+
+    /// Reads, judges and prepares a scenario.
+    ///
+    /// # Errors
+    /// Every problem, those of types and those of numbers together.
+    pub fn from_json(text: &str) -> Result<Self, Vec<Problem>> {
+        let (scenario, unread) = Scenario::from_json_lenient(text);
+        Self::of_lenient(&scenario, unread)
+    }
+
+    /// Judges a scenario of which some fields could not be read, `unread`: these stand at their
+    /// defaults while the rest is judged, and what follows from several fields together waits until
+    /// all can be read.
+    ///
+    /// # Errors
+    /// `unread` and what else is wrong.
+    pub fn of_lenient(scenario: &Scenario, unread: Vec<Problem>) -> Result<Self, Vec<Problem>> {
+        let judged = Self::new(scenario);
+        if unread.is_empty() {
+            return judged;
+        }
+        let mut problems = unread.clone();
+        problems.extend(judged.err().unwrap_or_default().into_iter().filter(|problem| {
+            !problem.cause.joins_fields() && !unread.iter().any(|bad| problem.path.starts_with(&bad.path))
+        }));
+        Err(problems)
+    }
+
+    /// How many controllers are on the line, 1 to 32.
+    #[must_use]
+    pub fn controllers(&self) -> usize {
+        self.orders.len()
+    }
+
+    /// The configuration of the first controller: that of `bus` and `line.address`.
+    #[must_use]
+    pub fn config(&self) -> &Config {
+        self.first().config()
+    }
+
+    /// The configuration of each controller, in the order of the scenario.
+    pub fn configs(&self) -> impl ExactSizeIterator<Item = &Config> {
+        self.orders.iter().map(ControllerPlan::config)
+    }
+
+    /// The plan of each axis of the first controller; empty where the source is no motion.
+    #[must_use]
+    pub fn plans(&self) -> &[AxisPlan] {
+        self.first().plans()
+    }
+
+    /// The plan of each axis of controller `index`.
+    #[must_use]
+    pub fn plans_of(&self, index: usize) -> &[AxisPlan] {
+        self.orders.get(index).map_or(&[], ControllerPlan::plans)
+    }
+
+    /// The ticks that controller `index` is ordered, a byte a channel (A5), tick after tick; empty
+    /// where the source is a line script.
+    #[must_use]
+    pub fn ticks_of(&self, index: usize) -> &[u8] {
+        self.orders.get(index).map_or(&[], ControllerPlan::ticks)
+    }
+
+    /// How far the host of a framed line has come in `run` with controller `index`; `None` where nobody
+    /// waits for replies, or that controller has nothing to do.
+    #[must_use]
+    pub fn host_progress(&self, run: &Run, index: usize) -> Option<Progress> {
+        self.orders.get(index).filter(|orders| orders.has_ticks())?;
+        let busy_before = self.orders.iter().take(index).filter(|orders| orders.has_ticks()).count();
+        run.host()?.progress().nth(busy_before)
+    }
+
+    fn first(&self) -> &ControllerPlan {
+        // There is always a first one.
+        &self.orders[0]
+    }
+
+    /// What the host sends without waiting for replies; empty for the host of a framed line, whose
+    /// sends a run tells ([`Run::schedule`]).
+    #[must_use]
+    pub fn schedule(&self) -> &Schedule {
+        &self.schedule
+    }
+
+    /// What the segment engine runs; `None` where ticks run the scenario.
+    #[must_use]
+    pub fn segments(&self) -> Option<&CheckedSegments> {
+        self.segments.as_deref()
+    }
+
+    /// What the run will cost.
+    #[must_use]
+    pub const fn cost(&self) -> Cost {
+        self.cost
+    }
+
+    /// The part of the line's time that packets, frames and replies take while all controllers move,
+    /// 0..=1; `None` where nothing paced is sent.
+    #[must_use]
+    pub const fn line_load(&self) -> Option<f64> {
+        self.line_load
+    }
+
+    /// A run before cycle 0.
+    #[must_use]
+    pub fn start(&self) -> Run {
+        let Checked { baud, forced, run, .. } = &self.checked;
+        let clock_hz = self.config().clock_hz();
+        let line = Line::new(Rc::clone(&self.schedule), forced, clock_hz, *baud);
+        let host = self.host();
+        Run {
+            bus: Bus::new(line, host, self.configs().map(Device::new).collect()),
+            engine: self.segments.clone().map(SegmentEngine::new),
+            end: run.map(|cycles| Instant(cycles.0)),
+        }
+    }
+
+    /// The host of a framed line, where it has ticks to send.
+    fn host(&self) -> Option<FramedHost> {
+        self.checked.waits_for_replies().then(|| controller_plan::framed_host(&self.checked, &self.orders))
+    }
+
+    /// The whole run, at the fast speed; `sink` takes what the first controller does.
+    pub fn run(&self, sink: &mut impl Sink) -> Run {
+        self.run_each(slice::from_mut(sink))
+    }
+
+    /// The whole run, at the fast speed, with a sink for each controller; those without one run all
+    /// the same.
+    pub fn run_each(&self, sinks: &mut [impl Sink]) -> Run {
+        let mut run = self.start();
+        while !run.advance_each(u64::MAX, sinks) {}
+        run
+    }
+
+    /// The whole run clock by clock: slow, and the measure of the fast speed.
+    pub fn run_clock_by_clock(&self, sink: &mut impl Sink) -> Run {
+        self.run_each_clock_by_clock(slice::from_mut(sink))
+    }
+
+    /// As [`Self::run_each`], clock by clock.
+    pub fn run_each_clock_by_clock(&self, sinks: &mut [impl Sink]) -> Run {
+        let mut run = self.start();
+        while !run.is_done() {
+            run.clock(sinks);
+        }
+        run
+    }
+}
+
+/// A run under way.
+#[derive(Clone, Debug)]
+pub struct Run {
+    bus: Bus,
+    /// Runs in place of the net, which then stays before cycle 0.
+    engine: Option<SegmentEngine>,
+    /// First cycle that is not run; without it the run ends when nothing can change any more.
+    end: Option<Instant>,
+}
+
+impl Run {
+    /// The first controller as it is now; where segments run the scenario, one before cycle 0.
+    #[must_use]
+    pub fn device(&self) -> &Device {
+        self.bus.first()
+    }
+
+    /// All controllers as they are now, in the order of the scenario.
+    pub fn devices(&self) -> impl Iterator<Item = &Device> {
+        self.bus.devices()
+    }
+
+    /// The host of a framed line as it is now; `None` where nobody waits for replies.
+    #[must_use]
+    pub const fn host(&self) -> Option<&FramedHost> {
+        self.bus.host()
+    }
+
+    /// What the host has sent, and what it will send as far as that is known. Another run can take it
+    /// as its source (A9).
+    #[must_use]
+    pub fn schedule(&self) -> &Schedule {
+        self.bus.line().schedule()
+    }
+
+    /// The levels that have been forced on the line and will be as far as that is known, those of noise
+    /// among them, rising in time. Together with [`Self::schedule`] they are all that is done to the line.
+    #[must_use]
+    pub fn forced(&self) -> &[Forced] {
+        self.bus.line().forced()
+    }
+
+    /// Position counters of the first controller, or of the segment engine (DESIGN A3).
+    #[must_use]
+    pub fn positions(&self) -> [i32; MAX_CHANNELS] {
+        self.engine.as_ref().map_or_else(|| self.device().positions(), SegmentEngine::positions)
+    }
+
+    /// Faults of the first controller so far; segments have none.
+    #[must_use]
+    pub fn faults(&self) -> Faults {
+        self.device().faults()
+    }
+
+    /// Ticks of the first controller that have ended; segments have none.
+    #[must_use]
+    pub fn ticks_done(&self) -> u32 {
+        self.device().ticks_done()
+    }
+
+    /// Cycles that have been run.
+    #[must_use]
+    pub fn cycles(&self) -> Cycles {
+        Cycles(self.engine.as_ref().map_or_else(|| self.bus.now(), SegmentEngine::now).0)
+    }
+
+    /// Whether the run is over.
+    #[must_use]
+    pub fn is_done(&self) -> bool {
+        match (&self.engine, self.end) {
+            (Some(engine), Some(end)) => engine.now() >= end,
+            (Some(engine), None) => engine.at_rest(),
+            (None, Some(end)) => self.bus.has_reached(end),
+            (None, None) => self.bus.is_over(),
+        }
+    }
+
+    /// Goes on until the first controller has made `records` more (a few more may come) or to the
+    /// end; true at the end.
+    pub fn advance(&mut self, records: u64, sink: &mut impl Sink) -> bool {
+        self.advance_each(records, slice::from_mut(sink))
+    }
+
+    /// Goes on until one controller has made `records` more, with a sink for each; true at the end.
+    pub fn advance_each(&mut self, records: u64, sinks: &mut [impl Sink]) -> bool {
+        let mut slices: Vec<_> = sinks.iter_mut().map(|sink| Slice { sink, left: records }).collect();
+        let end = self.end.unwrap_or(Instant::NEVER);
+        match (&mut self.engine, slices.first_mut()) {
+            (Some(engine), Some(slice)) => engine.run(end, slice),
+            (Some(engine), None) => engine.run(end, &mut Ignored),
+            (None, _) => self.bus.run(end, &mut slices),
+        }
+        self.is_done()
+    }
+
+    /// One cycle, with a sink for each controller.
+    pub fn clock(&mut self, sinks: &mut [impl Sink]) {
+        match (&mut self.engine, sinks.first_mut()) {
+            (Some(engine), Some(sink)) => {
+                engine.clock(sink);
+            }
+            (Some(engine), None) => {
+                engine.clock(&mut Ignored);
+            }
+            (None, _) => self.bus.clock(sinks),
+        }
+    }
+}
+
+/// A sink that asks for a pause after so many records.
+struct Slice<'a, S> {
+    sink: &'a mut S,
+    left: u64,
+}
+
+impl<S: Sink> Sink for Slice<'_, S> {
+    #[inline(always)]
+    fn record(&mut self, record: Record) {
+        self.left = self.left.saturating_sub(1);
+        self.sink.record(record);
+    }
+
+    fn event(&mut self, at: Instant, event: Event) {
+        self.sink.event(at, event);
+    }
+
+    fn paused(&self) -> bool {
+        self.left == 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::string::String;
+
+    fn paths(json: &str) -> Vec<String> {
+        Experiment::from_json(json)
+            .err()
+            .unwrap_or_default()
+            .into_iter()
+            .map(|problem| problem.path)
+            .collect()
+    }
+
+    #[test]
+    fn problems_of_types_and_numbers_come_together_and_none_is_invented() {
+        let rows: &[(&str, &[&str])] = &[
+            ("{}", &[]),
+            // Too slow a line does not hide too fast a motion.
+            (
+                r#"{"line":{"baud":1200},"source":{"motion":{"axes":[{"moves":[{"constant":{"speed":{"steps_s":100000}}}]}]}}}"#,
+                &["line.baud", "source.motion.axes[0]"],
+            ),
+            // Packets of two bytes are not judged by the default of a field that cannot be read.
+            (
+                r#"{"bus":{"channels":"2"},"source":{"packets":{"packets":["8001","0180"]}}}"#,
+                &["bus.channels"],
+            ),
+            // Entries that cannot be read do not move the others.
+            (
+                r#"{"source":{"motion":{"axes":[{"moves":["bad",{"dwell":{"duration_s":-1}}]}]}}}"#,
+                &["source.motion.axes[0].moves[0]", "source.motion.axes[0].moves[1].dwell.duration_s"],
+            ),
+            (r#"{"bus":{"slots":200},"title":5,"clock_hz":3}"#, &["title", "clock_hz", "bus.slots"]),
+        ];
+        for (json, expected) in rows {
+            assert_eq!(paths(json), *expected, "{json}");
+        }
+    }
+
+    #[test]
+    fn many_entries_of_the_wrong_type_are_judged_in_few_readings() {
+        let json = alloc::format!(
+            r#"{{"source":{{"motion":{{"axes":[{{"moves":[{}5]}}]}}}}}}"#,
+            "{},".repeat(11_000)
+        );
+        assert!(paths(&json).len() <= 101);
+        let json =
+            alloc::format!(r#"{{"source":{{"packets":{{"packets":[{}""]}}}}}}"#, "\"\",".repeat(20_000));
+        assert!(paths(&json).len() <= 101);
+    }
+
+    #[test]
+    fn a_scripted_runs_end_counts_the_ticks_that_wait() {
+        let json = r#"{"source":{"line":{"sends":[{"bytes":"0505050505050505"}]}},"bus":{"boot_cycles":0}}"#;
+        let experiment = Experiment::from_json(json).expect("no problems");
+        let run = experiment.run(&mut Vec::new());
+        assert!(run.cycles().0 > 8 * 32_000);
+        assert!(run.cycles().0 <= experiment.cost().end_cycle);
+    }
+}

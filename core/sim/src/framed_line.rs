@@ -1,0 +1,213 @@
+//! Controllers that answer, and their host, on one line (DESIGN A6, A9).
+//!
+//! A controller hears the AND of what the host and all other controllers send, and 1 while it sends
+//! itself; the host hears the controllers while it is not sending. A level that is forced is heard by
+//! all of them.
+//!
+//! The run goes from window to window. In a window nobody changes what he does to the line, so each
+//! controller runs through it alone, as fast as its own edges allow. A window ends where the host or
+//! a forced level changes, where a controller may begin or go on to drive, or where the host acts.
+
+use crate::bus::Ignored;
+use crate::framed_host::FramedHost;
+use alloc::vec::Vec;
+use stepscope_peripheral::{
+    device::Device,
+    signal::{Event, Sink},
+    units::Instant,
+    wire::Line,
+};
+
+/// A framed line with all that is on it.
+#[derive(Clone, Debug)]
+pub(super) struct FramedLine {
+    line: Line,
+    host: Option<FramedHost>,
+    nodes: Vec<Node>,
+    /// The window that is run: its first cycle and the first one after it.
+    start: Instant,
+    until: Instant,
+}
+
+/// A controller and what it hears of the others.
+#[derive(Clone, Debug)]
+struct Node {
+    device: Device,
+    hears: bool,
+    collides: bool,
+}
+
+impl Node {
+    /// Whether it has not come to the end of the window, and has something to do there.
+    #[inline]
+    fn is_behind(&self, until: Instant) -> bool {
+        self.device.now() < until && !(until == Instant::NEVER && self.device.at_rest())
+    }
+}
+
+impl FramedLine {
+    #[inline]
+    pub(super) fn new(line: Line, host: Option<FramedHost>, devices: Vec<Device>) -> Self {
+        let node = |device| Node { device, hears: true, collides: false };
+        Self {
+            line,
+            host,
+            nodes: devices.into_iter().map(node).collect(),
+            start: Instant::RESET,
+            until: Instant::RESET,
+        }
+    }
+
+    #[inline]
+    pub(super) const fn line(&self) -> &Line {
+        &self.line
+    }
+
+    #[inline]
+    pub(super) const fn host(&self) -> Option<&FramedHost> {
+        self.host.as_ref()
+    }
+
+    #[inline]
+    pub(super) fn first(&self) -> &Device {
+        // There is one at least.
+        &self.nodes[0].device
+    }
+
+    #[inline]
+    pub(super) fn device(&self, index: usize) -> Option<&Device> {
+        self.nodes.get(index).map(|node| &node.device)
+    }
+
+    /// Whether nothing can change any more.
+    #[inline]
+    pub(super) fn is_over(&self) -> bool {
+        self.host.as_ref().is_none_or(FramedHost::is_over)
+            && self.nodes.iter().all(|node| node.device.at_rest())
+            && self.line.is_over()
+    }
+
+    /// Whether all have run the cycles before `end`.
+    #[inline]
+    pub(super) fn has_reached(&self, end: Instant) -> bool {
+        self.start >= end
+    }
+
+    /// Enters cycle `self.start`: what each hears in it, and what the host does.
+    #[inline]
+    fn enter(&mut self, sinks: &mut [impl Sink]) {
+        let Self { line, host, nodes, start, .. } = self;
+        let now = *start;
+        if line.next_change() == now {
+            line.change();
+        }
+        let host_sends = match host {
+            Some(host) => host.is_sending(now),
+            None => line.is_pulled_low(),
+        };
+        let (mut low, mut driving) = (0, 0);
+        for node in nodes.iter() {
+            let driven = node.device.driven();
+            low += u32::from(driven == Some(false));
+            driving += u32::from(driven.is_some());
+        }
+        for (index, node) in nodes.iter_mut().enumerate() {
+            let driven = node.device.driven();
+            let others_low = low - u32::from(driven == Some(false));
+            node.hears = line.heard(others_low == 0);
+            let met = driven.is_some() && (host_sends || driving > 1);
+            collide(node, met, now, sinks.get_mut(index));
+        }
+        if let Some(host) = host {
+            let level = host.is_sending(now) || line.replied(low == 0);
+            host.clock(now, level, line);
+        }
+    }
+
+    /// First cycle after the window that begins at `self.start`, at most `end`.
+    #[inline]
+    fn window(&self, end: Instant) -> Instant {
+        let driven = |node: &Node| node.device.next_driven(node.hears);
+        let driven = self.nodes.iter().map(driven).fold(Instant::NEVER, Instant::min);
+        let host = self.host.as_ref().map_or(Instant::NEVER, |host| host.deadline(self.start));
+        let others = driven.min(host);
+        // While nobody answers, what is forced to the level that the line has is not heard.
+        let over = others == Instant::NEVER && self.line.is_over();
+        let line = if over { Instant::NEVER } else { self.line.next_change() };
+        line.min(others).min(end)
+    }
+
+    /// Runs to cycle `end`, or with [`Instant::NEVER`] until nothing can change any more, or until a
+    /// sink asks for a pause.
+    #[inline]
+    pub(super) fn run(&mut self, end: Instant, sinks: &mut [impl Sink]) {
+        while self.until < end || self.start < self.until {
+            if !self.run_window(end, sinks) {
+                return;
+            }
+        }
+    }
+
+    /// Runs to the end of a window, which may have begun; false where a sink asked for a pause.
+    #[inline]
+    fn run_window(&mut self, end: Instant, sinks: &mut [impl Sink]) -> bool {
+        if self.start == self.until {
+            self.enter(sinks);
+            self.until = self.window(end);
+        }
+        for (index, node) in self.nodes.iter_mut().enumerate() {
+            let Node { device, hears, .. } = node;
+            match sinks.get_mut(index) {
+                Some(sink) => device.run(*hears, self.until, sink),
+                None => device.run(*hears, self.until, &mut Ignored),
+            }
+        }
+        let behind = self.nodes.iter().any(|node| node.is_behind(self.until));
+        if !behind {
+            self.start = self.until;
+        }
+        !behind
+    }
+
+    /// The last cycle in which something happened.
+    #[inline]
+    pub(super) fn last_active(&self) -> Instant {
+        let device = self.nodes.iter().map(|node| node.device.last_active()).max();
+        let host = self.host.as_ref().map(FramedHost::last_active);
+        device.max(host).unwrap_or(Instant::RESET)
+    }
+
+    /// At rest: cycle `now` is the first that has not been run.
+    #[inline]
+    pub(super) fn finish(&mut self, now: Instant) {
+        self.nodes.iter_mut().for_each(|node| node.device.finish(now));
+        (self.start, self.until) = (now, Instant::NEVER);
+    }
+
+    /// One cycle.
+    #[inline]
+    pub(super) fn clock(&mut self, sinks: &mut [impl Sink]) {
+        self.enter(sinks);
+        for (index, node) in self.nodes.iter_mut().enumerate() {
+            let Node { device, hears, .. } = node;
+            match sinks.get_mut(index) {
+                Some(sink) => device.clock(*hears, sink),
+                None => device.clock(*hears, &mut Ignored),
+            };
+        }
+        self.start = self.start.next();
+        self.until = self.start;
+    }
+}
+
+/// Tells of a collision where it begins.
+#[inline]
+fn collide(node: &mut Node, collides: bool, now: Instant, sink: Option<&mut impl Sink>) {
+    if collides
+        && !node.collides
+        && let Some(sink) = sink
+    {
+        sink.event(now, Event::Collision);
+    }
+    node.collides = collides;
+}

@@ -1,0 +1,42 @@
+//! An experiment: a scenario judged once, planned once, and run (DESIGN A2, A9).
+//!
+//! ```
+//! use stepscope_peripheral::trace::Digest;
+//! use stepscope_scenario::Scenario;
+//! use stepscope_sim::Experiment;
+//!
+//! let scenario = Scenario::from_json(r#"{ "title": "the default motion" }"#).expect("reads");
+//! let experiment = Experiment::new(&scenario).expect("has no problems");
+//! let mut digest = Digest::default();
+//! let run = experiment.run(&mut digest);
+//! assert_eq!(run.device().positions()[0], 3200);
+//! ```
+#![cfg_attr(not(test), no_std)]
+
+extern crate alloc;
+
+mod bus_load;
+
+pub mod noise;
+
+pub mod framed_host;
+
+mod raw_receiver;
+
+mod framed_line;
+
+mod bus;
+
+mod controller_plan;
+
+mod cost;
+
+mod experiment;
+
+mod script;
+
+pub mod fault_sweep;
+
+pub use cost::{BUDGET_RECORDS, Cost};
+pub use experiment::{Experiment, Run};
+pub use script::{replayed, scripted};

@@ -1,0 +1,185 @@
+//! Random faults of the line and of the host, from a seed: the same seed, the same faults.
+//!
+//! Bits are turned over, bytes are lost or doubled, levels are forced, replies are not heard, and
+//! the host dies within a frame. Which, is decided frame by frame in the order of sending.
+
+use alloc::vec::Vec;
+use rand_xoshiro::{
+    Xoshiro256PlusPlus,
+    rand_core::{Rng, SeedableRng},
+};
+use stepscope_peripheral::wire::Schedule;
+use stepscope_peripheral::wire::schedule::line_time;
+use stepscope_peripheral::{
+    units::{Cycles, Instant},
+    wire::Forced,
+};
+use stepscope_scenario::Noise as Rates;
+
+/// Numbers from a seed, the same everywhere.
+#[derive(Clone, Debug)]
+pub(crate) struct Random(Xoshiro256PlusPlus);
+
+impl Random {
+    /// The numbers of a seed.
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(Xoshiro256PlusPlus::seed_from_u64(seed))
+    }
+
+    /// A number from 0 to `end` - 1.
+    pub(crate) fn below(&mut self, end: u64) -> u64 {
+        ((u128::from(self.0.next_u64()) * u128::from(end)) >> 64) as u64
+    }
+}
+
+/// A noisy line, as it goes on.
+#[derive(Clone, Debug)]
+pub struct Noise {
+    rates: Rates,
+    random: Random,
+    clock_hz: u32,
+    baud: u32,
+}
+
+/// What becomes of bytes on their way over the line.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Spoiled {
+    /// What is really sent.
+    pub bytes: Vec<u8>,
+    /// A level that is forced while they are sent.
+    pub forced: Option<Forced>,
+    /// Whether the host died within them; `bytes` are those sent before.
+    pub dies: bool,
+}
+
+impl Noise {
+    /// The noise of a line; `None` where every rate is 0.
+    #[must_use]
+    pub fn new(rates: &Rates, clock_hz: u32, baud: u32) -> Option<Self> {
+        let quiet = Rates { seed: rates.seed, ..Rates::default() };
+        let random = Random::new(rates.seed.into());
+        (*rates != quiet).then(|| Self { rates: rates.clone(), random, clock_hz, baud })
+    }
+
+    /// Whether something happens that happens so many times in a million.
+    fn happens(&mut self, ppm: u32) -> bool {
+        ppm > 0 && self.random.below(1_000_000) < u64::from(ppm)
+    }
+
+    fn byte(&mut self, byte: u8, out: &mut Vec<u8>) {
+        if self.happens(self.rates.lost_bytes_ppm) {
+            return;
+        }
+        let mut flips = 0;
+        for bit in 0..8 {
+            flips |= u8::from(self.happens(self.rates.flipped_bits_ppm)) << bit;
+        }
+        out.push(byte ^ flips);
+        if self.happens(self.rates.duplicated_bytes_ppm) {
+            out.push(byte ^ flips);
+        }
+    }
+
+    /// A byte that the host hears.
+    pub fn hear(&mut self, byte: u8) -> Vec<u8> {
+        let mut heard = Vec::new();
+        self.byte(byte, &mut heard);
+        heard
+    }
+
+    /// Whether the host misses a reply.
+    pub fn misses(&mut self) -> bool {
+        self.happens(self.rates.lost_replies_ppm)
+    }
+
+    /// What becomes of bytes that the host sends from `start` on.
+    pub fn send(&mut self, start: Instant, bytes: &[u8]) -> Spoiled {
+        let mut spoiled = Vec::with_capacity(bytes.len());
+        for &byte in bytes {
+            self.byte(byte, &mut spoiled);
+        }
+        let dies = self.happens(self.rates.host_crashes_ppm);
+        if dies {
+            spoiled.truncate(self.random.below(spoiled.len() as u64 + 1) as usize);
+        }
+        let glitch = (0..bytes.len()).any(|_| self.happens(self.rates.glitches_ppm));
+        let forced = glitch.then(|| self.glitch(start, spoiled.len() as u64));
+        Spoiled { bytes: spoiled, forced, dies }
+    }
+
+    /// A level forced somewhere within so many bytes, for one cycle to two bit times.
+    fn glitch(&mut self, start: Instant, bytes: u64) -> Forced {
+        let room = line_time(bytes.max(1), self.clock_hz, self.baud);
+        let longest = 2 * u64::from(self.clock_hz) / u64::from(self.baud.max(1));
+        let start = start + Cycles(self.random.below(room));
+        let end = start + Cycles(1 + self.random.below(longest.max(1)));
+        Forced { start, end, level: self.random.below(2) == 1 }
+    }
+
+    /// What becomes of a whole schedule, and the levels that are forced upon it. A send ends before
+    /// the next one, as it does on a good line.
+    #[must_use]
+    pub fn schedule(mut self, schedule: &Schedule) -> (Schedule, Vec<Forced>) {
+        let (mut noisy, mut all_forced) = (Schedule::default(), Vec::new());
+        for (index, send) in schedule.iter().enumerate() {
+            let Spoiled { mut bytes, forced, .. } = self.send(send.start, send.bytes);
+            if let Some(next) = schedule.get(index + 1) {
+                let room = next.start - send.start;
+                while line_time(bytes.len() as u64, self.clock_hz, self.baud) > room.0 {
+                    bytes.pop();
+                }
+            }
+            noisy.push(send.start, &bytes);
+            all_forced.extend(forced);
+        }
+        (noisy, all_forced)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn noise(rates: Rates) -> Noise {
+        Noise::new(&rates, 16_000_000, 115_200).expect("is noisy")
+    }
+
+    #[test]
+    fn without_rates_there_is_no_noise_and_with_them_the_seed_says_which() {
+        assert!(Noise::new(&Rates { seed: 7, ..Rates::default() }, 16_000_000, 115_200).is_none());
+        let rates = |seed| Rates { seed, flipped_bits_ppm: 100_000, ..Rates::default() };
+        let spoil = |seed| noise(rates(seed)).send(Instant(1), &[0; 64]).bytes;
+        assert_eq!(spoil(1), spoil(1));
+        assert_ne!(spoil(1), spoil(2));
+    }
+
+    #[test]
+    fn what_is_certain_happens_and_what_has_no_rate_does_not() {
+        const SURE: u32 = 1_000_000;
+        let bytes = [1, 2, 3];
+        let spoil = |rates| noise(rates).send(Instant(100), &bytes);
+        let lost = spoil(Rates { lost_bytes_ppm: SURE, ..Rates::default() });
+        assert_eq!(lost, Spoiled { bytes: Vec::new(), forced: None, dies: false });
+        let doubled = spoil(Rates { duplicated_bytes_ppm: SURE, ..Rates::default() });
+        assert_eq!(doubled.bytes, [1, 1, 2, 2, 3, 3]);
+        assert_eq!(spoil(Rates { flipped_bits_ppm: SURE, ..Rates::default() }).bytes, [254, 253, 252]);
+        let died = spoil(Rates { host_crashes_ppm: SURE, ..Rates::default() });
+        assert!(died.dies && bytes.starts_with(&died.bytes));
+        let forced = spoil(Rates { glitches_ppm: SURE, ..Rates::default() }).forced.expect("forced");
+        assert!(Instant(100) <= forced.start && forced.start < forced.end);
+        assert!(forced.end.0 < 100 + line_time(3, 16_000_000, 115_200) + 280);
+        assert!(noise(Rates { lost_replies_ppm: SURE, ..Rates::default() }).misses());
+    }
+
+    #[test]
+    fn a_spoiled_schedule_still_sends_one_thing_after_another() {
+        let mut schedule = Schedule::default();
+        schedule.push(Instant(1), &[1, 2]);
+        schedule.push(Instant(1) + Cycles(line_time(2, 16_000_000, 115_200)), &[3, 4]);
+        let rates = Rates { duplicated_bytes_ppm: 1_000_000, ..Rates::default() };
+        let (noisy, forced) = noise(rates).schedule(&schedule);
+        let sent: Vec<&[u8]> = noisy.iter().map(|send| send.bytes).collect();
+        assert_eq!(sent, [&[1, 1][..], &[3, 3, 4, 4]]);
+        assert_eq!(forced, []);
+    }
+}

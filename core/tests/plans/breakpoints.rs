@@ -1,0 +1,68 @@
+//! Where the pieces of a plan meet.
+
+use super::{axis, plan_axis};
+use stepscope_core::motion::{AxisPlan, Joints};
+
+/// Plans an axis from the JSON of its moves.
+fn plan(moves: &str) -> AxisPlan {
+    plan_axis(&axis(&format!(r#"{{"moves":[{moves}]}}"#)), "axis").expect("plans")
+}
+
+const MOVES: &[&str] = &[
+    r#"{"trapezoid":{"distance":{"steps":3000}}}"#,
+    r#"{"trapezoid":{"distance":{"steps":-41},"method":"table"}}"#,
+    r#"{"trapezoid":{"distance":{"steps":2000},"method":"table"}}"#,
+    r#"{"staircase":{"distance":{"steps":3000}}}"#,
+    r#"{"cosine":{"distance":{"steps":3200},"duration_s":0.4,"ramp_s":0.1}}"#,
+    r#"{"cosine":{"distance":{"steps":3201},"ramp_s":0.1,"method":"sliced"}}"#,
+    r#"{"ramps":{"shape":"sigmoid","ramp_s":0.1}}"#,
+    r#"{"ramps":{"shape":"bezier"}}"#,
+    r#"{"ramps":{"shape":"straight","ramp_s":0.1}}"#,
+    r#"{"ramps":{"shape":"exponential","ramp_s":0.1}}"#,
+    r#"{"jerk_limited":{"distance":{"steps":-3000}}}"#,
+    r#"{"jerk_limited":{"distance":{"steps":40}}}"#,
+    r#"{"points":{"points":[[0,0],[0.1,50],[0.2,50],[0.5,-300]],"interpolation":"straight"}}"#,
+    r#"{"points":{"points":[[0,0],[0.1,50],[0.2,60],[0.5,-300]],"interpolation":"smooth"}}"#,
+    r#"{"constant":{"distance":{"steps":100},"speed":{"steps_s":1000}}}"#,
+    r#"{"dwell":{"duration_s":0.1}},{"sine":{"amplitude":{"steps":500},"period_s":0.2,"periods":3}},{"dwell":{"duration_s":0.05}}"#,
+    r#"{"dwell":{"duration_s":0.1}},{"sine_segments":{"amplitude":{"steps":500},"period_s":0.2,"periods":3}},{"dwell":{"duration_s":0.05}}"#,
+];
+
+#[test]
+fn between_two_joints_every_curve_is_smooth() {
+    for moves in MOVES {
+        let plan = plan(moves);
+        let (from, to) = (-0.01, plan.duration_s() + 0.01);
+        let mut covered = 0.0;
+        Joints::of(&plan).pieces(from, to, &mut |piece| {
+            let length = piece.to_s - piece.from_s;
+            covered += length * piece.times;
+            let at = |part: f64| piece.from_s + length * part;
+            // Its speed is straight, or bends as little as a 64th of a cosine's ramp does.
+            let [a, b, c] = [0.001, 0.5, 0.999].map(|part| plan.speed(at(part)));
+            let bend = (b - (a + c) / 2.0).abs();
+            assert!(bend <= 1e-3 * plan.peaks().speed, "{moves}: {piece:?} bends by {bend}");
+            let [a, b, c] = [0.001, 0.5, 0.999].map(|part| plan.acceleration(at(part)));
+            let within = (a.min(c)..=a.max(c)).contains(&b);
+            assert!(within || (b - a).abs() <= 1e-6 * plan.peaks().acceleration, "{moves}: {piece:?}");
+        });
+        assert!((covered - (to - from)).abs() < 1e-9, "{moves}: {covered} of {}", to - from);
+    }
+}
+
+#[test]
+fn whole_periods_are_cut_once_and_stand_for_all() {
+    for moves in MOVES.iter().filter(|moves| moves.contains(r#""sine"#)) {
+        let plan = plan(moves);
+        let joints = Joints::of(&plan);
+        for (from, to, wholes) in [(0.09, 0.71, 3.0), (0.15, 0.71, 2.0), (0.15, 0.6, 1.0), (0.15, 0.4, 1.0)] {
+            let (mut most, mut covered) = (0.0_f64, 0.0);
+            joints.pieces(from, to, &mut |piece| {
+                most = most.max(piece.times);
+                covered += piece.times * (piece.to_s - piece.from_s);
+            });
+            assert_eq!(most, wholes, "{from} to {to}");
+            assert!((covered - (to - from)).abs() < 1e-12, "{from} to {to}: {covered}");
+        }
+    }
+}

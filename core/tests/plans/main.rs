@@ -1,0 +1,30 @@
+//! Plans of axes as scenarios write them: every problem with its path, and what holds for every kind of move.
+#![cfg(not(target_arch = "wasm32"))]
+
+mod axis;
+mod breakpoints;
+mod motor;
+mod problems;
+mod timed;
+
+use stepscope_core::{
+    motion::{moves::Axis, plan_axis},
+    scenario::{Scenario, Source},
+};
+
+/// The first axis of a motion, from its JSON.
+fn axis(json: &str) -> Axis {
+    let text = format!(r#"{{"source":{{"motion":{{"axes":[{json}]}}}}}}"#);
+    match Scenario::from_json(&text).expect("reads").source {
+        Source::Motion(motion) => motion.axes.into_iter().next().expect("an axis"),
+        _ => unreachable!("a motion"),
+    }
+}
+
+/// Holds the problems of an axis against those expected.
+#[track_caller]
+fn check(json: &str, expected: &[&str]) {
+    let problems = plan_axis(&axis(json), "axis").err().unwrap_or_default();
+    let found: Vec<_> = problems.iter().map(ToString::to_string).collect();
+    assert_eq!(found, expected, "{json}");
+}

@@ -1,9 +1,0 @@
-#![doc = include_str!("../../docs/datasheet.md")]
-#![no_std]
-
-mod bus;
-mod map;
-pub mod table;
-
-pub use bus::RegisterBus;
-pub use map::*;
