@@ -61,7 +61,10 @@ export function color(name) {
   }
   probe.style.color = `var(${name})`;
   const parts = getComputedStyle(probe).color.match(/[\d.]+/g) ?? ["128", "128", "128"];
-  const hex = `#${parts.slice(0, 3).map((part) => Math.round(Number(part)).toString(16).padStart(2, "0")).join("")}`;
+  const hex = `#${parts
+    .slice(0, 3)
+    .map((part) => Math.round(Number(part)).toString(16).padStart(2, "0"))
+    .join("")}`;
   known.set(name, hex);
   return hex;
 }
@@ -116,8 +119,15 @@ export function draw(canvas, chart) {
 
 /** As the wasm module takes a chart. @param {Chart} chart */
 function spec({ x, y, series }) {
-  return { ratio: CHART_RATIO, font: font(), font_px: 11, x, y, series,
-    colors: { label: color("--quiet"), axis: color("--axis"), grid: color("--grid") } };
+  return {
+    ratio: CHART_RATIO,
+    font: font(),
+    font_px: 11,
+    x,
+    y,
+    series,
+    colors: { label: color("--quiet"), axis: color("--axis"), grid: color("--grid") },
+  };
 }
 
 /** A chart on a canvas of its own, which is not on show. @param {Chart} chart @param {number} width @param {number} height */

@@ -7,11 +7,19 @@ import { createTables } from "./tables.js";
 import { createTorque } from "./torque.js";
 
 /** @type {{[name in import("../../state/types.js").StudyName]: (page: import("./study.js").StudyPage) => import("./study.js").StudyTab}} */
-export const TABS = { compare: createCompare, measures: createMeasures, tables: createTables, sine: createSine, torque: createTorque };
+export const TABS = {
+  compare: createCompare,
+  measures: createMeasures,
+  tables: createTables,
+  sine: createSine,
+  torque: createTorque,
+};
 
 /** Puts the style sheet into the page; done when it holds. */
 export function dress() {
-  const sheet = /** @type {HTMLLinkElement} */ (element("link", { rel: "stylesheet", href: new URL("../../style/study.css", import.meta.url).href }));
+  const sheet = /** @type {HTMLLinkElement} */ (
+    element("link", { rel: "stylesheet", href: new URL("../../style/study.css", import.meta.url).href })
+  );
   return new Promise((resolve, reject) => {
     sheet.addEventListener("load", resolve);
     sheet.addEventListener("error", reject);
