@@ -138,7 +138,7 @@ function text(error) {
   return error instanceof Error ? error.message : String(error);
 }
 
-onmessage = async ({ data }) => {
+self.onmessage = async ({ data }) => {
   if ("module" in data) return provide(data.module);
   if ("cancel" in data) {
     if (newest === data.cancel) newest = NONE;

@@ -15,7 +15,7 @@ import { loadTheme, saveTheme } from "./storage.js";
 const PATIENCE_MS = 90;
 
 /** @param {{presets: Preset[], cancel: () => void, retry: () => void} & import("../time/timeline.js").Page} page */
-export function createHeader({ presets, cancel, retry, dispatch, now }) {
+export function createHeader({ presets, cancel, retry, dispatch }) {
   const preset = /** @type {HTMLSelectElement} */ (byId("preset"));
   const controller = /** @type {HTMLSelectElement} */ (byId("controller"));
   const undo = /** @type {HTMLButtonElement} */ (byId("undo"));

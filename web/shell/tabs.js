@@ -37,7 +37,7 @@ export function createTabs({ dispatch }) {
 
 /** The arrow keys go from tab to tab, round, Home and End to the first and the last, and open what they come to. @param {HTMLElement[]} tabs */
 export function arrows(tabs) {
-  tabs.forEach((tab) =>
+  for (const tab of tabs) {
     tab.addEventListener("keydown", (event) => {
       const offered = tabs.filter((each) => !each.hidden);
       const at = offered.indexOf(tab);
@@ -47,8 +47,8 @@ export function arrows(tabs) {
       const next = offered[(to + offered.length) % offered.length];
       next.click();
       next.focus();
-    }),
-  );
+    });
+  }
 }
 
 /** Marks the open one of some tabs; it alone is in the order of the Tab key. @param {HTMLElement} tab @param {boolean} open */

@@ -162,10 +162,12 @@ export function createMotion({ engine, dispatch, now }) {
   function follow() {
     const wait = asked + FOLLOW_MS - performance.now();
     if (wait <= 0) return refresh(now());
-    later ||= window.setTimeout(() => {
-      later = 0;
-      refresh(now());
-    }, wait);
+    if (later === 0) {
+      later = window.setTimeout(() => {
+        later = 0;
+        refresh(now());
+      }, wait);
+    }
     return undefined;
   }
 

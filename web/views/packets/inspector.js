@@ -151,11 +151,11 @@ export function createInspector({ engine, dispatch, now }) {
         : [];
     // All of a row is said by the row itself.
     const some = over.includes(false) || over.length === 1 ? over : [];
-    [...bytes.children].forEach((cell, place) => cell.classList.toggle("lit", some[place] === true));
-    [...fields.children].forEach((cell, place) => {
+    for (const [place, cell] of [...bytes.children].entries()) cell.classList.toggle("lit", some[place] === true);
+    for (const [place, cell] of [...fields.children].entries()) {
       const { from, until } = told?.layout[place] ?? { from: 0, until: 0 };
       cell.classList.toggle("lit", some.slice(from, until).includes(true));
-    });
+    }
     const [first, last] = [some.indexOf(true), some.lastIndexOf(true)];
     if (told) say(byId("packet-reading"), reading(told, first, last, result?.summary.clock_hz ?? 1));
   }
@@ -176,7 +176,7 @@ function reading(row, first, last, clock) {
   if (first < 0) return `on the line ${time(row.start_cycle / clock)} to ${time(row.line_end_cycle / clock)}`;
   const hex = row.hex.split(" ").slice(first, last + 1);
   const bits = hex
-    .map((byte) => parseInt(byte, 16).toString(2).padStart(8, "0"))
+    .map((byte) => Number.parseInt(byte, 16).toString(2).padStart(8, "0"))
     .map((eight) => `${eight.slice(0, 4)}\u2009${eight.slice(4)}`);
   const when = `${time(row.byte_cycles[first] / clock)} to ${time((row.byte_cycles[last] + row.byte_length) / clock)}`;
   return [

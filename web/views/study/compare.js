@@ -259,7 +259,7 @@ export function createCompare({ engine, dispatch, now, panel }) {
       });
       drawKey(key, at);
     });
-    list.body.querySelectorAll("canvas").forEach((canvas, at) => drawKey(canvas, at));
+    for (const [at, canvas] of list.body.querySelectorAll("canvas").entries()) drawKey(canvas, at);
   }
   /** A piece of a curve's line. @param {HTMLCanvasElement} canvas @param {number} at */
   function drawKey(canvas, at) {
