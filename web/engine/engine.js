@@ -4,6 +4,7 @@
  * once more, so that the views that show it can still ask. Long questions that need no run are shared
  * out to further workers, as many as the machine has room for.
  */
+import { byId } from "../dom.js";
 import { compiled } from "./wasm.js";
 
 /** @typedef {import("../state/types.js").Progress} Progress */
@@ -237,9 +238,9 @@ export class Engine {
   }
 }
 
-/** A worker that has the core. */
+/** A worker that has the core; the page says which script it begins with. */
 function another() {
-  const worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
+  const worker = new Worker(byId("main").dataset.worker ?? "", { type: "module" });
   // What goes wrong with it is told by who waits for the charts.
   compiled().then(
     (module) => worker.postMessage({ module }),

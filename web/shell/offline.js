@@ -40,7 +40,7 @@ export function keepOffline() {
     controlled = true;
   });
   serviceWorker
-    .register(new URL("../sw.js", import.meta.url), { updateViaCache: "none" })
+    .register("sw.js", { updateViaCache: "none" })
     .then((registration) => {
       waits(registration);
       registration.addEventListener("updatefound", () => {

@@ -141,12 +141,12 @@ async fn perform(task: Task) -> Result<()> {
         }
         Task::Build { optimising } => page::build(optimising.wanted()).await,
         Task::Dist { no_build, optimising } => {
-            if no_build {
-                dist::make(&web, &dist::folder()).await?;
+            let parts = if no_build {
+                dist::make(&web, &dist::folder()).await?
             } else {
-                page::shipped(optimising.wanted()).await?;
-            }
-            print!("{}", page::weigh(&dist::folder())?);
+                page::shipped(optimising.wanted()).await?
+            };
+            print!("{}", page::weigh(&dist::folder(), &parts)?);
             Ok(())
         }
         Task::Serve { port, web: folder } => {

@@ -138,7 +138,7 @@ async fn page_tests() -> Result<Command> {
 
 async fn page() -> Result<()> {
     let mut command = page_tests().await?;
-    let weights = page::weigh(&dist::folder())?;
+    let weights = page::weigh(&dist::folder(), page::built().await?)?;
     print!("{weights}");
     weights.within_budget()?;
     command.args(["--skip", "engines::"]).env("STEPSCOPE_AXE", npm::axe().await?);

@@ -77,8 +77,7 @@ export function createStudy(page) {
   let loading = null;
   /** Loads the tabs once, and draws the open one. @param {HTMLElement} panel */
   async function load(panel) {
-    loading ??= import("./tabs.js").then(async ({ TABS, dress }) => {
-      await dress();
+    loading ??= import("./tabs.js").then(({ TABS }) => {
       tabs = TABS;
     });
     try {
