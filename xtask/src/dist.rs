@@ -19,7 +19,7 @@ use anyhow::{Context, Result, ensure};
 use twox_hash::XxHash64;
 use walkdir::WalkDir;
 
-use crate::{root, run};
+use crate::{headers, root, run};
 use esbuild::Bundles;
 
 /// Where what has a hash in its name lies.
@@ -30,8 +30,6 @@ const PAGE: &str = "index.html";
 const SERVICE_WORKER: &str = "sw.js";
 /// The licences' page, which no source is of.
 const LICENCES: &str = "licenses.html";
-/// Rules of the host, which it sends to nobody.
-pub(crate) const HEADERS: &str = "_headers";
 /// What stands in the sources where the build writes what it is.
 const UNBUILT: &str = "development";
 /// The service worker's line that the build fills.
@@ -115,7 +113,7 @@ impl Site {
                 texts.insert(name, text);
             }
         }
-        Ok(Self { texts, headers: read(HEADERS)? })
+        Ok(Self { texts, headers: read(headers::FILE)? })
     }
 
     /// The pages and the manifest.
@@ -160,7 +158,7 @@ impl Site {
             ensure!(worker.matches(UNLISTED).count() == 1, "{SERVICE_WORKER} must hold once: {UNLISTED}");
             *worker = worker.replace(UNLISTED, &list);
         }
-        built.insert(HEADERS.to_owned(), headers);
+        built.insert(headers::FILE.to_owned(), headers);
         Ok(built)
     }
 

@@ -12,7 +12,7 @@ use walkdir::WalkDir;
 
 use crate::dist::Parts;
 use crate::tools::{Optimise, WasmTools};
-use crate::{dist, root, run};
+use crate::{dist, headers, root, run};
 
 /// What all files that opening the page loads may weigh together, in bytes, compressed by brotli as hosts do.
 const OPENING_BUDGET: usize = 450_000;
@@ -129,7 +129,7 @@ pub(crate) fn weigh(dist: &Path, parts: &Parts) -> Result<Weights> {
     for entry in WalkDir::new(dist) {
         let entry = entry.with_context(|| format!("{} can't be read", dist.display()))?;
         // The host's own rules are not sent to anybody.
-        if entry.file_type().is_file() && entry.file_name() != dist::HEADERS {
+        if entry.file_type().is_file() && entry.file_name() != headers::FILE {
             let bytes = std::fs::read(entry.path())
                 .with_context(|| format!("{} can't be read", entry.path().display()))?;
             let path = entry.path().strip_prefix(dist).unwrap_or(entry.path());

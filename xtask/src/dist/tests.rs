@@ -119,8 +119,8 @@ fn another_name_of_a_file_gives_the_build_another_number() {
 #[test]
 fn what_has_a_hash_is_kept_for_ever_and_all_else_asked_for_anew() {
     let one = built(&[], "M").unwrap();
-    let headers = crate::headers::Headers::parse(&one[HEADERS]).unwrap();
-    let names = one.keys().filter(|name| *name != HEADERS).map(String::as_str);
+    let headers = headers::Headers::parse(&one[headers::FILE]).unwrap();
+    let names = one.keys().filter(|name| *name != headers::FILE).map(String::as_str);
     for name in names.chain(bundles("M").files()).chain([""]) {
         let given: Vec<_> =
             headers.of(&format!("/{name}")).map(|(_, value)| value.to_str().unwrap()).collect();
