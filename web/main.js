@@ -1,6 +1,11 @@
 /**
  * The page: makes the state, the engine and the views, and lets each change flow one way: message, state,
  * judging, run, drawing.
+ *
+ * The folders stand in one line, too. Each imports, and names types of, what stands to its left alone; a test holds
+ * this:
+ *
+ *     pkg -> state -> dom.js -> engine -> shell -> time -> form -> help -> views -> main.js
  */
 import { byId } from "./dom.js";
 import { Dropped, Engine, unlessDropped } from "./engine/engine.js";

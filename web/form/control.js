@@ -3,11 +3,11 @@
  * as a value, or as a draft while it is no number yet.
  */
 import { button, element, flash, say } from "../dom.js";
-import { termButton } from "../help/card.js";
 import { parseNumber, si } from "../state/number.js";
 import { derivedAxis, get } from "../state/state.js";
 import { printPoints, readPoints } from "./points.js";
 import { printSegments, readSegments } from "./segments.js";
+import { termButton } from "./term_button.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("./field.js").Field} Field */

@@ -47,7 +47,7 @@ function controllerPart({ put, block, part, errorOf, ...kit }, scenario, index, 
  * needs an address then, too.
  * @param {Scenario} scenario @param {any} like @param {import("./kit.js").Samples} samples
  */
-export function withAnother(scenario, like, samples) {
+function withAnother(scenario, like, samples) {
   const { line, source } = scenario;
   const addressed = line.protocol === "raw" && line.address === null ? withAddress(scenario, 0) : scenario;
   const taken = [line.address ?? 0, ...scenario.controllers.map((/** @type {any} */ controller) => controller.address)];

@@ -1,7 +1,7 @@
 /** The driver that the pulses are checked against, in the form: none, one whose data sheet is known, or rules. */
 import { element } from "../dom.js";
 import { si } from "../state/number.js";
-import { RULES } from "../views/rules.js";
+import { RULES } from "../state/rules.js";
 import { RULE_FIELDS } from "./fields.js";
 
 /** @typedef {import("../state/types.js").DriverSheet} DriverSheet */

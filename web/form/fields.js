@@ -3,7 +3,7 @@
  * are judged by the core; the words here only help to give a number it accepts.
  */
 
-import { RULES } from "../views/rules.js";
+import { RULES } from "../state/rules.js";
 import { cycles, integer, number } from "./field.js";
 import { MOVES } from "./moves/index.js";
 

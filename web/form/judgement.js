@@ -1,9 +1,9 @@
 /** Shows what the core says about the scenario: problems beside their fields, and what follows from it. */
 import { button, byId, element, fill, flash, say } from "../dom.js";
-import { termButton } from "../help/card.js";
 import { count, counted, plain, pretty, short, si } from "../state/number.js";
 import { derivedAxis, get } from "../state/state.js";
 import { runsAlone } from "./sources.js";
+import { termButton } from "./term_button.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("./control.js").Control} Control */

@@ -1,8 +1,8 @@
 /** What the parts of the form are built with: fields, folded parts, fieldsets, lists and choices of kinds. */
 
 import { button, element } from "../dom.js";
-import { termButton } from "../help/card.js";
 import { control } from "./control.js";
+import { termButton } from "./term_button.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("./field.js").Field} Field */

@@ -1,36 +1,15 @@
 /**
- * A word that explains itself: a button with a dotted line under it that opens a small card, with what the word
- * means and which document it comes from. One card serves all of them; a click elsewhere and Escape close it.
+ * The card that a word with dots under it opens: what the word means and which document it comes from. One card serves
+ * all of them; a click elsewhere and Escape close it.
  */
 import { element, fill } from "../dom.js";
+import { CARD, termButton } from "../form/term_button.js";
 import { termsOf } from "./terms.js";
 
 /** @typedef {import("../form/field.js").Term} Term */
 
-const CARD = "term-card";
 /** From the word to its card, and from the card to the window's edges, in CSS pixels. */
 const GAP_PX = 4;
-
-/**
- * The button for a term. In the form it is no stop of the tab key, which would double them: F1 in its field opens it.
- * @param {string} text  What it says.
- * @param {string} term  Its name in `TERMS`, or of a view in `VIEWS` as `view:motion`.
- * @param {{[name: string]: string}} [attributes]
- */
-export function termButton(text, term, attributes = {}) {
-  return element(
-    "button",
-    {
-      type: "button",
-      class: "term",
-      "aria-expanded": "false",
-      "aria-controls": CARD,
-      "data-term": term,
-      ...attributes,
-    },
-    text,
-  );
-}
 
 /** Opens the card of the word that explains an element, if there is one. @param {Element} at */
 export function explain(at) {

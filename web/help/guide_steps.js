@@ -50,13 +50,13 @@ const GAP_PX = 10;
 /** @type {{go: (step: number) => void} | null} */
 let guide = null;
 
-/** Begins with the first step. @param {import("../time/timeline.js").Page} page */
+/** Begins with the first step. @param {import("../state/types.js").Page} page */
 export function startGuide(page) {
   guide ??= createGuide(page);
   guide.go(0);
 }
 
-/** @param {import("../time/timeline.js").Page} page */
+/** @param {import("../state/types.js").Page} page */
 function createGuide({ dispatch, now }) {
   const panel = byId("guide");
   const narrow = matchMedia("(max-width: 899px)");

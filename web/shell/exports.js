@@ -26,7 +26,7 @@ const PIECES = 16;
 
 class Cancelled extends Error {}
 
-/** @param {{engine: Engine} & import("../time/timeline.js").Page} page  @param {[string, (state: State, engine: Engine) => Offer[]][]} others  What other parts of the page offer, each list with its title. */
+/** @param {{engine: Engine} & import("../state/types.js").Page} page  @param {[string, (state: State, engine: Engine) => Offer[]][]} others  What other parts of the page offer, each list with its title. */
 export function createExports({ engine, now }, others) {
   const stretch = /** @type {HTMLSelectElement} */ (byId("export-stretch"));
   const list = byId("export-list");

@@ -3,7 +3,6 @@ import { byId, element, fill, options, say } from "../dom.js";
 import { readJson } from "../state/json.js";
 import { count, si } from "../state/number.js";
 import { held, isStale, lookedAt } from "../state/state.js";
-import { recolor } from "../time/plot.js";
 import { listen } from "./commands.js";
 import { health, ill } from "./health.js";
 import { loadTheme, saveTheme } from "./storage.js";
@@ -14,7 +13,7 @@ import { loadTheme, saveTheme } from "./storage.js";
 /** Progress is shown only for runs longer than this, in ms. */
 const PATIENCE_MS = 90;
 
-/** @param {{presets: Preset[], cancel: () => void, retry: () => void} & import("../time/timeline.js").Page} page */
+/** @param {{presets: Preset[], cancel: () => void, retry: () => void} & import("../state/types.js").Page} page */
 export function createHeader({ presets, cancel, retry, dispatch }) {
   const preset = /** @type {HTMLSelectElement} */ (byId("preset"));
   const controller = /** @type {HTMLSelectElement} */ (byId("controller"));
@@ -149,7 +148,6 @@ export function createTheme() {
     say(button, sign);
     button.title = label;
     button.setAttribute("aria-label", label);
-    recolor();
     document.dispatchEvent(new Event("themechange"));
   };
   button.addEventListener("click", () => {

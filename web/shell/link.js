@@ -12,7 +12,7 @@ import { parseView, viewOf } from "./view_part.js";
 /** How long the scenario must stand before the address follows, in ms. */
 const SETTLE_MS = 300;
 
-/** @param {{engine: import("../engine/engine.js").Engine} & import("../time/timeline.js").Page} page */
+/** @param {{engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} page */
 export function createLink({ engine, dispatch, now }) {
   /** Fragment that this page wrote or read last. */
   let written = location.hash;

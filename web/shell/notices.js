@@ -10,7 +10,7 @@ import { count, time } from "../state/number.js";
 /** @typedef {import("../state/types.js").Place} Place */
 /** @typedef {import("../state/types.js").Verdict} Verdict */
 
-/** @param {{engine: import("../engine/engine.js").Engine} & import("../time/timeline.js").Page} page */
+/** @param {{engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} page */
 export function createNotices(page) {
   const { engine, dispatch, now } = page;
 

@@ -10,7 +10,7 @@ import { message } from "./link.js";
 import { around } from "./notices.js";
 
 /** @typedef {import("../state/types.js").State} State */
-/** @typedef {{engine: import("../engine/engine.js").Engine, openLink: (fragment: string) => Promise<void>} & import("../time/timeline.js").Page} Given */
+/** @typedef {{engine: import("../engine/engine.js").Engine, openLink: (fragment: string) => Promise<void>} & import("../state/types.js").Page} Given */
 
 /** Most bytes of a scenario's file. */
 const MOST_SCENARIO = 32 << 20;

@@ -38,7 +38,7 @@ const LEAST_VIEWS_PX = 480;
 /** A key moves an edge by so many CSS pixels, with Shift by five times as many. */
 const STEP_PX = 16;
 
-/** @param {import("../time/timeline.js").Page} page */
+/** @param {import("../state/types.js").Page} page */
 export function createPanes({ dispatch, now }) {
   const main = /** @type {HTMLElement} */ (document.querySelector("main"));
   const views = byId("views");

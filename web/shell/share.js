@@ -8,7 +8,7 @@ import { viewOf } from "./view_part.js";
 
 /** @typedef {import("../state/types.js").State} State */
 
-/** @param {{shared: () => Promise<{full: string, digests: boolean}>} & import("../time/timeline.js").Page} page */
+/** @param {{shared: () => Promise<{full: string, digests: boolean}>} & import("../state/types.js").Page} page */
 export function createShare({ shared, now }) {
   const text = /** @type {HTMLTextAreaElement} */ (byId("link-text"));
   const copy = /** @type {HTMLButtonElement} */ (byId("copy-link"));

@@ -6,7 +6,7 @@ import { lookedAt } from "../state/state.js";
 
 const VIEWS = ["motion", "pulses", "packets", "spectrum", "timing", "study"];
 
-/** @param {import("../time/timeline.js").Page} page */
+/** @param {import("../state/types.js").Page} page */
 export function createTabs({ dispatch }) {
   const tab = (/** @type {string} */ view) => byId(`tab-${view}`);
   for (const view of VIEWS) {

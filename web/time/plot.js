@@ -69,10 +69,8 @@ export function color(name) {
   return hex;
 }
 
-/** Forgets the colours: the theme has changed. */
-export function recolor() {
-  known.clear();
-}
+// The views hear of another theme after this module, and draw with its colours.
+document.addEventListener("themechange", () => known.clear());
 
 let family = "";
 

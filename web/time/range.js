@@ -6,7 +6,7 @@ import { zoom } from "./timeline.js";
 
 /** @typedef {import("../state/types.js").State} State */
 
-/** @param {import("./timeline.js").Page} page */
+/** @param {import("../state/types.js").Page} page */
 export function createRange({ dispatch, now }) {
   const page = { dispatch, now };
   // Besides these, any view may have buttons of its own for the same.

@@ -7,7 +7,7 @@ import { endOf, shown } from "../state/state.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Span} Span */
-/** @typedef {{dispatch: (message: import("../state/state.js").Message) => void, now: () => State}} Page */
+/** @typedef {import("../state/types.js").Page} Page */
 /** @typedef {(event: PointerEvent, cycle: number) => boolean | Promise<number>} Click  Whether it used the click, or the cycle to take instead. */
 
 /** Notches of the wheel that come within this time, in ms, are one gesture. */
@@ -35,7 +35,7 @@ export function pan({ dispatch, now }, part, joins) {
 }
 
 /** Shows what lies between the cursors, with a little around it. @param {Page} page */
-export function zoomToCursors({ dispatch, now }) {
+function zoomToCursors({ dispatch, now }) {
   const { a, b } = now().cursors;
   if (a === null || b === null || a === b) return;
   const air = Math.abs(b - a) * 0.05;

@@ -6,8 +6,8 @@ import { byId, element, fill, say } from "../dom.js";
 import { unlessDropped } from "../engine/engine.js";
 import { listen } from "../shell/commands.js";
 import { count, si, time } from "../state/number.js";
+import { ruleName } from "../state/rules.js";
 import { endOf, lookedAt, shown } from "../state/state.js";
-import { ruleName } from "./rules.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Timing} Timing */
@@ -17,7 +17,7 @@ const DIR = 16;
 /** A violation is shown in a window of so many of the times that it is about. */
 const AROUND = 14;
 
-/** @param {{engine: import("../engine/engine.js").Engine, drivers: import("../state/types.js").DriverSheet[], speak: (text: string) => void} & import("../time/timeline.js").Page} page */
+/** @param {{engine: import("../engine/engine.js").Engine, drivers: import("../state/types.js").DriverSheet[], speak: (text: string) => void} & import("../state/types.js").Page} page */
 export function createTiming({ engine, drivers, speak, dispatch, now }) {
   const body = /** @type {Element} */ (byId("violations").querySelector("tbody"));
   /** @type {Timing | null} */

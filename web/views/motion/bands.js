@@ -92,7 +92,7 @@ export function bandsOf(state, { columns, kept, apart }, quantity) {
 }
 
 /** Least and greatest value, and a range around them that leaves air. @param {Columns[]} bands @param {boolean} zero @returns {Range} */
-export function rangeOf(bands, zero) {
+function rangeOf(bands, zero) {
   let [low, high] = [Infinity, -Infinity];
   for (const { min, max } of bands) {
     for (const value of min) if (value < low) low = value;

@@ -8,7 +8,7 @@ import { keptAxis, unitOf } from "./bands.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 
-/** @param {{engine: import("../../engine/engine.js").Engine} & import("../../time/timeline.js").Page} page */
+/** @param {{engine: import("../../engine/engine.js").Engine} & import("../../state/types.js").Page} page */
 export function createCompare({ engine, dispatch, now }) {
   const place = byId("compared");
   const keepButton = /** @type {HTMLButtonElement} */ (byId("keep-run"));

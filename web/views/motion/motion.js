@@ -21,7 +21,7 @@ const SPEAK_MS = 500;
 /** While the shown time moves, the charts follow at most so often, in ms. */
 const FOLLOW_MS = 80;
 
-/** @param {{engine: import("../../engine/engine.js").Engine} & import("../../time/timeline.js").Page} page */
+/** @param {{engine: import("../../engine/engine.js").Engine} & import("../../state/types.js").Page} page */
 export function createMotion({ engine, dispatch, now }) {
   const stack = byId("charts");
   const overlay = /** @type {HTMLCanvasElement} */ (byId("charts-cursor"));

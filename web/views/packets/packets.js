@@ -14,7 +14,7 @@ import { createTable } from "./table.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").PacketRow} PacketRow */
-/** @typedef {{engine: import("../../engine/engine.js").Engine} & import("../../time/timeline.js").Page} Page */
+/** @typedef {{engine: import("../../engine/engine.js").Engine} & import("../../state/types.js").Page} Page */
 
 /** @param {Page} page */
 export function createPackets(page) {

@@ -6,7 +6,7 @@ import { goToMarker } from "../../time/timeline.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 
-/** @param {import("../../time/timeline.js").Page & {speak: (text: string) => void}} page */
+/** @param {import("../../state/types.js").Page & {speak: (text: string) => void}} page */
 export function createMarkers({ dispatch, now, speak }) {
   const panel = byId("marker-panel");
   const body = /** @type {Element} */ (panel.querySelector("tbody"));

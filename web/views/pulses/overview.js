@@ -17,7 +17,7 @@ import { paintOverview } from "./paint.js";
 /** An edge of the part is taken within so many CSS pixels. */
 const EDGE_PX = 6;
 
-/** @param {{engine: import("../../engine/engine.js").Engine} & import("../../time/timeline.js").Page} page */
+/** @param {{engine: import("../../engine/engine.js").Engine} & import("../../state/types.js").Page} page */
 export function createOverview({ engine, dispatch, now }) {
   const page = { dispatch, now };
   const canvas = /** @type {HTMLCanvasElement} */ (byId("overview"));

@@ -23,7 +23,7 @@ const SNAP_PX = 6;
 /** The sign that folds a channel stands in so many CSS pixels at the left. */
 const FOLD_PX = 26;
 
-/** @param {{engine: import("../../engine/engine.js").Engine} & import("../../time/timeline.js").Page} page */
+/** @param {{engine: import("../../engine/engine.js").Engine} & import("../../state/types.js").Page} page */
 export function createPulses({ engine, dispatch, now }) {
   const page = { dispatch, now };
   const canvas = /** @type {HTMLCanvasElement} */ (byId("pulses"));

@@ -48,7 +48,7 @@ export function harmonics(spectra, quantity) {
 }
 
 /** @param {number} part */
-export function decibels(part) {
+function decibels(part) {
   return part > 0 ? `${short(20 * Math.log10(part), 4)} dB` : "nothing";
 }
 

@@ -48,7 +48,7 @@ export function chosenSpectrum() {
   return { quantity: /** @type {Quantity} */ (value("spectrum-quantity")), db: value("spectrum-scale") === "db" };
 }
 
-/** @param {{engine: import("../../engine/engine.js").Engine} & import("../../time/timeline.js").Page} page */
+/** @param {{engine: import("../../engine/engine.js").Engine} & import("../../state/types.js").Page} page */
 export function createSpectrum({ engine, dispatch, now }) {
   const canvas = /** @type {HTMLCanvasElement} */ (byId("spectrum-chart"));
   const overlay = /** @type {HTMLCanvasElement} */ (byId("spectrum-cursor"));

@@ -13,7 +13,7 @@ import { STUDIES } from "../../shell/view_part.js";
 import { lookedAt } from "../../state/state.js";
 
 /** @typedef {import("../../state/types.js").State} State */
-/** @typedef {{engine: import("../../engine/engine.js").Engine, samples: import("../../form/kit.js").Samples} & import("../../time/timeline.js").Page} Given */
+/** @typedef {{engine: import("../../engine/engine.js").Engine, samples: import("../../form/kit.js").Samples} & import("../../state/types.js").Page} Given */
 /** @typedef {{panel: HTMLElement} & Given} StudyPage */
 /** @typedef {{render: (state: State, before: State | undefined) => any}} StudyTab */
 
