@@ -240,7 +240,7 @@ export class Engine {
 
 /** A worker that has the core; the page says which script it begins with. */
 function another() {
-  const worker = new Worker(byId("main").dataset.worker ?? "", { type: "module" });
+  const worker = new Worker(/** @type {string} */ (byId("main").dataset.worker), { type: "module" });
   // What goes wrong with it is told by who waits for the charts.
   compiled().then(
     (module) => worker.postMessage({ module }),
