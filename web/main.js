@@ -1,34 +1,39 @@
 /**
  * The page: makes the state, the engine and the views, and lets each change flow one way: message, state,
  * judging, run, drawing.
+ *
+ * The folders stand in one line, too. Each imports, and names types of, what stands to its left alone; a test holds
+ * this:
+ *
+ *     pkg -> state -> dom.js -> engine -> shell -> time -> form -> help -> views -> main.js
  */
 import { byId } from "./dom.js";
-import { Engine, Dropped, unlessDropped } from "./engine/engine.js";
+import { Dropped, Engine, unlessDropped } from "./engine/engine.js";
 import { SAMPLES } from "./form/fields.js";
 import { createForm } from "./form/form.js";
+import { SOURCES } from "./form/sources.js";
 import { createCard } from "./help/card.js";
 import { createGuide, offerGuide } from "./help/guide.js";
 import { createKeys } from "./help/keys.js";
-import { chartFiles } from "./views/chart_offers.js";
 import { createExports } from "./shell/exports.js";
 import { createHeader, createTheme } from "./shell/header.js";
-import { keepOffline } from "./shell/offline.js";
 import { createImports } from "./shell/imports.js";
 import { createLink } from "./shell/link.js";
 import { createNotices } from "./shell/notices.js";
-import { createShare } from "./shell/share.js";
-import { createMotion } from "./views/motion/motion.js";
-import { createPackets } from "./views/packets/packets.js";
-import { load as loadCharts } from "./time/plot.js";
+import { keepOffline } from "./shell/offline.js";
 import { createPanes } from "./shell/panes.js";
-import { packetFiles } from "./views/packets/files.js";
-import { createPulses } from "./views/pulses/pulses.js";
-import { SOURCES } from "./form/sources.js";
-import { createSpectrum } from "./views/spectrum/spectrum.js";
-import { EARLIER, held, initial, isStale, update } from "./state/state.js";
+import { createShare } from "./shell/share.js";
 import { loadGood, loadPrevious, loadScenario, saveGood, saveScenario, setAside } from "./shell/storage.js";
 import { createTabs } from "./shell/tabs.js";
 import { readJson } from "./state/json.js";
+import { EARLIER, held, initial, isStale, update } from "./state/state.js";
+import { load as loadCharts } from "./time/plot.js";
+import { chartFiles } from "./views/chart_offers.js";
+import { createMotion } from "./views/motion/motion.js";
+import { packetFiles } from "./views/packets/files.js";
+import { createPackets } from "./views/packets/packets.js";
+import { createPulses } from "./views/pulses/pulses.js";
+import { createSpectrum } from "./views/spectrum/spectrum.js";
 import { createStudy } from "./views/study/study.js";
 import { tableFiles } from "./views/study/table_files.js";
 import { createTiming } from "./views/timing.js";
@@ -50,16 +55,25 @@ let timer = 0;
 let ran = -1;
 
 const engine = new Engine({
-  progress: (revision, progress) => { if (revision === state.revision) dispatch({ type: "progress", progress }); },
+  progress: (revision, progress) => {
+    if (revision === state.revision) dispatch({ type: "progress", progress });
+  },
   done: (revision, summary, ms) => dispatch({ type: "done", revision, summary, ms }),
-  failed: (revision, message) => { if (revision === state.revision) dispatch({ type: "failed", message: `The run stopped: ${message}` }); },
+  failed: (revision, message) => {
+    if (revision === state.revision) dispatch({ type: "failed", message: `The run stopped: ${message}` });
+  },
   crashed: (message) => {
     ran = state.revision;
     dispatch({ type: "reference", reference: null });
-    dispatch({ type: "failed", message: `The engine stopped and was started again; the form is as it was (${message}).` });
+    dispatch({
+      type: "failed",
+      message: `The engine stopped and was started again; the form is as it was (${message}).`,
+    });
   },
   // All views ask once more: to them it is another result.
-  restored: () => { if (state.result) dispatch({ type: "controller", controller: state.result.controller }); },
+  restored: () => {
+    if (state.result) dispatch({ type: "controller", controller: state.result.controller });
+  },
   stopped: () => {
     dispatch({ type: "reference", reference: null });
     if (held(state) === "unjudged") judge();
@@ -95,7 +109,10 @@ function follow(before) {
   if (state.run.progress) unveil();
   const drawn = views.map((view) => view.render(state, before));
   byId("views").classList.toggle("blank", result === null);
-  byId("views").classList.toggle("dim", result !== null && isStale(state) && held(state) !== "unjudged" && state.run.phase !== "running");
+  byId("views").classList.toggle(
+    "dim",
+    result !== null && isStale(state) && held(state) !== "unjudged" && state.run.phase !== "running",
+  );
   if (result && before?.result !== result) settle(Promise.allSettled(drawn));
   else if (state.run.phase === "failed") settle(Promise.resolve());
 }
@@ -154,15 +171,23 @@ function cancel() {
 
 /** One of everything that can be added, with the core's own defaults. */
 async function samples() {
-  const filled = async (/** @type {object} */ sample) => readJson((await engine.ask("check", JSON.stringify(sample))).scenario);
-  const [all, line, ...sources] = await Promise.all([filled(SAMPLES.all), filled(SAMPLES.line),
-    ...Object.keys(SOURCES).map((kind) => filled({ source: { [kind]: {} } }))]);
+  const filled = async (/** @type {object} */ sample) =>
+    readJson((await engine.ask("check", JSON.stringify(sample))).scenario);
+  const [all, line, ...sources] = await Promise.all([
+    filled(SAMPLES.all),
+    filled(SAMPLES.line),
+    ...Object.keys(SOURCES).map((kind) => filled({ source: { [kind]: {} } })),
+  ]);
   const { axes } = all.source.motion;
   return {
     moves: Object.assign({}, ...axes[0].moves),
     mechanics: Object.assign({}, ...axes.map((/** @type {any} */ axis) => axis.mechanics)),
     sources: Object.assign({}, ...sources.map(({ source }) => source)),
-    glitch: all.line.glitches[0], send: line.source.line.sends[0], controller: all.controllers[0], rules: all.driver.rules, motor: axes[0].motor,
+    glitch: all.line.glitches[0],
+    send: line.source.line.sends[0],
+    controller: all.controllers[0],
+    rules: all.driver.rules,
+    motor: axes[0].motor,
   };
 }
 
@@ -176,7 +201,10 @@ async function own(fallback) {
   const [saved, previous] = [loadScenario(), loadPrevious()];
   if (saved === null) return { left: initial(readJson(fallback)), good: null };
   const { scenario, problems } = await read(saved);
-  const past = previous === null || previous === saved ? [] : [{ scenario: readJson((await read(previous)).scenario), origin: /** @type {const} */ ("own") }];
+  const past =
+    previous === null || previous === saved
+      ? []
+      : [{ scenario: readJson((await read(previous)).scenario), origin: /** @type {const} */ ("own") }];
   return { left: { ...initial(readJson(scenario)), past }, good: problems.length > 0 ? loadGood() : null };
 }
 
@@ -189,7 +217,13 @@ async function start() {
     byId("status").textContent = "no engine";
     return;
   }
-  const [fallback, presets, drivers, made] = await Promise.all([engine.ask("default_scenario"), engine.ask("presets"), engine.ask("drivers"), samples(), loadCharts()]);
+  const [fallback, presets, drivers, made] = await Promise.all([
+    engine.ask("default_scenario"),
+    engine.ask("presets"),
+    engine.ask("drivers"),
+    samples(),
+    loadCharts(),
+  ]);
   const { left, good } = await own(fallback);
   state = left;
   const page = { engine, dispatch, now: () => state };
@@ -197,12 +231,32 @@ async function start() {
   byId("form").addEventListener("submit", (event) => event.preventDefault());
   const link = createLink(page);
   createImports({ openLink: link.openLink, ...page });
-  const retry = () => { engine.revive(); ran = -1; judge(); };
+  const retry = () => {
+    engine.revive();
+    ran = -1;
+    judge();
+  };
   const pulses = createPulses(page);
-  views = [createHeader({ presets, cancel, retry, ...page }), createForm({ root: byId("fields"), samples: made, drivers, dispatch }),
-    createTabs(page), createPanes(page), createMotion(page), pulses, createPackets(page), createSpectrum(page),
-    createTiming({ drivers, speak: pulses.speak, ...page }), createStudy({ samples: made, ...page }), createNotices(page), createShare({ shared: link.shared, ...page }),
-    createExports(page, [["Charts", chartFiles], ["Packets", packetFiles], ["Step tables", tableFiles]]), link];
+  views = [
+    createHeader({ presets, cancel, retry, ...page }),
+    createForm({ root: byId("fields"), samples: made, drivers, dispatch }),
+    createTabs(page),
+    createPanes(page),
+    createMotion(page),
+    pulses,
+    createPackets(page),
+    createSpectrum(page),
+    createTiming({ drivers, speak: pulses.speak, ...page }),
+    createStudy({ samples: made, ...page }),
+    createNotices(page),
+    createShare({ shared: link.shared, ...page }),
+    createExports(page, [
+      ["Charts", chartFiles],
+      ["Packets", packetFiles],
+      ["Step tables", tableFiles],
+    ]),
+    link,
+  ];
   createKeys();
   createGuide(page);
   await link.start(loadScenario() !== null);
@@ -217,5 +271,6 @@ start().catch((error) => {
   byId("try-again").addEventListener("click", () => location.reload());
   byId("status").textContent = "the engine could not be started";
   byId("engine-message").hidden = false;
-  /** @type {Element} */ (byId("engine-message").firstElementChild).textContent = `The engine could not be started: ${error instanceof Error ? error.message : error}`;
+  /** @type {Element} */ (byId("engine-message").firstElementChild).textContent =
+    `The engine could not be started: ${error instanceof Error ? error.message : error}`;
 });

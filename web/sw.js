@@ -20,7 +20,8 @@ worker.onactivate = (event) => event.waitUntil(activate());
 /** @param {any} event */
 worker.onfetch = (event) => {
   const { request } = event;
-  if (build.files.length > 0 && request.method === "GET" && request.url.startsWith(worker.registration.scope)) event.respondWith(answer(request));
+  if (build.files.length > 0 && request.method === "GET" && request.url.startsWith(worker.registration.scope))
+    event.respondWith(answer(request));
 };
 /** The page asks to change over. @param {any} event */
 worker.onmessage = ({ data }) => {
@@ -30,16 +31,18 @@ worker.onmessage = ({ data }) => {
 async function install() {
   if (build.files.length === 0) return worker.skipWaiting();
   const cache = await caches.open(own);
-  await Promise.all(build.files.map(async (/** @type {string} */ file) => {
-    const url = new URL(file, worker.registration.scope).href;
-    const hashed = file.startsWith("assets/");
-    // The name of a file with a hash says what it holds: an earlier build's is the same.
-    const kept = hashed && await caches.match(url);
-    const response = kept || await fetch(url, { cache: hashed ? "default" : "no-cache" });
-    if (!response.ok) throw new Error(`${file}: ${response.status}`);
-    // Some hosts send pages to names of their own; what came over a detour may not answer for a page.
-    await cache.put(url, response.redirected ? new Response(response.body, { headers: response.headers }) : response);
-  }));
+  await Promise.all(
+    build.files.map(async (/** @type {string} */ file) => {
+      const url = new URL(file, worker.registration.scope).href;
+      const hashed = file.startsWith("assets/");
+      // The name of a file with a hash says what it holds: an earlier build's is the same.
+      const kept = hashed && (await caches.match(url));
+      const response = kept || (await fetch(url, { cache: hashed ? "default" : "no-cache" }));
+      if (!response.ok) throw new Error(`${file}: ${response.status}`);
+      // Some hosts send pages to names of their own; what came over a detour may not answer for a page.
+      await cache.put(url, response.redirected ? new Response(response.body, { headers: response.headers }) : response);
+    }),
+  );
 }
 
 async function activate() {
@@ -57,5 +60,5 @@ async function answer(request) {
   url.search = url.hash = "";
   if (request.mode === "navigate") url.pathname = url.pathname.replace(/\/index\.html$/, "/");
   const cache = await caches.open(own);
-  return await cache.match(url.href) ?? fetch(request);
+  return (await cache.match(url.href)) ?? fetch(request);
 }

@@ -4,6 +4,7 @@
  * once more, so that the views that show it can still ask. Long questions that need no run are shared
  * out to further workers, as many as the machine has room for.
  */
+import { byId } from "../dom.js";
 import { compiled } from "./wasm.js";
 
 /** @typedef {import("../state/types.js").Progress} Progress */
@@ -164,7 +165,9 @@ export class Engine {
         throw error;
       }
     };
-    await Promise.all(Array.from({ length: Math.min(MOST_FURTHER, navigator.hardwareConcurrency || 1, pieces.length) }, help));
+    await Promise.all(
+      Array.from({ length: Math.min(MOST_FURTHER, navigator.hardwareConcurrency || 1, pieces.length) }, help),
+    );
     return answers;
   }
 
@@ -172,23 +175,29 @@ export class Engine {
   #rest(worker) {
     this.#idle.push(worker);
     clearTimeout(this.#resting);
-    this.#resting = window.setTimeout(() => { for (const each of this.#idle.splice(0)) each.terminate(); }, IDLE_MS);
+    this.#resting = window.setTimeout(() => {
+      for (const each of this.#idle.splice(0)) each.terminate();
+    }, IDLE_MS);
   }
 
   /** @param {any} data */
   #heard(data) {
     if (data.event !== "crashed") this.#crashes = 0;
     switch (data.event) {
-      case "progress": return this.#listener.progress(data.run, data.progress);
+      case "progress":
+        return this.#listener.progress(data.run, data.progress);
       case "restored":
         this.#good ??= this.#restoring;
         return this.#listener.restored();
-      case "cancelled": return clearTimeout(this.#cancelling);
+      case "cancelled":
+        return clearTimeout(this.#cancelling);
       case "done":
         if (this.#running?.run === data.run) [this.#good, this.#running] = [this.#running, null];
         return this.#listener.done(data.run, data.summary, data.ms);
-      case "failed": return this.#listener.failed(data.run, data.message);
-      case "crashed": return this.#restart(data.message);
+      case "failed":
+        return this.#listener.failed(data.run, data.message);
+      case "crashed":
+        return this.#restart(data.message);
     }
     const asked = this.#asked.get(data.id);
     this.#asked.delete(data.id);
@@ -229,11 +238,14 @@ export class Engine {
   }
 }
 
-/** A worker that has the core. */
+/** A worker that has the core; the page says which script it begins with. */
 function another() {
-  const worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
+  const worker = new Worker(/** @type {string} */ (byId("main").dataset.worker), { type: "module" });
   // What goes wrong with it is told by who waits for the charts.
-  compiled().then((module) => worker.postMessage({ module }), () => {});
+  compiled().then(
+    (module) => worker.postMessage({ module }),
+    () => {},
+  );
   return worker;
 }
 

@@ -26,7 +26,9 @@ let newest = NONE;
 
 /** @type {(module: WebAssembly.Module) => void} */
 let provide = () => {};
-const ready = new Promise((resolve) => { provide = (module) => resolve(init({ module_or_path: module })); });
+const ready = new Promise((resolve) => {
+  provide = (module) => resolve(init({ module_or_path: module }));
+});
 const between = new MessageChannel();
 
 /** Who waits for messages to be let in: a run, a search. @type {((event: MessageEvent) => void)[]} */
@@ -106,7 +108,10 @@ async function search(args) {
     const before = performance.now();
     const found = simulation.filter_on(rows);
     if (found.done) return { note, ...found };
-    rows = Math.min(4_000_000, Math.max(256, Math.round((rows * SLICE_MS) / Math.max(0.5, performance.now() - before))));
+    rows = Math.min(
+      4_000_000,
+      Math.max(256, Math.round((rows * SLICE_MS) / Math.max(0.5, performance.now() - before))),
+    );
     await breathe();
     if (own !== searches || simulation !== finished) return null;
   }
@@ -133,7 +138,7 @@ function text(error) {
   return error instanceof Error ? error.message : String(error);
 }
 
-onmessage = async ({ data }) => {
+self.onmessage = async ({ data }) => {
   if ("module" in data) return provide(data.module);
   if ("cancel" in data) {
     if (newest === data.cancel) newest = NONE;

@@ -1,10 +1,10 @@
 /** The axes of a controller in the form: their mechanics and their moves. The first controller's and any further one's alike. */
 import { button, element } from "../dom.js";
+import { get, MOST_CHANNELS, set } from "../state/state.js";
 import { MECHANICS } from "./fields.js";
 import { labels } from "./kit.js";
 import { motorItems } from "./motor.js";
 import { MOVES } from "./moves/index.js";
-import { MOST_CHANNELS, get, set } from "../state/state.js";
 
 /** @typedef {import("./kit.js").Kit} Kit */
 /** @typedef {{axes: string, bus: string, whose: string, least: number}} Place  Paths of the axes and of their bus; what tells them from another controller's; fewest axes. */
@@ -16,9 +16,20 @@ export function axisItems(kit, place) {
   const { samples, now } = kit;
   /** @type {any[]} */
   const axes = get(now().scenario, place.axes) ?? [];
-  const fresh = () => ({ mechanics: { rotary: samples.mechanics.rotary }, moves: [{ cosine: samples.moves.cosine }], motor: null });
-  return [...axes.map((_, index) => axisItem(kit, place, axes, index)),
-    button("Add axis", `Add axis${place.whose}`, () => addAxis(kit, place, axes, structuredClone(axes[axes.length - 1] ?? fresh())), axes.length >= MOST_CHANNELS)];
+  const fresh = () => ({
+    mechanics: { rotary: samples.mechanics.rotary },
+    moves: [{ cosine: samples.moves.cosine }],
+    motor: null,
+  });
+  return [
+    ...axes.map((_, index) => axisItem(kit, place, axes, index)),
+    button(
+      "Add axis",
+      `Add axis${place.whose}`,
+      () => addAxis(kit, place, axes, structuredClone(axes[axes.length - 1] ?? fresh())),
+      axes.length >= MOST_CHANNELS,
+    ),
+  ];
 }
 
 /** @param {Kit} kit @param {Place} place @param {any[]} axes @param {number} index */
@@ -29,26 +40,60 @@ function axisItem(kit, place, axes, index) {
   const list = `${path}.moves`;
   const name = `axis ${index}${place.whose}`;
   const kind = Object.keys(axis.mechanics)[0];
-  const head = element("div", { class: "item-head" },
-    kindSelect(`Mechanics of ${name}`, `${path}.mechanics`, kind, labels(MECHANICS), (chosen) => put(`${path}.mechanics`, { [chosen]: samples.mechanics[chosen] })),
-    ...(axes.length > 1 ? [button("To all", `Copy ${name} to all others`, () => put(place.axes, axes.map((other) => (other === axis ? axis : structuredClone(axis)))))] : []),
-    button("Copy", `Copy ${name}`, () => addAxis(kit, place, axes, structuredClone(axis)), axes.length >= MOST_CHANNELS),
-    button("✕", `Remove ${name}`, () => removeAxis(kit, place, axes, index), axes.length <= place.least));
+  const head = element(
+    "div",
+    { class: "item-head" },
+    kindSelect(`Mechanics of ${name}`, `${path}.mechanics`, kind, labels(MECHANICS), (chosen) =>
+      put(`${path}.mechanics`, { [chosen]: samples.mechanics[chosen] }),
+    ),
+    ...(axes.length > 1
+      ? [
+          button("To all", `Copy ${name} to all others`, () =>
+            put(
+              place.axes,
+              axes.map((other) => (other === axis ? axis : structuredClone(axis))),
+            ),
+          ),
+        ]
+      : []),
+    button(
+      "Copy",
+      `Copy ${name}`,
+      () => addAxis(kit, place, axes, structuredClone(axis)),
+      axes.length >= MOST_CHANNELS,
+    ),
+    button("✕", `Remove ${name}`, () => removeAxis(kit, place, axes, index), axes.length <= place.least),
+  );
   const fields = block(`${path}.mechanics.${kind}`, MECHANICS[kind]?.fields ?? []);
   const moves = axis.moves.map((/** @type {any} */ _, /** @type {number} */ i) => moveItem(kit, list, axis.moves, i));
   const last = axis.moves[axis.moves.length - 1];
-  const add = button("Add move", `Add move to ${name}`, () => put(list, [...axis.moves, structuredClone(last ?? { cosine: samples.moves.cosine })]), axis.moves.length >= MOST_MOVES);
-  return item(`Axis ${index} · channel ${index}`, path, [head, ...fields, ...motorItems(kit, path, axis, name), ...moves, add], kind);
+  const add = button(
+    "Add move",
+    `Add move to ${name}`,
+    () => put(list, [...axis.moves, structuredClone(last ?? { cosine: samples.moves.cosine })]),
+    axis.moves.length >= MOST_MOVES,
+  );
+  return item(
+    `Axis ${index} · channel ${index}`,
+    path,
+    [head, ...fields, ...motorItems(kit, path, axis, name), ...moves, add],
+    kind,
+  );
 }
 
 /** @param {Kit} kit @param {string} list @param {any[]} moves @param {number} index */
 function moveItem({ samples, put, block, item, kindSelect }, list, moves, index) {
   const path = `${list}[${index}]`;
   const kind = Object.keys(moves[index])[0];
-  const head = element("div", { class: "item-head" },
-    kindSelect(`Kind of move ${index + 1}`, path, kind, labels(MOVES), (chosen) => put(path, { [chosen]: samples.moves[chosen] })),
+  const head = element(
+    "div",
+    { class: "item-head" },
+    kindSelect(`Kind of move ${index + 1}`, path, kind, labels(MOVES), (chosen) =>
+      put(path, { [chosen]: samples.moves[chosen] }),
+    ),
     button("↑", `Move ${index + 1} earlier`, () => put(list, swapped(moves, index - 1)), index === 0),
-    button("✕", `Remove move ${index + 1}`, () => put(list, moves.toSpliced(index, 1)), moves.length === 1));
+    button("✕", `Remove move ${index + 1}`, () => put(list, moves.toSpliced(index, 1)), moves.length === 1),
+  );
   const note = element("p", { class: "item-note", "data-note": path });
   return item(`Move ${index + 1}`, path, [head, ...block(`${path}.${kind}`, MOVES[kind]?.fields ?? []), note], kind);
 }

@@ -3,11 +3,11 @@
  * as a value, or as a draft while it is no number yet.
  */
 import { button, element, flash, say } from "../dom.js";
-import { termButton } from "../help/card.js";
 import { parseNumber, si } from "../state/number.js";
+import { derivedAxis, get } from "../state/state.js";
 import { printPoints, readPoints } from "./points.js";
 import { printSegments, readSegments } from "./segments.js";
-import { derivedAxis, get } from "../state/state.js";
+import { termButton } from "./term_button.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("./field.js").Field} Field */
@@ -34,24 +34,56 @@ export function control(path, field, { dispatch, now }) {
   const hint = element("p", { class: "hint", id: `${id}-hint` }, field.hint);
   const also = element("span", { class: "also" });
   const labels = { "aria-labelledby": field.unit ? `${id}-label ${id}-unit` : `${id}-label` };
-  const described = { id, ...labels, "aria-describedby": `${id}-error ${id}-hint`, "aria-keyshortcuts": "F1", "data-path": path };
-  const long = field.kind === "lines" || field.kind === "segments" || field.kind === "points" || field.rows !== undefined;
+  const described = {
+    id,
+    ...labels,
+    "aria-describedby": `${id}-error ${id}-hint`,
+    "aria-keyshortcuts": "F1",
+    "data-path": path,
+  };
+  const long =
+    field.kind === "lines" || field.kind === "segments" || field.kind === "points" || field.rows !== undefined;
   const wide = long || field.kind === "text" || isHex(field);
-  const input = field.kind === "choice"
-    ? element("select", described, ...Object.entries(field.choices ?? {}).map(([value, text]) => element("option", { value }, text)))
-    : long ? element("textarea", { ...described, rows: String(field.rows ?? 4), spellcheck: "false" })
-      : element("input", { ...described, type: "text", spellcheck: "false" });
-  const unitSelect = field.units ? element("select", { "aria-label": `Unit of ${field.label}`, "data-path": `${path}#unit` },
-    ...Object.entries(field.units).map(([value, text]) => element("option", { value }, text))) : null;
+  const input =
+    field.kind === "choice"
+      ? element(
+          "select",
+          described,
+          ...Object.entries(field.choices ?? {}).map(([value, text]) => element("option", { value }, text)),
+        )
+      : long
+        ? element("textarea", { ...described, rows: String(field.rows ?? 4), spellcheck: "false" })
+        : element("input", { ...described, type: "text", spellcheck: "false" });
+  const unitSelect = field.units
+    ? element(
+        "select",
+        { "aria-label": `Unit of ${field.label}`, "data-path": `${path}#unit` },
+        ...Object.entries(field.units).map(([value, text]) => element("option", { value }, text)),
+      )
+    : null;
   const unit = field.unit ? element("span", { class: "unit", id: `${id}-unit` }, field.unit) : null;
-  const chooser = field.kind === "points" ? fileChooser(field.label, (text) => {
-    input.value = text;
-    input.dispatchEvent(new Event("input"));
-    input.dispatchEvent(new Event("change"));
-  }, (message) => draft(message)) : [];
+  const chooser =
+    field.kind === "points"
+      ? fileChooser(
+          field.label,
+          (text) => {
+            input.value = text;
+            input.dispatchEvent(new Event("input"));
+            input.dispatchEvent(new Event("change"));
+          },
+          (message) => draft(message),
+        )
+      : [];
   const box = element("div", { class: "box" }, input, ...(unitSelect ? [unitSelect] : unit ? [unit] : []), ...chooser);
-  const root = element("div", { class: wide ? "field wide" : "field" },
-    termButton(field.label, field.term ?? field.key, { id: `${id}-label`, tabindex: "-1" }), box, also, hint, error);
+  const root = element(
+    "div",
+    { class: wide ? "field wide" : "field" },
+    termButton(field.label, field.term ?? field.key, { id: `${id}-label`, tabindex: "-1" }),
+    box,
+    also,
+    hint,
+    error,
+  );
 
   /** @type {any} */
   let value;
@@ -158,7 +190,9 @@ function isHex({ kind }) {
 
 /** @param {any} hex */
 function spaced(hex) {
-  return String(hex).replace(/\s+/g, "").replace(/(..)(?=.)/g, "$1 ");
+  return String(hex)
+    .replace(/\s+/g, "")
+    .replace(/(..)(?=.)/g, "$1 ");
 }
 
 /** @param {string} text */
@@ -171,13 +205,25 @@ function read(text, field, state, before) {
   const clockHz = Number(state.scenario.clock_hz) || undefined;
   const unit = field.unit ?? "";
   switch (field.kind) {
-    case "choice": return { value: /^\d+$/.test(text) ? Number(text) : text };
-    case "text": return { value: text };
-    case "segments": return readSegments(text);
-    case "points": return readPoints(text);
-    case "hex": return { value: bare(text) };
-    case "optional-hex": return { value: bare(text) || null };
-    case "lines": return { value: text.split("\n").map(bare).filter((line) => line !== "") };
+    case "choice":
+      return { value: /^\d+$/.test(text) ? Number(text) : text };
+    case "text":
+      return { value: text };
+    case "segments":
+      return readSegments(text);
+    case "points":
+      return readPoints(text);
+    case "hex":
+      return { value: bare(text) };
+    case "optional-hex":
+      return { value: bare(text) || null };
+    case "lines":
+      return {
+        value: text
+          .split("\n")
+          .map(bare)
+          .filter((line) => line !== ""),
+      };
     case "optional-number":
       if (text.trim() === "") return { value: null };
       return parseNumber(text, unit);
@@ -185,9 +231,12 @@ function read(text, field, state, before) {
     case "optional-cycles":
       if (text.trim() === "") return { value: null };
       return parseNumber(text, unit, { integer: true, clockHz });
-    case "quantity": return readQuantity(text, field, before);
-    case "number": return parseNumber(text, unit === "°" || unit.includes(" ") ? "" : unit);
-    default: return parseNumber(text, unit, { integer: true, clockHz });
+    case "quantity":
+      return readQuantity(text, field, before);
+    case "number":
+      return parseNumber(text, unit === "°" || unit.includes(" ") ? "" : unit);
+    default:
+      return parseNumber(text, unit, { integer: true, clockHz });
   }
 }
 
@@ -197,7 +246,12 @@ function readQuantity(text, field, before) {
   const chosen = Object.keys(before ?? units)[0];
   const named = Object.entries(units).find(([name, printed]) => {
     const tail = text.trim().match(/[^\d.,\s+−-].*$/)?.[0] ?? "";
-    return tail === printed || tail === name || tail === printed.replace("²", "2").replace("³", "3") || tail === printed.replace("°", "deg");
+    return (
+      tail === printed ||
+      tail === name ||
+      tail === printed.replace("²", "2").replace("³", "3") ||
+      tail === printed.replace("°", "deg")
+    );
   });
   const unit = named?.[0] ?? chosen;
   const result = parseNumber(named ? text.trim().replace(/[^\d.,\s+−-].*$/, "") : text, units[chosen] ?? "");
@@ -224,10 +278,10 @@ function stepsIn(unit, path, state) {
 /** The same number in another light: cycles as a time. @param {any} value @param {Field} field @param {State} state */
 function meaning(value, field, state) {
   const clock = get(state.scenario, "clock_hz");
-  if (field.kind.endsWith("cycles") && Number.isFinite(value) && value !== null && clock > 0) return `= ${si(value / clock, "s")}`;
+  if (field.kind.endsWith("cycles") && Number.isFinite(value) && value !== null && clock > 0)
+    return `= ${si(value / clock, "s")}`;
   if (field.key === "clock_hz" && value > 0) return `one cycle = ${si(1 / value, "s")}`;
   if (field.key === "microsteps" || typeof value !== "number") return "";
   if (field.key === "timer_hz" || field.key === "baud") return value >= 10000 ? `= ${si(value, field.unit ?? "")}` : "";
   return "";
 }
-

@@ -1,8 +1,8 @@
 /** Further controllers on the line, in the form: each with its address, its bus and what it is to do. */
 import { button, element } from "../dom.js";
-import { CONTROLLER } from "./fields.js";
-import { SOURCES, hex } from "./sources.js";
 import { MOST_FURTHER } from "../state/state.js";
+import { CONTROLLER } from "./fields.js";
+import { hex, SOURCES } from "./sources.js";
 
 /** @typedef {import("../state/types.js").Scenario} Scenario */
 /** @typedef {import("./kit.js").Kit} Kit */
@@ -13,8 +13,11 @@ export function controllerItems(kit, scenario) {
   /** @type {any[]} */
   const all = scenario.controllers;
   const add = (/** @type {any} */ like) => put("", withAnother(now().scenario, like, samples));
-  return [errorOf("controllers"), ...all.map((_, index) => controllerPart(kit, scenario, index, add)),
-    button("Add controller", "Add controller", () => add(all[all.length - 1] ?? null), all.length >= MOST_FURTHER)];
+  return [
+    errorOf("controllers"),
+    ...all.map((_, index) => controllerPart(kit, scenario, index, add)),
+    button("Add controller", "Add controller", () => add(all[all.length - 1] ?? null), all.length >= MOST_FURTHER),
+  ];
 }
 
 /** @param {Kit} kit @param {Scenario} scenario @param {number} index @param {(like: any) => void} add */
@@ -23,13 +26,20 @@ function controllerPart({ put, block, part, errorOf, ...kit }, scenario, index, 
   const path = `controllers[${index}]`;
   const name = `Controller ${index + 2}`;
   const kind = Object.keys(scenario.source)[0];
-  const head = element("div", { class: "item-head end" },
+  const head = element(
+    "div",
+    { class: "item-head end" },
     button("Copy", `Copy ${name.toLowerCase()}`, () => add(all[index]), all.length >= MOST_FURTHER),
-    button("✕", `Remove ${name.toLowerCase()}`, () => put("controllers", all.toSpliced(index, 1))));
-  return part(name, true, [errorOf(path), head,
-    ...block(path, CONTROLLER.own), ...block(`${path}.bus`, CONTROLLER.bus),
+    button("✕", `Remove ${name.toLowerCase()}`, () => put("controllers", all.toSpliced(index, 1))),
+  );
+  return part(name, true, [
+    errorOf(path),
+    head,
+    ...block(path, CONTROLLER.own),
+    ...block(`${path}.bus`, CONTROLLER.bus),
     part(`Pulses and queue of controller ${index + 2}`, false, block(`${path}.bus`, CONTROLLER.folded)),
-    ...SOURCES[kind].orderForm({ put, block, part, errorOf, ...kit }, index)]);
+    ...SOURCES[kind].orderForm({ put, block, part, errorOf, ...kit }, index),
+  ]);
 }
 
 /**
@@ -37,12 +47,13 @@ function controllerPart({ put, block, part, errorOf, ...kit }, scenario, index, 
  * needs an address then, too.
  * @param {Scenario} scenario @param {any} like @param {import("./kit.js").Samples} samples
  */
-export function withAnother(scenario, like, samples) {
+function withAnother(scenario, like, samples) {
   const { line, source } = scenario;
   const addressed = line.protocol === "raw" && line.address === null ? withAddress(scenario, 0) : scenario;
   const taken = [line.address ?? 0, ...scenario.controllers.map((/** @type {any} */ controller) => controller.address)];
-  const address = Array.from({ length: 255 }, (_, i) => i).find((i) => i > taken[0] && !taken.includes(i))
-    ?? Array.from({ length: 255 }, (_, i) => i).find((i) => !taken.includes(i));
+  const address =
+    Array.from({ length: 255 }, (_, i) => i).find((i) => i > taken[0] && !taken.includes(i)) ??
+    Array.from({ length: 255 }, (_, i) => i).find((i) => !taken.includes(i));
   const first = { ...samples.controller, bus: scenario.bus, axes: source.motion?.axes ?? [] };
   const made = { ...structuredClone(like ?? first), address };
   const kind = Object.keys(source)[0];
@@ -53,6 +64,8 @@ export function withAnother(scenario, like, samples) {
 /** The first controller gets an address, and its packets begin with it. @param {Scenario} scenario @param {number} address */
 function withAddress(scenario, address) {
   const { packets } = scenario.source;
-  const source = packets ? { packets: { ...packets, packets: packets.packets.map((/** @type {string} */ packet) => hex(address) + packet) } } : scenario.source;
+  const source = packets
+    ? { packets: { ...packets, packets: packets.packets.map((/** @type {string} */ packet) => hex(address) + packet) } }
+    : scenario.source;
   return { ...scenario, line: { ...scenario.line, address }, source };
 }

@@ -1,19 +1,31 @@
 /** The driver that the pulses are checked against, in the form: none, one whose data sheet is known, or rules. */
 import { element } from "../dom.js";
-import { RULE_FIELDS } from "./fields.js";
 import { si } from "../state/number.js";
-import { RULES } from "../views/rules.js";
+import { RULES } from "../state/rules.js";
+import { RULE_FIELDS } from "./fields.js";
 
 /** @typedef {import("../state/types.js").DriverSheet} DriverSheet */
 
 /** @param {import("./kit.js").Kit} kit @param {import("../state/types.js").Scenario} scenario @param {DriverSheet[]} sheets @returns {Node[]} */
 export function driverItems(kit, { driver }, sheets) {
   const known = sheets.find(({ id }) => id === driver?.preset);
-  const kinds = { none: "not checked", ...Object.fromEntries(sheets.map(({ id, name }) => [id, name])), rules: "rules of your own" };
-  const chosen = driver?.rules ? "rules" : driver?.preset ?? "none";
-  const select = kit.kindSelect("Driver", "driver", chosen, kinds, (kind) => kit.put("driver", kind === "none" ? null
-    // Rules of one's own begin with those of the driver that was chosen.
-    : kind === "rules" ? { rules: { ...kit.samples.rules, ...known?.rules } } : { preset: kind }));
+  const kinds = {
+    none: "not checked",
+    ...Object.fromEntries(sheets.map(({ id, name }) => [id, name])),
+    rules: "rules of your own",
+  };
+  const chosen = driver?.rules ? "rules" : (driver?.preset ?? "none");
+  const select = kit.kindSelect("Driver", "driver", chosen, kinds, (kind) =>
+    kit.put(
+      "driver",
+      kind === "none"
+        ? null
+        : // Rules of one's own begin with those of the driver that was chosen.
+          kind === "rules"
+          ? { rules: { ...kit.samples.rules, ...known?.rules } }
+          : { preset: kind },
+    ),
+  );
   const head = [kit.errorOf("driver"), element("div", { class: "item-head" }, select)];
   if (driver?.rules) return [...head, ...kit.block("driver.rules", RULE_FIELDS)];
   return known ? [...head, element("p", { class: "item-note" }, summary(known))] : head;

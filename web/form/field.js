@@ -30,7 +30,13 @@ export const number = (key, label, unit, hint) => ({ key, label, unit, hint, kin
 /** @param {string} key @param {string} label @param {string} unit @param {string} hint @returns {Field} */
 export const integer = (key, label, unit, hint) => ({ key, label, unit, hint, kind: "integer" });
 /** @param {string} key @param {string} label @param {string} hint @returns {Field} */
-export const cycles = (key, label, hint) => ({ key, label, unit: "cycles", hint: `${hint} A time such as 2.5 us is taken too.`, kind: "cycles" });
+export const cycles = (key, label, hint) => ({
+  key,
+  label,
+  unit: "cycles",
+  hint: `${hint} A time such as 2.5 us is taken too.`,
+  kind: "cycles",
+});
 /** @param {string} key @param {string} label @param {{[unit: string]: string}} units @param {string} hint @returns {Field} */
 export const quantity = (key, label, units, hint) => ({ key, label, units, hint, kind: "quantity" });
 /** @param {string} key @param {string} label @param {{[value: string]: string}} choices @param {string} hint @returns {Field} */

@@ -2,16 +2,17 @@
  * The form: built from the tables of `fields.js` and `sources.js`. It is built anew only when the scenario's shape
  * changes (kinds, numbers of axes, moves, rows, controllers); else values are put into the fields that stand.
  */
-import { controllerItems } from "./controllers.js";
+
 import { element, fill } from "../dom.js";
+import { get, held } from "../state/state.js";
+import { controllerItems } from "./controllers.js";
 import { driverItems } from "./driver.js";
 import { GLITCH, OF_SEGMENTS, SECTIONS } from "./fields.js";
 import { showAbout, showDerived, showProblems } from "./judgement.js";
 import { createKit, labels } from "./kit.js";
 import { showRemedy } from "./remedies.js";
 import { SOURCE_TERMS } from "./source_terms.js";
-import { SOURCES, runsAlone, withSource } from "./sources.js";
-import { get, held } from "../state/state.js";
+import { runsAlone, SOURCES, withSource } from "./sources.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Scenario} Scenario */
@@ -29,15 +30,29 @@ export function createForm({ root, samples, drivers, dispatch }) {
   /** @param {Scenario} scenario @returns {Node[]} */
   function source(scenario) {
     const kind = Object.keys(scenario.source)[0];
-    const select = kit.kindSelect("What the host sends", "source", kind, labels(SOURCES), (chosen) => kit.put("", withSource(state.scenario, chosen, samples)));
-    return [kit.errorOf("source"), element("div", { class: "item-head" }, select),
-      element("p", { class: "item-note" }, SOURCE_TERMS[SOURCES[kind].term].text), ...SOURCES[kind].form(kit, scenario)];
+    const select = kit.kindSelect("What the host sends", "source", kind, labels(SOURCES), (chosen) =>
+      kit.put("", withSource(state.scenario, chosen, samples)),
+    );
+    return [
+      kit.errorOf("source"),
+      element("div", { class: "item-head" }, select),
+      element("p", { class: "item-note" }, SOURCE_TERMS[SOURCES[kind].term].text),
+      ...SOURCES[kind].form(kit, scenario),
+    ];
   }
 
   /** Lists whose length changes, by the name that a section gives them. @type {{[list: string]: (scenario: Scenario) => Node[]}} */
   const LISTS = {
-    glitches: (scenario) => kit.rows("line.glitches", scenario.line.glitches, GLITCH, "Glitch",
-      (last) => (last ? { ...last, start_cycle: last.start_cycle + 2 * last.length_cycles } : structuredClone(samples.glitch)), "glitches_ppm"),
+    glitches: (scenario) =>
+      kit.rows(
+        "line.glitches",
+        scenario.line.glitches,
+        GLITCH,
+        "Glitch",
+        (last) =>
+          last ? { ...last, start_cycle: last.start_cycle + 2 * last.length_cycles } : structuredClone(samples.glitch),
+        "glitches_ppm",
+      ),
     controllers: (scenario) => controllerItems(kit, scenario),
     driver: (scenario) => driverItems(kit, scenario, drivers),
   };
@@ -45,13 +60,17 @@ export function createForm({ root, samples, drivers, dispatch }) {
   /** Where the focus is, to find it again in the form built anew: a field by its path, a button by what it does. @param {HTMLElement} active */
   function focusOf(active) {
     const { path } = active.dataset;
-    const selector = path ? `[data-path="${CSS.escape(path)}"]` : `button[aria-label="${CSS.escape(active.getAttribute("aria-label") ?? "")}"]`;
+    const selector = path
+      ? `[data-path="${CSS.escape(path)}"]`
+      : `button[aria-label="${CSS.escape(active.getAttribute("aria-label") ?? "")}"]`;
     return { selector, nth: [...root.querySelectorAll(selector)].indexOf(active), place: reachable().indexOf(active) };
   }
 
   /** What the focus can go to, in the order of the form. @returns {HTMLElement[]} */
   function reachable() {
-    return [...root.querySelectorAll("button:enabled, input:enabled, select:enabled, textarea:enabled, summary")].map((each) => /** @type {HTMLElement} */ (each));
+    return [...root.querySelectorAll("button:enabled, input:enabled, select:enabled, textarea:enabled, summary")].map(
+      (each) => /** @type {HTMLElement} */ (each),
+    );
   }
 
   /** @param {Scenario} scenario */
@@ -61,11 +80,15 @@ export function createForm({ root, samples, drivers, dispatch }) {
     const focus = active && root.contains(active) ? focusOf(active) : null;
     const alone = runsAlone(scenario);
     const asked = SECTIONS.filter(({ onLine }) => !(onLine && alone) || scenario.controllers.length > 0);
-    const sections = asked.map(({ title, open, blocks, group, list }) => kit.part(title, open, [
-      ...blocks.flatMap(({ path, fields }) => kit.block(path, path === "bus" && alone ? fields.filter(({ key }) => OF_SEGMENTS.includes(key)) : fields)),
-      ...(group ? [kit.part(group.title, used(get(scenario, group.path)), kit.block(group.path, group.fields))] : []),
-      ...(list ? LISTS[list](scenario) : []),
-    ]));
+    const sections = asked.map(({ title, open, blocks, group, list }) =>
+      kit.part(title, open, [
+        ...blocks.flatMap(({ path, fields }) =>
+          kit.block(path, path === "bus" && alone ? fields.filter(({ key }) => OF_SEGMENTS.includes(key)) : fields),
+        ),
+        ...(group ? [kit.part(group.title, used(get(scenario, group.path)), kit.block(group.path, group.fields))] : []),
+        ...(list ? LISTS[list](scenario) : []),
+      ]),
+    );
     fill(root, kit.part("Source", true, source(scenario)), ...sections);
     if (!focus) return;
     const again = /** @type {HTMLElement | undefined} */ (root.querySelectorAll(focus.selector)[focus.nth]);
@@ -88,15 +111,25 @@ export function createForm({ root, samples, drivers, dispatch }) {
     }
     if (before?.scenario !== next.scenario) showAbout(next);
     // Another experiment begins with what it is about.
-    if (before && before.origin !== next.origin && next.origin !== "own") /** @type {Element} */ (root.closest(".sheet")).scrollTop = 0;
+    if (before && before.origin !== next.origin && next.origin !== "own")
+      /** @type {Element} */ (root.closest(".sheet")).scrollTop = 0;
     const judged = held(next) !== "unjudged";
     if (judged && (before?.judgement !== next.judgement || before?.drafts !== next.drafts)) {
       showProblems(next, kit.controls, kit.groups);
     }
-    if (before?.result !== next.result || before?.judgement !== next.judgement || before?.scenario !== next.scenario || before?.drafts !== next.drafts) {
+    if (
+      before?.result !== next.result ||
+      before?.judgement !== next.judgement ||
+      before?.scenario !== next.scenario ||
+      before?.drafts !== next.drafts
+    ) {
       showRemedy(next, drivers, (scenario) => kit.put("", scenario));
     }
-    if (judged && (before?.judgement !== next.judgement || before?.drafts !== next.drafts || before?.result !== next.result)) showDerived(next, root);
+    if (
+      judged &&
+      (before?.judgement !== next.judgement || before?.drafts !== next.drafts || before?.result !== next.result)
+    )
+      showDerived(next, root);
   }
 
   return { render };
@@ -109,8 +142,20 @@ function used(group) {
 
 /** What decides which fields there are; values do not. @param {Scenario} scenario */
 function shapeOf({ source, controllers, driver, line }) {
-  const kinds = (/** @type {any[]} */ axes) => axes.map((axis) =>
-    [Object.keys(axis.mechanics)[0], Boolean(axis.motor), ...axis.moves.map((/** @type {any} */ move) => Object.keys(move)[0])]);
-  return JSON.stringify([Object.keys(source)[0], runsAlone({ source }), kinds(source.motion?.axes ?? []), source.line?.sends?.length, source.segments?.channels?.length, line.glitches.length,
-    controllers.map((/** @type {any} */ { axes }) => kinds(axes)), driver && (driver.preset ?? "rules")]);
+  const kinds = (/** @type {any[]} */ axes) =>
+    axes.map((axis) => [
+      Object.keys(axis.mechanics)[0],
+      Boolean(axis.motor),
+      ...axis.moves.map((/** @type {any} */ move) => Object.keys(move)[0]),
+    ]);
+  return JSON.stringify([
+    Object.keys(source)[0],
+    runsAlone({ source }),
+    kinds(source.motion?.axes ?? []),
+    source.line?.sends?.length,
+    source.segments?.channels?.length,
+    line.glitches.length,
+    controllers.map((/** @type {any} */ { axes }) => kinds(axes)),
+    driver && (driver.preset ?? "rules"),
+  ]);
 }

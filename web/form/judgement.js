@@ -1,9 +1,9 @@
 /** Shows what the core says about the scenario: problems beside their fields, and what follows from it. */
 import { button, byId, element, fill, flash, say } from "../dom.js";
-import { termButton } from "../help/card.js";
 import { count, counted, plain, pretty, short, si } from "../state/number.js";
 import { derivedAxis, get } from "../state/state.js";
 import { runsAlone } from "./sources.js";
+import { termButton } from "./term_button.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("./control.js").Control} Control */
@@ -13,7 +13,9 @@ export function showProblems(state, controls, groups) {
   const problems = [
     ...Object.entries(state.drafts).map(([path, { message }]) => ({ path, message })),
     // What the core says of a field that holds no number is about the value before.
-    ...(state.judgement?.problems ?? []).filter(({ path }) => !Object.keys(state.drafts).some((at) => within(path, at) || within(at, path))),
+    ...(state.judgement?.problems ?? []).filter(
+      ({ path }) => !Object.keys(state.drafts).some((at) => within(path, at) || within(at, path)),
+    ),
   ].map(({ path, message }) => ({ path, message: pretty(message) }));
   /** @type {Map<string, string>} */
   const atField = new Map();
@@ -36,17 +38,25 @@ export function showProblems(state, controls, groups) {
   const list = byId("problems");
   list.hidden = problems.length === 0;
   const beside = problems.length - others.length;
-  say(/** @type {Element} */ (list.querySelector("h2")), problems.length === 0 ? "" : state.result
-    ? "Not run: the views show the last good result." : "Not run.");
+  say(
+    /** @type {Element} */ (list.querySelector("h2")),
+    problems.length === 0 ? "" : state.result ? "Not run: the views show the last good result." : "Not run.",
+  );
   const items = others.map(({ path, message }) => element("li", {}, path ? `${path}: ${message}` : message));
   const first = atField.keys().next().value;
   const firstGroup = groups.get(atGroup.keys().next().value ?? "");
   if (beside > 0) {
     const text = beside === 1 ? "One field needs another value" : `${beside} fields need other values`;
-    items.unshift(element("li", {}, button(text, text, () => {
-      if (first !== undefined) controls.get(first)?.focus();
-      else firstGroup?.scrollIntoView({ block: "center" });
-    })));
+    items.unshift(
+      element(
+        "li",
+        {},
+        button(text, text, () => {
+          if (first !== undefined) controls.get(first)?.focus();
+          else firstGroup?.scrollIntoView({ block: "center" });
+        }),
+      ),
+    );
   }
   fill(/** @type {Element} */ (list.querySelector("ul")), ...items);
 }
@@ -96,8 +106,16 @@ export function showDerived(state, form) {
   const rows = state.derived ? rowsOf(state, state.derived) : [];
   const terms = [...root.querySelectorAll("dt")];
   if (rows.length !== terms.length || rows.some(([name], index) => terms[index].textContent !== name)) {
-    fill(root, element("dl", {}, ...rows.map(([name, value, mark, term]) =>
-      element("div", {}, element("dt", {}, termButton(name, term)), element("dd", { class: mark }, value)))));
+    fill(
+      root,
+      element(
+        "dl",
+        {},
+        ...rows.map(([name, value, mark, term]) =>
+          element("div", {}, element("dt", {}, termButton(name, term)), element("dd", { class: mark }, value)),
+        ),
+      ),
+    );
   } else {
     for (const [index, value] of [...root.querySelectorAll("dd")].entries()) {
       const [, text, mark] = rows[index];
@@ -109,7 +127,8 @@ export function showDerived(state, form) {
   }
   for (const note of /** @type {NodeListOf<HTMLElement>} */ (form.querySelectorAll("[data-note]"))) {
     const { text, warning } = moveNote(note.dataset.note ?? "", state);
-    if (note.textContent !== text + warning) fill(note, text, ...(warning ? [element("strong", { class: "short" }, warning)] : []));
+    if (note.textContent !== text + warning)
+      fill(note, text, ...(warning ? [element("strong", { class: "short" }, warning)] : []));
   }
 }
 
@@ -125,16 +144,42 @@ function rowsOf(state, derived) {
   const { source, line } = state.scenario;
   const sends = "line" in source;
   const alone = runsAlone(state.scenario);
-  const over = !alone && derived.controllers.some((controller) => controller.axes.some((axis) => axis.peak_speed_steps_s > controller.limit_steps_s));
+  const over =
+    !alone &&
+    derived.controllers.some((controller) =>
+      controller.axes.some((axis) => axis.peak_speed_steps_s > controller.limit_steps_s),
+    );
   return [
     // When the last tick of packets or of a line script begins and ends, and what becomes of it on a line that goes wrong, is known only after the run.
-    [line.protocol === "framed" && !alone && !sends ? "Duration, about" : sends || "packets" in source || (!alone && !isQuiet(line)) ? "Duration at most" : "Duration", si(derived.duration_s, "s"), "", "duration"],
+    [
+      line.protocol === "framed" && !alone && !sends
+        ? "Duration, about"
+        : sends || "packets" in source || (!alone && !isQuiet(line))
+          ? "Duration at most"
+          : "Duration",
+      si(derived.duration_s, "s"),
+      "",
+      "duration",
+    ],
     ["Peak rate", axes.length ? plain(peak, "steps/s") : "–", over ? "over" : "", "peak_rate"],
-    ...(alone ? [/** @type {[string, string, string, string]} */ (["On the line", "nothing", "", "on_the_line"])] : /** @type {[string, string, string, string][]} */ ([
-      [several ? "Tick of controller 1" : "Tick", sends ? si(tick_s, "s") : `${si(tick_s, "s")}, ${count(ticks)} in all`, "", "tick"],
-      [several ? "Limit of its bus" : "Limit of the bus", plain(limit_steps_s, "steps/s"), "", "limit"],
-      sent(state, derived),
-      ["Line load", load === null ? "–" : `${short(load * 100, 3)} %`, load !== null && load > 1 ? "over" : "", "line_load"]])),
+    ...(alone
+      ? [/** @type {[string, string, string, string]} */ (["On the line", "nothing", "", "on_the_line"])]
+      : /** @type {[string, string, string, string][]} */ ([
+          [
+            several ? "Tick of controller 1" : "Tick",
+            sends ? si(tick_s, "s") : `${si(tick_s, "s")}, ${count(ticks)} in all`,
+            "",
+            "tick",
+          ],
+          [several ? "Limit of its bus" : "Limit of the bus", plain(limit_steps_s, "steps/s"), "", "limit"],
+          sent(state, derived),
+          [
+            "Line load",
+            load === null ? "–" : `${short(load * 100, 3)} %`,
+            load !== null && load > 1 ? "over" : "",
+            "line_load",
+          ],
+        ])),
   ];
 }
 
@@ -149,7 +194,8 @@ function sent({ scenario: { source, line }, result, revision }, { sends, line_lo
   // How many are repeated on a noisy line only the run tells; a controller that dies is asked everything again.
   const ran = result?.revision === revision ? result.summary.host : null;
   const most = line.noise.deaths_ppm > 0 ? "after the run" : `at most ${count(sends)}`;
-  if (line.protocol === "framed") return ["Frames", ran ? count(ran.frames) : isQuiet(line) ? count(sends) : most, "", "frame"];
+  if (line.protocol === "framed")
+    return ["Frames", ran ? count(ran.frames) : isQuiet(line) ? count(sends) : most, "", "frame"];
   const busy = controllers.filter(({ ticks }) => ticks > 0).length;
   return ["Packets", line_load === null ? "–" : plain(busy / controllers[0].tick_s, "/s"), "", "rate_of_packets"];
 }
@@ -162,7 +208,9 @@ function moveNote(path, state) {
   const [kind] = Object.keys(get(state.scenario, path) ?? {});
   const steps = move.steps === 0 && kind?.startsWith("sine") ? "back at the start" : counted(move.steps, "step");
   return {
-    text: [`${si(move.start_s, "s")} to ${si(move.start_s + move.duration_s, "s")}`, steps, pretty(move.detail ?? "")].filter(Boolean).join(" · "),
+    text: [`${si(move.start_s, "s")} to ${si(move.start_s + move.duration_s, "s")}`, steps, pretty(move.detail ?? "")]
+      .filter(Boolean)
+      .join(" · "),
     warning: move.warning && ` ⚠ Motor: ${pretty(move.warning)}.`,
   };
 }

@@ -1,7 +1,8 @@
 /** What the parts of the form are built with: fields, folded parts, fieldsets, lists and choices of kinds. */
-import { control } from "./control.js";
+
 import { button, element } from "../dom.js";
-import { termButton } from "../help/card.js";
+import { control } from "./control.js";
+import { termButton } from "./term_button.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("./field.js").Field} Field */
@@ -43,7 +44,12 @@ export function createKit({ samples, now, dispatch }) {
 
   /** What can be folded away. @param {string} title @param {boolean} isOpen @param {Node[]} children */
   function part(title, isOpen, children) {
-    const details = element("details", { class: "part" }, element("summary", {}, title), element("div", { class: "part-body" }, ...children));
+    const details = element(
+      "details",
+      { class: "part" },
+      element("summary", {}, title),
+      element("div", { class: "part-body" }, ...children),
+    );
     details.open = open.get(title) ?? isOpen;
     details.addEventListener("toggle", () => open.set(title, details.open));
     return details;
@@ -51,7 +57,13 @@ export function createKit({ samples, now, dispatch }) {
 
   /** A fieldset that can be moved out. @param {string} legend @param {string} path @param {Node[]} children @param {string} term  What explains it. */
   function item(legend, path, children, term) {
-    return element("fieldset", { class: "item" }, element("legend", {}, termButton(legend, term, { tabindex: "-1" })), errorOf(path), element("div", { class: "item-body" }, ...children));
+    return element(
+      "fieldset",
+      { class: "item" },
+      element("legend", {}, termButton(legend, term, { tabindex: "-1" })),
+      errorOf(path),
+      element("div", { class: "item-body" }, ...children),
+    );
   }
 
   /** A choice of kinds. @param {string} label @param {string} path @param {string} kind @param {{[kind: string]: string}} kinds @param {(kind: string) => void} choose */
@@ -65,11 +77,23 @@ export function createKit({ samples, now, dispatch }) {
 
   /** A list of equal rows. @param {string} path @param {any[]} values @param {Field[]} fields @param {string} name @param {(last: any) => any} fresh  The row after another, or the first. @param {string} term */
   function rows(path, values, fields, name, fresh, term) {
-    const items = values.map((_, index) => item(`${name} ${index + 1}`, `${path}[${index}]`, [
-      ...block(`${path}[${index}]`, fields),
-      button("Remove", `Remove ${name.toLowerCase()} ${index + 1}`, () => put(path, values.toSpliced(index, 1))),
-    ], term));
-    return [...items, button(`Add ${name.toLowerCase()}`, `Add ${name.toLowerCase()}`, () => put(path, [...values, fresh(values[values.length - 1])]))];
+    const items = values.map((_, index) =>
+      item(
+        `${name} ${index + 1}`,
+        `${path}[${index}]`,
+        [
+          ...block(`${path}[${index}]`, fields),
+          button("Remove", `Remove ${name.toLowerCase()} ${index + 1}`, () => put(path, values.toSpliced(index, 1))),
+        ],
+        term,
+      ),
+    );
+    return [
+      ...items,
+      button(`Add ${name.toLowerCase()}`, `Add ${name.toLowerCase()}`, () =>
+        put(path, [...values, fresh(values[values.length - 1])]),
+      ),
+    ];
   }
 
   /** Begins anew. */

@@ -13,10 +13,22 @@ const FIELDS = [
   number("holding_torque_mn_m", "Holding torque", "mN·m", "Both phases at the rated current, 0.001 to 10⁶."),
   number("rotor_inertia_g_cm2", "Rotor inertia", "g·cm²", "0 to 10⁹."),
   number("supply_v", "Supply", "V", "Of the driver, 0.1 to 1000. The document gives none."),
-  { key: "peak_current_a", label: "Peak current", unit: "A", kind: "optional-number", hint: "That the driver regulates, up to 1.41 × the rated; empty for the rated current." },
+  {
+    key: "peak_current_a",
+    label: "Peak current",
+    unit: "A",
+    kind: "optional-number",
+    hint: "That the driver regulates, up to 1.41 × the rated; empty for the rated current.",
+  },
   number("load_inertia_g_cm2", "Load inertia", "g·cm²", `What turns with the rotor, ${SHAFT} 10⁹.`),
   number("load_torque_mn_m", "Load torque", "mN·m", `What opposes the motion, ${SHAFT} 10⁶.`),
-  { key: "working_rate_hz", label: "Working rate", unit: "steps/s", kind: "optional-number", hint: "Highest rate at which the motor is known to work, 1 to 10⁷; empty where only the torque limits it." },
+  {
+    key: "working_rate_hz",
+    label: "Working rate",
+    unit: "steps/s",
+    kind: "optional-number",
+    hint: "Highest rate at which the motor is known to work, 1 to 10⁷; empty where only the torque limits it.",
+  },
 ];
 
 /** @param {import("./kit.js").Kit} kit @param {string} path  The axis'. @param {any} axis @param {string} name @returns {Node[]} */

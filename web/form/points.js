@@ -18,7 +18,9 @@ export function readPoints(text) {
   const lines = text.replace(/^\ufeff/, "").split(/\r\n|\r|\n/);
   const first = lines.find((line) => line.trim() !== "") ?? "";
   const mark = [";", "\t", ","].find((mark) => first.includes(mark)) ?? /\s+/;
-  const rows = lines.map((line) => line.trim()).map((line) => (line === "" ? [] : line.split(mark).map((cell) => bare(cell, mark))));
+  const rows = lines
+    .map((line) => line.trim())
+    .map((line) => (line === "" ? [] : line.split(mark).map((cell) => bare(cell, mark))));
   /** @type {Point[]} */
   const value = [];
   let [time, position] = [0, 1];
@@ -33,7 +35,10 @@ export function readPoints(text) {
       continue;
     }
     const point = [numberIn(cells[time] ?? ""), numberIn(cells[position] ?? "")];
-    if (point[0] === null || point[1] === null) return { message: `Line ${index + 1}: “${lines[index].trim().slice(0, 40)}” is no point; give its time in s and its position, such as 0.25, 12.5.` };
+    if (point[0] === null || point[1] === null)
+      return {
+        message: `Line ${index + 1}: “${lines[index].trim().slice(0, 40)}” is no point; give its time in s and its position, such as 0.25, 12.5.`,
+      };
     value.push([point[0], point[1]]);
     if (value.length > MOST) return { message: `Line ${index + 1}: more than ${MOST} points; give fewer.` };
   }
@@ -42,7 +47,11 @@ export function readPoints(text) {
 
 /** A cell without quotes; beside semicolons and tabs a number may have a decimal comma. @param {string} cell @param {string | RegExp} mark */
 function bare(cell, mark) {
-  const text = cell.trim().replace(/^"(.*)"$/, "$1").trim().replace("−", "-");
+  const text = cell
+    .trim()
+    .replace(/^"(.*)"$/, "$1")
+    .trim()
+    .replace("−", "-");
   return mark === "," ? text : text.replace(",", ".");
 }
 

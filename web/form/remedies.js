@@ -2,7 +2,7 @@
  * What went wrong in a run and can be put right at once: what it is, why, and a button that changes the numbers, as
  * one step of the history. One function a cause.
  */
-import { button, byId, fill, element } from "../dom.js";
+import { button, byId, element, fill } from "../dom.js";
 import { count, si } from "../state/number.js";
 import { isStale, set } from "../state/state.js";
 import { runsAlone } from "./sources.js";
@@ -16,11 +16,17 @@ import { runsAlone } from "./sources.js";
 export function showRemedy(state, sheets, apply) {
   const root = byId("remedy");
   const fresh = state.result !== null && !isStale(state) && state.judged === state.revision;
-  const remedy = fresh ? timing(state, sheets) ?? lost(state) : null;
+  const remedy = fresh ? (timing(state, sheets) ?? lost(state)) : null;
   root.hidden = remedy === null;
   if (!remedy) return fill(root);
-  fill(root, element("h2", {}, remedy.wrong), element("p", {}, remedy.why),
-    button("Fix it", `Fix it: ${remedy.change}`, () => apply(remedy.scenario)), " ", element("span", { class: "range" }, remedy.change));
+  fill(
+    root,
+    element("h2", {}, remedy.wrong),
+    element("p", {}, remedy.why),
+    button("Fix it", `Fix it: ${remedy.change}`, () => apply(remedy.scenario)),
+    " ",
+    element("span", { class: "range" }, remedy.change),
+  );
 }
 
 /** A driver that cannot follow the pulses: they get the times that its sheet asks for. @param {State} state @param {DriverSheet[]} sheets @returns {Remedy | null} */
@@ -42,14 +48,17 @@ function timing({ scenario, result }, sheets) {
       if (needed <= bus[key]) continue;
       mended = set(mended, `${path}.${key}`, needed);
       changes.push(`${name} ${count(needed)} cycles${controllers.length ? ` on controller ${index + 1}` : ""}`);
-      wrongs.push(`${name} is ${si(bus[key] / clock, "s")}, ${count(needed)} cycles (${si(needed / clock, "s")}) would do`);
+      wrongs.push(
+        `${name} is ${si(bus[key] / clock, "s")}, ${count(needed)} cycles (${si(needed / clock, "s")}) would do`,
+      );
     }
   }
   if (changes.length === 0) return null;
   return {
     wrong: "The driver cannot follow these pulses",
     why: `${sheet?.name ?? "The driver"}: ${[...new Set(wrongs)].join("; ")}. A pulse that is too short may be overlooked, and one that comes too soon after DIR may step the old way.`,
-    change: changes.join(", "), scenario: mended,
+    change: changes.join(", "),
+    scenario: mended,
   };
 }
 
@@ -58,29 +67,46 @@ function wantedOf(bus, least, alone) {
   const width = Math.max(bus.pulse_width_cycles, least("step_high"));
   const setup = Math.max(bus.dir_setup_cycles, least("dir_setup"));
   const hold = Math.max(bus.dir_hold_cycles, least("dir_hold") - width);
-  const times = { pulse_width_cycles: ["STEP high", width], dir_setup_cycles: ["DIR set-up", setup], dir_hold_cycles: ["DIR hold", hold] };
+  const times = {
+    pulse_width_cycles: ["STEP high", width],
+    dir_setup_cycles: ["DIR set-up", setup],
+    dir_hold_cycles: ["DIR hold", hold],
+  };
   if (alone) return /** @type {any} */ (times);
   // The rules of the contract that join the times of a slot.
   const pulse = width + Math.max(setup + hold, 1);
   const inSlot = bus.pulses === "staggered" ? bus.channels : bus.dir_line === "common" ? 2 : 1;
   const slot = Math.max(bus.step_period_cycles, pulse * inSlot, width + least("step_low"));
-  return /** @type {any} */ ({ ...times, step_period_cycles: ["Slot", slot], boot_cycles: ["Self-test", Math.max(bus.boot_cycles, least("enable_wake"))] });
+  return /** @type {any} */ ({
+    ...times,
+    step_period_cycles: ["Slot", slot],
+    boot_cycles: ["Self-test", Math.max(bus.boot_cycles, least("enable_wake"))],
+  });
 }
 
 /** Raw packets on a line that goes wrong: frames are checked and repeated. @param {State} state @returns {Remedy | null} */
 function lost({ scenario, derived, result }) {
   const { line, source, run_cycles } = scenario;
-  const disturbed = line.glitches.length > 0 || Object.entries(line.noise).some(([key, value]) => key !== "seed" && value !== 0);
-  if (line.protocol !== "raw" || !source.motion || runsAlone(scenario) || run_cycles !== null || !disturbed) return null;
+  const disturbed =
+    line.glitches.length > 0 || Object.entries(line.noise).some(([key, value]) => key !== "seed" && value !== 0);
+  if (line.protocol !== "raw" || !source.motion || runsAlone(scenario) || run_cycles !== null || !disturbed)
+    return null;
   const several = scenario.controllers.length > 0;
-  const missed = (derived?.controllers ?? []).flatMap(({ axes }, controller) => axes.flatMap(({ steps }, axis) => {
-    const ended = result?.summary.controllers[controller]?.positions[axis];
-    return ended === undefined || ended === steps ? [] : [`axis ${axis}${several ? ` of controller ${controller + 1}` : ""} ended at step ${count(ended)}, not ${count(steps)}`];
-  }));
+  const missed = (derived?.controllers ?? []).flatMap(({ axes }, controller) =>
+    axes.flatMap(({ steps }, axis) => {
+      const ended = result?.summary.controllers[controller]?.positions[axis];
+      return ended === undefined || ended === steps
+        ? []
+        : [
+            `axis ${axis}${several ? ` of controller ${controller + 1}` : ""} ended at step ${count(ended)}, not ${count(steps)}`,
+          ];
+    }),
+  );
   if (missed.length === 0) return null;
   return {
     wrong: "Steps were lost on the line",
     why: `${missed[0][0].toUpperCase()}${missed.join("; ").slice(1)}. Raw packets carry no check and are never sent again: what the line does to them moves the motors, or is missing.`,
-    change: "Protocol framed", scenario: set(scenario, "line.protocol", "framed"),
+    change: "Protocol framed",
+    scenario: set(scenario, "line.protocol", "framed"),
   };
 }

@@ -11,17 +11,28 @@ const DWELL = /^dwell\s+(\d+)$/i;
 
 /** @param {any[]} segments */
 export function printSegments(segments) {
-  return segments.map(({ steps, dwell }) => (dwell ? `dwell ${dwell.length_q16}`
-    : [steps.count, steps.interval_q16, steps.add_q16, steps.dir === 1 ? "right" : "left"].join(" "))).join("\n");
+  return segments
+    .map(({ steps, dwell }) =>
+      dwell
+        ? `dwell ${dwell.length_q16}`
+        : [steps.count, steps.interval_q16, steps.add_q16, steps.dir === 1 ? "right" : "left"].join(" "),
+    )
+    .join("\n");
 }
 
 /** @param {string} text @returns {{value: Segment[]} | {message: string}} */
 export function readSegments(text) {
-  const lines = text.split("\n").map((line) => line.trim()).filter((line) => line !== "");
+  const lines = text
+    .split("\n")
+    .map((line) => line.trim())
+    .filter((line) => line !== "");
   const value = [];
   for (const [index, line] of lines.entries()) {
     const segment = readSegment(line);
-    if (!segment) return { message: `Line ${index + 1}: “${line}” is no segment; give count, interval, growth and direction, such as 20 1048576000 -500 right, or dwell 65536000.` };
+    if (!segment)
+      return {
+        message: `Line ${index + 1}: “${line}” is no segment; give count, interval, growth and direction, such as 20 1048576000 -500 right, or dwell 65536000.`,
+      };
     value.push(segment);
   }
   return { value };
@@ -32,7 +43,9 @@ function readSegment(line) {
   const [, length] = DWELL.exec(line) ?? [];
   const [, count, interval, add = "0", way = "right"] = STEPS.exec(line) ?? [];
   if (length === undefined && count === undefined) return null;
-  const [first, interval_q16, add_q16] = [length ?? count, interval ?? "0", add.replace("−", "-").replace("+", "")].map(whole);
+  const [first, interval_q16, add_q16] = [length ?? count, interval ?? "0", add.replace("−", "-").replace("+", "")].map(
+    whole,
+  );
   if (length !== undefined) return { dwell: { length_q16: first } };
   return { steps: { count: first, interval_q16, add_q16, dir: way.toLowerCase() === "right" ? 1 : 0 } };
 }

@@ -18,31 +18,60 @@ import { ENGINE, PACKET_LINES, SEGMENTS, SEND } from "./fields.js";
 /** @type {{[kind: string]: SourceKind}} */
 export const SOURCES = {
   motion: {
-    label: "Motion of axes", term: "motion",
+    label: "Motion of axes",
+    term: "motion",
     fresh: (_, samples) => structuredClone(samples.sources.motion),
-    form: (kit) => [kit.row("source.motion.engine", ENGINE), ...axisItems(kit, { axes: "source.motion.axes", bus: "bus", whose: "", least: 1 })],
+    form: (kit) => [
+      kit.row("source.motion.engine", ENGINE),
+      ...axisItems(kit, { axes: "source.motion.axes", bus: "bus", whose: "", least: 1 }),
+    ],
     order: (_, samples) => ({ axes: structuredClone(samples.sources.motion.axes) }),
-    orderForm: (kit, index) => axisItems(kit, { axes: `controllers[${index}].axes`, bus: `controllers[${index}].bus`, whose: ` of controller ${index + 2}`, least: 0 }),
+    orderForm: (kit, index) =>
+      axisItems(kit, {
+        axes: `controllers[${index}].axes`,
+        bus: `controllers[${index}].bus`,
+        whose: ` of controller ${index + 2}`,
+        least: 0,
+      }),
   },
   packets: {
-    label: "Packets in hex", term: "packets_in_hex",
+    label: "Packets in hex",
+    term: "packets_in_hex",
     fresh: (scenario) => ({ packets: packets(scenario, scenario.bus, scenario.line.address) }),
     form: (kit) => [kit.row("source.packets.packets", PACKET_LINES)],
     order: (scenario, _, controller) => ({ packets: packets(scenario, controller.bus, controller.address) }),
     orderForm: (kit, index) => [kit.row(`controllers[${index}].packets`, PACKET_LINES)],
   },
   line: {
-    label: "Line script", term: "line_script",
+    label: "Line script",
+    term: "line_script",
     fresh: (scenario) => ({ sends: sends(scenario) }),
-    form: (kit, scenario) => kit.rows("source.line.sends", scenario.source.line.sends, SEND, "Send",
-      (last) => (last ? { ...last, start_cycle: after(last, kit.now().scenario) } : structuredClone(kit.samples.send)), "line_script"),
+    form: (kit, scenario) =>
+      kit.rows(
+        "source.line.sends",
+        scenario.source.line.sends,
+        SEND,
+        "Send",
+        (last) =>
+          last ? { ...last, start_cycle: after(last, kit.now().scenario) } : structuredClone(kit.samples.send),
+        "line_script",
+      ),
     order: () => ({}),
     orderForm: () => [],
   },
   segments: {
-    label: "Lists of segments", term: "lists_of_segments",
+    label: "Lists of segments",
+    term: "lists_of_segments",
     fresh: ({ bus }) => ({ channels: Array.from({ length: Number(bus.channels) || 1 }, list) }),
-    form: (kit, scenario) => kit.rows("source.segments.channels", scenario.source.segments.channels, SEGMENTS, "List", (last) => structuredClone(last ?? list()), "lists_of_segments"),
+    form: (kit, scenario) =>
+      kit.rows(
+        "source.segments.channels",
+        scenario.source.segments.channels,
+        SEGMENTS,
+        "List",
+        (last) => structuredClone(last ?? list()),
+        "lists_of_segments",
+      ),
     order: () => ({}),
     orderForm: () => [],
   },
@@ -56,14 +85,24 @@ export function runsAlone({ source }) {
 /** Faster to the right, a pause, and evenly back: something to see and to change. */
 function list() {
   const ms = 16_000 * 65_536;
-  return { start_cycle: 1, segments: [{ steps: { count: 20, interval_q16: ms, add_q16: -ms / 32, dir: 1 } },
-    { dwell: { length_q16: 5 * ms } }, { steps: { count: 20, interval_q16: ms / 2, add_q16: 0, dir: 0 } }] };
+  return {
+    start_cycle: 1,
+    segments: [
+      { steps: { count: 20, interval_q16: ms, add_q16: -ms / 32, dir: 1 } },
+      { dwell: { length_q16: 5 * ms } },
+      { steps: { count: 20, interval_q16: ms / 2, add_q16: 0, dir: 0 } },
+    ],
+  };
 }
 
 /** The scenario with another kind of source; each controller gets something to do that fits it. @param {Scenario} scenario @param {string} kind @param {Samples} samples */
 export function withSource(scenario, kind, samples) {
-  const controllers = scenario.controllers.map((/** @type {any} */ controller) =>
-    ({ ...controller, axes: [], packets: [], ...SOURCES[kind].order(scenario, samples, controller) }));
+  const controllers = scenario.controllers.map((/** @type {any} */ controller) => ({
+    ...controller,
+    axes: [],
+    packets: [],
+    ...SOURCES[kind].order(scenario, samples, controller),
+  }));
   return { ...scenario, source: { [kind]: SOURCES[kind].fresh(scenario, samples) }, controllers };
 }
 
@@ -89,13 +128,20 @@ function sends(scenario) {
   const start = bus.boot_cycles + 1;
   const tick = bus.slots * bus.step_period_cycles;
   if (line.protocol !== "framed") {
-    return packets(scenario, bus, line.address).map((bytes, index) => ({ start_cycle: start + index * tick, bytes, frame: null }));
+    return packets(scenario, bus, line.address).map((bytes, index) => ({
+      start_cycle: start + index * tick,
+      bytes,
+      frame: null,
+    }));
   }
   // TICKS with the sequence number 0, the two of them and one without steps, then STATUS.
   const to = hex(line.address ?? 0);
   const ticks = [...orders(bus), "00".repeat(Number(bus.channels) || 1)];
-  return [`${to}0100${hex(ticks.length)}${ticks.join("")}`, `${to}04`]
-    .map((frame, index) => ({ start_cycle: start + index * 4 * tick, bytes: "", frame }));
+  return [`${to}0100${hex(ticks.length)}${ticks.join("")}`, `${to}04`].map((frame, index) => ({
+    start_cycle: start + index * 4 * tick,
+    bytes: "",
+    frame,
+  }));
 }
 
 /** A start that lies behind a send: its bytes have passed. @param {any} send @param {Scenario} scenario */

@@ -1,25 +1,15 @@
 /**
- * A word that explains itself: a button with a dotted line under it that opens a small card, with what the word
- * means and which document it comes from. One card serves all of them; a click elsewhere and Escape close it.
+ * The card that a word with dots under it opens: what the word means and which document it comes from. One card serves
+ * all of them; a click elsewhere and Escape close it.
  */
 import { element, fill } from "../dom.js";
+import { CARD, termButton } from "../form/term_button.js";
 import { termsOf } from "./terms.js";
 
 /** @typedef {import("../form/field.js").Term} Term */
 
-const CARD = "term-card";
 /** From the word to its card, and from the card to the window's edges, in CSS pixels. */
 const GAP_PX = 4;
-
-/**
- * The button for a term. In the form it is no stop of the tab key, which would double them: F1 in its field opens it.
- * @param {string} text  What it says.
- * @param {string} term  Its name in `TERMS`, or of a view in `VIEWS` as `view:motion`.
- * @param {{[name: string]: string}} [attributes]
- */
-export function termButton(text, term, attributes = {}) {
-  return element("button", { type: "button", class: "term", "aria-expanded": "false", "aria-controls": CARD, "data-term": term, ...attributes }, text);
-}
 
 /** Opens the card of the word that explains an element, if there is one. @param {Element} at */
 export function explain(at) {
@@ -36,7 +26,13 @@ export function createCard() {
   // A press anywhere closes the card before the click comes: one on the card's own word must not open it again.
   /** @type {HTMLElement | null} */
   let closing = null;
-  document.addEventListener("pointerdown", () => { closing = card.matches(":popover-open") ? opener : null; }, { capture: true });
+  document.addEventListener(
+    "pointerdown",
+    () => {
+      closing = card.matches(":popover-open") ? opener : null;
+    },
+    { capture: true },
+  );
   document.addEventListener("click", (event) => {
     const word = /** @type {HTMLElement | null} */ (/** @type {Element} */ (event.target).closest?.(".term"));
     if (word && word !== closing && !(word === opener && card.matches(":popover-open"))) show(word);
@@ -65,7 +61,10 @@ async function show(word) {
   if (opener !== word) opener?.setAttribute("aria-expanded", "false");
   opener = word;
   loading ??= import("./texts.js");
-  const texts = await loading.catch(() => { loading = null; return null; });
+  const texts = await loading.catch(() => {
+    loading = null;
+    return null;
+  });
   // Another word was asked for meanwhile.
   if (opener !== word || !word.isConnected) return;
   const DOCUMENTS = texts?.DOCUMENTS ?? {};
@@ -73,9 +72,30 @@ async function show(word) {
   const name = word.dataset.term ?? "";
   const view = texts?.VIEWS[name.replace("view:", "")];
   const hint = word.closest(".field")?.querySelector(".hint")?.textContent;
-  fill(card, ...(name.startsWith("view:") && view
-    ? [element("p", {}, view.about), element("dl", {}, ...Object.values(view.terms).flatMap((term) => [element("dt", {}, term.name ?? ""), meaning("dd", term, DOCUMENTS)]))]
-    : [element("strong", {}, TERMS[name]?.name ?? word.textContent ?? ""), meaning("p", TERMS[name] ?? { text: texts ? "" : "The text could not be loaded; try again when the network is there." }, DOCUMENTS), ...(hint ? [element("p", { class: "range" }, hint)] : [])]));
+  fill(
+    card,
+    ...(name.startsWith("view:") && view
+      ? [
+          element("p", {}, view.about),
+          element(
+            "dl",
+            {},
+            ...Object.values(view.terms).flatMap((term) => [
+              element("dt", {}, term.name ?? ""),
+              meaning("dd", term, DOCUMENTS),
+            ]),
+          ),
+        ]
+      : [
+          element("strong", {}, TERMS[name]?.name ?? word.textContent ?? ""),
+          meaning(
+            "p",
+            TERMS[name] ?? { text: texts ? "" : "The text could not be loaded; try again when the network is there." },
+            DOCUMENTS,
+          ),
+          ...(hint ? [element("p", { class: "range" }, hint)] : []),
+        ]),
+  );
   card.hidePopover();
   card.showPopover();
   place(card, word);
@@ -84,7 +104,12 @@ async function show(word) {
 
 /** What is meant, with where it comes from. @param {"p" | "dd"} tag @param {Term} term @param {{[id: string]: {short: string}}} documents */
 export function meaning(tag, { text, from }, documents) {
-  return element(tag, {}, text, ...(from && documents[from] ? [" ", element("span", { class: "from" }, `(${documents[from].short})`)] : []));
+  return element(
+    tag,
+    {},
+    text,
+    ...(from && documents[from] ? [" ", element("span", { class: "from" }, `(${documents[from].short})`)] : []),
+  );
 }
 
 /** Puts the card under its word, or above it where there is more room. @param {HTMLElement} card @param {HTMLElement} word */

@@ -2,7 +2,7 @@
 import { byId } from "../dom.js";
 import { loadGuided, loadScenario, saveGuided } from "../shell/storage.js";
 
-/** @param {import("../time/timeline.js").Page} page */
+/** @param {import("../state/types.js").Page} page */
 export function createGuide(page) {
   byId("guide-start").addEventListener("click", async () => (await import("./guide_steps.js")).startGuide(page));
 }

@@ -9,12 +9,39 @@ import { saveGuided } from "../shell/storage.js";
 
 /** @type {Step[]} */
 export const STEPS = [
-  { title: "Choose a motion", at: "#fields > details", text: "A preset above, or a move of your own here: type a distance such as 1.2k. All that follows is computed at once. A word with dots under it explains itself." },
-  { title: "Look at the curves", at: "#view-motion", view: "motion", text: "Position, speed and acceleration: the thin line is what was asked for, the broad one what the pulses make of it. A click sets cursor A, with Shift cursor B." },
-  { title: "Zoom into the pulses", at: "#view-pulses", view: "pulses", text: "Turn the wheel, or press + and the arrow keys, until single pulses show: every edge stands at its exact clock cycle. N goes to the next edge." },
-  { title: "See what was sent", at: "#view-packets", view: "packets", text: "A row a packet, with its bytes and what the controller did with it. Choose one: it is shown in the pulses." },
-  { title: "Break it, and mend it", at: "#preset", text: "“Pulses too short for a DRV8825” and “Raw packets on a noisy line” go wrong on purpose. The page says what is wrong and why, and “Fix it” puts it right; Undo takes that back." },
-  { title: "Share it", at: "#share", text: "The link holds the whole experiment. Whoever opens it computes the same edges, and the digest proves it. ? at the right end has the keys and the help." },
+  {
+    title: "Choose a motion",
+    at: "#fields > details",
+    text: "A preset above, or a move of your own here: type a distance such as 1.2k. All that follows is computed at once. A word with dots under it explains itself.",
+  },
+  {
+    title: "Look at the curves",
+    at: "#view-motion",
+    view: "motion",
+    text: "Position, speed and acceleration: the thin line is what was asked for, the broad one what the pulses make of it. A click sets cursor A, with Shift cursor B.",
+  },
+  {
+    title: "Zoom into the pulses",
+    at: "#view-pulses",
+    view: "pulses",
+    text: "Turn the wheel, or press + and the arrow keys, until single pulses show: every edge stands at its exact clock cycle. N goes to the next edge.",
+  },
+  {
+    title: "See what was sent",
+    at: "#view-packets",
+    view: "packets",
+    text: "A row a packet, with its bytes and what the controller did with it. Choose one: it is shown in the pulses.",
+  },
+  {
+    title: "Break it, and mend it",
+    at: "#preset",
+    text: "“Pulses too short for a DRV8825” and “Raw packets on a noisy line” go wrong on purpose. The page says what is wrong and why, and “Fix it” puts it right; Undo takes that back.",
+  },
+  {
+    title: "Share it",
+    at: "#share",
+    text: "The link holds the whole experiment. Whoever opens it computes the same edges, and the digest proves it. ? at the right end has the keys and the help.",
+  },
 ];
 
 /** Distance of the panel from what it points at, and from the window's edges, in CSS pixels. */
@@ -23,13 +50,13 @@ const GAP_PX = 10;
 /** @type {{go: (step: number) => void} | null} */
 let guide = null;
 
-/** Begins with the first step. @param {import("../time/timeline.js").Page} page */
+/** Begins with the first step. @param {import("../state/types.js").Page} page */
 export function startGuide(page) {
   guide ??= createGuide(page);
   guide.go(0);
 }
 
-/** @param {import("../time/timeline.js").Page} page */
+/** @param {import("../state/types.js").Page} page */
 function createGuide({ dispatch, now }) {
   const panel = byId("guide");
   const narrow = matchMedia("(max-width: 899px)");
@@ -40,7 +67,9 @@ function createGuide({ dispatch, now }) {
     event.preventDefault();
     end();
   });
-  window.addEventListener("resize", () => { if (current >= 0) place(); });
+  window.addEventListener("resize", () => {
+    if (current >= 0) place();
+  });
 
   /** @param {number} step */
   function go(step) {
@@ -54,7 +83,9 @@ function createGuide({ dispatch, now }) {
     const { form, folded, largest } = now().panes;
     if (largest !== null || form === 0 || folded.length > 0) {
       dispatch({ type: "pane", panes: { largest: null, folded: [], form: form || null } });
-      requestAnimationFrame(() => { if (current === step) place(); });
+      requestAnimationFrame(() => {
+        if (current === step) place();
+      });
     }
     // On a narrow screen the form is folded away.
     const target = targetOf();
@@ -63,10 +94,18 @@ function createGuide({ dispatch, now }) {
     else if (narrow.matches) sheet.open = false;
     const last = step === STEPS.length - 1;
     const heading = element("h2", { tabindex: "-1", id: "guide-title" }, `${step + 1} of ${STEPS.length}: ${title}`);
-    fill(panel, heading, element("p", {}, text), element("div", { class: "buttons" },
-      button("Back", "Back", () => go(step - 1), step === 0),
-      last ? button("Done", "Done", end) : button("Next", "Next", () => go(step + 1)),
-      button("✕", "End the guide", end)));
+    fill(
+      panel,
+      heading,
+      element("p", {}, text),
+      element(
+        "div",
+        { class: "buttons" },
+        button("Back", "Back", () => go(step - 1), step === 0),
+        last ? button("Done", "Done", end) : button("Next", "Next", () => go(step + 1)),
+        button("✕", "End the guide", end),
+      ),
+    );
     panel.hidden = false;
     mark(target);
     place();
@@ -96,7 +135,8 @@ function createGuide({ dispatch, now }) {
     }
     const box = target.getBoundingClientRect();
     const below = box.bottom + GAP_PX;
-    const within = (/** @type {number} */ at, /** @type {number} */ most) => Math.max(GAP_PX, Math.min(at, most - GAP_PX));
+    const within = (/** @type {number} */ at, /** @type {number} */ most) =>
+      Math.max(GAP_PX, Math.min(at, most - GAP_PX));
     // Left of the views, over the form; right of the form, over the views; under what stands in the header.
     const left = box.width > clientWidth / 3 ? box.left - width - GAP_PX : box.right + GAP_PX;
     const beside = box.height > height / 2;

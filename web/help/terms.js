@@ -10,7 +10,9 @@ export function termsOf({ COMMON, VIEWS }) {
   return {
     ...COMMON,
     ...SOURCE_TERMS,
-    ...Object.fromEntries(Object.entries({ ...MECHANICS, ...MOVES }).map(([kind, { label, about }]) => [kind, { name: label, ...about }])),
+    ...Object.fromEntries(
+      Object.entries({ ...MECHANICS, ...MOVES }).map(([kind, { label, about }]) => [kind, { name: label, ...about }]),
+    ),
     ...Object.assign({}, ...Object.values(MOVES).map(({ terms }) => terms)),
     ...Object.assign({}, ...Object.values(VIEWS).map(({ terms }) => terms)),
   };

@@ -40,7 +40,12 @@ export function listed() {
 /** A key with its modifiers, as `Command.keys` writes it. Of a sign that needs Shift, Shift is no part. @param {KeyboardEvent} event */
 function nameOf({ key, ctrlKey, metaKey, altKey, shiftKey }) {
   const sign = key.length === 1 && !/[a-z]/i.test(key);
-  return [ctrlKey || metaKey ? "Ctrl+" : "", altKey ? "Alt+" : "", shiftKey && !sign ? "Shift+" : "", key === " " ? "Space" : key].join("");
+  return [
+    ctrlKey || metaKey ? "Ctrl+" : "",
+    altKey ? "Alt+" : "",
+    shiftKey && !sign ? "Shift+" : "",
+    key === " " ? "Space" : key,
+  ].join("");
 }
 
 /** A key of the row of digits by its place, for on many keyboards Shift makes another sign of it, or only Shift a digit. @param {KeyboardEvent} event */

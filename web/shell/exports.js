@@ -26,7 +26,7 @@ const PIECES = 16;
 
 class Cancelled extends Error {}
 
-/** @param {{engine: Engine} & import("../time/timeline.js").Page} page  @param {[string, (state: State, engine: Engine) => Offer[]][]} others  What other parts of the page offer, each list with its title. */
+/** @param {{engine: Engine} & import("../state/types.js").Page} page  @param {[string, (state: State, engine: Engine) => Offer[]][]} others  What other parts of the page offer, each list with its title. */
 export function createExports({ engine, now }, others) {
   const stretch = /** @type {HTMLSelectElement} */ (byId("export-stretch"));
   const list = byId("export-list");
@@ -37,27 +37,58 @@ export function createExports({ engine, now }, others) {
   let busy = false;
   const { isOpen } = dropDown("export", "export-panel", offer);
   stretch.addEventListener("change", offer);
-  cancel.addEventListener("click", () => { stopped = true; });
+  cancel.addEventListener("click", () => {
+    stopped = true;
+  });
 
   function offer() {
     const state = now();
     const span = between(state);
     const { clock_hz = 1 } = state.result?.summary ?? {};
     const whole = state.result ? `the whole run, ${time(state.result.summary.end_s)}` : "the whole run";
-    options(stretch, [["whole", whole], ...(span ? [/** @type {[string, string]} */ (["cursors", `between A and B, ${time((span.end - span.start) / clock_hz)}`])] : [])],
-      span ? stretch.value || "whole" : "whole");
-    if (!busy) say(status, state.result ? isStale(state) ? "The views show an earlier experiment than the form; files are of what the views show." : "" : "Nothing was run yet.");
-    const groups = [...offers(state, engine, stretch.value === "cursors" ? span : null), ...others.map(([title, offered]) => ({ title, offers: offered(state, engine) }))];
-    fill(list, ...groups.filter(({ offers }) => offers.length > 0).map(({ title, offers }) => {
-      const group = element("div", { role: "group", "aria-label": title }, element("h3", {}, title));
-      for (const each of offers) {
-        const press = element("button", { type: "button", "data-file": each.name }, each.label);
-        press.disabled = busy;
-        press.addEventListener("click", () => run(each));
-        group.append(press);
-      }
-      return group;
-    }));
+    options(
+      stretch,
+      [
+        ["whole", whole],
+        ...(span
+          ? [
+              /** @type {[string, string]} */ ([
+                "cursors",
+                `between A and B, ${time((span.end - span.start) / clock_hz)}`,
+              ]),
+            ]
+          : []),
+      ],
+      span ? stretch.value || "whole" : "whole",
+    );
+    if (!busy)
+      say(
+        status,
+        state.result
+          ? isStale(state)
+            ? "The views show an earlier experiment than the form; files are of what the views show."
+            : ""
+          : "Nothing was run yet.",
+      );
+    const groups = [
+      ...offers(state, engine, stretch.value === "cursors" ? span : null),
+      ...others.map(([title, offered]) => ({ title, offers: offered(state, engine) })),
+    ];
+    fill(
+      list,
+      ...groups
+        .filter(({ offers }) => offers.length > 0)
+        .map(({ title, offers }) => {
+          const group = element("div", { role: "group", "aria-label": title }, element("h3", {}, title));
+          for (const each of offers) {
+            const press = element("button", { type: "button", "data-file": each.name }, each.label);
+            press.disabled = busy;
+            press.addEventListener("click", () => run(each));
+            group.append(press);
+          }
+          return group;
+        }),
+    );
   }
 
   /** @param {Offer} offered */
@@ -79,7 +110,11 @@ export function createExports({ engine, now }, others) {
         bar.value = part;
       });
       save(name, type, parts);
-      const bytes = parts.reduce((sum, part) => sum + (typeof part === "string" ? part.length : part instanceof Blob ? part.size : part.byteLength), 0);
+      const bytes = parts.reduce(
+        (sum, part) =>
+          sum + (typeof part === "string" ? part.length : part instanceof Blob ? part.size : part.byteLength),
+        0,
+      );
       say(status, `Saved ${name}, ${si(bytes, "B", 3)}.`);
     } catch (error) {
       const why = error instanceof Dropped ? "the engine was started again; export again" : message(error);
@@ -99,7 +134,13 @@ export function createExports({ engine, now }, others) {
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
     /** @type {HTMLButtonElement} */ (byId("export")).disabled = false;
-    if (isOpen() && !busy && before && (before.result !== state.result || before.cursors !== state.cursors || before.judgement !== state.judgement)) offer();
+    if (
+      isOpen() &&
+      !busy &&
+      before &&
+      (before.result !== state.result || before.cursors !== state.cursors || before.judgement !== state.judgement)
+    )
+      offer();
   }
   return { render };
 }
@@ -113,7 +154,16 @@ export function between({ cursors: { a, b } }) {
 function offers(state, engine, span) {
   const { result, judgement, scenario } = state;
   const base = baseName(state);
-  const settings = judgement ? [{ name: `${base}.json`, type: "application/json", label: "Scenario, JSON", make: async () => [judgement.scenario, "\n"] }] : [];
+  const settings = judgement
+    ? [
+        {
+          name: `${base}.json`,
+          type: "application/json",
+          label: "Scenario, JSON",
+          make: async () => [judgement.scenario, "\n"],
+        },
+      ]
+    : [];
   const looked = lookedAt(state);
   if (!result || !looked) return [{ title: "Experiment", offers: settings }];
   const { controllers, end_cycle } = result.summary;
@@ -121,29 +171,57 @@ function offers(state, engine, span) {
   const cut = span ? `-${span.start}-${span.end}` : "";
   const { start, end } = span ?? { start: 0, end: end_cycle };
   /** @param {string} kind @param {string} suffix @param {string} type @param {string} label @returns {Offer} */
-  const file = (kind, suffix, type, label) => ({ name: `${base}${part}${cut}${suffix}`, type, label,
-    make: (pace) => pieces(engine, kind, result.controller, start, end, pace) });
+  const file = (kind, suffix, type, label) => ({
+    name: `${base}${part}${cut}${suffix}`,
+    type,
+    label,
+    make: (pace) => pieces(engine, kind, result.controller, start, end, pace),
+  });
   /** @param {string} suffix @param {string} label @param {string} method @param {(answer: any, clockHz: number) => string} table @returns {Offer} */
-  const table = (suffix, label, method, table) => ({ name: `${base}${part}${suffix}`, type: "text/csv", label,
-    make: async () => [table(await engine.ask(method), result.summary.clock_hz)] });
+  const table = (suffix, label, method, table) => ({
+    name: `${base}${part}${suffix}`,
+    type: "text/csv",
+    label,
+    make: async () => [table(await engine.ask(method), result.summary.clock_hz)],
+  });
   const { source } = scenario;
   const segments = source?.segments || source?.motion?.engine === "segments";
   return [
-    { title: "Signals", offers: [
-      file("vcd", ".vcd", "text/plain", "VCD, for GTKWave, Surfer, PulseView"),
-      file("edges", "-edges.csv", "text/csv", `CSV of edges, ${count(looked.records)} rows in the whole run`),
-      file("trace", ".trace", "text/plain", "Trace, cycle and levels in hex"),
-    ] },
-    { title: "Tables, CSV", offers: [
-      segments ? file("segments", "-segments.csv", "text/csv", "Segment lists") : file("ticks", "-ticks.csv", "text/csv", "Ticks, steps of each channel"),
-      table("-harmonics.csv", "Harmonics", "spectrum", harmonicsTable),
-      ...(looked.violations === null ? [] : [
-        table("-margins.csv", "Driver timing: margins", "timing", marginsTable),
-        table("-violations.csv", "Driver timing: violations", "timing", violationsTable),
-      ]),
-    ] },
-    { title: "Experiment", offers: [...settings, { name: `${base}-line.json`, type: "application/json",
-      label: segments ? "Scenario of its segments, JSON" : "Line script of what was sent, JSON", make: async () => [await engine.ask("line_script"), "\n"] }] },
+    {
+      title: "Signals",
+      offers: [
+        file("vcd", ".vcd", "text/plain", "VCD, for GTKWave, Surfer, PulseView"),
+        file("edges", "-edges.csv", "text/csv", `CSV of edges, ${count(looked.records)} rows in the whole run`),
+        file("trace", ".trace", "text/plain", "Trace, cycle and levels in hex"),
+      ],
+    },
+    {
+      title: "Tables, CSV",
+      offers: [
+        segments
+          ? file("segments", "-segments.csv", "text/csv", "Segment lists")
+          : file("ticks", "-ticks.csv", "text/csv", "Ticks, steps of each channel"),
+        table("-harmonics.csv", "Harmonics", "spectrum", harmonicsTable),
+        ...(looked.violations === null
+          ? []
+          : [
+              table("-margins.csv", "Driver timing: margins", "timing", marginsTable),
+              table("-violations.csv", "Driver timing: violations", "timing", violationsTable),
+            ]),
+      ],
+    },
+    {
+      title: "Experiment",
+      offers: [
+        ...settings,
+        {
+          name: `${base}-line.json`,
+          type: "application/json",
+          label: segments ? "Scenario of its segments, JSON" : "Line script of what was sent, JSON",
+          make: async () => [await engine.ask("line_script"), "\n"],
+        },
+      ],
+    },
   ];
 }
 
@@ -171,6 +249,11 @@ async function pieces(engine, kind, controller, start, end, pace) {
 
 /** A name for files of an experiment. @param {State} state */
 export function baseName({ scenario }) {
-  const name = (scenario.title ?? "").normalize("NFKD").replace(/[^\w]+/g, "-").replace(/^-+|-+$/g, "").toLowerCase().slice(0, 40);
+  const name = (scenario.title ?? "")
+    .normalize("NFKD")
+    .replace(/[^\w]+/g, "-")
+    .replace(/^-+|-+$/g, "")
+    .toLowerCase()
+    .slice(0, 40);
   return name || "stepscope";
 }

@@ -1,11 +1,10 @@
 /** The header: presets, undo and redo, what the run made, the theme; and the messages under it. */
 import { byId, element, fill, options, say } from "../dom.js";
-import { listen } from "./commands.js";
-import { health, ill } from "./health.js";
 import { readJson } from "../state/json.js";
 import { count, si } from "../state/number.js";
-import { recolor } from "../time/plot.js";
 import { held, isStale, lookedAt } from "../state/state.js";
+import { listen } from "./commands.js";
+import { health, ill } from "./health.js";
 import { loadTheme, saveTheme } from "./storage.js";
 
 /** @typedef {import("../state/types.js").State} State */
@@ -14,8 +13,8 @@ import { loadTheme, saveTheme } from "./storage.js";
 /** Progress is shown only for runs longer than this, in ms. */
 const PATIENCE_MS = 90;
 
-/** @param {{presets: Preset[], cancel: () => void, retry: () => void} & import("../time/timeline.js").Page} page */
-export function createHeader({ presets, cancel, retry, dispatch, now }) {
+/** @param {{presets: Preset[], cancel: () => void, retry: () => void} & import("../state/types.js").Page} page */
+export function createHeader({ presets, cancel, retry, dispatch }) {
   const preset = /** @type {HTMLSelectElement} */ (byId("preset"));
   const controller = /** @type {HTMLSelectElement} */ (byId("controller"));
   const undo = /** @type {HTMLButtonElement} */ (byId("undo"));
@@ -36,8 +35,12 @@ export function createHeader({ presets, cancel, retry, dispatch, now }) {
   byId("cancel").addEventListener("click", cancel);
   byId("try-again").addEventListener("click", retry);
   listen(document, "Everywhere", [
-    { keys: ["Ctrl+z"], text: "undo", run: (event) => isElsewhere(event) ? false : dispatch({ type: "undo" }) },
-    { keys: ["Ctrl+Shift+z", "Ctrl+y"], text: "redo", run: (event) => isElsewhere(event) ? false : dispatch({ type: "redo" }) },
+    { keys: ["Ctrl+z"], text: "undo", run: (event) => (isElsewhere(event) ? false : dispatch({ type: "undo" })) },
+    {
+      keys: ["Ctrl+Shift+z", "Ctrl+y"],
+      text: "redo",
+      run: (event) => (isElsewhere(event) ? false : dispatch({ type: "redo" })),
+    },
   ]);
 
   /** @param {State} state @param {State | undefined} before */
@@ -66,7 +69,11 @@ export function createHeader({ presets, cancel, retry, dispatch, now }) {
   /** The controllers on the line, where there are several. @param {State} state */
   function chooser({ result }) {
     const controllers = result?.summary.controllers ?? [];
-    options(controller, controllers.map(({ address }, index) => [String(index), `${index + 1}, address ${address ?? "none"}`]), String(result?.controller ?? 0));
+    options(
+      controller,
+      controllers.map(({ address }, index) => [String(index), `${index + 1}, address ${address ?? "none"}`]),
+      String(result?.controller ?? 0),
+    );
     /** @type {HTMLElement} */ (controller.parentElement).hidden = controllers.length < 2;
   }
 
@@ -88,7 +95,8 @@ function isElsewhere({ target }) {
 function status(state, long) {
   const { progress } = state.run;
   if (long && progress?.end_cycle === 0) return "planning the motion…";
-  if (long && progress) return `${Math.round((100 * progress.cycle) / Math.max(1, progress.end_cycle))} %, ${count(progress.records)} edges so far`;
+  if (long && progress)
+    return `${Math.round((100 * progress.cycle) / Math.max(1, progress.end_cycle))} %, ${count(progress.records)} edges so far`;
   const held_back = held(state) === "problems" ? "not run: the form needs attention" : "";
   if (!state.result) return held_back || (state.run.phase === "running" ? "running…" : "no result yet");
   const { edges = 0 } = lookedAt(state) ?? {};
@@ -102,7 +110,10 @@ function messages(state) {
   const over = held(state) === "budget";
   const budget = byId("budget");
   budget.hidden = !over;
-  say(/** @type {Element} */ (budget.firstElementChild), over ? `Not run yet: ${state.judgement?.cost?.message ?? "this is much work."}` : "");
+  say(
+    /** @type {Element} */ (budget.firstElementChild),
+    over ? `Not run yet: ${state.judgement?.cost?.message ?? "this is much work."}` : "",
+  );
   const failed = byId("engine-message");
   failed.hidden = state.run.phase !== "failed";
   say(/** @type {Element} */ (failed.firstElementChild), state.run.message);
@@ -120,7 +131,11 @@ function groups(presets) {
   return made.values();
 }
 
-const THEMES = { system: ["◐", "Colours: as the system"], light: ["☀", "Colours: light"], dark: ["☾", "Colours: dark"] };
+const THEMES = {
+  system: ["◐", "Colours: as the system"],
+  light: ["☀", "Colours: light"],
+  dark: ["☾", "Colours: dark"],
+};
 
 /** The button that goes through the themes; the choice is kept. */
 export function createTheme() {
@@ -133,7 +148,6 @@ export function createTheme() {
     say(button, sign);
     button.title = label;
     button.setAttribute("aria-label", label);
-    recolor();
     document.dispatchEvent(new Event("themechange"));
   };
   button.addEventListener("click", () => {
@@ -141,6 +155,7 @@ export function createTheme() {
     saveTheme(theme);
     apply();
   });
-  for (const query of ["(prefers-color-scheme: dark)", "(forced-colors: active)"]) matchMedia(query).addEventListener("change", apply);
+  for (const query of ["(prefers-color-scheme: dark)", "(forced-colors: active)"])
+    matchMedia(query).addEventListener("change", apply);
   apply();
 }

@@ -13,8 +13,14 @@ export function health(state) {
   return [
     state.result.summary.host ? outcome(state.result.summary) : "",
     faults.names.length ? `faults: ${faults.names.join(", ")}` : "",
-    violations === null ? "" : violations === 0 ? "driver timing kept" : `${count(violations)} timing ${violations === 1 ? "violation" : "violations"}`,
-  ].filter(Boolean).join(" · ");
+    violations === null
+      ? ""
+      : violations === 0
+        ? "driver timing kept"
+        : `${count(violations)} timing ${violations === 1 ? "violation" : "violations"}`,
+  ]
+    .filter(Boolean)
+    .join(" · ");
 }
 
 /** Whether something went wrong that nothing made good. A framed line mends what noise does to it. @param {State} state */
@@ -36,7 +42,10 @@ function outcome({ host, controllers }) {
   const parts = [];
   if (lost.length > 0) {
     // The others' names would say nothing where there is one controller only.
-    const names = controllers.length > 1 ? lost.map(({ controller, why }) => `on controller ${controller + 1}: ${why}`) : [`: ${lost[0].why}`];
+    const names =
+      controllers.length > 1
+        ? lost.map(({ controller, why }) => `on controller ${controller + 1}: ${why}`)
+        : [`: ${lost[0].why}`];
     parts.push(`gave up${controllers.length > 1 ? " " : ""}${names.join(", ")}`);
   }
   if (jobs.every(({ progress }) => progress === "done")) parts.push(`all ${count(ticks)} ticks done`);

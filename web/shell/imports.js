@@ -18,16 +18,26 @@ export function createImports(page) {
   const counts = ({ dataTransfer, target }) => {
     const types = dataTransfer?.types ?? [];
     if (types.includes("Files")) return true;
-    return !inner && types.includes("text/plain") && !(target instanceof HTMLInputElement || target instanceof HTMLTextAreaElement);
+    return (
+      !inner &&
+      types.includes("text/plain") &&
+      !(target instanceof HTMLInputElement || target instanceof HTMLTextAreaElement)
+    );
   };
-  document.addEventListener("dragstart", () => { inner = true; });
-  document.addEventListener("dragend", () => { inner = false; });
+  document.addEventListener("dragstart", () => {
+    inner = true;
+  });
+  document.addEventListener("dragend", () => {
+    inner = false;
+  });
   document.addEventListener("dragover", (event) => {
     if (!counts(event)) return;
     event.preventDefault();
     hint.hidden = false;
   });
-  document.addEventListener("dragleave", (event) => { if (event.relatedTarget === null) hint.hidden = true; });
+  document.addEventListener("dragleave", (event) => {
+    if (event.relatedTarget === null) hint.hidden = true;
+  });
   document.addEventListener("drop", (event) => {
     hint.hidden = true;
     if (!counts(event)) return;
@@ -42,7 +52,14 @@ export function createImports(page) {
     try {
       await (await import("./opened.js")).openFiles(page, files);
     } catch {
-      page.dispatch({ type: "notice", notice: { kind: "error", text: "Nothing was opened: a part of the page could not be loaded; try again when the network is there.", place: null } });
+      page.dispatch({
+        type: "notice",
+        notice: {
+          kind: "error",
+          text: "Nothing was opened: a part of the page could not be loaded; try again when the network is there.",
+          place: null,
+        },
+      });
     }
   }
 }

@@ -12,18 +12,24 @@ import { parseView, viewOf } from "./view_part.js";
 /** How long the scenario must stand before the address follows, in ms. */
 const SETTLE_MS = 300;
 
-/** @param {{engine: import("../engine/engine.js").Engine} & import("../time/timeline.js").Page} page */
+/** @param {{engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} page */
 export function createLink({ engine, dispatch, now }) {
   /** Fragment that this page wrote or read last. */
   let written = location.hash;
   let timer = 0;
 
-  window.addEventListener("hashchange", () => { if (location.hash !== written) read(); });
+  window.addEventListener("hashchange", () => {
+    if (location.hash !== written) read();
+  });
 
   /** The page's address with the scenario, the view and a run's digests in it. @param {string | undefined} digests @returns {Promise<string>} */
   async function address(digests) {
     let fragment = await engine.ask("encode_link", JSON.stringify(now().scenario));
-    for (const [name, part] of [["v", viewOf(now())], ["d", digests]]) if (part) fragment = await engine.ask("link_with", fragment, name, part);
+    for (const [name, part] of [
+      ["v", viewOf(now())],
+      ["d", digests],
+    ])
+      if (part) fragment = await engine.ask("link_with", fragment, name, part);
     return `${location.origin}${location.pathname}${location.search}#${fragment}`;
   }
 
@@ -87,7 +93,10 @@ export function createLink({ engine, dispatch, now }) {
       if (JSON.stringify(scenario) !== JSON.stringify(now().scenario)) {
         dispatch({ type: "replace", scenario, origin: "shared" });
         const name = scenario.title ? `“${scenario.title}”` : "a scenario";
-        dispatch({ type: "notice", notice: { kind: "info", text: `Shared with you: ${name}. Your own work is kept; Undo brings it back.` } });
+        dispatch({
+          type: "notice",
+          notice: { kind: "info", text: `Shared with you: ${name}. Your own work is kept; Undo brings it back.` },
+        });
       }
       await open(fragment);
     } catch (error) {
@@ -102,7 +111,12 @@ export function createLink({ engine, dispatch, now }) {
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    if (viewOf(before) === viewOf(state) && before?.scenario === state.scenario && before?.seen?.text === state.seen?.text) return;
+    if (
+      viewOf(before) === viewOf(state) &&
+      before?.scenario === state.scenario &&
+      before?.seen?.text === state.seen?.text
+    )
+      return;
     clearTimeout(timer);
     // Standing by until the visitor changes something: an address without a link stays as it is.
     if (state.revision > 0 || written !== "" || viewOf(state) !== "") timer = window.setTimeout(write, SETTLE_MS);

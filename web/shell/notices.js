@@ -10,7 +10,7 @@ import { count, time } from "../state/number.js";
 /** @typedef {import("../state/types.js").Place} Place */
 /** @typedef {import("../state/types.js").Verdict} Verdict */
 
-/** @param {{engine: import("../engine/engine.js").Engine} & import("../time/timeline.js").Page} page */
+/** @param {{engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} page */
 export function createNotices(page) {
   const { engine, dispatch, now } = page;
 
@@ -78,12 +78,19 @@ function words(verdict, { result }) {
   if (verdict.same || !after || !until) {
     const which = controllers.length > 1 ? `all ${controllers.length} controllers, ` : "";
     const made = version ? ` It was sent by version ${version}; this is ${verdict.own_version}.` : "";
-    return { text: `Reproduced bit-exactly: ${which}${count(verdict.edges)} edges, digest ${controllers[result.controller].digest}.${made}`, place: null };
+    return {
+      text: `Reproduced bit-exactly: ${which}${count(verdict.edges)} edges, digest ${controllers[result.controller].digest}.${made}`,
+      place: null,
+    };
   }
-  const at = (/** @type {import("../state/types.js").Mark} */ mark) => `edge ${count(mark.edge)} (${time(mark.cycle / clock_hz)})`;
+  const at = (/** @type {import("../state/types.js").Mark} */ mark) =>
+    `edge ${count(mark.edge)} (${time(mark.cycle / clock_hz)})`;
   const which = controllers.length > 1 ? ` on controller ${controller + 1}` : "";
-  const ends = shorter === "this" ? " This run ends there." : shorter === "other" ? " The sender's run ends there." : "";
-  const made = version ? ` The link was made with version ${version}, this is ${verdict.own_version}: that may be why.` : "";
+  const ends =
+    shorter === "this" ? " This run ends there." : shorter === "other" ? " The sender's run ends there." : "";
+  const made = version
+    ? ` The link was made with version ${version}, this is ${verdict.own_version}: that may be why.`
+    : "";
   const text = `Not the run that the sender saw: the first difference${which} lies between ${at(after)} and ${at(until)}.${ends}${made}`;
   return { text, place: around(after.cycle, until.cycle, end_cycle, controller) };
 }

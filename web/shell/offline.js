@@ -29,7 +29,9 @@ export function keepOffline() {
     if (waiting) waiting.postMessage("take over");
     else location.reload();
   });
-  byId("not-now").addEventListener("click", () => { notice.hidden = true; });
+  byId("not-now").addEventListener("click", () => {
+    notice.hidden = true;
+  });
   let controlled = serviceWorker.controller !== null;
   serviceWorker.addEventListener("controllerchange", () => {
     if (asked) location.reload();
@@ -37,15 +39,18 @@ export function keepOffline() {
     else if (controlled) notice.hidden = false;
     controlled = true;
   });
-  serviceWorker.register(new URL("../sw.js", import.meta.url), { updateViaCache: "none" }).then((registration) => {
-    waits(registration);
-    registration.addEventListener("updatefound", () => {
-      const next = registration.installing;
-      next?.addEventListener("statechange", () => waits(registration));
+  serviceWorker
+    .register("sw.js", { updateViaCache: "none" })
+    .then((registration) => {
+      waits(registration);
+      registration.addEventListener("updatefound", () => {
+        const next = registration.installing;
+        next?.addEventListener("statechange", () => waits(registration));
+      });
+      setInterval(() => registration.update().catch(() => {}), ASK_MS);
+      document.documentElement.dataset.offline = "asked";
+    })
+    .catch(() => {
+      // Private windows and odd hosts refuse; the page works without.
     });
-    setInterval(() => registration.update().catch(() => {}), ASK_MS);
-    document.documentElement.dataset.offline = "asked";
-  }).catch(() => {
-    // Private windows and odd hosts refuse; the page works without.
-  });
 }

@@ -10,7 +10,7 @@ import { message } from "./link.js";
 import { around } from "./notices.js";
 
 /** @typedef {import("../state/types.js").State} State */
-/** @typedef {{engine: import("../engine/engine.js").Engine, openLink: (fragment: string) => Promise<void>} & import("../time/timeline.js").Page} Given */
+/** @typedef {{engine: import("../engine/engine.js").Engine, openLink: (fragment: string) => Promise<void>} & import("../state/types.js").Page} Given */
 
 /** Most bytes of a scenario's file. */
 const MOST_SCENARIO = 32 << 20;
@@ -24,7 +24,8 @@ const PIECE = 4 << 20;
 const MOST_TOLD = 8;
 const LINK = /(?:^|[#&\s])c(?:=|%3D)\d+(?:\.|%2E)/i;
 
-const WHAT = "Stepscope opens: a scenario (JSON), a share link as text, a table of packets (CSV) to send again, and edges (CSV or trace) to compare with this run.";
+const WHAT =
+  "Stepscope opens: a scenario (JSON), a share link as text, a table of packets (CSV) to send again, and edges (CSV or trace) to compare with this run.";
 
 /** @param {Given} page @param {File[]} files */
 export async function openFiles({ engine, openLink, dispatch, now }, files) {
@@ -42,10 +43,20 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
       const head = (await file.slice(0, HEAD).text()).replace(/^\ufeff/, "").trimStart();
       const [first] = head.split("\n", 1);
       if (head.startsWith("{")) await scenario(file);
-      else if (file.size <= HEAD && LINK.test(head)) await openLink(head.slice(head.indexOf("#") + 1).trim().split(/\s/, 1)[0]);
+      else if (file.size <= HEAD && LINK.test(head))
+        await openLink(
+          head
+            .slice(head.indexOf("#") + 1)
+            .trim()
+            .split(/\s/, 1)[0],
+        );
       else if (/(^|,)start_(cycle|s)(,|\s*$)/.test(first) && /(^|,)bytes(,|\s*$)/.test(first)) await packets(file);
       else if (/^cycle,/.test(first) || /^[0-9a-f]+ [0-9a-f]+\s*$/.test(first)) await edges(file);
-      else if (head.startsWith("$")) tell("error", `${file.name} is a value change dump; these are only written. To compare a run, save its edges as CSV or trace. ${WHAT}`);
+      else if (head.startsWith("$"))
+        tell(
+          "error",
+          `${file.name} is a value change dump; these are only written. To compare a run, save its edges as CSV or trace. ${WHAT}`,
+        );
       else tell("error", `${file.name} is nothing that can be opened here. ${WHAT}`);
     } catch (error) {
       if (!(error instanceof Dropped)) tell("error", `${file.name} cannot be opened: ${message(error)}`);
@@ -60,25 +71,42 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
 
   /** @param {File} file */
   async function scenario(file) {
-    await take(await whole(file, MOST_SCENARIO), file, (scenario) => `Opened ${scenario.title ? `“${scenario.title}” from ` : ""}${file.name}.`);
+    await take(
+      await whole(file, MOST_SCENARIO),
+      file,
+      (scenario) => `Opened ${scenario.title ? `“${scenario.title}” from ` : ""}${file.name}.`,
+    );
   }
 
   /** @param {File} file */
   async function packets(file) {
     const text = await engine.ask("replay", await whole(file, MOST_TABLE), JSON.stringify(now().scenario));
-    await take(text, file, (scenario) => `${count(scenario.source.line.sends.length)} packets of ${file.name} are sent again, each at its time, to the controllers of the experiment before. The times are those at which the bytes were heard, and replies are not sent again, so the run can differ.`);
+    await take(
+      text,
+      file,
+      (scenario) =>
+        `${count(scenario.source.line.sends.length)} packets of ${file.name} are sent again, each at its time, to the controllers of the experiment before. The times are those at which the bytes were heard, and replies are not sent again, so the run can differ.`,
+    );
   }
 
   /** Shows a scenario that is right in every respect. @param {string} json @param {File} file @param {(scenario: any) => string} words */
   async function take(json, file, words) {
     const { problems, scenario } = await engine.ask("check", json);
     if (problems.length > 0) {
-      const told = problems.slice(0, MOST_TOLD).map((/** @type {import("../state/types.js").Problem} */ { path, message }) => (path ? `${path}: ${message}` : message));
+      const told = problems
+        .slice(0, MOST_TOLD)
+        .map((/** @type {import("../state/types.js").Problem} */ { path, message }) =>
+          path ? `${path}: ${message}` : message,
+        );
       const more = problems.length > MOST_TOLD ? `; and ${problems.length - MOST_TOLD} more` : "";
-      return tell("error", `${file.name} has ${problems.length === 1 ? "a problem" : `${problems.length} problems`}: ${told.join("; ")}${more}. Your own work is as it was.`);
+      return tell(
+        "error",
+        `${file.name} has ${problems.length === 1 ? "a problem" : `${problems.length} problems`}: ${told.join("; ")}${more}. Your own work is as it was.`,
+      );
     }
     const read = readJson(scenario);
-    if (JSON.stringify(read) === JSON.stringify(now().scenario)) return tell("info", `${file.name} holds the very experiment that is on show.`);
+    if (JSON.stringify(read) === JSON.stringify(now().scenario))
+      return tell("info", `${file.name} holds the very experiment that is on show.`);
     dispatch({ type: "replace", scenario: read, origin: "shared" });
     tell("info", `${words(read)} Your own work is kept; Undo brings it back.`);
   }
@@ -87,7 +115,8 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
   async function edges(file) {
     const { result } = now();
     if (!result) throw new Error("nothing was run yet that it could be compared with");
-    if (isStale(now())) throw new Error("the experiment has not been run as it stands; mend the form, or run it, then compare");
+    if (isStale(now()))
+      throw new Error("the experiment has not been run as it stands; mend the form, or run it, then compare");
     const { controller, summary } = result;
     await engine.ask("against_begin", controller);
     for (let at = 0; at < file.size; at += PIECE) {
@@ -96,19 +125,31 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
       if (at > 0) tell("info", `Comparing ${file.name}: ${Math.round((100 * at) / file.size)} %`);
     }
     const held = await engine.ask("against_end");
-    if (!held || now().result?.summary !== summary) throw new Error("the experiment was run anew meanwhile; compare again");
+    if (!held || now().result?.summary !== summary)
+      throw new Error("the experiment was run anew meanwhile; compare again");
     const seconds = (/** @type {number} */ cycle) => `${time(cycle / summary.clock_hz)}`;
     const { difference } = held;
     if (!difference) {
       const { start_cycle, end_cycle, goes_on, same } = held;
       const all = start_cycle === 0 && !goes_on;
-      const range = all ? "all of this run" : `this run from ${seconds(start_cycle)} to ${seconds(end_cycle)}; what lies outside is not in the file`;
+      const range = all
+        ? "all of this run"
+        : `this run from ${seconds(start_cycle)} to ${seconds(end_cycle)}; what lies outside is not in the file`;
       return tell("info", `${file.name} is equal bit-exactly: ${count(same)} rows, ${range}.`);
     }
     const { cycle, line, signals } = difference;
-    const which = signals.map((/** @type {[string, number, number]} */ [name, file, run]) => `${name} is ${file} in the file and ${run} here`);
-    const what = which.length > 0 ? which.slice(0, 4).join(", ") + (which.length > 4 ? `, and ${which.length - 4} more` : "") : "a row without a change";
+    const which = signals.map(
+      (/** @type {[string, number, number]} */ [name, file, run]) => `${name} is ${file} in the file and ${run} here`,
+    );
+    const what =
+      which.length > 0
+        ? which.slice(0, 4).join(", ") + (which.length > 4 ? `, and ${which.length - 4} more` : "")
+        : "a row without a change";
     const place = around(cycle, cycle, summary.end_cycle, controller);
-    tell("error", `${file.name} is not this run: after ${count(held.same)} equal rows the first difference is in line ${count(line)}, cycle ${count(cycle)} (${seconds(cycle)}): ${what}.`, place);
+    tell(
+      "error",
+      `${file.name} is not this run: after ${count(held.same)} equal rows the first difference is in line ${count(line)}, cycle ${count(cycle)} (${seconds(cycle)}): ${what}.`,
+      place,
+    );
   }
 }

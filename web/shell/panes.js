@@ -23,7 +23,13 @@ const EDGES = [
   { pane: "form", label: "Width of the form", upright: true, before: "#sheet", after: "#views" },
   { pane: "motion", label: "Height of the curves", upright: false, before: "#view-motion", after: "#view-pulses" },
   { pane: "pulses", label: "Height of the pulses", upright: false, before: "#view-pulses", after: "#view-packets" },
-  { pane: "packets", label: "Width of the packets", upright: true, before: "#view-packets", after: ":is(#view-spectrum, #view-timing)" },
+  {
+    pane: "packets",
+    label: "Width of the packets",
+    upright: true,
+    before: "#view-packets",
+    after: ":is(#view-spectrum, #view-timing)",
+  },
 ];
 /** Least size of a pane in CSS pixels. */
 const LEAST_PX = { form: 270, motion: 120, pulses: 110, packets: 200 };
@@ -32,7 +38,7 @@ const LEAST_VIEWS_PX = 480;
 /** A key moves an edge by so many CSS pixels, with Shift by five times as many. */
 const STEP_PX = 16;
 
-/** @param {import("../time/timeline.js").Page} page */
+/** @param {import("../state/types.js").Page} page */
 export function createPanes({ dispatch, now }) {
   const main = /** @type {HTMLElement} */ (document.querySelector("main"));
   const views = byId("views");
@@ -42,12 +48,25 @@ export function createPanes({ dispatch, now }) {
   const kept = read();
   if (kept) queueMicrotask(() => dispatch({ type: "pane", panes: kept }));
   wide.addEventListener("change", () => apply(now()));
-  new ResizeObserver(() => { for (const each of edges) tell(each.edge, each.line); }).observe(views);
+  new ResizeObserver(() => {
+    for (const each of edges) tell(each.edge, each.line);
+  }).observe(views);
 
   /** @param {Edge} edge */
   function line(edge) {
-    const made = element("div", { class: `edge ${edge.upright ? "upright" : "level"}`, id: `edge-${edge.pane}`, role: "separator", tabindex: "0", "aria-orientation": edge.upright ? "vertical" : "horizontal",
-      "aria-label": edge.label, "aria-controls": edge.before.slice(1), "aria-valuemin": "0", "aria-valuemax": "100", "aria-valuenow": "50", title: `${edge.label}: drag, or arrow keys; Enter or double click: as it was` });
+    const made = element("div", {
+      class: `edge ${edge.upright ? "upright" : "level"}`,
+      id: `edge-${edge.pane}`,
+      role: "separator",
+      tabindex: "0",
+      "aria-orientation": edge.upright ? "vertical" : "horizontal",
+      "aria-label": edge.label,
+      "aria-controls": edge.before.slice(1),
+      "aria-valuemin": "0",
+      "aria-valuemax": "100",
+      "aria-valuenow": "50",
+      title: `${edge.label}: drag, or arrow keys; Enter or double click: as it was`,
+    });
     document.querySelector(edge.after)?.before(made);
     made.addEventListener("pointerdown", (event) => {
       if (event.button !== 0) return;
@@ -69,14 +88,20 @@ export function createPanes({ dispatch, now }) {
       { keys: ["Shift+ArrowRight", "Shift+ArrowDown"], text: "much larger", run: () => by(5 * STEP_PX) },
       { keys: ["Home"], text: "as small as can be", run: () => resize(edge, 0) },
       { keys: ["End"], text: "as large as can be", run: () => resize(edge, 1e6) },
-      { keys: ["Enter"], text: "as it was at first; the form: fold or unfold it", run: () => (edge.pane === "form" ? dispatch(change({ form: now().panes.form === 0 ? null : 0 })) : reset(edge)) },
+      {
+        keys: ["Enter"],
+        text: "as it was at first; the form: fold or unfold it",
+        run: () => (edge.pane === "form" ? dispatch(change({ form: now().panes.form === 0 ? null : 0 })) : reset(edge)),
+      },
     ]);
     return made;
   }
 
   /** Boxes of the pane before an edge and of the one after it. @param {Edge} edge */
   function boxes({ before, after }) {
-    const shown = (/** @type {string} */ css) => [...document.querySelectorAll(css)].map((node) => node.getBoundingClientRect()).find(({ width }) => width > 0) ?? new DOMRect();
+    const shown = (/** @type {string} */ css) =>
+      [...document.querySelectorAll(css)].map((node) => node.getBoundingClientRect()).find(({ width }) => width > 0) ??
+      new DOMRect();
     return [shown(before), shown(after)];
   }
 
@@ -132,29 +157,47 @@ export function createPanes({ dispatch, now }) {
       if (!(/** @type {Element} */ (event.target).closest("button, input, select, label"))) maximise(view);
     });
     listen(section, "Any view on a wide screen", [
-      { keys: ["f"], text: "maximise the view, or show all views again", run: ({ target }) => {
-        if (!wide.matches || /** @type {Element} */ (target).matches("input, textarea, select")) return false;
-        maximise(view);
-      } },
+      {
+        keys: ["f"],
+        text: "maximise the view, or show all views again",
+        run: ({ target }) => {
+          if (!wide.matches || /** @type {Element} */ (target).matches("input, textarea, select")) return false;
+          maximise(view);
+        },
+      },
     ]);
   }
 
   /** @param {string} view */
   function foldOrNot(view) {
     const { folded } = now().panes;
-    dispatch(change({ largest: null, folded: folded.includes(view) ? folded.filter((each) => each !== view) : [...folded, view] }));
+    dispatch(
+      change({
+        largest: null,
+        folded: folded.includes(view) ? folded.filter((each) => each !== view) : [...folded, view],
+      }),
+    );
   }
 
   /** @param {string} view */
   function maximise(view) {
-    dispatch(change({ largest: now().panes.largest === view ? null : view, folded: now().panes.folded.filter((each) => each !== view) }));
+    dispatch(
+      change({
+        largest: now().panes.largest === view ? null : view,
+        folded: now().panes.folded.filter((each) => each !== view),
+      }),
+    );
   }
 
   /** Says where an edge is. @param {Edge} edge @param {HTMLElement} made */
   function tell(edge, made) {
     const { both } = limits(edge);
     const { panes } = now();
-    const gone = !wide.matches || (edge.pane !== "form" && (largestOf(now()) !== null || [edge.before, edge.after].some((css) => panes.folded.some((view) => css.includes(`view-${view}`)))));
+    const gone =
+      !wide.matches ||
+      (edge.pane !== "form" &&
+        (largestOf(now()) !== null ||
+          [edge.before, edge.after].some((css) => panes.folded.some((view) => css.includes(`view-${view}`)))));
     made.hidden = gone;
     if (both > 0) made.setAttribute("aria-valuenow", String(Math.round((100 * size(edge)) / both)));
   }
@@ -166,14 +209,30 @@ export function createPanes({ dispatch, now }) {
     const side = byId("views").classList.contains("timing-open") ? "timing" : "spectrum";
     const isFolded = (/** @type {string} */ view) => wide.matches && largest === null && folded.includes(view);
     main.classList.toggle("formless", wide.matches && form === 0);
-    main.style.gridTemplateColumns = wide.matches && form !== null ? `${form === 0 ? "0px" : `minmax(0, ${form}px)`} minmax(0, 1fr)` : "";
+    main.style.gridTemplateColumns =
+      wide.matches && form !== null ? `${form === 0 ? "0px" : `minmax(0, ${form}px)`} minmax(0, 1fr)` : "";
     for (const view of VIEWS) {
       const section = byId(`view-${view}`);
       section.classList.toggle("folded", isFolded(view));
-      section.classList.toggle("away", wide.matches && largest !== null && largest !== view && !(largest === "spectrum" && view === "timing") && !(largest === "timing" && view === "spectrum"));
+      section.classList.toggle(
+        "away",
+        wide.matches &&
+          largest !== null &&
+          largest !== view &&
+          !(largest === "spectrum" && view === "timing") &&
+          !(largest === "timing" && view === "spectrum"),
+      );
       const [fold, most] = /** @type {HTMLElement[]} */ ([...section.querySelectorAll(".pane-buttons button")]);
-      label(fold, folded.includes(view) ? "+" : "–", `${folded.includes(view) ? "Unfold" : "Fold"} ${titleOf(section)}`);
-      label(most, largest === view ? "❐" : "□", largest === view ? "Show all views (F)" : `Maximise ${titleOf(section)} (F)`);
+      label(
+        fold,
+        folded.includes(view) ? "+" : "–",
+        `${folded.includes(view) ? "Unfold" : "Fold"} ${titleOf(section)}`,
+      );
+      label(
+        most,
+        largest === view ? "❐" : "□",
+        largest === view ? "Show all views (F)" : `Maximise ${titleOf(section)} (F)`,
+      );
       fold.setAttribute("aria-expanded", String(!isFolded(view)));
       most.setAttribute("aria-pressed", String(largest === view));
     }
@@ -182,7 +241,11 @@ export function createPanes({ dispatch, now }) {
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    const changed = before?.panes !== state.panes || before?.result !== state.result || before?.side !== state.side || before?.view !== state.view;
+    const changed =
+      before?.panes !== state.panes ||
+      before?.result !== state.result ||
+      before?.side !== state.side ||
+      before?.view !== state.view;
     if (!changed) return;
     // After the timing check has taken or left the spectrum's place.
     queueMicrotask(() => {
@@ -221,12 +284,17 @@ export function template(rows, columns, isFolded, side, largest) {
   const [packets, other] = [isFolded("packets"), isFolded(side)];
   if (!rows && !columns && !isFolded("motion") && !isFolded("pulses") && !packets && !other) return "";
   const [motion, pulses, low] = rows ?? [0.47, 0.26, 0.27];
-  const tall = (/** @type {boolean} */ folded, /** @type {number} */ part) => (folded ? "min-content" : `minmax(0, ${(100 * part).toFixed(2)}fr)`);
+  const tall = (/** @type {boolean} */ folded, /** @type {number} */ part) =>
+    folded ? "min-content" : `minmax(0, ${(100 * part).toFixed(2)}fr)`;
   // Of the two beside each other a folded one lies under the other.
-  const lowest = packets && other ? '"packets packets" min-content "spectrum spectrum" min-content'
-    : packets ? `"spectrum spectrum" ${tall(false, low)} "packets packets" min-content`
-      : other ? `"packets packets" ${tall(false, low)} "spectrum spectrum" min-content`
-        : `"packets spectrum" ${tall(false, low)}`;
+  const lowest =
+    packets && other
+      ? '"packets packets" min-content "spectrum spectrum" min-content'
+      : packets
+        ? `"spectrum spectrum" ${tall(false, low)} "packets packets" min-content`
+        : other
+          ? `"packets packets" ${tall(false, low)} "spectrum spectrum" min-content`
+          : `"packets spectrum" ${tall(false, low)}`;
   const [left, right] = columns ?? [6 / 11, 5 / 11];
   return `"motion motion" ${tall(isFolded("motion"), motion)} "pulses pulses" ${tall(isFolded("pulses"), pulses)} ${lowest} / minmax(0, ${left.toFixed(4)}fr) minmax(0, ${right.toFixed(4)}fr)`;
 }
@@ -235,9 +303,14 @@ export function template(rows, columns, isFolded, side, largest) {
 function read() {
   try {
     const { form, rows, columns, folded } = JSON.parse(loadPanes() ?? "null");
-    const parts = (/** @type {any} */ list, /** @type {number} */ length) => (Array.isArray(list) && list.length === length && list.every((part) => part > 0 && part < 1) ? list : null);
-    return { form: form === 0 || (form >= LEAST_PX.form && form <= 4000) ? form : null, rows: /** @type {any} */ (parts(rows, 3)), columns: /** @type {any} */ (parts(columns, 2)),
-      folded: VIEWS.filter((view) => Array.isArray(folded) && folded.includes(view)) };
+    const parts = (/** @type {any} */ list, /** @type {number} */ length) =>
+      Array.isArray(list) && list.length === length && list.every((part) => part > 0 && part < 1) ? list : null;
+    return {
+      form: form === 0 || (form >= LEAST_PX.form && form <= 4000) ? form : null,
+      rows: /** @type {any} */ (parts(rows, 3)),
+      columns: /** @type {any} */ (parts(columns, 2)),
+      folded: VIEWS.filter((view) => Array.isArray(folded) && folded.includes(view)),
+    };
   } catch {
     return null;
   }

@@ -26,8 +26,17 @@ export function dropDown(button, panel, opened) {
     box.style.left = `${Math.max(EDGE, Math.min(right, wide - EDGE) - box.offsetWidth)}px`;
     box.style.maxHeight = `calc(100vh - ${Math.max(EDGE, bottom + 4) + EDGE}px)`;
   };
-  box.addEventListener("toggle", (event) => { if (/** @type {ToggleEvent} */ (event).newState === "open") place(); });
-  window.addEventListener("resize", () => { if (isOpen()) place(); });
+  box.addEventListener("toggle", (event) => {
+    if (/** @type {ToggleEvent} */ (event).newState === "open") place();
+  });
+  window.addEventListener("resize", () => {
+    if (isOpen()) place();
+  });
   const isOpen = () => box.matches(":popover-open");
-  return { isOpen, close: () => { if (isOpen()) box.hidePopover(); } };
+  return {
+    isOpen,
+    close: () => {
+      if (isOpen()) box.hidePopover();
+    },
+  };
 }

@@ -8,7 +8,7 @@ import { viewOf } from "./view_part.js";
 
 /** @typedef {import("../state/types.js").State} State */
 
-/** @param {{shared: () => Promise<{full: string, digests: boolean}>} & import("../time/timeline.js").Page} page */
+/** @param {{shared: () => Promise<{full: string, digests: boolean}>} & import("../state/types.js").Page} page */
 export function createShare({ shared, now }) {
   const text = /** @type {HTMLTextAreaElement} */ (byId("link-text"));
   const copy = /** @type {HTMLButtonElement} */ (byId("copy-link"));
@@ -25,13 +25,17 @@ export function createShare({ shared, now }) {
     copy.disabled = true;
     text.value = "";
     say(about, "Making the link…");
-    if (held(now()) === "problems") return say(about, "No link yet: fields of the form need other values; mend them first.");
+    if (held(now()) === "problems")
+      return say(about, "No link yet: fields of the form need other values; mend them first.");
     try {
       const { full, digests } = await shared();
       if (mine !== asked) return;
       text.value = full;
       copy.disabled = false;
-      say(about, `${count(full.length)} characters: ${contents(now(), digests)}. It holds everything; nothing is stored on a server.`);
+      say(
+        about,
+        `${count(full.length)} characters: ${contents(now(), digests)}. It holds everything; nothing is stored on a server.`,
+      );
     } catch (error) {
       if (mine === asked) say(about, `No link: ${message(error)}`);
     }
@@ -46,14 +50,22 @@ export function createShare({ shared, now }) {
     } catch {
       text.focus();
       text.select();
-      say(about, "This browser did not let the page copy. The link is selected: copy it with Ctrl+C, or Command+C on a Mac.");
+      say(
+        about,
+        "This browser did not let the page copy. The link is selected: copy it with Ctrl+C, or Command+C on a Mac.",
+      );
     }
   }
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
     /** @type {HTMLButtonElement} */ (byId("share")).disabled = false;
-    if (isOpen() && before && (before.scenario !== state.scenario || before.result !== state.result || viewOf(before) !== viewOf(state))) make();
+    if (
+      isOpen() &&
+      before &&
+      (before.scenario !== state.scenario || before.result !== state.result || viewOf(before) !== viewOf(state))
+    )
+      make();
   }
   return { render };
 }
@@ -61,7 +73,9 @@ export function createShare({ shared, now }) {
 /** What is in the link, in words. @param {State} state @param {boolean} digests */
 function contents(state, digests) {
   const edges = state.result?.summary.controllers.reduce((sum, { edges }) => sum + edges, 0) ?? 0;
-  const seen = digests ? `the digest of this run (${count(edges)} edges), so that whoever opens it is told whether theirs is the same` : "";
+  const seen = digests
+    ? `the digest of this run (${count(edges)} edges), so that whoever opens it is told whether theirs is the same`
+    : "";
   const why = digests ? "" : isStale(state) ? "no digest, for it was not run" : "no digest, for it would be too long";
   const parts = ["the whole experiment", viewOf(state) ? "what is on show" : "", seen || why].filter(Boolean);
   return parts.length > 1 ? `${parts.slice(0, -1).join(", ")} and ${parts[parts.length - 1]}` : parts[0];

@@ -14,9 +14,17 @@ export function harmonicsTable({ ideal, pulses }) {
   const some = ideal ?? pulses;
   const names = /** @type {const} */ (["position", "speed", "acceleration"]);
   const kinds = [ideal, pulses];
-  const head = ["harmonic", "frequency_hz", ...["ideal", "pulses"].flatMap((kind) => names.map((name) => `${kind}_${name}`))];
+  const head = [
+    "harmonic",
+    "frequency_hz",
+    ...["ideal", "pulses"].flatMap((kind) => names.map((name) => `${kind}_${name}`)),
+  ];
   if (!some) return csv([head]);
-  const rows = Array.from(some.position, (_, i) => [i + 1, (i + 1) * some.fundamental_hz, ...kinds.flatMap((kind) => names.map((name) => kind?.[name][i]))]);
+  const rows = Array.from(some.position, (_, i) => [
+    i + 1,
+    (i + 1) * some.fundamental_hz,
+    ...kinds.flatMap((kind) => names.map((name) => kind?.[name][i])),
+  ]);
   const total = kinds.flatMap((kind) => [kind?.thd_position, kind?.thd_speed, kind?.thd_acceleration]);
   const felt = kinds.flatMap((kind) => [null, null, kind?.thd_acceleration_felt]);
   return csv([head, ...rows, ["thd", "", ...total], ...(felt.some((part) => part) ? [["thd_felt", "", ...felt]] : [])]);
@@ -24,14 +32,41 @@ export function harmonicsTable({ ideal, pulses }) {
 
 /** @param {Timing | null} timing */
 export function marginsTable(timing) {
-  const head = ["rule", "required_ns", "required_cycles", "least_cycles", "least_at_cycle", "least_on_channel", "violations"];
-  return csv([head, ...(timing?.rules ?? []).map(({ rule, required_ns, required_cycles, least, violations }) =>
-    [rule, required_ns, required_cycles, least?.measured_cycles, least?.cycle, least?.channel, violations])]);
+  const head = [
+    "rule",
+    "required_ns",
+    "required_cycles",
+    "least_cycles",
+    "least_at_cycle",
+    "least_on_channel",
+    "violations",
+  ];
+  return csv([
+    head,
+    ...(timing?.rules ?? []).map(({ rule, required_ns, required_cycles, least, violations }) => [
+      rule,
+      required_ns,
+      required_cycles,
+      least?.measured_cycles,
+      least?.cycle,
+      least?.channel,
+      violations,
+    ]),
+  ]);
 }
 
 /** The violations that the page knows of: the first 1000. @param {Timing | null} timing @param {number} clockHz */
 export function violationsTable(timing, clockHz) {
   const head = ["cycle", "time_s", "channel", "rule", "measured_cycles", "required_cycles"];
-  return csv([head, ...(timing?.violations ?? []).map(({ cycle, channel, rule, measured_cycles, required_cycles }) =>
-    [cycle, cycle / clockHz, channel, rule, measured_cycles, required_cycles])]);
+  return csv([
+    head,
+    ...(timing?.violations ?? []).map(({ cycle, channel, rule, measured_cycles, required_cycles }) => [
+      cycle,
+      cycle / clockHz,
+      channel,
+      rule,
+      measured_cycles,
+      required_cycles,
+    ]),
+  ]);
 }

@@ -6,7 +6,7 @@ import { lookedAt } from "../state/state.js";
 
 const VIEWS = ["motion", "pulses", "packets", "spectrum", "timing", "study"];
 
-/** @param {import("../time/timeline.js").Page} page */
+/** @param {import("../state/types.js").Page} page */
 export function createTabs({ dispatch }) {
   const tab = (/** @type {string} */ view) => byId(`tab-${view}`);
   for (const view of VIEWS) {
@@ -15,7 +15,9 @@ export function createTabs({ dispatch }) {
   arrows(VIEWS.map(tab));
   const narrow = matchMedia("(max-width: 899px)");
   const sheet = /** @type {HTMLDetailsElement} */ (byId("sheet"));
-  const fold = () => { sheet.open = !narrow.matches; };
+  const fold = () => {
+    sheet.open = !narrow.matches;
+  };
   narrow.addEventListener("change", fold);
   fold();
 
@@ -35,16 +37,18 @@ export function createTabs({ dispatch }) {
 
 /** The arrow keys go from tab to tab, round, Home and End to the first and the last, and open what they come to. @param {HTMLElement[]} tabs */
 export function arrows(tabs) {
-  tabs.forEach((tab) => tab.addEventListener("keydown", (event) => {
-    const offered = tabs.filter((each) => !each.hidden);
-    const at = offered.indexOf(tab);
-    const to = { ArrowLeft: at - 1, ArrowRight: at + 1, Home: 0, End: -1 }[event.key];
-    if (to === undefined) return;
-    event.preventDefault();
-    const next = offered[(to + offered.length) % offered.length];
-    next.click();
-    next.focus();
-  }));
+  for (const tab of tabs) {
+    tab.addEventListener("keydown", (event) => {
+      const offered = tabs.filter((each) => !each.hidden);
+      const at = offered.indexOf(tab);
+      const to = { ArrowLeft: at - 1, ArrowRight: at + 1, Home: 0, End: -1 }[event.key];
+      if (to === undefined) return;
+      event.preventDefault();
+      const next = offered[(to + offered.length) % offered.length];
+      next.click();
+      next.focus();
+    });
+  }
 }
 
 /** Marks the open one of some tabs; it alone is in the order of the Tab key. @param {HTMLElement} tab @param {boolean} open */

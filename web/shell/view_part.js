@@ -57,7 +57,8 @@ export function parseView(text) {
   const view = {};
   for (const part of (text ?? "").slice(0, MOST).split(".")) {
     const [start, end] = part.split("-").map((cycle) => number(cycle));
-    if (start !== undefined && end !== undefined && start < end && part === `${start}-${end}`) view.window ??= { start, end };
+    if (start !== undefined && end !== undefined && start < end && part === `${start}-${end}`)
+      view.window ??= { start, end };
     if (!Object.hasOwn(PARTS, part[0] ?? "")) continue;
     const [name, read] = PARTS[part[0]];
     const value = read(part.slice(1));
@@ -69,7 +70,8 @@ export function parseView(text) {
 /** @param {ViewPart} view */
 export function writeView(view) {
   const parts = view.window ? [`${view.window.start}-${view.window.end}`] : [];
-  for (const [letter, [name]] of Object.entries(PARTS)) if (view[name] !== undefined) parts.push(`${letter}${view[name]}`);
+  for (const [letter, [name]] of Object.entries(PARTS))
+    if (view[name] !== undefined) parts.push(`${letter}${view[name]}`);
   return parts.join(".");
 }
 
@@ -79,7 +81,14 @@ export function viewOf(state) {
   if (state.awaited) return writeView(state.awaited);
   const { window, controller, axis, cursors, view, side, unit, study } = state;
   return writeView({
-    window: window ?? undefined, controller: controller || undefined, axis: axis || undefined, a: cursors.a ?? undefined, b: cursors.b ?? undefined,
-    view: view === "motion" ? undefined : view, side: side ?? undefined, unit: unit === "steps" ? undefined : unit, study: study === "compare" ? undefined : study,
+    window: window ?? undefined,
+    controller: controller || undefined,
+    axis: axis || undefined,
+    a: cursors.a ?? undefined,
+    b: cursors.b ?? undefined,
+    view: view === "motion" ? undefined : view,
+    side: side ?? undefined,
+    unit: unit === "steps" ? undefined : unit,
+    study: study === "compare" ? undefined : study,
   });
 }

@@ -9,13 +9,22 @@ const WHOLE = /^-?\d+$/;
 // What JSON.stringify asks of a BigInt; a browser without rawJSON writes the nearest number.
 Object.defineProperty(BigInt.prototype, "toJSON", {
   configurable: true,
-  value() { return "rawJSON" in JSON ? /** @type {any} */ (JSON).rawJSON(String(this)) : Number(this); },
+  value() {
+    return "rawJSON" in JSON ? /** @type {any} */ (JSON).rawJSON(String(this)) : Number(this);
+  },
 });
 
 /** @param {string} text @returns {any} */
 export function readJson(text) {
-  const reviver = /** @type {(key: string, value: any, context?: {source?: string}) => any} */ ((_, value, context) =>
-    (typeof value === "number" && Number.isInteger(value) && !Number.isSafeInteger(value) && WHOLE.test(context?.source ?? "") ? BigInt(context?.source ?? 0) : value));
+  const reviver = /** @type {(key: string, value: any, context?: {source?: string}) => any} */ (
+    (_, value, context) =>
+      typeof value === "number" &&
+      Number.isInteger(value) &&
+      !Number.isSafeInteger(value) &&
+      WHOLE.test(context?.source ?? "")
+        ? BigInt(context?.source ?? 0)
+        : value
+  );
   return JSON.parse(text, reviver);
 }
 

@@ -4,7 +4,7 @@
  */
 
 /** @type {{[prefix: string]: number}} */
-const POWERS = { G: 9, M: 6, k: 3, "": 0, m: -3, u: -6, "µ": -6, "μ": -6, n: -9, p: -12 };
+const POWERS = { G: 9, M: 6, k: 3, "": 0, m: -3, u: -6, µ: -6, μ: -6, n: -9, p: -12 };
 
 const NUMBER = /^([-+−]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][-+]?\d+)?)\s*(.*)$/;
 
@@ -17,13 +17,24 @@ const NUMBER = /^([-+−]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][-+]?\d+)?)\s*(.*)$/;
  */
 export function parseNumber(text, unit, options = {}) {
   const plain = text.trim().replace(/(\d)[\s\u202f\u00a0](?=\d)/g, "$1");
-  const example = unit === "ns" ? "1900 or 1.9 us" : unit === "µs" ? "25 or 0.1 ms" : options.integer ? "1200 or 1.2k" : unit === "s" ? "0.4 or 400 ms" : "2.5 or 1.2k";
+  const example =
+    unit === "ns"
+      ? "1900 or 1.9 us"
+      : unit === "µs"
+        ? "25 or 0.1 ms"
+        : options.integer
+          ? "1200 or 1.2k"
+          : unit === "s"
+            ? "0.4 or 400 ms"
+            : "2.5 or 1.2k";
   if (plain === "") return { message: `A number is missing; give one, such as ${example}.` };
   const match = NUMBER.exec(plain);
   if (!match) return { message: `“${text.trim()}” is not a number; give one, such as ${example}.` };
   // Groups of three after a comma are thousands to some readers and parts to others.
   if (/^[-+−]?[1-9]\d{0,2}(,\d{3})+$/.test(match[1])) {
-    return { message: `“${match[1]}” can be read as ${match[1].replaceAll(",", "")} or as ${match[1].replace(",", ".")}; write it without a comma.` };
+    return {
+      message: `“${match[1]}” can be read as ${match[1].replaceAll(",", "")} or as ${match[1].replace(",", ".")}; write it without a comma.`,
+    };
   }
   const mantissa = match[1].replace("−", "-").replace(",", ".");
   const suffix = match[2].trim();
@@ -45,7 +56,13 @@ export function parseNumber(text, unit, options = {}) {
  */
 function shift(mantissa, suffix, unit) {
   // A millimetre is a metre with a prefix: "3 m" is 3000 mm, never 3 thousandths of one; so is a nanosecond a second.
-  const [base, own] = unit.startsWith("mm") ? [unit.slice(1), 3] : unit === "ns" ? ["s", 9] : unit === "µs" ? ["s", 6] : [unit, 0];
+  const [base, own] = unit.startsWith("mm")
+    ? [unit.slice(1), 3]
+    : unit === "ns"
+      ? ["s", 9]
+      : unit === "µs"
+        ? ["s", 6]
+        : [unit, 0];
   if (suffix === "") return Number(mantissa);
   for (const tail of new Set([base, own ? base : ""])) {
     if (!suffix.endsWith(tail)) continue;
@@ -77,7 +94,15 @@ function whole(value, { integer, least = -Infinity, most = Infinity }, text) {
   return { value };
 }
 
-const PREFIXES = /** @type {const} */ ([[1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "µ"], [1e-9, "n"]]);
+const PREFIXES = /** @type {const} */ ([
+  [1e9, "G"],
+  [1e6, "M"],
+  [1e3, "k"],
+  [1, ""],
+  [1e-3, "m"],
+  [1e-6, "µ"],
+  [1e-9, "n"],
+]);
 
 /**
  * A number with an SI prefix: `12.35 kHz`.
@@ -121,7 +146,11 @@ export function count(value) {
 /** @param {string} text */
 function trim(text) {
   // From 10¹² on nobody counts the noughts.
-  const plain = text.includes("e") ? (Math.abs(Number(text)) < 1e12 ? String(Number(text)) : text.replace(/\.?0*e\+?/, "e")) : text;
+  const plain = text.includes("e")
+    ? Math.abs(Number(text)) < 1e12
+      ? String(Number(text))
+      : text.replace(/\.?0*e\+?/, "e")
+    : text;
   return (plain.includes(".") && !plain.includes("e") ? plain.replace(/\.?0+$/, "") : plain).replace("-", "−");
 }
 
@@ -132,7 +161,10 @@ export function counted(number, thing) {
 
 /** The core's words as they are printed elsewhere on the page: units with their signs. @param {string} text */
 export function pretty(text) {
-  return text.replace(/\bs\^2\b/g, "s²").replace(/\bs\^3\b/g, "s³").replaceAll("mN*m", "mN·m");
+  return text
+    .replace(/\bs\^2\b/g, "s²")
+    .replace(/\bs\^3\b/g, "s³")
+    .replaceAll("mN*m", "mN·m");
 }
 
 /** Time with enough digits to tell one cycle from the next. @param {number} seconds */

@@ -40,7 +40,7 @@
  */
 
 /** Steps of history that are kept. */
-export const DEPTH = 50;
+const DEPTH = 50;
 /** Controllers that a line can have beside the first. */
 export const MOST_FURTHER = 31;
 /** Channels that a bus can have. */
@@ -48,7 +48,7 @@ export const MOST_CHANNELS = 16;
 /** Revision of the result that an earlier visit left, shown while the form has problems. */
 export const EARLIER = -1;
 /** Least cycles that the time axis shows. */
-export const LEAST_SPAN = 16;
+const LEAST_SPAN = 16;
 /** Markers 0 to 9, none of them set. @type {(number | null)[]} */
 const NO_MARKERS = Array(10).fill(null);
 
@@ -58,14 +58,44 @@ export const NO_FILTER = { text: "", kind: "", address: null, outcome: "", only:
 /** @param {Scenario} scenario @returns {State} */
 export function initial(scenario) {
   return {
-    scenario, origin: "own", revision: 0, edited: null, past: [], future: [], drafts: {},
-    judgement: null, judged: -1, derived: null, approved: -1,
-    run: { phase: "idle", progress: null, message: "" }, result: null,
-    zooms: [], gesture: null, box: false, picked: null, reference: null, difference: false, harmonic: null,
-    controller: 0, window: null, awaited: null, axis: 0, unit: "steps", hover: null, lit: null,
-    cursors: { a: null, b: null }, markers: NO_MARKERS, row: 0, folds: {}, allSignals: false,
-    packet: null, filter: NO_FILTER,
-    view: "motion", study: "compare", side: null, notice: null,
+    scenario,
+    origin: "own",
+    revision: 0,
+    edited: null,
+    past: [],
+    future: [],
+    drafts: {},
+    judgement: null,
+    judged: -1,
+    derived: null,
+    approved: -1,
+    run: { phase: "idle", progress: null, message: "" },
+    result: null,
+    zooms: [],
+    gesture: null,
+    box: false,
+    picked: null,
+    reference: null,
+    difference: false,
+    harmonic: null,
+    controller: 0,
+    window: null,
+    awaited: null,
+    axis: 0,
+    unit: "steps",
+    hover: null,
+    lit: null,
+    cursors: { a: null, b: null },
+    markers: NO_MARKERS,
+    row: 0,
+    folds: {},
+    allSignals: false,
+    packet: null,
+    filter: NO_FILTER,
+    view: "motion",
+    study: "compare",
+    side: null,
+    notice: null,
     panes: { form: null, rows: null, columns: null, folded: [], largest: null },
     seen: null,
   };
@@ -74,66 +104,136 @@ export function initial(scenario) {
 /** @param {State} state @param {Message} message @returns {State} */
 export function update(state, message) {
   switch (message.type) {
-    case "edit": return edit(state, message);
+    case "edit":
+      return edit(state, message);
     case "draft": {
       const { path, text, message: said } = message;
       return { ...state, drafts: { ...state.drafts, [path]: { text, message: said } } };
     }
-    case "seal": return state.edited === null ? state : { ...state, edited: null };
+    case "seal":
+      return state.edited === null ? state : { ...state, edited: null };
     case "replace":
       return { ...changed(remember(state), message.scenario, message.origin), ...fresh };
-    case "undo": return travel(state, "past", "future");
-    case "redo": return travel(state, "future", "past");
-    case "judged": return judged(state, message);
-    case "approve": return { ...state, approved: state.revision };
-    case "running": return { ...state, run: { phase: "running", progress: null, message: "" } };
-    case "progress": return { ...state, run: { ...state.run, progress: message.progress } };
-    case "done": return done(state, message);
-    case "failed": return { ...state, run: { phase: "failed", progress: null, message: message.message } };
-    case "window": return moveTo(state, message);
+    case "undo":
+      return travel(state, "past", "future");
+    case "redo":
+      return travel(state, "future", "past");
+    case "judged":
+      return judged(state, message);
+    case "approve":
+      return { ...state, approved: state.revision };
+    case "running":
+      return { ...state, run: { phase: "running", progress: null, message: "" } };
+    case "progress":
+      return { ...state, run: { ...state.run, progress: message.progress } };
+    case "done":
+      return done(state, message);
+    case "failed":
+      return { ...state, run: { phase: "failed", progress: null, message: message.message } };
+    case "window":
+      return moveTo(state, message);
     case "back": {
       if (state.zooms.length === 0) return state;
       const [before] = state.zooms.slice(-1);
-      return { ...state, window: before && clamp(before, endOf(state)), zooms: state.zooms.slice(0, -1), gesture: null };
+      return {
+        ...state,
+        window: before && clamp(before, endOf(state)),
+        zooms: state.zooms.slice(0, -1),
+        gesture: null,
+      };
     }
-    case "box": return { ...state, box: message.on, picked: null };
-    case "pick": return { ...state, picked: message.picked };
-    case "reference": return { ...state, reference: message.reference, difference: message.reference !== null && state.difference };
-    case "harmonic": return state.harmonic === message.harmonic ? state : { ...state, harmonic: message.harmonic };
-    case "difference": return { ...state, difference: message.on };
+    case "box":
+      return { ...state, box: message.on, picked: null };
+    case "pick":
+      return { ...state, picked: message.picked };
+    case "reference":
+      return { ...state, reference: message.reference, difference: message.reference !== null && state.difference };
+    case "harmonic":
+      return state.harmonic === message.harmonic ? state : { ...state, harmonic: message.harmonic };
+    case "difference":
+      return { ...state, difference: message.on };
     case "open":
-      return state.result?.revision === state.revision ? opened(state, message.view) : { ...state, awaited: message.view };
-    case "seen": return { ...state, seen: { text: message.text, verdict: null } };
-    case "compared": return state.seen?.text === message.text ? { ...state, seen: { ...state.seen, verdict: message.verdict } } : state;
-    case "hover": return state.hover === message.cycle ? state : { ...state, hover: message.cycle };
-    case "light": return sameLit(state.lit, message.lit) ? state : { ...state, lit: message.lit };
-    case "marker": return { ...state, markers: state.markers.with(message.digit, message.cycle) };
-    case "cursor": return { ...state, cursors: { ...state.cursors, [message.which]: message.cycle } };
-    case "row": return { ...state, row: message.row };
-    case "fold": return { ...state, folds: { ...state.folds, [message.channel]: message.folded } };
-    case "fold-all": return { ...state, folds: { ...state.folds, ...Object.fromEntries(Array.from({ length: MOST_CHANNELS }, (_, channel) => [channel, message.folded])) } };
-    case "all-signals": return { ...state, allSignals: message.on };
-    case "filter": return { ...state, filter: { ...state.filter, ...message.filter } };
-    case "packet": return { ...state, packet: message.packet };
-    case "controller": return lookAt(state, message.controller);
-    case "side": return { ...state, side: message.side };
-    case "axis": return { ...state, axis: message.axis };
-    case "unit": return { ...state, unit: message.unit };
-    case "pane": return { ...state, panes: { ...state.panes, ...message.panes } };
-    case "view": return { ...state, view: message.view };
-    case "study": return { ...state, study: message.study };
-    case "notice": return { ...state, notice: message.notice };
+      return state.result?.revision === state.revision
+        ? opened(state, message.view)
+        : { ...state, awaited: message.view };
+    case "seen":
+      return { ...state, seen: { text: message.text, verdict: null } };
+    case "compared":
+      return state.seen?.text === message.text
+        ? { ...state, seen: { ...state.seen, verdict: message.verdict } }
+        : state;
+    case "hover":
+      return state.hover === message.cycle ? state : { ...state, hover: message.cycle };
+    case "light":
+      return sameLit(state.lit, message.lit) ? state : { ...state, lit: message.lit };
+    case "marker":
+      return { ...state, markers: state.markers.with(message.digit, message.cycle) };
+    case "cursor":
+      return { ...state, cursors: { ...state.cursors, [message.which]: message.cycle } };
+    case "row":
+      return { ...state, row: message.row };
+    case "fold":
+      return { ...state, folds: { ...state.folds, [message.channel]: message.folded } };
+    case "fold-all":
+      return {
+        ...state,
+        folds: {
+          ...state.folds,
+          ...Object.fromEntries(Array.from({ length: MOST_CHANNELS }, (_, channel) => [channel, message.folded])),
+        },
+      };
+    case "all-signals":
+      return { ...state, allSignals: message.on };
+    case "filter":
+      return { ...state, filter: { ...state.filter, ...message.filter } };
+    case "packet":
+      return { ...state, packet: message.packet };
+    case "controller":
+      return lookAt(state, message.controller);
+    case "side":
+      return { ...state, side: message.side };
+    case "axis":
+      return { ...state, axis: message.axis };
+    case "unit":
+      return { ...state, unit: message.unit };
+    case "pane":
+      return { ...state, panes: { ...state.panes, ...message.panes } };
+    case "view":
+      return { ...state, view: message.view };
+    case "study":
+      return { ...state, study: message.study };
+    case "notice":
+      return { ...state, notice: message.notice };
   }
 }
 
 /** What a wholly different scenario begins with. */
-const fresh = { controller: 0, window: null, zooms: [], gesture: null, picked: null, harmonic: null, packet: null, filter: NO_FILTER, side: null, hover: null, lit: null, cursors: { a: null, b: null }, markers: NO_MARKERS, axis: 0, row: 0, folds: {} };
+const fresh = {
+  controller: 0,
+  window: null,
+  zooms: [],
+  gesture: null,
+  picked: null,
+  harmonic: null,
+  packet: null,
+  filter: NO_FILTER,
+  side: null,
+  hover: null,
+  lit: null,
+  cursors: { a: null, b: null },
+  markers: NO_MARKERS,
+  axis: 0,
+  row: 0,
+  folds: {},
+};
 
 /** Shows another part of the time axis. The parts before it are kept, a gesture's many as one. @param {State} state @param {{window: Span | null, joins?: string}} message @returns {State} */
 function moveTo(state, { window: wanted, joins }) {
   const window = wanted && clamp(wanted, endOf(state));
   const gesture = joins ?? null;
-  const same = window === state.window || (window !== null && window.start === state.window?.start && window.end === state.window.end);
+  const same =
+    window === state.window ||
+    (window !== null && window.start === state.window?.start && window.end === state.window.end);
   if (same || (gesture !== null && gesture === state.gesture)) return { ...state, window, gesture };
   return { ...state, window, gesture, zooms: [...state.zooms, state.window].slice(-DEPTH) };
 }
@@ -166,7 +266,18 @@ function remember(state) {
 /** @param {State} state @param {Scenario} scenario @param {Origin} origin @returns {State} */
 function changed(state, scenario, origin) {
   const run = { .../** @type {const} */ ({ phase: "waiting", progress: null, message: "" }) };
-  return { ...state, scenario, origin, run, revision: state.revision + 1, drafts: {}, edited: null, notice: null, awaited: null, seen: null };
+  return {
+    ...state,
+    scenario,
+    origin,
+    run,
+    revision: state.revision + 1,
+    drafts: {},
+    edited: null,
+    notice: null,
+    awaited: null,
+    seen: null,
+  };
 }
 
 /** @param {State} state @param {"past" | "future"} from @param {"past" | "future"} to @returns {State} */
@@ -197,9 +308,17 @@ function done(state, { revision, summary, ms }) {
   const same = state.result?.summary.clock_hz === summary.clock_hz;
   const kept = state.window && same ? clamp(state.window, summary.end_cycle) : null;
   const inside = (/** @type {number | null} */ c) => (c !== null && c <= summary.end_cycle && same ? c : null);
-  const here = { ...next, window: kept, seen: state.seen && { ...state.seen, verdict: null },
-    picked: null, zooms: same ? state.zooms : [], gesture: null,
-    cursors: { a: inside(state.cursors.a), b: inside(state.cursors.b) }, markers: state.markers.map(inside), lit: null };
+  const here = {
+    ...next,
+    window: kept,
+    seen: state.seen && { ...state.seen, verdict: null },
+    picked: null,
+    zooms: same ? state.zooms : [],
+    gesture: null,
+    cursors: { a: inside(state.cursors.a), b: inside(state.cursors.b) },
+    markers: state.markers.map(inside),
+    lit: null,
+  };
   return state.awaited ? opened(here, state.awaited) : here;
 }
 
@@ -208,8 +327,17 @@ function opened(state, view) {
   const last = endOf(state);
   const inside = (/** @type {number | undefined} */ cycle) => (cycle !== undefined && cycle <= last ? cycle : null);
   const looked = lookAt(state, view.controller ?? 0);
-  return { ...looked, awaited: null, window: view.window ? within(view.window, last) : null, cursors: { a: inside(view.a), b: inside(view.b) },
-    axis: Math.min(view.axis ?? 0, (lookedAt(looked)?.channels ?? 1) - 1), view: view.view ?? state.view, side: view.side ?? null, study: view.study ?? state.study, unit: view.unit ?? "steps" };
+  return {
+    ...looked,
+    awaited: null,
+    window: view.window ? within(view.window, last) : null,
+    cursors: { a: inside(view.a), b: inside(view.b) },
+    axis: Math.min(view.axis ?? 0, (lookedAt(looked)?.channels ?? 1) - 1),
+    view: view.view ?? state.view,
+    side: view.side ?? null,
+    study: view.study ?? state.study,
+    unit: view.unit ?? "steps",
+  };
 }
 
 /** The result as another of its controllers shows it: for the views another result. @param {State} state @param {number} controller @returns {State} */
@@ -219,8 +347,16 @@ function lookAt(state, controller) {
   const shown = Math.min(controller, controllers.length - 1);
   const { channels } = controllers[shown];
   const row = state.row < 2 * MOST_CHANNELS && state.row % MOST_CHANNELS >= channels ? 0 : state.row;
-  return { ...state, controller, result: { ...state.result, controller: shown }, row,
-    axis: Math.min(state.axis, channels - 1), packet: null, hover: null, lit: null };
+  return {
+    ...state,
+    controller,
+    result: { ...state.result, controller: shown },
+    row,
+    axis: Math.min(state.axis, channels - 1),
+    packet: null,
+    hover: null,
+    lit: null,
+  };
 }
 
 /** What the run made of the controller on show; none before the first run. @param {State} state */
@@ -251,7 +387,7 @@ export function shown(state) {
 }
 
 /** Keeps a window inside the run and at least a few cycles long. @param {Span} window @param {number} last @returns {Span | null} */
-export function clamp({ start, end }, last) {
+function clamp({ start, end }, last) {
   const most = Math.max(LEAST_SPAN, last);
   const span = Math.min(most, Math.max(LEAST_SPAN, Math.round(end - start)));
   const from = Math.min(Math.max(0, Math.round(start)), most - span);

@@ -118,5 +118,7 @@
  * @property {Panes} panes          Of a wide screen.
  * @property {"spectrum" | "timing" | null} side  Which of the two shares their place on a wide screen; null: the timing check, if there is one.
  * @property {{text: string, kind: "info" | "error", place?: Place | null} | null} notice  About links, files and the engine.
+ *
+ * @typedef {{dispatch: (message: import("./state.js").Message) => void, now: () => State}} Page  What each part of the page is given.
  */
 export {};

@@ -36,7 +36,9 @@ export function drawCursors(context, state, plot, height) {
   };
   /** @param {{start: number, end: number}} span @param {string} ink @param {number} opacity */
   const band = ({ start, end }, ink, opacity) => {
-    const [from, to] = [start, end].map((cycle) => Math.min(plot.right, Math.max(plot.left, pixelOf(state, plot, cycle))));
+    const [from, to] = [start, end].map((cycle) =>
+      Math.min(plot.right, Math.max(plot.left, pixelOf(state, plot, cycle))),
+    );
     context.fillStyle = color(ink);
     context.globalAlpha = opacity;
     if (end >= start && from < plot.right && to > plot.left) context.fillRect(from, 0, Math.max(2, to - from), height);
@@ -56,6 +58,11 @@ export function drawCursors(context, state, plot, height) {
 
 /** Whether what lies over the views has changed. @param {State | undefined} before @param {State} state */
 export function overlaid(before, state) {
-  return before?.hover !== state.hover || before?.lit !== state.lit || before?.cursors !== state.cursors || before?.markers !== state.markers
-    || before?.picked !== state.picked;
+  return (
+    before?.hover !== state.hover ||
+    before?.lit !== state.lit ||
+    before?.cursors !== state.cursors ||
+    before?.markers !== state.markers ||
+    before?.picked !== state.picked
+  );
 }

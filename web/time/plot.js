@@ -61,15 +61,16 @@ export function color(name) {
   }
   probe.style.color = `var(${name})`;
   const parts = getComputedStyle(probe).color.match(/[\d.]+/g) ?? ["128", "128", "128"];
-  const hex = `#${parts.slice(0, 3).map((part) => Math.round(Number(part)).toString(16).padStart(2, "0")).join("")}`;
+  const hex = `#${parts
+    .slice(0, 3)
+    .map((part) => Math.round(Number(part)).toString(16).padStart(2, "0"))
+    .join("")}`;
   known.set(name, hex);
   return hex;
 }
 
-/** Forgets the colours: the theme has changed. */
-export function recolor() {
-  known.clear();
-}
+// The views hear of another theme after this module, and draw with its colours.
+document.addEventListener("themechange", () => known.clear());
 
 let family = "";
 
@@ -116,8 +117,15 @@ export function draw(canvas, chart) {
 
 /** As the wasm module takes a chart. @param {Chart} chart */
 function spec({ x, y, series }) {
-  return { ratio: CHART_RATIO, font: font(), font_px: 11, x, y, series,
-    colors: { label: color("--quiet"), axis: color("--axis"), grid: color("--grid") } };
+  return {
+    ratio: CHART_RATIO,
+    font: font(),
+    font_px: 11,
+    x,
+    y,
+    series,
+    colors: { label: color("--quiet"), axis: color("--axis"), grid: color("--grid") },
+  };
 }
 
 /** A chart on a canvas of its own, which is not on show. @param {Chart} chart @param {number} width @param {number} height */
@@ -131,7 +139,7 @@ export function picture(chart, width, height) {
 /** A chart as the text of an SVG element at a place. @param {Chart} chart @param {number} x @param {number} y @param {number} width @param {number} height */
 export function drawing(chart, x, y, width, height) {
   const [w, h] = [width * CHART_RATIO, height * CHART_RATIO];
-  const inner = chart_svg(w, h, spec(chart)).replace(/^[^]*?<svg[^>]*>/, "");
+  const inner = chart_svg(w, h, spec(chart)).replace(/^[\s\S]*?<svg[^>]*>/, "");
   return `<svg x="${x}" y="${y}" width="${width}" height="${height}" viewBox="0 0 ${w} ${h}">${inner}`;
 }
 

@@ -6,13 +6,18 @@ import { zoom } from "./timeline.js";
 
 /** @typedef {import("../state/types.js").State} State */
 
-/** @param {import("./timeline.js").Page} page */
+/** @param {import("../state/types.js").Page} page */
 export function createRange({ dispatch, now }) {
   const page = { dispatch, now };
   // Besides these, any view may have buttons of its own for the same.
   for (const press of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("[data-time]"))) {
-    const run = { in: () => byId("zoom-in").click(), out: () => byId("zoom-out").click(), fit: () => byId("zoom-fit").click(),
-      back: () => dispatch({ type: "back" }), box: () => dispatch({ type: "box", on: !now().box }) }[press.dataset.time ?? ""];
+    const run = {
+      in: () => byId("zoom-in").click(),
+      out: () => byId("zoom-out").click(),
+      fit: () => byId("zoom-fit").click(),
+      back: () => dispatch({ type: "back" }),
+      box: () => dispatch({ type: "box", on: !now().box }),
+    }[press.dataset.time ?? ""];
     if (run) press.addEventListener("click", run);
   }
   byId("zoom-in").addEventListener("click", () => zoom(page, 0.5, now().cursors.a ?? undefined));
@@ -45,7 +50,10 @@ export function createRange({ dispatch, now }) {
   function fields(state, all = false) {
     const { start, end } = shown(state);
     const clock = state.result?.summary.clock_hz ?? 1;
-    for (const [id, cycle] of /** @type {[string, number][]} */ ([["window-start", start], ["window-end", end]])) {
+    for (const [id, cycle] of /** @type {[string, number][]} */ ([
+      ["window-start", start],
+      ["window-end", end],
+    ])) {
       const input = /** @type {HTMLInputElement} */ (byId(id));
       if (all || document.activeElement !== input) input.value = time(cycle / clock);
     }
@@ -54,8 +62,11 @@ export function createRange({ dispatch, now }) {
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
     if (before?.box !== state.box || before?.zooms !== state.zooms) {
-      for (const press of document.querySelectorAll("[data-time=box]")) press.setAttribute("aria-pressed", String(state.box));
-      for (const press of document.querySelectorAll("[data-time=back]")) /** @type {HTMLButtonElement} */ (press).disabled = state.zooms.length === 0;
+      for (const press of document.querySelectorAll("[data-time=box]"))
+        press.setAttribute("aria-pressed", String(state.box));
+      for (const press of document.querySelectorAll("[data-time=back]")) {
+        /** @type {HTMLButtonElement} */ (press).disabled = state.zooms.length === 0;
+      }
       document.body.classList.toggle("boxing", state.box);
     }
     if (before?.window === state.window && before?.result === state.result) return;

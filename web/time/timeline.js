@@ -7,7 +7,7 @@ import { endOf, shown } from "../state/state.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Span} Span */
-/** @typedef {{dispatch: (message: import("../state/state.js").Message) => void, now: () => State}} Page */
+/** @typedef {import("../state/types.js").Page} Page */
 /** @typedef {(event: PointerEvent, cycle: number) => boolean | Promise<number>} Click  Whether it used the click, or the cycle to take instead. */
 
 /** Notches of the wheel that come within this time, in ms, are one gesture. */
@@ -35,7 +35,7 @@ export function pan({ dispatch, now }, part, joins) {
 }
 
 /** Shows what lies between the cursors, with a little around it. @param {Page} page */
-export function zoomToCursors({ dispatch, now }) {
+function zoomToCursors({ dispatch, now }) {
   const { a, b } = now().cursors;
   if (a === null || b === null || a === b) return;
   const air = Math.abs(b - a) * 0.05;
@@ -94,23 +94,39 @@ export function gestures(target, plot, page) {
   function begin() {
     const points = [...pointers.values()];
     const x = points.reduce((sum, point) => sum + point.x, 0) / points.length;
-    drag = { window: shown(now()), x, spread: Math.abs(points[0].x - (points[1]?.x ?? 0)), moved: drag?.moved ?? false, box: false,
-      gesture: drag?.gesture ?? `${target.id} ${++gestures}` };
+    drag = {
+      window: shown(now()),
+      x,
+      spread: Math.abs(points[0].x - (points[1]?.x ?? 0)),
+      moved: drag?.moved ?? false,
+      box: false,
+      gesture: drag?.gesture ?? `${target.id} ${++gestures}`,
+    };
   }
 
-  target.addEventListener("wheel", (event) => {
-    if (event.ctrlKey && event.deltaMode !== 0) return;
-    // Beside the plotting area the wheel scrolls the rows.
-    if (xOf(event) < plot().left && !event.ctrlKey) return;
-    event.preventDefault();
-    const sideways = event.shiftKey || Math.abs(event.deltaX) > Math.abs(event.deltaY);
-    const delta = (event.deltaX || event.deltaY) * (event.deltaMode === 1 ? 20 : 1);
-    if (event.timeStamp - turned > WHEEL_MS) gestures += 1;
-    turned = event.timeStamp;
-    const joins = `${target.id} wheel ${gestures}`;
-    if (sideways) pan(page, delta / 800, joins);
-    else zoom(page, Math.exp(Math.max(-1, Math.min(1, event.deltaY * (event.deltaMode === 1 ? 0.05 : 0.002)))), cycleAt(now(), plot(), xOf(event)), joins);
-  }, { passive: false });
+  target.addEventListener(
+    "wheel",
+    (event) => {
+      if (event.ctrlKey && event.deltaMode !== 0) return;
+      // Beside the plotting area the wheel scrolls the rows.
+      if (xOf(event) < plot().left && !event.ctrlKey) return;
+      event.preventDefault();
+      const sideways = event.shiftKey || Math.abs(event.deltaX) > Math.abs(event.deltaY);
+      const delta = (event.deltaX || event.deltaY) * (event.deltaMode === 1 ? 20 : 1);
+      if (event.timeStamp - turned > WHEEL_MS) gestures += 1;
+      turned = event.timeStamp;
+      const joins = `${target.id} wheel ${gestures}`;
+      if (sideways) pan(page, delta / 800, joins);
+      else
+        zoom(
+          page,
+          Math.exp(Math.max(-1, Math.min(1, event.deltaY * (event.deltaMode === 1 ? 0.05 : 0.002)))),
+          cycleAt(now(), plot(), xOf(event)),
+          joins,
+        );
+    },
+    { passive: false },
+  );
 
   target.addEventListener("pointerdown", (event) => {
     if (event.button !== 0 && event.button !== 2) return;
@@ -120,10 +136,13 @@ export function gestures(target, plot, page) {
     begin();
     // Also a press that leaves the element before it is a drag ends here.
     target.setPointerCapture(event.pointerId);
-    if (drag && pointers.size === 1) drag.box = (now().box || event.shiftKey || event.button === 2) && xOf(event) >= plot().left;
+    if (drag && pointers.size === 1)
+      drag.box = (now().box || event.shiftKey || event.button === 2) && xOf(event) >= plot().left;
   });
   // The right button's drag is a box; a press of it alone is still the browser's menu.
-  target.addEventListener("contextmenu", (event) => { if (drag?.moved || boxed) event.preventDefault(); });
+  target.addEventListener("contextmenu", (event) => {
+    if (drag?.moved || boxed) event.preventDefault();
+  });
 
   target.addEventListener("pointermove", (event) => {
     const x = xOf(event);
@@ -139,7 +158,9 @@ export function gestures(target, plot, page) {
     if (!drag.moved && Math.abs(middle - drag.x) < CLICK_PX && points.length === 1) return;
     drag.moved = true;
     if (drag.box && points.length === 1) {
-      const [from, to] = [drag.x, x].sort((a, b) => a - b).map((at) => cycleAt(now(), area, Math.min(area.right, Math.max(area.left, at))));
+      const [from, to] = [drag.x, x]
+        .sort((a, b) => a - b)
+        .map((at) => cycleAt(now(), area, Math.min(area.right, Math.max(area.left, at))));
       return dispatch({ type: "pick", picked: { start: from, end: to } });
     }
     const width = Math.max(1, area.right - area.left);
@@ -204,7 +225,8 @@ function keys(page, plot) {
     const { box, picked, cursors } = now();
     if (box || picked) return dispatch({ type: "box", on: false });
     // Nothing is left to remove: the focus leaves the view.
-    if (cursors.a === null && cursors.b === null && document.activeElement instanceof HTMLElement) return document.activeElement.blur();
+    if (cursors.a === null && cursors.b === null && document.activeElement instanceof HTMLElement)
+      return document.activeElement.blur();
     dispatch({ type: "cursor", which: "a", cycle: null });
     dispatch({ type: "cursor", which: "b", cycle: null });
   };
@@ -219,7 +241,11 @@ function keys(page, plot) {
   };
   return [
     { keys: DIGITS, text: "show marker 0 to 9", run: (event) => void goToMarker(page, digitOf(event)) },
-    { keys: DIGITS.map((digit) => `Shift+${digit}`), text: "set that marker at the pointer, else at cursor A; once more removes it", run: mark },
+    {
+      keys: DIGITS.map((digit) => `Shift+${digit}`),
+      text: "set that marker at the pointer, else at cursor A; once more removes it",
+      run: mark,
+    },
     { keys: ["+", "="], text: "zoom in, around cursor A if it is set", run: () => zoom(page, 0.5, at()) },
     { keys: ["-", "−"], text: "zoom out", run: () => zoom(page, 2, at()) },
     { keys: ["Home"], text: "show the whole run", run: () => dispatch({ type: "window", window: null }) },

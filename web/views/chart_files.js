@@ -4,11 +4,11 @@
  */
 import { unlessDropped } from "../engine/engine.js";
 import { csv } from "../shell/tables.js";
-import { shown } from "../state/state.js";
 import { si, time } from "../state/number.js";
+import { shown } from "../state/state.js";
 import { color, drawing, font, picture } from "../time/plot.js";
 import { ask } from "./motion/ask.js";
-import { QUANTITIES, bandsOf, chartOf } from "./motion/bands.js";
+import { bandsOf, chartOf, QUANTITIES } from "./motion/bands.js";
 import { distortion, given } from "./spectrum/harmonics.js";
 import { chosenSpectrum, spectrumChart } from "./spectrum/spectrum.js";
 
@@ -52,10 +52,23 @@ export async function motionSheet(state, engine) {
   const { start, end } = shown(state);
   const clock = state.result?.summary.clock_hz ?? 1;
   const { title, note } = titleOf(state);
-  const legend = new Map(charts.flatMap(({ bands }) => bands.map(({ name, ink, dash }) => [name, { name: name === "kept" ? `kept: ${state.reference?.title}` : name, ink, dash }])));
+  const legend = new Map(
+    charts.flatMap(({ bands }) =>
+      bands.map(({ name, ink, dash }) => [
+        name,
+        { name: name === "kept" ? `kept: ${state.reference?.title}` : name, ink, dash },
+      ]),
+    ),
+  );
   return {
-    title, note: `axis ${state.axis} · ${time(start / clock)} to ${time(end / clock)} · ${note}`, legend: [...legend.values()],
-    panels: charts.map(({ caption, unit, chart }) => ({ caption: `${caption}, ${unit}`, chart, height: PANEL + chart.x.label_px })),
+    title,
+    note: `axis ${state.axis} · ${time(start / clock)} to ${time(end / clock)} · ${note}`,
+    legend: [...legend.values()],
+    panels: charts.map(({ caption, unit, chart }) => ({
+      caption: `${caption}, ${unit}`,
+      chart,
+      height: PANEL + chart.x.label_px,
+    })),
   };
 }
 
@@ -67,9 +80,16 @@ export async function spectrumSheet(state, engine) {
   const all = given(found);
   const thd = all[0][1].periodic ? `${distortion(found, quantity)} · ` : "";
   return {
-    title, note: `${thd}${note}`, legend: all.map(([name]) => ({ name, ink: name === "ideal" ? "--ideal" : "--made", dash: 0 })),
-    panels: [{ caption: `amplitude of ${quantity} over the order of the harmonic, fundamental ${si(all[0][1].fundamental_hz, "Hz", 5)}`,
-      chart: spectrumChart(found, quantity, db, WIDTH), height: 2 * PANEL }],
+    title,
+    note: `${thd}${note}`,
+    legend: all.map(([name]) => ({ name, ink: name === "ideal" ? "--ideal" : "--made", dash: 0 })),
+    panels: [
+      {
+        caption: `amplitude of ${quantity} over the order of the harmonic, fundamental ${si(all[0][1].fundamental_hz, "Hz", 5)}`,
+        chart: spectrumChart(found, quantity, db, WIDTH),
+        height: 2 * PANEL,
+      },
+    ],
   };
 }
 
@@ -127,7 +147,9 @@ export function bitmap(sheet) {
     },
     chart: (chart, x, y, width, height) => context.drawImage(picture(chart, width, height), x, y, width, height),
   });
-  return new Promise((resolve, reject) => canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("this browser made no picture"))), "image/png"));
+  return new Promise((resolve, reject) =>
+    canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("this browser made no picture"))), "image/png"),
+  );
 }
 
 /** @param {boolean} bold */
@@ -141,11 +163,16 @@ export function vector(sheet) {
   const parts = [`<rect width="100%" height="100%" fill="${color("--pane")}"/>`];
   lay(sheet, {
     text: (text, x, y, bold, ink) => {
-      parts.push(`<text x="${x}" y="${y}" fill="${color(ink)}" font-family="${escaped(font())}" font-size="${bold ? 14 : 12}"${bold ? ' font-weight="bold"' : ""}>${escaped(text)}</text>`);
+      parts.push(
+        `<text x="${x}" y="${y}" fill="${color(ink)}" font-family="${escaped(font())}" font-size="${bold ? 14 : 12}"${bold ? ' font-weight="bold"' : ""}>${escaped(text)}</text>`,
+      );
       if (measure) measure.font = fontOf(bold);
       return measure?.measureText(text).width ?? text.length * 7;
     },
-    key: ({ ink, dash }, x, y) => parts.push(`<path d="M${x} ${y}h20" stroke="${color(ink)}" stroke-width="3"${dash ? ` stroke-dasharray="${dash}"` : ""}/>`),
+    key: ({ ink, dash }, x, y) =>
+      parts.push(
+        `<path d="M${x} ${y}h20" stroke="${color(ink)}" stroke-width="3"${dash ? ` stroke-dasharray="${dash}"` : ""}/>`,
+      ),
     chart: (chart, x, y, width, height) => parts.push(drawing(chart, x, y, width, height)),
   });
   const height = heightOf(sheet);
@@ -161,11 +188,22 @@ function escaped(text) {
 function motionTable(state, columns) {
   const bands = QUANTITIES.flatMap((quantity) => {
     const { unit } = chartOf(state, columns, quantity);
-    return bandsOf(state, columns, quantity).reverse().map((band) => ({ ...band, head: `${band.name} ${quantity}`, unit }));
+    return bandsOf(state, columns, quantity)
+      .reverse()
+      .map((band) => ({ ...band, head: `${band.name} ${quantity}`, unit }));
   });
   const cell = (/** @type {number} */ value) => (Number.isFinite(value) ? value : "");
-  const head = ["time (s)", ...bands.flatMap(({ head: name, unit }) => [`${name} min (${unit})`, `${name} max (${unit})`])];
-  return csv([head, ...[...columns.columns.x].map((seconds, row) => [seconds, ...bands.flatMap(({ min, max }) => [cell(min[row]), cell(max[row])])])]);
+  const head = [
+    "time (s)",
+    ...bands.flatMap(({ head: name, unit }) => [`${name} min (${unit})`, `${name} max (${unit})`]),
+  ];
+  return csv([
+    head,
+    ...[...columns.columns.x].map((seconds, row) => [
+      seconds,
+      ...bands.flatMap(({ min, max }) => [cell(min[row]), cell(max[row])]),
+    ]),
+  ]);
 }
 
 /** The curves of the motion view as they are shown, as a table. @param {State} state @param {Engine} engine */

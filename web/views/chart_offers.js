@@ -14,10 +14,35 @@ export function chartFiles(state, engine) {
   const motion = async () => (await files()).motionSheet(state, engine);
   const spectrum = async () => (await files()).spectrumSheet(state, engine);
   return [
-    { name: `${base}-motion.png`, type: png, label: "Motion, picture (PNG)", make: async () => [await (await files()).bitmap(await motion())] },
-    { name: `${base}-motion.svg`, type: svg, label: "Motion, picture (SVG)", make: async () => [(await files()).vector(await motion())] },
-    { name: `${base}-motion.csv`, type: csv, label: "Motion, values (CSV)", make: async () => [await (await files()).motionValues(state, engine)] },
-    { name: `${base}-spectrum.png`, type: png, label: "Spectrum, picture (PNG)", make: async () => [await (await files()).bitmap(await spectrum())] },
-    { name: `${base}-spectrum.svg`, type: svg, label: "Spectrum, picture (SVG)", make: async () => [(await files()).vector(await spectrum())] },
+    {
+      name: `${base}-motion.png`,
+      type: png,
+      label: "Motion, picture (PNG)",
+      make: async () => [await (await files()).bitmap(await motion())],
+    },
+    {
+      name: `${base}-motion.svg`,
+      type: svg,
+      label: "Motion, picture (SVG)",
+      make: async () => [(await files()).vector(await motion())],
+    },
+    {
+      name: `${base}-motion.csv`,
+      type: csv,
+      label: "Motion, values (CSV)",
+      make: async () => [await (await files()).motionValues(state, engine)],
+    },
+    {
+      name: `${base}-spectrum.png`,
+      type: png,
+      label: "Spectrum, picture (PNG)",
+      make: async () => [await (await files()).bitmap(await spectrum())],
+    },
+    {
+      name: `${base}-spectrum.svg`,
+      type: svg,
+      label: "Spectrum, picture (SVG)",
+      make: async () => [(await files()).vector(await spectrum())],
+    },
   ];
 }

@@ -4,9 +4,9 @@
  */
 import { byId, element, fill, say } from "../dom.js";
 import { unlessDropped } from "../engine/engine.js";
-import { count, si, time } from "../state/number.js";
-import { ruleName } from "./rules.js";
 import { listen } from "../shell/commands.js";
+import { count, si, time } from "../state/number.js";
+import { ruleName } from "../state/rules.js";
 import { endOf, lookedAt, shown } from "../state/state.js";
 
 /** @typedef {import("../state/types.js").State} State */
@@ -17,7 +17,7 @@ const DIR = 16;
 /** A violation is shown in a window of so many of the times that it is about. */
 const AROUND = 14;
 
-/** @param {{engine: import("../engine/engine.js").Engine, drivers: import("../state/types.js").DriverSheet[], speak: (text: string) => void} & import("../time/timeline.js").Page} page */
+/** @param {{engine: import("../engine/engine.js").Engine, drivers: import("../state/types.js").DriverSheet[], speak: (text: string) => void} & import("../state/types.js").Page} page */
 export function createTiming({ engine, drivers, speak, dispatch, now }) {
   const body = /** @type {Element} */ (byId("violations").querySelector("tbody"));
   /** @type {Timing | null} */
@@ -35,7 +35,8 @@ export function createTiming({ engine, drivers, speak, dispatch, now }) {
     ]);
   }
   for (const side of /** @type {const} */ (["spectrum", "timing"])) {
-    for (const button of document.querySelectorAll(`[data-side="${side}"]`)) button.addEventListener("click", () => dispatch({ type: "side", side }));
+    for (const button of document.querySelectorAll(`[data-side="${side}"]`))
+      button.addEventListener("click", () => dispatch({ type: "side", side }));
   }
   body.addEventListener("click", (event) => {
     const row = /** @type {HTMLElement} */ (event.target).closest("tr");
@@ -68,8 +69,16 @@ export function createTiming({ engine, drivers, speak, dispatch, now }) {
     if (!least) return tell(`${ruleName(rule)}: never measured in this run.`);
     current = -1;
     const clock = now().result?.summary.clock_hz ?? 1;
-    go({ cycle: least.cycle, channel: least.channel, rule, measured_cycles: least.measured_cycles, required_cycles: required_cycles ?? 0 });
-    tell(`${ruleName(rule)}: least ${si(least.measured_cycles / clock, "s")}, channel ${least.channel}, at ${time(least.cycle / clock)}.`);
+    go({
+      cycle: least.cycle,
+      channel: least.channel,
+      rule,
+      measured_cycles: least.measured_cycles,
+      required_cycles: required_cycles ?? 0,
+    });
+    tell(
+      `${ruleName(rule)}: least ${si(least.measured_cycles / clock, "s")}, channel ${least.channel}, at ${time(least.cycle / clock)}.`,
+    );
   }
 
   /** Shows a measured time in the pulses, the edge that ends it at cursor A. @param {import("../state/types.js").Violation} measured */
@@ -94,7 +103,9 @@ export function createTiming({ engine, drivers, speak, dispatch, now }) {
     current = index;
     go(violation);
     const clock = now().result?.summary.clock_hz ?? 1;
-    tell(`Violation ${index + 1} of ${timing?.violations.length}: channel ${channel}, ${ruleName(rule)} ${si(measured_cycles / clock, "s")} at ${time(cycle / clock)}, ${asked(timing, rule)} asked for.`);
+    tell(
+      `Violation ${index + 1} of ${timing?.violations.length}: channel ${channel}, ${ruleName(rule)} ${si(measured_cycles / clock, "s")} at ${time(cycle / clock)}, ${asked(timing, rule)} asked for.`,
+    );
   }
 
   function mark() {
@@ -109,7 +120,8 @@ export function createTiming({ engine, drivers, speak, dispatch, now }) {
   async function refresh(state) {
     current = -1;
     say(byId("timing-sentence"), "");
-    const answer = lookedAt(state)?.violations === null ? null : await engine.latest("timing", "timing").catch(unlessDropped);
+    const answer =
+      lookedAt(state)?.violations === null ? null : await engine.latest("timing", "timing").catch(unlessDropped);
     if (answer === undefined) return;
     timing = answer;
     paint(now());
@@ -125,32 +137,69 @@ export function createTiming({ engine, drivers, speak, dispatch, now }) {
     say(byId("timing-driver"), sheet?.name ?? "rules of your own");
     byId("timing-driver").title = sheet?.source ?? "";
     const few = total > kept ? `; the first ${count(kept)} are listed` : "";
-    say(byId("timing-total"), total === 0 ? "The driver can follow: no violation." : `${count(total)} ${total === 1 ? "violation" : "violations"}${few}.`);
+    say(
+      byId("timing-total"),
+      total === 0
+        ? "The driver can follow: no violation."
+        : `${count(total)} ${total === 1 ? "violation" : "violations"}${few}.`,
+    );
     byId("timing-total").classList.toggle("error", total > 0);
-    for (const id of ["violation-previous", "violation-next", "pulses-violation-previous", "pulses-violation-next"]) /** @type {HTMLButtonElement} */ (byId(id)).disabled = total === 0;
+    for (const id of ["violation-previous", "violation-next", "pulses-violation-previous", "pulses-violation-next"]) {
+      /** @type {HTMLButtonElement} */ (byId(id)).disabled = total === 0;
+    }
     byId("pulses-violations").hidden = timing === null;
-    say(byId("pulses-violations-count"), total === 0 ? "timing kept" : `${count(total)} ${total === 1 ? "violation" : "violations"}`);
+    say(
+      byId("pulses-violations-count"),
+      total === 0 ? "timing kept" : `${count(total)} ${total === 1 ? "violation" : "violations"}`,
+    );
     byId("pulses-violations-count").classList.toggle("error", total > 0);
-    const example = timing?.rules.filter(({ required_ns }) => required_ns > 0).sort((one, other) => rounding(other, clock) - rounding(one, clock))[0];
-    say(byId("timing-rounding"), example ? `Slack counts whole cycles of ${at(1)}: what a rule asks for is rounded up to them, as ${si(example.required_ns * 1e-9, "s")} to ${count(example.required_cycles)} cycles = ${at(example.required_cycles)}.` : "");
+    const example = timing?.rules
+      .filter(({ required_ns }) => required_ns > 0)
+      .sort((one, other) => rounding(other, clock) - rounding(one, clock))[0];
+    say(
+      byId("timing-rounding"),
+      example
+        ? `Slack counts whole cycles of ${at(1)}: what a rule asks for is rounded up to them, as ${si(example.required_ns * 1e-9, "s")} to ${count(example.required_cycles)} cycles = ${at(example.required_cycles)}.`
+        : "",
+    );
     byId("violations").hidden = total === 0;
     const rows = (timing?.rules ?? []).map(({ rule, required_cycles, required_ns, least, violations }) => {
       const slack = least === null ? null : least.measured_cycles - required_cycles;
       const bad = violations > 0;
-      return element("tr", bad ? { class: "bad" } : {}, element("th", { scope: "row" }, ruleButton(rule, bad)),
-        ...[least ? at(least.measured_cycles) : "–", required_ns === 0 ? "–" : si(required_ns * 1e-9, "s"),
-          slack === null || required_ns === 0 ? "–" : `${slack < 0 ? "" : "+"}${at(slack)}`, bad ? count(violations) : required_ns === 0 ? "–" : "0"]
-          .map((text) => element("td", { class: "number" }, text)));
+      return element(
+        "tr",
+        bad ? { class: "bad" } : {},
+        element("th", { scope: "row" }, ruleButton(rule, bad)),
+        ...[
+          least ? at(least.measured_cycles) : "–",
+          required_ns === 0 ? "–" : si(required_ns * 1e-9, "s"),
+          slack === null || required_ns === 0 ? "–" : `${slack < 0 ? "" : "+"}${at(slack)}`,
+          bad ? count(violations) : required_ns === 0 ? "–" : "0",
+        ].map((text) => element("td", { class: "number" }, text)),
+      );
     });
     fill(/** @type {Element} */ (byId("margins").querySelector("tbody")), ...rows);
-    fill(body, ...(timing?.violations ?? []).map(({ cycle, channel, rule, measured_cycles }, index) =>
-      element("tr", { "data-index": String(index) }, ...[String(channel), ruleName(rule), time(cycle / clock), at(measured_cycles), asked(timing, rule)]
-        .map((text, column) => element("td", column === 1 ? {} : { class: "number" }, text)))));
+    fill(
+      body,
+      ...(timing?.violations ?? []).map(({ cycle, channel, rule, measured_cycles }, index) =>
+        element(
+          "tr",
+          { "data-index": String(index) },
+          ...[String(channel), ruleName(rule), time(cycle / clock), at(measured_cycles), asked(timing, rule)].map(
+            (text, column) => element("td", column === 1 ? {} : { class: "number" }, text),
+          ),
+        ),
+      ),
+    );
   }
 
   /** @param {string} rule @param {boolean} bad */
   function ruleButton(rule, bad) {
-    const made = element("button", { type: "button", title: bad ? "Show its first violation" : "Show its least margin" }, ruleName(rule));
+    const made = element(
+      "button",
+      { type: "button", title: bad ? "Show its first violation" : "Show its least margin" },
+      ruleName(rule),
+    );
     made.addEventListener("click", () => toRule(rule));
     return made;
   }

@@ -8,6 +8,9 @@
 use anyhow::{Context, Result, bail};
 use axum::http::{HeaderName, HeaderValue};
 
+/// The file of rules, in the page's folder; hosts send it to nobody.
+pub(crate) const FILE: &str = "_headers";
+
 /// The rules of one `_headers` file, in its order.
 #[derive(Debug, Default)]
 pub(crate) struct Headers {

@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | `toolchain`, `tools`, `wasm_opt`, `npm`, `apt` | what a fresh machine lacks, installed once per user |
 //! | `page` | the optimised wasm of the page, and what each file that it loads weighs |
+//! | `sources` | form, lints and types of the page's sources |
 //! | `dist` | the page as hosts serve it: names with hashes, lists, licences |
 //! | `headers`, `serve` | the local server, whose headers are `web/_headers`' |
 //! | `steps`, `browser`, `engines`, `bare_metal`, `gtkwave` | `cargo xtask test`, step by step |
@@ -24,6 +25,7 @@ mod npm;
 mod page;
 mod run;
 mod serve;
+mod sources;
 mod steps;
 mod toolchain;
 mod tools;
@@ -78,6 +80,8 @@ enum Task {
         #[arg(long)]
         web: Option<PathBuf>,
     },
+    /// Write all sources, Rust and the page's, in the form that the tests ask for
+    Format,
     /// Run every check of the project: the continuous integration's whole job
     Test {
         /// Only this step; may be given several times
@@ -137,17 +141,18 @@ async fn perform(task: Task) -> Result<()> {
         }
         Task::Build { optimising } => page::build(optimising.wanted()).await,
         Task::Dist { no_build, optimising } => {
-            if no_build {
-                dist::make(&web, &dist::folder()).await?;
+            let parts = if no_build {
+                dist::make(&web, &dist::folder()).await?
             } else {
-                page::shipped(optimising.wanted()).await?;
-            }
-            print!("{}", page::weigh(&dist::folder())?);
+                page::shipped(optimising.wanted()).await?
+            };
+            print!("{}", page::weigh(&dist::folder(), &parts)?);
             Ok(())
         }
         Task::Serve { port, web: folder } => {
             serve::serve(serve::bind(port)?, &folder.unwrap_or(web), false).await
         }
+        Task::Format => steps::format().await,
         Task::Test { only: _, list: true } => {
             steps::list();
             Ok(())

@@ -7,10 +7,8 @@ use anyhow::{Context, Result, ensure};
 use tokio::process::Command;
 
 use crate::tools::{cache, find, version_answer};
-use crate::{apt, root, run};
+use crate::{apt, run};
 
-/// The compiler whose checker reads the page's modules and their JSDoc types.
-const TYPESCRIPT: Npm = Npm { package: "typescript", version: "7.0.2" };
 /// The accessibility rules that a page test runs in the page.
 const AXE: Npm = Npm { package: "axe-core", version: "4.14.1" };
 
@@ -54,6 +52,26 @@ impl Npm {
         }
         self.install(cache).await.with_context(remedy)
     }
+
+    /// The path of the package's command `program`, which answers with the package's version; installs it if it is
+    /// missing.
+    pub(crate) async fn program(&self, program: &str) -> Result<PathBuf> {
+        let cache = cache()?;
+        let folder = self.modules(&cache).join(".bin");
+        if find(program, &folder).is_none() {
+            self.install_with_npm(&cache).await?;
+        }
+        let path = find(program, &folder)
+            .with_context(|| format!("{} was installed, but has no {program}", self.package))?;
+        let answer = version_answer(&path).await.unwrap_or_default();
+        ensure!(
+            answer.contains(self.version),
+            "{} does not run: it answers `{}`",
+            path.display(),
+            answer.trim()
+        );
+        Ok(path)
+    }
 }
 
 /// The path of axe-core's script, installing it if it is missing.
@@ -65,24 +83,4 @@ pub(crate) async fn axe() -> Result<PathBuf> {
         ensure!(script.is_file(), "axe-core was installed, but {} is not there", script.display());
     }
     Ok(script)
-}
-
-/// Checks the types of the page's modules; `web/pkg` must be built, for they use it.
-pub(crate) async fn check_types() -> Result<()> {
-    let cache = cache()?;
-    let programs = TYPESCRIPT.modules(&cache).join(".bin");
-    if find("tsc", &programs).is_none() {
-        TYPESCRIPT.install_with_npm(&cache).await?;
-    }
-    let tsc = find("tsc", &programs).context("typescript was installed, but has no tsc")?;
-    let answer = version_answer(&tsc).await.unwrap_or_default();
-    ensure!(
-        answer.contains(TYPESCRIPT.version),
-        "{} does not run: it answers `{}`",
-        tsc.display(),
-        answer.trim()
-    );
-    let mut command = Command::new(tsc);
-    command.arg("--project").arg(root().join("web").join("jsconfig.json"));
-    run::to_end(command, run::LIMIT).await
 }

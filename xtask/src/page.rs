@@ -1,5 +1,6 @@
 //! The page's wasm, optimised, and what each file of the page weighs on the way to a visitor.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::io::Write;
 use std::path::Path;
@@ -9,20 +10,23 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use walkdir::WalkDir;
 
+use crate::dist::Parts;
 use crate::tools::{Optimise, WasmTools};
-use crate::{dist, root, run};
+use crate::{dist, headers, root, run};
 
-/// What all files together may weigh, in bytes, compressed by brotli as hosts do.
-const BUDGET: usize = 400_000;
+/// What all files that opening the page loads may weigh together, in bytes, compressed by brotli as hosts do.
+const OPENING_BUDGET: usize = 450_000;
+/// The same for each part that loads later.
+const LATER_BUDGET: usize = 300_000;
 
 /// The page as it is shipped, but made once only in this program's life: for steps that use the same page.
-pub(crate) async fn built() -> Result<()> {
-    static BUILT: tokio::sync::OnceCell<()> = tokio::sync::OnceCell::const_new();
-    BUILT.get_or_try_init(|| shipped(Optimise::Yes)).await.copied()
+pub(crate) async fn built() -> Result<&'static Parts> {
+    static BUILT: tokio::sync::OnceCell<Parts> = tokio::sync::OnceCell::const_new();
+    BUILT.get_or_try_init(|| shipped(Optimise::Yes)).await
 }
 
 /// Builds the page into `dist`.
-pub(crate) async fn shipped(optimise: Optimise) -> Result<()> {
+pub(crate) async fn shipped(optimise: Optimise) -> Result<Parts> {
     build(optimise).await?;
     dist::make(&root().join("web"), &dist::folder()).await
 }
@@ -64,36 +68,54 @@ impl Sizes {
     }
 }
 
+/// What some files weigh that load together, or for the same reason.
+#[derive(Default)]
+struct Weight {
+    files: Vec<(String, Sizes)>,
+}
+
+impl Weight {
+    fn sum(&self) -> Sizes {
+        self.files.iter().fold(Sizes::default(), |sum, (_, sizes)| sum.plus(*sizes))
+    }
+}
+
 /// A table of what a host sends; `Display` prints it.
 pub(crate) struct Weights {
     /// What opening the page loads.
-    page: Vec<(String, Sizes)>,
-    /// Other pages and what they need, icons: kept for use without a network.
-    beside: Vec<(String, Sizes)>,
-}
-
-fn sum(rows: &[(String, Sizes)]) -> Sizes {
-    rows.iter().fold(Sizes::default(), |sum, (_, sizes)| sum.plus(*sizes))
+    opening: Weight,
+    /// What more each part loads that is opened later. Some files stand under several.
+    later: Vec<(String, Weight)>,
+    /// All else: kept for use without a network.
+    beside: Weight,
 }
 
 impl Weights {
-    /// An error if the page weighs more than it may.
+    /// An error if opening the page, or a part of it, loads more than it may.
     pub(crate) fn within_budget(&self) -> Result<()> {
-        let weight = sum(&self.page).brotli;
-        ensure!(weight <= BUDGET, "the page weighs {weight} bytes compressed; it may weigh {BUDGET}");
+        let opening = ("the page", self.opening.sum().brotli, OPENING_BUDGET);
+        let later = self.later.iter().map(|(name, part)| (name.as_str(), part.sum().brotli, LATER_BUDGET));
+        for (name, weight, most) in std::iter::once(opening).chain(later) {
+            ensure!(weight <= most, "{name} weighs {weight} bytes compressed; it may weigh {most}");
+        }
         Ok(())
     }
 }
 
 impl fmt::Display for Weights {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (all, kept) = ("the page", "kept beside it");
-        let names = self.page.iter().chain(&self.beside).map(|(name, _)| name.len());
-        let width = names.max().unwrap_or(0).max(kept.len());
+        let later = self.later.iter().map(|(name, part)| (format!("later: {name}"), part));
+        let mut parts: Vec<_> =
+            std::iter::once(("the page".to_owned(), &self.opening)).chain(later).collect();
+        parts.push(("kept beside it".to_owned(), &self.beside));
+        let names = parts.iter().flat_map(|(name, part)| {
+            std::iter::once(name.len()).chain(part.files.iter().map(|(file, _)| file.len() + 2))
+        });
+        let width = names.max().unwrap_or(0);
         writeln!(out, "{:width$} {:>10} {:>10} {:>10}  bytes", "file", "raw", "gzip", "brotli")?;
-        for (rows, last) in [(&self.page, all), (&self.beside, kept)] {
-            let rows_of = rows.iter().map(|(name, sizes)| (name.as_str(), *sizes));
-            for (name, Sizes { raw, gzip, brotli }) in rows_of.chain([(last, sum(rows))]) {
+        for (name, part) in parts {
+            let files = part.files.iter().map(|(file, sizes)| (format!("  {file}"), *sizes));
+            for (name, Sizes { raw, gzip, brotli }) in std::iter::once((name, part.sum())).chain(files) {
                 writeln!(out, "{name:width$} {raw:>10} {gzip:>10} {brotli:>10}")?;
             }
         }
@@ -102,64 +124,74 @@ impl fmt::Display for Weights {
 }
 
 /// Weighs the files of `dist`.
-pub(crate) fn weigh(dist: &Path) -> Result<Weights> {
-    let loaded = dist::loaded(dist)?;
-    let mut weights = Weights { page: Vec::new(), beside: Vec::new() };
-    for entry in WalkDir::new(dist).sort_by_file_name() {
+pub(crate) fn weigh(dist: &Path, parts: &Parts) -> Result<Weights> {
+    let mut all = BTreeMap::new();
+    for entry in WalkDir::new(dist) {
         let entry = entry.with_context(|| format!("{} can't be read", dist.display()))?;
         // The host's own rules are not sent to anybody.
-        if entry.file_type().is_file() && entry.file_name() != "_headers" {
+        if entry.file_type().is_file() && entry.file_name() != headers::FILE {
             let bytes = std::fs::read(entry.path())
                 .with_context(|| format!("{} can't be read", entry.path().display()))?;
             let path = entry.path().strip_prefix(dist).unwrap_or(entry.path());
-            let parts: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
-            let name = parts.join("/");
-            let rows = if loaded.contains(&name) { &mut weights.page } else { &mut weights.beside };
-            rows.push((name, Sizes::of(&bytes)?));
+            let names: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
+            all.insert(names.join("/"), Sizes::of(&bytes)?);
         }
     }
-    Ok(weights)
+    let weight = |files: &BTreeSet<String>| -> Result<Weight> {
+        let sizes = |file: &String| all.get(file).copied().with_context(|| format!("{file} is not there"));
+        let files: Result<_> = files.iter().map(|file| Ok((file.clone(), sizes(file)?))).collect();
+        Ok(Weight { files: files? })
+    };
+    let opening = weight(&parts.opening)?;
+    let later: Result<Vec<_>> =
+        parts.later.iter().map(|(name, files)| Ok((name.clone(), weight(files)?))).collect();
+    for file in parts.later.values().chain([&parts.opening]).flatten() {
+        all.remove(file);
+    }
+    Ok(Weights { opening, later: later?, beside: Weight { files: all.into_iter().collect() } })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn a_page_beyond_its_budget_is_refused_with_both_numbers() {
-        let weights = |brotli| Weights {
-            page: vec![("a".to_owned(), Sizes { brotli, ..Sizes::default() })],
-            beside: vec![("b".to_owned(), Sizes { brotli: 1, ..Sizes::default() })],
-        };
-        assert!(weights(400_000).within_budget().is_ok());
-        let error = weights(400_001).within_budget().unwrap_err().to_string();
-        assert_eq!(error, "the page weighs 400001 bytes compressed; it may weigh 400000");
+    fn weight(brotli: usize) -> Weight {
+        Weight { files: vec![("a".to_owned(), Sizes { brotli, ..Sizes::default() })] }
     }
 
     #[test]
-    fn what_opening_the_page_loads_is_summed_apart_from_what_is_kept_beside_it() {
+    fn what_is_beyond_its_budget_is_refused_with_both_numbers() {
+        for (opening, later, expected) in [
+            (450_000, 300_000, None),
+            (450_001, 0, Some("the page weighs 450001 bytes compressed; it may weigh 450000")),
+            (0, 300_001, Some("views/a.js weighs 300001 bytes compressed; it may weigh 300000")),
+        ] {
+            let later = vec![("help.html".to_owned(), weight(1)), ("views/a.js".to_owned(), weight(later))];
+            let weights = Weights { opening: weight(opening), later, beside: weight(1_000_000) };
+            let error = weights.within_budget().err().map(|error| error.to_string());
+            assert_eq!(error.as_deref(), expected);
+        }
+    }
+
+    #[test]
+    fn what_opening_the_page_loads_is_summed_apart_from_each_later_part_and_what_is_kept_beside() {
         let dist = std::env::temp_dir().join(format!("stepscope-weigh-{}", std::process::id()));
         std::fs::create_dir_all(dist.join("assets")).unwrap();
-        let space = " ".repeat(1000);
-        for (name, text) in [
-            ("index.html", "<a href=\"help.html\"></a><script src=\"assets/a.js\"></script>"),
-            ("help.html", "<script src=\"assets/b.js\"></script>"),
-            ("assets/a.js", "new URL('x.wasm',import.meta.url)"),
-            ("assets/b.js", ""),
-            ("assets/x.wasm", ""),
-            ("sw.js", ""),
-            ("_headers", ""),
-        ] {
-            std::fs::write(dist.join(name), format!("{text}{space}")).unwrap();
+        for name in ["index.html", "assets/a.js", "assets/b.js", "assets/c.js", "_headers", "icon.png"] {
+            std::fs::write(dist.join(name), " ".repeat(1000)).unwrap();
         }
-        let weights = weigh(&dist).unwrap();
-        let names = |rows: &[(String, Sizes)]| rows.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
-        assert_eq!(names(&weights.page), ["assets/a.js", "assets/x.wasm", "index.html", "sw.js"]);
-        assert_eq!(names(&weights.beside), ["assets/b.js", "help.html"]);
-        assert!(
-            weights.page.iter().all(|(_, sizes)| sizes.raw >= 1000 && sizes.gzip < 150 && sizes.brotli < 150)
-        );
-        assert!(weights.to_string().contains("the page"), "{weights}");
+        let set = |files: &[&str]| files.iter().map(|file| (*file).to_owned()).collect::<BTreeSet<_>>();
+        let later = [("one.js", &["assets/b.js"][..]), ("two.js", &["assets/b.js", "assets/c.js"])];
+        let later = later.map(|(name, files)| (name.to_owned(), set(files)));
+        let parts = Parts { opening: set(&["index.html", "assets/a.js"]), later: later.into() };
+        let weights = weigh(&dist, &parts).unwrap();
+        assert_eq!(weights.opening.sum().raw, 2000);
+        assert!(weights.opening.sum().gzip < 150 && weights.opening.sum().brotli < 150);
+        assert_eq!(weights.later.iter().map(|(_, part)| part.sum().raw).collect::<Vec<_>>(), [1000, 2000]);
+        assert_eq!(weights.beside.files.iter().map(|(name, _)| name).collect::<Vec<_>>(), ["icon.png"]);
+        assert!(weights.to_string().contains("later: two.js "), "{weights}");
+        std::fs::remove_file(dist.join("assets/c.js")).unwrap();
+        assert_eq!(weigh(&dist, &parts).err().unwrap().to_string(), "assets/c.js is not there");
         std::fs::remove_dir_all(&dist).unwrap();
     }
 }

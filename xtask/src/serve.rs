@@ -14,10 +14,7 @@ use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use tower_http::services::ServeDir;
 
-use crate::headers::Headers;
-
-/// The file of rules, in the folder that is served. It is not served itself, nor is it on a host.
-const HEADERS: &str = "_headers";
+use crate::headers::{FILE, Headers};
 
 /// Takes `port` on 127.0.0.1 (0: any free one); says what to do if it is taken.
 pub(crate) fn bind(port: u16) -> Result<TcpListener> {
@@ -33,7 +30,7 @@ pub(crate) fn bind(port: u16) -> Result<TcpListener> {
 /// Serves `web` until the process is stopped. Prints the address; opens it in a browser if asked
 /// to and if there is a desktop.
 pub(crate) async fn serve(listener: TcpListener, web: &Path, open: bool) -> Result<()> {
-    let file = web.join(HEADERS);
+    let file = web.join(FILE);
     let text = std::fs::read_to_string(&file).with_context(|| format!("{} can't be read", file.display()))?;
     let router = router(web, Headers::parse(&text)?);
     let address = format!("http://{}/", listener.local_addr()?);
@@ -62,7 +59,7 @@ fn router(web: &Path, headers: Headers) -> Router {
 /// Answers `request` and puts the headers of its path on the answer.
 async fn dress(State(headers): State<Arc<Headers>>, request: Request, next: Next) -> Response {
     let path = request.uri().path().to_owned();
-    let mut response = if path.strip_prefix('/') == Some(HEADERS) {
+    let mut response = if path.strip_prefix('/') == Some(FILE) {
         StatusCode::NOT_FOUND.into_response()
     } else {
         next.run(request).await

@@ -12,14 +12,17 @@ use crate::browser::{self, Browser};
 use crate::engines::{self, Firefox, WebKit};
 use crate::toolchain::{self, BARE_METAL, WASM};
 use crate::tools::{Optimise, WasmTools};
-use crate::{bare_metal, dist, gtkwave, npm, page, root, run};
+use crate::{bare_metal, dist, gtkwave, npm, page, root, run, sources};
+
+/// Both workspaces: the fuzz targets are one of their own.
+const RUSTFMT: [&str; 2] = ["fmt --all", "fmt --manifest-path fuzz/Cargo.toml"];
 
 /// The steps, in the order in which they run: what fails fastest comes first.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Step {
-    /// rustfmt finds nothing to change
+    /// rustfmt and Biome find nothing to change
     Format,
-    /// clippy is silent: native, wasm and bare metal
+    /// clippy is silent: native, wasm and bare metal; and Biome of the page's sources
     Lint,
     /// rustdoc is silent
     Docs,
@@ -48,11 +51,13 @@ impl Step {
         match self {
             Self::Format => {
                 toolchain::components().await?;
-                cargo("fmt --all --check").await?;
-                // A workspace of its own.
-                cargo("fmt --manifest-path fuzz/Cargo.toml --check").await
+                for workspace in RUSTFMT {
+                    cargo(&format!("{workspace} --check")).await?;
+                }
+                sources::check_format().await
             }
             Self::Lint => {
+                sources::lint().await?;
                 toolchain::components().await?;
                 toolchain::target(WASM).await?;
                 toolchain::target(BARE_METAL).await?;
@@ -76,7 +81,7 @@ impl Step {
             Self::Wasm => wasm().await,
             Self::Types => {
                 page::built().await?;
-                npm::check_types().await
+                sources::check_types().await
             }
             Self::Page => page().await,
             Self::Engines => engines().await,
@@ -133,7 +138,7 @@ async fn page_tests() -> Result<Command> {
 
 async fn page() -> Result<()> {
     let mut command = page_tests().await?;
-    let weights = page::weigh(&dist::folder())?;
+    let weights = page::weigh(&dist::folder(), page::built().await?)?;
     print!("{weights}");
     weights.within_budget()?;
     command.args(["--skip", "engines::"]).env("STEPSCOPE_AXE", npm::axe().await?);
@@ -152,6 +157,15 @@ async fn engines() -> Result<()> {
         .env(engines::WEBKITDRIVER, &webkit.driver)
         .env("DISPLAY", &webkit.display);
     run::to_end(command, run::LIMIT).await
+}
+
+/// Writes all sources in the form that the step `format` asks for.
+pub(crate) async fn format() -> Result<()> {
+    toolchain::components().await?;
+    for workspace in RUSTFMT {
+        cargo(workspace).await?;
+    }
+    sources::format().await
 }
 
 /// Prints the steps' names and what each holds.

@@ -7,11 +7,22 @@ import { cosine } from "./cosine.js";
 import { dwell } from "./dwell.js";
 import { jerk_limited } from "./jerk_limited.js";
 import { points } from "./points.js";
-import { sine } from "./sine.js";
 import { ramps } from "./ramps.js";
+import { sine } from "./sine.js";
 import { sine_segments } from "./sine_segments.js";
 import { staircase } from "./staircase.js";
 import { trapezoid } from "./trapezoid.js";
 
 /** By their names in the scenario. @type {{[kind: string]: import("../field.js").Kind}} */
-export const MOVES = { cosine, ramps, jerk_limited, trapezoid, staircase, sine_segments, sine, points, constant, dwell };
+export const MOVES = {
+  cosine,
+  ramps,
+  jerk_limited,
+  trapezoid,
+  staircase,
+  sine_segments,
+  sine,
+  points,
+  constant,
+  dwell,
+};

@@ -26,7 +26,18 @@ export async function ask(engine, state, { start, end }, columns, lane = "motion
   const [own, kept, apart] = await Promise.all([
     engine.latest(lane, "motion", axis, ...window),
     reference && engine.latest(`${lane} kept`, "kept_motion", reference.controller, of, ...window),
-    reference && state.difference ? engine.latest(`${lane} apart`, "kept_difference", reference.controller, axis, of, unitPair(state), new Float64Array(window.slice(0, 2)), columns) : null,
+    reference && state.difference
+      ? engine.latest(
+          `${lane} apart`,
+          "kept_difference",
+          reference.controller,
+          axis,
+          of,
+          unitPair(state),
+          new Float64Array(window.slice(0, 2)),
+          columns,
+        )
+      : null,
   ]);
   return own && { columns: own, kept, apart };
 }

@@ -1,6 +1,7 @@
 /** What the three charts of a motion show: which curves, in which unit and colour, over which range. */
-import { color, GUTTER } from "../../time/plot.js";
+
 import { shown } from "../../state/state.js";
+import { color, GUTTER } from "../../time/plot.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").MotionColumns} MotionColumns */
@@ -29,16 +30,19 @@ export function keptAxis({ reference, axis }) {
 /** @param {State} state @returns {[string, string][]} */
 export function unitsOf(state) {
   const axis = axisOnShow(state);
-  return [["steps", "steps"], ...(axis?.step_mm ? [["mm", "mm"]] : []), ...(axis?.step_deg ? [["deg", "°"]] : [])]
-    .map(([name, text]) => [name, text]);
+  return [["steps", "steps"], ...(axis?.step_mm ? [["mm", "mm"]] : []), ...(axis?.step_deg ? [["deg", "°"]] : [])].map(
+    ([name, text]) => [name, text],
+  );
 }
 
 /** The chosen unit, or steps where the axis has no such unit; what a step is in it, here and in the kept run. @param {State} state */
 export function unitOf(state) {
   const axis = axisOnShow(state);
   const { derived } = keptAxis(state);
-  if (state.unit === "mm" && axis?.step_mm) return { name: "mm", unit: "mm", scale: axis.step_mm, kept: derived?.step_mm ?? axis.step_mm };
-  if (state.unit === "deg" && axis?.step_deg) return { name: "deg", unit: "°", scale: axis.step_deg, kept: derived?.step_deg ?? axis.step_deg };
+  if (state.unit === "mm" && axis?.step_mm)
+    return { name: "mm", unit: "mm", scale: axis.step_mm, kept: derived?.step_mm ?? axis.step_mm };
+  if (state.unit === "deg" && axis?.step_deg)
+    return { name: "deg", unit: "°", scale: axis.step_deg, kept: derived?.step_deg ?? axis.step_deg };
   return { name: "steps", unit: "steps", scale: 1, kept: 1 };
 }
 
@@ -58,12 +62,16 @@ function curves(columns, quantity, scale) {
     const [min, max] = ["min", "max"].map((end) => /** @type {any} */ (columns)[`${name}_${end}`]);
     return { min: scaled(min, scale), max: scaled(max, scale) };
   };
-  return { ideal: columns.has_ideal ? of(quantity) : null, made: quantity === "acceleration" ? null : of(`made_${quantity}`) };
+  return {
+    ideal: columns.has_ideal ? of(quantity) : null,
+    made: quantity === "acceleration" ? null : of(`made_${quantity}`),
+  };
 }
 
 /** From the back to the front. @param {State} state @param {Seen} seen @param {Quantity} quantity @returns {Band[]} */
 export function bandsOf(state, { columns, kept, apart }, quantity) {
-  if (quantity === "position" && apart) return [{ name: "difference", ink: "--made", opacity: 1, width: 1.6, dash: 0, ...apart }];
+  if (quantity === "position" && apart)
+    return [{ name: "difference", ink: "--made", opacity: 1, width: 1.6, dash: 0, ...apart }];
   const { scale, kept: keptScale } = unitOf(state);
   const { ideal, made } = curves(columns, quantity, scale);
   const other = kept ? curves(kept, quantity, keptScale) : null;
@@ -71,12 +79,20 @@ export function bandsOf(state, { columns, kept, apart }, quantity) {
     made && { name: "made", ink: "--made", opacity: 0.55, width: 4, dash: 0, ...made },
     ideal && { name: "ideal", ink: "--ideal", opacity: 1, width: 1.6, dash: 0, ...ideal },
     // Dashed: of two plans the plans are compared, of what has none what was made.
-    other && (other.ideal ?? other.made) && { name: "kept", ink: "--kept", opacity: 1, width: 1.8, dash: 5, .../** @type {Columns} */ (other.ideal ?? other.made) },
+    other &&
+      (other.ideal ?? other.made) && {
+        name: "kept",
+        ink: "--kept",
+        opacity: 1,
+        width: 1.8,
+        dash: 5,
+        .../** @type {Columns} */ (other.ideal ?? other.made),
+      },
   ].filter((band) => band !== null);
 }
 
 /** Least and greatest value, and a range around them that leaves air. @param {Columns[]} bands @param {boolean} zero @returns {Range} */
-export function rangeOf(bands, zero) {
+function rangeOf(bands, zero) {
   let [low, high] = [Infinity, -Infinity];
   for (const { min, max } of bands) {
     for (const value of min) if (value < low) low = value;
@@ -96,12 +112,21 @@ export function chartOf(state, seen, quantity) {
   const clock = state.result?.summary.clock_hz ?? 1;
   const label_px = quantity === "acceleration" ? TIME_PX : 0;
   return {
-    bands, range, unit: unitFor(state, quantity),
+    bands,
+    range,
+    unit: unitFor(state, quantity),
     caption: quantity === "position" && seen.apart ? "position less the kept run’s, by the pulses" : quantity,
     chart: {
       x: { min: start / clock, max: end / clock, unit: "s", prefix: true, label_px },
       y: { min: range.min, max: range.max, unit: "", prefix: true, label_px: GUTTER },
-      series: bands.map(({ ink, opacity, width, dash, min, max }) => ({ color: color(ink), opacity, width, dash, x: seen.columns.x, shape: { band: { min, max } } })),
+      series: bands.map(({ ink, opacity, width, dash, min, max }) => ({
+        color: color(ink),
+        opacity,
+        width,
+        dash,
+        x: seen.columns.x,
+        shape: { band: { min, max } },
+      })),
     },
   };
 }
@@ -112,7 +137,9 @@ export function withoutAcceleration({ has_ideal, acceleration_min, acceleration_
   const still = (/** @type {number} */ value) => !(Math.abs(value) > 0);
   if (!acceleration_min.every(still) || !acceleration_max.every(still)) return "";
   const [low, high] = [Math.min(...speed_min), Math.max(...speed_max)];
-  return high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high)) ? "The speed only jumps here; between the jumps there is no acceleration." : "The speed does not change here; no acceleration.";
+  return high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high))
+    ? "The speed only jumps here; between the jumps there is no acceleration."
+    : "The speed does not change here; no acceleration.";
 }
 
 /** The column of a time. @param {MotionColumns} columns @param {number} seconds */

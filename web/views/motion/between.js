@@ -19,16 +19,27 @@ export function createBetween({ engine }) {
       said = "";
       return;
     }
-    const answer = /** @type {import("../../state/types.js").Between | null} */ (await engine.latest("between", "between", state.axis, a, b));
+    const answer = /** @type {import("../../state/types.js").Between | null} */ (
+      await engine.latest("between", "between", state.axis, a, b)
+    );
     if (!answer) return;
     const seconds = (b - a) / state.result.summary.clock_hz;
     const span = `B−A ${time(seconds)}${seconds === 0 ? "" : ` · 1/(B−A) ${si(1 / Math.abs(seconds), "Hz", 6)}`}`;
     say(byId("between-span"), `${span} · in ${unitOf(state).unit} and s`);
-    fill(byId("between-tables"), ...[["ideal", answer.ideal], ["made", answer.made]].flatMap(([name, readings]) =>
-      (readings ? [table(state, /** @type {string} */ (name), /** @type {Readings} */ (readings))] : [])));
+    fill(
+      byId("between-tables"),
+      ...[
+        ["ideal", answer.ideal],
+        ["made", answer.made],
+      ].flatMap(([name, readings]) =>
+        readings ? [table(state, /** @type {string} */ (name), /** @type {Readings} */ (readings))] : [],
+      ),
+    );
     const mean = QUANTITIES.flatMap((quantity, index) => {
       const from = answer.ideal ?? answer.made;
-      return from.mean[index] === undefined ? [] : [`${quantity} ${short(from.mean[index] * unitOf(state).scale)} ${unitFor(state, quantity)}`];
+      return from.mean[index] === undefined
+        ? []
+        : [`${quantity} ${short(from.mean[index] * unitOf(state).scale)} ${unitFor(state, quantity)}`];
     });
     said = `Between the cursors: ${span}; means of ${answer.ideal ? "the ideal curve" : "what is made"}: ${mean.join(", ")}.`;
     place.hidden = false;
@@ -40,12 +51,20 @@ export function createBetween({ engine }) {
 /** @param {State} state @param {string} name @param {Readings} readings */
 function table(state, name, { at_a, at_b, mean, rms }) {
   const { scale } = unitOf(state);
-  const head = [name, "A", "B", "B−A", "mean", "RMS"].map((text, index) => element("th", { scope: "col", class: index ? "number" : "" }, text));
+  const head = [name, "A", "B", "B−A", "mean", "RMS"].map((text, index) =>
+    element("th", { scope: "col", class: index ? "number" : "" }, text),
+  );
   const rows = QUANTITIES.map((quantity, index) => {
-    const values = at_a[index] === undefined ? [] : [at_a[index], at_b[index], at_b[index] - at_a[index], mean[index], rms[index]];
+    const values =
+      at_a[index] === undefined ? [] : [at_a[index], at_b[index], at_b[index] - at_a[index], mean[index], rms[index]];
     const cells = values.map((value) => element("td", { class: "number" }, short(value * scale, 6)));
     const none = element("td", { class: "none", colspan: "5" }, "– the pulses’ speed only jumps");
     return element("tr", {}, element("th", { scope: "row" }, quantity), ...(cells.length ? cells : [none]));
   });
-  return element("table", { "aria-label": `Between the cursors, ${name}` }, element("thead", {}, element("tr", {}, ...head)), element("tbody", {}, ...rows));
+  return element(
+    "table",
+    { "aria-label": `Between the cursors, ${name}` },
+    element("thead", {}, element("tr", {}, ...head)),
+    element("tbody", {}, ...rows),
+  );
 }

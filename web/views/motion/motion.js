@@ -2,12 +2,12 @@
 import { byId, options, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count, short, si, time } from "../../state/number.js";
-import { GUTTER, MARGIN, cleared, draw, fit, watch } from "../../time/plot.js";
 import { lookedAt, shown } from "../../state/state.js";
 import { drawCursors, overlaid } from "../../time/cursors.js";
+import { cleared, draw, fit, GUTTER, MARGIN, watch } from "../../time/plot.js";
 import { gestures } from "../../time/timeline.js";
-import { QUANTITIES, TIME_PX, chartOf, columnAt, unitFor, unitOf, unitsOf, withoutAcceleration } from "./bands.js";
 import { ask } from "./ask.js";
+import { chartOf, columnAt, QUANTITIES, TIME_PX, unitFor, unitOf, unitsOf, withoutAcceleration } from "./bands.js";
 import { createBetween } from "./between.js";
 import { createCompare } from "./compare.js";
 import { createRecord } from "./record.js";
@@ -21,7 +21,7 @@ const SPEAK_MS = 500;
 /** While the shown time moves, the charts follow at most so often, in ms. */
 const FOLLOW_MS = 80;
 
-/** @param {{engine: import("../../engine/engine.js").Engine} & import("../../time/timeline.js").Page} page */
+/** @param {{engine: import("../../engine/engine.js").Engine} & import("../../state/types.js").Page} page */
 export function createMotion({ engine, dispatch, now }) {
   const stack = byId("charts");
   const overlay = /** @type {HTMLCanvasElement} */ (byId("charts-cursor"));
@@ -39,9 +39,19 @@ export function createMotion({ engine, dispatch, now }) {
   let speaking = 0;
 
   axisSelect.addEventListener("change", () => dispatch({ type: "axis", axis: Number(axisSelect.value) }));
-  unitSelect.addEventListener("change", () => dispatch({ type: "unit", unit: /** @type {State["unit"]} */ (unitSelect.value) }));
-  stack.addEventListener("keydown", () => { byKeys = true; }, { capture: true });
-  stack.addEventListener("pointerdown", () => { byKeys = false; });
+  unitSelect.addEventListener("change", () =>
+    dispatch({ type: "unit", unit: /** @type {State["unit"]} */ (unitSelect.value) }),
+  );
+  stack.addEventListener(
+    "keydown",
+    () => {
+      byKeys = true;
+    },
+    { capture: true },
+  );
+  stack.addEventListener("pointerdown", () => {
+    byKeys = false;
+  });
   gestures(stack, () => plot, { dispatch, now });
   /** When the charts were asked for last, and the timer that will ask again. */
   let [asked, later] = [0, 0];
@@ -97,15 +107,20 @@ export function createMotion({ engine, dispatch, now }) {
     if (!seen || cycle === null) return null;
     const clock = state.result?.summary.clock_hz ?? 1;
     const at = columnAt(seen.columns, cycle / clock);
-    return { at: `${time(cycle / clock)} · cycle ${count(cycle)}`, texts: drawn.map(({ bands, unit }) => {
-      const values = bands.map(({ name, min, max }) => {
-        const [low, high] = [min[at], max[at]];
-        if (!Number.isFinite(low)) return "";
-        const same = Math.abs(high - low) <= 1e-6 * Math.max(1e-9, Math.abs(high));
-        return `${name} ${same ? short(low) : `${short(low)} to ${short(high)}`}`;
-      }).filter(Boolean);
-      return values.length ? `${values.join("  ·  ")} ${unit}` : "";
-    }) };
+    return {
+      at: `${time(cycle / clock)} · cycle ${count(cycle)}`,
+      texts: drawn.map(({ bands, unit }) => {
+        const values = bands
+          .map(({ name, min, max }) => {
+            const [low, high] = [min[at], max[at]];
+            if (!Number.isFinite(low)) return "";
+            const same = Math.abs(high - low) <= 1e-6 * Math.max(1e-9, Math.abs(high));
+            return `${name} ${same ? short(low) : `${short(low)} to ${short(high)}`}`;
+          })
+          .filter(Boolean);
+        return values.length ? `${values.join("  ·  ")} ${unit}` : "";
+      }),
+    };
   }
 
   /** What the charts show now. @param {State} state */
@@ -123,17 +138,23 @@ export function createMotion({ engine, dispatch, now }) {
     speaking = window.setTimeout(async () => {
       if (cycle === null) return say(byId("motion-spoken"), `Cursor ${which.toUpperCase()} is removed.`);
       /** @type {import("../../state/types.js").Between | null} */
-      const answer = await engine.latest("spoken", "between", state.axis, cycle, cycle).catch(unlessDropped) ?? null;
+      const answer = (await engine.latest("spoken", "between", state.axis, cycle, cycle).catch(unlessDropped)) ?? null;
       if (!answer) return;
       const { scale } = unitOf(state);
       const texts = QUANTITIES.flatMap((quantity, index) => {
-        const values = [["ideal", answer.ideal], ["made", answer.made]].flatMap(([name, of]) => {
+        const values = [
+          ["ideal", answer.ideal],
+          ["made", answer.made],
+        ].flatMap(([name, of]) => {
           const value = /** @type {import("../../state/types.js").Readings | null} */ (of)?.at_a[index];
           return value === undefined ? [] : [`${name} ${short(value * scale)}`];
         });
         return values.length ? [`${quantity}: ${values.join(", ")} ${unitFor(state, quantity)}.`] : [];
       });
-      say(byId("motion-spoken"), `Cursor ${which.toUpperCase()} at ${time(cycle / (state.result?.summary.clock_hz ?? 1))}. ${texts.join(" ")}`);
+      say(
+        byId("motion-spoken"),
+        `Cursor ${which.toUpperCase()} at ${time(cycle / (state.result?.summary.clock_hz ?? 1))}. ${texts.join(" ")}`,
+      );
     }, SPEAK_MS);
   }
 
@@ -141,29 +162,44 @@ export function createMotion({ engine, dispatch, now }) {
   function follow() {
     const wait = asked + FOLLOW_MS - performance.now();
     if (wait <= 0) return refresh(now());
-    later ||= window.setTimeout(() => {
-      later = 0;
-      refresh(now());
-    }, wait);
+    if (later === 0) {
+      later = window.setTimeout(() => {
+        later = 0;
+        refresh(now());
+      }, wait);
+    }
     return undefined;
   }
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    if (before?.result !== state.result || before?.derived !== state.derived || before?.axis !== state.axis || before?.unit !== state.unit) {
+    if (
+      before?.result !== state.result ||
+      before?.derived !== state.derived ||
+      before?.axis !== state.axis ||
+      before?.unit !== state.unit
+    ) {
       const axes = lookedAt(state)?.channels ?? 1;
       /** @type {HTMLElement} */ (axisSelect.parentElement).hidden = axes === 1;
-      options(axisSelect, Array.from({ length: axes }, (_, i) => [String(i), String(i)]), String(state.axis));
+      options(
+        axisSelect,
+        Array.from({ length: axes }, (_, i) => [String(i), String(i)]),
+        String(state.axis),
+      );
       options(unitSelect, unitsOf(state), unitOf(state).name);
     }
     compare.render(state, before);
-    const other = before?.axis !== state.axis || before?.result !== state.result || before?.reference !== state.reference;
+    const other =
+      before?.axis !== state.axis || before?.result !== state.result || before?.reference !== state.reference;
     const moved = other || before?.window !== state.window;
     if (before?.window !== state.window || other || before?.unit !== state.unit) record.render(state);
-    if (before && byKeys && before.cursors !== state.cursors) speak(state, before.cursors.b === state.cursors.b ? "a" : "b");
-    if (before?.cursors !== state.cursors || other || before?.unit !== state.unit) between.render(state).then(() => say(byId("motion-sentence"), sentence(now())), unlessDropped);
+    if (before && byKeys && before.cursors !== state.cursors)
+      speak(state, before.cursors.b === state.cursors.b ? "a" : "b");
+    if (before?.cursors !== state.cursors || other || before?.unit !== state.unit)
+      between.render(state).then(() => say(byId("motion-sentence"), sentence(now())), unlessDropped);
     if (before && !other && before.window !== state.window && before.difference === state.difference) return follow();
-    if (moved || before?.difference !== state.difference || (state.difference && before?.unit !== state.unit)) return refresh(state);
+    if (moved || before?.difference !== state.difference || (state.difference && before?.unit !== state.unit))
+      return refresh(state);
     if (before?.unit !== state.unit) paint(state);
     else if (overlaid(before, state)) paintCursor(state);
     return undefined;

@@ -4,7 +4,7 @@ import { unlessDropped } from "../../engine/engine.js";
 import { short, time } from "../../state/number.js";
 import { shown } from "../../state/state.js";
 import { ask } from "./ask.js";
-import { QUANTITIES, bandsOf, unitFor } from "./bands.js";
+import { bandsOf, QUANTITIES, unitFor } from "./bands.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 
@@ -36,12 +36,34 @@ export function createRecord({ engine, now }) {
     const span = { start: start + at * page, end: start + (at + 1) * page };
     const seen = await ask(engine, { ...state, difference: false }, span, ROWS, "record").catch(unlessDropped);
     if (!seen) return;
-    const bands = QUANTITIES.flatMap((quantity) => bandsOf(state, { ...seen, apart: null }, quantity).reverse().map((band) => ({ ...band, quantity })));
+    const bands = QUANTITIES.flatMap((quantity) =>
+      bandsOf(state, { ...seen, apart: null }, quantity)
+        .reverse()
+        .map((band) => ({ ...band, quantity })),
+    );
     const head = ["time", ...bands.map(({ name, quantity }) => `${quantity}, ${name}, ${unitFor(state, quantity)}`)];
     fill(byId("record-head"), ...head.map((text) => element("th", { scope: "col", class: "number" }, text)));
-    fill(byId("record-rows"), ...[...seen.columns.x].map((seconds, row) => element("tr", {}, element("th", { scope: "row", class: "number" }, time(seconds)),
-      ...bands.map(({ min, max }) => element("td", { class: "number" }, min[row] === max[row] ? short(min[row]) : `${short(min[row])} … ${short(max[row])}`)))));
-    say(byId("record-page"), `Rows ${at * ROWS + 1} to ${(at + 1) * ROWS} of ${ROWS * PAGES}; each is a 500th of what the charts show, with its least and greatest values.`);
+    fill(
+      byId("record-rows"),
+      ...[...seen.columns.x].map((seconds, row) =>
+        element(
+          "tr",
+          {},
+          element("th", { scope: "row", class: "number" }, time(seconds)),
+          ...bands.map(({ min, max }) =>
+            element(
+              "td",
+              { class: "number" },
+              min[row] === max[row] ? short(min[row]) : `${short(min[row])} … ${short(max[row])}`,
+            ),
+          ),
+        ),
+      ),
+    );
+    say(
+      byId("record-page"),
+      `Rows ${at * ROWS + 1} to ${(at + 1) * ROWS} of ${ROWS * PAGES}; each is a 500th of what the charts show, with its least and greatest values.`,
+    );
     previous.disabled = at === 0;
     next.disabled = at === PAGES - 1;
   }

@@ -8,7 +8,9 @@ const MOST = 8_000_000;
 /** Rows that are asked for at a time. */
 const ROWS = 20_000;
 
-byId("packets-copied-close").addEventListener("click", () => { byId("packets-copied").hidden = true; });
+byId("packets-copied-close").addEventListener("click", () => {
+  byId("packets-copied").hidden = true;
+});
 
 /** @param {string} hex @param {string} what */
 export async function copyHex(hex, what) {
@@ -28,12 +30,16 @@ export async function copyHex(hex, what) {
 /** All rows on show, a line each. @param {import("../../engine/engine.js").Engine} engine */
 export async function copyAll(engine) {
   let hex = "";
-  for (let from = 0; from !== undefined;) {
+  for (let from = 0; from !== undefined; ) {
     const answer = await engine.ask("packet_file", "hex", true, from, ROWS).catch(unlessDropped);
     if (!answer) return say(byId("packets-note"), "Nothing was copied: the engine was started again; copy once more.");
     hex += answer.part;
     from = answer.next;
-    if (hex.length > MOST) return say(byId("packets-note"), "That is more than a clipboard is for: save a file of the packets, or filter them first.");
+    if (hex.length > MOST)
+      return say(
+        byId("packets-note"),
+        "That is more than a clipboard is for: save a file of the packets, or filter them first.",
+      );
   }
   return copyHex(hex, `${count(hex.split("\n").length - 1)} rows`);
 }

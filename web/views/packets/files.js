@@ -23,21 +23,38 @@ export function packetFiles(state, engine) {
   if (!state.result) return [];
   const { a, b } = state.cursors;
   const scopes = [{ name: "packets", said: "Packets, all", shown: false, between: /** @type {number[]} */ ([]) }];
-  if (isFiltering(state.filter)) scopes.push({ name: "packets-shown", said: "Packets, the rows on show", shown: true, between: [] });
+  if (isFiltering(state.filter))
+    scopes.push({ name: "packets-shown", said: "Packets, the rows on show", shown: true, between: [] });
   if (a !== null && b !== null) {
-    scopes.push({ name: "packets-a-b", said: "Packets between the cursors", shown: false, between: [Math.min(a, b), Math.max(a, b)] });
+    scopes.push({
+      name: "packets-a-b",
+      said: "Packets between the cursors",
+      shown: false,
+      between: [Math.min(a, b), Math.max(a, b)],
+    });
   }
-  return scopes.flatMap((scope) => FORMATS.map(({ ending, format, type, said }) => ({
-    name: `stepscope-${scope.name}.${ending}`, type, label: `${scope.said}: ${said}`,
-    make: async (/** @type {(part: number) => void} */ pace) => {
-      const parts = [];
-      for (let from = 0; from !== undefined;) {
-        const { part, next, rows } = await engine.ask("packet_file", format, scope.shown, from, ROWS, ...scope.between);
-        parts.push(part);
-        pace(Math.min(1, parts.length * ROWS / Math.max(1, rows)));
-        from = next;
-      }
-      return parts;
-    },
-  })));
+  return scopes.flatMap((scope) =>
+    FORMATS.map(({ ending, format, type, said }) => ({
+      name: `stepscope-${scope.name}.${ending}`,
+      type,
+      label: `${scope.said}: ${said}`,
+      make: async (/** @type {(part: number) => void} */ pace) => {
+        const parts = [];
+        for (let from = 0; from !== undefined; ) {
+          const { part, next, rows } = await engine.ask(
+            "packet_file",
+            format,
+            scope.shown,
+            from,
+            ROWS,
+            ...scope.between,
+          );
+          parts.push(part);
+          pace(Math.min(1, (parts.length * ROWS) / Math.max(1, rows)));
+          from = next;
+        }
+        return parts;
+      },
+    })),
+  );
 }

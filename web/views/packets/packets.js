@@ -14,7 +14,7 @@ import { createTable } from "./table.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").PacketRow} PacketRow */
-/** @typedef {{engine: import("../../engine/engine.js").Engine} & import("../../time/timeline.js").Page} Page */
+/** @typedef {{engine: import("../../engine/engine.js").Engine} & import("../../state/types.js").Page} Page */
 
 /** @param {Page} page */
 export function createPackets(page) {
@@ -26,7 +26,10 @@ export function createPackets(page) {
   /** Marks a packet and brings its time into the pulses. @param {PacketRow} row @param {boolean} [go]  Also where the pulses are another tab. */
   function choose(row, go = false) {
     dispatch({ type: "packet", packet: row.index });
-    say(byId("packet-sentence"), `Row ${row.index} is chosen and shown in the pulses: ${row.kind}, ${row.fields}, ${row.outcome}.`);
+    say(
+      byId("packet-sentence"),
+      `Row ${row.index} is chosen and shown in the pulses: ${row.kind}, ${row.fields}, ${row.outcome}.`,
+    );
     reveal(row);
     if (go && byId("tab-pulses").checkVisibility()) dispatch({ type: "view", view: "pulses" });
   }
@@ -45,17 +48,25 @@ export function createPackets(page) {
   /** @param {import("../../state/types.js").PacketPage} answer */
   function counted({ total, shown: rows }) {
     const state = now();
-    say(byId("packets-count"), rows === total ? `${count(total)} on the line` : `${count(rows)} of ${count(total)} on the line`);
+    say(
+      byId("packets-count"),
+      rows === total ? `${count(total)} on the line` : `${count(rows)} of ${count(total)} on the line`,
+    );
     const why = total === 0 ? whyNone(state) : rows === 0 ? "No row matches." : "";
     say(/** @type {Element} */ (byId("packets-empty").firstElementChild), why);
     byId("packets-empty").hidden = why === "";
     byId("packets-unmatched").hidden = total === 0;
     byId("packet-inspector").hidden = total === 0 || (rows === 0 && state.packet === null);
     byId("packets-scroll").classList.toggle("none", rows === 0);
-    for (const id of ["packets-search", "packets-filters"]) /** @type {HTMLButtonElement} */ (byId(id)).disabled = total === 0;
+    for (const id of ["packets-search", "packets-filters"]) {
+      /** @type {HTMLButtonElement} */ (byId(id)).disabled = total === 0;
+    }
   }
 
-  byId("packet-show").addEventListener("click", () => { const row = inspector.row(); if (row) choose(row, true); });
+  byId("packet-show").addEventListener("click", () => {
+    const row = inspector.row();
+    if (row) choose(row, true);
+  });
   byId("packet-copy").addEventListener("click", () => copyRow(inspector.row()));
   byId("packets-copy-all").addEventListener("click", () => copyAll(engine));
   /** @param {PacketRow | null} row */
@@ -70,11 +81,35 @@ export function createPackets(page) {
     { keys: ["PageDown"], text: "a page of rows on", run: () => table.move(table.page()) },
     { keys: ["Home"], text: "the first row", run: () => table.move(-Infinity) },
     { keys: ["End"], text: "the last row", run: () => table.move(Infinity) },
-    { keys: ["Enter", "Space"], text: "choose the row and show it in the pulses", run: () => { table.current().then((row) => row && choose(row, true)); } },
-    { keys: ["c"], text: "copy the row's bytes as hex", run: () => { table.current().then(copyRow); } },
+    {
+      keys: ["Enter", "Space"],
+      text: "choose the row and show it in the pulses",
+      run: () => {
+        table.current().then((row) => row && choose(row, true));
+      },
+    },
+    {
+      keys: ["c"],
+      text: "copy the row's bytes as hex",
+      run: () => {
+        table.current().then(copyRow);
+      },
+    },
     { keys: ["/"], text: "search", run: () => byId("packets-search").focus() },
-    { keys: ["n"], text: "next match", run: () => { search.next(true); } },
-    { keys: ["Shift+N"], text: "previous match", run: () => { search.next(false); } },
+    {
+      keys: ["n"],
+      text: "next match",
+      run: () => {
+        search.next(true);
+      },
+    },
+    {
+      keys: ["Shift+N"],
+      text: "previous match",
+      run: () => {
+        search.next(false);
+      },
+    },
   ]);
 
   /** @param {State} state @param {State | undefined} before */
@@ -105,7 +140,8 @@ export function createPackets(page) {
 
 /** Why nothing went over the line. @param {State} state */
 function whyNone({ scenario: { source } }) {
-  if ("segments" in source || source.motion?.engine === "segments") return "Segments come from the controller itself: nothing is on the line.";
+  if ("segments" in source || source.motion?.engine === "segments")
+    return "Segments come from the controller itself: nothing is on the line.";
   if ("line" in source) return "The line script sends nothing that this controller hears.";
   return "Nothing was sent: there is nothing to do.";
 }

@@ -2,14 +2,20 @@
 import { byId, options, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count } from "../../state/number.js";
-import { NO_FILTER, isFiltering } from "../../state/state.js";
+import { isFiltering, NO_FILTER } from "../../state/state.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 
 /** A search that takes longer says so, in ms. */
 const LONG_MS = 120;
 /** @type {[string, string][]} */
-const OUTCOMES = [["", "any outcome"], ["bad", "errors only"], ["repeated", "repeated"], ["foreign", "another address"], ["good", "done"]];
+const OUTCOMES = [
+  ["", "any outcome"],
+  ["bad", "errors only"],
+  ["repeated", "repeated"],
+  ["foreign", "another address"],
+  ["good", "done"],
+];
 /** @type {{[kind: string]: string}} */
 const KINDS = { packet: "packets", frame: "frames", reply: "replies", collision: "collisions", NAK: "refusals (NAK)" };
 
@@ -20,7 +26,9 @@ const KINDS = { packet: "packets", frame: "frames", reply: "replies", collision:
 export function createSearch({ engine, dispatch, now }, { place, reload, moveTo }) {
   const text = /** @type {HTMLInputElement} */ (byId("packets-search"));
   const only = /** @type {HTMLInputElement} */ (byId("packets-only"));
-  const [kind, address, outcome] = ["kind", "address", "outcome"].map((name) => /** @type {HTMLSelectElement} */ (byId(`packets-by-${name}`)));
+  const [kind, address, outcome] = ["kind", "address", "outcome"].map(
+    (name) => /** @type {HTMLSelectElement} */ (byId(`packets-by-${name}`)),
+  );
   const panel = byId("packets-filter");
   let matches = 0;
   let asked = 0;
@@ -39,10 +47,11 @@ export function createSearch({ engine, dispatch, now }, { place, reload, moveTo 
   kind.addEventListener("change", () => change({ kind: kind.value }));
   address.addEventListener("change", () => change({ address: address.value === "" ? null : Number(address.value) }));
   outcome.addEventListener("change", () => change({ outcome: outcome.value }));
-  for (const id of ["packets-clear", "packets-unmatched"]) byId(id).addEventListener("click", () => {
-    change(NO_FILTER);
-    text.focus();
-  });
+  for (const id of ["packets-clear", "packets-unmatched"])
+    byId(id).addEventListener("click", () => {
+      change(NO_FILTER);
+      text.focus();
+    });
   byId("packets-next").addEventListener("click", () => next(true));
   byId("packets-previous").addEventListener("click", () => next(false));
   byId("packets-filters").addEventListener("click", () => open(Boolean(panel.hidden)));
@@ -65,9 +74,19 @@ export function createSearch({ engine, dispatch, now }, { place, reload, moveTo 
   function found() {
     const { text: wanted } = now().filter;
     const rank = place().row?.rank ?? null;
-    say(byId("packets-found"), wanted.trim() === "" ? "" : matches === 0 ? "no match"
-      : rank === null ? `${count(matches)} found` : `${count(rank + 1)} of ${count(matches)}`);
-    for (const id of ["packets-next", "packets-previous"]) /** @type {HTMLButtonElement} */ (byId(id)).disabled = matches === 0;
+    say(
+      byId("packets-found"),
+      wanted.trim() === ""
+        ? ""
+        : matches === 0
+          ? "no match"
+          : rank === null
+            ? `${count(matches)} found`
+            : `${count(rank + 1)} of ${count(matches)}`,
+    );
+    for (const id of ["packets-next", "packets-previous"]) {
+      /** @type {HTMLButtonElement} */ (byId(id)).disabled = matches === 0;
+    }
   }
 
   /** Another run: what there is to choose from, and the same filter over its rows. @param {State} state */
@@ -76,8 +95,26 @@ export function createSearch({ engine, dispatch, now }, { place, reload, moveTo 
     const choices = await engine.ask("packet_choices").catch(unlessDropped);
     if (choices) {
       const { framed } = state.result?.summary ?? {};
-      options(kind, [["", "any kind"], .../** @type {string[]} */ (choices.kinds).map((name) => /** @type {[string, string]} */ ([name, KINDS[name] ?? name]))], state.filter.kind);
-      options(address, [["", "any address"], .../** @type {number[]} */ (choices.addresses).map((at) => /** @type {[string, string]} */ ([String(at), at === 255 ? "255, all" : String(at)]))], String(state.filter.address ?? ""));
+      options(
+        kind,
+        [
+          ["", "any kind"],
+          .../** @type {string[]} */ (choices.kinds).map(
+            (name) => /** @type {[string, string]} */ ([name, KINDS[name] ?? name]),
+          ),
+        ],
+        state.filter.kind,
+      );
+      options(
+        address,
+        [
+          ["", "any address"],
+          .../** @type {number[]} */ (choices.addresses).map(
+            (at) => /** @type {[string, string]} */ ([String(at), at === 255 ? "255, all" : String(at)]),
+          ),
+        ],
+        String(state.filter.address ?? ""),
+      );
       kind.closest("label")?.toggleAttribute("hidden", !framed);
       address.closest("label")?.toggleAttribute("hidden", choices.addresses.length === 0);
     }

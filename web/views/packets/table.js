@@ -15,8 +15,14 @@ const CELL_PX = 17;
 /** Most of the column of bytes where words say more than they do. */
 const FRAMED_BYTES_PX = 104;
 /** Texts of a row's cells, each with what its pointer tells where that is more. @type {((row: PacketRow) => [string, string?])[]} */
-const COLUMNS = [({ index }) => [count(index)], ({ start }) => [start], ({ hex }) => [hex], (row) => [worded(row)],
-  ({ short, outcome }) => [short, outcome], ({ gap }) => [gap || "–"]];
+const COLUMNS = [
+  ({ index }) => [count(index)],
+  ({ start }) => [start],
+  ({ hex }) => [hex],
+  (row) => [worded(row)],
+  ({ short, outcome }) => [short, outcome],
+  ({ gap }) => [gap || "–"],
+];
 const ruler = /** @type {CanvasRenderingContext2D} */ (document.createElement("canvas").getContext("2d"));
 
 /**
@@ -49,7 +55,11 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
   });
   body.addEventListener("pointerover", (event) => {
     const row = rowAt(event);
-    if (row) dispatch({ type: "light", lit: { start: row.start_cycle, end: row.line_end_cycle, from: "packets", packet: row.index, bit: null } });
+    if (row)
+      dispatch({
+        type: "light",
+        lit: { start: row.start_cycle, end: row.line_end_cycle, from: "packets", packet: row.index, bit: null },
+      });
   });
   body.addEventListener("pointerleave", () => dispatch({ type: "light", lit: null }));
 
@@ -111,19 +121,30 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
     say(byId("packets-meaning"), state.result?.summary.framed ? "meaning" : "steps");
     // A row that stays keeps its element: a click that began on it ends on it.
     const nodes = new Map([...body.rows].map((node) => [node.id, node]));
-    fill(body, ...rows.map((row) => {
-      const id = `packet-${row.index}`;
-      const node = nodes.get(id) ?? element("tr", { id, "data-index": String(row.index) }, ...COLUMNS.map(() => element("td")));
-      node.setAttribute("aria-rowindex", String(row.position + 2));
-      node.setAttribute("aria-selected", String(row.index === state.packet));
-      node.className = [row.position === current ? "current" : "", row.rank === null ? "" : "found", row.kind, row.mark].join(" ").trim();
-      for (const [place, column] of COLUMNS.entries()) {
-        const [text, title = text] = column(row);
-        say(node.cells[place], text);
-        node.cells[place].title = title;
-      }
-      return node;
-    }));
+    fill(
+      body,
+      ...rows.map((row) => {
+        const id = `packet-${row.index}`;
+        const node =
+          nodes.get(id) ?? element("tr", { id, "data-index": String(row.index) }, ...COLUMNS.map(() => element("td")));
+        node.setAttribute("aria-rowindex", String(row.position + 2));
+        node.setAttribute("aria-selected", String(row.index === state.packet));
+        node.className = [
+          row.position === current ? "current" : "",
+          row.rank === null ? "" : "found",
+          row.kind,
+          row.mark,
+        ]
+          .join(" ")
+          .trim();
+        for (const [place, column] of COLUMNS.entries()) {
+          const [text, title = text] = column(row);
+          say(node.cells[place], text);
+          node.cells[place].title = title;
+        }
+        return node;
+      }),
+    );
     const row = rows.find(({ position }) => position === current);
     if (row) table.setAttribute("aria-activedescendant", `packet-${row.index}`);
     else table.removeAttribute("aria-activedescendant");
@@ -136,7 +157,10 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
   function light({ lit }) {
     for (const [place, node] of [...body.rows].entries()) {
       const row = answer.rows[place];
-      const over = lit && row && (lit.packet === null ? lit.start < row.line_end_cycle && lit.end > row.start_cycle : lit.packet === row.index);
+      const over =
+        lit &&
+        row &&
+        (lit.packet === null ? lit.start < row.line_end_cycle && lit.end > row.start_cycle : lit.packet === row.index);
       node.classList.toggle("lit", Boolean(over));
     }
   }
@@ -149,7 +173,10 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
     };
     const measure = (/** @type {string} */ column, /** @type {string} */ font, /** @type {string[]} */ ...texts) => {
       ruler.font = font;
-      widest[column] = Math.max(widest[column] ?? 0, ...texts.map((text) => Math.ceil(ruler.measureText(text).width) + CELL_PX));
+      widest[column] = Math.max(
+        widest[column] ?? 0,
+        ...texts.map((text) => Math.ceil(ruler.measureText(text).width) + CELL_PX),
+      );
     };
     const { rows, unit } = answer;
     const [head, plain, hex] = [fontOf("th"), fontOf("td"), fontOf("td:nth-child(3)")];
@@ -165,14 +192,23 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
     // Of a frame the bytes say less than the words.
     const spare = table.clientWidth - widest.index - widest.time - widest.gap - widest.outcome;
     const framed = now().result?.summary.framed;
-    const bytes = Math.min(widest.bytes, framed ? Math.min(FRAMED_BYTES_PX, Math.max(spare / 3, 60)) : Math.max(spare / 2, 96));
-    for (const [column, width] of Object.entries({ ...widest, bytes })) table.style.setProperty(`--${column}-px`, `${width}px`);
+    const bytes = Math.min(
+      widest.bytes,
+      framed ? Math.min(FRAMED_BYTES_PX, Math.max(spare / 3, 60)) : Math.max(spare / 2, 96),
+    );
+    for (const [column, width] of Object.entries({ ...widest, bytes }))
+      table.style.setProperty(`--${column}-px`, `${width}px`);
   }
 
   return {
-    reload, moveTo, light, current: currentRow,
+    reload,
+    moveTo,
+    light,
+    current: currentRow,
     /** @param {number} by  Rows. */
-    move: (by) => { moveTo(current + by); },
+    move: (by) => {
+      moveTo(current + by);
+    },
     page: () => Math.max(1, visible() - 1),
     place: () => ({ position: current, row: answer.rows.find(({ position }) => position === current) ?? null }),
     /** Another run. */

@@ -19,7 +19,9 @@ export function createEdges({ engine, now }) {
   /** @type {EdgeRow[]} */
   let rows = [];
 
-  panel.addEventListener("toggle", () => { if (panel.open) fromShown(); });
+  panel.addEventListener("toggle", () => {
+    if (panel.open) fromShown();
+  });
   which.addEventListener("change", fromShown);
   byId("edges-from").addEventListener("click", fromShown);
   earlier.addEventListener("click", () => turn(rows[0]?.cycle ?? 0, false));
@@ -44,10 +46,24 @@ export function createEdges({ engine, now }) {
   /** @param {State} state */
   function paint(state) {
     const clock = state.result?.summary.clock_hz ?? 1;
-    say(byId("edges-count"), rows.length === 0 ? "No edge there." : `${rows.length} edges, from ${time(rows[0].cycle / clock)} to ${time(rows[rows.length - 1].cycle / clock)}`);
-    fill(/** @type {Element} */ (panel.querySelector("tbody")), ...rows.map(({ cycle, bit, high }) => element("tr", {},
-      ...[time(cycle / clock), count(cycle)].map((text) => element("td", { class: "number" }, text)),
-      element("td", {}, nameOf(state, bit)), element("td", {}, high ? "high" : "low"))));
+    say(
+      byId("edges-count"),
+      rows.length === 0
+        ? "No edge there."
+        : `${rows.length} edges, from ${time(rows[0].cycle / clock)} to ${time(rows[rows.length - 1].cycle / clock)}`,
+    );
+    fill(
+      /** @type {Element} */ (panel.querySelector("tbody")),
+      ...rows.map(({ cycle, bit, high }) =>
+        element(
+          "tr",
+          {},
+          ...[time(cycle / clock), count(cycle)].map((text) => element("td", { class: "number" }, text)),
+          element("td", {}, nameOf(state, bit)),
+          element("td", {}, high ? "high" : "low"),
+        ),
+      ),
+    );
   }
 
   /** @param {State} state @param {State | undefined} before */

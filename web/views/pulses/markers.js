@@ -6,7 +6,7 @@ import { goToMarker } from "../../time/timeline.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 
-/** @param {import("../../time/timeline.js").Page & {speak: (text: string) => void}} page */
+/** @param {import("../../state/types.js").Page & {speak: (text: string) => void}} page */
 export function createMarkers({ dispatch, now, speak }) {
   const panel = byId("marker-panel");
   const body = /** @type {Element} */ (panel.querySelector("tbody"));
@@ -27,14 +27,35 @@ export function createMarkers({ dispatch, now, speak }) {
   function paint(state) {
     const clock = state.result?.summary.clock_hz ?? 1;
     const { a } = state.cursors;
-    const set = state.markers.flatMap((cycle, digit) => (cycle === null ? [] : [{ digit, cycle }])).sort((one, other) => one.cycle - other.cycle);
+    const set = state.markers
+      .flatMap((cycle, digit) => (cycle === null ? [] : [{ digit, cycle }]))
+      .sort((one, other) => one.cycle - other.cycle);
     panel.hidden = set.length === 0;
     /** @type {Element} */ (panel.querySelector("summary")).textContent = `Markers (${set.length})`;
-    const apart = (/** @type {number | undefined | null} */ from, /** @type {number} */ to) => (from === null || from === undefined ? "–" : time((to - from) / clock));
-    fill(body, ...set.map(({ digit, cycle }, index) => element("tr", {},
-      element("td", {}, button(String(digit), `Show marker ${digit}`, () => goToMarker({ dispatch, now }, digit))),
-      ...[time(cycle / clock), count(cycle), apart(set[index - 1]?.cycle, cycle), apart(a, cycle)].map((text) => element("td", { class: "number" }, text)),
-      element("td", {}, button("×", `Remove marker ${digit}`, () => remove(digit))))));
+    const apart = (/** @type {number | undefined | null} */ from, /** @type {number} */ to) =>
+      from === null || from === undefined ? "–" : time((to - from) / clock);
+    fill(
+      body,
+      ...set.map(({ digit, cycle }, index) =>
+        element(
+          "tr",
+          {},
+          element(
+            "td",
+            {},
+            button(String(digit), `Show marker ${digit}`, () => goToMarker({ dispatch, now }, digit)),
+          ),
+          ...[time(cycle / clock), count(cycle), apart(set[index - 1]?.cycle, cycle), apart(a, cycle)].map((text) =>
+            element("td", { class: "number" }, text),
+          ),
+          element(
+            "td",
+            {},
+            button("×", `Remove marker ${digit}`, () => remove(digit)),
+          ),
+        ),
+      ),
+    );
   }
 
   /** @param {number} digit */
@@ -46,7 +67,12 @@ export function createMarkers({ dispatch, now, speak }) {
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    if (before?.markers !== state.markers || before?.result !== state.result || (before?.cursors !== state.cursors && !panel.hidden)) paint(state);
+    if (
+      before?.markers !== state.markers ||
+      before?.result !== state.result ||
+      (before?.cursors !== state.cursors && !panel.hidden)
+    )
+      paint(state);
   }
   return { render };
 }

@@ -6,10 +6,10 @@ import { byId } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { listen } from "../../shell/commands.js";
 import { time } from "../../state/number.js";
-import { paintOverview } from "./paint.js";
-import { GUTTER, MARGIN, color, fit, ratio, watch } from "../../time/plot.js";
 import { endOf, shown } from "../../state/state.js";
+import { color, fit, GUTTER, MARGIN, ratio, watch } from "../../time/plot.js";
 import { pan, zoom } from "../../time/timeline.js";
+import { paintOverview } from "./paint.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").PulseColumns} PulseColumns */
@@ -17,7 +17,7 @@ import { pan, zoom } from "../../time/timeline.js";
 /** An edge of the part is taken within so many CSS pixels. */
 const EDGE_PX = 6;
 
-/** @param {{engine: import("../../engine/engine.js").Engine} & import("../../time/timeline.js").Page} page */
+/** @param {{engine: import("../../engine/engine.js").Engine} & import("../../state/types.js").Page} page */
 export function createOverview({ engine, dispatch, now }) {
   const page = { dispatch, now };
   const canvas = /** @type {HTMLCanvasElement} */ (byId("overview"));
@@ -36,18 +36,28 @@ export function createOverview({ engine, dispatch, now }) {
     const what = under(event);
     const cycle = cycleOf(event);
     if (what === "beside") move("part", cycle - (end - start) / 2);
-    drag = what === "beside" ? { what: "part", by: (end - start) / 2 } : { what, by: cycle - (what === "end" ? end : start) };
+    drag =
+      what === "beside"
+        ? { what: "part", by: (end - start) / 2 }
+        : { what, by: cycle - (what === "end" ? end : start) };
   });
   canvas.addEventListener("pointermove", (event) => {
     if (drag && canvas.hasPointerCapture(event.pointerId)) move(drag.what, cycleOf(event) - drag.by);
     else canvas.style.cursor = { start: "ew-resize", end: "ew-resize", part: "grab", beside: "pointer" }[under(event)];
   });
-  for (const kind of ["pointerup", "pointercancel"]) canvas.addEventListener(kind, () => { drag = null; });
+  for (const kind of ["pointerup", "pointercancel"])
+    canvas.addEventListener(kind, () => {
+      drag = null;
+    });
   canvas.addEventListener("dblclick", () => dispatch({ type: "window", window: null }));
-  canvas.addEventListener("wheel", (event) => {
-    event.preventDefault();
-    zoom(page, Math.exp(event.deltaY * 0.002));
-  }, { passive: false });
+  canvas.addEventListener(
+    "wheel",
+    (event) => {
+      event.preventDefault();
+      zoom(page, Math.exp(event.deltaY * 0.002));
+    },
+    { passive: false },
+  );
   /** @param {"start" | "end"} what @param {number} sign */
   const nudge = (what, sign) => () => {
     const part = shown(now());
@@ -88,8 +98,12 @@ export function createOverview({ engine, dispatch, now }) {
     const { start, end } = shown(now());
     const last = endOf(now());
     const inside = Math.min(last, Math.max(0, to));
-    const window = what === "part" ? { start: to, end: to + end - start }
-      : what === "start" ? { start: Math.min(inside, end - 1), end } : { start, end: Math.max(inside, start + 1) };
+    const window =
+      what === "part"
+        ? { start: to, end: to + end - start }
+        : what === "start"
+          ? { start: Math.min(inside, end - 1), end }
+          : { start, end: Math.max(inside, start + 1) };
     dispatch({ type: "window", joins: "overview", window });
   }
 
@@ -110,7 +124,10 @@ export function createOverview({ engine, dispatch, now }) {
   function paint(state) {
     const { start, end } = shown(state);
     const clock = state.result?.summary.clock_hz ?? 1;
-    canvas.setAttribute("aria-label", `The whole run, ${time(endOf(state) / clock)}; shown are ${time(start / clock)} to ${time(end / clock)}`);
+    canvas.setAttribute(
+      "aria-label",
+      `The whole run, ${time(endOf(state) / clock)}; shown are ${time(start / clock)} to ${time(end / clock)}`,
+    );
     const { width, height, ratio: scale } = fit(canvas);
     const context = canvas.getContext("2d");
     if (!context || !whole) return;

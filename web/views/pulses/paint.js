@@ -80,7 +80,11 @@ export function paintTint(context, picture, bit, high, { top, height, ink }) {
   const words = high ? picture.columns.high : picture.columns.low;
   context.fillStyle = ink;
   context.globalAlpha = 0.22;
-  runs(picture, (i) => has(words, i, bit), (x, width) => context.fillRect(x, top, width, height));
+  runs(
+    picture,
+    (i) => has(words, i, bit),
+    (x, width) => context.fillRect(x, top, width, height),
+  );
   context.globalAlpha = 1;
 }
 
@@ -120,8 +124,10 @@ export function paintSpans(context, spans, { top, height, ratio, ink, left, righ
     context.fillRect(a, top, width, height);
     context.globalAlpha = 1;
     context.fillRect(a, top, Math.min(width, Math.max(1, Math.round(ratio))), height);
-    if (typeof sample === "number" && sample >= left && sample <= right) context.fillRect(Math.round(sample - ratio), top + height - 3 * ratio, 2 * ratio, 3 * ratio);
-    const text = width < 8 * ratio ? undefined : texts.find((candidate) => widthOf(context, candidate) < width - 4 * ratio);
+    if (typeof sample === "number" && sample >= left && sample <= right)
+      context.fillRect(Math.round(sample - ratio), top + height - 3 * ratio, 2 * ratio, 3 * ratio);
+    const text =
+      width < 8 * ratio ? undefined : texts.find((candidate) => widthOf(context, candidate) < width - 4 * ratio);
     if (!text) continue;
     context.fillStyle = marked ? reverse : plain;
     context.fillText(text, (a + b) / 2, top + height / 2 + ratio * 0.5);
@@ -131,11 +137,16 @@ export function paintSpans(context, spans, { top, height, ratio, ink, left, righ
 /** One thin strip: how busy each column of the whole run is. @param {CanvasRenderingContext2D} context @param {PulseColumns} columns @param {{left: number, height: number}} place */
 export function paintOverview(context, columns, { left, height }) {
   const picture = { columns, from: 0, to: columns.high.length / 2, at: (/** @type {number} */ i) => left + i };
-  const lane = (/** @type {number} */ index, /** @type {string} */ ink, /** @type {(column: number) => boolean} */ holds) => {
+  const lane = (
+    /** @type {number} */ index,
+    /** @type {string} */ ink,
+    /** @type {(column: number) => boolean} */ holds,
+  ) => {
     context.fillStyle = color(ink);
     runs(picture, holds, (x, width) => context.fillRect(x, (0.08 + index * 0.3) * height, width, 0.24 * height));
   };
-  const busy = (/** @type {number} */ mask) => (/** @type {number} */ i) => (columns.high[2 * i] & columns.low[2 * i] & mask) !== 0;
+  const busy = (/** @type {number} */ mask) => (/** @type {number} */ i) =>
+    (columns.high[2 * i] & columns.low[2 * i] & mask) !== 0;
   lane(0, "--step", busy(0x0000ffff));
   lane(1, "--dir", busy(0xffff0000));
   lane(2, "--wire", (i) => has(columns.low, i, RX) || has(columns.low, i, TX));

@@ -1,9 +1,10 @@
 /** The picture of the logic view: its rows, one below the other, and what is lit in them. */
-import { paintSignal, paintSpans, paintTint } from "./paint.js";
-import { color, fit, ratio } from "../../time/plot.js";
-import { ROW_PX, rowsOf, shows } from "./rows.js";
+
 import { shown } from "../../state/state.js";
+import { color, fit, ratio } from "../../time/plot.js";
 import { pixelOf } from "../../time/timeline.js";
+import { paintSignal, paintSpans, paintTint } from "./paint.js";
+import { ROW_PX, rowsOf, shows } from "./rows.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").PulseColumns} PulseColumns */
@@ -61,7 +62,12 @@ export function paintRows(canvas, state, plot, answer, spans) {
     if (row.kind === "folded") paintTint(context, picture, row.dir, true, { ...place, ink: color("--dir") });
     if ("bit" in row) paintSignal(context, picture, row.bit, place);
     else if ("lane" in row && spans.isDense(row)) paintTint(context, picture, row.line, false, place);
-    else paintSpans(context, spans.spansOf(state, row).map((span) => placed(state, plot, span)), place);
+    else
+      paintSpans(
+        context,
+        spans.spansOf(state, row).map((span) => placed(state, plot, span)),
+        place,
+      );
     context.restore();
   }
 }
@@ -88,7 +94,10 @@ export function drawLit(context, state, plot, spans) {
       for (const { start, end, packet } of spans.spansOf(state, row)) {
         const same = start === lit.start && end === lit.end;
         if (!same && (packet === null || packet !== lit.packet || "lane" in row)) continue;
-        const [from, to] = [Math.max(plot.left, pixelOf(state, plot, start)), Math.min(plot.right, pixelOf(state, plot, end))];
+        const [from, to] = [
+          Math.max(plot.left, pixelOf(state, plot, start)),
+          Math.min(plot.right, pixelOf(state, plot, end)),
+        ];
         if (to > from) context.strokeRect(from, top + 3, Math.max(2, to - from), ROW_PX - 5);
       }
     }

@@ -1,20 +1,20 @@
 /** The pulses view: a logic analyser over all signals of the bus, with the line and the ticks decoded between them. */
 import { byId, options, say } from "../../dom.js";
-import { time } from "../../state/number.js";
 import { unlessDropped } from "../../engine/engine.js";
+import { listen } from "../../shell/commands.js";
+import { time } from "../../state/number.js";
+import { lookedAt, shown } from "../../state/state.js";
+import { drawCursors, overlaid } from "../../time/cursors.js";
+import { fit, GUTTER, MARGIN, ratio, watch } from "../../time/plot.js";
+import { createRange } from "../../time/range.js";
+import { cycleAt, gestures, reveal } from "../../time/timeline.js";
 import { createEdges } from "./edges.js";
 import { createMarkers } from "./markers.js";
 import { createOverview } from "./overview.js";
 import { drawLit, paintRows } from "./picture.js";
-import { GUTTER, MARGIN, fit, ratio, watch } from "../../time/plot.js";
-import { createRange } from "../../time/range.js";
 import { createReading } from "./reading.js";
-import { ROW_PX, allFolded, channelOf, idle, isFolded, nameOf, rowsOf, shows, signalsOf } from "./rows.js";
+import { allFolded, channelOf, idle, isFolded, nameOf, ROW_PX, rowsOf, shows, signalsOf } from "./rows.js";
 import { createSpans } from "./spans.js";
-import { lookedAt, shown } from "../../state/state.js";
-import { listen } from "../../shell/commands.js";
-import { drawCursors, overlaid } from "../../time/cursors.js";
-import { cycleAt, gestures, reveal } from "../../time/timeline.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 
@@ -23,7 +23,7 @@ const SNAP_PX = 6;
 /** The sign that folds a channel stands in so many CSS pixels at the left. */
 const FOLD_PX = 26;
 
-/** @param {{engine: import("../../engine/engine.js").Engine} & import("../../time/timeline.js").Page} page */
+/** @param {{engine: import("../../engine/engine.js").Engine} & import("../../state/types.js").Page} page */
 export function createPulses({ engine, dispatch, now }) {
   const page = { dispatch, now };
   const canvas = /** @type {HTMLCanvasElement} */ (byId("pulses"));
@@ -58,7 +58,9 @@ export function createPulses({ engine, dispatch, now }) {
     { keys: ["ArrowDown"], text: "choose the row below", run: () => step(1) },
     { keys: ["Enter"], text: "fold or unfold the chosen row's channel", run: () => fold(channelOf(now().row)) },
   ]);
-  canvas.addEventListener("pointermove", (event) => { if (event.buttons === 0) point(event); });
+  canvas.addEventListener("pointermove", (event) => {
+    if (event.buttons === 0) point(event);
+  });
   canvas.addEventListener("pointerleave", () => {
     light(null);
     reading.span("");
@@ -76,12 +78,23 @@ export function createPulses({ engine, dispatch, now }) {
     if (channel === null) return;
     const folded = !isFolded(now(), channel);
     dispatch({ type: "fold", channel, folded });
-    reading.speak(`${channel < 16 ? `Channel ${channel}` : `What ${nameOf(now(), channel)} carries`} ${folded ? "folded" : "unfolded"}.`);
+    reading.speak(
+      `${channel < 16 ? `Channel ${channel}` : `What ${nameOf(now(), channel)} carries`} ${folded ? "folded" : "unfolded"}.`,
+    );
   }
 
   /** @param {{start: number, end: number, packet?: number | null, bit?: number} | null} what */
   function light(what) {
-    dispatch({ type: "light", lit: what && { start: what.start, end: what.end, from: "pulses", packet: what.packet ?? null, bit: what.bit ?? null } });
+    dispatch({
+      type: "light",
+      lit: what && {
+        start: what.start,
+        end: what.end,
+        from: "pulses",
+        packet: what.packet ?? null,
+        bit: what.bit ?? null,
+      },
+    });
   }
 
   /** What is pointed at is lit in all views: a span, or an edge that is near. @param {PointerEvent} event */
@@ -121,8 +134,11 @@ export function createPulses({ engine, dispatch, now }) {
   async function snapped(bit, cycle) {
     const { start, end } = shown(now());
     const reach = (SNAP_PX * (end - start)) / (plot.right - plot.left);
-    const edges = await Promise.all([true, false].map((forward) =>
-      engine.ask("next_edge", bit, forward ? cycle - 1 : cycle + 1, forward, "any").catch(unlessDropped)));
+    const edges = await Promise.all(
+      [true, false].map((forward) =>
+        engine.ask("next_edge", bit, forward ? cycle - 1 : cycle + 1, forward, "any").catch(unlessDropped),
+      ),
+    );
     const near = edges.filter((edge) => typeof edge === "number" && Math.abs(edge - cycle) <= reach);
     return near.sort((a, b) => Math.abs(a - cycle) - Math.abs(b - cycle))[0] ?? cycle;
   }
@@ -154,7 +170,8 @@ export function createPulses({ engine, dispatch, now }) {
     const edge = await engine.ask("next_edge", state.row, from, forward, kindSelect.value).catch(unlessDropped);
     const name = nameOf(state, state.row);
     const kind = { rise: "rising ", fall: "falling " }[kindSelect.value] ?? "";
-    if (edge === undefined || edge === null) return reading.speak(`${name}: no ${forward ? "later" : "earlier"} ${kind}edge.`);
+    if (edge === undefined || edge === null)
+      return reading.speak(`${name}: no ${forward ? "later" : "earlier"} ${kind}edge.`);
     dispatch({ type: "cursor", which: "a", cycle: edge });
     reveal(page, edge);
     reading.speak(`${name}: ${kind}edge at ${time(edge / state.result.summary.clock_hz)}, cycle ${edge}.`);
@@ -168,12 +185,15 @@ export function createPulses({ engine, dispatch, now }) {
     const wanted = Math.max(16, Math.round((plot.right - plot.left) * ratio()));
     const margin = Math.round(wanted / 4);
     if (answer) soon();
-    const asked = engine.latest("pulses", "pulses", start, end, wanted, margin).catch(unlessDropped).then((columns) => {
-      if (!columns) return false;
-      answer = { columns, start, end, count: wanted, margin };
-      soon();
-      return true;
-    });
+    const asked = engine
+      .latest("pulses", "pulses", start, end, wanted, margin)
+      .catch(unlessDropped)
+      .then((columns) => {
+        if (!columns) return false;
+        answer = { columns, start, end, count: wanted, margin };
+        soon();
+        return true;
+      });
     const all = await Promise.all([asked, spans.fetch(state, plot.right - plot.left, soon)]);
     // Whoever waits for the drawing waits for this.
     if (all.every(Boolean)) paint(now());
@@ -209,13 +229,20 @@ export function createPulses({ engine, dispatch, now }) {
   function describe(state) {
     const { start, end } = shown(state);
     const clock = state.result?.summary.clock_hz ?? 1;
-    canvas.setAttribute("aria-label", `Logic analyser, ${rowsOf(state).length} rows, ${time(start / clock)} to ${time(end / clock)}, row ${nameOf(state, state.row)}`);
+    canvas.setAttribute(
+      "aria-label",
+      `Logic analyser, ${rowsOf(state).length} rows, ${time(start / clock)} to ${time(end / clock)}, row ${nameOf(state, state.row)}`,
+    );
   }
 
   /** The head's choices and the height that the rows take. @param {State} state */
   function layout(state) {
     const channels = lookedAt(state)?.channels ?? 1;
-    options(rowSelect, signalsOf(state).map(({ name, bit }) => [String(bit), name]), String(state.row));
+    options(
+      rowSelect,
+      signalsOf(state).map(({ name, bit }) => [String(bit), name]),
+      String(state.row),
+    );
     const folded = allFolded(state);
     foldAll.hidden = channels === 1;
     say(foldAll, folded ? "Unfold channels" : "Fold channels");
@@ -232,7 +259,8 @@ export function createPulses({ engine, dispatch, now }) {
     const scroller = /** @type {HTMLElement} */ (stack.parentElement);
     const top = rowsOf(state).findIndex((row) => shows(row, state.row)) * ROW_PX;
     if (top < scroller.scrollTop) scroller.scrollTop = top;
-    else if (top + ROW_PX + 6 > scroller.scrollTop + scroller.clientHeight) scroller.scrollTop = top + ROW_PX + 6 - scroller.clientHeight;
+    else if (top + ROW_PX + 6 > scroller.scrollTop + scroller.clientHeight)
+      scroller.scrollTop = top + ROW_PX + 6 - scroller.clientHeight;
   }
 
   /** @param {State} state @param {State | undefined} before */
@@ -241,7 +269,11 @@ export function createPulses({ engine, dispatch, now }) {
     markers.render(state, before);
     edges.render(state, before);
     const strip = overview.render(state, before);
-    const arranged = before?.result !== state.result || before?.row !== state.row || before?.folds !== state.folds || before?.allSignals !== state.allSignals;
+    const arranged =
+      before?.result !== state.result ||
+      before?.row !== state.row ||
+      before?.folds !== state.folds ||
+      before?.allSignals !== state.allSignals;
     if (arranged) layout(state);
     if (before && before.row !== state.row) follow(state);
     const walked = before && (before.cursors.a !== state.cursors.a || before.row !== state.row);

@@ -27,7 +27,8 @@ export function createReading({ engine, now }) {
     const texts = [];
     if (a !== null) texts.push(`A ${time(a / clock)}`);
     if (b !== null) texts.push(`B ${time(b / clock)}`);
-    if (a !== null && b !== null) texts.push(`B−A ${time((b - a) / clock)}${a === b ? "" : ` = ${si(clock / Math.abs(b - a), "Hz", 6)}`}`);
+    if (a !== null && b !== null)
+      texts.push(`B−A ${time((b - a) / clock)}${a === b ? "" : ` = ${si(clock / Math.abs(b - a), "Hz", 6)}`}`);
     else texts.push(a === null ? "click sets cursor A" : "shift-click sets B");
     say(byId("cursor-readings"), texts.join(" · "));
   }
@@ -53,7 +54,13 @@ export function createReading({ engine, now }) {
     const clock = state.result?.summary.clock_hz ?? 1;
     const under = state.hover === null ? [] : [`${time(state.hover / clock)} · cycle ${count(state.hover)}`, pointed];
     const text = said || under.filter(Boolean).join(" · ");
-    say(byId("hover-reading"), text || (matchMedia("(pointer: coarse)").matches ? "two fingers zoom, dragging moves, a double tap shows the whole run" : "wheel zooms, dragging moves, double click shows the whole run"));
+    say(
+      byId("hover-reading"),
+      text ||
+        (matchMedia("(pointer: coarse)").matches
+          ? "two fingers zoom, dragging moves, a double tap shows the whole run"
+          : "wheel zooms, dragging moves, double click shows the whole run"),
+    );
     byId("hover-reading").classList.toggle("said", said !== "");
   }
 
@@ -68,7 +75,10 @@ export function createReading({ engine, now }) {
 
   /** Speaks what the chosen row does at cursor A. */
   async function speakCursor() {
-    const { row, cursors: { a } } = now();
+    const {
+      row,
+      cursors: { a },
+    } = now();
     if (a === null) return;
     const asked = sentences;
     const answer = await engine.latest("spoken", "pulse_at", row, a).catch(unlessDropped);

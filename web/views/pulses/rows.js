@@ -22,7 +22,11 @@ const [DIR, EN, RX, TX, DE] = [16, 32, 33, 34, 35];
 const MOST_UNFOLDED = 4;
 
 /** Signals of the line, that a run may leave as they are. */
-const LINE = [{ name: "RX", bit: RX }, { name: "TX", bit: TX }, { name: "DE", bit: DE }];
+const LINE = [
+  { name: "RX", bit: RX },
+  { name: "TX", bit: TX },
+  { name: "DE", bit: DE },
+];
 
 /** @param {State} state */
 function channelsOf(state) {
@@ -36,7 +40,9 @@ export function isFolded(state, channel) {
 
 /** Whether every channel is folded. @param {State} state */
 export function allFolded(state) {
-  return Array.from({ length: channelsOf(state) }, (_, channel) => channel).every((channel) => isFolded(state, channel));
+  return Array.from({ length: channelsOf(state) }, (_, channel) => channel).every((channel) =>
+    isFolded(state, channel),
+  );
 }
 
 /** What folds with a signal: its channel, or itself for RX and TX; nothing for EN and DE. @param {number} bit */
@@ -65,27 +71,49 @@ function lineRows(state, { name, bit }) {
   const lane = bit === RX ? "rx" : "tx";
   /** @type {("bits" | "bytes" | "fields")[]} */
   const kinds = open ? ["bits", "bytes", "fields"] : [];
-  return [row, ...kinds.map((kind) => /** @type {const} */ ({ kind, lane, line: bit, name: kind, ink: lane === "rx" ? "--packet" : "--reply" }))];
+  return [
+    row,
+    ...kinds.map(
+      (kind) =>
+        /** @type {const} */ ({ kind, lane, line: bit, name: kind, ink: lane === "rx" ? "--packet" : "--reply" }),
+    ),
+  ];
 }
 
 /** The rows on show. @param {State} state @returns {Row[]} */
 export function rowsOf(state) {
-  const away = state.allSignals ? [] : idle(state).filter(({ bit }) => bit !== state.row).map(({ bit }) => bit);
+  const away = state.allSignals
+    ? []
+    : idle(state)
+        .filter(({ bit }) => bit !== state.row)
+        .map(({ bit }) => bit);
   const framed = state.result?.summary.framed ?? false;
   /** @type {Row[]} */
   const rows = [{ kind: "signal", name: "EN", bit: EN, ink: "--enable" }];
   for (const signal of LINE) {
     if (!away.includes(signal.bit)) rows.push(...lineRows(state, signal));
-    if (signal.bit === RX && hasLine(state)) rows.push({ kind: "packets", name: framed ? "frames" : "packets", ink: "--packet" });
+    if (signal.bit === RX && hasLine(state))
+      rows.push({ kind: "packets", name: framed ? "frames" : "packets", ink: "--packet" });
     if (signal.bit === TX && framed) rows.push({ kind: "replies", name: "replies", ink: "--reply" });
   }
   if (hasLine(state) || lookedAt(state)?.ticks_done) rows.push({ kind: "ticks", name: "ticks", ink: "--tick" });
   if (lookedAt(state)?.violations) rows.push({ kind: "violations", name: "timing", ink: "--error" });
   for (let channel = 0; channel < channelsOf(state); channel++) {
-    if (isFolded(state, channel)) rows.push({ kind: "folded", name: `ch ${channel}`, bit: channel, dir: DIR + channel, ink: "--step", channel, open: false });
+    if (isFolded(state, channel))
+      rows.push({
+        kind: "folded",
+        name: `ch ${channel}`,
+        bit: channel,
+        dir: DIR + channel,
+        ink: "--step",
+        channel,
+        open: false,
+      });
     else {
-      rows.push({ kind: "signal", name: `DIR ${channel}`, bit: DIR + channel, ink: "--dir", channel, open: true },
-        { kind: "signal", name: `STEP ${channel}`, bit: channel, ink: "--step", channel });
+      rows.push(
+        { kind: "signal", name: `DIR ${channel}`, bit: DIR + channel, ink: "--dir", channel, open: true },
+        { kind: "signal", name: `STEP ${channel}`, bit: channel, ink: "--step", channel },
+      );
     }
   }
   return rows;
@@ -93,7 +121,10 @@ export function rowsOf(state) {
 
 /** Every signal that there is, on show or not. @param {State} state @returns {{name: string, bit: number}[]} */
 export function signalsOf(state) {
-  const channels = Array.from({ length: channelsOf(state) }, (_, i) => [{ name: `DIR ${i}`, bit: DIR + i }, { name: `STEP ${i}`, bit: i }]);
+  const channels = Array.from({ length: channelsOf(state) }, (_, i) => [
+    { name: `DIR ${i}`, bit: DIR + i },
+    { name: `STEP ${i}`, bit: i },
+  ]);
   return [{ name: "EN", bit: EN }, ...LINE, ...channels.flat()];
 }
 

@@ -1,10 +1,10 @@
 /** The decoded rows of the logic view: bits, bytes and fields, packets and frames, replies, ticks, and what breaks the driver's timing. */
 import { unlessDropped } from "../../engine/engine.js";
 import { si } from "../../state/number.js";
-import { ruleName } from "../rules.js";
-import { hasLine } from "./rows.js";
+import { ruleName } from "../../state/rules.js";
 import { lookedAt, shown } from "../../state/state.js";
 import { asked } from "../timing.js";
+import { hasLine } from "./rows.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").PacketRow} PacketRow */
@@ -53,10 +53,27 @@ export function createSpans({ engine }) {
       return true;
     };
     const answers = await Promise.all([
-      taken(line ? engine.latest("spans", "packets_in", from, to, MOST) : { rows: [], more: false }, (answer) => { packets = answer; }),
-      taken(engine.latest("ticks", "ticks_in", from, to, MOST), (answer) => { ticks = answer; }),
-      taken(line ? engine.latest("decoded", "decoded", from, to, MOST, Math.floor(width / (7 * BIT_PX))) : NOTHING, (answer) => { decoded = answer; }),
-      known || taken(lookedAt(state)?.violations ? engine.latest("violations", "timing") : { driver: null, total: 0, rules: [], violations: [] }, (answer) => { timing = answer; }),
+      taken(line ? engine.latest("spans", "packets_in", from, to, MOST) : { rows: [], more: false }, (answer) => {
+        packets = answer;
+      }),
+      taken(engine.latest("ticks", "ticks_in", from, to, MOST), (answer) => {
+        ticks = answer;
+      }),
+      taken(
+        line ? engine.latest("decoded", "decoded", from, to, MOST, Math.floor(width / (7 * BIT_PX))) : NOTHING,
+        (answer) => {
+          decoded = answer;
+        },
+      ),
+      known ||
+        taken(
+          lookedAt(state)?.violations
+            ? engine.latest("violations", "timing")
+            : { driver: null, total: 0, rules: [], violations: [] },
+          (answer) => {
+            timing = answer;
+          },
+        ),
     ]);
     if (answers[3]) checked = state.result;
     return answers.every(Boolean);
@@ -66,7 +83,9 @@ export function createSpans({ engine }) {
   function isDense(row) {
     if (row.kind === "ticks") return ticks.more;
     if (!("lane" in row)) return row.kind !== "violations" && packets.more;
-    return decoded.more || (row.kind === "bits" && decoded[row.lane].bits.length === 0 && decoded[row.lane].bytes.length > 0);
+    return (
+      decoded.more || (row.kind === "bits" && decoded[row.lane].bits.length === 0 && decoded[row.lane].bytes.length > 0)
+    );
   }
 
   /** @param {State} state @param {DecodedRow} row @returns {Span[]} */
@@ -75,24 +94,59 @@ export function createSpans({ engine }) {
     const { start, end } = shown(state);
     if (isDense(row)) {
       const what = row.kind === "packets" && state.result?.summary.framed ? "frames" : row.kind;
-      return [{ start, end, texts: [`zoom in to see each of the ${what}`, "zoom in"], marked: false, ink: null, packet: null }];
+      return [
+        {
+          start,
+          end,
+          texts: [`zoom in to see each of the ${what}`, "zoom in"],
+          marked: false,
+          ink: null,
+          packet: null,
+        },
+      ];
     }
     if ("lane" in row) {
-      return decoded[row.lane][row.kind].map((span) => ({ ...span, marked: span.packet !== null && span.packet === state.packet, ink: span.bad ? "--error" : null }));
+      return decoded[row.lane][row.kind].map((span) => ({
+        ...span,
+        marked: span.packet !== null && span.packet === state.packet,
+        ink: span.bad ? "--error" : null,
+      }));
     }
     if (row.kind === "ticks") return ticks.rows.map((tick) => ofTick(state, tick));
-    return packets.rows.filter((each) => (row.kind === "replies") === onReplies(each)).map((each) => ofPacket(state, each));
+    return packets.rows
+      .filter((each) => (row.kind === "replies") === onReplies(each))
+      .map((each) => ofPacket(state, each));
   }
 
   /** Violations in the shown time, each as long as what was measured. @param {State} state @returns {Span[]} */
   function violations(state) {
     const { start, end } = shown(state);
     const clock = state.result?.summary.clock_hz ?? 1;
-    const found = (timing?.violations ?? []).filter(({ cycle, measured_cycles }) => cycle >= start && cycle - measured_cycles <= end);
-    if (found.length > MOST) return [{ start, end, texts: [`${found.length} violations: zoom in to see each`, "zoom in"], marked: false, ink: "--error", packet: null }];
+    const found = (timing?.violations ?? []).filter(
+      ({ cycle, measured_cycles }) => cycle >= start && cycle - measured_cycles <= end,
+    );
+    if (found.length > MOST)
+      return [
+        {
+          start,
+          end,
+          texts: [`${found.length} violations: zoom in to see each`, "zoom in"],
+          marked: false,
+          ink: "--error",
+          packet: null,
+        },
+      ];
     return found.map(({ cycle, channel, rule, measured_cycles }) => ({
-      start: cycle - measured_cycles, end: cycle, marked: false, ink: "--error", packet: null,
-      texts: [`ch ${channel}: ${ruleName(rule)} ${si(measured_cycles / clock, "s")}, ${asked(timing, rule)} asked for`, ruleName(rule), "!"],
+      start: cycle - measured_cycles,
+      end: cycle,
+      marked: false,
+      ink: "--error",
+      packet: null,
+      texts: [
+        `ch ${channel}: ${ruleName(rule)} ${si(measured_cycles / clock, "s")}, ${asked(timing, rule)} asked for`,
+        ruleName(rule),
+        "!",
+      ],
     }));
   }
 
@@ -110,12 +164,25 @@ function ofPacket(state, { index, kind, start_cycle, end_cycle, hex, fields, out
   const [short] = fields.split(/, |: (?=[A-Z]+,)/);
   const texts = kind === "packet" ? [[hex, fields, said], [hex]] : [[fields, said], [short], [fields ? "" : said]];
   const ink = INKS[mark] ?? null;
-  return { start: start_cycle, end: end_cycle, marked: index === state.packet, ink, packet: index,
-    texts: [...texts.map((parts) => parts.filter(Boolean).join(" · ")), `#${index}`].filter(Boolean) };
+  return {
+    start: start_cycle,
+    end: end_cycle,
+    marked: index === state.packet,
+    ink,
+    packet: index,
+    texts: [...texts.map((parts) => parts.filter(Boolean).join(" · ")), `#${index}`].filter(Boolean),
+  };
 }
 
 /** @param {State} state @param {TickRow} tick @returns {Span} */
 function ofTick(state, { start_cycle, end_cycle, row, fields }) {
   const texts = [row === null ? fields : `#${row} · ${fields}`, fields, ...(row === null ? [] : [`#${row}`, `${row}`])];
-  return { start: start_cycle, end: end_cycle, texts, marked: row !== null && row === state.packet, ink: null, packet: row };
+  return {
+    start: start_cycle,
+    end: end_cycle,
+    texts,
+    marked: row !== null && row === state.packet,
+    ink: null,
+    packet: row,
+  };
 }

@@ -27,7 +27,10 @@ export function heard(amplitude) {
 
 /** The spectra that there are, by name. @param {Spectra} spectra @returns {[string, Spectrum][]} */
 export function given({ ideal, pulses }) {
-  return [.../** @type {[string, Spectrum][]} */ (ideal ? [["ideal", ideal]] : []), .../** @type {[string, Spectrum][]} */ (pulses ? [["pulses", pulses]] : [])];
+  return [
+    .../** @type {[string, Spectrum][]} */ (ideal ? [["ideal", ideal]] : []),
+    .../** @type {[string, Spectrum][]} */ (pulses ? [["pulses", pulses]] : []),
+  ];
 }
 
 /** @param {Spectra} spectra @param {Quantity} quantity @returns {{n: number, hz: number, parts: Part[]}[]} */
@@ -45,7 +48,7 @@ export function harmonics(spectra, quantity) {
 }
 
 /** @param {number} part */
-export function decibels(part) {
+function decibels(part) {
   return part > 0 ? `${short(20 * Math.log10(part), 4)} dB` : "nothing";
 }
 
@@ -56,7 +59,10 @@ export function value({ amplitude, part }, quantity, db) {
 
 /** One harmonic in words. @param {ReturnType<typeof harmonics>[number]} row @param {Quantity} quantity @param {boolean} periodic */
 export function told({ n, hz, parts }, quantity, periodic) {
-  const each = parts.map(({ name, amplitude, part }) => `${name} ${short(amplitude, 4)} ${UNITS[quantity]}, ${short(100 * part, 3)} %, ${decibels(part)}`);
+  const each = parts.map(
+    ({ name, amplitude, part }) =>
+      `${name} ${short(amplitude, 4)} ${UNITS[quantity]}, ${short(100 * part, 3)} %, ${decibels(part)}`,
+  );
   return `${periodic ? "harmonic" : "line"} ${n} · ${si(hz, "Hz", 5)} · ${each.join(" · ")}`;
 }
 
@@ -69,14 +75,18 @@ export function distortion(spectra, quantity) {
     const value = spectrum[/** @type {const} */ (`thd_${quantity}`)];
     return `${name} ${value === null ? "none" : percent(value)}`;
   });
-  const felt = quantity === "acceleration" ? given(spectra).filter(([, spectrum]) => spectrum.thd_acceleration_felt !== null) : [];
-  const through = felt.map(([name, spectrum]) => `${name} ${percent(Number(spectrum.thd_acceleration_felt))}`).join(", ");
+  const felt =
+    quantity === "acceleration" ? given(spectra).filter(([, spectrum]) => spectrum.thd_acceleration_felt !== null) : [];
+  const through = felt
+    .map(([name, spectrum]) => `${name} ${percent(Number(spectrum.thd_acceleration_felt))}`)
+    .join(", ");
   return `THD of ${quantity}, axis ${spectra.axis}: ${parts.join(", ")}${through && `; felt by the sensor: ${through}`}`;
 }
 
 /** How the distortion is defined. @param {Spectrum} some */
 export function method(some) {
-  if (!some.periodic) return `Lines at multiples of ${si(some.fundamental_hz, "Hz", 5)}, the run taken as one period (not coherent), no window.`;
+  if (!some.periodic)
+    return `Lines at multiples of ${si(some.fundamental_hz, "Hz", 5)}, the run taken as one period (not coherent), no window.`;
   const periods = some.periods === 1 ? "one whole period" : `${some.periods} whole periods`;
   return `THD is the root of the sum of squares of harmonics 2 to ${some.order} over the fundamental of ${si(some.fundamental_hz, "Hz", 5)}; coherent: ${periods}, no window.`;
 }

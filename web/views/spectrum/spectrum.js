@@ -1,10 +1,10 @@
 /** The spectrum view: harmonics of the ideal motion beside those of the pulses that make it, and the distortion. */
 import { byId, element, fill, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
-import { short, si } from "../../state/number.js";
 import { listen } from "../../shell/commands.js";
+import { short, si } from "../../state/number.js";
 import { cleared, color, draw, fit, watch } from "../../time/plot.js";
-import { FLOOR_DB, distortion, given, harmonics, heard, method, reference, told, value } from "./harmonics.js";
+import { distortion, FLOOR_DB, given, harmonics, heard, method, reference, told, value } from "./harmonics.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").Spectra} Spectra */
@@ -22,11 +22,22 @@ export function spectrumChart(spectra, quantity, db, width) {
   const top = Math.max(...all.flatMap(([, spectrum]) => [...spectrum[quantity]]), 1e-12);
   return {
     x: { min: 0, max: order + 1, unit: "", prefix: false, label_px: 20 },
-    y: db ? { min: FLOOR_DB, max: 10, unit: "dB", prefix: false, label_px: GUTTER } : { min: 0, max: top * 1.1, unit: "", prefix: true, label_px: GUTTER },
+    y: db
+      ? { min: FLOOR_DB, max: 10, unit: "dB", prefix: false, label_px: GUTTER }
+      : { min: 0, max: top * 1.1, unit: "", prefix: true, label_px: GUTTER },
     series: all.map(([name, spectrum]) => ({
-      color: color(name === "ideal" ? "--ideal" : "--made"), opacity: 1, width: thick, x,
-      shape: { stems: { shift: (name === "ideal" ? -1 : 1) * (thick / 2 + 0.5),
-        y: db ? spectrum[quantity].map((value) => 20 * Math.log10(heard(value) / reference(spectrum, quantity))) : spectrum[quantity] } },
+      color: color(name === "ideal" ? "--ideal" : "--made"),
+      opacity: 1,
+      width: thick,
+      x,
+      shape: {
+        stems: {
+          shift: (name === "ideal" ? -1 : 1) * (thick / 2 + 0.5),
+          y: db
+            ? spectrum[quantity].map((value) => 20 * Math.log10(heard(value) / reference(spectrum, quantity)))
+            : spectrum[quantity],
+        },
+      },
     })),
   };
 }
@@ -37,7 +48,7 @@ export function chosenSpectrum() {
   return { quantity: /** @type {Quantity} */ (value("spectrum-quantity")), db: value("spectrum-scale") === "db" };
 }
 
-/** @param {{engine: import("../../engine/engine.js").Engine} & import("../../time/timeline.js").Page} page */
+/** @param {{engine: import("../../engine/engine.js").Engine} & import("../../state/types.js").Page} page */
 export function createSpectrum({ engine, dispatch, now }) {
   const canvas = /** @type {HTMLCanvasElement} */ (byId("spectrum-chart"));
   const overlay = /** @type {HTMLCanvasElement} */ (byId("spectrum-cursor"));
@@ -63,11 +74,20 @@ export function createSpectrum({ engine, dispatch, now }) {
     const row = event.target instanceof Element ? event.target.closest("tr") : null;
     if (row?.dataset.n) point(Number(row.dataset.n));
   });
-  const move = (/** @type {number} */ by) => point(Math.min(rows.length, Math.max(1, (now().harmonic ?? (by > 0 ? 0 : 2)) + by)));
+  const move = (/** @type {number} */ by) =>
+    point(Math.min(rows.length, Math.max(1, (now().harmonic ?? (by > 0 ? 0 : 2)) + by)));
   for (const target of [slider, byId("harmonics-scroll")]) {
     listen(target, "Spectrum", [
-      { keys: ["ArrowRight", "ArrowUp"].slice(0, target === slider ? 2 : 1), text: "the next harmonic", run: () => move(1) },
-      { keys: target === slider ? ["ArrowLeft", "ArrowDown"] : ["ArrowLeft"], text: "the harmonic before", run: () => move(-1) },
+      {
+        keys: ["ArrowRight", "ArrowUp"].slice(0, target === slider ? 2 : 1),
+        text: "the next harmonic",
+        run: () => move(1),
+      },
+      {
+        keys: target === slider ? ["ArrowLeft", "ArrowDown"] : ["ArrowLeft"],
+        text: "the harmonic before",
+        run: () => move(-1),
+      },
       { keys: ["Home"], text: "the fundamental", run: () => point(1) },
       { keys: ["End"], text: "the highest harmonic", run: () => point(rows.length) },
       { keys: ["Escape"], text: "no harmonic", run: () => point(null) },
@@ -87,26 +107,53 @@ export function createSpectrum({ engine, dispatch, now }) {
     const { quantity, db } = chosenSpectrum();
     const some = spectra?.ideal ?? spectra?.pulses ?? null;
     say(byId("thd"), spectra && some?.periodic ? distortion(spectra, quantity) : "");
-    say(byId("spectrum-note"), spectra && some ? `${method(some)} ${spectra.note}`.trim() : spectra?.note ?? "");
+    say(byId("spectrum-note"), spectra && some ? `${method(some)} ${spectra.note}`.trim() : (spectra?.note ?? ""));
     byId("spectrum-split").hidden = !some;
     rows = spectra && some ? harmonics(spectra, quantity) : [];
     table();
     if (spectra && some) {
       plot = draw(canvas, spectrumChart(spectra, quantity, db, canvas.clientWidth));
       fit(overlay);
-      canvas.setAttribute("aria-label", `Spectrum of ${quantity}, harmonics 1 to ${rows.length} of ${si(some.fundamental_hz, "Hz")}; the table beside it has the numbers`);
+      canvas.setAttribute(
+        "aria-label",
+        `Spectrum of ${quantity}, harmonics 1 to ${rows.length} of ${si(some.fundamental_hz, "Hz")}; the table beside it has the numbers`,
+      );
     }
     mark(now());
   }
 
   function table() {
     const names = rows[0]?.parts.map(({ name }) => name) ?? [];
-    const head = [["n", ""], ["frequency", "wide"], ...names.flatMap((name) => [[name, "amplitude"], [`${name} %`, ""]])];
-    fill(/** @type {Element} */ (byId("harmonics").querySelector("thead")), element("tr", {}, ...head.map(([text, kind]) => element("th", { scope: "col", class: `number ${kind}` }, text))));
-    fill(body, ...rows.map(({ n, hz, parts }) => {
-      const cells = [[String(n), ""], [si(hz, "Hz"), "wide"], ...parts.flatMap(({ amplitude, part }) => [[short(amplitude, 4), "amplitude"], [short(100 * part, 3), ""]])];
-      return element("tr", { "data-n": String(n) }, ...cells.map(([text, kind]) => element("td", { class: `number ${kind}` }, text)));
-    }));
+    const head = [
+      ["n", ""],
+      ["frequency", "wide"],
+      ...names.flatMap((name) => [
+        [name, "amplitude"],
+        [`${name} %`, ""],
+      ]),
+    ];
+    fill(
+      /** @type {Element} */ (byId("harmonics").querySelector("thead")),
+      element("tr", {}, ...head.map(([text, kind]) => element("th", { scope: "col", class: `number ${kind}` }, text))),
+    );
+    fill(
+      body,
+      ...rows.map(({ n, hz, parts }) => {
+        const cells = [
+          [String(n), ""],
+          [si(hz, "Hz"), "wide"],
+          ...parts.flatMap(({ amplitude, part }) => [
+            [short(amplitude, 4), "amplitude"],
+            [short(100 * part, 3), ""],
+          ]),
+        ];
+        return element(
+          "tr",
+          { "data-n": String(n) },
+          ...cells.map(([text, kind]) => element("td", { class: `number ${kind}` }, text)),
+        );
+      }),
+    );
   }
 
   /** Lights up the harmonic that is pointed at, stem and row. @param {State} state */
@@ -133,7 +180,10 @@ export function createSpectrum({ engine, dispatch, now }) {
     line.classList.add("lit");
     const scroll = byId("harmonics-scroll");
     // Below the head, which stays; only the table itself is moved.
-    const [above, below] = [line.offsetTop - 24 - scroll.scrollTop, line.offsetTop + line.offsetHeight - scroll.scrollTop - scroll.clientHeight];
+    const [above, below] = [
+      line.offsetTop - 24 - scroll.scrollTop,
+      line.offsetTop + line.offsetHeight - scroll.scrollTop - scroll.clientHeight,
+    ];
     if (above < 0) scroll.scrollTop += above;
     else if (below > 0) scroll.scrollTop += below;
     if (!layer || !plot) return;

@@ -17,8 +17,12 @@ import { place, subject } from "./subject.js";
 
 /** In the order of the core's rows: name, colour and dash, which tells them apart where colour does not. @type {[string, string, number][]} */
 const LOOKS = [
-  ["Cosine, exact", "--made", 0], ["Cosine, in slices", "--ideal", 2], ["Sigmoid", "--enable", 4],
-  ["Bezier", "--wire", 7], ["Straight", "--ink", 10], ["Exponential", "--reply", 15],
+  ["Cosine, exact", "--made", 0],
+  ["Cosine, in slices", "--ideal", 2],
+  ["Sigmoid", "--enable", 4],
+  ["Bezier", "--wire", 7],
+  ["Straight", "--ink", 10],
+  ["Exponential", "--reply", 15],
 ];
 const POINTS = 401;
 const GUTTER = 68;
@@ -35,15 +39,51 @@ export function createCompare({ engine, dispatch, now, panel }) {
   const about = element("span", { class: "study-note" });
   const moves = element("select");
   const moveLabel = element("label", {}, "move ", moves);
-  const ramp = field("Ramp", "s", 0.2, { least: 0, most: 1e6 }, () => { own = false; refresh(now()); });
+  const ramp = field("Ramp", "s", 0.2, { least: 0, most: 1e6 }, () => {
+    own = false;
+    refresh(now());
+  });
   const bar = element("div", { class: "study-bar" }, moveLabel, ramp.root, about);
-  const speeds = element("canvas", { id: "compare-speeds", role: "img", "aria-label": "Speed of every shape over time" });
-  const list = table("Shapes", ["shape", "#peak rate, steps/s", "#peak acceleration, steps/s²", "#peak jerk, steps/s³", "#time error", "#last step", ""]);
-  const small = LOOKS.map(([name]) => ({ name, canvas: element("canvas", { role: "img", "aria-label": `Acceleration, ${name}` }), key: element("canvas", { class: "study-key", "aria-hidden": "true" }) }));
-  const multiples = element("div", { class: "study-multiples" }, ...small.map(({ name, canvas, key }) => element("div", {}, element("p", { class: "study-caption" }, key, name), canvas)));
-  const all = element("div", { class: "study-compare" }, element("p", { class: "study-caption" }, "Speed, steps/s, over time"), element("div", { class: "study-speeds" }, speeds), list.root, element("p", { class: "study-caption" }, "Acceleration, steps/s², over time"), multiples);
+  const speeds = element("canvas", {
+    id: "compare-speeds",
+    role: "img",
+    "aria-label": "Speed of every shape over time",
+  });
+  const list = table("Shapes", [
+    "shape",
+    "#peak rate, steps/s",
+    "#peak acceleration, steps/s²",
+    "#peak jerk, steps/s³",
+    "#time error",
+    "#last step",
+    "",
+  ]);
+  const small = LOOKS.map(([name]) => ({
+    name,
+    canvas: element("canvas", { role: "img", "aria-label": `Acceleration, ${name}` }),
+    key: element("canvas", { class: "study-key", "aria-hidden": "true" }),
+  }));
+  const multiples = element(
+    "div",
+    { class: "study-multiples" },
+    ...small.map(({ name, canvas, key }) =>
+      element("div", {}, element("p", { class: "study-caption" }, key, name), canvas),
+    ),
+  );
+  const all = element(
+    "div",
+    { class: "study-compare" },
+    element("p", { class: "study-caption" }, "Speed, steps/s, over time"),
+    element("div", { class: "study-speeds" }, speeds),
+    list.root,
+    element("p", { class: "study-caption" }, "Acceleration, steps/s², over time"),
+    multiples,
+  );
   fill(panel, bar, all);
-  moves.addEventListener("change", () => { own = true; refresh(now()); });
+  moves.addEventListener("change", () => {
+    own = true;
+    refresh(now());
+  });
   watch(speeds, paint);
   /** @type {Told[]} */
   let rows = [];
@@ -73,7 +113,8 @@ export function createCompare({ engine, dispatch, now, panel }) {
       return say(about, of);
     }
     move = Math.min(Number(moves.value || 0), of.moves.length - 1);
-    if (moves.options.length !== of.moves.length) fill(moves, ...of.moves.map((_, at) => element("option", { value: String(at) }, String(at + 1))));
+    if (moves.options.length !== of.moves.length)
+      fill(moves, ...of.moves.map((_, at) => element("option", { value: String(at) }, String(at + 1))));
     moves.value = String(move);
     moveLabel.hidden = of.moves.length < 2;
     const asked = of.moves[move];
@@ -87,8 +128,15 @@ export function createCompare({ engine, dispatch, now, panel }) {
     shown = next;
     if (own) ramp.set(ramp_s ?? Number(short(duration / 4, 4)));
     all.hidden = steps === 0;
-    if (steps === 0) return say(about, `Move ${move + 1} of axis ${of.axis} ends where it begins: choose one that goes somewhere to compare shapes for it.`);
-    say(about, `Axis ${of.axis}, move ${move + 1}: ${count(steps)} steps in ${si(duration, "s")}${ramp_s === undefined ? "; it has no ramp of its own, so give one" : ""}.`);
+    if (steps === 0)
+      return say(
+        about,
+        `Move ${move + 1} of axis ${of.axis} ends where it begins: choose one that goes somewhere to compare shapes for it.`,
+      );
+    say(
+      about,
+      `Axis ${of.axis}, move ${move + 1}: ${count(steps)} steps in ${si(duration, "s")}${ramp_s === undefined ? "; it has no ramp of its own, so give one" : ""}.`,
+    );
     const question = [steps, duration, ramp.value(), slice_s, sigmoid_range, time_constants, POINTS];
     const answer = await engine.latest("compare", "compare_ramps", ...question).catch(unlessDropped);
     if (!answer || turn !== asking) return undefined;
@@ -131,23 +179,48 @@ export function createCompare({ engine, dispatch, now, panel }) {
     if (!of || typeof of === "string" || rowsOf !== `${placeOf(now())} ${move}` || !of.moves[move]) return;
     const [kind, values] = Object.entries(made)[0];
     const { distance } = /** @type {any} */ (Object.values(of.moves[move])[0]);
-    dispatch({ type: "edit", path: `${of.path}.moves[${move}]`, value: { [kind]: { ...values, distance: distance ?? values.distance } } });
+    dispatch({
+      type: "edit",
+      path: `${of.path}.moves[${move}]`,
+      value: { [kind]: { ...values, distance: distance ?? values.distance } },
+    });
   }
 
   /** @param {{[kind: string]: any}} asked */
   function show(asked) {
-    list.show(rows.map(({ move: made, why, ...cost }, at) => {
-      const [kind, values] = Object.entries(made)[0];
-      const press = kindOf(made) === key && (values.ramp_s === asked[kind]?.ramp_s) ? "in use"
-        : button("Use", `Use: ${LOOKS[at][0]}`, () => take(made));
-      const name = element("span", { class: "study-name" }, element("canvas", { class: "study-key", "aria-hidden": "true" }), LOOKS[at][0]);
-      if (why !== null) return [name, pretty(why), "", "", "", "", ""];
-      const jump = (/** @type {number} */ by, /** @type {string} */ unit) => element("span", { class: "jump" }, `unbounded, jumps by ${plain(by, unit).replace(" ", "\u00a0")}`);
-      return [name, bare(cost.speed), cost.jump > 0 ? jump(cost.jump, "steps/s") : bare(cost.acceleration),
-        cost.jump > 0 ? "unbounded" : cost.acceleration_jump > 0 ? jump(cost.acceleration_jump, "steps/s²") : bare(cost.jerk),
-        cost.time_error_s === 0 ? "none" : `${si(cost.time_error_s, "s")} (${short((100 * cost.time_error_s) / duration, 3)} %)`,
-        si(cost.last_step_s, "s", 5), press];
-    }));
+    list.show(
+      rows.map(({ move: made, why, ...cost }, at) => {
+        const [kind, values] = Object.entries(made)[0];
+        const press =
+          kindOf(made) === key && values.ramp_s === asked[kind]?.ramp_s
+            ? "in use"
+            : button("Use", `Use: ${LOOKS[at][0]}`, () => take(made));
+        const name = element(
+          "span",
+          { class: "study-name" },
+          element("canvas", { class: "study-key", "aria-hidden": "true" }),
+          LOOKS[at][0],
+        );
+        if (why !== null) return [name, pretty(why), "", "", "", "", ""];
+        const jump = (/** @type {number} */ by, /** @type {string} */ unit) =>
+          element("span", { class: "jump" }, `unbounded, jumps by ${plain(by, unit).replace(" ", "\u00a0")}`);
+        return [
+          name,
+          bare(cost.speed),
+          cost.jump > 0 ? jump(cost.jump, "steps/s") : bare(cost.acceleration),
+          cost.jump > 0
+            ? "unbounded"
+            : cost.acceleration_jump > 0
+              ? jump(cost.acceleration_jump, "steps/s²")
+              : bare(cost.jerk),
+          cost.time_error_s === 0
+            ? "none"
+            : `${si(cost.time_error_s, "s")} (${short((100 * cost.time_error_s) / duration, 3)} %)`,
+          si(cost.last_step_s, "s", 5),
+          press,
+        ];
+      }),
+    );
     rows.forEach(({ why }, at) => {
       list.body.children[at].classList.toggle("chosen", kindOf(rows[at].move) === key);
       if (why === null) return;
@@ -162,10 +235,13 @@ export function createCompare({ engine, dispatch, now, panel }) {
     if (rows.length === 0) return;
     const x = Float64Array.from({ length: POINTS }, (_, at) => (duration * at) / (POINTS - 1));
     const axis = { min: 0, max: duration, unit: "s", prefix: true, label_px: 20 };
-    const of = (/** @type {"at_speed" | "at_acceleration"} */ what, /** @type {number[]} */ which) => which.flatMap((at) => {
-      const y = rows[at][what];
-      return y ? [{ color: color(LOOKS[at][1]), opacity: 1, width: 1.8, dash: LOOKS[at][2], x, shape: { line: { y } } }] : [];
-    });
+    const of = (/** @type {"at_speed" | "at_acceleration"} */ what, /** @type {number[]} */ which) =>
+      which.flatMap((at) => {
+        const y = rows[at][what];
+        return y
+          ? [{ color: color(LOOKS[at][1]), opacity: 1, width: 1.8, dash: LOOKS[at][2], x, shape: { line: { y } } }]
+          : [];
+      });
     const every = rows.map((_, at) => at);
     const range = (/** @type {"at_speed" | "at_acceleration"} */ what) => {
       const values = rows.flatMap((row) => [...(row[what] ?? [])]);
@@ -176,10 +252,14 @@ export function createCompare({ engine, dispatch, now, panel }) {
     const accelerations = { ...range("at_acceleration"), label_px: 44 };
     small.forEach(({ canvas, key }, at) => {
       /** @type {HTMLElement} */ (canvas.parentElement).hidden = !rows[at].at_acceleration || rows[at].jump > 0;
-      draw(canvas, { x: axis, y: accelerations, series: of("at_acceleration", [at]).map((line) => ({ ...line, dash: 0 })) });
+      draw(canvas, {
+        x: axis,
+        y: accelerations,
+        series: of("at_acceleration", [at]).map((line) => ({ ...line, dash: 0 })),
+      });
       drawKey(key, at);
     });
-    list.body.querySelectorAll("canvas").forEach((canvas, at) => drawKey(canvas, at));
+    for (const [at, canvas] of list.body.querySelectorAll("canvas").entries()) drawKey(canvas, at);
   }
   /** A piece of a curve's line. @param {HTMLCanvasElement} canvas @param {number} at */
   function drawKey(canvas, at) {
@@ -197,7 +277,13 @@ export function createCompare({ engine, dispatch, now, panel }) {
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    if (before?.judgement !== state.judgement || before?.revision !== state.revision || before?.axis !== state.axis || before?.result !== state.result) return refresh(state);
+    if (
+      before?.judgement !== state.judgement ||
+      before?.revision !== state.revision ||
+      before?.axis !== state.axis ||
+      before?.result !== state.result
+    )
+      return refresh(state);
     return undefined;
   }
   return { render };

@@ -29,23 +29,55 @@ const percent = (value) => (value === null ? "–" : `${short(100 * value, 5)} %
 
 /** The sine document's list. @type {[string, (of: Comparison) => string, string][]} */
 const COMPARED = [
-  ["largest deviation, steps", (of) => digits(of.largest_steps), "How far the second is ahead of the first where they are farthest apart."],
+  [
+    "largest deviation, steps",
+    (of) => digits(of.largest_steps),
+    "How far the second is ahead of the first where they are farthest apart.",
+  ],
   ["at", (of) => si(of.largest_at_s, "s", 5), "When that first is so."],
-  ["r.m.s. deviation, steps", (of) => digits(of.rms_steps), "Root of the mean square over the time; 1/√12 = 0.2887 for whole steps at an even rate."],
+  [
+    "r.m.s. deviation, steps",
+    (of) => digits(of.rms_steps),
+    "Root of the mean square over the time; 1/√12 = 0.2887 for whole steps at an even rate.",
+  ],
   ["area between, steps·s", (of) => digits(of.area_steps_s), "Integral of the deviation's magnitude."],
-  ["difference of areas, steps·s", (of) => digits(of.area_difference_steps_s), "Integral of the deviation with its sign: what is ahead and what is behind cancel."],
+  [
+    "difference of areas, steps·s",
+    (of) => digits(of.area_difference_steps_s),
+    "Integral of the deviation with its sign: what is ahead and what is behind cancel.",
+  ],
   ["sum of squares, steps²", (of) => digits(of.sum_of_squares_steps2), "Of the deviations at the points."],
-  ["Euclidean distance, steps", (of) => digits(of.euclidean_steps), "Root of that sum, the sine document's Ev; it grows with the root of the number of points."],
-  ["correlation", (of) => (of.correlation === null ? "–" : short(of.correlation, 7)), "1 where one follows the other in all it does."],
+  [
+    "Euclidean distance, steps",
+    (of) => digits(of.euclidean_steps),
+    "Root of that sum, the sine document's Ev; it grows with the root of the number of points.",
+  ],
+  [
+    "correlation",
+    (of) => (of.correlation === null ? "–" : short(of.correlation, 7)),
+    "1 where one follows the other in all it does.",
+  ],
   ["1 − correlation", (of) => digits(of.uncorrelated), "The same with digits, where the correlation is all nines."],
 ];
 /** @type {[string, (of: Errors) => string, string][]} */
 const ERRORS = [
-  ["largest time error", (of) => seconds(of.largest_s), "Of a pulse; late is above 0. Whole cycles are off by half a cycle at most."],
+  [
+    "largest time error",
+    (of) => seconds(of.largest_s),
+    "Of a pulse; late is above 0. Whole cycles are off by half a cycle at most.",
+  ],
   ["at", (of) => si(of.largest_at_s, "s", 5), "When that pulse comes."],
-  ["mean time error", (of) => seconds(Math.abs(of.mean_s) < 1e-6 * of.rms_s ? 0 : of.mean_s), "A delay of all pulses alike."],
+  [
+    "mean time error",
+    (of) => seconds(Math.abs(of.mean_s) < 1e-6 * of.rms_s ? 0 : of.mean_s),
+    "A delay of all pulses alike.",
+  ],
   ["r.m.s. time error", (of) => seconds(of.rms_s), "Root of the mean square of the pulses' time errors."],
-  ["largest position error, steps", (of) => digits(of.largest_steps), "How far the ideal motion goes within a pulse's time error."],
+  [
+    "largest position error, steps",
+    (of) => digits(of.largest_steps),
+    "How far the ideal motion goes within a pulse's time error.",
+  ],
   ["r.m.s. position error, steps", (of) => digits(of.rms_steps), "Root of the mean square of those."],
 ];
 /** @type {[string, string, string, string][]} Name, key, unit, meaning. */
@@ -55,7 +87,12 @@ const PEAKS = [
   ["jerk", "jerk_steps_s3", "steps/s³", "Where the acceleration has no jump."],
   ["jump of speed", "speed_jump_steps_s", "steps/s", "The greatest that the motor has to follow at once."],
   ["jump of acceleration", "acceleration_jump_steps_s2", "steps/s²", "There the jerk has no bound."],
-  ["start-stop rate", "start_stop_steps_s", "steps/s", "The greatest rate that is taken up from rest, or left for rest, at once; a turn is both."],
+  [
+    "start-stop rate",
+    "start_stop_steps_s",
+    "steps/s",
+    "The greatest rate that is taken up from rest, or left for rest, at once; a turn is both.",
+  ],
 ];
 /** @type {[string, string, string][]} */
 const DURATION = [
@@ -74,7 +111,13 @@ export function createMeasures({ engine, panel }) {
   /** @param {string} title @param {string} note @param {string[]} head */
   const group = (title, note, head) => {
     const list = table(title, ["measure", ...head.map((text) => `#${text}`), "~what it means"]);
-    const root = element("section", { class: "measures-group" }, element("h3", {}, title), element("p", { class: "study-note" }, note), list.root);
+    const root = element(
+      "section",
+      { class: "measures-group" },
+      element("h3", {}, title),
+      element("p", { class: "study-note" }, note),
+      list.root,
+    );
     rest.append(root);
     return { root, note: /** @type {Element} */ (root.children[1]), show: list.show };
   };
@@ -88,13 +131,22 @@ export function createMeasures({ engine, panel }) {
   /** @param {Measures} found */
   function show(found) {
     const { steps, ticks, pulses, step_errors, tick_errors, counts } = found;
-    say(compared.note, `Over ${si(found.length_s, "s", 6)}. Ideal → steps: whole steps at whole cycles, step quantisation. Steps → pulses: what ticks, queue and line add. Sums are over ${counted(pulses.points, "point")}, all else over the curves themselves.`);
+    say(
+      compared.note,
+      `Over ${si(found.length_s, "s", 6)}. Ideal → steps: whole steps at whole cycles, step quantisation. Steps → pulses: what ticks, queue and line add. Sums are over ${counted(pulses.points, "point")}, all else over the curves themselves.`,
+    );
     compared.show([
       ...COMPARED.map(([name, of, text]) => [name, of(steps), of(ticks), of(pulses), text]),
       ...ERRORS.map(([name, of, text]) => [name, of(step_errors), of(tick_errors), "", text]),
     ]);
     duration.show([
-      ...DURATION.map(([name, key, text]) => [name, key === "end_error_s" || found.duration[key] === null ? seconds(found.duration[key]) : time(Number(found.duration[key])), text]),
+      ...DURATION.map(([name, key, text]) => [
+        name,
+        key === "end_error_s" || found.duration[key] === null
+          ? seconds(found.duration[key])
+          : time(Number(found.duration[key])),
+        text,
+      ]),
       ["steps due", count(counts.due), "There and back."],
       ["pulses made", count(counts.made), "Steps to and fro within one tick cancel and are not made."],
       ["pulses without a step", count(counts.stray), "At a place, or in a direction, in which no step was due."],
@@ -103,7 +155,10 @@ export function createMeasures({ engine, panel }) {
     sine.root.hidden = !found.sine;
     if (found.sine) {
       const { segments, euclidean, quarter } = found.sine;
-      say(sine.note, `The document's polyline against the exact sine, at the ${counted(quarter.points, "point")} of a quarter; all figures are of these points.`);
+      say(
+        sine.note,
+        `The document's polyline against the exact sine, at the ${counted(quarter.points, "point")} of a quarter; all figures are of these points.`,
+      );
       sine.show([
         ["segments", count(segments), "Of a quarter of the period."],
         ["Ev", short(euclidean, 5), "The document's Euclidean distance, in parts of the amplitude."],
@@ -119,17 +174,39 @@ export function createMeasures({ engine, panel }) {
     if (!ideal || !pulses) return;
     say(thd.note, `To harmonic ${ideal.order} of ${si(ideal.fundamental_hz, "Hz", 5)}, in whole periods.`);
     thd.show([
-      ["position", percent(ideal.thd_position), percent(pulses.thd_position), "Root of the sum of squares of all harmonics but the first, over the first."],
+      [
+        "position",
+        percent(ideal.thd_position),
+        percent(pulses.thd_position),
+        "Root of the sum of squares of all harmonics but the first, over the first.",
+      ],
       ["speed", percent(ideal.thd_speed), percent(pulses.thd_speed), "Harmonic k counts k times."],
-      ["acceleration", percent(ideal.thd_acceleration), percent(pulses.thd_acceleration), "Harmonic k counts k² times: of segments of fixed rate it grows with the order."],
-      ...(ideal.thd_acceleration_felt === null ? [] : [["acceleration felt", percent(ideal.thd_acceleration_felt), percent(pulses.thd_acceleration_felt), "Behind the sensor's low pass, which the form sets."]]),
+      [
+        "acceleration",
+        percent(ideal.thd_acceleration),
+        percent(pulses.thd_acceleration),
+        "Harmonic k counts k² times: of segments of fixed rate it grows with the order.",
+      ],
+      ...(ideal.thd_acceleration_felt === null
+        ? []
+        : [
+            [
+              "acceleration felt",
+              percent(ideal.thd_acceleration_felt),
+              percent(pulses.thd_acceleration_felt),
+              "Behind the sensor's low pass, which the form sets.",
+            ],
+          ]),
     ]);
   }
 
   /** @param {State} state */
   async function refresh({ result, axis }) {
     if (!result) return;
-    const [found, spectra] = await Promise.all([engine.latest("measures", "measures", axis), engine.latest("measures-thd", "spectrum")]).catch((error) => {
+    const [found, spectra] = await Promise.all([
+      engine.latest("measures", "measures", axis),
+      engine.latest("measures-thd", "spectrum"),
+    ]).catch((error) => {
       if (!(error instanceof Dropped)) {
         // Too many steps to be measured, say.
         rest.hidden = true;
@@ -139,7 +216,12 @@ export function createMeasures({ engine, panel }) {
     });
     if (found === undefined) return;
     rest.hidden = !found;
-    say(about, found ? `Axis ${axis} of the run that the views show.` : `Axis ${axis} has no motion, so there is no curve to measure the pulses by.`);
+    say(
+      about,
+      found
+        ? `Axis ${axis} of the run that the views show.`
+        : `Axis ${axis} has no motion, so there is no curve to measure the pulses by.`,
+    );
     if (!found) return;
     show(found);
     distortion(spectra, axis);

@@ -16,9 +16,22 @@ let made = 0;
  */
 export function field(label, unit, start, { least, most, integer = false }, change) {
   const id = `study-field-${made++}`;
-  const input = element("input", { id, inputmode: "decimal", spellcheck: "false", autocomplete: "off", value: String(start), "aria-describedby": `${id}-error` });
+  const input = element("input", {
+    id,
+    inputmode: "decimal",
+    spellcheck: "false",
+    autocomplete: "off",
+    value: String(start),
+    "aria-describedby": `${id}-error`,
+  });
   const error = element("span", { id: `${id}-error`, class: "error" });
-  const root = element("span", { class: "study-field" }, element("label", { for: id }, unit ? `${label}, ${unit}` : label), input, error);
+  const root = element(
+    "span",
+    { class: "study-field" },
+    element("label", { for: id }, unit ? `${label}, ${unit}` : label),
+    input,
+    error,
+  );
   let value = start;
   /** What is wrong with what is typed; and with its value, beside others. */
   let [wrong, amiss] = ["", ""];
@@ -29,7 +42,8 @@ export function field(label, unit, start, { least, most, integer = false }, chan
   };
   input.addEventListener("change", () => {
     const read = parseNumber(input.value, unit, { integer, least, most });
-    wrong = "message" in read ? read.message : read.value >= least && read.value <= most ? "" : `Give ${least} to ${most}.`;
+    wrong =
+      "message" in read ? read.message : read.value >= least && read.value <= most ? "" : `Give ${least} to ${most}.`;
     tell();
     if (wrong || !("value" in read) || read.value === value) return;
     value = read.value;
@@ -54,7 +68,11 @@ export function field(label, unit, start, { least, most, integer = false }, chan
 
 /** A choice. @param {string} label @param {{[value: string]: string}} choices @param {() => void} change */
 export function choice(label, choices, change) {
-  const select = element("select", {}, ...Object.entries(choices).map(([value, text]) => element("option", { value }, text)));
+  const select = element(
+    "select",
+    {},
+    ...Object.entries(choices).map(([value, text]) => element("option", { value }, text)),
+  );
   select.addEventListener("change", change);
   return { root: element("label", {}, `${label} `, select), value: () => select.value };
 }
@@ -67,12 +85,43 @@ export function focusRow(row) {
 
 /** A table that scrolls, and keeps the focus in its row when it is filled anew; a column whose head begins with `#` has numbers, one with `~` before it is left out on a narrow screen. @param {string} label @param {string[]} head */
 export function table(label, head) {
-  const kinds = head.map((text) => `${text.includes("#") ? "number" : ""} ${text.startsWith("~") ? "roomy" : ""}`.trim());
+  const kinds = head.map((text) =>
+    `${text.includes("#") ? "number" : ""} ${text.startsWith("~") ? "roomy" : ""}`.trim(),
+  );
   const body = element("tbody");
-  const root = element("div", { class: "study-scroll", tabindex: "0", role: "group", "aria-label": label }, element("table", { "aria-label": label }, element("thead", {}, element("tr", {}, ...head.map((text, at) =>
-    element(text ? "th" : "td", { ...(text ? { scope: "col" } : {}), class: kinds[at] }, text.replace(/^~?#?/, ""))))), body));
+  const root = element(
+    "div",
+    { class: "study-scroll", tabindex: "0", role: "group", "aria-label": label },
+    element(
+      "table",
+      { "aria-label": label },
+      element(
+        "thead",
+        {},
+        element(
+          "tr",
+          {},
+          ...head.map((text, at) =>
+            element(
+              text ? "th" : "td",
+              { ...(text ? { scope: "col" } : {}), class: kinds[at] },
+              text.replace(/^~?#?/, ""),
+            ),
+          ),
+        ),
+      ),
+      body,
+    ),
+  );
   /** A row; its first cell is its head. @param {(string | Node)[]} cells */
-  const row = (cells) => element("tr", {}, ...cells.map((cell, at) => element(at === 0 ? "th" : "td", { ...(at === 0 ? { scope: "row" } : {}), class: kinds[at] }, cell)));
+  const row = (cells) =>
+    element(
+      "tr",
+      {},
+      ...cells.map((cell, at) =>
+        element(at === 0 ? "th" : "td", { ...(at === 0 ? { scope: "row" } : {}), class: kinds[at] }, cell),
+      ),
+    );
   /** @param {(string | Node)[][]} rows */
   const show = (rows) => {
     const had = document.activeElement;

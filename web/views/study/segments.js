@@ -24,8 +24,19 @@ export function createSegments({ engine }) {
     if (key !== asked) return;
     root.hidden = !made;
     if (!made) return;
-    say(note, `Of a quarter, the others follow by symmetry: ${count(made.segment_bytes)} bytes, against ${count(made.interval_bytes)} with an interval for each step.`);
-    list.show(Array.from(made.steps, (steps, i) => [`${made.from_deg[i].toFixed(3)}°`, `${made.to_deg[i].toFixed(3)}°`, count(steps), plain(made.rate[i], ""), si(made.duration_s[i], "s")]));
+    say(
+      note,
+      `Of a quarter, the others follow by symmetry: ${count(made.segment_bytes)} bytes, against ${count(made.interval_bytes)} with an interval for each step.`,
+    );
+    list.show(
+      Array.from(made.steps, (steps, i) => [
+        `${made.from_deg[i].toFixed(3)}°`,
+        `${made.to_deg[i].toFixed(3)}°`,
+        count(steps),
+        plain(made.rate[i], ""),
+        si(made.duration_s[i], "s"),
+      ]),
+    );
   }
   return { root, show };
 }

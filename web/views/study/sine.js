@@ -4,8 +4,8 @@
  */
 import { button, element, fill, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
-import { counted, short } from "../../state/number.js";
 import { listen } from "../../shell/commands.js";
+import { counted, short } from "../../state/number.js";
 import { get } from "../../state/state.js";
 import { cleared, color, draw, fit, watch } from "../../time/plot.js";
 import { choice, createJob, field, table } from "./parts.js";
@@ -23,7 +23,15 @@ const PIECE = 10;
 /** Pieces of the range in which the best d1 of each number of segments is looked for. */
 const STRETCHES = 16;
 const GUTTER = 58;
-const NAMES = /** @type {(keyof Rows)[]} */ (["d1", "segments", "position", "speed", "acceleration", "felt", "euclidean"]);
+const NAMES = /** @type {(keyof Rows)[]} */ ([
+  "d1",
+  "segments",
+  "position",
+  "speed",
+  "acceleration",
+  "felt",
+  "euclidean",
+]);
 
 /** A d1 as the scenario takes it: with few digits, and not below where its polyline begins. @param {number} d1 */
 const rounded = (d1) => Math.ceil(d1 * 1e8 - 1e-4) / 1e8;
@@ -35,8 +43,16 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   const from = field("d1 from", "", 0.002, { least: 1e-5, most: 1 }, refresh);
   const to = field("to", "", 0.06, { least: 1e-5, most: 1 }, refresh);
   const points = field("points", "", 500, { least: 2, most: 20000, integer: true }, refresh);
-  const order = field("harmonics to", "", 399, { least: 3, most: 9999, integer: true }, () => { refresh(); vertices(); current(now()); });
-  const quantity = choice("THD of", { position: "position", speed: "speed", acceleration: "acceleration", felt: "acceleration, felt" }, paint);
+  const order = field("harmonics to", "", 399, { least: 3, most: 9999, integer: true }, () => {
+    refresh();
+    vertices();
+    current(now());
+  });
+  const quantity = choice(
+    "THD of",
+    { position: "position", speed: "speed", acceleration: "acceleration", felt: "acceleration, felt" },
+    paint,
+  );
   const job = createJob("Sweep", () => (rows ? " The charts show the sweep before." : ""));
   const thdCanvas = element("canvas", { role: "img", "aria-label": "THD against d1" });
   const distanceCanvas = element("canvas", { role: "img", "aria-label": "Euclidean distance against d1" });
@@ -45,9 +61,33 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   noThd.hidden = true;
   const thdCaption = element("div", { class: "caption" });
   const distanceCaption = element("div", { class: "caption" }, element("span", {}, "Euclidean distance Ev against d1"));
-  const charts = element("div", { class: "charts study-charts", id: "sine-charts", tabindex: "0", role: "slider", "aria-label": "d1", "aria-valuemin": "0", "aria-valuemax": "0", "aria-valuenow": "0" },
-    element("div", { class: "chart" }, thdCaption, thdCanvas, noThd), element("div", { class: "chart" }, distanceCaption, distanceCanvas), overlay);
-  const list = table("What a d1 gives", ["of", "#d1", "#segments", "#THD position", "~#speed", "~#acceleration", "~#felt", "#Ev", ""]);
+  const charts = element(
+    "div",
+    {
+      class: "charts study-charts",
+      id: "sine-charts",
+      tabindex: "0",
+      role: "slider",
+      "aria-label": "d1",
+      "aria-valuemin": "0",
+      "aria-valuemax": "0",
+      "aria-valuenow": "0",
+    },
+    element("div", { class: "chart" }, thdCaption, thdCanvas, noThd),
+    element("div", { class: "chart" }, distanceCaption, distanceCanvas),
+    overlay,
+  );
+  const list = table("What a d1 gives", [
+    "of",
+    "#d1",
+    "#segments",
+    "#THD position",
+    "~#speed",
+    "~#acceleration",
+    "~#felt",
+    "#Ev",
+    "",
+  ]);
   const note = element("p", { class: "study-note", id: "sine-note", "aria-live": "polite", tabindex: "-1" });
   const segments = field("segments of a quarter", "", 6, { least: 1, most: 32, integer: true }, vertices);
   const verticesJob = createJob("Vertices");
@@ -55,10 +95,26 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   const best = table("Best vertices", ["vertex", "#on the curve", "#height", "#free", "#height"]);
   const quarter = createSegments({ engine });
   const bestNote = element("p", { class: "study-note", id: "sine-vertices" });
-  fill(panel, element("div", { class: "study-bar" }, from.root, to.root, points.root, order.root, quantity.root, job.root),
-    element("div", { class: "study-split" },
+  fill(
+    panel,
+    element("div", { class: "study-bar" }, from.root, to.root, points.root, order.root, quantity.root, job.root),
+    element(
+      "div",
+      { class: "study-split" },
       element("div", { class: "study-column" }, charts, list.root, note),
-      element("div", { class: "study-column study-side" }, element("h3", {}, "Best d1 of each number of segments, by position"), bestOf.root, element("h3", {}, "Best vertices"), element("div", { class: "study-bar" }, segments.root, verticesJob.root), bestNote, best.root, quarter.root)));
+      element(
+        "div",
+        { class: "study-column study-side" },
+        element("h3", {}, "Best d1 of each number of segments, by position"),
+        bestOf.root,
+        element("h3", {}, "Best vertices"),
+        element("div", { class: "study-bar" }, segments.root, verticesJob.root),
+        bestNote,
+        best.root,
+        quarter.root,
+      ),
+    ),
+  );
 
   /** @type {Rows | null} What the charts show, as far as it is made. */
   let rows = null;
@@ -85,7 +141,8 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     point(rowAt(event));
     take();
   });
-  const move = (/** @type {number} */ by) => point(Math.min((rows?.d1.length ?? 1) - 1, Math.max(0, (at ?? (by > 0 ? -1 : 1)) + by)));
+  const move = (/** @type {number} */ by) =>
+    point(Math.min((rows?.d1.length ?? 1) - 1, Math.max(0, (at ?? (by > 0 ? -1 : 1)) + by)));
   listen(charts, "Sine: figure 4", [
     { keys: ["ArrowRight", "ArrowUp"], text: "the next d1", run: () => move(1) },
     { keys: ["ArrowLeft", "ArrowDown"], text: "the d1 before", run: () => move(-1) },
@@ -100,7 +157,9 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   function rowAt({ clientX }) {
     if (!plot || !rows) return null;
     const part = (clientX - charts.getBoundingClientRect().left - plot.left) / (plot.right - plot.left);
-    return part < -0.02 || part > 1.02 ? at : Math.min(rows.d1.length - 1, Math.max(0, Math.round(part * (rows.d1.length - 1))));
+    return part < -0.02 || part > 1.02
+      ? at
+      : Math.min(rows.d1.length - 1, Math.max(0, Math.round(part * (rows.d1.length - 1))));
   }
 
   /** @param {number | null} index */
@@ -126,7 +185,13 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   function put(d1) {
     const { of, move } = sineOf(now());
     claim = null;
-    if (!of) return say(note, subject(now()) ? "The scenario has no axis that could take it." : "Not while the form has a problem, or is being looked at.");
+    if (!of)
+      return say(
+        note,
+        subject(now())
+          ? "The scenario has no axis that could take it."
+          : "Not while the form has a problem, or is being looked at.",
+      );
     if (move < 0) return offer(d1);
     const path = `${of.path}.moves[${move}].sine_segments.max_deviation`;
     edit(path, rounded(d1));
@@ -151,7 +216,10 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
       const { of, move } = sineOf(now());
       note.focus({ preventScroll: true });
       if (!of || move >= 0) return put(d1);
-      edit(`${of.path}.moves`, [...of.moves, { sine_segments: { ...samples.moves.sine_segments, max_deviation: rounded(d1) } }]);
+      edit(`${of.path}.moves`, [
+        ...of.moves,
+        { sine_segments: { ...samples.moves.sine_segments, max_deviation: rounded(d1) } },
+      ]);
       return say(note, `Axis ${of.axis} ends with a sine in segments now; undo takes it away.`);
     });
     fill(note, `Axis ${sineOf(now()).of?.axis} has no sine in segments that could take it. `, press);
@@ -163,62 +231,148 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     swept = true;
     to.fail(low >= high ? `Give more than ${low}, where the range begins.` : "");
     if (low >= high) return undefined;
-    job.run(async (signal, tell) => {
-      const pieces = Array.from({ length: Math.ceil(number / PIECE) }, (_, index) => [low, high, number, highest, sensor, PIECE * index, PIECE * (index + 1)]);
-      // The smaller d1, the more polylines are beside it.
-      const edge = (/** @type {number} */ index) => (index === STRETCHES ? high : low * (high / low) ** (index / STRETCHES));
-      const stretches = Array.from({ length: STRETCHES }, (_, index) => [edge(index), edge(index + 1), highest, sensor]);
-      let done = 0;
-      const all = pieces.length + STRETCHES;
-      const told = () => tell(++done / all, done < pieces.length ? `${Math.min(number, done * PIECE)} of ${number} points` : "the best d1 of the range");
-      tell(0, `0 of ${number} points`);
-      // The rows before stay until these are there.
-      const answers = joined(await engine.share("sine_rows", pieces, signal, told));
-      [rows, at, least, sweptOrder] = [answers, null, null, highest];
-      paint();
-      const found = await engine.share("sine_best", stretches, signal, told);
-      return joined(found);
-    }, (found) => {
-      /** @type {Map<number, Row>} */
-      const bests = new Map();
-      for (let index = 0; index < found.d1.length; index++) {
-        const row = /** @type {Row} */ (rowOf(found, index));
-        if (!(row.position >= (bests.get(row.segments)?.position ?? Infinity))) bests.set(row.segments, row);
-      }
-      const sorted = [...bests.values()].sort((one, other) => one.segments - other.segments);
-      bestOf.show(sorted.map((row) => [String(row.segments), short(row.d1, 6), percent(row.position), short(row.euclidean, 4), use(row, `${counted(row.segments, "segment")}, the best d1`)]));
-      least = sorted.reduce((best, row) => (row.position < best.position ? row : best), sorted[0]) ?? null;
-      paint();
-    });
+    job.run(
+      async (signal, tell) => {
+        const pieces = Array.from({ length: Math.ceil(number / PIECE) }, (_, index) => [
+          low,
+          high,
+          number,
+          highest,
+          sensor,
+          PIECE * index,
+          PIECE * (index + 1),
+        ]);
+        // The smaller d1, the more polylines are beside it.
+        const edge = (/** @type {number} */ index) =>
+          index === STRETCHES ? high : low * (high / low) ** (index / STRETCHES);
+        const stretches = Array.from({ length: STRETCHES }, (_, index) => [
+          edge(index),
+          edge(index + 1),
+          highest,
+          sensor,
+        ]);
+        let done = 0;
+        const all = pieces.length + STRETCHES;
+        const told = () =>
+          tell(
+            ++done / all,
+            done < pieces.length ? `${Math.min(number, done * PIECE)} of ${number} points` : "the best d1 of the range",
+          );
+        tell(0, `0 of ${number} points`);
+        // The rows before stay until these are there.
+        const answers = joined(await engine.share("sine_rows", pieces, signal, told));
+        [rows, at, least, sweptOrder] = [answers, null, null, highest];
+        paint();
+        const found = await engine.share("sine_best", stretches, signal, told);
+        return joined(found);
+      },
+      (found) => {
+        /** @type {Map<number, Row>} */
+        const bests = new Map();
+        for (let index = 0; index < found.d1.length; index++) {
+          const row = /** @type {Row} */ (rowOf(found, index));
+          if (!(row.position >= (bests.get(row.segments)?.position ?? Infinity))) bests.set(row.segments, row);
+        }
+        const sorted = [...bests.values()].sort((one, other) => one.segments - other.segments);
+        bestOf.show(
+          sorted.map((row) => [
+            String(row.segments),
+            short(row.d1, 6),
+            percent(row.position),
+            short(row.euclidean, 4),
+            use(row, `${counted(row.segments, "segment")}, the best d1`),
+          ]),
+        );
+        least = sorted.reduce((best, row) => (row.position < best.position ? row : best), sorted[0]) ?? null;
+        paint();
+      },
+    );
     return undefined;
   }
 
   /** The best vertices, on the curve and free. */
   function vertices() {
     const number = segments.value();
-    verticesJob.run((signal, tell) => {
-      tell(0, counted(number, "segment"));
-      return engine.share("sine_vertices", [[number, false, order.value()], [number, true, order.value()]], signal);
-    }, ([onCurve, free]) => {
-      say(bestNote, `Least THD of position with ${counted(number, "segment")}: ${percent(onCurve.thd)} with vertices on the curve, ${percent(free.thd)} with free ones.`);
-      best.show(Array.from(onCurve.angle_deg, (_, i) => [String(i), ...[onCurve, free].flatMap(({ angle_deg, height }) => [`${angle_deg[i].toFixed(3)}°`, height[i].toFixed(5)])]));
-    });
+    verticesJob.run(
+      (signal, tell) => {
+        tell(0, counted(number, "segment"));
+        return engine.share(
+          "sine_vertices",
+          [
+            [number, false, order.value()],
+            [number, true, order.value()],
+          ],
+          signal,
+        );
+      },
+      ([onCurve, free]) => {
+        say(
+          bestNote,
+          `Least THD of position with ${counted(number, "segment")}: ${percent(onCurve.thd)} with vertices on the curve, ${percent(free.thd)} with free ones.`,
+        );
+        best.show(
+          Array.from(onCurve.angle_deg, (_, i) => [
+            String(i),
+            ...[onCurve, free].flatMap(({ angle_deg, height }) => [
+              `${angle_deg[i].toFixed(3)}°`,
+              height[i].toFixed(5),
+            ]),
+          ]),
+        );
+      },
+    );
   }
 
   function paint() {
     const chosen = /** @type {Quantity} */ (quantity.value());
-    const what = chosen !== "felt" ? chosen : sensor === undefined ? "acceleration, felt" : `the acceleration that a sensor of ${short(sensor, 4)} harmonics feels`;
-    fill(thdCaption, element("span", {}, `THD of ${what}, against d1, harmonics 2 to ${sweptOrder || order.value()}, %`));
+    const what =
+      chosen !== "felt"
+        ? chosen
+        : sensor === undefined
+          ? "acceleration, felt"
+          : `the acceleration that a sensor of ${short(sensor, 4)} harmonics feels`;
+    fill(
+      thdCaption,
+      element("span", {}, `THD of ${what}, against d1, harmonics 2 to ${sweptOrder || order.value()}, %`),
+    );
     // Without a sensor there is nothing that it feels.
     const none = rows !== null && !rows[chosen].some(Number.isFinite);
     [thdCanvas.hidden, noThd.hidden] = [none, !none];
-    say(noThd, !none ? "" : sensor === undefined ? "What a sensor feels: give its bandwidth in the form, under Spectrum, and the axis a sine in segments, which has the period." : "The sweep with the sensor is not made yet.");
+    say(
+      noThd,
+      !none
+        ? ""
+        : sensor === undefined
+          ? "What a sensor feels: give its bandwidth in the form, under Spectrum, and the axis a sine in segments, which has the period."
+          : "The sweep with the sensor is not made yet.",
+    );
     if (rows && rows.d1.length > 1) {
       const { d1 } = rows;
       const x = { min: d1[0], max: d1[d1.length - 1], unit: "", prefix: false, label_px: 20 };
-      const line = (/** @type {HTMLCanvasElement} */ canvas, /** @type {Float64Array} */ y, /** @type {string} */ ink) => draw(canvas, { x,
-        y: { min: 0, max: 1.05 * Math.max(1e-9, ...y.filter(Number.isFinite)), unit: "", prefix: false, label_px: GUTTER }, series: Number.isFinite(y[0]) ? [{ color: color(ink), opacity: 1, width: 1.5, x: d1, shape: { line: { y } } }] : [] });
-      if (!none) line(thdCanvas, rows[chosen].map((ratio) => 100 * ratio), "--ideal");
+      const line = (
+        /** @type {HTMLCanvasElement} */ canvas,
+        /** @type {Float64Array} */ y,
+        /** @type {string} */ ink,
+      ) =>
+        draw(canvas, {
+          x,
+          y: {
+            min: 0,
+            max: 1.05 * Math.max(1e-9, ...y.filter(Number.isFinite)),
+            unit: "",
+            prefix: false,
+            label_px: GUTTER,
+          },
+          series: Number.isFinite(y[0])
+            ? [{ color: color(ink), opacity: 1, width: 1.5, x: d1, shape: { line: { y } } }]
+            : [],
+        });
+      if (!none)
+        line(
+          thdCanvas,
+          rows[chosen].map((ratio) => 100 * ratio),
+          "--ideal",
+        );
       plot = line(distanceCanvas, rows.euclidean, "--made");
       fit(overlay);
     }
@@ -230,19 +384,51 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     const pointed = at === null ? null : rowOf(rows, at);
     charts.setAttribute("aria-valuemax", String((rows?.d1.length ?? 1) - 1));
     charts.setAttribute("aria-valuenow", String(at ?? 0));
-    charts.setAttribute("aria-valuetext", pointed ? `d1 ${short(pointed.d1)}, ${pointed.segments} segments, THD of ${quantity.value()} ${percent(pointed[/** @type {Quantity} */ (quantity.value())])}, Ev ${short(pointed.euclidean)}; Enter takes it` : "no d1 chosen");
-    const cells = (/** @type {string} */ name, /** @type {Row | null} */ row, /** @type {string} */ none, usable = true) => {
-      return [name, ...(row ? [short(row.d1, 6), String(row.segments), percent(row.position), percent(row.speed), percent(row.acceleration), percent(row.felt), short(row.euclidean, 4)] : [none, "", "", "", "", "", ""]), usable && row ? use(row, name) : ""];
+    charts.setAttribute(
+      "aria-valuetext",
+      pointed
+        ? `d1 ${short(pointed.d1)}, ${pointed.segments} segments, THD of ${quantity.value()} ${percent(pointed[/** @type {Quantity} */ (quantity.value())])}, Ev ${short(pointed.euclidean)}; Enter takes it`
+        : "no d1 chosen",
+    );
+    const cells = (
+      /** @type {string} */ name,
+      /** @type {Row | null} */ row,
+      /** @type {string} */ none,
+      usable = true,
+    ) => {
+      return [
+        name,
+        ...(row
+          ? [
+              short(row.d1, 6),
+              String(row.segments),
+              percent(row.position),
+              percent(row.speed),
+              percent(row.acceleration),
+              percent(row.felt),
+              short(row.euclidean, 4),
+            ]
+          : [none, "", "", "", "", "", ""]),
+        usable && row ? use(row, name) : "",
+      ];
     };
     list.root.classList.toggle("unfelt", sensor === undefined);
-    list.show([cells("pointed at", pointed, "–"), cells("the scenario", own, "none", false), cells(`best by position${least && rows && atEnd(least.d1, rows.d1) ? ": the range's end" : ""}`, least, "–")]);
+    list.show([
+      cells("pointed at", pointed, "–"),
+      cells("the scenario", own, "none", false),
+      cells(`best by position${least && rows && atEnd(least.d1, rows.d1) ? ": the range's end" : ""}`, least, "–"),
+    ]);
     const layer = cleared(overlay);
     if (!layer || !plot || !rows) return;
     const { left, right, top, bottom } = plot;
     const [low, high] = [rows.d1[0], rows.d1[rows.d1.length - 1]];
     const { context } = layer;
     /** @type {[Row | null, string, number[], string][]} */
-    const lines = [[own, "--ink", [5, 4], "now"], [least, "--enable", [2, 3], "best by position"], [pointed, "--axis", [], ""]];
+    const lines = [
+      [own, "--ink", [5, 4], "now"],
+      [least, "--enable", [2, 3], "best by position"],
+      [pointed, "--axis", [], ""],
+    ];
     context.font = "11px system-ui, sans-serif";
     for (const [row, ink, dash, name] of lines) {
       if (!row || row.d1 < low || row.d1 > high) continue;
@@ -256,7 +442,16 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
         context.lineTo(x, down + bottom);
         context.stroke();
       }
-      if (name) context.fillText(name, x + 4, (thdCanvas.hidden ? distanceCanvas.offsetTop + (distanceCanvas.parentElement?.offsetTop ?? 0) : thdCanvas.offsetTop) + top + (name === "now" ? 11 : 24));
+      if (name)
+        context.fillText(
+          name,
+          x + 4,
+          (thdCanvas.hidden
+            ? distanceCanvas.offsetTop + (distanceCanvas.parentElement?.offsetTop ?? 0)
+            : thdCanvas.offsetTop) +
+            top +
+            (name === "now" ? 11 : 24),
+        );
     }
     context.setLineDash([]);
   }
@@ -270,7 +465,10 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     const next = `${d1} ${order.value()} ${sensor}`;
     if (next === ownKey) return;
     ownKey = next;
-    const found = d1 === null ? null : rowOf(await engine.ask("sine_rows", d1, d1, 1, order.value(), sensor, 0, 1).catch(unlessDropped), 0);
+    const found =
+      d1 === null
+        ? null
+        : rowOf(await engine.ask("sine_rows", d1, d1, 1, order.value(), sensor, 0, 1).catch(unlessDropped), 0);
     if (next !== ownKey) return;
     own = found;
     mark();
@@ -280,7 +478,8 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   function render(state, before) {
     const { of, move } = sineOf(state);
     const { analysis } = state.scenario;
-    const wanted = of && move >= 0 && analysis?.sensor_hz ? analysis.sensor_hz * of.moves[move].sine_segments.period_s : undefined;
+    const wanted =
+      of && move >= 0 && analysis?.sensor_hz ? analysis.sensor_hz * of.moves[move].sine_segments.period_s : undefined;
     const other = of !== null && wanted !== sensor;
     if (other) sensor = wanted;
     // An undo takes away what the note tells of.
@@ -298,7 +497,9 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
 
 /** @param {Rows | null | undefined} rows @param {number} index @returns {Row | null} */
 function rowOf(rows, index) {
-  return rows && index < rows.d1.length ? /** @type {any} */ (Object.fromEntries(NAMES.map((name) => [name, rows[name][index]]))) : null;
+  return rows && index < rows.d1.length
+    ? /** @type {any} */ (Object.fromEntries(NAMES.map((name) => [name, rows[name][index]])))
+    : null;
 }
 
 /** Whether a d1 is the first or the last of the range, beyond which there may be better ones. @param {number} d1 @param {Float64Array} range */
@@ -308,5 +509,7 @@ function atEnd(d1, range) {
 
 /** @param {Rows[]} pieces @returns {Rows} */
 function joined(pieces) {
-  return /** @type {any} */ (Object.fromEntries(NAMES.map((name) => [name, Float64Array.from(pieces.flatMap((piece) => [...piece[name]]))])));
+  return /** @type {any} */ (
+    Object.fromEntries(NAMES.map((name) => [name, Float64Array.from(pieces.flatMap((piece) => [...piece[name]]))]))
+  );
 }

@@ -9,11 +9,11 @@
 import { byId, element, fill, options } from "../../dom.js";
 import { listen } from "../../shell/commands.js";
 import { arrows, choose } from "../../shell/tabs.js";
-import { lookedAt } from "../../state/state.js";
 import { STUDIES } from "../../shell/view_part.js";
+import { lookedAt } from "../../state/state.js";
 
 /** @typedef {import("../../state/types.js").State} State */
-/** @typedef {{engine: import("../../engine/engine.js").Engine, samples: import("../../form/kit.js").Samples} & import("../../time/timeline.js").Page} Given */
+/** @typedef {{engine: import("../../engine/engine.js").Engine, samples: import("../../form/kit.js").Samples} & import("../../state/types.js").Page} Given */
 /** @typedef {{panel: HTMLElement} & Given} StudyPage */
 /** @typedef {{render: (state: State, before: State | undefined) => any}} StudyTab */
 
@@ -25,11 +25,26 @@ export function createStudy(page) {
   const { dispatch, now } = page;
   const view = byId("view-study");
   const all = STUDIES.map((name) => {
-    const tab = element("button", { type: "button", role: "tab", id: `study-tab-${name}`, "aria-controls": `study-${name}` }, TITLES[name]);
-    const panel = element("div", { role: "tabpanel", id: `study-${name}`, class: "study-panel", "aria-labelledby": tab.id });
+    const tab = element(
+      "button",
+      { type: "button", role: "tab", id: `study-tab-${name}`, "aria-controls": `study-${name}` },
+      TITLES[name],
+    );
+    const panel = element("div", {
+      role: "tabpanel",
+      id: `study-${name}`,
+      class: "study-panel",
+      "aria-labelledby": tab.id,
+    });
     tab.addEventListener("click", () => dispatch({ type: "study", study: name }));
     view.append(panel);
-    return { name, tab, panel, made: /** @type {StudyTab | null} */ (null), drawn: /** @type {State | undefined} */ (undefined) };
+    return {
+      name,
+      tab,
+      panel,
+      made: /** @type {StudyTab | null} */ (null),
+      drawn: /** @type {State | undefined} */ (undefined),
+    };
   });
   byId("study-tabs").append(...all.map(({ tab }) => tab));
   arrows(all.map(({ tab }) => tab));
@@ -46,7 +61,14 @@ export function createStudy(page) {
   byId("study").addEventListener("click", () => toggle());
   byId("study-close").addEventListener("click", () => toggle(false));
   const key = { keys: ["F2"], text: "open or close the study", run: () => toggle() };
-  listen(view, "Study", [key, { keys: ["Escape"], text: "in the study: show the views again", run: ({ target }) => (target instanceof HTMLInputElement ? false : toggle(false)) }]);
+  listen(view, "Study", [
+    key,
+    {
+      keys: ["Escape"],
+      text: "in the study: show the views again",
+      run: ({ target }) => (target instanceof HTMLInputElement ? false : toggle(false)),
+    },
+  ]);
   listen(document, "Study", [key]);
 
   /** @type {typeof import("./tabs.js").TABS | null} */
@@ -55,8 +77,7 @@ export function createStudy(page) {
   let loading = null;
   /** Loads the tabs once, and draws the open one. @param {HTMLElement} panel */
   async function load(panel) {
-    loading ??= import("./tabs.js").then(async ({ TABS, dress }) => {
-      await dress();
+    loading ??= import("./tabs.js").then(({ TABS }) => {
       tabs = TABS;
     });
     try {
@@ -65,7 +86,15 @@ export function createStudy(page) {
       loading = null;
       const press = element("button", { type: "button" }, "Try again");
       press.addEventListener("click", () => render(now()));
-      return fill(panel, element("p", { class: "study-note" }, "The study could not be loaded; try again when the network is there. ", press));
+      return fill(
+        panel,
+        element(
+          "p",
+          { class: "study-note" },
+          "The study could not be loaded; try again when the network is there. ",
+          press,
+        ),
+      );
     }
     return render(now());
   }
@@ -81,7 +110,11 @@ export function createStudy(page) {
     const each = all.find(({ name }) => name === state.study);
     if (!open || !each) return undefined;
     const channels = lookedAt(state)?.channels ?? 1;
-    options(axes, Array.from({ length: channels }, (_, axis) => [String(axis), String(axis)]), String(state.axis));
+    options(
+      axes,
+      Array.from({ length: channels }, (_, axis) => [String(axis), String(axis)]),
+      String(state.axis),
+    );
     /** @type {HTMLElement} */ (axes.parentElement).hidden = channels < 2;
     if (!tabs) return load(each.panel);
     each.made ??= tabs[each.name]({ ...page, panel: each.panel });

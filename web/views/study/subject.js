@@ -8,7 +8,7 @@ import { get } from "../../state/state.js";
 export function place({ scenario, result, axis: wanted }) {
   const controller = result?.controller ?? 0;
   const list = controller > 0 ? `controllers[${controller - 1}].axes` : "source.motion.axes";
-  const axes = scenario.source?.motion ? get(scenario, list) ?? [] : [];
+  const axes = scenario.source?.motion ? (get(scenario, list) ?? []) : [];
   const axis = Math.min(wanted, axes.length - 1);
   return { controller, axis, path: axis < 0 ? "" : `${list}[${axis}]`, moves: axes[axis]?.moves };
 }

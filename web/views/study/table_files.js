@@ -11,7 +11,10 @@ import { subject } from "./subject.js";
 export const FORMS = { exact: "Exact list", document: "Document's table", compressed: "Compressed" };
 /** @type {{[language: string]: [string, string, string]}} Label, ending of the file and its type. */
 export const LANGUAGES = {
-  c: ["C", ".c", "text/x-c"], avr: ["C for AVR (PROGMEM)", "-avr.c", "text/x-c"], rust: ["Rust", ".rs", "text/rust"], csv: ["CSV", ".csv", "text/csv"],
+  c: ["C", ".c", "text/x-c"],
+  avr: ["C for AVR (PROGMEM)", "-avr.c", "text/x-c"],
+  rust: ["Rust", ".rs", "text/rust"],
+  csv: ["CSV", ".csv", "text/csv"],
 };
 /** The table that is chosen in the tab, which the export panel offers, too. @type {Choice} */
 export const chosen = { form: "compressed", widths: "q16", us: 25 };
@@ -27,7 +30,11 @@ export function files(state, engine, { json, controller, axis }) {
   const { form, widths, us } = chosen;
   const part = controller > 0 ? `-controller-${controller + 1}` : "";
   return Object.entries(LANGUAGES).map(([language, [label, ending, type]]) => ({
-    name: `${baseName(state)}${part}-axis-${axis}-${form}-${widths}${ending}`, type, label: `${label}: axis ${axis}, ${form}, ${widths}`, language,
-    make: () => engine.share("step_source", [[json, controller, axis, form, widths, us, language]], new AbortController().signal),
+    name: `${baseName(state)}${part}-axis-${axis}-${form}-${widths}${ending}`,
+    type,
+    label: `${label}: axis ${axis}, ${form}, ${widths}`,
+    language,
+    make: () =>
+      engine.share("step_source", [[json, controller, axis, form, widths, us, language]], new AbortController().signal),
   }));
 }

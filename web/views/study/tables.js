@@ -3,11 +3,11 @@
  * and each as a file for a firmware. What a tab is, says study.js.
  */
 import { element, fill, say } from "../../dom.js";
-import { count, counted, plain, pretty, short, si } from "../../state/number.js";
 import { save } from "../../shell/save.js";
+import { count, counted, plain, pretty, short, si } from "../../state/number.js";
 import { createJob, field, table } from "./parts.js";
 import { subject } from "./subject.js";
-import { FORMS, LANGUAGES, chosen, files } from "./table_files.js";
+import { chosen, FORMS, files, LANGUAGES } from "./table_files.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{steps: number, entries: number, bytes: number, document_bytes: number | null, largest_s: number, rms_s: number, why: string | null}} Told */
@@ -22,7 +22,16 @@ export function createTables({ engine, now, panel }) {
   const job = createJob("Tables");
   const about = element("p", { class: "study-note" });
   const note = element("p", { class: "study-note" });
-  const list = table("Stored forms", ["form", "widths", "#entries", "#bytes", "~#steps an entry", "#largest error", "#r.m.s. error", "~#steps"]);
+  const list = table("Stored forms", [
+    "form",
+    "widths",
+    "#entries",
+    "#bytes",
+    "~#steps an entry",
+    "#largest error",
+    "#r.m.s. error",
+    "~#steps",
+  ]);
   const saves = element("p", { class: "study-bar", role: "group", "aria-label": "Save the chosen table" });
   const said = element("span", { "aria-live": "polite" });
   fill(panel, element("div", { class: "study-bar" }, error.root, job.root), about, list.root, note, saves);
@@ -49,42 +58,73 @@ export function createTables({ engine, now, panel }) {
     }
     const of = subject(now());
     if (!of || typeof of === "string") return fill(saves);
-    const none = told[ROWS.findIndex(({ form, widths }) => form === chosen.form && widths === chosen.widths)]?.why !== null;
+    const none =
+      told[ROWS.findIndex(({ form, widths }) => form === chosen.form && widths === chosen.widths)]?.why !== null;
     say(said, "");
-    fill(saves, element("span", {}, none ? "" : `Save ${FORMS[chosen.form].toLowerCase()}, ${chosen.widths}, as`), ...(none ? [] : files(now(), engine, of).map(({ name, type, language, make }) => {
-      const press = element("button", { type: "button", "data-language": language, title: name }, LANGUAGES[language][0]);
-      press.addEventListener("click", async () => {
-        say(said, `Making ${name}…`);
-        try {
-          save(name, type, await make());
-          say(said, `Saved ${name}.`);
-        } catch (failed) {
-          say(said, `No ${name}: ${failed instanceof Error ? failed.message : failed}`);
-        }
-      });
-      return press;
-    })), said);
+    fill(
+      saves,
+      element("span", {}, none ? "" : `Save ${FORMS[chosen.form].toLowerCase()}, ${chosen.widths}, as`),
+      ...(none
+        ? []
+        : files(now(), engine, of).map(({ name, type, language, make }) => {
+            const press = element(
+              "button",
+              { type: "button", "data-language": language, title: name },
+              LANGUAGES[language][0],
+            );
+            press.addEventListener("click", async () => {
+              say(said, `Making ${name}…`);
+              try {
+                save(name, type, await make());
+                say(said, `Saved ${name}.`);
+              } catch (failed) {
+                say(said, `No ${name}: ${failed instanceof Error ? failed.message : failed}`);
+              }
+            });
+            return press;
+          })),
+      said,
+    );
   }
 
   function show() {
     const steps = told[0].steps;
     // What is refused in all widths for one reason is one row.
-    const alike = (/** @type {number} */ at) => ROWS.every(({ form }, other) => form !== ROWS[at].form || (told[other].why !== null && told[other].why === told[at].why));
+    const alike = (/** @type {number} */ at) =>
+      ROWS.every(
+        ({ form }, other) => form !== ROWS[at].form || (told[other].why !== null && told[other].why === told[at].why),
+      );
     const kept = told.map((_, at) => at).filter((at) => !alike(at) || ROWS[at].widths === "q16");
     const fewest = Math.min(...told.filter(({ why }) => why === null).map(({ bytes }) => bytes));
     const best = told.findIndex(({ why, bytes }) => why === null && bytes === fewest);
-    list.show(kept.map((at) => {
-      const { entries, bytes, document_bytes, largest_s, rms_s, why } = told[at];
-      const { form, widths } = ROWS[at];
-      const pick = element("input", { type: "radio", name: "study-table", value: `${form}-${widths}` });
-      pick.disabled = why !== null;
-      const name = element("label", { class: "check" }, pick, FORMS[form]);
-      /** @type {(string | Node)[]} */
-      const cells = why !== null ? [pretty(why)] : [count(entries), count(bytes), entries === 0 ? "–" : steps < 1000 * entries ? short(steps / entries, 4) : count(steps / entries), si(largest_s, "s"), si(rms_s, "s"), `${count(steps)}, exact`];
-      if (form === "document" && document_bytes !== null && why === null) cells[1] += ` (${count(document_bytes)})`;
-      if (why === null && bytes === fewest) cells[1] = element("strong", {}, cells[1]);
-      return [name, alike(at) ? "all" : element("span", {}, widths, element("span", { class: "roomy" }, `: ${WIDTHS[widths]}`)), ...cells];
-    }));
+    list.show(
+      kept.map((at) => {
+        const { entries, bytes, document_bytes, largest_s, rms_s, why } = told[at];
+        const { form, widths } = ROWS[at];
+        const pick = element("input", { type: "radio", name: "study-table", value: `${form}-${widths}` });
+        pick.disabled = why !== null;
+        const name = element("label", { class: "check" }, pick, FORMS[form]);
+        /** @type {(string | Node)[]} */
+        const cells =
+          why !== null
+            ? [pretty(why)]
+            : [
+                count(entries),
+                count(bytes),
+                entries === 0 ? "–" : steps < 1000 * entries ? short(steps / entries, 4) : count(steps / entries),
+                si(largest_s, "s"),
+                si(rms_s, "s"),
+                `${count(steps)}, exact`,
+              ];
+        if (form === "document" && document_bytes !== null && why === null) cells[1] += ` (${count(document_bytes)})`;
+        if (why === null && bytes === fewest) cells[1] = element("strong", {}, cells[1]);
+        return [
+          name,
+          alike(at) ? "all" : element("span", {}, widths, element("span", { class: "roomy" }, `: ${WIDTHS[widths]}`)),
+          ...cells,
+        ];
+      }),
+    );
     kept.forEach((at, row) => {
       const cell = list.body.children[row].children[2];
       if (told[at].why === null) return;
@@ -92,7 +132,10 @@ export function createTables({ engine, now, panel }) {
       cell.className = "why";
     });
     const own = told.find(({ document_bytes }) => document_bytes !== null);
-    say(note, `${best < 0 ? "" : `Fewest bytes, in bold: ${FORMS[ROWS[best].form].toLowerCase()}, ${ROWS[best].widths}. `}The exact list takes the next step into an entry only where the entry foretells its interval, the compressed one searches for the longest entry: so the exact list can be longer even than a compressed one with error 0. One interval of 4 bytes for each step would take ${count(4 * steps)} bytes.${own ? " In brackets: bytes of the table as the motion's document keeps it." : ""} No step is ever lost or added: a list that has not all of them is refused.`);
+    say(
+      note,
+      `${best < 0 ? "" : `Fewest bytes, in bold: ${FORMS[ROWS[best].form].toLowerCase()}, ${ROWS[best].widths}. `}The exact list takes the next step into an entry only where the entry foretells its interval, the compressed one searches for the longest entry: so the exact list can be longer even than a compressed one with error 0. One interval of 4 bytes for each step would take ${count(4 * steps)} bytes.${own ? " In brackets: bytes of the table as the motion's document keeps it." : ""} No step is ever lost or added: a list that has not all of them is refused.`,
+    );
     mark();
   }
 
@@ -112,23 +155,37 @@ export function createTables({ engine, now, panel }) {
     const next = JSON.stringify([of.json, of.controller, of.axis, chosen.us]);
     if (next === key) return mark();
     key = next;
-    job.run(async (signal, tell) => {
-      let done = 0;
-      tell(0, `0 of ${ROWS.length} tables`);
-      const pieces = ROWS.map(({ form, widths }) => [of.json, of.controller, of.axis, form, widths, chosen.us]);
-      return engine.share("step_table", pieces, signal, () => tell(++done / pieces.length, `${done} of ${pieces.length} tables`));
-    }, (made) => {
-      told = made;
-      for (const each of [list.root, note, saves]) each.hidden = false;
-      const derived = now().derived?.controllers[of.controller]?.axes[of.axis];
-      say(about, `Axis ${of.axis}: ${counted(made[0].steps, "step")}${derived ? ` in ${si(derived.duration_s, "s")}, up to ${plain(derived.peak_speed_steps_s, "steps/s")}` : ""}.`);
-      show();
-    });
+    job.run(
+      async (signal, tell) => {
+        let done = 0;
+        tell(0, `0 of ${ROWS.length} tables`);
+        const pieces = ROWS.map(({ form, widths }) => [of.json, of.controller, of.axis, form, widths, chosen.us]);
+        return engine.share("step_table", pieces, signal, () =>
+          tell(++done / pieces.length, `${done} of ${pieces.length} tables`),
+        );
+      },
+      (made) => {
+        told = made;
+        for (const each of [list.root, note, saves]) each.hidden = false;
+        const derived = now().derived?.controllers[of.controller]?.axes[of.axis];
+        say(
+          about,
+          `Axis ${of.axis}: ${counted(made[0].steps, "step")}${derived ? ` in ${si(derived.duration_s, "s")}, up to ${plain(derived.peak_speed_steps_s, "steps/s")}` : ""}.`,
+        );
+        show();
+      },
+    );
   }
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    if (before?.judgement !== state.judgement || before?.revision !== state.revision || before?.axis !== state.axis || before?.result !== state.result) refresh(state);
+    if (
+      before?.judgement !== state.judgement ||
+      before?.revision !== state.revision ||
+      before?.axis !== state.axis ||
+      before?.result !== state.result
+    )
+      refresh(state);
   }
   return { render };
 }

@@ -41,16 +41,38 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
   const about = element("p", { class: "study-note", "aria-live": "polite", tabindex: "-1" });
   const verdict = element("p", { id: "torque-verdict", "aria-live": "polite" });
   const canvas = element("canvas", { role: "img", "aria-label": "Torque against rate" });
-  const key = (/** @type {string} */ kind, /** @type {string} */ text) => element("span", {}, element("span", { class: `key ${kind}` }), ` ${text} `);
+  const key = (/** @type {string} */ kind, /** @type {string} */ text) =>
+    element("span", {}, element("span", { class: `key ${kind}` }), ` ${text} `);
   const stated = element("span", {}, "; dashed: the stated working rate");
-  const caption = element("div", { class: "caption" }, element("span", {}, "Torque in mN·m against rate: "), key("ideal", "available"), key("made", "needed, driving or braking"), stated);
+  const caption = element(
+    "div",
+    { class: "caption" },
+    element("span", {}, "Torque in mN·m against rate: "),
+    key("ideal", "available"),
+    key("made", "needed, driving or braking"),
+    stated,
+  );
   const chart = element("div", { class: "chart torque-chart" }, caption, canvas);
   const facts = table("The motor", ["of the motor", "#value"]);
-  const lacks = table("Too little torque", ["from", "#to", "#short of", "#at", "#rate", "~#needed", "~#available", "~#periods"]);
+  const lacks = table("Too little torque", [
+    "from",
+    "#to",
+    "#short of",
+    "#at",
+    "#rate",
+    "~#needed",
+    "~#available",
+    "~#periods",
+  ]);
   const ramps = table("Ramps", ["move", "#enough torque", "#longest by rate", "#room"]);
   const ramped = element("h3", {}, "Ramps");
   const note = element("p", { class: "study-note" });
-  const body = element("div", { class: "study-split" }, element("div", { class: "study-column" }, chart, verdict, lacks.root), element("div", { class: "study-column study-side" }, facts.root, ramped, ramps.root, note));
+  const body = element(
+    "div",
+    { class: "study-split" },
+    element("div", { class: "study-column" }, chart, verdict, lacks.root),
+    element("div", { class: "study-column study-side" }, facts.root, ramped, ramps.root, note),
+  );
   fill(panel, element("div", { class: "study-bar" }, about, job.root), body);
   body.hidden = true;
   /** @type {Torque | null} */
@@ -60,15 +82,39 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
 
   function paint() {
     if (!made || body.hidden) return;
-    const { rate, available, needed, told: { working_rate: working } } = made;
+    const {
+      rate,
+      available,
+      needed,
+      told: { working_rate: working },
+    } = made;
     stated.hidden = working === null;
     const most = Math.max(...available, ...needed.filter((torque) => !Number.isNaN(torque)));
     draw(canvas, {
       x: { min: 0, max: rate[rate.length - 1], unit: "steps/s", prefix: true, label_px: 20 },
       y: { min: 0, max: 1.08 * most, unit: "", prefix: false, label_px: 58 },
-      series: [{ color: color("--made"), opacity: 0.75, width: 2, x: rate, shape: { stems: { y: needed, shift: 0 } } },
-        { color: color("--ideal"), opacity: 1, width: 2, x: rate, shape: { line: { y: available.map((torque) => Math.max(torque, 0)) } } },
-        ...(working === null ? [] : [{ color: color("--axis"), opacity: 1, width: 1.5, dash: 4, x: [working, working], shape: { line: { y: [0, 2 * most] } } }])],
+      series: [
+        { color: color("--made"), opacity: 0.75, width: 2, x: rate, shape: { stems: { y: needed, shift: 0 } } },
+        {
+          color: color("--ideal"),
+          opacity: 1,
+          width: 2,
+          x: rate,
+          shape: { line: { y: available.map((torque) => Math.max(torque, 0)) } },
+        },
+        ...(working === null
+          ? []
+          : [
+              {
+                color: color("--axis"),
+                opacity: 1,
+                width: 1.5,
+                dash: 4,
+                x: [working, working],
+                shape: { line: { y: [0, 2 * most] } },
+              },
+            ]),
+      ],
     });
   }
 
@@ -76,33 +122,72 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
   function show(told) {
     const { least, jump, total, shortages, over_working_rate, working_rate } = told;
     facts.show([
-      ...(told.corner_rate === 0 ? [["Torque at standstill", torques(told.standing_mn_m)], ["whole current up to", "no rate: the supply is too low"]]
-        : [["Full torque", torques(told.standing_mn_m)], ["as far as", upTo(told.corner_rate)]]),
-      ["Load", torques(told.load_mn_m)], ["torque for it up to", upTo(told.torque_rate)],
+      ...(told.corner_rate === 0
+        ? [
+            ["Torque at standstill", torques(told.standing_mn_m)],
+            ["whole current up to", "no rate: the supply is too low"],
+          ]
+        : [
+            ["Full torque", torques(told.standing_mn_m)],
+            ["as far as", upTo(told.corner_rate)],
+          ]),
+      ["Load", torques(told.load_mn_m)],
+      ["torque for it up to", upTo(told.torque_rate)],
       ...(working_rate === null ? [] : [["Stated working rate", rates(working_rate)]]),
-      ...(least ? [["Least margin", torques(least.available_mn_m - Math.abs(least.needed_mn_m))], ["at", `${si(least.at_s, "s")}, ${rates(least.rate)}`]] : []),
+      ...(least
+        ? [
+            ["Least margin", torques(least.available_mn_m - Math.abs(least.needed_mn_m))],
+            ["at", `${si(least.at_s, "s")}, ${rates(least.rate)}`],
+          ]
+        : []),
       ...(jump > 0 ? [["Greatest jump of speed", rates(jump)]] : []),
     ]);
-    const fast = over_working_rate === null ? "" : `⚠ ${rates(over_working_rate)} are above the stated working rate: give more time, or shorter ramps. `;
-    const lack = total === 0 ? "" : `⚠ Too little torque in ${total === 1 ? "one stretch" : `${count(total)} stretches`}: give more time, gentler ramps, less load or a higher supply voltage.`;
+    const fast =
+      over_working_rate === null
+        ? ""
+        : `⚠ ${rates(over_working_rate)} are above the stated working rate: give more time, or shorter ramps. `;
+    const lack =
+      total === 0
+        ? ""
+        : `⚠ Too little torque in ${total === 1 ? "one stretch" : `${count(total)} stretches`}: give more time, gentler ramps, less load or a higher supply voltage.`;
     say(verdict, fast + lack || "Enough torque throughout.");
     verdict.classList.toggle("error", fast + lack !== "");
     lacks.root.hidden = total === 0;
-    lacks.show(shortages.map(({ from_s, to_s, times, worst: { at_s, rate, needed_mn_m, available_mn_m } }) => [si(from_s, "s"), si(to_s, "s"), torques(Math.abs(needed_mn_m) - available_mn_m),
-      si(at_s, "s"), rates(rate), torques(needed_mn_m), torques(available_mn_m), count(times)]));
+    lacks.show(
+      shortages.map(({ from_s, to_s, times, worst: { at_s, rate, needed_mn_m, available_mn_m } }) => [
+        si(from_s, "s"),
+        si(to_s, "s"),
+        torques(Math.abs(needed_mn_m) - available_mn_m),
+        si(at_s, "s"),
+        rates(rate),
+        torques(needed_mn_m),
+        torques(available_mn_m),
+        count(times),
+      ]),
+    );
     ramped.hidden = ramps.root.hidden = told.ramps.length === 0;
-    ramps.show(told.ramps.map((found) => [`${found.index + 1}, ${si(found.duration_s, "s")}`, enough(found),
-      found.longest_s === null ? (found.too_fast ? "too fast" : "any") : ramp(found.longest_s), ramp(found.room_s)]));
-    say(note, `${told.ramps.length ? "Enough torque: ramps with which it suffices throughout. Longest by rate: T − n/f_s (for ramps of area 1/2), with the motor's greatest rate for its load as f_s; the move has room for T/2. " : ""}${jump > 0 ? "A motor follows a jump of speed up to its start-stop rate, which these data do not tell. " : ""}The model: fundamental waves only, no saturation, no losses of iron and friction in the motor, no resonance.`);
+    ramps.show(
+      told.ramps.map((found) => [
+        `${found.index + 1}, ${si(found.duration_s, "s")}`,
+        enough(found),
+        found.longest_s === null ? (found.too_fast ? "too fast" : "any") : ramp(found.longest_s),
+        ramp(found.room_s),
+      ]),
+    );
+    say(
+      note,
+      `${told.ramps.length ? "Enough torque: ramps with which it suffices throughout. Longest by rate: T − n/f_s (for ramps of area 1/2), with the motor's greatest rate for its load as f_s; the move has room for T/2. " : ""}${jump > 0 ? "A motor follows a jump of speed up to its start-stop rate, which these data do not tell. " : ""}The model: fundamental waves only, no saturation, no losses of iron and friction in the motor, no resonance.`,
+    );
   }
 
-  const add = () => button("Add the document's motor", "Add the document's motor: Song, Han and Lu 2021", () => {
-    // What is looked at by now; the button goes with the answer.
-    const of = subject(now());
-    if (!of || typeof of === "string" || get(now().scenario, `${of.path}.motor`)) return;
-    about.focus({ preventScroll: true });
-    dispatch({ type: "edit", path: `${of.path}.motor`, value: samples.motor });
-  });
+  const add = () =>
+    button("Add the document's motor", "Add the document's motor: Song, Han and Lu 2021", () => {
+      // What is looked at by now; the button goes with the answer.
+      const of = subject(now());
+      if (!of || typeof of === "string" || get(now().scenario, `${of.path}.motor`)) return;
+      about.focus({ preventScroll: true });
+      dispatch({ type: "edit", path: `${of.path}.motor`, value: samples.motor });
+    });
 
   /** @param {State} state */
   function refresh(state) {
@@ -117,19 +202,33 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
     const next = JSON.stringify([of.json, of.controller, of.axis]);
     if (next === asked) return;
     asked = next;
-    job.run(async (signal) => (await engine.share("torque", [[of.json, of.controller, of.axis]], signal))[0], (/** @type {Torque | undefined} */ answer) => {
-      made = answer ?? null;
-      body.hidden = made === null;
-      if (!made) return fill(about, `Axis ${of.axis} has no motor yet: the form has its data under the axis' mechanics. `, add());
-      say(about, `Axis ${of.axis}: what its motor has, and what its plan needs. Its data are in the form.`);
-      show(made.told);
-      paint();
-    });
+    job.run(
+      async (signal) => (await engine.share("torque", [[of.json, of.controller, of.axis]], signal))[0],
+      (/** @type {Torque | undefined} */ answer) => {
+        made = answer ?? null;
+        body.hidden = made === null;
+        if (!made)
+          return fill(
+            about,
+            `Axis ${of.axis} has no motor yet: the form has its data under the axis' mechanics. `,
+            add(),
+          );
+        say(about, `Axis ${of.axis}: what its motor has, and what its plan needs. Its data are in the form.`);
+        show(made.told);
+        paint();
+      },
+    );
   }
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    if (before?.judgement !== state.judgement || before?.revision !== state.revision || before?.axis !== state.axis || before?.result !== state.result) refresh(state);
+    if (
+      before?.judgement !== state.judgement ||
+      before?.revision !== state.revision ||
+      before?.axis !== state.axis ||
+      before?.result !== state.result
+    )
+      refresh(state);
     if (before?.view !== state.view || before?.study !== state.study) paint();
   }
   return { render };

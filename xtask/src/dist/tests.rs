@@ -1,121 +1,127 @@
-//! A small site, built.
+//! A small site, as esbuild hands it over.
 
 use super::*;
 
-/// A folder with the files of a small site.
-fn sources(name: &str, changed: &[(&str, &str)]) -> std::path::PathBuf {
-    let web = std::env::temp_dir().join(format!("stepscope-dist-{}-{name}", std::process::id()));
-    let _ = std::fs::remove_dir_all(&web);
-    let files = [
-        ("_headers", "# all\n/*\n  X-One: 1\n  Cache-Control: no-cache\n"),
+/// A site with these texts besides its own.
+fn site(changed: &[(&str, &str)]) -> Site {
+    let texts = [
         (
             "index.html",
             "<html data-build=\"development\"><head><link rel=\"stylesheet\" href=\"style/a.css\">\
-             <link rel=\"manifest\" href=\"a.webmanifest\">\
-             <script type=\"module\" src=\"main.js\"></script></head><span id=\"version\">development</span>\
-             <a href=\"licenses.html\">",
+             <link rel=\"manifest\" href=\"a.webmanifest\"><link rel=\"icon\" href=\"data:,x\">\
+             <link rel=\"preload\" href=\"pkg/x.wasm\">\
+             <script type=\"module\" src=\"main.js\" data-worker=\"engine/w.js\"></script></head>\
+             <span id=\"version\">development</span><a href=\"#views\"></a><a href=\"./\"></a>\
+             <a href=\"licenses.html\"></a><a href=\"help.html#keys\"></a>",
         ),
         (
-            "main.js",
-            "import { b } from './part/b.js';\nnew Worker(new URL('./w.js', import.meta.url)); b();\nnavigator.serviceWorker.register(new URL('./sw.js', import.meta.url));",
+            "help.html",
+            "<head><link rel=\"stylesheet\" href=\"style/a.css\"><script src=\"help/page.js\"></script></head>",
         ),
-        ("part/b.js", "import { c } from './c.js';\nexport const b = () => c('kept in b');"),
-        (
-            "part/c.js",
-            "import { draw } from '../pkg/g.js'; // gone\nexport const c = (text) => draw(text);\nnew URL('../i.svg', import.meta.url);",
-        ),
-        ("pkg/g.js", "export const draw = (text) => text;"),
-        (
-            "w.js",
-            "import * as all from './pkg/g.js';\nonmessage = () => all.draw(1);\nnew URL('x.wasm', import.meta.url);",
-        ),
-        ("x.wasm", "\0asm"),
-        ("style/a.css", "a { background: url(../i.svg) }"),
-        ("i.svg", "<svg/>"),
-        ("a.webmanifest", r#"{ "start_url": "./", "icons": [{ "src": "i.svg" }] }"#),
+        ("licenses.html", "<a href=\"./\">"),
+        ("a.webmanifest", r#"{ "start_url": "./", "icons": [{ "src": "icons/i.svg" }] }"#),
         ("sw.js", "const build = { id: \"development\", files: [] };\nself.x = build;"),
-        ("unnamed.js", "1"),
     ];
-    for (path, text) in files.iter().chain(changed) {
-        let file = web.join(path);
-        std::fs::create_dir_all(file.parent().unwrap()).unwrap();
-        std::fs::write(file, text).unwrap();
-    }
-    web
+    let texts = texts.iter().chain(changed).map(|(name, text)| ((*name).to_owned(), (*text).to_owned()));
+    let headers = "# all\n/*\n  X-One: 1\n  Cache-Control: no-cache\n".to_owned();
+    Site { texts: texts.collect(), headers }
 }
 
-fn built(name: &str, changed: &[(&str, &str)]) -> Result<BTreeMap<String, Vec<u8>>> {
-    let web = sources(name, changed);
-    let mut site = Site::read(&web)?;
-    site.add("licenses.html", b"<a href=\"./\">".to_vec())?;
-    site.bundle()?;
-    let built = site.built("1.2.3", Some("abc"));
-    std::fs::remove_dir_all(&web)?;
-    built
+/// What esbuild would say: `main.js` and the worker share a file, and so do `main.js` and the help's page with what
+/// comes later.
+fn bundles(hash: &str) -> Bundles {
+    let import =
+        |path: &str, kind: &str| format!("{{\"path\": \"../dist/assets/{path}\", \"kind\": \"{kind}\"}}");
+    let now = |path: &str| import(path, "import-statement");
+    let later = |path: &str| import(path, "dynamic-import");
+    let outputs = [
+        (
+            format!("main.{hash}.js"),
+            "main.js",
+            vec![now("chunk.G.js"), now("chunk.T.js"), later("tabs.Q.js")],
+        ),
+        ("w.W.js".to_owned(), "engine/w.js", vec![now("chunk.G.js")]),
+        ("page.P.js".to_owned(), "help/page.js", vec![now("chunk.T.js"), now("chunk.U.js")]),
+        (
+            "tabs.Q.js".to_owned(),
+            "views/tabs.js",
+            vec![now("chunk.T.js"), now("chunk.U.js"), later("file.F.js")],
+        ),
+        ("file.F.js".to_owned(), "views/file.js", vec![now("chunk.V.js"), later("tabs.Q.js")]),
+        ("chunk.G.js".to_owned(), "", vec![]),
+        ("chunk.T.js".to_owned(), "", vec![]),
+        ("chunk.U.js".to_owned(), "", vec![]),
+        ("chunk.V.js".to_owned(), "", vec![]),
+        ("x.X.wasm".to_owned(), "pkg/x.wasm", vec![]),
+        ("a.A.css".to_owned(), "style/a.css", vec![]),
+        ("i.I.svg".to_owned(), "icons/i.svg", vec![]),
+    ];
+    let outputs = outputs.map(|(name, entry, imports)| {
+        let entry = if entry.is_empty() { String::new() } else { format!(", \"entryPoint\": \"{entry}\"") };
+        format!("\"../dist/assets/{name}\": {{\"bytes\": 1, \"imports\": [{}]{entry}}}", imports.join(", "))
+    });
+    Bundles::parse(&format!("{{\"inputs\": {{}}, \"outputs\": {{{}}}}}", outputs.join(", "))).unwrap()
 }
 
-fn text<'a>(built: &'a BTreeMap<String, Vec<u8>>, start: &str) -> &'a str {
-    let name = name(built, start);
-    std::str::from_utf8(&built[&name]).unwrap()
-}
-
-fn name(built: &BTreeMap<String, Vec<u8>>, start: &str) -> String {
-    let names: Vec<_> = built.keys().filter(|name| name.starts_with(start)).collect();
-    assert_eq!(names.len(), 1, "{start} in {:?}", built.keys());
-    names[0].clone()
-}
-
-#[test]
-fn two_builds_are_the_same_and_hold_what_is_named() {
-    let one = built("one", &[]).unwrap();
-    assert_eq!(one, built("two", &[]).unwrap());
-    let kept: Vec<_> = one.keys().filter(|name| !name.starts_with("assets/")).collect();
-    assert_eq!(kept, ["_headers", "a.webmanifest", "index.html", "licenses.html", "sw.js"]);
-    assert_eq!(one.len(), kept.len() + 6, "{:?}", one.keys());
-
-    let page = text(&one, "index.html");
-    for start in ["assets/main.", "assets/g.", "assets/a.", "assets/x."] {
-        assert!(page.contains(&name(&one, start)), "{start} in {page}");
-    }
-    assert!(!page.contains("assets/w."), "the worker's script is no module of the page: {page}");
-    assert!(page.contains("data-build=\"1.2.3 (abc)\"") && page.contains(">1.2.3 (abc)</span>"), "{page}");
-    let main = text(&one, "assets/main.");
-    for start in ["assets/g.", "assets/w.", "assets/i."] {
-        assert!(main.contains(&name(&one, start).replace("assets/", "./")), "{start} in {main}");
-    }
-    assert!(main.contains("kept in b") && !main.contains("gone"), "{main}");
-    assert!(text(&one, "assets/w.").contains(&name(&one, "assets/g.").replace("assets/", "./")));
-    assert!(main.contains("../sw.js"), "{main}");
-    assert!(text(&one, "a.webmanifest").contains(&name(&one, "assets/i.")));
-
-    let worker = text(&one, "sw.js");
-    for name in one.keys().filter(|name| !["_headers", "index.html", "sw.js"].contains(&name.as_str())) {
-        assert!(worker.contains(name.as_str()), "{name} in {worker}");
-    }
-    assert!(worker.contains("\"./\"") && !worker.contains("development"), "{worker}");
+fn built(changed: &[(&str, &str)], hash: &str) -> Result<BTreeMap<String, String>> {
+    site(changed).built(&bundles(hash), "1.2.3", Some("abc"))
 }
 
 #[test]
-fn a_change_gives_new_names_to_the_file_and_all_that_name_it_and_to_no_other() {
-    let one = built("before", &[]).unwrap();
-    let two = built("after", &[("part/b.js", "export const b = () => 'other';")]).unwrap();
-    for (start, changes) in [
-        ("assets/main.", true),
-        ("assets/w.", false),
-        ("assets/x.", false),
-        ("assets/g.", false),
-        ("assets/a.", false),
+fn all_that_pages_and_the_manifest_name_becomes_a_file_with_a_hash() {
+    let sources: Vec<_> = site(&[]).sources().into_iter().map(str::to_owned).collect();
+    assert_eq!(
+        sources,
+        ["engine/w.js", "help/page.js", "icons/i.svg", "main.js", "pkg/x.wasm", "style/a.css"]
+    );
+}
+
+#[test]
+fn pages_and_manifest_have_the_new_names_and_the_service_worker_lists_all_files() {
+    let built = built(&[], "M").unwrap();
+    let names: Vec<&str> = built.keys().map(String::as_str).collect();
+    assert_eq!(names, ["_headers", "a.webmanifest", "help.html", "index.html", "licenses.html", "sw.js"]);
+    let page = &built["index.html"];
+    for part in [
+        "href=\"assets/a.A.css\"",
+        "href=\"a.webmanifest\"",
+        "href=\"data:,x\"",
+        "href=\"assets/x.X.wasm\"",
+        "src=\"assets/main.M.js\" data-worker=\"assets/w.W.js\"",
+        "data-build=\"1.2.3 (abc)\"",
+        ">1.2.3 (abc)</span>",
+        "<a href=\"./\">",
+        "href=\"help.html#keys\"",
+        "<link rel=\"modulepreload\" href=\"assets/chunk.G.js\">\n<link rel=\"modulepreload\" href=\"assets/chunk.T.js\">\n</head>",
     ] {
-        assert_eq!(name(&one, start) != name(&two, start), changes, "{start}");
+        assert!(page.contains(part), "{part} in {page}");
     }
-    assert_ne!(one["sw.js"], two["sw.js"]);
+    assert!(built["help.html"].contains("src=\"assets/page.P.js\""), "{}", built["help.html"]);
+    assert!(built["a.webmanifest"].contains("\"src\": \"assets/i.I.svg\""), "{}", built["a.webmanifest"]);
+
+    let worker = &built["sw.js"];
+    let kept = ["a.webmanifest", "help.html", "licenses.html", "./"];
+    for name in bundles("M").files().chain(kept) {
+        assert!(worker.contains(&format!("\"{name}\"")), "{name} in {worker}");
+    }
+    for other in ["development", "index.html", "\"sw.js\"", "_headers"] {
+        assert!(!worker.contains(other), "{other} in {worker}");
+    }
+}
+
+#[test]
+fn another_name_of_a_file_gives_the_build_another_number() {
+    let number = |hash: &str| built(&[], hash).unwrap()["sw.js"].split('"').nth(1).unwrap().to_owned();
+    assert_eq!(number("M"), number("M"));
+    assert_ne!(number("M"), number("N"));
 }
 
 #[test]
 fn what_has_a_hash_is_kept_for_ever_and_all_else_asked_for_anew() {
-    let one = built("headers", &[]).unwrap();
-    let headers = crate::headers::Headers::parse(text(&one, "_headers")).unwrap();
-    for name in one.keys().filter(|name| *name != "_headers").map(String::as_str).chain([""]) {
+    let one = built(&[], "M").unwrap();
+    let headers = headers::Headers::parse(&one[headers::FILE]).unwrap();
+    let names = one.keys().filter(|name| *name != headers::FILE).map(String::as_str);
+    for name in names.chain(bundles("M").files()).chain([""]) {
         let given: Vec<_> =
             headers.of(&format!("/{name}")).map(|(_, value)| value.to_str().unwrap()).collect();
         let kept =
@@ -125,15 +131,50 @@ fn what_has_a_hash_is_kept_for_ever_and_all_else_asked_for_anew() {
 }
 
 #[test]
+fn what_loads_later_is_told_from_what_opening_the_page_loads() {
+    let Parts { opening, later } = site(&[]).parts(&bundles("M"));
+    let assets = ["a.A.css", "chunk.G.js", "chunk.T.js", "main.M.js", "w.W.js", "x.X.wasm"];
+    let assets = assets.map(|name| format!("assets/{name}"));
+    let expected = assets.into_iter().chain(["index.html", "sw.js"].map(str::to_owned));
+    assert_eq!(opening, expected.collect());
+    let later: Vec<_> = later.iter().map(|(name, files)| format!("{name}: {files:?}")).collect();
+    assert_eq!(
+        later,
+        [
+            r#"help.html: {"assets/chunk.U.js", "assets/page.P.js", "help.html"}"#,
+            r#"licenses.html: {"licenses.html"}"#,
+            r#"views/file.js: {"assets/chunk.V.js", "assets/file.F.js"}"#,
+            r#"views/tabs.js: {"assets/chunk.U.js", "assets/tabs.Q.js"}"#,
+        ]
+    );
+}
+
+#[test]
 fn a_site_that_does_not_hold_together_is_refused() {
     for (changed, expected) in [
-        (("main.js", "import './none.js';"), "none.js is named in the page but can't be read"),
-        (("index.html", "<a href=\"help.html\">"), "pages are named but not there: {\"help.html\"}"),
+        (("help.html", "<a href=\"none.html\">"), "help.html names none.html, which is not there"),
+        (("help.html", "<script src=\"none.js\">"), "help.html names none.js, which is not made"),
         (("index.html", "<html>"), "index.html must hold once: data-build=\"development\""),
         (("sw.js", "self"), "sw.js must hold once: const build"),
-        (("part/c.js", "import './b.js';"), "part/c.js: waits in a circle with ./b.js"),
     ] {
-        let error = format!("{:#}", built("refused", &[changed]).unwrap_err());
+        let error = format!("{:#}", built(&[changed], "M").unwrap_err());
         assert!(error.contains(expected), "{error}");
     }
+}
+
+#[test]
+fn only_an_earlier_build_is_cleared_away() {
+    let dist = std::env::temp_dir().join(format!("stepscope-dist-{}", std::process::id()));
+    std::fs::create_dir_all(dist.join(ASSETS)).unwrap();
+    clear(&dist).unwrap();
+    assert!(!dist.exists());
+    clear(&dist).unwrap();
+    std::fs::create_dir_all(dist.join("work")).unwrap();
+    assert!(
+        clear(&dist)
+            .unwrap_err()
+            .to_string()
+            .ends_with("is no earlier build; remove it or take another folder")
+    );
+    std::fs::remove_dir_all(&dist).unwrap();
 }

@@ -1,0 +1,105 @@
+//! The order of the page's folders, as `web/main.js` draws it, held: no file imports what stands to its right.
+//!
+//! Types count as well, though nothing loads for them: who names another's type can't be read, or changed, without it.
+//! Cycles between the files of one folder are the linter's (`web/biome.jsonc`).
+#![cfg(not(any(target_arch = "wasm32", target_os = "none")))]
+#![allow(clippy::unwrap_used, reason = "what cannot be read fails the test")]
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+/// What comes before a specifier, in an import as in a type.
+const IMPORTS: &[&str] = &["from \"", "import \"", "import(\""];
+/// It imports nothing, and nobody imports it.
+const ALONE: &str = "sw.js";
+
+fn web() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../web")
+}
+
+/// The folders from left to right, and files that stand by themselves.
+fn order() -> Vec<String> {
+    let text = fs::read_to_string(web().join("main.js")).unwrap();
+    let line = text.lines().find(|line| line.contains(" -> ")).unwrap().trim_start_matches([' ', '*']);
+    line.split(" -> ").map(str::to_owned).collect()
+}
+
+/// All scripts below `folder`, by their paths from `web` on.
+fn scripts(folder: &Path, below: &str, found: &mut Vec<(String, String)>) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        let path = format!("{below}{}", entry.file_name().to_string_lossy());
+        if entry.file_type()?.is_dir() && path != "pkg" {
+            scripts(&entry.path(), &format!("{path}/"), found)?;
+        } else if path.ends_with(".js") && path != ALONE {
+            found.push((path, fs::read_to_string(entry.path())?));
+        }
+    }
+    Ok(())
+}
+
+/// The files that a script names, by their paths from `web` on.
+fn imports(path: &str, text: &str) -> Vec<String> {
+    let rests = IMPORTS.iter().flat_map(|before| text.split(before).skip(1));
+    let names = rests.filter_map(|rest| rest.split('"').next()).filter(|name| name.starts_with('.'));
+    names.map(|name| resolved(path, name)).collect()
+}
+
+fn resolved(path: &str, name: &str) -> String {
+    let mut parts: Vec<&str> = path.split('/').collect();
+    parts.pop();
+    for part in name.split('/') {
+        match part {
+            "." => {}
+            ".." => drop(parts.pop()),
+            part => parts.push(part),
+        }
+    }
+    parts.join("/")
+}
+
+/// The folder right below `web` in which a file lies, or the file where it lies in none.
+fn layer(path: &str) -> &str {
+    path.split('/').next().unwrap_or(path)
+}
+
+#[test]
+fn imports_are_seen_in_every_form_of_the_page() {
+    let text = "import { a,\n b } from \"../dom.js\";\nimport \"./c.js\";\n/** @typedef {import(\"../../state/types.js\").State} State */\n\
+                const later = () => import(\"./d.js\"); import * as e from \"../motion/e.js\"; f(\"./none.js\");";
+    let mut found = imports("views/study/x.js", text);
+    found.sort();
+    assert_eq!(
+        found,
+        ["state/types.js", "views/dom.js", "views/motion/e.js", "views/study/c.js", "views/study/d.js"]
+    );
+}
+
+#[test]
+fn every_folder_is_drawn_and_imports_what_stands_to_its_left() {
+    let order = order();
+    let place = |path: &str| order.iter().position(|each| each == layer(path));
+    let mut found = Vec::new();
+    scripts(&web(), "", &mut found).unwrap();
+    assert!(found.len() > 50, "the scripts are elsewhere: {} in {}", found.len(), web().display());
+    let mut broken = Vec::new();
+    for (path, text) in &found {
+        for other in imports(path, text) {
+            if layer(path) != layer(&other) {
+                match (place(path), place(&other)) {
+                    (Some(own), Some(its)) if its < own => {}
+                    (Some(_), Some(_)) => {
+                        broken.push(format!("{path} names {other}, which stands to its right"))
+                    }
+                    _ => broken.push(format!("{path} names {other}: web/main.js does not draw both")),
+                }
+            }
+        }
+    }
+    assert!(broken.is_empty(), "{}", broken.join("\n"));
+    for name in order.iter().filter(|name| *name != "pkg") {
+        assert!(found.iter().any(|(path, _)| layer(path) == name), "{name} is drawn but not there");
+    }
+}
