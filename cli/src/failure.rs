@@ -2,7 +2,7 @@
 
 use std::{fmt, io, path::PathBuf, process::ExitCode};
 use stepscope_core::{
-    inspect::run_fingerprint::ProofError,
+    inspect::run_fingerprint::RunFingerprintError,
     scenario::{Problem, link::LinkError},
 };
 
@@ -19,7 +19,7 @@ pub(crate) enum Failure {
     /// A link to be verified does not carry its sender's digests.
     NoProof,
     /// They cannot be read.
-    Proof(ProofError),
+    RunFingerprint(RunFingerprintError),
     /// The run is not the one that a link's sender saw; where they part.
     OtherRun(String),
     /// There is no such preset.
@@ -34,7 +34,7 @@ pub(crate) enum Failure {
     Table(PathBuf, String),
     /// The timing check found this many violations, and none was to be.
     Violations(u64),
-    /// So many seeds of a campaign with the framed protocol went wrong, and none was to.
+    /// So many seeds of a fault sweep with the framed protocol went wrong, and none was to.
     WrongSteps(u64),
 }
 
@@ -52,7 +52,7 @@ impl Failure {
             | Self::Scenario(..)
             | Self::Link(_)
             | Self::NoProof
-            | Self::Proof(_)
+            | Self::RunFingerprint(_)
             | Self::Preset(_)
             | Self::NoDriver(_)
             | Self::Controller(..)
@@ -80,7 +80,7 @@ impl fmt::Display for Failure {
             Self::NoProof => f.write_str(
                 "the link carries no digests of its sender (no d= in it), so there is nothing to verify; make it with the page's Share or with `stepscope run --link`",
             ),
-            Self::Proof(error) => write!(f, "{error}"),
+            Self::RunFingerprint(error) => write!(f, "{error}"),
             Self::OtherRun(how) => f.write_str(how),
             Self::Preset(id) => {
                 write!(f, "{id}: no such preset; `stepscope presets` lists them")

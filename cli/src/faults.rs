@@ -16,7 +16,7 @@ use std::{
 use stepscope_core::{
     peripheral::config::Protocol,
     scenario::{Problem, Scenario, link},
-    sim::fault_sweep::{Campaign, Tally},
+    sim::fault_sweep::{FaultSweep, Tally},
 };
 
 /// Seeds that a thread takes at once.
@@ -59,7 +59,7 @@ pub(crate) struct Arguments {
     progress: bool,
 }
 
-/// Which protocols a campaign runs.
+/// Which protocols a fault sweep runs.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Which {
     /// Packets without a check, as in RU 2704486.
@@ -104,14 +104,14 @@ impl Report {
     }
 }
 
-/// Runs the campaign and prints its table, or writes the scenario of a seed.
+/// Runs the fault sweep and prints its table, or writes the scenario of a seed.
 pub(crate) fn faults(arguments: &Arguments) -> Result<(), Failure> {
     let base = arguments.file.as_deref().map(scenarios::read).transpose()?;
     let path = arguments.file.clone().unwrap_or_else(|| PathBuf::from("the small scenario"));
     let campaign = |protocol| {
-        let mut base = base.clone().unwrap_or_else(|| Campaign::small(protocol));
+        let mut base = base.clone().unwrap_or_else(|| FaultSweep::small(protocol));
         base.line.protocol = protocol;
-        Campaign::new(base).map_err(|problems| Failure::Scenario(path.clone(), problems))
+        FaultSweep::new(base).map_err(|problems| Failure::Scenario(path.clone(), problems))
     };
     let protocols = arguments.protocol.protocols();
     if let Some(seed) = arguments.seed.filter(|_| arguments.scenario || arguments.link) {
@@ -143,7 +143,7 @@ pub(crate) fn faults(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Runs seeds, a batch at a time on each thread.
 fn run(
-    campaign: &Campaign,
+    campaign: &FaultSweep,
     seeds: &Range<u64>,
     threads: Option<NonZero<usize>>,
     mut progress: Progress,
@@ -174,7 +174,7 @@ fn run(
     })
 }
 
-fn batch(campaign: &Campaign, seeds: Range<u64>) -> Result<Report, Vec<Problem>> {
+fn batch(campaign: &FaultSweep, seeds: Range<u64>) -> Result<Report, Vec<Problem>> {
     let mut report = Report::default();
     for seed in seeds {
         report.add(seed as u32, campaign.run(seed as u32)?);
@@ -210,7 +210,7 @@ const ROWS: &[Row] = &[
     ("bytes lost: FRAMING", true, |tally| tally.framing),
     ("replies sent", false, |tally| tally.replies),
     ("  lost or spoiled", false, |tally| tally.replies_lost),
-    ("deaths of the host", false, |tally| tally.deaths),
+    ("crashes of the host", false, |tally| tally.crashes),
     ("ticks ordered", true, |tally| tally.ordered),
     ("  executed", true, |tally| tally.executed),
     ("  not reached: host gave up", false, |tally| tally.unreached),

@@ -10,9 +10,9 @@ use std::{
 };
 use stepscope_core::{
     inspect::{
-        made::Pulses,
+        actual_motion::Pulses,
         measures::{Measures, within_bounds},
-        spectrum::{Harmonics, Spectrum, Stretch},
+        spectrum::{AnalysisWindow, Harmonics, Spectrum},
     },
     motion::AxisPlan,
     peripheral::trace::{Recording, steps},
@@ -48,7 +48,7 @@ struct Distortion {
 
 impl Distortion {
     fn of(plan: &AxisPlan, run: &Pulses<'_>, analysis: &Analysis) -> Option<Self> {
-        let stretch = Stretch::of(plan).filter(|stretch| stretch.periodic)?;
+        let stretch = AnalysisWindow::of(plan).filter(|stretch| stretch.periodic)?;
         let ideal = Spectrum::ideal(plan, analysis.order, analysis.fft_length)?;
         // To the same order, which the number of samples may have cut.
         let pulses = Spectrum::of_pulses(&stretch.pulses_of(plan, run), stretch, ideal.order);

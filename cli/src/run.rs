@@ -15,7 +15,7 @@ use std::{
     path::PathBuf,
 };
 use stepscope_core::{
-    inspect::{fingerprint::Fingerprinter, run_fingerprint::Proof},
+    inspect::{fingerprint::Fingerprinter, run_fingerprint::RunFingerprint},
     peripheral::config::Config,
     scenario::{Scenario, link},
     sim::{Experiment, Run},
@@ -116,7 +116,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.link {
         let link = link::encode(&scenario).map_err(Failure::Link)?;
         let seen = stations.iter_mut().filter_map(|station| station.fingerprint.take());
-        let proof = Proof::of(seen.map(Fingerprinter::finish).collect());
+        let proof = RunFingerprint::of(seen.map(Fingerprinter::finish).collect());
         let link = link::with_part(link, "d", &proof.emit());
         writeln!(io::stdout(), "#{link}").map_err(Failure::output)?;
     }

@@ -45,8 +45,8 @@ pub(crate) fn print(shown: &Shown<'_>) -> io::Result<()> {
         let counts = host.counts();
         writeln!(
             out,
-            "frames {} repeated {} replies {} rejected {} refused {} deaths {}",
-            counts.frames, counts.repeated, counts.replies, counts.rejected, counts.refused, counts.deaths
+            "frames {} repeated {} replies {} rejected {} refused {} crashes {}",
+            counts.frames, counts.repeated, counts.replies, counts.rejected, counts.refused, counts.crashes
         )?;
     }
     if let Some(load) = shown.experiment.line_load() {

@@ -4,8 +4,8 @@ use crate::{failure::Failure, progress::Progress};
 use std::path::PathBuf;
 use stepscope_core::{
     inspect::{
-        fingerprint::{Comparison, Likeness, Shorter},
-        run_fingerprint::{Proof, VERSION},
+        fingerprint::{FingerprintCheck, FingerprintMatch, Shorter},
+        run_fingerprint::{RunFingerprint, VERSION},
     },
     peripheral::units::Instant,
     scenario::Scenario,
@@ -18,7 +18,7 @@ const SLICE: u64 = 1 << 16;
 /// Runs the scenario and says on standard error how it stands to the link's part `d`.
 pub(crate) fn verify(scenario: &Scenario, part: Option<&str>) -> Result<(), Failure> {
     let proof = part.ok_or(Failure::NoProof)?;
-    let proof = Proof::parse(proof).map_err(Failure::Proof)?;
+    let proof = RunFingerprint::parse(proof).map_err(Failure::RunFingerprint)?;
     let experiment = Experiment::new(scenario)
         .map_err(|problems| Failure::Scenario(PathBuf::from("the link"), problems))?;
     let (sent, own) = (proof.controllers.len(), experiment.controllers());
@@ -27,7 +27,8 @@ pub(crate) fn verify(scenario: &Scenario, part: Option<&str>) -> Result<(), Fail
             "the link's digests are of {sent} controllers, its scenario has {own}"
         )));
     }
-    let mut comparisons: Vec<Comparison<'_>> = proof.controllers.iter().map(Comparison::with).collect();
+    let mut comparisons: Vec<FingerprintCheck<'_>> =
+        proof.controllers.iter().map(FingerprintCheck::with).collect();
     let mut progress = Progress::new("verify", false);
     let mut run = experiment.start();
     while !run.advance_each(SLICE, &mut comparisons) {
@@ -37,8 +38,8 @@ pub(crate) fn verify(scenario: &Scenario, part: Option<&str>) -> Result<(), Fail
     let mut edges = 0;
     for (index, comparison) in comparisons.into_iter().enumerate() {
         match comparison.finish() {
-            Likeness::Same(mark) => edges += mark.edges,
-            Likeness::Differs { after, until, shorter } => {
+            FingerprintMatch::Same(mark) => edges += mark.edges,
+            FingerprintMatch::Differs { after, until, shorter } => {
                 let at = |cycle: Instant| format!("cycle {} ({} s)", cycle.0, cycle.seconds(clock_hz));
                 let controller = if own > 1 { format!(" of controller {index}") } else { String::new() };
                 let ends = match shorter {

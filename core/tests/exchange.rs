@@ -4,7 +4,7 @@
 use stepscope_core::{
     inspect::{
         tables::{write_edges_head, write_edges_row, write_packets_head, write_packets_row},
-        trace_diff::Against,
+        trace_diff::TraceDiff,
     },
     peripheral::trace::Recording,
     scenario::{LineScript, Scenario, presets::PRESETS},
@@ -48,7 +48,7 @@ fn every_presets_own_table_of_edges_is_the_same_as_its_run() {
             write_edges_row(&mut table, *record, config.clock_hz(), config.channels())
                 .expect("a string takes it");
         }
-        let mut against = Against::new(config.channels());
+        let mut against = TraceDiff::new(config.channels());
         against.feed(&recording.trace, table.as_bytes()).expect(preset.id);
         let outcome = against.finish(&recording.trace).expect(preset.id);
         assert_eq!((outcome.difference, outcome.goes_on), (None, false), "{}", preset.id);

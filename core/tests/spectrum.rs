@@ -4,8 +4,8 @@
 
 use stepscope_core::{
     inspect::{
-        made::Pulses,
-        spectrum::{Spectrum, Stretch},
+        actual_motion::Pulses,
+        spectrum::{AnalysisWindow, Spectrum},
     },
     motion::quantise::TickClock,
     peripheral::trace::{Recording, Step, steps},
@@ -26,7 +26,7 @@ fn made_distortion(json: &str) -> (f64, i32) {
         .map(|(i, step)| (step.cycle - zero, Step::direction(&steps, i) as i8))
         .collect();
     let plan = &experiment.plans()[0];
-    let stretch = Stretch::of(plan).unwrap();
+    let stretch = AnalysisWindow::of(plan).unwrap();
     let config = experiment.config();
     let own = stretch.own_pulses(plan, TickClock::new(config.tick().0, config.clock_hz()), &pulses);
     let spectrum = Spectrum::of_pulses(&own, stretch, 40);
@@ -73,7 +73,7 @@ fn with_segments_every_step_of_the_sine_counts_whatever_the_ticks_are() {
                 let (config, log) = (experiment.config(), &recording.packets);
                 let run = Pulses { channel: 0, steps: &steps, log, segments, config };
                 let plan = &experiment.plans()[0];
-                let stretch = Stretch::of(plan).unwrap();
+                let stretch = AnalysisWindow::of(plan).unwrap();
                 let own = stretch.pulses_of(plan, &run);
                 let hz = f64::from(config.clock_hz());
                 let due: Vec<(f64, i8)> = plan

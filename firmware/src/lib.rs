@@ -6,13 +6,13 @@
 //! program has only to call [`Driver::fill`] often enough that it never runs empty.
 //!
 //! ```
-//! use stepscope_firmware::{Driver, Order};
+//! use stepscope_firmware::{Driver, ChannelCommand};
 //! use stepscope_registers::RegisterBus;
 //!
 //! fn one_turn<B: RegisterBus>(bus: B) -> Result<(), stepscope_firmware::Error> {
 //!     let mut driver = Driver::new(bus)?;
 //!     driver.wait_for_self_test();
-//!     let mut ticks = (0..16).map(|_| [Order::right(100), Order::left(50)]);
+//!     let mut ticks = (0..16).map(|_| [ChannelCommand::right(100), ChannelCommand::left(50)]);
 //!     while driver.fill(&mut ticks)? != 0 {}
 //!     while !driver.is_done()? {}
 //!     Ok(())
@@ -64,14 +64,14 @@ impl core::error::Error for Error {}
 
 /// What one channel is to do in one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Order {
+pub struct ChannelCommand {
     /// Right (DIR high) or left; DIR follows it also where there is no step.
     pub right: bool,
     /// Steps, 0 to the slots of a tick.
     pub steps: u8,
 }
 
-impl Order {
+impl ChannelCommand {
     /// Steps to the right.
     #[must_use]
     pub const fn right(steps: u8) -> Self {
@@ -158,7 +158,7 @@ impl<B: RegisterBus> Driver<B> {
     ///
     /// # Errors
     /// [`Error::Full`], [`Error::TooManySteps`], [`Error::Busy`] in the self-test, [`Error::Stopped`].
-    pub fn push(&mut self, tick: &[Order]) -> Result<(), Error> {
+    pub fn push(&mut self, tick: &[ChannelCommand]) -> Result<(), Error> {
         let channels = self.channels() as usize;
         if tick.len() > channels {
             return Err(Error::TooManySteps);
@@ -181,7 +181,7 @@ impl<B: RegisterBus> Driver<B> {
     /// As [`Self::push`], but for a full queue. The tick that was refused is taken from `ticks`.
     pub fn fill<const N: usize>(
         &mut self,
-        ticks: &mut impl Iterator<Item = [Order; N]>,
+        ticks: &mut impl Iterator<Item = [ChannelCommand; N]>,
     ) -> Result<u32, Error> {
         let mut pushed = 0;
         while status::FREE.of(self.bus.read(status::OFFSET)) > 0 {

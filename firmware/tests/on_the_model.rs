@@ -8,7 +8,7 @@ use stepscope_core::peripheral::{
     trace::steps,
     units::Cycles,
 };
-use stepscope_firmware::{Driver, Error, Order};
+use stepscope_firmware::{ChannelCommand, Driver, Error};
 use stepscope_registers::{RegisterBus, faults};
 
 type Model = ModelBus<Vec<Record>>;
@@ -46,8 +46,14 @@ fn ramp(tick: u8, top: u8) -> u8 {
 }
 
 /// Three axes at once; the last tick is the one of zero counts that says so.
-fn three_axes() -> impl Iterator<Item = [Order; 3]> {
-    (0..40).map(|tick| [Order::right(ramp(tick, 9)), Order::left(ramp(tick, 4)), Order::right(tick % 2)])
+fn three_axes() -> impl Iterator<Item = [ChannelCommand; 3]> {
+    (0..40).map(|tick| {
+        [
+            ChannelCommand::right(ramp(tick, 9)),
+            ChannelCommand::left(ramp(tick, 4)),
+            ChannelCommand::right(tick % 2),
+        ]
+    })
 }
 
 fn positions(driver: &mut Driver<Model>) -> [i32; 3] {
@@ -59,7 +65,7 @@ fn three_axes_end_where_they_should_and_no_tick_waits() {
     // From a bus as fast as the peripheral to one on which a push takes half a tick.
     for access in [1, 7, 100] {
         let mut driver = driver(access);
-        let mut ticks = three_axes().chain([[Order::default(); 3]]);
+        let mut ticks = three_axes().chain([[ChannelCommand::default(); 3]]);
         while driver.ticks_done() < 41 {
             driver.fill(&mut ticks).expect("nothing is refused");
         }
@@ -81,7 +87,7 @@ fn the_queue_bridges_a_slow_poll_and_no_slower_one() {
     // Between two polls four ticks pass at the most.
     for (pause, gaps) in [(2 * TICK, false), (3 * TICK + TICK / 2, false), (5 * TICK, true)] {
         let mut driver = driver(2);
-        let mut ticks = three_axes().chain([[Order::default(); 3]]);
+        let mut ticks = three_axes().chain([[ChannelCommand::default(); 3]]);
         while driver.ticks_done() < 41 {
             driver.fill(&mut ticks).expect("nothing is refused");
             driver.bus().wait(Cycles(pause));
@@ -96,7 +102,8 @@ fn the_queue_bridges_a_slow_poll_and_no_slower_one() {
 #[test]
 fn an_emergency_stop_ends_the_move_within_the_access() {
     let mut driver = driver(4);
-    let mut ticks = (0..100).map(|_| [Order::right(10), Order::left(10), Order::right(1)]);
+    let mut ticks =
+        (0..100).map(|_| [ChannelCommand::right(10), ChannelCommand::left(10), ChannelCommand::right(1)]);
     while driver.ticks_done() < 5 {
         driver.fill(&mut ticks).expect("nothing is refused");
     }
@@ -115,7 +122,7 @@ fn an_emergency_stop_ends_the_move_within_the_access() {
     }
     // The rest of the move is not made up for; a new one starts from here.
     driver.enable().expect("it is always taken");
-    driver.push(&[Order::right(3)]).expect("the queue is empty");
+    driver.push(&[ChannelCommand::right(3)]).expect("the queue is empty");
     while !driver.is_done().expect("nobody stops it") {}
     assert_eq!(driver.position(0), positions[0] + 3);
     assert_eq!((driver.ticks_done(), driver.clear_faults()), (6, faults::UNDERRUN.mask()));
@@ -124,13 +131,17 @@ fn an_emergency_stop_ends_the_move_within_the_access() {
 #[test]
 fn a_full_queue_and_too_many_steps_are_reported_and_nothing_of_them_moves() {
     let mut driver = driver(1);
-    let one = [Order::right(1)];
+    let one = [ChannelCommand::right(1)];
     while driver.push(&one) == Ok(()) {}
     assert_eq!(driver.push(&one), Err(Error::Full));
     assert_eq!(driver.clear_faults(), faults::QUEUE_OVERFLOW.mask());
-    assert_eq!(driver.push(&[Order::left(11)]), Err(Error::TooManySteps));
-    assert_eq!(driver.push(&[Order::left(1), Order::right(128)]), Err(Error::TooManySteps));
-    assert_eq!(driver.push(&[Order::left(1); 4]), Err(Error::TooManySteps), "there are three channels");
+    assert_eq!(driver.push(&[ChannelCommand::left(11)]), Err(Error::TooManySteps));
+    assert_eq!(driver.push(&[ChannelCommand::left(1), ChannelCommand::right(128)]), Err(Error::TooManySteps));
+    assert_eq!(
+        driver.push(&[ChannelCommand::left(1); 4]),
+        Err(Error::TooManySteps),
+        "there are three channels"
+    );
     assert_eq!(driver.clear_faults(), faults::TOO_MANY_STEPS.mask());
     assert_eq!(driver.disable(), Err(Error::Busy));
     while !driver.is_done().expect("nobody stops it") {}
@@ -154,8 +165,8 @@ fn a_driver_waits_for_the_self_test_and_finds_only_its_own_peripheral() {
 
     let config = Config::new(16_000_000, &bus(), &SerialLine::default()).expect("it holds");
     let mut driver = Driver::new(ModelBus::new(&config, Cycles(10), Vec::new())).expect("it is there");
-    assert_eq!(driver.push(&[Order::right(1)]), Err(Error::Busy));
+    assert_eq!(driver.push(&[ChannelCommand::right(1)]), Err(Error::Busy));
     driver.wait_for_self_test();
-    assert_eq!(driver.push(&[Order::right(1)]), Ok(()));
+    assert_eq!(driver.push(&[ChannelCommand::right(1)]), Ok(()));
     assert_eq!((driver.channels(), driver.slots()), (3, 10));
 }

@@ -1,19 +1,19 @@
 //! Random configurations and line activity for the property tests, as proptest strategies that shrink.
 //!
 //! Plain random bytes at random times would seldom meet a rule's edge. So a case is drawn as a list of
-//! *pieces* (a packet, a packet cut short, a frame, a damaged frame, noise) and *strikes* (a forced level), each placed
+//! *pieces* (a packet, a packet cut short, a frame, a damaged frame, noise) and *faults* (a forced level), each placed
 //! by a rule that aims at an edge of the contract: exactly 45 bit times after the last byte, a commit within a cycle
 //! of a tick's end, a byte in progress as a reply begins, a glitch on a sample point, a boot that ends as a packet is
 //! committed. What was drawn is plain values; the cycles are then worked out from the configuration, so that every piece
 //! shrinks on its own.
 
+mod faults;
 mod frames;
 mod host;
 mod lines;
 mod segments;
 mod sends;
 mod setup;
-mod strikes;
 
 #[cfg(test)]
 mod tests;
@@ -22,9 +22,9 @@ use proptest::prelude::*;
 use proptest::sample::Index;
 
 use crate::oracle::{Config, Input, bit_time};
+use faults::{LineFault, force, line_fault};
 use sends::{Line, Pause, Piece, pause, piece, split};
 use setup::raw_line;
-use strikes::{Strike, force, strike};
 
 pub use crate::oracle::frame;
 pub use lines::{framed_lines, framed_lines_of_one_address};
@@ -61,7 +61,7 @@ struct Activity {
     /// Each piece with the controller whose packet it is.
     pieces: Vec<(Pause, Piece, Split, Index)>,
     in_a_hurry: bool,
-    strikes: Vec<Strike>,
+    faults: Vec<LineFault>,
     /// The first controller's boot ends as a packet comes, or a cycle beside it.
     boot_at_commit: Option<(Index, i64)>,
     end: End,
@@ -72,16 +72,16 @@ type Split = Option<(Index, Pause)>;
 
 fn activity() -> impl Strategy<Value = Activity> {
     let pieces = prop::collection::vec((pause(), piece(), split(), any::<Index>()), 0..18);
-    let strikes = prop_oneof![
+    let faults = prop_oneof![
         3 => Just(Vec::new()),
-        2 => prop::collection::vec(strike(), 1..6),
+        2 => prop::collection::vec(line_fault(), 1..6),
     ];
     let boot_at_commit = prop::option::weighted(0.2, (any::<Index>(), -1..=1_i64));
-    (pieces, any::<bool>(), strikes, boot_at_commit, end()).prop_map(
-        |(pieces, in_a_hurry, strikes, boot_at_commit, end)| Activity {
+    (pieces, any::<bool>(), faults, boot_at_commit, end()).prop_map(
+        |(pieces, in_a_hurry, faults, boot_at_commit, end)| Activity {
             pieces,
             in_a_hurry,
-            strikes,
+            faults,
             boot_at_commit,
             end,
         },
@@ -113,7 +113,7 @@ impl Activity {
         {
             configs[0].boot = which.get(&commits).saturating_add_signed(offset);
         }
-        let forced = force(&first, &self.strikes, &byte_starts);
+        let forced = force(&first, &self.faults, &byte_starts);
         let delivery = |which: Index| if commits.is_empty() { 0 } else { *which.get(&commits) };
         let cycles = match self.end {
             End::After(cycles) => quiet_from + cycles,

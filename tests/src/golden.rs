@@ -190,10 +190,10 @@ impl Outcome {
             }
         }
         if let Some(counts) = run.host().map(FramedHost::counts) {
-            let Counts { frames, repeated, replies, rejected, refused, deaths } = counts;
+            let Counts { frames, repeated, replies, rejected, refused, crashes } = counts;
             let _ = writeln!(
                 status,
-                "frames {frames} repeated {repeated} replies {replies} rejected {rejected} refused {refused} deaths {deaths}"
+                "frames {frames} repeated {repeated} replies {replies} rejected {rejected} refused {refused} crashes {crashes}"
             );
         }
         if let Some(load) = experiment.line_load() {

@@ -28,7 +28,7 @@ pub mod translate;
 
 /// Every way through a scenario, compared.
 #[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
-pub mod ways;
+pub mod equivalence;
 
 /// What the fuzz targets check.
 #[cfg(not(any(target_arch = "wasm32", target_os = "none")))]

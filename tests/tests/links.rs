@@ -7,8 +7,8 @@
 use std::{fmt::Write as _, fs, path::PathBuf};
 use stepscope_core::{
     inspect::{
-        fingerprint::{Comparison, Fingerprinter, Likeness},
-        run_fingerprint::Proof,
+        fingerprint::{FingerprintCheck, FingerprintMatch, Fingerprinter},
+        run_fingerprint::RunFingerprint,
     },
     scenario::{
         Compact, Scenario,
@@ -57,13 +57,13 @@ fn the_runs_that_senders_saw_are_still_made_and_another_run_is_told() {
     for line in fs::read_to_string(folder().join("v1.txt")).expect("version 1's links").lines() {
         let link = line.split(' ').next().unwrap_or_default();
         let Some(text) = part(link, "d") else { continue };
-        let mut proof = Proof::parse(&text).unwrap_or_else(|error| panic!("{link}: {error}"));
+        let mut proof = RunFingerprint::parse(&text).unwrap_or_else(|error| panic!("{link}: {error}"));
         let experiment = Experiment::new(&decode(link).expect("opens")).expect("a good scenario");
-        let same = |proof: &Proof| {
+        let same = |proof: &RunFingerprint| {
             assert_eq!(proof.controllers.len(), experiment.controllers());
-            let mut comparisons: Vec<_> = proof.controllers.iter().map(Comparison::with).collect();
+            let mut comparisons: Vec<_> = proof.controllers.iter().map(FingerprintCheck::with).collect();
             experiment.run_each(&mut comparisons);
-            comparisons.into_iter().all(|each| matches!(each.finish(), Likeness::Same(_)))
+            comparisons.into_iter().all(|each| matches!(each.finish(), FingerprintMatch::Same(_)))
         };
         assert!(same(&proof), "{link}");
         if let Some(last) = proof.controllers.last_mut() {
@@ -86,7 +86,7 @@ fn lines_for_the_presets_can_be_printed() {
         let experiment = Experiment::new(&scenario).expect("a good scenario");
         let mut fingerprints = vec![Fingerprinter::default(); experiment.controllers()];
         experiment.run_each(&mut fingerprints);
-        let proof = Proof::of(fingerprints.into_iter().map(Fingerprinter::finish).collect());
+        let proof = RunFingerprint::of(fingerprints.into_iter().map(Fingerprinter::finish).collect());
         let _ = writeln!(lines, "{} {}", with_part(link, "d", &proof.emit()), scenario.compact());
     }
     assert_eq!(lines.lines().count(), 2 * (PRESETS.len() + 1));

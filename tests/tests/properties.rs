@@ -13,8 +13,8 @@ use stepscope_core::{
 };
 use stepscope_tests::{
     effort,
+    equivalence::{self, Left, Ways, same},
     scenarios::{segmented, small, typed},
-    ways::{self, Left, Ways, same},
 };
 
 proptest! {
@@ -27,7 +27,7 @@ proptest! {
         hurry in 0..=100_u64,
     ) {
         let Ok(experiment) = Experiment::new(&scenario) else { return Ok(()) };
-        ways::check(&scenario, &experiment, Ways { slices: &slices, hurry, most_clocked: 200_000 });
+        equivalence::check(&scenario, &experiment, Ways { slices: &slices, hurry, most_clocked: 200_000 });
     }
 
     #[test]
@@ -36,7 +36,7 @@ proptest! {
         slices in prop::collection::vec(1..40_u64, 1..5),
     ) {
         let Ok(experiment) = Experiment::new(&scenario) else { return Ok(()) };
-        ways::check(&scenario, &experiment, Ways { slices: &slices, hurry: 100, most_clocked: u64::MAX });
+        equivalence::check(&scenario, &experiment, Ways { slices: &slices, hurry: 100, most_clocked: u64::MAX });
     }
 
     /// Not only what a scenario can put on the line: any levels at all, such as a firmware's test would feed.

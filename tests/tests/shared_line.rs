@@ -14,8 +14,8 @@ use stepscope_core::{
 };
 use stepscope_tests::{
     effort,
+    equivalence::{self, Left, Ways},
     scenarios::shared,
-    ways::{self, Left, Ways},
 };
 
 /// The orders of the ticks that began.
@@ -57,7 +57,7 @@ proptest! {
     #[test]
     fn every_way_through_a_shared_line_leaves_the_same(scenario in shared(), slice in 1..50_u64) {
         let Ok(experiment) = Experiment::new(&scenario) else { return Ok(()) };
-        ways::check(&scenario, &experiment, Ways { slices: &[slice], hurry: 100, most_clocked: 400_000 });
+        equivalence::check(&scenario, &experiment, Ways { slices: &[slice], hurry: 100, most_clocked: 400_000 });
     }
 
     #[test]

@@ -4,7 +4,7 @@ use crate::convert::{field, numbers, object};
 use js_sys::{Array, JSON, Object};
 use serde::Serialize;
 use stepscope_core::{
-    inspect::comparison::{Asked, Cost, compare},
+    inspect::ramp_costs::{Cost, RampRequest, compare},
     motion::{Curve, Peaks, moves::Axis, plan_axis},
     scenario::to_json,
 };
@@ -42,8 +42,8 @@ pub fn compare_ramps(
     time_constants: Option<f64>,
     points: u32,
 ) -> Result<Array, JsError> {
-    let default = Asked::new(steps as i64, duration_s, ramp_s);
-    let asked = Asked {
+    let default = RampRequest::new(steps as i64, duration_s, ramp_s);
+    let asked = RampRequest {
         slice_s: slice_s.unwrap_or(default.slice_s),
         sigmoid_range: sigmoid_range.unwrap_or(default.sigmoid_range),
         time_constants: time_constants.unwrap_or(default.time_constants),

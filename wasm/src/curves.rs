@@ -9,10 +9,10 @@ use js_sys::Object;
 use serde::Serialize;
 use stepscope_core::{
     inspect::{
-        between::{self, Between},
+        actual_motion::Pulses,
+        cursor_stats::{self, CursorStats},
         curves::{self, Window},
-        difference::{self, Scaled},
-        made::Pulses,
+        position_error::{self, Scaled},
     },
     motion::AxisPlan,
 };
@@ -43,7 +43,7 @@ struct Compared {
 }
 
 impl Readings {
-    fn new(at: [Vec<f64>; 2], Between { position, speed, acceleration }: Between) -> Self {
+    fn new(at: [Vec<f64>; 2], CursorStats { position, speed, acceleration }: CursorStats) -> Self {
         let moments = [Some(position), Some(speed), acceleration];
         let [at_a, at_b] = at;
         Self {
@@ -100,12 +100,12 @@ impl Simulation {
             let read = |t: f64| {
                 Vec::from([plan.position(t - zero_s), plan.speed(t - zero_s), plan.acceleration(t - zero_s)])
             };
-            Readings::new(at.map(read), between::ideal(plan, zero_s, from, to))
+            Readings::new(at.map(read), cursor_stats::ideal(plan, zero_s, from, to))
         });
         self.count_steps(axis);
         let pulses = self.pulses_of(axis);
         let read = |t: f64| Vec::from([f64::from(pulses.position_at(t)), pulses.speed_at(t)]);
-        let made = Readings::new(at.map(read), between::made(&pulses, from, to));
+        let made = Readings::new(at.map(read), cursor_stats::made(&pulses, from, to));
         object(&BothReadings { ideal, made })
     }
 
@@ -124,7 +124,7 @@ impl Simulation {
         let &[from, to] = span_s else { return Object::new() };
         let common_s = self.end_s().min(other.end_s());
         let (first, second) = (self.scaled(axis, units.first()), other.scaled(other_axis, units.get(1)));
-        let band = difference::difference(first, second, common_s, window(from, to, columns));
+        let band = position_error::difference(first, second, common_s, window(from, to, columns));
         let result = Object::new();
         numbers(&result, "min", &band.min);
         numbers(&result, "max", &band.max);
@@ -144,7 +144,7 @@ impl Simulation {
     ) -> Result<JsValue, JsError> {
         let common_s = self.end_s().min(other.end_s());
         let (first, second) = (self.scaled(axis, units.first()), other.scaled(other_axis, units.get(1)));
-        let difference::Apart { largest, at_s, rms } = difference::apart(first, second, common_s);
+        let position_error::Apart { largest, at_s, rms } = position_error::apart(first, second, common_s);
         object(&Compared { common_s, largest, at_s, rms })
     }
 }

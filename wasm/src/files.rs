@@ -20,7 +20,7 @@ use stepscope_core::{
         signal::{Levels, Record, Sink},
         trace::write_record,
         units::Instant,
-        wire::packet::Order,
+        wire::packet::ChannelCommand,
     },
     sim::scripted,
 };
@@ -30,12 +30,12 @@ use wasm_bindgen::prelude::*;
 const ROWS: usize = 1 << 14;
 
 /// A stretch of a run as its records: the first is the one at the stretch's own start.
-struct Stretch<'a> {
+struct AnalysisWindow<'a> {
     first: Record,
     rest: &'a [Record],
 }
 
-impl<'a> Stretch<'a> {
+impl<'a> AnalysisWindow<'a> {
     /// Both ends belong to it.
     fn of(trace: &'a [Record], start: u64, end: u64) -> Self {
         let after = trace.partition_point(|record| record.cycle.0 <= start);
@@ -89,11 +89,11 @@ impl Simulation {
         let mut text = String::new();
         let (bytes, rows) = match kind {
             "vcd" => {
-                let stretch = Stretch::of(&recording.trace, start, end);
+                let stretch = AnalysisWindow::of(&recording.trace, start, end);
                 (self.vcd(&stretch, config, end, from)?, stretch.rows())
             }
             "edges" | "trace" => {
-                let stretch = Stretch::of(&recording.trace, start, end);
+                let stretch = AnalysisWindow::of(&recording.trace, start, end);
                 if kind == "edges" && from == 0 {
                     write_edges_head(&mut text, config.channels())?;
                 }
@@ -136,7 +136,13 @@ impl Simulation {
 }
 
 impl Simulation {
-    fn vcd(&self, stretch: &Stretch<'_>, config: &Config, end: u64, from: usize) -> io::Result<Vec<u8>> {
+    fn vcd(
+        &self,
+        stretch: &AnalysisWindow<'_>,
+        config: &Config,
+        end: u64,
+        from: usize,
+    ) -> io::Result<Vec<u8>> {
         let mut bytes = Vec::new();
         let (clock_hz, channels) = (config.clock_hz(), config.channels());
         let before = from.checked_sub(1).and_then(|index| stretch.row(index));
@@ -174,7 +180,7 @@ impl Simulation {
                 write!(text, "{row}")?;
             }
             for &byte in tick.orders.iter().take(channels) {
-                let Order { right, steps } = Order::parse(byte);
+                let ChannelCommand { right, steps } = ChannelCommand::parse(byte);
                 write!(text, ",{}{steps}", if right || steps == 0 { "" } else { "-" })?;
             }
             text.push('\n');

@@ -54,7 +54,7 @@ pub fn replay(table: &str, json: &str) -> Result<String, JsError> {
     let (scenario, _) = Scenario::from_json_lenient(json);
     let script = LineScript::recorded(table, scenario.clock_hz)?;
     let mut again = replayed(scenario, script);
-    // The bytes are those that were heard: what struck them strikes only once.
+    // The bytes are those that were heard: what struck them faults only once.
     again.line.glitches.clear();
     Ok(again.to_json())
 }

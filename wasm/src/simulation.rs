@@ -5,7 +5,7 @@ use crate::{convert::object, packets::Filter, subject::listed};
 use serde::Serialize;
 use std::mem::take;
 use stepscope_core::{
-    inspect::{changes::Changes, timing::TimingCheck, trace_diff::Against, watched::Watched},
+    inspect::{changes::Changes, timing::TimingCheck, trace_diff::TraceDiff, watched::Watched},
     peripheral::{
         config::Config,
         trace::{Recording, Step, steps},
@@ -31,7 +31,7 @@ pub struct Simulation {
     /// Which rows of its packets the table shows.
     pub(crate) filter: Filter,
     /// A controller's index, and how its trace stands to a file that is being read.
-    pub(crate) against: Option<(usize, Against)>,
+    pub(crate) against: Option<(usize, TraceDiff)>,
 }
 
 /// What is kept of one controller.

@@ -4,8 +4,8 @@ use crate::convert::{field, numbers, object};
 use js_sys::Object;
 use stepscope_core::{
     inspect::{
-        made::Pulses,
-        spectrum::{Harmonics, Spectrum, Stretch},
+        actual_motion::Pulses,
+        spectrum::{AnalysisWindow, Harmonics, Spectrum},
     },
     motion::AxisPlan,
     scenario::{Scenario, Source},
@@ -21,7 +21,7 @@ pub(crate) fn spectrum(
     let analysis = &scenario.analysis;
     let result = Object::new();
     field(&result, "axis", &analysis.axis.into());
-    let stretch = plan.and_then(Stretch::of);
+    let stretch = plan.and_then(AnalysisWindow::of);
     let (Some(plan), Some(stretch)) = (plan, stretch) else {
         field(&result, "ideal", &JsValue::NULL);
         field(&result, "pulses", &JsValue::NULL);

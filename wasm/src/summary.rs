@@ -58,7 +58,7 @@ struct Host {
     replies: u64,
     rejected: u64,
     refused: u64,
-    deaths: u64,
+    crashes: u64,
     jobs: Vec<Job>,
 }
 
@@ -79,7 +79,7 @@ impl Simulation {
     /// controllers are in the order of the scenario, each with its address (or null), digest, records, edges,
     /// channels, positions, faults `{bits, names}`, ticks_done, state (null on a raw line), changing (the
     /// bits of the signals that change at all) and violations (null without a driver). The host is null
-    /// where nobody waits for replies, else `{frames, repeated, replies, rejected, deaths, jobs}`, with a job
+    /// where nobody waits for replies, else `{frames, repeated, replies, rejected, crashes, jobs}`, with a job
     /// `{controller, ticks, acknowledged, progress, why}` for each controller that has something to do;
     /// progress is `opening`, `filling`, `confirming`, `done` or `given_up`.
     ///
@@ -106,7 +106,7 @@ impl Simulation {
     }
 
     fn host(&self, host: &FramedHost) -> Host {
-        let Counts { frames, repeated, replies, rejected, refused, deaths } = host.counts();
+        let Counts { frames, repeated, replies, rejected, refused, crashes } = host.counts();
         let ticks = self.experiment.configs().enumerate().map(|(controller, config)| {
             (controller, self.experiment.ticks_of(controller).len() / usize::from(config.channels().max(1)))
         });
@@ -122,7 +122,7 @@ impl Simulation {
             };
             Job { controller, ticks, acknowledged, progress, why }
         });
-        Host { frames, repeated, replies, rejected, refused, deaths, jobs: jobs.collect() }
+        Host { frames, repeated, replies, rejected, refused, crashes, jobs: jobs.collect() }
     }
 }
 

@@ -8,9 +8,9 @@ use serde::Serialize;
 use stepscope_core::peripheral::signal::Sink;
 use stepscope_core::{
     inspect::{
-        fingerprint::{Comparison, Fingerprint, Likeness, Mark, Shorter},
-        run_fingerprint::{Proof, VERSION},
-        trace_diff::Against,
+        fingerprint::{Fingerprint, FingerprintCheck, FingerprintMatch, Mark, Shorter},
+        run_fingerprint::{RunFingerprint, VERSION},
+        trace_diff::TraceDiff,
     },
     peripheral::signal,
 };
@@ -72,7 +72,8 @@ impl Simulation {
     /// The part `d` of a link: the digests of all controllers.
     #[must_use]
     pub fn proof(&self) -> String {
-        Proof::of(self.kept.iter().map(|kept| Fingerprint::of(&kept.recording.trace)).collect()).emit()
+        RunFingerprint::of(self.kept.iter().map(|kept| Fingerprint::of(&kept.recording.trace)).collect())
+            .emit()
     }
 
     /// Holds the run against the part `d` of a link: `{error, same, edges, version, own_version,
@@ -88,7 +89,7 @@ impl Simulation {
     /// Begins to hold the trace of a controller against a file.
     pub fn against_begin(&mut self, controller: u32) {
         let index = (controller as usize).min(self.kept.len() - 1);
-        self.against = Some((index, Against::new(config(&self.experiment, index).channels())));
+        self.against = Some((index, TraceDiff::new(config(&self.experiment, index).channels())));
     }
 
     /// Takes a piece of the file; true if the rest is not needed.
@@ -131,7 +132,7 @@ impl Simulation {
 
 impl Simulation {
     fn judged(&self, text: &str) -> Judged {
-        let proof = match Proof::parse(text) {
+        let proof = match RunFingerprint::parse(text) {
             Ok(proof) => proof,
             Err(error) => return Judged { error: Some(error.to_string()), ..Judged::default() },
         };
@@ -145,11 +146,11 @@ impl Simulation {
             return Judged { error: Some(error), ..judged };
         }
         for (index, (sent, kept)) in proof.controllers.iter().zip(&self.kept).enumerate() {
-            let mut comparison = Comparison::with(sent);
+            let mut comparison = FingerprintCheck::with(sent);
             kept.recording.trace.iter().for_each(|record| comparison.record(*record));
             match comparison.finish() {
-                Likeness::Same(mark) => judged.edges += mark.edges,
-                Likeness::Differs { after, until, shorter } => {
+                FingerprintMatch::Same(mark) => judged.edges += mark.edges,
+                FingerprintMatch::Differs { after, until, shorter } => {
                     let shorter = shorter.map(|shorter| match shorter {
                         Shorter::This => "this",
                         Shorter::Other => "other",

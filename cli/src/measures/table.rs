@@ -7,7 +7,7 @@
 
 use super::Distortion;
 use std::io::{self, Write};
-use stepscope_core::inspect::measures::{Comparison, Measures, PulseErrors};
+use stepscope_core::inspect::measures::{CurveMetrics, Measures, PulseErrors};
 
 /// A figure of a group, with a value for each of its columns; `None` where there is none.
 struct Row {
@@ -93,9 +93,9 @@ fn deviation(found: &Measures) -> Group {
     group
 }
 
-fn compared(group: &mut Group, pairs: &[&Comparison]) {
+fn compared(group: &mut Group, pairs: &[&CurveMetrics]) {
     let points = pairs.first().map_or(0, |pair| pair.points);
-    let rows: [(String, _, Figure<Comparison>); 9] = [
+    let rows: [(String, _, Figure<CurveMetrics>); 9] = [
         ("largest".into(), "steps", |pair| Some(pair.largest_steps)),
         ("largest at".into(), "s", |pair| Some(pair.largest_at_s)),
         ("r.m.s.".into(), "steps", |pair| Some(pair.rms_steps)),

@@ -1,9 +1,9 @@
 //! Position, speed and acceleration over a stretch of time, as the least and greatest value in
 //! each pixel column: of the ideal motion, and of the one that the simulated pulses make.
 
-use crate::made::Pulses;
+use crate::actual_motion::Pulses;
 use alloc::{vec, vec::Vec};
-use stepscope_motion::{AxisPlan, Joints, Piece};
+use stepscope_motion::{AxisPlan, Breakpoints, Interval};
 use stepscope_peripheral::trace::Step;
 
 /// Smooth pieces of a column that are all looked at; of more, every 16th and the last. Only a table
@@ -101,7 +101,7 @@ pub struct Ideal {
 pub fn ideal(plan: &AxisPlan, zero_s: f64, window: Window) -> Ideal {
     let n = window.columns;
     let mut bands = Ideal { position: Band::new(n), speed: Band::new(n), acceleration: Band::new(n) };
-    let joints = Joints::of(plan);
+    let joints = Breakpoints::of(plan);
     let mut period = None;
     for column in 0..n {
         let (from, to) = (window.edge_s(column) - zero_s, window.edge_s(column + 1) - zero_s);
@@ -126,9 +126,9 @@ pub fn ideal(plan: &AxisPlan, zero_s: f64, window: Window) -> Ideal {
 }
 
 /// Least and greatest position, speed and acceleration of a stretch.
-fn extremes(plan: &AxisPlan, joints: &Joints, from_s: f64, to_s: f64) -> [[f64; 2]; 3] {
+fn extremes(plan: &AxisPlan, joints: &Breakpoints, from_s: f64, to_s: f64) -> [[f64; 2]; 3] {
     let mut found = [[f64::NAN; 2]; 3];
-    let mut look = |piece: Piece| {
+    let mut look = |piece: Interval| {
         // Just inside: at a joint itself the value may be that of the other side.
         let inset = (piece.to_s - piece.from_s) * 1e-9;
         for t in [piece.from_s + inset, piece.to_s - inset] {

@@ -18,7 +18,7 @@ use stepscope_peripheral::{
     protocol::{Kind, Reason, Reply},
     wire::{
         frame::{CHECK, DELIMITER, Frame, Ticks},
-        packet::{ALL, Order},
+        packet::{ALL, ChannelCommand},
     },
 };
 
@@ -268,11 +268,11 @@ fn reason_in_words(reason: Reason) -> String {
 
 /// Steps with their direction; right is plus.
 fn order_in_words(byte: u8) -> String {
-    match Order::parse(byte) {
-        Order { right: true, steps: 0 } => "0, right".into(),
-        Order { right: false, steps: 0 } => "0, left".into(),
-        Order { right: true, steps } => format!("+{steps}"),
-        Order { right: false, steps } => format!("\u{2212}{steps}"),
+    match ChannelCommand::parse(byte) {
+        ChannelCommand { right: true, steps: 0 } => "0, right".into(),
+        ChannelCommand { right: false, steps: 0 } => "0, left".into(),
+        ChannelCommand { right: true, steps } => format!("+{steps}"),
+        ChannelCommand { right: false, steps } => format!("\u{2212}{steps}"),
     }
 }
 

@@ -162,8 +162,10 @@ mod tests {
             let json = alloc::format!(r#"{{"driver":{{"preset":"{}"}}}}"#, listed.id);
             let scenario = Scenario::from_json(&json).expect("reads");
             assert_eq!(scenario.driver_timing.as_ref().map(rules), Some(listed.rules.clone()));
-            let own =
-                Scenario { driver_timing: Some(DriverTiming::Rules(listed.rules.clone())), ..Scenario::default() };
+            let own = Scenario {
+                driver_timing: Some(DriverTiming::Rules(listed.rules.clone())),
+                ..Scenario::default()
+            };
             assert!(own.check().is_ok(), "{} asks for more than a rule may", listed.id);
         }
     }

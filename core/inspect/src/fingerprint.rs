@@ -119,7 +119,7 @@ pub struct Mark {
 
 /// How a trace stands to another's fingerprint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Likeness {
+pub enum FingerprintMatch {
     /// They are the same, record by record.
     Same(Mark),
     /// The first difference comes after `after` and no later than `until`.
@@ -143,7 +143,7 @@ pub enum Shorter {
 }
 
 /// Takes a trace and holds it against another's fingerprint.
-pub struct Comparison<'a> {
+pub struct FingerprintCheck<'a> {
     other: &'a Fingerprint,
     spacing: u64,
     digest: Digest,
@@ -155,7 +155,7 @@ pub struct Comparison<'a> {
     differs: Option<Mark>,
 }
 
-impl<'a> Comparison<'a> {
+impl<'a> FingerprintCheck<'a> {
     /// Before the first record.
     #[must_use]
     pub fn with(other: &'a Fingerprint) -> Self {
@@ -173,20 +173,20 @@ impl<'a> Comparison<'a> {
 
     /// The trace is over.
     #[must_use]
-    pub fn finish(self) -> Likeness {
+    pub fn finish(self) -> FingerprintMatch {
         let Self { other, last, same, differs, .. } = self;
         if let Some(until) = differs {
             let shorter = (same.records == other.records).then_some(Shorter::Other);
-            return Likeness::Differs { after: same, until, shorter };
+            return FingerprintMatch::Differs { after: same, until, shorter };
         }
         if last.records == other.records {
-            return Likeness::Same(last);
+            return FingerprintMatch::Same(last);
         }
-        Likeness::Differs { after: same, until: last, shorter: Some(Shorter::This) }
+        FingerprintMatch::Differs { after: same, until: last, shorter: Some(Shorter::This) }
     }
 }
 
-impl Sink for Comparison<'_> {
+impl Sink for FingerprintCheck<'_> {
     #[inline]
     fn record(&mut self, record: Record) {
         let before = self.levels.replace(record.levels).unwrap_or(record.levels);
@@ -225,8 +225,8 @@ mod tests {
         (0..records).map(|i| Record { cycle: Instant(10 * i), levels: Levels(i & 1) }).collect()
     }
 
-    fn compare(trace: &[Record], other: &Fingerprint) -> Likeness {
-        let mut comparison = Comparison::with(other);
+    fn compare(trace: &[Record], other: &Fingerprint) -> FingerprintMatch {
+        let mut comparison = FingerprintCheck::with(other);
         trace.iter().for_each(|record| comparison.record(*record));
         comparison.finish()
     }
@@ -252,12 +252,12 @@ mod tests {
         for records in [1, 2, 16, 17, 100, 545] {
             let sent = trace(records);
             let other = Fingerprint::of(&sent);
-            let Likeness::Same(mark) = compare(&sent, &other) else { panic!("{records}: the same") };
+            let FingerprintMatch::Same(mark) = compare(&sent, &other) else { panic!("{records}: the same") };
             assert_eq!((mark.records, mark.edges), (records, records - 1));
             for changed in 0..records as usize {
                 let mut own = sent.clone();
                 own[changed].levels.0 ^= 1 << 35;
-                let Likeness::Differs { after, until, shorter: None } = compare(&own, &other) else {
+                let FingerprintMatch::Differs { after, until, shorter: None } = compare(&own, &other) else {
                     panic!("{records} {changed}: they differ")
                 };
                 let place = changed as u64 + 1;
@@ -272,11 +272,11 @@ mod tests {
     fn a_trace_that_ends_early_or_late_is_told_from_one_that_differs() {
         let sent = trace(100);
         let other = Fingerprint::of(&sent);
-        let Likeness::Differs { after, until, shorter } = compare(&trace(77), &other) else {
+        let FingerprintMatch::Differs { after, until, shorter } = compare(&trace(77), &other) else {
             panic!("they differ")
         };
         assert_eq!((after.records, until.records, shorter), (72, 77, Some(Shorter::This)));
-        let Likeness::Differs { after, until, shorter } = compare(&trace(130), &other) else {
+        let FingerprintMatch::Differs { after, until, shorter } = compare(&trace(130), &other) else {
             panic!("they differ")
         };
         assert_eq!((after.records, until.records, shorter), (100, 101, Some(Shorter::Other)));

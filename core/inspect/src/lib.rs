@@ -5,28 +5,28 @@
 
 extern crate alloc;
 
-pub mod between;
+pub mod actual_motion;
+#[cfg(feature = "std")]
+mod analysis_window;
 pub mod calibration;
 pub mod changes;
 pub mod columns;
-pub mod comparison;
+pub mod cursor_stats;
 pub mod curves;
-pub mod difference;
 pub mod dissector;
 pub mod drivers;
 pub mod fingerprint;
 #[cfg(feature = "std")]
 mod fourier;
-pub mod made;
 pub mod measures;
+pub mod position_error;
+pub mod ramp_costs;
 pub mod run_fingerprint;
 pub mod sine_optimum;
 pub mod sine_polyline;
 pub mod source_code;
 #[cfg(feature = "std")]
 pub mod spectrum;
-#[cfg(feature = "std")]
-mod stretch;
 pub mod tables;
 pub mod timing;
 pub mod torque;

@@ -13,20 +13,20 @@
 //! goes from 0 until all has come to rest. Areas and means are integrals of the curves themselves; Euclidean
 //! distance and sum of squares belong to a number of points, which is stated.
 
-mod compare;
+mod curve_metrics;
 mod pulse_errors;
 
-pub use compare::Comparison;
+pub use curve_metrics::CurveMetrics;
 pub use pulse_errors::PulseErrors;
 
-use crate::{made::Pulses, sine_polyline::differences};
+use crate::{actual_motion::Pulses, sine_polyline::differences};
 use alloc::vec::Vec;
-use compare::{Sums, curve_and_steps, steps_and_steps};
+use curve_metrics::{Sums, curve_and_steps, steps_and_steps};
 use pulse_errors::{due_steps, placed};
 use serde::Serialize;
 use stepscope_motion::ValueError;
 use stepscope_motion::{
-    AxisPlan, Joints, Profile,
+    AxisPlan, Breakpoints, Profile,
     moves::{Axis, Move},
     sine_segments,
 };
@@ -60,11 +60,11 @@ pub struct Measures {
     /// From the motion's time 0 until all has come to rest, in s: what the comparisons are taken over.
     pub length_s: f64,
     /// Step quantisation: the ideal curve, and the steps that B1 makes of it.
-    pub steps: Comparison,
+    pub steps: CurveMetrics,
     /// Tick quantisation, queue and link: those steps, and the pulses as they come.
-    pub ticks: Comparison,
+    pub ticks: CurveMetrics,
     /// Both together: the ideal curve, and the pulses.
-    pub pulses: Comparison,
+    pub pulses: CurveMetrics,
     /// Steps at whole cycles against their ideal instants.
     pub step_errors: PulseErrors,
     /// Pulses against the steps at whole cycles.
@@ -133,7 +133,7 @@ pub struct SineMeasures {
     /// The document's Ev: Euclidean distance in parts of the amplitude.
     pub euclidean: f64,
     /// Exact sine and polyline over a quarter, in steps; all of it from the points, which are its vertices too.
-    pub quarter: Comparison,
+    pub quarter: CurveMetrics,
 }
 
 impl Measures {
@@ -153,7 +153,7 @@ impl Measures {
         // One cycle at least, so that there is something to look at.
         let ends = [Some(plan.duration_s()), last_due_s, last_pulse_s];
         let length_s = ends.into_iter().flatten().fold(1.0 / hz, libm::fmax);
-        let joints = Joints::of(plan);
+        let joints = Breakpoints::of(plan);
         let asked_s = asked.and_then(|axis| asked_s(axis, plan));
         Self {
             length_s,
@@ -203,7 +203,7 @@ fn asked_s(axis: &Axis, plan: &AxisPlan) -> Option<f64> {
     names_one.then_some(sum)
 }
 
-fn extremes(plan: &AxisPlan, joints: &Joints) -> Extremes {
+fn extremes(plan: &AxisPlan, joints: &Breakpoints) -> Extremes {
     let peaks = plan.peaks();
     let (mut before, mut start_stop) = (0.0, 0.0);
     let mut meets = |before: f64, after: f64| {

@@ -30,7 +30,7 @@ const CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// What a sender saw.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Proof {
+pub struct RunFingerprint {
     /// The version of Stepscope that made the run.
     pub version: String,
     /// The trace of each controller, in the order of the scenario.
@@ -39,7 +39,7 @@ pub struct Proof {
 
 /// Why a proof cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ProofError {
+pub enum RunFingerprintError {
     /// Written in a newer form.
     Newer {
         /// The form.
@@ -49,7 +49,7 @@ pub enum ProofError {
     Damaged,
 }
 
-impl fmt::Display for ProofError {
+impl fmt::Display for RunFingerprintError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Newer { given } => write!(
@@ -63,12 +63,12 @@ impl fmt::Display for ProofError {
     }
 }
 
-impl core::error::Error for ProofError {}
+impl core::error::Error for RunFingerprintError {}
 
 /// The version of Stepscope that this is.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-impl Proof {
+impl RunFingerprint {
     /// What this version of Stepscope saw.
     #[must_use]
     pub fn of(controllers: Vec<Fingerprint>) -> Self {
@@ -90,23 +90,23 @@ impl Proof {
     /// Reads what [`Self::emit`] wrote.
     ///
     /// # Errors
-    /// What [`ProofError`] lists; the form is judged before the check.
-    pub fn parse(text: &str) -> Result<Self, ProofError> {
-        let (form, _) = text.split_once('.').ok_or(ProofError::Damaged)?;
+    /// What [`RunFingerprintError`] lists; the form is judged before the check.
+    pub fn parse(text: &str) -> Result<Self, RunFingerprintError> {
+        let (form, _) = text.split_once('.').ok_or(RunFingerprintError::Damaged)?;
         match form.parse() {
             Ok(FORM) => {}
-            Ok(given) if given > FORM => return Err(ProofError::Newer { given }),
-            _ => return Err(ProofError::Damaged),
+            Ok(given) if given > FORM => return Err(RunFingerprintError::Newer { given }),
+            _ => return Err(RunFingerprintError::Damaged),
         }
-        let (checked, check) = text.rsplit_once('.').ok_or(ProofError::Damaged)?;
+        let (checked, check) = text.rsplit_once('.').ok_or(RunFingerprintError::Damaged)?;
         if check != format!("{:08x}", CHECK.checksum(checked.as_bytes())) {
-            return Err(ProofError::Damaged);
+            return Err(RunFingerprintError::Damaged);
         }
-        parsed(checked).ok_or(ProofError::Damaged)
+        parsed(checked).ok_or(RunFingerprintError::Damaged)
     }
 }
 
-fn parsed(checked: &str) -> Option<Proof> {
+fn parsed(checked: &str) -> Option<RunFingerprint> {
     let mut parts = checked.split('.').skip(1);
     let version = parts.next()?.replace('_', ".");
     let mut controllers = Vec::new();
@@ -125,44 +125,44 @@ fn parsed(checked: &str) -> Option<Proof> {
         controllers.push(Fingerprint { digest, records, checkpoints });
     }
     let some = (1..=MAX_CONTROLLERS).contains(&controllers.len());
-    some.then_some(Proof { version, controllers })
+    some.then_some(RunFingerprint { version, controllers })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn proof(controllers: u64) -> Proof {
+    fn proof(controllers: u64) -> RunFingerprint {
         let one = |k: u64| Fingerprint {
             digest: 0x0123_4567_89ab_cdef * (k + 1),
             records: 10 + 7 * k,
             checkpoints: (0..(10 + 7 * k) / spacing(10 + 7 * k)).map(|i| (i * 0x1234_5678) as u32).collect(),
         };
-        Proof { version: "0.1.0-rc.2".into(), controllers: (0..controllers).map(one).collect() }
+        RunFingerprint { version: "0.1.0-rc.2".into(), controllers: (0..controllers).map(one).collect() }
     }
 
     #[test]
     fn reading_gives_back_what_was_written() {
         for controllers in [1, 2, 32] {
             let proof = proof(controllers);
-            assert_eq!(Proof::parse(&proof.emit()), Ok(proof));
+            assert_eq!(RunFingerprint::parse(&proof.emit()), Ok(proof));
         }
         assert!(proof(1).emit().starts_with("1.0_1_0-rc_2.0123456789abcdef.10."), "{}", proof(1).emit());
-        assert_eq!(Proof::parse(&proof(33).emit()), Err(ProofError::Damaged));
-        assert_eq!(Proof::parse(&proof(0).emit()), Err(ProofError::Damaged));
+        assert_eq!(RunFingerprint::parse(&proof(33).emit()), Err(RunFingerprintError::Damaged));
+        assert_eq!(RunFingerprint::parse(&proof(0).emit()), Err(RunFingerprintError::Damaged));
     }
 
     #[test]
     fn every_truncation_and_every_changed_character_is_told() {
         let text = proof(2).emit();
         for length in 0..text.len() {
-            assert_eq!(Proof::parse(&text[..length]), Err(ProofError::Damaged), "{length}");
+            assert_eq!(RunFingerprint::parse(&text[..length]), Err(RunFingerprintError::Damaged), "{length}");
         }
         for at in 0..text.len() {
             for with in ["A", "0", "9", "z", "_", ".", "-", "=", "%", " ", "\u{e9}"] {
                 if text[at..=at] != *with {
                     let flipped = format!("{}{with}{}", &text[..at], &text[at + 1..]);
-                    Proof::parse(&flipped).expect_err(&flipped);
+                    RunFingerprint::parse(&flipped).expect_err(&flipped);
                 }
             }
         }
@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn the_form_is_judged_before_the_check_and_nonsense_with_a_good_check_is_refused() {
-        assert_eq!(Proof::parse("2.what.ever"), Err(ProofError::Newer { given: 2 }));
+        assert_eq!(RunFingerprint::parse("2.what.ever"), Err(RunFingerprintError::Newer { given: 2 }));
         for text in [
             "1",
             "1.0_1_0",
@@ -183,7 +183,7 @@ mod tests {
             "1.0_1_0.0123456789abcdef.18446744073709551615.AAAAAA",
         ] {
             let text = format!("{text}.{:08x}", CHECK.checksum(text.as_bytes()));
-            assert_eq!(Proof::parse(&text), Err(ProofError::Damaged), "{text}");
+            assert_eq!(RunFingerprint::parse(&text), Err(RunFingerprintError::Damaged), "{text}");
         }
     }
 }

@@ -23,12 +23,12 @@
 //! last point is taken off its position, for otherwise the jump back at the end would be in all
 //! three. Its lines are no harmonics of anything, so it has no distortion.
 
-pub use crate::stretch::Stretch;
+pub use crate::analysis_window::AnalysisWindow;
 
 use crate::{
+    analysis_window::sampled,
     fourier::{amplitudes, magnitude, sums},
     sine_polyline::low_pass,
-    stretch::sampled,
 };
 use alloc::vec::Vec;
 use core::f64::consts::{PI, TAU};
@@ -61,7 +61,7 @@ fn distortion(amplitudes: &[f64]) -> Option<f64> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
     /// What it is taken of; no window is laid over it.
-    pub stretch: Stretch,
+    pub stretch: AnalysisWindow,
     /// Highest harmonic, also of the distortion.
     pub order: u16,
     /// Position, in steps.
@@ -77,7 +77,7 @@ pub struct Spectrum {
 
 impl Spectrum {
     /// From the position's harmonics.
-    fn of_position(stretch: Stretch, position: Vec<f64>) -> Self {
+    fn of_position(stretch: AnalysisWindow, position: Vec<f64>) -> Self {
         let per_s = |k: usize| TAU * (k + 1) as f64 / stretch.period_s;
         let speed: Vec<f64> = position.iter().enumerate().map(|(k, a)| a * per_s(k)).collect();
         let acceleration = speed.iter().enumerate().map(|(k, a)| a * per_s(k)).collect();
@@ -104,7 +104,7 @@ impl Spectrum {
         self
     }
 
-    /// Of the ideal curve over [`Stretch::of`] it, up to harmonic `order`; `None` where that is.
+    /// Of the ideal curve over [`AnalysisWindow::of`] it, up to harmonic `order`; `None` where that is.
     ///
     /// `points` (16 to 65536 in a scenario, any number) are the samples of a period. One period is
     /// sampled, because the others are the same, so the samples fill it and nothing leaks, whatever
@@ -112,19 +112,19 @@ impl Spectrum {
     /// stated in the result.
     #[must_use]
     pub fn ideal(plan: &AxisPlan, order: u16, points: u32) -> Option<Self> {
-        let stretch = Stretch::of(plan)?;
-        let samples = sampled(plan, &Stretch { periods: 1, ..stretch }, points as usize);
+        let stretch = AnalysisWindow::of(plan)?;
+        let samples = sampled(plan, &AnalysisWindow { periods: 1, ..stretch }, points as usize);
         Some(Self::of_position(stretch, amplitudes(&samples, order.into())))
     }
 
     /// Of the motion that pulses make: `pulses` are (time in s, on the same axis of time as the
-    /// stretch; +1 right or -1 left), in any order, such as [`Stretch::own_pulses`]. All count; one
+    /// stretch; +1 right or -1 left), in any order, such as [`AnalysisWindow::own_pulses`]. All count; one
     /// outside the stretch stands where whole periods take it.
     ///
     /// Straight from the pulses' times, see `fourier`: nothing is sampled, nothing folds back. The
     /// time grows with the pulses, some 10 ns each, and not with pulses times order.
     #[must_use]
-    pub fn of_pulses(pulses: &[(f64, i8)], stretch: Stretch, order: u16) -> Self {
+    pub fn of_pulses(pulses: &[(f64, i8)], stretch: AnalysisWindow, order: u16) -> Self {
         let phases = pulses
             .iter()
             .map(|&(time_s, way)| ((time_s - stretch.start_s) / stretch.period_s, f64::from(way)));
@@ -257,7 +257,7 @@ mod tests {
     #[test]
     fn a_step_to_and_fro_is_a_square_wave() {
         // Two periods of 1 s, height 1.
-        let stretch = Stretch { start_s: 10.0, period_s: 1.0, periods: 2, periodic: true };
+        let stretch = AnalysisWindow { start_s: 10.0, period_s: 1.0, periods: 2, periodic: true };
         // The last two are a step outside and where periods take it back.
         let pulses = [(10.25, 1), (10.75, -1), (11.25, 1), (11.75, -1), (9.99, 1), (11.99, -1)];
         let spectrum = Spectrum::of_pulses(&pulses, stretch, 101);
@@ -270,7 +270,7 @@ mod tests {
 
     #[test]
     fn pulses_through_the_grid_weigh_as_much_as_one_by_one() {
-        let stretch = Stretch { start_s: 0.0, period_s: 0.125, periods: 3, periodic: true };
+        let stretch = AnalysisWindow { start_s: 0.0, period_s: 0.125, periods: 3, periodic: true };
         let pulses: Vec<(f64, i8)> = (0..1001)
             .map(|i| (f64::from(i * i % 4099) * 0.375 / 4099.0, if i % 3 == 0 { -1 } else { 1 }))
             .collect();
@@ -318,7 +318,7 @@ mod tests {
                 max_deviation: 1.0,
             };
             let plan = plan(vec![constant.clone(), Move::SineSegments(sine), constant]);
-            let stretch = Stretch::of(&plan).unwrap();
+            let stretch = AnalysisWindow::of(&plan).unwrap();
             let own = stretch.own_pulses(&plan, TickClock::new(1000, 1_000_000), pulses);
             own.iter().map(|(t, way)| (round_half_up(t * 1e6) as u64, *way)).collect::<Vec<_>>()
         };

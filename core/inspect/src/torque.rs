@@ -38,7 +38,7 @@ pub use machine::Machine;
 pub use ramps::Ramps;
 
 use alloc::{format, string::String, vec::Vec};
-use stepscope_motion::{AxisPlan, Curve, Joints, Piece, grouped};
+use stepscope_motion::{AxisPlan, Breakpoints, Curve, Interval, grouped};
 
 /// Shortages that are listed.
 const MAX_SHORTAGES: usize = 1024;
@@ -114,7 +114,7 @@ impl Demand {
         };
         let mut walk = Walk { machine, plan, demand, open: None, before: None };
         let look_s = plan.duration_s() / LOOKS;
-        Joints::of(plan).pieces(0.0, plan.duration_s(), &mut |piece| walk.piece(piece, look_s));
+        Breakpoints::of(plan).pieces(0.0, plan.duration_s(), &mut |piece| walk.piece(piece, look_s));
         walk.close();
         walk.demand
     }
@@ -175,11 +175,11 @@ struct Walk<'m> {
     /// The shortage that has not ended yet.
     open: Option<Shortage>,
     /// The end of the last piece and how often it stands there.
-    before: Option<Piece>,
+    before: Option<Interval>,
 }
 
 impl Walk<'_> {
-    fn piece(&mut self, piece: Piece, look_s: f64) {
+    fn piece(&mut self, piece: Interval, look_s: f64) {
         let follows =
             self.before.is_some_and(|before| before.to_s == piece.from_s && before.times == piece.times);
         if !follows {
@@ -206,7 +206,7 @@ impl Walk<'_> {
     }
 
     /// Takes a moment; `last` is the one before in the same piece.
-    fn look(&mut self, moment: Moment, last: Option<Moment>, piece: Piece) {
+    fn look(&mut self, moment: Moment, last: Option<Moment>, piece: Interval) {
         let border = || last.map_or(piece.from_s, |last| self.border(last.at_s, moment.at_s));
         let short = moment.margin_mn_m() < 0.0;
         let border_s = if short == self.open.is_some() { piece.from_s } else { border() };
@@ -216,7 +216,7 @@ impl Walk<'_> {
         match (&mut self.open, short) {
             (None, false) => {}
             (None, true) => {
-                let Piece { to_s, times, .. } = piece;
+                let Interval { to_s, times, .. } = piece;
                 self.open = Some(Shortage { from_s: border_s, to_s, times, worst: moment });
             }
             (Some(open), true) => {

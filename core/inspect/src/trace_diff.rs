@@ -83,7 +83,7 @@ enum Form {
 
 /// Takes a file piece by piece. The run's trace is given with each piece and is always the same.
 #[derive(Clone, Debug)]
-pub struct Against {
+pub struct TraceDiff {
     channels: u8,
     form: Form,
     /// The part of a line that has come.
@@ -97,7 +97,7 @@ pub struct Against {
     difference: Option<Difference>,
 }
 
-impl Against {
+impl TraceDiff {
     /// Before a file; `channels` are those of the controller that made the run.
     #[must_use]
     pub const fn new(channels: u8) -> Self {

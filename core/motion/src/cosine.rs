@@ -14,9 +14,9 @@
 
 use crate::{
     Curve, Peaks,
+    format::{describe, ramp_up_to},
     mirrored::Mirrored,
     ramp::longest_ramp_s,
-    words::{in_words, ramp_up_to},
 };
 use alloc::string::String;
 use core::f64::consts::PI;
@@ -133,7 +133,7 @@ impl Curve for Cosine {
 
     fn detail(&self, limit_steps_s: f64) -> String {
         let longest_s = self.longest_ramp_s(limit_steps_s);
-        in_words(self.peaks()) + &ramp_up_to(longest_s, self.duration_s())
+        describe(self.peaks()) + &ramp_up_to(longest_s, self.duration_s())
     }
 }
 

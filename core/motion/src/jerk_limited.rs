@@ -28,10 +28,10 @@
 
 use crate::{
     Curve, Peaks,
+    format::{describe, grouped},
     mirrored::Mirrored,
     profile::greater,
     square_root,
-    words::{grouped, in_words},
 };
 use alloc::{format, string::String, vec::Vec};
 
@@ -241,7 +241,7 @@ impl Curve for JerkLimited {
         let phases: Vec<String> = self.phases_s().iter().map(|phase_s| format!("{phase_s:.4}")).collect();
         format!(
             "{}, {} steps/s\u{b3}; phases of {} s and back",
-            in_words(self.peaks()),
+            describe(self.peaks()),
             grouped(self.jerk),
             phases.join(", ")
         )

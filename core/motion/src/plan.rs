@@ -11,11 +11,11 @@ mod timed;
 use crate::{
     AxisPlan, Curve, MAX_SPEED, Profile,
     acceleration_table::AccelerationTable,
+    constant_velocity::{Constant, Dwell},
     jerk_limited::{JerkLimited, Limits},
     quantities::Quantities,
     sine::Sine,
     sine_segments::SineSegments,
-    steady::{Constant, Dwell},
     trapezoid::Trapezoid,
     trapezoid_table::{NoTable, TrapezoidTable},
 };

@@ -18,10 +18,10 @@
 
 use crate::{
     Curve, Peaks,
+    format::{describe, grouped},
     hermite::Cubic,
     profile::greater,
     round_half_up,
-    words::{grouped, in_words},
 };
 use alloc::{format, string::String, vec::Vec};
 
@@ -248,7 +248,7 @@ impl Curve for Points {
                 Between::Straight => "straight between them",
                 Between::Smooth => "smooth, from rest to rest",
             },
-            in_words(self.peaks())
+            describe(self.peaks())
         )
     }
 }

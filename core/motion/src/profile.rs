@@ -1,7 +1,9 @@
 //! What all motions share: a curve over time, in steps (DESIGN B1).
 
 use crate::{
+    constant_velocity::{Constant, Dwell},
     cosine::Cosine,
+    format::describe,
     jerk_limited::JerkLimited,
     points::Points,
     ramps::Ramps,
@@ -9,10 +11,8 @@ use crate::{
     sine_segments::SineSegments,
     sliced::Sliced,
     staircase::Staircase,
-    steady::{Constant, Dwell},
     trapezoid::Trapezoid,
     trapezoid_table::TrapezoidTable,
-    words::in_words,
 };
 use alloc::string::String;
 
@@ -43,7 +43,7 @@ pub trait Curve {
     /// What a user wants to know of the move beside its times, in a few words, on a bus that can
     /// give `limit_steps_s`; empty where there is nothing to say.
     fn detail(&self, _limit_steps_s: f64) -> String {
-        in_words(self.peaks())
+        describe(self.peaks())
     }
 }
 

@@ -16,9 +16,9 @@
 
 use crate::{
     Curve, Peaks,
+    format::{describe, grouped, ramp_up_to},
     mirrored::Mirrored,
     ramp::{Ramp, longest_ramp_s},
-    words::{grouped, in_words, ramp_up_to},
 };
 use alloc::{format, string::String};
 
@@ -144,7 +144,7 @@ impl Curve for Ramps {
         let jerk =
             if peaks.jerk > 0.0 { format!(", {} steps/s\u{b3}", grouped(peaks.jerk)) } else { String::new() };
         let longest_s = self.longest_ramp_s(limit_steps_s);
-        in_words(peaks) + &jerk + &ramp_up_to(longest_s, self.duration_s())
+        describe(peaks) + &jerk + &ramp_up_to(longest_s, self.duration_s())
     }
 }
 

@@ -13,14 +13,14 @@
 //! So no step's time is a small difference of large numbers: the arc sine is taken up to 45 degrees
 //! alone, and the half periods before are added to it as a whole number, whatever their count.
 
-use crate::{Curve, Peaks, square_root, swing::Swing, words::in_words};
+use crate::{Curve, Peaks, format::describe, oscillation::Oscillation, square_root};
 use alloc::{format, string::String};
 use core::f64::consts::{PI, TAU};
 
 /// A sine, each step in its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sine {
-    swing: Swing,
+    swing: Oscillation,
 }
 
 impl Sine {
@@ -28,7 +28,7 @@ impl Sine {
     /// the middle; a negative amplitude starts at the left extreme.
     #[must_use]
     pub fn new(amplitude: i64, period_s: f64, periods: u32) -> Self {
-        Self { swing: Swing::new(amplitude, period_s, periods) }
+        Self { swing: Oscillation::new(amplitude, period_s, periods) }
     }
 
     /// Time of a period in s.
@@ -51,7 +51,7 @@ impl Sine {
 
     /// Where each step falls due, in half periods from the start, and whether it goes to the right.
     pub(super) fn due_halves(&self) -> impl Iterator<Item = (f64, bool)> + use<> {
-        let Swing { amplitude, starts_right, periods, .. } = self.swing;
+        let Oscillation { amplitude, starts_right, periods, .. } = self.swing;
         (0..2 * u64::from(periods)).flat_map(move |half| {
             let right = starts_right == (half % 2 == 1);
             (1..=2 * amplitude).map(move |k| (half as f64 + part_of_half(k, amplitude), right))
@@ -122,7 +122,7 @@ impl Curve for Sine {
 
     fn detail(&self, _: f64) -> String {
         let hertz = 1.0 / self.swing.period_s;
-        format!("{hertz:.4} Hz; {}", in_words(self.peaks()))
+        format!("{hertz:.4} Hz; {}", describe(self.peaks()))
     }
 }
 

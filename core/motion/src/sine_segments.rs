@@ -15,11 +15,11 @@
 
 use crate::{
     Curve, Peaks,
+    format::grouped,
+    oscillation::Oscillation,
     polyline::{Folded, POINTS, QUARTER, breakpoints, cosine_at, fold},
     profile::greater,
     round_half_up,
-    swing::Swing,
-    words::grouped,
 };
 use alloc::{format, string::String, vec::Vec};
 
@@ -49,7 +49,7 @@ pub struct Segment {
 
 /// A segment in its place in the motion; its steps stand in the middles of as many equal parts.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Piece {
+pub(crate) struct Interval {
     /// Its beginning in points of the angle from the start.
     pub(crate) from: f64,
     /// Its end.
@@ -73,7 +73,7 @@ pub struct Memory {
 /// A sine by segments.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SineSegments {
-    swing: Swing,
+    swing: Oscillation,
     /// The first quarter.
     ///
     /// Invariant: begins at point 0, ends at [`QUARTER`], without gaps.
@@ -106,7 +106,7 @@ impl SineSegments {
                 })
             })
             .collect();
-        Self { swing: Swing::new(amplitude, period_s, periods), segments }
+        Self { swing: Oscillation::new(amplitude, period_s, periods), segments }
     }
 
     /// The segments of the first quarter, from the extreme to the middle.
@@ -136,7 +136,7 @@ impl SineSegments {
     }
 
     /// The segments of all quarters, one after another.
-    pub(crate) fn pieces(&self) -> impl Iterator<Item = Piece> + '_ {
+    pub(crate) fn pieces(&self) -> impl Iterator<Item = Interval> + '_ {
         let quarters =
             (0..self.swing.periods).flat_map(|period| (0..4_u16).map(move |quarter| (period, quarter)));
         quarters.flat_map(move |(period, quarter)| {
@@ -154,7 +154,7 @@ impl SineSegments {
                     _ => (2 * QUARTER, 2 * QUARTER - far, 2 * QUARTER - near),
                 };
                 let (from, to) = (origin + f64::from(base + from), origin + f64::from(base + to));
-                Piece { from, to, steps, right }
+                Interval { from, to, steps, right }
             })
         })
     }
@@ -162,7 +162,7 @@ impl SineSegments {
     /// Where each step falls due, in points of the angle from the start, and whether it goes to
     /// the right.
     pub(super) fn due_points(&self) -> impl Iterator<Item = (f64, bool)> + '_ {
-        self.pieces().flat_map(|Piece { from, to, steps, right }| {
+        self.pieces().flat_map(|Interval { from, to, steps, right }| {
             let each = (to - from) / steps as f64;
             (0..steps).map(move |step| (from + (step as f64 + 0.5) * each, right))
         })

@@ -24,9 +24,9 @@
 use crate::{
     Curve, MAX_SPEED, Peaks,
     cosine::Cosine,
+    format::{grouped, ramp_up_to},
     profile::greater,
     round_half_up,
-    words::{grouped, ramp_up_to},
 };
 use alloc::{format, string::String, vec::Vec};
 use core::ops::Range;

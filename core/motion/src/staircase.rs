@@ -15,10 +15,10 @@
 use crate::moves::ShortMove;
 use crate::{
     Curve, Peaks,
+    format::{count, grouped},
     profile::greater,
     staircase_table::StaircaseTable,
     stepped,
-    words::{count, grouped},
 };
 use alloc::{format, string::String, vec::Vec};
 

@@ -20,7 +20,9 @@
 //!
 //! Only the ramp is kept, as sums of reloads: integers up to the last division by `timer_hz`.
 
-use crate::{Curve, Peaks, acceleration_table::AccelerationTable, profile::greater, stepped, words::grouped};
+use crate::{
+    Curve, Peaks, acceleration_table::AccelerationTable, format::grouped, profile::greater, stepped,
+};
 use alloc::{format, string::String, vec::Vec};
 
 /// A trapezoid by acceleration table.

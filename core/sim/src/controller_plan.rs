@@ -20,7 +20,7 @@ use stepscope_peripheral::{
     wire::{
         Forced, Schedule,
         frame::{REPLY_LEN, encode_frame},
-        packet::{Order, Tick},
+        packet::{ChannelCommand, Tick},
     },
 };
 use stepscope_scenario::{
@@ -160,7 +160,7 @@ pub(super) fn segments(
 /// A framed job's last tick has no steps: that is how the host says that it was the last (A7).
 fn end_at_rest(ticks: &mut Vec<u8>, channels: u8) {
     let last = ticks.chunks(usize::from(channels)).last();
-    if let Some(last) = last.filter(|last| last.iter().any(|&byte| Order::parse(byte).steps > 0)) {
+    if let Some(last) = last.filter(|last| last.iter().any(|&byte| ChannelCommand::parse(byte).steps > 0)) {
         let rest: Vec<u8> = last.iter().map(|byte| byte & 0x80).collect();
         ticks.extend(rest);
     }
@@ -306,7 +306,7 @@ fn frame_bits(checked: &Checked, config: &Config) -> u128 {
 pub(super) fn pulses(tick: &[u8]) -> u64 {
     let mut sum = 0;
     for byte in tick.get(..Tick::default().len()).unwrap_or(tick) {
-        sum += u64::from(Order::parse(*byte).steps);
+        sum += u64::from(ChannelCommand::parse(*byte).steps);
     }
     sum
 }

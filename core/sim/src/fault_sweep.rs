@@ -41,11 +41,11 @@ const OUT_OF_REACH: u64 = 60;
 
 /// Runs of the same orders under faults that a seed chooses.
 #[derive(Clone, Debug)]
-pub struct Campaign {
+pub struct FaultSweep {
     base: Scenario,
 }
 
-impl Campaign {
+impl FaultSweep {
     /// Runs of `base`; its noise and its controllers' receiver rates give way to those of a seed.
     ///
     /// # Errors

@@ -58,7 +58,7 @@ pub struct Counts {
     /// Replies that refused a frame.
     pub refused: u64,
     /// How often the host died.
-    pub deaths: u64,
+    pub crashes: u64,
 }
 
 /// No exchange begins after this cycle, so that the longest wait still ends before [`END_OF_TIME`].
@@ -69,7 +69,7 @@ enum Phase {
     /// Nothing under way before `until`.
     Pausing { until: Instant },
     /// Bytes are being sent up to `end`.
-    Sending { peer: usize, kind: Kind, ticks: u32, end: Instant, dies: bool },
+    Sending { peer: usize, kind: Kind, ticks: u32, end: Instant, crashes: bool },
     /// A reply is due.
     Waiting { peer: usize, kind: Kind, ticks: u32, until: Instant },
     /// Every controller is done or given up.
@@ -189,7 +189,7 @@ impl FramedHost {
         self.last = now;
         match self.phase {
             Phase::Pausing { .. } => self.next_exchange(now, line),
-            Phase::Sending { dies: true, .. } => self.come_back(now),
+            Phase::Sending { crashes: true, .. } => self.come_back(now),
             Phase::Sending { peer, kind, ticks, .. } => {
                 self.receiver = Receiver::new(self.bit);
                 self.deframer = Deframer::default();
@@ -216,7 +216,7 @@ impl FramedHost {
 
     /// A host that died knows nothing but its orders and where it began.
     fn come_back(&mut self, now: Instant) {
-        self.counts.deaths += 1;
+        self.counts.crashes += 1;
         for peer in &mut self.peers {
             if peer.is_open() {
                 peer.progress = Progress::Opening;
@@ -274,17 +274,17 @@ impl FramedHost {
         peer.since_progress = peer.since_progress.saturating_add(1);
         self.counts.frames += 1;
         let start = now.next();
-        let mut dies = false;
+        let mut crashes = false;
         if let Some(noise) = &mut self.noise {
             let spoiled = noise.send(start, &bytes);
-            (bytes, dies) = (spoiled.bytes, spoiled.dies);
+            (bytes, crashes) = (spoiled.bytes, spoiled.crashes);
             if let Some(forced) = spoiled.forced {
                 line.force(forced);
             }
         }
         let end = start + Cycles(line_time(bytes.len() as u64, self.clock_hz, self.baud));
         line.send(start, &bytes);
-        self.phase = Phase::Sending { peer: index, kind, ticks, end, dies };
+        self.phase = Phase::Sending { peer: index, kind, ticks, end, crashes };
     }
 
     /// A byte of a reply.

@@ -49,7 +49,7 @@ pub struct Spoiled {
     /// A level that is forced while they are sent.
     pub forced: Option<Forced>,
     /// Whether the host died within them; `bytes` are those sent before.
-    pub dies: bool,
+    pub crashes: bool,
 }
 
 impl Noise {
@@ -98,13 +98,13 @@ impl Noise {
         for &byte in bytes {
             self.byte(byte, &mut spoiled);
         }
-        let dies = self.happens(self.rates.host_crashes_ppm);
-        if dies {
+        let crashes = self.happens(self.rates.host_crashes_ppm);
+        if crashes {
             spoiled.truncate(self.random.below(spoiled.len() as u64 + 1) as usize);
         }
         let glitch = (0..bytes.len()).any(|_| self.happens(self.rates.glitches_ppm));
         let forced = glitch.then(|| self.glitch(start, spoiled.len() as u64));
-        Spoiled { bytes: spoiled, forced, dies }
+        Spoiled { bytes: spoiled, forced, crashes }
     }
 
     /// A level forced somewhere within so many bytes, for one cycle to two bit times.
@@ -159,12 +159,12 @@ mod tests {
         let bytes = [1, 2, 3];
         let spoil = |rates| noise(rates).send(Instant(100), &bytes);
         let lost = spoil(Rates { lost_bytes_ppm: SURE, ..Rates::default() });
-        assert_eq!(lost, Spoiled { bytes: Vec::new(), forced: None, dies: false });
+        assert_eq!(lost, Spoiled { bytes: Vec::new(), forced: None, crashes: false });
         let doubled = spoil(Rates { duplicated_bytes_ppm: SURE, ..Rates::default() });
         assert_eq!(doubled.bytes, [1, 1, 2, 2, 3, 3]);
         assert_eq!(spoil(Rates { flipped_bits_ppm: SURE, ..Rates::default() }).bytes, [254, 253, 252]);
         let died = spoil(Rates { host_crashes_ppm: SURE, ..Rates::default() });
-        assert!(died.dies && bytes.starts_with(&died.bytes));
+        assert!(died.crashes && bytes.starts_with(&died.bytes));
         let forced = spoil(Rates { glitches_ppm: SURE, ..Rates::default() }).forced.expect("forced");
         assert!(Instant(100) <= forced.start && forced.start < forced.end);
         assert!(forced.end.0 < 100 + line_time(3, 16_000_000, 115_200) + 280);

@@ -1,7 +1,7 @@
 //! Where the pieces of a plan meet.
 
 use super::{axis, plan_axis};
-use stepscope_core::motion::{AxisPlan, Joints};
+use stepscope_core::motion::{AxisPlan, Breakpoints};
 
 /// Plans an axis from the JSON of its moves.
 fn plan(moves: &str) -> AxisPlan {
@@ -34,7 +34,7 @@ fn between_two_joints_every_curve_is_smooth() {
         let plan = plan(moves);
         let (from, to) = (-0.01, plan.duration_s() + 0.01);
         let mut covered = 0.0;
-        Joints::of(&plan).pieces(from, to, &mut |piece| {
+        Breakpoints::of(&plan).pieces(from, to, &mut |piece| {
             let length = piece.to_s - piece.from_s;
             covered += length * piece.times;
             let at = |part: f64| piece.from_s + length * part;
@@ -54,7 +54,7 @@ fn between_two_joints_every_curve_is_smooth() {
 fn whole_periods_are_cut_once_and_stand_for_all() {
     for moves in MOVES.iter().filter(|moves| moves.contains(r#""sine"#)) {
         let plan = plan(moves);
-        let joints = Joints::of(&plan);
+        let joints = Breakpoints::of(&plan);
         for (from, to, wholes) in [(0.09, 0.71, 3.0), (0.15, 0.71, 2.0), (0.15, 0.6, 1.0), (0.15, 0.4, 1.0)] {
             let (mut most, mut covered) = (0.0_f64, 0.0);
             joints.pieces(from, to, &mut |piece| {

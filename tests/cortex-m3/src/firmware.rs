@@ -20,7 +20,7 @@ use stepscope_core::{
     },
     scenario::Line,
 };
-use stepscope_firmware::{Driver, Error, Order};
+use stepscope_firmware::{ChannelCommand, Driver, Error};
 use stepscope_tests::golden::CASES;
 
 /// Bytes; what the heap and the constants leave of memory.x's RAM is the stack's.
@@ -62,7 +62,7 @@ fn drive() -> Result<[i32; 2], Error> {
     let Ok(config) = Config::new(16_000_000, &bus, &Line::default()) else { return Err(Error::NotFound(0)) };
     let mut driver = Driver::new(ModelBus::new(&config, Cycles(8), Vec::<Record>::new()))?;
     driver.wait_for_self_test();
-    let mut ticks = (1..=5).map(|tick| [Order::right(10 * tick), Order::left(5 * tick)]);
+    let mut ticks = (1..=5).map(|tick| [ChannelCommand::right(10 * tick), ChannelCommand::left(5 * tick)]);
     while driver.ticks_done() < 5 {
         driver.fill(&mut ticks)?;
     }

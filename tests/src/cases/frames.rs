@@ -11,7 +11,7 @@ use crate::oracle::{Config, LONGEST_FRAME, frame, kinds};
 pub(super) enum Utterance {
     Frame {
         to: To,
-        order: Order,
+        order: ChannelCommand,
         damage: Damage,
     },
     /// Bytes that are no frame but by chance.
@@ -27,7 +27,7 @@ pub(super) enum To {
 }
 
 #[derive(Debug, Clone)]
-pub(super) enum Order {
+pub(super) enum ChannelCommand {
     Ticks {
         seq: Seq,
         count: usize,
@@ -85,7 +85,7 @@ pub(super) fn utterance(calm: bool) -> impl Strategy<Value = Utterance> {
     ]
 }
 
-fn order() -> impl Strategy<Value = Order> {
+fn order() -> impl Strategy<Value = ChannelCommand> {
     let seq = prop_oneof![
         14 => Just(Seq::Expected),
         2 => Just(Seq::Repeat),
@@ -100,7 +100,7 @@ fn order() -> impl Strategy<Value = Order> {
     let orders = prop::collection::vec((any::<bool>(), count), 1..24);
     let too_many = prop::option::weighted(0.06, (any::<Index>(), 1..128_u64));
     let ticks = (seq, tick_count, orders, any::<bool>(), too_many).prop_map(
-        |(seq, count, orders, last_is_zero, too_many)| Order::Ticks {
+        |(seq, count, orders, last_is_zero, too_many)| ChannelCommand::Ticks {
             seq,
             count,
             orders,
@@ -118,8 +118,8 @@ fn order() -> impl Strategy<Value = Order> {
     let body = prop::collection::vec(prop_oneof![any::<u8>(), 0..3_u8], 0..6);
     prop_oneof![
         14 => ticks,
-        6 => plain.prop_map(Order::Plain),
-        1 => (prop_oneof![0..8_u8, any::<u8>()], body).prop_map(|(kind, body)| Order::Any(kind, body)),
+        6 => plain.prop_map(ChannelCommand::Plain),
+        1 => (prop_oneof![0..8_u8, any::<u8>()], body).prop_map(|(kind, body)| ChannelCommand::Any(kind, body)),
     ]
 }
 
@@ -132,7 +132,7 @@ pub(super) fn overlong() -> impl Strategy<Value = Utterance> {
             let byte = |i: usize| if zeros_every == 0 || i.is_multiple_of(zeros_every) { 0 } else { 9 };
             Utterance::Frame {
                 to: To::Controller(to),
-                order: Order::Any(kinds::STATUS, (0..length).map(byte).collect()),
+                order: ChannelCommand::Any(kinds::STATUS, (0..length).map(byte).collect()),
                 // Half of them not good after all: a flipped bit anywhere moves zeros about.
                 damage: if bit.index(2) == 0 { Damage::None } else { Damage::FlippedBit(bit) },
             }
@@ -151,13 +151,13 @@ impl To {
     }
 }
 
-impl Order {
+impl ChannelCommand {
     /// The frame's kind and body, for a controller that expects this seq.
     pub(super) fn kind_and_body(&self, config: &Config, expected_seq: u8) -> (u8, Vec<u8>) {
         let (seq, count, orders, last_is_zero, too_many) = match self {
-            Order::Plain(kind) => return (*kind, Vec::new()),
-            Order::Any(kind, body) => return (*kind, body.clone()),
-            Order::Ticks { seq, count, orders, last_is_zero, too_many } => {
+            ChannelCommand::Plain(kind) => return (*kind, Vec::new()),
+            ChannelCommand::Any(kind, body) => return (*kind, body.clone()),
+            ChannelCommand::Ticks { seq, count, orders, last_is_zero, too_many } => {
                 (*seq, *count, orders, *last_is_zero, *too_many)
             }
         };

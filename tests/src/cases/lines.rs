@@ -4,10 +4,10 @@ use proptest::prelude::*;
 use proptest::sample::Index;
 
 use super::Mode;
+use super::faults::{force, line_fault};
 use super::frames::{overlong, utterance};
 use super::host::{Host, Pause, Turn, pause};
 use super::setup::framed_line;
-use super::strikes::{force, strike};
 use crate::oracle::{Config, Input};
 
 /// No run of framed controllers is longer than this, cycles.
@@ -26,13 +26,13 @@ where
     let turns = |calm| prop::collection::vec(turn(calm), 0..20);
     let said = prop_oneof![turns(true), turns(false)];
     let long = prop::option::weighted(0.06, (any::<Index>(), overlong()));
-    let strikes = prop_oneof![
+    let faults = prop_oneof![
         4 => Just(Vec::new()),
-        1 => prop::collection::vec(strike(), 1..4),
+        1 => prop::collection::vec(line_fault(), 1..4),
     ];
     let boot_at = prop::option::weighted(0.2, (any::<Index>(), any::<Index>(), -1..=1_i64));
-    (framed_line(modes), said, long, strikes, boot_at, end()).prop_map(
-        |(mut line, mut said, long, strikes, boot_at, end)| {
+    (framed_line(modes), said, long, faults, boot_at, end()).prop_map(
+        |(mut line, mut said, long, faults, boot_at, end)| {
             if let Some((at, long)) = long {
                 said.insert(at.index(said.len() + 1), (Pause::Polite(0), long, None));
             }
@@ -44,7 +44,7 @@ where
                 }
             }
             let host = converse(&line, &said);
-            let forced = force(&line[0], &strikes, &host.byte_starts);
+            let forced = force(&line[0], &faults, &host.byte_starts);
             let quiet_from = host.quiet_from();
             let (sends, deliveries) = (host.sends, host.deliveries);
             let cycles = match end {

@@ -1,7 +1,7 @@
 //! Bytes as a small peripheral and what happens on its line: whatever is sent and forced upon it (DESIGN A4 to A7), every
 //! way through the run leaves the same, and what it leaves agrees with itself.
 
-use crate::ways::{self, Ways};
+use crate::equivalence::{self, Ways};
 use arbitrary::{Result, Unstructured};
 use stepscope_core::peripheral::wire::schedule::line_time;
 use stepscope_core::{
@@ -22,7 +22,11 @@ const MAX_ACTS: usize = 40;
 pub fn check(data: &[u8]) {
     let Some((scenario, slices, hurry)) = bounded(data) else { return };
     if let Ok(experiment) = Experiment::new(&scenario) {
-        ways::check(&scenario, &experiment, Ways { slices: &slices, hurry, most_clocked: LONGEST_RUN });
+        equivalence::check(
+            &scenario,
+            &experiment,
+            Ways { slices: &slices, hurry, most_clocked: LONGEST_RUN },
+        );
     }
 }
 

@@ -1,7 +1,7 @@
 //! Texts as scenarios (PAGE "Share link"): none makes the reader or the judge fail, what is accepted is work of a size
 //! that was bounded before, and what reads survives its way through JSON.
 
-use crate::ways::{self, Ways};
+use crate::equivalence::{self, Ways};
 use stepscope_core::{
     scenario::{Compact, END_OF_TIME, Problem, Scenario},
     sim::Experiment,
@@ -30,7 +30,7 @@ pub fn check(data: &[u8]) {
     if experiment.cost().records <= RUN_RECORDS {
         let (scenario, _) = Scenario::from_json_lenient(text);
         let ways = Ways { slices: &[1, 7, 100], hurry: 100, most_clocked: RUN_CYCLES };
-        ways::check(&scenario, &experiment, ways);
+        equivalence::check(&scenario, &experiment, ways);
     }
 }
 

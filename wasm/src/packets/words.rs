@@ -9,7 +9,7 @@ use stepscope_core::{
         trace::RowOutcome,
         wire::{
             frame::{Deframed, Deframer, Frame, Ticks},
-            packet::{ALL, Order},
+            packet::{ALL, ChannelCommand},
         },
     },
     sim::Experiment,
@@ -201,7 +201,7 @@ fn packet_in_words(bytes: &[u8], addressed: bool, text: &mut String) {
 }
 
 fn steps(byte: u8) -> i64 {
-    let Order { right, steps } = Order::parse(byte);
+    let ChannelCommand { right, steps } = ChannelCommand::parse(byte);
     if right { i64::from(steps) } else { -i64::from(steps) }
 }
 

@@ -55,7 +55,7 @@ fn close(found: f64, expected: f64, within: f64, what: &str) {
 }
 
 /// By a great number of looks, each in the middle of its part.
-fn brute(length_s: f64, first: impl Fn(f64) -> f64, second: impl Fn(f64) -> f64) -> Comparison {
+fn brute(length_s: f64, first: impl Fn(f64) -> f64, second: impl Fn(f64) -> f64) -> CurveMetrics {
     // Not in step with the slots of a tick.
     let looks = 912_347_u32;
     let each = length_s / f64::from(looks);
@@ -71,7 +71,7 @@ fn brute(length_s: f64, first: impl Fn(f64) -> f64, second: impl Fn(f64) -> f64)
         .map(|point| length_s * (f64::from(point) / f64::from(POINTS)))
         .map(|t| (second(t) - first(t)) * (second(t) - first(t)))
         .sum::<f64>();
-    Comparison {
+    CurveMetrics {
         largest_steps: largest,
         largest_at_s: 0.0,
         rms_steps: mean(&|p| (p.1 - p.0) * (p.1 - p.0)).sqrt(),
@@ -86,7 +86,7 @@ fn brute(length_s: f64, first: impl Fn(f64) -> f64, second: impl Fn(f64) -> f64)
 }
 
 #[track_caller]
-fn same(found: &Comparison, expected: &Comparison, length_s: f64, what: &str) {
+fn same(found: &CurveMetrics, expected: &CurveMetrics, length_s: f64, what: &str) {
     let size = expected.rms_steps.max(0.01);
     close(found.largest_steps.abs(), expected.largest_steps.abs(), 0.02 * size.max(1.0), what);
     close(found.rms_steps, expected.rms_steps, 1e-3 * size, what);

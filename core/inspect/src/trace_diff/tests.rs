@@ -21,7 +21,7 @@ fn texts(records: &[Record]) -> [String; 2] {
 /// In pieces of one byte, of seven, and as a whole.
 fn against(run: &[Record], text: &str) -> Result<Outcome, BadLine> {
     let outcomes = [1, 7, text.len().max(1)].map(|size| {
-        let mut against = Against::new(1);
+        let mut against = TraceDiff::new(1);
         for piece in text.as_bytes().chunks(size) {
             if against.feed(run, piece)? {
                 break;

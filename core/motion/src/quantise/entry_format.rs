@@ -203,7 +203,10 @@ mod tests {
         }
         let part = Segment::Steps { count: 2, interval: 3 << 15, add: 0, right: false };
         assert_eq!(pack(EntryFormat::Q8, vec![part]), Ok(vec![(3 << 7, 2, 0)]));
-        assert!(matches!(pack(EntryFormat::TICKS, vec![part]), Err(Cause::Value(ValueError::Conflict { .. }))));
+        assert!(matches!(
+            pack(EntryFormat::TICKS, vec![part]),
+            Err(Cause::Value(ValueError::Conflict { .. }))
+        ));
     }
 
     #[test]

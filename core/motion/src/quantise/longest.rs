@@ -1,6 +1,6 @@
 //! The longest entry from a given time on (DESIGN B8): one parabola through as many windows as it goes.
 //!
-//! Whether an entry of n steps exists is asked of some of its steps first ([`super::line_fit`]): those that stand at
+//! Whether an entry of n steps exists is asked of some of its steps first ([`super::feasible_window`]): those that stand at
 //! every eighth of it, and those that an earlier try has missed. If even these leave no interval and add, there is none
 //! for all; if they do, it is replayed through all of them, and the steps that it misses most are asked too. So a length
 //! is refused only with proof and taken only after replay, and few lengths are replayed.
@@ -8,7 +8,7 @@
 use crate::problem::Cause;
 use crate::quantise::{
     entry_format::EntryFormat,
-    line_fit::{self, Fit, Gate},
+    feasible_window::{self, Fit, Gate},
 };
 use alloc::vec::Vec;
 
@@ -16,7 +16,7 @@ use alloc::vec::Vec;
 const MAX_AHEAD: usize = 1 << 20;
 /// Steps of an entry that are asked at first.
 const SAMPLES: usize = 8;
-/// Longest time of an entry in units, so that all sums of [`line_fit`] stay in 64 bits.
+/// Longest time of an entry in units, so that all sums of [`feasible_window`] stay in 64 bits.
 const MAX_SPAN: u64 = 1 << 56;
 
 /// Where a step may come, in units from the motion's start, and the cycle that it is due in.
@@ -221,7 +221,7 @@ impl Ahead {
         let steepest = span as i64 / (count * (count - 1) / 2) + 1;
         let adds = (self.format.least_add().max(-steepest), self.format.most_add().min(steepest));
         let guess = add.unwrap_or_else(|| self.bend(n));
-        line_fit::fit(&self.gates, adds, guess, centre)
+        feasible_window::fit(&self.gates, adds, guess, centre)
     }
 
     /// The add of the parabola through the middle of the windows of the last step and of that half way.

@@ -7,7 +7,7 @@
 mod compressed;
 mod document;
 mod entry_format;
-mod line_fit;
+mod feasible_window;
 mod longest;
 mod segments;
 mod stored;

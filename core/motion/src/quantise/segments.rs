@@ -256,7 +256,10 @@ mod tests {
         assert!(exact_segments(&late, AxesPath::MOTION, 1, PULSE, 1_000_000_000).is_ok());
         let late = [plan(vec![constant(2.0, 1.0), constant(2.0, 4e-6), constant(9.0, 1.0)])];
         let found = exact_segments(&late, AxesPath::MOTION, 1, PULSE, 1_000_000_000).unwrap_err();
-        assert!(matches!(found[0].cause, Cause::Value(ValueError::TooMuch { of: "cycles", .. })), "{found:?}");
+        assert!(
+            matches!(found[0].cause, Cause::Value(ValueError::TooMuch { of: "cycles", .. })),
+            "{found:?}"
+        );
         // Half of that and more between two steps: too great a difference for one segment.
         let dwell = Move::Dwell(Dwell { duration_s: 86_400.0 });
         let wide = [plan(vec![constant(2.0, 1.0), dwell.clone(), dwell, constant(9.0, 1.0)])];

@@ -8,7 +8,7 @@ use crate::{
     config::Config,
     protocol::{Reason, State, Status},
     units::Instant,
-    wire::packet::Order,
+    wire::packet::ChannelCommand,
 };
 
 /// The parts of a controller that work whoever orders.
@@ -43,7 +43,7 @@ impl Machine {
             Err(Reason::Stopped)
         } else if now < self.boot {
             Err(Reason::Busy)
-        } else if orders.iter().any(|&byte| Order::parse(byte).steps > self.slots) {
+        } else if orders.iter().any(|&byte| ChannelCommand::parse(byte).steps > self.slots) {
             self.faults.set(Faults::TOO_MANY_STEPS);
             Err(Reason::TooManySteps)
         } else if ticks > usize::from(self.sequencer.free()) {

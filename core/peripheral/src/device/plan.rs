@@ -18,7 +18,7 @@
 use crate::{
     config::{Config, DirLine, Distribution, PulsePhasing},
     signal::{Levels, MAX_CHANNELS},
-    wire::packet::{Order, Tick},
+    wire::packet::{ChannelCommand, Tick},
 };
 use alloc::vec::Vec;
 
@@ -64,7 +64,7 @@ impl Plan {
     /// Whether any channel makes a step.
     #[inline]
     pub(super) fn has_steps(&self) -> bool {
-        self.orders.iter().any(|&byte| Order::parse(byte).steps > 0)
+        self.orders.iter().any(|&byte| ChannelCommand::parse(byte).steps > 0)
     }
 
     /// Rising offsets. With a common DIR line the first change sets DIR: what it was before the
@@ -85,7 +85,7 @@ impl Plan {
 
     #[inline]
     fn rebuild(&mut self) {
-        let counts = self.orders.map(|byte| Order::parse(byte).steps);
+        let counts = self.orders.map(|byte| ChannelCommand::parse(byte).steps);
         let right = tops(u128::from_le_bytes(self.orders));
         let dir = Lines::from(right) << Levels::DIR_SHIFT & self.all_right;
         self.changes.clear();

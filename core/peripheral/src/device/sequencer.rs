@@ -12,7 +12,7 @@ use crate::{
     config::{Config, Protocol},
     signal::{Event, Levels, MAX_CHANNELS, Record, Sink},
     units::{Cycles, Instant},
-    wire::packet::{Order, Tick},
+    wire::packet::{ChannelCommand, Tick},
 };
 use alloc::collections::VecDeque;
 
@@ -215,7 +215,7 @@ impl Sequencer {
         self.last_active = now;
         let orders = self.plan.orders();
         count(&mut self.positions, orders, |channel| {
-            orders.get(channel).map_or(0, |&byte| u32::from(Order::parse(byte).steps))
+            orders.get(channel).map_or(0, |&byte| u32::from(ChannelCommand::parse(byte).steps))
         });
         self.ticks_done = self.ticks_done.wrapping_add(1);
         self.running = None;
@@ -279,7 +279,7 @@ impl Sequencer {
 fn count(positions: &mut [i32; MAX_CHANNELS], orders: &Tick, steps: impl Fn(usize) -> u32) {
     for (channel, (position, order)) in positions.iter_mut().zip(orders).enumerate() {
         let steps = steps(channel) as i32;
-        let change = if Order::parse(*order).right { steps } else { -steps };
+        let change = if ChannelCommand::parse(*order).right { steps } else { -steps };
         *position = position.wrapping_add(change);
     }
 }

@@ -16,14 +16,14 @@ const GAP_BITS: u64 = 45;
 
 /// What one channel is to do in one tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Order {
+pub struct ChannelCommand {
     /// Right (DIR high) or left.
     pub right: bool,
     /// Steps, 0..=127.
     pub steps: u8,
 }
 
-impl Order {
+impl ChannelCommand {
     /// The order that a byte means.
     #[must_use]
     #[inline]
@@ -143,10 +143,10 @@ mod tests {
     #[test]
     fn parse_and_emit_are_inverses() {
         for byte in 0..=255 {
-            assert_eq!(Order::parse(byte).emit(), Some(byte));
+            assert_eq!(ChannelCommand::parse(byte).emit(), Some(byte));
         }
-        assert_eq!(Order { right: true, steps: 128 }.emit(), None);
-        assert_eq!(Order::parse(0x85), Order { right: true, steps: 5 });
+        assert_eq!(ChannelCommand { right: true, steps: 128 }.emit(), None);
+        assert_eq!(ChannelCommand::parse(0x85), ChannelCommand { right: true, steps: 5 });
     }
 
     fn unpacker(address: Option<u8>) -> Unpacker {

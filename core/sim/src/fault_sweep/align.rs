@@ -3,7 +3,7 @@
 //! Where the lists differ, the least that explains it is taken: ticks left out, ticks put in, or
 //! ticks with other steps, until [`SAME`] of them agree again.
 
-use stepscope_peripheral::{signal::MAX_CHANNELS, wire::packet::Order};
+use stepscope_peripheral::{signal::MAX_CHANNELS, wire::packet::ChannelCommand};
 
 /// Ticks that agree, one after another, where the lists are taken to have found each other.
 const SAME: usize = 3;
@@ -83,7 +83,7 @@ pub(super) fn distance(ordered: &[u8], channels: usize, positions: &[i32; MAX_CH
 
 /// Steps of one channel in one tick, negative to the left.
 fn steps(byte: u8) -> i64 {
-    let order = Order::parse(byte);
+    let order = ChannelCommand::parse(byte);
     if order.right { order.steps.into() } else { -i64::from(order.steps) }
 }
 

@@ -1,4 +1,4 @@
-//! What the runs of a campaign came to, in numbers that add up.
+//! What the runs of a fault sweep came to, in numbers that add up.
 
 use crate::fault_sweep::align::Alignment;
 use crate::framed_host::{Counts, GivenUp};
@@ -38,7 +38,7 @@ tally! {
     /// Frames that the host sent again.
     repeated,
     /// How often the host of a framed line died.
-    deaths,
+    crashes,
     /// Frames whose check failed (CRC).
     bad_check,
     /// Runs of bytes that were no frame, and packets that a gap cut (SHORT_PACKET).
@@ -106,7 +106,7 @@ impl Tally {
     pub(super) fn add_host(&mut self, counts: Counts) {
         self.frames += counts.frames;
         self.repeated += counts.repeated;
-        self.deaths += counts.deaths;
+        self.crashes += counts.crashes;
         self.replies_lost += self.replies.saturating_sub(counts.replies + counts.refused);
     }
 }

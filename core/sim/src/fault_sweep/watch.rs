@@ -1,4 +1,4 @@
-//! What a controller is seen to do in a campaign's run.
+//! What a controller is seen to do in a fault sweep's run.
 
 use crate::fault_sweep::Tally;
 use alloc::vec::Vec;

@@ -67,9 +67,9 @@ fn run(mut spoil: impl FnMut(usize, &[u8]) -> Spoiled) -> (Vec<u8>, Progress, Co
             let (bytes, died) = spoil(frames.len(), sent.bytes);
             line.send(sent.start, &bytes);
             frames.push(sent.bytes.to_vec());
-            if let Phase::Sending { end, dies, .. } = &mut host.phase {
+            if let Phase::Sending { end, crashes, .. } = &mut host.phase {
                 *end = sent.start + Cycles(line_time(bytes.len() as u64, CLOCK_HZ, BAUD));
-                *dies = died;
+                *crashes = died;
             }
         }
         device.clock(level, &mut ticks);
@@ -152,11 +152,11 @@ fn a_host_that_dies_within_a_frame_goes_on_with_the_tick_that_is_due() {
     each_byte(|frame, byte| {
         for sent in [byte, byte + 1] {
             let counts =
-                check(&alloc::format!("dies after {sent} bytes of frame {frame}"), |index, bytes| {
-                    let dies = index == frame;
-                    (bytes[..if dies { sent } else { bytes.len() }].to_vec(), dies)
+                check(&alloc::format!("crashes after {sent} bytes of frame {frame}"), |index, bytes| {
+                    let crashes = index == frame;
+                    (bytes[..if crashes { sent } else { bytes.len() }].to_vec(), crashes)
                 });
-            assert_eq!(counts.deaths, 1);
+            assert_eq!(counts.crashes, 1);
         }
     });
 }

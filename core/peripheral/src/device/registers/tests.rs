@@ -1,6 +1,7 @@
 //! What the registers do, against the data sheet's sentences.
 
 use super::*;
+use crate::config::SerialLine;
 use crate::{signal::Record, units::Cycles};
 use alloc::{vec, vec::Vec};
 use map::{
@@ -10,7 +11,6 @@ use map::{
     status::{EN, FREE, MOVING, PENDING, STATE, STATE_BUSY, STATE_MOVING, STATE_READY, STATE_STOPPED},
     table::{Access, Register, Reset},
 };
-use crate::config::SerialLine;
 
 /// A tick of 4 slots of 20 cycles, pulses of 5 cycles 3 after their slot, 2 places, 100 cycles of self-test.
 const BUS: Bus = Bus {
@@ -122,7 +122,8 @@ fn every_register_is_as_the_table_says() {
         ("SETTLE", 0),
         ("MODE", 0),
     ];
-    let mut bench = Bench::new(&Bus { channels: 16, ..BUS }, &SerialLine { baud: 100_000, ..SerialLine::default() });
+    let mut bench =
+        Bench::new(&Bus { channels: 16, ..BUS }, &SerialLine { baud: 100_000, ..SerialLine::default() });
     for (register, offset) in each() {
         let expected = match register.reset {
             Reset::Is(value) => value,
@@ -153,7 +154,8 @@ fn where_no_register_is_reads_give_0_and_writes_do_nothing() {
 
 #[test]
 fn before_cycle_0_nothing_is_taken_and_in_it_a_push_starts_its_tick_in_cycle_1() {
-    let mut bench = Bench::new(&Bus { boot_cycles: 0, ..BUS }, &SerialLine { baud: 100_000, ..SerialLine::default() });
+    let mut bench =
+        Bench::new(&Bus { boot_cycles: 0, ..BUS }, &SerialLine { baud: 100_000, ..SerialLine::default() });
     assert_eq!((bench.push(0x01), bench.status(MOVING)), (CODE_DONE, 0), "RESULT is as at reset");
     bench.run_to(0);
     assert_eq!(bench.push(0x81), CODE_DONE);

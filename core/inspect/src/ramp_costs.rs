@@ -19,7 +19,7 @@ use stepscope_motion::{
 
 /// What is compared: n steps in t_i with ramps of t_s, and what only some of the shapes need.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Asked {
+pub struct RampRequest {
     /// Steps, left negative.
     pub steps: i64,
     /// t_i in s.
@@ -34,7 +34,7 @@ pub struct Asked {
     pub time_constants: f64,
 }
 
-impl Asked {
+impl RampRequest {
     /// So many steps in so much time, all else as a scenario has it by default.
     #[must_use]
     pub fn new(steps: i64, duration_s: f64, ramp_s: f64) -> Self {
@@ -107,22 +107,22 @@ pub struct Row {
 ///
 /// Each is planned as a scenario's move, with its ranges; one that cannot be says why in its row.
 #[must_use]
-pub fn compare(asked: &Asked) -> Vec<Row> {
-    CANDIDATES.iter().map(|&candidate| Row { candidate, cost: cost(asked, candidate) }).collect()
+pub fn compare(request: &RampRequest) -> Vec<Row> {
+    CANDIDATES.iter().map(|&candidate| Row { candidate, cost: cost(request, candidate) }).collect()
 }
 
-fn cost(asked: &Asked, candidate: Candidate) -> Result<Cost, Vec<Problem>> {
-    let axis = Axis { moves: vec![asked.ask(candidate)], ..Axis::default() };
+fn cost(request: &RampRequest, candidate: Candidate) -> Result<Cost, Vec<Problem>> {
+    let axis = Axis { moves: vec![request.ask(candidate)], ..Axis::default() };
     let plan = plan_axis(&axis, "comparison")?;
-    let last = asked.steps.unsigned_abs() as f64 - 0.5;
+    let last = request.steps.unsigned_abs() as f64 - 0.5;
     let last_step_s = match plan.moves().first().map(|planned| &planned.profile) {
         Some(Profile::Cosine(curve)) => curve.time_s(last),
         Some(Profile::Sliced(curve)) => curve.time_s(last),
         Some(Profile::Ramps(curve)) => curve.time_s(last),
         _ => plan.duration_s(),
     };
-    let time_error_s = plan.duration_s() - asked.duration_s;
-    let time_error = time_error_s / asked.duration_s;
+    let time_error_s = plan.duration_s() - request.duration_s;
+    let time_error = time_error_s / request.duration_s;
     Ok(Cost { peaks: plan.peaks(), time_error_s, time_error, last_step_s })
 }
 
@@ -130,8 +130,8 @@ fn cost(asked: &Asked, candidate: Candidate) -> Result<Cost, Vec<Problem>> {
 mod tests {
     use super::*;
 
-    fn costs(asked: &Asked) -> Vec<Cost> {
-        compare(asked).into_iter().map(|row| row.cost.unwrap()).collect()
+    fn costs(request: &RampRequest) -> Vec<Cost> {
+        compare(request).into_iter().map(|row| row.cost.unwrap()).collect()
     }
 
     /// 6400 steps in 0.4 s with ramps of 0.1 s: f_max = 64000/3 but for slices and the exponential, whose area
@@ -147,7 +147,7 @@ mod tests {
             [21_333.333_333_333, 213_333.333_333_33, 0.0, 213_333.333_333_33],
             [18_092.820_416_85, 737_215.387_494_53, 29_488_615.499_781, 737_215.387_494_53],
         ];
-        let found = costs(&Asked::new(6400, 0.4, 0.1));
+        let found = costs(&RampRequest::new(6400, 0.4, 0.1));
         for (index, (cost, expected)) in found.iter().zip(rows).enumerate() {
             let peaks = cost.peaks;
             let values = [peaks.speed, peaks.acceleration, peaks.jerk, peaks.acceleration_jump];
@@ -169,7 +169,7 @@ mod tests {
     #[test]
     fn the_last_step_is_half_a_step_before_the_end() {
         // Straight ramps of 0.2 s and 6400 steps: half a step lasts sqrt(1/160000) s = 2.5 ms.
-        let found = costs(&Asked::new(-6400, 0.4, 0.2));
+        let found = costs(&RampRequest::new(-6400, 0.4, 0.2));
         assert!((found[4].last_step_s - 0.3975).abs() < 1e-12, "{found:?}");
         // A gentler end has its last step sooner, a steeper one later.
         let last = |index: usize| found[index].last_step_s;
@@ -179,12 +179,12 @@ mod tests {
 
     #[test]
     fn one_that_cannot_be_says_so_in_its_row() {
-        let rows = compare(&Asked::new(100, 0.4, 0.2));
+        let rows = compare(&RampRequest::new(100, 0.4, 0.2));
         let wrong: Vec<_> = rows.iter().filter(|row| row.cost.is_err()).map(|row| row.candidate).collect();
         assert_eq!(wrong, [Candidate::CosineSliced]);
-        let rows = compare(&Asked { sigmoid_range: 0.0, ..Asked::new(6400, 0.4, 0.2) });
+        let rows = compare(&RampRequest { sigmoid_range: 0.0, ..RampRequest::new(6400, 0.4, 0.2) });
         let wrong: Vec<_> = rows.iter().filter(|row| row.cost.is_err()).map(|row| row.candidate).collect();
         assert_eq!(wrong, [Candidate::Ramps(RampShape::Sigmoid)]);
-        assert!(compare(&Asked::new(0, 0.4, 0.3)).iter().all(|row| row.cost.is_err()));
+        assert!(compare(&RampRequest::new(0, 0.4, 0.3)).iter().all(|row| row.cost.is_err()));
     }
 }

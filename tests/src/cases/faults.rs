@@ -9,7 +9,7 @@ use crate::oracle::{Config, bit_time};
 
 /// Something that befalls the line.
 #[derive(Debug, Clone)]
-pub(super) enum Strike {
+pub(super) enum LineFault {
     /// One forced level.
     Level { place: Place, length: Length, level: bool },
     /// Low for long enough that a stop bit is missing, high for a few cycles, low again: whether the
@@ -55,19 +55,19 @@ fn length() -> impl Strategy<Value = Length> {
     ]
 }
 
-pub(super) fn strike() -> impl Strategy<Value = Strike> {
+pub(super) fn line_fault() -> impl Strategy<Value = LineFault> {
     let level = prop_oneof![3 => Just(false), 2 => Just(true)];
     prop_oneof![
         6 => (place(), length(), level)
-            .prop_map(|(place, length, level)| Strike::Level { place, length, level }),
+            .prop_map(|(place, length, level)| LineFault::Level { place, length, level }),
         1 => (place(), 9..=24_u64, 1..=3_u64, length()).prop_map(|(place, low_bits, high_cycles, low_again)| {
-            Strike::Break { place, low_bits, high_cycles, low_again }
+            LineFault::Break { place, low_bits, high_cycles, low_again }
         }),
     ]
 }
 
-/// The strikes' cycles: A4's (cycle, length, level).
-pub(super) fn force(config: &Config, strikes: &[Strike], byte_starts: &[u64]) -> Vec<(u64, u64, bool)> {
+/// The faults' cycles: A4's (cycle, length, level).
+pub(super) fn force(config: &Config, faults: &[LineFault], byte_starts: &[u64]) -> Vec<(u64, u64, bool)> {
     let bit_time = bit_time(config);
     let byte = |which: Index| if byte_starts.is_empty() { 1 } else { *which.get(byte_starts) };
     let start = |place: Place, forced: &[(u64, u64, bool)]| {
@@ -93,12 +93,12 @@ pub(super) fn force(config: &Config, strikes: &[Strike], byte_starts: &[u64]) ->
         cycles.max(1)
     };
     let mut forced: Vec<(u64, u64, bool)> = Vec::new();
-    for strike in strikes {
+    for strike in faults {
         match *strike {
-            Strike::Level { place, length, level } => {
+            LineFault::Level { place, length, level } => {
                 forced.push((start(place, &forced), cycles(length), level));
             }
-            Strike::Break { place, low_bits, high_cycles, low_again } => {
+            LineFault::Break { place, low_bits, high_cycles, low_again } => {
                 let (first, low) = (start(place, &forced), low_bits * bit_time);
                 forced.push((first, low, false));
                 forced.push((first + low, high_cycles, true));

@@ -5,14 +5,14 @@
 use stepscope_core::{
     peripheral::config::Protocol,
     scenario::{Noise, Scenario},
-    sim::fault_sweep::{Campaign, Tally},
+    sim::fault_sweep::{FaultSweep, Tally},
 };
 
-fn campaign(protocol: Protocol) -> Campaign {
-    Campaign::new(Campaign::small(protocol)).expect("the small scenario has no problems")
+fn campaign(protocol: Protocol) -> FaultSweep {
+    FaultSweep::new(FaultSweep::small(protocol)).expect("the small scenario has no problems")
 }
 
-fn run(campaign: &Campaign, seeds: u32) -> Tally {
+fn run(campaign: &FaultSweep, seeds: u32) -> Tally {
     (0..seeds).fold(Tally::default(), |mut sum, seed| {
         sum += campaign.run(seed).expect("seeds make no problems");
         sum
@@ -31,7 +31,7 @@ fn framed_ticks_are_executed_once_and_as_ordered_whatever_the_line_does() {
     // The faults bite, all of them.
     for count in [
         tally.repeated,
-        tally.deaths,
+        tally.crashes,
         tally.bad_check,
         tally.short,
         tally.framing,
@@ -77,7 +77,7 @@ fn a_seeds_scenario_stands_for_itself() {
     for seed in 0..50 {
         let scenario = campaign.scenario(seed);
         assert_eq!(scenario.line.noise.seed, seed);
-        let again = Campaign::new(scenario.clone()).expect("no problems").scenario(seed);
+        let again = FaultSweep::new(scenario.clone()).expect("no problems").scenario(seed);
         assert_eq!((again.line, again.source), (scenario.line, scenario.source));
     }
 }
@@ -92,15 +92,15 @@ fn several_controllers_and_a_line_held_low_cost_repetitions_and_no_step() {
         "controllers": [ { "address": 9, "bus": { "slots": 50, "queue_depth": 1 },
             "packets": [ "81", "02", "83", "04", "85" ] } ] }"#;
     let base = Scenario::from_json(json).expect("reads");
-    let tally = run(&Campaign::new(base).expect("no problems"), 60);
+    let tally = run(&FaultSweep::new(base).expect("no problems"), 60);
     assert!(!tally.is_wrong(), "{tally:?}");
     assert_eq!((tally.given_up_in_reach, tally.stuck, tally.ordered), (0, 0, 60 * (7 + 6)), "{tally:?}");
-    assert!(tally.repeated > 0 && tally.deaths > 0, "{tally:?}");
+    assert!(tally.repeated > 0 && tally.crashes > 0, "{tally:?}");
 }
 
 #[test]
 fn a_base_without_ticks_is_refused() {
     let base = Scenario::from_json(r#"{ "source": { "line": {} } }"#).expect("reads");
-    let problems = Campaign::new(base).expect_err("there is nothing to go wrong");
+    let problems = FaultSweep::new(base).expect_err("there is nothing to go wrong");
     assert_eq!(problems[0].path, "source");
 }

@@ -12,7 +12,7 @@ use stepscope_peripheral::{
     config::Config,
     segment::{FRACTION_BITS, Segment, SegmentList},
     trace::{LoggedTick, PacketLog, Step},
-    wire::packet::Order,
+    wire::packet::ChannelCommand,
 };
 
 /// What a run made of one channel.
@@ -100,7 +100,8 @@ impl Pulses<'_> {
         let ticks = self.log.ticks();
         let first = ticks.partition_point(|tick| end(tick) < from_s);
         for tick in ticks.iter().skip(first).take_while(|tick| start(tick) <= to_s) {
-            let order = Order::parse(tick.orders.get(usize::from(self.channel)).copied().unwrap_or(0));
+            let order =
+                ChannelCommand::parse(tick.orders.get(usize::from(self.channel)).copied().unwrap_or(0));
             let speed = f64::from(order.steps) * hz / length.0 as f64;
             let speed = if order.right { speed } else { 0.0 - speed };
             each(Rate { from_s: start(tick), to_s: end(tick), speed });
@@ -163,7 +164,8 @@ mod tests {
 
     #[test]
     fn a_tick_that_stop_ends_has_no_speed_afterwards() {
-        let config = Config::new(16_000_000, &Bus::default(), &SerialLine::default()).expect("the defaults hold");
+        let config =
+            Config::new(16_000_000, &Bus::default(), &SerialLine::default()).expect("the defaults hold");
         let mut log = PacketLog::default();
         let mut orders = [0; 16];
         orders[0] = 0x80 | 10;

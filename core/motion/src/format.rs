@@ -19,7 +19,7 @@ pub fn grouped(value: f64) -> String {
 }
 
 /// The greatest speed and acceleration of a move.
-pub(super) fn in_words(peaks: Peaks) -> String {
+pub(super) fn describe(peaks: Peaks) -> String {
     format!("peak {} steps/s, {} steps/s\u{b2}", grouped(peaks.speed), grouped(peaks.acceleration))
 }
 

@@ -7,17 +7,17 @@
 //! ```
 
 use crate::{
-    between::POINTS as GAUSS,
-    difference::{Difference, Scaled},
+    cursor_stats::POINTS as GAUSS,
     measures::POINTS,
+    position_error::{Difference, Scaled},
 };
 use serde::Serialize;
-use stepscope_motion::{AxisPlan, Joints, Piece};
+use stepscope_motion::{AxisPlan, Breakpoints, Interval};
 use stepscope_peripheral::trace::Step;
 
 /// How far the second of two curves is from the first, in steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Comparison {
+pub struct CurveMetrics {
     /// The deviation of greatest magnitude, second less first, in steps.
     pub largest_steps: f64,
     /// When it first is so, in s from the motion's start.
@@ -86,7 +86,7 @@ impl Sums {
         self.sampled_square += off * off;
     }
 
-    pub(super) fn ended(self) -> Comparison {
+    pub(super) fn ended(self) -> CurveMetrics {
         let mean = |sum: f64| if self.seconds > 0.0 { sum / self.seconds } else { 0.0 };
         let (first, off) = (mean(self.first), mean(self.off));
         let of_first = mean(self.first_square) - first * first;
@@ -102,7 +102,7 @@ impl Sums {
             let rest = (of_first * of_off - of_both * of_both) / (of_first * of_second);
             if correlation > 0.0 { libm::fmax(0.0, rest / (1.0 + correlation)) } else { 1.0 - correlation }
         });
-        Comparison {
+        CurveMetrics {
             largest_steps: self.largest,
             largest_at_s: self.largest_at_s,
             rms_steps: libm::sqrt(mean(self.off_square)),
@@ -120,11 +120,11 @@ impl Sums {
 /// The ideal curve, and steps in cycles from the motion's start.
 pub(super) fn curve_and_steps(
     plan: &AxisPlan,
-    joints: &Joints,
+    joints: &Breakpoints,
     steps: &[Step],
     hz: f64,
     length_s: f64,
-) -> Comparison {
+) -> CurveMetrics {
     let mut sums = Sums::default();
     let (mut since_s, mut place) = (0.0, 0.0);
     let mut stay = |since_s: f64, to_s: f64, place: f64| {
@@ -141,7 +141,7 @@ pub(super) fn curve_and_steps(
 }
 
 /// A smooth piece of the ideal curve, and a place at which the steps stay.
-fn curve_and_place(plan: &AxisPlan, piece: Piece, place: f64, hz: f64, sums: &mut Sums) {
+fn curve_and_place(plan: &AxisPlan, piece: Interval, place: f64, hz: f64, sums: &mut Sums) {
     let off = |t: f64| place - plan.position(t);
     // Just inside: a table's curve ends with half a step at once.
     let inset = (piece.to_s - piece.from_s) * 1e-9;
@@ -191,7 +191,7 @@ fn crossing([mut low, mut high]: [(f64, f64); 2], off: impl Fn(f64) -> f64) -> f
 }
 
 /// Steps, and other steps, both in cycles from the motion's start.
-pub(super) fn steps_and_steps(first: &[Step], second: &[Step], hz: f64, length_s: f64) -> Comparison {
+pub(super) fn steps_and_steps(first: &[Step], second: &[Step], hz: f64, length_s: f64) -> CurveMetrics {
     let mut sums = Sums::default();
     // From before the start, so that a step in cycle 0 is a change like any other.
     let mut walk = Difference::from([first, second].map(|steps| Scaled { steps, hz, unit: 1.0 }), -1.0);

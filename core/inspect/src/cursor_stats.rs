@@ -9,8 +9,8 @@
 //!          A                 made   from step to step and from tick to tick, sums of rectangles
 //! ```
 
-use crate::made::Pulses;
-use stepscope_motion::{AxisPlan, Joints};
+use crate::actual_motion::Pulses;
+use stepscope_motion::{AxisPlan, Breakpoints};
 
 /// Mean and root mean square over a stretch of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,7 +23,7 @@ pub struct Moments {
 
 /// Of the three quantities, in steps, steps/s and steps/s^2.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Between {
+pub struct CursorStats {
     /// Position from the start of the run.
     pub position: Moments,
     /// Speed.
@@ -56,9 +56,9 @@ pub(super) const POINTS: [(f64, f64); 3] =
 
 /// Of the ideal motion, whose time 0 is at `zero_s`, from one time to a later one, in s.
 #[must_use]
-pub fn ideal(plan: &AxisPlan, zero_s: f64, from_s: f64, to_s: f64) -> Between {
+pub fn ideal(plan: &AxisPlan, zero_s: f64, from_s: f64, to_s: f64) -> CursorStats {
     let [mut position, mut speed, mut acceleration] = [Sums::default(); 3];
-    Joints::of(plan).pieces(from_s - zero_s, to_s - zero_s, &mut |piece| {
+    Breakpoints::of(plan).pieces(from_s - zero_s, to_s - zero_s, &mut |piece| {
         let (middle, half) = ((piece.from_s + piece.to_s) / 2.0, (piece.to_s - piece.from_s) / 2.0);
         for (point, weight) in POINTS {
             let (t, seconds) = (middle + half * point, 2.0 * half * weight * piece.times);
@@ -69,12 +69,12 @@ pub fn ideal(plan: &AxisPlan, zero_s: f64, from_s: f64, to_s: f64) -> Between {
     });
     let [position, speed, acceleration] =
         [position, speed, acceleration].map(|sums| sums.over(to_s - from_s));
-    Between { position, speed, acceleration: Some(acceleration) }
+    CursorStats { position, speed, acceleration: Some(acceleration) }
 }
 
 /// Of the motion that the pulses make, from one time to a later one, in s.
 #[must_use]
-pub fn made(pulses: &Pulses<'_>, from_s: f64, to_s: f64) -> Between {
+pub fn made(pulses: &Pulses<'_>, from_s: f64, to_s: f64) -> CursorStats {
     let hz = pulses.hz();
     let (mut position, mut since_s) = (Sums::default(), from_s);
     let mut place = pulses.position_at(from_s);
@@ -93,7 +93,7 @@ pub fn made(pulses: &Pulses<'_>, from_s: f64, to_s: f64) -> Between {
         speed.add(rate.speed, libm::fmax(0.0, seconds));
     });
     let [position, speed] = [position, speed].map(|sums| sums.over(to_s - from_s));
-    Between { position, speed, acceleration: None }
+    CursorStats { position, speed, acceleration: None }
 }
 
 #[cfg(test)]

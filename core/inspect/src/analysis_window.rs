@@ -16,7 +16,7 @@
 //! Segments make every step in its own cycle, in the order of the moves, and nothing cancels: a move's
 //! pulses are as many as it has steps, after those of the moves before it.
 
-use crate::made::Pulses;
+use crate::actual_motion::Pulses;
 use alloc::vec::Vec;
 use stepscope_motion::{AxisPlan, Curve, PlannedMove, quantise::TickClock};
 use stepscope_peripheral::trace::Step;
@@ -26,7 +26,7 @@ const MAX_POINTS: usize = 1 << 20;
 
 /// The stretch of time that a spectrum is taken of.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stretch {
+pub struct AnalysisWindow {
     /// Its start in s.
     pub start_s: f64,
     /// Time of one period in s, above 0.
@@ -37,7 +37,7 @@ pub struct Stretch {
     pub periodic: bool,
 }
 
-impl Stretch {
+impl AnalysisWindow {
     /// All periods of the first periodic move, or, where none is, the whole motion; `None` for a
     /// motion that takes no time.
     #[must_use]
@@ -134,7 +134,7 @@ impl Stretch {
 }
 
 /// The ideal position over the stretch less its straight line, at equal steps of time.
-pub(super) fn sampled(plan: &AxisPlan, stretch: &Stretch, points: usize) -> Vec<f64> {
+pub(super) fn sampled(plan: &AxisPlan, stretch: &AnalysisWindow, points: usize) -> Vec<f64> {
     let points = points.clamp(16, MAX_POINTS);
     let at = |part: f64| plan.position(stretch.start_s + stretch.length_s() * part);
     let first = at(0.0);

@@ -11,7 +11,7 @@ use crate::profile::greater;
 
 /// Whole periods between two extremes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Swing {
+pub(super) struct Oscillation {
     /// Distance from the middle to an extreme in whole steps.
     pub(super) amplitude: u64,
     /// The motion starts at the right extreme; with a negative amplitude at the left one.
@@ -20,7 +20,7 @@ pub(super) struct Swing {
     pub(super) periods: u32,
 }
 
-impl Swing {
+impl Oscillation {
     /// `periods` of `period_s` > 0 between `amplitude` steps on either side of the middle.
     pub(super) fn new(amplitude: i64, period_s: f64, periods: u32) -> Self {
         Self { amplitude: amplitude.unsigned_abs(), starts_right: amplitude >= 0, period_s, periods }

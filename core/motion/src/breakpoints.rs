@@ -27,7 +27,7 @@ const CURVE_PARTS: u32 = 256;
 
 /// A stretch of time in which a motion is smooth.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Piece {
+pub struct Interval {
     /// Its start in s on the axis' time.
     pub from_s: f64,
     /// Its end in s.
@@ -41,7 +41,7 @@ pub struct Piece {
 struct Joined {
     start_s: f64,
     end_s: f64,
-    /// Joints of the first period, from the move's start, rising.
+    /// Breakpoints of the first period, from the move's start, rising.
     joints: Vec<f64>,
     /// The time after which the move repeats itself, where it does.
     period_s: Option<f64>,
@@ -49,11 +49,11 @@ struct Joined {
 
 /// The joints of an axis' whole motion.
 #[derive(Clone, Debug)]
-pub struct Joints {
+pub struct Breakpoints {
     moves: Vec<Joined>,
 }
 
-impl Joints {
+impl Breakpoints {
     /// Of a plan.
     #[must_use]
     pub fn of(plan: &AxisPlan) -> Self {
@@ -77,10 +77,10 @@ impl Joints {
 
     /// The smooth pieces of a stretch of time, in order but for a sine's whole periods, of which only
     /// the first is cut and stands for all.
-    pub fn pieces(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Piece)) {
-        let once = |from_s: f64, to_s: f64, each: &mut dyn FnMut(Piece)| {
+    pub fn pieces(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Interval)) {
+        let once = |from_s: f64, to_s: f64, each: &mut dyn FnMut(Interval)| {
             if to_s > from_s {
-                each(Piece { from_s, to_s, times: 1.0 });
+                each(Interval { from_s, to_s, times: 1.0 });
             }
         };
         let begin = self.moves.first().map_or(f64::INFINITY, |first| first.start_s);
@@ -95,7 +95,7 @@ impl Joints {
 }
 
 impl Joined {
-    fn pieces(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Piece)) {
+    fn pieces(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Interval)) {
         let Some(period_s) = self.period_s else { return self.cut(from_s, to_s, 0.0, 1.0, each) };
         // Whole periods from the end of the one that is begun to the start of the one not ended.
         let (first, last) =
@@ -112,7 +112,7 @@ impl Joined {
     }
 
     /// Cuts at the joints, which begin anew `shift_s` after the start of the move.
-    fn cut(&self, from_s: f64, to_s: f64, shift_s: f64, times: f64, each: &mut dyn FnMut(Piece)) {
+    fn cut(&self, from_s: f64, to_s: f64, shift_s: f64, times: f64, each: &mut dyn FnMut(Interval)) {
         let zero_s = self.start_s + shift_s;
         let mut from = from_s;
         let first = self.joints.partition_point(|joint| zero_s + joint <= from_s);
@@ -121,12 +121,12 @@ impl Joined {
                 break;
             }
             if joint > from {
-                each(Piece { from_s: from, to_s: joint, times });
+                each(Interval { from_s: from, to_s: joint, times });
                 from = joint;
             }
         }
         if to_s > from {
-            each(Piece { from_s: from, to_s, times });
+            each(Interval { from_s: from, to_s, times });
         }
     }
 }
@@ -139,7 +139,7 @@ fn greatest(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }
 
-/// Joints of a move between its ends, rising; of a sine those of its first period.
+/// Breakpoints of a move between its ends, rising; of a sine those of its first period.
 fn joints(profile: &Profile) -> Vec<f64> {
     match profile {
         Profile::Trapezoid(curve) => mirrored([curve.ramp_s()].into_iter(), curve.duration_s()),
