@@ -10,6 +10,8 @@
 //! | `steps`, `browser`, `engines`, `bare_metal`, `gtkwave` | `cargo xtask test`, step by step |
 //! | `bench` | `cargo xtask bench` |
 //! | `fuzz` | `cargo xtask fuzz` |
+//! | `mutants` | `cargo xtask mutants` |
+//! | `package` | the crates and the npm package as others would get them |
 //! | `run` | child processes: time limit, no input, killed as a group |
 
 mod apt;
@@ -21,7 +23,9 @@ mod engines;
 mod fuzz;
 mod gtkwave;
 mod headers;
+mod mutants;
 mod npm;
+mod package;
 mod page;
 mod run;
 mod serve;
@@ -37,7 +41,7 @@ use std::process::ExitCode;
 use anyhow::Result;
 use clap::{Args, Parser, Subcommand};
 
-/// Builds, shows, tests, measures and fuzzes Stepscope.
+/// Builds, shows, tests, measures, fuzzes and mutates Stepscope.
 #[derive(Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask")]
 struct Cli {
@@ -108,6 +112,18 @@ enum Task {
         #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
         seed: u32,
     },
+    /// Change the peripheral and the motions one thing at a time, and see whether the tests notice
+    Mutants {
+        /// How many changes are drawn
+        #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+        sample: u32,
+        /// Which: the same seed draws the same from the same sources
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+        /// Only of this package; may be given twice
+        #[arg(long)]
+        package: Vec<String>,
+    },
 }
 
 /// Whether wasm-opt goes over the page's wasm.
@@ -160,6 +176,9 @@ async fn perform(task: Task) -> Result<()> {
         Task::Test { only, list: false } => steps::run(&only).await,
         Task::Bench { quick } => bench::run(quick).await,
         Task::Fuzz { targets, seconds, seed } => fuzz::run(fuzz::Options { targets, seconds, seed }).await,
+        Task::Mutants { sample, seed, package } => {
+            mutants::run(mutants::Options { sample: sample as usize, seed, packages: package }).await
+        }
     }
 }
 
