@@ -37,6 +37,7 @@ pub mod moves;
 
 pub mod acceleration_table;
 mod axis;
+pub mod bisection;
 mod breakpoints;
 pub mod constant_velocity;
 pub mod cosine;
