@@ -42,7 +42,8 @@ impl AxisPlan {
                 start_steps += planned.profile.steps();
                 planned
             })
-            .collect();
+            .collect::<Vec<_>>();
+        debug_assert!(!moves.is_empty(), "an axis without a move");
         Self { moves, duration_s: start_s, steps: start_steps }
     }
 

@@ -119,6 +119,12 @@ impl Sliced {
         let (compensated, top_speed) =
             slices.coarse(&exact, ramp_s).ok_or(NotSliced::TooFew { slices: needed })?;
         let (starts_s, sums, top_rate) = slices.fine(top_speed, &exact);
+        debug_assert!(starts_s.len() >= 2 && starts_s.is_sorted_by(|a, b| a < b), "a slice without a length");
+        debug_assert!(sums.len() == starts_s.len() && sums.first() == Some(&0) && sums.is_sorted());
+        debug_assert!(
+            sums.last().copied().map(u64::from) == Some(steps.unsigned_abs()),
+            "the slices do not have all steps"
+        );
         Ok(Self { exact, compensated, starts_s, sums, top_rate })
     }
 

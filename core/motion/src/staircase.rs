@@ -71,6 +71,7 @@ impl Staircase {
             start_s += StaircaseTable::steps_in(n) as f64 / table.rate(n) as f64;
             starts_s.push(start_s);
         }
+        debug_assert!(starts_s.is_sorted_by(|a, b| a < b), "a row without a length");
         let ramp_steps = StaircaseTable::steps_after(rows);
         let duration_s = 2.0 * start_s + (count - 2 * ramp_steps) as f64 / plateau_rate as f64;
         Ok(Self { steps, table, ramp_steps, plateau_rate, starts_s, duration_s })

@@ -76,6 +76,8 @@ impl TrapezoidTable {
             sum += table.reload(row);
             sums.push(sum);
         }
+        debug_assert!(sums.len() >= 2 && sums.is_sorted_by(|a, b| a < b), "a row without a reload");
+        debug_assert!(steps.unsigned_abs() > 2 * ramp, "no interval is between the ramps");
         Ok(Self { steps, table, ramp, sums })
     }
 

@@ -36,6 +36,8 @@ impl Levels {
     pub const DE: u64 = 1 << 35;
     /// At reset the drivers are powered and the line is idle.
     pub const RESET: Self = Self(Self::EN | Self::RX | Self::TX);
+    /// Bits that stand for a signal.
+    const SIGNALS: u32 = 2 * MAX_CHANNELS as u32 + 4;
 
     /// STEP levels, channel 0 in bit 0.
     #[must_use]
@@ -55,6 +57,11 @@ impl Levels {
         self.0 & mask == mask
     }
 }
+
+// STEP, DIR and the four others stand side by side, without a gap and without meeting.
+const _: () = assert!(MAX_CHANNELS == u16::BITS as usize && Levels::DIR_SHIFT == u16::BITS);
+const _: () = assert!(Levels::EN | Levels::RX | Levels::TX | Levels::DE == 0xf << (2 * MAX_CHANNELS));
+const _: () = assert!(Levels::DE == 1 << (Levels::SIGNALS - 1));
 
 /// Name of the signal that stands at `bit` of the levels, as the page, VCD and CSV print it.
 #[must_use]
@@ -166,6 +173,11 @@ pub trait Sink {
 /// A stored trace.
 impl Sink for Vec<Record> {
     fn record(&mut self, record: Record) {
+        debug_assert!(
+            self.last().is_none_or(|last| last.cycle < record.cycle && last.levels != record.levels),
+            "{record:?} after {:?}",
+            self.last()
+        );
         self.push(record);
     }
 }

@@ -29,6 +29,7 @@ impl Sink for Ignored {
 
 impl Bus {
     pub(super) fn new(line: Line, host: Option<FramedHost>, devices: Vec<Device>) -> Self {
+        debug_assert!(!devices.is_empty(), "a line without a controller");
         if host.is_some() || devices.iter().any(Device::answers) {
             return Self::Framed(Box::new(FramedLine::new(line, host, devices)));
         }

@@ -94,6 +94,10 @@ pub(super) fn orders(
                 if config.protocol() == Protocol::Framed {
                     end_at_rest(&mut ticks, config.channels());
                 }
+                debug_assert!(
+                    ticks.len().is_multiple_of(config.channels().into()),
+                    "a tick has a byte a channel"
+                );
                 orders.push(ControllerPlan { config: config.clone(), plans, ticks: ticks.into() });
             }
             Err(found) => problems.extend(found),

@@ -28,6 +28,8 @@ const MAX_LINE_BYTES: u64 = 2_000_000 * 17;
 pub struct Experiment {
     checked: Checked,
     /// What each controller is to do.
+    ///
+    /// Invariant: one at least, the scenario's own first.
     orders: Vec<ControllerPlan>,
     /// What the host sends without waiting for replies.
     schedule: Rc<Schedule>,
@@ -56,6 +58,7 @@ impl Experiment {
                 return Err(problems);
             }
         };
+        debug_assert!(!orders.is_empty() && orders.len() == checked.configs.len());
         let (schedule, forced) = controller_plan::schedule(&checked, &orders);
         checked.forced.extend(forced);
         let segments = controller_plan::segments(&checked, &orders)?.map(Rc::new);

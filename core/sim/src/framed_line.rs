@@ -25,6 +25,8 @@ pub(super) struct FramedLine {
     host: Option<FramedHost>,
     nodes: Vec<Node>,
     /// The window that is run: its first cycle and the first one after it.
+    ///
+    /// Invariant: `start <= until`; both only rise.
     start: Instant,
     until: Instant,
 }
@@ -142,6 +144,7 @@ impl FramedLine {
         if self.start == self.until {
             self.enter(sinks);
             self.until = self.window(end);
+            debug_assert!(self.start < self.until, "something was left out before {:?}", self.start);
         }
         for (index, node) in self.nodes.iter_mut().enumerate() {
             let Node { device, hears, .. } = node;

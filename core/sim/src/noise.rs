@@ -113,6 +113,7 @@ impl Noise {
         let longest = 2 * u64::from(self.clock_hz) / u64::from(self.baud.max(1));
         let start = start + Cycles(self.random.below(room));
         let end = start + Cycles(1 + self.random.below(longest.max(1)));
+        debug_assert!(start < end);
         Forced { start, end, level: self.random.below(2) == 1 }
     }
 

@@ -2,12 +2,14 @@
 
 use stepscope_peripheral::{device::Device, signal::Sink, units::Instant, wire::Line};
 
-/// A controller and the line as it walks along it.
+/// A controller and its line, window by window.
 #[derive(Clone, Debug)]
 pub(super) struct RawReceiver {
     line: Line,
     device: Device,
     /// What the line stays the same for: from a cycle to the first one after it.
+    ///
+    /// Invariant: `start <= until`; both only rise.
     start: Instant,
     until: Instant,
 }
@@ -43,6 +45,7 @@ impl RawReceiver {
                 self.enter();
                 let next = if self.line.is_over() { Instant::NEVER } else { self.line.next_change() };
                 self.until = next.min(end);
+                debug_assert!(self.start < self.until, "the line changed before {:?}", self.start);
             }
             self.device.run(self.line.heard(true), self.until, sink);
             let rests = self.until == Instant::NEVER && self.device.at_rest();

@@ -16,7 +16,9 @@ use crate::{
 pub(super) struct Machine {
     slots: u8,
     boot: Instant,
-    /// From STOP or DISABLE to ENABLE: no tick is taken, so none runs or waits.
+    /// From STOP or DISABLE to ENABLE: no tick is taken.
+    ///
+    /// Invariant: while it is set no tick runs or waits.
     stopped: bool,
     pub(super) transceiver: Transceiver,
     pub(super) sequencer: Sequencer,
@@ -35,13 +37,14 @@ impl Machine {
         }
     }
 
-    /// Whether `ticks` ticks of these orders may be queued in cycle `now`: all of them or none.
-    pub(super) fn admit(&mut self, now: Instant, orders: &[u8], ticks: usize) -> Result<(), Reason> {
+    /// Whether `ticks` ticks of these commands may be queued in cycle `now`: all of them or none.
+    pub(super) fn admit(&mut self, now: Instant, commands: &[u8], ticks: usize) -> Result<(), Reason> {
+        self.assert_rest();
         if self.stopped {
             Err(Reason::Stopped)
         } else if now < self.boot {
             Err(Reason::Busy)
-        } else if orders.iter().any(|&byte| ChannelCommand::parse(byte).steps > self.slots) {
+        } else if commands.iter().any(|&byte| ChannelCommand::parse(byte).steps > self.slots) {
             self.faults.set(Faults::TOO_MANY_STEPS);
             Err(Reason::TooManySteps)
         } else if ticks > usize::from(self.sequencer.free()) {
@@ -57,6 +60,7 @@ impl Machine {
         self.transceiver.enable(now, false);
         self.sequencer.stop(now);
         self.stopped = true;
+        self.assert_rest();
     }
 
     /// Drivers on, and out of STOPPED.
@@ -73,6 +77,10 @@ impl Machine {
             self.stopped = true;
         }
         idle
+    }
+
+    fn assert_rest(&self) {
+        debug_assert!(!(self.stopped && self.sequencer.is_moving()), "it moves while it is stopped");
     }
 
     /// Another timing of the pulses, for the ticks that start from now on; the caller knows that
@@ -98,6 +106,7 @@ impl Machine {
 
     /// What the controller tells of itself in cycle `now`.
     pub(super) fn status(&self, now: Instant, expected_seq: u8) -> Status {
+        self.assert_rest();
         let state = if self.stopped {
             State::Stopped
         } else if now < self.boot {

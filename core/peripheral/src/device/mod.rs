@@ -75,9 +75,9 @@ pub struct Device {
     latches: Latches,
 }
 
-/// How bytes are joined to orders.
+/// How bytes are joined to commands.
 ///
-/// It is asked for in every window of a run: a tag of its own is read in fewer instructions than one
+/// It is looked up in every window of a run: a tag of its own is read in fewer instructions than one
 /// that hides in a variant's unused values.
 #[derive(Clone, Debug)]
 #[repr(u8)]
@@ -178,12 +178,12 @@ impl Device {
             Framing::Raw(unpacker) => unpacker.byte(self.now, byte),
             Framing::Framed(controller) => return controller.byte(self.now, byte, &mut self.machine, sink),
         };
-        let fate = match unpacked {
+        let outcome = match unpacked {
             None => return,
             Some(Unpacked::OtherAddress) => PacketOutcome::OtherAddress,
             Some(Unpacked::Own(tick)) => self.commit(tick),
         };
-        sink.event(self.now, Event::Packet(fate));
+        sink.event(self.now, Event::Packet(outcome));
     }
 
     /// Judges a packet for this controller (A5).

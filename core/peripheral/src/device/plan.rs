@@ -12,13 +12,13 @@
 //! staggered: the j-th pulse rises at s + D + j*d, d = min(dp, floor(Ts/nd)), nd firing channels
 //! ```
 //!
-//! The plan is a list of (offset from c0, lines after it), so that running a tick is only walking
-//! along it. Successive ticks with the same orders share it.
+//! The plan is a list of (offset from c0, lines after it), so that running a tick is only iterating
+//! over it. Successive ticks with the same commands share it.
 
 use crate::{
     config::{Config, DirLine, Distribution, PulsePhasing},
     signal::{Levels, MAX_CHANNELS},
-    wire::packet::{ChannelCommand, Tick},
+    wire::packet::{ChannelCommand, MAX_STEPS, Tick},
 };
 use alloc::vec::Vec;
 
@@ -41,27 +41,28 @@ pub(super) struct Plan {
     config: Config,
     /// DIR of the channels in use, all right.
     all_right: Lines,
-    orders: Tick,
+    commands: Tick,
+    /// Invariant: offsets rise, none is beyond the tick's end.
     changes: Vec<Change>,
 }
 
 impl Plan {
     pub(super) fn new(config: &Config) -> Self {
         let all_right = !(!0 << config.channels) << Levels::DIR_SHIFT;
-        let orders = [0; MAX_CHANNELS];
-        let mut plan = Self { config: config.clone(), all_right, orders, changes: Vec::new() };
+        let commands = [0; MAX_CHANNELS];
+        let mut plan = Self { config: config.clone(), all_right, commands, changes: Vec::new() };
         plan.rebuild();
         plan
     }
 
-    /// The orders that the plan is of.
-    pub(super) const fn orders(&self) -> &Tick {
-        &self.orders
+    /// The commands that the plan is of.
+    pub(super) const fn commands(&self) -> &Tick {
+        &self.commands
     }
 
     /// Whether any channel makes a step.
     pub(super) fn has_steps(&self) -> bool {
-        self.orders.iter().any(|&byte| ChannelCommand::parse(byte).steps > 0)
+        self.commands.iter().any(|&byte| ChannelCommand::parse(byte).steps > 0)
     }
 
     /// Rising offsets. With a common DIR line the first change sets DIR: what it was before the
@@ -70,17 +71,17 @@ impl Plan {
         &self.changes
     }
 
-    /// Makes this the plan of `orders`.
-    pub(super) fn set(&mut self, orders: Tick) {
-        if orders != self.orders {
-            self.orders = orders;
+    /// Makes this the plan of `commands`.
+    pub(super) fn set(&mut self, commands: Tick) {
+        if commands != self.commands {
+            self.commands = commands;
             self.rebuild();
         }
     }
 
     fn rebuild(&mut self) {
-        let counts = self.orders.map(|byte| ChannelCommand::parse(byte).steps);
-        let right = tops(u128::from_le_bytes(self.orders));
+        let counts = self.commands.map(|byte| ChannelCommand::parse(byte).steps);
+        let right = tops(u128::from_le_bytes(self.commands));
         let dir = Lines::from(right) << Levels::DIR_SHIFT & self.all_right;
         self.changes.clear();
         if self.config.dir_line == DirLine::PerChannel {
@@ -108,6 +109,10 @@ impl Plan {
                 }
             }
         }
+        debug_assert!(
+            self.changes.last().is_none_or(|last| last.offset <= self.config.tick().0),
+            "a pulse ends after its tick"
+        );
     }
 
     /// All of `fires` from `rise` on, for W cycles; DIR stays at `dir`.
@@ -162,7 +167,10 @@ impl Plan {
     fn push(&mut self, offset: u64, lines: Lines) {
         match self.changes.last_mut() {
             Some(last) if last.offset == offset => last.lines = lines,
-            _ => self.changes.push(Change { offset, lines }),
+            last => {
+                debug_assert!(last.is_none_or(|last| last.offset < offset), "offset {offset} goes back");
+                self.changes.push(Change { offset, lines });
+            }
         }
     }
 }
@@ -193,9 +201,13 @@ struct Firing {
 const ONES: u128 = u128::from_le_bytes([1; MAX_CHANNELS]);
 /// Bit 7 of each byte.
 const TOPS: u128 = ONES << 7;
+// A byte of the numbers above has room for a count, and for bit 7.
+const _: () = assert!(MAX_STEPS == 0x7f && TOPS & (ONES * MAX_STEPS as u128) == 0);
 
 impl Firing {
-    const fn new(counts: [u8; MAX_CHANNELS], slots: u8, distribution: Distribution) -> Self {
+    fn new(counts: [u8; MAX_CHANNELS], slots: u8, distribution: Distribution) -> Self {
+        debug_assert!((1..=MAX_STEPS).contains(&slots), "{slots} slots in a tick");
+        debug_assert!(counts.iter().all(|&count| count <= slots), "{counts:?} in {slots} slots");
         let remainders = u128::from_le_bytes([slots / 2; MAX_CHANNELS]);
         Self { counts: u128::from_le_bytes(counts), remainders, slots, distribution }
     }

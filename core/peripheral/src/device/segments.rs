@@ -19,13 +19,16 @@ mod earliest;
 mod falls;
 
 use crate::{
-    segment::{CheckedSegments, FRACTION_BITS, Segment},
+    segment::{CheckedSegments, FRACTION_BITS, LAST_CYCLE, Segment},
     signal::{Levels, MAX_CHANNELS, Record, Sink},
     units::{Cycles, Instant},
 };
 use alloc::{rc::Rc, vec::Vec};
 use earliest::Earliest;
 use falls::Falls;
+
+// What a list can order is due in a cycle that the tree can hold.
+const _: () = assert!(LAST_CYCLE.0 <= Earliest::LAST.0);
 
 /// The engine.
 ///
@@ -79,6 +82,7 @@ struct Channel {
 impl Channel {
     /// The next step of this segment: its cycle.
     fn step(&mut self) -> Instant {
+        debug_assert!(self.next.checked_add(self.interval).is_some(), "a step leaves 48.16 fixed point");
         self.next = self.next.wrapping_add(self.interval);
         self.interval = self.interval.wrapping_add_signed(self.add);
         self.rise()
@@ -102,6 +106,7 @@ impl Channel {
                     (self.left, self.interval, self.add, self.right) =
                         (count.saturating_sub(1), interval, add, right);
                     let rise = self.step();
+                    debug_assert!(turn <= rise, "DIR changes in {turn:?}, after the rise in {rise:?}");
                     return if self.turns { turn } else { rise };
                 }
             }
@@ -199,6 +204,7 @@ impl SegmentEngine {
             levels |= u64::from(rising);
             self.falls.push(now + pulse.width, rising);
         }
+        debug_assert!(self.levels.0 != levels, "no signal changes in {now:?}");
         self.levels = Levels(levels);
     }
 

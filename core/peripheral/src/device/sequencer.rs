@@ -20,6 +20,7 @@ use alloc::collections::VecDeque;
 pub(super) struct Sequencer {
     tick: Cycles,
     depth: usize,
+    /// Invariant: at most `depth` ticks.
     queue: VecDeque<Tick>,
     plan: Plan,
     running: Option<Running>,
@@ -30,6 +31,8 @@ pub(super) struct Sequencer {
     faults: Faults,
     /// Next cycle in which the sequencer does something: the next change of the plan or the end of
     /// the tick that runs, else the start of the queue's head; [`Instant::NEVER`] at rest.
+    ///
+    /// Invariant: no cycle is run past it.
     deadline: Instant,
     lines: Lines,
     /// Positions as of the end of the last tick.
@@ -89,23 +92,20 @@ impl Sequencer {
             let mut before = 0;
             for change in self.plan.changes().iter().take(running.next) {
                 let rising = change.lines & !before & STEPS;
-                count(&mut positions, self.plan.orders(), |channel| rising >> channel & 1);
+                count(&mut positions, self.plan.commands(), |channel| rising >> channel & 1);
                 before = change.lines;
             }
         }
         positions
     }
 
-    /// Queues a tick that was committed in cycle `now`; false if there is no place.
-    pub(super) fn push(&mut self, now: Instant, tick: Tick) -> bool {
-        if self.queue.len() >= self.depth {
-            return false;
-        }
+    /// Queues a tick that was committed in cycle `now`; the caller knows that there is a place.
+    pub(super) fn push(&mut self, now: Instant, tick: Tick) {
+        debug_assert!(self.queue.len() < self.depth, "no place for a tick that was admitted");
         if self.queue.is_empty() && self.running.is_none() {
             self.deadline = now.next();
         }
         self.queue.push_back(tick);
-        true
     }
 
     /// UNDERRUN, if it has been.
@@ -119,6 +119,7 @@ impl Sequencer {
 
     /// Another timing for the ticks that start from now on; the caller knows that none runs or waits.
     pub(super) fn retime(&mut self, config: &Config) {
+        debug_assert!(!self.is_moving(), "another timing while a tick runs or waits");
         self.tick = config.tick();
         self.plan = Plan::new(config);
     }
@@ -150,6 +151,7 @@ impl Sequencer {
 
     /// Cycle `now`.
     pub(super) fn clock(&mut self, now: Instant, sink: &mut impl Sink) {
+        debug_assert!(now <= self.deadline, "{:?} was left out", self.deadline);
         if self.deadline == now {
             self.act(now, sink);
         }
@@ -157,6 +159,7 @@ impl Sequencer {
 
     /// All that falls due in cycle `now`.
     fn act(&mut self, now: Instant, sink: &mut impl Sink) {
+        debug_assert!(self.queue.len() <= self.depth, "more ticks wait than the queue holds");
         while self.deadline == now {
             match self.running {
                 Some(running) => self.follow(running, now, sink),
@@ -194,9 +197,9 @@ impl Sequencer {
     fn end(&mut self, now: Instant, sink: &mut impl Sink) {
         sink.event(now, Event::TickEnd);
         self.last_active = now;
-        let orders = self.plan.orders();
-        count(&mut self.positions, orders, |channel| {
-            orders.get(channel).map_or(0, |&byte| u32::from(ChannelCommand::parse(byte).steps))
+        let commands = self.plan.commands();
+        count(&mut self.positions, commands, |channel| {
+            commands.get(channel).map_or(0, |&byte| u32::from(ChannelCommand::parse(byte).steps))
         });
         self.ticks_done = self.ticks_done.wrapping_add(1);
         self.running = None;
@@ -233,7 +236,7 @@ impl Sequencer {
         Levels(base | u64::from(self.lines))
     }
 
-    /// Walks along the plan of the tick that runs: the inner loop of a long run.
+    /// The changes of the tick that runs, one after another: the inner loop of a long run.
     fn run_pulses(&mut self, until: Instant, base: u64, sink: &mut impl Sink) {
         let Some(mut running) = self.running else { return };
         let stop = until.min(running.end);
@@ -253,10 +256,10 @@ impl Sequencer {
 }
 
 /// Adds `steps` of each channel in its direction.
-fn count(positions: &mut [i32; MAX_CHANNELS], orders: &Tick, steps: impl Fn(usize) -> u32) {
-    for (channel, (position, order)) in positions.iter_mut().zip(orders).enumerate() {
+fn count(positions: &mut [i32; MAX_CHANNELS], commands: &Tick, steps: impl Fn(usize) -> u32) {
+    for (channel, (position, command)) in positions.iter_mut().zip(commands).enumerate() {
         let steps = steps(channel) as i32;
-        let change = if ChannelCommand::parse(*order).right { steps } else { -steps };
+        let change = if ChannelCommand::parse(*command).right { steps } else { -steps };
         *position = position.wrapping_add(change);
     }
 }

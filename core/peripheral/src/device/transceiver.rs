@@ -9,7 +9,7 @@ use crate::{
     config::Config,
     signal::Levels,
     units::{Cycles, Instant},
-    wire::{Schedule, Sender},
+    wire::{Schedule, Sender, frame::REPLY_LEN},
 };
 use alloc::rc::Rc;
 
@@ -26,6 +26,7 @@ pub(super) struct Transceiver {
     levels: u64,
     /// What EN becomes, and when.
     enable: Option<(Instant, bool)>,
+    /// Invariant: one at most, since while it is sent the receiver is deaf and before it no frame ends.
     reply: Option<Reply>,
     next: Instant,
 }
@@ -63,6 +64,7 @@ impl Transceiver {
     /// EN, TX and DE in cycle `now`, which is not after [`Self::deadline`], and the next change
     /// after it.
     pub(super) fn ahead(&self, now: Instant) -> (u64, Instant) {
+        debug_assert!(now <= self.next, "{:?} was left out", self.next);
         if self.next != now {
             return (self.levels, self.next);
         }
@@ -73,6 +75,7 @@ impl Transceiver {
 
     /// Cycle `now`.
     pub(super) fn clock(&mut self, now: Instant) {
+        debug_assert!(now <= self.next, "{:?} was left out", self.next);
         if self.next == now {
             self.act(now);
         }
@@ -119,12 +122,15 @@ impl Transceiver {
 
     /// EN from the cycle after `now` on.
     pub(super) fn enable(&mut self, now: Instant, high: bool) {
+        debug_assert!(self.enable.is_none_or(|(at, _)| at == now.next()), "EN was due before {now:?}");
         self.enable = Some((now.next(), high));
         self.look_ahead(now);
     }
 
     /// Answers a frame that ended in cycle `now`. Gives the first start bit and the fall of DE.
     pub(super) fn reply(&mut self, now: Instant, bytes: &[u8]) -> (Instant, Instant) {
+        debug_assert!(self.reply.is_none(), "a second reply before the first has been sent");
+        debug_assert!(!bytes.is_empty() && bytes.len() <= REPLY_LEN, "a reply of {} bytes", bytes.len());
         let (clock_hz, baud) = (u64::from(self.clock_hz), u64::from(self.baud.max(1)));
         let rise = now + self.turnaround();
         let start = rise + self.bit;

@@ -6,12 +6,16 @@ use twox_hash::XxHash64;
 
 /// Bytes that are gathered before they are hashed: the hash is faster on long runs.
 const BLOCK: usize = 4096;
+/// Bytes of a record: two words.
+const RECORD: usize = 16;
+const _: () = assert!(BLOCK.is_multiple_of(RECORD) && size_of::<Record>() == RECORD);
 
 /// The digest of the records so far.
 #[derive(Clone)]
 pub struct Digest {
     hasher: XxHash64,
     block: [u8; BLOCK],
+    /// Invariant: a whole number of records, less than the block holds.
     filled: usize,
     records: u64,
 }
@@ -50,10 +54,10 @@ impl Digest {
 
 impl Sink for Digest {
     fn record(&mut self, record: Record) {
-        if let Some(place) = self.block[self.filled..].first_chunk_mut::<16>() {
+        if let Some(place) = self.block[self.filled..].first_chunk_mut::<RECORD>() {
             place[..8].copy_from_slice(&record.cycle.0.to_le_bytes());
             place[8..].copy_from_slice(&record.levels.0.to_le_bytes());
-            self.filled += 16;
+            self.filled += RECORD;
         }
         self.records += 1;
         if self.filled == BLOCK {

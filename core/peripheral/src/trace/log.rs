@@ -58,7 +58,7 @@ impl fmt::Display for RowOutcome {
             Self::Short => "dropped: SHORT_PACKET",
             Self::Framing => "dropped: FRAMING",
             Self::Ignored => "ignored until a gap",
-            Self::Frame(fate) => return fate.fmt(f),
+            Self::Frame(frame) => return frame.fmt(f),
             Self::Reply(reply) => return reply.fmt(f),
             Self::Collision => "collision: the controller and another drive the line",
             Self::Open => "not complete",
@@ -168,6 +168,7 @@ impl PacketLog {
 
     /// The run is over: what is still open becomes a row, and the rows stand in the order of their starts.
     pub fn finish(&mut self) {
+        debug_assert!(self.broken.is_sorted(), "framing errors go back in time");
         if self.open.is_some() {
             self.close(self.last, if self.ignoring { RowOutcome::Ignored } else { RowOutcome::Open });
         }
@@ -179,6 +180,10 @@ impl PacketLog {
             latest = latest.max(row.end);
             row.latest = latest;
         }
+        debug_assert!(
+            self.rows.is_sorted_by_key(|row| row.start),
+            "rows are not in the order of their starts"
+        );
     }
 
     fn sort(&mut self) {
@@ -213,6 +218,7 @@ impl PacketLog {
         }
         let bytes_start = self.rows.last().map_or(0, |row| row.bytes_end);
         let bytes_end = self.bytes.len();
+        debug_assert!(bytes_start <= bytes_end && bytes_end <= self.seen.len(), "a byte has no start bit");
         let (tick_start, tick_end) = (None, None);
         self.rows.push(LoggedPacket {
             start,
@@ -243,7 +249,7 @@ impl Sink for PacketLog {
                 self.seen.push(seen);
                 self.last = at;
             }
-            // On a framed line only the byte is missing, and the frame's check tells.
+            // On a framed line only the byte is missing, and the frame's CRC tells.
             Event::FramingError { seen, drops: false } => self.broken.push(seen),
             Event::FramingError { seen, .. } => {
                 self.broken.push(seen);
@@ -257,8 +263,8 @@ impl Sink for PacketLog {
                 }
                 self.ignoring = false;
             }
-            Event::Packet(fate) => self.close(at, RowOutcome::Packet(fate)),
-            Event::Frame(fate) => self.close(at, RowOutcome::Frame(fate)),
+            Event::Packet(outcome) => self.close(at, RowOutcome::Packet(outcome)),
+            Event::Frame(outcome) => self.close(at, RowOutcome::Frame(outcome)),
             Event::Reply { start, end, reply } => {
                 self.bytes.extend(reply.emit());
                 self.seen.resize(self.bytes.len(), start);

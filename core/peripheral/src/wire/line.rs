@@ -20,11 +20,11 @@ pub struct Forced {
     pub level: bool,
 }
 
-/// The line as a run walks along it.
+/// The line, from one change to the next.
 #[derive(Clone, Debug)]
 pub struct Line {
     sender: Sender,
-    /// Disjoint and rising; those before `passed` are over.
+    /// Invariant: disjoint and rising; those before `passed` are over.
     forced: Rc<Vec<Forced>>,
     passed: usize,
     /// The level that is forced now.
@@ -77,6 +77,11 @@ impl Line {
         let before = before.map(|one| Forced { end: new.start, ..*one });
         let after = after.map(|one| Forced { start: new.end, ..*one });
         forced.splice(first..end, [before, Some(new), after].into_iter().flatten());
+        let around = first.saturating_sub(1)..forced.len().min(first + 4);
+        debug_assert!(
+            is_flat(forced.get(around).unwrap_or_default()),
+            "{new:?} meets what was forced before"
+        );
         self.look_ahead();
         self.find_heard();
     }
@@ -148,6 +153,7 @@ impl Line {
 
     /// Enters cycle `now`, the next one in which something changes.
     fn enter(&mut self, now: Instant) {
+        debug_assert!(now == self.next && now != Instant::NEVER, "nothing changes in {now:?}");
         if self.sender.next_edge() == now {
             self.sender.pass();
         }
@@ -197,7 +203,13 @@ fn flatten(forced: &[Forced]) -> Vec<Forced> {
             active.insert(index);
         }
     }
+    debug_assert!(is_flat(&flat), "spans overlap");
     flat
+}
+
+/// Whether spans are disjoint and rising.
+fn is_flat(forced: &[Forced]) -> bool {
+    forced.iter().all(|one| one.start < one.end) && forced.is_sorted_by(|one, next| one.end <= next.start)
 }
 
 #[cfg(test)]

@@ -19,6 +19,8 @@ pub struct Sent<'a> {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Schedule {
     /// Start of each send, and the end of its bytes in `bytes`.
+    ///
+    /// Invariant: both rising; the last end is that of `bytes`.
     sends: Vec<(Instant, usize)>,
     bytes: Vec<u8>,
 }
@@ -39,6 +41,11 @@ impl Schedule {
 
     /// Adds a send, after all others.
     pub fn push(&mut self, start: Instant, bytes: &[u8]) {
+        debug_assert!(
+            self.sends.last().is_none_or(|(before, _)| *before <= start),
+            "a send in {start:?} after one in {:?}",
+            self.sends.last()
+        );
         self.bytes.extend_from_slice(bytes);
         self.sends.push((start, self.bytes.len()));
     }

@@ -16,8 +16,9 @@ use alloc::rc::Rc;
 
 /// Bits of a byte on the line: start, eight data bits, stop.
 const FRAME_BITS: usize = 10;
+const _: () = assert!(FRAME_BITS <= u16::BITS as usize);
 
-/// Walks along the edges of a schedule's bytes.
+/// Iterates over the edges of a schedule's bytes.
 #[derive(Clone, Debug)]
 pub struct Sender {
     schedule: Rc<Schedule>,
@@ -81,7 +82,8 @@ impl Sender {
                 self.byte_start = Instant(send.start.0 + offset);
                 // Start bit 0, data, stop bit 1; before the start bit the line is high.
                 let frame = u16::from(byte) << 1 | 1 << 9;
-                self.edges = (frame ^ (frame << 1 | 1)) & 0x3ff;
+                self.edges = (frame ^ (frame << 1 | 1)) & ((1 << FRAME_BITS) - 1);
+                debug_assert!(self.edges & 1 == 1, "every byte begins with the edge of its start bit");
                 return;
             }
             self.send += 1;
@@ -101,6 +103,7 @@ impl Sender {
 
     /// Enters the cycle of [`Self::next_edge`].
     pub fn pass(&mut self) {
+        debug_assert!(self.edges != 0, "there is no edge to pass");
         self.level = !self.level;
         self.edges &= self.edges.wrapping_sub(1);
         if self.edges == 0 {

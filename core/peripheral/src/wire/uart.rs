@@ -43,6 +43,8 @@ pub struct Receiver {
     seen: Instant,
     /// While sampling: the bit that is looked at next (0 start, 1..=8 data, 9 stop), when, and the
     /// data bits so far.
+    ///
+    /// Invariant: the looks at the start bit and the stop bit are never made up for later.
     bit: u8,
     at: Instant,
     byte: u8,
@@ -88,6 +90,7 @@ impl Receiver {
             State::Broken if rx => self.state = State::Armed,
             State::Sampling => {
                 while self.at < now {
+                    debug_assert!(self.bit > 0, "the look at the start bit was left out");
                     self.take(before);
                 }
                 if self.at == now {
@@ -101,6 +104,7 @@ impl Receiver {
 
     /// Takes the line's level for the bit that is due.
     fn take(&mut self, rx: bool) {
+        debug_assert!(self.bit < STOP, "the look at the stop bit was left out");
         if let Some(place) = self.bit.checked_sub(1) {
             self.byte |= u8::from(rx).checked_shl(place.into()).unwrap_or(0);
         }

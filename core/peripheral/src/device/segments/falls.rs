@@ -35,6 +35,7 @@ impl Falls {
 
     /// The pulses of `steps` fall in `cycle`, later than all others.
     pub(super) const fn push(&mut self, cycle: Instant, steps: u16) {
+        debug_assert!(self.count < MAX_CHANNELS, "a pulse begins before the channel's last one fell");
         if self.count == 0 {
             self.cycle = cycle;
         }
