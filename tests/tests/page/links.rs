@@ -17,15 +17,12 @@ const DISTANCE: &str = "source.motion.axes[0].moves[0].cosine.distance";
 
 /// Opens Share, copies, and gives what is on the clipboard then.
 pub(crate) async fn copied(page: &Session) -> Result<String> {
-    let permissions = ["clipboardReadWrite", "clipboardSanitizedWrite"];
-    let origin = page.address().trim_end_matches('/');
-    page.devtools("Browser.grantPermissions", json!({ "origin": origin, "permissions": permissions }))
-        .await?;
+    page.allow_clipboard().await?;
     page.click("#share").await?;
     page.until("!document.getElementById('copy-link').disabled").await?;
     page.click("#copy-link").await?;
     page.until("document.getElementById('copy-link').textContent === 'Copied'").await?;
-    page.js("return navigator.clipboard.readText();", vec![]).await
+    page.clipboard().await
 }
 
 /// The link that the page gives of a scenario's run.
