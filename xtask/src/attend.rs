@@ -45,9 +45,10 @@ pub(crate) async fn attend(words: &[OsString]) -> Result<()> {
     // Declared after the folder, and so dropped before it.
     let mut group = run::start(command)?;
     tokio::select! {
-        () = end_of_input() => Ok(()),
-        ended = group.ended() => ended,
+        () = end_of_input() => {}
+        ended = group.ended() => return ended,
     }
+    group.end().await
 }
 
 /// A thread of its own, for which nobody waits at the end: the runtime's would be waited for.

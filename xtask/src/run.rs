@@ -33,6 +33,13 @@ impl Group {
         }
         Ok(())
     }
+
+    /// Ends the child and its group, and waits until it has.
+    pub(crate) async fn end(mut self) -> Result<()> {
+        self.0.start_kill()?;
+        self.0.wait().await?;
+        Ok(())
+    }
 }
 
 impl Drop for Group {

@@ -3,7 +3,7 @@
 
 use std::{
     future::Future,
-    path::{Path, PathBuf},
+    path::PathBuf,
     sync::{Arc, Mutex, MutexGuard, PoisonError},
     time::Duration,
 };
@@ -33,6 +33,8 @@ pub(crate) struct Bench {
     page: String,
     /// Of an engine whose browsers are not shared.
     driver: Option<Program>,
+    /// For further visitors of such a browser.
+    servers: Mutex<Vec<Program>>,
     visitors: Mutex<Vec<(Session, Option<Lent>)>>,
 }
 
@@ -48,6 +50,11 @@ where
 /// The folder of the page as it is shipped.
 pub(crate) fn dist() -> Result<PathBuf> {
     named("STEPSCOPE_DIST").map(PathBuf::from)
+}
+
+/// The folder of the page's sources.
+fn web() -> Result<PathBuf> {
+    named("STEPSCOPE_WEB").map(PathBuf::from)
 }
 
 /// As [`in_browser`], with the page as it is shipped.
@@ -74,7 +81,7 @@ where
     T: FnOnce(Session) -> F,
     F: Future<Output = Result<()>> + 'static,
 {
-    in_engine_at(pool::served(Path::new(&named("STEPSCOPE_WEB")?))?, browser, test)
+    in_engine_at(pool::served(&web()?)?, browser, test)
 }
 
 fn in_engine_at<T, F>(page: String, browser: Browser, test: T) -> Result<()>
@@ -88,7 +95,8 @@ where
             Browser::Chromium => None,
             Browser::Firefox | Browser::WebKit => Some(Program::driver(browser)?),
         };
-        let bench = Arc::new(Bench { browser, page, driver, visitors: Mutex::default() });
+        let bench =
+            Arc::new(Bench { browser, page, driver, servers: Mutex::default(), visitors: Mutex::default() });
         let outcome = match bench.visitor(None).await {
             Ok(session) => guarded(test(session)).await,
             Err(error) => Err(error),
@@ -128,26 +136,37 @@ impl Bench {
         Ok(session)
     }
 
-    /// Lets somebody else into the browser of the test's only visitor, if it is a shared one; with what the console said
-    /// of that visitor.
+    /// Lets somebody else into the browser of the test's only visitor, at another address; with what the console said of
+    /// that visitor.
     pub(crate) async fn next_in_browser(self: &Arc<Self>) -> Result<(Vec<String>, Session)> {
         let last = self.visitors().pop();
-        let (Some((session, Some(lent))), true) = (last, self.visitors().is_empty()) else {
-            bail!("not one visitor in a shared browser")
+        let (Some((session, lent)), true) = (last, self.visitors().is_empty()) else {
+            bail!("there is not one visitor alone")
         };
         let said = session.complaints().await?;
-        lent.clear().await?;
-        lent.open().await?;
-        let session = Session::new(lent.client.clone(), self, pool::fresh(&self.page));
-        self.visitors().push((session.clone(), Some(lent)));
+        let address = match &lent {
+            Some(lent) => {
+                lent.clear().await?;
+                lent.open().await?;
+                pool::fresh(&self.page)
+            }
+            // Another port makes another origin, and these browsers know no names of visitors.
+            None => {
+                let server = Program::server(&web()?)?;
+                let address = server.address.clone();
+                self.servers.lock().unwrap_or_else(PoisonError::into_inner).push(server);
+                address
+            }
+        };
+        let session = Session::new(session.client, self, address);
+        self.visitors().push((session.clone(), lent));
         session.screen(1440, 900).await?;
         Ok((said, session))
     }
 
-    /// Errors of the page among what the driver and its browsers have said.
+    /// What the driver and its browsers have said so far.
     pub(crate) fn heard(&self) -> Vec<String> {
-        let heard = self.driver.as_ref().map(Program::heard).unwrap_or_default();
-        heard.into_iter().filter(|line| self.browser.complains(line, &self.page)).collect()
+        self.driver.as_ref().map(Program::heard).unwrap_or_default()
     }
 
     fn visitors(&self) -> MutexGuard<'_, Vec<(Session, Option<Lent>)>> {

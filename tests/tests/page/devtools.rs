@@ -61,7 +61,8 @@ impl Session {
     pub(crate) async fn complaints(&self) -> Result<Vec<String>> {
         if self.bench.browser != Browser::Chromium {
             let mut heard: Vec<String> = self.eval("window.heard ?? []").await?;
-            heard.extend(self.bench.heard());
+            let said = self.bench.heard();
+            heard.extend(said.into_iter().filter(|line| self.bench.browser.complains(line, self.address())));
             return Ok(heard);
         }
         let entries = console(&self.client).await?;

@@ -54,21 +54,6 @@ fn a_copied_link_gives_a_stranger_the_same_form_and_the_same_digest() -> Result<
 }
 
 #[test]
-fn every_presets_link_is_the_cores() -> Result<()> {
-    in_browser(|page| async move {
-        page.open("").await?;
-        for preset in PRESETS {
-            let known = Known::preset(preset)?;
-            page.choose("#preset", preset.id).await?;
-            page.until_equal("location.hash", &json!(format!("#{}", known.link)))
-                .await
-                .with_context(|| preset.id)?;
-        }
-        Ok(())
-    })
-}
-
-#[test]
 fn copies_that_a_chat_program_changed_still_open() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of(&with_distance(2400.0))?;

@@ -61,8 +61,9 @@ impl Session {
 
     /// Another visitor where a driver has one browser at a time: this one goes, its console silent.
     pub(crate) async fn next_visitor(&self) -> Result<Self> {
-        self.bench.end_visits(Ok(())).await?;
-        self.bench.visitor(None).await
+        let (said, next) = self.bench.next_in_browser().await?;
+        ensure!(said.is_empty(), "the console is not silent:\n{}", said.join("\n"));
+        Ok(next)
     }
 
     /// Address of the page, without a fragment.
