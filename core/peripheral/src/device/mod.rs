@@ -47,11 +47,10 @@ use registers::Latches;
 /// The peripheral.
 ///
 /// ```
-/// use crate::{device::Device, config::{Bus, Config}, signal::{Levels, Record}};
-/// use stepscope_scenario::Line;
+/// use stepscope_peripheral::{config::{Bus, Config, SerialLine}, device::Device, signal::{Levels, Record}};
 ///
 /// let bus = Bus { channels: 2, slots: 4, ..Bus::default() };
-/// let config = Config::new(16_000_000, &bus, &Line::default()).expect("the defaults hold");
+/// let config = Config::new(16_000_000, &bus, &SerialLine::default()).expect("the defaults hold");
 /// let mut device = Device::new(&config);
 /// let mut trace: Vec<Record> = Vec::new();
 /// assert_eq!(device.clock(true, &mut trace), Levels::RESET);
