@@ -14,7 +14,12 @@ use stepscope_registers::RegisterBus;
 /// in the last of them. What happens meanwhile goes to `sink`.
 ///
 /// ```
-/// use stepscope_peripheral::{config::{Bus, Config, SerialLine}, device::ModelBus, signal::Record, units::Cycles};
+/// use stepscope_peripheral::{
+///     config::{Bus, Config, SerialLine},
+///     device::ModelBus,
+///     signal::Record,
+///     units::Cycles,
+/// };
 /// use stepscope_registers::{RegisterBus, control, status};
 ///
 /// let config = Config::new(16_000_000, &Bus::default(), &SerialLine::default()).expect("the defaults hold");

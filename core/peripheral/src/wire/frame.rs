@@ -7,6 +7,22 @@
 //!
 //! Both sides of the line read and write here: the controller takes frames and gives replies, the
 //! host the other way round.
+//!
+//! ```
+//! use stepscope_peripheral::{
+//!     protocol::Kind,
+//!     wire::frame::{Deframed, Deframer, Ticks, emit},
+//! };
+//!
+//! // Two ticks of one channel for controller 7: 5 steps right, 3 left.
+//! let wire = emit(7, Kind::Ticks as u8, &Ticks::emit(0, 1, &[0x85, 0x03]));
+//! let mut deframer = Deframer::default();
+//! let (last, bytes) = wire.split_last().expect("a delimiter");
+//! assert!(bytes.iter().all(|&byte| deframer.byte(byte).is_none()));
+//! let Some(Deframed::Frame(frame)) = deframer.byte(*last) else { panic!("its CRC holds") };
+//! let ticks = Ticks::parse(frame.body, 1).expect("a body of TICKS");
+//! assert_eq!((frame.address, ticks.seq, ticks.orders()), (7, 0, &[0x85, 0x03][..]));
+//! ```
 
 pub use crate::protocol::{Kind, MAX_TICKS, Reason, Reply, State, Status};
 use crate::signal::MAX_CHANNELS;

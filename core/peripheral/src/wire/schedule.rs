@@ -2,6 +2,16 @@
 //!
 //! A recorded line is such a schedule itself; packets are paced: packet j starts at boot + 1 + j*M*Ts, so tick follows
 //! tick without a pause.
+//!
+//! ```
+//! use stepscope_peripheral::{units::Instant, wire::{Schedule, schedule::line_time}};
+//!
+//! let mut host = Schedule::default();
+//! host.push(Instant(1601), &[0x85, 0x03]);
+//! assert_eq!(host.total_bytes(), 2);
+//! // Two bytes of ten bits at 115200 baud, in cycles of 16 MHz.
+//! assert_eq!(line_time(2, 16_000_000, 115_200), 1388 + 1388);
+//! ```
 
 use crate::units::{Cycles, Instant};
 use alloc::vec::Vec;

@@ -9,6 +9,22 @@
 //!
 //! The j-th of bytes sent back to back from t0 starts at t0 + floor(10*j*clock_hz/baud). Host and
 //! controllers send by the same rule.
+//!
+//! ```
+//! use std::rc::Rc;
+//! use stepscope_peripheral::{units::Instant, wire::{Schedule, Sender}};
+//!
+//! let mut host = Schedule::default();
+//! host.push(Instant(100), &[0xf0]);
+//! let mut sender = Sender::new(Rc::new(host), 16_000_000, 1_000_000);
+//! let mut edges = Vec::new();
+//! while sender.next_edge() != Instant::NEVER {
+//!     edges.push(sender.next_edge().0);
+//!     sender.pass();
+//! }
+//! // 16 cycles a bit: the start bit falls, four zeros later the line rises, and stays for the stop bit.
+//! assert_eq!(edges, [100, 180]);
+//! ```
 
 use crate::units::Instant;
 use crate::wire::Schedule;
