@@ -165,7 +165,6 @@ impl Sliced {
     }
 
     /// Slice `index`; past the last none.
-    #[inline(always)]
     fn slice(&self, index: usize) -> Option<(f64, f64, u32, u32)> {
         let (from, to) = (self.starts_s.get(index)?, self.starts_s.get(index + 1)?);
         let (before, after) = (self.sums.get(index)?, self.sums.get(index + 1)?);
@@ -202,7 +201,6 @@ fn slices_in(ratio: f64) -> u64 {
 }
 
 /// floor, of a number from 0 on.
-#[inline(always)]
 fn whole_steps(steps: f64) -> u64 {
     (steps + NEARLY) as u64
 }
@@ -227,7 +225,6 @@ impl Slices {
     }
 
     /// Steps of a slice at a top speed; in the plateau all have the same.
-    #[inline(always)]
     fn steps(&self, index: usize, top_speed: f64) -> u64 {
         let weight = self.weights.get(index).copied().unwrap_or(0.0);
         whole_steps(top_speed * if self.plateau.contains(&index) { self.slice_s } else { weight })

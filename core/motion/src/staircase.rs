@@ -15,6 +15,7 @@
 use crate::moves::ShortMove;
 use crate::{
     Curve, Peaks,
+    bisection::least,
     format::{count, grouped},
     profile::greater,
     staircase_table::StaircaseTable,
@@ -118,12 +119,7 @@ impl Staircase {
 
     /// Row of step `k` of the ramp, from 1.
     fn row(&self, k: u64) -> u64 {
-        let (mut from, mut to) = (1, self.ramp_rows());
-        while from < to {
-            let middle = from + (to - from) / 2;
-            if StaircaseTable::steps_after(middle) >= k { to = middle } else { from = middle + 1 }
-        }
-        from
+        least(1, self.ramp_rows(), |row| StaircaseTable::steps_after(row) >= k)
     }
 
     /// Time of the first `k` steps of the ramp.

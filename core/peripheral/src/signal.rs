@@ -63,21 +63,18 @@ impl Levels {
 
     /// STEP levels, channel 0 in bit 0.
     #[must_use]
-    #[inline]
     pub const fn step(self) -> u16 {
         self.0 as u16
     }
 
     /// DIR levels, channel 0 in bit 0.
     #[must_use]
-    #[inline]
     pub const fn dir(self) -> u16 {
         (self.0 >> Self::DIR_SHIFT) as u16
     }
 
     /// Whether every signal of `mask` is high.
     #[must_use]
-    #[inline]
     pub const fn has(self, mask: u64) -> bool {
         self.0 & mask == mask
     }
@@ -85,7 +82,6 @@ impl Levels {
 
 /// Name of the signal that stands at `bit` of the levels, as the page, VCD and CSV print it.
 #[must_use]
-#[inline]
 pub fn name(bit: u32) -> Option<alloc::string::String> {
     match bit {
         0..=15 => Some(alloc::format!("STEP{bit}")),
@@ -183,11 +179,9 @@ pub trait Sink {
     fn record(&mut self, record: Record);
 
     /// Something happened in a cycle. Sinks that only want the signals leave this out.
-    #[inline]
     fn event(&mut self, _at: Instant, _event: Event) {}
 
     /// Whether the run should pause here.
-    #[inline]
     fn paused(&self) -> bool {
         false
     }
@@ -195,7 +189,6 @@ pub trait Sink {
 
 /// A stored trace.
 impl Sink for Vec<Record> {
-    #[inline(always)]
     fn record(&mut self, record: Record) {
         self.push(record);
     }
@@ -203,19 +196,16 @@ impl Sink for Vec<Record> {
 
 /// Two sinks at once.
 impl<A: Sink, B: Sink> Sink for (A, B) {
-    #[inline]
     fn record(&mut self, record: Record) {
         self.0.record(record);
         self.1.record(record);
     }
 
-    #[inline]
     fn event(&mut self, at: Instant, event: Event) {
         self.0.event(at, event);
         self.1.event(at, event);
     }
 
-    #[inline]
     fn paused(&self) -> bool {
         self.0.paused() || self.1.paused()
     }
@@ -223,38 +213,32 @@ impl<A: Sink, B: Sink> Sink for (A, B) {
 
 /// A sink that may be missing.
 impl<S: Sink> Sink for Option<S> {
-    #[inline]
     fn record(&mut self, record: Record) {
         if let Some(sink) = self {
             sink.record(record);
         }
     }
 
-    #[inline]
     fn event(&mut self, at: Instant, event: Event) {
         if let Some(sink) = self {
             sink.event(at, event);
         }
     }
 
-    #[inline]
     fn paused(&self) -> bool {
         self.as_ref().is_some_and(Sink::paused)
     }
 }
 
 impl<S: Sink> Sink for &mut S {
-    #[inline]
     fn record(&mut self, record: Record) {
         (**self).record(record);
     }
 
-    #[inline]
     fn event(&mut self, at: Instant, event: Event) {
         (**self).event(at, event);
     }
 
-    #[inline]
     fn paused(&self) -> bool {
         (**self).paused()
     }

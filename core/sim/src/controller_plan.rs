@@ -302,7 +302,6 @@ fn frame_bits(checked: &Checked, config: &Config) -> u128 {
 }
 
 /// One tick's orders, from its bytes.
-#[inline]
 pub(super) fn pulses(tick: &[u8]) -> u64 {
     let mut sum = 0;
     for byte in tick.get(..Tick::default().len()).unwrap_or(tick) {

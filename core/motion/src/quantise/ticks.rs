@@ -157,7 +157,6 @@ impl TickClock {
 
     /// End of tick `tick` (from 0) in s.
     #[must_use]
-    #[inline(always)]
     pub fn end_s(&self, tick: u64) -> f64 {
         self.seconds(tick.saturating_add(1).saturating_mul(self.tick_cycles))
     }

@@ -25,7 +25,6 @@ pub(super) struct Controller {
 }
 
 impl Controller {
-    #[inline]
     pub(super) fn new(config: &Config) -> Self {
         Self {
             address: config.address.unwrap_or(0),
@@ -37,13 +36,11 @@ impl Controller {
     }
 
     /// Sequence number that the next TICKS must have.
-    #[inline]
     pub(super) const fn expected_seq(&self) -> u8 {
         self.expected_seq
     }
 
     /// A byte delivered in cycle `now`.
-    #[inline]
     pub(super) fn byte(&mut self, now: Instant, byte: u8, machine: &mut Machine, sink: &mut impl Sink) {
         let mut answered = false;
         let fate = match self.deframer.byte(byte) {
@@ -89,7 +86,6 @@ struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    #[inline]
     fn frame(&mut self, frame: Frame<'_>) -> FrameOutcome {
         let Some(kind) = Kind::parse(frame.kind) else { return FrameOutcome::Refused(Reason::UnknownKind) };
         if kind == Kind::Ticks {
@@ -111,7 +107,6 @@ impl Judge<'_> {
         FrameOutcome::Taken(kind)
     }
 
-    #[inline]
     fn ticks(&mut self, body: &[u8]) -> FrameOutcome {
         let Some(ticks) = Ticks::parse(body, self.channels) else {
             return FrameOutcome::Refused(Reason::BadBody);

@@ -24,7 +24,6 @@ pub(super) struct Machine {
 }
 
 impl Machine {
-    #[inline]
     pub(super) fn new(config: &Config) -> Self {
         Self {
             slots: config.slots,
@@ -37,7 +36,6 @@ impl Machine {
     }
 
     /// Whether `ticks` ticks of these orders may be queued in cycle `now`: all of them or none.
-    #[inline]
     pub(super) fn admit(&mut self, now: Instant, orders: &[u8], ticks: usize) -> Result<(), Reason> {
         if self.stopped {
             Err(Reason::Stopped)
@@ -55,7 +53,6 @@ impl Machine {
     }
 
     /// Emergency stop: drivers off, the queue empty, the tick that runs abandoned.
-    #[inline]
     pub(super) fn stop(&mut self, now: Instant) {
         self.transceiver.enable(now, false);
         self.sequencer.stop(now);
@@ -63,14 +60,12 @@ impl Machine {
     }
 
     /// Drivers on, and out of STOPPED.
-    #[inline]
     pub(super) fn enable(&mut self, now: Instant) {
         self.transceiver.enable(now, true);
         self.stopped = false;
     }
 
     /// Drivers off, if nothing moves: whether it was done.
-    #[inline]
     pub(super) fn disable(&mut self, now: Instant) -> bool {
         let idle = !self.sequencer.is_moving();
         if idle {
@@ -82,31 +77,26 @@ impl Machine {
 
     /// Another timing of the pulses, for the ticks that start from now on; the caller knows that
     /// none runs or waits.
-    #[inline]
     pub(super) fn retime(&mut self, config: &Config) {
         self.slots = config.slots;
         self.sequencer.retime(config);
     }
 
-    #[inline]
     pub(super) const fn faults(&self) -> Faults {
         self.faults.union(self.sequencer.faults())
     }
 
-    #[inline]
     pub(super) const fn fault(&mut self, fault: Faults) {
         self.faults.set(fault);
     }
 
     /// Takes back the flags of `which`.
-    #[inline]
     pub(super) fn clear_faults(&mut self, which: Faults) {
         self.faults.clear(which);
         self.sequencer.clear_faults(which);
     }
 
     /// What the controller tells of itself in cycle `now`.
-    #[inline]
     pub(super) fn status(&self, now: Instant, expected_seq: u8) -> Status {
         let state = if self.stopped {
             State::Stopped

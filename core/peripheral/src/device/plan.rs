@@ -46,7 +46,6 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    #[inline]
     pub(super) fn new(config: &Config) -> Self {
         let all_right = !(!0 << config.channels) << Levels::DIR_SHIFT;
         let orders = [0; MAX_CHANNELS];
@@ -56,26 +55,22 @@ impl Plan {
     }
 
     /// The orders that the plan is of.
-    #[inline]
     pub(super) const fn orders(&self) -> &Tick {
         &self.orders
     }
 
     /// Whether any channel makes a step.
-    #[inline]
     pub(super) fn has_steps(&self) -> bool {
         self.orders.iter().any(|&byte| ChannelCommand::parse(byte).steps > 0)
     }
 
     /// Rising offsets. With a common DIR line the first change sets DIR: what it was before the
     /// tick does not matter.
-    #[inline]
     pub(super) fn changes(&self) -> &[Change] {
         &self.changes
     }
 
     /// Makes this the plan of `orders`.
-    #[inline]
     pub(super) fn set(&mut self, orders: Tick) {
         if orders != self.orders {
             self.orders = orders;
@@ -83,7 +78,6 @@ impl Plan {
         }
     }
 
-    #[inline]
     fn rebuild(&mut self) {
         let counts = self.orders.map(|byte| ChannelCommand::parse(byte).steps);
         let right = tops(u128::from_le_bytes(self.orders));
@@ -117,7 +111,6 @@ impl Plan {
     }
 
     /// All of `fires` from `rise` on, for W cycles; DIR stays at `dir`.
-    #[inline]
     fn pulse(&mut self, rise: u64, fires: u16, dir: Lines) {
         if fires != 0 {
             self.push(rise, dir | Lines::from(fires));
@@ -126,13 +119,11 @@ impl Plan {
     }
 
     /// From pulse to pulse of a slot: d = min(dp, floor(Ts/nd)).
-    #[inline]
     fn distance(&self, fires: u16) -> u64 {
         self.config.settle.min(self.config.step_period / u64::from(fires.count_ones().max(1)))
     }
 
     /// One channel after another, ascending; pulses that are closer than W overlap.
-    #[inline]
     fn staggered(&mut self, start: u64, fires: u16, dir: Lines) {
         let (distance, width) = (self.distance(fires), self.config.pulse_width);
         let first = start + self.config.dir_setup;
@@ -155,7 +146,6 @@ impl Plan {
     }
 
     /// The left ones ascending, then the right ones ascending; L <= d, so no two pulses meet.
-    #[inline]
     fn common_staggered(&mut self, start: u64, fires: u16, right: u16) {
         let distance = self.distance(fires);
         let order = channels(fires & !right).zip([0].into_iter().cycle());
@@ -169,7 +159,6 @@ impl Plan {
     }
 
     /// Adds a change; of several at the same offset the last counts.
-    #[inline]
     fn push(&mut self, offset: u64, lines: Lines) {
         match self.changes.last_mut() {
             Some(last) if last.offset == offset => last.lines = lines,
@@ -179,7 +168,6 @@ impl Plan {
 }
 
 /// The STEP bits of `fires` one by one, ascending.
-#[inline]
 fn channels(fires: u16) -> impl Iterator<Item = Lines> {
     (0..MAX_CHANNELS).map(|channel| 1 << channel).filter(move |bit| Lines::from(fires) & bit != 0)
 }
@@ -207,14 +195,12 @@ const ONES: u128 = u128::from_le_bytes([1; MAX_CHANNELS]);
 const TOPS: u128 = ONES << 7;
 
 impl Firing {
-    #[inline]
     const fn new(counts: [u8; MAX_CHANNELS], slots: u8, distribution: Distribution) -> Self {
         let remainders = u128::from_le_bytes([slots / 2; MAX_CHANNELS]);
         Self { counts: u128::from_le_bytes(counts), remainders, slots, distribution }
     }
 
     /// The channels that fire in slot `slot`; slots are asked for in order.
-    #[inline]
     fn slot(&mut self, slot: u8) -> u16 {
         match self.distribution {
             // c - (k + 1) >= 0
@@ -234,7 +220,6 @@ impl Firing {
 /// Bit i of the result is bit 7 of byte i.
 ///
 /// The multiplication moves byte i's bit to bit 56 + i of its half; no two of them meet.
-#[inline]
 fn tops(bytes: u128) -> u16 {
     let bits = bytes >> 7 & ONES;
     let half = |bits: u64| (bits.wrapping_mul(0x0102_0408_1020_4080) >> 56) as u16;

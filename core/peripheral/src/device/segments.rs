@@ -83,7 +83,6 @@ struct Channel {
 
 impl Channel {
     /// The next step of this segment: its cycle.
-    #[inline(always)]
     fn step(&mut self) -> Instant {
         self.next = self.next.wrapping_add(self.interval);
         self.interval = self.interval.wrapping_add_signed(self.add);
@@ -91,14 +90,12 @@ impl Channel {
     }
 
     /// Cycle of the step that comes next.
-    #[inline]
     const fn rise(&self) -> Instant {
         Instant(self.next >> FRACTION_BITS)
     }
 
     /// Goes on to the next segment with steps: the cycle of its change of DIR, where there is one,
     /// or of its first step; [`Instant::NEVER`] at the list's end.
-    #[inline]
     fn begin(&mut self, segments: &[Segment]) -> Instant {
         while let Some(segment) = segments.get(self.begun) {
             self.begun += 1;
@@ -121,7 +118,6 @@ impl Channel {
 impl SegmentEngine {
     /// An engine before cycle 0.
     #[must_use]
-    #[inline]
     pub fn new(lists: Rc<CheckedSegments>) -> Self {
         let mut due = Earliest::new(lists.lists().len());
         let channels = lists.lists().iter().enumerate().map(|(index, list)| {
@@ -146,20 +142,17 @@ impl SegmentEngine {
 
     /// The cycle that the next call of [`Self::clock`] is; as many have passed.
     #[must_use]
-    #[inline]
     pub const fn now(&self) -> Instant {
         self.now
     }
 
     /// Position counters: rising STEP edges, +1 where DIR is 1, -1 where it is 0.
     #[must_use]
-    #[inline]
     pub const fn positions(&self) -> [i32; MAX_CHANNELS] {
         self.positions
     }
 
     /// Advances one cycle and gives the levels of all signals in it.
-    #[inline]
     pub fn clock(&mut self, sink: &mut impl Sink) -> Levels {
         let now = self.now;
         if now == self.deadline() {
@@ -173,13 +166,11 @@ impl SegmentEngine {
     }
 
     /// Next cycle in which a signal changes, cycle 0 for the first; [`Instant::NEVER`] at the end.
-    #[inline(always)]
     fn deadline(&self) -> Instant {
         if self.now == Instant::RESET { self.now } else { self.due.cycle().min(self.falls.cycle()) }
     }
 
     /// All that falls due in cycle `now`; at least one signal changes.
-    #[inline(always)]
     fn act(&mut self, now: Instant) {
         let mut levels = self.levels.0;
         if self.falls.cycle() == now {
@@ -218,7 +209,6 @@ impl SegmentEngine {
 
     /// For how many cycles nothing can change; `None` if it is for ever.
     #[must_use]
-    #[inline]
     pub fn cycles_until_event(&self) -> Option<Cycles> {
         match self.deadline() {
             Instant::NEVER => None,
@@ -228,7 +218,6 @@ impl SegmentEngine {
 
     /// Passes cycles in which nothing changes: no more than [`Self::cycles_until_event`] says. What goes beyond
     /// is not skipped.
-    #[inline]
     pub fn advance(&mut self, cycles: Cycles) {
         let target = Instant(self.now.0.saturating_add(cycles.0));
         self.now = target.min(self.deadline());
@@ -237,7 +226,6 @@ impl SegmentEngine {
     /// Runs until cycle `until` is the next, as fast as the edges allow; with [`Instant::NEVER`],
     /// until nothing can change any more: then the last cycle run is the last in which something
     /// did. Stops early where the sink asks for a pause.
-    #[inline]
     pub fn run(&mut self, until: Instant, sink: &mut impl Sink) {
         if self.now == Instant::RESET && self.now < until {
             self.clock(sink);
@@ -261,7 +249,6 @@ impl SegmentEngine {
 
     /// Whether nothing can change any more.
     #[must_use]
-    #[inline]
     pub fn at_rest(&self) -> bool {
         self.deadline() == Instant::NEVER
     }

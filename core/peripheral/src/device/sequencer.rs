@@ -49,7 +49,6 @@ struct Running {
 }
 
 impl Sequencer {
-    #[inline]
     pub(super) fn new(config: &Config) -> Self {
         Self {
             tick: config.tick(),
@@ -69,25 +68,21 @@ impl Sequencer {
     }
 
     /// STEP and DIR now.
-    #[inline]
     pub(super) const fn lines(&self) -> Lines {
         self.lines
     }
 
-    #[inline]
     pub(super) const fn ticks_done(&self) -> u32 {
         self.ticks_done
     }
 
     /// Where the last tick ended: at rest, the last cycle in which the sequencer did
     /// something.
-    #[inline]
     pub(super) const fn last_active(&self) -> Instant {
         self.last_active
     }
 
     /// Positions now: those at the last tick's end and the edges of the one that runs.
-    #[inline]
     pub(super) fn positions(&self) -> [i32; MAX_CHANNELS] {
         let mut positions = self.positions;
         if let Some(running) = self.running {
@@ -102,7 +97,6 @@ impl Sequencer {
     }
 
     /// Queues a tick that was committed in cycle `now`; false if there is no place.
-    #[inline]
     pub(super) fn push(&mut self, now: Instant, tick: Tick) -> bool {
         if self.queue.len() >= self.depth {
             return false;
@@ -115,38 +109,32 @@ impl Sequencer {
     }
 
     /// UNDERRUN, if it has been.
-    #[inline]
     pub(super) const fn faults(&self) -> Faults {
         self.faults
     }
 
-    #[inline]
     pub(super) const fn clear_faults(&mut self, which: Faults) {
         self.faults.clear(which);
     }
 
     /// Another timing for the ticks that start from now on; the caller knows that none runs or waits.
-    #[inline]
     pub(super) fn retime(&mut self, config: &Config) {
         self.tick = config.tick();
         self.plan = Plan::new(config);
     }
 
     /// Whether a tick runs or waits.
-    #[inline]
     pub(super) fn is_moving(&self) -> bool {
         self.running.is_some() || !self.queue.is_empty()
     }
 
     /// Free places in the queue.
-    #[inline]
     pub(super) fn free(&self) -> u8 {
         (self.depth - self.queue.len()) as u8
     }
 
     /// Abandons the tick that runs and those that wait: STEP falls in the cycle after `now`, DIR
     /// stays. Pulses that rose count.
-    #[inline]
     pub(super) fn stop(&mut self, now: Instant) {
         self.positions = self.positions();
         self.running = None;
@@ -156,13 +144,11 @@ impl Sequencer {
     }
 
     /// Next cycle in which the sequencer does something; [`Instant::NEVER`] at rest.
-    #[inline]
     pub(super) const fn deadline(&self) -> Instant {
         self.deadline
     }
 
     /// Cycle `now`.
-    #[inline(always)]
     pub(super) fn clock(&mut self, now: Instant, sink: &mut impl Sink) {
         if self.deadline == now {
             self.act(now, sink);
@@ -170,7 +156,6 @@ impl Sequencer {
     }
 
     /// All that falls due in cycle `now`.
-    #[inline]
     fn act(&mut self, now: Instant, sink: &mut impl Sink) {
         while self.deadline == now {
             match self.running {
@@ -182,7 +167,6 @@ impl Sequencer {
     }
 
     /// The plan's change that falls due in cycle `now`, or the tick's end.
-    #[inline]
     fn follow(&mut self, running: Running, now: Instant, sink: &mut impl Sink) {
         match self.plan.changes().get(running.next) {
             Some(change) if running.c0 + Cycles(change.offset) == now => {
@@ -193,7 +177,6 @@ impl Sequencer {
         }
     }
 
-    #[inline]
     fn go_on(&mut self, running: Running) {
         let change = self.plan.changes().get(running.next);
         self.deadline =
@@ -201,7 +184,6 @@ impl Sequencer {
         self.running = Some(running);
     }
 
-    #[inline]
     fn halt(&mut self, now: Instant) {
         self.halt = false;
         self.lines &= !STEPS;
@@ -209,7 +191,6 @@ impl Sequencer {
         self.deadline = if self.queue.is_empty() { Instant::NEVER } else { now };
     }
 
-    #[inline]
     fn end(&mut self, now: Instant, sink: &mut impl Sink) {
         sink.event(now, Event::TickEnd);
         self.last_active = now;
@@ -226,7 +207,6 @@ impl Sequencer {
         }
     }
 
-    #[inline]
     fn begin(&mut self, now: Instant, sink: &mut impl Sink) {
         self.deadline = Instant::NEVER;
         if let Some(tick) = self.queue.pop_front() {
@@ -238,7 +218,6 @@ impl Sequencer {
 
     /// Runs alone through the cycles before `until`, while nothing else changes: `base` are the
     /// other signals. Stops after the tick in which the sink asks for a pause. Gives the levels.
-    #[inline]
     pub(super) fn run(&mut self, until: Instant, base: u64, sink: &mut impl Sink) -> Levels {
         while self.deadline < until && !sink.paused() {
             self.run_pulses(until, base, sink);
@@ -255,7 +234,6 @@ impl Sequencer {
     }
 
     /// Walks along the plan of the tick that runs: the inner loop of a long run.
-    #[inline]
     fn run_pulses(&mut self, until: Instant, base: u64, sink: &mut impl Sink) {
         let Some(mut running) = self.running else { return };
         let stop = until.min(running.end);
@@ -275,7 +253,6 @@ impl Sequencer {
 }
 
 /// Adds `steps` of each channel in its direction.
-#[inline]
 fn count(positions: &mut [i32; MAX_CHANNELS], orders: &Tick, steps: impl Fn(usize) -> u32) {
     for (channel, (position, order)) in positions.iter_mut().zip(orders).enumerate() {
         let steps = steps(channel) as i32;

@@ -17,7 +17,6 @@ pub struct Digest {
 }
 
 impl Default for Digest {
-    #[inline]
     fn default() -> Self {
         Self { hasher: XxHash64::with_seed(0), block: [0; BLOCK], filled: 0, records: 0 }
     }
@@ -26,7 +25,6 @@ impl Default for Digest {
 impl Digest {
     /// The digest; 16 hexadecimal digits when printed with `{:016x}`.
     #[must_use]
-    #[inline]
     pub fn value(&self) -> u64 {
         let mut hasher = self.hasher.clone();
         hasher.write(self.block.get(..self.filled).unwrap_or_default());
@@ -35,14 +33,12 @@ impl Digest {
 
     /// How many records it has seen.
     #[must_use]
-    #[inline]
     pub const fn records(&self) -> u64 {
         self.records
     }
 
     /// The digest of a stored trace.
     #[must_use]
-    #[inline]
     pub fn of(records: &[Record]) -> u64 {
         let mut digest = Self::default();
         for record in records {
@@ -53,7 +49,6 @@ impl Digest {
 }
 
 impl Sink for Digest {
-    #[inline(always)]
     fn record(&mut self, record: Record) {
         if let Some(place) = self.block[self.filled..].first_chunk_mut::<16>() {
             place[..8].copy_from_slice(&record.cycle.0.to_le_bytes());

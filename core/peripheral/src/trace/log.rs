@@ -34,7 +34,6 @@ impl RowOutcome {
     /// What the row is, in a word: `packet`, `frame`, `reply`, `collision`, or `open` where the run ended
     /// before it was known.
     #[must_use]
-    #[inline]
     pub const fn kind(self) -> &'static str {
         match self {
             Self::Packet(_) | Self::Short | Self::Framing | Self::Ignored => "packet",
@@ -48,7 +47,6 @@ impl RowOutcome {
 
 impl fmt::Display for RowOutcome {
     /// What became of the packet, as the page and the command's tables say it.
-    #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Packet(PacketOutcome::Queued) => "queued",
@@ -124,21 +122,18 @@ impl PacketLog {
     /// once it is finished. A reply is known before it is sent, and a collision before the packet in which
     /// it happens.
     #[must_use]
-    #[inline]
     pub fn rows(&self) -> &[LoggedPacket] {
         &self.rows
     }
 
     /// The ticks that have begun.
     #[must_use]
-    #[inline]
     pub fn ticks(&self) -> &[LoggedTick] {
         &self.ticks
     }
 
     /// First cycle after a tick that lasts `length` where nothing stops it.
     #[must_use]
-    #[inline]
     pub fn tick_end(&self, tick: &LoggedTick, length: Cycles) -> Instant {
         let stop = self.stops.get(self.stops.partition_point(|stop| *stop < tick.start));
         stop.map_or(tick.start + length, |stop| (tick.start + length).min(*stop))
@@ -146,7 +141,6 @@ impl PacketLog {
 
     /// Bytes of a row.
     #[must_use]
-    #[inline]
     pub fn bytes(&self, index: usize) -> &[u8] {
         let row = self.rows.get(index);
         row.and_then(|row| self.bytes.get(row.bytes_start..row.bytes_end)).unwrap_or_default()
@@ -154,7 +148,6 @@ impl PacketLog {
 
     /// Where the start bits of a row's bytes were seen; of a reply's, for each the start bit of the first.
     #[must_use]
-    #[inline]
     pub fn seen(&self, index: usize) -> &[Instant] {
         let row = self.rows.get(index);
         row.and_then(|row| self.seen.get(row.bytes_start..row.bytes_end)).unwrap_or_default()
@@ -162,13 +155,11 @@ impl PacketLog {
 
     /// Where the start bits of bytes were seen whose stop bit was low, rising in time.
     #[must_use]
-    #[inline]
     pub fn broken(&self) -> &[Instant] {
         &self.broken
     }
 
     /// Indices of the rows of a finished log whose time on the line touches the cycles `start..=end`, rising.
-    #[inline]
     pub fn touching(&self, start: Instant, end: Instant) -> impl Iterator<Item = usize> {
         let first = self.rows.partition_point(|row| row.latest < start);
         let rows = self.rows.iter().enumerate().skip(first).take_while(move |(_, row)| row.start <= end);
@@ -176,7 +167,6 @@ impl PacketLog {
     }
 
     /// The run is over: what is still open becomes a row, and the rows stand in the order of their starts.
-    #[inline]
     pub fn finish(&mut self) {
         if self.open.is_some() {
             self.close(self.last, if self.ignoring { RowOutcome::Ignored } else { RowOutcome::Open });
@@ -191,7 +181,6 @@ impl PacketLog {
         }
     }
 
-    #[inline]
     fn sort(&mut self) {
         let mut order: Vec<usize> = (0..self.rows.len()).collect();
         order.sort_by_key(|&index| self.rows.get(index).map(|row| row.start));
@@ -206,13 +195,11 @@ impl PacketLog {
     }
 
     /// Bytes that belong to no row yet.
-    #[inline]
     fn bytes_of_open(&self) -> Vec<u8> {
         let first = self.rows.last().map_or(0, |row| row.bytes_end);
         self.bytes.get(first..).unwrap_or_default().to_vec()
     }
 
-    #[inline]
     fn close(&mut self, end: Instant, verdict: RowOutcome) {
         let start = self.open.take().unwrap_or(end);
         let queued = match verdict {
@@ -239,7 +226,6 @@ impl PacketLog {
         });
     }
 
-    #[inline]
     fn stop(&mut self, at: Instant) {
         self.waiting.clear();
         self.stops.push(at);
@@ -247,7 +233,6 @@ impl PacketLog {
 }
 
 impl Sink for PacketLog {
-    #[inline]
     fn record(&mut self, _: Record) {}
 
     fn event(&mut self, at: Instant, event: Event) {

@@ -19,13 +19,11 @@ pub struct Recording {
 }
 
 impl Sink for Recording {
-    #[inline(always)]
     fn record(&mut self, record: Record) {
         self.trace.push(record);
         self.digest.record(record);
     }
 
-    #[inline]
     fn event(&mut self, at: Instant, event: Event) {
         self.packets.event(at, event);
     }
@@ -34,7 +32,6 @@ impl Sink for Recording {
 impl Recording {
     /// Start of the first tick: where a motion's time 0 is on the device's clock.
     #[must_use]
-    #[inline]
     pub fn first_tick(&self) -> Option<Instant> {
         self.packets.ticks().first().map(|tick| tick.start)
     }

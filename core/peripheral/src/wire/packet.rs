@@ -35,14 +35,12 @@ pub struct ChannelCommand {
 impl ChannelCommand {
     /// The order that a byte means.
     #[must_use]
-    #[inline]
     pub const fn parse(byte: u8) -> Self {
         Self { right: byte & 0x80 != 0, steps: byte & 0x7f }
     }
 
     /// The byte that means the order; `None` if it has more than 127 steps.
     #[must_use]
-    #[inline]
     pub const fn emit(self) -> Option<u8> {
         if self.steps > 127 { None } else { Some((self.right as u8) << 7 | self.steps) }
     }
@@ -79,7 +77,6 @@ pub struct Unpacker {
 impl Unpacker {
     /// For `channels` channels; with an address, packets begin with one. `bit` is B.
     #[must_use]
-    #[inline]
     pub const fn new(channels: u8, address: Option<u8>, bit: Cycles) -> Self {
         Self {
             channels,
@@ -95,13 +92,11 @@ impl Unpacker {
 
     /// When a gap ends what is open; [`Instant::NEVER`] if nothing is.
     #[must_use]
-    #[inline]
     pub const fn deadline(&self) -> Instant {
         self.deadline
     }
 
     /// The gap has come: true if it cut a packet short.
-    #[inline]
     pub const fn gap(&mut self) -> bool {
         let short = self.have > 0;
         self.have = 0;
@@ -111,7 +106,6 @@ impl Unpacker {
     }
 
     /// A framing error in cycle `now`: what has come is dropped, and bytes until a gap.
-    #[inline]
     pub fn framing_error(&mut self, now: Instant) {
         self.deadline = now + self.gap;
         self.have = 0;
@@ -119,7 +113,6 @@ impl Unpacker {
     }
 
     /// A byte in cycle `now`; the packet that it completes.
-    #[inline]
     pub fn byte(&mut self, now: Instant, byte: u8) -> Option<Unpacked> {
         self.deadline = now + self.gap;
         if self.ignoring {

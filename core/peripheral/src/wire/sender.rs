@@ -52,7 +52,6 @@ pub struct Sender {
 impl Sender {
     /// A sender before its first byte. A rate of 0 counts as 1 baud.
     #[must_use]
-    #[inline]
     pub fn new(schedule: Rc<Schedule>, clock_hz: u32, baud: u32) -> Self {
         let (clock_hz, baud) = (u64::from(clock_hz), u64::from(baud.max(1)));
         let mut sender = Self {
@@ -72,13 +71,11 @@ impl Sender {
 
     /// All that has been sent and will be.
     #[must_use]
-    #[inline]
     pub fn schedule(&self) -> &Schedule {
         &self.schedule
     }
 
     /// Adds a send after all others.
-    #[inline]
     pub fn send(&mut self, start: Instant, bytes: &[u8]) {
         Rc::make_mut(&mut self.schedule).push(start, bytes);
         if self.edges == 0 {
@@ -88,13 +85,11 @@ impl Sender {
 
     /// What is sent now.
     #[must_use]
-    #[inline]
     pub const fn level(&self) -> bool {
         self.level
     }
 
     /// Takes up the byte at (`send`, `byte`), or the first one after it.
-    #[inline]
     fn load(&mut self) {
         while let Some(send) = self.schedule.get(self.send) {
             if let Some(&byte) = send.bytes.get(self.byte) {
@@ -113,7 +108,6 @@ impl Sender {
 
     /// Cycle of the next edge; [`Instant::NEVER`] without one.
     #[must_use]
-    #[inline(always)]
     pub fn next_edge(&self) -> Instant {
         match self.bit_starts.get(self.edges.trailing_zeros() as usize) {
             Some(offset) => Instant(self.byte_start.0 + offset),
@@ -122,7 +116,6 @@ impl Sender {
     }
 
     /// Enters the cycle of [`Self::next_edge`].
-    #[inline(always)]
     pub fn pass(&mut self) {
         self.level = !self.level;
         self.edges &= self.edges.wrapping_sub(1);

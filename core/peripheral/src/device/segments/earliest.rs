@@ -23,13 +23,11 @@ pub(super) struct Earliest {
 
 impl Earliest {
     /// `channels` channels, at most 16, for which nothing is due.
-    #[inline]
     pub(super) fn new(channels: usize) -> Self {
         Self { keys: [NEVER; ENTRIES], size: channels.clamp(1, MAX_CHANNELS).next_power_of_two() }
     }
 
     /// Sets the cycle of a channel, [`Instant::NEVER`] or one below 2^60.
-    #[inline(always)]
     pub(super) fn set(&mut self, channel: usize, cycle: Instant) {
         let mut index = (self.size + channel) % ENTRIES;
         let mut least =
@@ -43,7 +41,6 @@ impl Earliest {
     }
 
     /// The earliest cycle; [`Instant::NEVER`] where nothing is due.
-    #[inline(always)]
     pub(super) const fn cycle(&self) -> Instant {
         match self.keys[1] {
             NEVER => Instant::NEVER,
@@ -52,7 +49,6 @@ impl Earliest {
     }
 
     /// The channel of the earliest cycle; of several the first.
-    #[inline(always)]
     pub(super) const fn channel(&self) -> usize {
         self.keys[1] as usize % MAX_CHANNELS
     }
