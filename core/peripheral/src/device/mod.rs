@@ -64,15 +64,11 @@ use registers::Latches;
 /// The peripheral.
 ///
 /// ```
-<<<<<<< HEAD
-/// use stepscope_peripheral::{config::{Bus, Config, SerialLine}, device::Device, signal::{Levels, Record}};
-=======
 /// use stepscope_peripheral::{
 ///     config::{Bus, Config, SerialLine},
 ///     device::Device,
 ///     signal::{Levels, Record},
 /// };
->>>>>>> h-publish
 ///
 /// let bus = Bus { channels: 2, slots: 4, ..Bus::default() };
 /// let config = Config::new(16_000_000, &bus, &SerialLine::default()).expect("the defaults hold");

@@ -26,9 +26,11 @@
 
 pub use crate::protocol::{Kind, MAX_TICKS, Reason, Reply, State, Status};
 use crate::signal::MAX_CHANNELS;
-use crate::wire::packet::Tick;
+use crate::wire::{
+    cobs::{Unstuffed, Unstuffer},
+    packet::Tick,
+};
 use alloc::vec::Vec;
-use cobs::{DecodeResult, DecoderState};
 use crc::{CRC_32_ISCSI, Crc};
 
 /// The CRC of a frame.
@@ -193,29 +195,17 @@ pub enum Deframed<'a> {
 }
 
 /// Joins bytes to frames.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Deframer {
-    cobs: DecoderState,
+    cobs: Unstuffer,
     content: Vec<u8>,
     /// After a byte too many, to the next end mark.
     dropping: bool,
 }
 
-impl Clone for Deframer {
-    #[allow(clippy::needless_match, reason = "the decoder's state has no Clone of its own")]
-    fn clone(&self) -> Self {
-        let cobs = match self.cobs {
-            DecoderState::Idle => DecoderState::Idle,
-            DecoderState::Grab(left) => DecoderState::Grab(left),
-            DecoderState::GrabChain(left) => DecoderState::GrabChain(left),
-        };
-        Self { cobs, content: self.content.clone(), dropping: self.dropping }
-    }
-}
-
 impl Default for Deframer {
     fn default() -> Self {
-        Self { cobs: DecoderState::Idle, content: Vec::with_capacity(MAX_DECODED), dropping: false }
+        Self { cobs: Unstuffer::default(), content: Vec::with_capacity(MAX_DECODED), dropping: false }
     }
 }
 
@@ -226,30 +216,30 @@ impl Deframer {
             self.dropping = byte != DELIMITER;
             return None;
         }
-        match self.cobs.feed(byte) {
-            Ok(DecodeResult::NoData) => None,
-            Ok(DecodeResult::DataStart) => {
+        match self.cobs.byte(byte) {
+            Unstuffed::Overhead => None,
+            Unstuffed::First => {
                 self.content.clear();
                 None
             }
-            Ok(DecodeResult::DataContinue(_)) if self.content.len() == MAX_DECODED => {
-                self.cobs = DecoderState::Idle;
+            Unstuffed::Content(_) if self.content.len() == MAX_DECODED => {
+                self.cobs = Unstuffer::default();
                 self.dropping = true;
                 Some(Deframed::Overlong)
             }
-            Ok(DecodeResult::DataContinue(decoded)) => {
+            Unstuffed::Content(decoded) => {
                 self.content.push(decoded);
                 None
             }
-            Ok(DecodeResult::DataComplete) => Some(judge(&self.content)),
-            Err(_) => Some(Deframed::Short),
+            Unstuffed::End => Some(judge(&self.content)),
+            Unstuffed::Broken => Some(Deframed::Short),
         }
     }
 
     /// Whether bytes since the last end mark wait for theirs.
     #[must_use]
     pub const fn is_open(&self) -> bool {
-        self.dropping || !matches!(self.cobs, DecoderState::Idle)
+        self.dropping || self.cobs.is_open()
     }
 }
 

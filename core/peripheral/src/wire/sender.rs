@@ -27,20 +27,16 @@
 //! ```
 
 use crate::units::Instant;
-use crate::wire::Schedule;
+use crate::wire::{BitTimes, Schedule, bit_times::BYTE_BITS};
 use alloc::rc::Rc;
-
-/// Bits of a byte on the line: start, eight data bits, stop.
-const FRAME_BITS: usize = 10;
 
 /// Walks along the edges of a schedule's bytes.
 #[derive(Clone, Debug)]
 pub struct Sender {
     schedule: Rc<Schedule>,
-    clock_hz: u64,
-    baud: u64,
-    /// floor(k*clock_hz/baud): where bit k begins.
-    bit_starts: [u64; FRAME_BITS],
+    times: BitTimes,
+    /// Where each bit of a byte begins.
+    bit_starts: [u64; BYTE_BITS as usize],
     level: bool,
     send: usize,
     byte: usize,
@@ -53,12 +49,11 @@ impl Sender {
     /// A sender before its first byte. A rate of 0 counts as 1 baud.
     #[must_use]
     pub fn new(schedule: Rc<Schedule>, clock_hz: u32, baud: u32) -> Self {
-        let (clock_hz, baud) = (u64::from(clock_hz), u64::from(baud.max(1)));
+        let times = BitTimes::new(clock_hz, baud);
         let mut sender = Self {
             schedule,
-            clock_hz,
-            baud,
-            bit_starts: core::array::from_fn(|k| k as u64 * clock_hz / baud),
+            times,
+            bit_starts: core::array::from_fn(|k| times.bit(k as u64).0),
             level: true,
             send: 0,
             byte: 0,
@@ -93,8 +88,7 @@ impl Sender {
     fn load(&mut self) {
         while let Some(send) = self.schedule.get(self.send) {
             if let Some(&byte) = send.bytes.get(self.byte) {
-                let offset = 10 * self.byte as u64 * self.clock_hz / self.baud;
-                self.byte_start = Instant(send.start.0 + offset);
+                self.byte_start = send.start + self.times.byte(self.byte as u64);
                 // Start bit 0, data, stop bit 1; before the start bit the line is high.
                 let frame = u16::from(byte) << 1 | 1 << 9;
                 self.edges = (frame ^ (frame << 1 | 1)) & 0x3ff;
