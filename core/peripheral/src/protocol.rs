@@ -1,5 +1,14 @@
 //! The words of the framed protocol (DESIGN A6): what a frame orders, what becomes of it, and what
 //! a controller tells of itself. How frames are encoded and read is in [`crate::wire::frame`].
+//!
+//! ```
+//! use stepscope_peripheral::protocol::{FrameOutcome, Kind, Reason};
+//!
+//! assert_eq!(Kind::parse(5), Some(Kind::Stop));
+//! assert_eq!(Reason::QueueFull.name(), "QUEUE_FULL");
+//! assert_eq!(FrameOutcome::Queued(3).to_string(), "3 ticks queued");
+//! assert_eq!(FrameOutcome::Short.answer(), None); // what is no frame is not answered
+//! ```
 
 use core::fmt;
 

@@ -1,5 +1,29 @@
 //! The 36 signals of the peripheral, the records of a trace, and the sink that takes them
 //! (DESIGN A3).
+//!
+//! ```
+//! use stepscope_peripheral::{
+//!     signal::{Levels, Record, Sink},
+//!     units::Instant,
+//! };
+//!
+//! /// Counts how often EN falls.
+//! #[derive(Default)]
+//! struct PowerCuts(u32, bool);
+//!
+//! impl Sink for PowerCuts {
+//!     fn record(&mut self, record: Record) {
+//!         let powered = record.levels.has(Levels::EN);
+//!         self.0 += u32::from(self.1 && !powered);
+//!         self.1 = powered;
+//!     }
+//! }
+//!
+//! let mut cuts = PowerCuts::default();
+//! cuts.record(Record { cycle: Instant(0), levels: Levels::RESET });
+//! cuts.record(Record { cycle: Instant(9), levels: Levels(Levels::RX | Levels::TX) });
+//! assert_eq!(cuts.0, 1);
+//! ```
 
 use crate::{
     protocol::{FrameOutcome, Reply},

@@ -3,6 +3,15 @@
 //! Time is an integer count of clock cycles since reset. A point ([`Instant`]) and a span
 //! ([`Cycles`]) are different types: two points cannot be added, so a point where a span is wanted
 //! does not compile.
+//!
+//! ```
+//! use stepscope_peripheral::units::{Cycles, Instant};
+//!
+//! let (rise, width) = (Instant(4000), Cycles(40));
+//! assert_eq!(rise + width, Instant(4040));
+//! assert_eq!(Instant(4040) - rise, width);
+//! assert_eq!(rise.seconds(16_000_000), 0.000_25);
+//! ```
 
 use core::ops::{Add, AddAssign, Sub};
 

@@ -4,14 +4,7 @@
 use anyhow::{Context, Result, ensure};
 use fantoccini::actions::{InputSource, MOUSE_BUTTON_LEFT, MOUSE_BUTTON_RIGHT, MouseActions, PointerAction};
 use serde_json::{Value, json};
-use stepscope_core::{
-    inspect::{
-        between,
-        difference::{self, Scaled},
-        made::Pulses,
-    },
-    peripheral::trace::steps,
-};
+use stepscope_core::{inspect::{between, difference::{self, Scaled}, made::Pulses}, peripheral::trace::steps};
 
 use crate::{bench::in_browser, native::Known, session::Session};
 

@@ -2,15 +2,7 @@
 
 use anyhow::{Context, Result, ensure};
 use serde_json::{Value, json};
-use stepscope_core::{
-    inspect::{
-        fingerprint::Fingerprint,
-        run_fingerprint::Proof,
-        tables::{write_edges_head, write_edges_row, write_packets_head, write_packets_row},
-    },
-    peripheral::signal::Record,
-    scenario::{link::with_part, presets::PRESETS},
-};
+use stepscope_core::{inspect::{fingerprint::Fingerprint, run_fingerprint::Proof, tables::{write_edges_head, write_edges_row, write_packets_head, write_packets_row}}, peripheral::signal::Record, scenario::{link::with_part, presets::PRESETS}};
 
 use crate::{
     bench::in_browser,

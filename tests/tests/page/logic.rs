@@ -2,10 +2,7 @@
 
 use anyhow::{Context, Result, ensure};
 use fantoccini::actions::{InputSource, MOUSE_BUTTON_LEFT, MouseActions, PointerAction};
-use stepscope_core::{
-    peripheral::trace::{Digest, Verdict},
-    scenario::presets::PRESETS,
-};
+use stepscope_core::{peripheral::trace::{Digest, Verdict}, scenario::presets::PRESETS};
 
 use crate::{
     bench::in_browser,

@@ -3,15 +3,7 @@
 
 use anyhow::{Result, ensure};
 use serde_json::json;
-use stepscope_core::{
-    inspect::{
-        made::Pulses,
-        measures::Measures,
-        spectrum::{Spectrum, Stretch},
-    },
-    peripheral::trace::steps,
-    scenario::Source,
-};
+use stepscope_core::{inspect::{made::Pulses, measures::Measures, spectrum::{Spectrum, Stretch}}, peripheral::trace::steps, scenario::Source};
 
 use crate::{bench::in_browser, native::Known, session::Session};
 

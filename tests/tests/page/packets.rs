@@ -2,11 +2,7 @@
 
 use anyhow::{Context, Result, ensure};
 use serde_json::{Value, json};
-use stepscope_core::{
-    inspect::dissector::{Meaning, Reading},
-    peripheral::{config::Protocol, protocol::FrameFate, trace::Verdict},
-    scenario::presets::PRESETS,
-};
+use stepscope_core::{inspect::dissector::{Meaning, Reading}, peripheral::{config::Protocol, protocol::FrameFate, trace::Verdict}, scenario::presets::PRESETS};
 
 use crate::{
     bench::in_browser,

@@ -2,16 +2,7 @@
 
 use anyhow::{Context, Result, anyhow, ensure};
 use serde_json::{Value, json};
-use stepscope_core::{
-    inspect::{
-        comparison::{Asked, compare},
-        sine_optimum::{Freedom, optimum},
-        sine_polyline::{Distinct, Row, best, sweep},
-        source_code::{Language, Source, headline},
-    },
-    motion::quantise::{EntryFormat, Form, Stored, Tolerance, stored},
-    peripheral::{segment::PulseTimes, units::Cycles},
-};
+use stepscope_core::{inspect::{comparison::{Asked, compare}, sine_optimum::{Freedom, optimum}, sine_polyline::{Distinct, Row, best, sweep}, source_code::{Language, Source, headline}}, motion::quantise::{EntryFormat, Form, Stored, Tolerance, stored}, peripheral::{segment::PulseTimes, units::Cycles}};
 
 use crate::{bench::in_browser, exports::KEEP, native::Known, session::Session};
 

@@ -15,6 +15,23 @@
 //!
 //! So a place freed by a tick that starts in cycle p is free for the packet that ends in p, and a
 //! byte delivered in the very cycle of a gap begins a new packet.
+//!
+//! ```
+//! use stepscope_peripheral::{
+//!     config::{Bus, Config, SerialLine},
+//!     device::Device,
+//!     trace::Digest,
+//!     units::Instant,
+//! };
+//!
+//! let config = Config::new(16_000_000, &Bus::default(), &SerialLine::default()).expect("the defaults hold");
+//! // The same 3000 cycles with the line idle, one by one and at once.
+//! let (mut slow, mut slow_digest) = (Device::new(&config), Digest::default());
+//! (0..3000).for_each(|_| drop(slow.clock(true, &mut slow_digest)));
+//! let (mut fast, mut fast_digest) = (Device::new(&config), Digest::default());
+//! fast.run(true, Instant(3000), &mut fast_digest);
+//! assert_eq!(slow_digest.value(), fast_digest.value());
+//! ```
 
 mod controller;
 mod faults;
@@ -47,11 +64,14 @@ use registers::Latches;
 /// The peripheral.
 ///
 /// ```
-/// use crate::{device::Device, config::{Bus, Config}, signal::{Levels, Record}};
-/// use stepscope_scenario::Line;
+/// use stepscope_peripheral::{
+///     config::{Bus, Config, SerialLine},
+///     device::Device,
+///     signal::{Levels, Record},
+/// };
 ///
 /// let bus = Bus { channels: 2, slots: 4, ..Bus::default() };
-/// let config = Config::new(16_000_000, &bus, &Line::default()).expect("the defaults hold");
+/// let config = Config::new(16_000_000, &bus, &SerialLine::default()).expect("the defaults hold");
 /// let mut device = Device::new(&config);
 /// let mut trace: Vec<Record> = Vec::new();
 /// assert_eq!(device.clock(true, &mut trace), Levels::RESET);

@@ -34,7 +34,12 @@ const _: () = assert!(LAST_CYCLE.0 <= Earliest::LAST.0);
 ///
 /// ```
 /// use std::rc::Rc;
-/// use crate::{device::SegmentEngine, segment::{PulseTimes, Segment, SegmentList, CheckedSegments}, signal::Record, units::{Cycles, Instant}};
+/// use stepscope_peripheral::{
+///     device::SegmentEngine,
+///     segment::{CheckedSegments, PulseTimes, Segment, SegmentList},
+///     signal::Record,
+///     units::{Cycles, Instant},
+/// };
 ///
 /// let pulse = PulseTimes { width: Cycles(4), setup: Cycles(2), hold: Cycles(0) };
 /// let steps = Segment::Steps { count: 3, interval: 10 << 16, add: 0, right: true };

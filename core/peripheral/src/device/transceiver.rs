@@ -9,7 +9,7 @@ use crate::{
     config::Config,
     signal::Levels,
     units::{Cycles, Instant},
-    wire::{Schedule, Sender, frame::REPLY_LEN},
+    wire::{BitTimes, Schedule, Sender, frame::REPLY_LEN},
 };
 use alloc::rc::Rc;
 
@@ -131,11 +131,9 @@ impl Transceiver {
     pub(super) fn reply(&mut self, now: Instant, bytes: &[u8]) -> (Instant, Instant) {
         debug_assert!(self.reply.is_none(), "a second reply before the first has been sent");
         debug_assert!(!bytes.is_empty() && bytes.len() <= REPLY_LEN, "a reply of {} bytes", bytes.len());
-        let (clock_hz, baud) = (u64::from(self.clock_hz), u64::from(self.baud.max(1)));
         let rise = now + self.turnaround();
         let start = rise + self.bit;
-        let last = 10 * (bytes.len() as u64).saturating_sub(1) * clock_hz / baud;
-        let fall = start + Cycles(last + 10 * clock_hz / baud);
+        let fall = start + BitTimes::new(self.clock_hz, self.baud).bytes(bytes.len() as u64);
         let mut schedule = Schedule::default();
         schedule.push(start, bytes);
         let sender = Sender::new(Rc::new(schedule), self.clock_hz, self.baud);

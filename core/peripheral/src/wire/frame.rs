@@ -7,12 +7,30 @@
 //!
 //! Both sides of the line read and write here: the controller takes frames and gives replies, the
 //! host the other way round.
+//!
+//! ```
+//! use stepscope_peripheral::{
+//!     protocol::Kind,
+//!     wire::frame::{Deframed, Deframer, Ticks, emit},
+//! };
+//!
+//! // Two ticks of one channel for controller 7: 5 steps right, 3 left.
+//! let wire = emit(7, Kind::Ticks as u8, &Ticks::emit(0, 1, &[0x85, 0x03]));
+//! let mut deframer = Deframer::default();
+//! let (last, bytes) = wire.split_last().expect("a delimiter");
+//! assert!(bytes.iter().all(|&byte| deframer.byte(byte).is_none()));
+//! let Some(Deframed::Frame(frame)) = deframer.byte(*last) else { panic!("its CRC holds") };
+//! let ticks = Ticks::parse(frame.body, 1).expect("a body of TICKS");
+//! assert_eq!((frame.address, ticks.seq, ticks.orders()), (7, 0, &[0x85, 0x03][..]));
+//! ```
 
 pub use crate::protocol::{Kind, MAX_TICKS, Reason, Reply, State, Status};
 use crate::signal::MAX_CHANNELS;
-use crate::wire::packet::Tick;
+use crate::wire::{
+    cobs::{Unstuffed, Unstuffer},
+    packet::Tick,
+};
 use alloc::vec::Vec;
-use cobs::{DecodeResult, DecoderState};
 use crc::{CRC_32_ISCSI, Crc};
 
 /// The CRC of a frame.
@@ -194,9 +212,9 @@ pub enum Deframed<'a> {
 }
 
 /// Joins bytes to frames.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Deframer {
-    cobs: DecoderState,
+    cobs: Unstuffer,
     /// Decoded bytes of the frame.
     ///
     /// Invariant: at most [`MAX_DECODED`].
@@ -205,21 +223,9 @@ pub struct Deframer {
     dropping: bool,
 }
 
-impl Clone for Deframer {
-    #[allow(clippy::needless_match, reason = "the decoder's state has no Clone of its own")]
-    fn clone(&self) -> Self {
-        let cobs = match self.cobs {
-            DecoderState::Idle => DecoderState::Idle,
-            DecoderState::Grab(left) => DecoderState::Grab(left),
-            DecoderState::GrabChain(left) => DecoderState::GrabChain(left),
-        };
-        Self { cobs, content: self.content.clone(), dropping: self.dropping }
-    }
-}
-
 impl Default for Deframer {
     fn default() -> Self {
-        Self { cobs: DecoderState::Idle, content: Vec::with_capacity(MAX_DECODED), dropping: false }
+        Self { cobs: Unstuffer::default(), content: Vec::with_capacity(MAX_DECODED), dropping: false }
     }
 }
 
@@ -230,31 +236,31 @@ impl Deframer {
             self.dropping = byte != DELIMITER;
             return None;
         }
-        match self.cobs.feed(byte) {
-            Ok(DecodeResult::NoData) => None,
-            Ok(DecodeResult::DataStart) => {
+        match self.cobs.byte(byte) {
+            Unstuffed::Overhead => None,
+            Unstuffed::First => {
                 self.content.clear();
                 None
             }
-            Ok(DecodeResult::DataContinue(_)) if self.content.len() == MAX_DECODED => {
-                self.cobs = DecoderState::Idle;
+            Unstuffed::Content(_) if self.content.len() == MAX_DECODED => {
+                self.cobs = Unstuffer::default();
                 self.dropping = true;
                 Some(Deframed::Overlong)
             }
-            Ok(DecodeResult::DataContinue(decoded)) => {
+            Unstuffed::Content(decoded) => {
                 self.content.push(decoded);
                 debug_assert!(self.content.len() <= MAX_DECODED, "a byte too many is kept");
                 None
             }
-            Ok(DecodeResult::DataComplete) => Some(judge(&self.content)),
-            Err(_) => Some(Deframed::Short),
+            Unstuffed::End => Some(judge(&self.content)),
+            Unstuffed::Broken => Some(Deframed::Short),
         }
     }
 
     /// Whether bytes since the last delimiter wait for theirs.
     #[must_use]
     pub const fn is_open(&self) -> bool {
-        self.dropping || !matches!(self.cobs, DecoderState::Idle)
+        self.dropping || self.cobs.is_open()
     }
 }
 

@@ -4,6 +4,34 @@
 //! A level that is forced is heard whatever is sent; else the line is the AND of all that send. The
 //! line tells when what the host sends or what is forced changes next, so a run can skip what lies
 //! between.
+//!
+//! ```
+//! use std::rc::Rc;
+//! use stepscope_peripheral::{
+//!     config::{Bus, Config, SerialLine},
+//!     device::{Device, Faults},
+//!     signal::Record,
+//!     units::{Cycles, Instant},
+//!     wire::{Forced, Line, Schedule},
+//! };
+//!
+//! // A packet of one channel, and a break that is held over its stop bit.
+//! let host = Schedule::paced(Instant(2000), Cycles(32_000), [[0x85]].iter());
+//! let broken = Forced { start: Instant(2000), end: Instant(5000), level: false };
+//! let mut line = Line::new(Rc::new(host), &[broken], 16_000_000, 115_200);
+//!
+//! let config = Config::new(16_000_000, &Bus::default(), &SerialLine::default()).expect("the defaults hold");
+//! let (mut device, mut trace) = (Device::new(&config), Vec::<Record>::new());
+//! // From change to change of the line, which the device does not answer on.
+//! while device.now() < Instant(20_000) {
+//!     let next = line.next_change().min(Instant(20_000));
+//!     device.run(line.heard(true), next, &mut trace);
+//!     if next == line.next_change() {
+//!         line.change();
+//!     }
+//! }
+//! assert_eq!(device.faults(), Faults::FRAMING);
+//! ```
 
 use crate::units::Instant;
 use crate::wire::{Schedule, sender::Sender};

@@ -3,6 +3,15 @@
 //! A packet is one byte a channel, bit 7 the direction (1 = right), bits 6..=0 the number of steps;
 //! on an addressed line the controller's address stands first. Raw packets have no end mark: a
 //! pause of more than 45 bit times is a gap, and the next byte begins a packet.
+//!
+//! ```
+//! use stepscope_peripheral::wire::packet::ChannelCommand;
+//!
+//! let order = ChannelCommand { right: true, steps: 5 };
+//! assert_eq!(order.emit(), Some(0x85));
+//! assert_eq!(ChannelCommand::parse(0x85), order);
+//! assert_eq!(ChannelCommand { right: true, steps: 128 }.emit(), None); // seven bits hold 127
+//! ```
 
 use crate::{
     signal::MAX_CHANNELS,

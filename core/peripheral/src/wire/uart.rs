@@ -9,6 +9,21 @@
 //!
 //! The looks at data bits change nothing outside. They are made up for when the line changes or
 //! the stop bit is due, so that a byte costs as many events as it has edges, and two.
+//!
+//! ```
+//! use stepscope_peripheral::{
+//!     units::{Cycles, Instant},
+//!     wire::uart::{Heard, Receiver},
+//! };
+//!
+//! // Bits of 16 cycles; the line is low from cycle 100 to 179: a start bit and four zeros.
+//! let mut receiver = Receiver::new(Cycles(16));
+//! let level = |cycle: u64| !(100..180).contains(&cycle);
+//! let heard = (1..300).find_map(|cycle| {
+//!     receiver.clock(Instant(cycle), level(cycle - 1), level(cycle)).map(|heard| (cycle, heard))
+//! });
+//! assert_eq!(heard, Some((252, Heard::Byte(0xf0)))); // 100 + 8 + 9 * 16
+//! ```
 
 use crate::units::{Cycles, Instant};
 
