@@ -2,7 +2,15 @@
 
 use anyhow::{Context, Result, ensure};
 use serde_json::{Value, json};
-use stepscope_core::{inspect::{fingerprint::Fingerprint, run_fingerprint::Proof, tables::{write_edges_head, write_edges_row, write_packets_head, write_packets_row}}, peripheral::signal::Record, scenario::{link::with_part, presets::PRESETS}};
+use stepscope_core::{
+    inspect::{
+        fingerprint::Fingerprint,
+        run_fingerprint::RunFingerprint,
+        tables::{write_edges_head, write_edges_row, write_packets_head, write_packets_row},
+    },
+    peripheral::signal::Record,
+    scenario::{link::with_part, presets::PRESETS},
+};
 
 use crate::{
     bench::in_browser,
@@ -16,7 +24,7 @@ const MESSAGE: &str = "document.getElementById('link-message').textContent";
 
 /// A link of a scenario with the digests of a trace.
 fn link(known: &Known, trace: &[Record]) -> String {
-    let proof = Proof::of(vec![Fingerprint::of(trace)]);
+    let proof = RunFingerprint::of(vec![Fingerprint::of(trace)]);
     format!("#{}", with_part(known.link.clone(), "d", &proof.emit()))
 }
 
@@ -83,7 +91,7 @@ fn digests_that_cannot_be_read_are_left_out_with_a_word() -> Result<()> {
                 with_part(
                     format!("#{}", known.link),
                     "d",
-                    &Proof::of(vec![Fingerprint::of(&known.recording.trace); 2]).emit(),
+                    &RunFingerprint::of(vec![Fingerprint::of(&known.recording.trace); 2]).emit(),
                 ),
                 "of 2 controllers",
             ),

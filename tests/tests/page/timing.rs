@@ -1,7 +1,10 @@
 //! The driver timing check on the page: counts, margins, and the way from one violation to the next.
 
 use anyhow::{Result, ensure};
-use stepscope_core::{inspect::{drivers, timing::TimingCheck}, scenario::presets::PRESETS};
+use stepscope_core::{
+    inspect::{drivers, timing::TimingCheck},
+    scenario::presets::PRESETS,
+};
 
 use crate::{
     bench::in_browser,

@@ -3,7 +3,11 @@
 
 use anyhow::{Result, ensure};
 use serde_json::{Value, json};
-use stepscope_core::{inspect::torque::{Demand, Machine}, motion::moves::Axis, scenario::{Scenario, Source}};
+use stepscope_core::{
+    inspect::torque::{Demand, Machine},
+    motion::moves::Axis,
+    scenario::{Scenario, Source},
+};
 
 use crate::{bench::in_browser, native::Known, session::Session};
 
