@@ -11,6 +11,15 @@
 //! ```
 //!
 //! The mirror makes s(T) exactly n. With t_s = 0 the speed jumps to f_max and back.
+//!
+//! ```
+//! use stepscope_motion::{Curve, cosine::Cosine};
+//!
+//! // One turn of 3200 steps in 0.4 s, half of it speeding up.
+//! let turn = Cosine::new(3200, 0.4, 0.2);
+//! assert_eq!(turn.top_speed(), 16_000.0);
+//! assert_eq!((turn.position(0.2), turn.position(0.4)), (1600.0, 3200.0));
+//! ```
 
 use crate::{
     Curve, Peaks,

@@ -25,6 +25,16 @@
 //! that is left of the ramp; the second half mirrors the first. A step's time is the root of its
 //! phase's own polynomial, from the end at which it is small: a cube root, a quadratic in the form
 //! that does not cancel, and Newton's method, which for the last only comes from one side.
+//!
+//! ```
+//! use stepscope_motion::{Curve, jerk_limited::{JerkLimited, Limits}};
+//!
+//! let limits = Limits { speed: 10_000.0, acceleration: 100_000.0, jerk: 2_000_000.0 };
+//! let go = JerkLimited::new(3200, limits);
+//! let peaks = go.peaks();
+//! assert!(peaks.speed <= 10_000.0 && peaks.acceleration <= 100_000.0 && peaks.jerk <= 2_000_000.0);
+//! assert_eq!((go.position(go.duration_s()), go.speed(0.0)), (3200.0, 0.0));
+//! ```
 
 use crate::{
     Curve, Peaks,

@@ -21,9 +21,22 @@
 //! Positions are in steps, f64, and not rounded: [`round_half_up`] is the one rounding (B1's R),
 //! and `quantise` is where it decides. All mathematics that is more than + - * / and the square root
 //! comes from `libm`, so a plan has the same bits on every target.
+//!
+//! ```
+//! use stepscope_motion::{moves::Axis, plan_axis};
+//!
+//! // The default axis makes one turn of 3200 steps by a cosine S-curve.
+//! let plan = plan_axis(&Axis::default(), "x").expect("it can be planned");
+//! assert_eq!((plan.steps(), plan.duration_s()), (3200, 0.4));
+//! assert_eq!((plan.position(0.2), plan.speed(0.2)), (1600.0, 16_000.0));
+//! ```
 #![cfg_attr(not(any(test, feature = "std")), no_std)]
 
 extern crate alloc;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
 
 pub mod problem;
 

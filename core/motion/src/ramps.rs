@@ -13,6 +13,15 @@
 //!
 //! Slowing down is speeding up, mirrored in time: with an exponential the speed falls slowly at first
 //! and steeply at the end.
+//!
+//! ```
+//! use stepscope_motion::{Curve, ramp::Ramp, ramps::Ramps};
+//!
+//! let sharp = Ramps::new(3200, 0.4, 0.1, Ramp::Straight);
+//! let soft = sharp.with_ramp_s(0.2);
+//! assert!(soft.peaks().acceleration < sharp.peaks().acceleration);
+//! assert!(soft.top_speed() > sharp.top_speed()); // as far in the same time
+//! ```
 
 use crate::{
     Curve, Peaks,
