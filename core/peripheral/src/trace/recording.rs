@@ -2,7 +2,7 @@
 
 use crate::trace::{Digest, PacketLog};
 use crate::{
-    signal::{Event, Record, Sink},
+    signal::{Event, Levels, Record, Sink},
     units::Instant,
 };
 use alloc::vec::Vec;
@@ -38,4 +38,12 @@ impl Recording {
     pub fn first_tick(&self) -> Option<Instant> {
         self.packets.ticks().first().map(|tick| tick.start)
     }
+}
+
+/// The levels in a cycle of a run with these records; those of reset where there are none.
+#[must_use]
+#[inline]
+pub fn levels_at(trace: &[Record], at: Instant) -> Levels {
+    let after = trace.partition_point(|record| record.cycle <= at);
+    after.checked_sub(1).and_then(|index| trace.get(index)).map_or(Levels::RESET, |record| record.levels)
 }

@@ -33,7 +33,7 @@ pub fn encode_frame(content: &[u8]) -> Vec<u8> {
 }
 
 /// Bytes of the check.
-const CHECK_LEN: usize = 4;
+pub const CHECK_LEN: usize = 4;
 /// Fewest decoded bytes of a frame: address, kind and check.
 const MIN_DECODED: usize = 2 + CHECK_LEN;
 /// Most decoded bytes of a frame.
@@ -43,9 +43,9 @@ pub const STATUS_LEN: usize = 9;
 /// Most bytes of a reply on the wire: a NAK in COBS with its end mark.
 pub const REPLY_LEN: usize = 3 + STATUS_LEN + CHECK_LEN + 2;
 /// Set in the kind of a reply that acknowledges.
-const ACK: u8 = 0x80;
+pub const ACK: u8 = 0x80;
 /// Kind of a reply that refuses.
-const NAK: u8 = 0xff;
+pub const NAK: u8 = 0xff;
 
 fn emit_status(status: &Status) -> [u8; STATUS_LEN] {
     let [f0, f1] = status.faults.to_le_bytes();
