@@ -129,6 +129,9 @@ impl<'ast> Visit<'ast> for Seen {
         }
     }
 
+    /// Who may see an item is no use of who is named there.
+    fn visit_visibility(&mut self, _: &'ast Visibility) {}
+
     fn visit_item_mod(&mut self, item: &'ast ItemMod) {
         self.module.push(item.ident.to_string());
         visit::visit_item_mod(self, item);

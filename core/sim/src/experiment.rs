@@ -124,6 +124,12 @@ impl Experiment {
         self.orders.iter().map(ControllerPlan::config)
     }
 
+    /// The host's rate on the line.
+    #[must_use]
+    pub const fn baud(&self) -> u32 {
+        self.checked.baud
+    }
+
     /// The plan of each axis of the first controller; empty where the source is no motion.
     #[must_use]
     pub fn plans(&self) -> &[AxisPlan] {
