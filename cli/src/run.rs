@@ -96,7 +96,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     let mut stations: Vec<Station> = (0..controllers).map(|_| Station::default()).collect();
     if let Some(station) = stations.get_mut(chosen) {
-        station.files = open(arguments, config)?;
+        station.files = open(arguments, chosen, config)?;
         station.timing = arguments.timing.check(path, &scenario)?;
     }
     if arguments.link {
@@ -107,7 +107,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     for station in &mut stations {
         timing = timing.or(station.timing.take());
         for (path, file) in station.files.drain(..) {
-            file.finish(finished.cycles().0).map_err(|error| Failure::File(path, error))?;
+            file.finish(&experiment, &finished).map_err(|error| Failure::File(path, error))?;
         }
     }
     if let Some(file) = &arguments.line {
@@ -144,7 +144,7 @@ fn go(experiment: &Experiment, stations: &mut [Station], wanted: bool) -> Run {
 }
 
 /// The files that were asked for, each with its path.
-fn open(arguments: &Arguments, config: &Config) -> Result<Files, Failure> {
+fn open(arguments: &Arguments, controller: usize, config: &Config) -> Result<Files, Failure> {
     let (clock_hz, channels) = (config.clock_hz(), config.channels());
     let mut opened = Vec::new();
     let mut add = |path: &Option<PathBuf>, make: &dyn Fn(Out) -> io::Result<Box<dyn Output>>| {
@@ -156,6 +156,6 @@ fn open(arguments: &Arguments, config: &Config) -> Result<Files, Failure> {
     add(&arguments.trace, &|out| Ok(files::trace(out)))?;
     add(&arguments.vcd, &|out| files::vcd(out, clock_hz, channels))?;
     add(&arguments.csv, &|out| files::csv(out, clock_hz, channels))?;
-    add(&arguments.packets, &|out| Ok(files::packets(out)))?;
+    add(&arguments.packets, &|out| Ok(files::packets(out, controller)))?;
     Ok(opened)
 }

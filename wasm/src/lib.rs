@@ -7,7 +7,6 @@ mod charts;
 mod compare;
 mod convert;
 mod curves;
-mod decoder;
 mod files;
 mod judge;
 mod link;

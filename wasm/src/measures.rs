@@ -25,7 +25,7 @@ impl Simulation {
     /// The moves of an axis of the controller that the views look at.
     fn asked(&self, axis: u8) -> Option<&Axis> {
         let Source::Motion(motion) = &self.scenario.source else { return None };
-        let further = self.looked_at.checked_sub(1).and_then(|index| self.scenario.controllers.get(index));
+        let further = self.selected.checked_sub(1).and_then(|index| self.scenario.controllers.get(index));
         further.map_or(&motion.axes, |controller| &controller.axes).get(usize::from(axis))
     }
 }

@@ -7,7 +7,10 @@ use crate::{
 };
 use js_sys::Object;
 use serde::Serialize;
-use stepscope_core::{inspect::changes::Edge, peripheral::signal::Record};
+use stepscope_core::{
+    inspect::changes::Edge,
+    peripheral::{signal::Record, trace::levels_at, units::Instant},
+};
 use wasm_bindgen::prelude::*;
 
 #[derive(Serialize)]
@@ -38,7 +41,7 @@ impl Simulation {
     /// further columns of the same width at each side. Those before cycle 0 have no levels.
     #[must_use]
     pub fn pulses(&self, start_cycle: f64, end_cycle: f64, columns_asked: u32, margin: u32) -> Object {
-        let kept = self.looked_at();
+        let kept = self.selected();
         let found = kept.changes.columns(
             &kept.recording.trace,
             start_cycle.max(0.0) as u64,
@@ -88,7 +91,7 @@ impl Simulation {
     /// # Errors
     /// Never in practice.
     pub fn edges(&self, bit: Option<u8>, cycle: f64, forward: bool, most: u32) -> Result<JsValue, JsError> {
-        let trace = &self.looked_at().recording.trace;
+        let trace = &self.selected().recording.trace;
         let at = cycle.max(-1.0);
         let mut index = match (forward, at < 0.0) {
             (true, true) => 1,
@@ -133,7 +136,7 @@ fn levels(trace: &[Record], index: usize) -> u64 {
 impl Simulation {
     /// Index of a signal's first edge from record `index` on, or of its last one before.
     fn edge_at(&self, bit: u8, trace: &[Record], index: usize, forward: bool) -> Option<usize> {
-        let changes = &self.looked_at().changes;
+        let changes = &self.selected().changes;
         if forward {
             changes.next_edge(trace, bit, trace.get(index.checked_sub(1)?)?.cycle.0, Edge::Any)
         } else {
@@ -143,7 +146,7 @@ impl Simulation {
     }
 
     fn edge(&self, bit: u8, cycle: u64, forward: bool, edge: Edge) -> Option<u64> {
-        let kept = self.looked_at();
+        let kept = self.selected();
         let trace = &kept.recording.trace;
         let found = if forward {
             kept.changes.next_edge(trace, bit, cycle, edge)
@@ -154,10 +157,7 @@ impl Simulation {
     }
 
     /// Level of a signal in a cycle.
-    pub(crate) fn level(&self, bit: u8, cycle: u64) -> bool {
-        let trace = &self.looked_at().recording.trace;
-        let index = trace.partition_point(|record| record.cycle.0 <= cycle);
-        let levels = index.checked_sub(1).map_or(0, |index| levels(trace, index));
-        levels >> bit.min(63) & 1 == 1
+    fn level(&self, bit: u8, cycle: u64) -> bool {
+        levels_at(&self.selected().recording.trace, Instant(cycle)).has(1 << bit.min(63))
     }
 }

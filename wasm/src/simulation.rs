@@ -1,11 +1,13 @@
 //! A run in the worker: made in slices, kept for the views' questions. The views look at one
 //! controller at a time.
 
-use crate::{convert::object, packets::Filter, subject::listed};
+use crate::{convert::object, subject::listed};
 use serde::Serialize;
 use std::mem::take;
 use stepscope_core::{
-    inspect::{changes::Changes, timing::TimingCheck, trace_diff::TraceDiff, watched::Watched},
+    inspect::{
+        changes::Changes, packet_table::Filter, timing::TimingCheck, trace_diff::TraceDiff, watched::Watched,
+    },
     peripheral::{
         config::Config,
         trace::{Recording, Step, steps},
@@ -27,7 +29,7 @@ pub struct Simulation {
     /// Of each controller, in the order of the scenario; never empty.
     pub(crate) kept: Vec<Kept>,
     /// Index in `kept` of the controller that the views look at.
-    pub(crate) looked_at: usize,
+    pub(crate) selected: usize,
     /// Which rows of its packets the table shows.
     pub(crate) filter: Filter,
     /// A controller's index, and how its trace stands to a file that is being read.
@@ -92,7 +94,7 @@ impl Simulation {
             steps: vec![None; usize::from(config.channels())],
         };
         let kept = experiment.configs().map(kept).collect();
-        Ok(Self { scenario, experiment, run, kept, looked_at: 0, filter: Filter::default(), against: None })
+        Ok(Self { scenario, experiment, run, kept, selected: 0, filter: Filter::default(), against: None })
     }
 
     /// Runs on until one controller has made about `max_records` more records: `{done, cycle, end_cycle,
@@ -131,7 +133,7 @@ impl Simulation {
     /// is.
     pub fn select(&mut self, controller: u32) {
         if (controller as usize) < self.kept.len() {
-            self.looked_at = controller as usize;
+            self.selected = controller as usize;
             self.filter = Filter::default();
         }
     }
@@ -150,7 +152,7 @@ impl Simulation {
 
 impl Simulation {
     /// The controller that the views look at.
-    pub(crate) fn looked_at(&self) -> &Kept {
-        &self.kept[self.looked_at]
+    pub(crate) fn selected(&self) -> &Kept {
+        &self.kept[self.selected]
     }
 }

@@ -13,8 +13,10 @@
 //! | `mutants` | `cargo xtask mutants` |
 //! | `package` | the crates and the npm package as others would get them |
 //! | `run` | child processes: time limit, no input, killed as a group |
+//! | `attend` | a program that ends with whoever started it, for the page's tests |
 
 mod apt;
+mod attend;
 mod bare_metal;
 mod bench;
 mod browser;
@@ -35,6 +37,7 @@ mod toolchain;
 mod tools;
 mod wasm_opt;
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -100,6 +103,16 @@ enum Task {
         /// In a minute or two after the builds, and noisier
         #[arg(long)]
         quick: bool,
+        /// Measure the page in Chromium instead: its frames, its loading, its answers to keys
+        #[arg(long, conflicts_with = "quick")]
+        page: bool,
+    },
+    /// Run a program until standard input ends, and then end it with all that it started
+    #[command(hide = true)]
+    Attend {
+        /// The program and its arguments
+        #[arg(last = true, required = true)]
+        words: Vec<OsString>,
     },
     /// Search for inputs that break the core, by libFuzzer; what is found is said and can be kept as a test
     Fuzz {
@@ -174,7 +187,9 @@ async fn perform(task: Task) -> Result<()> {
             Ok(())
         }
         Task::Test { only, list: false } => steps::run(&only).await,
-        Task::Bench { quick } => bench::run(quick).await,
+        Task::Bench { page: true, quick: _ } => bench::page().await,
+        Task::Bench { page: false, quick } => bench::run(quick).await,
+        Task::Attend { words } => attend::attend(&words).await,
         Task::Fuzz { targets, seconds, seed } => fuzz::run(fuzz::Options { targets, seconds, seed }).await,
         Task::Mutants { sample, seed, package } => {
             mutants::run(mutants::Options { sample: sample as usize, seed, packages: package }).await

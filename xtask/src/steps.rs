@@ -121,15 +121,20 @@ async fn wasm() -> Result<()> {
     run::to_end(command, run::LIMIT).await
 }
 
-/// The page's tests, as yet without the words that choose among them. They start the drivers and the server themselves;
-/// the environment says where all of it is.
+/// The page's tests, as yet without the words that choose among them.
 async fn page_tests() -> Result<Command> {
+    // The whole workspace, so that its packages keep the features, and with them the builds, of the native step.
+    with_page("test --workspace --features stepscope-tests/browser --test page --locked --").await
+}
+
+/// Cargo's call of something that drives the page in Chromium. It starts the driver and the server itself; the
+/// environment says where all of it is.
+pub(crate) async fn with_page(line: &str) -> Result<Command> {
     let this = env::current_exe().context("this program's own path is unknown")?;
     let browser = Browser::ready().await?;
     page::built().await?;
     let mut command = toolchain::cargo();
-    // The whole workspace, so that its packages keep the features, and with them the builds, of the native step.
-    command.args(words("test --workspace --features stepscope-tests/browser --test page --locked --"));
+    command.args(words(line));
     command
         .env("STEPSCOPE_WEB", root().join("web"))
         .env("STEPSCOPE_DIST", dist::folder())

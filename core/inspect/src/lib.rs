@@ -22,7 +22,9 @@ pub mod drivers;
 pub mod fingerprint;
 #[cfg(feature = "std")]
 mod fourier;
+pub mod line_decoder;
 pub mod measures;
+pub mod packet_table;
 pub mod position_error;
 pub mod ramp_costs;
 pub mod run_fingerprint;

@@ -43,6 +43,7 @@ impl Cosine {
     /// `steps` (left negative) in `duration_s` > 0 with ramps of `ramp_s`, 0 to half of it.
     #[must_use]
     pub fn new(steps: i64, duration_s: f64, ramp_s: f64) -> Self {
+        debug_assert!((0.0..=duration_s / 2.0).contains(&ramp_s), "ramps of {ramp_s} s in {duration_s} s");
         let top_speed = steps.unsigned_abs() as f64 / (duration_s - ramp_s);
         Self { halves: Mirrored { steps, duration_s }, ramp_s, top_speed }
     }

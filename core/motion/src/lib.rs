@@ -50,6 +50,7 @@ pub mod moves;
 
 pub mod acceleration_table;
 mod axis;
+pub mod bisection;
 mod breakpoints;
 pub mod constant_velocity;
 pub mod cosine;
@@ -110,7 +111,6 @@ pub fn round_half_up(x: f64) -> i64 {
 
 /// The square root. IEEE 754 leaves it no choice of bits, so every target may take its own:
 /// wasm has an instruction for it, and `libm` there has ten times its time.
-#[inline]
 fn square_root(x: f64) -> f64 {
     #[cfg(feature = "std")]
     let root = x.sqrt();

@@ -76,6 +76,8 @@ impl Points {
             smoothen(&mut pieces);
         }
         let made = made(&pieces);
+        debug_assert!(made.len() == pieces.len() && pieces.first().is_some_and(|first| first.from_s == 0.0));
+        debug_assert!(pieces.is_sorted_by(|piece, next| piece.to_s == next.from_s && piece.to == next.from));
         Some(Self { pieces, made, between })
     }
 

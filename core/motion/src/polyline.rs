@@ -27,6 +27,8 @@ pub const POINTS: u16 = 2048;
 pub const QUARTER: u16 = POINTS / 4;
 /// In how many parts a chord is cut to find its greatest deviation; its ends count too.
 const CHORD_PARTS: u16 = 100;
+// Four quarters are a period, to the point.
+const _: () = assert!(4 * QUARTER == POINTS);
 
 /// y = cos at a point of the angle, 0..=[`QUARTER`].
 pub fn cosine_at(point: u16) -> f64 {

@@ -66,7 +66,6 @@ pub struct Peaks {
 impl Peaks {
     /// The greater of both, each by itself.
     #[must_use]
-    #[inline(always)]
     pub fn or(self, other: Self) -> Self {
         Self {
             speed: greater(self.speed, other.speed),
@@ -79,7 +78,6 @@ impl Peaks {
 }
 
 /// The greater of two magnitudes.
-#[inline(always)]
 pub(super) fn greater(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }

@@ -140,14 +140,14 @@ pub enum FrameOutcome {
     OtherAddress,
     /// Not COBS, or too short for a frame.
     Short,
-    /// Its check failed.
+    /// Its CRC is wrong.
     BadCheck {
-        /// The check that came.
+        /// The CRC that came.
         found: u32,
-        /// The check of what came before it.
+        /// The CRC of what came before it.
         expected: u32,
     },
-    /// A byte too many; the rest is dropped to the next end mark.
+    /// A byte too many; the rest is dropped to the next delimiter.
     Overlong,
 }
 

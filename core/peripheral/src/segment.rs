@@ -157,6 +157,10 @@ impl CheckedSegments {
             }
         }
         all.lists = lists;
+        debug_assert!(
+            !refused.is_empty() || all.end.0 <= LAST_CYCLE.0.saturating_add(pulse.width.0),
+            "the last step leaves 48.16 fixed point"
+        );
         if refused.is_empty() { Ok(all) } else { Err(refused) }
     }
 
@@ -210,6 +214,10 @@ impl CheckedSegments {
         } else {
             ((most - first) / i128::from(add) + 1) as u32
         };
+        debug_assert!(
+            is_bad(step) && !step.checked_sub(1).is_some_and(is_bad),
+            "step {step} is not the first"
+        );
         Some((step, at(step)))
     }
 

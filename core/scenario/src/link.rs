@@ -285,9 +285,10 @@ mod tests {
     #[test]
     fn the_version_is_judged_before_the_check() {
         let rows = [
-            ("c=2.z.anything.00000000", LinkError::Newer { given: 2, newest: VERSION }),
+            ("c=3.z.anything.00000000", LinkError::Newer { given: 3, newest: VERSION }),
             ("c=99", LinkError::Newer { given: 99, newest: VERSION }),
             ("c=1.z.AAAA.00000000", LinkError::Damaged),
+            ("c=2.z.AAAA.00000000", LinkError::Damaged),
             ("c=x", LinkError::Damaged),
             ("c=0.j.e30.0768f5dc", LinkError::Damaged),
             ("d=1", LinkError::NoScenario),

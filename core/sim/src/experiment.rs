@@ -28,6 +28,8 @@ const MAX_LINE_BYTES: u64 = 2_000_000 * 17;
 pub struct Experiment {
     checked: Checked,
     /// What each controller is to do.
+    ///
+    /// Invariant: one at least, the scenario's own first.
     orders: Vec<ControllerPlan>,
     /// What the host sends without waiting for replies.
     schedule: Rc<Schedule>,
@@ -56,6 +58,7 @@ impl Experiment {
                 return Err(problems);
             }
         };
+        debug_assert!(!orders.is_empty() && orders.len() == checked.configs.len());
         let (schedule, forced) = controller_plan::schedule(&checked, &orders);
         checked.forced.extend(forced);
         let segments = controller_plan::segments(&checked, &orders)?.map(Rc::new);
@@ -119,6 +122,12 @@ impl Experiment {
     /// The configuration of each controller, in the order of the scenario.
     pub fn configs(&self) -> impl ExactSizeIterator<Item = &Config> {
         self.orders.iter().map(ControllerPlan::config)
+    }
+
+    /// The host's rate on the line.
+    #[must_use]
+    pub const fn baud(&self) -> u32 {
+        self.checked.baud
     }
 
     /// The plan of each axis of the first controller; empty where the source is no motion.
@@ -343,7 +352,6 @@ struct Slice<'a, S> {
 }
 
 impl<S: Sink> Sink for Slice<'_, S> {
-    #[inline(always)]
     fn record(&mut self, record: Record) {
         self.left = self.left.saturating_sub(1);
         self.sink.record(record);

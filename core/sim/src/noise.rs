@@ -24,7 +24,7 @@ use rand_xoshiro::{
     rand_core::{Rng, SeedableRng},
 };
 use stepscope_peripheral::wire::Schedule;
-use stepscope_peripheral::wire::schedule::line_time;
+use stepscope_peripheral::wire::{BitTimes, schedule::line_time};
 use stepscope_peripheral::{
     units::{Cycles, Instant},
     wire::Forced,
@@ -125,9 +125,10 @@ impl Noise {
     /// A level forced somewhere within so many bytes, for one cycle to two bit times.
     fn glitch(&mut self, start: Instant, bytes: u64) -> Forced {
         let room = line_time(bytes.max(1), self.clock_hz, self.baud);
-        let longest = 2 * u64::from(self.clock_hz) / u64::from(self.baud.max(1));
+        let Cycles(longest) = BitTimes::new(self.clock_hz, self.baud).bit(2);
         let start = start + Cycles(self.random.below(room));
         let end = start + Cycles(1 + self.random.below(longest.max(1)));
+        debug_assert!(start < end);
         Forced { start, end, level: self.random.below(2) == 1 }
     }
 

@@ -8,12 +8,35 @@
 use crate::device::{Device, Faults, Framing};
 use crate::{
     config::{Bus, Config, DirLine, Distribution, Protocol, PulsePhasing},
-    protocol::Reason,
+    protocol::{Reason, State},
     signal::{Event, Levels, MAX_CHANNELS, Sink},
     units::Instant,
     wire::packet::Tick,
 };
 use stepscope_registers as map;
+
+// One register a channel, and a byte of a register a channel.
+const _: () = assert!(map::position::REGISTER.count as usize == MAX_CHANNELS);
+const _: () = assert!(map::orders::REGISTER.count as usize * 4 == MAX_CHANNELS);
+// A fault has the bit that its register has, a refusal the code of its result.
+const _: () = {
+    use map::{faults, result};
+    assert!(Faults::FRAMING.bits() as u32 == faults::FRAMING.mask());
+    assert!(Faults::SHORT_PACKET.bits() as u32 == faults::SHORT_PACKET.mask());
+    assert!(Faults::CRC.bits() as u32 == faults::CRC.mask());
+    assert!(Faults::OVERLONG.bits() as u32 == faults::OVERLONG.mask());
+    assert!(Faults::QUEUE_OVERFLOW.bits() as u32 == faults::QUEUE_OVERFLOW.mask());
+    assert!(Faults::TOO_MANY_STEPS.bits() as u32 == faults::TOO_MANY_STEPS.mask());
+    assert!(Faults::BAD_SEQ.bits() as u32 == faults::BAD_SEQ.mask());
+    assert!(Faults::UNDERRUN.bits() as u32 == faults::UNDERRUN.mask());
+    assert!(Reason::QueueFull as u32 == result::CODE_QUEUE_FULL);
+    assert!(Reason::TooManySteps as u32 == result::CODE_TOO_MANY_STEPS);
+    assert!(Reason::Busy as u32 == result::CODE_BUSY);
+    assert!(Reason::Stopped as u32 == result::CODE_STOPPED);
+    assert!(State::Busy as u32 == map::status::STATE_BUSY && State::Ready as u32 == map::status::STATE_READY);
+    assert!(State::Moving as u32 == map::status::STATE_MOVING);
+    assert!(State::Stopped as u32 == map::status::STATE_STOPPED);
+};
 
 /// What only the registers hold.
 #[derive(Clone, Debug)]

@@ -1,5 +1,6 @@
 //! Between bytes and the level of the line (DESIGN A4 to A6): `schedule` holds what is sent when, `sender` makes edges
-//! of it and `line` the level that all hear; `uart` makes bytes of levels, `packet` and `frame` orders of bytes.
+//! of it and `line` the level that all hear; `uart` makes bytes of levels, `packet` and `frame` orders of bytes. When bits
+//! and bytes begin says `bit_times`, what COBS carries `cobs`.
 //!
 //! ```
 //! use std::rc::Rc;
@@ -14,6 +15,8 @@
 //! assert_eq!(line.schedule().get(1).expect("two").start, Instant(33_601));
 //! ```
 
+pub mod bit_times;
+pub mod cobs;
 pub mod frame;
 pub mod line;
 pub mod packet;
@@ -21,6 +24,7 @@ pub mod schedule;
 pub mod sender;
 pub mod uart;
 
+pub use bit_times::BitTimes;
 pub use line::{Forced, Line};
 pub use schedule::{Schedule, Sent};
 pub use sender::Sender;
