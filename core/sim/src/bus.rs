@@ -2,7 +2,7 @@
 //! itself; those of a framed line line with each other and the host.
 
 use crate::framed_host::FramedHost;
-use crate::{framed_line::FramedLine, raw_receiver::RawReceiver};
+use crate::{framed_line::FramedLine, ignored::Ignored, raw_receiver::RawReceiver};
 use alloc::{boxed::Box, vec::Vec};
 use stepscope_peripheral::{
     device::Device,
@@ -18,13 +18,6 @@ pub(super) enum Bus {
     Raw(Vec<RawReceiver>),
     /// Controllers answer, and a host may wait for them.
     Framed(Box<FramedLine>),
-}
-
-/// Takes what no one asked for.
-pub(super) struct Ignored;
-
-impl Sink for Ignored {
-    fn record(&mut self, _: Record) {}
 }
 
 impl Bus {
