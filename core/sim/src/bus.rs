@@ -6,7 +6,7 @@ use crate::{framed_line::FramedLine, ignored::Ignored, raw_receiver::RawReceiver
 use alloc::{boxed::Box, vec::Vec};
 use stepscope_peripheral::{
     device::Device,
-    signal::{Record, Sink},
+    signal::Sink,
     units::Instant,
     wire::Line,
 };
