@@ -4,12 +4,7 @@
 use crate::framed_host::FramedHost;
 use crate::{framed_line::FramedLine, ignored::Ignored, raw_receiver::RawReceiver};
 use alloc::{boxed::Box, vec::Vec};
-use stepscope_peripheral::{
-    device::Device,
-    signal::Sink,
-    units::Instant,
-    wire::Line,
-};
+use stepscope_peripheral::{device::Device, signal::Sink, units::Instant, wire::Line};
 
 /// A line with all that is on it.
 #[derive(Clone, Debug)]
