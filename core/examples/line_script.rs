@@ -23,7 +23,7 @@ fn main() -> Result<(), Vec<Problem>> {
     let run = experiment.run(&mut recording);
 
     for (index, row) in recording.packets.rows().iter().enumerate() {
-        println!("cycle {:6}: {:02x?} {}", row.start.0, recording.packets.bytes(index), row.verdict);
+        println!("cycle {:6}: {:02x?} {}", row.start.0, recording.packets.bytes(index), row.outcome);
     }
     // The first goes 5 right and 3 left, the third 5 and 3 to the right; of the second nothing moves.
     assert_eq!(run.positions()[..2], [10, 0]);

@@ -36,13 +36,7 @@
 //! assert_eq!((go.position(go.duration_s()), go.speed(0.0)), (3200.0, 0.0));
 //! ```
 
-use crate::{
-    Curve, Peaks,
-    format::{describe, grouped},
-    mirrored::Mirrored,
-    profile::greater,
-    square_root,
-};
+use crate::{Curve, Peaks, curve::greater, format::grouped, mirrored::Mirrored, square_root};
 use alloc::{format, string::String, vec::Vec};
 
 /// Newton's steps after which a root has all its digits; at most six do.
@@ -251,7 +245,7 @@ impl Curve for JerkLimited {
         let phases: Vec<String> = self.phases_s().iter().map(|phase_s| format!("{phase_s:.4}")).collect();
         format!(
             "{}, {} steps/s\u{b3}; phases of {} s and back",
-            describe(self.peaks()),
+            self.peaks().to_text(),
             grouped(self.jerk),
             phases.join(", ")
         )

@@ -54,6 +54,7 @@ pub mod bisection;
 mod breakpoints;
 pub mod constant_velocity;
 pub mod cosine;
+mod curve;
 pub mod excitation;
 mod format;
 mod hermite;
@@ -81,10 +82,11 @@ pub mod trapezoid_table;
 
 pub use axis::{AxisPlan, PlannedMove};
 pub use breakpoints::{Breakpoints, Interval};
+pub use curve::{Curve, Peaks};
 pub use format::grouped;
 pub use plan::{plan_axis, plan_lists};
 pub use problem::{Cause, Problem, Validator, ValueError};
-pub use profile::{Curve, Peaks, Profile};
+pub use profile::Profile;
 pub use scheduled_step::ScheduledStep;
 pub use step_times::StepTimes;
 

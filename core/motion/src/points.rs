@@ -26,13 +26,7 @@
 //! assert_eq!(Points::new(&[(0.0, 0.0), (0.0, 1.0)], Between::Straight), None);
 //! ```
 
-use crate::{
-    Curve, Peaks,
-    format::{describe, grouped},
-    hermite::Cubic,
-    profile::greater,
-    round_half_up,
-};
+use crate::{Curve, Peaks, curve::greater, format::grouped, hermite::Cubic, round_half_up};
 use alloc::{format, string::String, vec::Vec};
 
 /// How a curve goes from point to point.
@@ -260,7 +254,7 @@ impl Curve for Points {
                 Between::Straight => "straight between them",
                 Between::Smooth => "smooth, from rest to rest",
             },
-            describe(self.peaks())
+            self.peaks().to_text()
         )
     }
 }

@@ -17,7 +17,7 @@
 //! assert!(next_deviation(&six).is_some_and(|d1| d1 > 0.0054));
 //! ```
 
-use crate::{profile::greater, round_half_up};
+use crate::{curve::greater, round_half_up};
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 

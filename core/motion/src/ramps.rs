@@ -25,7 +25,7 @@
 
 use crate::{
     Curve, Peaks,
-    format::{describe, grouped, ramp_up_to},
+    format::{grouped, ramp_up_to},
     mirrored::Mirrored,
     ramp::{Ramp, longest_ramp_s},
 };
@@ -154,7 +154,7 @@ impl Curve for Ramps {
         let jerk =
             if peaks.jerk > 0.0 { format!(", {} steps/s\u{b3}", grouped(peaks.jerk)) } else { String::new() };
         let longest_s = self.longest_ramp_s(limit_steps_s);
-        describe(peaks) + &jerk + &ramp_up_to(longest_s, self.duration_s())
+        peaks.to_text() + &jerk + &ramp_up_to(longest_s, self.duration_s())
     }
 }
 

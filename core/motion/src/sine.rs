@@ -22,7 +22,7 @@
 //! assert_eq!(sine.position(0.25), -200.0);
 //! ```
 
-use crate::{Curve, Peaks, format::describe, oscillation::Oscillation, square_root};
+use crate::{Curve, Peaks, oscillation::Oscillation, square_root};
 use alloc::{format, string::String};
 use core::f64::consts::{PI, TAU};
 
@@ -131,7 +131,7 @@ impl Curve for Sine {
 
     fn detail(&self, _: f64) -> String {
         let hertz = 1.0 / self.oscillation.period_s;
-        format!("{hertz:.4} Hz; {}", describe(self.peaks()))
+        format!("{hertz:.4} Hz; {}", self.peaks().to_text())
     }
 }
 

@@ -25,10 +25,10 @@
 
 use crate::{
     Curve, Peaks,
+    curve::greater,
     format::grouped,
     oscillation::Oscillation,
     polyline::{Folded, POINTS, QUARTER, breakpoints, cosine_at, fold},
-    profile::greater,
     round_half_up,
 };
 use alloc::{format, string::String, vec::Vec};

@@ -34,8 +34,8 @@
 use crate::{
     Curve, MAX_SPEED, Peaks,
     cosine::Cosine,
+    curve::greater,
     format::{grouped, ramp_up_to},
-    profile::greater,
     round_half_up,
 };
 use alloc::{format, string::String, vec::Vec};

@@ -25,8 +25,8 @@ use crate::moves::ShortMove;
 use crate::{
     Curve, Peaks,
     bisection::least,
+    curve::greater,
     format::{count, grouped},
-    profile::greater,
     staircase_table::StaircaseTable,
     stepped,
 };

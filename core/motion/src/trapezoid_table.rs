@@ -31,8 +31,8 @@
 //! ```
 
 use crate::{
-    Curve, Peaks, acceleration_table::AccelerationTable, bisection::least_near, format::grouped,
-    profile::greater, stepped,
+    Curve, Peaks, acceleration_table::AccelerationTable, bisection::least_near, curve::greater,
+    format::grouped, stepped,
 };
 use alloc::{format, string::String, vec::Vec};
 

@@ -2,9 +2,10 @@
 
 use crate::{
     Cost,
-    bus::{Bus, Ignored},
+    bus::Bus,
     controller_plan::{self, ControllerPlan},
     framed_host::{FramedHost, Progress},
+    ignored::Ignored,
 };
 use alloc::{rc::Rc, vec::Vec};
 use core::slice;

@@ -25,6 +25,8 @@ pub mod noise;
 
 pub mod framed_host;
 
+mod ignored;
+
 mod raw_receiver;
 
 mod framed_line;

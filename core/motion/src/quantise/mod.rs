@@ -31,12 +31,14 @@ mod longest;
 mod segments;
 mod stored;
 mod ticks;
+mod timing_error;
 
 pub use compressed::{Compressed, MAX_TOLERANCE, Tolerance, compressed};
 pub use entry_format::{Entry, EntryFormat};
 pub use segments::exact_segments;
-pub use stored::{Form, MAX_TABLE_STEPS, Stored, TimingError, stored};
+pub use stored::{Form, MAX_TABLE_STEPS, Stored, stored};
 pub use ticks::{TickClock, Ticks, ticks};
+pub use timing_error::TimingError;
 
 /// Where a list of axes stands: the paths under which its problems are told.
 #[derive(Clone, Copy, Debug)]

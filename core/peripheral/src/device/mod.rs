@@ -35,6 +35,7 @@
 
 mod controller;
 mod faults;
+mod latches;
 mod machine;
 mod model_bus;
 mod plan;
@@ -58,8 +59,8 @@ use crate::{
     },
 };
 use controller::Controller;
+use latches::Latches;
 use machine::Machine;
-use registers::Latches;
 
 /// The peripheral.
 ///
