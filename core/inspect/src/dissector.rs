@@ -8,6 +8,21 @@
 //!
 //! COBS writes the distance to the next zero where a zero stood, so a decoded byte has one place on the
 //! wire, and what COBS adds (the first byte, and one after each 254 bytes without a zero) is its own field.
+//!
+//! ```
+//! use stepscope_inspect::dissector::Reading;
+//! use stepscope_peripheral::{
+//!     config::Protocol,
+//!     signal::PacketOutcome,
+//!     trace::RowOutcome,
+//! };
+//!
+//! // A raw packet for controller 7, two channels.
+//! let reading = Reading { protocol: Protocol::Raw, addressed: true, channels: &|_| 2 };
+//! let meaning = reading.of(&[7, 0x85, 0x03], RowOutcome::Packet(PacketOutcome::Queued));
+//! assert_eq!(meaning.fields.len(), 3); // the address, and an order a channel
+//! assert_eq!(meaning.fields[0].bytes, 0..1);
+//! ```
 
 mod summary;
 

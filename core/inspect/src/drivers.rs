@@ -4,6 +4,13 @@
 //! it allows is taken. What no sheet's text confirmed is said at the driver, in [`Sheet::source`]
 //! too, so that a user sees it beside the figures. A wake-up from a sleep mode is not one from EN:
 //! who ties SLEEP to EN gives rules of his own.
+//!
+//! ```
+//! use stepscope_inspect::drivers::DRIVERS;
+//!
+//! let slow = DRIVERS.iter().filter(|sheet| sheet.rules.step_high_ns > 1000).map(|sheet| sheet.id);
+//! assert_eq!(slow.collect::<Vec<_>>(), ["drv8825", "tb6600_class"]);
+//! ```
 
 use stepscope_scenario::{DriverModel, DriverTiming, TimingRules};
 

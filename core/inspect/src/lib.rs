@@ -1,6 +1,21 @@
 //! What one looks at in a run and its plan: packets and their fields, changes of signals, curves for the eye, spectra and
 //! distortion, which segments make the best sine, what each shape of a ramp costs, whether a driver could follow the
 //! pulses and a motor the plan, and the files of all of it.
+//!
+//! ```
+//! use stepscope_inspect::{actual_motion::Pulses, measures::Measures};
+//! use stepscope_peripheral::trace::{Recording, steps};
+//! use stepscope_sim::Experiment;
+//!
+//! let experiment = Experiment::from_json("{}").expect("everything has a default");
+//! let mut recording = Recording::default();
+//! experiment.run(&mut recording);
+//! let made = steps(&recording.trace, 0);
+//! let pulses =
+//!     Pulses { channel: 0, steps: &made, log: &recording.packets, segments: None, config: experiment.config() };
+//! let measures = Measures::of(&experiment.plans()[0], &pulses, None);
+//! assert!(measures.pulses.largest_steps.abs() < 200.0);
+//! ```
 #![cfg_attr(not(any(test, feature = "std")), no_std)]
 
 extern crate alloc;

@@ -1,4 +1,15 @@
 //! A run as the page makes it: kept for its views, and the pulses checked on the way.
+//!
+//! ```
+//! use stepscope_inspect::{drivers::A4988, timing::TimingCheck, watched::Watched};
+//! use stepscope_sim::Experiment;
+//!
+//! let experiment = Experiment::from_json("{}").expect("the default motion");
+//! let timing = TimingCheck::new(&A4988.rules, experiment.config().clock_hz(), 10);
+//! let mut watched = Watched { timing: Some(timing), ..Watched::default() };
+//! experiment.run(&mut watched);
+//! assert!(watched.recording.digest.records() > 6400);
+//! ```
 
 use crate::timing::TimingCheck;
 use stepscope_peripheral::{

@@ -6,6 +6,14 @@
 //! ```
 //!
 //! The one place where COBS is taken apart: the controller, the host and the dissector read through it.
+//!
+//! ```
+//! use stepscope_peripheral::wire::cobs::{Unstuffed, Unstuffer};
+//!
+//! let mut reader = Unstuffer::default();
+//! let read = [2, 7, 2, 8, 0].map(|byte| reader.byte(byte)); // carries 7, 0, 8
+//! assert_eq!(read[1..], [Unstuffed::Content(7), Unstuffed::Content(0), Unstuffed::Content(8), Unstuffed::End]);
+//! ```
 
 use cobs::{DecodeResult, DecoderState};
 
