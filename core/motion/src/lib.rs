@@ -27,6 +27,8 @@ extern crate alloc;
 
 pub mod problem;
 
+pub mod limits;
+
 mod parameters;
 
 pub mod mechanics;
