@@ -495,13 +495,7 @@ impl Rules {
         self.broken.push(ConfigProblem { field, error });
     }
 
-    fn range(
-        &mut self,
-        field: Field,
-        given: impl Into<u64>,
-        range: RangeInclusive<u64>,
-        unit: &'static str,
-    ) {
+    fn range(&mut self, field: Field, given: impl Into<u64>, range: RangeInclusive<u64>, unit: &'static str) {
         let given = given.into();
         if !range.contains(&given) {
             let (least, most) = range.into_inner();
