@@ -5,9 +5,7 @@ use crate::{
     files::{self, Files, Out, Output, Station},
     line,
     progress::Progress,
-    scenarios,
-    status::{self, Shown},
-    timing,
+    scenarios, status, timing,
 };
 use clap::Args;
 use std::{
@@ -18,7 +16,7 @@ use stepscope_core::{
     inspect::{fingerprint::Fingerprinter, run_fingerprint::RunFingerprint},
     peripheral::config::Config,
     scenario::{Scenario, link},
-    sim::{Experiment, Run},
+    sim::{Experiment, Run, Summary},
 };
 
 /// Records between two looks at how far a run is.
@@ -120,12 +118,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let link = link::with_part(link, "d", &proof.emit());
         writeln!(io::stdout(), "#{link}").map_err(Failure::output)?;
     }
-    let shown =
-        Shown { stations: &stations, only: arguments.controller, run: &finished, experiment: &experiment };
+    let summary = Summary::new(&experiment, &finished, stations.iter().map(|station| &station.digest));
+    let summary = match arguments.controller {
+        Some(controller) => summary.only(controller),
+        None => summary,
+    };
     if arguments.digest && !arguments.status {
-        status::digests(&shown).map_err(Failure::output)?;
+        status::digests(&summary).map_err(Failure::output)?;
     } else if arguments.status || !arguments.asks_for_a_file() {
-        status::print(&shown).map_err(Failure::output)?;
+        status::print(&summary).map_err(Failure::output)?;
     }
     timing.map_or(Ok(()), |timing| arguments.timing.report(&timing, scenario.clock_hz))
 }

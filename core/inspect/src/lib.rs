@@ -15,6 +15,7 @@ pub mod cursor_stats;
 pub mod curves;
 pub mod dissector;
 pub mod drivers;
+pub mod edges;
 pub mod fingerprint;
 #[cfg(feature = "std")]
 mod fourier;

@@ -35,8 +35,11 @@ mod experiment;
 
 mod script;
 
+mod summary;
+
 pub mod fault_sweep;
 
 pub use cost::{BUDGET_RECORDS, Cost};
 pub use experiment::{Experiment, Run};
 pub use script::{replayed, scripted};
+pub use summary::{ControllerSummary, JobSummary, Summary};
