@@ -165,16 +165,16 @@ impl Simulation {
     }
 
     pub(crate) fn count_steps(&mut self, channel: u8) {
-        self.kept[self.selected].count_steps(channel);
+        self.recordings[self.selected].count_steps(channel);
     }
 
     /// What the run made of a channel whose steps are counted.
     pub(crate) fn pulses_of(&self, channel: u8) -> Pulses<'_> {
-        let kept = self.selected();
+        let recorded = self.selected();
         Pulses {
             channel,
-            steps: kept.steps_of(channel),
-            log: &kept.recording.packets,
+            steps: recorded.steps_of(channel),
+            log: &recorded.recording.packets,
             segments: self.experiment.segments().and_then(|all| all.lists().get(usize::from(channel))),
             config: config(&self.experiment, self.selected),
         }

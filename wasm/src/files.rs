@@ -22,6 +22,7 @@ use stepscope_core::{
         units::Instant,
         wire::packet::ChannelCommand,
     },
+    scenario::Scenario,
     sim::scripted,
 };
 use wasm_bindgen::prelude::*;
@@ -83,7 +84,7 @@ impl Simulation {
         let (start, end) = ((start.max(0.0) as u64).min(last), (end.max(0.0) as u64).min(last));
         let index = controller as usize;
         let none = || JsError::new("there is no such controller");
-        let recording = &self.kept.get(index).ok_or_else(none)?.recording;
+        let recording = &self.recordings.get(index).ok_or_else(none)?.recording;
         let config = config(&self.experiment, index);
         let from = from as usize;
         let mut text = String::new();
@@ -126,7 +127,7 @@ impl Simulation {
     /// # Errors
     /// If there is more of it than a scenario may hold.
     pub fn line_script(&self) -> Result<String, JsError> {
-        let scripted = scripted(self.scenario.clone(), &self.experiment, &self.run);
+        let scripted = scripted(Scenario::clone(&self.scenario), &self.experiment, &self.run);
         if let Err(problems) = scripted.check() {
             let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
             return Err(JsError::new(&lines.join("; ")));
@@ -173,7 +174,11 @@ impl Simulation {
             (0..channels).try_for_each(|channel| write!(text, ",steps{channel}"))?;
             text.push('\n');
         }
-        let ticks = self.kept.get(controller).map(|kept| kept.recording.packets.ticks()).unwrap_or_default();
+        let ticks = self
+            .recordings
+            .get(controller)
+            .map(|recorded| recorded.recording.packets.ticks())
+            .unwrap_or_default();
         for tick in ticks.iter().skip(from).take(ROWS).filter(|tick| (start..=end).contains(&tick.start.0)) {
             write!(text, "{},", tick.start.0)?;
             if let Some(row) = tick.row {

@@ -3,7 +3,7 @@
 
 use crate::{
     convert::{field, numbers},
-    subject::Subject,
+    judged::Judged,
 };
 use js_sys::Object;
 use std::ops::Range;
@@ -16,6 +16,7 @@ use stepscope_core::{
         Profile,
         sine_segments::{Memory, Segment},
     },
+    sim::SelectedAxis,
 };
 use wasm_bindgen::prelude::*;
 
@@ -87,31 +88,33 @@ pub fn sine_vertices(segments: usize, free: bool, order: u16) -> Option<Object> 
     Some(made)
 }
 
-/// The segments of a quarter of the first sine in segments that an axis has: columns `from_deg`, `to_deg`, `steps`,
-/// `rate` (steps/s) and `duration_s`, and the bytes of a quarter as segments (`segment_bytes`) and with one interval a
-/// step (`interval_bytes`); undefined where the axis has none.
-///
-/// # Errors
-/// If the axis has problems, or is not there.
 #[wasm_bindgen]
-pub fn sine_segments(json: &str, controller: usize, axis: usize) -> Result<Option<Object>, JsError> {
-    let plan = Subject::of(json, controller, axis)?.plan;
-    let found = plan.moves().iter().find_map(|planned| match &planned.profile {
-        Profile::SineSegments(sine) => Some(sine),
-        _ => None,
-    });
-    let Some(sine) = found else { return Ok(None) };
-    let made = Object::new();
-    let put = |name: &str, of: &dyn Fn(&Segment) -> f64| {
-        numbers(&made, name, &sine.segments().iter().map(of).collect::<Vec<f64>>());
-    };
-    put("from_deg", &|segment| segment.from_deg);
-    put("to_deg", &|segment| segment.to_deg);
-    put("steps", &|segment| segment.steps as f64);
-    put("rate", &|segment| segment.rate);
-    put("duration_s", &|segment| segment.duration_s);
-    let Memory { segments, intervals } = sine.memory();
-    field(&made, "segment_bytes", &(segments as f64).into());
-    field(&made, "interval_bytes", &(intervals as f64).into());
-    Ok(Some(made))
+impl Judged {
+    /// The segments of a quarter of the first sine in segments that an axis has: columns `from_deg`, `to_deg`, `steps`,
+    /// `rate` (steps/s) and `duration_s`, and the bytes of a quarter as segments (`segment_bytes`) and with one interval a
+    /// step (`interval_bytes`); undefined where the axis has none.
+    ///
+    /// # Errors
+    /// If the axis has problems, or is not there.
+    pub fn sine_segments(&self, controller: usize, axis: usize) -> Result<Option<Object>, JsError> {
+        let SelectedAxis { plan, .. } = self.axis(controller, axis)?;
+        let found = plan.moves().iter().find_map(|planned| match &planned.profile {
+            Profile::SineSegments(sine) => Some(sine),
+            _ => None,
+        });
+        let Some(sine) = found else { return Ok(None) };
+        let made = Object::new();
+        let put = |name: &str, of: &dyn Fn(&Segment) -> f64| {
+            numbers(&made, name, &sine.segments().iter().map(of).collect::<Vec<f64>>());
+        };
+        put("from_deg", &|segment| segment.from_deg);
+        put("to_deg", &|segment| segment.to_deg);
+        put("steps", &|segment| segment.steps as f64);
+        put("rate", &|segment| segment.rate);
+        put("duration_s", &|segment| segment.duration_s);
+        let Memory { segments, intervals } = sine.memory();
+        field(&made, "segment_bytes", &(segments as f64).into());
+        field(&made, "interval_bytes", &(intervals as f64).into());
+        Ok(Some(made))
+    }
 }

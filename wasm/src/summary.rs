@@ -2,7 +2,7 @@
 
 use crate::{
     convert::object,
-    simulation::{Kept, Simulation},
+    simulation::{ControllerRecording, Simulation},
 };
 use serde::Serialize;
 use stepscope_core::{
@@ -84,7 +84,7 @@ impl Simulation {
     /// # Errors
     /// Never in practice.
     pub fn summary(&self) -> Result<JsValue, JsError> {
-        let digests = self.kept.iter().map(|kept| &kept.recording.digest);
+        let digests = self.recordings.iter().map(|recorded| &recorded.recording.digest);
         let run = RunSummary::new(&self.experiment, &self.run, digests);
         object(&Summary {
             framed: run.framed,
@@ -93,7 +93,7 @@ impl Simulation {
             clock_hz: run.clock_hz,
             line_load: run.line_load,
             host: run.host.map(|counts| host(counts, &run.controllers)),
-            controllers: run.controllers.into_iter().zip(&self.kept).map(controller).collect(),
+            controllers: run.controllers.into_iter().zip(&self.recordings).map(controller).collect(),
         })
     }
 }
@@ -108,18 +108,18 @@ fn host(counts: Counts, controllers: &[ControllerSummary]) -> Host {
     Host { frames, repeated, replies, rejected, refused, crashes, jobs: jobs.collect() }
 }
 
-fn controller((summary, kept): (ControllerSummary, &Kept)) -> Controller {
+fn controller((summary, recorded): (ControllerSummary, &ControllerRecording)) -> Controller {
     Controller {
         address: summary.address,
         digest: format!("{:016x}", summary.digest),
         records: summary.records,
-        edges: edges::count(&kept.recording.trace),
+        edges: edges::count(&recorded.recording.trace),
         channels: summary.channels,
         positions: summary.positions,
         faults: Faults { bits: summary.faults.bits(), names: summary.faults.names().collect() },
         ticks_done: summary.ticks_done,
         state: summary.status.map(|status| status.state.name()),
-        changing: edges::changing(&kept.recording.trace),
-        violations: kept.timing.as_ref().map(TimingCheck::total),
+        changing: edges::changing(&recorded.recording.trace),
+        violations: recorded.timing.as_ref().map(TimingCheck::total),
     }
 }

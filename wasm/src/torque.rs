@@ -2,13 +2,14 @@
 
 use crate::{
     convert::{field, numbers, object},
-    subject::Subject,
+    judged::Judged,
 };
 use js_sys::Object;
 use serde::Serialize;
 use stepscope_core::{
     inspect::torque::{Demand, Machine, Moment, Ramps, Shortage, needed_over_rate},
     motion::Curve,
+    sim::SelectedAxis,
 };
 use wasm_bindgen::prelude::*;
 
@@ -80,42 +81,44 @@ impl ToldRamps {
     }
 }
 
-/// What an axis' motor has and what its plan asks: `told` with the numbers, `rate`, `available` and `needed` (the most at
-/// each rate, NaN at rates that the plan has not), torques in mN*m; undefined where the axis has no motor.
-///
-/// # Errors
-/// If the axis has problems, or is not there.
 #[wasm_bindgen]
-pub fn torque(json: &str, controller: usize, axis: usize) -> Result<Option<Object>, JsError> {
-    let Subject { axis, plan, .. } = Subject::of(json, controller, axis)?;
-    let Some(machine) = Machine::of(&axis) else { return Ok(None) };
-    let demand = Demand::of(&machine, &plan);
-    let ramps = plan.moves().iter().enumerate().filter_map(|(index, planned)| {
-        let found = Ramps::of(&machine, &planned.profile)?;
-        Some(ToldRamps::of(index, planned.profile.duration_s(), found))
-    });
-    let told = Told {
-        standing_mn_m: machine.available_mn_m(0.0),
-        load_mn_m: machine.load_mn_m(),
-        corner_rate: machine.corner_rate(),
-        torque_rate: machine.torque_rate(),
-        working_rate: machine.working_rate(),
-        over_working_rate: demand.over_working_rate,
-        jump: demand.jump,
-        least: demand.least.as_ref().map(ToldMoment::from),
-        total: demand.total,
-        shortages: demand.shortages.iter().take(MAX_SHOWN).map(ToldShortage::from).collect(),
-        ramps: ramps.collect(),
-    };
-    let made = Object::new();
-    field(&made, "told", &object(&told)?);
-    let most = machine.shown_rate(plan.peaks().speed);
-    let (rates, available): (Vec<f64>, Vec<f64>) = machine.curve(most, POINTS).unzip();
-    // A bin around each rate of the curve.
-    let width = most / f64::from(POINTS - 1);
-    let needed = needed_over_rate(&machine, &plan, width * f64::from(POINTS), POINTS as usize);
-    numbers(&made, "rate", &rates);
-    numbers(&made, "available", &available);
-    numbers(&made, "needed", &needed);
-    Ok(Some(made))
+impl Judged {
+    /// What an axis' motor has and what its plan asks: `told` with the numbers, `rate`, `available` and `needed` (the most at
+    /// each rate, NaN at rates that the plan has not), torques in mN*m; undefined where the axis has no motor.
+    ///
+    /// # Errors
+    /// If the axis has problems, or is not there.
+    pub fn torque(&self, controller: usize, axis: usize) -> Result<Option<Object>, JsError> {
+        let SelectedAxis { axis, plan, .. } = self.axis(controller, axis)?;
+        let Some(machine) = Machine::of(axis) else { return Ok(None) };
+        let demand = Demand::of(&machine, plan);
+        let ramps = plan.moves().iter().enumerate().filter_map(|(index, planned)| {
+            let found = Ramps::of(&machine, &planned.profile)?;
+            Some(ToldRamps::of(index, planned.profile.duration_s(), found))
+        });
+        let told = Told {
+            standing_mn_m: machine.available_mn_m(0.0),
+            load_mn_m: machine.load_mn_m(),
+            corner_rate: machine.corner_rate(),
+            torque_rate: machine.torque_rate(),
+            working_rate: machine.working_rate(),
+            over_working_rate: demand.over_working_rate,
+            jump: demand.jump,
+            least: demand.least.as_ref().map(ToldMoment::from),
+            total: demand.total,
+            shortages: demand.shortages.iter().take(MAX_SHOWN).map(ToldShortage::from).collect(),
+            ramps: ramps.collect(),
+        };
+        let made = Object::new();
+        field(&made, "told", &object(&told)?);
+        let most = machine.shown_rate(plan.peaks().speed);
+        let (rates, available): (Vec<f64>, Vec<f64>) = machine.curve(most, POINTS).unzip();
+        // A bin around each rate of the curve.
+        let width = most / f64::from(POINTS - 1);
+        let needed = needed_over_rate(&machine, plan, width * f64::from(POINTS), POINTS as usize);
+        numbers(&made, "rate", &rates);
+        numbers(&made, "available", &available);
+        numbers(&made, "needed", &needed);
+        Ok(Some(made))
+    }
 }

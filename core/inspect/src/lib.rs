@@ -19,6 +19,7 @@ pub mod edges;
 pub mod fingerprint;
 #[cfg(feature = "std")]
 mod fourier;
+pub mod judgement;
 pub mod line_decoder;
 pub mod measures;
 pub mod packet_table;

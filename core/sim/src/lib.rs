@@ -33,6 +33,8 @@ mod cost;
 
 mod experiment;
 
+mod judged;
+
 mod script;
 
 mod summary;
@@ -41,5 +43,6 @@ pub mod fault_sweep;
 
 pub use cost::{BUDGET_RECORDS, Cost};
 pub use experiment::{Experiment, Run};
+pub use judged::{Judged, SelectedAxis, axes_of};
 pub use script::{replayed, scripted};
 pub use summary::{ControllerSummary, JobSummary, Summary};
