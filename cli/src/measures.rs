@@ -16,8 +16,7 @@ use stepscope_core::{
     },
     motion::AxisPlan,
     peripheral::trace::{Recording, steps},
-    scenario::{Analysis, Problem, Scenario, Source, ValueError},
-    sim::Experiment,
+    scenario::{Analysis, Problem, Source, ValueError},
 };
 
 /// What `stepscope measures` takes.
@@ -74,10 +73,8 @@ impl Distortion {
 /// Runs the scenario and writes the measures.
 pub(crate) fn measures(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
-    let text = scenarios::text(path)?;
     let wrong = |problems| Failure::Scenario(path.clone(), problems);
-    let experiment = Experiment::from_json(&text).map_err(wrong)?;
-    let (scenario, _) = Scenario::from_json_lenient(&text);
+    let (scenario, experiment) = scenarios::judged(path)?;
     let Source::Motion(motion) = &scenario.source else {
         let detail =
             "no motion, so there is no curve to measure the pulses by; give a scenario with source.motion";

@@ -83,10 +83,7 @@ impl Arguments {
 /// Runs the scenario and writes what was asked for; digest and status if nothing was.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
-    let text = scenarios::text(path)?;
-    let experiment =
-        Experiment::from_json(&text).map_err(|problems| Failure::Scenario(path.clone(), problems))?;
-    let (scenario, _) = Scenario::from_json_lenient(&text);
+    let (scenario, experiment) = scenarios::judged(path)?;
     let controllers = experiment.controllers();
     let chosen = arguments.controller.unwrap_or(0);
     let config = experiment.configs().nth(chosen);
@@ -109,7 +106,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     if let Some(file) = &arguments.line {
-        line::write(file, scenario.clone(), &experiment, &finished)?;
+        line::write(file, Scenario::clone(&scenario), &experiment, &finished)?;
     }
     if arguments.link {
         let link = link::encode(&scenario).map_err(Failure::Link)?;

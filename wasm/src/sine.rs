@@ -10,7 +10,7 @@ use std::ops::Range;
 use stepscope_core::{
     inspect::{
         sine_optimum::{Freedom, optimum},
-        sine_polyline::{Bounds, Distinct, Row, swept},
+        sine_polyline::{Bounds, Distinct, Row, best_of_each, swept},
     },
     motion::{
         Profile,
@@ -61,15 +61,7 @@ pub fn sine_rows(
 #[wasm_bindgen]
 #[must_use]
 pub fn sine_best(from: f64, to: f64, order: u16, sensor: Option<f64>) -> Object {
-    let mut all: Vec<Row> = Vec::new();
-    for row in Distinct::new(from, to, Bounds { order, sensor }) {
-        match all.iter_mut().find(|best| best.segments == row.segments) {
-            Some(best) if row.distortion.position < best.distortion.position => *best = row,
-            Some(_) => {}
-            None => all.push(row),
-        }
-    }
-    columns(&all)
+    columns(&best_of_each(Distinct::new(from, to, Bounds { order, sensor })))
 }
 
 /// The vertices of `segments` a quarter with least distortion of the position, on the curve or free: `angle_deg` and

@@ -8,8 +8,8 @@ use serde::Serialize;
 use stepscope_core::peripheral::signal::Sink;
 use stepscope_core::{
     inspect::{
-        fingerprint::{Fingerprint, FingerprintCheck, FingerprintMatch, Mark, Shorter},
-        run_fingerprint::{RunFingerprint, VERSION},
+        fingerprint::{Fingerprint, Mark, Shorter},
+        run_fingerprint::{RunFingerprint, VERSION, Verification},
         trace_diff::TraceDiff,
     },
     peripheral::signal,
@@ -138,30 +138,31 @@ impl Simulation {
             Ok(proof) => proof,
             Err(error) => return Judged { error: Some(error.to_string()), ..Judged::default() },
         };
-        let version = (proof.version != VERSION).then(|| proof.version.clone());
-        let mut judged = Judged { version, own_version: VERSION, same: true, ..Judged::default() };
-        if proof.controllers.len() != self.recordings.len() {
-            let (sent, own) = (proof.controllers.len(), self.recordings.len());
-            let error = format!(
-                "the sender's digests are of {sent} controllers, this experiment has {own}; they are left out"
-            );
-            return Judged { error: Some(error), ..judged };
+        let version = proof.other_version().map(str::to_owned);
+        let judged = Judged { version, own_version: VERSION, ..Judged::default() };
+        let own = self.recordings.len();
+        let mut checks = match proof.checks(own) {
+            Ok(checks) => checks,
+            Err(sent) => {
+                let error = format!(
+                    "the sender's digests are of {sent} controllers, this experiment has {own}; they are left out"
+                );
+                return Judged { same: true, error: Some(error), ..judged };
+            }
+        };
+        for (check, recorded) in checks.iter_mut().zip(&self.recordings) {
+            recorded.recording.trace.iter().for_each(|record| check.record(*record));
         }
-        for (index, (sent, recorded)) in proof.controllers.iter().zip(&self.recordings).enumerate() {
-            let mut comparison = FingerprintCheck::with(sent);
-            recorded.recording.trace.iter().for_each(|record| comparison.record(*record));
-            match comparison.finish() {
-                FingerprintMatch::Same(mark) => judged.edges += mark.edges,
-                FingerprintMatch::Differs { after, until, shorter } => {
-                    let shorter = shorter.map(|shorter| match shorter {
-                        Shorter::This => "this",
-                        Shorter::Other => "other",
-                    });
-                    let (after, until) = (Some(after.into()), Some(until.into()));
-                    return Judged { same: false, controller: index, after, until, shorter, ..judged };
-                }
+        match Verification::of(checks) {
+            Verification::Same { edges } => Judged { same: true, edges, ..judged },
+            Verification::Differs { controller, after, until, shorter } => {
+                let shorter = shorter.map(|shorter| match shorter {
+                    Shorter::This => "this",
+                    Shorter::Other => "other",
+                });
+                let (after, until) = (Some(after.into()), Some(until.into()));
+                Judged { controller, after, until, shorter, ..judged }
             }
         }
-        judged
     }
 }

@@ -31,6 +31,7 @@ pub mod sine_polyline;
 pub mod source_code;
 #[cfg(feature = "std")]
 pub mod spectrum;
+pub mod step_tables;
 pub mod tables;
 pub mod timing;
 pub mod torque;

@@ -253,6 +253,19 @@ pub fn best(rows: impl IntoIterator<Item = Row>) -> Option<Row> {
     )
 }
 
+/// For each number of segments the row with least distortion of the position, in the order in which they come.
+pub fn best_of_each(rows: impl IntoIterator<Item = Row>) -> Vec<Row> {
+    let mut all: Vec<Row> = Vec::new();
+    for row in rows {
+        match all.iter_mut().find(|best| best.segments == row.segments) {
+            Some(best) if row.distortion.position < best.distortion.position => *best = row,
+            Some(_) => {}
+            None => all.push(row),
+        }
+    }
+    all
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

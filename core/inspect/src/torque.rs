@@ -33,11 +33,14 @@
 
 mod machine;
 mod ramps;
+mod report;
 
 pub use machine::Machine;
 pub use ramps::Ramps;
+pub use report::{MoveRamps, TorqueCurve, TorqueReport};
 
 use alloc::{format, string::String, vec::Vec};
+use serde::Serialize;
 use stepscope_motion::{AxisPlan, Breakpoints, Curve, Interval, grouped};
 
 /// Shortages that are listed.
@@ -50,7 +53,7 @@ const LOOKS: f64 = 512.0;
 const HALVINGS: u32 = 60;
 
 /// What is needed and what there is at one time of a plan.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Moment {
     /// Time in s from the start of the axis.
     pub at_s: f64,
@@ -72,7 +75,7 @@ impl Moment {
 }
 
 /// A stretch of time in which a plan needs more torque than there is.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Shortage {
     /// Its start in s.
     pub from_s: f64,
