@@ -51,7 +51,10 @@ impl Distortion {
         let ideal = Spectrum::ideal(plan, analysis.order, analysis.fft_length)?;
         // To the same order, which the number of samples may have cut.
         let pulses = Spectrum::of_pulses(&stretch.pulses_of(plan, run), stretch, ideal.order);
-        Some(Self { ideal: ideal.felt_by(analysis.sensor_hz), pulses: pulses.felt_by(analysis.sensor_hz) })
+        Some(Self {
+            ideal: ideal.filtered_by(analysis.sensor_hz),
+            pulses: pulses.filtered_by(analysis.sensor_hz),
+        })
     }
 
     /// Name, and the ratios of the ideal curve and of the pulses.
@@ -61,7 +64,7 @@ impl Distortion {
             ("position", |spectrum| Some(&spectrum.position)),
             ("speed", |spectrum| Some(&spectrum.speed)),
             ("acceleration", |spectrum| Some(&spectrum.acceleration)),
-            ("acceleration_felt", |spectrum| spectrum.acceleration_felt.as_ref()),
+            ("acceleration_felt", |spectrum| spectrum.acceleration_filtered.as_ref()),
         ];
         of.into_iter().filter_map(|(name, of)| {
             let ratio = |spectrum| of(spectrum).map(|harmonics| harmonics.distortion);

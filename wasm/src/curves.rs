@@ -76,7 +76,7 @@ impl Simulation {
             }
         }
         self.count_steps(axis);
-        let made = curves::made(&self.pulses_of(axis), window);
+        let made = curves::actual(&self.pulses_of(axis), window);
         for (name, band) in [("made_position", made.position), ("made_speed", made.speed)] {
             numbers(&result, &format!("{name}_min"), &band.min);
             numbers(&result, &format!("{name}_max"), &band.max);
@@ -105,7 +105,7 @@ impl Simulation {
         self.count_steps(axis);
         let pulses = self.pulses_of(axis);
         let read = |t: f64| Vec::from([f64::from(pulses.position_at(t)), pulses.speed_at(t)]);
-        let made = Readings::new(at.map(read), cursor_stats::made(&pulses, from, to));
+        let made = Readings::new(at.map(read), cursor_stats::actual(&pulses, from, to));
         object(&BothReadings { ideal, made })
     }
 

@@ -120,17 +120,6 @@ impl Simulation {
             self.filter = Filter::default();
         }
     }
-
-    /// Spectra of the ideal motion and of the pulses, for the axis that the scenario's analysis
-    /// names.
-    ///
-    /// # Errors
-    /// Never in practice.
-    pub fn spectrum(&mut self) -> Result<JsValue, JsError> {
-        let axis = self.scenario.analysis.axis;
-        self.count_steps(axis);
-        crate::spectrum::spectrum(&self.scenario, self.plan(axis), &self.pulses_of(axis))
-    }
 }
 
 impl Simulation {

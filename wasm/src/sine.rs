@@ -31,7 +31,7 @@ fn columns(rows: &[Row]) -> Object {
     put("position", &|row| row.distortion.position);
     put("speed", &|row| row.distortion.speed);
     put("acceleration", &|row| row.distortion.acceleration);
-    put("felt", &|row| row.distortion.acceleration_felt.unwrap_or(f64::NAN));
+    put("felt", &|row| row.distortion.acceleration_filtered.unwrap_or(f64::NAN));
     put("euclidean", &|row| row.euclidean);
     made
 }

@@ -30,12 +30,15 @@ pub mod sine_optimum;
 pub mod sine_polyline;
 pub mod source_code;
 #[cfg(feature = "std")]
+pub mod spectra;
+#[cfg(feature = "std")]
 pub mod spectrum;
 pub mod step_tables;
 pub mod tables;
 pub mod timing;
 pub mod torque;
 pub mod trace_diff;
+pub mod trace_window;
 #[cfg(feature = "std")]
 pub mod vcd;
 pub mod watched;

@@ -6,7 +6,7 @@ use fantoccini::actions::{InputSource, MOUSE_BUTTON_LEFT, MOUSE_BUTTON_RIGHT, Mo
 use serde_json::{Value, json};
 use stepscope_core::{
     inspect::{
-        between,
+        cursor_stats,
         difference::{self, Scaled},
         made::Pulses,
     },
@@ -49,8 +49,8 @@ fn between_two_cursors_are_the_means_that_the_core_computes() -> Result<()> {
             segments: None,
             config: known.experiment.config(),
         };
-        let ideal = between::ideal(plan, zero_s, from, to);
-        let made = between::made(&pulses, from, to);
+        let ideal = cursor_stats::ideal(plan, zero_s, from, to);
+        let made = cursor_stats::actual(&pulses, from, to);
         let moments = [ideal.position, ideal.speed, ideal.acceleration.context("a curve has one")?];
         let at = |t: f64| [plan.position(t - zero_s), plan.speed(t - zero_s), plan.acceleration(t - zero_s)];
         let expected: Vec<[f64; 5]> = (0..3)
