@@ -39,10 +39,16 @@ mod cost;
 
 mod experiment;
 
+mod judged;
+
 mod script;
+
+mod summary;
 
 pub mod fault_sweep;
 
 pub use cost::{BUDGET_RECORDS, Cost};
 pub use experiment::{Experiment, Run};
+pub use judged::{Judged, SelectedAxis, axes_of};
 pub use script::{replayed, scripted};
+pub use summary::{ControllerSummary, JobSummary, Summary};
