@@ -5,9 +5,7 @@ use crate::{
     files::{self, Files, Out, Output, Station},
     line,
     progress::Progress,
-    scenarios,
-    status::{self, Shown},
-    timing,
+    scenarios, status, timing,
 };
 use clap::Args;
 use std::{
@@ -18,7 +16,7 @@ use stepscope_core::{
     inspect::{fingerprint::Fingerprinter, run_fingerprint::RunFingerprint},
     peripheral::config::Config,
     scenario::{Scenario, link},
-    sim::{Experiment, Run},
+    sim::{Experiment, Run, Summary},
 };
 
 /// Records between two looks at how far a run is.
@@ -85,10 +83,7 @@ impl Arguments {
 /// Runs the scenario and writes what was asked for; digest and status if nothing was.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
-    let text = scenarios::text(path)?;
-    let experiment =
-        Experiment::from_json(&text).map_err(|problems| Failure::Scenario(path.clone(), problems))?;
-    let (scenario, _) = Scenario::from_json_lenient(&text);
+    let (scenario, experiment) = scenarios::judged(path)?;
     let controllers = experiment.controllers();
     let chosen = arguments.controller.unwrap_or(0);
     let config = experiment.configs().nth(chosen);
@@ -111,7 +106,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     if let Some(file) = &arguments.line {
-        line::write(file, scenario.clone(), &experiment, &finished)?;
+        line::write(file, Scenario::clone(&scenario), &experiment, &finished)?;
     }
     if arguments.link {
         let link = link::encode(&scenario).map_err(Failure::Link)?;
@@ -120,12 +115,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let link = link::with_part(link, "d", &proof.emit());
         writeln!(io::stdout(), "#{link}").map_err(Failure::output)?;
     }
-    let shown =
-        Shown { stations: &stations, only: arguments.controller, run: &finished, experiment: &experiment };
+    let summary = Summary::new(&experiment, &finished, stations.iter().map(|station| &station.digest));
+    let summary = match arguments.controller {
+        Some(controller) => summary.only(controller),
+        None => summary,
+    };
     if arguments.digest && !arguments.status {
-        status::digests(&shown).map_err(Failure::output)?;
+        status::digests(&summary).map_err(Failure::output)?;
     } else if arguments.status || !arguments.asks_for_a_file() {
-        status::print(&shown).map_err(Failure::output)?;
+        status::print(&summary).map_err(Failure::output)?;
     }
     timing.map_or(Ok(()), |timing| arguments.timing.report(&timing, scenario.clock_hz))
 }

@@ -76,7 +76,7 @@ impl Simulation {
             }
         }
         self.count_steps(axis);
-        let made = curves::made(&self.pulses_of(axis), window);
+        let made = curves::actual(&self.pulses_of(axis), window);
         for (name, band) in [("made_position", made.position), ("made_speed", made.speed)] {
             numbers(&result, &format!("{name}_min"), &band.min);
             numbers(&result, &format!("{name}_max"), &band.max);
@@ -105,7 +105,7 @@ impl Simulation {
         self.count_steps(axis);
         let pulses = self.pulses_of(axis);
         let read = |t: f64| Vec::from([f64::from(pulses.position_at(t)), pulses.speed_at(t)]);
-        let made = Readings::new(at.map(read), cursor_stats::made(&pulses, from, to));
+        let made = Readings::new(at.map(read), cursor_stats::actual(&pulses, from, to));
         object(&BothReadings { ideal, made })
     }
 
@@ -165,16 +165,16 @@ impl Simulation {
     }
 
     pub(crate) fn count_steps(&mut self, channel: u8) {
-        self.kept[self.selected].count_steps(channel);
+        self.recordings[self.selected].count_steps(channel);
     }
 
     /// What the run made of a channel whose steps are counted.
     pub(crate) fn pulses_of(&self, channel: u8) -> Pulses<'_> {
-        let kept = self.selected();
+        let recorded = self.selected();
         Pulses {
             channel,
-            steps: kept.steps_of(channel),
-            log: &kept.recording.packets,
+            steps: recorded.steps_of(channel),
+            log: &recorded.recording.packets,
             segments: self.experiment.segments().and_then(|all| all.lists().get(usize::from(channel))),
             config: config(&self.experiment, self.selected),
         }

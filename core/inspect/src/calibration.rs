@@ -82,6 +82,7 @@ pub struct Calibration {
 
 /// Why pairs have no line.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum BadPairs {
     /// Fewer than two.
     TooFew {

@@ -12,7 +12,8 @@
 //! assert_eq!(slow.collect::<Vec<_>>(), ["drv8825", "tb6600_class"]);
 //! ```
 
-use stepscope_scenario::{DriverModel, DriverTiming, TimingRules};
+use crate::timing::TimingCheck;
+use stepscope_scenario::{DriverModel, DriverTiming, Scenario, TimingRules};
 
 /// A driver's figures, and where they come from.
 #[derive(Clone, Debug, PartialEq)]
@@ -145,6 +146,13 @@ pub const fn sheet(model: DriverModel) -> &'static Sheet {
         DriverModel::Tmc262 => &TMC262,
         DriverModel::Tb6600Class => &TB6600_CLASS,
     }
+}
+
+/// The check of a run that a scenario asks for, if it names a driver or rules; it lists `most` violations in full.
+#[must_use]
+pub fn check(scenario: &Scenario, most: usize) -> Option<TimingCheck> {
+    let rules = scenario.driver_timing.as_ref().map(rules)?;
+    Some(TimingCheck::new(&rules, scenario.clock_hz, most))
 }
 
 /// What a scenario's driver asks for.

@@ -1,5 +1,5 @@
-//! The signals of a run as a table, a row for each record. CSV as in RFC 4180, with a line feed at the end of a row.
-//! The table of packets is [`crate::packet_table`].
+//! A run as tables: a row for each record of the signals, each tick, each segment. CSV as in RFC 4180, with a line feed
+//! at the end of a row. The table of packets is [`crate::packet_table`].
 //!
 //! ```
 //! use stepscope_inspect::tables::{write_edges_head, write_edges_row};
@@ -16,8 +16,11 @@
 
 use core::fmt::{self, Write};
 use stepscope_peripheral::{
+    segment::Segment,
     signal::{self, Record},
-    trace::shown_signals,
+    trace::{LoggedTick, shown_signals},
+    units::Instant,
+    wire::packet::ChannelCommand,
 };
 
 /// Names of the columns of [`write_edges_row`]: the cycle, its time in s, and the signals of `channels`
@@ -45,11 +48,57 @@ pub fn write_edges_row(out: &mut impl Write, record: Record, clock_hz: u32, chan
     out.write_char('\n')
 }
 
+/// Names of the columns of [`write_tick_row`].
+///
+/// # Errors
+/// Those of the writer.
+pub fn write_ticks_head(out: &mut impl Write, channels: u8) -> fmt::Result {
+    out.write_str("start_cycle,packet")?;
+    (0..channels).try_for_each(|channel| write!(out, ",steps{channel}"))?;
+    out.write_char('\n')
+}
+
+/// A tick as a row: when it began, the packet's row, and the steps of each channel, negative to the left.
+///
+/// # Errors
+/// Those of the writer.
+pub fn write_tick_row(out: &mut impl Write, tick: &LoggedTick, channels: u8) -> fmt::Result {
+    write!(out, "{},", tick.start.0)?;
+    tick.row.map_or(Ok(()), |row| write!(out, "{row}"))?;
+    for &byte in tick.orders.iter().take(channels.into()) {
+        let ChannelCommand { right, steps } = ChannelCommand::parse(byte);
+        write!(out, ",{}{steps}", if right || steps == 0 { "" } else { "-" })?;
+    }
+    out.write_char('\n')
+}
+
+/// Names of the columns of [`write_segment_row`].
+pub const SEGMENTS_HEAD: &str = "channel,start_cycle,kind,count,interval_q16,add_q16,dir,length_q16\n";
+
+/// A segment as a row: its channel, where the channel's list starts, and its numbers.
+///
+/// # Errors
+/// Those of the writer.
+pub fn write_segment_row(
+    out: &mut impl Write,
+    channel: usize,
+    start: Instant,
+    segment: &Segment,
+) -> fmt::Result {
+    write!(out, "{channel},{},", start.0)?;
+    match segment {
+        Segment::Steps { count, interval, add, right } => {
+            writeln!(out, "steps,{count},{interval},{add},{},", u8::from(*right))
+        }
+        Segment::Dwell(length) => writeln!(out, "dwell,,,,,{length}"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use alloc::string::String;
-    use stepscope_peripheral::{signal::Levels, units::Instant};
+    use stepscope_peripheral::signal::Levels;
 
     #[test]
     fn edges_are_rows_of_levels() {

@@ -154,9 +154,19 @@ impl Experiment {
     /// waits for replies, or that controller has nothing to do.
     #[must_use]
     pub fn host_progress(&self, run: &Run, index: usize) -> Option<Progress> {
+        run.host()?.progress().nth(self.job(index)?)
+    }
+
+    /// Ticks that controller `index` has acknowledged in `run`; `None` as [`Self::host_progress`].
+    #[must_use]
+    pub fn host_acknowledged(&self, run: &Run, index: usize) -> Option<u32> {
+        run.host()?.acknowledged().nth(self.job(index)?)
+    }
+
+    /// Which of the host's jobs controller `index` is: it has one for each that has ticks.
+    fn job(&self, index: usize) -> Option<usize> {
         self.orders.get(index).filter(|orders| orders.has_ticks())?;
-        let busy_before = self.orders.iter().take(index).filter(|orders| orders.has_ticks()).count();
-        run.host()?.progress().nth(busy_before)
+        Some(self.orders.iter().take(index).filter(|orders| orders.has_ticks()).count())
     }
 
     fn first(&self) -> &ControllerPlan {

@@ -21,6 +21,9 @@ struct Readme;
 
 mod bus_load;
 
+#[cfg(test)]
+mod counts;
+
 pub mod noise;
 
 pub mod framed_host;
@@ -39,10 +42,16 @@ mod cost;
 
 mod experiment;
 
+mod judged;
+
 mod script;
+
+mod summary;
 
 pub mod fault_sweep;
 
 pub use cost::{BUDGET_RECORDS, Cost};
 pub use experiment::{Experiment, Run};
+pub use judged::{Judged, SelectedAxis, axes_of};
 pub use script::{replayed, scripted};
+pub use summary::{ControllerSummary, JobSummary, Summary};

@@ -50,7 +50,7 @@ fn between_two_cursors_are_the_means_that_the_core_computes() -> Result<()> {
             config: known.experiment.config(),
         };
         let ideal = cursor_stats::ideal(plan, zero_s, from, to);
-        let made = cursor_stats::made(&pulses, from, to);
+        let made = cursor_stats::actual(&pulses, from, to);
         let moments = [ideal.position, ideal.speed, ideal.acceleration.context("a curve has one")?];
         let at = |t: f64| [plan.position(t - zero_s), plan.speed(t - zero_s), plan.acceleration(t - zero_s)];
         let expected: Vec<[f64; 5]> = (0..3)
