@@ -16,8 +16,7 @@ use stepscope_core::{
     },
     motion::AxisPlan,
     peripheral::trace::{Recording, steps},
-    scenario::{Analysis, Problem, Scenario, Source, ValueError},
-    sim::Experiment,
+    scenario::{Analysis, Problem, Source, ValueError},
 };
 
 /// What `stepscope measures` takes.
@@ -52,7 +51,10 @@ impl Distortion {
         let ideal = Spectrum::ideal(plan, analysis.order, analysis.fft_length)?;
         // To the same order, which the number of samples may have cut.
         let pulses = Spectrum::of_pulses(&stretch.pulses_of(plan, run), stretch, ideal.order);
-        Some(Self { ideal: ideal.felt_by(analysis.sensor_hz), pulses: pulses.felt_by(analysis.sensor_hz) })
+        Some(Self {
+            ideal: ideal.filtered_by(analysis.sensor_hz),
+            pulses: pulses.filtered_by(analysis.sensor_hz),
+        })
     }
 
     /// Name, and the ratios of the ideal curve and of the pulses.
@@ -62,7 +64,7 @@ impl Distortion {
             ("position", |spectrum| Some(&spectrum.position)),
             ("speed", |spectrum| Some(&spectrum.speed)),
             ("acceleration", |spectrum| Some(&spectrum.acceleration)),
-            ("acceleration_felt", |spectrum| spectrum.acceleration_felt.as_ref()),
+            ("acceleration_felt", |spectrum| spectrum.acceleration_filtered.as_ref()),
         ];
         of.into_iter().filter_map(|(name, of)| {
             let ratio = |spectrum| of(spectrum).map(|harmonics| harmonics.distortion);
@@ -74,10 +76,8 @@ impl Distortion {
 /// Runs the scenario and writes the measures.
 pub(crate) fn measures(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
-    let text = scenarios::text(path)?;
     let wrong = |problems| Failure::Scenario(path.clone(), problems);
-    let experiment = Experiment::from_json(&text).map_err(wrong)?;
-    let (scenario, _) = Scenario::from_json_lenient(&text);
+    let (scenario, experiment) = scenarios::judged(path)?;
     let Source::Motion(motion) = &scenario.source else {
         let detail =
             "no motion, so there is no curve to measure the pulses by; give a scenario with source.motion";

@@ -129,6 +129,9 @@ impl<'ast> Visit<'ast> for Seen {
         }
     }
 
+    /// Who may see an item is no use of who is named there.
+    fn visit_visibility(&mut self, _: &'ast Visibility) {}
+
     fn visit_item_mod(&mut self, item: &'ast ItemMod) {
         self.module.push(item.ident.to_string());
         visit::visit_item_mod(self, item);
@@ -220,11 +223,14 @@ fn modules(source: &str) -> Vec<Module> {
 /// The names that a file re-exports, and where each stands.
 fn doors(file: &File) -> BTreeMap<String, Vec<String>> {
     fn tree(before: &[String], tree_: &UseTree, found: &mut BTreeMap<String, Vec<String>>) {
-        let with = |ident: &Ident| before.iter().cloned().chain([ident.unraw().to_string()]).collect::<Vec<_>>();
+        let with =
+            |ident: &Ident| before.iter().cloned().chain([ident.unraw().to_string()]).collect::<Vec<_>>();
         match tree_ {
             UseTree::Path(path) => tree(&with(&path.ident), &path.tree, found),
             UseTree::Name(name) => drop(found.insert(name.ident.unraw().to_string(), with(&name.ident))),
-            UseTree::Rename(rename) => drop(found.insert(rename.rename.unraw().to_string(), with(&rename.ident))),
+            UseTree::Rename(rename) => {
+                drop(found.insert(rename.rename.unraw().to_string(), with(&rename.ident)))
+            }
             UseTree::Glob(_) => {}
             UseTree::Group(group) => group.items.iter().for_each(|one| tree(before, one, found)),
         }
@@ -338,7 +344,10 @@ fn rooms_use_what_stands_to_their_left() {
             Some(name)
         });
         for other in rooms {
-            assert!(allowed.contains(&other.as_str()), "{room} uses {other}, which does not stand to its left");
+            assert!(
+                allowed.contains(&other.as_str()),
+                "{room} uses {other}, which does not stand to its left"
+            );
         }
     }
 }
@@ -352,7 +361,11 @@ fn a_room_knows_of_another_only_what_it_may() {
                     && *first == format!("stepscope_{other}")
                 {
                     let name = second.as_str();
-                    assert!(allowed.contains(&name), "{}: of {other} it may use {allowed:?}, not {name}", module.file);
+                    assert!(
+                        allowed.contains(&name),
+                        "{}: of {other} it may use {allowed:?}, not {name}",
+                        module.file
+                    );
                 }
             }
         }

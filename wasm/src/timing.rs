@@ -114,8 +114,8 @@ impl Simulation {
     /// # Errors
     /// Never in practice.
     pub fn timing(&self) -> Result<JsValue, JsError> {
-        let Some(check) = &self.looked_at().timing else { return Ok(JsValue::NULL) };
-        let channels = usize::from(config(&self.experiment, self.looked_at).channels());
+        let Some(check) = &self.selected().timing else { return Ok(JsValue::NULL) };
+        let channels = usize::from(config(&self.experiment, self.selected).channels());
         object(&Timing {
             driver: match &self.scenario.driver_timing {
                 Some(DriverTiming::Preset(model)) => Some(drivers::sheet(*model).id),
@@ -133,7 +133,7 @@ impl Simulation {
     pub fn next_violation(&self, cycle: f64, forward: bool) -> Option<u32> {
         // A cycle before reset has reset's violations, of which there are none, before it.
         let at = Instant(cycle.max(0.0) as u64);
-        self.looked_at().timing.as_ref()?.next(at, forward).map(|index| index as u32)
+        self.selected().timing.as_ref()?.next(at, forward).map(|index| index as u32)
     }
 }
 

@@ -10,6 +10,8 @@
 //! | `steps`, `browser`, `engines`, `bare_metal`, `gtkwave` | `cargo xtask test`, step by step |
 //! | `bench` | `cargo xtask bench` |
 //! | `fuzz` | `cargo xtask fuzz` |
+//! | `mutants` | `cargo xtask mutants` |
+//! | `package` | the crates and the npm package as others would get them |
 //! | `run` | child processes: time limit, no input, killed as a group |
 //! | `attend` | a program that ends with whoever started it, for the page's tests |
 
@@ -23,7 +25,9 @@ mod engines;
 mod fuzz;
 mod gtkwave;
 mod headers;
+mod mutants;
 mod npm;
+mod package;
 mod page;
 mod run;
 mod serve;
@@ -40,7 +44,7 @@ use std::process::ExitCode;
 use anyhow::Result;
 use clap::{Args, Parser, Subcommand};
 
-/// Builds, shows, tests, measures and fuzzes Stepscope.
+/// Builds, shows, tests, measures, fuzzes and mutates Stepscope.
 #[derive(Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask")]
 struct Cli {
@@ -121,6 +125,18 @@ enum Task {
         #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
         seed: u32,
     },
+    /// Change the peripheral and the motions one thing at a time, and see whether the tests notice
+    Mutants {
+        /// How many changes are drawn
+        #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+        sample: u32,
+        /// Which: the same seed draws the same from the same sources
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+        /// Only of this package; may be given twice
+        #[arg(long)]
+        package: Vec<String>,
+    },
 }
 
 /// Whether wasm-opt goes over the page's wasm.
@@ -175,6 +191,9 @@ async fn perform(task: Task) -> Result<()> {
         Task::Bench { page: false, quick } => bench::run(quick).await,
         Task::Attend { words } => attend::attend(&words).await,
         Task::Fuzz { targets, seconds, seed } => fuzz::run(fuzz::Options { targets, seconds, seed }).await,
+        Task::Mutants { sample, seed, package } => {
+            mutants::run(mutants::Options { sample: sample as usize, seed, packages: package }).await
+        }
     }
 }
 

@@ -12,7 +12,7 @@ use crate::browser::{self, Browser};
 use crate::engines::{self, Firefox, WebKit};
 use crate::toolchain::{self, BARE_METAL, WASM};
 use crate::tools::{Optimise, WasmTools};
-use crate::{bare_metal, dist, gtkwave, npm, page, root, run, sources};
+use crate::{bare_metal, dist, gtkwave, npm, package, page, root, run, sources};
 
 /// Both workspaces: the fuzz targets are one of their own.
 const RUSTFMT: [&str; 2] = ["fmt --all", "fmt --manifest-path fuzz/Cargo.toml"];
@@ -36,6 +36,8 @@ pub(crate) enum Step {
     Wasm,
     /// tsc is silent: the types of the page's modules
     Types,
+    /// The library crates and the npm package as others would get them: packed, built, used by a Node program
+    Package,
     /// The page as it is shipped: its weight, and its use in Chromium
     Page,
     /// The page's main job and the golden digests, in Chromium, Firefox and WebKit
@@ -83,6 +85,7 @@ impl Step {
                 page::built().await?;
                 sources::check_types().await
             }
+            Self::Package => package::test().await,
             Self::Page => page().await,
             Self::Engines => engines().await,
         }

@@ -33,11 +33,14 @@
 
 mod machine;
 mod ramps;
+mod report;
 
 pub use machine::Machine;
 pub use ramps::Ramps;
+pub use report::{MoveRamps, TorqueCurve, TorqueReport};
 
 use alloc::{format, string::String, vec::Vec};
+use serde::Serialize;
 use stepscope_motion::{AxisPlan, Breakpoints, Curve, Interval, bisection::border, grouped};
 
 /// Shortages that are listed.
@@ -48,7 +51,7 @@ const LOOKS_A_MOVE: u32 = 2048;
 const LOOKS: f64 = 512.0;
 
 /// What is needed and what there is at one time of a plan.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Moment {
     /// Time in s from the start of the axis.
     pub at_s: f64,
@@ -70,7 +73,7 @@ impl Moment {
 }
 
 /// A stretch of time in which a plan needs more torque than there is.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Shortage {
     /// Its start in s.
     pub from_s: f64,

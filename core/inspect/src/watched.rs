@@ -17,7 +17,6 @@ pub struct Watched {
 }
 
 impl Sink for Watched {
-    #[inline(always)]
     fn record(&mut self, record: Record) {
         self.recording.record(record);
         if let Some(check) = &mut self.timing {
@@ -25,7 +24,6 @@ impl Sink for Watched {
         }
     }
 
-    #[inline]
     fn event(&mut self, at: Instant, event: Event) {
         self.recording.event(at, event);
     }

@@ -14,7 +14,7 @@
 //! keeps its digits. Within the bound of 2*d the slope is 0 at an end alone, if anywhere: nowhere else
 //! does a place have an uncertain time.
 
-use crate::{bisection::Bracket, profile::greater, square_root};
+use crate::{bisection::Bracket, curve::greater, square_root};
 
 /// Newton's steps after which a root has all its digits; at most eight do.
 const MAX_NEWTON_STEPS: u32 = 64;

@@ -7,8 +7,17 @@
 //!    |       '-._         from the cosine stays within d1
 //!  0 +-----------'- 512
 //! ```
+//!
+//! ```
+//! use stepscope_motion::polyline::{breakpoints, next_deviation};
+//!
+//! // The document's six segments a quarter.
+//! let six = breakpoints(0.0054);
+//! assert_eq!(six, [0, 67, 136, 208, 287, 381, 512]);
+//! assert!(next_deviation(&six).is_some_and(|d1| d1 > 0.0054));
+//! ```
 
-use crate::{profile::greater, round_half_up};
+use crate::{curve::greater, round_half_up};
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 

@@ -21,6 +21,15 @@
 //!
 //! Near the start all terms of these formulas but one cancel; each is written so that none does, and a time
 //! in the ramp has its digits there too.
+//!
+//! ```
+//! use stepscope_motion::ramp::Ramp;
+//!
+//! let shape = Ramp::sigmoid(6.0);
+//! assert_eq!((shape.speed(0.0), shape.speed(1.0), shape.area()), (0.0, 1.0, 0.5));
+//! // An exponential is past half its speed early, and so has more of the way behind it.
+//! assert!(Ramp::exponential(4.0).area() > 0.7);
+//! ```
 
 use crate::{bisection::Bracket, square_root};
 

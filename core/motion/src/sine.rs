@@ -12,8 +12,17 @@
 //!
 //! So no step's time is a small difference of large numbers: the arc sine is taken up to 45 degrees
 //! alone, and the half periods before are added to it as a whole number, whatever their count.
+//!
+//! ```
+//! use stepscope_motion::{Curve, sine::Sine};
+//!
+//! // An amplitude of 100 steps, 0.5 s a period: it starts at the right extreme, which counts as 0.
+//! let sine = Sine::new(100, 0.5, 2);
+//! assert_eq!((sine.duration_s(), sine.step_count(), sine.steps()), (1.0, 800, 0));
+//! assert_eq!(sine.position(0.25), -200.0);
+//! ```
 
-use crate::{Curve, Peaks, format::describe, oscillation::Oscillation, square_root};
+use crate::{Curve, Peaks, oscillation::Oscillation, square_root};
 use alloc::{format, string::String};
 use core::f64::consts::{PI, TAU};
 
@@ -122,7 +131,7 @@ impl Curve for Sine {
 
     fn detail(&self, _: f64) -> String {
         let hertz = 1.0 / self.oscillation.period_s;
-        format!("{hertz:.4} Hz; {}", describe(self.peaks()))
+        format!("{hertz:.4} Hz; {}", self.peaks().to_text())
     }
 }
 

@@ -12,13 +12,23 @@
 //!   -A |      \______/            position  from the start: 0, down to -2*A, up to 0
 //!      0     512 1024 1536 2048 i
 //! ```
+//!
+//! ```
+//! use stepscope_motion::{Curve, sine_segments::SineSegments};
+//!
+//! let sine = SineSegments::new(1000, 0.5, 4, 0.006);
+//! assert_eq!(sine.segments().len(), 6);
+//! // Within a segment the rate is one: no acceleration, and jumps between.
+//! assert_eq!(sine.peaks().acceleration, 0.0);
+//! assert!(sine.peaks().jump > 0.0);
+//! ```
 
 use crate::{
     Curve, Peaks,
+    curve::greater,
     format::grouped,
     oscillation::Oscillation,
     polyline::{Folded, POINTS, QUARTER, breakpoints, cosine_at, fold},
-    profile::greater,
     round_half_up,
 };
 use alloc::{format, string::String, vec::Vec};

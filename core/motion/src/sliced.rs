@@ -20,6 +20,16 @@
 //! Within a slice the steps are even: they stand in the middles of as many equal parts, so the curve is
 //! straight from slice to slice and crosses its half-integers there (B1). A product that is whole but for
 //! the last digits of its factors counts as whole.
+//!
+//! ```
+//! use stepscope_motion::{Curve, sliced::Sliced};
+//!
+//! // The document's slices of 1 ms: every one has whole steps, and they add up.
+//! let sliced = Sliced::new(3200, 0.4, 0.2, 0.001, 1000).expect("few enough slices");
+//! assert_eq!(sliced.slices().map(|(_, _, steps)| steps).sum::<u32>(), 3200);
+//! assert!(sliced.compensated_steps() > 3200);
+//! assert!(sliced.time_error().relative.abs() < 0.008);
+//! ```
 
 mod compensation;
 

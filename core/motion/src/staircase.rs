@@ -11,13 +11,22 @@
 //!      ||S               S| |    L < 2S       all at f_1 (the document), or as many rows as fit
 //!      +---------------------    twice, and what is left of the way at the rate after them
 //! ```
+//!
+//! ```
+//! use stepscope_motion::{moves::ShortMove, staircase::Staircase, staircase_table::StaircaseTable};
+//!
+//! let table = StaircaseTable::new(1000.0, 20_000.0, 3000.0);
+//! let go = Staircase::new(10_000, table, 5000, ShortMove::Document, 1000).expect("few enough rows");
+//! assert_eq!(2 * go.ramp_steps() + go.plateau_steps(), 10_000);
+//! assert_eq!(go.plateau_rate(), Some(5000));
+//! ```
 
 use crate::moves::ShortMove;
 use crate::{
     Curve, Peaks,
     bisection::least,
+    curve::greater,
     format::{count, grouped},
-    profile::greater,
     staircase_table::StaircaseTable,
     stepped,
 };

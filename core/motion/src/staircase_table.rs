@@ -8,6 +8,15 @@
 //!
 //! The document lists S_n with the rate that follows it, f_(n+1); its table ends with the first
 //! such rate above f_max. All of it has a closed form, so no row is kept.
+//!
+//! ```
+//! use stepscope_motion::staircase_table::StaircaseTable;
+//!
+//! // The document's table for 1000 steps/s^2: 30 steps at 1000 Hz, then 1030 Hz, then 1058 Hz.
+//! let table = StaircaseTable::new(1000.0, 20_000.0, 1000.0);
+//! assert_eq!([1, 2, 3].map(|row| table.rate(row)), [1000, 1030, 1058]);
+//! assert_eq!((table.rows(), StaircaseTable::steps_after(256)), (256, 200_460));
+//! ```
 
 use crate::{bisection::climbed, round_half_up, square_root};
 

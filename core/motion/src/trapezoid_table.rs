@@ -19,10 +19,20 @@
 //! make the last step at row 1.
 //!
 //! Only the ramp is kept, as sums of reloads: integers up to the last division by `timer_hz`.
+//!
+//! ```
+//! use stepscope_motion::{acceleration_table::AccelerationTable, trapezoid_table::TrapezoidTable};
+//!
+//! let table = AccelerationTable::new(250.0, 4000.0, 9000.0, 1_000_000);
+//! let go = TrapezoidTable::new(2000, table, 10_000).expect("few enough rows");
+//! // The first step comes 4000 counts of the timer after the start, the last after the one before it.
+//! assert_eq!(go.step_ticks(1), 4000);
+//! assert_eq!(go.step_ticks(2000) - go.step_ticks(1999), 4000);
+//! ```
 
 use crate::{
-    Curve, Peaks, acceleration_table::AccelerationTable, bisection::least_near, format::grouped,
-    profile::greater, stepped,
+    Curve, Peaks, acceleration_table::AccelerationTable, bisection::least_near, curve::greater,
+    format::grouped, stepped,
 };
 use alloc::{format, string::String, vec::Vec};
 

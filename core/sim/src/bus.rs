@@ -2,14 +2,9 @@
 //! itself; those of a framed line line with each other and the host.
 
 use crate::framed_host::FramedHost;
-use crate::{framed_line::FramedLine, raw_receiver::RawReceiver};
+use crate::{framed_line::FramedLine, ignored::Ignored, raw_receiver::RawReceiver};
 use alloc::{boxed::Box, vec::Vec};
-use stepscope_peripheral::{
-    device::Device,
-    signal::{Record, Sink},
-    units::Instant,
-    wire::Line,
-};
+use stepscope_peripheral::{device::Device, signal::Sink, units::Instant, wire::Line};
 
 /// A line with all that is on it.
 #[derive(Clone, Debug)]
@@ -18,13 +13,6 @@ pub(super) enum Bus {
     Raw(Vec<RawReceiver>),
     /// Controllers answer, and a host may wait for them.
     Framed(Box<FramedLine>),
-}
-
-/// Takes what no one asked for.
-pub(super) struct Ignored;
-
-impl Sink for Ignored {
-    fn record(&mut self, _: Record) {}
 }
 
 impl Bus {

@@ -2,9 +2,10 @@
 
 use crate::{
     Cost,
-    bus::{Bus, Ignored},
+    bus::Bus,
     controller_plan::{self, ControllerPlan},
     framed_host::{FramedHost, Progress},
+    ignored::Ignored,
 };
 use alloc::{rc::Rc, vec::Vec};
 use core::slice;
@@ -124,6 +125,12 @@ impl Experiment {
         self.controllers.iter().map(ControllerPlan::config)
     }
 
+    /// The host's rate on the line.
+    #[must_use]
+    pub const fn baud(&self) -> u32 {
+        self.checked.baud
+    }
+
     /// The plan of each axis of the first controller; empty where the source is no motion.
     #[must_use]
     pub fn plans(&self) -> &[AxisPlan] {
@@ -147,9 +154,19 @@ impl Experiment {
     /// waits for replies, or that controller has nothing to do.
     #[must_use]
     pub fn host_progress(&self, run: &Run, index: usize) -> Option<Progress> {
+        run.host()?.progress().nth(self.job(index)?)
+    }
+
+    /// Ticks that controller `index` has acknowledged in `run`; `None` as [`Self::host_progress`].
+    #[must_use]
+    pub fn host_acknowledged(&self, run: &Run, index: usize) -> Option<u32> {
+        run.host()?.acknowledged().nth(self.job(index)?)
+    }
+
+    /// Which of the host's jobs controller `index` is: it has one for each that has ticks.
+    fn job(&self, index: usize) -> Option<usize> {
         self.controllers.get(index).filter(|plan| plan.has_ticks())?;
-        let busy_before = self.controllers.iter().take(index).filter(|plan| plan.has_ticks()).count();
-        run.host()?.progress().nth(busy_before)
+        Some(self.controllers.iter().take(index).filter(|plan| plan.has_ticks()).count())
     }
 
     fn first(&self) -> &ControllerPlan {

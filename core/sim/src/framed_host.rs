@@ -18,6 +18,17 @@
 //!   `attempts` times, that is stopped, or that refuses a frame for good; and on one that answers but
 //!   makes no progress (a host that crashes again and again), after `attempts` frames for each place of its
 //!   queue.
+//!
+//! ```
+//! use stepscope_peripheral::signal::Record;
+//! use stepscope_sim::{Experiment, framed_host::Progress};
+//!
+//! // The default motion over the framed protocol: opened, filled, confirmed.
+//! let framed = r#"{ "line": { "protocol": "framed" } }"#;
+//! let run = Experiment::from_json(framed).expect("no problems").run(&mut Vec::<Record>::new());
+//! let host = run.host().expect("a framed line has one");
+//! assert!(host.progress().all(|progress| progress == Progress::Done));
+//! ```
 
 mod peer;
 #[cfg(test)]

@@ -8,8 +8,8 @@
 //! controller runs through it alone, as fast as its own edges allow. A window ends where the host or
 //! a forced level changes, where a controller may begin or go on to drive, or where the host acts.
 
-use crate::bus::Ignored;
 use crate::framed_host::FramedHost;
+use crate::ignored::Ignored;
 use alloc::vec::Vec;
 use stepscope_peripheral::{
     device::Device,

@@ -2,7 +2,14 @@
 
 use anyhow::{Context, Result, ensure};
 use serde_json::{Value, json};
-use stepscope_core::{inspect::{tables::{write_edges_head, write_edges_row}, vcd::VcdWriter}, peripheral::signal::{Record, Sink}, scenario::Scenario};
+use stepscope_core::{
+    inspect::{
+        tables::{write_edges_head, write_edges_row},
+        vcd::VcdWriter,
+    },
+    peripheral::signal::{Record, Sink},
+    scenario::Scenario,
+};
 
 use crate::{bench::in_browser, exchange::drop_file, native::Known, session::Session};
 

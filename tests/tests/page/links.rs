@@ -2,7 +2,10 @@
 
 use anyhow::{Context, Result, ensure};
 use serde_json::json;
-use stepscope_core::{inspect::{fingerprint::Fingerprint, run_fingerprint::Proof}, scenario::{link::with_part, presets::PRESETS}};
+use stepscope_core::{
+    inspect::{fingerprint::Fingerprint, run_fingerprint::RunFingerprint},
+    scenario::{link::with_part, presets::PRESETS},
+};
 
 use crate::{
     bench::in_browser,
@@ -24,7 +27,7 @@ pub(crate) async fn copied(page: &Session) -> Result<String> {
 
 /// The link that the page gives of a scenario's run.
 pub(crate) fn whole(page: &Session, known: &Known) -> String {
-    let proof = Proof::of(vec![Fingerprint::of(&known.recording.trace)]);
+    let proof = RunFingerprint::of(vec![Fingerprint::of(&known.recording.trace)]);
     format!("{}#{}", page.address(), with_part(known.link.clone(), "d", &proof.emit()))
 }
 

@@ -3,7 +3,15 @@
 use anyhow::{Result, anyhow};
 use crc::{CRC_32_ISO_HDLC, Crc};
 use data_encoding::BASE64URL_NOPAD;
-use stepscope_core::{peripheral::trace::{Digest, Recording}, scenario::{Problem, Scenario, link::{self, LinkError}, presets::Preset}, sim::Experiment};
+use stepscope_core::{
+    peripheral::trace::{Digest, Recording},
+    scenario::{
+        Problem, Scenario,
+        link::{self, LinkError},
+        presets::Preset,
+    },
+    sim::Experiment,
+};
 
 /// A scenario, and all that the core makes of it.
 pub(crate) struct Known {

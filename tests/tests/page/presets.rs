@@ -2,7 +2,13 @@
 
 use anyhow::{Context, Result, ensure};
 use serde_json::json;
-use stepscope_core::{inspect::spectrum::Spectrum, scenario::{Source, presets::{PRESETS, Preset}}};
+use stepscope_core::{
+    inspect::spectrum::Spectrum,
+    scenario::{
+        Source,
+        presets::{PRESETS, Preset},
+    },
+};
 
 use crate::{bench::in_browser, native::Known, session::Session};
 

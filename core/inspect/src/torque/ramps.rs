@@ -8,6 +8,7 @@
 //! (For shapes that are not symmetric f_max has their area in it: `motion::ramp`.)
 
 use crate::torque::Machine;
+use serde::Serialize;
 use stepscope_motion::{Curve, Profile, bisection::border, cosine::Cosine};
 
 /// Ramps that are tried, evenly from none to half of the time.
@@ -16,7 +17,7 @@ const TRIED: u32 = 512;
 const LOOKS: u32 = 128;
 
 /// Which ramps a motor can follow, in s.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Ramps {
     /// f_s: the greatest rate in steps/s that the motor can do with its load; `None` where nothing limits it.
     pub greatest_rate: Option<f64>,

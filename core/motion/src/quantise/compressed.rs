@@ -22,7 +22,7 @@ use crate::quantise::{
     entry_format::EntryFormat,
     longest::{Ahead, Window},
     segments::START,
-    stored::TimingError,
+    timing_error::TimingError,
 };
 use crate::{
     ScheduledStep,

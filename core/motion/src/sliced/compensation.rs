@@ -2,7 +2,7 @@
 //! have too few steps: so its top speed is raised until they have enough (coarse), and then what is too much is taken
 //! from the plateau, the last slice first, and from the tail (fine).
 
-use crate::{Curve, MAX_SPEED, cosine::Cosine, profile::greater, round_half_up};
+use crate::{Curve, MAX_SPEED, cosine::Cosine, curve::greater, round_half_up};
 use alloc::vec::Vec;
 use core::ops::Range;
 

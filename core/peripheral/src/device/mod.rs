@@ -37,6 +37,7 @@
 mod controller;
 mod fast;
 mod faults;
+mod latches;
 mod machine;
 mod model_bus;
 mod plan;
@@ -63,8 +64,8 @@ use crate::{
     },
 };
 use controller::Controller;
+use latches::Latches;
 use machine::Machine;
-use registers::Latches;
 
 /// The peripheral.
 ///

@@ -30,21 +30,6 @@ pub enum RowOutcome {
     Open,
 }
 
-impl RowOutcome {
-    /// What the row is, in a word: `packet`, `frame`, `reply`, `collision`, or `open` where the run ended
-    /// before it was known.
-    #[must_use]
-    pub const fn kind(self) -> &'static str {
-        match self {
-            Self::Packet(_) | Self::Short | Self::Framing | Self::Ignored => "packet",
-            Self::Frame(_) => "frame",
-            Self::Reply(_) => "reply",
-            Self::Collision => "collision",
-            Self::Open => "open",
-        }
-    }
-}
-
 impl fmt::Display for RowOutcome {
     /// What became of the packet, as the page and the command's tables say it.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -74,7 +59,7 @@ pub struct LoggedPacket {
     /// Where it was complete or given up.
     pub end: Instant,
     /// What became of it.
-    pub verdict: RowOutcome,
+    pub outcome: RowOutcome,
     /// First cycle of its tick, of a frame's its first tick, if that has begun.
     pub tick_start: Option<Instant>,
     /// First cycle after its last tick so far that has ended.
@@ -205,15 +190,15 @@ impl PacketLog {
         self.bytes.get(first..).unwrap_or_default().to_vec()
     }
 
-    fn close(&mut self, end: Instant, verdict: RowOutcome) {
+    fn close(&mut self, end: Instant, outcome: RowOutcome) {
         let start = self.open.take().unwrap_or(end);
-        let queued = match verdict {
+        let queued = match outcome {
             RowOutcome::Packet(PacketOutcome::Queued) => 1,
             RowOutcome::Frame(FrameOutcome::Queued(ticks)) => ticks.into(),
             _ => 0,
         };
         self.waiting.extend(core::iter::repeat_n(Some(self.rows.len()), queued));
-        if verdict == RowOutcome::Frame(FrameOutcome::Taken(Kind::Stop)) {
+        if outcome == RowOutcome::Frame(FrameOutcome::Taken(Kind::Stop)) {
             self.stop(end);
         }
         let bytes_start = self.rows.last().map_or(0, |row| row.bytes_end);
@@ -223,7 +208,7 @@ impl PacketLog {
         self.rows.push(LoggedPacket {
             start,
             end,
-            verdict,
+            outcome,
             tick_start,
             tick_end,
             bytes_start,
@@ -336,9 +321,9 @@ mod tests {
         for (at, event) in events {
             log.event(Instant(at), event);
         }
-        assert_eq!(log.rows()[0].verdict, RowOutcome::Collision, "known first");
+        assert_eq!(log.rows()[0].outcome, RowOutcome::Collision, "known first");
         log.finish();
-        let told: Vec<_> = log.rows().iter().map(|row| (row.start.0, row.verdict)).collect();
+        let told: Vec<_> = log.rows().iter().map(|row| (row.start.0, row.outcome)).collect();
         assert_eq!(told, [(10, RowOutcome::Packet(PacketOutcome::Queued)), (25, RowOutcome::Collision)]);
         assert_eq!((log.bytes(0), log.bytes(1)), ([1, 2].as_slice(), [].as_slice()));
         assert_eq!(log.seen(0), [Instant(10), Instant(22)]);

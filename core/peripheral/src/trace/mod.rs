@@ -27,7 +27,7 @@ mod text;
 
 pub use digest::Digest;
 pub use log::{LoggedPacket, LoggedTick, PacketLog, RowOutcome};
-pub use recording::Recording;
+pub use recording::{Recording, levels_at};
 pub use steps::{Step, steps};
 pub use text::{ParseError, parse_line, write_record};
 

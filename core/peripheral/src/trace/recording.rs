@@ -2,7 +2,7 @@
 
 use crate::trace::{Digest, PacketLog};
 use crate::{
-    signal::{Event, Record, Sink},
+    signal::{Event, Levels, Record, Sink},
     units::Instant,
 };
 use alloc::vec::Vec;
@@ -35,4 +35,11 @@ impl Recording {
     pub fn first_tick(&self) -> Option<Instant> {
         self.packets.ticks().first().map(|tick| tick.start)
     }
+}
+
+/// The levels in a cycle of a run with these records; those of reset where there are none.
+#[must_use]
+pub fn levels_at(trace: &[Record], at: Instant) -> Levels {
+    let after = trace.partition_point(|record| record.cycle <= at);
+    after.checked_sub(1).and_then(|index| trace.get(index)).map_or(Levels::RESET, |record| record.levels)
 }

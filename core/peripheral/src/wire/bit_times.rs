@@ -49,8 +49,9 @@ impl BitTimes {
     /// The byte of bytes sent back to back that begins nearest to `after` the first one's start.
     #[must_use]
     pub const fn nearest_byte(self, after: Cycles) -> u64 {
-        let clock_hz = if self.clock_hz == 0 { 1 } else { self.clock_hz };
-        (self.baud * after.0 / clock_hz + BYTE_BITS / 2) / BYTE_BITS
+        let clock_hz = if self.clock_hz == 0 { 1 } else { self.clock_hz as u128 };
+        let bits = self.baud as u128 * after.0 as u128 / clock_hz;
+        ((bits + BYTE_BITS as u128 / 2) / BYTE_BITS as u128) as u64
     }
 }
 

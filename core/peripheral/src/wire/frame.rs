@@ -49,7 +49,7 @@ pub fn encode_frame(content: &[u8]) -> Vec<u8> {
 }
 
 /// Bytes of the CRC.
-const CHECK_LEN: usize = 4;
+pub const CHECK_LEN: usize = 4;
 /// Fewest decoded bytes of a frame: address, kind and CRC.
 const MIN_DECODED: usize = 2 + CHECK_LEN;
 /// Most decoded bytes of a frame.
@@ -61,9 +61,9 @@ pub const REPLY_LEN: usize = 3 + STATUS_LEN + CHECK_LEN + 2;
 /// Most bytes that COBS puts one code before.
 const COBS_RUN: usize = 254;
 /// Set in the kind of a reply that acknowledges.
-const ACK: u8 = 0x80;
+pub const ACK: u8 = 0x80;
 /// Kind of a reply that refuses.
-const NAK: u8 = 0xff;
+pub const NAK: u8 = 0xff;
 
 // Every TICKS frame is taken: sequence number, count, and the most ticks of all channels.
 const _: () = assert!(MIN_DECODED + 2 + MAX_TICKS as usize * MAX_CHANNELS <= MAX_DECODED);

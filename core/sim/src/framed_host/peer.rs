@@ -66,6 +66,20 @@ pub enum GivenUp {
     OutOfTime,
 }
 
+impl Progress {
+    /// Its name: `opening`, `filling`, `confirming`, `done` or `given_up`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Opening => "opening",
+            Self::Filling => "filling",
+            Self::Confirming => "confirming",
+            Self::Done => "done",
+            Self::GivenUp(_) => "given_up",
+        }
+    }
+}
+
 impl fmt::Display for GivenUp {
     /// Why, as the command's status and the page say it.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -83,11 +97,8 @@ impl fmt::Display for Progress {
     /// As the command's status and the page say it.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Opening => f.write_str("opening"),
-            Self::Filling => f.write_str("filling"),
-            Self::Confirming => f.write_str("confirming"),
-            Self::Done => f.write_str("done"),
             Self::GivenUp(why) => write!(f, "given up: {why}"),
+            progress => f.write_str(progress.name()),
         }
     }
 }

@@ -6,7 +6,11 @@ use std::collections::BTreeSet;
 use anyhow::{Context, Result, ensure};
 use serde::Deserialize;
 use serde_json::{Value, json};
-use stepscope_core::{motion::{grouped, moves::Move}, scenario::{Scenario, Source, presets::PRESETS}, sim::BUDGET_RECORDS};
+use stepscope_core::{
+    motion::{grouped, moves::Move},
+    scenario::{Kinds, Scenario, Source, presets::PRESETS},
+    sim::BUDGET_RECORDS,
+};
 
 use crate::{
     bench::in_browser,
