@@ -147,10 +147,10 @@ function kindOf(type, unit) {
 /** What a field is, which values it takes and what none of them means, in sentences. @param {Pick<Row, "text" | "type" | "range" | "empty" | "unit">} row */
 function hintOf({ text, type, range, empty, unit }) {
   const words = typeof type === "object" && "words" in type ? type.words : [];
-  const said = words.filter(({ label, text }) => !text.startsWith(label));
+  const said = words.filter(({ label, text }) => text !== label);
   const parts = [
     text,
-    ...said.map(({ label, text }) => `${capital(label)}: ${text}`),
+    ...said.map(({ label, text }) => capital(text.startsWith(label) ? text : `${label}: ${text}`)),
     capital(range),
     empty && `Empty: ${empty}`,
     unit === "cycles" || unit === "ns" ? "A time such as 2.5 us is taken too" : "",
@@ -171,6 +171,7 @@ function plain(text) {
   return text
     .replaceAll("`", "")
     .replace(/\^(-?\d+)/g, (_, digits) => raised(digits))
-    .replace(/(?<=\d)\*(?=\d)/g, " · ")
-    .replace(/ - (?=\d)/g, " − ");
+    .replace(/(?<=\w)\*(?=\w)/g, " · ")
+    .replace(/ - (?=\d)/g, " − ")
+    .replace(/(?<!\S)-(?=\d)/g, "−");
 }

@@ -92,8 +92,9 @@ fn every_field_of_the_form_is_explained() -> Result<()> {
             page.ready().await?;
             let dumb: Vec<String> = page
                 .eval(
-                    "import('./form/schema.js').then(({ termOf }) => [...document.querySelectorAll('#form .term')]\
-                     .filter((word) => !termOf(word.dataset.term)?.text).map((word) => word.dataset.term))",
+                    "Promise.all([import('./form/schema.js'), import('./help/texts.js')]).then(([{ termOf }, { DERIVED }]) =>
+                     [...document.querySelectorAll('#form .term')].map((word) => word.dataset.term)
+                     .filter((term) => !(termOf(term) ?? DERIVED[term])?.text))",
                 )
                 .await?;
             assert_eq!(dumb, [""; 0], "{id}");
