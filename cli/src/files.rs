@@ -8,7 +8,8 @@ use std::{
 use stepscope_core::{
     inspect::{
         fingerprint::Fingerprinter,
-        tables::{write_edges_head, write_edges_row, write_packets_head, write_packets_row},
+        packet_table::PacketTable,
+        tables::{write_edges_head, write_edges_row},
         timing::TimingCheck,
         vcd::VcdWriter,
     },
@@ -17,6 +18,7 @@ use stepscope_core::{
         trace::{Digest, PacketLog, write_record},
         units::Instant,
     },
+    sim::{Experiment, Run},
 };
 
 /// Where a file goes: its path, or standard output for `-`.
@@ -29,10 +31,10 @@ pub(crate) fn create(path: &Path) -> io::Result<Out> {
     Ok(BufWriter::new(out))
 }
 
-/// A file that takes a run and is finished after it; `end` is the first cycle that was not run.
+/// A file that takes a run and is finished after it.
 pub(crate) trait Output: Sink {
     /// Writes what is left; the first error of all writing.
-    fn finish(self: Box<Self>, end: u64) -> io::Result<()>;
+    fn finish(self: Box<Self>, experiment: &Experiment, run: &Run) -> io::Result<()>;
 }
 
 /// Lines of text, one a record.
@@ -51,7 +53,7 @@ impl<F: FnMut(&mut Out, Record) -> io::Result<()>> Sink for Lines<F> {
 }
 
 impl<F: FnMut(&mut Out, Record) -> io::Result<()>> Output for Lines<F> {
-    fn finish(mut self: Box<Self>, _: u64) -> io::Result<()> {
+    fn finish(mut self: Box<Self>, _: &Experiment, _: &Run) -> io::Result<()> {
         self.result.and_then(|()| self.out.flush())
     }
 }
@@ -86,19 +88,20 @@ pub(crate) fn vcd(out: Out, clock_hz: u32, channels: u8) -> io::Result<Box<dyn O
 }
 
 impl Output for VcdWriter<Out> {
-    fn finish(self: Box<Self>, end: u64) -> io::Result<()> {
-        VcdWriter::finish(*self, end)
+    fn finish(self: Box<Self>, _: &Experiment, run: &Run) -> io::Result<()> {
+        VcdWriter::finish(*self, run.cycles().0)
     }
 }
 
-/// A table of the packets, one a row, with what the controller did with it.
-pub(crate) fn packets(out: Out) -> Box<dyn Output> {
-    Box::new(Packets { out, log: PacketLog::default() })
+/// A table of the packets of controller `controller`, one a row, with what it did with it.
+pub(crate) fn packets(out: Out, controller: usize) -> Box<dyn Output> {
+    Box::new(Packets { out, controller, log: PacketLog::default() })
 }
 
 /// Rows are written at the end, when it is known what became of each packet.
 struct Packets {
     out: Out,
+    controller: usize,
     log: PacketLog,
 }
 
@@ -111,12 +114,13 @@ impl Sink for Packets {
 }
 
 impl Output for Packets {
-    fn finish(mut self: Box<Self>, _: u64) -> io::Result<()> {
+    fn finish(mut self: Box<Self>, experiment: &Experiment, run: &Run) -> io::Result<()> {
         self.log.finish();
+        let table = PacketTable::new(experiment, run, self.controller, &self.log);
         let mut text = String::new();
-        write_packets_head(&mut text).map_err(io::Error::other)?;
-        for index in 0..self.log.rows().len() {
-            write_packets_row(&mut text, &self.log, index).map_err(io::Error::other)?;
+        PacketTable::write_head(&mut text).map_err(io::Error::other)?;
+        for index in 0..table.len() {
+            table.write_row(&mut text, index).map_err(io::Error::other)?;
             self.out.write_all(text.as_bytes())?;
             text.clear();
         }

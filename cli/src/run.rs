@@ -5,9 +5,7 @@ use crate::{
     files::{self, Files, Out, Output, Station},
     line,
     progress::Progress,
-    scenarios,
-    status::{self, Shown},
-    timing,
+    scenarios, status, timing,
 };
 use clap::Args;
 use std::{
@@ -18,7 +16,7 @@ use stepscope_core::{
     inspect::{fingerprint::Fingerprinter, run_fingerprint::RunFingerprint},
     peripheral::config::Config,
     scenario::{Scenario, link},
-    sim::{Experiment, Run},
+    sim::{Experiment, Run, Summary},
 };
 
 /// Records between two looks at how far a run is.
@@ -85,10 +83,7 @@ impl Arguments {
 /// Runs the scenario and writes what was asked for; digest and status if nothing was.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
-    let text = scenarios::text(path)?;
-    let experiment =
-        Experiment::from_json(&text).map_err(|problems| Failure::Scenario(path.clone(), problems))?;
-    let (scenario, _) = Scenario::from_json_lenient(&text);
+    let (scenario, experiment) = scenarios::judged(path)?;
     let controllers = experiment.controllers();
     let chosen = arguments.controller.unwrap_or(0);
     let config = experiment.configs().nth(chosen);
@@ -96,7 +91,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     let mut stations: Vec<Station> = (0..controllers).map(|_| Station::default()).collect();
     if let Some(station) = stations.get_mut(chosen) {
-        station.files = open(arguments, config)?;
+        station.files = open(arguments, chosen, config)?;
         station.timing = arguments.timing.check(path, &scenario)?;
     }
     if arguments.link {
@@ -107,11 +102,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     for station in &mut stations {
         timing = timing.or(station.timing.take());
         for (path, file) in station.files.drain(..) {
-            file.finish(finished.cycles().0).map_err(|error| Failure::File(path, error))?;
+            file.finish(&experiment, &finished).map_err(|error| Failure::File(path, error))?;
         }
     }
     if let Some(file) = &arguments.line {
-        line::write(file, scenario.clone(), &experiment, &finished)?;
+        line::write(file, Scenario::clone(&scenario), &experiment, &finished)?;
     }
     if arguments.link {
         let link = link::encode(&scenario).map_err(Failure::Link)?;
@@ -120,12 +115,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let link = link::with_part(link, "d", &proof.emit());
         writeln!(io::stdout(), "#{link}").map_err(Failure::output)?;
     }
-    let shown =
-        Shown { stations: &stations, only: arguments.controller, run: &finished, experiment: &experiment };
+    let summary = Summary::new(&experiment, &finished, stations.iter().map(|station| &station.digest));
+    let summary = match arguments.controller {
+        Some(controller) => summary.only(controller),
+        None => summary,
+    };
     if arguments.digest && !arguments.status {
-        status::digests(&shown).map_err(Failure::output)?;
+        status::digests(&summary).map_err(Failure::output)?;
     } else if arguments.status || !arguments.asks_for_a_file() {
-        status::print(&shown).map_err(Failure::output)?;
+        status::print(&summary).map_err(Failure::output)?;
     }
     timing.map_or(Ok(()), |timing| arguments.timing.report(&timing, scenario.clock_hz))
 }
@@ -144,7 +142,7 @@ fn go(experiment: &Experiment, stations: &mut [Station], wanted: bool) -> Run {
 }
 
 /// The files that were asked for, each with its path.
-fn open(arguments: &Arguments, config: &Config) -> Result<Files, Failure> {
+fn open(arguments: &Arguments, controller: usize, config: &Config) -> Result<Files, Failure> {
     let (clock_hz, channels) = (config.clock_hz(), config.channels());
     let mut opened = Vec::new();
     let mut add = |path: &Option<PathBuf>, make: &dyn Fn(Out) -> io::Result<Box<dyn Output>>| {
@@ -156,6 +154,6 @@ fn open(arguments: &Arguments, config: &Config) -> Result<Files, Failure> {
     add(&arguments.trace, &|out| Ok(files::trace(out)))?;
     add(&arguments.vcd, &|out| files::vcd(out, clock_hz, channels))?;
     add(&arguments.csv, &|out| files::csv(out, clock_hz, channels))?;
-    add(&arguments.packets, &|out| Ok(files::packets(out)))?;
+    add(&arguments.packets, &|out| Ok(files::packets(out, controller)))?;
     Ok(opened)
 }

@@ -5,10 +5,14 @@ use std::{
     fs,
     io::{self, Read, Write},
     path::Path,
+    rc::Rc,
 };
-use stepscope_core::scenario::{
-    Scenario, link,
-    presets::{PRESETS, Preset},
+use stepscope_core::{
+    scenario::{
+        Problem, Scenario, link,
+        presets::{PRESETS, Preset},
+    },
+    sim::{Experiment, Judged},
 };
 
 /// Reads a scenario of the right types; `-` is standard input.
@@ -17,6 +21,14 @@ pub(crate) fn read(path: &Path) -> Result<Scenario, Failure> {
         (scenario, problems) if problems.is_empty() => Ok(scenario),
         (_, problems) => Err(Failure::Scenario(path.to_owned(), problems)),
     }
+}
+
+/// A scenario that was judged, and its experiment; `-` is standard input.
+pub(crate) fn judged(path: &Path) -> Result<(Rc<Scenario>, Rc<Experiment>), Failure> {
+    let judged = Judged::from_json(&text(path)?);
+    let experiment = judged.experiment().cloned();
+    let wrong = |problems: &[Problem]| Failure::Scenario(path.to_owned(), problems.to_vec());
+    Ok((Rc::clone(judged.scenario()), experiment.map_err(wrong)?))
 }
 
 /// The text of a scenario's file; `-` is standard input.

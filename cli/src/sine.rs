@@ -130,10 +130,10 @@ fn sweep(range: &Range, points: u32, out: &mut impl Write) -> io::Result<()> {
 }
 
 fn head(range: &Range, out: &mut impl Write) -> io::Result<()> {
-    let felt = if range.sensor_hz.is_some() { ",thd_acceleration_felt_percent" } else { "" };
+    let filtered = if range.sensor_hz.is_some() { ",thd_acceleration_felt_percent" } else { "" };
     writeln!(
         out,
-        "d1,segments,thd_position_percent,thd_speed_percent,thd_acceleration_percent,euclidean_distance{felt}"
+        "d1,segments,thd_position_percent,thd_speed_percent,thd_acceleration_percent,euclidean_distance{filtered}"
     )
 }
 
@@ -146,8 +146,8 @@ fn row(row: &Row, out: &mut impl Write) -> io::Result<()> {
         "{},{},{position:.6},{speed:.6},{acceleration:.6},{:.9}",
         row.d1, row.segments, row.euclidean
     )?;
-    if let Some(felt) = distortion.acceleration_felt {
-        write!(out, ",{:.6}", felt * 100.0)?;
+    if let Some(filtered) = distortion.acceleration_filtered {
+        write!(out, ",{:.6}", filtered * 100.0)?;
     }
     writeln!(out)
 }

@@ -8,13 +8,16 @@ use std::{
     path::PathBuf,
 };
 use stepscope_core::{
-    inspect::source_code::{Language, Source, headline, is_name},
+    inspect::{
+        source_code::{Language, Source, headline, is_name},
+        step_tables::tolerance_cycles,
+    },
     motion::{
         AxisPlan, Cause, plan_lists,
         quantise::{EntryFormat, Form, Stored, Tolerance, stored},
         round_half_up,
     },
-    peripheral::{config::Config, segment::PulseTimes, units::Cycles},
+    peripheral::{config::Config, segment::PulseTimes},
     scenario::{Motion, Problem, Scenario, Source as ScenarioSource, ValueError, of_config, of_motion},
 };
 
@@ -141,8 +144,7 @@ impl Axes {
         let plans = plan_lists([("source.motion.axes".to_owned(), axes.as_slice())])
             .map_err(of_motion)
             .map_err(wrong)?;
-        // One division, so that 25 us of 16 MHz are 400 cycles and not 399.
-        let cycles = Cycles((arguments.error_us * f64::from(clock_hz) / 1e6) as u64);
+        let cycles = tolerance_cycles(arguments.error_us, clock_hz);
         let tolerance = Tolerance { cycles, interval_part: arguments.interval_part };
         let plans = plans.into_iter().flatten().collect();
         Ok(Self { pulse: PulseTimes::from(&config), path, title, clock_hz, plans, tolerance })

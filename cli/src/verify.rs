@@ -4,8 +4,8 @@ use crate::{failure::Failure, progress::Progress};
 use std::path::PathBuf;
 use stepscope_core::{
     inspect::{
-        fingerprint::{FingerprintCheck, FingerprintMatch, Shorter},
-        run_fingerprint::{RunFingerprint, VERSION},
+        fingerprint::Shorter,
+        run_fingerprint::{RunFingerprint, VERSION, Verification},
     },
     peripheral::units::Instant,
     scenario::Scenario,
@@ -21,49 +21,40 @@ pub(crate) fn verify(scenario: &Scenario, part: Option<&str>) -> Result<(), Fail
     let proof = RunFingerprint::parse(proof).map_err(Failure::RunFingerprint)?;
     let experiment = Experiment::new(scenario)
         .map_err(|problems| Failure::Scenario(PathBuf::from("the link"), problems))?;
-    let (sent, own) = (proof.controllers.len(), experiment.controllers());
-    if sent != own {
-        return Err(Failure::OtherRun(format!(
-            "the link's digests are of {sent} controllers, its scenario has {own}"
-        )));
-    }
-    let mut comparisons: Vec<FingerprintCheck<'_>> =
-        proof.controllers.iter().map(FingerprintCheck::with).collect();
+    let own = experiment.controllers();
+    let mut checks = proof.checks(own).map_err(|sent| {
+        Failure::OtherRun(format!("the link's digests are of {sent} controllers, its scenario has {own}"))
+    })?;
     let mut progress = Progress::new("verify", false);
     let mut run = experiment.start();
-    while !run.advance_each(SLICE, &mut comparisons) {
+    while !run.advance_each(SLICE, &mut checks) {
         progress.tell(run.cycles().0, experiment.cost().end_cycle);
     }
     let clock_hz = experiment.config().clock_hz();
-    let mut edges = 0;
-    for (index, comparison) in comparisons.into_iter().enumerate() {
-        match comparison.finish() {
-            FingerprintMatch::Same(mark) => edges += mark.edges,
-            FingerprintMatch::Differs { after, until, shorter } => {
-                let at = |cycle: Instant| format!("cycle {} ({} s)", cycle.0, cycle.seconds(clock_hz));
-                let controller = if own > 1 { format!(" of controller {index}") } else { String::new() };
-                let ends = match shorter {
-                    Some(Shorter::This) => "; this run ends there",
-                    Some(Shorter::Other) => "; the sender's run ends there",
-                    None => "",
-                };
-                let version = if proof.version == VERSION {
-                    String::new()
-                } else {
-                    format!("; it was made with version {}, this is {VERSION}", proof.version)
-                };
-                return Err(Failure::OtherRun(format!(
-                    "not the link's run: the first difference{controller} comes after edge {}, {}, and by edge {}, {}{ends}{version}",
-                    after.edges,
-                    at(after.cycle),
-                    until.edges,
-                    at(until.cycle),
-                )));
-            }
+    let (controller, after, until, shorter) = match Verification::of(checks) {
+        Verification::Same { edges } => {
+            let digests: Vec<String> =
+                proof.controllers.iter().map(|fingerprint| format!("{:016x}", fingerprint.digest)).collect();
+            eprintln!("reproduced bit-exactly: {edges} edges, digest {}", digests.join(" "));
+            return Ok(());
         }
-    }
-    let digests: Vec<String> =
-        proof.controllers.iter().map(|fingerprint| format!("{:016x}", fingerprint.digest)).collect();
-    eprintln!("reproduced bit-exactly: {edges} edges, digest {}", digests.join(" "));
-    Ok(())
+        Verification::Differs { controller, after, until, shorter } => (controller, after, until, shorter),
+    };
+    let at = |cycle: Instant| format!("cycle {} ({} s)", cycle.0, cycle.seconds(clock_hz));
+    let controller = if own > 1 { format!(" of controller {controller}") } else { String::new() };
+    let ends = match shorter {
+        Some(Shorter::This) => "; this run ends there",
+        Some(Shorter::Other) => "; the sender's run ends there",
+        None => "",
+    };
+    let version = proof.other_version().map_or_else(String::new, |version| {
+        format!("; it was made with version {version}, this is {VERSION}")
+    });
+    Err(Failure::OtherRun(format!(
+        "not the link's run: the first difference{controller} comes after edge {}, {}, and by edge {}, {}{ends}{version}",
+        after.edges,
+        at(after.cycle),
+        until.edges,
+        at(until.cycle),
+    )))
 }

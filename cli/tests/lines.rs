@@ -123,18 +123,39 @@ fn the_table_of_packets_is_read_back_field_by_field() {
     let (scenario, table) = (scenario("table.json", NOISY), file("table.csv"));
     out(&["run", &scenario, "--packets", &table]);
     let mut reader = csv::Reader::from_path(&table).expect("a table");
-    assert_eq!(
-        reader.headers().expect("a head"),
-        ["start_cycle", "end_cycle", "bytes", "outcome", "tick_start_cycle", "tick_end_cycle", "kind"]
-            .as_slice()
-    );
-    let rows: Vec<csv::StringRecord> = reader.records().map(|row| row.expect("six fields")).collect();
+    let head: Vec<String> = reader.headers().expect("a head").iter().map(str::to_owned).collect();
+    let columns = "start_cycle,end_cycle,bytes,outcome,tick_start_cycle,tick_end_cycle,kind,\
+                   number,start_s,end_s,gap_s,meaning,tick_start_s,tick_end_s";
+    assert_eq!(head.join(","), columns);
+    let rows: Vec<csv::StringRecord> = reader.records().map(|row| row.expect("its fields")).collect();
     let with_commas = rows.iter().filter(|row| row[3].starts_with("ACK TICKS: ") && row[3].contains(", "));
     assert!(with_commas.count() > 0);
     for row in &rows {
         let (start, end): (u64, u64) = (row[0].parse().expect("a cycle"), row[1].parse().expect("a cycle"));
         assert!(start <= end && row[2].bytes().all(|digit| digit.is_ascii_hexdigit()), "{row:?}");
     }
+}
+
+/// Replies of other controllers are heard on a shared line; a table that is sent again leaves them out.
+#[test]
+fn the_table_of_a_shared_line_read_again_sends_what_the_host_sent() {
+    let preset = stepscope_core::scenario::presets::PRESETS.iter();
+    let preset = preset.into_iter().find(|preset| preset.id == "four-controllers-framed").expect("a preset");
+    let path = scenario("shared.json", preset.json);
+    let (table, line) = (file("shared.csv"), file("shared-line.json"));
+    assert_eq!(out(&["run", &path, "--packets", &table, "--line", &line]), "");
+    let text = fs::read_to_string(&table).expect("the table");
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let kinds: Vec<String> = reader.records().map(|row| row.expect("a row")[6].to_owned()).collect();
+    let of = |kind: &str| kinds.iter().filter(|each| *each == kind).count();
+    assert_eq!(of("frame") + of("reply"), kinds.len());
+    let script = stepscope_core::scenario::LineScript::recorded(&text, preset.scenario().clock_hz);
+    let sends = script.expect("a table").sends;
+    let written = fs::read_to_string(&line).expect("the line");
+    let sent = stepscope_core::scenario::Scenario::from_json(&written).expect("a scenario").source;
+    let stepscope_core::scenario::Source::Line(sent) = sent else { unreachable!("a line script") };
+    assert_eq!(of("frame"), sent.sends.len());
+    assert_eq!(sends, sent.sends);
 }
 
 #[test]

@@ -20,15 +20,11 @@ use alloc::{
 use core::fmt::Write as _;
 use stepscope_core::{
     peripheral::{
-        config::Config,
         signal::{self, Record, Sink},
         trace::{Digest, parse_line, write_record},
     },
     scenario::presets::PRESETS,
-    sim::{
-        Experiment, Run,
-        framed_host::{Counts, FramedHost},
-    },
+    sim::{Experiment, Run, Summary},
 };
 
 /// Most records of a trace that is kept as text.
@@ -159,46 +155,12 @@ impl Outcome {
     pub fn of(go: impl FnOnce(&mut [Keep]) -> Run, experiment: &Experiment) -> Self {
         let mut keeps: Vec<Keep> = (0..experiment.controllers()).map(|_| Keep::default()).collect();
         let run = go(&mut keeps);
-        let (mut digest, mut status) = (String::new(), format!("cycles {}\n", run.cycles().0));
-        let channels: Vec<u8> = experiment.configs().map(Config::channels).collect();
-        for (index, (keep, device)) in keeps.iter().zip(run.devices()).enumerate() {
-            let _ = writeln!(digest, "{:016x}", keep.digest.value());
-            let first = index == 0;
-            // Where segments run the scenario there is one controller, and no device moves.
-            let positions = if first { run.positions() } else { device.positions() };
-            let used = channels.get(index).copied().unwrap_or(0).into();
-            let positions: Vec<String> = positions.iter().take(used).map(i32::to_string).collect();
-            let faults: Vec<&str> = device.faults().names().collect();
-            let faults = if faults.is_empty() { "none".into() } else { faults.join(" ") };
-            if !first {
-                let _ = writeln!(status, "controller {index}");
-            }
-            let _ = write!(
-                status,
-                "records {}\nticks_done {}\npositions {}\nfaults {:#06x} {faults}\n",
-                keep.digest.records(),
-                device.ticks_done(),
-                positions.join(" "),
-                device.faults().bits()
-            );
-            if let Some(told) = device.status() {
-                let (state, seq, free) = (told.state.name(), told.expected_seq, told.free);
-                let _ = writeln!(status, "state {state} seq {seq} free {free}");
-            }
-            if let Some(progress) = experiment.host_progress(&run, index) {
-                let _ = writeln!(status, "host {progress}");
-            }
+        let summary = Summary::new(experiment, &run, keeps.iter().map(|keep| &keep.digest));
+        let mut digest = String::new();
+        for controller in &summary.controllers {
+            let _ = writeln!(digest, "{:016x}", controller.digest);
         }
-        if let Some(counts) = run.host().map(FramedHost::counts) {
-            let Counts { frames, repeated, replies, rejected, refused, crashes } = counts;
-            let _ = writeln!(
-                status,
-                "frames {frames} repeated {repeated} replies {replies} rejected {rejected} refused {refused} crashes {crashes}"
-            );
-        }
-        if let Some(load) = experiment.line_load() {
-            let _ = writeln!(status, "line_load {:.1} %", 100.0 * load);
-        }
+        let status = summary.to_string();
         Self { digest, status, trace: keeps.into_iter().next().map(|keep| keep.first).unwrap_or_default() }
     }
 

@@ -76,7 +76,7 @@ impl Simulation {
             }
         }
         self.count_steps(axis);
-        let made = curves::made(&self.pulses_of(axis), window);
+        let made = curves::actual(&self.pulses_of(axis), window);
         for (name, band) in [("made_position", made.position), ("made_speed", made.speed)] {
             numbers(&result, &format!("{name}_min"), &band.min);
             numbers(&result, &format!("{name}_max"), &band.max);
@@ -105,7 +105,7 @@ impl Simulation {
         self.count_steps(axis);
         let pulses = self.pulses_of(axis);
         let read = |t: f64| Vec::from([f64::from(pulses.position_at(t)), pulses.speed_at(t)]);
-        let made = Readings::new(at.map(read), cursor_stats::made(&pulses, from, to));
+        let made = Readings::new(at.map(read), cursor_stats::actual(&pulses, from, to));
         object(&BothReadings { ideal, made })
     }
 
@@ -151,12 +151,12 @@ impl Simulation {
 
 impl Simulation {
     pub(crate) fn plan(&self, axis: u8) -> Option<&AxisPlan> {
-        self.experiment.plans_of(self.looked_at).get(usize::from(axis))
+        self.experiment.plans_of(self.selected).get(usize::from(axis))
     }
 
     /// When the motions begin, in s.
     fn zero_s(&self) -> f64 {
-        let first = self.looked_at().recording.first_tick();
+        let first = self.selected().recording.first_tick();
         first.map_or(0.0, |start| start.seconds(self.experiment.config().clock_hz()))
     }
 
@@ -165,18 +165,18 @@ impl Simulation {
     }
 
     pub(crate) fn count_steps(&mut self, channel: u8) {
-        self.kept[self.looked_at].count_steps(channel);
+        self.recordings[self.selected].count_steps(channel);
     }
 
     /// What the run made of a channel whose steps are counted.
     pub(crate) fn pulses_of(&self, channel: u8) -> Pulses<'_> {
-        let kept = self.looked_at();
+        let recorded = self.selected();
         Pulses {
             channel,
-            steps: kept.steps_of(channel),
-            log: &kept.recording.packets,
+            steps: recorded.steps_of(channel),
+            log: &recorded.recording.packets,
             segments: self.experiment.segments().and_then(|all| all.lists().get(usize::from(channel))),
-            config: config(&self.experiment, self.looked_at),
+            config: config(&self.experiment, self.selected),
         }
     }
 

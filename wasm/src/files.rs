@@ -8,58 +8,24 @@ use crate::{
     simulation::{Simulation, config},
 };
 use js_sys::{Object, Uint8Array};
-use std::{fmt::Write, io};
+use std::{fmt, io};
 use stepscope_core::{
     inspect::{
-        tables::{write_edges_head, write_edges_row},
+        tables::{
+            SEGMENTS_HEAD, write_edges_head, write_edges_row, write_segment_row, write_tick_row,
+            write_ticks_head,
+        },
+        trace_window::TraceWindow,
         vcd::VcdWriter,
     },
-    peripheral::{
-        config::Config,
-        segment::Segment,
-        signal::{Levels, Record, Sink},
-        trace::write_record,
-        units::Instant,
-        wire::packet::ChannelCommand,
-    },
+    peripheral::{config::Config, signal::Sink, trace::write_record, units::Instant},
+    scenario::Scenario,
     sim::scripted,
 };
 use wasm_bindgen::prelude::*;
 
 /// Rows of a piece: about a megabyte.
 const ROWS: usize = 1 << 14;
-
-/// A stretch of a run as its records: the first is the one at the stretch's own start.
-struct AnalysisWindow<'a> {
-    first: Record,
-    rest: &'a [Record],
-}
-
-impl<'a> AnalysisWindow<'a> {
-    /// Both ends belong to it.
-    fn of(trace: &'a [Record], start: u64, end: u64) -> Self {
-        let after = trace.partition_point(|record| record.cycle.0 <= start);
-        let until = trace.partition_point(|record| record.cycle.0 <= end).max(after);
-        let levels = after.checked_sub(1).and_then(|at| trace.get(at)).map_or(Levels::RESET, |r| r.levels);
-        let first = Record { cycle: Instant(start), levels };
-        Self { first, rest: trace.get(after..until).unwrap_or_default() }
-    }
-
-    const fn rows(&self) -> usize {
-        1 + self.rest.len()
-    }
-
-    fn row(&self, index: usize) -> Option<Record> {
-        match index.checked_sub(1) {
-            None => Some(self.first),
-            Some(index) => self.rest.get(index).copied(),
-        }
-    }
-
-    fn piece(&self, from: usize) -> impl Iterator<Item = Record> {
-        (from..).map_while(|index| self.row(index)).take(ROWS)
-    }
-}
 
 #[wasm_bindgen]
 impl Simulation {
@@ -83,30 +49,40 @@ impl Simulation {
         let (start, end) = ((start.max(0.0) as u64).min(last), (end.max(0.0) as u64).min(last));
         let index = controller as usize;
         let none = || JsError::new("there is no such controller");
-        let recording = &self.kept.get(index).ok_or_else(none)?.recording;
+        let recording = &self.recordings.get(index).ok_or_else(none)?.recording;
         let config = config(&self.experiment, index);
         let from = from as usize;
         let mut text = String::new();
         let (bytes, rows) = match kind {
             "vcd" => {
-                let stretch = AnalysisWindow::of(&recording.trace, start, end);
-                (self.vcd(&stretch, config, end, from)?, stretch.rows())
+                let window = TraceWindow::of(&recording.trace, Instant(start), Instant(end));
+                (self.vcd(&window, config, end, from)?, window.records())
             }
             "edges" | "trace" => {
-                let stretch = AnalysisWindow::of(&recording.trace, start, end);
+                let window = TraceWindow::of(&recording.trace, Instant(start), Instant(end));
                 if kind == "edges" && from == 0 {
                     write_edges_head(&mut text, config.channels())?;
                 }
-                for record in stretch.piece(from) {
+                for record in window.iter_from(from).take(ROWS) {
                     if kind == "edges" {
                         write_edges_row(&mut text, record, config.clock_hz(), config.channels())?;
                     } else {
                         write_record(&mut text, record)?;
                     }
                 }
-                (text.into_bytes(), stretch.rows())
+                (text.into_bytes(), window.records())
             }
-            "ticks" => (self.ticks(&mut text, index, (start, end), from)?, recording.packets.ticks().len()),
+            "ticks" => {
+                let ticks = recording.packets.ticks();
+                if from == 0 {
+                    write_ticks_head(&mut text, config.channels())?;
+                }
+                let piece = ticks.iter().skip(from).take(ROWS);
+                for tick in piece.filter(|tick| (start..=end).contains(&tick.start.0)) {
+                    write_tick_row(&mut text, tick, config.channels())?;
+                }
+                (text.into_bytes(), ticks.len())
+            }
             "segments" => {
                 let rows = self.segments(&mut text, from)?;
                 (text.into_bytes(), rows)
@@ -126,7 +102,7 @@ impl Simulation {
     /// # Errors
     /// If there is more of it than a scenario may hold.
     pub fn line_script(&self) -> Result<String, JsError> {
-        let scripted = scripted(self.scenario.clone(), &self.experiment, &self.run);
+        let scripted = scripted(Scenario::clone(&self.scenario), &self.experiment, &self.run);
         if let Err(problems) = scripted.check() {
             let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
             return Err(JsError::new(&lines.join("; ")));
@@ -136,22 +112,16 @@ impl Simulation {
 }
 
 impl Simulation {
-    fn vcd(
-        &self,
-        stretch: &AnalysisWindow<'_>,
-        config: &Config,
-        end: u64,
-        from: usize,
-    ) -> io::Result<Vec<u8>> {
+    fn vcd(&self, window: &TraceWindow<'_>, config: &Config, end: u64, from: usize) -> io::Result<Vec<u8>> {
         let mut bytes = Vec::new();
         let (clock_hz, channels) = (config.clock_hz(), config.channels());
-        let before = from.checked_sub(1).and_then(|index| stretch.row(index));
+        let before = from.checked_sub(1).and_then(|index| window.get(index));
         let mut writer = match before {
             None => VcdWriter::new(&mut bytes, clock_hz, channels),
             Some(before) => VcdWriter::resume(&mut bytes, clock_hz, channels, before.levels),
         }?;
-        stretch.piece(from).for_each(|record| writer.record(record));
-        if from + ROWS < stretch.rows() {
+        window.iter_from(from).take(ROWS).for_each(|record| writer.record(record));
+        if from + ROWS < window.records() {
             writer.pause()?;
         } else {
             writer.finish((end + 1).min(self.run.cycles().0))?;
@@ -159,39 +129,10 @@ impl Simulation {
         Ok(bytes)
     }
 
-    /// The ticks that began in a stretch: when, the packet's row, and the steps of each channel.
-    fn ticks(
-        &self,
-        text: &mut String,
-        controller: usize,
-        (start, end): (u64, u64),
-        from: usize,
-    ) -> Result<Vec<u8>, std::fmt::Error> {
-        let channels = usize::from(config(&self.experiment, controller).channels());
-        if from == 0 {
-            text.push_str("start_cycle,packet");
-            (0..channels).try_for_each(|channel| write!(text, ",steps{channel}"))?;
-            text.push('\n');
-        }
-        let ticks = self.kept.get(controller).map(|kept| kept.recording.packets.ticks()).unwrap_or_default();
-        for tick in ticks.iter().skip(from).take(ROWS).filter(|tick| (start..=end).contains(&tick.start.0)) {
-            write!(text, "{},", tick.start.0)?;
-            if let Some(row) = tick.row {
-                write!(text, "{row}")?;
-            }
-            for &byte in tick.orders.iter().take(channels) {
-                let ChannelCommand { right, steps } = ChannelCommand::parse(byte);
-                write!(text, ",{}{steps}", if right || steps == 0 { "" } else { "-" })?;
-            }
-            text.push('\n');
-        }
-        Ok(core::mem::take(text).into_bytes())
-    }
-
     /// The segments that run the scenario; gives how many there are.
-    fn segments(&self, text: &mut String, from: usize) -> Result<usize, std::fmt::Error> {
+    fn segments(&self, text: &mut String, from: usize) -> Result<usize, fmt::Error> {
         if from == 0 {
-            text.push_str("channel,start_cycle,kind,count,interval_q16,add_q16,dir,length_q16\n");
+            text.push_str(SEGMENTS_HEAD);
         }
         let lists = self.experiment.segments().map(|segments| segments.lists()).unwrap_or_default();
         let all = || {
@@ -200,13 +141,7 @@ impl Simulation {
             })
         };
         for (channel, start, segment) in all().skip(from).take(ROWS) {
-            write!(text, "{channel},{},", start.0)?;
-            match segment {
-                Segment::Steps { count, interval, add, right } => {
-                    writeln!(text, "steps,{count},{interval},{add},{},", u8::from(*right))?;
-                }
-                Segment::Dwell(length) => writeln!(text, "dwell,,,,,{length}")?,
-            }
+            write_segment_row(text, channel, start, segment)?;
         }
         Ok(all().count())
     }

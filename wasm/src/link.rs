@@ -1,26 +1,16 @@
 //! Links: a scenario to a fragment and back.
 
-use crate::{convert::object, judge::cost_message};
+use crate::convert::object;
 use serde::Serialize;
 use stepscope_core::{
+    inspect::judgement::RunCost,
     scenario::{
         LineScript, Scenario,
-        link::{LinkError, decode, encode, part, with_part},
+        link::{LinkError, decode, part, with_part},
     },
     sim::{Experiment, replayed},
 };
 use wasm_bindgen::prelude::*;
-
-/// The link of a scenario: what stands behind the `#`.
-///
-/// # Errors
-/// If the scenario cannot be read, or is too large for a link.
-#[wasm_bindgen]
-pub fn encode_link(json: &str) -> Result<String, JsError> {
-    let scenario =
-        Scenario::from_json(json).map_err(|problems| JsError::from(LinkError::Scenario(problems)))?;
-    Ok(encode(&scenario)?)
-}
 
 #[derive(Serialize)]
 #[serde(untagged)]
@@ -68,11 +58,11 @@ pub fn replay(table: &str, json: &str) -> Result<String, JsError> {
 #[wasm_bindgen]
 pub fn decode_link(fragment: &str) -> Result<JsValue, JsError> {
     let opened = decode(fragment).and_then(|scenario| {
-        let cost = Experiment::new(&scenario).map_err(LinkError::Scenario)?.cost();
+        let cost = RunCost::of(Experiment::new(&scenario).map_err(LinkError::Scenario)?.cost());
         Ok(Opened::Scenario {
             scenario: scenario.to_json(),
-            over_budget: cost.is_over_budget(),
-            message: cost_message(cost),
+            over_budget: cost.over_budget,
+            message: cost.message,
         })
     });
     object(&opened.unwrap_or_else(|error| Opened::Error { error: error.to_string() }))

@@ -1,48 +1,20 @@
-//! What went over the line and what became of it, a row each, and the ticks that it brought; in words.
-
-mod detail;
-mod files;
-mod filter;
-mod words;
+//! The packet table, the ticks and the line's decoder of the controller that is selected, as JavaScript values.
 
 use crate::{
-    convert::object,
-    simulation::{Simulation, config},
+    convert::{field, object},
+    simulation::Simulation,
 };
-pub(crate) use filter::Filter;
-use filter::{Asked, Needle};
+use js_sys::{Object, Uint8Array};
 use serde::Serialize;
-use stepscope_core::peripheral::{
-    config::Config,
-    trace::{LoggedTick, PacketLog},
-    units::Instant,
+use std::mem::take;
+use stepscope_core::{
+    inspect::{
+        line_decoder::LineDecoder,
+        packet_table::{Filter, PacketTable, Request, Row},
+    },
+    peripheral::units::Instant,
 };
 use wasm_bindgen::prelude::*;
-use words::{Line, Scale};
-
-#[derive(Serialize)]
-struct Row {
-    index: usize,
-    /// `packet`, `frame`, `reply` or `collision`.
-    kind: &'static str,
-    start_cycle: u64,
-    end_cycle: u64,
-    /// First cycle after its last byte on the line.
-    line_end_cycle: u64,
-    /// When it starts, in the table's unit.
-    start: String,
-    /// Time since the end of what was on the line before; empty for the first.
-    gap: String,
-    hex: String,
-    fields: String,
-    outcome: String,
-    /// The outcome for a narrow column.
-    short: String,
-    /// `good`, `foreign` (not for this controller, or from another), `repeated` or `bad`.
-    mark: &'static str,
-    tick_start_cycle: Option<u64>,
-    tick_end_cycle: Option<u64>,
-}
 
 #[derive(Serialize)]
 struct Rows<T> {
@@ -50,26 +22,30 @@ struct Rows<T> {
     more: bool,
 }
 
-#[derive(Serialize)]
-struct TickRow {
-    start_cycle: u64,
-    end_cycle: u64,
-    /// Row that brought it.
-    row: Option<usize>,
-    fields: String,
+impl<T> Rows<T> {
+    /// None of them where there are more than `limit`.
+    fn within(limit: u32, rows: impl Iterator<Item = T>) -> Self {
+        let limit = limit as usize;
+        let mut rows: Vec<T> = rows.take(limit + 1).collect();
+        let more = rows.len() > limit;
+        if more {
+            rows.clear();
+        }
+        Self { rows, more }
+    }
+}
+
+fn cycle(at: f64) -> Instant {
+    Instant(at.max(0.0) as u64)
 }
 
 #[wasm_bindgen]
 impl Simulation {
-    /// What the table shows from now on; nothing is judged before `filter_on`. The text is looked for in
-    /// bytes (as hex), words and numbers; `kind` is `packet`, `frame`, `reply`, `collision`, a kind of
-    /// DESIGN A6 or `NAK`, and `mark` as in a row, both empty for any; `only` leaves out what the text does
-    /// not find. What has to be said of the text comes back, empty for nothing.
+    /// What the table shows from now on ([`Request::new`]); nothing is judged before `filter_on`. What has to be said of
+    /// the text comes back, empty for nothing.
     pub fn filter(&mut self, text: &str, kind: &str, address: Option<u8>, mark: &str, only: bool) -> String {
-        let (needle, note) = Needle::parse(text);
-        let all = needle.is_none() && kind.is_empty() && address.is_none() && mark.is_empty();
-        let asked = Asked { needle, kind: kind.to_owned(), address, mark: mark.to_owned(), only };
-        self.filter.ask((!all).then_some(asked));
+        let (request, note) = Request::new(text, kind, address, mark, only);
+        self.filter = Filter::new(request);
         note
     }
 
@@ -86,9 +62,9 @@ impl Simulation {
             shown: usize,
             matches: usize,
         }
-        let mut filter = std::mem::take(&mut self.filter);
-        let done = filter.go_on(self.line(), self.scale(), self.log(), count as usize);
-        let total = self.log().rows().len();
+        let mut filter = take(&mut self.filter);
+        let done = filter.advance(&self.table(), count as usize);
+        let total = self.table().len();
         let judged = Judged { done, total, shown: filter.shown(total), matches: filter.matches() };
         self.filter = filter;
         object(&judged)
@@ -115,16 +91,16 @@ impl Simulation {
             unit: &'static str,
             rows: Vec<Placed>,
         }
-        let total = self.log().rows().len();
+        let table = self.table();
         let placed = |position| {
-            let row = self.row(self.filter.row(position)?)?;
+            let row = table.row(self.filter.row(position)?)?;
             Some(Placed { position, rank: self.filter.rank(position), row })
         };
         object(&Page {
-            total,
-            shown: self.filter.shown(total),
+            total: table.len(),
+            shown: self.filter.shown(table.len()),
             matches: self.filter.matches(),
-            unit: self.scale().unit,
+            unit: table.scale().unit,
             rows: (from as usize..).take(count as usize).map_while(placed).collect(),
         })
     }
@@ -147,27 +123,17 @@ impl Simulation {
     /// # Errors
     /// Never in practice.
     pub fn packet_choices(&self) -> Result<JsValue, JsError> {
-        #[derive(Serialize)]
-        struct Choices {
-            addresses: Vec<u8>,
-            kinds: Vec<&'static str>,
-        }
-        let line = self.line();
-        let (mut addresses, mut kinds) = ([false; 256], Vec::new());
-        for (index, row) in self.log().rows().iter().enumerate() {
-            let bytes = self.log().bytes(index);
-            if let Some(address) = line.address(bytes, row.verdict) {
-                addresses[usize::from(address)] = true;
-            }
-            let name = words::head(bytes, row.verdict).and_then(|(_, kind)| words::name_of(kind));
-            for kind in [Some(line.kind(bytes, row.verdict)), name].into_iter().flatten() {
-                if !kinds.contains(&kind) {
-                    kinds.push(kind);
-                }
-            }
-        }
-        let addresses = (0..=u8::MAX).filter(|&address| addresses[usize::from(address)]).collect();
-        object(&Choices { addresses, kinds })
+        object(&self.table().choices())
+    }
+
+    /// Row `index` with its fields, its check and the times around it; null where there is none. A row as
+    /// in `packets`, and `{layout: [{name, from, until, value}], check, check_found, check_expected,
+    /// byte_cycles, byte_length, gap_cycles, drive_cycles, turnaround_cycles, answers}`.
+    ///
+    /// # Errors
+    /// Never in practice.
+    pub fn packet(&self, index: u32) -> Result<JsValue, JsError> {
+        object(&self.table().detail(index as usize))
     }
 
     /// The rows whose time on the line touches a stretch of cycles, none of them where there are more than `limit`:
@@ -176,13 +142,10 @@ impl Simulation {
     /// # Errors
     /// Never in practice.
     pub fn packets_in(&self, start_cycle: f64, end_cycle: f64, limit: u32) -> Result<JsValue, JsError> {
-        let at = |cycle: f64| Instant(cycle.max(0.0) as u64);
-        let limit = limit as usize;
-        let touching: Vec<usize> =
-            self.log().touching(at(start_cycle), at(end_cycle)).take(limit + 1).collect();
-        let more = touching.len() > limit;
-        let listed = if more { Vec::new() } else { touching };
-        object(&Rows { rows: listed.into_iter().filter_map(|index| self.row(index)).collect(), more })
+        let table = self.table();
+        let touching = table.touching(cycle(start_cycle), cycle(end_cycle));
+        let Rows { rows, more } = Rows::within(limit, touching);
+        object(&Rows { rows: rows.into_iter().filter_map(|index| table.row(index)).collect(), more })
     }
 
     /// The ticks that touch a stretch of cycles, none of them where there are more than `limit`, each with the row that brought it:
@@ -191,66 +154,76 @@ impl Simulation {
     /// # Errors
     /// Never in practice.
     pub fn ticks_in(&self, start_cycle: f64, end_cycle: f64, limit: u32) -> Result<JsValue, JsError> {
-        let (start, end) = (start_cycle.max(0.0) as u64, end_cycle.max(0.0) as u64);
-        let config = config(&self.experiment, self.looked_at);
-        let all = self.log().ticks();
-        let first = all.partition_point(|tick| tick.start.0 + config.tick().0 <= start);
-        let until = all.partition_point(|tick| tick.start.0 <= end).max(first);
-        let touching = all.get(first..until).unwrap_or_default();
-        let more = touching.len() > limit as usize;
-        let listed = if more { &[] } else { touching };
-        object(&Rows { rows: listed.iter().map(|tick| self.tick(tick, config)).collect(), more })
+        object(&Rows::within(limit, self.table().ticks_touching(cycle(start_cycle), cycle(end_cycle))))
     }
 
-    fn tick(&self, tick: &LoggedTick, config: &Config) -> TickRow {
-        let mut fields = String::new();
-        words::steps_in_words(tick.orders.iter().take(usize::from(config.channels())).copied(), &mut fields);
-        TickRow {
-            start_cycle: tick.start.0,
-            end_cycle: self.log().tick_end(tick, config.tick()).0.min(self.run.cycles().0),
-            row: tick.row,
-            fields,
+    /// What is on the line in a stretch of cycles, unless that is more than `most_bytes` bytes; their bits only
+    /// where there are at most `most_bits` bytes: `{rx: {bits, bytes, fields}, tx: {…}, more}`, each of spans
+    /// `{start, end, texts, bad, packet, sample}` in cycles.
+    ///
+    /// # Errors
+    /// Never in practice.
+    pub fn decoded(
+        &self,
+        start_cycle: f64,
+        end_cycle: f64,
+        most_bytes: u32,
+        most_bits: u32,
+    ) -> Result<JsValue, JsError> {
+        let decoder = LineDecoder::new(self.table(), &self.selected().recording.trace);
+        let (start, end) = (cycle(start_cycle), cycle(end_cycle));
+        object(&decoder.decode(start.0, end.0, most_bytes as usize, most_bits as usize))
+    }
+
+    /// A part of a file of packets: `{part, rows, next}`. `format` is `csv` (the table that the command writes), `hex` (a
+    /// line of text a row) or `bin` (the bytes alone); the part is a text, of `bin` bytes. It holds up to `count` rows
+    /// from position `from` on, `next` is where to go on, undefined at the end. With `shown` only rows on show, with two
+    /// cycles only rows whose time on the line touches what lies between.
+    ///
+    /// # Errors
+    /// Never in practice.
+    pub fn packet_file(
+        &self,
+        format: &str,
+        shown: bool,
+        from: u32,
+        count: u32,
+        start_cycle: Option<f64>,
+        end_cycle: Option<f64>,
+    ) -> Result<Object, JsError> {
+        let table = self.table();
+        let total = if shown { self.filter.shown(table.len()) } else { table.len() };
+        let until = total.min((from as usize).saturating_add(count as usize));
+        let (start, end) = (cycle(start_cycle.unwrap_or(0.0)), end_cycle.map_or(Instant::NEVER, cycle));
+        let (mut text, mut bytes) = (String::new(), Vec::new());
+        if format == "csv" && from == 0 {
+            PacketTable::write_head(&mut text)?;
         }
-    }
-
-    fn log(&self) -> &PacketLog {
-        &self.looked_at().recording.packets
-    }
-
-    fn line(&self) -> Line<'_> {
-        Line { experiment: &self.experiment, own: config(&self.experiment, self.looked_at) }
-    }
-
-    fn scale(&self) -> Scale {
-        Scale::of(self.run.cycles().0, self.experiment.config().clock_hz())
-    }
-
-    fn row(&self, index: usize) -> Option<Row> {
-        let row = self.log().rows().get(index)?;
-        let bytes = self.log().bytes(index);
-        let (mut start, mut gap) = (String::new(), String::new());
-        self.scale().print(row.start.0, &mut start);
-        if let Some(cycles) = self.gap(index) {
-            self.scale().print(cycles, &mut gap);
+        for position in from as usize..until {
+            let Some(index) = (if shown { self.filter.row(position) } else { Some(position) }) else { break };
+            if !table.is_on_line(index, start, end) {
+                continue;
+            }
+            match format {
+                "bin" => bytes.extend_from_slice(table.bytes(index)),
+                "hex" => {
+                    table.write_hex(index, &mut text);
+                    text.push('\n');
+                }
+                _ => table.write_row(&mut text, index)?,
+            }
         }
-        let (mut hex, mut fields) = (String::new(), String::new());
-        words::hex(bytes, &mut hex);
-        self.line().fields(bytes, row.verdict, &mut fields);
-        Some(Row {
-            index,
-            kind: self.line().kind(bytes, row.verdict),
-            start_cycle: row.start.0,
-            end_cycle: row.end.0,
-            line_end_cycle: self.line_end(index),
-            start,
-            gap,
-            hex,
-            fields,
-            outcome: words::outcome(row.verdict),
-            short: words::short(row.verdict),
-            mark: words::mark(row.verdict),
-            tick_start_cycle: row.tick_start.map(|at| at.0),
-            tick_end_cycle: row.tick_end.map(|at| at.0),
-        })
+        let file = Object::new();
+        let part = if format == "bin" { Uint8Array::from(bytes.as_slice()).into() } else { text.into() };
+        field(&file, "part", &part);
+        field(&file, "rows", &total.into());
+        field(&file, "next", &if until < total { until.into() } else { JsValue::UNDEFINED });
+        Ok(file)
+    }
+}
+
+impl Simulation {
+    fn table(&self) -> PacketTable<'_> {
+        PacketTable::new(&self.experiment, &self.run, self.selected, &self.selected().recording.packets)
     }
 }

@@ -1,11 +1,14 @@
 //! A run in the worker: made in slices, kept for the views' questions. The views look at one
 //! controller at a time.
 
-use crate::{convert::object, packets::Filter, subject::listed};
+use crate::convert::object;
 use serde::Serialize;
-use std::mem::take;
+use std::{mem::take, rc::Rc};
 use stepscope_core::{
-    inspect::{changes::Changes, timing::TimingCheck, trace_diff::TraceDiff, watched::Watched},
+    inspect::{
+        changes::Changes, drivers, packet_table::Filter, timing::TimingCheck, trace_diff::TraceDiff,
+        watched::Watched,
+    },
     peripheral::{
         config::Config,
         trace::{Recording, Step, steps},
@@ -18,25 +21,28 @@ use wasm_bindgen::prelude::*;
 /// Most records that a page keeps of all controllers together; 16 bytes each.
 const MAX_RECORDS: u64 = 40_000_000;
 
+/// Violations of the driver's timing that the page gets in full.
+const MAX_KEPT: usize = 1000;
+
 /// One scenario's run.
 #[wasm_bindgen]
 pub struct Simulation {
-    pub(crate) scenario: Scenario,
-    pub(crate) experiment: Experiment,
+    pub(crate) scenario: Rc<Scenario>,
+    pub(crate) experiment: Rc<Experiment>,
     pub(crate) run: Run,
     /// Of each controller, in the order of the scenario; never empty.
-    pub(crate) kept: Vec<Kept>,
-    /// Index in `kept` of the controller that the views look at.
-    pub(crate) looked_at: usize,
+    pub(crate) recordings: Vec<ControllerRecording>,
+    /// Index in `recordings` of the controller that the views look at.
+    pub(crate) selected: usize,
     /// Which rows of its packets the table shows.
     pub(crate) filter: Filter,
     /// A controller's index, and how its trace stands to a file that is being read.
-    pub(crate) against: Option<(usize, TraceDiff)>,
+    pub(crate) trace_diff: Option<(usize, TraceDiff)>,
 }
 
 /// What is kept of one controller.
 #[derive(Default)]
-pub(crate) struct Kept {
+pub(crate) struct ControllerRecording {
     pub(crate) recording: Recording,
     /// Where its signals change.
     pub(crate) changes: Changes,
@@ -46,7 +52,7 @@ pub(crate) struct Kept {
     steps: Vec<Option<Vec<Step>>>,
 }
 
-impl Kept {
+impl ControllerRecording {
     pub(crate) fn count_steps(&mut self, channel: u8) {
         if let Some(place) = self.steps.get_mut(usize::from(channel))
             && place.is_none()
@@ -76,47 +82,30 @@ struct Progress {
 
 #[wasm_bindgen]
 impl Simulation {
-    /// Prepares a run.
-    ///
-    /// # Errors
-    /// If the scenario has problems; `check` lists them.
-    #[wasm_bindgen(constructor)]
-    pub fn new(json: &str) -> Result<Simulation, JsError> {
-        let scenario = Scenario::from_json(json).map_err(listed)?;
-        let experiment = Experiment::new(&scenario).map_err(listed)?;
-        let run = experiment.start();
-        let kept = |config: &Config| Kept {
-            recording: Recording::default(),
-            changes: Changes::default(),
-            timing: crate::timing::check(&scenario),
-            steps: vec![None; usize::from(config.channels())],
-        };
-        let kept = experiment.configs().map(kept).collect();
-        Ok(Self { scenario, experiment, run, kept, looked_at: 0, filter: Filter::default(), against: None })
-    }
-
     /// Runs on until one controller has made about `max_records` more records: `{done, cycle, end_cycle,
     /// records}`, the records those of all controllers.
     ///
     /// # Errors
     /// If the run makes more records than a page can keep.
     pub fn advance(&mut self, max_records: u32) -> Result<JsValue, JsError> {
-        let watched =
-            |kept: &mut Kept| Watched { recording: take(&mut kept.recording), timing: kept.timing.take() };
-        let mut watched: Vec<Watched> = self.kept.iter_mut().map(watched).collect();
+        let watched = |one: &mut ControllerRecording| Watched {
+            recording: take(&mut one.recording),
+            timing: one.timing.take(),
+        };
+        let mut watched: Vec<Watched> = self.recordings.iter_mut().map(watched).collect();
         let done = self.run.advance_each(u64::from(max_records.max(1)), &mut watched);
-        for (kept, Watched { recording, timing }) in self.kept.iter_mut().zip(watched) {
-            kept.changes.extend(&recording.trace);
-            (kept.recording, kept.timing) = (recording, timing);
+        for (one, Watched { recording, timing }) in self.recordings.iter_mut().zip(watched) {
+            one.changes.extend(&recording.trace);
+            (one.recording, one.timing) = (recording, timing);
         }
-        let records: u64 = self.kept.iter().map(|kept| kept.recording.digest.records()).sum();
+        let records: u64 = self.recordings.iter().map(|one| one.recording.digest.records()).sum();
         if records > MAX_RECORDS {
             return Err(JsError::new(&format!(
                 "the run makes more than {MAX_RECORDS} edges, which is more than a page can keep; shorten the motion, or run it with the stepscope command"
             )));
         }
         if done {
-            self.kept.iter_mut().for_each(|kept| kept.recording.packets.finish());
+            self.recordings.iter_mut().for_each(|one| one.recording.packets.finish());
         }
         let cycle = self.run.cycles().0;
         object(&Progress {
@@ -130,27 +119,35 @@ impl Simulation {
     /// The views look at this controller from now on, 0 the first; one that there is not leaves it as it
     /// is.
     pub fn select(&mut self, controller: u32) {
-        if (controller as usize) < self.kept.len() {
-            self.looked_at = controller as usize;
+        if (controller as usize) < self.recordings.len() {
+            self.selected = controller as usize;
             self.filter = Filter::default();
         }
-    }
-
-    /// Spectra of the ideal motion and of the pulses, for the axis that the scenario's analysis
-    /// names.
-    ///
-    /// # Errors
-    /// Never in practice.
-    pub fn spectrum(&mut self) -> Result<JsValue, JsError> {
-        let axis = self.scenario.analysis.axis;
-        self.count_steps(axis);
-        crate::spectrum::spectrum(&self.scenario, self.plan(axis), &self.pulses_of(axis))
     }
 }
 
 impl Simulation {
+    /// A run of what was judged, before its first cycle.
+    pub(crate) fn of(scenario: &Rc<Scenario>, experiment: &Rc<Experiment>) -> Self {
+        let recording = |config: &Config| ControllerRecording {
+            recording: Recording::default(),
+            changes: Changes::default(),
+            timing: drivers::check(scenario, MAX_KEPT),
+            steps: vec![None; usize::from(config.channels())],
+        };
+        Self {
+            scenario: Rc::clone(scenario),
+            run: experiment.start(),
+            recordings: experiment.configs().map(recording).collect(),
+            experiment: Rc::clone(experiment),
+            selected: 0,
+            filter: Filter::default(),
+            trace_diff: None,
+        }
+    }
+
     /// The controller that the views look at.
-    pub(crate) fn looked_at(&self) -> &Kept {
-        &self.kept[self.looked_at]
+    pub(crate) fn selected(&self) -> &ControllerRecording {
+        &self.recordings[self.selected]
     }
 }

@@ -3,19 +3,20 @@
 
 use crate::{
     convert::{field, numbers},
-    subject::Subject,
+    judged::Judged,
 };
 use js_sys::Object;
 use std::ops::Range;
 use stepscope_core::{
     inspect::{
         sine_optimum::{Freedom, optimum},
-        sine_polyline::{Bounds, Distinct, Row, swept},
+        sine_polyline::{Bounds, Distinct, Row, best_of_each, swept},
     },
     motion::{
         Profile,
         sine_segments::{Memory, Segment},
     },
+    sim::SelectedAxis,
 };
 use wasm_bindgen::prelude::*;
 
@@ -30,7 +31,7 @@ fn columns(rows: &[Row]) -> Object {
     put("position", &|row| row.distortion.position);
     put("speed", &|row| row.distortion.speed);
     put("acceleration", &|row| row.distortion.acceleration);
-    put("felt", &|row| row.distortion.acceleration_felt.unwrap_or(f64::NAN));
+    put("felt", &|row| row.distortion.acceleration_filtered.unwrap_or(f64::NAN));
     put("euclidean", &|row| row.euclidean);
     made
 }
@@ -60,15 +61,7 @@ pub fn sine_rows(
 #[wasm_bindgen]
 #[must_use]
 pub fn sine_best(from: f64, to: f64, order: u16, sensor: Option<f64>) -> Object {
-    let mut all: Vec<Row> = Vec::new();
-    for row in Distinct::new(from, to, Bounds { order, sensor }) {
-        match all.iter_mut().find(|best| best.segments == row.segments) {
-            Some(best) if row.distortion.position < best.distortion.position => *best = row,
-            Some(_) => {}
-            None => all.push(row),
-        }
-    }
-    columns(&all)
+    columns(&best_of_each(Distinct::new(from, to, Bounds { order, sensor })))
 }
 
 /// The vertices of `segments` a quarter with least distortion of the position, on the curve or free: `angle_deg` and
@@ -87,31 +80,33 @@ pub fn sine_vertices(segments: usize, free: bool, order: u16) -> Option<Object> 
     Some(made)
 }
 
-/// The segments of a quarter of the first sine in segments that an axis has: columns `from_deg`, `to_deg`, `steps`,
-/// `rate` (steps/s) and `duration_s`, and the bytes of a quarter as segments (`segment_bytes`) and with one interval a
-/// step (`interval_bytes`); undefined where the axis has none.
-///
-/// # Errors
-/// If the axis has problems, or is not there.
 #[wasm_bindgen]
-pub fn sine_segments(json: &str, controller: usize, axis: usize) -> Result<Option<Object>, JsError> {
-    let plan = Subject::of(json, controller, axis)?.plan;
-    let found = plan.moves().iter().find_map(|planned| match &planned.profile {
-        Profile::SineSegments(sine) => Some(sine),
-        _ => None,
-    });
-    let Some(sine) = found else { return Ok(None) };
-    let made = Object::new();
-    let put = |name: &str, of: &dyn Fn(&Segment) -> f64| {
-        numbers(&made, name, &sine.segments().iter().map(of).collect::<Vec<f64>>());
-    };
-    put("from_deg", &|segment| segment.from_deg);
-    put("to_deg", &|segment| segment.to_deg);
-    put("steps", &|segment| segment.steps as f64);
-    put("rate", &|segment| segment.rate);
-    put("duration_s", &|segment| segment.duration_s);
-    let Memory { segments, intervals } = sine.memory();
-    field(&made, "segment_bytes", &(segments as f64).into());
-    field(&made, "interval_bytes", &(intervals as f64).into());
-    Ok(Some(made))
+impl Judged {
+    /// The segments of a quarter of the first sine in segments that an axis has: columns `from_deg`, `to_deg`, `steps`,
+    /// `rate` (steps/s) and `duration_s`, and the bytes of a quarter as segments (`segment_bytes`) and with one interval a
+    /// step (`interval_bytes`); undefined where the axis has none.
+    ///
+    /// # Errors
+    /// If the axis has problems, or is not there.
+    pub fn sine_segments(&self, controller: usize, axis: usize) -> Result<Option<Object>, JsError> {
+        let SelectedAxis { plan, .. } = self.axis(controller, axis)?;
+        let found = plan.moves().iter().find_map(|planned| match &planned.profile {
+            Profile::SineSegments(sine) => Some(sine),
+            _ => None,
+        });
+        let Some(sine) = found else { return Ok(None) };
+        let made = Object::new();
+        let put = |name: &str, of: &dyn Fn(&Segment) -> f64| {
+            numbers(&made, name, &sine.segments().iter().map(of).collect::<Vec<f64>>());
+        };
+        put("from_deg", &|segment| segment.from_deg);
+        put("to_deg", &|segment| segment.to_deg);
+        put("steps", &|segment| segment.steps as f64);
+        put("rate", &|segment| segment.rate);
+        put("duration_s", &|segment| segment.duration_s);
+        let Memory { segments, intervals } = sine.memory();
+        field(&made, "segment_bytes", &(segments as f64).into());
+        field(&made, "interval_bytes", &(intervals as f64).into());
+        Ok(Some(made))
+    }
 }

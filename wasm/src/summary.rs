@@ -1,18 +1,16 @@
-//! What a run came to, in short: of each controller, and of the host of a framed line.
+//! What a run came to ([`RunSummary`]), as the page has it.
 
 use crate::{
     convert::object,
-    simulation::{Kept, Simulation},
+    simulation::{ControllerRecording, Simulation},
 };
 use serde::Serialize;
 use stepscope_core::{
-    inspect::timing::TimingCheck,
-    peripheral::{
-        config::{Config, Protocol},
-        device::Device,
-        signal::{MAX_CHANNELS, Record},
+    inspect::{edges, timing::TimingCheck},
+    sim::{
+        ControllerSummary, JobSummary, Summary as RunSummary,
+        framed_host::{Counts, Progress},
     },
-    sim::framed_host::{Counts, FramedHost, Progress},
 };
 use wasm_bindgen::prelude::*;
 
@@ -86,77 +84,42 @@ impl Simulation {
     /// # Errors
     /// Never in practice.
     pub fn summary(&self) -> Result<JsValue, JsError> {
-        let config = self.experiment.config();
-        let cycles = self.run.cycles().0;
-        let each = self.kept.iter().zip(self.run.devices()).zip(self.experiment.configs());
-        // Where segments run the scenario there is one controller, and no device moves.
-        let alone = self.experiment.segments().map(|_| self.run.positions());
-        let each = each.map(|((kept, device), config)| {
-            controller(kept, device, config, alone.unwrap_or_else(|| device.positions()))
-        });
+        let digests = self.recordings.iter().map(|recorded| &recorded.recording.digest);
+        let run = RunSummary::new(&self.experiment, &self.run, digests);
         object(&Summary {
-            framed: config.protocol() == Protocol::Framed,
-            end_cycle: cycles,
-            end_s: cycles as f64 / f64::from(config.clock_hz()),
-            clock_hz: config.clock_hz(),
-            line_load: self.experiment.line_load(),
-            host: self.run.host().map(|host| self.host(host)),
-            controllers: each.collect(),
+            framed: run.framed,
+            end_cycle: run.cycles.0,
+            end_s: run.cycles.0 as f64 / f64::from(run.clock_hz),
+            clock_hz: run.clock_hz,
+            line_load: run.line_load,
+            host: run.host.map(|counts| host(counts, &run.controllers)),
+            controllers: run.controllers.into_iter().zip(&self.recordings).map(controller).collect(),
         })
-    }
-
-    fn host(&self, host: &FramedHost) -> Host {
-        let Counts { frames, repeated, replies, rejected, refused, crashes } = host.counts();
-        let ticks = self.experiment.configs().enumerate().map(|(controller, config)| {
-            (controller, self.experiment.ticks_of(controller).len() / usize::from(config.channels().max(1)))
-        });
-        // The host has a job for each controller that has ticks to do.
-        let jobs = ticks.filter(|(_, ticks)| *ticks > 0).zip(host.progress()).zip(host.acknowledged());
-        let jobs = jobs.map(|(((controller, ticks), progress), acknowledged)| {
-            let (progress, why) = match progress {
-                Progress::Opening => ("opening", None),
-                Progress::Filling => ("filling", None),
-                Progress::Confirming => ("confirming", None),
-                Progress::Done => ("done", None),
-                Progress::GivenUp(why) => ("given_up", Some(why.to_string())),
-            };
-            Job { controller, ticks, acknowledged, progress, why }
-        });
-        Host { frames, repeated, replies, rejected, refused, crashes, jobs: jobs.collect() }
     }
 }
 
-fn controller(kept: &Kept, device: &Device, config: &Config, positions: [i32; MAX_CHANNELS]) -> Controller {
-    let faults = device.faults();
+fn host(counts: Counts, controllers: &[ControllerSummary]) -> Host {
+    let Counts { frames, repeated, replies, rejected, refused, crashes } = counts;
+    let jobs = controllers.iter().enumerate().filter_map(|(index, controller)| {
+        let JobSummary { ticks, acknowledged, progress } = controller.job?;
+        let why = if let Progress::GivenUp(why) = progress { Some(why.to_string()) } else { None };
+        Some(Job { controller: index, ticks, acknowledged, progress: progress.name(), why })
+    });
+    Host { frames, repeated, replies, rejected, refused, crashes, jobs: jobs.collect() }
+}
+
+fn controller((summary, recorded): (ControllerSummary, &ControllerRecording)) -> Controller {
     Controller {
-        address: config.address(),
-        digest: format!("{:016x}", kept.recording.digest.value()),
-        records: kept.recording.digest.records(),
-        edges: edges(&kept.recording.trace),
-        channels: config.channels(),
-        positions: positions.iter().take(usize::from(config.channels())).copied().collect(),
-        faults: Faults { bits: faults.bits(), names: faults.names().collect() },
-        ticks_done: device.ticks_done(),
-        state: device.status().map(|status| status.state.name()),
-        changing: changing(&kept.recording.trace),
-        violations: kept.timing.as_ref().map(TimingCheck::total),
+        address: summary.address,
+        digest: format!("{:016x}", summary.digest),
+        records: summary.records,
+        edges: edges::count(&recorded.recording.trace),
+        channels: summary.channels,
+        positions: summary.positions,
+        faults: Faults { bits: summary.faults.bits(), names: summary.faults.names().collect() },
+        ticks_done: summary.ticks_done,
+        state: summary.status.map(|status| status.state.name()),
+        changing: edges::changing(&recorded.recording.trace),
+        violations: recorded.timing.as_ref().map(TimingCheck::total),
     }
-}
-
-/// Changes of single signals in a trace.
-fn edges(trace: &[Record]) -> u64 {
-    trace
-        .windows(2)
-        .map(|pair| match pair {
-            [a, b] => u64::from((a.levels.0 ^ b.levels.0).count_ones()),
-            _ => 0,
-        })
-        .sum()
-}
-
-/// Bits of the signals that are not the same in all records.
-fn changing(trace: &[Record]) -> Vec<u8> {
-    let first = trace.first().map_or(0, |record| record.levels.0);
-    let mask = trace.iter().fold(0, |mask, record| mask | (record.levels.0 ^ first));
-    (0..64).filter(|bit| mask >> bit & 1 == 1).collect()
 }

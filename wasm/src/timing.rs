@@ -8,15 +8,12 @@ use serde::Serialize;
 use stepscope_core::{
     inspect::{
         drivers::{self, DRIVERS},
-        timing::{RuleResult, TimingCheck, Violation},
+        timing::{RuleResult, Violation},
     },
     peripheral::units::Instant,
-    scenario::{DriverTiming, Scenario, TimingRules},
+    scenario::{DriverTiming, TimingRules},
 };
 use wasm_bindgen::prelude::*;
-
-/// Violations that the page gets in full.
-const MAX_KEPT: usize = 1000;
 
 #[derive(Serialize)]
 struct Listed {
@@ -59,12 +56,6 @@ pub fn drivers() -> Result<JsValue, JsError> {
         })
         .collect();
     object(&listed)
-}
-
-/// The check that a scenario asks for, before its run.
-pub(crate) fn check(scenario: &Scenario) -> Option<TimingCheck> {
-    let rules = scenario.driver_timing.as_ref().map(drivers::rules)?;
-    Some(TimingCheck::new(&rules, scenario.clock_hz, MAX_KEPT))
 }
 
 #[derive(Serialize)]
@@ -114,8 +105,8 @@ impl Simulation {
     /// # Errors
     /// Never in practice.
     pub fn timing(&self) -> Result<JsValue, JsError> {
-        let Some(check) = &self.looked_at().timing else { return Ok(JsValue::NULL) };
-        let channels = usize::from(config(&self.experiment, self.looked_at).channels());
+        let Some(check) = &self.selected().timing else { return Ok(JsValue::NULL) };
+        let channels = usize::from(config(&self.experiment, self.selected).channels());
         object(&Timing {
             driver: match &self.scenario.driver_timing {
                 Some(DriverTiming::Preset(model)) => Some(drivers::sheet(*model).id),
@@ -133,7 +124,7 @@ impl Simulation {
     pub fn next_violation(&self, cycle: f64, forward: bool) -> Option<u32> {
         // A cycle before reset has reset's violations, of which there are none, before it.
         let at = Instant(cycle.max(0.0) as u64);
-        self.looked_at().timing.as_ref()?.next(at, forward).map(|index| index as u32)
+        self.selected().timing.as_ref()?.next(at, forward).map(|index| index as u32)
     }
 }
 

@@ -5,9 +5,7 @@ mod js;
 
 use js::{get, list, number, text};
 use js_sys::{Float64Array, Uint32Array};
-use stepscope_wasm::{
-    Simulation, check, decode_link, default_scenario, drivers, encode_link, presets, version,
-};
+use stepscope_wasm::{Judged, Simulation, decode_link, default_scenario, drivers, presets, version};
 use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_test::{wasm_bindgen_test, wasm_bindgen_test_configure};
 
@@ -18,9 +16,18 @@ fn sure<T, E>(result: Result<T, E>) -> T {
     result.unwrap_or_else(|_| unreachable!("the call failed"))
 }
 
+/// What is said of a text before it runs.
+fn check(json: &str) -> Result<JsValue, wasm_bindgen::JsError> {
+    Judged::new(json).check()
+}
+
+fn encode_link(json: &str) -> Result<String, wasm_bindgen::JsError> {
+    Judged::new(json).encode_link()
+}
+
 /// A finished run.
 fn finished(json: &str) -> Simulation {
-    let mut simulation = sure(Simulation::new(json));
+    let mut simulation = sure(Judged::new(json).run());
     while !get(&sure(simulation.advance(100_000)), "done").is_truthy() {}
     simulation
 }
@@ -89,7 +96,7 @@ fn all_problems_of_a_bad_text_are_listed_with_their_paths() {
         assert!(list(&judgement, "problems").iter().all(|problem| !text(problem, "message").is_empty()));
         assert!(get(&judgement, "derived").is_null() && get(&judgement, "cost").is_null(), "{given}");
         assert!(paths(&sure(check(&text(&judgement, "scenario")))).len() <= expected.len(), "{given}");
-        assert!(Simulation::new(given).is_err(), "{given}");
+        assert!(Judged::new(given).run().is_err(), "{given}");
     }
 }
 

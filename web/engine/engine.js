@@ -1,8 +1,8 @@
 /**
  * The only module that talks to the worker: questions with answers, one run at a time, and a new
  * worker after a crash, or where a cancel is not heard in time. A new worker makes the last good run
- * once more, so that the views that show it can still ask. Long questions that need no run are shared
- * out to further workers, as many as the machine has room for.
+ * once more, so that the views that show it can still ask. Long questions that need no run are distributed
+ * to further workers, as many as the machine has room for.
  */
 import { byId } from "../dom.js";
 import { compiled } from "./wasm.js";
@@ -24,7 +24,7 @@ import { compiled } from "./wasm.js";
 const PATIENCE_MS = 1000;
 
 /** Most further workers. */
-const MOST_FURTHER = 4;
+const MAX_FURTHER = 4;
 /** A further worker that is not needed ends after this time, in ms: it holds memory. */
 const IDLE_MS = 20_000;
 /** And one whose piece was left off, if it does not come to the piece's end in this time. */
@@ -52,9 +52,9 @@ export class Engine {
   /** Crashes since the worker last answered; one that cannot even start is not started for ever. */
   #crashes = 0;
   /** @type {Map<number, {resolve: (value: any) => void, reject: (error: Error) => void}>} */
-  #asked = new Map();
+  #requests = new Map();
   /** @type {Map<string, {busy: boolean, waiting: null | {method: string, args: any[], resolve: (value: any) => void, reject: (error: Error) => void}}>} */
-  #lanes = new Map();
+  #slots = new Map();
 
   /** @param {Listener} listener */
   constructor(listener) {
@@ -71,32 +71,32 @@ export class Engine {
     const id = this.#next++;
     if (method === "select") this.#selected = args[0];
     return new Promise((resolve, reject) => {
-      this.#asked.set(id, { resolve, reject });
+      this.#requests.set(id, { resolve, reject });
       this.#worker.postMessage({ id, method, args });
     });
   }
 
   /**
-   * As `ask`, but of the questions that wait in one lane only the newest is put; the others end in
+   * As `ask`, but of the questions that wait in one slot only the newest is put; the others end in
    * `Dropped`. So a moving pointer never builds a queue.
-   * @param {string} lane
+   * @param {string} slot
    * @param {string} method
    * @param {...any} args
    * @returns {Promise<any>}
    */
-  latest(lane, method, ...args) {
-    const state = this.#lanes.get(lane) ?? { busy: false, waiting: null };
-    this.#lanes.set(lane, state);
+  latest(slot, method, ...args) {
+    const state = this.#slots.get(slot) ?? { busy: false, waiting: null };
+    this.#slots.set(slot, state);
     return new Promise((resolve, reject) => {
-      state.waiting?.reject(new Dropped(lane));
+      state.waiting?.reject(new Dropped(slot));
       state.waiting = { method, args, resolve, reject };
-      if (!state.busy) this.#pump(lane);
+      if (!state.busy) this.#pump(slot);
     });
   }
 
-  /** @param {string} lane */
-  async #pump(lane) {
-    const state = this.#lanes.get(lane);
+  /** @param {string} slot */
+  async #pump(slot) {
+    const state = this.#slots.get(slot);
     if (!state?.waiting) return;
     const { method, args, resolve, reject } = state.waiting;
     state.waiting = null;
@@ -107,7 +107,7 @@ export class Engine {
       reject(/** @type {Error} */ (error));
     }
     state.busy = false;
-    this.#pump(lane);
+    this.#pump(slot);
   }
 
   /** Runs a scenario; a run that is not done yet is dropped. @param {number} revision @param {string} json */
@@ -135,14 +135,14 @@ export class Engine {
   }
 
   /**
-   * Shares a long question out: each piece is one call of the core, and further workers make them beside each other.
+   * Distributes a long question: each piece is one call of the core, and further workers make them beside each other.
    * Neither the run nor the views' questions wait for it.
    * @param {string} method @param {any[][]} pieces  The arguments of each call.
    * @param {AbortSignal} signal  Ends it at once, in `Dropped`.
    * @param {(at: number, answer: any) => void} [told]  Hears each answer as it comes.
    * @returns {Promise<any[]>}  All answers, in the order of the pieces.
    */
-  async share(method, pieces, signal, told = () => {}) {
+  async distribute(method, pieces, signal, told = () => {}) {
     /** @type {any[]} */
     const answers = Array(pieces.length);
     let next = 0;
@@ -166,7 +166,7 @@ export class Engine {
       }
     };
     await Promise.all(
-      Array.from({ length: Math.min(MOST_FURTHER, navigator.hardwareConcurrency || 1, pieces.length) }, help),
+      Array.from({ length: Math.min(MAX_FURTHER, navigator.hardwareConcurrency || 1, pieces.length) }, help),
     );
     return answers;
   }
@@ -199,10 +199,10 @@ export class Engine {
       case "crashed":
         return this.#restart(data.message);
     }
-    const asked = this.#asked.get(data.id);
-    this.#asked.delete(data.id);
-    if ("error" in data) asked?.reject(new Error(data.error));
-    else asked?.resolve(data.value);
+    const request = this.#requests.get(data.id);
+    this.#requests.delete(data.id);
+    if ("error" in data) request?.reject(new Error(data.error));
+    else request?.resolve(data.value);
   }
 
   /** @param {string} message */
@@ -232,9 +232,9 @@ export class Engine {
   #drop(why) {
     clearTimeout(this.#cancelling);
     this.#worker.terminate();
-    const asked = [...this.#asked.values()];
-    this.#asked.clear();
-    for (const { reject } of asked) reject(new Dropped(why));
+    const open = [...this.#requests.values()];
+    this.#requests.clear();
+    for (const { reject } of open) reject(new Dropped(why));
   }
 }
 

@@ -1,5 +1,5 @@
 /**
- * The worker: holds the wasm core, runs a scenario in slices, answers the views' questions about the
+ * The worker: holds the wasm core, judges a scenario once, runs it in slices, answers the views' questions about the
  * last finished run. Between two slices it reads its messages, so a newer scenario ends an older run.
  *
  * In: first of all {module}, the compiled core; {id, method, args} for an answer {id, value} or {id, error};
@@ -15,10 +15,14 @@ const REPORT_MS = 60;
 
 /** @type {any} The simulation that the views ask about. */
 let finished = null;
-/** @type {any} The simulation that was kept to compare with; may be the finished one. */
-let kept = null;
+/** @type {any} The simulation that later ones are compared with; may be the finished one. */
+let baseline = null;
 /** Controller that the views look at. */
-let looked = 0;
+let selected = 0;
+/** The scenario that was judged last, and the texts that it goes by: as it came, and as the core writes it. @type {{texts: string[], judged: any} | null} */
+let held = null;
+/** How often a scenario was read and planned, and how often one was run; a test reads it. */
+const counts = { judged: 0, runs: 0 };
 /** No run has this number. */
 const NONE = -2;
 /** Number of the newest run that was asked for. */
@@ -32,21 +36,42 @@ const ready = new Promise((resolve) => {
 const between = new MessageChannel();
 
 /** Who waits for messages to be let in: a run, a search. @type {((event: MessageEvent) => void)[]} */
-const breathing = [];
-between.port1.onmessage = (event) => breathing.shift()?.(event);
+const yielding = [];
+between.port1.onmessage = (event) => yielding.shift()?.(event);
 
 /** Lets waiting messages in. */
-function breathe() {
+function yieldToMessages() {
   return new Promise((resolve) => {
-    breathing.push(resolve);
+    yielding.push(resolve);
     between.port2.postMessage(0);
   });
+}
+
+/**
+ * A scenario read, judged and planned: once for all that is asked of it until another one comes.
+ * @param {string} json
+ */
+function judge(json) {
+  if (held?.texts.includes(json)) return held.judged;
+  counts.judged += 1;
+  const judged = new core.Judged(json);
+  held?.judged.free();
+  held = { texts: [json], judged };
+  return judged;
+}
+
+/** Asks of a scenario. @param {string} method @param {any[]} args  Its text first. */
+function ofScenario(method, [json, ...args]) {
+  const value = judge(String(json))[method](...args);
+  if (method === "check") held?.texts.push(value.scenario);
+  return value;
 }
 
 /** @param {{run: number, json: string, quiet?: boolean, select?: number}} order */
 async function simulate({ run, json, quiet = false, select = 0 }) {
   const begin = performance.now();
-  const simulation = new core.Simulation(json);
+  const simulation = judge(json).run();
+  counts.runs += 1;
   let records = 4096;
   let reported = begin;
   for (;;) {
@@ -59,38 +84,38 @@ async function simulate({ run, json, quiet = false, select = 0 }) {
       reported = now;
       postMessage({ event: "progress", run, progress: { ...progress } });
     }
-    await breathe();
+    await yieldToMessages();
     if (run !== newest) {
       simulation.free();
       return;
     }
   }
-  if (finished !== kept) finished?.free();
+  if (finished !== baseline) finished?.free();
   finished = simulation;
-  looked = 0;
+  selected = 0;
   if (quiet) {
-    looked = select;
+    selected = select;
     finished.select(select);
     return postMessage({ event: "restored" });
   }
   postMessage({ event: "done", run, summary: simulation.summary(), ms: performance.now() - begin });
 }
 
-/** Keeps the finished run beside later ones, or lets the kept one go. @param {boolean} on */
-function keep(on) {
-  if (kept !== finished) kept?.free();
-  kept = on ? finished : null;
-  return kept !== null;
+/** Makes the finished run the one that later ones are compared with, or lets that one go. @param {boolean} on */
+function setBaseline(on) {
+  if (baseline !== finished) baseline?.free();
+  baseline = on ? finished : null;
+  return baseline !== null;
 }
 
-/** Asks the kept run, about one of its controllers. @param {string} method @param {any[]} args  The controller first. */
-function ofKept(method, [controller, ...args]) {
-  if (!kept) return null;
+/** Asks of the baseline, about one of its controllers. @param {string} method @param {any[]} args  The controller first. */
+function ofBaseline(method, [controller, ...args]) {
+  if (!baseline) return null;
   // A run cannot be compared with itself: it is no other.
-  if (kept === finished && method !== "motion") return null;
-  kept.select(controller);
-  const value = method === "motion" ? kept.motion(...args) : finished[method](kept, ...args);
-  if (kept === finished) kept.select(looked);
+  if (baseline === finished && method !== "motion") return null;
+  baseline.select(controller);
+  const value = method === "motion" ? baseline.motion(...args) : finished[method](baseline, ...args);
+  if (baseline === finished) baseline.select(selected);
   return value;
 }
 
@@ -112,16 +137,18 @@ async function search(args) {
       4_000_000,
       Math.max(256, Math.round((rows * SLICE_MS) / Math.max(0.5, performance.now() - before))),
     );
-    await breathe();
+    await yieldToMessages();
     if (own !== searches || simulation !== finished) return null;
   }
 }
 
 /** @param {string} method @param {any[]} args */
 function answer(method, args) {
-  if (method === "keep") return keep(args[0]);
-  if (method.startsWith("kept_")) return ofKept(method.slice(5), args);
-  if (method === "select") looked = args[0];
+  if (method === "baseline") return setBaseline(args[0]);
+  if (method.startsWith("baseline_")) return ofBaseline(method.slice(9), args);
+  if (method === "counts") return { ...counts };
+  if (method in core.Judged.prototype) return ofScenario(method, args);
+  if (method === "select") selected = args[0];
   if (method === "filter") return search(args);
   const calls = /** @type {any} */ (core);
   if (typeof calls[method] === "function") return calls[method](...args);

@@ -54,7 +54,7 @@ export function createLink({ engine, dispatch, now }) {
 
   /** The link to share, and whether the digests of the run on show are in it. */
   async function shared() {
-    const digests = isStale(now()) ? null : await engine.ask("proof");
+    const digests = isStale(now()) ? null : await engine.ask("fingerprint");
     const full = await address(digests ?? undefined);
     return { full, digests: digests !== null && full.endsWith(digests) };
   }

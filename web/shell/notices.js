@@ -17,7 +17,7 @@ export function createNotices(page) {
   /** @param {string} text */
   async function compare(text) {
     const { result } = now();
-    const verdict = await engine.ask("judge_proof", text).catch(unlessDropped);
+    const verdict = await engine.ask("verify", text).catch(unlessDropped);
     if (verdict && now().result?.summary === result?.summary) dispatch({ type: "compared", text, verdict });
   }
 

@@ -118,13 +118,13 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
     if (isStale(now()))
       throw new Error("the experiment has not been run as it stands; mend the form, or run it, then compare");
     const { controller, summary } = result;
-    await engine.ask("against_begin", controller);
+    await engine.ask("diff_begin", controller);
     for (let at = 0; at < file.size; at += PIECE) {
       const piece = new Uint8Array(await file.slice(at, at + PIECE).arrayBuffer());
-      if (await engine.ask("against_feed", piece)) break;
+      if (await engine.ask("diff_feed", piece)) break;
       if (at > 0) tell("info", `Comparing ${file.name}: ${Math.round((100 * at) / file.size)} %`);
     }
-    const held = await engine.ask("against_end");
+    const held = await engine.ask("diff_end");
     if (!held || now().result?.summary !== summary)
       throw new Error("the experiment was run anew meanwhile; compare again");
     const seconds = (/** @type {number} */ cycle) => `${time(cycle / summary.clock_hz)}`;

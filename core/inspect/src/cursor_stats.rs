@@ -74,7 +74,7 @@ pub fn ideal(plan: &AxisPlan, zero_s: f64, from_s: f64, to_s: f64) -> CursorStat
 
 /// Of the motion that the pulses make, from one time to a later one, in s.
 #[must_use]
-pub fn made(pulses: &Pulses<'_>, from_s: f64, to_s: f64) -> CursorStats {
+pub fn actual(pulses: &Pulses<'_>, from_s: f64, to_s: f64) -> CursorStats {
     let hz = pulses.hz();
     let (mut position, mut since_s) = (Sums::default(), from_s);
     let mut place = pulses.position_at(from_s);
@@ -167,7 +167,7 @@ mod tests {
                 let expected = brute(from, to, looks, |t| plan.acceleration(t - zero_s));
                 let found = found.acceleration.expect("the ideal curve has one");
                 near(found, expected, peaks.acceleration.max(1.0), moves);
-                let (found, looks) = (made(&pulses, from, to), 100_000);
+                let (found, looks) = (actual(&pulses, from, to), 100_000);
                 let at = |t: f64| f64::from(pulses.position_at(t));
                 near(found.position, brute(from, to, looks, at), far, moves);
                 near(found.speed, brute(from, to, looks, |t| pulses.speed_at(t)), peaks.speed, moves);
@@ -203,7 +203,7 @@ mod tests {
             config: ran.experiment.config(),
         };
         // From cycle 1 on 10 steps of 1 ms, 5 ms of rest, 10 steps back of 0.5 ms.
-        let found = made(&pulses, 0.0, 0.02);
+        let found = actual(&pulses, 0.0, 0.02);
         assert!(found.speed.mean.abs() < 0.01, "{found:?}");
         assert!((found.speed.rms - (0.5 * 1e6 + 0.25 * 4e6_f64).sqrt()).abs() < 0.1, "{found:?}");
         for (time_s, expected) in [(0.005, 1000.0), (0.012, 0.0), (0.017, -2000.0), (0.021, 0.0)] {

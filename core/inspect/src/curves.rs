@@ -155,7 +155,7 @@ fn extremes(plan: &AxisPlan, joints: &Breakpoints, from_s: f64, to_s: f64) -> [[
 
 /// What the pulses really do.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Made {
+pub struct Actual {
     /// Position in steps from the start.
     pub position: Band,
     /// Speed in steps/s: of a tick its steps by its length, of a segment's step 1 by its interval,
@@ -165,8 +165,8 @@ pub struct Made {
 
 /// The motion that the pulses of a channel make.
 #[must_use]
-pub fn made(pulses: &Pulses<'_>, window: Window) -> Made {
-    let mut bands = Made { position: Band::new(window.columns), speed: Band::new(window.columns) };
+pub fn actual(pulses: &Pulses<'_>, window: Window) -> Actual {
+    let mut bands = Actual { position: Band::new(window.columns), speed: Band::new(window.columns) };
     let hz = pulses.hz();
     let mut next = pulses.steps.partition_point(|step| (step.cycle as f64 / hz) < window.start_s);
     let before = next.checked_sub(1).and_then(|last| pulses.steps.get(last));

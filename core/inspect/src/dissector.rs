@@ -1,5 +1,5 @@
 //! What each byte of a packet, a frame or a reply means (DESIGN A5, A6): its fields, in the order of
-//! the line, each with its place among the bytes.
+//! the line, each with its place among the bytes; and the whole of it in one line (`summary`).
 //!
 //! ```text
 //! raw    [address]  ch0  ch1  …                                        no check
@@ -9,23 +9,23 @@
 //! COBS writes the distance to the next zero where a zero stood, so a decoded byte has one place on the
 //! wire, and what COBS adds (the first byte, and one after each 254 bytes without a zero) is its own field.
 
+mod summary;
+
+pub use summary::write_steps;
+
 use alloc::{borrow::Cow, format, string::String, vec::Vec};
 use core::ops::Range;
-use stepscope_peripheral::trace::RowOutcome;
 use stepscope_peripheral::{
     config::Protocol,
     device::Faults,
-    protocol::{Kind, Reason, Reply},
+    protocol::{FrameOutcome, Kind, Reason, Reply},
+    trace::RowOutcome,
     wire::{
-        frame::{CHECK, DELIMITER, Frame, Ticks},
+        cobs::{Unstuffed, Unstuffer},
+        frame::{ACK, CHECK, CHECK_LEN, DELIMITER, Frame, NAK, Ticks},
         packet::{ALL, ChannelCommand},
     },
 };
-
-/// Set in the kind of a frame that is a reply.
-const REPLY: u8 = 0x80;
-/// Bytes of the check.
-const CHECK_LEN: usize = 4;
 
 /// One field.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -74,11 +74,62 @@ pub struct Reading<'a> {
     pub channels: &'a dyn Fn(u8) -> u8,
 }
 
+/// Address and kind of a frame whose check holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Head {
+    /// Where it goes to, or comes from.
+    pub address: u8,
+    /// What it is, as it stands on the wire.
+    pub kind: u8,
+}
+
+impl Head {
+    /// Of a row with these bytes; `None` where there is none that can be trusted.
+    #[must_use]
+    pub fn of(bytes: &[u8], outcome: RowOutcome) -> Option<Self> {
+        let untrusted = [FrameOutcome::Short, FrameOutcome::Overlong];
+        match outcome {
+            RowOutcome::Reply(reply) => {
+                let kind = reply.answer.map_or(NAK, |kind| kind as u8 | ACK);
+                return Some(Self { address: reply.address, kind });
+            }
+            RowOutcome::Frame(FrameOutcome::BadCheck { .. }) => return None,
+            RowOutcome::Frame(outcome) if !untrusted.contains(&outcome) => {}
+            _ => return None,
+        }
+        let mut reader = Unstuffer::default();
+        let mut content = bytes.get(last_frame(bytes))?.iter().filter_map(|&byte| match reader.byte(byte) {
+            Unstuffed::Content(content) => Some(content),
+            _ => None,
+        });
+        Some(Self { address: content.next()?, kind: content.next()? })
+    }
+
+    /// Whether a controller sends such frames.
+    #[must_use]
+    pub const fn is_reply(self) -> bool {
+        self.kind & ACK != 0
+    }
+
+    /// Name of its kind, the same for a frame and the reply that acknowledges it; `NAK` for a refusal.
+    #[must_use]
+    pub fn name(self) -> Option<&'static str> {
+        if self.kind == NAK { Some("NAK") } else { Kind::parse(self.kind & !ACK).map(Kind::name) }
+    }
+}
+
+/// Where the frame stands among the bytes of its row: after the delimiter before it, without its own.
+fn last_frame(bytes: &[u8]) -> Range<usize> {
+    let end = bytes.len() - usize::from(bytes.last() == Some(&DELIMITER));
+    let before = bytes.get(..end).and_then(|bytes| bytes.iter().rposition(|&byte| byte == DELIMITER));
+    before.map_or(0, |mark| mark + 1)..end
+}
+
 impl Reading<'_> {
     /// The fields of a row with these bytes. A frame whose check fails is read as if it held.
     #[must_use]
-    pub fn of(&self, bytes: &[u8], verdict: RowOutcome) -> Meaning {
-        match (self.protocol, verdict) {
+    pub fn of(&self, bytes: &[u8], outcome: RowOutcome) -> Meaning {
+        match (self.protocol, outcome) {
             (_, RowOutcome::Ignored) => {
                 let ignored = (!bytes.is_empty()).then(|| field("ignored", 0..bytes.len(), "until a gap"));
                 Meaning { fields: ignored.into_iter().collect(), check: Check::None }
@@ -89,32 +140,24 @@ impl Reading<'_> {
     }
 
     fn framed(&self, bytes: &[u8]) -> Meaning {
-        let whole =
-            bytes.split_last().filter(|(last, _)| **last == DELIMITER).map_or(bytes, |(_, rest)| rest);
-        let first = whole.iter().rposition(|&byte| byte == DELIMITER).map_or(0, |mark| mark + 1);
+        let place = last_frame(bytes);
         let mut fields = Vec::new();
-        if first > 0 {
-            fields.push(field("before it", 0..first, "no part of the frame"));
+        if place.start > 0 {
+            fields.push(field("before it", 0..place.start, "no part of the frame"));
         }
-        let content = Content::of(bytes, first..whole.len());
-        let mut check = Check::Missing;
-        if content.whole
-            && let Some((frame, sum)) = content.decoded.split_last_chunk::<CHECK_LEN>()
-            && frame.len() >= 2
-        {
-            check = Check::Compared { found: u32::from_le_bytes(*sum), expected: CHECK.checksum(frame) };
-        }
-        let mut told = content.told(check, self.channels);
+        let content = Content::of(bytes, place.clone());
+        let check = content.check();
+        let mut meant = content.fields(check, self.channels);
         for &(at, code) in &content.overhead {
             // What COBS adds within a body goes with the body.
-            if !told.iter().any(|field| field.bytes.contains(&at)) {
-                told.push(field("COBS", at..at + 1, cobs_in_words(code)));
+            if !meant.iter().any(|field| field.bytes.contains(&at)) {
+                meant.push(field("COBS", at..at + 1, cobs_to_text(code)));
             }
         }
-        told.sort_by_key(|field| field.bytes.start);
-        fields.extend(told);
-        if whole.len() < bytes.len() {
-            fields.push(field("end mark", whole.len()..bytes.len(), "00"));
+        meant.sort_by_key(|field| field.bytes.start);
+        fields.extend(meant);
+        if place.end < bytes.len() {
+            fields.push(field("end mark", place.end..bytes.len(), "00"));
         }
         Meaning { fields, check }
     }
@@ -135,26 +178,36 @@ impl Content {
     /// Reads the bytes in `range`, of which none is a zero.
     fn of(bytes: &[u8], range: Range<usize>) -> Self {
         let mut content = Self { decoded: Vec::new(), places: Vec::new(), overhead: Vec::new(), whole: true };
-        let mut code_at = range.start;
-        let mut owed = false;
-        while code_at < range.end {
-            let code = bytes.get(code_at).copied().unwrap_or(DELIMITER);
-            if owed {
-                content.decoded.push(0);
-                content.places.push(code_at);
-            } else {
-                content.overhead.push((code_at, code));
+        let mut reader = Unstuffer::default();
+        for at in range.clone() {
+            let byte = bytes.get(at).copied().unwrap_or(DELIMITER);
+            match reader.byte(byte) {
+                Unstuffed::Content(decoded) => {
+                    content.decoded.push(decoded);
+                    content.places.push(at);
+                }
+                _ => content.overhead.push((at, byte)),
             }
-            let next = code_at + usize::from(code.max(1));
-            let run = code_at + 1..next.min(range.end);
-            content.decoded.extend(bytes.get(run.clone()).unwrap_or_default());
-            content.places.extend(run);
-            content.whole = next <= range.end;
-            owed = code < u8::MAX;
-            code_at = next;
         }
+        content.whole = range.is_empty() || reader.is_whole();
         content.places.push(range.end);
         content
+    }
+
+    /// The check of the bytes before it.
+    fn check(&self) -> Check {
+        match self.decoded.split_last_chunk::<CHECK_LEN>() {
+            Some((frame, sum)) if self.whole && frame.len() >= 2 => {
+                Check::Compared { found: u32::from_le_bytes(*sum), expected: CHECK.checksum(frame) }
+            }
+            _ => Check::Missing,
+        }
+    }
+
+    /// Address, kind and body, as far as they are there, without the check.
+    fn without(&self, check: Check) -> &[u8] {
+        let checked = if check == Check::Missing { 0 } else { CHECK_LEN };
+        self.decoded.get(..self.decoded.len() - checked).unwrap_or_default()
     }
 
     /// Places on the wire of some decoded bytes.
@@ -165,24 +218,23 @@ impl Content {
     }
 
     /// The fields but COBS and the end mark.
-    fn told(&self, check: Check, channels: &dyn Fn(u8) -> u8) -> Vec<Field> {
-        let checked = if check == Check::Missing { 0 } else { CHECK_LEN };
-        let end = self.decoded.len() - checked;
+    fn fields(&self, check: Check, channels: &dyn Fn(u8) -> u8) -> Vec<Field> {
+        let content = self.without(check);
+        let end = content.len();
         let mut fields = Vec::new();
         let mut add = |name: Cow<'static, str>, place: Range<usize>, value: String| {
             fields.push(Field { name, bytes: self.at(place), value });
         };
-        let content = self.decoded.get(..end).unwrap_or_default();
         if let Some(&address) = content.first() {
-            add("address".into(), 0..1, address_in_words(address));
+            add("address".into(), 0..1, address_to_text(address));
         }
         if let [address, kind, body @ ..] = content {
-            add("kind".into(), 1..2, kind_in_words(*kind));
+            add("kind".into(), 1..2, kind_to_text(*kind));
             let frame = Frame { address: *address, kind: *kind, body };
             match (Reply::parse(frame), Ticks::parse(body, channels(*address))) {
-                (Some(reply), _) => told_reply(&reply, &mut add),
+                (Some(reply), _) => reply_fields(&reply, &mut add),
                 (None, Some(ticks)) if Kind::parse(*kind) == Some(Kind::Ticks) => {
-                    told_ticks(&ticks, channels(*address), &mut add);
+                    ticks_fields(&ticks, channels(*address), &mut add);
                 }
                 _ if body.is_empty() => {}
                 _ => add("body".into(), 2..end, format!("{} bytes", body.len())),
@@ -202,21 +254,21 @@ impl Content {
 
 type Add<'a> = dyn FnMut(Cow<'static, str>, Range<usize>, String) + 'a;
 
-fn told_ticks(ticks: &Ticks<'_>, channels: u8, add: &mut Add<'_>) {
+fn ticks_fields(ticks: &Ticks<'_>, channels: u8, add: &mut Add<'_>) {
     add("seq".into(), 2..3, format!("{}", ticks.seq));
     add("count".into(), 3..4, format!("{}", ticks.count()));
     let channels = usize::from(channels.max(1));
     for (place, &byte) in ticks.orders().iter().enumerate() {
         let (tick, channel) = (place / channels, place % channels);
         let name = if channels == 1 { format!("tick {tick}") } else { format!("tick {tick} ch{channel}") };
-        add(name.into(), 4 + place..5 + place, order_in_words(byte));
+        add(name.into(), 4 + place..5 + place, command_to_text(byte));
     }
 }
 
-fn told_reply(reply: &Reply, add: &mut Add<'_>) {
+fn reply_fields(reply: &Reply, add: &mut Add<'_>) {
     let mut at = 2;
     if let Err(reason) = reply.answer {
-        add("reason".into(), 2..3, reason_in_words(reason));
+        add("reason".into(), 2..3, reason_to_text(reason));
         at = 3;
     }
     let status = reply.status;
@@ -231,43 +283,43 @@ fn told_reply(reply: &Reply, add: &mut Add<'_>) {
 
 fn raw(bytes: &[u8], addressed: bool) -> Vec<Field> {
     let first = usize::from(addressed);
-    let told = |(at, &byte): (usize, &u8)| match at.checked_sub(first) {
-        None => field("address", 0..1, address_in_words(byte)),
-        Some(channel) => field(format!("ch{channel}"), at..at + 1, order_in_words(byte)),
+    let each = |(at, &byte): (usize, &u8)| match at.checked_sub(first) {
+        None => field("address", 0..1, address_to_text(byte)),
+        Some(channel) => field(format!("ch{channel}"), at..at + 1, command_to_text(byte)),
     };
-    bytes.iter().enumerate().map(told).collect()
+    bytes.iter().enumerate().map(each).collect()
 }
 
 fn field(name: impl Into<Cow<'static, str>>, bytes: Range<usize>, value: impl Into<String>) -> Field {
     Field { name: name.into(), bytes, value: value.into() }
 }
 
-fn cobs_in_words(code: u8) -> String {
+fn cobs_to_text(code: u8) -> String {
     match code {
         1..=254 => format!("{} bytes to the next zero or the end", code - 1),
         _ => "254 bytes without a zero".into(),
     }
 }
 
-fn address_in_words(address: u8) -> String {
+fn address_to_text(address: u8) -> String {
     if address == ALL { "255, all".into() } else { format!("{address}") }
 }
 
-fn kind_in_words(kind: u8) -> String {
-    match (kind, Kind::parse(kind & !REPLY)) {
-        (0xff, _) => "NAK".into(),
-        (_, Some(known)) if kind & REPLY != 0 => format!("ACK {}", known.name()),
+fn kind_to_text(kind: u8) -> String {
+    match (kind, Kind::parse(kind & !ACK)) {
+        (NAK, _) => "NAK".into(),
+        (_, Some(known)) if kind & ACK != 0 => format!("ACK {}", known.name()),
         (_, Some(known)) => known.name().into(),
         _ => format!("{kind:02x}, unknown"),
     }
 }
 
-fn reason_in_words(reason: Reason) -> String {
+fn reason_to_text(reason: Reason) -> String {
     format!("{}, {}", reason as u8, reason.name())
 }
 
 /// Steps with their direction; right is plus.
-fn order_in_words(byte: u8) -> String {
+fn command_to_text(byte: u8) -> String {
     match ChannelCommand::parse(byte) {
         ChannelCommand { right: true, steps: 0 } => "0, right".into(),
         ChannelCommand { right: false, steps: 0 } => "0, left".into(),

@@ -5,6 +5,10 @@
 
 extern crate alloc;
 
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 pub mod actual_motion;
 #[cfg(feature = "std")]
 mod analysis_window;
@@ -15,10 +19,14 @@ pub mod cursor_stats;
 pub mod curves;
 pub mod dissector;
 pub mod drivers;
+pub mod edges;
 pub mod fingerprint;
 #[cfg(feature = "std")]
 mod fourier;
+pub mod judgement;
+pub mod line_decoder;
 pub mod measures;
+pub mod packet_table;
 pub mod position_error;
 pub mod ramp_costs;
 pub mod run_fingerprint;
@@ -26,11 +34,15 @@ pub mod sine_optimum;
 pub mod sine_polyline;
 pub mod source_code;
 #[cfg(feature = "std")]
+pub mod spectra;
+#[cfg(feature = "std")]
 pub mod spectrum;
+pub mod step_tables;
 pub mod tables;
 pub mod timing;
 pub mod torque;
 pub mod trace_diff;
+pub mod trace_window;
 #[cfg(feature = "std")]
 pub mod vcd;
 pub mod watched;

@@ -12,7 +12,7 @@
 //! (ISO-HDLC) of all that stands before its dot, in 8 hexadecimal digits: a part that was changed on the
 //! way must not tell of a difference that there is not.
 
-use crate::fingerprint::{Fingerprint, spacing};
+use crate::fingerprint::{Fingerprint, FingerprintCheck, FingerprintMatch, Mark, Shorter, spacing};
 use alloc::{
     format,
     string::{String, ToString},
@@ -87,6 +87,23 @@ impl RunFingerprint {
         text + &format!(".{check:08x}")
     }
 
+    /// The version that made it, where it is another than this.
+    #[must_use]
+    pub fn other_version(&self) -> Option<&str> {
+        (self.version != VERSION).then_some(self.version.as_str())
+    }
+
+    /// What takes the trace of each of a run's `controllers` controllers, to be given to [`Verification::of`] after it.
+    ///
+    /// # Errors
+    /// With the number of controllers that the sender had, where it is another.
+    pub fn checks(&self, controllers: usize) -> Result<Vec<FingerprintCheck<'_>>, usize> {
+        if self.controllers.len() != controllers {
+            return Err(self.controllers.len());
+        }
+        Ok(self.controllers.iter().map(FingerprintCheck::with).collect())
+    }
+
     /// Reads what [`Self::emit`] wrote.
     ///
     /// # Errors
@@ -103,6 +120,44 @@ impl RunFingerprint {
             return Err(RunFingerprintError::Damaged);
         }
         parsed(checked).ok_or(RunFingerprintError::Damaged)
+    }
+}
+
+/// How a run stands to the one that a sender saw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verification {
+    /// It is the same, record by record.
+    Same {
+        /// Changes of single signals, of all controllers.
+        edges: u64,
+    },
+    /// The first difference of the first controller that has one comes after `after` and no later than `until`.
+    Differs {
+        /// The controller.
+        controller: usize,
+        /// As far as this both are the same.
+        after: Mark,
+        /// Here they are not.
+        until: Mark,
+        /// Which of the two ends first, if one is as far as it goes the same.
+        shorter: Option<Shorter>,
+    },
+}
+
+impl Verification {
+    /// Of checks that have taken the traces of all controllers.
+    #[must_use]
+    pub fn of<'a>(checks: impl IntoIterator<Item = FingerprintCheck<'a>>) -> Self {
+        let mut edges = 0;
+        for (controller, check) in checks.into_iter().enumerate() {
+            match check.finish() {
+                FingerprintMatch::Same(mark) => edges += mark.edges,
+                FingerprintMatch::Differs { after, until, shorter } => {
+                    return Self::Differs { controller, after, until, shorter };
+                }
+            }
+        }
+        Self::Same { edges }
     }
 }
 

@@ -58,7 +58,7 @@ pub struct Distortion {
     /// Of the acceleration.
     pub acceleration: f64,
     /// Of what the sensor feels of the acceleration.
-    pub acceleration_felt: Option<f64>,
+    pub acceleration_filtered: Option<f64>,
 }
 
 /// The vertices that B5 puts on the curve for the largest deviation `d1`, in parts of the amplitude.
@@ -132,8 +132,8 @@ pub fn distortion(vertices: &[Vertex], bounds: impl Into<Bounds>) -> Distortion 
     let Bounds { order, sensor } = bounds.into();
     let harmonics = odd_harmonics(vertices, order);
     let first = harmonics.first().copied().unwrap_or(0.0);
-    let felt = |k: f64| sensor.map_or(1.0, |sensor| low_pass(k / sensor));
-    let (mut squares, mut felt_square) = ([0.0; 3], 0.0);
+    let filtered = |k: f64| sensor.map_or(1.0, |sensor| low_pass(k / sensor));
+    let (mut squares, mut filtered_square) = ([0.0; 3], 0.0);
     for (index, harmonic) in harmonics.iter().enumerate().skip(1) {
         let k = (2 * index + 1) as f64;
         let mut amplitude = *harmonic;
@@ -142,13 +142,13 @@ pub fn distortion(vertices: &[Vertex], bounds: impl Into<Bounds>) -> Distortion 
             amplitude *= k;
         }
         // k^3 times the harmonic by now.
-        let amplitude = amplitude / k * felt(k);
-        felt_square += amplitude * amplitude;
+        let amplitude = amplitude / k * filtered(k);
+        filtered_square += amplitude * amplitude;
     }
     let over_first = |square: f64| libm::sqrt(square) / libm::fabs(first);
     let [position, speed, acceleration] = squares.map(over_first);
-    let acceleration_felt = sensor.map(|_| over_first(felt_square) / felt(1.0));
-    Distortion { position, speed, acceleration, acceleration_felt }
+    let acceleration_filtered = sensor.map(|_| over_first(filtered_square) / filtered(1.0));
+    Distortion { position, speed, acceleration, acceleration_filtered }
 }
 
 /// What a d1 gives: a row of figure 4.
@@ -253,6 +253,19 @@ pub fn best(rows: impl IntoIterator<Item = Row>) -> Option<Row> {
     )
 }
 
+/// For each number of segments the row with least distortion of the position, in the order in which they come.
+pub fn best_of_each(rows: impl IntoIterator<Item = Row>) -> Vec<Row> {
+    let mut all: Vec<Row> = Vec::new();
+    for row in rows {
+        match all.iter_mut().find(|best| best.segments == row.segments) {
+            Some(best) if row.distortion.position < best.distortion.position => *best = row,
+            Some(_) => {}
+            None => all.push(row),
+        }
+    }
+    all
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -301,7 +314,7 @@ mod tests {
         let of = |order: u16, sensor: Option<f64>| Row::of(0.006, Bounds { order, sensor }).distortion;
         let [low, high] = [999, 9999].map(|order| of(order, Some(20.0)));
         assert!(high.acceleration > 3.0 * low.acceleration, "{low:?} {high:?}");
-        let [low, high] = [low, high].map(|found| found.acceleration_felt.unwrap());
+        let [low, high] = [low, high].map(|found| found.acceleration_filtered.unwrap());
         assert!(high > low && high < 1.01 * low, "{low} {high}");
         // By the definition, over the harmonics themselves.
         let vertices = vertices(0.006);
@@ -310,17 +323,17 @@ mod tests {
             .zip(odd_harmonics(&vertices, 999))
             .map(|(k, harmonic)| {
                 let k = f64::from(k);
-                let felt = harmonic * k * k / libm::sqrt(1.0 + k * k / 400.0);
-                felt * felt
+                let filtered = harmonic * k * k / libm::sqrt(1.0 + k * k / 400.0);
+                filtered * filtered
             })
             .collect();
         let expected = libm::sqrt(squares[1..].iter().sum::<f64>() / squares[0]);
         assert!((low - expected).abs() < 1e-9 * expected, "{low} {expected}");
         // A sensor without bounds feels all of it; without a sensor nothing is felt.
         let all = of(99, Some(1e9));
-        assert!((all.acceleration_felt.unwrap() - all.acceleration).abs() < 1e-9);
+        assert!((all.acceleration_filtered.unwrap() - all.acceleration).abs() < 1e-9);
         assert_eq!(of(99, None), Row::of(0.006, 99).distortion);
-        assert_eq!(of(99, None).acceleration_felt, None);
+        assert_eq!(of(99, None).acceleration_filtered, None);
     }
 
     #[test]

@@ -71,8 +71,8 @@ pub struct Spectrum {
     /// Acceleration, in steps/s^2.
     pub acceleration: Harmonics,
     /// What of the acceleration a sensor feels, in steps/s^2; `None` without one
-    /// ([`Self::felt_by`]).
-    pub acceleration_felt: Option<Harmonics>,
+    /// ([`Self::filtered_by`]).
+    pub acceleration_filtered: Option<Harmonics>,
 }
 
 impl Spectrum {
@@ -87,19 +87,20 @@ impl Spectrum {
             position: Harmonics::new(position, stretch.periodic),
             speed: Harmonics::new(speed, stretch.periodic),
             acceleration: Harmonics::new(acceleration, stretch.periodic),
-            acceleration_felt: None,
+            acceleration_filtered: None,
         }
     }
 
     /// With what a sensor of the bandwidth `sensor_hz` (-3 dB, in Hz, above 0) feels of the acceleration;
     /// without one as it is.
     #[must_use]
-    pub fn felt_by(mut self, sensor_hz: Option<f64>) -> Self {
-        self.acceleration_felt = sensor_hz.map(|sensor_hz| {
+    pub fn filtered_by(mut self, sensor_hz: Option<f64>) -> Self {
+        self.acceleration_filtered = sensor_hz.map(|sensor_hz| {
             let harmonics = (1..).zip(&self.acceleration.amplitudes);
             let line_hz = |k: u32| f64::from(k) * self.stretch.fundamental_hz();
-            let felt = harmonics.map(|(k, amplitude)| amplitude * low_pass(line_hz(k) / sensor_hz)).collect();
-            Harmonics::new(felt, self.stretch.periodic)
+            let filtered =
+                harmonics.map(|(k, amplitude)| amplitude * low_pass(line_hz(k) / sensor_hz)).collect();
+            Harmonics::new(filtered, self.stretch.periodic)
         });
         self
     }
@@ -224,17 +225,17 @@ mod tests {
     fn what_a_sensor_feels_of_segments_has_a_distortion_that_the_order_hardly_changes() {
         let plan = plan(vec![sine(5e5, 0.006)]);
         // 2 Hz felt with 40 Hz.
-        let of = |order| Spectrum::ideal(&plan, order, 65_536).unwrap().felt_by(Some(40.0));
+        let of = |order| Spectrum::ideal(&plan, order, 65_536).unwrap().filtered_by(Some(40.0));
         let [low, high] = [of(300), of(1000)];
         let thd = |found: &Harmonics| found.distortion.unwrap();
         assert!(thd(&high.acceleration) > 1.7 * thd(&low.acceleration));
-        let [low, high] = [low, high].map(|found| found.acceleration_felt.unwrap());
+        let [low, high] = [low, high].map(|found| found.acceleration_filtered.unwrap());
         assert!(thd(&high) < 1.03 * thd(&low), "{} {}", thd(&low), thd(&high));
         let acceleration = of(40).acceleration;
         // At the bandwidth itself, harmonic 20, half of the power is left; 19 is an odd one.
         let part = low.amplitudes[18] / acceleration.amplitudes[18];
         close(part, 1.0 / libm::sqrt(1.0 + 0.95 * 0.95), 1e-9);
-        assert_eq!(of(40).felt_by(None).acceleration_felt, None);
+        assert_eq!(of(40).filtered_by(None).acceleration_filtered, None);
     }
 
     #[test]

@@ -1,12 +1,13 @@
-//! A run as tables: a row for each record of the signals, a row for each packet. CSV as in RFC 4180,
-//! with a line feed at the end of a row.
+//! A run as tables: a row for each record of the signals, each tick, each segment. CSV as in RFC 4180, with a line feed
+//! at the end of a row. The table of packets is [`crate::packet_table`].
 
-use alloc::string::ToString;
 use core::fmt::{self, Write};
-use stepscope_peripheral::trace::{PacketLog, shown_signals};
 use stepscope_peripheral::{
+    segment::Segment,
     signal::{self, Record},
+    trace::{LoggedTick, shown_signals},
     units::Instant,
+    wire::packet::ChannelCommand,
 };
 
 /// Names of the columns of [`write_edges_row`]: the cycle, its time in s, and the signals of `channels`
@@ -34,40 +35,49 @@ pub fn write_edges_row(out: &mut impl Write, record: Record, clock_hz: u32, chan
     out.write_char('\n')
 }
 
-/// Names of the columns of [`write_packets_row`].
+/// Names of the columns of [`write_tick_row`].
 ///
 /// # Errors
 /// Those of the writer.
-pub fn write_packets_head(out: &mut impl Write) -> fmt::Result {
-    out.write_str("start_cycle,end_cycle,bytes,outcome,tick_start_cycle,tick_end_cycle,kind\n")
+pub fn write_ticks_head(out: &mut impl Write, channels: u8) -> fmt::Result {
+    out.write_str("start_cycle,packet")?;
+    (0..channels).try_for_each(|channel| write!(out, ",steps{channel}"))?;
+    out.write_char('\n')
 }
 
-/// Row `index` of a log: when on the line, which bytes (in hexadecimal), what became of them, when the
-/// ticks that they brought ran (empty for none), and what it is ([`super::RowOutcome::kind`]).
+/// A tick as a row: when it began, the packet's row, and the steps of each channel, negative to the left.
 ///
 /// # Errors
 /// Those of the writer.
-pub fn write_packets_row(out: &mut impl Write, log: &PacketLog, index: usize) -> fmt::Result {
-    let Some(row) = log.rows().get(index) else { return Ok(()) };
-    write!(out, "{},{},", row.start.0, row.end.0)?;
-    log.bytes(index).iter().try_for_each(|byte| write!(out, "{byte:02x}"))?;
-    write!(out, ",{}", Quoted(&row.verdict.to_string()))?;
-    for at in [row.tick_start, row.tick_end] {
-        out.write_char(',')?;
-        at.map_or(Ok(()), |Instant(cycle)| write!(out, "{cycle}"))?;
+pub fn write_tick_row(out: &mut impl Write, tick: &LoggedTick, channels: u8) -> fmt::Result {
+    write!(out, "{},", tick.start.0)?;
+    tick.row.map_or(Ok(()), |row| write!(out, "{row}"))?;
+    for &byte in tick.orders.iter().take(channels.into()) {
+        let ChannelCommand { right, steps } = ChannelCommand::parse(byte);
+        write!(out, ",{}{steps}", if right || steps == 0 { "" } else { "-" })?;
     }
-    writeln!(out, ",{}", row.verdict.kind())
+    out.write_char('\n')
 }
 
-/// A text as a field of a table: in quotes where it needs them.
-pub struct Quoted<'a>(pub &'a str);
+/// Names of the columns of [`write_segment_row`].
+pub const SEGMENTS_HEAD: &str = "channel,start_cycle,kind,count,interval_q16,add_q16,dir,length_q16\n";
 
-impl fmt::Display for Quoted<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if !self.0.contains([',', '"', '\n', '\r']) {
-            return f.write_str(self.0);
+/// A segment as a row: its channel, where the channel's list starts, and its numbers.
+///
+/// # Errors
+/// Those of the writer.
+pub fn write_segment_row(
+    out: &mut impl Write,
+    channel: usize,
+    start: Instant,
+    segment: &Segment,
+) -> fmt::Result {
+    write!(out, "{channel},{},", start.0)?;
+    match segment {
+        Segment::Steps { count, interval, add, right } => {
+            writeln!(out, "steps,{count},{interval},{add},{},", u8::from(*right))
         }
-        write!(f, "\"{}\"", self.0.replace('"', "\"\""))
+        Segment::Dwell(length) => writeln!(out, "dwell,,,,,{length}"),
     }
 }
 
@@ -75,7 +85,7 @@ impl fmt::Display for Quoted<'_> {
 mod tests {
     use super::*;
     use alloc::string::String;
-    use stepscope_peripheral::signal::{Event, Levels, PacketOutcome, Sink};
+    use stepscope_peripheral::signal::Levels;
 
     #[test]
     fn edges_are_rows_of_levels() {
@@ -84,26 +94,5 @@ mod tests {
         let record = Record { cycle: Instant(24), levels: Levels(0x7_0001_0001) };
         write_edges_row(&mut text, record, 16_000_000, 1).expect("a string takes it");
         assert_eq!(text, "cycle,time_s,STEP0,DIR0,EN,RX,TX,DE\n24,0.0000015,1,1,1,1,1,0\n");
-    }
-
-    #[test]
-    fn packets_are_rows_and_only_what_needs_it_is_quoted() {
-        let mut log = PacketLog::default();
-        for (at, byte) in [(5, 0x8a), (9, 0x05)] {
-            log.event(Instant(at + 3), Event::Byte { seen: Instant(at), byte });
-        }
-        log.event(Instant(20), Event::Packet(PacketOutcome::Queued));
-        log.event(Instant(30), Event::TickStart { orders: [0; 16] });
-        let mut text = String::new();
-        write_packets_head(&mut text).expect("a string takes it");
-        write_packets_row(&mut text, &log, 0).expect("a string takes it");
-        write_packets_row(&mut text, &log, 1).expect("a string takes it");
-        let expected = "start_cycle,end_cycle,bytes,outcome,tick_start_cycle,tick_end_cycle,kind\n\
-                        5,20,8a05,queued,30,,packet\n";
-        assert_eq!(text, expected);
-        for (given, written) in [("a b", "a b"), ("a,b", "\"a,b\""), ("a\"", "\"a\"\"\""), ("a\n", "\"a\n\"")]
-        {
-            assert_eq!(Quoted(given).to_string(), written);
-        }
     }
 }

@@ -33,12 +33,15 @@
 
 mod machine;
 mod ramps;
+mod report;
 
 pub use machine::Machine;
 pub use ramps::Ramps;
+pub use report::{MoveRamps, TorqueCurve, TorqueReport};
 
 use alloc::{format, string::String, vec::Vec};
-use stepscope_motion::{AxisPlan, Breakpoints, Curve, Interval, grouped};
+use serde::Serialize;
+use stepscope_motion::{AxisPlan, Breakpoints, Curve, Interval, bisection::border, grouped};
 
 /// Shortages that are listed.
 const MAX_SHORTAGES: usize = 1024;
@@ -46,11 +49,9 @@ const MAX_SHORTAGES: usize = 1024;
 const LOOKS_A_MOVE: u32 = 2048;
 /// A plan is looked at so often, beside both sides of each of its joints.
 const LOOKS: f64 = 512.0;
-/// Halvings that leave of a stretch less than a double tells apart.
-const HALVINGS: u32 = 60;
 
 /// What is needed and what there is at one time of a plan.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Moment {
     /// Time in s from the start of the axis.
     pub at_s: f64,
@@ -72,7 +73,7 @@ impl Moment {
 }
 
 /// A stretch of time in which a plan needs more torque than there is.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Shortage {
     /// Its start in s.
     pub from_s: f64,
@@ -235,16 +236,8 @@ impl Walk<'_> {
     /// The time between both at which one is short and the other not.
     fn border(&self, from_s: f64, to_s: f64) -> f64 {
         let short = |t: f64| self.machine.at(self.plan, t).margin_mn_m() < 0.0;
-        let (mut from, mut to, begins) = (from_s, to_s, short(to_s));
-        for _ in 0..HALVINGS {
-            let middle = from + (to - from) / 2.0;
-            if short(middle) == begins {
-                to = middle;
-            } else {
-                from = middle;
-            }
-        }
-        to
+        let begins = short(to_s);
+        border(from_s, to_s, |t| short(t) != begins).1
     }
 
     fn close(&mut self) {

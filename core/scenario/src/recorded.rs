@@ -2,13 +2,15 @@
 //!
 //! The table is one that a run exports: `bytes`, and `start_cycle` or `start_s`, are among its columns, in
 //! any order; others are left alone. Rows whose `kind` is `reply` or `collision` came from a controller and are not
-//! sent. A packet's bytes go back to back from its start bit on; pauses within it are not in the table.
+//! sent; nor are replies of other controllers, which tables without that kind for them call frames. A packet's bytes go
+//! back to back from its start bit on; pauses within it are not in the table.
 
 use crate::{
     Hex, LineScript, ScriptedSend,
     table::{BadTable, Rows, short},
 };
 use alloc::{borrow::ToOwned, format, string::String, vec::Vec};
+use stepscope_peripheral::wire::frame::{ACK, Deframed, Deframer};
 
 impl LineScript {
     /// The bytes of a recorded table, each packet at its time; times in s become cycles of `clock_hz`.
@@ -26,7 +28,7 @@ impl LineScript {
         let start = place("start_cycle").map(|at| (at, false)).or(place("start_s").map(|at| (at, true)));
         let (start, in_seconds) = start.ok_or_else(|| missing("start_cycle"))?;
         let bytes = place("bytes").ok_or_else(|| missing("bytes"))?;
-        let kind = place("kind");
+        let (kind, outcome) = (place("kind"), place("outcome"));
         let mut sends = Vec::new();
         while let Some((at, row)) = rows.next() {
             let field = |index: usize| row.get(index).map_or("", |field| field.trim());
@@ -48,7 +50,8 @@ impl LineScript {
             let sent = base16ct::mixed::decode_vec(&hex).map_err(|_| {
                 rows.bad(at, format!("bytes are “{}”; give pairs of hexadecimal digits", short(given)))
             })?;
-            if !sent.is_empty() {
+            if !sent.is_empty() && !(outcome.is_some_and(|at| field(at) == OTHER_ADDRESS) && is_reply(&sent))
+            {
                 sends.push(ScriptedSend { start_cycle, bytes: Hex(sent), frame: None });
             }
         }
@@ -57,6 +60,17 @@ impl LineScript {
         }
         Ok(Self { sends })
     }
+}
+
+/// The outcome of what was for, or from, another controller.
+const OTHER_ADDRESS: &str = "another address";
+
+/// Whether bytes are a frame that a controller sends (DESIGN A6).
+fn is_reply(bytes: &[u8]) -> bool {
+    let mut deframer = Deframer::default();
+    bytes
+        .iter()
+        .any(|&byte| matches!(deframer.byte(byte), Some(Deframed::Frame(frame)) if frame.kind & ACK != 0))
 }
 
 /// The cycle at a time in s.
@@ -87,6 +101,24 @@ mod tests {
         assert_eq!(sends(&long), Ok(vec![(1, vec![0xab; 3000])]));
         let wide = format!("{}bytes,start_cycle\n{}ab,1\n", "x,".repeat(100), "x,".repeat(100));
         assert_eq!(sends(&wide), Ok(vec![(1, vec![0xab])]));
+    }
+
+    #[test]
+    fn a_reply_of_another_controller_that_is_called_a_frame_is_not_sent() {
+        use stepscope_peripheral::wire::frame::emit;
+        let hex = |bytes: Vec<u8>| base16ct::lower::encode_string(&bytes);
+        let (frame, reply) = (hex(emit(2, 4, &[])), hex(emit(2, 0x84, &[0; 9])));
+        let table = |outcome: &str| {
+            format!(
+                "start_cycle,bytes,outcome,kind\n9,{frame},{outcome},frame\n500,{reply},{outcome},frame\n"
+            )
+        };
+        let starts = |outcome| {
+            let found = sends(&table(outcome)).expect("a table");
+            found.into_iter().map(|(start, _)| start).collect::<Vec<_>>()
+        };
+        assert_eq!(starts("another address"), [9]);
+        assert_eq!(starts("refused: UNKNOWN_KIND"), [9, 500], "the host did send that");
     }
 
     #[test]

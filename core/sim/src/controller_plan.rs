@@ -72,6 +72,8 @@ impl ControllerPlan {
 
 /// The plan of each axis of each controller; empty where the source is no motion.
 pub(super) fn plans(scenario: &Scenario) -> Result<Vec<Vec<AxisPlan>>, Vec<Problem>> {
+    #[cfg(test)]
+    crate::counts::PLANNED.set(crate::counts::PLANNED.get() + 1);
     let Source::Motion(motion) = &scenario.source else {
         return Ok(vec![Vec::new(); 1 + scenario.controllers.len()]);
     };
@@ -94,6 +96,10 @@ pub(super) fn orders(
                 if config.protocol() == Protocol::Framed {
                     end_at_rest(&mut ticks, config.channels());
                 }
+                debug_assert!(
+                    ticks.len().is_multiple_of(config.channels().into()),
+                    "a tick has a byte a channel"
+                );
                 orders.push(ControllerPlan { config: config.clone(), plans, ticks: ticks.into() });
             }
             Err(found) => problems.extend(found),
@@ -302,7 +308,6 @@ fn frame_bits(checked: &Checked, config: &Config) -> u128 {
 }
 
 /// One tick's orders, from its bytes.
-#[inline]
 pub(super) fn pulses(tick: &[u8]) -> u64 {
     let mut sum = 0;
     for byte in tick.get(..Tick::default().len()).unwrap_or(tick) {

@@ -7,12 +7,11 @@
 //! level can begin one of its own.
 
 use crate::controller_plan::{ControllerPlan, job, pulses};
-use stepscope_peripheral::wire::schedule::line_time;
 use stepscope_peripheral::{
     config::{Config, DirLine, Protocol, PulsePhasing},
     segment::CheckedSegments,
     units::Cycles,
-    wire::{Schedule, frame::REPLY_LEN},
+    wire::{BitTimes, Schedule, bit_times::BYTE_BITS, frame::REPLY_LEN, schedule::line_time},
 };
 use stepscope_scenario::{Checked, Noise, Source};
 
@@ -22,8 +21,6 @@ const MAX_FALLS_A_BYTE: u64 = 5;
 /// Where the last of them can be: the start of data bit 7.
 const LAST_FALL_BIT: u64 = 8;
 
-/// Bits of a byte that has just begun, rounded up.
-const BYTE_BITS: u64 = 10;
 /// Bits of a byte that has just begun and of the gap after it (45, A5), rounded up.
 const LONGEST_REST_BITS: u64 = 60;
 
@@ -165,16 +162,16 @@ fn most_ticks(checked: &Checked, config: &Config, schedule: &Schedule) -> u64 {
 
 /// Whether the receiver takes each sample in the bit that it is of, and is armed for the next byte.
 fn hears(config: &Config, baud: u32) -> bool {
-    let (bit, clock_hz, baud) = (config.bit().0, u64::from(config.clock_hz()), u64::from(baud));
-    let starts = |k: u64| k * clock_hz / baud;
-    (0..10).all(|k| (starts(k)..starts(k + 1)).contains(&(bit / 2 + k * bit)))
+    let (bit, sent) = (config.bit().0, BitTimes::new(config.clock_hz(), baud));
+    (0..BYTE_BITS).all(|k| (sent.bit(k)..sent.bit(k + 1)).contains(&Cycles(bit / 2 + k * bit)))
 }
 
 /// Bytes that can be heard of so many that are sent back to back.
 fn most_heard(checked: &Checked, config: &Config, bytes: usize) -> u64 {
     let (bytes, bit) = (bytes as u64, config.bit().0);
     let Some(before) = bytes.checked_sub(1) else { return 0 };
-    let last_fall = (10 * before + LAST_FALL_BIT) * u64::from(config.clock_hz()) / u64::from(checked.baud);
+    let Cycles(last_fall) =
+        BitTimes::new(config.clock_hz(), checked.baud).bit(BYTE_BITS * before + LAST_FALL_BIT);
     (MAX_FALLS_A_BYTE * bytes).min(last_fall / (bit / 2 + 9 * bit + 1) + 1)
 }
 

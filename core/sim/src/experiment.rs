@@ -2,9 +2,10 @@
 
 use crate::{
     Cost,
-    bus::{Bus, Ignored},
+    bus::Bus,
     controller_plan::{self, ControllerPlan},
     framed_host::{FramedHost, Progress},
+    ignored::Ignored,
 };
 use alloc::{rc::Rc, vec::Vec};
 use core::slice;
@@ -28,6 +29,8 @@ const MAX_LINE_BYTES: u64 = 2_000_000 * 17;
 pub struct Experiment {
     checked: Checked,
     /// What each controller is to do.
+    ///
+    /// Invariant: one at least, the scenario's own first.
     orders: Vec<ControllerPlan>,
     /// What the host sends without waiting for replies.
     schedule: Rc<Schedule>,
@@ -56,6 +59,7 @@ impl Experiment {
                 return Err(problems);
             }
         };
+        debug_assert!(!orders.is_empty() && orders.len() == checked.configs.len());
         let (schedule, forced) = controller_plan::schedule(&checked, &orders);
         checked.forced.extend(forced);
         let segments = controller_plan::segments(&checked, &orders)?.map(Rc::new);
@@ -121,6 +125,12 @@ impl Experiment {
         self.orders.iter().map(ControllerPlan::config)
     }
 
+    /// The host's rate on the line.
+    #[must_use]
+    pub const fn baud(&self) -> u32 {
+        self.checked.baud
+    }
+
     /// The plan of each axis of the first controller; empty where the source is no motion.
     #[must_use]
     pub fn plans(&self) -> &[AxisPlan] {
@@ -144,9 +154,19 @@ impl Experiment {
     /// waits for replies, or that controller has nothing to do.
     #[must_use]
     pub fn host_progress(&self, run: &Run, index: usize) -> Option<Progress> {
+        run.host()?.progress().nth(self.job(index)?)
+    }
+
+    /// Ticks that controller `index` has acknowledged in `run`; `None` as [`Self::host_progress`].
+    #[must_use]
+    pub fn host_acknowledged(&self, run: &Run, index: usize) -> Option<u32> {
+        run.host()?.acknowledged().nth(self.job(index)?)
+    }
+
+    /// Which of the host's jobs controller `index` is: it has one for each that has ticks.
+    fn job(&self, index: usize) -> Option<usize> {
         self.orders.get(index).filter(|orders| orders.has_ticks())?;
-        let busy_before = self.orders.iter().take(index).filter(|orders| orders.has_ticks()).count();
-        run.host()?.progress().nth(busy_before)
+        Some(self.orders.iter().take(index).filter(|orders| orders.has_ticks()).count())
     }
 
     fn first(&self) -> &ControllerPlan {
@@ -343,7 +363,6 @@ struct Slice<'a, S> {
 }
 
 impl<S: Sink> Sink for Slice<'_, S> {
-    #[inline(always)]
     fn record(&mut self, record: Record) {
         self.left = self.left.saturating_sub(1);
         self.sink.record(record);

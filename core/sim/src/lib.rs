@@ -15,11 +15,20 @@
 
 extern crate alloc;
 
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 mod bus_load;
+
+#[cfg(test)]
+mod counts;
 
 pub mod noise;
 
 pub mod framed_host;
+
+mod ignored;
 
 mod raw_receiver;
 
@@ -33,10 +42,16 @@ mod cost;
 
 mod experiment;
 
+mod judged;
+
 mod script;
+
+mod summary;
 
 pub mod fault_sweep;
 
 pub use cost::{BUDGET_RECORDS, Cost};
 pub use experiment::{Experiment, Run};
+pub use judged::{Judged, SelectedAxis, axes_of};
 pub use script::{replayed, scripted};
+pub use summary::{ControllerSummary, JobSummary, Summary};

@@ -6,9 +6,9 @@ use fantoccini::actions::{InputSource, MOUSE_BUTTON_LEFT, MOUSE_BUTTON_RIGHT, Mo
 use serde_json::{Value, json};
 use stepscope_core::{
     inspect::{
-        between,
-        difference::{self, Scaled},
-        made::Pulses,
+        actual_motion::Pulses,
+        cursor_stats,
+        position_error::{self, Scaled},
     },
     peripheral::trace::steps,
 };
@@ -49,8 +49,8 @@ fn between_two_cursors_are_the_means_that_the_core_computes() -> Result<()> {
             segments: None,
             config: known.experiment.config(),
         };
-        let ideal = between::ideal(plan, zero_s, from, to);
-        let made = between::made(&pulses, from, to);
+        let ideal = cursor_stats::ideal(plan, zero_s, from, to);
+        let made = cursor_stats::actual(&pulses, from, to);
         let moments = [ideal.position, ideal.speed, ideal.acceleration.context("a curve has one")?];
         let at = |t: f64| [plan.position(t - zero_s), plan.speed(t - zero_s), plan.acceleration(t - zero_s)];
         let expected: Vec<[f64; 5]> = (0..3)
@@ -182,7 +182,7 @@ fn a_kept_run_is_drawn_and_measured_beside_a_later_one() -> Result<()> {
         let (own, other) = (steps(&later.recording.trace, 0), steps(&kept.recording.trace, 0));
         let scaled = |steps| Scaled { steps, hz: f64::from(kept.experiment.config().clock_hz()), unit: 1.0 };
         let common_s = kept.seconds(cycles(&later).min(cycles(&kept)));
-        let apart = difference::apart(scaled(&own), scaled(&other), common_s);
+        let apart = position_error::apart(scaled(&own), scaled(&other), common_s);
         let told = page.text("#compared").await?.replace('\u{2212}', "-");
         ensure!(told.contains(&format!("differs by {} steps", apart.largest)), "{} in {told}", apart.largest);
         for fact in ["duration", "peak speed", "peak acceleration", "edges", "RMS"] {

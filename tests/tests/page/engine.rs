@@ -41,6 +41,40 @@ async fn begin_long_run(page: &Session) -> Result<()> {
     page.until("document.getElementById('status').textContent.includes('%')").await
 }
 
+/// What the worker has counted: scenarios judged, and runs.
+const COUNTS: &str = "new Promise((done) => { const hear = ({ data }) => { if (data.id === -1) { \
+     window.worker.removeEventListener('message', hear); done([data.value.judged, data.value.runs]); } }; \
+     window.worker.addEventListener('message', hear); window.worker.postMessage({ id: -1, method: 'counts', args: [] }); })";
+
+#[test]
+fn a_keystroke_costs_one_reading_and_one_plan_also_with_its_run_link_and_study() -> Result<()> {
+    in_browser(|page| async move {
+        page.before_scripts(REACH).await?;
+        page.open("").await?;
+        page.fill(DISTANCE, "1600").await?;
+        page.until_digest(&Known::of(&with_distance(1600.0))?.digest).await?;
+        let [judged, runs]: [u32; 2] = page.eval(COUNTS).await?;
+        // Another digit, and the motion is too fast: that is judged, and not run.
+        let field = format!("[data-path=\"{DISTANCE}\"]");
+        page.press(&field, "\u{e010}0").await?;
+        page.press(&field, "0").await?;
+        page.until("document.querySelectorAll('#fields [aria-invalid=true]').length > 0").await?;
+        assert_eq!(page.eval::<[u32; 2]>(COUNTS).await?, [judged + 2, runs], "a problem is not run");
+        for _ in 0..3 {
+            page.press(&field, "\u{e003}").await?;
+        }
+        let known = Known::of(&with_distance(160.0))?;
+        page.until_digest(&known.digest).await?;
+        page.until(&format!("location.hash.startsWith('#{}')", known.link)).await?;
+        assert_eq!(
+            page.eval::<[u32; 2]>(COUNTS).await?,
+            [judged + 5, runs + 1],
+            "five keystrokes, one run, one link"
+        );
+        Ok(())
+    })
+}
+
 #[test]
 fn a_cancelled_run_goes_on_nowhere() -> Result<()> {
     in_browser(|page| async move {
@@ -48,8 +82,13 @@ fn a_cancelled_run_goes_on_nowhere() -> Result<()> {
         begin_long_run(&page).await?;
         page.click("#cancel").await?;
         page.until("document.getElementById('engine-message').textContent.includes('cancelled')").await?;
-        let heard = "new Promise((done) => { const before = window.heard; \
-             setTimeout(() => done(window.heard - before), 500); })";
+        // A run goes on by a slice of some ms between two answers, and tells of itself after a few.
+        let heard = "(async () => { const before = window.heard; \
+             for (let question = 0; question < 100; question++) await new Promise((answered) => { \
+                 const hear = ({ data }) => { if (data.id === -1) { window.worker.removeEventListener('message', hear); answered(); } }; \
+                 window.worker.addEventListener('message', hear); \
+                 window.worker.postMessage({ id: -1, method: 'pulses', args: [0, 1000, 10] }); }); \
+             return window.heard - before; })()";
         // One may have been on its way.
         ensure!(page.eval::<u32>(heard).await? <= 1, "it still runs");
         assert_eq!(page.eval::<u32>("window.workers").await?, 1, "it heard the cancel");
@@ -132,7 +171,7 @@ fn an_engine_that_cannot_be_loaded_is_told() -> Result<()> {
         // Every worker ends in an error of its own before it hears anything.
         page.before_scripts(
             "window.Worker = class extends EventTarget { constructor() { super(); \
-             setTimeout(() => this.onerror(new ErrorEvent('error', { message: 'not to be had' })), 10); } \
+             queueMicrotask(() => this.onerror(new ErrorEvent('error', { message: 'not to be had' }))); } \
              postMessage() {} terminate() {} };",
         )
         .await?;

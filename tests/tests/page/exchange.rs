@@ -5,8 +5,9 @@ use serde_json::{Value, json};
 use stepscope_core::{
     inspect::{
         fingerprint::Fingerprint,
-        run_fingerprint::Proof,
-        tables::{write_edges_head, write_edges_row, write_packets_head, write_packets_row},
+        packet_table::PacketTable,
+        run_fingerprint::RunFingerprint,
+        tables::{write_edges_head, write_edges_row},
     },
     peripheral::signal::Record,
     scenario::{link::with_part, presets::PRESETS},
@@ -24,7 +25,7 @@ const MESSAGE: &str = "document.getElementById('link-message').textContent";
 
 /// A link of a scenario with the digests of a trace.
 fn link(known: &Known, trace: &[Record]) -> String {
-    let proof = Proof::of(vec![Fingerprint::of(trace)]);
+    let proof = RunFingerprint::of(vec![Fingerprint::of(trace)]);
     format!("#{}", with_part(known.link.clone(), "d", &proof.emit()))
 }
 
@@ -91,7 +92,7 @@ fn digests_that_cannot_be_read_are_left_out_with_a_word() -> Result<()> {
                 with_part(
                     format!("#{}", known.link),
                     "d",
-                    &Proof::of(vec![Fingerprint::of(&known.recording.trace); 2]).emit(),
+                    &RunFingerprint::of(vec![Fingerprint::of(&known.recording.trace); 2]).emit(),
                 ),
                 "of 2 controllers",
             ),
@@ -251,10 +252,10 @@ fn packets_and_edges_that_were_saved_are_taken_in() -> Result<()> {
         page.until(&format!("{MESSAGE}.includes('line 2')")).await?;
 
         let mut packets = String::new();
-        write_packets_head(&mut packets)?;
-        for index in 0..recording.packets.rows().len() {
-            write_packets_row(&mut packets, &recording.packets, index)?;
-        }
+        let run = known.experiment.run(&mut Vec::new());
+        let table = PacketTable::new(&known.experiment, &run, 0, &recording.packets);
+        PacketTable::write_head(&mut packets)?;
+        (0..table.len()).try_for_each(|index| table.write_row(&mut packets, index))?;
         drop_file(&page, "packets.csv", &packets).await?;
         page.until(&format!("{MESSAGE}.includes('packets of packets.csv are sent again')")).await?;
         page.until_digest(&known.digest).await?;

@@ -1,7 +1,7 @@
 //! The framed protocol on the page: frames, replies, and what becomes of them on a noisy line.
 
 use anyhow::{Result, ensure};
-use stepscope_core::peripheral::{protocol::FrameFate, trace::Verdict};
+use stepscope_core::peripheral::{protocol::FrameOutcome, trace::RowOutcome};
 
 use crate::{
     bench::in_browser,
@@ -33,7 +33,7 @@ fn a_framed_line_shows_frames_with_their_ticks_and_replies() -> Result<()> {
         assert_eq!(health.replace('\u{202f}', ""), format!("all {ticks} ticks done"));
         let shown = classes(&page).await?;
         for (index, row) in framed.recording.packets.rows().iter().enumerate().take(shown.len()) {
-            let kind = if matches!(row.verdict, Verdict::Reply(_)) { "reply" } else { "frame" };
+            let kind = if matches!(row.outcome, RowOutcome::Reply(_)) { "reply" } else { "frame" };
             ensure!(shown[index].contains(kind), "row {index} is {}", shown[index]);
         }
         page.pulses().await?;
@@ -41,7 +41,7 @@ fn a_framed_line_shows_frames_with_their_ticks_and_replies() -> Result<()> {
 
         // The first TICKS frame: its bytes, the reply, and all of its ticks.
         let first = |row: &&stepscope_core::peripheral::trace::LoggedPacket| {
-            matches!(row.verdict, Verdict::Frame(FrameFate::Queued(_)))
+            matches!(row.outcome, RowOutcome::Frame(FrameOutcome::Queued(_)))
         };
         let rows = framed.recording.packets.rows();
         let (index, row) = rows.iter().enumerate().find(|(_, row)| first(row)).expect("it queues ticks");

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result, ensure};
 use fantoccini::actions::{InputSource, MOUSE_BUTTON_LEFT, MouseActions, PointerAction};
 use stepscope_core::{
-    peripheral::trace::{Digest, Verdict},
+    peripheral::trace::{Digest, RowOutcome},
     scenario::presets::PRESETS,
 };
 
@@ -81,7 +81,7 @@ fn bytes_and_fields_are_decoded_lit_in_all_views_and_choose_their_packet() -> Re
         point(&page, &known, BYTES, broken, false).await?;
         until_reads(&page, "framing error: stop bit low").await?;
         let ignored =
-            log.rows().iter().position(|row| row.verdict == Verdict::Ignored).context("some are")?;
+            log.rows().iter().position(|row| row.outcome == RowOutcome::Ignored).context("some are")?;
         point(&page, &known, FIELDS, log.seen(ignored)[0].0 + 100, false).await?;
         until_reads(&page, "ignored: until a gap").await?;
 
@@ -100,8 +100,11 @@ fn frames_and_replies_are_decoded_to_their_fields() -> Result<()> {
         open(&page, &known).await?;
         // One frame and its reply fill the view.
         let log = &known.recording.packets;
-        let reply =
-            log.rows().iter().position(|row| matches!(row.verdict, Verdict::Reply(_))).context("a reply")?;
+        let reply = log
+            .rows()
+            .iter()
+            .position(|row| matches!(row.outcome, RowOutcome::Reply(_)))
+            .context("a reply")?;
         let (from, to) = (log.rows()[reply - 1].start.0, log.rows()[reply].end.0);
         let asked: serde_json::Value = page
             .js(

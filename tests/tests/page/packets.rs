@@ -4,7 +4,7 @@ use anyhow::{Context, Result, ensure};
 use serde_json::{Value, json};
 use stepscope_core::{
     inspect::dissector::{Meaning, Reading},
-    peripheral::{config::Protocol, protocol::FrameFate, trace::Verdict},
+    peripheral::{config::Protocol, protocol::FrameOutcome, trace::RowOutcome},
     scenario::presets::PRESETS,
 };
 
@@ -35,7 +35,7 @@ fn meaning(known: &Known, index: usize) -> Meaning {
     };
     let log = &known.recording.packets;
     Reading { protocol: config.protocol(), addressed: config.packet_address().is_some(), channels: &channels }
-        .of(log.bytes(index), log.rows()[index].verdict)
+        .of(log.bytes(index), log.rows()[index].outcome)
 }
 
 /// Types into the search, in place of what stands there.
@@ -61,7 +61,8 @@ fn a_search_goes_from_match_to_match_and_a_filter_leaves_the_others_out() -> Res
         let with = |wanted: &dyn Fn(usize) -> bool| {
             (0..log.rows().len()).filter(|&row| wanted(row)).collect::<Vec<_>>()
         };
-        let bad = with(&|row| matches!(log.rows()[row].verdict, Verdict::Frame(FrameFate::BadCheck { .. })));
+        let bad =
+            with(&|row| matches!(log.rows()[row].outcome, RowOutcome::Frame(FrameOutcome::BadCheck { .. })));
         ensure!(bad.len() > 2, "the noise breaks frames");
         let all = log.rows().len();
 
@@ -99,13 +100,13 @@ fn a_search_goes_from_match_to_match_and_a_filter_leaves_the_others_out() -> Res
 
         // Outcome, and kind with outcome.
         page.choose("#packets-by-outcome", "repeated").await?;
-        let repeated = with(&|row| log.rows()[row].verdict == Verdict::Frame(FrameFate::Repeated));
+        let repeated = with(&|row| log.rows()[row].outcome == RowOutcome::Frame(FrameOutcome::Repeated));
         page.until_equal(COUNT, &json!(format!("{} of {all} on the line", repeated.len()))).await?;
         page.choose("#packets-by-kind", "reply").await?;
         page.until_equal(COUNT, &json!(format!("0 of {all} on the line"))).await?;
         page.choose("#packets-by-outcome", "good").await?;
         let replies =
-            with(&|row| matches!(log.rows()[row].verdict, Verdict::Reply(reply) if reply.answer.is_ok()));
+            with(&|row| matches!(log.rows()[row].outcome, RowOutcome::Reply(reply) if reply.answer.is_ok()));
         page.until_equal(COUNT, &json!(format!("{} of {all} on the line", replies.len()))).await?;
         page.picture("packets-filtered").await
     })

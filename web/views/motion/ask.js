@@ -25,11 +25,11 @@ export async function ask(engine, state, { start, end }, columns, lane = "motion
   const of = keptAxis(state).index;
   const [own, kept, apart] = await Promise.all([
     engine.latest(lane, "motion", axis, ...window),
-    reference && engine.latest(`${lane} kept`, "kept_motion", reference.controller, of, ...window),
+    reference && engine.latest(`${lane} kept`, "baseline_motion", reference.controller, of, ...window),
     reference && state.difference
       ? engine.latest(
           `${lane} apart`,
-          "kept_difference",
+          "baseline_difference",
           reference.controller,
           axis,
           of,

@@ -25,7 +25,7 @@ export function createCompare({ engine, dispatch, now }) {
   async function keep() {
     const { result, scenario, derived, origin, revision } = now();
     // What is kept is what the worker has: only a run of the scenario in the form.
-    if (!result || result.revision !== revision || !(await engine.ask("keep", true).catch(unlessDropped))) return;
+    if (!result || result.revision !== revision || !(await engine.ask("baseline", true).catch(unlessDropped))) return;
     const title =
       scenario.title ||
       (origin.startsWith("preset:")
@@ -57,7 +57,7 @@ export function createCompare({ engine, dispatch, now }) {
       ? null
       : /** @type {import("../../state/types.js").Apart | null} */ (
           await engine
-            .latest("apart", "kept_apart", reference.controller, state.axis, kept.index, unitPair(state))
+            .latest("apart", "baseline_apart", reference.controller, state.axis, kept.index, unitPair(state))
             .catch(unlessDropped)
         );
     const rows = [
@@ -111,7 +111,7 @@ export function createCompare({ engine, dispatch, now }) {
     keepButton.disabled = state.result === null || state.result.revision !== state.revision;
     const { reference, result, axis, unit, derived } = state;
     if (before?.reference !== reference) {
-      if (before?.reference && !reference) engine.ask("keep", false).catch(unlessDropped);
+      if (before?.reference && !reference) engine.ask("baseline", false).catch(unlessDropped);
       for (const node of document.querySelectorAll(".with-kept")) /** @type {HTMLElement} */ (node).hidden = !reference;
       keepButton.textContent = reference ? "Keep this instead" : "Keep to compare";
     }

@@ -260,10 +260,10 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
           );
         tell(0, `0 of ${number} points`);
         // The rows before stay until these are there.
-        const answers = joined(await engine.share("sine_rows", pieces, signal, told));
+        const answers = joined(await engine.distribute("sine_rows", pieces, signal, told));
         [rows, at, least, sweptOrder] = [answers, null, null, highest];
         paint();
-        const found = await engine.share("sine_best", stretches, signal, told);
+        const found = await engine.distribute("sine_best", stretches, signal, told);
         return joined(found);
       },
       (found) => {
@@ -296,7 +296,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     verticesJob.run(
       (signal, tell) => {
         tell(0, counted(number, "segment"));
-        return engine.share(
+        return engine.distribute(
           "sine_vertices",
           [
             [number, false, order.value()],

@@ -160,7 +160,7 @@ export function createTables({ engine, now, panel }) {
         let done = 0;
         tell(0, `0 of ${ROWS.length} tables`);
         const pieces = ROWS.map(({ form, widths }) => [of.json, of.controller, of.axis, form, widths, chosen.us]);
-        return engine.share("step_table", pieces, signal, () =>
+        return engine.distribute("step_table", pieces, signal, () =>
           tell(++done / pieces.length, `${done} of ${pieces.length} tables`),
         );
       },

@@ -203,7 +203,7 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
     if (next === asked) return;
     asked = next;
     job.run(
-      async (signal) => (await engine.share("torque", [[of.json, of.controller, of.axis]], signal))[0],
+      async (signal) => (await engine.distribute("torque", [[of.json, of.controller, of.axis]], signal))[0],
       (/** @type {Torque | undefined} */ answer) => {
         made = answer ?? null;
         body.hidden = made === null;

@@ -100,7 +100,7 @@ fn what_the_pulses_make_is_that_of_every_step_and_every_tick_in_a_column() {
         pulses.rates(0.0, 1e9, &mut |rate| rates.push(rate));
         for &(from, to, columns) in WINDOWS {
             let window = Window { start_s: from * length, end_s: to * length, columns };
-            let Made { position, speed } = made(&pulses, window);
+            let Actual { position, speed } = actual(&pulses, window);
             for column in 0..columns {
                 let (start, end) = (window.edge_s(column), window.edge_s(column + 1));
                 let before = pulses.steps.iter().rev().find(|step| (step.cycle as f64 / pulses.hz()) < start);
@@ -131,7 +131,7 @@ fn in_a_dwell_of_segments_the_speed_is_none() {
             {"steps":{"count":10,"interval_q16":524288000,"dir":0}}]}]}}"#,
     );
     let window = Window { start_s: 0.0, end_s: 0.022, columns: 22 };
-    let Made { speed, .. } = made(&ran.pulses(), window);
+    let Actual { speed, .. } = actual(&ran.pulses(), window);
     for (column, expected) in [(1, 1000.0), (5, 1000.0), (12, 0.0), (17, -2000.0), (21, 0.0)] {
         assert!((speed.min[column] - expected).abs() < 0.01, "{column}: {speed:?}");
         assert!((speed.max[column] - expected).abs() < 0.01, "{column}: {speed:?}");

@@ -30,25 +30,8 @@ pub enum RowOutcome {
     Open,
 }
 
-impl RowOutcome {
-    /// What the row is, in a word: `packet`, `frame`, `reply`, `collision`, or `open` where the run ended
-    /// before it was known.
-    #[must_use]
-    #[inline]
-    pub const fn kind(self) -> &'static str {
-        match self {
-            Self::Packet(_) | Self::Short | Self::Framing | Self::Ignored => "packet",
-            Self::Frame(_) => "frame",
-            Self::Reply(_) => "reply",
-            Self::Collision => "collision",
-            Self::Open => "open",
-        }
-    }
-}
-
 impl fmt::Display for RowOutcome {
     /// What became of the packet, as the page and the command's tables say it.
-    #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Packet(PacketOutcome::Queued) => "queued",
@@ -60,7 +43,7 @@ impl fmt::Display for RowOutcome {
             Self::Short => "dropped: SHORT_PACKET",
             Self::Framing => "dropped: FRAMING",
             Self::Ignored => "ignored until a gap",
-            Self::Frame(fate) => return fate.fmt(f),
+            Self::Frame(frame) => return frame.fmt(f),
             Self::Reply(reply) => return reply.fmt(f),
             Self::Collision => "collision: the controller and another drive the line",
             Self::Open => "not complete",
@@ -76,7 +59,7 @@ pub struct LoggedPacket {
     /// Where it was complete or given up.
     pub end: Instant,
     /// What became of it.
-    pub verdict: RowOutcome,
+    pub outcome: RowOutcome,
     /// First cycle of its tick, of a frame's its first tick, if that has begun.
     pub tick_start: Option<Instant>,
     /// First cycle after its last tick so far that has ended.
@@ -124,21 +107,18 @@ impl PacketLog {
     /// once it is finished. A reply is known before it is sent, and a collision before the packet in which
     /// it happens.
     #[must_use]
-    #[inline]
     pub fn rows(&self) -> &[LoggedPacket] {
         &self.rows
     }
 
     /// The ticks that have begun.
     #[must_use]
-    #[inline]
     pub fn ticks(&self) -> &[LoggedTick] {
         &self.ticks
     }
 
     /// First cycle after a tick that lasts `length` where nothing stops it.
     #[must_use]
-    #[inline]
     pub fn tick_end(&self, tick: &LoggedTick, length: Cycles) -> Instant {
         let stop = self.stops.get(self.stops.partition_point(|stop| *stop < tick.start));
         stop.map_or(tick.start + length, |stop| (tick.start + length).min(*stop))
@@ -146,7 +126,6 @@ impl PacketLog {
 
     /// Bytes of a row.
     #[must_use]
-    #[inline]
     pub fn bytes(&self, index: usize) -> &[u8] {
         let row = self.rows.get(index);
         row.and_then(|row| self.bytes.get(row.bytes_start..row.bytes_end)).unwrap_or_default()
@@ -154,7 +133,6 @@ impl PacketLog {
 
     /// Where the start bits of a row's bytes were seen; of a reply's, for each the start bit of the first.
     #[must_use]
-    #[inline]
     pub fn seen(&self, index: usize) -> &[Instant] {
         let row = self.rows.get(index);
         row.and_then(|row| self.seen.get(row.bytes_start..row.bytes_end)).unwrap_or_default()
@@ -162,13 +140,11 @@ impl PacketLog {
 
     /// Where the start bits of bytes were seen whose stop bit was low, rising in time.
     #[must_use]
-    #[inline]
     pub fn broken(&self) -> &[Instant] {
         &self.broken
     }
 
     /// Indices of the rows of a finished log whose time on the line touches the cycles `start..=end`, rising.
-    #[inline]
     pub fn touching(&self, start: Instant, end: Instant) -> impl Iterator<Item = usize> {
         let first = self.rows.partition_point(|row| row.latest < start);
         let rows = self.rows.iter().enumerate().skip(first).take_while(move |(_, row)| row.start <= end);
@@ -176,8 +152,8 @@ impl PacketLog {
     }
 
     /// The run is over: what is still open becomes a row, and the rows stand in the order of their starts.
-    #[inline]
     pub fn finish(&mut self) {
+        debug_assert!(self.broken.is_sorted(), "framing errors go back in time");
         if self.open.is_some() {
             self.close(self.last, if self.ignoring { RowOutcome::Ignored } else { RowOutcome::Open });
         }
@@ -189,9 +165,12 @@ impl PacketLog {
             latest = latest.max(row.end);
             row.latest = latest;
         }
+        debug_assert!(
+            self.rows.is_sorted_by_key(|row| row.start),
+            "rows are not in the order of their starts"
+        );
     }
 
-    #[inline]
     fn sort(&mut self) {
         let mut order: Vec<usize> = (0..self.rows.len()).collect();
         order.sort_by_key(|&index| self.rows.get(index).map(|row| row.start));
@@ -206,31 +185,30 @@ impl PacketLog {
     }
 
     /// Bytes that belong to no row yet.
-    #[inline]
     fn bytes_of_open(&self) -> Vec<u8> {
         let first = self.rows.last().map_or(0, |row| row.bytes_end);
         self.bytes.get(first..).unwrap_or_default().to_vec()
     }
 
-    #[inline]
-    fn close(&mut self, end: Instant, verdict: RowOutcome) {
+    fn close(&mut self, end: Instant, outcome: RowOutcome) {
         let start = self.open.take().unwrap_or(end);
-        let queued = match verdict {
+        let queued = match outcome {
             RowOutcome::Packet(PacketOutcome::Queued) => 1,
             RowOutcome::Frame(FrameOutcome::Queued(ticks)) => ticks.into(),
             _ => 0,
         };
         self.waiting.extend(core::iter::repeat_n(Some(self.rows.len()), queued));
-        if verdict == RowOutcome::Frame(FrameOutcome::Taken(Kind::Stop)) {
+        if outcome == RowOutcome::Frame(FrameOutcome::Taken(Kind::Stop)) {
             self.stop(end);
         }
         let bytes_start = self.rows.last().map_or(0, |row| row.bytes_end);
         let bytes_end = self.bytes.len();
+        debug_assert!(bytes_start <= bytes_end && bytes_end <= self.seen.len(), "a byte has no start bit");
         let (tick_start, tick_end) = (None, None);
         self.rows.push(LoggedPacket {
             start,
             end,
-            verdict,
+            outcome,
             tick_start,
             tick_end,
             bytes_start,
@@ -239,7 +217,6 @@ impl PacketLog {
         });
     }
 
-    #[inline]
     fn stop(&mut self, at: Instant) {
         self.waiting.clear();
         self.stops.push(at);
@@ -247,7 +224,6 @@ impl PacketLog {
 }
 
 impl Sink for PacketLog {
-    #[inline]
     fn record(&mut self, _: Record) {}
 
     fn event(&mut self, at: Instant, event: Event) {
@@ -258,7 +234,7 @@ impl Sink for PacketLog {
                 self.seen.push(seen);
                 self.last = at;
             }
-            // On a framed line only the byte is missing, and the frame's check tells.
+            // On a framed line only the byte is missing, and the frame's CRC tells.
             Event::FramingError { seen, drops: false } => self.broken.push(seen),
             Event::FramingError { seen, .. } => {
                 self.broken.push(seen);
@@ -272,8 +248,8 @@ impl Sink for PacketLog {
                 }
                 self.ignoring = false;
             }
-            Event::Packet(fate) => self.close(at, RowOutcome::Packet(fate)),
-            Event::Frame(fate) => self.close(at, RowOutcome::Frame(fate)),
+            Event::Packet(outcome) => self.close(at, RowOutcome::Packet(outcome)),
+            Event::Frame(outcome) => self.close(at, RowOutcome::Frame(outcome)),
             Event::Reply { start, end, reply } => {
                 self.bytes.extend(reply.emit());
                 self.seen.resize(self.bytes.len(), start);
@@ -345,9 +321,9 @@ mod tests {
         for (at, event) in events {
             log.event(Instant(at), event);
         }
-        assert_eq!(log.rows()[0].verdict, RowOutcome::Collision, "known first");
+        assert_eq!(log.rows()[0].outcome, RowOutcome::Collision, "known first");
         log.finish();
-        let told: Vec<_> = log.rows().iter().map(|row| (row.start.0, row.verdict)).collect();
+        let told: Vec<_> = log.rows().iter().map(|row| (row.start.0, row.outcome)).collect();
         assert_eq!(told, [(10, RowOutcome::Packet(PacketOutcome::Queued)), (25, RowOutcome::Collision)]);
         assert_eq!((log.bytes(0), log.bytes(1)), ([1, 2].as_slice(), [].as_slice()));
         assert_eq!(log.seen(0), [Instant(10), Instant(22)]);

@@ -2,8 +2,19 @@
 //!
 //! A recorded line is such a schedule itself; packets are paced: packet j starts at boot + 1 + j*M*Ts, so tick follows
 //! tick without a pause.
+//!
+//! ```
+//! use stepscope_peripheral::{units::Instant, wire::{Schedule, schedule::line_time}};
+//!
+//! let mut host = Schedule::default();
+//! host.push(Instant(1601), &[0x85, 0x03]);
+//! assert_eq!(host.total_bytes(), 2);
+//! // Two bytes of ten bits at 115200 baud, in cycles of 16 MHz.
+//! assert_eq!(line_time(2, 16_000_000, 115_200), 1388 + 1388);
+//! ```
 
 use crate::units::{Cycles, Instant};
+use crate::wire::BitTimes;
 use alloc::vec::Vec;
 
 /// Bytes that are sent back to back from a cycle on.
@@ -19,6 +30,8 @@ pub struct Sent<'a> {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Schedule {
     /// Start of each send, and the end of its bytes in `bytes`.
+    ///
+    /// Invariant: both rising; the last end is that of `bytes`.
     sends: Vec<(Instant, usize)>,
     bytes: Vec<u8>,
 }
@@ -39,6 +52,11 @@ impl Schedule {
 
     /// Adds a send, after all others.
     pub fn push(&mut self, start: Instant, bytes: &[u8]) {
+        debug_assert!(
+            self.sends.last().is_none_or(|(before, _)| *before <= start),
+            "a send in {start:?} after one in {:?}",
+            self.sends.last()
+        );
         self.bytes.extend_from_slice(bytes);
         self.sends.push((start, self.bytes.len()));
     }
@@ -69,6 +87,13 @@ impl Schedule {
         self.bytes.get(first..end).map(|bytes| Sent { start, bytes })
     }
 
+    /// The last send that begins in cycle `at` or before.
+    #[must_use]
+    pub fn last_until(&self, at: Instant) -> Option<Sent<'_>> {
+        let after = self.sends.partition_point(|(start, _)| *start <= at);
+        self.get(after.checked_sub(1)?)
+    }
+
     /// All sends in order.
     pub fn iter(&self) -> impl Iterator<Item = Sent<'_>> {
         (0..self.len()).filter_map(|index| self.get(index))
@@ -79,9 +104,5 @@ impl Schedule {
 /// a rate of 0 counts as 1 baud.
 #[must_use]
 pub const fn line_time(bytes: u64, clock_hz: u32, baud: u32) -> u64 {
-    let (clock, baud) = (clock_hz as u64, if baud == 0 { 1 } else { baud as u64 });
-    match bytes {
-        0 => 0,
-        _ => 10 * (bytes - 1) * clock / baud + 10 * clock / baud,
-    }
+    BitTimes::new(clock_hz, baud).bytes(bytes).0
 }

@@ -66,6 +66,20 @@ pub enum GivenUp {
     OutOfTime,
 }
 
+impl Progress {
+    /// Its name: `opening`, `filling`, `confirming`, `done` or `given_up`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Opening => "opening",
+            Self::Filling => "filling",
+            Self::Confirming => "confirming",
+            Self::Done => "done",
+            Self::GivenUp(_) => "given_up",
+        }
+    }
+}
+
 impl fmt::Display for GivenUp {
     /// Why, as the command's status and the page say it.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -83,11 +97,8 @@ impl fmt::Display for Progress {
     /// As the command's status and the page say it.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Opening => f.write_str("opening"),
-            Self::Filling => f.write_str("filling"),
-            Self::Confirming => f.write_str("confirming"),
-            Self::Done => f.write_str("done"),
             Self::GivenUp(why) => write!(f, "given up: {why}"),
+            progress => f.write_str(progress.name()),
         }
     }
 }
@@ -100,6 +111,7 @@ pub(super) struct Peer {
     pub(super) progress: Progress,
     /// Ticks that the controller had done before the first was sent.
     pub(super) base: Option<u32>,
+    /// Invariant: at most the ticks of the job.
     pub(super) acknowledged: u32,
     pub(super) seq: u8,
     pub(super) free: u32,
@@ -170,6 +182,7 @@ impl Peer {
     pub(super) fn acknowledge(&mut self, kind: Kind, ticks: u32, status: Status, now: Instant) -> Cycles {
         if kind == Kind::Ticks {
             self.acknowledged += ticks;
+            debug_assert!(self.acknowledged <= self.job.ticks(), "more ticks are acknowledged than sent");
             self.since_progress = 0;
             self.seq = self.seq.wrapping_add(1);
         } else if status.state == State::Stopped {

@@ -1,14 +1,15 @@
 //! Which rows of packets the table shows, and which of them a search finds. Judged in slices, so that
 //! a million rows freeze nothing; the rows' indices stay here.
 
-use super::words::{self, Line, Scale};
-use stepscope_core::peripheral::trace::{PacketLog, RowOutcome};
+use super::{Mark, PacketTable, RowKind, format};
+use crate::dissector::Head;
+use alloc::{borrow::ToOwned, format, string::String, vec::Vec};
 
 /// Rows on show, and matches of the search among them.
-#[derive(Default)]
-pub(crate) struct Filter {
-    /// What is asked for; without it all rows are shown.
-    asked: Option<Asked>,
+#[derive(Debug, Default)]
+pub struct Filter {
+    /// What is requested; without it all rows are shown.
+    request: Option<Request>,
     /// Rows on show, rising.
     shown: Vec<u32>,
     /// Positions among the rows on show that the search finds, rising.
@@ -17,20 +18,50 @@ pub(crate) struct Filter {
     next: usize,
 }
 
-/// What is asked for.
-pub(super) struct Asked {
-    pub(super) needle: Option<Needle>,
-    /// `packet`, `frame`, `reply`, `collision`, a kind of DESIGN A6 or `NAK`; empty for any.
-    pub(super) kind: String,
-    pub(super) address: Option<u8>,
-    /// As [`words::mark`]; empty for any.
-    pub(super) mark: String,
+/// What is requested.
+#[derive(Debug, Default)]
+pub struct Request {
+    needle: Option<Needle>,
+    /// A [`RowKind::name`], a kind of DESIGN A6 or `NAK`; empty for any.
+    kind: String,
+    address: Option<u8>,
+    /// A [`Mark::name`]; empty for any.
+    mark: String,
     /// Whether rows that the search does not find are left out.
-    pub(super) only: bool,
+    only: bool,
+}
+
+impl Request {
+    /// Rows of a kind (`packet`, `frame`, `reply`, `collision`, a kind of DESIGN A6 or `NAK`), an address and a mark
+    /// ([`Mark::name`]), each empty for any; the text is looked for in bytes (as hex), words and numbers, and `only`
+    /// leaves out what it does not find. Beside it what has to be said of the text, if anything.
+    #[must_use]
+    pub fn new(text: &str, kind: &str, address: Option<u8>, mark: &str, only: bool) -> (Self, String) {
+        let (needle, note) = Needle::parse(text);
+        (Self { needle, kind: kind.to_owned(), address, mark: mark.to_owned(), only }, note)
+    }
+
+    fn is_any(&self) -> bool {
+        self.needle.is_none() && self.kind.is_empty() && self.address.is_none() && self.mark.is_empty()
+    }
+
+    fn keeps(&self, table: &PacketTable<'_>, index: usize) -> bool {
+        let Some(row) = table.logged(index) else { return false };
+        let kind = match self.kind.as_str() {
+            "" => true,
+            "packet" | "frame" | "reply" | "collision" => {
+                table.kind(index).map(RowKind::name) == Some(self.kind.as_str())
+            }
+            name => table.head(index).and_then(Head::name) == Some(name),
+        };
+        kind && (self.mark.is_empty() || self.mark == Mark::of(row.outcome).name())
+            && (self.address.is_none() || self.address == table.address(index))
+    }
 }
 
 /// What is searched for.
-pub(super) struct Needle {
+#[derive(Debug)]
+struct Needle {
     /// In small letters; with a hyphen also with a minus sign.
     words: Vec<String>,
     /// Bytes that it spells in hex.
@@ -42,7 +73,7 @@ pub(super) struct Needle {
 
 impl Needle {
     /// Reads what was typed; none for nothing. Beside it what has to be said of it, if anything.
-    pub(super) fn parse(typed: &str) -> (Option<Self>, String) {
+    fn parse(typed: &str) -> (Option<Self>, String) {
         let text = typed.trim().to_ascii_lowercase();
         if text.is_empty() {
             return (None, String::new());
@@ -65,23 +96,23 @@ impl Needle {
         (Some(Self { words, bytes, number, only_number }), note)
     }
 
-    fn finds(&self, line: Line<'_>, scale: Scale, log: &PacketLog, index: usize, text: &mut String) -> bool {
+    fn finds(&self, table: &PacketTable<'_>, index: usize, text: &mut String) -> bool {
         if self.number == Some(index) || self.only_number {
             return self.number == Some(index);
         }
-        let Some(row) = log.rows().get(index) else { return false };
-        let bytes = log.bytes(index);
+        let Some(row) = table.logged(index) else { return false };
+        let bytes = table.bytes(index);
         if !self.bytes.is_empty() && bytes.windows(self.bytes.len()).any(|part| part == self.bytes) {
             return true;
         }
         text.clear();
-        text.push_str(line.kind(bytes, row.verdict));
+        text.push_str(table.kind(index).map_or("", RowKind::name));
         text.push('\n');
-        line.fields(bytes, row.verdict, text);
+        table.write_summary(index, text);
         text.push('\n');
-        text.push_str(&words::outcome(row.verdict));
+        text.push_str(&format::outcome(row.outcome));
         text.push('\n');
-        scale.print(row.start.0, text);
+        table.scale().write(row.start.0, text);
         text.make_ascii_lowercase();
         self.words.iter().any(|word| text.contains(word))
     }
@@ -105,48 +136,35 @@ fn spelled(text: &str) -> (Vec<u8>, String) {
             format!("\u{201c}{text}\u{201d} ends within a byte: give two hex digits a byte, such as 81 05.");
         return (Vec::new(), if plain || word { String::new() } else { note });
     }
-    let pair = |pair: &[u8]| std::str::from_utf8(pair).ok().and_then(|two| u8::from_str_radix(two, 16).ok());
+    let pair = |pair: &[u8]| core::str::from_utf8(pair).ok().and_then(|two| u8::from_str_radix(two, 16).ok());
     (parts.iter().flat_map(|part| part.as_bytes().chunks(2).filter_map(pair)).collect(), String::new())
 }
 
-impl Asked {
-    fn keeps(&self, line: Line<'_>, bytes: &[u8], verdict: RowOutcome) -> bool {
-        let kind = match self.kind.as_str() {
-            "" => true,
-            "packet" | "frame" | "reply" | "collision" => self.kind == line.kind(bytes, verdict),
-            name => words::head(bytes, verdict).is_some_and(|(_, kind)| words::name_of(kind) == Some(name)),
-        };
-        kind && (self.mark.is_empty() || self.mark == words::mark(verdict))
-            && (self.address.is_none() || self.address == line.address(bytes, verdict))
-    }
-}
-
 impl Filter {
-    /// Asks for other rows; nothing is judged yet.
-    pub(super) fn ask(&mut self, asked: Option<Asked>) {
-        *self = Self { asked, ..Self::default() };
+    /// Requests other rows; nothing is judged yet.
+    #[must_use]
+    pub fn new(request: Request) -> Self {
+        Self { request: Some(request).filter(|request| !request.is_any()), ..Self::default() }
     }
 
     /// Judges up to `count` more rows; true if that was all of them.
-    pub(super) fn go_on(&mut self, line: Line<'_>, scale: Scale, log: &PacketLog, count: usize) -> bool {
-        let total = log.rows().len();
-        let Some(asked) = &self.asked else {
+    pub fn advance(&mut self, table: &PacketTable<'_>, count: usize) -> bool {
+        let total = table.len();
+        let Some(request) = &self.request else {
             self.next = total;
             return true;
         };
         let mut text = String::new();
         let until = total.min(self.next.saturating_add(count));
         for index in self.next..until {
-            let Some(row) = log.rows().get(index) else { break };
-            if !asked.keeps(line, log.bytes(index), row.verdict) {
+            if !request.keeps(table, index) {
                 continue;
             }
-            let found =
-                asked.needle.as_ref().is_some_and(|needle| needle.finds(line, scale, log, index, &mut text));
+            let found = request.needle.as_ref().is_some_and(|needle| needle.finds(table, index, &mut text));
             if found {
                 self.matches.push(self.shown.len() as u32);
             }
-            if found || !asked.only || asked.needle.is_none() {
+            if found || !request.only || request.needle.is_none() {
                 self.shown.push(index as u32);
             }
         }
@@ -155,37 +173,44 @@ impl Filter {
     }
 
     /// How many of `total` rows are on show.
-    pub(super) fn shown(&self, total: usize) -> usize {
-        if self.asked.is_some() { self.shown.len() } else { total }
+    #[must_use]
+    pub fn shown(&self, total: usize) -> usize {
+        if self.request.is_some() { self.shown.len() } else { total }
     }
 
-    pub(super) fn matches(&self) -> usize {
+    /// How many of them the search finds.
+    #[must_use]
+    pub fn matches(&self) -> usize {
         self.matches.len()
     }
 
     /// The row at a position among those on show.
-    pub(super) fn row(&self, position: usize) -> Option<usize> {
-        if self.asked.is_none() {
+    #[must_use]
+    pub fn row(&self, position: usize) -> Option<usize> {
+        if self.request.is_none() {
             return Some(position);
         }
         self.shown.get(position).map(|&row| row as usize)
     }
 
     /// Where a row stands among those on show, if it is one of them.
-    pub(super) fn position(&self, row: usize) -> Option<usize> {
-        if self.asked.is_none() {
+    #[must_use]
+    pub fn position(&self, row: usize) -> Option<usize> {
+        if self.request.is_none() {
             return Some(row);
         }
         self.shown.binary_search(&(row as u32)).ok()
     }
 
     /// Which of the matches the row at a position is, 0 the first.
-    pub(super) fn rank(&self, position: usize) -> Option<usize> {
+    #[must_use]
+    pub fn rank(&self, position: usize) -> Option<usize> {
         self.matches.binary_search(&(position as u32)).ok()
     }
 
     /// Position of the next match after a position, or of the one before it; past the last comes the first.
-    pub(super) fn next_match(&self, position: Option<usize>, forward: bool) -> Option<usize> {
+    #[must_use]
+    pub fn next_match(&self, position: Option<usize>, forward: bool) -> Option<usize> {
         let found = match (position, forward) {
             (Some(at), true) => {
                 let after = self.matches.partition_point(|&found| found as usize <= at);
@@ -232,9 +257,9 @@ mod tests {
 
     #[test]
     fn matches_go_round_in_both_directions() {
-        let asked =
-            Asked { needle: None, kind: String::new(), address: None, mark: String::new(), only: false };
-        let filter = Filter { asked: Some(asked), shown: vec![2, 4, 6, 8], matches: vec![1, 3], next: 9 };
+        let request = Request { mark: "bad".to_owned(), ..Request::default() };
+        let filter =
+            Filter { request: Some(request), shown: [2, 4, 6, 8].into(), matches: [1, 3].into(), next: 9 };
         let rows = [
             (None, true, 1),
             (None, false, 3),

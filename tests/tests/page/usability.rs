@@ -7,7 +7,7 @@ use anyhow::{Context, Result, ensure};
 use serde_json::{Value, json};
 use stepscope_core::{
     motion::{grouped, moves::Move},
-    scenario::{Scenario, Source, presets::PRESETS},
+    scenario::{Kinds, Scenario, Source, presets::PRESETS},
     sim::BUDGET_RECORDS,
 };
 

@@ -8,8 +8,8 @@ use serde::Serialize;
 use stepscope_core::peripheral::signal::Sink;
 use stepscope_core::{
     inspect::{
-        fingerprint::{Fingerprint, FingerprintCheck, FingerprintMatch, Mark, Shorter},
-        run_fingerprint::{RunFingerprint, VERSION},
+        fingerprint::{Fingerprint, Mark, Shorter},
+        run_fingerprint::{RunFingerprint, VERSION, Verification},
         trace_diff::TraceDiff,
     },
     peripheral::signal,
@@ -71,9 +71,11 @@ struct Differs {
 impl Simulation {
     /// The part `d` of a link: the digests of all controllers.
     #[must_use]
-    pub fn proof(&self) -> String {
-        RunFingerprint::of(self.kept.iter().map(|kept| Fingerprint::of(&kept.recording.trace)).collect())
-            .emit()
+    pub fn fingerprint(&self) -> String {
+        RunFingerprint::of(
+            self.recordings.iter().map(|recorded| Fingerprint::of(&recorded.recording.trace)).collect(),
+        )
+        .emit()
     }
 
     /// Holds the run against the part `d` of a link: `{error, same, edges, version, own_version,
@@ -82,23 +84,23 @@ impl Simulation {
     ///
     /// # Errors
     /// Never for any text.
-    pub fn judge_proof(&self, text: &str) -> Result<JsValue, JsError> {
+    pub fn verify(&self, text: &str) -> Result<JsValue, JsError> {
         object(&self.judged(text))
     }
 
     /// Begins to hold the trace of a controller against a file.
-    pub fn against_begin(&mut self, controller: u32) {
-        let index = (controller as usize).min(self.kept.len() - 1);
-        self.against = Some((index, TraceDiff::new(config(&self.experiment, index).channels())));
+    pub fn diff_begin(&mut self, controller: u32) {
+        let index = (controller as usize).min(self.recordings.len() - 1);
+        self.trace_diff = Some((index, TraceDiff::new(config(&self.experiment, index).channels())));
     }
 
     /// Takes a piece of the file; true if the rest is not needed.
     ///
     /// # Errors
     /// With the first line that cannot be read.
-    pub fn against_feed(&mut self, piece: &[u8]) -> Result<bool, JsError> {
-        let Some((index, against)) = &mut self.against else { return Ok(true) };
-        Ok(against.feed(&self.kept[*index].recording.trace, piece)?)
+    pub fn diff_feed(&mut self, piece: &[u8]) -> Result<bool, JsError> {
+        let Some((index, diff)) = &mut self.trace_diff else { return Ok(true) };
+        Ok(diff.feed(&self.recordings[*index].recording.trace, piece)?)
     }
 
     /// The file is over: `{same, start_cycle, end_cycle, goes_on, difference: {line, cycle, signals: [[name,
@@ -106,9 +108,9 @@ impl Simulation {
     ///
     /// # Errors
     /// If there was nothing in it, or its last line cannot be read.
-    pub fn against_end(&mut self) -> Result<JsValue, JsError> {
-        let Some((index, against)) = self.against.take() else { return Ok(JsValue::NULL) };
-        let outcome = against.finish(&self.kept[index].recording.trace)?;
+    pub fn diff_end(&mut self) -> Result<JsValue, JsError> {
+        let Some((index, diff)) = self.trace_diff.take() else { return Ok(JsValue::NULL) };
+        let outcome = diff.finish(&self.recordings[index].recording.trace)?;
         object(&Held {
             same: outcome.same,
             start_cycle: outcome.stretch.0.0,
@@ -136,30 +138,31 @@ impl Simulation {
             Ok(proof) => proof,
             Err(error) => return Judged { error: Some(error.to_string()), ..Judged::default() },
         };
-        let version = (proof.version != VERSION).then(|| proof.version.clone());
-        let mut judged = Judged { version, own_version: VERSION, same: true, ..Judged::default() };
-        if proof.controllers.len() != self.kept.len() {
-            let (sent, own) = (proof.controllers.len(), self.kept.len());
-            let error = format!(
-                "the sender's digests are of {sent} controllers, this experiment has {own}; they are left out"
-            );
-            return Judged { error: Some(error), ..judged };
+        let version = proof.other_version().map(str::to_owned);
+        let judged = Judged { version, own_version: VERSION, ..Judged::default() };
+        let own = self.recordings.len();
+        let mut checks = match proof.checks(own) {
+            Ok(checks) => checks,
+            Err(sent) => {
+                let error = format!(
+                    "the sender's digests are of {sent} controllers, this experiment has {own}; they are left out"
+                );
+                return Judged { same: true, error: Some(error), ..judged };
+            }
+        };
+        for (check, recorded) in checks.iter_mut().zip(&self.recordings) {
+            recorded.recording.trace.iter().for_each(|record| check.record(*record));
         }
-        for (index, (sent, kept)) in proof.controllers.iter().zip(&self.kept).enumerate() {
-            let mut comparison = FingerprintCheck::with(sent);
-            kept.recording.trace.iter().for_each(|record| comparison.record(*record));
-            match comparison.finish() {
-                FingerprintMatch::Same(mark) => judged.edges += mark.edges,
-                FingerprintMatch::Differs { after, until, shorter } => {
-                    let shorter = shorter.map(|shorter| match shorter {
-                        Shorter::This => "this",
-                        Shorter::Other => "other",
-                    });
-                    let (after, until) = (Some(after.into()), Some(until.into()));
-                    return Judged { same: false, controller: index, after, until, shorter, ..judged };
-                }
+        match Verification::of(checks) {
+            Verification::Same { edges } => Judged { same: true, edges, ..judged },
+            Verification::Differs { controller, after, until, shorter } => {
+                let shorter = shorter.map(|shorter| match shorter {
+                    Shorter::This => "this",
+                    Shorter::Other => "other",
+                });
+                let (after, until) = (Some(after.into()), Some(until.into()));
+                Judged { controller, after, until, shorter, ..judged }
             }
         }
-        judged
     }
 }

@@ -1,0 +1,97 @@
+//! A packet, frame or reply in one line, as far as its bytes are known to mean something.
+
+use super::{Check, Content, Head, Reading, last_frame};
+use alloc::string::String;
+use core::fmt::Write as _;
+use stepscope_peripheral::{
+    protocol::{Kind, Reply},
+    trace::RowOutcome,
+    wire::{
+        frame::{Frame, Ticks},
+        packet::{ALL, ChannelCommand},
+    },
+};
+
+impl Reading<'_> {
+    /// Adds a row's meaning to a text: whom it goes to or comes from, and what it orders or tells.
+    pub fn summary(&self, bytes: &[u8], outcome: RowOutcome, text: &mut String) {
+        match outcome {
+            RowOutcome::Packet(_) => match bytes.split_first() {
+                Some((&address, commands)) if self.addressed => {
+                    to(address, text);
+                    text.push_str(", ");
+                    write_steps(commands.iter().copied(), text);
+                }
+                _ => write_steps(bytes.iter().copied(), text),
+            },
+            RowOutcome::Reply(reply) => {
+                let _ = write!(text, "from {}: {reply}", reply.address);
+            }
+            RowOutcome::Frame(_) => {
+                let content = Content::of(bytes, last_frame(bytes));
+                if let check @ Check::Compared { found, expected } = content.check()
+                    && found == expected
+                    && let [address, kind, body @ ..] = content.without(check)
+                {
+                    self.frame(Frame { address: *address, kind: *kind, body }, text);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// A frame whose check holds.
+    fn frame(&self, frame: Frame<'_>, text: &mut String) {
+        let head = Head { address: frame.address, kind: frame.kind };
+        if head.is_reply() {
+            let _ = write!(text, "from {}: ", frame.address);
+            let _ = match Reply::parse(frame) {
+                Some(reply) => write!(text, "{reply}"),
+                None => write!(text, "kind {:#04x}", frame.kind),
+            };
+            return;
+        }
+        to(frame.address, text);
+        let Some(kind) = Kind::parse(frame.kind) else {
+            let _ = write!(text, ": kind {:#04x}", frame.kind);
+            return;
+        };
+        let _ = write!(text, ": {}", kind.name());
+        let channels = (self.channels)(frame.address);
+        let ticks = (kind == Kind::Ticks).then(|| Ticks::parse(frame.body, channels)).flatten();
+        let Some(ticks) = ticks else { return };
+        let mut totals = [0_i64; 256];
+        for (place, &byte) in ticks.orders().iter().enumerate() {
+            totals[place % usize::from(channels.max(1))] += steps(byte);
+        }
+        let many = if ticks.count() == 1 { "tick" } else { "ticks" };
+        let _ = write!(text, " seq {}, {} {many}, ", ticks.seq, ticks.count());
+        write_totals(totals.into_iter().enumerate(), text);
+    }
+}
+
+fn to(address: u8, text: &mut String) {
+    let _ = if address == ALL { write!(text, "to all") } else { write!(text, "to {address}") };
+}
+
+fn steps(byte: u8) -> i64 {
+    let ChannelCommand { right, steps } = ChannelCommand::parse(byte);
+    if right { i64::from(steps) } else { -i64::from(steps) }
+}
+
+/// Adds what the bytes of one tick order, a byte a channel, such as `ch0 +12, ch3 −1`.
+pub fn write_steps(commands: impl Iterator<Item = u8>, text: &mut String) {
+    write_totals(commands.map(steps).enumerate(), text);
+}
+
+fn write_totals(steps: impl Iterator<Item = (usize, i64)>, text: &mut String) {
+    let before = text.len();
+    for (channel, steps) in steps.filter(|(_, steps)| *steps != 0) {
+        let between = if text.len() == before { "" } else { ", " };
+        let sign = if steps < 0 { '\u{2212}' } else { '+' };
+        let _ = write!(text, "{between}ch{channel} {sign}{}", steps.abs());
+    }
+    if text.len() == before {
+        text.push_str("no steps");
+    }
+}

@@ -1,0 +1,89 @@
+//! Where the bytes of rows are on the line, and what of the line's time lies between rows.
+
+use super::PacketTable;
+use alloc::vec::Vec;
+use stepscope_peripheral::{
+    trace::RowOutcome,
+    units::{Cycles, Instant},
+    wire::{BitTimes, bit_times::BYTE_BITS},
+};
+
+/// A byte on the line: its row, and its cycles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PlacedByte {
+    /// Its row.
+    pub packet: usize,
+    /// The byte.
+    pub byte: u8,
+    /// First cycle of its start bit.
+    pub start: u64,
+    /// First cycle after its stop bit.
+    pub end: u64,
+}
+
+impl PacketTable<'_> {
+    /// Whether this controller sent a row.
+    pub(crate) fn is_own_reply(&self, index: usize) -> bool {
+        self.logged(index).is_some_and(|row| matches!(row.outcome, RowOutcome::Reply(_)))
+    }
+
+    /// The bytes of a row with their places.
+    #[must_use]
+    pub fn placed(&self, index: usize) -> Vec<PlacedByte> {
+        self.placed_from(index, 0).collect()
+    }
+
+    /// The bytes of a row from the one of this index on. What was heard is as long as the receiver has it, what is sent
+    /// as long as the sender has it.
+    pub(crate) fn placed_from(&self, index: usize, first: usize) -> impl Iterator<Item = PlacedByte> {
+        let seen = self.log.seen(index);
+        let sent =
+            self.is_own_reply(index).then(|| BitTimes::new(self.own.clock_hz(), self.own.reply_baud()));
+        let heard = Cycles(BYTE_BITS * self.own.bit().0);
+        let bytes = self.bytes(index).iter().zip(seen).enumerate().skip(first);
+        bytes.map(move |(at, (&byte, &first))| {
+            let (start, end) = match sent {
+                Some(times) => (first + times.byte(at as u64), first + times.byte(at as u64 + 1)),
+                None => (first, seen.get(at + 1).map_or(first + heard, |&next| next.min(first + heard))),
+            };
+            PlacedByte { packet: index, byte, start: start.0, end: end.0 }
+        })
+    }
+
+    /// First cycle after the last byte of a row on the line.
+    #[must_use]
+    pub fn line_end(&self, index: usize) -> u64 {
+        let Some(row) = self.logged(index) else { return 0 };
+        match row.outcome {
+            RowOutcome::Reply(_) | RowOutcome::Collision => row.end.0,
+            // Complete with the look at a stop bit, half a bit and nine after the start bit was seen.
+            RowOutcome::Packet(_) | RowOutcome::Frame(_) | RowOutcome::Framing => {
+                let (Cycles(bit), Cycles(byte)) = (self.own.bit(), self.host_times().byte(1));
+                (row.end.0 + byte).saturating_sub(bit / 2 + 9 * bit)
+            }
+            RowOutcome::Short | RowOutcome::Ignored | RowOutcome::Open => {
+                self.placed(index).last().map_or(row.end.0, |byte| byte.end)
+            }
+        }
+    }
+
+    /// Cycles between the end of what was on the line before a row and its start; none where they overlap.
+    #[must_use]
+    pub fn gap(&self, index: usize) -> Option<u64> {
+        let is_sent = |row: &usize| self.logged(*row).is_some_and(|row| row.outcome != RowOutcome::Collision);
+        let row = self.logged(index).filter(|_| is_sent(&index))?;
+        let before = (0..index).rev().find(is_sent)?;
+        row.start.0.checked_sub(self.line_end(before))
+    }
+
+    /// The byte that the host sent where the receiver saw a start bit: within a bit of it.
+    pub(crate) fn sent_at(&self, seen: Instant) -> Option<u8> {
+        let (reach, times) = (self.own.bit(), self.host_times());
+        let send = self.run.schedule().last_until(seen + reach)?;
+        let after = Cycles(seen.0.saturating_sub(send.start.0));
+        let index = times.nearest_byte(after);
+        let byte = *send.bytes.get(usize::try_from(index).ok()?)?;
+        let begins = send.start + times.byte(index);
+        (begins.0.abs_diff(seen.0) <= reach.0).then_some(byte)
+    }
+}

@@ -1,0 +1,49 @@
+//! The spectra of an axis side by side: of the ideal motion, and of the pulses as they come.
+
+use crate::{
+    actual_motion::Pulses,
+    spectrum::{AnalysisWindow, Spectrum},
+};
+use alloc::{borrow::ToOwned, format, string::String};
+use stepscope_motion::AxisPlan;
+use stepscope_scenario::{Scenario, Source};
+
+/// Both spectra, and what has to be said of them.
+#[derive(Clone, Debug, Default)]
+pub struct Spectra {
+    /// Of the ideal curve.
+    pub ideal: Option<Spectrum>,
+    /// Of the pulses.
+    pub actual: Option<Spectrum>,
+    /// Why there is none, or what it is not; empty for nothing.
+    pub note: String,
+}
+
+impl Spectra {
+    /// Of the axis that a scenario's analysis names, with its plan, if it has one, and its pulses.
+    #[must_use]
+    pub fn of(scenario: &Scenario, plan: Option<&AxisPlan>, run: &Pulses<'_>) -> Self {
+        let analysis = &scenario.analysis;
+        let window = plan.and_then(AnalysisWindow::of);
+        let (Some(plan), Some(window)) = (plan, window) else {
+            let note = match &scenario.source {
+                Source::Motion(_) => format!("This controller has no axis {}.", analysis.axis),
+                _ => "A spectrum needs a motion; packets, line scripts and lists of segments have none."
+                    .to_owned(),
+            };
+            return Self { note, ..Self::default() };
+        };
+        let ideal = Spectrum::ideal(plan, analysis.order, analysis.fft_length);
+        let actual = Spectrum::of_pulses(&window.pulses_of(plan, run), window, analysis.order);
+        let note = if window.periodic {
+            ""
+        } else {
+            "The motion does not repeat: its lines are no harmonics, and it has no distortion."
+        };
+        Self {
+            ideal: ideal.map(|ideal| ideal.filtered_by(analysis.sensor_hz)),
+            actual: Some(actual.filtered_by(analysis.sensor_hz)),
+            note: note.to_owned(),
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! All that the study shows of an axis' motor and of what its plan asks of it.
+
+use super::{Demand, Machine, Moment, Ramps, Shortage, needed_over_rate};
+use alloc::vec::Vec;
+use serde::Serialize;
+use stepscope_motion::{AxisPlan, Curve, moves::Axis};
+
+/// Points of the curves.
+const POINTS: u32 = 241;
+/// Shortages that are listed.
+const MAX_SHORTAGES: usize = 50;
+
+/// The numbers; torques in mN*m, rates in steps/s.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TorqueReport {
+    /// Torque at standstill.
+    pub standing_mn_m: f64,
+    /// Torque of the load.
+    pub load_mn_m: f64,
+    /// [`Machine::corner_rate`].
+    pub corner_rate: Option<f64>,
+    /// [`Machine::torque_rate`].
+    pub torque_rate: Option<f64>,
+    /// [`Machine::working_rate`].
+    pub working_rate: Option<f64>,
+    /// [`Demand::over_working_rate`].
+    pub over_working_rate: Option<f64>,
+    /// [`Demand::jump`].
+    pub jump: f64,
+    /// [`Demand::least`].
+    pub least: Option<Moment>,
+    /// How many stretches have too little torque.
+    pub total: u64,
+    /// The first of them.
+    pub shortages: Vec<Shortage>,
+    /// Of each move whose ramps have a shape.
+    pub ramps: Vec<MoveRamps>,
+    /// Torque over rate.
+    #[serde(skip)]
+    pub curve: TorqueCurve,
+}
+
+/// Which ramps of a move the motor can follow.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct MoveRamps {
+    /// The move.
+    pub index: usize,
+    /// How long it takes.
+    pub duration_s: f64,
+    /// Its ramps.
+    #[serde(flatten)]
+    pub ramps: Ramps,
+}
+
+/// Torque over rate, in columns.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TorqueCurve {
+    /// Rates.
+    pub rate: Vec<f64>,
+    /// What the motor has.
+    pub available: Vec<f64>,
+    /// The most that the plan needs there; NaN at rates that it has not.
+    pub needed: Vec<f64>,
+}
+
+impl TorqueReport {
+    /// Of an axis with its plan; `None` without a motor.
+    #[must_use]
+    pub fn of(axis: &Axis, plan: &AxisPlan) -> Option<Self> {
+        let machine = Machine::of(axis)?;
+        let demand = Demand::of(&machine, plan);
+        let ramps = plan.moves().iter().enumerate().filter_map(|(index, planned)| {
+            let ramps = Ramps::of(&machine, &planned.profile)?;
+            Some(MoveRamps { index, duration_s: planned.profile.duration_s(), ramps })
+        });
+        Some(Self {
+            standing_mn_m: machine.available_mn_m(0.0),
+            load_mn_m: machine.load_mn_m(),
+            corner_rate: machine.corner_rate(),
+            torque_rate: machine.torque_rate(),
+            working_rate: machine.working_rate(),
+            over_working_rate: demand.over_working_rate,
+            jump: demand.jump,
+            least: demand.least,
+            total: demand.total,
+            ramps: ramps.collect(),
+            shortages: demand.shortages.into_iter().take(MAX_SHORTAGES).collect(),
+            curve: TorqueCurve::of(&machine, plan),
+        })
+    }
+}
+
+impl TorqueCurve {
+    fn of(machine: &Machine, plan: &AxisPlan) -> Self {
+        let most = machine.shown_rate(plan.peaks().speed);
+        let (rate, available) = machine.curve(most, POINTS).unzip();
+        // A bin around each rate of the curve.
+        let width = most / f64::from(POINTS - 1);
+        let needed = needed_over_rate(machine, plan, width * f64::from(POINTS), POINTS as usize);
+        Self { rate, available, needed }
+    }
+}

@@ -1,0 +1,75 @@
+//! When the bits and bytes of a sender begin (DESIGN A4), for everyone who needs to know.
+//!
+//! ```text
+//! bit k of a byte      t0 + floor(k * clock_hz / baud)
+//! byte j back to back  t0 + floor(10 * j * clock_hz / baud)
+//! ```
+
+use crate::units::Cycles;
+
+/// Bits of a byte on the line: start, eight data bits, stop.
+pub const BYTE_BITS: u64 = 10;
+
+/// The beginnings of bits and bytes at one rate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BitTimes {
+    clock_hz: u64,
+    /// At least 1.
+    baud: u64,
+}
+
+impl BitTimes {
+    /// At `baud` bits a second; 0 counts as 1.
+    #[must_use]
+    pub const fn new(clock_hz: u32, baud: u32) -> Self {
+        Self { clock_hz: clock_hz as u64, baud: if baud == 0 { 1 } else { baud as u64 } }
+    }
+
+    /// From a byte's start to the start of its bit `index`: 0 the start bit, 10 what follows the stop bit.
+    #[must_use]
+    pub const fn bit(self, index: u64) -> Cycles {
+        Cycles(index * self.clock_hz / self.baud)
+    }
+
+    /// From the first byte's start to the start of byte `index` of bytes sent back to back.
+    #[must_use]
+    pub const fn byte(self, index: u64) -> Cycles {
+        self.bit(BYTE_BITS * index)
+    }
+
+    /// How long so many bytes sent back to back hold the line, to the end of the last stop bit.
+    #[must_use]
+    pub const fn bytes(self, count: u64) -> Cycles {
+        match count {
+            0 => Cycles(0),
+            _ => Cycles(self.byte(count - 1).0 + self.bit(BYTE_BITS).0),
+        }
+    }
+
+    /// The byte of bytes sent back to back that begins nearest to `after` the first one's start.
+    #[must_use]
+    pub const fn nearest_byte(self, after: Cycles) -> u64 {
+        let clock_hz = if self.clock_hz == 0 { 1 } else { self.clock_hz as u128 };
+        let bits = self.baud as u128 * after.0 as u128 / clock_hz;
+        ((bits + BYTE_BITS as u128 / 2) / BYTE_BITS as u128) as u64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bits_and_bytes_begin_at_their_own_floors() {
+        // 11.1 cycles a bit, 111.1 a byte.
+        let times = BitTimes::new(1000, 90);
+        assert_eq!([0, 1, 9, 10].map(|bit| times.bit(bit).0), [0, 11, 100, 111]);
+        assert_eq!([0, 1, 9, 10].map(|byte| times.byte(byte).0), [0, 111, 1000, 1111]);
+        assert_eq!([0, 1, 10].map(|count| times.bytes(count).0), [0, 111, 1111]);
+        assert_eq!(
+            [0, 55, 56, 111, 160, 170].map(|after| times.nearest_byte(Cycles(after))),
+            [0, 0, 1, 1, 1, 2]
+        );
+        assert_eq!(BitTimes::new(7, 0).bit(1), Cycles(7));
+    }
+}

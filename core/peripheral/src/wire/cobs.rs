@@ -1,0 +1,102 @@
+//! COBS read byte by byte (DESIGN A6): what each byte on the wire is to the content that it carries.
+//!
+//! ```text
+//! wire     code  d  d  code  d  …  00       a code is the distance to the next zero, or to the end
+//! content        d  d    0   d  …           255 is the distance to the next code alone: no zero stood there
+//! ```
+//!
+//! The one place where COBS is taken apart: the controller, the host and the dissector read through it.
+
+use cobs::{DecodeResult, DecoderState};
+
+/// What one byte is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unstuffed {
+    /// The first code of a frame: what came before it is over.
+    First,
+    /// A byte that carries no content: a code that owes no zero, or the zero of an empty run.
+    Overhead,
+    /// This byte of the content; a zero stands where a code does.
+    Content(u8),
+    /// The delimiter of a whole frame.
+    End,
+    /// A delimiter where more was to come: the bytes before it are not COBS.
+    Broken,
+}
+
+/// A reader between two bytes.
+#[derive(Debug)]
+pub struct Unstuffer(DecoderState);
+
+impl Clone for Unstuffer {
+    #[allow(clippy::needless_match, reason = "the decoder's state has no Clone of its own")]
+    fn clone(&self) -> Self {
+        Self(match self.0 {
+            DecoderState::Idle => DecoderState::Idle,
+            DecoderState::Grab(left) => DecoderState::Grab(left),
+            DecoderState::GrabChain(left) => DecoderState::GrabChain(left),
+        })
+    }
+}
+
+impl Default for Unstuffer {
+    fn default() -> Self {
+        Self(DecoderState::Idle)
+    }
+}
+
+impl Unstuffer {
+    /// Takes the next byte.
+    pub fn byte(&mut self, byte: u8) -> Unstuffed {
+        match self.0.feed(byte) {
+            Ok(DecodeResult::DataStart) => Unstuffed::First,
+            Ok(DecodeResult::NoData) => Unstuffed::Overhead,
+            Ok(DecodeResult::DataContinue(content)) => Unstuffed::Content(content),
+            Ok(DecodeResult::DataComplete) => Unstuffed::End,
+            Err(_) => Unstuffed::Broken,
+        }
+    }
+
+    /// Whether bytes since the last delimiter wait for theirs.
+    #[must_use]
+    pub const fn is_open(&self) -> bool {
+        !matches!(self.0, DecoderState::Idle)
+    }
+
+    /// Whether a delimiter here would end a whole frame.
+    #[must_use]
+    pub const fn is_whole(&self) -> bool {
+        matches!(self.0, DecoderState::Grab(0) | DecoderState::GrabChain(0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Unstuffed::{Broken, Content, End, First, Overhead};
+    use alloc::vec::Vec;
+
+    #[test]
+    fn each_byte_says_what_it_carries() {
+        let rows: [(&[u8], &[Unstuffed]); 4] = [
+            (&[0, 0], &[Overhead, Overhead]),
+            (&[2, 7, 1, 2, 9, 0], &[First, Content(7), Content(0), Content(0), Content(9), End]),
+            (&[3, 7, 0, 1, 0], &[First, Content(7), Broken, First, End]),
+            (&[1, 1], &[First, Content(0)]),
+        ];
+        for (wire, expected) in rows {
+            let mut reader = Unstuffer::default();
+            let found: Vec<_> = wire.iter().map(|&byte| reader.byte(byte)).collect();
+            assert_eq!(found, expected, "{wire:?}");
+        }
+    }
+
+    #[test]
+    fn a_run_of_254_bytes_owes_no_zero() {
+        let mut reader = Unstuffer::default();
+        let wire = [[255].as_slice(), &[5; 254], &[2, 6]].concat();
+        let found: Vec<_> = wire.iter().map(|&byte| reader.byte(byte)).collect();
+        assert_eq!((found[0], found[254], found[255], found[256]), (First, Content(5), Overhead, Content(6)));
+        assert!(reader.is_whole() && reader.is_open());
+    }
+}
