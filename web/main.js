@@ -186,7 +186,7 @@ async function samples() {
     glitch: all.line.glitches[0],
     send: line.source.line.sends[0],
     controller: all.controllers[0],
-    rules: all.driver.rules,
+    rules: all.driver_timing.rules,
     motor: axes[0].motor,
   };
 }

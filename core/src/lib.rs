@@ -1,7 +1,72 @@
-//! The door to Stepscope: a stepper-motion peripheral to the clock cycle, and the motions that drive it.
+//! Stepscope: a stepper-motion peripheral modelled to the clock cycle, the motions that drive it, the experiments that
+//! join them, and what one looks at in a run.
 //!
-//! Each room is a crate of its own, re-exported here by features. The way of the data is one line; a room may use what
-//! stands to its left, never what stands to its right:
+//! Two things are done with it. One runs a whole **experiment** (a motion, a host, a serial line, controllers) and looks
+//! at its edges, spectrum or timing. Or one tests **firmware**: a driver that is written against a register map runs on
+//! the model as it runs on a chip. Either way a run gives the same edges, bit for bit, on a desk, in a browser and on a
+//! microcontroller.
+//!
+//! # From a scenario to a digest
+//!
+//! A scenario is JSON; every field has a default. The digest of its trace is what two people compare.
+//!
+//! ```
+//! # #[cfg(feature = "sim")] {
+//! use stepscope_core::{peripheral::trace::{Recording, steps}, sim::Experiment};
+//!
+//! // One turn in 0.4 s by a cosine S-curve: 3200 microsteps.
+//! let experiment = Experiment::from_json(
+//!     r#"{ "source": { "motion": { "axes": [ { "moves": [
+//!         { "cosine": { "distance": { "deg": 360 }, "duration_s": 0.4, "ramp_s": 0.2 } } ] } ] } } }"#,
+//! )
+//! .expect("it has no problems");
+//!
+//! let mut recording = Recording::default(); // any Sink: a digest alone, a file, a check
+//! let run = experiment.run(&mut recording);
+//!
+//! assert_eq!(run.positions()[0], 3200);
+//! assert_eq!(format!("{:016x}", recording.digest.value()), "ed82c77232a01a3a");
+//! assert_eq!(steps(&recording.trace, 0).len(), 3200); // each with its cycle
+//!
+//! // What is wrong with a scenario is told at once, each problem with its path.
+//! let problems = Experiment::from_json(r#"{ "bus": { "slots": 200 } }"#).unwrap_err();
+//! assert_eq!(problems[0].path, "bus.slots");
+//! # }
+//! ```
+//!
+//! # A firmware's test
+//!
+//! Firmware reaches the peripheral through a [`RegisterBus`](registers::RegisterBus): volatile accesses on a chip, a
+//! [`ModelBus`](peripheral::device::ModelBus) in its tests. No feature is needed for this.
+//!
+//! ```
+//! use stepscope_core::{
+//!     peripheral::{config::{Bus, Config, SerialLine}, device::ModelBus, trace::Digest, units::Cycles},
+//!     registers::{RegisterBus, orders, push},
+//! };
+//!
+//! /// The firmware: five steps to the right on channel 0.
+//! fn nudge(bus: &mut impl RegisterBus) {
+//!     bus.write(orders::OFFSET, 0x80 | 5);
+//!     bus.write(push::OFFSET, 1);
+//! }
+//!
+//! let config = Config::new(16_000_000, &Bus::default(), &SerialLine::default()).expect("the defaults hold");
+//! let mut bus = ModelBus::new(&config, Cycles(8), Digest::default()); // 8 cycles an access
+//! bus.wait(Cycles(2_000)); // the peripheral's self-test
+//! nudge(&mut bus);
+//! bus.wait(Cycles(40_000)); // a tick and more
+//! assert_eq!(bus.device().positions()[0], 5);
+//! ```
+//!
+//! Below the bus is the [`Device`](peripheral::device::Device) itself: `clock` advances it one cycle, `run` as fast as its
+//! edges allow, with the same trace. Four short programs are in `examples/`: `firmware_test`, `line_script`,
+//! `segment_list` and `registers`.
+//!
+//! # The rooms
+//!
+//! Each room is a crate of its own, re-exported here. The way of the data is one line; a room may use what stands to its
+//! left, never what stands to its right:
 //!
 //! ```text
 //! registers -> peripheral -> motion -> scenario -> sim -> inspect
@@ -9,17 +74,48 @@
 //!
 //! | room | what it holds | feature |
 //! | --- | --- | --- |
-//! | [`registers`] | the register map, and the bus that drivers are written against | always |
-//! | [`peripheral`] | the device: serial line, packets, pulses, trace, digest | always |
-//! | [`motion`] | profiles, planners, their steps as ticks, segments and tables | `motion` |
-//! | [`scenario`] | what a file, a link and the form hold | `scenario` |
-//! | [`sim`] | a scenario judged, planned and run | `sim` |
-//! | [`inspect`] | what one looks at: packets, spectra, measures, timing, torque | `inspect` |
+//! | [`registers`] | the register map, its data sheet, and the bus that drivers are written against | always |
+//! | [`peripheral`] | the device: serial line, packets, frames, pulses, segments, trace, digest | always |
+#![cfg_attr(
+    feature = "motion",
+    doc = "| [`motion`] | profiles, planners, their steps as ticks, segments and tables | `motion` |"
+)]
+#![cfg_attr(
+    feature = "scenario",
+    doc = "| [`scenario`] | what a file, a link and the form hold | `scenario` |"
+)]
+#![cfg_attr(feature = "sim", doc = "| [`sim`] | a scenario judged, planned and run | `sim` |")]
+#![cfg_attr(
+    feature = "inspect",
+    doc = "| [`inspect`] | what one looks at: packets, spectra, measures, timing, torque | `inspect` |"
+)]
 //!
-//! Invariants that hold everywhere: time is an integer count of clock cycles; nothing that decides an edge depends on
-//! the platform (transcendental functions come from `libm`); no panic is reachable from any scenario, link, file or byte
-//! stream.
+//! A room's feature brings those to its left. `std` adds the spectrum and value change dumps; without it all of this is
+//! `no_std` with `alloc`. By default everything is on; firmware tests need no more than
+//! `stepscope-core = { version = "0.1", default-features = false }`.
+//!
+//! # Time, positions, units
+//!
+//! | what | how |
+//! | --- | --- |
+//! | time of the device | cycles of its clock since reset, `u64`: [`Instant`](peripheral::units::Instant) is a point, [`Cycles`](peripheral::units::Cycles) a span |
+//! | an edge at cycle c | the old level during c - 1, the new one during c; a run of N cycles is 0 to N - 1 |
+//! | positions | steps (microsteps) since reset, right positive: +1 for a rise of STEP with DIR high |
+//! | intervals of segments | 1/65536 cycle, so that fractions never drift |
+//! | time of a motion | seconds since its start, `f64`; speeds in steps/s, accelerations in steps/s², unrounded |
+//! | all else | the unit is in the name: `pulse_width_cycles`, `lead_mm`, `supply_v` |
+//!
+//! # What always holds
+//!
+//! - Nothing that decides an edge depends on the platform: integers, and transcendental functions from one `libm`.
+//! - No panic is reachable from any scenario, link, file or byte stream.
+//! - Errors say what was given, what is allowed, and what to change. Enums that name errors may grow: match them with
+//!   a wildcard.
 #![no_std]
+
+#[cfg(all(doctest, feature = "sim"))]
+#[doc = include_str!("../README.md")]
+struct Readme;
 
 pub use stepscope_peripheral as peripheral;
 pub use stepscope_registers as registers;

@@ -1,19 +1,24 @@
-//! DESIGN Part C, held: the order of the core's modules as its own `lib.rs` draws it, and what never gets into the core.
+//! DESIGN Part C, held: the way of the data is one line between the core's rooms, and no file of theirs waits in a circle for
+//! another; and what never gets into them.
 //!
-//! The core's source is parsed, without what is compiled for its unit tests; paths are looked at wherever they stand, in
-//! `use` lines, in expressions and types, and in macros.
+//! The source is parsed, without what is compiled for unit tests; paths are looked at wherever they stand, in `use` lines,
+//! in expressions and types, and in macros, and followed through what a module re-exports to the file that declares.
 #![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::unwrap_used, reason = "what cannot be read fails the test")]
 
 use std::{
+    collections::{BTreeMap, BTreeSet},
     fs, io,
     path::{Path, PathBuf},
 };
 use syn::{
-    Attribute, ExprMethodCall, File, Ident, Item, ItemMod, ItemUse, Macro, Meta, UseTree,
+    Attribute, ExprMethodCall, File, Ident, Item, ItemMod, ItemUse, Macro, Meta, UseTree, Visibility,
     ext::IdentExt,
     visit::{self, Visit},
 };
+
+/// The core's rooms in the way of the data: each may use those before it.
+const ROOMS: &[&str] = &["registers", "peripheral", "motion", "scenario", "sim", "inspect"];
 
 /// Functions whose bits depend on the platform's mathematics library; `mul_add` is DESIGN A1's fused multiply-add.
 const INEXACT: &[&str] = &[
@@ -30,16 +35,15 @@ const OUTSIDE: &[&str] = &["env", "fs", "io", "net", "process", "thread", "time"
 /// What one file may all the same, each with its reason.
 const EXCEPTIONS: &[(&str, &str, &str)] = &[
     (
-        "core/src/motion/mod.rs",
+        "core/motion/src/lib.rs",
         "sqrt",
         "IEEE 754 leaves a square root no choice of bits, and a test compares them",
     ),
-    ("core/src/trace/vcd.rs", "io", "only the trait that bytes are written through"),
+    ("core/inspect/src/vcd.rs", "io", "only the trait that bytes are written through"),
 ];
 
-/// Who never learns of whom, also where the order would let him.
-const STRANGERS: &[(&str, &str)] =
-    &[("device", "motion"), ("device", "quantise"), ("wire", "motion"), ("wire", "quantise")];
+/// What a room may use of one that stands before it, where that is not all of it (DESIGN Part C): the modules.
+const NARROW: &[(&str, &str, &[&str])] = &[("motion", "peripheral", &["segment", "units", "signal"])];
 
 /// What a file says, as far as it is looked at here.
 #[derive(Default)]
@@ -125,6 +129,9 @@ impl<'ast> Visit<'ast> for Seen {
         }
     }
 
+    /// Who may see an item is no use of who is named there.
+    fn visit_visibility(&mut self, _: &'ast Visibility) {}
+
     fn visit_item_mod(&mut self, item: &'ast ItemMod) {
         self.module.push(item.ident.to_string());
         visit::visit_item_mod(self, item);
@@ -173,24 +180,70 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
     Ok(())
 }
 
-/// All of the core's files but those of its unit tests: name, module, and what it says.
-fn core() -> Vec<(String, Vec<String>, Seen)> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../core/src");
+/// A module of a room, as one of its files is.
+struct Module {
+    /// Its file, from the project's root on.
+    file: String,
+    /// From the room's root on; empty for lib.rs.
+    path: Vec<String>,
+    seen: Seen,
+    /// What it re-exports: the name, and where that stands, from the module on or from `crate`.
+    doors: BTreeMap<String, Vec<String>>,
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// All files of a crate but those of its unit tests.
+fn modules(source: &str) -> Vec<Module> {
+    let folder = root().join(source);
     let mut paths = Vec::new();
-    files(&root, &mut paths).unwrap();
-    let mut core = Vec::new();
+    files(&folder, &mut paths).unwrap();
+    let mut modules = Vec::new();
     for path in paths {
-        let below = path.strip_prefix(&root).unwrap().with_extension("");
+        let below = path.strip_prefix(&folder).unwrap().with_extension("");
         let mut module: Vec<String> = below.iter().map(|name| name.to_string_lossy().into_owned()).collect();
-        if ["mod", "lib"].iter().any(|own| module.last().is_some_and(|last| last == own)) {
+        if ["mod", "lib", "main"].iter().any(|own| module.last().is_some_and(|last| last == own)) {
             module.pop();
         }
         if !module.iter().any(|name| name == "tests") {
             let file: File = syn::parse_file(&fs::read_to_string(&path).unwrap()).unwrap();
-            core.push((format!("core/src/{}.rs", below.display()), module.clone(), see(&file, module)));
+            modules.push(Module {
+                file: format!("{source}/{}.rs", below.display()),
+                path: module.clone(),
+                doors: doors(&file),
+                seen: see(&file, module),
+            });
         }
     }
-    core
+    modules
+}
+
+/// The names that a file re-exports, and where each stands.
+fn doors(file: &File) -> BTreeMap<String, Vec<String>> {
+    fn tree(before: &[String], tree_: &UseTree, found: &mut BTreeMap<String, Vec<String>>) {
+        let with =
+            |ident: &Ident| before.iter().cloned().chain([ident.unraw().to_string()]).collect::<Vec<_>>();
+        match tree_ {
+            UseTree::Path(path) => tree(&with(&path.ident), &path.tree, found),
+            UseTree::Name(name) => drop(found.insert(name.ident.unraw().to_string(), with(&name.ident))),
+            UseTree::Rename(rename) => {
+                drop(found.insert(rename.rename.unraw().to_string(), with(&rename.ident)))
+            }
+            UseTree::Glob(_) => {}
+            UseTree::Group(group) => group.items.iter().for_each(|one| tree(before, one, found)),
+        }
+    }
+    let mut found = BTreeMap::new();
+    for item in &file.items {
+        if let Item::Use(item) = item
+            && !matches!(item.vis, Visibility::Inherited)
+        {
+            tree(&[], &item.tree, &mut found);
+        }
+    }
+    found
 }
 
 fn see(file: &File, module: Vec<String>) -> Seen {
@@ -199,71 +252,124 @@ fn see(file: &File, module: Vec<String>) -> Seen {
     seen
 }
 
-/// The order that lib.rs draws: from left to right, and what lies below all of it.
-fn order() -> (Vec<String>, Vec<String>) {
-    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../core/src/lib.rs")).unwrap();
-    let drawn =
-        |mark: &str| text.lines().find(|line| line.starts_with("//!") && line.contains(mark)).unwrap();
-    let names = |list: &str, between: &str| list.split(between).map(|name| name.trim().to_owned()).collect();
-    let line = drawn(" -> ").trim_start_matches("//!");
-    let (_, below) = drawn("below: ").split_once("below: ").unwrap();
-    (names(line, "->"), names(below, ","))
+/// The module that declares what a path means, seen from module `from`; `None` where it leads out of the crate.
+fn declared<'m>(modules: &'m [Module], from: &[String], path: &[String]) -> Option<&'m Module> {
+    let at = |path: &[String]| modules.iter().find(|module| module.path == path);
+    let (mut here, mut rest) = match path.split_first()? {
+        (first, rest) if first == "crate" => (Vec::new(), rest),
+        (first, _) => {
+            let child: Vec<String> = from.iter().chain([first]).cloned().collect();
+            at(&child)?;
+            (from.to_vec(), path)
+        }
+    };
+    // A re-export leads nearer to what it means each time.
+    for _ in 0..20 {
+        let Some((name, after)) = rest.split_first() else { break };
+        let child: Vec<String> = here.iter().chain([name]).cloned().collect();
+        if at(&child).is_some() {
+            (here, rest) = (child, after);
+            continue;
+        }
+        let Some(door) = at(&here)?.doors.get(name) else { break };
+        let door: Vec<String> = door.iter().chain(after).cloned().collect();
+        return declared(modules, &here, &door);
+    }
+    at(&here)
 }
 
-/// Why a module of layer `from` may not use one of layer `to`.
-fn refusal(from: &str, to: &str) -> Option<&'static str> {
-    let (line, below) = order();
-    let place = |name| line.iter().position(|each| each == name);
-    if from == to {
-        None
-    } else if STRANGERS.contains(&(from, to)) {
-        Some("they are never to know each other")
-    } else if below.iter().any(|each| each == to) {
-        // Of what lies below, the later may use the earlier: signal uses units.
-        (from == "units").then_some("units lies below all")
-    } else {
-        match (place(from), place(to)) {
-            (Some(from), Some(to)) if to < from => None,
-            (Some(_), Some(_)) => Some("it stands to its right"),
-            (None, Some(_)) => Some("it stands above it"),
-            _ => Some("lib.rs does not draw both"),
+/// Which files of a crate use which, by their places in the list; opening a door to one's own modules is no use of them.
+fn uses(modules: &[Module]) -> Vec<BTreeSet<usize>> {
+    let place = |module: &Module| modules.iter().position(|other| other.path == module.path).unwrap();
+    modules
+        .iter()
+        .map(|module| {
+            let opened: BTreeSet<&Vec<String>> = module.doors.values().collect();
+            let paths = module.seen.paths.iter().filter(|path| !opened.contains(path));
+            let used = paths.filter_map(|path| declared(modules, &module.path, path));
+            used.filter(|used| used.path != module.path).map(place).collect()
+        })
+        .collect()
+}
+
+/// A way from a file back to itself, if there is one: the places on it.
+fn circle(uses: &[BTreeSet<usize>]) -> Option<Vec<usize>> {
+    fn walk(uses: &[BTreeSet<usize>], way: &mut Vec<usize>, done: &mut BTreeSet<usize>) -> bool {
+        let Some(&last) = way.last() else { return false };
+        for &next in &uses[last] {
+            if let Some(first) = way.iter().position(|&at| at == next) {
+                way.drain(..first);
+                return true;
+            }
+            if !done.contains(&next) {
+                way.push(next);
+                if walk(uses, way, done) {
+                    return true;
+                }
+                way.pop();
+            }
+        }
+        done.insert(last);
+        false
+    }
+    let mut done = BTreeSet::new();
+    (0..uses.len()).find_map(|start| {
+        let mut way = vec![start];
+        walk(uses, &mut way, &mut done).then_some(way)
+    })
+}
+
+/// The crates whose files are looked at.
+fn sources() -> impl Iterator<Item = String> {
+    ROOMS.iter().map(|room| format!("core/{room}/src"))
+}
+
+#[test]
+fn no_file_waits_in_a_circle_for_another() {
+    for source in sources().chain(["cli/src", "wasm/src", "firmware/src"].map(str::to_owned)) {
+        let modules = modules(&source);
+        if let Some(way) = circle(&uses(&modules)) {
+            let files: Vec<&str> = way.iter().map(|&at| modules[at].file.as_str()).collect();
+            panic!("{} -> {}", files.join(" -> "), files[0]);
         }
     }
 }
 
 #[test]
-fn every_module_is_drawn_and_the_line_is_the_designs() {
-    let (line, below) = order();
-    assert_eq!(
-        line,
-        ["scenario", "motion", "quantise", "wire", "device", "trace", "analysis", "run"],
-        "DESIGN Part C, with `run`, the front, at the end"
-    );
-    let mut drawn: Vec<String> = line.into_iter().chain(below).collect();
-    let mut there: Vec<String> =
-        core().into_iter().filter_map(|(_, module, _)| module.first().cloned()).collect();
-    drawn.sort();
-    there.sort();
-    there.dedup();
-    assert_eq!(there, drawn);
+fn rooms_use_what_stands_to_their_left() {
+    for (place, room) in ROOMS.iter().enumerate() {
+        let allowed = &ROOMS[..place];
+        let rooms = dependencies(&format!("core/{room}")).into_iter().filter_map(|line| {
+            let name = line.split(['.', ' ']).next()?.strip_prefix("stepscope-")?.to_owned();
+            Some(name)
+        });
+        for other in rooms {
+            assert!(
+                allowed.contains(&other.as_str()),
+                "{room} uses {other}, which does not stand to its left"
+            );
+        }
+    }
 }
 
 #[test]
-fn modules_use_what_stands_to_their_left_and_below() {
-    let mut broken = Vec::new();
-    for (file, module, seen) in core() {
-        let Some(from) = module.first() else { continue };
-        for path in &seen.paths {
-            if let [root, to, ..] = path.as_slice()
-                && root == "crate"
-                && to.starts_with(|c: char| c.is_lowercase())
-                && let Some(why) = refusal(from, to)
-            {
-                broken.push(format!("{file}: {from} uses {to}: {why}"));
+fn a_room_knows_of_another_only_what_it_may() {
+    for (room, other, allowed) in NARROW {
+        for module in modules(&format!("core/{room}/src")) {
+            for path in &module.seen.paths {
+                if let [first, second, ..] = path.as_slice()
+                    && *first == format!("stepscope_{other}")
+                {
+                    let name = second.as_str();
+                    assert!(
+                        allowed.contains(&name),
+                        "{}: of {other} it may use {allowed:?}, not {name}",
+                        module.file
+                    );
+                }
             }
         }
     }
-    assert!(broken.is_empty(), "{}", broken.join("\n"));
 }
 
 fn is_excepted(file: &str, what: &str) -> bool {
@@ -273,7 +379,7 @@ fn is_excepted(file: &str, what: &str) -> bool {
 #[test]
 fn no_float_function_of_the_platform_and_nothing_from_outside_is_in_the_core() {
     let mut broken = Vec::new();
-    for (file, _, seen) in core() {
+    for Module { file, seen, .. } in sources().flat_map(|source| modules(&source)) {
         for method in seen.methods {
             let barred = INEXACT.contains(&method.as_str()) || EXACT.contains(&method.as_str());
             if barred && !is_excepted(&file, &method) {
@@ -302,20 +408,18 @@ fn no_float_function_of_the_platform_and_nothing_from_outside_is_in_the_core() {
 
 /// What a package's manifest has between `[dependencies]` and the next section.
 fn dependencies(package: &str) -> Vec<String> {
-    let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(package).join("Cargo.toml");
-    let text = fs::read_to_string(manifest).unwrap();
+    let text = fs::read_to_string(root().join(package).join("Cargo.toml")).unwrap();
     let lines = text.lines().skip_while(|line| *line != "[dependencies]").skip(1);
     let lines = lines.take_while(|line| !line.starts_with('['));
-    lines.filter(|line| !line.is_empty()).map(str::to_owned).collect()
+    lines.filter(|line| !line.is_empty() && !line.starts_with('#')).map(str::to_owned).collect()
 }
 
 #[test]
 fn firmware_knows_the_registers_alone_and_they_know_nothing() {
-    assert_eq!(dependencies("registers"), Vec::<String>::new());
+    assert_eq!(dependencies("core/registers"), Vec::<String>::new());
     assert_eq!(dependencies("firmware"), ["stepscope-registers.workspace = true"]);
-    for package in ["registers", "firmware"] {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(package).join("src/lib.rs");
-        let text = fs::read_to_string(root).unwrap();
+    for package in ["core/registers", "firmware"] {
+        let text = fs::read_to_string(root().join(package).join("src/lib.rs")).unwrap();
         assert!(text.contains("#![no_std]") && !text.contains("extern crate"), "{package} needs nothing");
     }
 }
@@ -332,21 +436,28 @@ fn clippy_refuses_every_inexact_function_in_all_crates() {
 }
 
 #[test]
-fn the_order_refuses_what_stands_to_the_right_and_who_must_not_meet() {
-    let rows = [
-        ("motion", "scenario", None),
-        ("device", "units", None),
-        ("run", "analysis", None),
-        ("signal", "units", None),
-        ("motion", "device", Some("it stands to its right")),
-        ("device", "motion", Some("they are never to know each other")),
-        ("signal", "trace", Some("it stands above it")),
-        ("units", "signal", Some("units lies below all")),
-        ("device", "plant", Some("lib.rs does not draw both")),
+fn a_circle_is_found_wherever_it_begins() {
+    let uses = |rows: &[&[usize]]| rows.iter().map(|row| row.iter().copied().collect()).collect::<Vec<_>>();
+    assert_eq!(circle(&uses(&[&[1, 2], &[2], &[]])), None);
+    assert_eq!(circle(&uses(&[&[1], &[2], &[1]])), Some(vec![1, 2]));
+    assert_eq!(circle(&uses(&[&[], &[3], &[0], &[2, 1]])), Some(vec![1, 3]));
+}
+
+#[test]
+fn a_re_export_is_followed_to_the_file_that_declares() {
+    let module = |path: &[&str], text: &str| {
+        let file = syn::parse_file(text).unwrap();
+        let path: Vec<String> = path.iter().map(ToString::to_string).collect();
+        Module { file: path.join("/"), doors: doors(&file), seen: see(&file, path.clone()), path }
+    };
+    let modules = [
+        module(&[], "mod a; mod b; pub use a::{One, inner::Two};"),
+        module(&["a"], "pub mod inner; pub struct One;"),
+        module(&["a", "inner"], "pub struct Two;"),
+        module(&["b"], "use crate::{One, Two as Other}; fn f(_: super::a::inner::Two) {}"),
     ];
-    for (from, to, expected) in rows {
-        assert_eq!(refusal(from, to), expected, "{from} uses {to}");
-    }
+    let found: Vec<Vec<usize>> = uses(&modules).into_iter().map(|used| used.into_iter().collect()).collect();
+    assert_eq!(found, [vec![], vec![], vec![], vec![1, 2]]);
 }
 
 /// The tests above are only as good as what they see.

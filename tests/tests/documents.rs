@@ -411,7 +411,7 @@ fn every_test_that_the_list_of_figures_names_exists() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let list = fs::read_to_string(root.join("docs/documents.md")).expect("the list");
     let mut all = String::new();
-    for folder in ["core/src", "cli/tests", "tests/src", "tests/tests"] {
+    for folder in ["core", "cli/tests", "tests/src", "tests/tests"] {
         sources(&root.join(folder), &mut all);
     }
     // Every second piece between marks of code; names of tests have no spaces, and at least three words.

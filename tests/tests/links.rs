@@ -11,7 +11,7 @@ use stepscope_core::{
         run_fingerprint::RunFingerprint,
     },
     scenario::{
-        Compact, Scenario,
+        Compact, Scenario, VERSION,
         link::{decode, encode, part, with_part},
         presets::PRESETS,
     },
@@ -41,8 +41,8 @@ fn every_link_that_was_ever_published_opens_as_the_scenario_that_it_meant() {
 /// get the same text.
 #[test]
 fn the_current_versions_links_are_still_written_as_they_were() {
-    let file = folder().join("v1.txt");
-    for line in fs::read_to_string(file).expect("version 1's links").lines() {
+    let file = folder().join(format!("v{VERSION}.txt"));
+    for line in fs::read_to_string(file).expect("this version's links").lines() {
         let (link, json) = line.split_once(' ').expect("a link, a space, its scenario");
         let scenario = Scenario::from_json(json).expect("reads");
         let (link, _) = link.split_once('&').unwrap_or((link, ""));
@@ -54,7 +54,9 @@ fn the_current_versions_links_are_still_written_as_they_were() {
 #[test]
 fn the_runs_that_senders_saw_are_still_made_and_another_run_is_told() {
     let mut proofs = 0;
-    for line in fs::read_to_string(folder().join("v1.txt")).expect("version 1's links").lines() {
+    let versions = (1..=VERSION).map(|version| folder().join(format!("v{version}.txt")));
+    let texts: String = versions.map(|path| fs::read_to_string(path).expect("a version's links")).collect();
+    for line in texts.lines() {
         let link = line.split(' ').next().unwrap_or_default();
         let Some(text) = part(link, "d") else { continue };
         let mut proof = RunFingerprint::parse(&text).unwrap_or_else(|error| panic!("{link}: {error}"));

@@ -7,7 +7,7 @@ import { RULE_FIELDS } from "./fields.js";
 /** @typedef {import("../state/types.js").DriverSheet} DriverSheet */
 
 /** @param {import("./kit.js").Kit} kit @param {import("../state/types.js").Scenario} scenario @param {DriverSheet[]} sheets @returns {Node[]} */
-export function driverItems(kit, { driver }, sheets) {
+export function driverItems(kit, { driver_timing: driver }, sheets) {
   const known = sheets.find(({ id }) => id === driver?.preset);
   const kinds = {
     none: "not checked",
@@ -15,9 +15,9 @@ export function driverItems(kit, { driver }, sheets) {
     rules: "rules of your own",
   };
   const chosen = driver?.rules ? "rules" : (driver?.preset ?? "none");
-  const select = kit.kindSelect("Driver", "driver", chosen, kinds, (kind) =>
+  const select = kit.kindSelect("Driver", "driver_timing", chosen, kinds, (kind) =>
     kit.put(
-      "driver",
+      "driver_timing",
       kind === "none"
         ? null
         : // Rules of one's own begin with those of the driver that was chosen.
@@ -26,8 +26,8 @@ export function driverItems(kit, { driver }, sheets) {
           : { preset: kind },
     ),
   );
-  const head = [kit.errorOf("driver"), element("div", { class: "item-head" }, select)];
-  if (driver?.rules) return [...head, ...kit.block("driver.rules", RULE_FIELDS)];
+  const head = [kit.errorOf("driver_timing"), element("div", { class: "item-head" }, select)];
+  if (driver?.rules) return [...head, ...kit.block("driver_timing.rules", RULE_FIELDS)];
   return known ? [...head, element("p", { class: "item-note" }, summary(known))] : head;
 }
 

@@ -146,7 +146,7 @@ const LINE = [
 
 /** How the host of a framed line behaves. @type {Field[]} */
 const HOST = [
-  integer("ticks_a_frame", "Ticks in a frame", "", "At most, 1 to 32; and at most half of the queue."),
+  integer("ticks_per_frame", "Ticks in a frame", "", "At most, 1 to 32; and at most half of the queue."),
   {
     key: "reply_timeout_cycles",
     label: "Reply time-out",
@@ -162,15 +162,15 @@ const rate = (key, label, hint) => integer(`${key}_ppm`, label, "ppm", `${hint} 
 /** @type {Field[]} */
 const NOISE = [
   integer("seed", "Seed", "", "0 to 2³² − 1. The same seed gives the same noise."),
-  rate("flipped_bits", "Bits turned over", "Of all bits of all bytes, both ways."),
+  rate("flipped_bits", "Bits flipped", "Of all bits of all bytes, both ways."),
   rate("lost_bytes", "Bytes lost", "Of all bytes, both ways."),
-  rate("doubled_bytes", "Bytes doubled", "Of all bytes, both ways."),
+  rate("duplicated_bytes", "Bytes duplicated", "Of all bytes, both ways."),
   rate("glitches", "Glitches", "Levels forced for up to two bit times, of all bytes of the host."),
   rate("lost_replies", "Replies lost", "Replies that the host does not hear, of all replies."),
   rate(
-    "deaths",
-    "Deaths of the host",
-    "Frames (raw: packets) within which the host dies, of all of them; it comes back and remembers nothing but its orders.",
+    "host_crashes",
+    "Host crashes",
+    "Frames (raw: packets) within which the host crashes, of all of them; it restarts and remembers nothing but its orders.",
   ),
 ];
 
@@ -201,7 +201,7 @@ const BUS_PULSES = [
     hint: "One a channel changes when a tick starts; a common one changes within each slot.",
   },
   {
-    key: "pulses",
+    key: "pulse_phasing",
     label: "Pulses of a slot",
     kind: "choice",
     choices: { simultaneous: "all at once", staggered: "one after another" },
@@ -213,7 +213,7 @@ const BUS_PULSES = [
       "Current settles",
       "Time of the supply current after a step, 0 to 10⁹: the pulses of a slot are at most so far apart.",
     ),
-    when: { key: "pulses", is: "staggered" },
+    when: { key: "pulse_phasing", is: "staggered" },
   },
   integer("queue_depth", "Queue", "ticks", "Ticks that it holds, 1 to 255."),
   cycles("boot_cycles", "Self-test", "After reset, 0 to 2³² − 1; packets that end in it are dropped."),
@@ -243,7 +243,7 @@ export const RULE_FIELDS = Object.entries(RULES).map(([rule, label]) =>
  * The sections beside the source. Keys are paths below the section's own; a group is folded away.
  * `onLine` is of use only where something is sent.
  * @typedef {{path: string, fields: Field[]}} Block
- * @type {{title: string, open: boolean, onLine?: boolean, blocks: Block[], group?: {title: string} & Block, list?: "glitches" | "controllers" | "driver"}[]}
+ * @type {{title: string, open: boolean, onLine?: boolean, blocks: Block[], group?: {title: string} & Block, list?: "glitches" | "controllers" | "driver_timing"}[]}
  */
 export const SECTIONS = [
   {
@@ -259,7 +259,7 @@ export const SECTIONS = [
   },
   { title: "Driver bus", open: true, blocks: [{ path: "bus", fields: [...BUS_SIZE, ...BUS_PULSES] }] },
   { title: "Further controllers", open: true, onLine: true, blocks: [], list: "controllers" },
-  { title: "Driver timing", open: true, blocks: [], list: "driver" },
+  { title: "Driver timing", open: true, blocks: [], list: "driver_timing" },
   {
     title: "Spectrum",
     open: false,
@@ -335,7 +335,7 @@ export const SAMPLES = {
     bus: { channels: 5 },
     line: { glitches: [{}] },
     controllers: [{}],
-    driver: { rules: {} },
+    driver_timing: { rules: {} },
     source: {
       motion: {
         axes: Object.keys(MECHANICS).map((kind) => ({

@@ -54,7 +54,7 @@ export function createForm({ root, samples, drivers, dispatch }) {
         "glitches_ppm",
       ),
     controllers: (scenario) => controllerItems(kit, scenario),
-    driver: (scenario) => driverItems(kit, scenario, drivers),
+    driver_timing: (scenario) => driverItems(kit, scenario, drivers),
   };
 
   /** Where the focus is, to find it again in the form built anew: a field by its path, a button by what it does. @param {HTMLElement} active */
@@ -141,7 +141,7 @@ function used(group) {
 }
 
 /** What decides which fields there are; values do not. @param {Scenario} scenario */
-function shapeOf({ source, controllers, driver, line }) {
+function shapeOf({ source, controllers, driver_timing: driver, line }) {
   const kinds = (/** @type {any[]} */ axes) =>
     axes.map((axis) => [
       Object.keys(axis.mechanics)[0],

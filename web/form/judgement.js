@@ -193,7 +193,7 @@ function sent({ scenario: { source, line }, result, revision }, { sends, line_lo
   if ("line" in source) return ["Sends", count(sends), "", "line_script"];
   // How many are repeated on a noisy line only the run tells; a controller that dies is asked everything again.
   const ran = result?.revision === revision ? result.summary.host : null;
-  const most = line.noise.deaths_ppm > 0 ? "after the run" : `at most ${count(sends)}`;
+  const most = line.noise.host_crashes_ppm > 0 ? "after the run" : `at most ${count(sends)}`;
   if (line.protocol === "framed")
     return ["Frames", ran ? count(ran.frames) : isQuiet(line) ? count(sends) : most, "", "frame"];
   const busy = controllers.filter(({ ticks }) => ticks > 0).length;

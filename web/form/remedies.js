@@ -31,7 +31,7 @@ export function showRemedy(state, sheets, apply) {
 
 /** A driver that cannot follow the pulses: they get the times that its sheet asks for. @param {State} state @param {DriverSheet[]} sheets @returns {Remedy | null} */
 function timing({ scenario, result }, sheets) {
-  const { driver, clock_hz: clock, controllers } = scenario;
+  const { driver_timing: driver, clock_hz: clock, controllers } = scenario;
   const sheet = sheets.find(({ id }) => id === driver?.preset);
   const rules = driver?.rules ?? sheet?.rules;
   if (!rules) return null;
@@ -75,7 +75,7 @@ function wantedOf(bus, least, alone) {
   if (alone) return /** @type {any} */ (times);
   // The rules of the contract that join the times of a slot.
   const pulse = width + Math.max(setup + hold, 1);
-  const inSlot = bus.pulses === "staggered" ? bus.channels : bus.dir_line === "common" ? 2 : 1;
+  const inSlot = bus.pulse_phasing === "staggered" ? bus.channels : bus.dir_line === "common" ? 2 : 1;
   const slot = Math.max(bus.step_period_cycles, pulse * inSlot, width + least("step_low"));
   return /** @type {any} */ ({
     ...times,

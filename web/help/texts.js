@@ -170,7 +170,7 @@ export const COMMON = {
   },
   protocol: {
     name: "Protocol",
-    text: "Raw packets carry no check: one bit turned over moves a motor, and nobody notices. Frames are checked, answered and sent again until they are answered.",
+    text: "Raw packets carry no check: one flipped bit moves a motor, and nobody notices. Frames are checked, answered and sent again until they are answered.",
     from: "patent",
   },
   address: {
@@ -178,7 +178,7 @@ export const COMMON = {
     text: "Number of a controller on a line that several share. All hear everything; each takes what begins with its own number or with 255.",
     from: "patent",
   },
-  ticks_a_frame: {
+  ticks_per_frame: {
     name: "Ticks in a frame",
     text: "More ticks in a frame leave more time for its reply, and need a deeper queue.",
     from: "own",
@@ -199,13 +199,13 @@ export const COMMON = {
     from: "own",
   },
   flipped_bits_ppm: {
-    name: "Bits turned over",
+    name: "Bits flipped",
     text: "A 0 is heard as a 1 or the other way round, as by a disturbance near the cable.",
     from: "own",
   },
   lost_bytes_ppm: { name: "Bytes lost", text: "A byte that never arrives, as when a buffer runs over.", from: "own" },
-  doubled_bytes_ppm: {
-    name: "Bytes doubled",
+  duplicated_bytes_ppm: {
+    name: "Bytes duplicated",
     text: "A byte that arrives twice, as after a clumsy repetition in a converter.",
     from: "own",
   },
@@ -219,9 +219,9 @@ export const COMMON = {
     text: "The controller has done it but the host does not hear so: the case for which frames have a seq.",
     from: "own",
   },
-  deaths_ppm: {
-    name: "Deaths of the host",
-    text: "The program that sends dies in the middle of a frame and starts again: the next frames must not be harmed by the first half.",
+  host_crashes_ppm: {
+    name: "Host crashes",
+    text: "The program that sends crashes in the middle of a frame and starts again: the next frames must not be harmed by the first half.",
     from: "own",
   },
   length_cycles: { name: "Length", text: "For how many cycles the line is forced.", from: "own" },
@@ -267,7 +267,7 @@ export const COMMON = {
     text: "One DIR line for all motors saves wires: within each slot DIR goes low, the ones to the left step, DIR goes high, the others step. Five cycles are enough.",
     from: "patent",
   },
-  pulses: {
+  pulse_phasing: {
     name: "Pulses of a slot",
     text: "Motors that step in the same instant all draw their peak of current at once. One after another the supply's peaks fall to a half or a third.",
     from: "patent",

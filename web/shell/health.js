@@ -34,7 +34,7 @@ export function ill(state) {
 /** What became of the orders on a framed line. @param {Summary} summary */
 function outcome({ host, controllers }) {
   if (!host) return "";
-  const { jobs, repeated, deaths } = host;
+  const { jobs, repeated, crashes } = host;
   const sum = (/** @type {number[]} */ numbers) => numbers.reduce((a, b) => a + b, 0);
   const lost = jobs.filter(({ progress }) => progress === "given_up");
   const ticks = sum(jobs.map((job) => job.ticks));
@@ -51,6 +51,6 @@ function outcome({ host, controllers }) {
   if (jobs.every(({ progress }) => progress === "done")) parts.push(`all ${count(ticks)} ticks done`);
   else parts.push(`${count(acknowledged)} of ${count(ticks)} ticks acknowledged`);
   if (repeated > 0) parts.push(`${count(repeated)} ${repeated === 1 ? "frame" : "frames"} repeated`);
-  if (deaths > 0) parts.push(`the host died ${deaths === 1 ? "once" : `${count(deaths)} times`}`);
+  if (crashes > 0) parts.push(`the host crashed ${crashes === 1 ? "once" : `${count(crashes)} times`}`);
   return parts.join(", ");
 }

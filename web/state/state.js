@@ -40,7 +40,7 @@
  */
 
 /** Steps of history that are kept. */
-const DEPTH = 50;
+export const DEPTH = 50;
 /** Controllers that a line can have beside the first. */
 export const MOST_FURTHER = 31;
 /** Channels that a bus can have. */
@@ -48,7 +48,7 @@ export const MOST_CHANNELS = 16;
 /** Revision of the result that an earlier visit left, shown while the form has problems. */
 export const EARLIER = -1;
 /** Least cycles that the time axis shows. */
-const LEAST_SPAN = 16;
+export const LEAST_SPAN = 16;
 /** Markers 0 to 9, none of them set. @type {(number | null)[]} */
 const NO_MARKERS = Array(10).fill(null);
 
@@ -387,7 +387,7 @@ export function shown(state) {
 }
 
 /** Keeps a window inside the run and at least a few cycles long. @param {Span} window @param {number} last @returns {Span | null} */
-function clamp({ start, end }, last) {
+export function clamp({ start, end }, last) {
   const most = Math.max(LEAST_SPAN, last);
   const span = Math.min(most, Math.max(LEAST_SPAN, Math.round(end - start)));
   const from = Math.min(Math.max(0, Math.round(start)), most - span);

@@ -20,7 +20,7 @@
  *   violations: number | null}} ControllerSummary
  * @typedef {{controller: number, ticks: number, acknowledged: number, why: string | null,
  *   progress: "opening" | "filling" | "confirming" | "done" | "given_up"}} Job
- * @typedef {{frames: number, repeated: number, replies: number, rejected: number, refused: number, deaths: number, jobs: Job[]}} Host
+ * @typedef {{frames: number, repeated: number, replies: number, rejected: number, refused: number, crashes: number, jobs: Job[]}} Host
  * @typedef {{framed: boolean, end_cycle: number, end_s: number, clock_hz: number, line_load: number | null,
  *   host: Host | null, controllers: ControllerSummary[]}} Summary
  * @typedef {{done: boolean, cycle: number, end_cycle: number, records: number}} Progress

@@ -19,7 +19,7 @@ use tokio::process::Command;
 
 use crate::browser::Browser;
 use crate::tools::{Optimise, WasmTools};
-use crate::{root, run, toolchain};
+use crate::{root, run, steps, toolchain};
 use page::Page;
 use table::{Block, Estimate, Report};
 
@@ -74,6 +74,12 @@ pub(crate) async fn run(quick: bool) -> Result<()> {
         effort.rounds, effort.blocks
     );
     Ok(())
+}
+
+/// Measures the page as it is shipped, in Chromium. Its times are of this machine and this moment.
+pub(crate) async fn page() -> Result<()> {
+    let command = "bench --package stepscope-tests --features browser --bench page --locked";
+    run::to_end(steps::with_page(command).await?, run::LIMIT).await
 }
 
 /// Criterion's benchmarks, each kernel by itself; their results lie under `home` then.

@@ -8,7 +8,7 @@ use crate::{apt, run, toolchain};
 const PACKAGE: &str = "gtkwave";
 const PROGRAMS: [&str; 2] = ["vcd2fst", "fst2vcd"];
 
-/// Installs GTKWave if it is missing and runs the test, which then may not pass without it.
+/// Installs GTKWave if it is missing and runs the test.
 pub(crate) async fn test() -> Result<()> {
     let found = || PROGRAMS.iter().try_for_each(|program| which::which(program).map(drop));
     if found().is_err() {
@@ -17,9 +17,9 @@ pub(crate) async fn test() -> Result<()> {
     }
     let mut command = toolchain::cargo();
     // The whole workspace, so that its packages keep the features, and with them the builds, of the native step.
-    command
-        .args(["test", "--workspace", "--test", "second_reader", "--locked"])
-        .env("STEPSCOPE_GTKWAVE", "1");
+    let line =
+        ["test", "--workspace", "--features", "stepscope-cli/gtkwave", "--test", "second_reader", "--locked"];
+    command.args(line);
     run::to_end(command, run::LIMIT).await
 }
 

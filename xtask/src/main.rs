@@ -10,9 +10,13 @@
 //! | `steps`, `browser`, `engines`, `bare_metal`, `gtkwave` | `cargo xtask test`, step by step |
 //! | `bench` | `cargo xtask bench` |
 //! | `fuzz` | `cargo xtask fuzz` |
+//! | `mutants` | `cargo xtask mutants` |
+//! | `package` | the crates and the npm package as others would get them |
 //! | `run` | child processes: time limit, no input, killed as a group |
+//! | `attend` | a program that ends with whoever started it, for the page's tests |
 
 mod apt;
+mod attend;
 mod bare_metal;
 mod bench;
 mod browser;
@@ -21,7 +25,9 @@ mod engines;
 mod fuzz;
 mod gtkwave;
 mod headers;
+mod mutants;
 mod npm;
+mod package;
 mod page;
 mod run;
 mod serve;
@@ -31,13 +37,14 @@ mod toolchain;
 mod tools;
 mod wasm_opt;
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Result;
 use clap::{Args, Parser, Subcommand};
 
-/// Builds, shows, tests, measures and fuzzes Stepscope.
+/// Builds, shows, tests, measures, fuzzes and mutates Stepscope.
 #[derive(Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask")]
 struct Cli {
@@ -96,6 +103,16 @@ enum Task {
         /// In a minute or two after the builds, and noisier
         #[arg(long)]
         quick: bool,
+        /// Measure the page in Chromium instead: its frames, its loading, its answers to keys
+        #[arg(long, conflicts_with = "quick")]
+        page: bool,
+    },
+    /// Run a program until standard input ends, and then end it with all that it started
+    #[command(hide = true)]
+    Attend {
+        /// The program and its arguments
+        #[arg(last = true, required = true)]
+        words: Vec<OsString>,
     },
     /// Search for inputs that break the core, by libFuzzer; what is found is said and can be kept as a test
     Fuzz {
@@ -107,6 +124,18 @@ enum Task {
         /// Where chance begins: the same seed takes the same way
         #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
         seed: u32,
+    },
+    /// Change the peripheral and the motions one thing at a time, and see whether the tests notice
+    Mutants {
+        /// How many changes are drawn
+        #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+        sample: u32,
+        /// Which: the same seed draws the same from the same sources
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+        /// Only of this package; may be given twice
+        #[arg(long)]
+        package: Vec<String>,
     },
 }
 
@@ -158,8 +187,13 @@ async fn perform(task: Task) -> Result<()> {
             Ok(())
         }
         Task::Test { only, list: false } => steps::run(&only).await,
-        Task::Bench { quick } => bench::run(quick).await,
+        Task::Bench { page: true, quick: _ } => bench::page().await,
+        Task::Bench { page: false, quick } => bench::run(quick).await,
+        Task::Attend { words } => attend::attend(&words).await,
         Task::Fuzz { targets, seconds, seed } => fuzz::run(fuzz::Options { targets, seconds, seed }).await,
+        Task::Mutants { sample, seed, package } => {
+            mutants::run(mutants::Options { sample: sample as usize, seed, packages: package }).await
+        }
     }
 }
 

@@ -12,7 +12,7 @@ use walkdir::WalkDir;
 
 use crate::dist::Parts;
 use crate::tools::{Optimise, WasmTools};
-use crate::{dist, headers, root, run};
+use crate::{dist, headers, package, root, run};
 
 /// What all files that opening the page loads may weigh together, in bytes, compressed by brotli as hosts do.
 const OPENING_BUDGET: usize = 450_000;
@@ -31,16 +31,18 @@ pub(crate) async fn shipped(optimise: Optimise) -> Result<Parts> {
     dist::make(&root().join("web"), &dist::folder()).await
 }
 
-/// Builds the wasm crate into `web/pkg`, installing the tools first if they are missing.
+/// Builds the wasm crate into `web/pkg`, a whole npm package, installing the tools first if they are missing.
 pub(crate) async fn build(optimise: Optimise) -> Result<()> {
     let tools = WasmTools::ready(optimise).await?;
-    wasm(&tools, "wasm", &root().join("web").join("pkg")).await
+    let folder = root().join("web").join("pkg");
+    wasm(&tools, "wasm", &folder).await?;
+    package::complete(&folder)
 }
 
 /// Builds the crate in `folder` of the workspace for the browser into `package`.
 pub(crate) async fn wasm(tools: &WasmTools, folder: &str, package: &Path) -> Result<()> {
     let mut command = tools.wasm_pack()?;
-    command.args(["build", "--profile", "page", "--target", "web"]).args(tools.build_options());
+    command.args(["build", "--release", "--target", "web"]).args(tools.build_options());
     command.args([folder, "--out-dir"]).arg(package).args(["--", "--locked"]);
     tools.judge(run::to_end(command, run::LIMIT).await)
 }

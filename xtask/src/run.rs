@@ -24,6 +24,22 @@ impl Group {
         let line = tokio::time::timeout(Duration::from_secs(60), lines.next_line()).await;
         line.context("not within a minute")??.context("it ended without a word")
     }
+
+    /// Waits until the child has ended by itself; an error if it failed.
+    pub(crate) async fn ended(&mut self) -> Result<()> {
+        let status = self.0.wait().await.context("it was lost")?;
+        if !status.success() {
+            bail!("it failed ({status})");
+        }
+        Ok(())
+    }
+
+    /// Ends the child and its group, and waits until it has.
+    pub(crate) async fn end(mut self) -> Result<()> {
+        self.0.start_kill()?;
+        self.0.wait().await?;
+        Ok(())
+    }
 }
 
 impl Drop for Group {
@@ -117,12 +133,16 @@ mod tests {
 
     #[tokio::test]
     async fn a_child_beyond_its_limit_is_stopped_with_its_children() {
-        let note = std::env::temp_dir().join(format!("stepscope-run-{}", std::process::id()));
-        let script = format!("(sleep 1; echo alive > {}) & wait", note.display());
-        let error = to_end(shell(&script), Duration::from_millis(300)).await.unwrap_err();
+        let (mut reader, writer) = std::io::pipe().unwrap();
+        let mut command = shell("sleep 1000 & wait");
+        command.stdout(writer);
+        let error = to_end(command, Duration::from_millis(300)).await.unwrap_err();
         assert!(error.to_string().ends_with("` was not done after 0.3 s and was stopped"), "{error}");
-        tokio::time::sleep(Duration::from_millis(1500)).await;
-        assert!(!note.exists(), "the grandchild lived on");
+        // The pipe ends when nobody holds it any more, the grandchild neither.
+        let (ended, end) = tokio::sync::oneshot::channel();
+        std::thread::spawn(move || ended.send(std::io::Read::read_to_end(&mut reader, &mut Vec::new())));
+        let end = tokio::time::timeout(Duration::from_secs(60), end).await;
+        assert!(matches!(end, Ok(Ok(Ok(0)))), "the grandchild lived on: {end:?}");
     }
 
     #[tokio::test]

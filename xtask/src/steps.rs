@@ -12,7 +12,7 @@ use crate::browser::{self, Browser};
 use crate::engines::{self, Firefox, WebKit};
 use crate::toolchain::{self, BARE_METAL, WASM};
 use crate::tools::{Optimise, WasmTools};
-use crate::{bare_metal, dist, gtkwave, npm, page, root, run, sources};
+use crate::{bare_metal, dist, gtkwave, npm, package, page, root, run, sources};
 
 /// Both workspaces: the fuzz targets are one of their own.
 const RUSTFMT: [&str; 2] = ["fmt --all", "fmt --manifest-path fuzz/Cargo.toml"];
@@ -36,6 +36,8 @@ pub(crate) enum Step {
     Wasm,
     /// tsc is silent: the types of the page's modules
     Types,
+    /// The library crates and the npm package as others would get them: packed, built, used by a Node program
+    Package,
     /// The page as it is shipped: its weight, and its use in Chromium
     Page,
     /// The page's main job and the golden digests, in Chromium, Firefox and WebKit
@@ -83,6 +85,7 @@ impl Step {
                 page::built().await?;
                 sources::check_types().await
             }
+            Self::Package => package::test().await,
             Self::Page => page().await,
             Self::Engines => engines().await,
         }
@@ -118,15 +121,20 @@ async fn wasm() -> Result<()> {
     run::to_end(command, run::LIMIT).await
 }
 
-/// The page's tests, as yet without the words that choose among them. They start the drivers and the server themselves;
-/// the environment says where all of it is.
+/// The page's tests, as yet without the words that choose among them.
 async fn page_tests() -> Result<Command> {
+    // The whole workspace, so that its packages keep the features, and with them the builds, of the native step.
+    with_page("test --workspace --features stepscope-tests/browser --test page --locked --").await
+}
+
+/// Cargo's call of something that drives the page in Chromium. It starts the driver and the server itself; the
+/// environment says where all of it is.
+pub(crate) async fn with_page(line: &str) -> Result<Command> {
     let this = env::current_exe().context("this program's own path is unknown")?;
     let browser = Browser::ready().await?;
     page::built().await?;
     let mut command = toolchain::cargo();
-    // The whole workspace, so that its packages keep the features, and with them the builds, of the native step.
-    command.args(words("test --workspace --features stepscope-tests/browser --test page --locked --"));
+    command.args(words(line));
     command
         .env("STEPSCOPE_WEB", root().join("web"))
         .env("STEPSCOPE_DIST", dist::folder())

@@ -15,6 +15,7 @@ use crate::{root, run, toolchain, wasm_opt};
 
 const WASM_PACK: &str = "0.15.1";
 const CARGO_FUZZ: &str = "0.13.2";
+const CARGO_MUTANTS: &str = "27.1.0";
 const GECKODRIVER: &str = "0.37.1";
 
 /// Whether the page's wasm goes through wasm-opt.
@@ -118,6 +119,12 @@ pub(crate) async fn cargo_fuzz() -> Result<PathBuf> {
     ready(&cache()?, &[tool]).await?.pop().context("cargo-fuzz was lost")
 }
 
+/// The path of cargo-mutants, installing it if it is missing.
+pub(crate) async fn cargo_mutants() -> Result<PathBuf> {
+    let tool = Tool { package: "cargo-mutants", program: "cargo-mutants", version: CARGO_MUTANTS.to_owned() };
+    ready(&cache()?, &[tool]).await?.pop().context("cargo-mutants was lost")
+}
+
 /// The path of geckodriver, Firefox's driver, installing it if it is missing.
 pub(crate) async fn geckodriver() -> Result<PathBuf> {
     let tool = Tool { package: "geckodriver", program: "geckodriver", version: GECKODRIVER.to_owned() };
@@ -191,7 +198,10 @@ impl Tool {
     }
 
     async fn fits(&self, program: &Path) -> bool {
-        let answer = version_answer(program).await.unwrap_or_default();
+        let answer = match version_answer(program).await {
+            Some(answer) => answer,
+            None => asked_as_by_cargo(program).await.unwrap_or_default(),
+        };
         answer.split_whitespace().nth(1) == Some(self.version.as_str())
     }
 }
@@ -200,6 +210,13 @@ impl Tool {
 pub(crate) async fn version_answer(program: &Path) -> Option<String> {
     let mut command = Command::new(program);
     command.arg("--version");
+    run::output(command).await
+}
+
+/// The same of a subcommand of cargo's that answers only as cargo calls it: `cargo-mutants mutants --version`.
+async fn asked_as_by_cargo(program: &Path) -> Option<String> {
+    let mut command = Command::new(program);
+    command.args([program.file_stem()?.to_str()?.strip_prefix("cargo-")?, "--version"]);
     run::output(command).await
 }
 

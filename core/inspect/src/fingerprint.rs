@@ -83,7 +83,6 @@ impl Fingerprinter {
 }
 
 impl Sink for Fingerprinter {
-    #[inline]
     fn record(&mut self, record: Record) {
         self.digest.record(record);
         if self.digest.records() == self.next {
@@ -187,7 +186,6 @@ impl<'a> FingerprintCheck<'a> {
 }
 
 impl Sink for FingerprintCheck<'_> {
-    #[inline]
     fn record(&mut self, record: Record) {
         let before = self.levels.replace(record.levels).unwrap_or(record.levels);
         self.last.records += 1;

@@ -5,6 +5,10 @@
 
 extern crate alloc;
 
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 pub mod actual_motion;
 #[cfg(feature = "std")]
 mod analysis_window;

@@ -61,7 +61,6 @@ impl Rule {
 
     /// The rule's word in tables and on the page.
     #[must_use]
-    #[inline]
     pub const fn name(self) -> &'static str {
         match self {
             Self::StepHigh => "step_high",
@@ -74,7 +73,6 @@ impl Rule {
 
     /// What the rules ask for under this one, in ns; 0 asks for nothing.
     #[must_use]
-    #[inline]
     pub const fn nanos(self, rules: &TimingRules) -> u32 {
         match self {
             Self::StepHigh => rules.step_high_ns,
@@ -88,7 +86,6 @@ impl Rule {
 
 /// Fewest cycles that last at least `nanos`; no product of two `u32` leaves `u64`.
 #[must_use]
-#[inline]
 pub const fn cycles_at_least(nanos: u32, clock_hz: u32) -> Cycles {
     Cycles((nanos as u64 * clock_hz as u64).div_ceil(1_000_000_000))
 }
@@ -138,7 +135,6 @@ pub struct RuleResult {
 impl RuleResult {
     /// Violations of all channels.
     #[must_use]
-    #[inline]
     pub fn total(&self) -> u64 {
         self.violations.iter().sum()
     }
@@ -170,7 +166,6 @@ impl TimingCheck {
     /// A check before the first record, for a run at `clock_hz`. It counts all violations and keeps
     /// the first `most_kept` of them in full.
     #[must_use]
-    #[inline]
     pub fn new(rules: &TimingRules, clock_hz: u32, most_kept: usize) -> Self {
         let result = |rule: Rule| {
             let nanos = rule.nanos(rules);
@@ -190,14 +185,12 @@ impl TimingCheck {
 
     /// What the run came to under each rule, in the order of [`Rule::ALL`].
     #[must_use]
-    #[inline]
     pub const fn results(&self) -> &[RuleResult] {
         &self.results
     }
 
     /// All violations, also those that are not kept.
     #[must_use]
-    #[inline]
     pub fn total(&self) -> u64 {
         self.results.iter().map(RuleResult::total).sum()
     }
@@ -205,14 +198,12 @@ impl TimingCheck {
     /// The first violations, in the order of their cycles; within one cycle by channel, and of one
     /// channel hold, high, low, set-up, wake-up.
     #[must_use]
-    #[inline]
     pub fn violations(&self) -> &[Violation] {
         &self.violations
     }
 
     /// Index of the first kept violation after `at`, or with `forward` false of the last one before.
     #[must_use]
-    #[inline]
     pub fn next(&self, at: Instant, forward: bool) -> Option<usize> {
         if forward {
             let index = self.violations.partition_point(|violation| violation.at <= at);
@@ -223,7 +214,6 @@ impl TimingCheck {
     }
 
     /// Signals of `changed` have new levels from `at` on.
-    #[inline]
     fn change(&mut self, at: Instant, changed: Levels) {
         if changed.has(Levels::EN) {
             self.enabled = at;
@@ -238,7 +228,6 @@ impl TimingCheck {
         }
     }
 
-    #[inline]
     fn change_channel(&mut self, at: Instant, channel: usize, dir_changed: bool, step_changed: bool) {
         let Some(edges) = self.edges.get_mut(channel) else { return };
         let before = *edges;
@@ -269,7 +258,6 @@ impl TimingCheck {
     }
 
     /// A time that began at `from`, if it did, and ends at `at`.
-    #[inline]
     fn measure(&mut self, rule: Rule, channel: usize, from: Option<Instant>, at: Instant) {
         let (Some(from), Some(result)) = (from, self.results.get_mut(rule as usize)) else { return };
         let (measured, number) = (at - from, channel as u8);
@@ -289,7 +277,6 @@ impl TimingCheck {
 }
 
 impl Sink for TimingCheck {
-    #[inline]
     fn record(&mut self, record: Record) {
         let changed = (record.levels.0 ^ self.levels.0) & WATCHED;
         self.levels = record.levels;

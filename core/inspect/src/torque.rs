@@ -41,7 +41,7 @@ pub use report::{MoveRamps, TorqueCurve, TorqueReport};
 
 use alloc::{format, string::String, vec::Vec};
 use serde::Serialize;
-use stepscope_motion::{AxisPlan, Breakpoints, Curve, Interval, grouped};
+use stepscope_motion::{AxisPlan, Breakpoints, Curve, Interval, bisection::border, grouped};
 
 /// Shortages that are listed.
 const MAX_SHORTAGES: usize = 1024;
@@ -49,8 +49,6 @@ const MAX_SHORTAGES: usize = 1024;
 const LOOKS_A_MOVE: u32 = 2048;
 /// A plan is looked at so often, beside both sides of each of its joints.
 const LOOKS: f64 = 512.0;
-/// Halvings that leave of a stretch less than a double tells apart.
-const HALVINGS: u32 = 60;
 
 /// What is needed and what there is at one time of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -238,16 +236,8 @@ impl Walk<'_> {
     /// The time between both at which one is short and the other not.
     fn border(&self, from_s: f64, to_s: f64) -> f64 {
         let short = |t: f64| self.machine.at(self.plan, t).margin_mn_m() < 0.0;
-        let (mut from, mut to, begins) = (from_s, to_s, short(to_s));
-        for _ in 0..HALVINGS {
-            let middle = from + (to - from) / 2.0;
-            if short(middle) == begins {
-                to = middle;
-            } else {
-                from = middle;
-            }
-        }
-        to
+        let begins = short(to_s);
+        border(from_s, to_s, |t| short(t) != begins).1
     }
 
     fn close(&mut self) {

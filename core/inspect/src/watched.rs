@@ -25,7 +25,6 @@ impl Sink for Watched {
         }
     }
 
-    #[inline]
     fn event(&mut self, at: Instant, event: Event) {
         self.recording.event(at, event);
     }

@@ -9,6 +9,15 @@
 //!
 //! The document goes over to constant speed as soon as v >= v_max; so the first row that reaches
 //! the top speed has the top speed itself, and is the last.
+//!
+//! ```
+//! use stepscope_motion::acceleration_table::AccelerationTable;
+//!
+//! // From 250 to 4000 steps/s at 9000 steps/s^2, with a timer of 1 MHz.
+//! let table = AccelerationTable::new(250.0, 4000.0, 9000.0, 1_000_000);
+//! assert_eq!((table.rate(0), table.reload(0)), (250, 4000));
+//! assert_eq!((table.rate(table.top()), table.reload(table.top())), (4000, 250));
+//! ```
 
 use crate::{round_half_up, square_root};
 

@@ -42,7 +42,8 @@ impl AxisPlan {
                 start_steps += planned.profile.steps();
                 planned
             })
-            .collect();
+            .collect::<Vec<_>>();
+        debug_assert!(!moves.is_empty(), "an axis without a move");
         Self { moves, duration_s: start_s, steps: start_steps }
     }
 
@@ -65,7 +66,6 @@ impl AxisPlan {
     }
 
     /// The move at `t` and the time in it; of moves that begin at the same time the last.
-    #[inline(always)]
     fn at(&self, t: f64) -> Option<(&PlannedMove, f64)> {
         let after = self.moves.partition_point(|planned| planned.start_s <= t);
         let planned = self.moves.get(after.saturating_sub(1))?;
@@ -96,7 +96,6 @@ impl AxisPlan {
 
     /// [`Self::steps_due`], quick where `before` were due a short time before: then a table's row is
     /// looked for from there on.
-    #[inline(always)]
     pub(crate) fn steps_due_after(&self, t: f64, before: i64) -> i64 {
         match self.at(t) {
             Some((PlannedMove { profile: Profile::TrapezoidTable(table), start_steps, .. }, since))

@@ -60,7 +60,9 @@ impl Breakpoints {
         let moves = plan.moves().iter().map(|planned| {
             let period_s = planned.profile.repeats().map(|(period_s, _)| period_s);
             let end_s = planned.start_s + planned.profile.duration_s();
-            Joined { start_s: planned.start_s, end_s, joints: joints(&planned.profile), period_s }
+            let joints = joints(&planned.profile);
+            debug_assert!(joints.is_sorted(), "joints go back in time: {joints:?}");
+            Joined { start_s: planned.start_s, end_s, joints, period_s }
         });
         Self { moves: moves.collect() }
     }

@@ -4,6 +4,14 @@
 //! speed  |-------|            constant: from the first instant to the last
 //!        |       |_________   dwell: none
 //! ```
+//!
+//! ```
+//! use stepscope_motion::{Curve, constant_velocity::{Constant, Dwell}};
+//!
+//! let left = Constant::new(-500, 1000.0);
+//! assert_eq!((left.duration_s(), left.position(0.25), left.speed(0.25)), (0.5, -250.0, -1000.0));
+//! assert_eq!(Dwell::new(0.1).position(0.05), 0.0);
+//! ```
 
 use crate::{Curve, Peaks};
 use alloc::string::String;

@@ -11,13 +11,17 @@
 //! ```
 //!
 //! The mirror makes s(T) exactly n. With t_s = 0 the speed jumps to f_max and back.
+//!
+//! ```
+//! use stepscope_motion::{Curve, cosine::Cosine};
+//!
+//! // One turn of 3200 steps in 0.4 s, half of it speeding up.
+//! let turn = Cosine::new(3200, 0.4, 0.2);
+//! assert_eq!(turn.top_speed(), 16_000.0);
+//! assert_eq!((turn.position(0.2), turn.position(0.4)), (1600.0, 3200.0));
+//! ```
 
-use crate::{
-    Curve, Peaks,
-    format::{describe, ramp_up_to},
-    mirrored::Mirrored,
-    ramp::longest_ramp_s,
-};
+use crate::{Curve, Peaks, format::ramp_up_to, mirrored::Mirrored, ramp::longest_ramp_s};
 use alloc::string::String;
 use core::f64::consts::PI;
 
@@ -34,6 +38,7 @@ impl Cosine {
     /// `steps` (left negative) in `duration_s` > 0 with ramps of `ramp_s`, 0 to half of it.
     #[must_use]
     pub fn new(steps: i64, duration_s: f64, ramp_s: f64) -> Self {
+        debug_assert!((0.0..=duration_s / 2.0).contains(&ramp_s), "ramps of {ramp_s} s in {duration_s} s");
         let top_speed = steps.unsigned_abs() as f64 / (duration_s - ramp_s);
         Self { halves: Mirrored { steps, duration_s }, ramp_s, top_speed }
     }
@@ -133,7 +138,7 @@ impl Curve for Cosine {
 
     fn detail(&self, limit_steps_s: f64) -> String {
         let longest_s = self.longest_ramp_s(limit_steps_s);
-        describe(self.peaks()) + &ramp_up_to(longest_s, self.duration_s())
+        self.peaks().to_text() + &ramp_up_to(longest_s, self.duration_s())
     }
 }
 

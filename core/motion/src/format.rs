@@ -1,6 +1,5 @@
 //! What there is to say of a move, in words: numbers as people write them.
 
-use crate::Peaks;
 use alloc::{format, string::String};
 
 /// A whole number with groups of three digits and a true minus, as the page prints them.
@@ -16,11 +15,6 @@ pub fn grouped(value: f64) -> String {
         text.push(digit);
     }
     text
-}
-
-/// The greatest speed and acceleration of a move.
-pub(super) fn describe(peaks: Peaks) -> String {
-    format!("peak {} steps/s, {} steps/s\u{b2}", grouped(peaks.speed), grouped(peaks.acceleration))
 }
 
 /// The longest ramp with which a bus still follows a move of `duration_s`, where there is one.

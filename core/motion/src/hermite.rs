@@ -14,7 +14,7 @@
 //! keeps its digits. Within the bound of 2*d the slope is 0 at an end alone, if anywhere: nowhere else
 //! does a place have an uncertain time.
 
-use crate::{profile::greater, square_root};
+use crate::{bisection::Bracket, curve::greater, square_root};
 
 /// Newton's steps after which a root has all its digits; at most eight do.
 const MAX_NEWTON_STEPS: u32 = 64;
@@ -59,21 +59,16 @@ impl Seen {
         let square = self.near_speed * self.near_speed + 4.0 * self.square * way;
         let slope = self.near_speed + square_root(greater(0.0, square));
         let mut x = if slope > 0.0 { 2.0 * way / slope } else { length };
-        let (mut low, mut high) = (0.0, length);
+        let mut bracket = Bracket::new(0.0, length);
+        if x > length {
+            x = bracket.middle();
+        }
         for _ in 0..MAX_NEWTON_STEPS {
-            if x > high {
-                x = (low + high) / 2.0;
-            }
             let missing = way - self.way(x);
-            if missing >= 0.0 {
-                low = x
-            } else {
-                high = x
-            }
-            let correction = missing / self.speed(x);
-            let next = x + correction;
+            bracket.narrow(x, missing >= 0.0);
+            let next = x + missing / self.speed(x);
             // Also where there is no slope to divide by.
-            let next = if next >= low && next <= high { next } else { (low + high) / 2.0 };
+            let next = if next >= bracket.low && next <= bracket.high { next } else { bracket.middle() };
             let done = libm::fabs(next - x) <= x * f64::EPSILON;
             x = next;
             if done {

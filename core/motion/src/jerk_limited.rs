@@ -25,14 +25,18 @@
 //! that is left of the ramp; the second half mirrors the first. A step's time is the root of its
 //! phase's own polynomial, from the end at which it is small: a cube root, a quadratic in the form
 //! that does not cancel, and Newton's method, which for the last only comes from one side.
+//!
+//! ```
+//! use stepscope_motion::{Curve, jerk_limited::{JerkLimited, Limits}};
+//!
+//! let limits = Limits { speed: 10_000.0, acceleration: 100_000.0, jerk: 2_000_000.0 };
+//! let go = JerkLimited::new(3200, limits);
+//! let peaks = go.peaks();
+//! assert!(peaks.speed <= 10_000.0 && peaks.acceleration <= 100_000.0 && peaks.jerk <= 2_000_000.0);
+//! assert_eq!((go.position(go.duration_s()), go.speed(0.0)), (3200.0, 0.0));
+//! ```
 
-use crate::{
-    Curve, Peaks,
-    format::{describe, grouped},
-    mirrored::Mirrored,
-    profile::greater,
-    square_root,
-};
+use crate::{Curve, Peaks, curve::greater, format::grouped, mirrored::Mirrored, square_root};
 use alloc::{format, string::String, vec::Vec};
 
 /// Newton's steps after which a root has all its digits; at most six do.
@@ -241,7 +245,7 @@ impl Curve for JerkLimited {
         let phases: Vec<String> = self.phases_s().iter().map(|phase_s| format!("{phase_s:.4}")).collect();
         format!(
             "{}, {} steps/s\u{b3}; phases of {} s and back",
-            describe(self.peaks()),
+            self.peaks().to_text(),
             grouped(self.jerk),
             phases.join(", ")
         )

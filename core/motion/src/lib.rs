@@ -21,9 +21,22 @@
 //! Positions are in steps, f64, and not rounded: [`round_half_up`] is the one rounding (B1's R),
 //! and `quantise` is where it decides. All mathematics that is more than + - * / and the square root
 //! comes from `libm`, so a plan has the same bits on every target.
+//!
+//! ```
+//! use stepscope_motion::{moves::Axis, plan_axis};
+//!
+//! // The default axis makes one turn of 3200 steps by a cosine S-curve.
+//! let plan = plan_axis(&Axis::default(), "x").expect("it can be planned");
+//! assert_eq!((plan.steps(), plan.duration_s()), (3200, 0.4));
+//! assert_eq!((plan.position(0.2), plan.speed(0.2)), (1600.0, 16_000.0));
+//! ```
 #![cfg_attr(not(any(test, feature = "std")), no_std)]
 
 extern crate alloc;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
 
 pub mod problem;
 
@@ -37,9 +50,11 @@ pub mod moves;
 
 pub mod acceleration_table;
 mod axis;
+pub mod bisection;
 mod breakpoints;
 pub mod constant_velocity;
 pub mod cosine;
+mod curve;
 pub mod excitation;
 mod format;
 mod hermite;
@@ -67,10 +82,11 @@ pub mod trapezoid_table;
 
 pub use axis::{AxisPlan, PlannedMove};
 pub use breakpoints::{Breakpoints, Interval};
+pub use curve::{Curve, Peaks};
 pub use format::grouped;
 pub use plan::{plan_axis, plan_lists};
 pub use problem::{Cause, Problem, Validator, ValueError};
-pub use profile::{Curve, Peaks, Profile};
+pub use profile::Profile;
 pub use scheduled_step::ScheduledStep;
 pub use step_times::StepTimes;
 
@@ -97,7 +113,6 @@ pub fn round_half_up(x: f64) -> i64 {
 
 /// The square root. IEEE 754 leaves it no choice of bits, so every target may take its own:
 /// wasm has an instruction for it, and `libm` there has ten times its time.
-#[inline]
 fn square_root(x: f64) -> f64 {
     #[cfg(feature = "std")]
     let root = x.sqrt();

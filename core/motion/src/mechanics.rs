@@ -3,6 +3,16 @@
 //!
 //! `{"mm": 250}` and `{"steps": 6400}` are both distances. Millimetres and degrees need mechanics
 //! that have them; where an axis has none, the quantity is refused with the remedy.
+//!
+//! ```
+//! use stepscope_motion::mechanics::{Distance, Mechanics, Screw};
+//!
+//! let screw = Mechanics::Screw(Screw { lead_mm: 8.0, ..Screw::default() });
+//! // 200 full steps of 16 microsteps a turn, and 8 mm a turn.
+//! assert_eq!(Distance::Millimetres(2.0).in_steps(&screw), Ok(800.0));
+//! let refused = Distance::Millimetres(2.0).in_steps(&Mechanics::default()).unwrap_err();
+//! assert_eq!((refused.unit, refused.mechanics), ("mm", "rotary"));
+//! ```
 
 use crate::parameters::parameters;
 use core::f64::consts::PI;

@@ -8,7 +8,7 @@
 //!       T/2      T
 //! ```
 
-use crate::profile::greater;
+use crate::curve::greater;
 
 /// What the two halves of such a move share.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,6 +5,15 @@
 //! among them: by the same table 1.5 A through 1.6 ohm need 2.4 V, and with a current-regulating driver
 //! the supply decides, not the rated voltage. The document does not give its supply, its load or what
 //! the motor has to overcome; 24 V, no inertia and no torque stand for them.
+//!
+//! ```
+//! use stepscope_motion::{motor::Motor, moves::Axis, plan_axis};
+//!
+//! let motor = Motor { supply_v: 36.0, load_torque_mn_m: 50.0, ..Motor::default() };
+//! let with_motor = Axis { motor: Some(motor), ..Axis::default() };
+//! let plan = plan_axis(&with_motor, "x").expect("it holds");
+//! assert_eq!(plan, plan_axis(&Axis::default(), "x").expect("it holds"));
+//! ```
 
 use crate::parameters::parameters;
 

@@ -1,4 +1,18 @@
 //! The moves of an axis: what each kind is asked, with its defaults (DESIGN Part B).
+//!
+//! ```
+//! use stepscope_motion::{
+//!     mechanics::Distance,
+//!     moves::{Axis, Cosine, Dwell, Move},
+//!     plan_axis,
+//! };
+//!
+//! let go = Move::Cosine(Cosine { distance: Distance::Steps(1600.0), ..Cosine::default() });
+//! let wait = Move::Dwell(Dwell { duration_s: 0.25 });
+//! let axis = Axis { moves: vec![go, wait], ..Axis::default() };
+//! let plan = plan_axis(&axis, "x").expect("it holds");
+//! assert_eq!((plan.steps(), plan.duration_s()), (1600, 0.65));
+//! ```
 
 use crate::{
     mechanics::{Acceleration, Distance, Jerk, Mechanics, Speed},

@@ -7,7 +7,7 @@
 //! -2*A |    \/        \/       4*A steps a period, 0 at the end of each
 //! ```
 
-use crate::profile::greater;
+use crate::curve::greater;
 
 /// Whole periods between two extremes.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -15,14 +15,18 @@
 //! position counts those before it. A turn that only touches a half-integer from below, for an instant
 //! or by standing there, does not cross it: no step falls due, though R of a position at it is one more.
 //! From its end on the axis stands at R of the last position.
+//!
+//! ```
+//! use stepscope_motion::{Curve, points::{Between, Points}};
+//!
+//! let there_and_back = [(0.0, 0.0), (0.5, 1000.0), (1.0, 0.0)];
+//! let curve = Points::new(&there_and_back, Between::Smooth).expect("times rise");
+//! assert_eq!((curve.step_count(), curve.steps()), (2000, 0));
+//! assert_eq!((curve.position(0.5), curve.speed(0.5)), (1000.0, 0.0));
+//! assert_eq!(Points::new(&[(0.0, 0.0), (0.0, 1.0)], Between::Straight), None);
+//! ```
 
-use crate::{
-    Curve, Peaks,
-    format::{describe, grouped},
-    hermite::Cubic,
-    profile::greater,
-    round_half_up,
-};
+use crate::{Curve, Peaks, curve::greater, format::grouped, hermite::Cubic, round_half_up};
 use alloc::{format, string::String, vec::Vec};
 
 /// How a curve goes from point to point.
@@ -66,6 +70,8 @@ impl Points {
             smoothen(&mut pieces);
         }
         let made = made(&pieces);
+        debug_assert!(made.len() == pieces.len() && pieces.first().is_some_and(|first| first.from_s == 0.0));
+        debug_assert!(pieces.is_sorted_by(|piece, next| piece.to_s == next.from_s && piece.to == next.from));
         Some(Self { pieces, made, between })
     }
 
@@ -248,7 +254,7 @@ impl Curve for Points {
                 Between::Straight => "straight between them",
                 Between::Smooth => "smooth, from rest to rest",
             },
-            describe(self.peaks())
+            self.peaks().to_text()
         )
     }
 }

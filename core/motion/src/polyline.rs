@@ -7,8 +7,17 @@
 //!    |       '-._         from the cosine stays within d1
 //!  0 +-----------'- 512
 //! ```
+//!
+//! ```
+//! use stepscope_motion::polyline::{breakpoints, next_deviation};
+//!
+//! // The document's six segments a quarter.
+//! let six = breakpoints(0.0054);
+//! assert_eq!(six, [0, 67, 136, 208, 287, 381, 512]);
+//! assert!(next_deviation(&six).is_some_and(|d1| d1 > 0.0054));
+//! ```
 
-use crate::{profile::greater, round_half_up};
+use crate::{curve::greater, round_half_up};
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 
@@ -18,6 +27,8 @@ pub const POINTS: u16 = 2048;
 pub const QUARTER: u16 = POINTS / 4;
 /// In how many parts a chord is cut to find its greatest deviation; its ends count too.
 const CHORD_PARTS: u16 = 100;
+// Four quarters are a period, to the point.
+const _: () = assert!(4 * QUARTER == POINTS);
 
 /// y = cos at a point of the angle, 0..=[`QUARTER`].
 pub fn cosine_at(point: u16) -> f64 {

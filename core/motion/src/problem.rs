@@ -1,5 +1,15 @@
 //! What can be wrong with a motion: every problem with its path, what was given, what is allowed, and what to change;
 //! and the one collector of problems, which the scenario shares.
+//!
+//! ```
+//! use stepscope_motion::problem::{Validator, ValueError};
+//!
+//! let mut validator: Validator = Validator::default();
+//! validator.range("axis.speed", 12_000.0, 1.0, 10_000.0, "steps/s");
+//! let problems = validator.end(()).unwrap_err();
+//! assert_eq!(problems[0].path, "axis.speed");
+//! assert!(problems[0].to_string().starts_with("axis.speed: 12000 steps/s"), "{}", problems[0]);
+//! ```
 
 use alloc::string::String;
 use alloc::vec::Vec;

@@ -1,9 +1,9 @@
-//! What all motions share: a curve over time, in steps (DESIGN B1).
+//! The curve of one move, of any family: what the planner makes and everything after it asks.
 
 use crate::{
     constant_velocity::{Constant, Dwell},
     cosine::Cosine,
-    format::describe,
+    curve::{Curve, Peaks},
     jerk_limited::JerkLimited,
     points::Points,
     ramps::Ramps,
@@ -15,74 +15,6 @@ use crate::{
     trapezoid_table::TrapezoidTable,
 };
 use alloc::string::String;
-
-/// The curve of one move: position, speed and acceleration over time since the move's start.
-///
-/// Times are in s, positions in steps from the move's own start, left negative. Before the start a
-/// curve stands at 0, after its end at [`Curve::steps`].
-pub trait Curve {
-    /// How long the move lasts, in s.
-    fn duration_s(&self) -> f64;
-
-    /// Where it ends, in steps from its start.
-    fn steps(&self) -> i64;
-
-    /// Position at `t`: B1's rounding of it gives the steps due by `t`, and at the end it is
-    /// exactly [`Curve::steps`].
-    fn position(&self, t: f64) -> f64;
-
-    /// Speed at `t` in steps/s: at the start the first that the move has, at the end the last.
-    fn speed(&self, t: f64) -> f64;
-
-    /// Acceleration at `t` in steps/s^2; where the speed jumps it has no value, and none is given.
-    fn acceleration(&self, t: f64) -> f64;
-
-    /// The greatest values within the move; what its start and its end jump by is the axis' to know.
-    fn peaks(&self) -> Peaks;
-
-    /// What a user wants to know of the move beside its times, in a few words, on a bus that can
-    /// give `limit_steps_s`; empty where there is nothing to say.
-    fn detail(&self, _limit_steps_s: f64) -> String {
-        describe(self.peaks())
-    }
-}
-
-/// The greatest magnitudes of a move or an axis.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Peaks {
-    /// Speed in steps/s.
-    pub speed: f64,
-    /// Acceleration in steps/s^2 where the speed has no jump.
-    pub acceleration: f64,
-    /// Jump of speed in steps/s: what a motor has to follow at once (its start-stop rate).
-    pub jump: f64,
-    /// Jerk in steps/s^3 where the acceleration has no jump; 0 where the acceleration only jumps.
-    pub jerk: f64,
-    /// Jump of acceleration in steps/s^2; there the jerk has no bound. At a jump of speed it is that from
-    /// the acceleration before to the one after.
-    pub acceleration_jump: f64,
-}
-
-impl Peaks {
-    /// The greater of both, each by itself.
-    #[must_use]
-    #[inline(always)]
-    pub fn or(self, other: Self) -> Self {
-        Self {
-            speed: greater(self.speed, other.speed),
-            acceleration: greater(self.acceleration, other.acceleration),
-            jump: greater(self.jump, other.jump),
-            jerk: greater(self.jerk, other.jerk),
-            acceleration_jump: greater(self.acceleration_jump, other.acceleration_jump),
-        }
-    }
-}
-
-/// The greater of two magnitudes.
-#[inline(always)]
-pub(super) fn greater(a: f64, b: f64) -> f64 {
-    if b > a { b } else { a }
-}
 
 /// The curve of one move, of any family.
 #[derive(Clone, Debug, PartialEq)]

@@ -21,8 +21,17 @@
 //!
 //! Near the start all terms of these formulas but one cancel; each is written so that none does, and a time
 //! in the ramp has its digits there too.
+//!
+//! ```
+//! use stepscope_motion::ramp::Ramp;
+//!
+//! let shape = Ramp::sigmoid(6.0);
+//! assert_eq!((shape.speed(0.0), shape.speed(1.0), shape.area()), (0.0, 1.0, 0.5));
+//! // An exponential is past half its speed early, and so has more of the way behind it.
+//! assert!(Ramp::exponential(4.0).area() > 0.7);
+//! ```
 
-use crate::square_root;
+use crate::{bisection::Bracket, square_root};
 
 /// Newton's steps after which a place is taken as it is; from the guesses here seven do.
 const MAX_STEPS: u32 = 100;
@@ -179,19 +188,15 @@ impl Ramp {
     /// From a guess to the x with G(x) = `way`. G rises and bends upwards, so from above Newton's steps
     /// fall towards it; a step that leaves what is known of it is halved into it.
     fn newton(&self, way: f64, guess: f64) -> f64 {
-        let (mut low, mut high, mut x) = (0.0, 1.0, guess);
+        let (mut bracket, mut x) = (Bracket::new(0.0, 1.0), guess);
         for _ in 0..MAX_STEPS {
             let over = self.way(x) - way;
-            if over < 0.0 {
-                low = x
-            } else {
-                high = x
-            }
+            bracket.narrow(x, over < 0.0);
             let next = x - over / self.speed(x);
             if libm::fabs(next - x) <= 4.0 * f64::EPSILON * x {
                 return least(next, 1.0);
             }
-            x = if next > low && next < high { next } else { low + (high - low) / 2.0 };
+            x = if next > bracket.low && next < bracket.high { next } else { bracket.middle() };
         }
         x
     }

@@ -13,10 +13,19 @@
 //!
 //! Slowing down is speeding up, mirrored in time: with an exponential the speed falls slowly at first
 //! and steeply at the end.
+//!
+//! ```
+//! use stepscope_motion::{Curve, ramp::Ramp, ramps::Ramps};
+//!
+//! let sharp = Ramps::new(3200, 0.4, 0.1, Ramp::Straight);
+//! let soft = sharp.with_ramp_s(0.2);
+//! assert!(soft.peaks().acceleration < sharp.peaks().acceleration);
+//! assert!(soft.top_speed() > sharp.top_speed()); // as far in the same time
+//! ```
 
 use crate::{
     Curve, Peaks,
-    format::{describe, grouped, ramp_up_to},
+    format::{grouped, ramp_up_to},
     mirrored::Mirrored,
     ramp::{Ramp, longest_ramp_s},
 };
@@ -38,6 +47,7 @@ impl Ramps {
     /// `steps` (left negative) in `duration_s` > 0 with ramps of `ramp_s`, 0 to half of it.
     #[must_use]
     pub fn new(steps: i64, duration_s: f64, ramp_s: f64, ramp: Ramp) -> Self {
+        debug_assert!((0.0..=duration_s / 2.0).contains(&ramp_s), "ramps of {ramp_s} s in {duration_s} s");
         let area = ramp.area();
         let top_speed = steps.unsigned_abs() as f64 / (duration_s - 2.0 * ramp_s * (1.0 - area));
         Self { halves: Mirrored { steps, duration_s }, ramp_s, ramp, area, top_speed }
@@ -144,7 +154,7 @@ impl Curve for Ramps {
         let jerk =
             if peaks.jerk > 0.0 { format!(", {} steps/s\u{b3}", grouped(peaks.jerk)) } else { String::new() };
         let longest_s = self.longest_ramp_s(limit_steps_s);
-        describe(peaks) + &jerk + &ramp_up_to(longest_s, self.duration_s())
+        peaks.to_text() + &jerk + &ramp_up_to(longest_s, self.duration_s())
     }
 }
 

@@ -12,15 +12,24 @@
 //!
 //! So no step's time is a small difference of large numbers: the arc sine is taken up to 45 degrees
 //! alone, and the half periods before are added to it as a whole number, whatever their count.
+//!
+//! ```
+//! use stepscope_motion::{Curve, sine::Sine};
+//!
+//! // An amplitude of 100 steps, 0.5 s a period: it starts at the right extreme, which counts as 0.
+//! let sine = Sine::new(100, 0.5, 2);
+//! assert_eq!((sine.duration_s(), sine.step_count(), sine.steps()), (1.0, 800, 0));
+//! assert_eq!(sine.position(0.25), -200.0);
+//! ```
 
-use crate::{Curve, Peaks, format::describe, oscillation::Oscillation, square_root};
+use crate::{Curve, Peaks, oscillation::Oscillation, square_root};
 use alloc::{format, string::String};
 use core::f64::consts::{PI, TAU};
 
 /// A sine, each step in its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sine {
-    swing: Oscillation,
+    oscillation: Oscillation,
 }
 
 impl Sine {
@@ -28,30 +37,30 @@ impl Sine {
     /// the middle; a negative amplitude starts at the left extreme.
     #[must_use]
     pub fn new(amplitude: i64, period_s: f64, periods: u32) -> Self {
-        Self { swing: Oscillation::new(amplitude, period_s, periods) }
+        Self { oscillation: Oscillation::new(amplitude, period_s, periods) }
     }
 
     /// Time of a period in s.
     #[must_use]
     pub fn period_s(&self) -> f64 {
-        self.swing.period_s
+        self.oscillation.period_s
     }
 
     /// How many periods.
     #[must_use]
     pub fn periods(&self) -> u32 {
-        self.swing.periods
+        self.oscillation.periods
     }
 
     /// Steps of all periods, there and back: 4*A a period.
     #[must_use]
     pub fn step_count(&self) -> u64 {
-        self.swing.step_count()
+        self.oscillation.step_count()
     }
 
     /// Where each step falls due, in half periods from the start, and whether it goes to the right.
     pub(super) fn due_halves(&self) -> impl Iterator<Item = (f64, bool)> + use<> {
-        let Oscillation { amplitude, starts_right, periods, .. } = self.swing;
+        let Oscillation { amplitude, starts_right, periods, .. } = self.oscillation;
         (0..2 * u64::from(periods)).flat_map(move |half| {
             let right = starts_right == (half % 2 == 1);
             (1..=2 * amplitude).map(move |k| (half as f64 + part_of_half(k, amplitude), right))
@@ -60,17 +69,17 @@ impl Sine {
 
     /// When step `k` (from 1) of all falls due, in half periods from the start.
     pub(super) fn due_half(&self, k: u64) -> f64 {
-        let of_half = 2 * self.swing.amplitude;
-        ((k - 1) / of_half) as f64 + part_of_half((k - 1) % of_half + 1, self.swing.amplitude)
+        let of_half = 2 * self.oscillation.amplitude;
+        ((k - 1) / of_half) as f64 + part_of_half((k - 1) % of_half + 1, self.oscillation.amplitude)
     }
 
     fn amplitude(&self) -> f64 {
-        self.swing.amplitude as f64
+        self.oscillation.amplitude as f64
     }
 
     /// 2*pi/T.
     fn angular_speed(&self) -> f64 {
-        TAU / self.swing.period_s
+        TAU / self.oscillation.period_s
     }
 }
 
@@ -84,7 +93,7 @@ fn part_of_half(k: u64, amplitude: u64) -> f64 {
 
 impl Curve for Sine {
     fn duration_s(&self) -> f64 {
-        self.swing.duration_s()
+        self.oscillation.duration_s()
     }
 
     fn steps(&self) -> i64 {
@@ -95,22 +104,22 @@ impl Curve for Sine {
         if t <= 0.0 || t >= self.duration_s() {
             return 0.0;
         }
-        let sine = libm::sin(PI * self.swing.part(t));
-        self.swing.signed(-2.0 * self.amplitude() * sine * sine)
+        let sine = libm::sin(PI * self.oscillation.part(t));
+        self.oscillation.signed(-2.0 * self.amplitude() * sine * sine)
     }
 
     fn speed(&self, t: f64) -> f64 {
         if t <= 0.0 || t >= self.duration_s() {
             return 0.0;
         }
-        let sine = libm::sin(TAU * self.swing.part(t));
-        self.swing.signed(-self.amplitude() * self.angular_speed() * sine)
+        let sine = libm::sin(TAU * self.oscillation.part(t));
+        self.oscillation.signed(-self.amplitude() * self.angular_speed() * sine)
     }
 
     fn acceleration(&self, t: f64) -> f64 {
-        let part = if t >= self.duration_s() { 0.0 } else { self.swing.part(t) };
+        let part = if t >= self.duration_s() { 0.0 } else { self.oscillation.part(t) };
         let scale = self.amplitude() * self.angular_speed() * self.angular_speed();
-        self.swing.signed(-scale * libm::cos(TAU * part))
+        self.oscillation.signed(-scale * libm::cos(TAU * part))
     }
 
     fn peaks(&self) -> Peaks {
@@ -121,8 +130,8 @@ impl Curve for Sine {
     }
 
     fn detail(&self, _: f64) -> String {
-        let hertz = 1.0 / self.swing.period_s;
-        format!("{hertz:.4} Hz; {}", describe(self.peaks()))
+        let hertz = 1.0 / self.oscillation.period_s;
+        format!("{hertz:.4} Hz; {}", self.peaks().to_text())
     }
 }
 

@@ -12,13 +12,23 @@
 //!   -A |      \______/            position  from the start: 0, down to -2*A, up to 0
 //!      0     512 1024 1536 2048 i
 //! ```
+//!
+//! ```
+//! use stepscope_motion::{Curve, sine_segments::SineSegments};
+//!
+//! let sine = SineSegments::new(1000, 0.5, 4, 0.006);
+//! assert_eq!(sine.segments().len(), 6);
+//! // Within a segment the rate is one: no acceleration, and jumps between.
+//! assert_eq!(sine.peaks().acceleration, 0.0);
+//! assert!(sine.peaks().jump > 0.0);
+//! ```
 
 use crate::{
     Curve, Peaks,
+    curve::greater,
     format::grouped,
     oscillation::Oscillation,
     polyline::{Folded, POINTS, QUARTER, breakpoints, cosine_at, fold},
-    profile::greater,
     round_half_up,
 };
 use alloc::{format, string::String, vec::Vec};
@@ -73,7 +83,7 @@ pub struct Memory {
 /// A sine by segments.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SineSegments {
-    swing: Oscillation,
+    oscillation: Oscillation,
     /// The first quarter.
     ///
     /// Invariant: begins at point 0, ends at [`QUARTER`], without gaps.
@@ -105,8 +115,15 @@ impl SineSegments {
                     from_steps: vertex(from),
                 })
             })
-            .collect();
-        Self { swing: Oscillation::new(amplitude, period_s, periods), segments }
+            .collect::<Vec<_>>();
+        debug_assert!(
+            segments.first().is_some_and(|first| first.from == 0)
+                && segments.last().is_some_and(|last| last.to == QUARTER)
+                && segments
+                    .is_sorted_by(|segment, next| segment.from < segment.to && segment.to == next.from),
+            "the segments do not cover the quarter"
+        );
+        Self { oscillation: Oscillation::new(amplitude, period_s, periods), segments }
     }
 
     /// The segments of the first quarter, from the extreme to the middle.
@@ -120,28 +137,28 @@ impl SineSegments {
     pub fn memory(&self) -> Memory {
         let long = self.segments.iter().any(|segment| segment.steps > u16::MAX.into());
         let each = if long { 8 } else { 6 };
-        Memory { segments: self.segments.len() as u64 * each, intervals: self.swing.amplitude * 4 }
+        Memory { segments: self.segments.len() as u64 * each, intervals: self.oscillation.amplitude * 4 }
     }
 
     /// Time of a period in s.
     #[must_use]
     pub fn period_s(&self) -> f64 {
-        self.swing.period_s
+        self.oscillation.period_s
     }
 
     /// How many periods.
     #[must_use]
     pub fn periods(&self) -> u32 {
-        self.swing.periods
+        self.oscillation.periods
     }
 
     /// The segments of all quarters, one after another.
     pub(crate) fn pieces(&self) -> impl Iterator<Item = Interval> + '_ {
         let quarters =
-            (0..self.swing.periods).flat_map(|period| (0..4_u16).map(move |quarter| (period, quarter)));
+            (0..self.oscillation.periods).flat_map(|period| (0..4_u16).map(move |quarter| (period, quarter)));
         quarters.flat_map(move |(period, quarter)| {
             let origin = f64::from(period) * f64::from(POINTS);
-            let right = self.swing.starts_right == (quarter >= 2);
+            let right = self.oscillation.starts_right == (quarter >= 2);
             (0..self.segments.len()).map(move |index| {
                 // Every other quarter goes through the segments from the middle to the extreme.
                 let (mirrored, last) = (quarter % 2 == 1, self.segments.len() - 1);
@@ -171,18 +188,18 @@ impl SineSegments {
     /// Time of a point of the angle in s.
     #[must_use]
     pub fn point_s(&self) -> f64 {
-        self.swing.period_s / f64::from(POINTS)
+        self.oscillation.period_s / f64::from(POINTS)
     }
 
     /// Steps of all periods, there and back.
     #[must_use]
     pub fn step_count(&self) -> u64 {
-        self.swing.step_count()
+        self.oscillation.step_count()
     }
 
     /// Place within a period at `t`, and the segment there.
     fn place(&self, t: f64) -> (Folded, Option<&Segment>) {
-        let folded = fold(self.swing.part(t) * f64::from(POINTS));
+        let folded = fold(self.oscillation.part(t) * f64::from(POINTS));
         let found = self.segments.partition_point(|segment| {
             // A boundary belongs to the segment after it in time.
             let end = f64::from(segment.to);
@@ -202,7 +219,7 @@ impl SineSegments {
 
 impl Curve for SineSegments {
     fn duration_s(&self) -> f64 {
-        self.swing.duration_s()
+        self.oscillation.duration_s()
     }
 
     fn steps(&self) -> i64 {
@@ -218,12 +235,12 @@ impl Curve for SineSegments {
         let along = (folded.point - f64::from(segment.from)) / f64::from(segment.to - segment.from);
         let from_middle = segment.from_steps as f64 - segment.steps as f64 * along;
         let place = if folded.right { from_middle } else { -from_middle };
-        self.swing.signed(place - self.swing.amplitude as f64)
+        self.oscillation.signed(place - self.oscillation.amplitude as f64)
     }
 
     fn speed(&self, t: f64) -> f64 {
         let last = self.segments.first().map_or(0.0, |segment| segment.rate);
-        self.swing.signed(if t >= self.duration_s() { last } else { self.rate_at(t) })
+        self.oscillation.signed(if t >= self.duration_s() { last } else { self.rate_at(t) })
     }
 
     fn acceleration(&self, _: f64) -> f64 {

@@ -20,12 +20,22 @@
 //! Within a slice the steps are even: they stand in the middles of as many equal parts, so the curve is
 //! straight from slice to slice and crosses its half-integers there (B1). A product that is whole but for
 //! the last digits of its factors counts as whole.
+//!
+//! ```
+//! use stepscope_motion::{Curve, sliced::Sliced};
+//!
+//! // The document's slices of 1 ms: every one has whole steps, and they add up.
+//! let sliced = Sliced::new(3200, 0.4, 0.2, 0.001, 1000).expect("few enough slices");
+//! assert_eq!(sliced.slices().map(|(_, _, steps)| steps).sum::<u32>(), 3200);
+//! assert!(sliced.compensated_steps() > 3200);
+//! assert!(sliced.time_error().relative.abs() < 0.008);
+//! ```
 
 use crate::{
     Curve, MAX_SPEED, Peaks,
     cosine::Cosine,
+    curve::greater,
     format::{grouped, ramp_up_to},
-    profile::greater,
     round_half_up,
 };
 use alloc::{format, string::String, vec::Vec};
@@ -119,6 +129,12 @@ impl Sliced {
         let (compensated, top_speed) =
             slices.coarse(&exact, ramp_s).ok_or(NotSliced::TooFew { slices: needed })?;
         let (starts_s, sums, top_rate) = slices.fine(top_speed, &exact);
+        debug_assert!(starts_s.len() >= 2 && starts_s.is_sorted_by(|a, b| a < b), "a slice without a length");
+        debug_assert!(sums.len() == starts_s.len() && sums.first() == Some(&0) && sums.is_sorted());
+        debug_assert!(
+            sums.last().copied().map(u64::from) == Some(steps.unsigned_abs()),
+            "the slices do not have all steps"
+        );
         Ok(Self { exact, compensated, starts_s, sums, top_rate })
     }
 
@@ -165,7 +181,6 @@ impl Sliced {
     }
 
     /// Slice `index`; past the last none.
-    #[inline(always)]
     fn slice(&self, index: usize) -> Option<(f64, f64, u32, u32)> {
         let (from, to) = (self.starts_s.get(index)?, self.starts_s.get(index + 1)?);
         let (before, after) = (self.sums.get(index)?, self.sums.get(index + 1)?);
@@ -202,7 +217,6 @@ fn slices_in(ratio: f64) -> u64 {
 }
 
 /// floor, of a number from 0 on.
-#[inline(always)]
 fn whole_steps(steps: f64) -> u64 {
     (steps + NEARLY) as u64
 }
@@ -227,7 +241,6 @@ impl Slices {
     }
 
     /// Steps of a slice at a top speed; in the plateau all have the same.
-    #[inline(always)]
     fn steps(&self, index: usize, top_speed: f64) -> u64 {
         let weight = self.weights.get(index).copied().unwrap_or(0.0);
         whole_steps(top_speed * if self.plateau.contains(&index) { self.slice_s } else { weight })

@@ -11,12 +11,22 @@
 //!      ||S               S| |    L < 2S       all at f_1 (the document), or as many rows as fit
 //!      +---------------------    twice, and what is left of the way at the rate after them
 //! ```
+//!
+//! ```
+//! use stepscope_motion::{moves::ShortMove, staircase::Staircase, staircase_table::StaircaseTable};
+//!
+//! let table = StaircaseTable::new(1000.0, 20_000.0, 3000.0);
+//! let go = Staircase::new(10_000, table, 5000, ShortMove::Document, 1000).expect("few enough rows");
+//! assert_eq!(2 * go.ramp_steps() + go.plateau_steps(), 10_000);
+//! assert_eq!(go.plateau_rate(), Some(5000));
+//! ```
 
 use crate::moves::ShortMove;
 use crate::{
     Curve, Peaks,
+    bisection::least,
+    curve::greater,
     format::{count, grouped},
-    profile::greater,
     staircase_table::StaircaseTable,
     stepped,
 };
@@ -70,6 +80,7 @@ impl Staircase {
             start_s += StaircaseTable::steps_in(n) as f64 / table.rate(n) as f64;
             starts_s.push(start_s);
         }
+        debug_assert!(starts_s.is_sorted_by(|a, b| a < b), "a row without a length");
         let ramp_steps = StaircaseTable::steps_after(rows);
         let duration_s = 2.0 * start_s + (count - 2 * ramp_steps) as f64 / plateau_rate as f64;
         Ok(Self { steps, table, ramp_steps, plateau_rate, starts_s, duration_s })
@@ -118,12 +129,7 @@ impl Staircase {
 
     /// Row of step `k` of the ramp, from 1.
     fn row(&self, k: u64) -> u64 {
-        let (mut from, mut to) = (1, self.ramp_rows());
-        while from < to {
-            let middle = from + (to - from) / 2;
-            if StaircaseTable::steps_after(middle) >= k { to = middle } else { from = middle + 1 }
-        }
-        from
+        least(1, self.ramp_rows(), |row| StaircaseTable::steps_after(row) >= k)
     }
 
     /// Time of the first `k` steps of the ramp.

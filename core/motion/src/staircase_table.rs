@@ -8,8 +8,17 @@
 //!
 //! The document lists S_n with the rate that follows it, f_(n+1); its table ends with the first
 //! such rate above f_max. All of it has a closed form, so no row is kept.
+//!
+//! ```
+//! use stepscope_motion::staircase_table::StaircaseTable;
+//!
+//! // The document's table for 1000 steps/s^2: 30 steps at 1000 Hz, then 1030 Hz, then 1058 Hz.
+//! let table = StaircaseTable::new(1000.0, 20_000.0, 1000.0);
+//! assert_eq!([1, 2, 3].map(|row| table.rate(row)), [1000, 1030, 1058]);
+//! assert_eq!((table.rows(), StaircaseTable::steps_after(256)), (256, 200_460));
+//! ```
 
-use crate::{round_half_up, square_root};
+use crate::{bisection::climbed, round_half_up, square_root};
 
 /// Steps of the first row, and what is added to them.
 const FIRST_STEPS: u64 = 30;
@@ -55,34 +64,20 @@ impl StaircaseTable {
     /// Rows whose steps are made before the rate is `rate` or more: the rows of a ramp to it.
     #[must_use]
     pub fn rows_to(&self, rate: u64) -> u64 {
-        first(|rows| self.rate(rows + 1) >= rate)
+        climbed(|rows| self.rate(rows + 1) >= rate)
     }
 
     /// The most rows of which a move of `steps` has room for as many up and down again.
     #[must_use]
     pub fn rows_that_fit(steps: u64) -> u64 {
-        first(|rows| 2 * Self::steps_after(rows + 1) > steps)
+        climbed(|rows| 2 * Self::steps_after(rows + 1) > steps)
     }
 
     /// Rows of the whole table.
     #[must_use]
     pub fn rows(&self) -> u64 {
-        first(|rows| rows > 0 && self.rate(rows + 1) as f64 > self.max_speed)
+        climbed(|rows| rows > 0 && self.rate(rows + 1) as f64 > self.max_speed)
     }
-}
-
-/// The least number from 0 on for which `holds`; it holds for all that follow, and for one below
-/// 2^32.
-fn first(holds: impl Fn(u64) -> bool) -> u64 {
-    let (mut from, mut to) = (0, 1);
-    while !holds(to) && to < 1 << 32 {
-        (from, to) = (to, 2 * to);
-    }
-    while from < to {
-        let middle = from + (to - from) / 2;
-        if holds(middle) { to = middle } else { from = middle + 1 }
-    }
-    from
 }
 
 #[cfg(test)]

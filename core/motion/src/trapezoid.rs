@@ -11,6 +11,15 @@
 //!     +------------------              = n - s(T - t)        from T/2 on
 //!       t_r        T-t_r  T
 //! ```
+//!
+//! ```
+//! use stepscope_motion::{Curve, trapezoid::Trapezoid};
+//!
+//! let go = Trapezoid::new(2000, 250.0, 4000.0, 9000.0);
+//! assert_eq!((go.peak_speed(), go.speed(0.0)), (4000.0, 250.0));
+//! // A short move turns round at its middle, below the top speed.
+//! assert!(Trapezoid::new(200, 250.0, 4000.0, 9000.0).peak_speed() < 4000.0);
+//! ```
 
 use crate::{Curve, Peaks, mirrored::Mirrored, square_root};
 

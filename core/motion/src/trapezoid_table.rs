@@ -19,9 +19,20 @@
 //! make the last step at row 1.
 //!
 //! Only the ramp is kept, as sums of reloads: integers up to the last division by `timer_hz`.
+//!
+//! ```
+//! use stepscope_motion::{acceleration_table::AccelerationTable, trapezoid_table::TrapezoidTable};
+//!
+//! let table = AccelerationTable::new(250.0, 4000.0, 9000.0, 1_000_000);
+//! let go = TrapezoidTable::new(2000, table, 10_000).expect("few enough rows");
+//! // The first step comes 4000 counts of the timer after the start, the last after the one before it.
+//! assert_eq!(go.step_ticks(1), 4000);
+//! assert_eq!(go.step_ticks(2000) - go.step_ticks(1999), 4000);
+//! ```
 
 use crate::{
-    Curve, Peaks, acceleration_table::AccelerationTable, format::grouped, profile::greater, stepped,
+    Curve, Peaks, acceleration_table::AccelerationTable, bisection::least_near, curve::greater,
+    format::grouped, stepped,
 };
 use alloc::{format, string::String, vec::Vec};
 
@@ -75,6 +86,8 @@ impl TrapezoidTable {
             sum += table.reload(row);
             sums.push(sum);
         }
+        debug_assert!(sums.len() >= 2 && sums.is_sorted_by(|a, b| a < b), "a row without a reload");
+        debug_assert!(steps.unsigned_abs() > 2 * ramp, "no interval is between the ramps");
         Ok(Self { steps, table, ramp, sums })
     }
 
@@ -142,6 +155,11 @@ impl TrapezoidTable {
         self.step_ticks(k) as f64 / f64::from(self.table.timer_hz())
     }
 
+    /// The first of the sums that is not under `ticks`, or their number; looked for from `near` on.
+    fn first_sum(&self, ticks: u64, near: u64) -> u64 {
+        least_near(near, self.sums.len() as u64, |steps| self.sum(steps) >= ticks)
+    }
+
     /// Steps that have fallen by `t`; looked for from `near` on, which changes the time that it
     /// takes and not what is found.
     fn fallen(&self, t: f64, near: u64) -> u64 {
@@ -150,12 +168,12 @@ impl TrapezoidTable {
         let ticks = (t * f64::from(self.table.timer_hz())) as u64;
         let (up, all) = (self.sum(self.ramp), self.step_ticks(count));
         let guess = if ticks < up {
-            first_from(&self.sums, ticks.saturating_add(1), near as usize).saturating_sub(1) as u64
+            self.first_sum(ticks.saturating_add(1), near).saturating_sub(1)
         } else if ticks < all - up {
             self.ramp + (ticks - up).checked_div(self.plateau_reload()).unwrap_or(0)
         } else {
             let left = all.saturating_sub(ticks);
-            count - first_from(&self.sums, left, count.saturating_sub(near) as usize) as u64
+            count - self.first_sum(left, count.saturating_sub(near))
         };
         stepped::fallen(t, guess, count, |k| self.step_s(k))
     }
@@ -196,26 +214,6 @@ impl TrapezoidTable {
     fn signed(&self, magnitude: f64) -> f64 {
         if self.steps < 0 { -magnitude } else { magnitude }
     }
-}
-
-/// The first of rising `sums` that is not under `bound`, or their number: two neighbours where it is
-/// next to `near`, twice as many each time that it is further away.
-fn first_from(sums: &[u64], bound: u64, near: usize) -> usize {
-    let is_under = |index: usize| sums.get(index).is_some_and(|&sum| sum < bound);
-    let near = near.min(sums.len());
-    // Invariant: all before `from` are under the bound, all from `to` on are not.
-    let (mut from, mut to, mut width) = (near, near, 1);
-    while is_under(to) {
-        from = to + 1;
-        to = sums.len().min(to + width);
-        width *= 2;
-    }
-    while from > 0 && !is_under(from - 1) {
-        to = from - 1;
-        from = from.saturating_sub(width);
-        width *= 2;
-    }
-    from + sums.get(from..to).map_or(0, |between| between.partition_point(|&sum| sum < bound))
 }
 
 impl Curve for TrapezoidTable {

@@ -2,6 +2,18 @@
 //!
 //! [`Bus`] and [`SerialLine`] are what one asks for, [`Config`] is what holds: it is made of them, or every rule that
 //! they break is told with its numbers.
+//!
+//! ```
+//! use stepscope_peripheral::config::{Bus, Config, SerialLine};
+//!
+//! let bus = Bus { channels: 4, slots: 50, ..Bus::default() };
+//! let config = Config::new(16_000_000, &bus, &SerialLine::default()).expect("it holds");
+//! assert_eq!(config.tick().0, 50 * 320);
+//!
+//! let bus = Bus { step_period_cycles: 60, ..bus };
+//! let problems = Config::new(16_000_000, &bus, &SerialLine::default()).unwrap_err();
+//! assert!(problems[0].to_string().contains("give a step period of at least 80"), "{}", problems[0]);
+//! ```
 
 use crate::{
     segment::PulseTimes,

@@ -1,5 +1,14 @@
 //! The words of the framed protocol (DESIGN A6): what a frame orders, what becomes of it, and what
 //! a controller tells of itself. How frames are encoded and read is in [`crate::wire::frame`].
+//!
+//! ```
+//! use stepscope_peripheral::protocol::{FrameOutcome, Kind, Reason};
+//!
+//! assert_eq!(Kind::parse(5), Some(Kind::Stop));
+//! assert_eq!(Reason::QueueFull.name(), "QUEUE_FULL");
+//! assert_eq!(FrameOutcome::Queued(3).to_string(), "3 ticks queued");
+//! assert_eq!(FrameOutcome::Short.answer(), None); // what is no frame is not answered
+//! ```
 
 use core::fmt;
 
@@ -131,14 +140,14 @@ pub enum FrameOutcome {
     OtherAddress,
     /// Not COBS, or too short for a frame.
     Short,
-    /// Its check failed.
+    /// Its CRC is wrong.
     BadCheck {
-        /// The check that came.
+        /// The CRC that came.
         found: u32,
-        /// The check of what came before it.
+        /// The CRC of what came before it.
         expected: u32,
     },
-    /// A byte too many; the rest is dropped to the next end mark.
+    /// A byte too many; the rest is dropped to the next delimiter.
     Overlong,
 }
 

@@ -11,6 +11,25 @@
 //! The intervals of a segment grow by one number from step to step, so its extremes are its first
 //! and its last interval, and its length is a sum in closed form: a segment of 2^32 steps is judged
 //! as quickly as one of one.
+//!
+//! ```
+//! use stepscope_peripheral::{
+//!     segment::{CheckedSegments, PulseTimes, Refusal, Segment, SegmentList},
+//!     units::{Cycles, Instant},
+//! };
+//!
+//! let pulse = PulseTimes { width: Cycles(40), setup: Cycles(40), hold: Cycles(0) };
+//! // A ramp: 100 steps, the first after 2000 cycles, each next 10 cycles sooner.
+//! let ramp = |add| Segment::Steps { count: 100, interval: 2000 << 16, add, right: true };
+//! let list = |add| vec![SegmentList { start: Instant(1), segments: vec![ramp(add)] }];
+//!
+//! let checked = CheckedSegments::new(pulse, list(-10 << 16), 1).expect("no pulse meets another");
+//! assert_eq!(checked.steps(), 100);
+//!
+//! // Twenty cycles sooner, and the 98th step comes too soon after the one before it.
+//! let refused = CheckedSegments::new(pulse, list(-20 << 16), 1).unwrap_err();
+//! assert_eq!(refused[0].refusal, Refusal::Interval { step: 97, interval: 60 << 16 });
+//! ```
 
 use crate::{
     signal::MAX_CHANNELS,
@@ -138,6 +157,10 @@ impl CheckedSegments {
             }
         }
         all.lists = lists;
+        debug_assert!(
+            !refused.is_empty() || all.end.0 <= LAST_CYCLE.0.saturating_add(pulse.width.0),
+            "the last step leaves 48.16 fixed point"
+        );
         if refused.is_empty() { Ok(all) } else { Err(refused) }
     }
 
@@ -191,6 +214,10 @@ impl CheckedSegments {
         } else {
             ((most - first) / i128::from(add) + 1) as u32
         };
+        debug_assert!(
+            is_bad(step) && !step.checked_sub(1).is_some_and(is_bad),
+            "step {step} is not the first"
+        );
         Some((step, at(step)))
     }
 

@@ -1,5 +1,29 @@
 //! The 36 signals of the peripheral, the records of a trace, and the sink that takes them
 //! (DESIGN A3).
+//!
+//! ```
+//! use stepscope_peripheral::{
+//!     signal::{Levels, Record, Sink},
+//!     units::Instant,
+//! };
+//!
+//! /// Counts how often EN falls.
+//! #[derive(Default)]
+//! struct PowerCuts(u32, bool);
+//!
+//! impl Sink for PowerCuts {
+//!     fn record(&mut self, record: Record) {
+//!         let powered = record.levels.has(Levels::EN);
+//!         self.0 += u32::from(self.1 && !powered);
+//!         self.1 = powered;
+//!     }
+//! }
+//!
+//! let mut cuts = PowerCuts::default();
+//! cuts.record(Record { cycle: Instant(0), levels: Levels::RESET });
+//! cuts.record(Record { cycle: Instant(9), levels: Levels(Levels::RX | Levels::TX) });
+//! assert_eq!(cuts.0, 1);
+//! ```
 
 use crate::{
     protocol::{FrameOutcome, Reply},
@@ -36,32 +60,35 @@ impl Levels {
     pub const DE: u64 = 1 << 35;
     /// At reset the drivers are powered and the line is idle.
     pub const RESET: Self = Self(Self::EN | Self::RX | Self::TX);
+    /// Bits that stand for a signal.
+    const SIGNALS: u32 = 2 * MAX_CHANNELS as u32 + 4;
 
     /// STEP levels, channel 0 in bit 0.
     #[must_use]
-    #[inline]
     pub const fn step(self) -> u16 {
         self.0 as u16
     }
 
     /// DIR levels, channel 0 in bit 0.
     #[must_use]
-    #[inline]
     pub const fn dir(self) -> u16 {
         (self.0 >> Self::DIR_SHIFT) as u16
     }
 
     /// Whether every signal of `mask` is high.
     #[must_use]
-    #[inline]
     pub const fn has(self, mask: u64) -> bool {
         self.0 & mask == mask
     }
 }
 
+// STEP, DIR and the four others stand side by side, without a gap and without meeting.
+const _: () = assert!(MAX_CHANNELS == u16::BITS as usize && Levels::DIR_SHIFT == u16::BITS);
+const _: () = assert!(Levels::EN | Levels::RX | Levels::TX | Levels::DE == 0xf << (2 * MAX_CHANNELS));
+const _: () = assert!(Levels::DE == 1 << (Levels::SIGNALS - 1));
+
 /// Name of the signal that stands at `bit` of the levels, as the page, VCD and CSV print it.
 #[must_use]
-#[inline]
 pub fn name(bit: u32) -> Option<alloc::string::String> {
     match bit {
         0..=15 => Some(alloc::format!("STEP{bit}")),
@@ -159,11 +186,9 @@ pub trait Sink {
     fn record(&mut self, record: Record);
 
     /// Something happened in a cycle. Sinks that only want the signals leave this out.
-    #[inline]
     fn event(&mut self, _at: Instant, _event: Event) {}
 
     /// Whether the run should pause here.
-    #[inline]
     fn paused(&self) -> bool {
         false
     }
@@ -171,27 +196,28 @@ pub trait Sink {
 
 /// A stored trace.
 impl Sink for Vec<Record> {
-    #[inline(always)]
     fn record(&mut self, record: Record) {
+        debug_assert!(
+            self.last().is_none_or(|last| last.cycle < record.cycle && last.levels != record.levels),
+            "{record:?} after {:?}",
+            self.last()
+        );
         self.push(record);
     }
 }
 
 /// Two sinks at once.
 impl<A: Sink, B: Sink> Sink for (A, B) {
-    #[inline]
     fn record(&mut self, record: Record) {
         self.0.record(record);
         self.1.record(record);
     }
 
-    #[inline]
     fn event(&mut self, at: Instant, event: Event) {
         self.0.event(at, event);
         self.1.event(at, event);
     }
 
-    #[inline]
     fn paused(&self) -> bool {
         self.0.paused() || self.1.paused()
     }
@@ -199,38 +225,32 @@ impl<A: Sink, B: Sink> Sink for (A, B) {
 
 /// A sink that may be missing.
 impl<S: Sink> Sink for Option<S> {
-    #[inline]
     fn record(&mut self, record: Record) {
         if let Some(sink) = self {
             sink.record(record);
         }
     }
 
-    #[inline]
     fn event(&mut self, at: Instant, event: Event) {
         if let Some(sink) = self {
             sink.event(at, event);
         }
     }
 
-    #[inline]
     fn paused(&self) -> bool {
         self.as_ref().is_some_and(Sink::paused)
     }
 }
 
 impl<S: Sink> Sink for &mut S {
-    #[inline]
     fn record(&mut self, record: Record) {
         (**self).record(record);
     }
 
-    #[inline]
     fn event(&mut self, at: Instant, event: Event) {
         (**self).event(at, event);
     }
 
-    #[inline]
     fn paused(&self) -> bool {
         (**self).paused()
     }

@@ -3,6 +3,15 @@
 //! Time is an integer count of clock cycles since reset. A point ([`Instant`]) and a span
 //! ([`Cycles`]) are different types: two points cannot be added, so a point where a span is wanted
 //! does not compile.
+//!
+//! ```
+//! use stepscope_peripheral::units::{Cycles, Instant};
+//!
+//! let (rise, width) = (Instant(4000), Cycles(40));
+//! assert_eq!(rise + width, Instant(4040));
+//! assert_eq!(Instant(4040) - rise, width);
+//! assert_eq!(rise.seconds(16_000_000), 0.000_25);
+//! ```
 
 use core::ops::{Add, AddAssign, Sub};
 
@@ -22,14 +31,12 @@ impl Instant {
 
     /// The next cycle.
     #[must_use]
-    #[inline]
     pub const fn next(self) -> Self {
         Self(self.0 + 1)
     }
 
     /// The point as seconds after reset.
     #[must_use]
-    #[inline]
     pub fn seconds(self, clock_hz: u32) -> f64 {
         self.0 as f64 / f64::from(clock_hz)
     }
@@ -37,14 +44,12 @@ impl Instant {
 
 impl Add<Cycles> for Instant {
     type Output = Self;
-    #[inline]
     fn add(self, span: Cycles) -> Self {
         Self(self.0 + span.0)
     }
 }
 
 impl AddAssign<Cycles> for Instant {
-    #[inline]
     fn add_assign(&mut self, span: Cycles) {
         self.0 += span.0;
     }
@@ -53,7 +58,6 @@ impl AddAssign<Cycles> for Instant {
 impl Sub for Instant {
     type Output = Cycles;
     /// The span from `earlier` to `self`; the caller knows their order.
-    #[inline]
     fn sub(self, earlier: Self) -> Cycles {
         Cycles(self.0 - earlier.0)
     }

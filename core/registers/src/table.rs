@@ -1,4 +1,14 @@
 //! The shape of the register table, and the macro that makes constants and data of its one text.
+//!
+//! ```
+//! use stepscope_registers::{MAP, status, table::Access};
+//!
+//! // A field takes its value out of what was read, and puts it in its place.
+//! assert_eq!(status::STATE.of(status::STATE.with(status::STATE_MOVING)), status::STATE_MOVING);
+//! // The map as data: what may be written?
+//! let written = MAP.iter().filter(|register| register.access != Access::Ro).map(|register| register.name);
+//! assert!(written.into_iter().any(|name| name == "CONTROL"));
+//! ```
 
 /// Who may do what with a register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

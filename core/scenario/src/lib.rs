@@ -10,10 +10,26 @@
 //!
 //! A scenario as read is only text with types; [`Scenario::check`] makes a [`Checked`] of it or
 //! returns every problem at once, each with its path. What comes after never meets a bad number.
+//!
+//! ```
+//! use stepscope_scenario::Scenario;
+//!
+//! let scenario = Scenario::from_json(r#"{ "clock_hz": 20000000 }"#).expect("it reads");
+//! assert_eq!((scenario.clock_hz, scenario.bus.slots), (20_000_000, 100));
+//! assert!(scenario.check().is_ok());
+//!
+//! let broken = Scenario::from_json(r#"{ "bus": { "slots": 200 }, "line": { "baud": 0 } }"#).expect("it reads");
+//! let problems = broken.check().unwrap_err();
+//! assert_eq!(problems.iter().map(|problem| problem.path.as_str()).collect::<Vec<_>>(), ["bus.slots", "line.baud"]);
+//! ```
 
 #![cfg_attr(not(test), no_std)]
 
 extern crate alloc;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
 
 mod problem;
 

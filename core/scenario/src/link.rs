@@ -7,6 +7,15 @@
 //!
 //! A link comes from a stranger. It is judged in this order: length, version, alphabet and check,
 //! size after inflating, types and names, then ranges and cost, which the caller judges.
+//!
+//! ```
+//! use stepscope_scenario::{Scenario, link};
+//!
+//! let scenario = Scenario { title: "mine".into(), ..Scenario::default() };
+//! let text = link::encode(&scenario).expect("short enough");
+//! assert_eq!(link::decode(&format!("#{text}")), Ok(scenario));
+//! assert_eq!(link::decode(&text[..text.len() - 1]), Err(link::LinkError::Damaged));
+//! ```
 
 use crate::{Compact, Problem, Scenario, VERSION};
 use alloc::{
@@ -276,9 +285,10 @@ mod tests {
     #[test]
     fn the_version_is_judged_before_the_check() {
         let rows = [
-            ("c=2.z.anything.00000000", LinkError::Newer { given: 2, newest: VERSION }),
+            ("c=3.z.anything.00000000", LinkError::Newer { given: 3, newest: VERSION }),
             ("c=99", LinkError::Newer { given: 99, newest: VERSION }),
             ("c=1.z.AAAA.00000000", LinkError::Damaged),
+            ("c=2.z.AAAA.00000000", LinkError::Damaged),
             ("c=x", LinkError::Damaged),
             ("c=0.j.e30.0768f5dc", LinkError::Damaged),
             ("d=1", LinkError::NoScenario),

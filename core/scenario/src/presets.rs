@@ -1,4 +1,11 @@
 //! The documents' own experiments, as JSON files that tests, native tools and the page share.
+//!
+//! ```
+//! use stepscope_scenario::presets::PRESETS;
+//!
+//! let four = PRESETS.iter().find(|preset| preset.id == "patent-2019-four-motors").expect("it is there");
+//! assert_eq!(four.scenario().bus.channels, 4);
+//! ```
 
 use crate::Scenario;
 

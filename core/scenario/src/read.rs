@@ -117,7 +117,7 @@ mod tests {
             ("[]", &[""]),
             (r#"{"bus":[4],"source":{"motion":{"axes":[[]]}}}"#, &["bus", "source.motion.axes[0]"]),
             ("{", &[""]),
-            (r#"{"version":2}"#, &["version"]),
+            (r#"{"version":3}"#, &["version"]),
             (
                 r#"{"bus":{"slots":"x","channels":-1},"clock_hz":1.5}"#,
                 &["bus.channels", "bus.slots", "clock_hz"],

@@ -2,14 +2,9 @@
 //! itself; those of a framed line line with each other and the host.
 
 use crate::framed_host::FramedHost;
-use crate::{framed_line::FramedLine, raw_receiver::RawReceiver};
+use crate::{framed_line::FramedLine, ignored::Ignored, raw_receiver::RawReceiver};
 use alloc::{boxed::Box, vec::Vec};
-use stepscope_peripheral::{
-    device::Device,
-    signal::{Record, Sink},
-    units::Instant,
-    wire::Line,
-};
+use stepscope_peripheral::{device::Device, signal::Sink, units::Instant, wire::Line};
 
 /// A line with all that is on it.
 #[derive(Clone, Debug)]
@@ -20,24 +15,15 @@ pub(super) enum Bus {
     Framed(Box<FramedLine>),
 }
 
-/// Takes what no one asked for.
-pub(super) struct Ignored;
-
-impl Sink for Ignored {
-    #[inline]
-    fn record(&mut self, _: Record) {}
-}
-
 impl Bus {
-    #[inline]
     pub(super) fn new(line: Line, host: Option<FramedHost>, devices: Vec<Device>) -> Self {
+        debug_assert!(!devices.is_empty(), "a line without a controller");
         if host.is_some() || devices.iter().any(Device::answers) {
             return Self::Framed(Box::new(FramedLine::new(line, host, devices)));
         }
         Self::Raw(devices.into_iter().map(|device| RawReceiver::new(line.clone(), device)).collect())
     }
 
-    #[inline]
     pub(super) fn line(&self) -> &Line {
         match self {
             Self::Raw(receivers) => receivers[0].line(),
@@ -45,7 +31,6 @@ impl Bus {
         }
     }
 
-    #[inline]
     pub(super) const fn host(&self) -> Option<&FramedHost> {
         match self {
             Self::Raw(_) => None,
@@ -53,7 +38,6 @@ impl Bus {
         }
     }
 
-    #[inline]
     pub(super) fn first(&self) -> &Device {
         match self {
             Self::Raw(receivers) => receivers[0].device(),
@@ -61,7 +45,6 @@ impl Bus {
         }
     }
 
-    #[inline]
     pub(super) fn device(&self, index: usize) -> Option<&Device> {
         match self {
             Self::Raw(receivers) => receivers.get(index).map(RawReceiver::device),
@@ -69,13 +52,11 @@ impl Bus {
         }
     }
 
-    #[inline]
     pub(super) fn devices(&self) -> impl Iterator<Item = &Device> {
         (0..).map_while(|index| self.device(index))
     }
 
     /// Whether nothing can change any more.
-    #[inline]
     pub(super) fn is_over(&self) -> bool {
         match self {
             Self::Raw(receivers) => receivers.iter().all(RawReceiver::is_over),
@@ -84,7 +65,6 @@ impl Bus {
     }
 
     /// Whether all have run the cycles before `end`.
-    #[inline]
     pub(super) fn has_reached(&self, end: Instant) -> bool {
         match self {
             Self::Raw(receivers) => receivers.iter().all(|receiver| receiver.has_reached(end)),
@@ -93,14 +73,12 @@ impl Bus {
     }
 
     /// First cycle that nobody has run.
-    #[inline]
     pub(super) fn now(&self) -> Instant {
         self.devices().map(Device::now).max().unwrap_or(Instant::RESET)
     }
 
     /// Runs to cycle `end`, or with [`Instant::NEVER`] until nothing can change any more, or until a
     /// sink asks for a pause.
-    #[inline]
     pub(super) fn run(&mut self, end: Instant, sinks: &mut [impl Sink]) {
         match self {
             Self::Raw(receivers) => {
@@ -119,7 +97,6 @@ impl Bus {
     }
 
     /// At rest: the last cycle that was run is the last one in which something happened.
-    #[inline]
     fn finish(&mut self) {
         match self {
             Self::Raw(receivers) => {
@@ -135,7 +112,6 @@ impl Bus {
     }
 
     /// One cycle.
-    #[inline]
     pub(super) fn clock(&mut self, sinks: &mut [impl Sink]) {
         match self {
             Self::Raw(receivers) => {

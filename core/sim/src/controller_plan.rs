@@ -96,6 +96,10 @@ pub(super) fn orders(
                 if config.protocol() == Protocol::Framed {
                     end_at_rest(&mut ticks, config.channels());
                 }
+                debug_assert!(
+                    ticks.len().is_multiple_of(config.channels().into()),
+                    "a tick has a byte a channel"
+                );
                 orders.push(ControllerPlan { config: config.clone(), plans, ticks: ticks.into() });
             }
             Err(found) => problems.extend(found),
@@ -304,7 +308,6 @@ fn frame_bits(checked: &Checked, config: &Config) -> u128 {
 }
 
 /// One tick's orders, from its bytes.
-#[inline]
 pub(super) fn pulses(tick: &[u8]) -> u64 {
     let mut sum = 0;
     for byte in tick.get(..Tick::default().len()).unwrap_or(tick) {

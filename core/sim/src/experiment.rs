@@ -2,9 +2,10 @@
 
 use crate::{
     Cost,
-    bus::{Bus, Ignored},
+    bus::Bus,
     controller_plan::{self, ControllerPlan},
     framed_host::{FramedHost, Progress},
+    ignored::Ignored,
 };
 use alloc::{rc::Rc, vec::Vec};
 use core::slice;
@@ -28,6 +29,8 @@ const MAX_LINE_BYTES: u64 = 2_000_000 * 17;
 pub struct Experiment {
     checked: Checked,
     /// What each controller is to do.
+    ///
+    /// Invariant: one at least, the scenario's own first.
     orders: Vec<ControllerPlan>,
     /// What the host sends without waiting for replies.
     schedule: Rc<Schedule>,
@@ -56,6 +59,7 @@ impl Experiment {
                 return Err(problems);
             }
         };
+        debug_assert!(!orders.is_empty() && orders.len() == checked.configs.len());
         let (schedule, forced) = controller_plan::schedule(&checked, &orders);
         checked.forced.extend(forced);
         let segments = controller_plan::segments(&checked, &orders)?.map(Rc::new);
@@ -359,7 +363,6 @@ struct Slice<'a, S> {
 }
 
 impl<S: Sink> Sink for Slice<'_, S> {
-    #[inline(always)]
     fn record(&mut self, record: Record) {
         self.left = self.left.saturating_sub(1);
         self.sink.record(record);

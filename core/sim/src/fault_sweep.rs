@@ -6,6 +6,14 @@
 //!
 //! A seed's scenario stands for itself: whoever runs it sees the same faults, and the same ends.
 //! The sum of tallies does not depend on the order in which seeds are run.
+//!
+//! ```
+//! use stepscope_peripheral::config::Protocol;
+//! use stepscope_sim::fault_sweep::FaultSweep;
+//!
+//! let sweep = FaultSweep::new(FaultSweep::small(Protocol::Framed)).expect("it orders ticks");
+//! assert_eq!(sweep.run(3), sweep.run(3)); // a seed is a run
+//! ```
 
 mod align;
 mod tally;

@@ -18,6 +18,17 @@
 //!   `attempts` times, that is stopped, or that refuses a frame for good; and on one that answers but
 //!   makes no progress (a host that dies again and again), after `attempts` frames for each place of its
 //!   queue.
+//!
+//! ```
+//! use stepscope_peripheral::signal::Record;
+//! use stepscope_sim::{Experiment, framed_host::Progress};
+//!
+//! // The default motion over the framed protocol: opened, filled, confirmed.
+//! let framed = r#"{ "line": { "protocol": "framed" } }"#;
+//! let run = Experiment::from_json(framed).expect("no problems").run(&mut Vec::<Record>::new());
+//! let host = run.host().expect("a framed line has one");
+//! assert!(host.progress().all(|progress| progress == Progress::Done));
+//! ```
 
 mod peer;
 #[cfg(test)]
@@ -32,7 +43,7 @@ use stepscope_peripheral::units::{Cycles, Instant};
 use stepscope_peripheral::wire::schedule::line_time;
 use stepscope_peripheral::wire::{
     Line,
-    frame::{self, Deframed, Deframer, Kind, Reply, Ticks},
+    frame::{self, Deframed, Deframer, Kind, REPLY_LEN, Reply, Ticks},
     uart::{Heard, Receiver},
 };
 use stepscope_scenario::{END_OF_TIME, Host as Settings};
@@ -43,6 +54,8 @@ const PAUSE_BITS: u64 = 10;
 /// Bit times from the end of a frame in which its reply has to come, if the scenario does not say: the
 /// longest one takes 191.
 const TIMEOUT_BITS: u64 = 256;
+// The first start bit comes 11 bit times after the frame, and each byte has ten.
+const _: () = assert!(TIMEOUT_BITS > 11 + 10 * REPLY_LEN as u64);
 
 /// What the host counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

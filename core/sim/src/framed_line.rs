@@ -8,8 +8,8 @@
 //! controller runs through it alone, as fast as its own edges allow. A window ends where the host or
 //! a forced level changes, where a controller may begin or go on to drive, or where the host acts.
 
-use crate::bus::Ignored;
 use crate::framed_host::FramedHost;
+use crate::ignored::Ignored;
 use alloc::vec::Vec;
 use stepscope_peripheral::{
     device::Device,
@@ -25,6 +25,8 @@ pub(super) struct FramedLine {
     host: Option<FramedHost>,
     nodes: Vec<Node>,
     /// The window that is run: its first cycle and the first one after it.
+    ///
+    /// Invariant: `start <= until`; both only rise.
     start: Instant,
     until: Instant,
 }
@@ -39,14 +41,12 @@ struct Node {
 
 impl Node {
     /// Whether it has not come to the end of the window, and has something to do there.
-    #[inline]
     fn is_behind(&self, until: Instant) -> bool {
         self.device.now() < until && !(until == Instant::NEVER && self.device.at_rest())
     }
 }
 
 impl FramedLine {
-    #[inline]
     pub(super) fn new(line: Line, host: Option<FramedHost>, devices: Vec<Device>) -> Self {
         let node = |device| Node { device, hears: true, collides: false };
         Self {
@@ -58,29 +58,24 @@ impl FramedLine {
         }
     }
 
-    #[inline]
     pub(super) const fn line(&self) -> &Line {
         &self.line
     }
 
-    #[inline]
     pub(super) const fn host(&self) -> Option<&FramedHost> {
         self.host.as_ref()
     }
 
-    #[inline]
     pub(super) fn first(&self) -> &Device {
         // There is one at least.
         &self.nodes[0].device
     }
 
-    #[inline]
     pub(super) fn device(&self, index: usize) -> Option<&Device> {
         self.nodes.get(index).map(|node| &node.device)
     }
 
     /// Whether nothing can change any more.
-    #[inline]
     pub(super) fn is_over(&self) -> bool {
         self.host.as_ref().is_none_or(FramedHost::is_over)
             && self.nodes.iter().all(|node| node.device.at_rest())
@@ -88,13 +83,11 @@ impl FramedLine {
     }
 
     /// Whether all have run the cycles before `end`.
-    #[inline]
     pub(super) fn has_reached(&self, end: Instant) -> bool {
         self.start >= end
     }
 
     /// Enters cycle `self.start`: what each hears in it, and what the host does.
-    #[inline]
     fn enter(&mut self, sinks: &mut [impl Sink]) {
         let Self { line, host, nodes, start, .. } = self;
         let now = *start;
@@ -125,7 +118,6 @@ impl FramedLine {
     }
 
     /// First cycle after the window that begins at `self.start`, at most `end`.
-    #[inline]
     fn window(&self, end: Instant) -> Instant {
         let driven = |node: &Node| node.device.next_driven(node.hears);
         let driven = self.nodes.iter().map(driven).fold(Instant::NEVER, Instant::min);
@@ -139,7 +131,6 @@ impl FramedLine {
 
     /// Runs to cycle `end`, or with [`Instant::NEVER`] until nothing can change any more, or until a
     /// sink asks for a pause.
-    #[inline]
     pub(super) fn run(&mut self, end: Instant, sinks: &mut [impl Sink]) {
         while self.until < end || self.start < self.until {
             if !self.run_window(end, sinks) {
@@ -149,11 +140,11 @@ impl FramedLine {
     }
 
     /// Runs to the end of a window, which may have begun; false where a sink asked for a pause.
-    #[inline]
     fn run_window(&mut self, end: Instant, sinks: &mut [impl Sink]) -> bool {
         if self.start == self.until {
             self.enter(sinks);
             self.until = self.window(end);
+            debug_assert!(self.start < self.until, "something was left out before {:?}", self.start);
         }
         for (index, node) in self.nodes.iter_mut().enumerate() {
             let Node { device, hears, .. } = node;
@@ -170,7 +161,6 @@ impl FramedLine {
     }
 
     /// The last cycle in which something happened.
-    #[inline]
     pub(super) fn last_active(&self) -> Instant {
         let device = self.nodes.iter().map(|node| node.device.last_active()).max();
         let host = self.host.as_ref().map(FramedHost::last_active);
@@ -178,14 +168,12 @@ impl FramedLine {
     }
 
     /// At rest: cycle `now` is the first that has not been run.
-    #[inline]
     pub(super) fn finish(&mut self, now: Instant) {
         self.nodes.iter_mut().for_each(|node| node.device.finish(now));
         (self.start, self.until) = (now, Instant::NEVER);
     }
 
     /// One cycle.
-    #[inline]
     pub(super) fn clock(&mut self, sinks: &mut [impl Sink]) {
         self.enter(sinks);
         for (index, node) in self.nodes.iter_mut().enumerate() {
@@ -201,7 +189,6 @@ impl FramedLine {
 }
 
 /// Tells of a collision where it begins.
-#[inline]
 fn collide(node: &mut Node, collides: bool, now: Instant, sink: Option<&mut impl Sink>) {
     if collides
         && !node.collides

@@ -15,11 +15,17 @@
 
 extern crate alloc;
 
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 mod bus_load;
 
 pub mod noise;
 
 pub mod framed_host;
+
+mod ignored;
 
 mod raw_receiver;
 

@@ -2,6 +2,21 @@
 //!
 //! Bits are turned over, bytes are lost or doubled, levels are forced, replies are not heard, and
 //! the host dies within a frame. Which, is decided frame by frame in the order of sending.
+//!
+//! ```
+//! use stepscope_peripheral::units::Instant;
+//! use stepscope_scenario::Noise as Rates;
+//! use stepscope_sim::noise::Noise;
+//!
+//! let rates = Rates { seed: 7, flipped_bits_ppm: 100_000, ..Rates::default() };
+//! let spoiled = |rates: &Rates| {
+//!     let mut noise = Noise::new(rates, 16_000_000, 115_200).expect("there are faults");
+//!     noise.send(Instant(1), &[0; 32]).bytes
+//! };
+//! assert_ne!(spoiled(&rates), [0; 32]);
+//! assert_eq!(spoiled(&rates), spoiled(&rates)); // from the same seed the same faults
+//! assert!(Noise::new(&Rates::default(), 16_000_000, 115_200).is_none());
+//! ```
 
 use alloc::vec::Vec;
 use rand_xoshiro::{
@@ -113,6 +128,7 @@ impl Noise {
         let Cycles(longest) = BitTimes::new(self.clock_hz, self.baud).bit(2);
         let start = start + Cycles(self.random.below(room));
         let end = start + Cycles(1 + self.random.below(longest.max(1)));
+        debug_assert!(start < end);
         Forced { start, end, level: self.random.below(2) == 1 }
     }
 

@@ -2,53 +2,50 @@
 
 use stepscope_peripheral::{device::Device, signal::Sink, units::Instant, wire::Line};
 
-/// A controller and the line as it walks along it.
+/// A controller and its line, window by window.
 #[derive(Clone, Debug)]
 pub(super) struct RawReceiver {
     line: Line,
     device: Device,
     /// What the line stays the same for: from a cycle to the first one after it.
+    ///
+    /// Invariant: `start <= until`; both only rise.
     start: Instant,
     until: Instant,
 }
 
 impl RawReceiver {
-    #[inline]
     pub(super) const fn new(line: Line, device: Device) -> Self {
         Self { line, device, start: Instant::RESET, until: Instant::RESET }
     }
 
-    #[inline]
     pub(super) const fn line(&self) -> &Line {
         &self.line
     }
 
-    #[inline]
     pub(super) const fn device(&self) -> &Device {
         &self.device
     }
 
     /// Whether nothing can change any more.
-    #[inline]
     pub(super) fn is_over(&self) -> bool {
         self.device.at_rest() && self.line.is_over()
     }
 
     /// Whether it has run the cycles before `end`.
-    #[inline]
     pub(super) fn has_reached(&self, end: Instant) -> bool {
         self.start >= end
     }
 
     /// Runs to cycle `end`, or with [`Instant::NEVER`] until nothing can change any more, or until the
     /// sink asks for a pause: the inner loop of a long run.
-    #[inline]
     pub(super) fn run(&mut self, end: Instant, sink: &mut impl Sink) {
         while self.start < end {
             if self.start == self.until {
                 self.enter();
                 let next = if self.line.is_over() { Instant::NEVER } else { self.line.next_change() };
                 self.until = next.min(end);
+                debug_assert!(self.start < self.until, "the line changed before {:?}", self.start);
             }
             self.device.run(self.line.heard(true), self.until, sink);
             let rests = self.until == Instant::NEVER && self.device.at_rest();
@@ -60,7 +57,6 @@ impl RawReceiver {
     }
 
     /// Enters cycle `start`.
-    #[inline(always)]
     fn enter(&mut self) {
         if self.line.next_change() == self.start {
             self.line.change();
@@ -68,7 +64,6 @@ impl RawReceiver {
     }
 
     /// One cycle.
-    #[inline]
     pub(super) fn clock(&mut self, sink: &mut impl Sink) {
         self.enter();
         self.device.clock(self.line.heard(true), sink);
@@ -77,13 +72,11 @@ impl RawReceiver {
     }
 
     /// The last cycle in which something happened.
-    #[inline]
     pub(super) fn last_active(&self) -> Instant {
         self.device.last_active()
     }
 
     /// At rest: cycle `now` is the first that has not been run.
-    #[inline]
     pub(super) fn finish(&mut self, now: Instant) {
         self.device.finish(now);
         (self.start, self.until) = (now, Instant::NEVER);

@@ -1,10 +1,9 @@
 //! The three browser engines: each one's driver, what a session asks of it, and how its console is heard.
 
-use std::{env, ffi::OsString, net::TcpListener, path::Path};
+use std::{env, ffi::OsString, net::TcpListener, path::Path, process::Command};
 
 use anyhow::{Context, Result, bail};
 use serde_json::{Map, Value, json};
-use tokio::process::Command;
 
 /// Flags of every Chromium: no window, and no word to any other host.
 const FLAGS: &[&str] = &[
@@ -21,13 +20,13 @@ const FLAGS: &[&str] = &[
     "--disable-dev-shm-usage",
     "--force-device-scale-factor=1",
     "--window-size=1440,900",
-    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1, EXCLUDE localhost",
+    "--host-resolver-rules=MAP *.localhost 127.0.0.1, MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
 ];
 
 /// A browser engine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Browser {
-    /// All tests run here.
+    /// All tests run here, and share it.
     Chromium,
     /// Without a window, like Chromium.
     Firefox,
@@ -37,30 +36,29 @@ pub(crate) enum Browser {
 
 /// How a driver says where it listens.
 pub(crate) enum Says {
-    /// In the line that holds this; the port stands behind it.
-    Port(&'static str),
+    /// In the line that holds this; the address or the port stands behind it.
+    Line(&'static str),
     /// Nothing: it was given this port.
     Nothing(u16),
 }
 
 impl Browser {
-    /// The driver's call, with `temporary` as its folder for what it leaves behind.
-    pub(crate) fn driver(self, temporary: &Path) -> Result<(Command, Says)> {
+    /// The driver's call.
+    pub(crate) fn driver(self) -> Result<(Command, Says)> {
         let variable = match self {
             Self::Chromium => "STEPSCOPE_CHROMEDRIVER",
             Self::Firefox => "STEPSCOPE_GECKODRIVER",
             Self::WebKit => "STEPSCOPE_WEBKITDRIVER",
         };
         let mut command = Command::new(named(variable)?);
-        command.env("TMPDIR", temporary);
         let says = match self {
             Self::Chromium => {
                 command.arg("--port=0");
-                Says::Port("started successfully on port ")
+                Says::Line("started successfully on port ")
             }
             Self::Firefox => {
                 command.args(["--port", "0"]);
-                Says::Port("Listening on 127.0.0.1:")
+                Says::Line("Listening on 127.0.0.1:")
             }
             Self::WebKit => {
                 named("DISPLAY").context("WebKit draws on a display only")?;
@@ -73,18 +71,14 @@ impl Browser {
         Ok((command, says))
     }
 
-    /// What a new session asks for; Chromium keeps its files in `profile`, the others in folders of their drivers.
-    pub(crate) fn capabilities(self, profile: &Path) -> Result<Map<String, Value>> {
+    /// What a new session asks for. Its profile is a new one, in the driver's folder for what it leaves behind.
+    pub(crate) fn capabilities(self) -> Result<Map<String, Value>> {
         let wanted = match self {
-            Self::Chromium => {
-                let mut args: Vec<String> = FLAGS.iter().map(|&flag| flag.to_owned()).collect();
-                args.push(format!("--user-data-dir={}", profile.display()));
-                json!({
-                    "browserName": "chrome",
-                    "goog:loggingPrefs": { "browser": "ALL" },
-                    "goog:chromeOptions": { "binary": Path::new(&named("STEPSCOPE_CHROMIUM")?), "args": args },
-                })
-            }
+            Self::Chromium => json!({
+                "browserName": "chrome",
+                "goog:loggingPrefs": { "browser": "ALL" },
+                "goog:chromeOptions": { "binary": Path::new(&named("STEPSCOPE_CHROMIUM")?), "args": FLAGS },
+            }),
             Self::Firefox => json!({
                 "browserName": "firefox",
                 "moz:firefoxOptions": {

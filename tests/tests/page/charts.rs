@@ -6,9 +6,9 @@ use fantoccini::actions::{InputSource, MOUSE_BUTTON_LEFT, MOUSE_BUTTON_RIGHT, Mo
 use serde_json::{Value, json};
 use stepscope_core::{
     inspect::{
+        actual_motion::Pulses,
         cursor_stats,
-        difference::{self, Scaled},
-        made::Pulses,
+        position_error::{self, Scaled},
     },
     peripheral::trace::steps,
 };
@@ -182,7 +182,7 @@ fn a_kept_run_is_drawn_and_measured_beside_a_later_one() -> Result<()> {
         let (own, other) = (steps(&later.recording.trace, 0), steps(&kept.recording.trace, 0));
         let scaled = |steps| Scaled { steps, hz: f64::from(kept.experiment.config().clock_hz()), unit: 1.0 };
         let common_s = kept.seconds(cycles(&later).min(cycles(&kept)));
-        let apart = difference::apart(scaled(&own), scaled(&other), common_s);
+        let apart = position_error::apart(scaled(&own), scaled(&other), common_s);
         let told = page.text("#compared").await?.replace('\u{2212}', "-");
         ensure!(told.contains(&format!("differs by {} steps", apart.largest)), "{} in {told}", apart.largest);
         for fact in ["duration", "peak speed", "peak acceleration", "edges", "RMS"] {

@@ -1,7 +1,7 @@
 //! What a session asks of its browser beyond WebDriver: Chromium by the DevTools protocol, the others as well as they can.
 
 use anyhow::{Result, bail};
-use fantoccini::{error::CmdError, wd::WebDriverCompatibleCommand};
+use fantoccini::{Client, error::CmdError, wd::WebDriverCompatibleCommand};
 use http::Method;
 use serde_json::{Value, json};
 use url::{ParseError, Url};
@@ -39,8 +39,20 @@ impl Session {
 
     /// A command of the Chrome DevTools protocol.
     pub(crate) async fn devtools(&self, method: &str, parameters: Value) -> Result<Value> {
-        let body = json!({ "cmd": method, "params": parameters });
-        Ok(self.chrome("goog/cdp/execute", body).await?)
+        command(&self.client, method, parameters).await
+    }
+
+    /// Lets the page that is open read and write the clipboard, which is empty then, whoever used it before.
+    pub(crate) async fn allow_clipboard(&self) -> Result<()> {
+        let origin = self.address().trim_end_matches('/');
+        let permissions = ["clipboardReadWrite", "clipboardSanitizedWrite"];
+        self.devtools("Browser.grantPermissions", json!({ "origin": origin, "permissions": permissions }))
+            .await?;
+        self.js::<()>("return navigator.clipboard.writeText('').then(() => null);", Vec::new()).await
+    }
+
+    pub(crate) async fn clipboard(&self) -> Result<String> {
+        self.js("return navigator.clipboard.readText();", Vec::new()).await
     }
 
     /// Errors in the browser's console: exceptions, refused loads, breaches of the content security policy.
@@ -49,11 +61,11 @@ impl Session {
     pub(crate) async fn complaints(&self) -> Result<Vec<String>> {
         if self.bench.browser != Browser::Chromium {
             let mut heard: Vec<String> = self.eval("window.heard ?? []").await?;
-            heard.extend(self.bench.heard());
+            let said = self.bench.heard();
+            heard.extend(said.into_iter().filter(|line| self.bench.browser.complains(line, self.address())));
             return Ok(heard);
         }
-        let entries = self.chrome("se/log", json!({ "type": "browser" })).await?;
-        let Value::Array(entries) = entries else { bail!("the console gave {entries}") };
+        let entries = console(&self.client).await?;
         let severe = entries.iter().filter(|entry| entry["level"] == "SEVERE");
         Ok(severe.map(|entry| entry["message"].to_string()).collect())
     }
@@ -66,10 +78,24 @@ impl Session {
             self.js::<bool>(LISTEN, Vec::new()).await.map(drop)
         }
     }
+}
 
-    async fn chrome(&self, place: &'static str, body: Value) -> Result<Value, CmdError> {
-        self.client.issue_cmd(ChromeCommand { place, body }).await
+/// A command of the Chrome DevTools protocol to the tab on show.
+pub(crate) async fn command(client: &Client, method: &str, parameters: Value) -> Result<Value> {
+    let body = json!({ "cmd": method, "params": parameters });
+    Ok(chrome(client, "goog/cdp/execute", body).await?)
+}
+
+/// What Chromium's console has said since it was last asked.
+pub(crate) async fn console(client: &Client) -> Result<Vec<Value>> {
+    match chrome(client, "se/log", json!({ "type": "browser" })).await? {
+        Value::Array(entries) => Ok(entries),
+        other => bail!("the console gave {other}"),
     }
+}
+
+async fn chrome(client: &Client, place: &'static str, body: Value) -> Result<Value, CmdError> {
+    client.issue_cmd(ChromeCommand { place, body }).await
 }
 
 const LISTEN: &str = "

@@ -82,8 +82,13 @@ fn a_cancelled_run_goes_on_nowhere() -> Result<()> {
         begin_long_run(&page).await?;
         page.click("#cancel").await?;
         page.until("document.getElementById('engine-message').textContent.includes('cancelled')").await?;
-        let heard = "new Promise((done) => { const before = window.heard; \
-             setTimeout(() => done(window.heard - before), 500); })";
+        // A run goes on by a slice of some ms between two answers, and tells of itself after a few.
+        let heard = "(async () => { const before = window.heard; \
+             for (let question = 0; question < 100; question++) await new Promise((answered) => { \
+                 const hear = ({ data }) => { if (data.id === -1) { window.worker.removeEventListener('message', hear); answered(); } }; \
+                 window.worker.addEventListener('message', hear); \
+                 window.worker.postMessage({ id: -1, method: 'pulses', args: [0, 1000, 10] }); }); \
+             return window.heard - before; })()";
         // One may have been on its way.
         ensure!(page.eval::<u32>(heard).await? <= 1, "it still runs");
         assert_eq!(page.eval::<u32>("window.workers").await?, 1, "it heard the cancel");
@@ -166,7 +171,7 @@ fn an_engine_that_cannot_be_loaded_is_told() -> Result<()> {
         // Every worker ends in an error of its own before it hears anything.
         page.before_scripts(
             "window.Worker = class extends EventTarget { constructor() { super(); \
-             setTimeout(() => this.onerror(new ErrorEvent('error', { message: 'not to be had' })), 10); } \
+             queueMicrotask(() => this.onerror(new ErrorEvent('error', { message: 'not to be had' }))); } \
              postMessage() {} terminate() {} };",
         )
         .await?;

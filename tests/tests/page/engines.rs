@@ -14,8 +14,8 @@ use crate::{
 
 const DISTANCE: &str = "source.motion.axes[0].moves[0].cosine.distance";
 
-/// What a visitor does with the page, from its loading to the link that another visitor opens.
-async fn main_job(page: Session) -> Result<()> {
+/// What a visitor does with the page, from its loading to the link that another visitor, who is given, opens.
+async fn main_job(page: Session) -> Result<Session> {
     let (default, typed) = (Known::of("{}")?, Known::of(&with_distance(1200.0))?);
     page.open("").await?;
     page.until_digest(&default.digest).await?;
@@ -64,7 +64,7 @@ async fn main_job(page: Session) -> Result<()> {
         stranger.choose("#preset", preset.id).await?;
         stranger.until_digest(&known.digest).await.with_context(|| preset.id)?;
     }
-    Ok(())
+    Ok(stranger)
 }
 
 /// A second engine, as the page makes it, in a worker of its own.
@@ -81,7 +81,7 @@ const ENGINE: &str = "
     });";
 
 /// Every golden case gives its digests in the page's own engine.
-async fn golden(page: Session) -> Result<()> {
+async fn golden(page: &Session) -> Result<()> {
     page.open("").await?;
     page.js::<bool>(ENGINE, vec![]).await?;
     let mut wrong = Vec::new();
@@ -97,32 +97,23 @@ async fn golden(page: Session) -> Result<()> {
     Ok(())
 }
 
-#[test]
-fn chromium_does_the_main_job() -> Result<()> {
-    in_engine(Browser::Chromium, main_job)
+/// One browser for both: starting one is a good part of the time.
+async fn all(page: Session) -> Result<()> {
+    let stranger = main_job(page).await?;
+    golden(&stranger).await
 }
 
 #[test]
-fn firefox_does_the_main_job() -> Result<()> {
-    in_engine(Browser::Firefox, main_job)
+fn chromium_does_the_main_job_and_gives_the_golden_digests() -> Result<()> {
+    in_engine(Browser::Chromium, all)
 }
 
 #[test]
-fn webkit_does_the_main_job() -> Result<()> {
-    in_engine(Browser::WebKit, main_job)
+fn firefox_does_the_main_job_and_gives_the_golden_digests() -> Result<()> {
+    in_engine(Browser::Firefox, all)
 }
 
 #[test]
-fn chromium_gives_the_golden_digests() -> Result<()> {
-    in_engine(Browser::Chromium, golden)
-}
-
-#[test]
-fn firefox_gives_the_golden_digests() -> Result<()> {
-    in_engine(Browser::Firefox, golden)
-}
-
-#[test]
-fn webkit_gives_the_golden_digests() -> Result<()> {
-    in_engine(Browser::WebKit, golden)
+fn webkit_does_the_main_job_and_gives_the_golden_digests() -> Result<()> {
+    in_engine(Browser::WebKit, all)
 }

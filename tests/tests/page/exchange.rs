@@ -6,7 +6,7 @@ use stepscope_core::{
     inspect::{
         fingerprint::Fingerprint,
         packet_table::PacketTable,
-        run_fingerprint::Proof,
+        run_fingerprint::RunFingerprint,
         tables::{write_edges_head, write_edges_row},
     },
     peripheral::signal::Record,
@@ -25,7 +25,7 @@ const MESSAGE: &str = "document.getElementById('link-message').textContent";
 
 /// A link of a scenario with the digests of a trace.
 fn link(known: &Known, trace: &[Record]) -> String {
-    let proof = Proof::of(vec![Fingerprint::of(trace)]);
+    let proof = RunFingerprint::of(vec![Fingerprint::of(trace)]);
     format!("#{}", with_part(known.link.clone(), "d", &proof.emit()))
 }
 
@@ -92,7 +92,7 @@ fn digests_that_cannot_be_read_are_left_out_with_a_word() -> Result<()> {
                 with_part(
                     format!("#{}", known.link),
                     "d",
-                    &Proof::of(vec![Fingerprint::of(&known.recording.trace); 2]).emit(),
+                    &RunFingerprint::of(vec![Fingerprint::of(&known.recording.trace); 2]).emit(),
                 ),
                 "of 2 controllers",
             ),

@@ -1,5 +1,4 @@
-//! The logic view's picture against every record of the trace, also after it was dragged about; and, asked for
-//! with `--ignored`, the time of its frames over ten million edges.
+//! The logic view's picture against every record of the trace, also after it was dragged about.
 
 use anyhow::{Result, ensure};
 use serde::Deserialize;
@@ -121,77 +120,3 @@ fn the_picture_is_that_of_every_record_dense_or_lone() -> Result<()> {
         is_brute_force(&page, &known, (hz / 50, hz * 3 / 100)).await
     })
 }
-
-#[test]
-#[ignore = "takes a minute and prints times; run it by its name"]
-fn frames_over_ten_million_edges() -> Result<()> {
-    in_browser(|page| async move {
-        let axes: Vec<Value> = (0..16)
-            .map(|axis| {
-                let speed = 90_000 - 700 * axis;
-                json!({"moves":[{"constant":{"distance":{"steps":4 * speed},"speed":{"steps_s":speed}}}]})
-            })
-            .collect();
-        let scenario = json!({"clock_hz":100_000_000,"bus":{"channels":16,"slots":100,"step_period_cycles":1000,
-            "pulse_width_cycles":20,"pulses":"staggered","settle_cycles":60},
-            "line":{"baud":4_000_000},"source":{"motion":{"axes":axes}}});
-        let known = Known::of(&scenario.to_string())?;
-        page.open(&format!("#{}", known.link)).await?;
-        page.click("#run-anyway").await?;
-        page.until_digest(&known.digest).await?;
-        println!("{} records", known.recording.trace.len());
-        for view in ["all views", "pulses alone"] {
-            if view == "pulses alone" {
-                page.js::<Value>(
-                    "document.getElementById('view-motion').hidden = true; return null;",
-                    vec![],
-                )
-                .await?;
-            }
-            for (what, zoom) in [("zoom", 0), ("pan", 3), ("pan", 12)] {
-                page.click("#zoom-fit").await?;
-                page.js::<Value>(WHEEL, vec![json!(zoom)]).await?;
-                page.js::<Value>(FRAMES, vec![json!(what)]).await?;
-                let mut times: Vec<f64> = page
-                    .eventually("180 frames", async || {
-                        page.eval::<Option<Vec<f64>>>("window.frameTimes ?? null").await
-                    })
-                    .await?;
-                times.sort_by(f64::total_cmp);
-                let at = |part: f64| times[((times.len() - 1) as f64 * part) as usize];
-                println!(
-                    "{view}, {what} at {zoom}: p50 {:.1} ms, p95 {:.1} ms, longest {:.1} ms",
-                    at(0.5),
-                    at(0.95),
-                    at(1.0)
-                );
-            }
-        }
-        Ok(())
-    })
-}
-
-const WHEEL: &str = "
-    const canvas = document.getElementById('pulses');
-    const { left, width } = canvas.getBoundingClientRect();
-    for (let i = 0; i < arguments[0]; i++) canvas.dispatchEvent(new WheelEvent('wheel', { deltaY: -300, cancelable: true, clientX: left + width / 2 }));
-    return null;";
-
-/// Moves by a wheel's step a frame and keeps the times between frames.
-const FRAMES: &str = "
-    const [what] = arguments;
-    const canvas = document.getElementById('pulses');
-    const { left, width } = canvas.getBoundingClientRect();
-    const times = [];
-    let last = null;
-    delete window.frameTimes;
-    const next = (now) => {
-        if (last !== null) times.push(now - last);
-        last = now;
-        if (times.length === 180) { window.frameTimes = times; return; }
-        const there = times.length % 120 < 60 ? 1 : -1;
-        canvas.dispatchEvent(new WheelEvent('wheel', { deltaX: what === 'pan' ? 25 * there : 0, deltaY: what === 'pan' ? 0 : -60 * there, cancelable: true, clientX: left + width * 0.6 }));
-        requestAnimationFrame(next);
-    };
-    requestAnimationFrame(next);
-    return null;";

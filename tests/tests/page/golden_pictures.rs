@@ -8,7 +8,7 @@
 //! `STEPSCOPE_BLESS=1 cargo xtask test --only page` writes the pictures; look at them before they are committed. Where a
 //! picture differs, what was drawn is kept in `STEPSCOPE_SHOTS`, if that is set.
 
-use std::{env, fs, path::PathBuf};
+use std::{cell::Cell, env, fs, path::PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use data_encoding::BASE64;
@@ -24,6 +24,9 @@ const MOST_MEAN: f64 = 1.0;
 const CLEAR: u8 = 64;
 /// Most pixels that may differ clearly, of all.
 const MOST_CLEAR: f64 = 0.004;
+
+/// So many looks in a row must see the same before a picture is written.
+const STILL: u32 = 5;
 
 /// A picture's pixels, four bytes each.
 struct Picture {
@@ -66,30 +69,57 @@ impl Picture {
 /// No letters on any canvas.
 const NO_LETTERS: &str = "CanvasRenderingContext2D.prototype.fillText = () => {};";
 
-/// Compares a canvas with the picture of this name, or writes that.
-async fn compare(page: &Session, canvas: &str, name: &str, wrong: &mut Vec<String>) -> Result<()> {
+/// A canvas as it is drawn now, as a file.
+async fn drawn(page: &Session, canvas: &str) -> Result<Vec<u8>> {
     let url: String = page
         .js("return document.getElementById(arguments[0]).toDataURL('image/png');", vec![json!(canvas)])
         .await?;
     let base64 = url.strip_prefix("data:image/png;base64,").context("no picture")?;
-    let file = BASE64.decode(base64.as_bytes()).map_err(anyhow::Error::msg)?;
+    BASE64.decode(base64.as_bytes()).map_err(anyhow::Error::msg)
+}
+
+/// Compares a canvas with the picture of this name once it is drawn, or writes that.
+async fn compare(page: &Session, canvas: &str, name: &str, wrong: &mut Vec<String>) -> Result<()> {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("pictures");
     let golden = folder.join(format!("{name}.png"));
     if env::var_os("STEPSCOPE_BLESS").is_some() {
         fs::create_dir_all(&folder)?;
-        return Ok(fs::write(golden, file)?);
+        return Ok(fs::write(golden, stands_still(page, canvas).await?)?);
     }
     let wanted = fs::read(&golden).with_context(|| {
         format!("{} can't be read; STEPSCOPE_BLESS=1 writes what is drawn now", golden.display())
     })?;
-    if let Some(difference) = Picture::read(&wanted)?.difference(&Picture::read(&file)?) {
-        wrong.push(format!("{name}: {difference}"));
-        if let Some(shots) = env::var_os("STEPSCOPE_SHOTS") {
-            fs::create_dir_all(&shots)?;
-            fs::write(PathBuf::from(shots).join(format!("differs-{name}.png")), file)?;
-        }
+    let wanted = Picture::read(&wanted)?;
+    // What was drawn before its box had its size is drawn anew; how long that takes says nothing.
+    let look =
+        async || Ok(wanted.difference(&Picture::read(&drawn(page, canvas).await?)?).is_none().then_some(()));
+    if page.eventually(name, look).await.is_ok() {
+        return Ok(());
+    }
+    let file = drawn(page, canvas).await?;
+    let difference = wanted.difference(&Picture::read(&file)?);
+    wrong.push(format!("{name}: {}", difference.unwrap_or_else(|| "never stands still".to_owned())));
+    if let Some(shots) = env::var_os("STEPSCOPE_SHOTS") {
+        fs::create_dir_all(&shots)?;
+        fs::write(PathBuf::from(shots).join(format!("differs-{name}.png")), file)?;
     }
     Ok(())
+}
+
+/// A canvas that was the same in several looks.
+async fn stands_still(page: &Session, canvas: &str) -> Result<Vec<u8>> {
+    let looks = Cell::new((0, Vec::new()));
+    page.eventually(&format!("{canvas} stands still"), async || {
+        // What is still to be drawn has its turn before the look.
+        page.js::<()>("return new Promise((seen) => requestAnimationFrame(() => setTimeout(seen)));", vec![])
+            .await?;
+        let now = drawn(page, canvas).await?;
+        let (equal, last) = looks.take();
+        let equal = if now == last { equal + 1 } else { 0 };
+        looks.set((equal, now.clone()));
+        Ok((equal >= STILL).then_some(now))
+    })
+    .await
 }
 
 #[test]
@@ -128,30 +158,13 @@ fn curves_and_pulses_look_as_they_did() -> Result<()> {
                 let fixed = "const { style } = document.getElementById(arguments[0]); style.width = `${arguments[1]}px`; \
                              if (arguments[2]) { style.flex = 'none'; style.height = `${arguments[2]}px`; } return true;";
                 page.js::<bool>(fixed, vec![json!(element), json!(box_px), json!(height)]).await?;
-                settled(&page, canvas, box_px).await?;
+                page.until(&format!("document.getElementById('{canvas}').clientWidth === {box_px}")).await?;
                 compare(&page, canvas, &format!("{view}-{name}"), &mut wrong).await?;
             }
         }
         ensure!(wrong.is_empty(), "{}", wrong.join("\n"));
         Ok(())
     })
-}
-
-/// Waits until a canvas has its fixed size, and two looks at it see the same.
-async fn settled(page: &Session, canvas: &str, width: u32) -> Result<()> {
-    page.until(&format!("document.getElementById('{canvas}').clientWidth === {width}")).await?;
-    let mut last = String::new();
-    let mut equal = 0;
-    for _ in 0..200 {
-        tokio::time::sleep(std::time::Duration::from_millis(50)).await;
-        let now = page.canvas(canvas).await?.hash;
-        equal = if now == last { equal + 1 } else { 0 };
-        if equal == 4 {
-            return Ok(());
-        }
-        last = now;
-    }
-    anyhow::bail!("{canvas} never stands still")
 }
 
 /// A white picture of the size of a curve's, with a black line from left to right.

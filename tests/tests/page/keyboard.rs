@@ -117,11 +117,8 @@ async fn still(page: &Session, name: &str) -> Result<()> {
 #[test]
 fn a_whole_experiment_is_done_by_keys_alone() -> Result<()> {
     in_browser(|page| async move {
-        let origin = page.address().trim_end_matches('/');
-        let permissions = ["clipboardReadWrite", "clipboardSanitizedWrite"];
-        let allowed = json!({ "origin": origin, "permissions": permissions });
-        page.devtools("Browser.grantPermissions", allowed).await?;
         page.open("").await?;
+        page.allow_clipboard().await?;
 
         // A preset.
         go(&page, &[], "preset").await?;
@@ -170,7 +167,7 @@ fn a_whole_experiment_is_done_by_keys_alone() -> Result<()> {
         key(&page, &[], ENTER).await?;
         page.until("document.getElementById('copy-link').textContent === 'Copied'").await?;
         still(&page, "copy-link").await?;
-        let link: String = page.js("return navigator.clipboard.readText();", vec![]).await?;
+        let link = page.clipboard().await?;
         ensure!(link.contains(&format!("#{}", known.link)), "{link}");
         Ok(())
     })

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result, ensure};
 use serde_json::json;
 use stepscope_core::{
-    inspect::{fingerprint::Fingerprint, run_fingerprint::Proof},
+    inspect::{fingerprint::Fingerprint, run_fingerprint::RunFingerprint},
     scenario::{link::with_part, presets::PRESETS},
 };
 
@@ -17,20 +17,17 @@ const DISTANCE: &str = "source.motion.axes[0].moves[0].cosine.distance";
 
 /// Opens Share, copies, and gives what is on the clipboard then.
 pub(crate) async fn copied(page: &Session) -> Result<String> {
-    let permissions = ["clipboardReadWrite", "clipboardSanitizedWrite"];
-    let origin = page.address().trim_end_matches('/');
-    page.devtools("Browser.grantPermissions", json!({ "origin": origin, "permissions": permissions }))
-        .await?;
+    page.allow_clipboard().await?;
     page.click("#share").await?;
     page.until("!document.getElementById('copy-link').disabled").await?;
     page.click("#copy-link").await?;
     page.until("document.getElementById('copy-link').textContent === 'Copied'").await?;
-    page.js("return navigator.clipboard.readText();", vec![]).await
+    page.clipboard().await
 }
 
 /// The link that the page gives of a scenario's run.
 pub(crate) fn whole(page: &Session, known: &Known) -> String {
-    let proof = Proof::of(vec![Fingerprint::of(&known.recording.trace)]);
+    let proof = RunFingerprint::of(vec![Fingerprint::of(&known.recording.trace)]);
     format!("{}#{}", page.address(), with_part(known.link.clone(), "d", &proof.emit()))
 }
 
@@ -53,21 +50,6 @@ fn a_copied_link_gives_a_stranger_the_same_form_and_the_same_digest() -> Result<
         ensure!(message.contains("Undo"), "the way back is named: {message}");
         stranger.click("#undo").await?;
         stranger.until_digest(&Known::of("{}")?.digest).await
-    })
-}
-
-#[test]
-fn every_presets_link_is_the_cores() -> Result<()> {
-    in_browser(|page| async move {
-        page.open("").await?;
-        for preset in PRESETS {
-            let known = Known::preset(preset)?;
-            page.choose("#preset", preset.id).await?;
-            page.until_equal("location.hash", &json!(format!("#{}", known.link)))
-                .await
-                .with_context(|| preset.id)?;
-        }
-        Ok(())
     })
 }
 

@@ -15,7 +15,9 @@
 //!
 //! | file | what it holds |
 //! | --- | --- |
-//! | `bench` | server, driver and sessions of one test, ended with it however it ends |
+//! | `programs` | servers and drivers, ended with this process however it ends |
+//! | `pool` | browsers that the tests share, and how each visitor meets one as if it were new |
+//! | `bench` | what one test uses, given back at its end however it ends |
 //! | `browser` | the three engines: drivers, sessions, consoles |
 //! | `session` | one browser with the page in it: what a visitor does and sees |
 //! | `devtools` | what is asked of a browser beyond WebDriver |
@@ -40,6 +42,7 @@ mod framed;
 mod frames;
 mod golden_pictures;
 mod hostile_links;
+mod isolation;
 mod keeping;
 mod keyboard;
 mod links;
@@ -49,9 +52,10 @@ mod measures;
 mod native;
 mod offline;
 mod packets;
-mod people;
 mod pixels;
+mod pool;
 mod presets;
+mod programs;
 mod reflow;
 mod screens;
 mod session;
@@ -60,3 +64,4 @@ mod study;
 mod time_axis;
 mod timing;
 mod torque;
+mod usability;

@@ -5,9 +5,9 @@ use anyhow::{Result, ensure};
 use serde_json::json;
 use stepscope_core::{
     inspect::{
-        made::Pulses,
+        actual_motion::Pulses,
         measures::Measures,
-        spectrum::{Spectrum, Stretch},
+        spectrum::{AnalysisWindow, Spectrum},
     },
     peripheral::trace::steps,
     scenario::Source,
@@ -52,7 +52,7 @@ fn measured(known: &Known) -> (Measures, [Spectrum; 2]) {
     };
     let (plan, analysis) = (&known.experiment.plans()[0], &known.scenario.analysis);
     let Source::Motion(motion) = &known.scenario.source else { panic!("a motion") };
-    let stretch = Stretch::of(plan).expect("it takes time");
+    let stretch = AnalysisWindow::of(plan).expect("it takes time");
     let ideal = Spectrum::ideal(plan, analysis.order, analysis.fft_length).expect("it takes time");
     let pulses = Spectrum::of_pulses(&stretch.pulses_of(plan, &run), stretch, analysis.order);
     let spectra = [ideal, pulses].map(|spectrum| spectrum.filtered_by(analysis.sensor_hz));

@@ -5,8 +5,9 @@ use std::{fs, path::Path};
 use anyhow::{Context, Result, ensure};
 
 use crate::{
-    bench::{Folder, dist, in_browser_on, in_browser_shipped},
+    bench::{dist, in_browser_at, in_browser_shipped},
     native::{Known, with_distance},
+    programs::{Folder, Program},
     session::Session,
 };
 
@@ -48,11 +49,12 @@ fn change(file: &Path, from: &str, to: &str) -> Result<()> {
 
 #[test]
 fn the_second_visit_needs_no_network() -> Result<()> {
-    in_browser_shipped(|page| async move {
+    let server = Program::server(&dist()?)?;
+    in_browser_at(&server.address.clone(), |page| async move {
         let known = Known::of(&with_distance(1200.0))?;
         page.open("").await?;
         until_kept(&page).await?;
-        page.stop_server().await;
+        drop(server);
         ensure!(
             page.eval::<bool>("fetch('not-kept').then(() => false, () => true)").await?,
             "the server still answers"
@@ -78,8 +80,8 @@ fn the_second_visit_needs_no_network() -> Result<()> {
 #[test]
 fn a_newer_version_is_told_waits_for_the_visitor_and_keeps_the_work() -> Result<()> {
     let folder = copy()?;
-    let web = folder.0.clone();
-    in_browser_on(&folder.0, |page| async move {
+    let (web, server) = (folder.0.clone(), Program::server(&folder.0)?);
+    in_browser_at(&server.address, |page| async move {
         page.open("").await?;
         until_kept(&page).await?;
         page.fill(DISTANCE, "1234").await?;
@@ -107,8 +109,8 @@ fn a_newer_version_is_told_waits_for_the_visitor_and_keeps_the_work() -> Result<
 #[test]
 fn the_sources_are_not_kept_and_clear_away_what_a_build_left() -> Result<()> {
     let folder = copy()?;
-    let web = folder.0.clone();
-    in_browser_on(&folder.0, |page| async move {
+    let (web, server) = (folder.0.clone(), Program::server(&folder.0)?);
+    in_browser_at(&server.address, |page| async move {
         page.open("").await?;
         until_kept(&page).await?;
 

@@ -1,25 +1,32 @@
 //! The documents' own experiments, one after the other.
 
 use anyhow::{Context, Result, ensure};
+use serde_json::json;
 use stepscope_core::{
     inspect::spectrum::Spectrum,
-    scenario::{Source, presets::PRESETS},
+    scenario::{
+        Source,
+        presets::{PRESETS, Preset},
+    },
 };
 
-use crate::{bench::in_browser, native::Known};
+use crate::{bench::in_browser, native::Known, session::Session};
 
 #[test]
-fn every_preset_opens_and_shows_the_cores_digest() -> Result<()> {
+fn every_preset_opens_and_its_digest_link_and_distortion_are_the_cores() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         let offered: Vec<String> = page
             .eval("[...document.querySelectorAll('#preset option')].map((o) => o.value).filter(Boolean)")
             .await?;
         assert_eq!(offered, PRESETS.iter().map(|preset| preset.id).collect::<Vec<_>>());
+        let mut periodic = 0;
         for preset in PRESETS {
             let known = Known::preset(preset)?;
             page.choose("#preset", preset.id).await?;
             page.until_digest(&known.digest).await.with_context(|| preset.id)?;
+            let link = json!(format!("#{}", known.link));
+            page.until_equal("location.hash", &link).await.with_context(|| preset.id)?;
             ensure!(!page.visible("#budget").await?, "{} is over the budget", preset.id);
             ensure!(
                 page.eval::<String>("document.title").await?.contains(&known.scenario.title),
@@ -35,7 +42,9 @@ fn every_preset_opens_and_shows_the_cores_digest() -> Result<()> {
             let rows: u32 = page.eval("document.querySelectorAll('#packets tbody tr').length").await?;
             let sends = known.experiment.segments().is_none();
             assert_eq!(rows > 0, sends, "{} shows {rows} packets", preset.id);
+            periodic += u32::from(distortion(&page, preset, &known).await?);
         }
+        ensure!(periodic > 0, "no preset repeats its motion");
         Ok(())
     })
 }
@@ -47,41 +56,28 @@ fn percent_after(text: &str, word: &str) -> Result<f64> {
     number.trim().parse().with_context(|| format!("`{text}`"))
 }
 
-#[test]
-fn a_periodic_motions_distortion_is_the_cores() -> Result<()> {
-    in_browser(|page| async move {
-        page.open("").await?;
-        let mut periodic = 0;
-        for preset in PRESETS {
-            let known = Known::preset(preset)?;
-            let analysis = &known.scenario.analysis;
-            let Some(plan) = known.experiment.plans().get(usize::from(analysis.axis)) else { continue };
-            let Some(ideal) = Spectrum::ideal(plan, analysis.order, analysis.fft_length) else { continue };
-            if !ideal.stretch.periodic {
-                continue;
-            }
-            periodic += 1;
-            page.choose("#preset", preset.id).await?;
-            page.until_digest(&known.digest).await.with_context(|| preset.id)?;
-            for (quantity, harmonics) in [
-                ("position", &ideal.position),
-                ("speed", &ideal.speed),
-                ("acceleration", &ideal.acceleration),
-            ] {
-                page.choose("#spectrum-quantity", quantity).await?;
-                let said = page.text("#thd").await?;
-                ensure!(said.contains(quantity), "{}: {said}", preset.id);
-                if let Some(distortion) = harmonics.distortion {
-                    let (shown, wanted) = (percent_after(&said, "ideal ")?, 100.0 * distortion);
-                    ensure!(
-                        (shown - wanted).abs() <= 1e-4 * wanted.abs() + 1e-7,
-                        "{}: {said}, wanted {wanted}",
-                        preset.id
-                    );
-                }
-            }
+/// Holds the distortion that is shown against the core's; whether there is one to be shown.
+async fn distortion(page: &Session, preset: &Preset, known: &Known) -> Result<bool> {
+    let analysis = &known.scenario.analysis;
+    let Some(plan) = known.experiment.plans().get(usize::from(analysis.axis)) else { return Ok(false) };
+    let Some(ideal) = Spectrum::ideal(plan, analysis.order, analysis.fft_length) else { return Ok(false) };
+    if !ideal.stretch.periodic {
+        return Ok(false);
+    }
+    for (quantity, harmonics) in
+        [("position", &ideal.position), ("speed", &ideal.speed), ("acceleration", &ideal.acceleration)]
+    {
+        page.choose("#spectrum-quantity", quantity).await?;
+        let said = page.text("#thd").await?;
+        ensure!(said.contains(quantity), "{}: {said}", preset.id);
+        if let Some(distortion) = harmonics.distortion {
+            let (shown, wanted) = (percent_after(&said, "ideal ")?, 100.0 * distortion);
+            ensure!(
+                (shown - wanted).abs() <= 1e-4 * wanted.abs() + 1e-7,
+                "{}: {said}, wanted {wanted}",
+                preset.id
+            );
         }
-        ensure!(periodic > 0, "no preset repeats its motion");
-        Ok(())
-    })
+    }
+    Ok(true)
 }

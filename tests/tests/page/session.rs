@@ -15,11 +15,12 @@ const PATIENCE: Duration = Duration::from_secs(30);
 /// Rest between two looks.
 const LOOK_AGAIN: Duration = Duration::from_millis(20);
 
-/// A browser of its own, with a fresh profile.
+/// A visitor's browser.
 #[derive(Clone)]
 pub(crate) struct Session {
     pub(crate) client: Client,
     pub(crate) bench: Arc<Bench>,
+    address: String,
 }
 
 /// One field of the form as a visitor, or a screen reader, meets it.
@@ -44,21 +45,13 @@ pub(crate) struct Shown {
 }
 
 impl Session {
-    pub(crate) async fn start(bench: &Arc<Bench>) -> Result<Self> {
-        let session = Self { client: bench.client().await?, bench: Arc::clone(bench) };
-        bench.keep(session.clone());
-        session.screen(1440, 900).await?;
-        Ok(session)
+    pub(crate) fn new(client: Client, bench: &Arc<Bench>, address: String) -> Self {
+        Self { client, bench: Arc::clone(bench), address }
     }
 
-    /// Another visitor: a second browser with a fresh profile.
+    /// Another visitor: at the same address in a second browser, which was never there.
     pub(crate) async fn stranger(&self) -> Result<Self> {
-        Self::start(&self.bench).await
-    }
-
-    /// Ends the server: from now on there is no network.
-    pub(crate) async fn stop_server(&self) {
-        self.bench.stop_server().await;
+        self.bench.visitor(Some(self.address.clone())).await
     }
 
     /// Goes to another page of the site.
@@ -68,13 +61,14 @@ impl Session {
 
     /// Another visitor where a driver has one browser at a time: this one goes, its console silent.
     pub(crate) async fn next_visitor(&self) -> Result<Self> {
-        self.bench.end_sessions(Ok(())).await?;
-        Self::start(&self.bench).await
+        let (said, next) = self.bench.next_in_browser().await?;
+        ensure!(said.is_empty(), "the console is not silent:\n{}", said.join("\n"));
+        Ok(next)
     }
 
     /// Address of the page, without a fragment.
     pub(crate) fn address(&self) -> &str {
-        &self.bench.page
+        &self.address
     }
 
     /// Loads the page anew, with a fragment or without one, and does not wait for it.

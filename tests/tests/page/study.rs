@@ -4,7 +4,7 @@ use anyhow::{Context, Result, anyhow, ensure};
 use serde_json::{Value, json};
 use stepscope_core::{
     inspect::{
-        comparison::{Asked, compare},
+        ramp_costs::{RampRequest, compare},
         sine_optimum::{Freedom, optimum},
         sine_polyline::{Distinct, Row, best, sweep},
         source_code::{Language, Source, headline},
@@ -335,7 +335,7 @@ fn the_comparison_is_the_cores_and_a_shape_is_taken_and_given_back() -> Result<(
         page.open(&format!("#{}&v=tstudy", known.link)).await?;
         page.until("document.querySelectorAll('table[aria-label=\"Shapes\"] tbody tr').length === 6").await?;
         let names = ["Cosine, exact", "Cosine, in slices", "Sigmoid", "Bezier", "Straight", "Exponential"];
-        for (name, row) in names.into_iter().zip(compare(&Asked::new(6400, 0.4, 0.1))) {
+        for (name, row) in names.into_iter().zip(compare(&RampRequest::new(6400, 0.4, 0.1))) {
             let shown = cells(&page, "Shapes", name).await?;
             ensure!(shown.len() == 7, "{shown:?}");
             let cost = row.cost.map_err(|problems| anyhow!("{problems:?}"))?;
@@ -389,7 +389,7 @@ fn the_comparison_is_the_cores_and_a_shape_is_taken_and_given_back() -> Result<(
         page.open(&format!("#{}&v=tstudy", Known::of(constant)?.link)).await?;
         fill(&page, "Ramp", "50 ms").await?;
         page.until("document.querySelector('[aria-label=\"Use: Straight\"]')").await?;
-        let straight = compare(&Asked::new(1000, 0.5, 0.05))
+        let straight = compare(&RampRequest::new(1000, 0.5, 0.05))
             .remove(4)
             .cost
             .map_err(|problems| anyhow!("{problems:?}"))?;

@@ -78,8 +78,8 @@ fn the_tab_torque_has_the_cores_numbers_and_its_curves() -> Result<()> {
         let facts = cells(&page, "The motor").await?;
         let corner = format!("{} steps/s", machine.corner_rate().expect("a corner") as u64);
         ensure!(facts[1][1] == corner, "{facts:?}");
-        let verdict: String = page.eval("document.getElementById('torque-verdict').textContent").await?;
-        ensure!(verdict.starts_with("⚠ Too little torque in one stretch"), "{verdict}");
+        let outcome: String = page.eval("document.getElementById('torque-verdict').textContent").await?;
+        ensure!(outcome.starts_with("⚠ Too little torque in one stretch"), "{outcome}");
         // The other axis has no motor; the button gives it the document's.
         page.eval::<Value>("(() => { const axes = document.getElementById('study-axis'); axes.value = '1'; axes.dispatchEvent(new Event('change')); return null; })()").await?;
         page.until("document.querySelector('#study-torque button[aria-label^=\"Add the \"]')").await?;

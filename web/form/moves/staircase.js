@@ -16,7 +16,7 @@ export const staircase = {
     },
     short_move: {
       name: "Short moves",
-      text: "A move with less way than both ramps need never reaches its top speed. The document makes the whole of it at the start speed; turning round on the way up is quicker.",
+      text: "A move with less way than both ramps need never reaches its top speed. The document makes the whole of it at the start speed; reversing on the way up is quicker.",
       from: "zhang",
     },
     max_speed: {
@@ -37,7 +37,7 @@ export const staircase = {
     choice(
       "short_move",
       "Short moves",
-      { document: "at start speed", turn_round: "turn round" },
+      { document: "at start speed", reverse: "reverse at the highest row" },
       "What becomes of a move that is too short for its top speed: the whole of it at the start speed, as in the document, or up as many rows as there is room for and down again.",
     ),
     quantity("start_speed", "Start speed", SPEED, "First rate of the table."),

@@ -1,8 +1,8 @@
 //! The motor with its load as numbers of the phasor model, and what it can at a rate.
 
-use crate::torque::{HALVINGS, Moment};
+use crate::torque::Moment;
 use core::f64::consts::{PI, SQRT_2};
-use stepscope_motion::{AxisPlan, MAX_SPEED, moves::Axis};
+use stepscope_motion::{AxisPlan, MAX_SPEED, bisection::border, moves::Axis};
 
 /// mN*m in a N*m.
 const MILLI: f64 = 1000.0;
@@ -175,14 +175,5 @@ fn greatest(holds: impl Fn(f64) -> bool) -> Option<f64> {
     if holds(MAX_SPEED) {
         return None;
     }
-    let (mut from, mut to) = (0.0, MAX_SPEED);
-    for _ in 0..HALVINGS {
-        let middle = from + (to - from) / 2.0;
-        if holds(middle) {
-            from = middle;
-        } else {
-            to = middle;
-        }
-    }
-    Some(from)
+    Some(border(0.0, MAX_SPEED, holds).0)
 }

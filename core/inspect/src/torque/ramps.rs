@@ -7,9 +7,9 @@
 //!
 //! (For shapes that are not symmetric f_max has their area in it: `motion::ramp`.)
 
-use crate::torque::{HALVINGS, Machine};
+use crate::torque::Machine;
 use serde::Serialize;
-use stepscope_motion::{Curve, Profile, cosine::Cosine};
+use stepscope_motion::{Curve, Profile, bisection::border, cosine::Cosine};
 
 /// Ramps that are tried, evenly from none to half of the time.
 const TRIED: u32 = 512;
@@ -121,18 +121,7 @@ fn widest(room_s: f64, enough: impl Fn(f64) -> bool) -> Option<(f64, f64)> {
     }
     let (first, last) = widest?;
     // The end of the run between an index in it and the one beside it.
-    let end = |inside: u32, outside: u32| {
-        let (mut good, mut bad) = (ramp(inside), ramp(outside));
-        for _ in 0..HALVINGS {
-            let middle = good + (bad - good) / 2.0;
-            if enough(middle) {
-                good = middle;
-            } else {
-                bad = middle;
-            }
-        }
-        good
-    };
+    let end = |inside: u32, outside: u32| border(ramp(inside), ramp(outside), &enough).0;
     let longest = if last == TRIED { room_s } else { end(last, last + 1) };
     Some((end(first, first - 1), longest))
 }

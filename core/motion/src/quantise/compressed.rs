@@ -22,7 +22,7 @@ use crate::quantise::{
     entry_format::EntryFormat,
     longest::{Ahead, Window},
     segments::START,
-    stored::TimingError,
+    timing_error::TimingError,
 };
 use crate::{
     ScheduledStep,
@@ -198,6 +198,11 @@ impl Writer {
         for window in windows {
             self.time = self.time.wrapping_add(next);
             next = next.wrapping_add_signed(add);
+            debug_assert!(
+                (window.low..=window.high).contains(&self.time),
+                "{} is not in {window:?}",
+                self.time
+            );
             self.error.step((self.time >> bits).abs_diff(window.due));
         }
         let shift = self.shift();

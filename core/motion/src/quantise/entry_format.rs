@@ -117,6 +117,19 @@ impl EntryFormat {
     }
 }
 
+// Every format's numbers fit into an [`Entry`], in whole bytes.
+const _: () = {
+    let mut index = 0;
+    while index < EntryFormat::ALL.len() {
+        let format = EntryFormat::ALL[index];
+        assert!(format.fraction_bits <= FRACTION_BITS);
+        assert!(format.interval_bits <= u64::BITS && format.interval_bits.is_multiple_of(8));
+        assert!(format.count_bits <= u32::BITS && format.count_bits.is_multiple_of(8));
+        assert!(format.add_bits <= i64::BITS && format.add_bits.is_multiple_of(8));
+        index += 1;
+    }
+};
+
 /// An entry of a step table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {

@@ -35,6 +35,8 @@ pub(super) struct Fit {
 
 /// Looks at different adds, at most. It is never reached but where the gates leave less than one unit.
 const MAX_LOOKS: u32 = 64;
+/// Greatest time of a gate in units, and greatest part of an add in one: so all sums stay in 64 bits.
+pub(super) const MAX_TIME: u64 = 1 << 60;
 
 /// The tightest gates at one add.
 struct Look {
@@ -90,6 +92,10 @@ impl Gate {
     /// The gate of interval alone, with add*(n-1)/2 taken off.
     fn shifted(self, add: i64) -> Self {
         let part = self.n * (self.n - 1) / 2 * add;
+        debug_assert!(
+            [self.low, self.high, part].iter().all(|time| time.unsigned_abs() <= MAX_TIME),
+            "{self:?} with add {add} leaves what 64 bits can sum"
+        );
         Self { n: self.n, low: self.low - part, high: self.high - part }
     }
 }
@@ -99,7 +105,7 @@ impl Gate {
 /// `guess` is where it begins to look. With `centre` it goes on until the room is three quarters of the greatest or
 /// more, without it the first that passes does.
 ///
-/// Its sums stay in 64 bits where every gate's times and add*n*(n-1)/2 for `adds` are within 2^60.
+/// Its sums stay in 64 bits where every gate's times and add*n*(n-1)/2 for `adds` are within [`MAX_TIME`].
 pub(super) fn fit(gates: &[Gate], adds: (i64, i64), guess: i64, centre: bool) -> Option<Fit> {
     let (mut left, mut right) = adds;
     let (mut below, mut above): (Option<Look>, Option<Look>) = (None, None);

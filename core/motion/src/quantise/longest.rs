@@ -18,6 +18,8 @@ const MAX_AHEAD: usize = 1 << 20;
 const SAMPLES: usize = 8;
 /// Longest time of an entry in units, so that all sums of [`feasible_window`] stay in 64 bits.
 const MAX_SPAN: u64 = 1 << 56;
+// Gates reach to the double of it, and the steepest add a unit further.
+const _: () = assert!(2 * MAX_SPAN + MAX_AHEAD as u64 * MAX_AHEAD as u64 <= feasible_window::MAX_TIME);
 
 /// Where a step may come, in units from the motion's start, and the cycle that it is due in.
 #[derive(Clone, Copy, Debug)]

@@ -3,6 +3,25 @@
 //!
 //! `motion` gives positions over time, `wire` and `device` know only ticks and segments; here the one becomes
 //! the other.
+//!
+//! ```
+//! use stepscope_motion::{
+//!     moves::Axis,
+//!     plan_axis,
+//!     quantise::{AxesPath, exact_segments, ticks},
+//! };
+//! use stepscope_peripheral::{segment::PulseTimes, units::Cycles};
+//!
+//! let plans = [plan_axis(&Axis::default(), "x").expect("it holds")];
+//! // Ticks of 100 slots and 32000 cycles at 16 MHz, for a peripheral of one channel.
+//! let orders = ticks(&plans, AxesPath::MOTION, 1, 100, 32_000, 16_000_000).expect("no tick is too full");
+//! let steps: u32 = orders.bytes().iter().map(|order| u32::from(order & 0x7f)).sum();
+//! assert_eq!(steps, 3200);
+//! // The same motion for a generator that runs it by itself.
+//! let pulse = PulseTimes { width: Cycles(40), setup: Cycles(40), hold: Cycles(0) };
+//! let segments = exact_segments(&plans, AxesPath::MOTION, 1, pulse, 16_000_000).expect("no step is too soon");
+//! assert_eq!(segments.steps(), 3200);
+//! ```
 
 mod compressed;
 mod document;
@@ -12,12 +31,14 @@ mod longest;
 mod segments;
 mod stored;
 mod ticks;
+mod timing_error;
 
 pub use compressed::{Compressed, MAX_TOLERANCE, Tolerance, compressed};
 pub use entry_format::{Entry, EntryFormat};
 pub use segments::exact_segments;
-pub use stored::{Form, MAX_TABLE_STEPS, Stored, TimingError, stored};
+pub use stored::{Form, MAX_TABLE_STEPS, Stored, stored};
 pub use ticks::{TickClock, Ticks, ticks};
+pub use timing_error::TimingError;
 
 /// Where a list of axes stands: the paths under which its problems are told.
 #[derive(Clone, Copy, Debug)]

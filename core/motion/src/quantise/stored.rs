@@ -11,15 +11,14 @@ use crate::quantise::{
     document::{document, document_bytes},
     entry_format::{Entry, EntryFormat},
     segments::{MAX_STEPS, exact},
+    timing_error::TimingError,
 };
 use crate::{
-    AxisPlan, ScheduledStep,
+    AxisPlan,
     problem::{Cause, ValueError},
 };
 use alloc::{vec, vec::Vec};
-use stepscope_peripheral::segment::{
-    CheckedSegments, FRACTION_BITS, PulseTimes, Refusal, Segment, SegmentList,
-};
+use stepscope_peripheral::segment::{CheckedSegments, PulseTimes, Refusal, SegmentList};
 
 /// Most steps of one axis' compressed list or of its document's table: each step is looked at.
 pub const MAX_TABLE_STEPS: u64 = 100_000_000;
@@ -113,54 +112,5 @@ fn judged(list: SegmentList, pulse: PulseTimes) -> Result<SegmentList, Cause> {
             Some(Refusal::End { next }) => Cause::SegmentEnd { next },
             _ => Cause::NoSegmentSteps,
         }),
-    }
-}
-
-/// How far steps are from their due cycles.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct TimingError {
-    /// Steps.
-    pub steps: u64,
-    /// Greatest error of a step in cycles, early or late.
-    pub greatest: u64,
-    /// Sum of all errors' squares in cycles^2.
-    squares: u128,
-}
-
-impl TimingError {
-    /// Takes a step into account that is so many cycles early or late.
-    pub(super) fn step(&mut self, off: u64) {
-        self.steps += 1;
-        self.greatest = self.greatest.max(off);
-        self.squares = self.squares.saturating_add(u128::from(off) * u128::from(off));
-    }
-
-    /// Root of the mean square in cycles; 0 of no steps.
-    #[must_use]
-    pub fn rms(&self) -> f64 {
-        if self.steps == 0 { 0.0 } else { libm::sqrt(self.squares as f64 / self.steps as f64) }
-    }
-
-    /// That of a list whose steps are to come at `due`, in cycles from the list's start; None if it has another number of
-    /// steps, or one goes the other way.
-    #[must_use]
-    pub fn of(list: &SegmentList, due: impl IntoIterator<Item = ScheduledStep>) -> Option<Self> {
-        let mut error = Self::default();
-        let mut due = due.into_iter();
-        let mut time: u64 = 0;
-        for segment in &list.segments {
-            match *segment {
-                Segment::Dwell(dwell) => time = time.wrapping_add(dwell),
-                Segment::Steps { count, mut interval, add, right } => {
-                    for _ in 0..count {
-                        time = time.wrapping_add(interval);
-                        interval = interval.wrapping_add_signed(add);
-                        let step = due.next().filter(|step| step.right == right)?;
-                        error.step((time >> FRACTION_BITS).abs_diff(step.cycle));
-                    }
-                }
-            }
-        }
-        due.next().is_none().then_some(error)
     }
 }

@@ -15,6 +15,7 @@ use crate::{
     problem::{Cause, Problem, ValueError},
 };
 use alloc::{vec, vec::Vec};
+use stepscope_peripheral::wire::packet::MAX_STEPS;
 
 /// Most ticks of a run.
 const MAX_TICKS: u64 = 2_000_000;
@@ -22,6 +23,7 @@ const MAX_TICKS: u64 = 2_000_000;
 const MAX_BYTES: u64 = 4_000_000;
 /// Bit of a byte that says right (A5).
 const RIGHT: u8 = 1 << 7;
+const _: () = assert!(!RIGHT == MAX_STEPS);
 
 /// Ticks for the whole peripheral: one byte a channel and tick, bit 7 = right, bits 6..=0 = steps.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -92,10 +94,11 @@ pub fn ticks(
     let mut problems = Vec::new();
     for (channel, plan) in plans.iter().enumerate() {
         let column = bytes.iter_mut().skip(channel).step_by(width);
-        if let Err(cause) = fill(plan, column, &clock, slots.min(!RIGHT)) {
+        if let Err(cause) = fill(plan, column, &clock, slots.min(MAX_STEPS)) {
             problems.push(Problem::new(at.axis(channel), cause));
         }
     }
+    debug_assert!(!bytes.is_empty() && bytes.len().is_multiple_of(width), "{} bytes of ticks", bytes.len());
     if problems.is_empty() { Ok(Ticks { channels, bytes }) } else { Err(problems) }
 }
 
@@ -157,7 +160,6 @@ impl TickClock {
 
     /// End of tick `tick` (from 0) in s.
     #[must_use]
-    #[inline(always)]
     pub fn end_s(&self, tick: u64) -> f64 {
         self.seconds(tick.saturating_add(1).saturating_mul(self.tick_cycles))
     }

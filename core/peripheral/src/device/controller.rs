@@ -25,9 +25,9 @@ pub(super) struct Controller {
 }
 
 impl Controller {
-    #[inline]
     pub(super) fn new(config: &Config) -> Self {
         Self {
+            // A framed line's configuration always has one.
             address: config.address.unwrap_or(0),
             channels: config.channels,
             deframer: Deframer::default(),
@@ -37,16 +37,14 @@ impl Controller {
     }
 
     /// Sequence number that the next TICKS must have.
-    #[inline]
     pub(super) const fn expected_seq(&self) -> u8 {
         self.expected_seq
     }
 
     /// A byte delivered in cycle `now`.
-    #[inline]
     pub(super) fn byte(&mut self, now: Instant, byte: u8, machine: &mut Machine, sink: &mut impl Sink) {
         let mut answered = false;
-        let fate = match self.deframer.byte(byte) {
+        let outcome = match self.deframer.byte(byte) {
             None => return,
             Some(Deframed::Short) => {
                 machine.fault(Faults::SHORT_PACKET);
@@ -66,11 +64,11 @@ impl Controller {
             Some(Deframed::Frame(frame)) => {
                 answered = frame.address != ALL;
                 let Self { channels, expected_seq, taken, .. } = self;
-                Judge { now, channels: *channels, expected_seq, taken, machine }.frame(frame)
+                Execution { now, channels: *channels, expected_seq, taken, machine }.frame(frame)
             }
         };
-        sink.event(now, Event::Frame(fate));
-        if let Some(answer) = fate.answer().filter(|_| answered) {
+        sink.event(now, Event::Frame(outcome));
+        if let Some(answer) = outcome.answer().filter(|_| answered) {
             let status = machine.status(now, self.expected_seq);
             let reply = Reply { address: self.address, answer, status };
             let (start, end) = machine.transceiver.reply(now, &reply.emit());
@@ -79,8 +77,8 @@ impl Controller {
     }
 }
 
-/// One frame's judgement.
-struct Judge<'a> {
+/// The execution of one frame.
+struct Execution<'a> {
     now: Instant,
     channels: u8,
     expected_seq: &'a mut u8,
@@ -88,8 +86,7 @@ struct Judge<'a> {
     machine: &'a mut Machine,
 }
 
-impl Judge<'_> {
-    #[inline]
+impl Execution<'_> {
     fn frame(&mut self, frame: Frame<'_>) -> FrameOutcome {
         let Some(kind) = Kind::parse(frame.kind) else { return FrameOutcome::Refused(Reason::UnknownKind) };
         if kind == Kind::Ticks {
@@ -111,7 +108,6 @@ impl Judge<'_> {
         FrameOutcome::Taken(kind)
     }
 
-    #[inline]
     fn ticks(&mut self, body: &[u8]) -> FrameOutcome {
         let Some(ticks) = Ticks::parse(body, self.channels) else {
             return FrameOutcome::Refused(Reason::BadBody);

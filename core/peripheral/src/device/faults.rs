@@ -1,4 +1,16 @@
-//! Fault flags (DESIGN A6).
+//! Fault flags (DESIGN A6): the bits and names that the register FAULTS has.
+
+use stepscope_registers::faults;
+
+/// Bits of all flags that there are.
+const KNOWN: u16 = {
+    let (mut bits, mut flags) = (0, faults::REGISTER.fields);
+    while let [flag, rest @ ..] = flags {
+        bits |= flag.mask() as u16;
+        flags = rest;
+    }
+    bits
+};
 
 /// Faults that a peripheral has seen; they stay until RESYNC or firmware clears them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -6,32 +18,21 @@ pub struct Faults(u16);
 
 impl Faults {
     /// A stop bit was low.
-    pub const FRAMING: Self = Self(1 << 0);
+    pub const FRAMING: Self = Self(faults::FRAMING.mask() as u16);
     /// A gap cut a packet short.
-    pub const SHORT_PACKET: Self = Self(1 << 1);
+    pub const SHORT_PACKET: Self = Self(faults::SHORT_PACKET.mask() as u16);
     /// A frame's check failed.
-    pub const CRC: Self = Self(1 << 2);
+    pub const CRC: Self = Self(faults::CRC.mask() as u16);
     /// A frame had more than 600 decoded bytes.
-    pub const OVERLONG: Self = Self(1 << 3);
+    pub const OVERLONG: Self = Self(faults::OVERLONG.mask() as u16);
     /// A packet found the queue full.
-    pub const QUEUE_OVERFLOW: Self = Self(1 << 4);
+    pub const QUEUE_OVERFLOW: Self = Self(faults::QUEUE_OVERFLOW.mask() as u16);
     /// A packet ordered more steps than a tick has slots.
-    pub const TOO_MANY_STEPS: Self = Self(1 << 5);
+    pub const TOO_MANY_STEPS: Self = Self(faults::TOO_MANY_STEPS.mask() as u16);
     /// TICKS had neither the expected sequence number nor the one before it.
-    pub const BAD_SEQ: Self = Self(1 << 6);
+    pub const BAD_SEQ: Self = Self(faults::BAD_SEQ.mask() as u16);
     /// A tick with steps ended and none was there to follow (framed protocol).
-    pub const UNDERRUN: Self = Self(1 << 7);
-
-    const NAMES: [&'static str; 8] = [
-        "FRAMING",
-        "SHORT_PACKET",
-        "CRC",
-        "OVERLONG",
-        "QUEUE_OVERFLOW",
-        "TOO_MANY_STEPS",
-        "BAD_SEQ",
-        "UNDERRUN",
-    ];
+    pub const UNDERRUN: Self = Self(faults::UNDERRUN.mask() as u16);
 
     /// All of them.
     pub const ALL: Self = Self::from_bits(u16::MAX);
@@ -47,7 +48,7 @@ impl Faults {
     /// The faults whose bits, as A6 numbers them, are set; bits of no fault are left out.
     #[must_use]
     pub const fn from_bits(bits: u16) -> Self {
-        Self(bits & ((1 << Self::NAMES.len()) - 1))
+        Self(bits & KNOWN)
     }
 
     /// The faults of both.
@@ -70,6 +71,7 @@ impl Faults {
 
     /// Names of the faults, in the order of their bits.
     pub fn names(self) -> impl Iterator<Item = &'static str> {
-        Self::NAMES.into_iter().enumerate().filter(move |(bit, _)| self.0 >> bit & 1 != 0).map(|(_, n)| n)
+        let flags = faults::REGISTER.fields.iter();
+        flags.filter(move |flag| u32::from(self.0) & flag.mask() != 0).map(|flag| flag.name)
     }
 }

@@ -16,7 +16,9 @@ use crate::{
 pub(super) struct Machine {
     slots: u8,
     boot: Instant,
-    /// From STOP or DISABLE to ENABLE: no tick is taken, so none runs or waits.
+    /// From STOP or DISABLE to ENABLE: no tick is taken.
+    ///
+    /// Invariant: while it is set no tick runs or waits.
     stopped: bool,
     pub(super) transceiver: Transceiver,
     pub(super) sequencer: Sequencer,
@@ -24,7 +26,6 @@ pub(super) struct Machine {
 }
 
 impl Machine {
-    #[inline]
     pub(super) fn new(config: &Config) -> Self {
         Self {
             slots: config.slots,
@@ -36,14 +37,14 @@ impl Machine {
         }
     }
 
-    /// Whether `ticks` ticks of these orders may be queued in cycle `now`: all of them or none.
-    #[inline]
-    pub(super) fn admit(&mut self, now: Instant, orders: &[u8], ticks: usize) -> Result<(), Reason> {
+    /// Whether `ticks` ticks of these commands may be queued in cycle `now`: all of them or none.
+    pub(super) fn admit(&mut self, now: Instant, commands: &[u8], ticks: usize) -> Result<(), Reason> {
+        self.assert_rest();
         if self.stopped {
             Err(Reason::Stopped)
         } else if now < self.boot {
             Err(Reason::Busy)
-        } else if orders.iter().any(|&byte| ChannelCommand::parse(byte).steps > self.slots) {
+        } else if commands.iter().any(|&byte| ChannelCommand::parse(byte).steps > self.slots) {
             self.faults.set(Faults::TOO_MANY_STEPS);
             Err(Reason::TooManySteps)
         } else if ticks > usize::from(self.sequencer.free()) {
@@ -55,22 +56,20 @@ impl Machine {
     }
 
     /// Emergency stop: drivers off, the queue empty, the tick that runs abandoned.
-    #[inline]
     pub(super) fn stop(&mut self, now: Instant) {
         self.transceiver.enable(now, false);
         self.sequencer.stop(now);
         self.stopped = true;
+        self.assert_rest();
     }
 
     /// Drivers on, and out of STOPPED.
-    #[inline]
     pub(super) fn enable(&mut self, now: Instant) {
         self.transceiver.enable(now, true);
         self.stopped = false;
     }
 
     /// Drivers off, if nothing moves: whether it was done.
-    #[inline]
     pub(super) fn disable(&mut self, now: Instant) -> bool {
         let idle = !self.sequencer.is_moving();
         if idle {
@@ -80,34 +79,34 @@ impl Machine {
         idle
     }
 
+    fn assert_rest(&self) {
+        debug_assert!(!(self.stopped && self.sequencer.is_moving()), "it moves while it is stopped");
+    }
+
     /// Another timing of the pulses, for the ticks that start from now on; the caller knows that
     /// none runs or waits.
-    #[inline]
     pub(super) fn retime(&mut self, config: &Config) {
         self.slots = config.slots;
         self.sequencer.retime(config);
     }
 
-    #[inline]
     pub(super) const fn faults(&self) -> Faults {
         self.faults.union(self.sequencer.faults())
     }
 
-    #[inline]
     pub(super) const fn fault(&mut self, fault: Faults) {
         self.faults.set(fault);
     }
 
     /// Takes back the flags of `which`.
-    #[inline]
     pub(super) fn clear_faults(&mut self, which: Faults) {
         self.faults.clear(which);
         self.sequencer.clear_faults(which);
     }
 
     /// What the controller tells of itself in cycle `now`.
-    #[inline]
     pub(super) fn status(&self, now: Instant, expected_seq: u8) -> Status {
+        self.assert_rest();
         let state = if self.stopped {
             State::Stopped
         } else if now < self.boot {

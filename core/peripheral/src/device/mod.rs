@@ -15,9 +15,27 @@
 //!
 //! So a place freed by a tick that starts in cycle p is free for the packet that ends in p, and a
 //! byte delivered in the very cycle of a gap begins a new packet.
+//!
+//! ```
+//! use stepscope_peripheral::{
+//!     config::{Bus, Config, SerialLine},
+//!     device::Device,
+//!     trace::Digest,
+//!     units::Instant,
+//! };
+//!
+//! let config = Config::new(16_000_000, &Bus::default(), &SerialLine::default()).expect("the defaults hold");
+//! // The same 3000 cycles with the line idle, one by one and at once.
+//! let (mut slow, mut slow_digest) = (Device::new(&config), Digest::default());
+//! (0..3000).for_each(|_| drop(slow.clock(true, &mut slow_digest)));
+//! let (mut fast, mut fast_digest) = (Device::new(&config), Digest::default());
+//! fast.run(true, Instant(3000), &mut fast_digest);
+//! assert_eq!(slow_digest.value(), fast_digest.value());
+//! ```
 
 mod controller;
 mod faults;
+mod latches;
 mod machine;
 mod model_bus;
 mod plan;
@@ -41,17 +59,20 @@ use crate::{
     },
 };
 use controller::Controller;
+use latches::Latches;
 use machine::Machine;
-use registers::Latches;
 
 /// The peripheral.
 ///
 /// ```
-/// use crate::{device::Device, config::{Bus, Config}, signal::{Levels, Record}};
-/// use stepscope_scenario::Line;
+/// use stepscope_peripheral::{
+///     config::{Bus, Config, SerialLine},
+///     device::Device,
+///     signal::{Levels, Record},
+/// };
 ///
 /// let bus = Bus { channels: 2, slots: 4, ..Bus::default() };
-/// let config = Config::new(16_000_000, &bus, &Line::default()).expect("the defaults hold");
+/// let config = Config::new(16_000_000, &bus, &SerialLine::default()).expect("the defaults hold");
 /// let mut device = Device::new(&config);
 /// let mut trace: Vec<Record> = Vec::new();
 /// assert_eq!(device.clock(true, &mut trace), Levels::RESET);
@@ -75,9 +96,9 @@ pub struct Device {
     latches: Latches,
 }
 
-/// How bytes are joined to orders.
+/// How bytes are joined to commands.
 ///
-/// It is asked for in every window of a run: a tag of its own is read in fewer instructions than one
+/// It is looked up in every window of a run: a tag of its own is read in fewer instructions than one
 /// that hides in a variant's unused values.
 #[derive(Clone, Debug)]
 #[repr(u8)]
@@ -89,7 +110,6 @@ enum Framing {
 impl Device {
     /// A peripheral before cycle 0.
     #[must_use]
-    #[inline]
     pub fn new(config: &Config) -> Self {
         Self {
             now: Instant::RESET,
@@ -110,35 +130,30 @@ impl Device {
 
     /// The cycle that the next call of [`Self::clock`] is; as many have passed.
     #[must_use]
-    #[inline]
     pub const fn now(&self) -> Instant {
         self.now
     }
 
     /// Position counters: rising STEP edges, +1 where DIR is 1, -1 where it is 0.
     #[must_use]
-    #[inline]
     pub fn positions(&self) -> [i32; MAX_CHANNELS] {
         self.machine.sequencer.positions()
     }
 
     /// Ticks that have ended.
     #[must_use]
-    #[inline]
     pub const fn ticks_done(&self) -> u32 {
         self.machine.sequencer.ticks_done()
     }
 
     /// Faults so far.
     #[must_use]
-    #[inline]
     pub const fn faults(&self) -> Faults {
         self.machine.faults()
     }
 
     /// Advances one cycle with the line at `line`, as others drive it, and gives the levels of all
     /// signals in it. Cycle 0 is reset: the line is high in it, whatever is given.
-    #[inline]
     pub fn clock(&mut self, line: bool, sink: &mut impl Sink) -> Levels {
         let now = self.now;
         self.line = line;
@@ -178,23 +193,21 @@ impl Device {
         levels
     }
 
-    #[inline]
     fn byte(&mut self, byte: u8, sink: &mut impl Sink) {
         sink.event(self.now, Event::Byte { seen: self.receiver.seen(), byte });
         let unpacked = match &mut self.framing {
             Framing::Raw(unpacker) => unpacker.byte(self.now, byte),
             Framing::Framed(controller) => return controller.byte(self.now, byte, &mut self.machine, sink),
         };
-        let fate = match unpacked {
+        let outcome = match unpacked {
             None => return,
             Some(Unpacked::OtherAddress) => PacketOutcome::OtherAddress,
             Some(Unpacked::Own(tick)) => self.commit(tick),
         };
-        sink.event(self.now, Event::Packet(fate));
+        sink.event(self.now, Event::Packet(outcome));
     }
 
     /// Judges a packet for this controller (A5).
-    #[inline]
     fn commit(&mut self, tick: Tick) -> PacketOutcome {
         match self.machine.admit(self.now, &tick, 1) {
             Ok(()) => {
@@ -211,7 +224,6 @@ impl Device {
     /// What the controller would tell of itself in the cycle that was run last (A6); `None` on a raw
     /// line.
     #[must_use]
-    #[inline]
     pub fn status(&self) -> Option<Status> {
         match &self.framing {
             Framing::Framed(controller) => {
@@ -222,20 +234,17 @@ impl Device {
     }
 
     /// The cycle before [`Self::now`]; before reset, reset.
-    #[inline]
     const fn before(&self) -> Instant {
         Instant(self.now.0.saturating_sub(1))
     }
 
     /// Signals that do not come from the sequencer.
-    #[inline]
     const fn base(&self) -> u64 {
         self.machine.transceiver.levels() | if self.rx { Levels::RX } else { 0 }
     }
 
     /// Next cycle, from [`Self::now`] on, in which something can change if the line stays at the
     /// level of the last cycle.
-    #[inline]
     fn deadline(&self) -> Instant {
         if self.now == self.wake {
             self.now
@@ -244,7 +253,6 @@ impl Device {
         }
     }
 
-    #[inline(always)]
     fn input_deadline(&self) -> Instant {
         let framing = match &self.framing {
             Framing::Raw(unpacker) => unpacker.deadline(),
@@ -255,7 +263,6 @@ impl Device {
 
     /// Whether it ever drives the line.
     #[must_use]
-    #[inline]
     pub const fn answers(&self) -> bool {
         matches!(self.framing, Framing::Framed(_))
     }
@@ -263,7 +270,6 @@ impl Device {
     /// What this controller does to the line in cycle [`Self::now`]: its TX where it drives, `None`
     /// where it does not.
     #[must_use]
-    #[inline]
     pub fn driven(&self) -> Option<bool> {
         let levels = Levels(self.machine.transceiver.ahead(self.now).0);
         levels.has(Levels::DE).then(|| levels.has(Levels::TX))
@@ -272,7 +278,6 @@ impl Device {
     /// A cycle after [`Self::now`] up to which this controller does not change what it does to the
     /// line, while others keep the line at `line`; [`Instant::NEVER`] if it will not.
     #[must_use]
-    #[inline]
     pub fn next_driven(&self, line: bool) -> Instant {
         if !self.answers() {
             return Instant::NEVER;
@@ -288,7 +293,6 @@ impl Device {
     /// For how many cycles nothing can change while the line stays at the level of the last cycle;
     /// `None` if it is for ever.
     #[must_use]
-    #[inline]
     pub fn cycles_until_event(&self) -> Option<Cycles> {
         match self.deadline() {
             Instant::NEVER => None,
@@ -298,7 +302,6 @@ impl Device {
 
     /// Passes cycles in which nothing changes: no more than [`Self::cycles_until_event`] says. What goes beyond
     /// is not skipped.
-    #[inline]
     pub fn advance(&mut self, cycles: Cycles) {
         let target = Instant(self.now.0.saturating_add(cycles.0));
         self.now = target.min(self.deadline());
@@ -307,7 +310,6 @@ impl Device {
     /// Runs until cycle `until` is the next, as fast as the edges allow, while the line stays at
     /// `line`; with [`Instant::NEVER`], until nothing can change any more ([`Self::last_active`] then
     /// tells when that was). Stops early where the sink asks for a pause.
-    #[inline(always)]
     pub fn run(&mut self, line: bool, until: Instant, sink: &mut impl Sink) {
         if self.now < until && (line != self.line || self.now == self.wake) {
             self.clock(line, sink);
@@ -335,13 +337,11 @@ impl Device {
     /// The last cycle in which something happened, if every cycle that was clocked by itself had a
     /// reason.
     #[must_use]
-    #[inline]
     pub fn last_active(&self) -> Instant {
         self.last.max(self.machine.sequencer.last_active())
     }
 
     /// At rest: the cycle that the next call of [`Self::clock`] is becomes `now`. Otherwise nothing.
-    #[inline]
     pub fn finish(&mut self, now: Instant) {
         if self.at_rest() {
             self.now = now;
@@ -350,7 +350,6 @@ impl Device {
 
     /// Whether nothing can change any more while the line stays as it is.
     #[must_use]
-    #[inline]
     pub fn at_rest(&self) -> bool {
         self.deadline() == Instant::NEVER
     }

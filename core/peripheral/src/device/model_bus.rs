@@ -14,11 +14,15 @@ use stepscope_registers::RegisterBus;
 /// in the last of them. What happens meanwhile goes to `sink`.
 ///
 /// ```
-/// use crate::{device::ModelBus, config::{Bus, Config}, signal::Record, units::Cycles};
-/// use stepscope_scenario::Line;
+/// use stepscope_peripheral::{
+///     config::{Bus, Config, SerialLine},
+///     device::ModelBus,
+///     signal::Record,
+///     units::Cycles,
+/// };
 /// use stepscope_registers::{RegisterBus, control, status};
 ///
-/// let config = Config::new(16_000_000, &Bus::default(), &Line::default()).expect("the defaults hold");
+/// let config = Config::new(16_000_000, &Bus::default(), &SerialLine::default()).expect("the defaults hold");
 /// let mut bus = ModelBus::new(&config, Cycles(8), Vec::<Record>::new());
 /// bus.write(control::OFFSET, control::STOP.mask());
 /// assert_eq!(status::STATE.of(bus.read(status::OFFSET)), status::STATE_STOPPED);

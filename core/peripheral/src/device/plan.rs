@@ -12,13 +12,13 @@
 //! staggered: the j-th pulse rises at s + D + j*d, d = min(dp, floor(Ts/nd)), nd firing channels
 //! ```
 //!
-//! The plan is a list of (offset from c0, lines after it), so that running a tick is only walking
-//! along it. Successive ticks with the same orders share it.
+//! The plan is a list of (offset from c0, lines after it), so that running a tick is only iterating
+//! over it. Successive ticks with the same commands share it.
 
 use crate::{
     config::{Config, DirLine, Distribution, PulsePhasing},
     signal::{Levels, MAX_CHANNELS},
-    wire::packet::{ChannelCommand, Tick},
+    wire::packet::{ChannelCommand, MAX_STEPS, Tick},
 };
 use alloc::vec::Vec;
 
@@ -41,52 +41,47 @@ pub(super) struct Plan {
     config: Config,
     /// DIR of the channels in use, all right.
     all_right: Lines,
-    orders: Tick,
+    commands: Tick,
+    /// Invariant: offsets rise, none is beyond the tick's end.
     changes: Vec<Change>,
 }
 
 impl Plan {
-    #[inline]
     pub(super) fn new(config: &Config) -> Self {
         let all_right = !(!0 << config.channels) << Levels::DIR_SHIFT;
-        let orders = [0; MAX_CHANNELS];
-        let mut plan = Self { config: config.clone(), all_right, orders, changes: Vec::new() };
+        let commands = [0; MAX_CHANNELS];
+        let mut plan = Self { config: config.clone(), all_right, commands, changes: Vec::new() };
         plan.rebuild();
         plan
     }
 
-    /// The orders that the plan is of.
-    #[inline]
-    pub(super) const fn orders(&self) -> &Tick {
-        &self.orders
+    /// The commands that the plan is of.
+    pub(super) const fn commands(&self) -> &Tick {
+        &self.commands
     }
 
     /// Whether any channel makes a step.
-    #[inline]
     pub(super) fn has_steps(&self) -> bool {
-        self.orders.iter().any(|&byte| ChannelCommand::parse(byte).steps > 0)
+        self.commands.iter().any(|&byte| ChannelCommand::parse(byte).steps > 0)
     }
 
     /// Rising offsets. With a common DIR line the first change sets DIR: what it was before the
     /// tick does not matter.
-    #[inline]
     pub(super) fn changes(&self) -> &[Change] {
         &self.changes
     }
 
-    /// Makes this the plan of `orders`.
-    #[inline]
-    pub(super) fn set(&mut self, orders: Tick) {
-        if orders != self.orders {
-            self.orders = orders;
+    /// Makes this the plan of `commands`.
+    pub(super) fn set(&mut self, commands: Tick) {
+        if commands != self.commands {
+            self.commands = commands;
             self.rebuild();
         }
     }
 
-    #[inline]
     fn rebuild(&mut self) {
-        let counts = self.orders.map(|byte| ChannelCommand::parse(byte).steps);
-        let right = tops(u128::from_le_bytes(self.orders));
+        let counts = self.commands.map(|byte| ChannelCommand::parse(byte).steps);
+        let right = tops(u128::from_le_bytes(self.commands));
         let dir = Lines::from(right) << Levels::DIR_SHIFT & self.all_right;
         self.changes.clear();
         if self.config.dir_line == DirLine::PerChannel {
@@ -114,10 +109,13 @@ impl Plan {
                 }
             }
         }
+        debug_assert!(
+            self.changes.last().is_none_or(|last| last.offset <= self.config.tick().0),
+            "a pulse ends after its tick"
+        );
     }
 
     /// All of `fires` from `rise` on, for W cycles; DIR stays at `dir`.
-    #[inline]
     fn pulse(&mut self, rise: u64, fires: u16, dir: Lines) {
         if fires != 0 {
             self.push(rise, dir | Lines::from(fires));
@@ -126,13 +124,11 @@ impl Plan {
     }
 
     /// From pulse to pulse of a slot: d = min(dp, floor(Ts/nd)).
-    #[inline]
     fn distance(&self, fires: u16) -> u64 {
         self.config.settle.min(self.config.step_period / u64::from(fires.count_ones().max(1)))
     }
 
     /// One channel after another, ascending; pulses that are closer than W overlap.
-    #[inline]
     fn staggered(&mut self, start: u64, fires: u16, dir: Lines) {
         let (distance, width) = (self.distance(fires), self.config.pulse_width);
         let first = start + self.config.dir_setup;
@@ -155,7 +151,6 @@ impl Plan {
     }
 
     /// The left ones ascending, then the right ones ascending; L <= d, so no two pulses meet.
-    #[inline]
     fn common_staggered(&mut self, start: u64, fires: u16, right: u16) {
         let distance = self.distance(fires);
         let order = channels(fires & !right).zip([0].into_iter().cycle());
@@ -169,17 +164,18 @@ impl Plan {
     }
 
     /// Adds a change; of several at the same offset the last counts.
-    #[inline]
     fn push(&mut self, offset: u64, lines: Lines) {
         match self.changes.last_mut() {
             Some(last) if last.offset == offset => last.lines = lines,
-            _ => self.changes.push(Change { offset, lines }),
+            last => {
+                debug_assert!(last.is_none_or(|last| last.offset < offset), "offset {offset} goes back");
+                self.changes.push(Change { offset, lines });
+            }
         }
     }
 }
 
 /// The STEP bits of `fires` one by one, ascending.
-#[inline]
 fn channels(fires: u16) -> impl Iterator<Item = Lines> {
     (0..MAX_CHANNELS).map(|channel| 1 << channel).filter(move |bit| Lines::from(fires) & bit != 0)
 }
@@ -205,16 +201,18 @@ struct Firing {
 const ONES: u128 = u128::from_le_bytes([1; MAX_CHANNELS]);
 /// Bit 7 of each byte.
 const TOPS: u128 = ONES << 7;
+// A byte of the numbers above has room for a count, and for bit 7.
+const _: () = assert!(MAX_STEPS == 0x7f && TOPS & (ONES * MAX_STEPS as u128) == 0);
 
 impl Firing {
-    #[inline]
-    const fn new(counts: [u8; MAX_CHANNELS], slots: u8, distribution: Distribution) -> Self {
+    fn new(counts: [u8; MAX_CHANNELS], slots: u8, distribution: Distribution) -> Self {
+        debug_assert!((1..=MAX_STEPS).contains(&slots), "{slots} slots in a tick");
+        debug_assert!(counts.iter().all(|&count| count <= slots), "{counts:?} in {slots} slots");
         let remainders = u128::from_le_bytes([slots / 2; MAX_CHANNELS]);
         Self { counts: u128::from_le_bytes(counts), remainders, slots, distribution }
     }
 
     /// The channels that fire in slot `slot`; slots are asked for in order.
-    #[inline]
     fn slot(&mut self, slot: u8) -> u16 {
         match self.distribution {
             // c - (k + 1) >= 0
@@ -234,7 +232,6 @@ impl Firing {
 /// Bit i of the result is bit 7 of byte i.
 ///
 /// The multiplication moves byte i's bit to bit 56 + i of its half; no two of them meet.
-#[inline]
 fn tops(bytes: u128) -> u16 {
     let bits = bytes >> 7 & ONES;
     let half = |bits: u64| (bits.wrapping_mul(0x0102_0408_1020_4080) >> 56) as u16;

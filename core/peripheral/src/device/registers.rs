@@ -5,118 +5,29 @@
 //! what is so in p; what it does to EN, STEP and the start of ticks shows from p + 1 on, as for a
 //! frame that ends in p.
 
-use crate::device::{Device, Faults, Framing};
+use crate::device::{Device, Faults, Framing, latches::Timing};
 use crate::{
-    config::{Bus, Config, DirLine, Distribution, Protocol, PulsePhasing},
-    protocol::Reason,
+    config::{Config, DirLine, Protocol},
+    protocol::{Reason, State},
     signal::{Event, Levels, MAX_CHANNELS, Sink},
     units::Instant,
-    wire::packet::Tick,
 };
 use stepscope_registers as map;
 
-/// What only the registers hold.
-#[derive(Clone, Debug)]
-pub(super) struct Latches {
-    /// The timing in force, and what else the peripheral was built with.
-    config: Config,
-    timing: Timing,
-    orders: Tick,
-    result: u32,
-}
-
-/// The timing registers as they were written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Timing {
-    slots: u32,
-    step_period: u32,
-    pulse_width: u32,
-    dir_setup: u32,
-    dir_hold: u32,
-    settle: u32,
-    mode: u32,
-}
-
-impl Timing {
-    /// The registers of a configuration, whose times have 32 bits.
-    fn of(config: &Config) -> Self {
-        let distribution = match config.distribution {
-            Distribution::Burst => map::mode::DISTRIBUTION_BURST,
-            Distribution::Spread => map::mode::DISTRIBUTION_SPREAD,
-        };
-        let pulses = match config.pulse_phasing {
-            PulsePhasing::Simultaneous => map::mode::PULSES_SIMULTANEOUS,
-            PulsePhasing::Staggered => map::mode::PULSES_STAGGERED,
-        };
-        Self {
-            slots: config.slots.into(),
-            step_period: config.step_period as u32,
-            pulse_width: config.pulse_width as u32,
-            dir_setup: config.dir_setup as u32,
-            dir_hold: config.dir_hold as u32,
-            settle: config.settle as u32,
-            mode: map::mode::DISTRIBUTION.with(distribution) | map::mode::PULSES.with(pulses),
-        }
-    }
-
-    /// `config` with this timing, if it holds A7's rules.
-    fn apply(self, config: &Config) -> Option<Config> {
-        let bus = Bus {
-            channels: config.channels,
-            slots: u8::try_from(self.slots).ok()?,
-            step_period_cycles: self.step_period,
-            pulse_width_cycles: self.pulse_width,
-            dir_setup_cycles: self.dir_setup,
-            dir_hold_cycles: self.dir_hold,
-            distribution: match map::mode::DISTRIBUTION.of(self.mode) {
-                map::mode::DISTRIBUTION_BURST => Distribution::Burst,
-                _ => Distribution::Spread,
-            },
-            dir_line: config.dir_line,
-            pulse_phasing: match map::mode::PULSES.of(self.mode) {
-                map::mode::PULSES_SIMULTANEOUS => PulsePhasing::Simultaneous,
-                _ => PulsePhasing::Staggered,
-            },
-            settle_cycles: self.settle,
-            queue_depth: config.queue_depth,
-            boot_cycles: config.boot.0 as u32,
-        };
-        config.with_bus(&bus).ok()
-    }
-
-    /// The register at `offset`, if it is one of these.
-    const fn place(&mut self, offset: u32) -> Option<&mut u32> {
-        match offset {
-            map::slots::OFFSET => Some(&mut self.slots),
-            map::step_period::OFFSET => Some(&mut self.step_period),
-            map::pulse_width::OFFSET => Some(&mut self.pulse_width),
-            map::dir_setup::OFFSET => Some(&mut self.dir_setup),
-            map::dir_hold::OFFSET => Some(&mut self.dir_hold),
-            map::settle::OFFSET => Some(&mut self.settle),
-            map::mode::OFFSET => Some(&mut self.mode),
-            _ => None,
-        }
-    }
-}
-
-impl Latches {
-    pub(super) fn new(config: &Config) -> Self {
-        Self { config: config.clone(), timing: Timing::of(config), orders: [0; MAX_CHANNELS], result: 0 }
-    }
-
-    /// Four channels' orders, the first in the lowest byte.
-    fn orders(&self, index: usize) -> u32 {
-        self.orders.as_chunks::<4>().0.get(index).map_or(0, |four| u32::from_le_bytes(*four))
-    }
-
-    fn set_orders(&mut self, index: usize, value: u32) {
-        let used = usize::from(self.config.channels);
-        if let Some(four) = self.orders.as_chunks_mut::<4>().0.get_mut(index) {
-            *four = value.to_le_bytes();
-        }
-        self.orders.iter_mut().skip(used).for_each(|byte| *byte = 0);
-    }
-}
+// One register a channel, and a byte of a register a channel.
+const _: () = assert!(map::position::REGISTER.count as usize == MAX_CHANNELS);
+const _: () = assert!(map::orders::REGISTER.count as usize * 4 == MAX_CHANNELS);
+// A refusal has the code of its result, a state that of the register.
+const _: () = {
+    use map::result;
+    assert!(Reason::QueueFull as u32 == result::CODE_QUEUE_FULL);
+    assert!(Reason::TooManySteps as u32 == result::CODE_TOO_MANY_STEPS);
+    assert!(Reason::Busy as u32 == result::CODE_BUSY);
+    assert!(Reason::Stopped as u32 == result::CODE_STOPPED);
+    assert!(State::Busy as u32 == map::status::STATE_BUSY && State::Ready as u32 == map::status::STATE_READY);
+    assert!(State::Moving as u32 == map::status::STATE_MOVING);
+    assert!(State::Stopped as u32 == map::status::STATE_STOPPED);
+};
 
 /// Which of several registers stands at `offset`, if one does.
 fn index(register: &map::table::Register, offset: u32) -> Option<usize> {

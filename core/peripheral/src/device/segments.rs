@@ -19,7 +19,7 @@ mod earliest;
 mod falls;
 
 use crate::{
-    segment::{CheckedSegments, FRACTION_BITS, Segment},
+    segment::{CheckedSegments, FRACTION_BITS, LAST_CYCLE, Segment},
     signal::{Levels, MAX_CHANNELS, Record, Sink},
     units::{Cycles, Instant},
 };
@@ -27,11 +27,19 @@ use alloc::{rc::Rc, vec::Vec};
 use earliest::Earliest;
 use falls::Falls;
 
+// What a list can order is due in a cycle that the tree can hold.
+const _: () = assert!(LAST_CYCLE.0 <= Earliest::LAST.0);
+
 /// The engine.
 ///
 /// ```
 /// use std::rc::Rc;
-/// use crate::{device::SegmentEngine, segment::{PulseTimes, Segment, SegmentList, CheckedSegments}, signal::Record, units::{Cycles, Instant}};
+/// use stepscope_peripheral::{
+///     device::SegmentEngine,
+///     segment::{CheckedSegments, PulseTimes, Segment, SegmentList},
+///     signal::Record,
+///     units::{Cycles, Instant},
+/// };
 ///
 /// let pulse = PulseTimes { width: Cycles(4), setup: Cycles(2), hold: Cycles(0) };
 /// let steps = Segment::Steps { count: 3, interval: 10 << 16, add: 0, right: true };
@@ -78,22 +86,20 @@ struct Channel {
 
 impl Channel {
     /// The next step of this segment: its cycle.
-    #[inline(always)]
     fn step(&mut self) -> Instant {
+        debug_assert!(self.next.checked_add(self.interval).is_some(), "a step leaves 48.16 fixed point");
         self.next = self.next.wrapping_add(self.interval);
         self.interval = self.interval.wrapping_add_signed(self.add);
         self.rise()
     }
 
     /// Cycle of the step that comes next.
-    #[inline]
     const fn rise(&self) -> Instant {
         Instant(self.next >> FRACTION_BITS)
     }
 
     /// Goes on to the next segment with steps: the cycle of its change of DIR, where there is one,
     /// or of its first step; [`Instant::NEVER`] at the list's end.
-    #[inline]
     fn begin(&mut self, segments: &[Segment]) -> Instant {
         while let Some(segment) = segments.get(self.begun) {
             self.begun += 1;
@@ -105,6 +111,7 @@ impl Channel {
                     (self.left, self.interval, self.add, self.right) =
                         (count.saturating_sub(1), interval, add, right);
                     let rise = self.step();
+                    debug_assert!(turn <= rise, "DIR changes in {turn:?}, after the rise in {rise:?}");
                     return if self.turns { turn } else { rise };
                 }
             }
@@ -116,7 +123,6 @@ impl Channel {
 impl SegmentEngine {
     /// An engine before cycle 0.
     #[must_use]
-    #[inline]
     pub fn new(lists: Rc<CheckedSegments>) -> Self {
         let mut due = Earliest::new(lists.lists().len());
         let channels = lists.lists().iter().enumerate().map(|(index, list)| {
@@ -141,20 +147,17 @@ impl SegmentEngine {
 
     /// The cycle that the next call of [`Self::clock`] is; as many have passed.
     #[must_use]
-    #[inline]
     pub const fn now(&self) -> Instant {
         self.now
     }
 
     /// Position counters: rising STEP edges, +1 where DIR is 1, -1 where it is 0.
     #[must_use]
-    #[inline]
     pub const fn positions(&self) -> [i32; MAX_CHANNELS] {
         self.positions
     }
 
     /// Advances one cycle and gives the levels of all signals in it.
-    #[inline]
     pub fn clock(&mut self, sink: &mut impl Sink) -> Levels {
         let now = self.now;
         if now == self.deadline() {
@@ -168,13 +171,11 @@ impl SegmentEngine {
     }
 
     /// Next cycle in which a signal changes, cycle 0 for the first; [`Instant::NEVER`] at the end.
-    #[inline(always)]
     fn deadline(&self) -> Instant {
         if self.now == Instant::RESET { self.now } else { self.due.cycle().min(self.falls.cycle()) }
     }
 
     /// All that falls due in cycle `now`; at least one signal changes.
-    #[inline(always)]
     fn act(&mut self, now: Instant) {
         let mut levels = self.levels.0;
         if self.falls.cycle() == now {
@@ -208,12 +209,12 @@ impl SegmentEngine {
             levels |= u64::from(rising);
             self.falls.push(now + pulse.width, rising);
         }
+        debug_assert!(self.levels.0 != levels, "no signal changes in {now:?}");
         self.levels = Levels(levels);
     }
 
     /// For how many cycles nothing can change; `None` if it is for ever.
     #[must_use]
-    #[inline]
     pub fn cycles_until_event(&self) -> Option<Cycles> {
         match self.deadline() {
             Instant::NEVER => None,
@@ -223,7 +224,6 @@ impl SegmentEngine {
 
     /// Passes cycles in which nothing changes: no more than [`Self::cycles_until_event`] says. What goes beyond
     /// is not skipped.
-    #[inline]
     pub fn advance(&mut self, cycles: Cycles) {
         let target = Instant(self.now.0.saturating_add(cycles.0));
         self.now = target.min(self.deadline());
@@ -232,7 +232,6 @@ impl SegmentEngine {
     /// Runs until cycle `until` is the next, as fast as the edges allow; with [`Instant::NEVER`],
     /// until nothing can change any more: then the last cycle run is the last in which something
     /// did. Stops early where the sink asks for a pause.
-    #[inline]
     pub fn run(&mut self, until: Instant, sink: &mut impl Sink) {
         if self.now == Instant::RESET && self.now < until {
             self.clock(sink);
@@ -256,7 +255,6 @@ impl SegmentEngine {
 
     /// Whether nothing can change any more.
     #[must_use]
-    #[inline]
     pub fn at_rest(&self) -> bool {
         self.deadline() == Instant::NEVER
     }

@@ -20,6 +20,7 @@ use alloc::collections::VecDeque;
 pub(super) struct Sequencer {
     tick: Cycles,
     depth: usize,
+    /// Invariant: at most `depth` ticks.
     queue: VecDeque<Tick>,
     plan: Plan,
     running: Option<Running>,
@@ -30,6 +31,8 @@ pub(super) struct Sequencer {
     faults: Faults,
     /// Next cycle in which the sequencer does something: the next change of the plan or the end of
     /// the tick that runs, else the start of the queue's head; [`Instant::NEVER`] at rest.
+    ///
+    /// Invariant: no cycle is run past it.
     deadline: Instant,
     lines: Lines,
     /// Positions as of the end of the last tick.
@@ -49,7 +52,6 @@ struct Running {
 }
 
 impl Sequencer {
-    #[inline]
     pub(super) fn new(config: &Config) -> Self {
         Self {
             tick: config.tick(),
@@ -69,84 +71,71 @@ impl Sequencer {
     }
 
     /// STEP and DIR now.
-    #[inline]
     pub(super) const fn lines(&self) -> Lines {
         self.lines
     }
 
-    #[inline]
     pub(super) const fn ticks_done(&self) -> u32 {
         self.ticks_done
     }
 
     /// Where the last tick ended: at rest, the last cycle in which the sequencer did
     /// something.
-    #[inline]
     pub(super) const fn last_active(&self) -> Instant {
         self.last_active
     }
 
     /// Positions now: those at the last tick's end and the edges of the one that runs.
-    #[inline]
     pub(super) fn positions(&self) -> [i32; MAX_CHANNELS] {
         let mut positions = self.positions;
         if let Some(running) = self.running {
             let mut before = 0;
             for change in self.plan.changes().iter().take(running.next) {
                 let rising = change.lines & !before & STEPS;
-                count(&mut positions, self.plan.orders(), |channel| rising >> channel & 1);
+                count(&mut positions, self.plan.commands(), |channel| rising >> channel & 1);
                 before = change.lines;
             }
         }
         positions
     }
 
-    /// Queues a tick that was committed in cycle `now`; false if there is no place.
-    #[inline]
-    pub(super) fn push(&mut self, now: Instant, tick: Tick) -> bool {
-        if self.queue.len() >= self.depth {
-            return false;
-        }
+    /// Queues a tick that was committed in cycle `now`; the caller knows that there is a place.
+    pub(super) fn push(&mut self, now: Instant, tick: Tick) {
+        debug_assert!(self.queue.len() < self.depth, "no place for a tick that was admitted");
         if self.queue.is_empty() && self.running.is_none() {
             self.deadline = now.next();
         }
         self.queue.push_back(tick);
-        true
     }
 
     /// UNDERRUN, if it has been.
-    #[inline]
     pub(super) const fn faults(&self) -> Faults {
         self.faults
     }
 
-    #[inline]
     pub(super) const fn clear_faults(&mut self, which: Faults) {
         self.faults.clear(which);
     }
 
     /// Another timing for the ticks that start from now on; the caller knows that none runs or waits.
-    #[inline]
     pub(super) fn retime(&mut self, config: &Config) {
+        debug_assert!(!self.is_moving(), "another timing while a tick runs or waits");
         self.tick = config.tick();
         self.plan = Plan::new(config);
     }
 
     /// Whether a tick runs or waits.
-    #[inline]
     pub(super) fn is_moving(&self) -> bool {
         self.running.is_some() || !self.queue.is_empty()
     }
 
     /// Free places in the queue.
-    #[inline]
     pub(super) fn free(&self) -> u8 {
         (self.depth - self.queue.len()) as u8
     }
 
     /// Abandons the tick that runs and those that wait: STEP falls in the cycle after `now`, DIR
     /// stays. Pulses that rose count.
-    #[inline]
     pub(super) fn stop(&mut self, now: Instant) {
         self.positions = self.positions();
         self.running = None;
@@ -156,22 +145,21 @@ impl Sequencer {
     }
 
     /// Next cycle in which the sequencer does something; [`Instant::NEVER`] at rest.
-    #[inline]
     pub(super) const fn deadline(&self) -> Instant {
         self.deadline
     }
 
     /// Cycle `now`.
-    #[inline(always)]
     pub(super) fn clock(&mut self, now: Instant, sink: &mut impl Sink) {
+        debug_assert!(now <= self.deadline, "{:?} was left out", self.deadline);
         if self.deadline == now {
             self.act(now, sink);
         }
     }
 
     /// All that falls due in cycle `now`.
-    #[inline]
     fn act(&mut self, now: Instant, sink: &mut impl Sink) {
+        debug_assert!(self.queue.len() <= self.depth, "more ticks wait than the queue holds");
         while self.deadline == now {
             match self.running {
                 Some(running) => self.follow(running, now, sink),
@@ -182,7 +170,6 @@ impl Sequencer {
     }
 
     /// The plan's change that falls due in cycle `now`, or the tick's end.
-    #[inline]
     fn follow(&mut self, running: Running, now: Instant, sink: &mut impl Sink) {
         match self.plan.changes().get(running.next) {
             Some(change) if running.c0 + Cycles(change.offset) == now => {
@@ -193,7 +180,6 @@ impl Sequencer {
         }
     }
 
-    #[inline]
     fn go_on(&mut self, running: Running) {
         let change = self.plan.changes().get(running.next);
         self.deadline =
@@ -201,7 +187,6 @@ impl Sequencer {
         self.running = Some(running);
     }
 
-    #[inline]
     fn halt(&mut self, now: Instant) {
         self.halt = false;
         self.lines &= !STEPS;
@@ -209,13 +194,12 @@ impl Sequencer {
         self.deadline = if self.queue.is_empty() { Instant::NEVER } else { now };
     }
 
-    #[inline]
     fn end(&mut self, now: Instant, sink: &mut impl Sink) {
         sink.event(now, Event::TickEnd);
         self.last_active = now;
-        let orders = self.plan.orders();
-        count(&mut self.positions, orders, |channel| {
-            orders.get(channel).map_or(0, |&byte| u32::from(ChannelCommand::parse(byte).steps))
+        let commands = self.plan.commands();
+        count(&mut self.positions, commands, |channel| {
+            commands.get(channel).map_or(0, |&byte| u32::from(ChannelCommand::parse(byte).steps))
         });
         self.ticks_done = self.ticks_done.wrapping_add(1);
         self.running = None;
@@ -226,7 +210,6 @@ impl Sequencer {
         }
     }
 
-    #[inline]
     fn begin(&mut self, now: Instant, sink: &mut impl Sink) {
         self.deadline = Instant::NEVER;
         if let Some(tick) = self.queue.pop_front() {
@@ -238,7 +221,6 @@ impl Sequencer {
 
     /// Runs alone through the cycles before `until`, while nothing else changes: `base` are the
     /// other signals. Stops after the tick in which the sink asks for a pause. Gives the levels.
-    #[inline]
     pub(super) fn run(&mut self, until: Instant, base: u64, sink: &mut impl Sink) -> Levels {
         while self.deadline < until && !sink.paused() {
             self.run_pulses(until, base, sink);
@@ -254,8 +236,7 @@ impl Sequencer {
         Levels(base | u64::from(self.lines))
     }
 
-    /// Walks along the plan of the tick that runs: the inner loop of a long run.
-    #[inline]
+    /// The changes of the tick that runs, one after another: the inner loop of a long run.
     fn run_pulses(&mut self, until: Instant, base: u64, sink: &mut impl Sink) {
         let Some(mut running) = self.running else { return };
         let stop = until.min(running.end);
@@ -275,11 +256,10 @@ impl Sequencer {
 }
 
 /// Adds `steps` of each channel in its direction.
-#[inline]
-fn count(positions: &mut [i32; MAX_CHANNELS], orders: &Tick, steps: impl Fn(usize) -> u32) {
-    for (channel, (position, order)) in positions.iter_mut().zip(orders).enumerate() {
+fn count(positions: &mut [i32; MAX_CHANNELS], commands: &Tick, steps: impl Fn(usize) -> u32) {
+    for (channel, (position, command)) in positions.iter_mut().zip(commands).enumerate() {
         let steps = steps(channel) as i32;
-        let change = if ChannelCommand::parse(*order).right { steps } else { -steps };
+        let change = if ChannelCommand::parse(*command).right { steps } else { -steps };
         *position = position.wrapping_add(change);
     }
 }

@@ -9,7 +9,7 @@ use crate::{
     config::Config,
     signal::Levels,
     units::{Cycles, Instant},
-    wire::{BitTimes, Schedule, Sender},
+    wire::{BitTimes, Schedule, Sender, frame::REPLY_LEN},
 };
 use alloc::rc::Rc;
 
@@ -26,6 +26,7 @@ pub(super) struct Transceiver {
     levels: u64,
     /// What EN becomes, and when.
     enable: Option<(Instant, bool)>,
+    /// Invariant: one at most, since while it is sent the receiver is deaf and before it no frame ends.
     reply: Option<Reply>,
     next: Instant,
 }
@@ -38,7 +39,6 @@ struct Reply {
 }
 
 impl Transceiver {
-    #[inline]
     pub(super) const fn new(config: &Config) -> Self {
         Self {
             clock_hz: config.clock_hz,
@@ -52,21 +52,19 @@ impl Transceiver {
     }
 
     /// EN, TX and DE now.
-    #[inline(always)]
     pub(super) const fn levels(&self) -> u64 {
         self.levels
     }
 
     /// Next cycle in which a signal changes; [`Instant::NEVER`] if none does.
-    #[inline(always)]
     pub(super) const fn deadline(&self) -> Instant {
         self.next
     }
 
     /// EN, TX and DE in cycle `now`, which is not after [`Self::deadline`], and the next change
     /// after it.
-    #[inline]
     pub(super) fn ahead(&self, now: Instant) -> (u64, Instant) {
+        debug_assert!(now <= self.next, "{:?} was left out", self.next);
         if self.next != now {
             return (self.levels, self.next);
         }
@@ -76,14 +74,13 @@ impl Transceiver {
     }
 
     /// Cycle `now`.
-    #[inline(always)]
     pub(super) fn clock(&mut self, now: Instant) {
+        debug_assert!(now <= self.next, "{:?} was left out", self.next);
         if self.next == now {
             self.act(now);
         }
     }
 
-    #[inline]
     fn act(&mut self, now: Instant) {
         if let Some((_, high)) = self.enable.take_if(|(at, _)| *at == now) {
             self.set(Levels::EN, high);
@@ -105,13 +102,11 @@ impl Transceiver {
         self.look_ahead(now);
     }
 
-    #[inline]
     const fn set(&mut self, mask: u64, high: bool) {
         self.levels = if high { self.levels | mask } else { self.levels & !mask };
     }
 
     /// Finds the next change after `now`.
-    #[inline]
     fn look_ahead(&mut self, now: Instant) {
         let enable = self.enable.map_or(Instant::NEVER, |(at, _)| at);
         let reply = self.reply.as_ref().map_or(Instant::NEVER, |reply| {
@@ -121,21 +116,21 @@ impl Transceiver {
     }
 
     /// From the end of a frame to the rise of DE.
-    #[inline]
     pub(super) const fn turnaround(&self) -> Cycles {
         Cycles(TURNAROUND_BITS * self.bit.0)
     }
 
     /// EN from the cycle after `now` on.
-    #[inline]
     pub(super) fn enable(&mut self, now: Instant, high: bool) {
+        debug_assert!(self.enable.is_none_or(|(at, _)| at == now.next()), "EN was due before {now:?}");
         self.enable = Some((now.next(), high));
         self.look_ahead(now);
     }
 
     /// Answers a frame that ended in cycle `now`. Gives the first start bit and the fall of DE.
-    #[inline]
     pub(super) fn reply(&mut self, now: Instant, bytes: &[u8]) -> (Instant, Instant) {
+        debug_assert!(self.reply.is_none(), "a second reply before the first has been sent");
+        debug_assert!(!bytes.is_empty() && bytes.len() <= REPLY_LEN, "a reply of {} bytes", bytes.len());
         let rise = now + self.turnaround();
         let start = rise + self.bit;
         let fall = start + BitTimes::new(self.clock_hz, self.baud).bytes(bytes.len() as u64);

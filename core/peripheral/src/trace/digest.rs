@@ -6,18 +6,21 @@ use twox_hash::XxHash64;
 
 /// Bytes that are gathered before they are hashed: the hash is faster on long runs.
 const BLOCK: usize = 4096;
+/// Bytes of a record: two words.
+const RECORD: usize = 16;
+const _: () = assert!(BLOCK.is_multiple_of(RECORD) && size_of::<Record>() == RECORD);
 
 /// The digest of the records so far.
 #[derive(Clone)]
 pub struct Digest {
     hasher: XxHash64,
     block: [u8; BLOCK],
+    /// Invariant: a whole number of records, less than the block holds.
     filled: usize,
     records: u64,
 }
 
 impl Default for Digest {
-    #[inline]
     fn default() -> Self {
         Self { hasher: XxHash64::with_seed(0), block: [0; BLOCK], filled: 0, records: 0 }
     }
@@ -26,7 +29,6 @@ impl Default for Digest {
 impl Digest {
     /// The digest; 16 hexadecimal digits when printed with `{:016x}`.
     #[must_use]
-    #[inline]
     pub fn value(&self) -> u64 {
         let mut hasher = self.hasher.clone();
         hasher.write(self.block.get(..self.filled).unwrap_or_default());
@@ -35,14 +37,12 @@ impl Digest {
 
     /// How many records it has seen.
     #[must_use]
-    #[inline]
     pub const fn records(&self) -> u64 {
         self.records
     }
 
     /// The digest of a stored trace.
     #[must_use]
-    #[inline]
     pub fn of(records: &[Record]) -> u64 {
         let mut digest = Self::default();
         for record in records {
@@ -53,12 +53,11 @@ impl Digest {
 }
 
 impl Sink for Digest {
-    #[inline(always)]
     fn record(&mut self, record: Record) {
-        if let Some(place) = self.block[self.filled..].first_chunk_mut::<16>() {
+        if let Some(place) = self.block[self.filled..].first_chunk_mut::<RECORD>() {
             place[..8].copy_from_slice(&record.cycle.0.to_le_bytes());
             place[8..].copy_from_slice(&record.levels.0.to_le_bytes());
-            self.filled += 16;
+            self.filled += RECORD;
         }
         self.records += 1;
         if self.filled == BLOCK {

@@ -32,7 +32,6 @@ pub enum RowOutcome {
 
 impl fmt::Display for RowOutcome {
     /// What became of the packet, as the page and the command's tables say it.
-    #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Packet(PacketOutcome::Queued) => "queued",
@@ -108,21 +107,18 @@ impl PacketLog {
     /// once it is finished. A reply is known before it is sent, and a collision before the packet in which
     /// it happens.
     #[must_use]
-    #[inline]
     pub fn rows(&self) -> &[LoggedPacket] {
         &self.rows
     }
 
     /// The ticks that have begun.
     #[must_use]
-    #[inline]
     pub fn ticks(&self) -> &[LoggedTick] {
         &self.ticks
     }
 
     /// First cycle after a tick that lasts `length` where nothing stops it.
     #[must_use]
-    #[inline]
     pub fn tick_end(&self, tick: &LoggedTick, length: Cycles) -> Instant {
         let stop = self.stops.get(self.stops.partition_point(|stop| *stop < tick.start));
         stop.map_or(tick.start + length, |stop| (tick.start + length).min(*stop))
@@ -130,7 +126,6 @@ impl PacketLog {
 
     /// Bytes of a row.
     #[must_use]
-    #[inline]
     pub fn bytes(&self, index: usize) -> &[u8] {
         let row = self.rows.get(index);
         row.and_then(|row| self.bytes.get(row.bytes_start..row.bytes_end)).unwrap_or_default()
@@ -138,7 +133,6 @@ impl PacketLog {
 
     /// Where the start bits of a row's bytes were seen; of a reply's, for each the start bit of the first.
     #[must_use]
-    #[inline]
     pub fn seen(&self, index: usize) -> &[Instant] {
         let row = self.rows.get(index);
         row.and_then(|row| self.seen.get(row.bytes_start..row.bytes_end)).unwrap_or_default()
@@ -146,13 +140,11 @@ impl PacketLog {
 
     /// Where the start bits of bytes were seen whose stop bit was low, rising in time.
     #[must_use]
-    #[inline]
     pub fn broken(&self) -> &[Instant] {
         &self.broken
     }
 
     /// Indices of the rows of a finished log whose time on the line touches the cycles `start..=end`, rising.
-    #[inline]
     pub fn touching(&self, start: Instant, end: Instant) -> impl Iterator<Item = usize> {
         let first = self.rows.partition_point(|row| row.latest < start);
         let rows = self.rows.iter().enumerate().skip(first).take_while(move |(_, row)| row.start <= end);
@@ -160,8 +152,8 @@ impl PacketLog {
     }
 
     /// The run is over: what is still open becomes a row, and the rows stand in the order of their starts.
-    #[inline]
     pub fn finish(&mut self) {
+        debug_assert!(self.broken.is_sorted(), "framing errors go back in time");
         if self.open.is_some() {
             self.close(self.last, if self.ignoring { RowOutcome::Ignored } else { RowOutcome::Open });
         }
@@ -173,9 +165,12 @@ impl PacketLog {
             latest = latest.max(row.end);
             row.latest = latest;
         }
+        debug_assert!(
+            self.rows.is_sorted_by_key(|row| row.start),
+            "rows are not in the order of their starts"
+        );
     }
 
-    #[inline]
     fn sort(&mut self) {
         let mut order: Vec<usize> = (0..self.rows.len()).collect();
         order.sort_by_key(|&index| self.rows.get(index).map(|row| row.start));
@@ -190,13 +185,11 @@ impl PacketLog {
     }
 
     /// Bytes that belong to no row yet.
-    #[inline]
     fn bytes_of_open(&self) -> Vec<u8> {
         let first = self.rows.last().map_or(0, |row| row.bytes_end);
         self.bytes.get(first..).unwrap_or_default().to_vec()
     }
 
-    #[inline]
     fn close(&mut self, end: Instant, outcome: RowOutcome) {
         let start = self.open.take().unwrap_or(end);
         let queued = match outcome {
@@ -210,6 +203,7 @@ impl PacketLog {
         }
         let bytes_start = self.rows.last().map_or(0, |row| row.bytes_end);
         let bytes_end = self.bytes.len();
+        debug_assert!(bytes_start <= bytes_end && bytes_end <= self.seen.len(), "a byte has no start bit");
         let (tick_start, tick_end) = (None, None);
         self.rows.push(LoggedPacket {
             start,
@@ -223,7 +217,6 @@ impl PacketLog {
         });
     }
 
-    #[inline]
     fn stop(&mut self, at: Instant) {
         self.waiting.clear();
         self.stops.push(at);
@@ -231,7 +224,6 @@ impl PacketLog {
 }
 
 impl Sink for PacketLog {
-    #[inline]
     fn record(&mut self, _: Record) {}
 
     fn event(&mut self, at: Instant, event: Event) {
@@ -242,7 +234,7 @@ impl Sink for PacketLog {
                 self.seen.push(seen);
                 self.last = at;
             }
-            // On a framed line only the byte is missing, and the frame's check tells.
+            // On a framed line only the byte is missing, and the frame's CRC tells.
             Event::FramingError { seen, drops: false } => self.broken.push(seen),
             Event::FramingError { seen, .. } => {
                 self.broken.push(seen);

@@ -1,5 +1,23 @@
 //! What a run leaves: records of the signals, what happened on the way, and their digest
 //! (DESIGN A3). The records themselves are in [`crate::signal`].
+//!
+//! ```
+//! use stepscope_peripheral::{
+//!     signal::{Levels, Record},
+//!     trace::{Digest, parse_line, steps, write_record},
+//!     units::Instant,
+//! };
+//!
+//! let (right, step) = (1 << Levels::DIR_SHIFT, 1);
+//! let trace = [(0, 0), (40, right), (80, right | step), (120, right)]
+//!     .map(|(cycle, levels)| Record { cycle: Instant(cycle), levels: Levels(levels) });
+//! assert_eq!(steps(&trace, 0)[0].position, 1);
+//!
+//! let mut text = String::new();
+//! trace.iter().for_each(|&record| write_record(&mut text, record).expect("a string takes it"));
+//! let read: Vec<Record> = text.lines().map(|line| parse_line(line).expect("a record")).collect();
+//! assert_eq!(Digest::of(&read), Digest::of(&trace));
+//! ```
 
 mod digest;
 mod log;

@@ -19,13 +19,11 @@ pub struct Recording {
 }
 
 impl Sink for Recording {
-    #[inline(always)]
     fn record(&mut self, record: Record) {
         self.trace.push(record);
         self.digest.record(record);
     }
 
-    #[inline]
     fn event(&mut self, at: Instant, event: Event) {
         self.packets.event(at, event);
     }
@@ -34,7 +32,6 @@ impl Sink for Recording {
 impl Recording {
     /// Start of the first tick: where a motion's time 0 is on the device's clock.
     #[must_use]
-    #[inline]
     pub fn first_tick(&self) -> Option<Instant> {
         self.packets.ticks().first().map(|tick| tick.start)
     }
@@ -42,7 +39,6 @@ impl Recording {
 
 /// The levels in a cycle of a run with these records; those of reset where there are none.
 #[must_use]
-#[inline]
 pub fn levels_at(trace: &[Record], at: Instant) -> Levels {
     let after = trace.partition_point(|record| record.cycle <= at);
     after.checked_sub(1).and_then(|index| trace.get(index)).map_or(Levels::RESET, |record| record.levels)

@@ -21,28 +21,24 @@ pub struct BitTimes {
 impl BitTimes {
     /// At `baud` bits a second; 0 counts as 1.
     #[must_use]
-    #[inline]
     pub const fn new(clock_hz: u32, baud: u32) -> Self {
         Self { clock_hz: clock_hz as u64, baud: if baud == 0 { 1 } else { baud as u64 } }
     }
 
     /// From a byte's start to the start of its bit `index`: 0 the start bit, 10 what follows the stop bit.
     #[must_use]
-    #[inline]
     pub const fn bit(self, index: u64) -> Cycles {
         Cycles(index * self.clock_hz / self.baud)
     }
 
     /// From the first byte's start to the start of byte `index` of bytes sent back to back.
     #[must_use]
-    #[inline]
     pub const fn byte(self, index: u64) -> Cycles {
         self.bit(BYTE_BITS * index)
     }
 
     /// How long so many bytes sent back to back hold the line, to the end of the last stop bit.
     #[must_use]
-    #[inline]
     pub const fn bytes(self, count: u64) -> Cycles {
         match count {
             0 => Cycles(0),
@@ -52,7 +48,6 @@ impl BitTimes {
 
     /// The byte of bytes sent back to back that begins nearest to `after` the first one's start.
     #[must_use]
-    #[inline]
     pub const fn nearest_byte(self, after: Cycles) -> u64 {
         let clock_hz = if self.clock_hz == 0 { 1 } else { self.clock_hz as u128 };
         let bits = self.baud as u128 * after.0 as u128 / clock_hz;

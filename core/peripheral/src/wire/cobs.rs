@@ -47,7 +47,6 @@ impl Default for Unstuffer {
 
 impl Unstuffer {
     /// Takes the next byte.
-    #[inline]
     pub fn byte(&mut self, byte: u8) -> Unstuffed {
         match self.0.feed(byte) {
             Ok(DecodeResult::DataStart) => Unstuffed::First,
@@ -60,14 +59,12 @@ impl Unstuffer {
 
     /// Whether bytes since the last delimiter wait for theirs.
     #[must_use]
-    #[inline]
     pub const fn is_open(&self) -> bool {
         !matches!(self.0, DecoderState::Idle)
     }
 
     /// Whether a delimiter here would end a whole frame.
     #[must_use]
-    #[inline]
     pub const fn is_whole(&self) -> bool {
         matches!(self.0, DecoderState::Grab(0) | DecoderState::GrabChain(0))
     }

@@ -1,12 +1,28 @@
-//! Frames (DESIGN A6): what the framed protocol says, with a check and an end mark.
+//! Frames (DESIGN A6): what the framed protocol says, with a CRC and a delimiter.
 //!
 //! ```text
-//! wire     COBS( address kind body crc ) 00       COBS keeps 00 for the end mark
-//! check    CRC-32/ISCSI (Castagnoli) over address, kind and body, little-endian
+//! wire     COBS( address kind body crc ) 00       COBS keeps 00 for the delimiter
+//! crc      CRC-32/ISCSI (Castagnoli) over address, kind and body, little-endian
 //! ```
 //!
 //! Both sides of the line read and write here: the controller takes frames and gives replies, the
 //! host the other way round.
+//!
+//! ```
+//! use stepscope_peripheral::{
+//!     protocol::Kind,
+//!     wire::frame::{Deframed, Deframer, Ticks, emit},
+//! };
+//!
+//! // Two ticks of one channel for controller 7: 5 steps right, 3 left.
+//! let wire = emit(7, Kind::Ticks as u8, &Ticks::emit(0, 1, &[0x85, 0x03]));
+//! let mut deframer = Deframer::default();
+//! let (last, bytes) = wire.split_last().expect("a delimiter");
+//! assert!(bytes.iter().all(|&byte| deframer.byte(byte).is_none()));
+//! let Some(Deframed::Frame(frame)) = deframer.byte(*last) else { panic!("its CRC holds") };
+//! let ticks = Ticks::parse(frame.body, 1).expect("a body of TICKS");
+//! assert_eq!((frame.address, ticks.seq, ticks.orders()), (7, 0, &[0x85, 0x03][..]));
+//! ```
 
 pub use crate::protocol::{Kind, MAX_TICKS, Reason, Reply, State, Status};
 use crate::signal::MAX_CHANNELS;
@@ -32,20 +48,35 @@ pub fn encode_frame(content: &[u8]) -> Vec<u8> {
     wire
 }
 
-/// Bytes of the check.
+/// Bytes of the CRC.
 pub const CHECK_LEN: usize = 4;
-/// Fewest decoded bytes of a frame: address, kind and check.
+/// Fewest decoded bytes of a frame: address, kind and CRC.
 const MIN_DECODED: usize = 2 + CHECK_LEN;
 /// Most decoded bytes of a frame.
 pub const MAX_DECODED: usize = 600;
 /// Bytes of a status.
 pub const STATUS_LEN: usize = 9;
-/// Most bytes of a reply on the wire: a NAK in COBS with its end mark.
+/// Most bytes of a reply on the wire: a NAK in COBS with its delimiter.
 pub const REPLY_LEN: usize = 3 + STATUS_LEN + CHECK_LEN + 2;
+/// Most bytes that COBS puts one code before.
+const COBS_RUN: usize = 254;
 /// Set in the kind of a reply that acknowledges.
 pub const ACK: u8 = 0x80;
 /// Kind of a reply that refuses.
 pub const NAK: u8 = 0xff;
+
+// Every TICKS frame is taken: sequence number, count, and the most ticks of all channels.
+const _: () = assert!(MIN_DECODED + 2 + MAX_TICKS as usize * MAX_CHANNELS <= MAX_DECODED);
+// Of the two bytes that a reply has beside what is decoded, COBS needs one and the delimiter is the other.
+const _: () = assert!(REPLY_LEN - 2 <= COBS_RUN);
+// A kind and its acknowledgement are told apart, and neither is a refusal.
+const _: () = {
+    let mut index = 0;
+    while index < Kind::ALL.len() {
+        assert!((Kind::ALL[index] as u8) & ACK == 0 && Kind::ALL[index] as u8 | ACK != NAK);
+        index += 1;
+    }
+};
 
 fn emit_status(status: &Status) -> [u8; STATUS_LEN] {
     let [f0, f1] = status.faults.to_le_bytes();
@@ -92,7 +123,7 @@ impl Reply {
     }
 }
 
-/// A frame whose check held.
+/// A frame whose CRC is right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
     /// To or from which controller; 255 is for all.
@@ -103,7 +134,7 @@ pub struct Frame<'a> {
     pub body: &'a [u8],
 }
 
-/// A frame as it goes over the line: checked, in COBS, with its end mark.
+/// A frame as it goes over the line: with its CRC, in COBS, with its delimiter.
 #[must_use]
 pub fn emit(address: u8, kind: u8, body: &[u8]) -> Vec<u8> {
     let mut content = alloc::vec![address, kind];
@@ -133,7 +164,9 @@ impl<'a> Ticks<'a> {
     /// The body of ticks of `channels` bytes each.
     #[must_use]
     pub fn emit(seq: u8, channels: u8, orders: &[u8]) -> Vec<u8> {
-        let mut body = alloc::vec![seq, (orders.len() / usize::from(channels.max(1))) as u8];
+        let count = orders.len() / usize::from(channels.max(1));
+        debug_assert!(count <= MAX_TICKS.into(), "{count} ticks in a frame");
+        let mut body = alloc::vec![seq, count as u8];
         body.extend_from_slice(orders);
         body
     }
@@ -160,21 +193,21 @@ impl<'a> Ticks<'a> {
     }
 }
 
-/// What an end mark, or a byte too many, made of the bytes before it.
+/// What a delimiter, or a byte too many, made of the bytes before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Deframed<'a> {
-    /// A frame whose check holds.
+    /// A frame whose CRC is right.
     Frame(Frame<'a>),
     /// Not COBS, or too short for a frame.
     Short,
-    /// The check failed: what stood there, and what would have held.
+    /// The CRC is wrong: what stood there, and what would have been right.
     BadCheck {
-        /// The check that came.
+        /// The CRC that came.
         found: u32,
-        /// The check of what came before it.
+        /// The CRC of what came before it.
         expected: u32,
     },
-    /// A byte too many; the rest is dropped to the next end mark.
+    /// A byte too many; the rest is dropped to the next delimiter.
     Overlong,
 }
 
@@ -182,8 +215,11 @@ pub enum Deframed<'a> {
 #[derive(Clone, Debug)]
 pub struct Deframer {
     cobs: Unstuffer,
+    /// Decoded bytes of the frame.
+    ///
+    /// Invariant: at most [`MAX_DECODED`].
     content: Vec<u8>,
-    /// After a byte too many, to the next end mark.
+    /// After a byte too many, to the next delimiter.
     dropping: bool,
 }
 
@@ -213,6 +249,7 @@ impl Deframer {
             }
             Unstuffed::Content(decoded) => {
                 self.content.push(decoded);
+                debug_assert!(self.content.len() <= MAX_DECODED, "a byte too many is kept");
                 None
             }
             Unstuffed::End => Some(judge(&self.content)),
@@ -220,18 +257,18 @@ impl Deframer {
         }
     }
 
-    /// Whether bytes since the last end mark wait for theirs.
+    /// Whether bytes since the last delimiter wait for theirs.
     #[must_use]
     pub const fn is_open(&self) -> bool {
         self.dropping || self.cobs.is_open()
     }
 }
 
-/// The frame that decoded bytes are, if their check holds.
+/// The frame that decoded bytes are, if their CRC is right.
 fn judge(content: &[u8]) -> Deframed<'_> {
     match content.split_last_chunk::<CHECK_LEN>() {
-        Some((frame, check)) if content.len() >= MIN_DECODED => {
-            let (found, expected) = (u32::from_le_bytes(*check), CHECK.checksum(frame));
+        Some((frame, crc)) if content.len() >= MIN_DECODED => {
+            let (found, expected) = (u32::from_le_bytes(*crc), CHECK.checksum(frame));
             match *frame {
                 [address, kind, ref body @ ..] if found == expected => {
                     Deframed::Frame(Frame { address, kind, body })

@@ -4,6 +4,34 @@
 //! A level that is forced is heard whatever is sent; else the line is the AND of all that send. The
 //! line tells when what the host sends or what is forced changes next, so a run can skip what lies
 //! between.
+//!
+//! ```
+//! use std::rc::Rc;
+//! use stepscope_peripheral::{
+//!     config::{Bus, Config, SerialLine},
+//!     device::{Device, Faults},
+//!     signal::Record,
+//!     units::{Cycles, Instant},
+//!     wire::{Forced, Line, Schedule},
+//! };
+//!
+//! // A packet of one channel, and a break that is held over its stop bit.
+//! let host = Schedule::paced(Instant(2000), Cycles(32_000), [[0x85]].iter());
+//! let broken = Forced { start: Instant(2000), end: Instant(5000), level: false };
+//! let mut line = Line::new(Rc::new(host), &[broken], 16_000_000, 115_200);
+//!
+//! let config = Config::new(16_000_000, &Bus::default(), &SerialLine::default()).expect("the defaults hold");
+//! let (mut device, mut trace) = (Device::new(&config), Vec::<Record>::new());
+//! // From change to change of the line, which the device does not answer on.
+//! while device.now() < Instant(20_000) {
+//!     let next = line.next_change().min(Instant(20_000));
+//!     device.run(line.heard(true), next, &mut trace);
+//!     if next == line.next_change() {
+//!         line.change();
+//!     }
+//! }
+//! assert_eq!(device.faults(), Faults::FRAMING);
+//! ```
 
 use crate::units::Instant;
 use crate::wire::{Schedule, sender::Sender};
@@ -20,11 +48,11 @@ pub struct Forced {
     pub level: bool,
 }
 
-/// The line as a run walks along it.
+/// The line, from one change to the next.
 #[derive(Clone, Debug)]
 pub struct Line {
     sender: Sender,
-    /// Disjoint and rising; those before `passed` are over.
+    /// Invariant: disjoint and rising; those before `passed` are over.
     forced: Rc<Vec<Forced>>,
     passed: usize,
     /// The level that is forced now.
@@ -38,7 +66,6 @@ pub struct Line {
 impl Line {
     /// The line before cycle 1: idle. A rate of 0 counts as 1 baud.
     #[must_use]
-    #[inline]
     pub fn new(schedule: Rc<Schedule>, forced: &[Forced], clock_hz: u32, baud: u32) -> Self {
         let sender = Sender::new(schedule, clock_hz, baud);
         let mut line = Self {
@@ -56,13 +83,11 @@ impl Line {
 
     /// What the host has sent and will send, as far as it is known.
     #[must_use]
-    #[inline]
     pub fn schedule(&self) -> &Schedule {
         self.sender.schedule()
     }
 
     /// Adds a send, after all that were added before.
-    #[inline]
     pub fn send(&mut self, start: Instant, bytes: &[u8]) {
         self.sender.send(start, bytes);
         self.look_ahead();
@@ -70,7 +95,6 @@ impl Line {
     }
 
     /// Forces a level in cycles that are still to come; where another one is forced too, this one wins.
-    #[inline]
     pub fn force(&mut self, new: Forced) {
         let forced = Rc::make_mut(&mut self.forced);
         let first = forced.partition_point(|one| one.end <= new.start);
@@ -81,34 +105,35 @@ impl Line {
         let before = before.map(|one| Forced { end: new.start, ..*one });
         let after = after.map(|one| Forced { start: new.end, ..*one });
         forced.splice(first..end, [before, Some(new), after].into_iter().flatten());
+        let around = first.saturating_sub(1)..forced.len().min(first + 4);
+        debug_assert!(
+            is_flat(forced.get(around).unwrap_or_default()),
+            "{new:?} meets what was forced before"
+        );
         self.look_ahead();
         self.find_heard();
     }
 
     /// What has been forced and will be, as far as it is known: rising in time and not overlapping.
     #[must_use]
-    #[inline]
     pub fn forced(&self) -> &[Forced] {
         &self.forced
     }
 
     /// Level in the current cycle as one hears it while all others together send `others`.
     #[must_use]
-    #[inline(always)]
     pub fn heard(&self, others: bool) -> bool {
         self.force.unwrap_or(self.sender.level() && others)
     }
 
     /// Level in the current cycle as the host hears it: what controllers send, or what is forced.
     #[must_use]
-    #[inline]
     pub fn replied(&self, others: bool) -> bool {
         self.force.unwrap_or(others)
     }
 
     /// Whether the host holds the line low.
     #[must_use]
-    #[inline]
     pub const fn is_pulled_low(&self) -> bool {
         !self.sender.level()
     }
@@ -116,21 +141,18 @@ impl Line {
     /// Next cycle in which what the host sends or what is forced changes; [`Instant::NEVER`] if
     /// neither does.
     #[must_use]
-    #[inline(always)]
     pub const fn next_change(&self) -> Instant {
         self.next
     }
 
     /// Whether no change is left that anyone hears while no controller sends.
     #[must_use]
-    #[inline(always)]
     pub fn is_over(&self) -> bool {
         let next = if self.passed == self.forced.len() { self.next } else { self.next_heard };
         next == Instant::NEVER
     }
 
     /// Looks for the next change that is heard.
-    #[inline]
     fn find_heard(&mut self) {
         if self.passed == self.forced.len() {
             return;
@@ -149,7 +171,6 @@ impl Line {
     }
 
     /// Enters the cycle of [`Self::next_change`].
-    #[inline(always)]
     pub fn change(&mut self) {
         let now = self.next;
         self.enter(now);
@@ -159,8 +180,8 @@ impl Line {
     }
 
     /// Enters cycle `now`, the next one in which something changes.
-    #[inline(always)]
     fn enter(&mut self, now: Instant) {
+        debug_assert!(now == self.next && now != Instant::NEVER, "nothing changes in {now:?}");
         if self.sender.next_edge() == now {
             self.sender.pass();
         }
@@ -170,7 +191,6 @@ impl Line {
         self.look_ahead();
     }
 
-    #[inline]
     fn follow_forced(&mut self, now: Instant) {
         while self.forced.get(self.passed).is_some_and(|forced| forced.end <= now) {
             self.passed += 1;
@@ -179,7 +199,6 @@ impl Line {
             self.forced.get(self.passed).filter(|forced| forced.start <= now).map(|forced| forced.level);
     }
 
-    #[inline(always)]
     fn look_ahead(&mut self) {
         let force = self
             .forced
@@ -190,7 +209,6 @@ impl Line {
 }
 
 /// Makes disjoint, rising spans of forced levels that overlap: the later entry wins.
-#[inline]
 fn flatten(forced: &[Forced]) -> Vec<Forced> {
     let mut bounds: Vec<(Instant, usize)> =
         forced.iter().enumerate().flat_map(|(i, f)| [(f.start, i), (f.end, i)]).collect();
@@ -213,7 +231,13 @@ fn flatten(forced: &[Forced]) -> Vec<Forced> {
             active.insert(index);
         }
     }
+    debug_assert!(is_flat(&flat), "spans overlap");
     flat
+}
+
+/// Whether spans are disjoint and rising.
+fn is_flat(forced: &[Forced]) -> bool {
+    forced.iter().all(|one| one.start < one.end) && forced.is_sorted_by(|one, next| one.end <= next.start)
 }
 
 #[cfg(test)]

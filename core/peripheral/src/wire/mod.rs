@@ -1,6 +1,19 @@
 //! Between bytes and the level of the line (DESIGN A4 to A6): `schedule` holds what is sent when, `sender` makes edges
 //! of it and `line` the level that all hear; `uart` makes bytes of levels, `packet` and `frame` orders of bytes. When bits
 //! and bytes begin says `bit_times`, what COBS carries `cobs`.
+//!
+//! ```
+//! use std::rc::Rc;
+//! use stepscope_peripheral::{
+//!     units::{Cycles, Instant},
+//!     wire::{Line, Schedule},
+//! };
+//!
+//! // Two packets for one channel, a tick of 32000 cycles apart: 5 steps right, then 3 left.
+//! let host = Schedule::paced(Instant(1601), Cycles(32_000), [[0x85], [0x03]].iter());
+//! let line = Line::new(Rc::new(host), &[], 16_000_000, 115_200);
+//! assert_eq!(line.schedule().get(1).expect("two").start, Instant(33_601));
+//! ```
 
 pub mod bit_times;
 pub mod cobs;

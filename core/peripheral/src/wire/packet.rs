@@ -3,12 +3,25 @@
 //! A packet is one byte a channel, bit 7 the direction (1 = right), bits 6..=0 the number of steps;
 //! on an addressed line the controller's address stands first. Raw packets have no end mark: a
 //! pause of more than 45 bit times is a gap, and the next byte begins a packet.
+//!
+//! ```
+//! use stepscope_peripheral::wire::packet::ChannelCommand;
+//!
+//! let order = ChannelCommand { right: true, steps: 5 };
+//! assert_eq!(order.emit(), Some(0x85));
+//! assert_eq!(ChannelCommand::parse(0x85), order);
+//! assert_eq!(ChannelCommand { right: true, steps: 128 }.emit(), None); // seven bits hold 127
+//! ```
 
 use crate::{
     signal::MAX_CHANNELS,
     units::{Cycles, Instant},
 };
 
+/// Bit of a command's byte that is the direction.
+const RIGHT: u8 = 1 << 7;
+/// Most steps that a command has, in the bits below it.
+pub const MAX_STEPS: u8 = RIGHT - 1;
 /// The address that means every controller.
 pub const ALL: u8 = 255;
 /// Bit times after the last byte that still continue a packet.
@@ -24,22 +37,21 @@ pub struct ChannelCommand {
 }
 
 impl ChannelCommand {
-    /// The order that a byte means.
+    /// The command that a byte means.
     #[must_use]
-    #[inline]
     pub const fn parse(byte: u8) -> Self {
-        Self { right: byte & 0x80 != 0, steps: byte & 0x7f }
+        Self { right: byte & RIGHT != 0, steps: byte & MAX_STEPS }
     }
 
-    /// The byte that means the order; `None` if it has more than 127 steps.
+    /// The byte that means the command; `None` if it has more than [`MAX_STEPS`].
     #[must_use]
-    #[inline]
     pub const fn emit(self) -> Option<u8> {
-        if self.steps > 127 { None } else { Some((self.right as u8) << 7 | self.steps) }
+        let direction = if self.right { RIGHT } else { 0 };
+        if self.steps > MAX_STEPS { None } else { Some(direction | self.steps) }
     }
 }
 
-/// One tick's orders as they came, a byte a channel; bytes past the channels in use are 0.
+/// One tick's commands as they came, a byte a channel; bytes past the channels in use are 0.
 pub type Tick = [u8; MAX_CHANNELS];
 
 /// What a byte, an error or a pause completed.
@@ -57,28 +69,31 @@ pub struct Unpacker {
     channels: u8,
     address: Option<u8>,
     gap: Cycles,
-    /// Orders so far, and how many bytes of the packet have come (with the address).
-    orders: Tick,
-    have: u8,
-    foreign: bool,
+    /// Commands so far, and how many bytes of the packet have come (with the address).
+    ///
+    /// Invariant: fewer bytes than a packet has: the last one completes it.
+    commands: Tick,
+    received: u8,
+    other_address: bool,
     /// After a framing error, until a gap.
     ignoring: bool,
     /// When a gap ends what is open.
+    ///
+    /// Invariant: [`Instant::NEVER`] exactly where no packet is open and nothing is ignored.
     deadline: Instant,
 }
 
 impl Unpacker {
     /// For `channels` channels; with an address, packets begin with one. `bit` is B.
     #[must_use]
-    #[inline]
     pub const fn new(channels: u8, address: Option<u8>, bit: Cycles) -> Self {
         Self {
             channels,
             address,
             gap: Cycles(GAP_BITS * bit.0 + 1),
-            orders: [0; MAX_CHANNELS],
-            have: 0,
-            foreign: false,
+            commands: [0; MAX_CHANNELS],
+            received: 0,
+            other_address: false,
             ignoring: false,
             deadline: Instant::NEVER,
         }
@@ -86,53 +101,51 @@ impl Unpacker {
 
     /// When a gap ends what is open; [`Instant::NEVER`] if nothing is.
     #[must_use]
-    #[inline]
     pub const fn deadline(&self) -> Instant {
         self.deadline
     }
 
     /// The gap has come: true if it cut a packet short.
-    #[inline]
     pub const fn gap(&mut self) -> bool {
-        let short = self.have > 0;
-        self.have = 0;
+        debug_assert!(self.received > 0 || self.ignoring, "nothing is open that a gap could end");
+        let short = self.received > 0;
+        self.received = 0;
         self.ignoring = false;
         self.deadline = Instant::NEVER;
         short
     }
 
     /// A framing error in cycle `now`: what has come is dropped, and bytes until a gap.
-    #[inline]
     pub fn framing_error(&mut self, now: Instant) {
         self.deadline = now + self.gap;
-        self.have = 0;
+        self.received = 0;
         self.ignoring = true;
     }
 
     /// A byte in cycle `now`; the packet that it completes.
-    #[inline]
     pub fn byte(&mut self, now: Instant, byte: u8) -> Option<Unpacked> {
         self.deadline = now + self.gap;
         if self.ignoring {
             return None;
         }
         let addressed = u8::from(self.address.is_some());
-        if self.have == 0 {
-            self.orders = [0; MAX_CHANNELS];
-            self.foreign = self.address.is_some_and(|own| byte != own && byte != ALL);
+        debug_assert!(self.received < self.channels + addressed, "the packet was complete before");
+        if self.received == 0 {
+            self.commands = [0; MAX_CHANNELS];
+            self.other_address = self.address.is_some_and(|own| byte != own && byte != ALL);
         }
-        if self.have >= addressed
-            && let Some(order) = self.orders.get_mut(usize::from(self.have - addressed))
+        if self.received >= addressed
+            && let Some(command) = self.commands.get_mut(usize::from(self.received - addressed))
         {
-            *order = byte;
+            *command = byte;
         }
-        self.have += 1;
-        if self.have < self.channels + addressed {
+        self.received += 1;
+        if self.received < self.channels + addressed {
             return None;
         }
-        self.have = 0;
+        self.received = 0;
         self.deadline = Instant::NEVER;
-        Some(if self.foreign { Unpacked::OtherAddress } else { Unpacked::Own(self.orders) })
+        Some(if self.other_address { Unpacked::OtherAddress } else { Unpacked::Own(self.commands) })
     }
 }
 

@@ -2,6 +2,16 @@
 //!
 //! A recorded line is such a schedule itself; packets are paced: packet j starts at boot + 1 + j*M*Ts, so tick follows
 //! tick without a pause.
+//!
+//! ```
+//! use stepscope_peripheral::{units::Instant, wire::{Schedule, schedule::line_time}};
+//!
+//! let mut host = Schedule::default();
+//! host.push(Instant(1601), &[0x85, 0x03]);
+//! assert_eq!(host.total_bytes(), 2);
+//! // Two bytes of ten bits at 115200 baud, in cycles of 16 MHz.
+//! assert_eq!(line_time(2, 16_000_000, 115_200), 1388 + 1388);
+//! ```
 
 use crate::units::{Cycles, Instant};
 use crate::wire::BitTimes;
@@ -20,6 +30,8 @@ pub struct Sent<'a> {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Schedule {
     /// Start of each send, and the end of its bytes in `bytes`.
+    ///
+    /// Invariant: both rising; the last end is that of `bytes`.
     sends: Vec<(Instant, usize)>,
     bytes: Vec<u8>,
 }
@@ -40,6 +52,11 @@ impl Schedule {
 
     /// Adds a send, after all others.
     pub fn push(&mut self, start: Instant, bytes: &[u8]) {
+        debug_assert!(
+            self.sends.last().is_none_or(|(before, _)| *before <= start),
+            "a send in {start:?} after one in {:?}",
+            self.sends.last()
+        );
         self.bytes.extend_from_slice(bytes);
         self.sends.push((start, self.bytes.len()));
     }

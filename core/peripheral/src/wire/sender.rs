@@ -9,12 +9,30 @@
 //!
 //! The j-th of bytes sent back to back from t0 starts at t0 + floor(10*j*clock_hz/baud). Host and
 //! controllers send by the same rule.
+//!
+//! ```
+//! use std::rc::Rc;
+//! use stepscope_peripheral::{units::Instant, wire::{Schedule, Sender}};
+//!
+//! let mut host = Schedule::default();
+//! host.push(Instant(100), &[0xf0]);
+//! let mut sender = Sender::new(Rc::new(host), 16_000_000, 1_000_000);
+//! let mut edges = Vec::new();
+//! while sender.next_edge() != Instant::NEVER {
+//!     edges.push(sender.next_edge().0);
+//!     sender.pass();
+//! }
+//! // 16 cycles a bit: the start bit falls, four zeros later the line rises, and stays for the stop bit.
+//! assert_eq!(edges, [100, 180]);
+//! ```
 
 use crate::units::Instant;
 use crate::wire::{BitTimes, Schedule, bit_times::BYTE_BITS};
 use alloc::rc::Rc;
 
-/// Walks along the edges of a schedule's bytes.
+const _: () = assert!(BYTE_BITS <= u16::BITS as u64, "the edges of a byte have a bit each");
+
+/// Iterates over the edges of a schedule's bytes.
 #[derive(Clone, Debug)]
 pub struct Sender {
     schedule: Rc<Schedule>,
@@ -32,7 +50,6 @@ pub struct Sender {
 impl Sender {
     /// A sender before its first byte. A rate of 0 counts as 1 baud.
     #[must_use]
-    #[inline]
     pub fn new(schedule: Rc<Schedule>, clock_hz: u32, baud: u32) -> Self {
         let times = BitTimes::new(clock_hz, baud);
         let mut sender = Self {
@@ -51,13 +68,11 @@ impl Sender {
 
     /// All that has been sent and will be.
     #[must_use]
-    #[inline]
     pub fn schedule(&self) -> &Schedule {
         &self.schedule
     }
 
     /// Adds a send after all others.
-    #[inline]
     pub fn send(&mut self, start: Instant, bytes: &[u8]) {
         Rc::make_mut(&mut self.schedule).push(start, bytes);
         if self.edges == 0 {
@@ -67,20 +82,19 @@ impl Sender {
 
     /// What is sent now.
     #[must_use]
-    #[inline]
     pub const fn level(&self) -> bool {
         self.level
     }
 
     /// Takes up the byte at (`send`, `byte`), or the first one after it.
-    #[inline]
     fn load(&mut self) {
         while let Some(send) = self.schedule.get(self.send) {
             if let Some(&byte) = send.bytes.get(self.byte) {
                 self.byte_start = send.start + self.times.byte(self.byte as u64);
                 // Start bit 0, data, stop bit 1; before the start bit the line is high.
                 let frame = u16::from(byte) << 1 | 1 << 9;
-                self.edges = (frame ^ (frame << 1 | 1)) & 0x3ff;
+                self.edges = (frame ^ (frame << 1 | 1)) & ((1 << BYTE_BITS) - 1);
+                debug_assert!(self.edges & 1 == 1, "every byte begins with the edge of its start bit");
                 return;
             }
             self.send += 1;
@@ -91,7 +105,6 @@ impl Sender {
 
     /// Cycle of the next edge; [`Instant::NEVER`] without one.
     #[must_use]
-    #[inline(always)]
     pub fn next_edge(&self) -> Instant {
         match self.bit_starts.get(self.edges.trailing_zeros() as usize) {
             Some(offset) => Instant(self.byte_start.0 + offset),
@@ -100,8 +113,8 @@ impl Sender {
     }
 
     /// Enters the cycle of [`Self::next_edge`].
-    #[inline(always)]
     pub fn pass(&mut self) {
+        debug_assert!(self.edges != 0, "there is no edge to pass");
         self.level = !self.level;
         self.edges &= self.edges.wrapping_sub(1);
         if self.edges == 0 {

@@ -9,6 +9,21 @@
 //!
 //! The looks at data bits change nothing outside. They are made up for when the line changes or
 //! the stop bit is due, so that a byte costs as many events as it has edges, and two.
+//!
+//! ```
+//! use stepscope_peripheral::{
+//!     units::{Cycles, Instant},
+//!     wire::uart::{Heard, Receiver},
+//! };
+//!
+//! // Bits of 16 cycles; the line is low from cycle 100 to 179: a start bit and four zeros.
+//! let mut receiver = Receiver::new(Cycles(16));
+//! let level = |cycle: u64| !(100..180).contains(&cycle);
+//! let heard = (1..300).find_map(|cycle| {
+//!     receiver.clock(Instant(cycle), level(cycle - 1), level(cycle)).map(|heard| (cycle, heard))
+//! });
+//! assert_eq!(heard, Some((252, Heard::Byte(0xf0)))); // 100 + 8 + 9 * 16
+//! ```
 
 use crate::units::{Cycles, Instant};
 
@@ -43,6 +58,8 @@ pub struct Receiver {
     seen: Instant,
     /// While sampling: the bit that is looked at next (0 start, 1..=8 data, 9 stop), when, and the
     /// data bits so far.
+    ///
+    /// Invariant: the looks at the start bit and the stop bit are never made up for later.
     bit: u8,
     at: Instant,
     byte: u8,
@@ -51,7 +68,6 @@ pub struct Receiver {
 impl Receiver {
     /// A receiver of bit time `bit_cycles`, armed.
     #[must_use]
-    #[inline]
     pub const fn new(bit_cycles: Cycles) -> Self {
         let seen = Instant::RESET;
         Self { bit_cycles, state: State::Armed, seen, bit: 0, at: Instant::NEVER, byte: 0 }
@@ -59,7 +75,6 @@ impl Receiver {
 
     /// Where the latest start bit was seen.
     #[must_use]
-    #[inline]
     pub const fn seen(&self) -> Instant {
         self.seen
     }
@@ -67,7 +82,6 @@ impl Receiver {
     /// Next cycle after `now` in which something comes of what the receiver does if the line stays
     /// at `rx`: the look at the start bit or at the stop bit, or arming.
     #[must_use]
-    #[inline(always)]
     pub fn deadline(&self, now: Instant, rx: bool) -> Instant {
         match self.state {
             State::Sampling if self.bit == 0 => self.at,
@@ -80,7 +94,6 @@ impl Receiver {
 
     /// Cycle `now` with the line at `rx`, which was at `before` in the cycles since the last call.
     /// No cycle of [`Self::deadline`] may have been left out between.
-    #[inline(always)]
     pub fn clock(&mut self, now: Instant, before: bool, rx: bool) -> Option<Heard> {
         match self.state {
             State::Armed if !rx => {
@@ -92,6 +105,7 @@ impl Receiver {
             State::Broken if rx => self.state = State::Armed,
             State::Sampling => {
                 while self.at < now {
+                    debug_assert!(self.bit > 0, "the look at the start bit was left out");
                     self.take(before);
                 }
                 if self.at == now {
@@ -104,8 +118,8 @@ impl Receiver {
     }
 
     /// Takes the line's level for the bit that is due.
-    #[inline]
     fn take(&mut self, rx: bool) {
+        debug_assert!(self.bit < STOP, "the look at the stop bit was left out");
         if let Some(place) = self.bit.checked_sub(1) {
             self.byte |= u8::from(rx).checked_shl(place.into()).unwrap_or(0);
         }
@@ -114,7 +128,6 @@ impl Receiver {
     }
 
     /// The look that is due in this cycle.
-    #[inline]
     fn look(&mut self, rx: bool) -> Option<Heard> {
         match (self.bit, rx) {
             (0, true) => self.state = State::Armed,

@@ -111,6 +111,7 @@ pub(super) struct Peer {
     pub(super) progress: Progress,
     /// Ticks that the controller had done before the first was sent.
     pub(super) base: Option<u32>,
+    /// Invariant: at most the ticks of the job.
     pub(super) acknowledged: u32,
     pub(super) seq: u8,
     pub(super) free: u32,
@@ -181,6 +182,7 @@ impl Peer {
     pub(super) fn acknowledge(&mut self, kind: Kind, ticks: u32, status: Status, now: Instant) -> Cycles {
         if kind == Kind::Ticks {
             self.acknowledged += ticks;
+            debug_assert!(self.acknowledged <= self.job.ticks(), "more ticks are acknowledged than sent");
             self.since_progress = 0;
             self.seq = self.seq.wrapping_add(1);
         } else if status.state == State::Stopped {

@@ -1,7 +1,7 @@
 //! What the registers do, against the data sheet's sentences.
 
 use super::*;
-use crate::config::SerialLine;
+use crate::config::{Bus, Distribution, PulsePhasing, SerialLine};
 use crate::{signal::Record, units::Cycles};
 use alloc::{vec, vec::Vec};
 use map::{

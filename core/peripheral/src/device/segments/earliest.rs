@@ -10,9 +10,10 @@ use crate::{signal::MAX_CHANNELS, units::Instant};
 
 /// Bits of a key for its channel.
 const CHANNEL_BITS: u32 = 4;
-/// Key of a channel for which nothing is due. A cycle is below 2^60, so no other key is as great.
+/// Key of a channel for which nothing is due. No cycle is after [`Earliest::LAST`], so no other key is as great.
 const NEVER: u64 = u64::MAX;
 const ENTRIES: usize = 2 * MAX_CHANNELS;
+const _: () = assert!(MAX_CHANNELS.is_power_of_two() && MAX_CHANNELS <= 1 << CHANNEL_BITS);
 
 #[derive(Clone, Debug)]
 pub(super) struct Earliest {
@@ -22,15 +23,18 @@ pub(super) struct Earliest {
 }
 
 impl Earliest {
+    /// The last cycle that has a key of its own.
+    pub(super) const LAST: Instant = Instant((NEVER >> CHANNEL_BITS) - 1);
+
     /// `channels` channels, at most 16, for which nothing is due.
-    #[inline]
     pub(super) fn new(channels: usize) -> Self {
         Self { keys: [NEVER; ENTRIES], size: channels.clamp(1, MAX_CHANNELS).next_power_of_two() }
     }
 
-    /// Sets the cycle of a channel, [`Instant::NEVER`] or one below 2^60.
-    #[inline(always)]
+    /// Sets the cycle of a channel, [`Instant::NEVER`] or one up to [`Self::LAST`].
     pub(super) fn set(&mut self, channel: usize, cycle: Instant) {
+        debug_assert!(channel < self.size, "channel {channel} has no leaf");
+        debug_assert!(cycle == Instant::NEVER || cycle <= Self::LAST, "{cycle:?} has no key");
         let mut index = (self.size + channel) % ENTRIES;
         let mut least =
             if cycle == Instant::NEVER { NEVER } else { cycle.0 << CHANNEL_BITS | channel as u64 };
@@ -43,7 +47,6 @@ impl Earliest {
     }
 
     /// The earliest cycle; [`Instant::NEVER`] where nothing is due.
-    #[inline(always)]
     pub(super) const fn cycle(&self) -> Instant {
         match self.keys[1] {
             NEVER => Instant::NEVER,
@@ -52,7 +55,6 @@ impl Earliest {
     }
 
     /// The channel of the earliest cycle; of several the first.
-    #[inline(always)]
     pub(super) const fn channel(&self) -> usize {
         self.keys[1] as usize % MAX_CHANNELS
     }

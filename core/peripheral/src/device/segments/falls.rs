@@ -21,7 +21,6 @@ pub(super) struct Falls {
 }
 
 impl Default for Falls {
-    #[inline]
     fn default() -> Self {
         let none = Fall { cycle: Instant::NEVER, steps: 0 };
         Self { ring: [none; MAX_CHANNELS], first: 0, count: 0, cycle: Instant::NEVER }
@@ -30,14 +29,13 @@ impl Default for Falls {
 
 impl Falls {
     /// The next fall; [`Instant::NEVER`] where there is none.
-    #[inline(always)]
     pub(super) const fn cycle(&self) -> Instant {
         self.cycle
     }
 
     /// The pulses of `steps` fall in `cycle`, later than all others.
-    #[inline(always)]
     pub(super) const fn push(&mut self, cycle: Instant, steps: u16) {
+        debug_assert!(self.count < MAX_CHANNELS, "a pulse begins before the channel's last one fell");
         if self.count == 0 {
             self.cycle = cycle;
         }
@@ -46,7 +44,6 @@ impl Falls {
     }
 
     /// Takes out the next fall: its channels.
-    #[inline(always)]
     pub(super) const fn pop(&mut self) -> u16 {
         let steps = self.ring[self.first].steps;
         self.first = (self.first + 1) % MAX_CHANNELS;

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 use stepscope_core::{
     motion::{grouped, moves::Move},
-    scenario::{Scenario, Source, presets::PRESETS},
+    scenario::{Kinds, Scenario, Source, presets::PRESETS},
     sim::BUDGET_RECORDS,
 };
 

@@ -1,0 +1,48 @@
+//! A generator that runs a move by itself: a ramp up, a plateau and a ramp down as three segments.
+//!
+//! `cargo run -p stepscope-core --example segment_list`
+
+use std::rc::Rc;
+use stepscope_core::peripheral::{
+    device::SegmentEngine,
+    segment::{CheckedSegments, PulseTimes, Refused, Segment, SegmentList},
+    signal::Record,
+    trace::steps,
+    units::{Cycles, Instant},
+};
+
+/// Cycles as the segments have them: in 1/65536.
+const fn cycles(whole: i64) -> i64 {
+    whole << 16
+}
+
+fn main() -> Result<(), Vec<Refused>> {
+    // Each step comes `interval` after the one before it; `add` makes the next interval shorter or longer.
+    let steps_of = |count, interval: i64, add| Segment::Steps {
+        count,
+        interval: interval.unsigned_abs(),
+        add,
+        right: true,
+    };
+    let segments = vec![
+        steps_of(100, cycles(8000), cycles(-60)),
+        steps_of(500, cycles(2000), 0),
+        steps_of(100, cycles(2060), cycles(60)),
+    ];
+    let list = SegmentList { start: Instant(1), segments };
+
+    // Every rule is checked before anything runs: no pulse meets another, no time leaves its 64 bits.
+    let pulse = PulseTimes { width: Cycles(40), setup: Cycles(40), hold: Cycles(0) };
+    let lists = CheckedSegments::new(pulse, vec![list], 1)?;
+
+    let mut engine = SegmentEngine::new(Rc::new(lists));
+    let mut trace: Vec<Record> = Vec::new();
+    engine.run(Instant::NEVER, &mut trace);
+
+    assert_eq!(engine.positions()[0], 700);
+    let steps = steps(&trace, 0);
+    let interval = |index: usize| steps[index].cycle - steps[index - 1].cycle;
+    assert_eq!([interval(1), interval(99), interval(300), interval(699)], [7940, 2060, 2000, 8000]);
+    println!("700 steps in {} cycles, {} records", engine.now().0, trace.len());
+    Ok(())
+}

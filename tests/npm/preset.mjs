@@ -1,0 +1,47 @@
+/**
+ * A plain Node program that has installed the package: it runs presets, and gets the golden digests.
+ *
+ * `node preset.mjs FOLDER`, the folder being `tests/golden/`; the package is found as Node finds any.
+ */
+import assert from "node:assert/strict";
+import { readFile, readdir } from "node:fs/promises";
+import { join } from "node:path";
+import init, { Simulation, presets, version } from "stepscope-wasm";
+
+const [golden] = process.argv.slice(2);
+assert.ok(golden, "give the folder of the golden cases");
+
+/** The package's own files, as they were installed. */
+const installed = (name) => new URL(import.meta.resolve(`stepscope-wasm/${name}`));
+
+const about = JSON.parse(await readFile(installed("package.json"), "utf8"));
+for (const field of ["description", "keywords", "license", "main", "repository", "types", "version"]) {
+  assert.ok(about[field]?.length > 0 || about[field]?.url, `package.json has no ${field}`);
+}
+for (const name of [about.main, about.types, "stepscope_wasm_bg.wasm", "README.md", "LICENSE-MIT", "LICENSE-APACHE"]) {
+  assert.ok((await readFile(installed(name))).length > 0, `${name} is empty`);
+}
+
+await init({ module_or_path: await readFile(installed("stepscope_wasm_bg.wasm")) });
+assert.equal(version(), about.version);
+
+/** The digests of all controllers of a scenario's run, a line each. */
+function digests(scenario) {
+  const simulation = new Simulation(scenario);
+  try {
+    while (!simulation.advance(100_000).done);
+    return simulation.summary().controllers.map(({ digest }) => digest);
+  } finally {
+    simulation.free();
+  }
+}
+
+const scenarios = new Map(presets().map(({ id, scenario }) => [id, scenario]));
+const cases = (await readdir(golden)).filter((name) => name.startsWith("preset-"));
+assert.ok(cases.length > 20, `${golden} has only ${cases.length} presets`);
+for (const name of cases) {
+  const text = async (file) => (await readFile(join(golden, name, file), "utf8")).trim();
+  const id = await text("preset");
+  assert.deepEqual(digests(scenarios.get(id)), (await text("digest")).split("\n"), id);
+}
+console.log(`${cases.length} presets gave their golden digests in Node ${process.version}`);

@@ -1,0 +1,147 @@
+//! Tests share browsers, and none of them meets what another left in one.
+
+use std::collections::BTreeMap;
+
+use anyhow::{Result, ensure};
+use serde_json::{Value, json};
+
+use crate::{bench::in_browser_shipped, session::Session};
+
+/// Leaves something wherever a page can, and waits until it is there.
+const LEAVE: &str = "
+    localStorage.setItem('left', 'behind');
+    sessionStorage.setItem('left', 'behind');
+    document.cookie = 'left=behind; max-age=3600';
+    history.pushState(null, '', '?left');
+    open('help.html');
+    return Promise.all([
+        new Promise((done, fail) => {
+            const opening = indexedDB.open('left', 1);
+            opening.onsuccess = done;
+            opening.onerror = fail;
+        }),
+        caches.open('left').then((cache) => cache.put('left', new Response('behind'))),
+        navigator.clipboard.writeText('left behind'),
+        navigator.serviceWorker.ready,
+    ]).then(() => true);";
+
+/// All that a visitor can find of that, by its name.
+const FOUND: &str = "
+    return (async () => ({
+        'local storage': localStorage.getItem('left'),
+        'session storage': sessionStorage.getItem('left'),
+        cookie: document.cookie,
+        databases: (await indexedDB.databases()).map(({ name }) => name),
+        caches: await caches.keys(),
+        workers: (await navigator.serviceWorker.getRegistrations()).length,
+        controlled: navigator.serviceWorker.controller !== null,
+        clipboard: (await navigator.permissions.query({ name: 'clipboard-read' })).state,
+        script: window.left ?? null,
+        history: history.length,
+        'inner size': [innerWidth, innerHeight],
+        ratio: devicePixelRatio,
+        dark: matchMedia('(prefers-color-scheme: dark)').matches,
+        'forced colours': matchMedia('(forced-colors: active)').matches,
+        still: matchMedia('(prefers-reduced-motion: reduce)').matches,
+        print: matchMedia('print').matches,
+        online: navigator.onLine,
+        language: navigator.language,
+        zone: Intl.DateTimeFormat().resolvedOptions().timeZone,
+        agent: navigator.userAgent,
+        cores: navigator.hardwareConcurrency,
+        touch: navigator.maxTouchPoints,
+        hidden: document.hidden,
+        focus: document.hasFocus(),
+    }))();";
+
+type Found = BTreeMap<String, Value>;
+
+/// What a visitor finds before the page's own scripts have run.
+async fn found(page: &Session) -> Result<Found> {
+    // A page without scripts, so that all there is was there before.
+    page.go("licenses.html").await?;
+    page.js(FOUND, vec![]).await
+}
+
+/// Leaves all of it, and every emulation.
+async fn leave(page: &Session) -> Result<()> {
+    page.before_scripts("window.left = 'behind';").await?;
+    page.open("").await?;
+    page.allow_clipboard().await?;
+    page.js::<bool>(LEAVE, vec![]).await?;
+    let features = json!([
+        { "name": "prefers-color-scheme", "value": "dark" },
+        { "name": "forced-colors", "value": "active" },
+        { "name": "prefers-reduced-motion", "value": "reduce" },
+    ]);
+    for (method, parameters) in [
+        ("Emulation.setEmulatedMedia", json!({ "media": "print", "features": features })),
+        (
+            "Emulation.setDeviceMetricsOverride",
+            json!({ "width": 320, "height": 640, "deviceScaleFactor": 2, "mobile": true }),
+        ),
+        ("Emulation.setTouchEmulationEnabled", json!({ "enabled": true, "maxTouchPoints": 3 })),
+        ("Emulation.setLocaleOverride", json!({ "locale": "ru-RU" })),
+        ("Emulation.setTimezoneOverride", json!({ "timezoneId": "Asia/Tokyo" })),
+        ("Emulation.setUserAgentOverride", json!({ "userAgent": "left behind", "acceptLanguage": "ru" })),
+        ("Emulation.setHardwareConcurrencyOverride", json!({ "hardwareConcurrency": 1 })),
+        ("Emulation.setCPUThrottlingRate", json!({ "rate": 2 })),
+        ("Network.enable", json!({})),
+        (
+            "Network.emulateNetworkConditions",
+            json!({ "offline": true, "latency": 0, "downloadThroughput": -1, "uploadThroughput": -1 }),
+        ),
+    ] {
+        page.devtools(method, parameters).await?;
+    }
+    // It is what there is to be found: nothing here is left out of sight.
+    let now: Found = page.js(FOUND, vec![]).await?;
+    for (name, value) in [
+        ("local storage", json!("behind")),
+        ("session storage", json!("behind")),
+        ("cookie", json!("left=behind")),
+        ("databases", json!(["left"])),
+        ("workers", json!(1)),
+        ("clipboard", json!("granted")),
+        ("script", json!("behind")),
+        ("ratio", json!(2)),
+        ("dark", json!(true)),
+        ("forced colours", json!(true)),
+        ("still", json!(true)),
+        ("print", json!(true)),
+        ("online", json!(false)),
+        ("zone", json!("Asia/Tokyo")),
+        ("agent", json!("left behind")),
+        ("cores", json!(1)),
+        ("touch", json!(3)),
+    ] {
+        ensure!(now.get(name) == Some(&value), "{name} is {:?}, not {value}", now.get(name));
+    }
+    Ok(())
+}
+
+#[test]
+fn a_visitor_meets_nothing_that_the_one_before_left_in_the_same_browser() -> Result<()> {
+    in_browser_shipped(|page| async move {
+        let first = found(&page).await?;
+        leave(&page).await?;
+        page.js::<()>("console.error('left behind'); return null;", vec![]).await?;
+
+        let (said, next) = page.bench.next_in_browser().await?;
+        ensure!(
+            said.len() == 1 && said[0].contains("left behind"),
+            "the console's word is the first one's: {said:?}"
+        );
+        ensure!(next.client.windows().await?.len() == 2, "a window is left open");
+        assert_eq!(found(&next).await?, first);
+        let complaints = next.complaints().await?;
+        ensure!(complaints.is_empty(), "{complaints:?}");
+
+        // The page at work: it begins with its own first scenario and offers the guide.
+        next.open("").await?;
+        ensure!(next.visible("#welcome").await?, "the page knows the visitor");
+        next.allow_clipboard().await?;
+        assert_eq!(next.clipboard().await?, "");
+        Ok(())
+    })
+}

@@ -1,0 +1,152 @@
+//! Servers and drivers: programs that listen, and that end with this process however it ends.
+
+use std::{
+    env, fs,
+    io::{BufRead, BufReader, Read},
+    net::TcpStream,
+    path::{Path, PathBuf},
+    process::{Child, Command, Stdio},
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicU32, Ordering},
+        mpsc,
+    },
+    thread,
+    time::{Duration, Instant},
+};
+
+use anyhow::{Context, Result, bail, ensure};
+
+use crate::browser::{Browser, Says, named};
+
+/// Longest time until a program that was started says where it listens.
+pub(crate) const START_LIMIT: Duration = Duration::from_secs(120);
+/// Rest between two attempts to reach a program.
+const LOOK_AGAIN: Duration = Duration::from_millis(20);
+
+/// What a program and those that it started have said so far.
+type Heard = Arc<Mutex<Vec<String>>>;
+
+/// A program that listens. It ends, with all that it started, when this is dropped, and when this process ends.
+pub(crate) struct Program {
+    /// Address of what it serves, with a slash at the end.
+    pub(crate) address: String,
+    child: Child,
+    heard: Heard,
+}
+
+impl Program {
+    /// Serves the page in a folder.
+    pub(crate) fn server(web: &Path) -> Result<Self> {
+        let mut serve = Command::new(named("STEPSCOPE_XTASK")?);
+        serve.args(["serve", "--port", "0", "--web"]).arg(web);
+        Self::start(&serve, Says::Line("serving ")).context("the server")
+    }
+
+    /// A browser's driver. Another program may take the free port that it chose before it does: then it chooses once
+    /// more.
+    pub(crate) fn driver(browser: Browser) -> Result<Self> {
+        let mut tried = 0;
+        loop {
+            let (drive, says) = browser.driver()?;
+            tried += 1;
+            match Self::start(&drive, says) {
+                Err(_) if tried < 3 => {}
+                done => return done.with_context(|| format!("{browser:?}'s driver")),
+            }
+        }
+    }
+
+    /// Starts a program, attended, and waits until it listens.
+    fn start(program: &Command, says: Says) -> Result<Self> {
+        let mut attended = Command::new(named("STEPSCOPE_XTASK")?);
+        attended.args(["attend", "--"]).arg(program.get_program()).args(program.get_args());
+        attended.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        // It outlives this process by a moment, also where a signal ends all of this one's group.
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut attended, 0);
+        let mut child = attended.spawn().context("does not start")?;
+        let (said, lines) = mpsc::channel();
+        let output = child.stdout.take().context("has no output")?;
+        let errors = child.stderr.take().context("has no output")?;
+        let mut program = Self { address: String::new(), child, heard: Heard::default() };
+        program.hear(output, said.clone());
+        program.hear(errors, said);
+        program.address = program.place(says, &lines)?;
+        Ok(program)
+    }
+
+    /// Reads lines as long as the program runs, since a full pipe would stop it; `said` while somebody listens.
+    fn hear<R: Read + Send + 'static>(&self, output: R, said: mpsc::Sender<String>) {
+        let heard = Arc::clone(&self.heard);
+        thread::spawn(move || {
+            for line in BufReader::new(output).lines().map_while(Result::ok) {
+                // Once it listens nobody asks what it says.
+                let _ = said.send(line.clone());
+                heard.lock().unwrap_or_else(PoisonError::into_inner).push(line);
+            }
+        });
+    }
+
+    fn place(&mut self, says: Says, lines: &mpsc::Receiver<String>) -> Result<String> {
+        let end = Instant::now() + START_LIMIT;
+        match says {
+            Says::Line(before) => loop {
+                match lines.recv_timeout(end.saturating_duration_since(Instant::now())) {
+                    Ok(line) => {
+                        if let Some((_, place)) = line.split_once(before) {
+                            let place = place.trim_end_matches(['.', '/']);
+                            let port = place.rsplit_once(':').map_or(place, |(_, port)| port);
+                            return Ok(format!("http://127.0.0.1:{port}/"));
+                        }
+                    }
+                    Err(mpsc::RecvTimeoutError::Disconnected) => {
+                        bail!("ended without a word on where it listens: {}", self.heard().join("\n"))
+                    }
+                    Err(mpsc::RecvTimeoutError::Timeout) => bail!("says nothing on where it listens"),
+                }
+            },
+            Says::Nothing(port) => {
+                while TcpStream::connect(("127.0.0.1", port)).is_err() {
+                    ensure!(self.child.try_wait()?.is_none(), "ended before it listened");
+                    ensure!(Instant::now() < end, "does not listen after {START_LIMIT:?}");
+                    thread::sleep(LOOK_AGAIN);
+                }
+                Ok(format!("http://127.0.0.1:{port}/"))
+            }
+        }
+    }
+
+    /// What it and those that it started have said so far.
+    pub(crate) fn heard(&self) -> Vec<String> {
+        self.heard.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        // The end of its input is the word to end; it ends what it attends first.
+        drop(self.child.stdin.take());
+        let _ = self.child.wait();
+    }
+}
+
+/// A folder that goes with its owner.
+pub(crate) struct Folder(pub(crate) PathBuf);
+
+impl Folder {
+    pub(crate) fn temporary() -> Result<Self> {
+        static FOLDER: AtomicU32 = AtomicU32::new(0);
+        let number = FOLDER.fetch_add(1, Ordering::Relaxed);
+        let folder = env::temp_dir().join(format!("stepscope-page-{}-{number}", std::process::id()));
+        fs::create_dir_all(&folder).with_context(|| format!("{} can't be made", folder.display()))?;
+        Ok(Self(folder))
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        // What a dying server still holds is left to the system's own clearing.
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}

@@ -1,0 +1,279 @@
+//! `cargo xtask mutants`: do the tests notice when the code is wrong? cargo-mutants changes one thing at a time (a `<` to
+//! `<=`, a function's result to 0) in the peripheral and the motions, and the tests have to fail.
+//!
+//! All mutants together take days. A run draws a sample; the same `--seed` draws the same one from the same sources. What
+//! is left out altogether, and why, is in `.cargo/mutants.toml`.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+use std::time::Duration;
+
+use anyhow::{Context, Result, ensure};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
+use serde::Deserialize;
+use tokio::process::Command;
+
+use crate::{root, run, tools};
+
+/// Packages that are changed.
+const PACKAGES: [&str; 2] = ["stepscope-peripheral", "stepscope-motion"];
+/// Packages whose tests run.
+const TESTED: [&str; 4] = ["stepscope-peripheral", "stepscope-motion", "stepscope-core", "stepscope-tests"];
+/// Their unit tests, and these: the ones that are about the two, and quick.
+const TESTS: [&str; 7] =
+    ["motion", "segments", "golden", "documents", "contract", "contract_line", "registers"];
+/// Of the mutants that can be built, so many in a hundred have to be caught.
+const LEAST_CAUGHT_PERCENT: usize = 95;
+/// Time for the copy, its first build, and the tests as they are.
+const START: Duration = Duration::from_secs(40 * 60);
+/// Most time for one mutant, on average.
+const EACH: Duration = Duration::from_secs(4 * 60);
+
+/// How to look for what the tests do not notice.
+pub(crate) struct Options {
+    /// How many mutants are drawn.
+    pub(crate) sample: usize,
+    /// Which.
+    pub(crate) seed: u64,
+    /// Of these packages; of both if empty.
+    pub(crate) packages: Vec<String>,
+}
+
+/// Draws a sample, tests each, and says what was missed; an error if too much was.
+pub(crate) async fn run(options: Options) -> Result<()> {
+    let packages = chosen(&options.packages)?;
+    let program = tools::cargo_mutants().await?;
+    let all = list(&program, &packages).await?;
+    let sample = drawn(all.clone(), options.sample, options.seed);
+    println!("{} of {} mutants, drawn with seed {}", sample.len(), all.len(), options.seed);
+
+    let folder = root().join("target").join("mutants");
+    fs::create_dir_all(&folder).with_context(|| format!("{} can't be made", folder.display()))?;
+    let outcomes = folder.join("mutants.out").join("outcomes.json");
+    // What an earlier run has left must not pass for this one's.
+    if outcomes.exists() {
+        fs::remove_file(&outcomes).with_context(|| format!("{} can't be removed", outcomes.display()))?;
+    }
+    let limit = START + EACH * u32::try_from(sample.len()).unwrap_or(u32::MAX);
+    // It fails where something is missed, too; what it wrote tells which.
+    let ended = run::to_end(testing(&program, &packages, &sample, &folder), limit).await;
+    let Ok(text) = fs::read_to_string(&outcomes) else {
+        return ended.context("cargo-mutants did not get as far as its first outcome");
+    };
+    let verdict = Verdict::of(&text)?;
+    println!("\n{verdict}");
+    ensure!(
+        verdict.judged() == sample.len(),
+        "only {} of {} mutants were tried; what the tests of the unchanged code said is in {}",
+        verdict.judged(),
+        sample.len(),
+        folder.join("mutants.out").join("log").display()
+    );
+    ensure!(
+        verdict.is_enough(),
+        "less than {LEAST_CAUGHT_PERCENT} % were caught: give what was missed a test, or, if no test could notice, \
+         a line with the reason in .cargo/mutants.toml"
+    );
+    Ok(())
+}
+
+/// The packages that are asked for: both, if none is named.
+fn chosen(asked: &[String]) -> Result<Vec<&str>> {
+    for package in asked {
+        ensure!(
+            PACKAGES.contains(&package.as_str()),
+            "{package} is not changed here; give {}, or none for both",
+            PACKAGES.join(" or ")
+        );
+    }
+    Ok(if asked.is_empty() { PACKAGES.to_vec() } else { asked.iter().map(String::as_str).collect() })
+}
+
+/// A call of cargo-mutants.
+fn cargo_mutants(program: &Path, packages: &[&str]) -> Command {
+    let mut command = Command::new(program);
+    command.current_dir(root()).arg("mutants");
+    for package in packages {
+        command.args(["--package", package]);
+    }
+    command
+}
+
+/// The names of all mutants, in the order of the sources.
+async fn list(program: &Path, packages: &[&str]) -> Result<Vec<String>> {
+    #[derive(Deserialize)]
+    struct Mutant {
+        name: String,
+    }
+    let mut command = cargo_mutants(program, packages);
+    command.args(["--list", "--json"]);
+    let text = run::output(command).await.context("cargo-mutants lists no mutants")?;
+    let mutants: Vec<Mutant> = serde_json::from_str(&text).context("cargo-mutants' list is no JSON")?;
+    Ok(mutants.into_iter().map(|mutant| mutant.name).collect())
+}
+
+/// So many of all, or all if there are fewer.
+fn drawn(mut all: Vec<String>, sample: usize, seed: u64) -> BTreeSet<String> {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+    all.sort_by_cached_key(|_| random.next_u64());
+    all.into_iter().take(sample).collect()
+}
+
+fn testing(program: &Path, packages: &[&str], sample: &BTreeSet<String>, folder: &Path) -> Command {
+    let mut command = cargo_mutants(program, packages);
+    let names: Vec<String> = sample.iter().map(|name| literal(name)).collect();
+    command.arg(format!("--re=^(?:{})$", names.join("|")));
+    command.args(["--no-times", "--colors=never", "--jobs=1", "--output"]).arg(folder);
+    for package in TESTED {
+        command.args(["--test-package", package]);
+    }
+    command.args(["--", "--locked", "--lib"]);
+    for test in TESTS {
+        command.args(["--test", test]);
+    }
+    command
+}
+
+/// A pattern that stands for this text alone.
+fn literal(text: &str) -> String {
+    let mut pattern = String::new();
+    for letter in text.chars() {
+        if letter.is_ascii_punctuation() && !matches!(letter, '<' | '>' | '_') {
+            pattern.push('\\');
+        }
+        pattern.push(letter);
+    }
+    pattern
+}
+
+/// What became of the sample.
+#[derive(Debug, Default, PartialEq, Eq)]
+struct Verdict {
+    caught: usize,
+    /// The tests ran so long that they were stopped: caught, too.
+    timeouts: Vec<String>,
+    /// Not to be built: no mutants after all.
+    unviable: usize,
+    missed: Vec<String>,
+}
+
+impl Verdict {
+    /// Of the text of cargo-mutants' outcomes.json.
+    fn of(text: &str) -> Result<Self> {
+        #[derive(Deserialize)]
+        struct Outcomes {
+            outcomes: Vec<Outcome>,
+        }
+        #[derive(Deserialize)]
+        struct Outcome {
+            scenario: Scenario,
+            summary: String,
+        }
+        #[derive(Deserialize)]
+        enum Scenario {
+            Baseline,
+            Mutant { name: String },
+        }
+        let Outcomes { outcomes } =
+            serde_json::from_str(text).context("cargo-mutants' outcomes.json is not what it should be")?;
+        let mut verdict = Self::default();
+        for Outcome { scenario, summary } in outcomes {
+            match (scenario, summary.as_str()) {
+                (Scenario::Baseline, _) => {}
+                (Scenario::Mutant { .. }, "CaughtMutant") => verdict.caught += 1,
+                (Scenario::Mutant { .. }, "Unviable") => verdict.unviable += 1,
+                (Scenario::Mutant { name }, "Timeout") => verdict.timeouts.push(name),
+                (Scenario::Mutant { name }, _) => verdict.missed.push(name),
+            }
+        }
+        Ok(verdict)
+    }
+
+    fn viable(&self) -> usize {
+        self.caught + self.timeouts.len() + self.missed.len()
+    }
+
+    fn judged(&self) -> usize {
+        self.viable() + self.unviable
+    }
+
+    fn is_enough(&self) -> bool {
+        (self.caught + self.timeouts.len()) * 100 >= self.viable() * LEAST_CAUGHT_PERCENT
+    }
+}
+
+impl std::fmt::Display for Verdict {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        for (word, names) in [("stopped after their time", &self.timeouts), ("missed", &self.missed)] {
+            for name in names {
+                writeln!(f, "{word}: {name}")?;
+            }
+        }
+        write!(
+            f,
+            "{} of {} caught ({} of them stopped after their time), {} missed; {} could not be built",
+            self.caught + self.timeouts.len(),
+            self.viable(),
+            self.timeouts.len(),
+            self.missed.len(),
+            self.unviable
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_same_seed_draws_the_same_sample_and_another_another() {
+        let all: Vec<String> = (0..1000).map(|index| format!("mutant {index:04}")).collect();
+        let draw = |sample, seed| drawn(all.clone(), sample, seed);
+        assert_eq!(draw(60, 1), draw(60, 1));
+        assert_ne!(draw(60, 1), draw(60, 2));
+        assert_eq!(draw(60, 1).len(), 60);
+        assert!(draw(60, 1).is_superset(&draw(6, 1)), "a smaller sample is the larger one's beginning");
+        assert_eq!(draw(2000, 1).len(), 1000);
+    }
+
+    #[test]
+    fn a_name_becomes_a_pattern_of_itself() {
+        let name = "core/a_b.rs:9:5: replace <T as U>::f -> Vec<u8> with vec![0] (x + 1)";
+        let expected = r"core\/a_b\.rs\:9\:5\: replace <T as U>\:\:f \-> Vec<u8> with vec\!\[0\] \(x \+ 1\)";
+        assert_eq!(literal(name), expected);
+    }
+
+    #[test]
+    fn what_cannot_be_built_counts_for_nothing_and_95_in_a_hundred_are_enough() {
+        let outcome = |name: usize, summary: &str| {
+            format!(r#"{{"scenario": {{"Mutant": {{"name": "m{name}"}}}}, "summary": "{summary}"}}"#)
+        };
+        let text = |missed: usize| {
+            let mut outcomes = vec![r#"{"scenario": "Baseline", "summary": "Success"}"#.to_owned()];
+            outcomes.extend((0..19 - missed).map(|index| outcome(index, "CaughtMutant")));
+            outcomes.extend((0..missed).map(|index| outcome(index, "MissedMutant")));
+            outcomes.extend([outcome(100, "Timeout"), outcome(101, "Unviable")]);
+            format!(r#"{{"outcomes": [{}]}}"#, outcomes.join(", "))
+        };
+        let verdict = Verdict::of(&text(1)).unwrap();
+        assert_eq!((verdict.viable(), verdict.judged(), verdict.is_enough()), (20, 21, true));
+        assert!(!Verdict::of(&text(2)).unwrap().is_enough());
+        assert_eq!(
+            verdict.to_string(),
+            "stopped after their time: m100\nmissed: m0\n19 of 20 caught (1 of them stopped after their time), \
+             1 missed; 1 could not be built"
+        );
+    }
+
+    #[test]
+    fn only_the_two_packages_are_changed() {
+        assert_eq!(chosen(&[]).unwrap(), PACKAGES);
+        let error = chosen(&["stepscope-wasm".to_owned()]).unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "stepscope-wasm is not changed here; give stepscope-peripheral or stepscope-motion, or none for both"
+        );
+    }
+}

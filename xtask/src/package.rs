@@ -1,0 +1,122 @@
+//! The packages as others would get them: the library crates, packed and built from what was packed; and the npm package,
+//! packed, installed, and used by a plain Node program. Nothing is published.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, ensure};
+use serde_json::{Value, json};
+use tokio::process::Command;
+
+use crate::{apt, page, root, run, toolchain};
+
+/// What others may use, each after what it needs.
+const LIBRARIES: [&str; 7] = ["registers", "peripheral", "motion", "scenario", "sim", "inspect", "core"];
+/// What the npm package has beside what wasm-pack lists: whose types its own are, and under which terms it comes.
+const BESIDE: [&str; 4] = ["stepscope_wasm_bg.wasm.d.ts", "README.md", "LICENSE-MIT", "LICENSE-APACHE"];
+/// The oldest Node that the test's program is written for.
+const NODE: &str = ">=20.6";
+
+/// Packs, builds and uses all of them.
+pub(crate) async fn test() -> Result<()> {
+    crates().await?;
+    npm().await
+}
+
+/// Packs the library crates and builds each from its package, with the packages of the others.
+async fn crates() -> Result<()> {
+    let mut command = toolchain::cargo();
+    // Packages are made of work in progress, too.
+    command.args(["package", "--locked", "--allow-dirty"]);
+    for library in LIBRARIES {
+        command.args(["--package", &format!("stepscope-{library}")]);
+    }
+    run::to_end(command, run::LIMIT).await
+}
+
+/// Packs the npm package, installs it where nothing else is, and runs a program that uses it.
+async fn npm() -> Result<()> {
+    page::built().await?;
+    let npm = program("npm").await?;
+    let folder = root().join("target").join("npm");
+    if folder.exists() {
+        fs::remove_dir_all(&folder).with_context(|| format!("{} can't be cleared", folder.display()))?;
+    }
+    let user = folder.join("user");
+    fs::create_dir_all(&user).with_context(|| format!("{} can't be made", user.display()))?;
+
+    let mut pack = Command::new(&npm);
+    pack.current_dir(root().join("web").join("pkg")).args(["pack", "--pack-destination"]).arg(&folder);
+    run::to_end(pack, run::LIMIT).await?;
+    let package = packed(&folder)?;
+
+    let mut install = Command::new(&npm);
+    install.args(["install", "--offline", "--no-audit", "--no-fund", "--prefix"]).arg(&user).arg(&package);
+    run::to_end(install, run::LIMIT).await?;
+
+    let tests = root().join("tests");
+    let script = user.join("preset.mjs");
+    fs::copy(tests.join("npm").join("preset.mjs"), &script).context("the test's program can't be copied")?;
+    let mut node = Command::new(program("node").await?);
+    node.arg(&script).arg(tests.join("golden"));
+    run::to_end(node, run::LIMIT).await.with_context(|| format!("the program needs Node {NODE}"))
+}
+
+/// The one package in a folder.
+fn packed(folder: &Path) -> Result<PathBuf> {
+    let files = fs::read_dir(folder).with_context(|| format!("{} can't be read", folder.display()))?;
+    let mut packages = files.filter_map(|entry| entry.ok().map(|entry| entry.path()));
+    packages.find(|path| path.extension().is_some_and(|end| end == "tgz")).context("npm packed nothing")
+}
+
+/// Node's programs, installed by the system's packages if they are missing.
+async fn program(name: &str) -> Result<PathBuf> {
+    let remedy =
+        || format!("the package's test needs {name}: install Node.js with npm so that it is on PATH");
+    if which::which(name).is_err() {
+        apt::install(&["nodejs", "npm"]).await.with_context(remedy)?;
+    }
+    which::which(name).with_context(remedy)
+}
+
+/// Adds to the npm package in `folder` what wasm-pack does not know of.
+pub(crate) fn complete(folder: &Path) -> Result<()> {
+    let file = folder.join("package.json");
+    let text = fs::read_to_string(&file).with_context(|| format!("{} can't be read", file.display()))?;
+    for name in BESIDE {
+        ensure!(folder.join(name).is_file(), "{name} is not in {}", folder.display());
+    }
+    fs::write(&file, completed(&text)?).with_context(|| format!("{} can't be written", file.display()))
+}
+
+/// The text of package.json, with all that is to be packed and the Node that it is tested with.
+fn completed(text: &str) -> Result<String> {
+    let mut package: Value = serde_json::from_str(text).context("wasm-pack's package.json is no JSON")?;
+    let files = package.get_mut("files").and_then(Value::as_array_mut);
+    let files = files.context("wasm-pack's package.json lists no files")?;
+    for name in BESIDE {
+        if !files.iter().any(|file| file == name) {
+            files.push(json!(name));
+        }
+    }
+    let fields = package.as_object_mut().context("wasm-pack's package.json is no object")?;
+    fields.insert("engines".to_owned(), json!({ "node": NODE }));
+    Ok(serde_json::to_string_pretty(&package)? + "\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_wasm_pack_leaves_out_is_added_once() {
+        let once = completed(r#"{ "name": "a", "files": ["a.js", "README.md"] }"#).unwrap();
+        let package: Value = serde_json::from_str(&once).unwrap();
+        let expected = ["a.js", "README.md", "stepscope_wasm_bg.wasm.d.ts", "LICENSE-MIT", "LICENSE-APACHE"];
+        assert_eq!(package["files"], json!(expected));
+        assert_eq!(package["engines"]["node"], NODE);
+        assert_eq!(completed(&once).unwrap(), once);
+        let error = completed(r#"{ "name": "a" }"#).unwrap_err().to_string();
+        assert_eq!(error, "wasm-pack's package.json lists no files");
+    }
+}

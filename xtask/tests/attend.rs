@@ -1,0 +1,37 @@
+//! `cargo xtask attend` ends what it started with whoever holds its input.
+#![cfg(unix)]
+#![allow(clippy::expect_used, reason = "what is missing fails the test")]
+
+use std::{
+    io::{BufRead, BufReader},
+    path::PathBuf,
+    process::{Child, Command, Stdio},
+};
+
+/// Attends a shell with this script.
+fn attend(script: &str) -> Child {
+    let mut attend = Command::new(env!("CARGO_BIN_EXE_xtask"));
+    attend.args(["attend", "--", "sh", "-c", script]).stdin(Stdio::piped()).stdout(Stdio::piped());
+    attend.stderr(Stdio::null()).spawn().expect("it starts")
+}
+
+#[test]
+fn the_end_of_input_ends_the_program_what_it_started_and_its_folder() {
+    let mut attended = attend("echo \"$TMPDIR\"; touch \"$TMPDIR/left\"; (sleep 60; echo alive) & wait");
+    let mut lines = BufReader::new(attended.stdout.take().expect("a pipe")).lines().map_while(Result::ok);
+    let folder = PathBuf::from(lines.next().expect("the folder's name"));
+    assert!(folder.is_dir());
+    drop(attended.stdin.take());
+    assert!(attended.wait().expect("it ends").success());
+    // The output ends when nobody holds it any more.
+    assert_eq!(lines.next(), None);
+    assert!(!folder.exists());
+}
+
+#[test]
+fn a_program_that_ends_by_itself_is_not_waited_for_and_its_failure_is_told() {
+    for (script, well) in [("exit 0", true), ("exit 3", false)] {
+        let mut attended = attend(script);
+        assert_eq!(attended.wait().expect("it ends").success(), well, "{script}");
+    }
+}
