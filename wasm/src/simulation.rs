@@ -6,7 +6,8 @@ use serde::Serialize;
 use std::{mem::take, rc::Rc};
 use stepscope_core::{
     inspect::{
-        changes::Changes, packet_table::Filter, timing::TimingCheck, trace_diff::TraceDiff, watched::Watched,
+        changes::Changes, drivers, packet_table::Filter, timing::TimingCheck, trace_diff::TraceDiff,
+        watched::Watched,
     },
     peripheral::{
         config::Config,
@@ -19,6 +20,9 @@ use wasm_bindgen::prelude::*;
 
 /// Most records that a page keeps of all controllers together; 16 bytes each.
 const MAX_RECORDS: u64 = 40_000_000;
+
+/// Violations of the driver's timing that the page gets in full.
+const MAX_KEPT: usize = 1000;
 
 /// One scenario's run.
 #[wasm_bindgen]
@@ -128,7 +132,7 @@ impl Simulation {
         let recording = |config: &Config| ControllerRecording {
             recording: Recording::default(),
             changes: Changes::default(),
-            timing: crate::timing::check(scenario),
+            timing: drivers::check(scenario, MAX_KEPT),
             steps: vec![None; usize::from(config.channels())],
         };
         Self {

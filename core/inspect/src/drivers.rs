@@ -5,7 +5,8 @@
 //! too, so that a user sees it beside the figures. A wake-up from a sleep mode is not one from EN:
 //! who ties SLEEP to EN gives rules of his own.
 
-use stepscope_scenario::{DriverModel, DriverTiming, TimingRules};
+use crate::timing::TimingCheck;
+use stepscope_scenario::{DriverModel, DriverTiming, Scenario, TimingRules};
 
 /// A driver's figures, and where they come from.
 #[derive(Clone, Debug, PartialEq)]
@@ -138,6 +139,13 @@ pub const fn sheet(model: DriverModel) -> &'static Sheet {
         DriverModel::Tmc262 => &TMC262,
         DriverModel::Tb6600Class => &TB6600_CLASS,
     }
+}
+
+/// The check of a run that a scenario asks for, if it names a driver or rules; it lists `most` violations in full.
+#[must_use]
+pub fn check(scenario: &Scenario, most: usize) -> Option<TimingCheck> {
+    let rules = scenario.driver_timing.as_ref().map(rules)?;
+    Some(TimingCheck::new(&rules, scenario.clock_hz, most))
 }
 
 /// What a scenario's driver asks for.

@@ -16,7 +16,7 @@
 mod curve_metrics;
 mod pulse_errors;
 
-pub use curve_metrics::CurveMetrics;
+pub use curve_metrics::{CurveMetrics, POINTS};
 pub use pulse_errors::PulseErrors;
 
 use crate::{actual_motion::Pulses, sine_polyline::differences};
@@ -31,9 +31,6 @@ use stepscope_motion::{
     sine_segments,
 };
 use stepscope_peripheral::trace::Step;
-
-/// Points at which curves are sampled: the document's 512 of a quarter, for a whole run.
-pub const POINTS: u32 = 2048;
 
 /// Most steps of a run that is measured: all of them are kept, those due beside those made, some 82 bytes each.
 pub const MAX_STEPS: u64 = 20_000_000;

@@ -40,6 +40,8 @@ struct Readme;
 
 pub mod problem;
 
+pub mod limits;
+
 mod parameters;
 
 pub mod mechanics;

@@ -3,6 +3,7 @@
 //! A number is judged where it stands, with the path of its field; what only follows from several
 //! (a top speed, a table's length) is judged when the curve is made.
 
+mod budget;
 mod motor;
 mod points;
 mod staircase;
@@ -13,6 +14,7 @@ use crate::{
     acceleration_table::AccelerationTable,
     constant_velocity::{Constant, Dwell},
     jerk_limited::{JerkLimited, Limits},
+    limits,
     quantities::Quantities,
     sine::Sine,
     sine_segments::SineSegments,
@@ -24,33 +26,11 @@ use crate::{
     problem::{Cause, Problem, ValueError},
 };
 use alloc::{format, string::String, vec::Vec};
+use budget::{Budget, MAX_SEGMENTS, MAX_TABLE_ROWS, hold_speed};
 use stepscope_peripheral::signal::MAX_CHANNELS;
 
-/// Most moves of an axis.
-const MAX_MOVES: usize = 64;
-/// Most rows that all acceleration tables of a scenario may have together.
-const MAX_TABLE_ROWS: u64 = 1_000_000;
-/// Most segments that the quarters of all sines of a scenario may have together.
-const MAX_SEGMENTS: usize = 65_536;
-/// Most slices that all sliced cosines of a scenario may have together.
-const MAX_SLICES: u64 = 100_000;
 /// Longest time of an axis in s.
 const MAX_DURATION_S: f64 = 1e6;
-/// Most periods of a sine.
-const MAX_PERIODS: f64 = 1e6;
-
-/// What the axes of a scenario may still ask of memory and work.
-struct Left {
-    table_rows: u64,
-    segments: usize,
-    slices: u64,
-}
-
-impl Default for Left {
-    fn default() -> Self {
-        Self { table_rows: MAX_TABLE_ROWS, segments: MAX_SEGMENTS, slices: MAX_SLICES }
-    }
-}
 
 /// Plans several lists of axes, one for each controller, each with its path.
 ///
@@ -62,12 +42,12 @@ impl Default for Left {
 pub fn plan_lists<'a>(
     lists: impl IntoIterator<Item = (String, &'a [Axis])>,
 ) -> Result<Vec<Vec<AxisPlan>>, Vec<Problem>> {
-    let (mut plans, mut problems, mut left) = (Vec::new(), Vec::new(), Left::default());
+    let (mut plans, mut problems, mut budget) = (Vec::new(), Vec::new(), Budget::default());
     for (path, axes) in lists {
         let mut list = Vec::new();
         // More axes than that are refused by their number.
         for (index, axis) in axes.iter().take(MAX_CHANNELS).enumerate() {
-            match plan_within(axis, &format!("{path}[{index}]"), &mut left) {
+            match plan_within(axis, &format!("{path}[{index}]"), &mut budget) {
                 Ok(plan) => list.push(plan),
                 Err(found) => problems.extend(found),
             }
@@ -85,81 +65,71 @@ pub fn plan_lists<'a>(
 /// # Errors
 /// Every problem of the axis, each with its path.
 pub fn plan_axis(axis: &Axis, path: &str) -> Result<AxisPlan, Vec<Problem>> {
-    plan_within(axis, path, &mut Left::default())
+    plan_within(axis, path, &mut Budget::default())
 }
 
-fn plan_within(axis: &Axis, path: &str, left: &mut Left) -> Result<AxisPlan, Vec<Problem>> {
-    let mut quantities = Quantities::new(&axis.mechanics, &format!("{path}.mechanics"));
-    motor::judge(&mut quantities, axis, path);
-    let moves_path = format!("{path}.moves");
-    let given = axis.moves.len();
-    if !(1..=MAX_MOVES).contains(&given) {
-        let cause = ValueError::Length { given, least: 1, most: MAX_MOVES, of: "moves" };
-        quantities.refuse(moves_path.as_str(), cause);
-    }
-    let mut profiles = Vec::new();
+fn plan_within(axis: &Axis, path: &str, budget: &mut Budget) -> Result<AxisPlan, Vec<Problem>> {
+    let mut quantities = Quantities::new(&axis.mechanics, path);
+    motor::judge(&mut quantities, axis);
+    quantities.validator.length("moves", axis.moves.len(), limits::MOVES, "moves");
     // Past the most moves none is planned: the list's length is refused already.
-    for (index, each) in axis.moves.iter().take(MAX_MOVES).enumerate() {
-        let at = format!("{moves_path}[{index}]");
-        if let Some(profile) = plan_move(&mut quantities, each, &at, left) {
-            profiles.push(profile);
-        }
-    }
+    let moves = axis.moves.iter().take(*limits::MOVES.end()).enumerate();
+    let profiles = quantities.at("moves", |quantities| {
+        let plan = |(index, each)| quantities.at_entry(index, |here| plan_move(here, each, budget));
+        moves.filter_map(plan).collect()
+    });
     let plan = AxisPlan::of(profiles);
     if plan.duration_s() > MAX_DURATION_S {
         let cause = ValueError::TooMuch { given: plan.duration_s(), most: MAX_DURATION_S, of: "seconds" };
-        quantities.refuse(moves_path, cause);
+        quantities.refuse("moves", cause);
     }
     quantities.validator.end(plan)
 }
 
-fn plan_move(quantities: &mut Quantities<'_>, given: &Move, path: &str, left: &mut Left) -> Option<Profile> {
+fn plan_move(quantities: &mut Quantities<'_>, given: &Move, budget: &mut Budget) -> Option<Profile> {
     match given {
-        Move::Trapezoid(given) => plan_trapezoid(quantities, given, &format!("{path}.trapezoid"), left),
-        Move::Staircase(given) => staircase::plan(quantities, given, &format!("{path}.staircase"), left),
-        Move::Cosine(given) => timed::plan_cosine(quantities, given, &format!("{path}.cosine"), left),
-        Move::Ramps(given) => timed::plan_ramps(quantities, given, &format!("{path}.ramps")),
-        Move::SineSegments(given) => plan_sine(quantities, given, &format!("{path}.sine_segments"), left),
-        Move::Sine(given) => plan_exact_sine(quantities, given, &format!("{path}.sine")),
-        Move::JerkLimited(given) => plan_jerk_limited(quantities, given, &format!("{path}.jerk_limited")),
-        Move::Points(given) => points::plan(quantities, given, &format!("{path}.points")),
-        Move::Constant(given) => {
-            let steps = quantities.distance(format!("{path}.constant.distance"), &given.distance);
-            let speed = quantities.speed(format!("{path}.constant.speed"), &given.speed);
+        Move::Trapezoid(given) => quantities.at("trapezoid", |here| plan_trapezoid(here, given, budget)),
+        Move::Staircase(given) => quantities.at("staircase", |here| staircase::plan(here, given, budget)),
+        Move::Cosine(given) => quantities.at("cosine", |here| timed::plan_cosine(here, given, budget)),
+        Move::Ramps(given) => quantities.at("ramps", |here| timed::plan_ramps(here, given)),
+        Move::SineSegments(given) => quantities.at("sine_segments", |here| plan_sine(here, given, budget)),
+        Move::Sine(given) => quantities.at("sine", |here| plan_exact_sine(here, given)),
+        Move::JerkLimited(given) => quantities.at("jerk_limited", |here| plan_jerk_limited(here, given)),
+        Move::Points(given) => quantities.at("points", |here| points::plan(here, given)),
+        Move::Constant(given) => quantities.at("constant", |here| {
+            let steps = here.distance("distance", &given.distance);
+            let speed = here.speed("speed", &given.speed);
             Some(Profile::Constant(Constant::new(steps?, speed?)))
-        }
-        Move::Dwell(given) => {
-            let duration_s = quantities.pause(format!("{path}.dwell.duration_s"), given.duration_s);
+        }),
+        Move::Dwell(given) => quantities.at("dwell", |here| {
+            let duration_s = here.pause("duration_s", given.duration_s);
             Some(Profile::Dwell(Dwell::new(duration_s?)))
-        }
+        }),
     }
 }
 
 fn plan_trapezoid(
     quantities: &mut Quantities<'_>,
     given: &moves::Trapezoid,
-    path: &str,
-    left: &mut Left,
+    budget: &mut Budget,
 ) -> Option<Profile> {
     // The table's first rate has to round to a pulse a second; the exact curve may start from rest.
-    let least_start = match given.method {
-        TrapezoidMethod::Table => 0.5,
-        TrapezoidMethod::Exact => 0.0,
+    let starts = match given.method {
+        TrapezoidMethod::Table => limits::TABLE_RATE_STEPS_S,
+        TrapezoidMethod::Exact => 0.0..=MAX_SPEED,
     };
-    let steps = quantities.distance(format!("{path}.distance"), &given.distance);
-    let start = quantities.speed_from(format!("{path}.start_speed"), &given.start_speed, least_start);
-    let top = quantities.speed(format!("{path}.top_speed"), &given.top_speed);
-    let acceleration = quantities.acceleration(format!("{path}.acceleration"), &given.acceleration);
+    let steps = quantities.distance("distance", &given.distance);
+    let start = quantities.speed_within("start_speed", &given.start_speed, starts);
+    let top = quantities.speed("top_speed", &given.top_speed);
+    let acceleration = quantities.acceleration("acceleration", &given.acceleration);
     let timer_hz = match given.method {
-        TrapezoidMethod::Table => {
-            quantities.range(format!("{path}.timer_hz"), given.timer_hz.into(), 1.0, u32::MAX.into(), "Hz")
-        }
+        TrapezoidMethod::Table => quantities.range("timer_hz", given.timer_hz.into(), limits::TIMER_HZ, "Hz"),
         TrapezoidMethod::Exact => Some(0.0),
     };
     if let (Some(start), Some(top)) = (start, top)
         && top < start
     {
-        quantities.refuse(format!("{path}.top_speed"), Cause::TopBelowStart { top, start });
+        quantities.refuse("top_speed", Cause::TopBelowStart { top, start });
         return None;
     }
     let (steps, start, top, acceleration) = (steps?, start?, top?, acceleration?);
@@ -168,20 +138,20 @@ fn plan_trapezoid(
         return Some(Profile::Trapezoid(Trapezoid::new(steps, start, top, acceleration)));
     }
     let table = AccelerationTable::new(start, top, acceleration, given.timer_hz);
-    match TrapezoidTable::new(steps, table, left.table_rows) {
+    match TrapezoidTable::new(steps, table, budget.table_rows) {
         Ok(table) => {
-            left.table_rows -= table.kept_rows();
+            budget.table_rows -= table.kept_rows();
             Some(Profile::TrapezoidTable(table))
         }
         Err(NoTable::Rows { needed }) => {
-            let (given, most) = ((MAX_TABLE_ROWS - left.table_rows).saturating_add(needed), MAX_TABLE_ROWS);
+            let (given, most) = ((MAX_TABLE_ROWS - budget.table_rows).saturating_add(needed), MAX_TABLE_ROWS);
             let cause = ValueError::TooMuch { given: given as f64, most: most as f64, of: "table rows" };
-            quantities.refuse(path, cause);
+            quantities.refuse("", cause);
             None
         }
         Err(NoTable::Timer { rate }) => {
             let cause = Cause::TimerTooSlow { rate, timer_hz: given.timer_hz };
-            quantities.refuse(format!("{path}.timer_hz"), cause);
+            quantities.refuse("timer_hz", cause);
             None
         }
     }
@@ -190,55 +160,41 @@ fn plan_trapezoid(
 fn plan_sine(
     quantities: &mut Quantities<'_>,
     given: &moves::SineSegments,
-    path: &str,
-    left: &mut Left,
+    budget: &mut Budget,
 ) -> Option<Profile> {
-    let amplitude = quantities.distance(format!("{path}.amplitude"), &given.amplitude);
-    let period_s = quantities.duration(format!("{path}.period_s"), given.period_s);
-    let periods = quantities.range(format!("{path}.periods"), given.periods.into(), 1.0, MAX_PERIODS, "");
-    let deviation = quantities.range(format!("{path}.max_deviation"), given.max_deviation, 0.0, 1.0, "");
+    let amplitude = quantities.distance("amplitude", &given.amplitude);
+    let period_s = quantities.duration("period_s", given.period_s);
+    let periods = quantities.range("periods", given.periods.into(), limits::PERIODS, "");
+    let deviation = quantities.range("max_deviation", given.max_deviation, limits::MAX_DEVIATION, "");
     let (amplitude, period_s, deviation) = (amplitude?, period_s?, deviation?);
     periods?;
     let curve = SineSegments::new(amplitude, period_s, given.periods, deviation);
     let segments = curve.segments().len();
-    let Some(still_left) = left.segments.checked_sub(segments) else {
-        let (given, most) = (MAX_SEGMENTS - left.segments + segments, MAX_SEGMENTS);
+    let Some(still_left) = budget.segments.checked_sub(segments) else {
+        let (given, most) = (MAX_SEGMENTS - budget.segments + segments, MAX_SEGMENTS);
         let cause = ValueError::TooMuch { given: given as f64, most: most as f64, of: "sine segments" };
-        quantities.refuse(path, cause);
+        quantities.refuse("", cause);
         return None;
     };
-    left.segments = still_left;
-    hold_speed(quantities, format!("{path}.period_s"), curve.peaks().speed)?;
+    budget.segments = still_left;
+    hold_speed(quantities, "period_s", curve.peaks().speed)?;
     Some(Profile::SineSegments(curve))
 }
 
-fn plan_exact_sine(quantities: &mut Quantities<'_>, given: &moves::Sine, path: &str) -> Option<Profile> {
-    let amplitude = quantities.distance(format!("{path}.amplitude"), &given.amplitude);
-    let period_s = quantities.duration(format!("{path}.period_s"), given.period_s);
-    quantities.range(format!("{path}.periods"), given.periods.into(), 1.0, MAX_PERIODS, "")?;
+fn plan_exact_sine(quantities: &mut Quantities<'_>, given: &moves::Sine) -> Option<Profile> {
+    let amplitude = quantities.distance("amplitude", &given.amplitude);
+    let period_s = quantities.duration("period_s", given.period_s);
+    quantities.range("periods", given.periods.into(), limits::PERIODS, "")?;
     let curve = Sine::new(amplitude?, period_s?, given.periods);
-    hold_speed(quantities, format!("{path}.period_s"), curve.peaks().speed)?;
+    hold_speed(quantities, "period_s", curve.peaks().speed)?;
     Some(Profile::Sine(curve))
 }
 
-fn plan_jerk_limited(
-    quantities: &mut Quantities<'_>,
-    given: &moves::JerkLimited,
-    path: &str,
-) -> Option<Profile> {
-    let steps = quantities.distance(format!("{path}.distance"), &given.distance);
-    let speed = quantities.speed(format!("{path}.max_speed"), &given.max_speed);
-    let acceleration = quantities.acceleration(format!("{path}.max_acceleration"), &given.max_acceleration);
-    let jerk = quantities.jerk(format!("{path}.max_jerk"), &given.max_jerk);
+fn plan_jerk_limited(quantities: &mut Quantities<'_>, given: &moves::JerkLimited) -> Option<Profile> {
+    let steps = quantities.distance("distance", &given.distance);
+    let speed = quantities.speed("max_speed", &given.max_speed);
+    let acceleration = quantities.acceleration("max_acceleration", &given.max_acceleration);
+    let jerk = quantities.jerk("max_jerk", &given.max_jerk);
     let limits = Limits { speed: speed?, acceleration: acceleration?, jerk: jerk? };
     Some(Profile::JerkLimited(JerkLimited::new(steps?, limits)))
-}
-
-/// Refuses a speed that no one gave but that follows from the numbers.
-fn hold_speed(quantities: &mut Quantities<'_>, path: String, rate: f64) -> Option<()> {
-    if rate <= MAX_SPEED {
-        return Some(());
-    }
-    quantities.refuse(path, Cause::TooFast { rate, most: MAX_SPEED });
-    None
 }

@@ -13,7 +13,10 @@
 
 use alloc::string::String;
 use alloc::vec::Vec;
-use core::fmt;
+use core::{
+    fmt::{self, Write as _},
+    ops::RangeInclusive,
+};
 use stepscope_peripheral::segment::{FRACTION_BITS, LAST_CYCLE, PulseTimes};
 
 /// Most problems of one scenario that are listed.
@@ -54,29 +57,93 @@ impl<C: fmt::Display> fmt::Display for Problem<C> {
 
 impl<C: fmt::Debug + fmt::Display> core::error::Error for Problem<C> {}
 
-/// Collects problems, [`MAX_PROBLEMS`] at most.
+/// Collects problems, [`MAX_PROBLEMS`] at most, and knows the way to the value that is being judged: a path is made
+/// where its problem is found, and never rewritten.
+///
+/// A `step` is what stands one step further in: the name of a field or several with dots between them; empty is the
+/// value itself.
 #[derive(Clone, Debug)]
 pub struct Validator<C = Cause> {
+    path: String,
     problems: Vec<Problem<C>>,
 }
 
 impl<C> Default for Validator<C> {
     fn default() -> Self {
-        Self { problems: Vec::new() }
+        Self::within(String::new())
+    }
+}
+
+impl<C> Validator<C> {
+    /// A collector for a part that stands at `path` in the whole.
+    #[must_use]
+    pub fn within(path: impl Into<String>) -> Self {
+        Self { path: path.into(), problems: Vec::new() }
+    }
+
+    /// Goes a step further in; gives what [`Self::leave`] takes to come back.
+    #[must_use = "leave takes it"]
+    pub fn enter(&mut self, step: &str) -> usize {
+        let outside = self.path.len();
+        if outside > 0 && !step.is_empty() {
+            self.path.push('.');
+        }
+        self.path.push_str(step);
+        outside
+    }
+
+    /// Goes into an entry of a list.
+    #[must_use = "leave takes it"]
+    pub fn enter_entry(&mut self, index: usize) -> usize {
+        let outside = self.path.len();
+        // Writing to a text cannot fail.
+        let _ = write!(self.path, "[{index}]");
+        outside
+    }
+
+    /// Comes back to where an `enter` stood.
+    pub fn leave(&mut self, outside: usize) {
+        self.path.truncate(outside);
+    }
+
+    /// Does something one step further in, and comes back.
+    pub fn at<T>(&mut self, step: &str, what: impl FnOnce(&mut Self) -> T) -> T {
+        let outside = self.enter(step);
+        let made = what(self);
+        self.leave(outside);
+        made
+    }
+
+    /// Does something in an entry of a list, and comes back.
+    pub fn at_entry<T>(&mut self, index: usize, what: impl FnOnce(&mut Self) -> T) -> T {
+        let outside = self.enter_entry(index);
+        let made = what(self);
+        self.leave(outside);
+        made
+    }
+
+    /// Whether something is wrong a `step` further in already.
+    #[must_use]
+    pub fn has(&mut self, step: &str) -> bool {
+        self.at(step, |here| here.problems.iter().any(|problem| problem.path == here.path))
     }
 }
 
 impl<C: From<ValueError>> Validator<C> {
-    /// Adds a problem.
-    pub fn add(&mut self, path: impl Into<String>, cause: impl Into<C>) {
+    /// Adds a problem of what stands a `step` further in.
+    pub fn add(&mut self, step: &str, cause: impl Into<C>) {
         if self.problems.len() < MAX_PROBLEMS {
-            self.problems.push(Problem::new(path, cause));
+            let outside = self.enter(step);
+            self.problems.push(Problem::new(self.path.as_str(), cause));
+            self.leave(outside);
         }
     }
 
-    /// Adds problems of a part, which may be of a narrower kind.
+    /// Adds problems whose paths are whole already, such as those of a plan; they may be of a narrower kind.
     pub fn extend<D: Into<C>>(&mut self, problems: impl IntoIterator<Item = Problem<D>>) {
-        problems.into_iter().for_each(|Problem { path, cause }| self.add(path, cause));
+        let room = MAX_PROBLEMS.saturating_sub(self.problems.len());
+        let problems = problems.into_iter().take(room);
+        self.problems.extend(problems.map(|Problem { path, cause }| Problem { path, cause: cause.into() }));
     }
 
     /// What a part gives, or its problems.
@@ -87,39 +154,40 @@ impl<C: From<ValueError>> Validator<C> {
     /// A number, if it lies in its range.
     pub fn range(
         &mut self,
-        path: impl Into<String>,
+        step: &str,
         given: f64,
-        least: f64,
-        most: f64,
+        range: RangeInclusive<f64>,
         unit: &'static str,
     ) -> Option<f64> {
-        if (least..=most).contains(&given) {
+        if range.contains(&given) {
             return Some(given);
         }
-        self.add(path, ValueError::Range { given, least, most, unit });
+        let (least, most) = range.into_inner();
+        self.add(step, ValueError::Range { given, least, most, unit });
         None
     }
 
     /// Judges a whole number; it is told as f64, which is exact for all that is allowed.
-    pub fn whole(&mut self, path: &str, given: impl Into<u64>, least: u64, most: u64, unit: &'static str) {
+    pub fn whole(
+        &mut self,
+        step: &str,
+        given: impl Into<u64>,
+        range: RangeInclusive<u64>,
+        unit: &'static str,
+    ) {
         let given = given.into();
-        if !(least..=most).contains(&given) {
-            let (given, least, most) = (given as f64, least as f64, most as f64);
-            self.add(path, ValueError::Range { given, least, most, unit });
+        if !range.contains(&given) {
+            let (given, least, most) = (given as f64, *range.start() as f64, *range.end() as f64);
+            self.add(step, ValueError::Range { given, least, most, unit });
         }
     }
 
     /// Judges how many `of` something there are.
-    pub fn length(&mut self, path: &str, given: usize, least: usize, most: usize, of: &'static str) {
-        if !(least..=most).contains(&given) {
-            self.add(path, ValueError::Length { given, least, most, of });
+    pub fn length(&mut self, step: &str, given: usize, range: RangeInclusive<usize>, of: &'static str) {
+        if !range.contains(&given) {
+            let (least, most) = range.into_inner();
+            self.add(step, ValueError::Length { given, least, most, of });
         }
-    }
-
-    /// Whether something is wrong at `path` already.
-    #[must_use]
-    pub fn has(&self, path: &str) -> bool {
-        self.problems.iter().any(|problem| problem.path == path)
     }
 
     /// How many problems there are so far.

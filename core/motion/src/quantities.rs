@@ -1,28 +1,14 @@
 //! What a scenario asks of a motion, turned into steps: every number in its range, every quantity
 //! in a unit that the axis has, and every problem kept with its path.
 
-use crate::MAX_SPEED;
 use crate::{
+    limits,
     mechanics::{Acceleration, Distance, Jerk, Mechanics, NoSuchUnit, Speed},
     problem::{Cause, Validator},
 };
-use alloc::{format, string::String};
+use core::ops::RangeInclusive;
 
-/// Longest way of a move in steps.
-const MAX_STEPS: f64 = 1e9;
-/// Slowest speed in steps/s, where a speed must not be 0.
-const MIN_SPEED: f64 = 1e-6;
-/// Accelerations in steps/s^2.
-const MIN_ACCELERATION: f64 = 1e-6;
-const MAX_ACCELERATION: f64 = 1e13;
-/// Jerks in steps/s^3.
-const MIN_JERK: f64 = 1e-6;
-const MAX_JERK: f64 = 1e19;
-/// Times of a move in s.
-const MIN_DURATION_S: f64 = 1e-6;
-const MAX_DURATION_S: f64 = 86_400.0;
-
-/// Reads the numbers of one axis and keeps the problems that it meets.
+/// Reads the numbers of one axis and keeps the problems that it meets. A `step` is as [`Validator`] has it.
 pub(super) struct Quantities<'s> {
     mechanics: &'s Mechanics,
     /// Without good mechanics only quantities in steps can be judged.
@@ -31,10 +17,16 @@ pub(super) struct Quantities<'s> {
 }
 
 impl<'s> Quantities<'s> {
-    /// Checks the mechanics at `path`, which the quantities of the axis need.
+    /// For the axis at `path`; checks its mechanics, which its quantities need.
     pub(super) fn new(mechanics: &'s Mechanics, path: &str) -> Self {
-        let mut quantities = Self { mechanics, mechanics_hold: true, validator: Validator::default() };
-        let (kind, shaft, length) = match mechanics {
+        let mut quantities = Self { mechanics, mechanics_hold: true, validator: Validator::within(path) };
+        quantities.at("mechanics", Self::judge_mechanics);
+        quantities.mechanics_hold = quantities.validator.is_ok();
+        quantities
+    }
+
+    fn judge_mechanics(&mut self) {
+        let (kind, shaft, length) = match self.mechanics {
             Mechanics::Rotary(m) => ("rotary", Some((m.full_step_deg, m.microsteps)), None),
             Mechanics::Wheel(m) => {
                 ("wheel", Some((m.full_step_deg, m.microsteps)), Some(("radius_mm", m.radius_mm)))
@@ -44,129 +36,148 @@ impl<'s> Quantities<'s> {
             }
             Mechanics::Direct(m) => ("direct", None, Some(("step_mm", m.step_mm))),
         };
-        let at = |field: &str| format!("{path}.{kind}.{field}");
-        if let Some((full_step_deg, microsteps)) = shaft {
-            quantities.range(at("full_step_deg"), full_step_deg, 0.001, 90.0, "deg");
-            quantities.range(at("microsteps"), microsteps.into(), 1.0, 512.0, "");
-        }
-        if let Some((field, length_mm)) = length {
-            quantities.range(at(field), length_mm, 1e-6, 1e6, "mm");
-        }
-        quantities.mechanics_hold = quantities.validator.is_ok();
-        quantities
+        self.at(kind, |quantities| {
+            if let Some((full_step_deg, microsteps)) = shaft {
+                quantities.range("full_step_deg", full_step_deg, limits::FULL_STEP_DEG, "deg");
+                quantities.range("microsteps", microsteps.into(), limits::MICROSTEPS, "");
+            }
+            if let Some((field, length_mm)) = length {
+                quantities.range(field, length_mm, limits::LENGTH_MM, "mm");
+            }
+        });
+    }
+
+    /// Judges what stands one step further in.
+    pub(super) fn at<T>(&mut self, step: &str, what: impl FnOnce(&mut Self) -> T) -> T {
+        let outside = self.validator.enter(step);
+        let made = what(self);
+        self.validator.leave(outside);
+        made
+    }
+
+    /// Judges an entry of a list.
+    pub(super) fn at_entry<T>(&mut self, index: usize, what: impl FnOnce(&mut Self) -> T) -> T {
+        let outside = self.validator.enter_entry(index);
+        let made = what(self);
+        self.validator.leave(outside);
+        made
     }
 
     /// Keeps a problem.
-    pub(super) fn refuse(&mut self, path: impl Into<String>, cause: impl Into<Cause>) {
-        self.validator.add(path, cause);
+    pub(super) fn refuse(&mut self, step: &str, cause: impl Into<Cause>) {
+        self.validator.add(step, cause);
     }
 
-    /// A number from `least` to `most`; nothing else is one, in particular not not-a-number.
+    /// A number in its range; nothing else is one, in particular not not-a-number.
     pub(super) fn range(
         &mut self,
-        path: impl Into<String>,
+        step: &str,
         given: f64,
-        least: f64,
-        most: f64,
+        range: RangeInclusive<f64>,
         unit: &'static str,
     ) -> Option<f64> {
-        self.validator.range(path, given, least, most, unit)
+        self.validator.range(step, given, range, unit)
     }
 
     /// A time of a move.
-    pub(super) fn duration(&mut self, path: impl Into<String>, given_s: f64) -> Option<f64> {
-        self.range(path, given_s, MIN_DURATION_S, MAX_DURATION_S, "s")
+    pub(super) fn duration(&mut self, step: &str, given_s: f64) -> Option<f64> {
+        self.range(step, given_s, limits::DURATION_S, "s")
     }
 
     /// A time from 0 on.
-    pub(super) fn pause(&mut self, path: impl Into<String>, given_s: f64) -> Option<f64> {
-        self.range(path, given_s, 0.0, MAX_DURATION_S, "s")
+    pub(super) fn pause(&mut self, step: &str, given_s: f64) -> Option<f64> {
+        self.range(step, given_s, limits::PAUSE_S, "s")
     }
 
     /// A way in whole steps, rounded half up, not 0; left negative.
-    pub(super) fn distance(&mut self, path: impl Into<String>, given: &Distance) -> Option<i64> {
-        let path = path.into();
-        let (step, steps) = self.convert(&path, given.value(), given.unit(), given.step(self.mechanics))?;
-        self.in_own_unit(&path, given.value(), step, (-MAX_STEPS, MAX_STEPS), given.unit())?;
+    pub(super) fn distance(&mut self, step: &str, given: &Distance) -> Option<i64> {
+        let sizes = given.step(self.mechanics);
+        let steps = self.convert(step, given.value(), given.unit(), sizes, limits::STEPS)?;
         let whole = super::round_half_up(steps);
         if whole == 0 {
-            self.refuse(path, Cause::NoSteps { steps });
+            self.refuse(step, Cause::NoSteps { steps });
             return None;
         }
         Some(whole)
     }
 
     /// A speed in steps/s above 0.
-    pub(super) fn speed(&mut self, path: impl Into<String>, given: &Speed) -> Option<f64> {
-        self.speed_from(path, given, MIN_SPEED)
+    pub(super) fn speed(&mut self, step: &str, given: &Speed) -> Option<f64> {
+        self.speed_within(step, given, limits::SPEED_STEPS_S)
     }
 
-    /// A speed in steps/s from `least` on.
-    pub(super) fn speed_from(&mut self, path: impl Into<String>, given: &Speed, least: f64) -> Option<f64> {
-        let path = path.into();
-        let (step, speed) = self.convert(&path, given.value(), given.unit(), given.step(self.mechanics))?;
-        self.in_own_unit(&path, given.value(), step, (least, MAX_SPEED), given.unit())?;
-        Some(speed)
+    /// A speed in steps/s, within limits in the same unit.
+    pub(super) fn speed_within(
+        &mut self,
+        step: &str,
+        given: &Speed,
+        range: RangeInclusive<f64>,
+    ) -> Option<f64> {
+        self.convert(step, given.value(), given.unit(), given.step(self.mechanics), range)
     }
 
     /// An acceleration in steps/s^2 above 0.
-    pub(super) fn acceleration(&mut self, path: impl Into<String>, given: &Acceleration) -> Option<f64> {
-        let path = path.into();
-        let (step, acceleration) =
-            self.convert(&path, given.value(), given.unit(), given.step(self.mechanics))?;
-        let limits = (MIN_ACCELERATION, MAX_ACCELERATION);
-        self.in_own_unit(&path, given.value(), step, limits, given.unit())?;
-        Some(acceleration)
+    pub(super) fn acceleration(&mut self, step: &str, given: &Acceleration) -> Option<f64> {
+        let sizes = given.step(self.mechanics);
+        self.convert(step, given.value(), given.unit(), sizes, limits::ACCELERATION_STEPS_S2)
     }
 
     /// A jerk in steps/s^3 above 0.
-    pub(super) fn jerk(&mut self, path: impl Into<String>, given: &Jerk) -> Option<f64> {
-        let path = path.into();
-        let (step, jerk) = self.convert(&path, given.value(), given.unit(), given.step(self.mechanics))?;
-        self.in_own_unit(&path, given.value(), step, (MIN_JERK, MAX_JERK), given.unit())?;
-        Some(jerk)
+    pub(super) fn jerk(&mut self, step: &str, given: &Jerk) -> Option<f64> {
+        self.convert(step, given.value(), given.unit(), given.step(self.mechanics), limits::JERK_STEPS_S3)
     }
 
-    /// A step in the unit of a distance, where the axis has that unit.
-    pub(super) fn step_of(&mut self, path: &str, given: &Distance) -> Option<f64> {
-        self.convert(path, given.value(), given.unit(), given.step(self.mechanics)).map(|(step, _)| step)
+    /// One step in the unit of a distance, where the axis has that unit.
+    pub(super) fn step_of(&mut self, step: &str, given: &Distance) -> Option<f64> {
+        self.size(step, given.value(), given.unit(), given.step(self.mechanics))
     }
 
-    /// A position in steps, not rounded; `step` is one step in its unit.
-    pub(super) fn position(&mut self, path: impl Fn() -> String, given: &Distance, step: f64) -> Option<f64> {
-        if !(-MAX_STEPS * step..=MAX_STEPS * step).contains(&given.value()) {
-            self.in_own_unit(&path(), given.value(), step, (-MAX_STEPS, MAX_STEPS), given.unit())?;
-        }
-        Some(given.value() / step)
+    /// A position in steps, not rounded; `size` is one step in its unit.
+    pub(super) fn position(&mut self, given: &Distance, size: f64) -> Option<f64> {
+        self.in_own_unit("", given.value(), size, limits::STEPS, given.unit())?;
+        Some(given.value() / size)
     }
 
-    /// The size of a step in the quantity's unit, and the quantity in steps.
-    fn convert(
+    /// The size of a step in the quantity's unit.
+    fn size(
         &mut self,
-        path: &str,
+        step: &str,
         given: f64,
         unit: &'static str,
-        step: Result<f64, NoSuchUnit>,
-    ) -> Option<(f64, f64)> {
-        match step {
-            Ok(step) if self.mechanics_hold || unit.starts_with("steps") => Some((step, given / step)),
-            Ok(_) => None,
+        size: Result<f64, NoSuchUnit>,
+    ) -> Option<f64> {
+        match size {
+            Ok(size) => (self.mechanics_hold || unit.starts_with("steps")).then_some(size),
             Err(NoSuchUnit { unit, mechanics }) => {
-                self.refuse(path, Cause::NoSuchUnit { given, unit, mechanics });
+                self.refuse(step, Cause::NoSuchUnit { given, unit, mechanics });
                 None
             }
         }
     }
 
+    /// The quantity in steps, within limits in steps.
+    fn convert(
+        &mut self,
+        step: &str,
+        given: f64,
+        unit: &'static str,
+        size: Result<f64, NoSuchUnit>,
+        range: RangeInclusive<f64>,
+    ) -> Option<f64> {
+        let size = self.size(step, given, unit, size)?;
+        self.in_own_unit(step, given, size, range, unit)?;
+        Some(given / size)
+    }
+
     /// Judges a quantity against limits in steps and tells them in its own unit.
     fn in_own_unit(
         &mut self,
-        path: &str,
+        step: &str,
         given: f64,
-        step: f64,
-        (least, most): (f64, f64),
+        size: f64,
+        range: RangeInclusive<f64>,
         unit: &'static str,
     ) -> Option<f64> {
-        self.range(path, given, least * step, most * step, unit)
+        self.range(step, given, range.start() * size..=range.end() * size, unit)
     }
 }

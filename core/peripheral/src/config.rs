@@ -17,18 +17,43 @@
 
 use crate::{
     segment::PulseTimes,
-    signal::MAX_CHANNELS,
     units::{Cycles, Instant},
 };
 use alloc::vec::Vec;
-use core::fmt;
+use core::{fmt, ops::RangeInclusive};
 
 /// Least cycles of a receiver's bit (A4).
 const MIN_BIT_CYCLES: u64 = 11;
-/// Slowest clock: one that hears 1 baud.
-const MIN_CLOCK_HZ: u64 = 11;
-/// Greatest length in cycles that a time of the bus may have, and fastest clock in Hz.
-const MAX_CYCLES: u64 = 1_000_000_000;
+
+/// The range of each number that [`Config::new`] holds by itself; other rules join several.
+pub mod limits {
+    use crate::signal::MAX_CHANNELS;
+    use core::ops::RangeInclusive;
+
+    /// Greatest length in cycles that a time of the bus may have.
+    const MAX_CYCLES: u64 = 1_000_000_000;
+
+    /// Clock in Hz; the slowest is one that hears 1 baud.
+    pub const CLOCK_HZ: RangeInclusive<u64> = super::MIN_BIT_CYCLES..=1_000_000_000;
+    /// [`Bus::channels`](super::Bus::channels).
+    pub const CHANNELS: RangeInclusive<u64> = 1..=MAX_CHANNELS as u64;
+    /// M.
+    pub const SLOTS: RangeInclusive<u64> = 1..=127;
+    /// Ts.
+    pub const STEP_PERIOD_CYCLES: RangeInclusive<u64> = 2..=MAX_CYCLES;
+    /// W.
+    pub const PULSE_WIDTH_CYCLES: RangeInclusive<u64> = 1..=MAX_CYCLES;
+    /// D.
+    pub const DIR_SETUP_CYCLES: RangeInclusive<u64> = 0..=MAX_CYCLES;
+    /// H.
+    pub const DIR_HOLD_CYCLES: RangeInclusive<u64> = 0..=MAX_CYCLES;
+    /// dp.
+    pub const SETTLE_CYCLES: RangeInclusive<u64> = 0..=MAX_CYCLES;
+    /// Ticks of the queue.
+    pub const QUEUE_DEPTH: RangeInclusive<u64> = 1..=255;
+    /// A controller's own address; 255 is for all.
+    pub const ADDRESS: RangeInclusive<u64> = 0..=254;
+}
 
 /// The tick sequencer and its driver bus (DESIGN A7).
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -309,18 +334,22 @@ impl Config {
         has_ticks: bool,
     ) -> Result<Self, Vec<ConfigProblem>> {
         let mut rules = Rules::default();
-        rules.range(Field::ClockHz, clock_hz, MIN_CLOCK_HZ, MAX_CYCLES, "Hz");
-        rules.range(Field::Bus("channels"), bus.channels, 1, MAX_CHANNELS as u64, "");
-        rules.range(Field::Bus("slots"), bus.slots, 1, 127, "");
-        rules.range(Field::Bus("step_period_cycles"), bus.step_period_cycles, 2, MAX_CYCLES, "cycles");
-        rules.range(Field::Bus("pulse_width_cycles"), bus.pulse_width_cycles, 1, MAX_CYCLES, "cycles");
-        rules.range(Field::Bus("dir_setup_cycles"), bus.dir_setup_cycles, 0, MAX_CYCLES, "cycles");
-        rules.range(Field::Bus("dir_hold_cycles"), bus.dir_hold_cycles, 0, MAX_CYCLES, "cycles");
-        rules.range(Field::Bus("queue_depth"), bus.queue_depth, 1, 255, "ticks");
-        if let Some(address) = line.address {
-            rules.range(Field::Line("address"), address, 0, 254, "");
+        rules.range(Field::ClockHz, clock_hz, limits::CLOCK_HZ, "Hz");
+        rules.range(Field::Bus("channels"), bus.channels, limits::CHANNELS, "");
+        rules.range(Field::Bus("slots"), bus.slots, limits::SLOTS, "");
+        for (name, given, range) in [
+            ("step_period_cycles", bus.step_period_cycles, limits::STEP_PERIOD_CYCLES),
+            ("pulse_width_cycles", bus.pulse_width_cycles, limits::PULSE_WIDTH_CYCLES),
+            ("dir_setup_cycles", bus.dir_setup_cycles, limits::DIR_SETUP_CYCLES),
+            ("dir_hold_cycles", bus.dir_hold_cycles, limits::DIR_HOLD_CYCLES),
+        ] {
+            rules.range(Field::Bus(name), given, range, "cycles");
         }
-        rules.range(Field::Bus("settle_cycles"), bus.settle_cycles, 0, MAX_CYCLES, "cycles");
+        rules.range(Field::Bus("queue_depth"), bus.queue_depth, limits::QUEUE_DEPTH, "ticks");
+        if let Some(address) = line.address {
+            rules.range(Field::Line("address"), address, limits::ADDRESS, "");
+        }
+        rules.range(Field::Bus("settle_cycles"), bus.settle_cycles, limits::SETTLE_CYCLES, "cycles");
         if has_ticks {
             pulses_fit(bus, &mut rules);
         }
@@ -330,8 +359,8 @@ impl Config {
         if !has_ticks {
             // No bit is heard.
         } else if baud == 0 {
-            rules.range(field, baud, 1, most_baud.max(1).into(), "baud");
-        } else if bit_cycles < MIN_BIT_CYCLES && u64::from(clock_hz) >= MIN_CLOCK_HZ {
+            rules.range(field, baud, 1..=most_baud.max(1).into(), "baud");
+        } else if bit_cycles < MIN_BIT_CYCLES && u64::from(clock_hz) >= *limits::CLOCK_HZ.start() {
             rules.add(field, ConfigError::BitTooShort { bit_cycles, baud, clock_hz, most_baud });
         }
         rules.end(Self {
@@ -478,9 +507,10 @@ impl Rules {
         self.broken.push(ConfigProblem { field, error });
     }
 
-    fn range(&mut self, field: Field, given: impl Into<u64>, least: u64, most: u64, unit: &'static str) {
+    fn range(&mut self, field: Field, given: impl Into<u64>, range: RangeInclusive<u64>, unit: &'static str) {
         let given = given.into();
-        if !(least..=most).contains(&given) {
+        if !range.contains(&given) {
+            let (least, most) = range.into_inner();
             self.add(field, ConfigError::Range { given, least, most, unit });
         }
     }

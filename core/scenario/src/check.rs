@@ -1,11 +1,12 @@
-//! Judges a scenario's numbers: ranges, and the rules of DESIGN A4, A7 and A9 that join several.
+//! Judges a scenario: the rules of DESIGN A4, A7 and A9 that join several fields. What one field may be by itself stands
+//! in its row of the schema, and is judged by that (`schema::judge`).
 //!
 //! Motions are judged where they are planned (`motion`), because only the plan knows what they ask
 //! for; `sim::Experiment` gathers the problems of both.
 
 use crate::{
     Cause, Controller, Hex, Host, LineScript, Noise, Problem, Scenario, Source, Validator, ValueError,
-    of_config,
+    schema::judge::judge,
 };
 use alloc::{
     format,
@@ -13,8 +14,7 @@ use alloc::{
     vec::Vec,
 };
 use stepscope_peripheral::{
-    config::{Bus, Config, ConfigProblem, Field, Protocol, SerialLine},
-    protocol::MAX_TICKS,
+    config::{Bus, Config, ConfigError, ConfigProblem, Field, Protocol, SerialLine},
     segment::CheckedSegments,
     signal::MAX_CHANNELS,
     units::{Cycles, Instant},
@@ -27,8 +27,6 @@ pub const END_OF_TIME: u64 = 9_000_000_000_000_000;
 const MAX_BYTES: usize = 4 << 20;
 /// Most controllers on a line, the scenario's own first.
 pub const MAX_CONTROLLERS: usize = 32;
-/// Most glitches on a line.
-const MAX_GLITCHES: usize = 10_000;
 
 /// A scenario whose numbers hold, but for its motions.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,17 +71,16 @@ impl Scenario {
             let given = u64::from(self.version);
             validator.add("version", Cause::NewerVersion { given, newest: crate::VERSION });
         } else {
-            validator.whole("version", self.version, 1, crate::VERSION.into(), "");
+            validator.whole("version", self.version, 1..=crate::VERSION.into(), "");
         }
-        validator.length("title", self.title.chars().count(), 0, 120, "characters");
-        validator.length("note", self.note.chars().count(), 0, 2000, "characters");
+        judge(self, &mut validator);
         let runs_segments = self.source.runs_segments();
         let configure = if runs_segments { Config::of_segments } else { Config::new };
         let config = configure(self.clock_hz, &self.bus, &self.line.serial());
-        let config = validator.take(config.map_err(of_config));
+        let config = config.map_err(|broken| tell(broken, ToString::to_string, &mut validator)).ok();
         // Without a rate of its own the receiver has the host's, which is judged above.
         if self.line.receiver_baud.is_some() && !runs_segments {
-            validator.whole("line.baud", self.line.baud, 1, self.clock_hz.max(1).into(), "baud");
+            validator.whole("line.baud", self.line.baud, 1..=self.clock_hz.max(1).into(), "baud");
         }
         if runs_segments && !self.controllers.is_empty() {
             let detail = "segments run one controller by itself; take the others out, or choose ticks";
@@ -91,15 +88,12 @@ impl Scenario {
         }
         let further = self.further(config.as_ref(), &mut validator);
         self.host(&mut validator);
-        if let Some(cycles) = self.run_cycles {
-            validator.whole("run_cycles", cycles, 1, END_OF_TIME, "cycles");
-        }
         let forced = self.glitches(&mut validator);
         let mut segments = None;
         match &self.source {
             Source::Motion(motion) => {
                 let most = usize::from(self.bus.channels).clamp(1, MAX_CHANNELS);
-                validator.length("source.motion.axes", motion.axes.len(), 1, most, "axes");
+                validator.length("source.motion.axes", motion.axes.len(), 1..=most, "axes");
             }
             Source::Packets(packets) => {
                 let address = usize::from(self.line.protocol == Protocol::Raw && self.line.address.is_some());
@@ -107,16 +101,18 @@ impl Scenario {
                 let further = self.controllers.iter().map(|controller| &controller.packets);
                 let total: usize =
                     further.chain([&packets.packets]).flatten().map(|Hex(bytes)| bytes.len()).sum();
-                judge_packets("source.packets.packets", &packets.packets, len, &mut validator);
-                validator.length("source.packets.packets", total, 0, MAX_BYTES, "bytes");
+                validator.at("source.packets.packets", |here| judge_packets(&packets.packets, len, here));
+                validator.length("source.packets.packets", total, 0..=MAX_BYTES, "bytes");
             }
             Source::Line(script) => self.script(script, &mut validator),
             Source::Segments(lists) => segments = validator.take(lists.check(&self.bus)),
         }
-        self.analysis(&mut validator);
-        if let Some(driver) = &self.driver_timing {
-            driver.check(&mut validator);
-        }
+        let axes = match &self.source {
+            Source::Motion(motion) => motion.axes.len(),
+            _ => usize::from(self.bus.channels),
+        };
+        let last = axes.clamp(1, MAX_CHANNELS) as u64 - 1;
+        validator.whole("analysis.axis", self.analysis.axis, 0..=last, "");
         validator.end(()).map(|()| Checked {
             configs: config.into_iter().chain(further).collect(),
             further: self.controllers.clone(),
@@ -132,33 +128,26 @@ impl Scenario {
     }
 
     fn glitches(&self, validator: &mut Validator) -> Vec<Forced> {
-        validator.length("line.glitches", self.line.glitches.len(), 0, MAX_GLITCHES, "glitches");
         let mut forced = Vec::new();
+        let outside = validator.enter("line.glitches");
         for (index, glitch) in self.line.glitches.iter().enumerate() {
-            let at = |field| format!("line.glitches[{index}].{field}");
             let start = glitch.start_cycle;
-            validator.whole(&at("start_cycle"), start, 1, END_OF_TIME - 1, "cycles");
             let room = END_OF_TIME.saturating_sub(start).max(1);
-            validator.whole(&at("length_cycles"), glitch.length_cycles, 1, room, "cycles");
-            validator.whole(&at("level"), glitch.level, 0, 1, "");
+            validator.at_entry(index, |here| {
+                here.whole("length_cycles", glitch.length_cycles, 1..=room, "cycles");
+            });
             forced.push(Forced {
                 start: Instant(start),
                 end: Instant(start.saturating_add(glitch.length_cycles)),
                 level: glitch.level != 0,
             });
         }
+        validator.leave(outside);
         forced
     }
 
     /// The further controllers' configurations.
     fn further(&self, first: Option<&Config>, validator: &mut Validator) -> Vec<Config> {
-        validator.length(
-            "controllers",
-            self.controllers.len(),
-            0,
-            MAX_CONTROLLERS - 1,
-            "further controllers",
-        );
         // Who writes the line himself may also ask what several of one address do.
         let scripted = matches!(self.source, Source::Line(_));
         let nameless = self.line.protocol == Protocol::Raw && self.line.address.is_none();
@@ -169,7 +158,6 @@ impl Scenario {
         }
         let mut configs = Vec::new();
         for (index, controller) in self.controllers.iter().enumerate() {
-            let at = |field: &str| format!("controllers[{index}].{field}");
             let line = SerialLine {
                 baud: self.line.baud,
                 receiver_baud: controller.receiver_baud,
@@ -179,133 +167,126 @@ impl Scenario {
             match Config::new(self.clock_hz, &controller.bus, &line) {
                 Ok(config) => configs.push(config),
                 Err(broken) => {
-                    for ConfigProblem { field, error } in broken {
-                        let path = match field {
-                            // These are the whole line's, and judged for the first controller too.
-                            Field::ClockHz | Field::Line("baud") => field.to_string(),
-                            Field::Line(own) => at(own),
-                            Field::Bus(_) => at(&field.to_string()),
-                        };
-                        if !validator.has(&path) {
-                            validator.add(path, error);
-                        }
-                    }
+                    let path = |field: &Field| match field {
+                        // These are the whole line's, and judged for the first controller too.
+                        Field::ClockHz | Field::Line("baud") => field.to_string(),
+                        Field::Line(own) => format!("controllers[{index}].{own}"),
+                        Field::Bus(_) => format!("controllers[{index}].{field}"),
+                    };
+                    tell_once(broken, path, validator);
                 }
             }
             let mut before = self.controllers.iter().take(index).map(|controller| controller.address);
             let first_address = first.and_then(Config::address);
             let same =
                 first_address == Some(controller.address) || before.any(|other| other == controller.address);
-            if same && !scripted {
-                validator.add(at("address"), Cause::SameAddress { address: controller.address });
-            }
-            self.orders(controller, &at, validator);
+            validator.at("controllers", |controllers| {
+                controllers.at_entry(index, |here| {
+                    if same && !scripted {
+                        here.add("address", Cause::SameAddress { address: controller.address });
+                    }
+                    self.orders(controller, here);
+                });
+            });
         }
         let paced = self.line.protocol == Protocol::Raw && !matches!(self.source, Source::Line(_));
         if let Some(first) = first.filter(|_| paced && configs.len() == self.controllers.len()) {
+            let outside = validator.enter("controllers");
             for (index, config) in configs.iter().enumerate() {
-                let at = |field: &str| format!("controllers[{index}].bus.{field}");
-                let (tick_cycles, first_cycles) = (config.tick().0, first.tick().0);
-                if tick_cycles != first_cycles {
-                    validator.add(at("step_period_cycles"), Cause::OtherTick { tick_cycles, first_cycles });
-                }
-                let (channels, first_channels) = (config.channels(), first.channels());
-                if channels != first_channels {
-                    validator.add(at("channels"), Cause::OtherPackets { channels, first_channels });
-                }
+                validator.at_entry(index, |here| paced_together(config, first, here));
             }
+            validator.leave(outside);
         }
         configs
     }
 
     /// What a further controller is to do.
-    fn orders(&self, controller: &Controller, at: &impl Fn(&str) -> String, validator: &mut Validator) {
+    fn orders(&self, controller: &Controller, here: &mut Validator) {
         let most = usize::from(controller.bus.channels).clamp(1, MAX_CHANNELS);
-        validator.length(&at("axes"), controller.axes.len(), 0, most, "axes");
+        here.length("axes", controller.axes.len(), 0..=most, "axes");
         if !controller.axes.is_empty() && !matches!(self.source, Source::Motion(_)) {
             let detail = "axes are for a source of kind motion; take them out, or choose that source";
-            validator.add(at("axes"), ValueError::Conflict { detail });
+            here.add("axes", ValueError::Conflict { detail });
         }
         if !controller.packets.is_empty() && !matches!(self.source, Source::Packets(_)) {
             let detail = "packets are for a source of kind packets; take them out, or choose that source";
-            validator.add(at("packets"), ValueError::Conflict { detail });
+            here.add("packets", ValueError::Conflict { detail });
         }
         let len = usize::from(controller.bus.channels) + usize::from(self.line.protocol == Protocol::Raw);
-        judge_packets(&at("packets"), &controller.packets, len, validator);
+        here.at("packets", |here| judge_packets(&controller.packets, len, here));
     }
 
+    /// A host that hears replies needs a rate that it can hear itself.
     fn host(&self, validator: &mut Validator) {
-        let Host { ticks_per_frame, reply_timeout_cycles, attempts } = self.line.host;
-        validator.whole("line.host.ticks_per_frame", ticks_per_frame, 1, MAX_TICKS.into(), "ticks");
-        if let Some(cycles) = reply_timeout_cycles {
-            validator.whole("line.host.reply_timeout_cycles", cycles, 1, u32::MAX.into(), "cycles");
-        }
-        validator.whole("line.host.attempts", attempts, 1, 255, "");
-        let noise = &self.line.noise;
-        let rates = [
-            ("flipped_bits_ppm", noise.flipped_bits_ppm),
-            ("lost_bytes_ppm", noise.lost_bytes_ppm),
-            ("duplicated_bytes_ppm", noise.duplicated_bytes_ppm),
-            ("glitches_ppm", noise.glitches_ppm),
-            ("lost_replies_ppm", noise.lost_replies_ppm),
-            ("host_crashes_ppm", noise.host_crashes_ppm),
-        ];
-        for (field, rate) in rates {
-            validator.whole(&format!("line.noise.{field}"), rate, 0, 1_000_000, "ppm");
-        }
         let hears_replies = self.line.protocol == Protocol::Framed && self.source.is_ticks();
         if hears_replies && self.line.receiver_baud.is_some() {
             let host = SerialLine { receiver_baud: None, ..self.line.serial() };
-            let broken = Config::new(self.clock_hz, &Bus::default(), &host).err().unwrap_or_default();
-            for ConfigProblem { field, error } in broken {
-                if field == Field::Line("baud") && !validator.has("line.baud") {
-                    validator.add("line.baud", error);
-                }
-            }
+            let mut broken = Config::new(self.clock_hz, &Bus::default(), &host).err().unwrap_or_default();
+            broken.retain(|problem| problem.field == Field::Line("baud"));
+            tell_once(broken, ToString::to_string, validator);
         }
     }
 
     fn script(&self, script: &LineScript, validator: &mut Validator) {
         let total = script.sends.iter().map(|send| send.wire().len()).sum();
-        validator.length("source.line.sends", total, 0, MAX_BYTES, "bytes");
+        validator.length("source.line.sends", total, 0..=MAX_BYTES, "bytes");
         let mut free_from = 1;
+        let outside = validator.enter("source.line.sends");
         for (index, send) in script.sends.iter().enumerate() {
-            let path = format!("source.line.sends[{index}].start_cycle");
             let start = send.start_cycle;
-            validator.whole(&path, start, 1, END_OF_TIME - 1, "cycles");
-            if start < free_from && start >= 1 {
-                validator.add(path, Cause::Overlap { start, free_from });
-            }
-            if send.frame.is_some() && !send.bytes.0.is_empty() {
-                let detail = "a send has bytes or a frame, not both; take one out";
-                validator.add(format!("source.line.sends[{index}].bytes"), ValueError::Conflict { detail });
-            }
+            validator.at_entry(index, |here| {
+                if start < free_from && start >= 1 {
+                    here.add("start_cycle", Cause::Overlap { start, free_from });
+                }
+                if send.frame.is_some() && !send.bytes.0.is_empty() {
+                    let detail = "a send has bytes or a frame, not both; take one out";
+                    here.add("bytes", ValueError::Conflict { detail });
+                }
+            });
             let bytes = send.wire().len() as u64;
             let end = start.min(END_OF_TIME) + line_time(bytes, self.clock_hz, self.line.baud);
             free_from = free_from.max(end);
         }
+        validator.leave(outside);
     }
+}
 
-    fn analysis(&self, validator: &mut Validator) {
-        let analysis = &self.analysis;
-        let axes = match &self.source {
-            Source::Motion(motion) => motion.axes.len(),
-            _ => usize::from(self.bus.channels),
-        };
-        validator.whole("analysis.axis", analysis.axis, 0, axes.clamp(1, MAX_CHANNELS) as u64 - 1, "");
-        validator.whole("analysis.order", analysis.order, 2, 1000, "");
-        validator.whole("analysis.fft_length", analysis.fft_length, 16, 65_536, "");
-        let (least, most) = (1e-3, 1e9);
-        if let Some(given) = analysis.sensor_hz.filter(|given| !(least..=most).contains(given)) {
-            validator.add("analysis.sensor_hz", ValueError::Range { given, least, most, unit: "Hz" });
+/// Rules that a configuration breaks, each at the path of its field; a range that its own row has told is told once.
+fn tell(broken: Vec<ConfigProblem>, path: impl Fn(&Field) -> String, validator: &mut Validator) {
+    for ConfigProblem { field, error } in broken {
+        let path = path(&field);
+        if !(matches!(error, ConfigError::Range { .. }) && validator.has(&path)) {
+            validator.add(&path, error);
         }
     }
 }
 
+/// The same where another configuration may have broken the rule already.
+fn tell_once(broken: Vec<ConfigProblem>, path: impl Fn(&Field) -> String, validator: &mut Validator) {
+    for ConfigProblem { field, error } in broken {
+        let path = path(&field);
+        if !validator.has(&path) {
+            validator.add(&path, error);
+        }
+    }
+}
+
+/// Controllers that are paced together need ticks of one length and packets of one length.
+fn paced_together(config: &Config, first: &Config, here: &mut Validator) {
+    let (tick_cycles, first_cycles) = (config.tick().0, first.tick().0);
+    if tick_cycles != first_cycles {
+        here.add("bus.step_period_cycles", Cause::OtherTick { tick_cycles, first_cycles });
+    }
+    let (channels, first_channels) = (config.channels(), first.channels());
+    if channels != first_channels {
+        here.add("bus.channels", Cause::OtherPackets { channels, first_channels });
+    }
+}
+
 /// Packets are of `len` bytes.
-fn judge_packets(path: &str, packets: &[Hex], len: usize, validator: &mut Validator) {
+fn judge_packets(packets: &[Hex], len: usize, here: &mut Validator) {
     for (index, Hex(bytes)) in packets.iter().enumerate() {
-        validator.length(&format!("{path}[{index}]"), bytes.len(), len, len, "bytes");
+        here.at_entry(index, |here| here.length("", bytes.len(), len..=len, "bytes"));
     }
 }
 
@@ -371,7 +352,10 @@ mod tests {
             ),
         ];
         for (given, expected) in rows {
-            assert_eq!(paths(given), *expected, "{given}");
+            let (mut found, mut expected) = (paths(given), expected.to_vec());
+            found.sort();
+            expected.sort_unstable();
+            assert_eq!(found, expected, "{given}");
         }
     }
 }

@@ -1,9 +1,7 @@
-//! How the scenario's types are declared: once, with their defaults.
-//!
-//! [`settings!`] declares a struct and its defaults in one place; from that follow `Default`,
-//! [`Read`], with every field optional and unknown ones refused, and [`Compact`]: the canonical form
-//! that a link carries, fixed in order, with what equals its default left out.
+//! The scenario's types as JSON: the canonical form that a link carries, fixed in order, with what equals its default
+//! left out; and the whole form, every field written.
 
+use crate::schema::{Field, Group};
 use alloc::{
     string::{String, ToString},
     vec::Vec,
@@ -19,8 +17,10 @@ pub enum Parts<'a> {
     Number(f64),
     /// A list.
     List(Vec<&'a dyn Compact>),
-    /// Names, their values, and whether the value differs from its default.
-    Fields(Vec<(&'static str, &'a dyn Compact, bool)>),
+    /// The values of a group's fields, in its order, and whether each differs from its default.
+    Fields(&'static Group, Vec<(&'a dyn Compact, bool)>),
+    /// A kind by its name, and what is in it.
+    Kind(&'static str, &'a dyn Compact),
 }
 
 /// A value with a canonical JSON: fixed order, defaults left out.
@@ -45,12 +45,15 @@ fn compacted(parts: Parts<'_>) -> Value {
         // -0.0 equals 0.0, so it is written like it.
         Parts::Number(number) => Value::from(number + 0.0),
         Parts::List(entries) => entries.into_iter().map(|entry| compacted(entry.parts())).collect(),
-        Parts::Fields(fields) => {
-            let mut map = Map::new();
-            for (name, value, _) in fields.into_iter().filter(|(_, _, differs)| *differs) {
-                map.insert(name.into(), compacted(value.parts()));
-            }
-            Value::Object(map)
+        Parts::Fields(group, values) => {
+            let fields = group.fields.iter().zip(values).filter(|(_, (_, differs))| *differs);
+            let entry = |(field, (value, _)): (&Field, (&dyn Compact, bool))| {
+                (field.name.to_string(), compacted(value.parts()))
+            };
+            Value::Object(fields.map(entry).collect())
+        }
+        Parts::Kind(name, value) => {
+            Value::Object(Map::from_iter([(name.to_string(), compacted(value.parts()))]))
         }
     }
 }
@@ -62,11 +65,15 @@ pub(super) fn write_whole(out: &mut String, value: &dyn Compact, indent: usize) 
         out.push_str(if first { "\n" } else { ",\n" });
         (0..=indent).for_each(|_| out.push_str("  "));
     };
+    let named = |out: &mut String, name: &str, value: &dyn Compact| {
+        out.push_str(&alloc::format!("\"{name}\": "));
+        write_whole(out, value, indent + 1);
+    };
     let brackets = match value.parts() {
         Parts::Whole(value) => return out.push_str(&value.to_string()),
         Parts::Number(number) => return out.push_str(&Value::from(number).to_string()),
         Parts::List(entries) if entries.is_empty() => return out.push_str("[]"),
-        Parts::Fields(fields) if fields.is_empty() => return out.push_str("{}"),
+        Parts::Fields(_, values) if values.is_empty() => return out.push_str("{}"),
         Parts::List(entries) => {
             out.push('[');
             for (index, entry) in entries.into_iter().enumerate() {
@@ -75,13 +82,18 @@ pub(super) fn write_whole(out: &mut String, value: &dyn Compact, indent: usize) 
             }
             ']'
         }
-        Parts::Fields(fields) => {
+        Parts::Fields(group, values) => {
             out.push('{');
-            for (index, (name, value, _)) in fields.into_iter().enumerate() {
+            for (index, (field, (value, _))) in group.fields.iter().zip(values).enumerate() {
                 begin_line(out, index == 0);
-                out.push_str(&alloc::format!("\"{name}\": "));
-                write_whole(out, value, indent + 1);
+                named(out, field.name, value);
             }
+            '}'
+        }
+        Parts::Kind(name, value) => {
+            out.push('{');
+            begin_line(out, true);
+            named(out, name, value);
             '}'
         }
     };
@@ -119,150 +131,8 @@ impl<T: Compact> Compact for Vec<T> {
     }
 }
 
-/// Declares a struct of the scenario and its defaults.
-macro_rules! settings {
-    ($(#[$meta:meta])* pub struct $name:ident {
-        $($(#[$field_meta:meta])* pub $field:ident: $ty:ty = $default:expr,)*
-    }) => {
-        $(#[$meta])*
-        #[derive(Clone, Debug, PartialEq)]
-        pub struct $name {
-            $($(#[$field_meta])* pub $field: $ty,)*
-        }
-
-        impl Default for $name {
-            fn default() -> Self {
-                Self { $($field: $default,)* }
-            }
-        }
-
-        $crate::compact::fields! { $name { $($field,)* } }
-    };
-}
-
-/// Maps the fields of a struct onto names, in this order.
-macro_rules! fields {
-    ($($name:ty { $($field:ident,)* })*) => {$(
-        impl $crate::Compact for $name {
-            fn parts(&self) -> $crate::Parts<'_> {
-                let default = Self::default();
-                $crate::Parts::Fields(alloc::vec![
-                    $((stringify!($field), &self.$field, self.$field != default.$field),)*
-                ])
-            }
-        }
-
-        impl $crate::Read for $name {
-            fn read(&mut self, value: &serde_json::Value, reader: &mut $crate::Reader) -> bool {
-                reader.fields(value, &mut [$((stringify!($field), &mut self.$field),)*])
-            }
-
-            fn blank() -> Self {
-                Self::default()
-            }
-        }
-    )*};
-}
-
-/// Declares an enum of the scenario, whose kinds are named by a key.
-macro_rules! choices {
-    ($(#[$meta:meta])* pub enum $name:ident {
-        $($(#[$variant_meta:meta])* $variant:ident($ty:ty) = $key:literal,)*
-    }) => {
-        $(#[$meta])*
-        #[derive(Clone, Debug, PartialEq)]
-        pub enum $name {
-            $($(#[$variant_meta])* $variant($ty),)*
-        }
-
-        $crate::compact::kinds! { $name { $($variant($ty) = $key,)* } }
-    };
-}
-
 /// The names of all kinds of a choice, as JSON writes them.
 pub trait Kinds {
     /// In the order of their declaration.
     const KINDS: &'static [&'static str];
 }
-
-/// Maps the kinds of an enum onto names.
-macro_rules! kinds {
-    ($($name:ty { $($variant:ident($ty:ty) = $key:literal,)* })*) => {$(
-        impl $crate::Kinds for $name {
-            const KINDS: &'static [&'static str] = &[$($key),*];
-        }
-
-        impl $crate::Compact for $name {
-            // A map of one key.
-            fn parts(&self) -> $crate::Parts<'_> {
-                match self {
-                    $(Self::$variant(inner) => $crate::Parts::Fields(alloc::vec![($key, inner, true)]),)*
-                }
-            }
-        }
-
-        impl $crate::Read for $name {
-            fn read(&mut self, value: &serde_json::Value, reader: &mut $crate::Reader) -> bool {
-                let Some((name, content)) = reader.choice(value, <Self as $crate::Kinds>::KINDS) else { return false };
-                match name {
-                    $($key => {
-                        let mut inner = <$ty as $crate::Read>::blank();
-                        let taken = reader.below(name, content, &mut inner);
-                        if taken {
-                            *self = Self::$variant(inner);
-                        }
-                        taken
-                    })*
-                    _ => false,
-                }
-            }
-
-            /// The last kind: the one that asks least.
-            fn blank() -> Self {
-                $crate::compact::last!($($variant($ty)),*)
-            }
-        }
-    )*};
-}
-
-/// The last of a choice's kinds, blank.
-macro_rules! last {
-    ($variant:ident($ty:ty)) => {
-        Self::$variant(<$ty as $crate::Read>::blank())
-    };
-    ($variant:ident($ty:ty), $($rest:tt)+) => {
-        $crate::compact::last!($($rest)+)
-    };
-}
-
-pub(crate) use {choices, fields, kinds, last, settings};
-
-/// Maps the variants of an enum onto words.
-macro_rules! words {
-    ($($ty:ty { $($variant:ident = $word:literal,)* })*) => {$(
-        impl $crate::Compact for $ty {
-            fn parts(&self) -> $crate::Parts<'_> {
-                $crate::Parts::Whole(serde_json::Value::from(match self {
-                    $(Self::$variant => $word,)*
-                }))
-            }
-        }
-
-        impl $crate::Read for $ty {
-            fn read(&mut self, value: &serde_json::Value, reader: &mut $crate::Reader) -> bool {
-                let found = reader.word(value, &[$($word),*]);
-                let kinds = [$(Self::$variant),*];
-                let found = found.and_then(|place| kinds.into_iter().nth(place));
-                *self = found.unwrap_or(*self);
-                found.is_some()
-            }
-
-            fn blank() -> Self {
-                let [first, ..] = [$(Self::$variant),*];
-                first
-            }
-        }
-    )*};
-}
-
-pub(crate) use words;

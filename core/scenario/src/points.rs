@@ -21,8 +21,8 @@ impl Read for Point {
         let [time_s, position] = &numbers[..] else {
             return reader.wrong(format!("a point of {} numbers; give {wanted}", numbers.len()));
         };
-        reader.below("[0]", time_s, &mut self.time_s);
-        reader.below("[1]", position, &mut self.position);
+        reader.entry(0, time_s, &mut self.time_s);
+        reader.entry(1, position, &mut self.position);
         true
     }
 

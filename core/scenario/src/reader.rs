@@ -24,10 +24,9 @@ pub trait Read {
         Self: Sized;
 }
 
-/// The way to the value that is being read, and what is wrong so far.
+/// What is wrong with what was read so far, and the way to the value that is being read.
 #[derive(Default)]
 pub struct Reader {
-    path: String,
     validator: Validator,
 }
 
@@ -40,7 +39,7 @@ pub(super) fn read_into(target: &mut dyn Read, value: &Value) -> Vec<Problem> {
 
 impl Reader {
     fn note(&mut self, detail: String) {
-        self.validator.add(self.path.as_str(), Cause::Type { detail });
+        self.validator.add("", Cause::Type { detail });
     }
 
     /// Notes that a value is of another kind, and what would do. Always false.
@@ -55,21 +54,20 @@ impl Reader {
         false
     }
 
-    /// Goes one step further in, to a name or to an index in brackets, and back again.
-    fn at<T>(&mut self, step: &str, what: impl FnOnce(&mut Self) -> T) -> T {
-        let length = self.path.len();
-        if length > 0 && !step.starts_with('[') {
-            self.path.push('.');
-        }
-        self.path.push_str(step);
-        let made = what(self);
-        self.path.truncate(length);
-        made
+    /// Reads what stands one step further in, under a name.
+    pub(super) fn below(&mut self, name: &str, value: &Value, target: &mut dyn Read) -> bool {
+        let outside = self.validator.enter(name);
+        let taken = target.read(value, self);
+        self.validator.leave(outside);
+        taken
     }
 
-    /// Reads what stands one step further in.
-    pub(super) fn below(&mut self, step: &str, value: &Value, target: &mut dyn Read) -> bool {
-        self.at(step, |reader| target.read(value, reader))
+    /// Reads an entry of a list.
+    pub(super) fn entry(&mut self, index: usize, value: &Value, target: &mut dyn Read) -> bool {
+        let outside = self.validator.enter_entry(index);
+        let taken = target.read(value, self);
+        self.validator.leave(outside);
+        taken
     }
 
     fn map<'v>(&mut self, value: &'v Value, wanted: &str) -> Option<&'v Map<String, Value>> {
@@ -89,7 +87,7 @@ impl Reader {
             } else {
                 let names: Vec<&str> = fields.iter().map(|(field, _)| *field).collect();
                 let detail = format!("there is no such field; give one of {}", names.join(", "));
-                self.at(name, |reader| reader.note(detail));
+                self.validator.add(name, Cause::Type { detail });
             }
         }
         true
@@ -214,7 +212,7 @@ impl<T: Read> Read for Vec<T> {
         for (index, entry) in entries.iter().enumerate() {
             // An entry that is not taken stays blank, so that the others keep their places.
             let mut target = T::blank();
-            reader.below(&format!("[{index}]"), entry, &mut target);
+            reader.entry(index, entry, &mut target);
             self.push(target);
         }
         true

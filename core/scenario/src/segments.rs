@@ -1,17 +1,11 @@
-//! Segment lists as a scenario holds them (DESIGN A8): a list for each channel, run by the
-//! peripheral itself.
-//!
-//! `_q16` counts 1/65536 cycle (48.16 fixed point), `_cycles` whole ones.
+//! Segment lists judged by DESIGN A8's rules and made what the engine runs, and back.
 
-use crate::{
-    Cause, Problem, Validator,
-    compact::{choices, settings},
-};
-use alloc::{format, vec::Vec};
+use crate::{Cause, ChannelSegments, DwellSegment, Problem, Segment, SegmentLists, StepSegment, Validator};
+use alloc::vec::Vec;
 use stepscope_motion::{self as motion, problem::MAX_PROBLEMS};
 use stepscope_peripheral::{
     config::Bus,
-    segment::{self, CheckedSegments, LAST_CYCLE, PulseTimes, Refusal, Refused, SegmentList},
+    segment::{self, CheckedSegments, PulseTimes, Refusal, Refused, SegmentList},
     signal::MAX_CHANNELS,
     units::Instant,
 };
@@ -19,86 +13,30 @@ use stepscope_peripheral::{
 /// Most segments of all channels together.
 const MAX_SEGMENTS: usize = 1_000_000;
 
-settings! {
-    /// A list of segments for each channel; list i drives channel i.
-    pub struct SegmentLists {
-        /// Up to 16 lists, no more than `bus.channels`.
-        pub channels: Vec<ChannelSegments> = Vec::new(),
-    }
-}
-
-settings! {
-    /// The segments of one channel, one after another.
-    pub struct ChannelSegments {
-        /// Cycle in which the list's time begins, from 1.
-        pub start_cycle: u64 = 1,
-        /// The segments.
-        pub segments: Vec<Segment> = Vec::new(),
-    }
-}
-
-choices! {
-    /// One segment (DESIGN A8).
-    pub enum Segment {
-        /// Steps at intervals that grow by a constant.
-        Steps(StepSegment) = "steps",
-        /// Standing still.
-        Dwell(DwellSegment) = "dwell",
-    }
-}
-
-settings! {
-    /// Steps at intervals that grow by a constant.
-    pub struct StepSegment {
-        /// How many, from 1.
-        pub count: u32 = 1,
-        /// Time before the first step, in 1/65536 cycle; 16000 cycles.
-        pub interval_q16: u64 = 16_000 << 16,
-        /// What each next interval is longer, in 1/65536 cycle.
-        pub add_q16: i64 = 0,
-        /// Level of DIR: 1 right, 0 left.
-        pub dir: u8 = 1,
-    }
-}
-
-settings! {
-    /// Standing still.
-    pub struct DwellSegment {
-        /// How long, in 1/65536 cycle, from 0.
-        pub length_q16: u64 = 0,
-    }
-}
-
 impl SegmentLists {
     /// Judges the lists by A8's rules and makes them what the engine runs.
     ///
     /// # Errors
     /// Every problem, at the path of its segment.
     pub(crate) fn check(&self, bus: &Bus) -> Result<CheckedSegments, Vec<Problem>> {
-        let mut validator = Validator::default();
+        let mut validator = Validator::within("source.segments.channels");
         let most = usize::from(bus.channels).clamp(1, MAX_CHANNELS);
-        validator.length("source.segments.channels", self.channels.len(), 0, most, "lists of segments");
+        validator.length("", self.channels.len(), 0..=most, "lists of segments");
         let total = self.channels.iter().map(|channel| channel.segments.len()).sum();
-        validator.length("source.segments.channels", total, 0, MAX_SEGMENTS, "segments");
-        for (index, channel) in self.channels.iter().enumerate() {
-            let at = format!("source.segments.channels[{index}]");
-            validator.whole(&format!("{at}.start_cycle"), channel.start_cycle, 1, LAST_CYCLE.0, "cycles");
-            for (index, each) in channel.segments.iter().enumerate() {
-                if let Segment::Steps(StepSegment { dir: dir @ 2.., .. }) = each {
-                    validator.whole(&format!("{at}.segments[{index}].steps.dir"), *dir, 0, 1, "");
-                }
-            }
-        }
+        validator.length("", total, 0..=MAX_SEGMENTS, "segments");
         let pulse = PulseTimes::from(bus);
         let lists = self.channels.iter().take(MAX_CHANNELS).map(ChannelSegments::plain).collect();
         match CheckedSegments::new(pulse, lists, MAX_PROBLEMS) {
             Ok(lists) => validator.end(lists),
             Err(refused) => {
                 for Refused { channel, segment, refusal } in refused {
-                    // A list's start and the number of lists have been judged above.
+                    // A list's start is judged by itself, the number of lists above.
                     if let Some(segment) = segment {
-                        let path = format!("source.segments.channels[{channel}].segments[{segment}]");
-                        validator.add(path, cause(refusal, pulse));
+                        validator.at_entry(channel, |list| {
+                            list.at("segments", |segments| {
+                                segments.at_entry(segment, |here| here.add("", cause(refusal, pulse)));
+                            });
+                        });
                     }
                 }
                 Err(validator.problems())

@@ -73,7 +73,7 @@ impl ControllerPlan {
 /// The plan of each axis of each controller; empty where the source is no motion.
 pub(super) fn plans(scenario: &Scenario) -> Result<Vec<Vec<AxisPlan>>, Vec<Problem>> {
     #[cfg(test)]
-    crate::judged::counts::PLANNED.set(crate::judged::counts::PLANNED.get() + 1);
+    crate::counts::PLANNED.set(crate::counts::PLANNED.get() + 1);
     let Source::Motion(motion) = &scenario.source else {
         return Ok(vec![Vec::new(); 1 + scenario.controllers.len()]);
     };

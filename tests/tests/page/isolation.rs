@@ -3,9 +3,13 @@
 use std::collections::BTreeMap;
 
 use anyhow::{Result, ensure};
+use fantoccini::actions::{InputSource as _, KeyAction, KeyActions};
 use serde_json::{Value, json};
 
-use crate::{bench::in_browser_shipped, session::Session};
+use crate::{
+    bench::in_browser_shipped,
+    session::{SHIFT, Session},
+};
 
 /// Leaves something wherever a page can, and waits until it is there.
 const LEAVE: &str = "
@@ -63,12 +67,27 @@ async fn found(page: &Session) -> Result<Found> {
     page.js(FOUND, vec![]).await
 }
 
-/// Leaves all of it, and every emulation.
+/// Presses a key, and gives which of those beside it were held then.
+async fn held(page: &Session) -> Result<Vec<String>> {
+    page.js::<()>(
+        "addEventListener('keydown', (event) => { window.held = ['shiftKey', 'altKey', 'ctrlKey'].filter((key) => event[key]); }); \
+         return null;",
+        vec![],
+    )
+    .await?;
+    let key = KeyActions::new("keys".into());
+    page.actions(key.then(KeyAction::Down { value: 'q' }).then(KeyAction::Up { value: 'q' })).await?;
+    page.eventually("a key", async || page.eval::<Option<Vec<String>>>("window.held ?? null").await).await
+}
+
+/// Leaves all of it, a key that is held, and every emulation.
 async fn leave(page: &Session) -> Result<()> {
     page.before_scripts("window.left = 'behind';").await?;
     page.open("").await?;
     page.allow_clipboard().await?;
     page.js::<bool>(LEAVE, vec![]).await?;
+    page.actions(KeyActions::new("keys".into()).then(KeyAction::Down { value: SHIFT })).await?;
+    assert_eq!(held(page).await?, ["shiftKey"]);
     let features = json!([
         { "name": "prefers-color-scheme", "value": "dark" },
         { "name": "forced-colors", "value": "active" },
@@ -140,6 +159,7 @@ fn a_visitor_meets_nothing_that_the_one_before_left_in_the_same_browser() -> Res
         // The page at work: it begins with its own first scenario and offers the guide.
         next.open("").await?;
         ensure!(next.visible("#welcome").await?, "the page knows the visitor");
+        assert_eq!(held(&next).await?, [""; 0], "a key is held that this visitor never pressed");
         next.allow_clipboard().await?;
         assert_eq!(next.clipboard().await?, "");
         Ok(())

@@ -5,7 +5,8 @@
 //! under a name of its own, such as `visitor-7.localhost`. By that name it has an origin that no page was ever at, and
 //! what a page leaves behind (storage, databases, caches, service workers, permissions) stays with its origin. All
 //! these names are this machine, and to a browser they are as safe as 127.0.0.1. What has no origin is looked after by
-//! hand: the console is read out between two visitors, and the clipboard is emptied for whoever may use it.
+//! hand: between two visitors keys and buttons that are held are lifted and the console is read out, and the clipboard is
+//! emptied for whoever may use it.
 //!
 //! A browser in which something went wrong is not lent again.
 
@@ -119,7 +120,7 @@ impl Lent {
         Ok(self.client.switch_to_window(tab.try_into()?).await?)
     }
 
-    /// Closes all that the visitor opened and forgets what the console said.
+    /// Closes all that the visitor opened, lifts what was held down and forgets what the console said.
     pub(crate) async fn clear(&self) -> Result<()> {
         for tab in self.client.windows().await? {
             if tab != self.home {
@@ -128,6 +129,7 @@ impl Lent {
             }
         }
         self.client.switch_to_window(self.home.clone()).await?;
+        self.client.release_actions().await?;
         devtools::console(&self.client).await.map(drop)
     }
 

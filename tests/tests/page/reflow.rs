@@ -1,7 +1,7 @@
 //! Small screens and large letters: nothing is cut off, nothing lies on something else, all can be hit by a finger.
 
 use anyhow::{Context, Result, ensure};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::{bench::in_browser, session::Session};
 
@@ -106,17 +106,32 @@ async fn everywhere(page: &Session, what: &str, wrong: &mut Vec<String>) -> Resu
     look(page, &format!("{what}, form"), wrong).await
 }
 
-/// Opens the page in a window of this size and looks at it, with the quiet default and with the fullest preset.
-async fn at_size(page: &Session, what: &str, wrong: &mut Vec<String>) -> Result<()> {
+/// Looks at the page in windows of these sizes: with the quiet default, which is loaded in each of them, and with the
+/// fullest presets, which are there while the window changes.
+async fn at_sizes(page: &Session, what: &str, sizes: &[Value], wrong: &mut Vec<String>) -> Result<()> {
     for preset in ["", "driver-timing-broken", "four-controllers-framed"] {
-        page.open("").await?;
-        if !preset.is_empty() {
-            page.choose("#preset", preset).await?;
-            page.ready().await?;
+        for (index, size) in sizes.iter().enumerate() {
+            page.devtools("Emulation.setDeviceMetricsOverride", size.clone()).await?;
+            if preset.is_empty() || index == 0 {
+                page.open("").await?;
+            }
+            if !preset.is_empty() && index == 0 {
+                page.choose("#preset", preset).await?;
+                page.ready().await?;
+            }
+            // What follows the window's size has followed it by the frame after the next.
+            page.js::<()>(FRAMES, vec![]).await?;
+            everywhere(page, &format!("{what} at {} px {preset}", size["width"]), wrong).await?;
         }
-        everywhere(page, &format!("{what} {preset}"), wrong).await?;
     }
     Ok(())
+}
+
+const FRAMES: &str = "return new Promise((seen) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(seen))));";
+
+/// A window of this size and so many device pixels a CSS pixel.
+fn window((width, height): (u32, u32), ratio: u32) -> Value {
+    json!({ "width": width, "height": height, "deviceScaleFactor": ratio, "mobile": false })
 }
 
 fn none(wrong: &[String]) -> Result<()> {
@@ -128,10 +143,8 @@ fn none(wrong: &[String]) -> Result<()> {
 fn on_any_screen_nothing_is_cut_off_and_every_target_is_large_enough() -> Result<()> {
     in_browser(|page| async move {
         let mut wrong = Vec::new();
-        for (width, height) in [(1440, 900), (1024, 768), (320, 640)] {
-            page.screen(width, height).await?;
-            at_size(&page, &format!("{width} px"), &mut wrong).await?;
-        }
+        let sizes = [(1440, 900), (1024, 768), (320, 640)].map(|size| window(size, 1));
+        at_sizes(&page, "plainly", &sizes, &mut wrong).await?;
         none(&wrong)
     })
 }
@@ -141,9 +154,7 @@ fn at_twice_the_zoom_nothing_is_cut_off() -> Result<()> {
     in_browser(|page| async move {
         let mut wrong = Vec::new();
         // A window of 1280 x 1024 at 200 %: half the CSS pixels, each of four device pixels (WCAG 1.4.4).
-        let size = json!({ "width": 640, "height": 512, "deviceScaleFactor": 2, "mobile": false });
-        page.devtools("Emulation.setDeviceMetricsOverride", size).await?;
-        at_size(&page, "200 % zoom", &mut wrong).await?;
+        at_sizes(&page, "200 % zoom", &[window((640, 512), 2)], &mut wrong).await?;
         none(&wrong)
     })
 }
@@ -157,10 +168,8 @@ fn with_letters_of_twice_the_size_nothing_is_cut_off() -> Result<()> {
              root.style.fontSize = `${2 * parseFloat(getComputedStyle(root).fontSize)}px`; });",
         )
         .await?;
-        for (width, height) in [(1440, 900), (390, 844)] {
-            page.screen(width, height).await?;
-            at_size(&page, &format!("large letters at {width} px"), &mut wrong).await?;
-        }
+        let sizes = [(1440, 900), (390, 844)].map(|size| window(size, 1));
+        at_sizes(&page, "large letters", &sizes, &mut wrong).await?;
         none(&wrong)
     })
 }

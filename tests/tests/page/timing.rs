@@ -61,18 +61,22 @@ fn a_driver_and_rules_of_ones_own_are_chosen_and_taken_back() -> Result<()> {
         let known = Known::of("{}")?;
         page.open("").await?;
         page.until_digest(&known.digest).await?;
-        page.choose(&field("driver#kind"), "a4988").await?;
+        page.choose(&field("driver_timing#kind"), "a4988").await?;
         page.until("document.getElementById('health').textContent === 'driver timing kept'").await?;
         page.until_digest(&known.digest).await?;
-        page.choose(&field("driver#kind"), "rules").await?;
+        page.choose(&field("driver_timing#kind"), "rules").await?;
         page.ready().await?;
-        assert_eq!(page.field("driver.rules.step_high_ns").await?.value, "1000", "they begin as the A4988's");
-        page.fill("driver.rules.step_high_ns", "3 us").await?;
+        assert_eq!(
+            page.field("driver_timing.rules.step_high_ns").await?.value,
+            "1000",
+            "they begin as the A4988's"
+        );
+        page.fill("driver_timing.rules.step_high_ns", "3 us").await?;
         page.until("document.getElementById('health').textContent.includes('timing violations')").await?;
-        page.fill("driver.rules.step_high_ns", "2 s").await?;
+        page.fill("driver_timing.rules.step_high_ns", "2 s").await?;
         page.ready().await?;
-        let shown = page.field("driver.rules.step_high_ns").await?;
-        let wrong = problems(r#"{"driver":{"rules":{"step_high_ns":2000000000}}}"#);
+        let shown = page.field("driver_timing.rules.step_high_ns").await?;
+        let wrong = problems(r#"{"driver_timing":{"rules":{"step_high_ns":2000000000}}}"#);
         ensure!(shown.invalid && shown.error.contains(&wrong[0].cause.to_string()), "{shown:?}");
 
         for _ in 0..2 {

@@ -1,61 +1,62 @@
 //! Plans a curve through points (DESIGN B6).
 
-use crate::plan::hold_speed;
+use crate::plan::budget::hold_speed;
 use crate::{
-    Curve, Profile,
-    moves::{self, Interpolation, MAX_POINTS},
+    Curve, Profile, limits,
+    moves::{self, Interpolation},
     points::{Between, Points},
-    problem::{Cause, ValueError},
+    problem::Cause,
     quantities::Quantities,
 };
-use alloc::{format, vec::Vec};
+use alloc::vec::Vec;
 
 /// Least time from point to point in s: a cycle of the fastest clock.
 const MIN_TIME_S: f64 = 1e-9;
 /// Problems of single points that are told; in a table of another kind every row would be one.
 const MAX_TOLD: usize = 16;
 
-pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::Points, path: &str) -> Option<Profile> {
-    let list = format!("{path}.points");
+pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::Points) -> Option<Profile> {
     let count = given.points.len();
-    if !(2..=MAX_POINTS).contains(&count) {
-        quantities
-            .refuse(list, ValueError::Length { given: count, least: 2, most: MAX_POINTS, of: "points" });
+    quantities.validator.length("points", count, limits::POINTS, "points");
+    if !limits::POINTS.contains(&count) {
         return None;
     }
-    let step = quantities.step_of(&format!("{path}.unit"), &given.unit.of(0.0))?;
-    let earlier = quantities.validator.len();
-    let mut points = Vec::with_capacity(count);
-    let mut before = None;
-    for (index, point) in given.points.iter().enumerate() {
-        let at = || format!("{list}[{index}]");
-        if let Some(before) = before.filter(|before| !is_after(point.time_s, *before)) {
-            quantities.refuse(at(), Cause::NotRising { given: point.time_s, before, least: MIN_TIME_S });
-        }
-        before = Some(point.time_s);
-        points
-            .extend(quantities.position(at, &given.unit.of(point.position), step).map(|y| (point.time_s, y)));
-        if quantities.validator.len() >= earlier + MAX_TOLD {
-            break;
-        }
-    }
-    if quantities.validator.len() > earlier {
-        return None;
-    }
+    let size = quantities.step_of("unit", &given.unit.of(0.0))?;
+    let points = quantities.at("points", |here| judge(here, given, size))?;
     let between = match given.interpolation {
         Interpolation::Straight => Between::Straight,
         Interpolation::Smooth => Between::Smooth,
     };
     let curve = Points::new(&points, between)?;
-    quantities.duration(list.as_str(), curve.duration_s())?;
+    quantities.duration("points", curve.duration_s())?;
     if curve.step_count() == 0 {
-        quantities.refuse(list, Cause::NoSteps { steps: curve.reach() });
+        quantities.refuse("points", Cause::NoSteps { steps: curve.reach() });
         return None;
     }
     // The point that the curve is on its way to when it is too fast.
     let (piece, speed) = curve.quickest();
-    hold_speed(quantities, format!("{list}[{}]", piece + 1), speed)?;
+    quantities.at("points", |here| here.at_entry(piece + 1, |here| hold_speed(here, "", speed)))?;
     Some(Profile::Points(curve))
+}
+
+/// Times and positions in steps of points that hold.
+fn judge(quantities: &mut Quantities<'_>, given: &moves::Points, size: f64) -> Option<Vec<(f64, f64)>> {
+    let earlier = quantities.validator.len();
+    let mut points = Vec::with_capacity(given.points.len());
+    let mut before = None;
+    for (index, point) in given.points.iter().enumerate() {
+        quantities.at_entry(index, |here| {
+            if let Some(before) = before.filter(|before| !is_after(point.time_s, *before)) {
+                here.refuse("", Cause::NotRising { given: point.time_s, before, least: MIN_TIME_S });
+            }
+            points.extend(here.position(&given.unit.of(point.position), size).map(|y| (point.time_s, y)));
+        });
+        before = Some(point.time_s);
+        if quantities.validator.len() >= earlier + MAX_TOLD {
+            break;
+        }
+    }
+    (quantities.validator.len() == earlier).then_some(points)
 }
 
 /// Whether a time comes late enough; not-a-number does not.

@@ -1,57 +1,51 @@
 //! Plans a staircase of rates (DESIGN B3).
 
-use crate::plan::{Left, MAX_TABLE_ROWS};
+use crate::plan::budget::{Budget, MAX_TABLE_ROWS};
 use crate::{
-    Profile, moves,
+    Profile, limits, moves,
     problem::{Cause, ValueError},
     quantities::Quantities,
     round_half_up,
     staircase::Staircase,
     staircase_table::StaircaseTable,
 };
-use alloc::format;
 
 /// Acceleration of level 1, in steps/s^2.
 const LEVEL_ACCELERATION: f64 = 1000.0;
-/// Highest level.
-const MAX_LEVEL: f64 = 5.0;
-/// Least speed: it rounds to a pulse a second.
-const MIN_RATE: f64 = 0.5;
 
 pub(super) fn plan(
     quantities: &mut Quantities<'_>,
     given: &moves::Staircase,
-    path: &str,
-    left: &mut Left,
+    budget: &mut Budget,
 ) -> Option<Profile> {
-    let steps = quantities.distance(format!("{path}.distance"), &given.distance);
-    let top = quantities.speed_from(format!("{path}.top_speed"), &given.top_speed, MIN_RATE);
-    let level = quantities.range(format!("{path}.level"), given.level.into(), 1.0, MAX_LEVEL, "");
-    let start = quantities.speed_from(format!("{path}.start_speed"), &given.start_speed, MIN_RATE);
-    let most = quantities.speed_from(format!("{path}.max_speed"), &given.max_speed, MIN_RATE);
+    let steps = quantities.distance("distance", &given.distance);
+    let top = quantities.speed_within("top_speed", &given.top_speed, limits::TABLE_RATE_STEPS_S);
+    let level = quantities.range("level", given.level.into(), limits::LEVEL, "");
+    let start = quantities.speed_within("start_speed", &given.start_speed, limits::TABLE_RATE_STEPS_S);
+    let most = quantities.speed_within("max_speed", &given.max_speed, limits::TABLE_RATE_STEPS_S);
     if let (Some(start), Some(most)) = (start, most)
         && most < start
     {
-        quantities.refuse(format!("{path}.max_speed"), Cause::TopBelowStart { top: most, start });
+        quantities.refuse("max_speed", Cause::TopBelowStart { top: most, start });
         return None;
     }
     if let (Some(top), Some(most)) = (top, most)
         && top > most
     {
-        quantities.refuse(format!("{path}.top_speed"), Cause::TopAboveTable { top, most });
+        quantities.refuse("top_speed", Cause::TopAboveTable { top, most });
         return None;
     }
     let table = StaircaseTable::new(start?, most?, level? * LEVEL_ACCELERATION);
     let top_rate = round_half_up(top?).unsigned_abs();
-    match Staircase::new(steps?, table, top_rate, given.short_move, left.table_rows) {
+    match Staircase::new(steps?, table, top_rate, given.short_move, budget.table_rows) {
         Ok(staircase) => {
-            left.table_rows -= staircase.ramp_rows() + 1;
+            budget.table_rows -= staircase.ramp_rows() + 1;
             Some(Profile::Staircase(staircase))
         }
         Err(needed) => {
-            let (given, most) = ((MAX_TABLE_ROWS - left.table_rows).saturating_add(needed), MAX_TABLE_ROWS);
+            let (given, most) = ((MAX_TABLE_ROWS - budget.table_rows).saturating_add(needed), MAX_TABLE_ROWS);
             let cause = ValueError::TooMuch { given: given as f64, most: most as f64, of: "table rows" };
-            quantities.refuse(path, cause);
+            quantities.refuse("", cause);
             None
         }
     }

@@ -1,9 +1,10 @@
 //! Plans the moves of so many steps in so much time: the cosine S-curve and ramps of other shapes (DESIGN B4).
 
-use crate::plan::{Left, MAX_SLICES, hold_speed};
+use crate::plan::budget::{Budget, MAX_SLICES, hold_speed};
 use crate::{
     MAX_SPEED, Profile,
     cosine::Cosine,
+    limits,
     mechanics::Distance,
     moves::{self, CosineMethod, RampShape},
     problem::{Cause, ValueError},
@@ -12,52 +13,39 @@ use crate::{
     ramps::Ramps,
     sliced::{NotSliced, Sliced},
 };
-use alloc::format;
 
-/// Lengths of a slice in s.
-const MIN_SLICE_S: f64 = 1e-5;
-const MAX_SLICE_S: f64 = 0.1;
 /// A slice's length is a decimal number and seldom whole in binary digits, so a rate that is exactly the highest may
 /// come out higher by its last digits, in parts of it.
 const DIGITS: f64 = 1e-12;
 /// Ramps in s under this are none: it is the shortest cycle that a clock may have.
 const MIN_RAMP_S: f64 = 1e-9;
-/// How much of its curve a ramp of a sigmoid or an exponential may be: below this it is straight to a part in a
-/// thousand, above it stands still but for a small part of its time.
-const MIN_PARAMETER: f64 = 0.1;
-const MAX_PARAMETER: f64 = 20.0;
-
 pub(super) fn plan_cosine(
     quantities: &mut Quantities<'_>,
     given: &moves::Cosine,
-    path: &str,
-    left: &mut Left,
+    budget: &mut Budget,
 ) -> Option<Profile> {
-    let front = front(quantities, path, &given.distance, given.duration_s, given.ramp_s);
+    let front = front(quantities, &given.distance, given.duration_s, given.ramp_s);
     let slice_s = match given.method {
-        CosineMethod::Sliced => {
-            let range = (MIN_SLICE_S, MAX_SLICE_S);
-            quantities.range(format!("{path}.slice_s"), given.slice_s, range.0, range.1, "s")
-        }
+        CosineMethod::Sliced => quantities.range("slice_s", given.slice_s, limits::SLICE_S, "s"),
         CosineMethod::Exact => Some(0.0),
     };
     let (steps, duration_s, ramp_s) = front?;
     let slice_s = slice_s?;
     let curve = Cosine::new(steps, duration_s, ramp_s);
-    hold_speed(quantities, format!("{path}.duration_s"), curve.top_speed())?;
+    hold_speed(quantities, "duration_s", curve.top_speed())?;
     if given.method == CosineMethod::Exact {
         return Some(Profile::Cosine(curve));
     }
-    let cause = match Sliced::new(steps, duration_s, ramp_s, slice_s, left.slices) {
+    let cause = match Sliced::new(steps, duration_s, ramp_s, slice_s, budget.slices) {
         Ok(curve) => {
-            left.slices -= curve.slice_count();
+            budget.slices -= curve.slice_count();
             let rate = curve.top_rate();
             let rate = if rate <= MAX_SPEED * (1.0 + DIGITS) { libm::fmin(rate, MAX_SPEED) } else { rate };
-            hold_speed(quantities, format!("{path}.duration_s"), rate)?;
+            hold_speed(quantities, "duration_s", rate)?;
             return Some(Profile::Sliced(curve));
         }
         Err(NotSliced::Slices { needed }) => {
-            let given = (MAX_SLICES - left.slices).saturating_add(needed);
+            let given = (MAX_SLICES - budget.slices).saturating_add(needed);
             ValueError::TooMuch { given: given as f64, most: MAX_SLICES as f64, of: "slices" }.into()
         }
         Err(NotSliced::TooShort { rate }) => Cause::SliceTooShort { rate, slice_s },
@@ -65,19 +53,13 @@ pub(super) fn plan_cosine(
             Cause::SlicesTooFew { slices, slice_s, steps: steps.unsigned_abs(), rate: MAX_SPEED }
         }
     };
-    quantities.refuse(format!("{path}.slice_s"), cause);
+    quantities.refuse("slice_s", cause);
     None
 }
 
-pub(super) fn plan_ramps(
-    quantities: &mut Quantities<'_>,
-    given: &moves::Ramps,
-    path: &str,
-) -> Option<Profile> {
-    let front = front(quantities, path, &given.distance, given.duration_s, given.ramp_s);
-    let mut parameter = |key: &str, value: f64| {
-        quantities.range(format!("{path}.{key}"), value, MIN_PARAMETER, MAX_PARAMETER, "")
-    };
+pub(super) fn plan_ramps(quantities: &mut Quantities<'_>, given: &moves::Ramps) -> Option<Profile> {
+    let front = front(quantities, &given.distance, given.duration_s, given.ramp_s);
+    let mut parameter = |key: &str, value: f64| quantities.range(key, value, limits::RAMP_PARAMETER, "");
     let ramp = match given.shape {
         RampShape::Sigmoid => Ramp::sigmoid(parameter("sigmoid_range", given.sigmoid_range)?),
         RampShape::Bezier => Ramp::Bezier,
@@ -86,24 +68,23 @@ pub(super) fn plan_ramps(
     };
     let (steps, duration_s, ramp_s) = front?;
     let curve = Ramps::new(steps, duration_s, ramp_s, ramp);
-    hold_speed(quantities, format!("{path}.duration_s"), curve.top_speed())?;
+    hold_speed(quantities, "duration_s", curve.top_speed())?;
     Some(Profile::Ramps(curve))
 }
 
 /// B4's front: so many steps in so much time with two ramps, none where they are too short for any clock.
 fn front(
     quantities: &mut Quantities<'_>,
-    path: &str,
     distance: &Distance,
     duration_s: f64,
     ramp_s: f64,
 ) -> Option<(i64, f64, f64)> {
-    let steps = quantities.distance(format!("{path}.distance"), distance);
-    let duration_s = quantities.duration(format!("{path}.duration_s"), duration_s);
-    let ramp_s = quantities.pause(format!("{path}.ramp_s"), ramp_s);
+    let steps = quantities.distance("distance", distance);
+    let duration_s = quantities.duration("duration_s", duration_s);
+    let ramp_s = quantities.pause("ramp_s", ramp_s);
     let (steps, duration_s, ramp_s) = (steps, duration_s?, ramp_s?);
     if ramp_s > duration_s / 2.0 {
-        quantities.refuse(format!("{path}.ramp_s"), Cause::RampTooLong { ramp_s, duration_s });
+        quantities.refuse("ramp_s", Cause::RampTooLong { ramp_s, duration_s });
         return None;
     }
     Some((steps?, duration_s, if ramp_s < MIN_RAMP_S { 0.0 } else { ramp_s }))

@@ -1,0 +1,151 @@
+//! The driver that the pulses are checked against: a model by name, or rules of one's own. The models' figures stand in
+//! `inspect::drivers`, the check in `inspect::timing`. A driver changes nothing in a run.
+
+use crate::schema::{
+    SHEETS, label,
+    rows::{choices, settings, words},
+};
+use core::ops::RangeInclusive;
+
+/// Times that a rule may ask for, in ns: up to one second.
+const NS: RangeInclusive<u64> = 0..=1_000_000_000;
+
+choices! {
+    /// A driver by name, `{ "preset": "drv8825" }`, or rules of your own:
+    ///
+    /// ```json
+    /// { "driver_timing": { "rules": { "step_high_ns": 2500, "step_low_ns": 2500, "dir_setup_ns": 5000 } } }
+    /// ```
+    ///
+    /// `stepscope drivers` prints each driver's times with what in its data sheet they rest on. A wake-up from a sleep
+    /// mode is longer (A4988 1 ms, DRV8825 1.7 ms): if SLEEP hangs on EN, give rules.
+    pub enum DriverTiming {
+        /// A driver whose data sheet is known.
+        Preset(DriverModel) = "preset" => label("a driver").from(SHEETS),
+        /// Rules of one's own.
+        Rules(TimingRules) = "rules" => label("rules of your own").from(SHEETS),
+    }
+}
+
+/// A driver whose data sheet is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DriverModel {
+    /// Allegro A4988.
+    A4988,
+    /// Allegro A4979.
+    A4979,
+    /// Texas Instruments DRV8825.
+    Drv8825,
+    /// Trinamic TMC2209.
+    Tmc2209,
+    /// Trinamic TMC262.
+    Tmc262,
+    /// Opto-isolated drivers in the class of the TB6600 boxes.
+    Tb6600Class,
+}
+
+words! {
+    DriverModel {
+        /// Allegro, data sheet 4988-DS
+        A4988 = "a4988", "A4988";
+        /// Allegro; only STEP high is confirmed, the rest are the A4988's
+        A4979 = "a4979", "A4979";
+        /// Texas Instruments, data sheet SLVSA73
+        Drv8825 = "drv8825", "DRV8825";
+        /// Trinamic, data sheet rev. 1.09, at its own oscillator's least 11.5 MHz
+        Tmc2209 = "tmc2209", "TMC2209";
+        /// Trinamic; not confirmed by its own sheet: the TMC2100's formula at 10 MHz
+        Tmc262 = "tmc262", "TMC262";
+        /// opto-isolated, class of TB6600, DM542, AM882: class figures; check your driver's sheet
+        Tb6600Class = "tb6600_class", "TB6600 class";
+    }
+}
+
+settings! {
+    /// The least times that a driver asks for; 0 asks for nothing.
+    pub struct TimingRules {
+        /// From the rise of STEP to its fall.
+        pub step_high_ns: u32 = 0 => label("STEP high")
+            .unit("ns")
+            .whole(NS)
+            .term("STEP high", "From the rise of STEP to its fall.")
+            .from(SHEETS),
+        /// From the fall of STEP to its next rise.
+        pub step_low_ns: u32 = 0 => label("STEP low")
+            .unit("ns")
+            .whole(NS)
+            .term("STEP low", "From the fall of STEP to its next rise.")
+            .from(SHEETS),
+        /// From the last change of DIR to every rise of STEP.
+        pub dir_setup_ns: u32 = 0 => label("DIR set-up")
+            .unit("ns")
+            .whole(NS)
+            .term("DIR set-up", "From the last change of DIR to the rise of STEP.")
+            .from(SHEETS),
+        /// From the rise of STEP to the next change of DIR.
+        pub dir_hold_ns: u32 = 0 => label("DIR hold")
+            .unit("ns")
+            .whole(NS)
+            .term("DIR hold", "From the rise of STEP to the next change of DIR.")
+            .from(SHEETS),
+        /// From the rise of EN, or from reset, to a channel's first rise of STEP.
+        pub enable_wake_ns: u32 = 0 => label("EN wake-up")
+            .unit("ns")
+            .whole(NS)
+            .term("EN wake-up", "From the rise of EN, or reset, to the first step.")
+            .from(SHEETS),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Compact, Scenario};
+    use alloc::{string::String, vec::Vec};
+
+    #[test]
+    fn a_driver_is_a_model_or_rules_and_its_problems_have_paths() {
+        let rows: &[(&str, &[&str])] = &[
+            (r#"{"driver_timing":null}"#, &[]),
+            (r#"{"driver_timing":{"preset":"drv8825"}}"#, &[]),
+            (r#"{"driver_timing":{"preset":"tb6600_class"}}"#, &[]),
+            (r#"{"driver_timing":{"rules":{}}}"#, &[]),
+            (r#"{"driver_timing":{"rules":{"step_high_ns":1000000000}}}"#, &[]),
+            (
+                r#"{"driver_timing":{"rules":{"dir_setup_ns":1000000001,"enable_wake_ns":4294967295}}}"#,
+                &["driver_timing.rules.dir_setup_ns", "driver_timing.rules.enable_wake_ns"],
+            ),
+            (
+                r#"{"driver_timing":{"preset":"drv8826"},"clock_hz":"x"}"#,
+                &["clock_hz", "driver_timing.preset"],
+            ),
+            (r#"{"driver_timing":"a4988"}"#, &["driver_timing"]),
+            (r#"{"driver_timing":{"rules":{"step_high_us":1}}}"#, &["driver_timing.rules.step_high_us"]),
+            (r#"{"driver_timing":{"rules":{"step_high_ns":-1}}}"#, &["driver_timing.rules.step_high_ns"]),
+            (r#"{"driver_timing":{"rules":[1,1]}}"#, &["driver_timing.rules"]),
+        ];
+        for (json, expected) in rows {
+            let (scenario, mut problems) = Scenario::from_json_lenient(json);
+            problems.extend(scenario.check().err().unwrap_or_default());
+            let mut paths: Vec<String> = problems.into_iter().map(|problem| problem.path).collect();
+            paths.sort();
+            assert_eq!(paths, *expected, "{json}");
+        }
+    }
+
+    #[test]
+    fn the_canonical_form_leaves_out_what_is_not_asked_for() {
+        for (json, expected) in [
+            (r#"{"driver_timing":null}"#, "{}"),
+            (r#"{"driver_timing":{"preset":"tmc2209"}}"#, r#"{"driver_timing":{"preset":"tmc2209"}}"#),
+            (
+                r#"{"driver_timing":{"rules":{"dir_hold_ns":0,"step_low_ns":5}}}"#,
+                r#"{"driver_timing":{"rules":{"step_low_ns":5}}}"#,
+            ),
+        ] {
+            let scenario = Scenario::from_json(json).expect("reads");
+            assert_eq!(scenario.compact().to_string(), expected);
+            assert_eq!(Scenario::from_json(expected).as_ref(), Ok(&scenario));
+            assert_eq!(Scenario::from_json(&scenario.to_json()), Ok(scenario));
+        }
+    }
+}

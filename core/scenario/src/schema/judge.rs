@@ -1,0 +1,74 @@
+//! Judges each number and each length by itself, as its row says. What joins several fields is judged in `check`, what
+//! another crate owns by that crate.
+
+use crate::{
+    Compact, Parts, Validator, ValueError,
+    schema::{Field, Group, Limit, Type},
+};
+use serde_json::Value;
+
+/// Judges a part of a scenario and all that is in it.
+pub(crate) fn judge(part: &dyn Compact, validator: &mut Validator) {
+    match part.parts() {
+        Parts::Fields(Group { is_foreign: true, .. }, _) => {}
+        Parts::Fields(group, values) => {
+            for (field, (value, _)) in group.fields.iter().zip(values) {
+                let outside = validator.enter(field.name);
+                of_field(field, value, validator);
+                validator.leave(outside);
+            }
+        }
+        Parts::Kind(name, value) => validator.at(name, |here| judge(value, here)),
+        Parts::List(entries) => {
+            for (index, entry) in entries.into_iter().enumerate() {
+                validator.at_entry(index, |here| judge(entry, here));
+            }
+        }
+        Parts::Whole(_) | Parts::Number(_) => {}
+    }
+}
+
+fn of_field(field: &Field, value: &dyn Compact, validator: &mut Validator) {
+    match field.limit {
+        Limit::Type | Limit::Follows(_) => {}
+        Limit::Whole(least, most) => {
+            if let Parts::Whole(Value::Number(number)) = value.parts()
+                && let Some(given) = number.as_u64()
+            {
+                validator.whole("", given, least..=most, field.unit);
+            }
+        }
+        Limit::Number(least, most) => {
+            if let Parts::Number(given) = value.parts()
+                && !(least..=most).contains(&given)
+            {
+                validator.add("", ValueError::Range { given, least, most, unit: field.unit });
+            }
+        }
+        Limit::Length(least, most, of) => {
+            let given = match value.parts() {
+                Parts::Whole(Value::String(text)) => text.chars().count(),
+                Parts::List(entries) => entries.len(),
+                _ => least,
+            };
+            validator.length("", given, least..=most, of);
+        }
+    }
+    if holds_limits(&field.ty) {
+        judge(value, validator);
+    }
+}
+
+/// Whether anything in a value of this type is judged by itself; a list of what is not need not be walked.
+fn holds_limits(ty: &Type) -> bool {
+    match ty {
+        Type::Group(group) => {
+            let judged = |field: &Field| {
+                !matches!(field.limit, Limit::Type | Limit::Follows(_)) || holds_limits(&field.ty)
+            };
+            !group.is_foreign && group.fields.iter().any(judged)
+        }
+        Type::Optional(inner) | Type::List(inner) => holds_limits(inner),
+        _ => false,
+    }
+}

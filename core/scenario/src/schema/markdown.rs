@@ -1,0 +1,223 @@
+//! docs/scenario.md, as it follows from the schema: a section a group, a row a field.
+
+use crate::{
+    Compact, Parts, Scenario, VERSION,
+    schema::{Field, Group, Limit, Type, Typed, Word},
+};
+use alloc::{
+    format,
+    string::{String, ToString},
+    vec::Vec,
+};
+use core::fmt::Write as _;
+
+/// The documentation of the format, in Markdown.
+#[must_use]
+pub fn markdown() -> String {
+    let mut out = format!("# The scenario format, version {VERSION}\n\n");
+    let mut done = Vec::new();
+    if let Type::Group(root) = Scenario::TYPE {
+        section(&mut out, root, ("", ""), &mut done);
+    }
+    quantities(&mut out, &done);
+    out.push_str(
+        "## The link\n\nA scenario as a link, and what else a link may carry: [links.md](links.md).\n",
+    );
+    out
+}
+
+/// A group and all groups in it, each where it is first met; with the path to it and its name in the form.
+fn section(
+    out: &mut String,
+    group: &'static Group,
+    (path, label): (&str, &str),
+    done: &mut Vec<&'static Group>,
+) {
+    if done.iter().any(|other| other.name == group.name) {
+        return;
+    }
+    done.push(group);
+    if is_quantity(group) {
+        return;
+    }
+    if !path.is_empty() {
+        let _ = writeln!(out, "## `{path}`: {label}\n");
+    }
+    prose(out, group.doc);
+    if group.is_choice {
+        out.push_str("| kind | | meaning |\n| --- | --- | --- |\n");
+        for kind in group.fields {
+            let _ = writeln!(out, "| `{}` | {} | {} |", kind.name, kind.label, line(kind.doc));
+        }
+    } else {
+        out.push_str("| field | unit, range | default | meaning |\n| --- | --- | --- | --- |\n");
+        let blank = (group.blank)();
+        if let Parts::Fields(_, values) = blank.parts() {
+            for (field, (value, _)) in group.fields.iter().zip(values) {
+                row(out, field, value);
+            }
+        }
+    }
+    out.push('\n');
+    for field in group.fields {
+        let below = if path.is_empty() { field.name.to_string() } else { format!("{path}.{}", field.name) };
+        inside(out, &field.ty, (&below, field.label), done);
+    }
+}
+
+/// The groups that a field holds.
+fn inside(out: &mut String, ty: &Type, (path, label): (&str, &str), done: &mut Vec<&'static Group>) {
+    match ty {
+        Type::Group(group) => section(out, group, (path, label), done),
+        Type::Optional(inner) => inside(out, inner, (path, label), done),
+        Type::List(inner) => inside(out, inner, (&format!("{path}[]"), label), done),
+        _ => {}
+    }
+}
+
+fn row(out: &mut String, field: &Field, default: &dyn Compact) {
+    let quantity = quantity_of(&field.ty).map(|group| group.name.to_lowercase());
+    let unit = quantity.as_deref().unwrap_or(field.unit);
+    let range = range_of(field);
+    let mut allowed: Vec<&str> = [unit, &range].into_iter().filter(|text| !text.is_empty()).collect();
+    match field.ty {
+        Type::Optional(Type::Group(_)) => allowed.push("`null`, or as below"),
+        Type::Optional(_) => allowed.push("or `null`"),
+        _ => {}
+    }
+    let mut meaning = line(field.doc);
+    let stop = meaning.pop().filter(|last| *last != '.');
+    meaning.extend(stop);
+    if let Type::Word(words) = field.ty {
+        let each = |word: &Word| format!("`\"{}\"` {}", word.name, line(word.doc));
+        let _ = write!(meaning, ": {}", words.iter().map(each).collect::<Vec<_>>().join("; "));
+    }
+    if !field.empty.is_empty() {
+        let _ = write!(meaning, "; `null`: {}", field.empty);
+    }
+    if let Some(when) = field.when {
+        let _ = write!(meaning, "; only where `{}` is `\"{}\"`", when.field, when.is);
+    }
+    let _ = writeln!(
+        out,
+        "| `{}` | {} | {} | {meaning} |",
+        field.name,
+        allowed.join(", ").replace(", or `", " or `"),
+        default_of(&field.ty, default)
+    );
+}
+
+/// The default as a table has it: what has a section of its own is not written out.
+fn default_of(ty: &Type, default: &dyn Compact) -> String {
+    match (ty, default.parts()) {
+        (Type::Group(group), Parts::Kind(name, value)) if is_quantity(group) => {
+            let unit = group.fields.iter().find(|kind| kind.name == name).map_or("", |kind| kind.label);
+            format!("{} {unit}", plain(value))
+        }
+        (Type::Group(_), Parts::Kind(name, _)) => format!("`{name}`"),
+        (Type::Group(_), _) => "its own".into(),
+        (Type::List(Type::Point), _) => format!("`{}`", plain(default)),
+        (Type::List(_), Parts::List(entries)) if entries.is_empty() => "none".into(),
+        (Type::List(_), Parts::List(entries)) => {
+            format!("{} of them", entries.len()).replace("1 of them", "one")
+        }
+        (Type::Text | Type::Hex, _) => "empty".into(),
+        (Type::Word(_) | Type::Optional(_), _) => format!("`{}`", plain(default)),
+        _ => plain(default),
+    }
+}
+
+/// A value on one line.
+fn plain(value: &dyn Compact) -> String {
+    match value.parts() {
+        Parts::Number(number) => number.to_string(),
+        Parts::List(entries) => {
+            let entries: Vec<String> = entries.into_iter().map(plain).collect();
+            format!("[{}]", entries.join(", "))
+        }
+        Parts::Whole(value) => value.to_string(),
+        Parts::Fields(..) | Parts::Kind(..) => String::new(),
+    }
+}
+
+/// Which values a field may have by itself, in words; empty where all of its type that one expects.
+pub(crate) fn range_of(field: &Field) -> String {
+    match field.limit {
+        Limit::Whole(least, most) => format!("{} to {}", power(least as f64), power(most as f64)),
+        Limit::Number(least, most) => match quantity_of(&field.ty) {
+            Some(_) => format!("{} to {} {}", power(least), power(most), field.unit),
+            None => format!("{} to {}", power(least), power(most)),
+        },
+        Limit::Length(0, most, of) => format!("up to {most} {of}"),
+        Limit::Length(least, most, of) => format!("{least} to {most} {of}"),
+        Limit::Follows(words) => words.into(),
+        Limit::Type => match field.ty {
+            Type::Whole { least, most } => format!("{} to {}", binary(least.into()), binary(most.into())),
+            _ => String::new(),
+        },
+    }
+}
+
+/// A bound of a whole number's type.
+fn binary(bound: i128) -> String {
+    match bound {
+        0..=255 => bound.to_string(),
+        _ if bound < 0 => format!("-2^{}", bound.unsigned_abs().trailing_zeros()),
+        _ => format!("2^{} - 1", (bound + 1).trailing_zeros()),
+    }
+}
+
+/// A number as people write it: great and small ones by a power of ten, or one less than that, or of two.
+fn power(number: f64) -> String {
+    let magnitude = libm::fabs(number);
+    if magnitude == 0.0 || (1e-3..1e6).contains(&magnitude) {
+        return number.to_string();
+    }
+    let ten = |number: f64| match format!("{number:e}").split_once('e') {
+        Some(("1", power)) => Some(format!("10^{power}")),
+        Some(("-1", power)) => Some(format!("-10^{power}")),
+        Some((digits, power)) if digits.len() <= 4 => Some(format!("{digits}*10^{power}")),
+        _ => None,
+    };
+    ten(number)
+        .or_else(|| (number as u64).wrapping_add(1).is_power_of_two().then(|| binary(number as i128)))
+        .or_else(|| ten(number + 1.0).map(|text| format!("{text} - 1")))
+        .unwrap_or_else(|| number.to_string())
+}
+
+/// Paragraphs as they stand in the doc comment, without its blanks.
+fn prose(out: &mut String, doc: &str) {
+    for line in doc.lines() {
+        let _ = writeln!(out, "{}", line.strip_prefix(' ').unwrap_or(line));
+    }
+    out.push('\n');
+}
+
+/// Some words of a table's cell.
+fn line(doc: &str) -> String {
+    doc.trim().replace('|', "\\|")
+}
+
+/// Whether it is a number with its unit.
+fn is_quantity(group: &Group) -> bool {
+    group.is_choice && group.fields.iter().all(|kind| matches!(kind.ty, Type::Number))
+}
+
+fn quantity_of(ty: &Type) -> Option<&'static Group> {
+    match ty {
+        Type::Group(group) if is_quantity(group) => Some(group),
+        _ => None,
+    }
+}
+
+/// Numbers with their units, at the end.
+fn quantities(out: &mut String, groups: &[&'static Group]) {
+    out.push_str("## Numbers with a unit\n\nA map of one key, the unit: `{ \"mm\": 250 }`.\n\n");
+    out.push_str("| | units | |\n| --- | --- | --- |\n");
+    for group in groups.iter().filter(|group| is_quantity(group)) {
+        let units = group.fields.iter().map(|kind| format!("`{}`", kind.name)).collect::<Vec<_>>();
+        let _ =
+            writeln!(out, "| {} | {} | {} |", group.name.to_lowercase(), units.join(", "), line(group.doc));
+    }
+    out.push('\n');
+}

@@ -1,0 +1,229 @@
+//! The macros that declare rows. What they make is thin: names and places; reading, writing and judging are code of
+//! their own that each type shares.
+
+/// Declares a struct of the scenario: a row a field, with its default.
+macro_rules! settings {
+    ($(#[doc = $doc:literal])* pub struct $name:ident {
+        $($(#[doc = $field_doc:literal])* pub $field:ident: $ty:ty = $default:expr => $row:expr,)*
+    }) => {
+        $(#[doc = $doc])*
+        #[derive(Clone, Debug, PartialEq)]
+        pub struct $name {
+            $($(#[doc = $field_doc])* pub $field: $ty,)*
+        }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self { $($field: $default,)* }
+            }
+        }
+
+        $crate::schema::rows::rows! { false; $(#[doc = $doc])* $name {
+            $($(#[doc = $field_doc])* $field: $ty => $row,)*
+        } }
+    };
+}
+
+/// Names the fields of a struct that another crate owns; it has its defaults from there.
+macro_rules! fields {
+    ($($(#[doc = $doc:literal])* $name:ident {
+        $($(#[doc = $field_doc:literal])* $field:ident: $ty:ty => $row:expr,)*
+    })*) => {$(
+        $crate::schema::rows::rows! { true; $(#[doc = $doc])* $name {
+            $($(#[doc = $field_doc])* $field: $ty => $row,)*
+        } }
+    )*};
+}
+
+/// A struct's rows, its reader and its writer.
+macro_rules! rows {
+    ($foreign:literal; $(#[doc = $doc:literal])* $name:ident {
+        $($(#[doc = $field_doc:literal])* $field:ident: $ty:ty => $row:expr,)*
+    }) => {
+        impl $crate::schema::Typed for $name {
+            const TYPE: $crate::schema::Type = {
+                const FIELDS: &[$crate::schema::Field] = &[$($crate::schema::Field {
+                    name: stringify!($field),
+                    doc: concat!($($field_doc),*),
+                    ty: <$ty as $crate::schema::Typed>::TYPE,
+                    ..$row
+                }),*];
+                const GROUP: &$crate::schema::Group = &$crate::schema::Group {
+                    name: stringify!($name),
+                    doc: concat!($($doc, "\n"),*),
+                    fields: FIELDS,
+                    is_choice: false,
+                    is_foreign: $foreign,
+                    blank: || alloc::boxed::Box::new($name::default()),
+                };
+                $crate::schema::Type::Group(GROUP)
+            };
+        }
+
+        impl $crate::Compact for $name {
+            fn parts(&self) -> $crate::Parts<'_> {
+                let default = Self::default();
+                $crate::Parts::Fields(
+                    $crate::schema::rows::group::<Self>(),
+                    alloc::vec![$((&self.$field as &dyn $crate::Compact, self.$field != default.$field),)*],
+                )
+            }
+        }
+
+        impl $crate::Read for $name {
+            fn read(&mut self, value: &serde_json::Value, reader: &mut $crate::Reader) -> bool {
+                reader.fields(value, &mut [$((stringify!($field), &mut self.$field),)*])
+            }
+
+            fn blank() -> Self {
+                Self::default()
+            }
+        }
+    };
+}
+
+/// Declares an enum of the scenario: one of several kinds, a row each.
+macro_rules! choices {
+    ($(#[doc = $doc:literal])* pub enum $name:ident {
+        $($(#[doc = $kind_doc:literal])* $variant:ident($ty:ty) = $key:literal => $row:expr,)*
+    }) => {
+        $(#[doc = $doc])*
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum $name {
+            $($(#[doc = $kind_doc])* $variant($ty),)*
+        }
+
+        $crate::schema::rows::kinds! { $(#[doc = $doc])* $name {
+            $($(#[doc = $kind_doc])* $variant($ty) = $key => $row,)*
+        } }
+    };
+}
+
+/// Names the kinds of an enum; JSON has a map of one key.
+macro_rules! kinds {
+    ($($(#[doc = $doc:literal])* $name:ident {
+        $($(#[doc = $kind_doc:literal])* $variant:ident($ty:ty) = $key:literal => $row:expr,)*
+    })*) => {$(
+        impl $crate::Kinds for $name {
+            const KINDS: &'static [&'static str] = &[$($key),*];
+        }
+
+        impl $crate::schema::Typed for $name {
+            const TYPE: $crate::schema::Type = {
+                const KINDS: &[$crate::schema::Field] = &[$($crate::schema::Field {
+                    name: $key,
+                    doc: concat!($($kind_doc),*),
+                    ty: <$ty as $crate::schema::Typed>::TYPE,
+                    ..$row
+                }),*];
+                const GROUP: &$crate::schema::Group = &$crate::schema::Group {
+                    name: stringify!($name),
+                    doc: concat!($($doc, "\n"),*),
+                    fields: KINDS,
+                    is_choice: true,
+                    is_foreign: false,
+                    blank: || alloc::boxed::Box::new(<$name as $crate::Read>::blank()),
+                };
+                $crate::schema::Type::Group(GROUP)
+            };
+        }
+
+        impl $crate::Compact for $name {
+            fn parts(&self) -> $crate::Parts<'_> {
+                match self {
+                    $(Self::$variant(inner) => $crate::Parts::Kind($key, inner),)*
+                }
+            }
+        }
+
+        impl $crate::Read for $name {
+            fn read(&mut self, value: &serde_json::Value, reader: &mut $crate::Reader) -> bool {
+                let Some((name, content)) = reader.choice(value, <Self as $crate::Kinds>::KINDS) else { return false };
+                match name {
+                    $($key => {
+                        let mut inner = <$ty as $crate::Read>::blank();
+                        let taken = reader.below(name, content, &mut inner);
+                        if taken {
+                            *self = Self::$variant(inner);
+                        }
+                        taken
+                    })*
+                    _ => false,
+                }
+            }
+
+            /// The last kind: the one that asks least.
+            fn blank() -> Self {
+                $crate::schema::rows::last!($($variant($ty)),*)
+            }
+        }
+    )*};
+}
+
+/// The last of a choice's kinds, blank.
+macro_rules! last {
+    ($variant:ident($ty:ty)) => {
+        Self::$variant(<$ty as $crate::Read>::blank())
+    };
+    ($variant:ident($ty:ty), $($rest:tt)+) => {
+        $crate::schema::rows::last!($($rest)+)
+    };
+}
+
+/// Names the variants of an enum by words, each with the form's name for it.
+macro_rules! words {
+    ($($ty:ty { $($(#[doc = $doc:literal])* $variant:ident = $word:literal, $label:literal;)* })*) => {$(
+        impl $crate::schema::Typed for $ty {
+            const TYPE: $crate::schema::Type = {
+                const WORDS: &[$crate::schema::Word] =
+                    &[$($crate::schema::Word { name: $word, label: $label, doc: concat!($($doc),*) }),*];
+                $crate::schema::Type::Word(WORDS)
+            };
+        }
+
+        impl $crate::Compact for $ty {
+            fn parts(&self) -> $crate::Parts<'_> {
+                $crate::Parts::Whole(serde_json::Value::from(match self {
+                    $(Self::$variant => $word,)*
+                }))
+            }
+        }
+
+        impl $crate::Read for $ty {
+            fn read(&mut self, value: &serde_json::Value, reader: &mut $crate::Reader) -> bool {
+                let found = reader.word(value, &[$($word),*]);
+                let kinds = [$(Self::$variant),*];
+                let found = found.and_then(|place| kinds.into_iter().nth(place));
+                *self = found.unwrap_or(*self);
+                found.is_some()
+            }
+
+            fn blank() -> Self {
+                let [first, ..] = [$(Self::$variant),*];
+                first
+            }
+        }
+    )*};
+}
+
+use crate::schema::{Group, Type, Typed};
+
+/// No fields: what is no group.
+const NONE: &Group = &Group {
+    name: "",
+    doc: "",
+    fields: &[],
+    is_choice: false,
+    is_foreign: false,
+    blank: || alloc::boxed::Box::new(0_u8),
+};
+
+/// The rows of a struct.
+pub(crate) const fn group<T: Typed>() -> &'static Group {
+    match T::TYPE {
+        Type::Group(group) => group,
+        _ => NONE,
+    }
+}
+
+pub(crate) use {choices, fields, kinds, last, rows, settings, words};

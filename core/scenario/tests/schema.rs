@@ -1,0 +1,112 @@
+//! What follows from the schema is what stands in the project: `docs/scenario.md`, which `STEPSCOPE_BLESS=1 cargo test -p
+//! stepscope-scenario` writes, and the description that the page takes.
+#![allow(clippy::expect_used, reason = "what is missing fails the test")]
+
+use std::{env, fs, path::Path};
+use stepscope_scenario::{
+    Scenario,
+    schema::{DOCUMENTS, Field, Group, Limit, Type, Typed, describe, markdown},
+};
+
+#[test]
+fn the_documentation_is_what_the_schema_says() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/scenario.md");
+    let expected = markdown();
+    if env::var_os("STEPSCOPE_BLESS").is_some() {
+        fs::write(&file, &expected).expect("docs/scenario.md can be written");
+    }
+    let found = fs::read_to_string(&file).expect("docs/scenario.md");
+    assert!(found == expected, "docs/scenario.md is not what the schema says; STEPSCOPE_BLESS=1 writes it");
+}
+
+/// Every field and kind with the path of names to it.
+fn each(ty: &Type, path: &str, seen: &mut Vec<&'static str>, what: &mut impl FnMut(&str, &Group, &Field)) {
+    match ty {
+        Type::Group(group) if !seen.contains(&group.name) => {
+            seen.push(group.name);
+            for field in group.fields {
+                let path = format!("{path}.{}", field.name);
+                what(&path, group, field);
+                each(&field.ty, &path, seen, what);
+            }
+        }
+        Type::Optional(inner) | Type::List(inner) => each(inner, path, seen, what),
+        _ => {}
+    }
+}
+
+fn problems(mut wrong: impl FnMut(&Group, &Field) -> bool) -> Vec<String> {
+    let mut found = Vec::new();
+    each(&Scenario::TYPE, "", &mut Vec::new(), &mut |path, group, field| {
+        if wrong(group, field) {
+            found.push(path.to_owned());
+        }
+    });
+    found
+}
+
+#[test]
+fn every_row_says_what_it_is_and_what_it_is_called() {
+    assert_eq!(problems(|_, field| field.text().is_empty() || field.label.is_empty()), [""; 0]);
+}
+
+#[test]
+fn a_range_is_one_of_its_type_and_nothing_is_said_where_it_may_stand() {
+    let optional = |ty: &Type| matches!(ty, Type::Optional(_));
+    assert_eq!(problems(|_, field| optional(&field.ty) == field.empty.is_empty()), [""; 0], "null");
+    let bare = |ty: &Type| match *ty {
+        Type::Optional(inner) => *inner,
+        ty => ty,
+    };
+    let wrong = |group: &Group, field: &Field| match (field.limit, bare(&field.ty)) {
+        (Limit::Type | Limit::Follows(_), _) => false,
+        (Limit::Whole(least, most), Type::Whole { most: type_most, .. }) => least > most || most > type_most,
+        (Limit::Number(least, most), Type::Number | Type::Group(_)) => least > most,
+        // The owner judges it as a float.
+        (Limit::Number(least, most), Type::Whole { .. }) => least > most || !group.is_foreign,
+        (Limit::Length(least, most, of), Type::Text | Type::List(_)) => least > most || of.is_empty(),
+        _ => true,
+    };
+    assert_eq!(problems(wrong), [""; 0]);
+}
+
+#[test]
+fn a_condition_names_a_field_and_one_of_its_words() {
+    let mut all = Vec::new();
+    each(&Scenario::TYPE, "", &mut Vec::new(), &mut |path, _, field| {
+        all.push((path.trim_start_matches('.').to_owned(), *field));
+    });
+    for (path, field) in &all {
+        let Some(when) = field.when else { continue };
+        let beside = format!("{}.{}", path.rsplit_once('.').map_or("", |(before, _)| before), when.field);
+        let other = if when.is_path { when.field } else { beside.as_str() };
+        let (_, other) = all.iter().find(|(path, _)| path == other).expect("there is such a field");
+        let Type::Word(words) = other.ty else { panic!("{path}: {} is no word", when.field) };
+        assert!(words.iter().any(|word| word.name == when.is), "{path}: {}", when.is);
+    }
+}
+
+#[test]
+fn what_the_page_takes_has_every_group_with_its_defaults() {
+    let schema: serde_json::Value = serde_json::from_str(&describe()).expect("JSON");
+    let scenario = serde_json::from_str::<serde_json::Value>(&Scenario::default().to_json()).expect("JSON");
+    assert_eq!(schema["groups"]["Scenario"]["default"], scenario);
+    for (name, group) in schema["groups"].as_object().expect("groups") {
+        let default = group["default"].as_object().expect("a map");
+        let names: Vec<&str> = group["fields"]
+            .as_array()
+            .expect("fields")
+            .iter()
+            .filter_map(|field| field["name"].as_str())
+            .collect();
+        if group["choice"] == true {
+            assert!(default.keys().all(|kind| names.contains(&kind.as_str())), "{name}");
+        } else {
+            let mut sorted = names.clone();
+            sorted.sort_unstable();
+            assert_eq!(default.keys().map(String::as_str).collect::<Vec<_>>(), sorted, "{name}");
+        }
+    }
+    let ids: Vec<&str> = DOCUMENTS.iter().map(|document| document.id).collect();
+    assert!(schema["documents"].as_object().expect("documents").keys().all(|id| ids.contains(&id.as_str())));
+}
