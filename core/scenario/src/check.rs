@@ -6,7 +6,7 @@
 
 use crate::{
     Cause, Controller, Hex, Host, LineScript, Noise, Problem, Scenario, Source, Validator, ValueError,
-    schema::judge::judge,
+    limits::END_OF_TIME, schema::judge::judge,
 };
 use alloc::{
     format,
@@ -21,12 +21,8 @@ use stepscope_peripheral::{
     wire::{Forced, schedule::line_time},
 };
 
-/// First cycle that no run reaches: a JavaScript number is exact up to 2^53, and this is below.
-pub const END_OF_TIME: u64 = 9_000_000_000_000_000;
 /// Most bytes of a line script, and most packets of a packet list.
 const MAX_BYTES: usize = 4 << 20;
-/// Most controllers on a line, the scenario's own first.
-pub const MAX_CONTROLLERS: usize = 32;
 
 /// A scenario whose numbers hold, but for its motions.
 #[derive(Clone, Debug, PartialEq)]

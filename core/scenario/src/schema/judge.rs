@@ -2,13 +2,13 @@
 //! another crate owns by that crate.
 
 use crate::{
-    Compact, Parts, Validator, ValueError,
+    Parts, ToParts, Validator, ValueError,
     schema::{Field, Group, Limit, Type},
 };
 use serde_json::Value;
 
 /// Judges a part of a scenario and all that is in it.
-pub(crate) fn judge(part: &dyn Compact, validator: &mut Validator) {
+pub(crate) fn judge(part: &dyn ToParts, validator: &mut Validator) {
     match part.parts() {
         Parts::Fields(Group { is_foreign: true, .. }, _) => {}
         Parts::Fields(group, values) => {
@@ -28,7 +28,7 @@ pub(crate) fn judge(part: &dyn Compact, validator: &mut Validator) {
     }
 }
 
-fn of_field(field: &Field, value: &dyn Compact, validator: &mut Validator) {
+fn of_field(field: &Field, value: &dyn ToParts, validator: &mut Validator) {
     match field.limit {
         Limit::Type | Limit::Follows(_) => {}
         Limit::Whole(least, most) => {

@@ -60,14 +60,14 @@ macro_rules! rows {
             };
         }
 
-        impl $crate::Compact for $name {
-            fn parts(&self) -> $crate::Parts<'_> {
+        impl $crate::schema::ToParts for $name {
+            fn parts(&self) -> $crate::schema::Parts<'_> {
                 let default = Self::default();
                 // All of them: a field without a row does not compile.
                 let Self { $($field,)* } = self;
-                $crate::Parts::Fields(
+                $crate::schema::Parts::Fields(
                     $crate::schema::rows::group::<Self>(),
-                    alloc::vec![$(($field as &dyn $crate::Compact, *$field != default.$field),)*],
+                    alloc::vec![$(($field as &dyn $crate::schema::ToParts, *$field != default.$field),)*],
                 )
             }
         }
@@ -130,10 +130,10 @@ macro_rules! kinds {
             };
         }
 
-        impl $crate::Compact for $name {
-            fn parts(&self) -> $crate::Parts<'_> {
+        impl $crate::schema::ToParts for $name {
+            fn parts(&self) -> $crate::schema::Parts<'_> {
                 match self {
-                    $(Self::$variant(inner) => $crate::Parts::Kind($key, inner),)*
+                    $(Self::$variant(inner) => $crate::schema::Parts::Kind($key, inner),)*
                 }
             }
         }
@@ -183,9 +183,9 @@ macro_rules! words {
             };
         }
 
-        impl $crate::Compact for $ty {
-            fn parts(&self) -> $crate::Parts<'_> {
-                $crate::Parts::Whole(serde_json::Value::from(match self {
+        impl $crate::schema::ToParts for $ty {
+            fn parts(&self) -> $crate::schema::Parts<'_> {
+                $crate::schema::Parts::Whole(serde_json::Value::from(match self {
                     $(Self::$variant => $word,)*
                 }))
             }
