@@ -1,5 +1,5 @@
 /**
- * The shapes that the modules of the page share; no code. The core's own text (`core/src/scenario`) is
+ * The shapes that the modules of the page share; no code. The core's own text (`core/scenario/src/schema`) is
  * the reference for what a scenario may hold.
  *
  * @typedef {{[key: string]: any}} Scenario  Full JSON of one experiment, every field written.

@@ -4,9 +4,9 @@
  */
 import { byId, element, fill, say } from "../dom.js";
 import { unlessDropped } from "../engine/engine.js";
+import { ruleName } from "../form/schema.js";
 import { listen } from "../shell/commands.js";
 import { count, si, time } from "../state/number.js";
-import { ruleName } from "../state/rules.js";
 import { endOf, lookedAt, shown } from "../state/state.js";
 
 /** @typedef {import("../state/types.js").State} State */

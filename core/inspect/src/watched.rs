@@ -28,7 +28,6 @@ pub struct Watched {
 }
 
 impl Sink for Watched {
-    #[inline(always)]
     fn record(&mut self, record: Record) {
         self.recording.record(record);
         if let Some(check) = &mut self.timing {

@@ -42,14 +42,14 @@ impl AxisPlan {
                 start_steps += planned.profile.steps();
                 planned
             })
-            .collect::<Vec<_>>();
-        debug_assert!(!moves.is_empty(), "an axis without a move");
+            .collect();
         Self { moves, duration_s: start_s, steps: start_steps }
     }
 
     /// The moves, in order.
     #[must_use]
     pub fn moves(&self) -> &[PlannedMove] {
+        debug_assert!(!self.moves.is_empty(), "an axis without a move was not refused");
         &self.moves
     }
 

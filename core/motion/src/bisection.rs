@@ -16,7 +16,7 @@
 //! integers or + - * /, so it has the same bits on every target.
 //!
 //! Two searches of this crate are not among these: `quantise::feasible_window` goes by the slope of a concave function,
-//! and `quantise::longest` has three answers (refused, asked, replayed) and tries that cost unequally. A place in a list
+//! and `quantise::longest` has three answers (refused, sampled, replayed) and tries that cost unequally. A place in a list
 //! that is there already is found by the standard library's `partition_point`.
 //!
 //! ```

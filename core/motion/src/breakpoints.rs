@@ -1,9 +1,9 @@
-//! Where the formula of a motion changes: between two joints its position, speed and acceleration
+//! Where the formula of a motion changes: between two breakpoints its position, speed and acceleration
 //! are smooth, and each rises or falls or stays. So the values at both ends of such a stretch are
 //! its least and its greatest, and three points of Gauss and Legendre integrate it and its square.
 //!
 //! ```text
-//! |   .----.     | a trapezoid has a joint at each end of its ramps and in its middle,
+//! |   .----.     | a trapezoid has a breakpoint at each end of its ramps and in its middle,
 //! |  /|  | |\    | a table or a staircase at each change of its rate,
 //! +-'-+--+-+-'-- | a cosine 64 in each ramp, another shape as many or more, a sine 128 a period:
 //!                | these are no polynomials, so they are cut small
@@ -16,9 +16,9 @@ use crate::{
 use alloc::vec::Vec;
 
 /// Parts that a cosine's ramp is cut into; even, so that the middle of the ramp, where its
-/// acceleration is greatest, is a joint.
+/// acceleration is greatest, is a breakpoint.
 const RAMP_PARTS: u32 = 64;
-/// Parts that a sine's period is cut into; its extremes and its middle are joints.
+/// Parts that a sine's period is cut into; its extremes and its middle are breakpoints.
 const PERIOD_PARTS: u32 = 128;
 /// Parts that a phase of constant jerk is cut into: the speed bends in it.
 const JERK_PARTS: u32 = 16;
@@ -36,21 +36,21 @@ pub struct Interval {
     pub times: f64,
 }
 
-/// The joints of one move.
+/// The breakpoints of one move.
 #[derive(Clone, Debug)]
-struct Joined {
+struct MoveBreakpoints {
     start_s: f64,
     end_s: f64,
     /// Breakpoints of the first period, from the move's start, rising.
-    joints: Vec<f64>,
+    breakpoints: Vec<f64>,
     /// The time after which the move repeats itself, where it does.
     period_s: Option<f64>,
 }
 
-/// The joints of an axis' whole motion.
+/// The breakpoints of an axis' whole motion.
 #[derive(Clone, Debug)]
 pub struct Breakpoints {
-    moves: Vec<Joined>,
+    moves: Vec<MoveBreakpoints>,
 }
 
 impl Breakpoints {
@@ -60,9 +60,9 @@ impl Breakpoints {
         let moves = plan.moves().iter().map(|planned| {
             let period_s = planned.profile.repeats().map(|(period_s, _)| period_s);
             let end_s = planned.start_s + planned.profile.duration_s();
-            let joints = joints(&planned.profile);
-            debug_assert!(joints.is_sorted(), "joints go back in time: {joints:?}");
-            Joined { start_s: planned.start_s, end_s, joints, period_s }
+            let breakpoints = breakpoints(&planned.profile);
+            debug_assert!(breakpoints.is_sorted(), "breakpoints go back in time: {breakpoints:?}");
+            MoveBreakpoints { start_s: planned.start_s, end_s, breakpoints, period_s }
         });
         Self { moves: moves.collect() }
     }
@@ -71,10 +71,10 @@ impl Breakpoints {
     /// the stretch is no shorter: then a curve's extremes in both are the same.
     #[must_use]
     pub fn period_within(&self, from_s: f64, to_s: f64) -> Option<(f64, f64)> {
-        let joined = self.moves.get(self.moves.partition_point(|each| each.end_s <= from_s))?;
-        let period_s = joined.period_s.filter(|period_s| to_s - from_s >= *period_s)?;
-        let inside = from_s >= joined.start_s && to_s <= joined.end_s;
-        inside.then_some((joined.start_s, joined.start_s + period_s))
+        let planned_move = self.moves.get(self.moves.partition_point(|each| each.end_s <= from_s))?;
+        let period_s = planned_move.period_s.filter(|period_s| to_s - from_s >= *period_s)?;
+        let inside = from_s >= planned_move.start_s && to_s <= planned_move.end_s;
+        inside.then_some((planned_move.start_s, planned_move.start_s + period_s))
     }
 
     /// The smooth pieces of a stretch of time, in order but for a sine's whole periods, of which only
@@ -89,14 +89,20 @@ impl Breakpoints {
         let end = self.moves.last().map_or(f64::INFINITY, |last| last.end_s);
         once(from_s, least(begin, to_s), each);
         let first = self.moves.partition_point(|each| each.end_s <= from_s);
-        for joined in self.moves.iter().skip(first).take_while(|joined| joined.start_s < to_s) {
-            joined.pieces(greatest(from_s, joined.start_s), least(to_s, joined.end_s), each);
+        for planned_move in
+            self.moves.iter().skip(first).take_while(|planned_move| planned_move.start_s < to_s)
+        {
+            planned_move.pieces(
+                greatest(from_s, planned_move.start_s),
+                least(to_s, planned_move.end_s),
+                each,
+            );
         }
         once(greatest(from_s, end), to_s, each);
     }
 }
 
-impl Joined {
+impl MoveBreakpoints {
     fn pieces(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Interval)) {
         let Some(period_s) = self.period_s else { return self.cut(from_s, to_s, 0.0, 1.0, each) };
         // Whole periods from the end of the one that is begun to the start of the one not ended.
@@ -113,18 +119,18 @@ impl Joined {
         self.cut(self.start_s + end, to_s, end, 1.0, each);
     }
 
-    /// Cuts at the joints, which begin anew `shift_s` after the start of the move.
+    /// Cuts at the breakpoints, which begin anew `shift_s` after the start of the move.
     fn cut(&self, from_s: f64, to_s: f64, shift_s: f64, times: f64, each: &mut dyn FnMut(Interval)) {
         let zero_s = self.start_s + shift_s;
         let mut from = from_s;
-        let first = self.joints.partition_point(|joint| zero_s + joint <= from_s);
-        for joint in self.joints.iter().skip(first).map(|joint| zero_s + joint) {
-            if joint >= to_s {
+        let first = self.breakpoints.partition_point(|breakpoint| zero_s + breakpoint <= from_s);
+        for breakpoint in self.breakpoints.iter().skip(first).map(|breakpoint| zero_s + breakpoint) {
+            if breakpoint >= to_s {
                 break;
             }
-            if joint > from {
-                each(Interval { from_s: from, to_s: joint, times });
-                from = joint;
+            if breakpoint > from {
+                each(Interval { from_s: from, to_s: breakpoint, times });
+                from = breakpoint;
             }
         }
         if to_s > from {
@@ -142,7 +148,7 @@ fn greatest(a: f64, b: f64) -> f64 {
 }
 
 /// Breakpoints of a move between its ends, rising; of a sine those of its first period.
-fn joints(profile: &Profile) -> Vec<f64> {
+fn breakpoints(profile: &Profile) -> Vec<f64> {
     match profile {
         Profile::Trapezoid(curve) => mirrored([curve.ramp_s()].into_iter(), curve.duration_s()),
         Profile::Cosine(curve) => mirrored(ramp(curve.ramp_s, RAMP_PARTS), curve.duration_s()),
@@ -151,7 +157,7 @@ fn joints(profile: &Profile) -> Vec<f64> {
             curve.starts_s.get(inside).map_or_else(Vec::new, <[f64]>::to_vec)
         }
         Profile::Ramps(curve) => {
-            // A shape that bends more than a cosine is cut into more pieces, and its middle stays a joint.
+            // A shape that bends more than a cosine is cut into more pieces, and its middle stays a breakpoint.
             let times = 1 + (curve.ramp.sharpness() / 8.0) as u32;
             mirrored(ramp(curve.ramp_s, times * RAMP_PARTS), curve.duration_s())
         }
@@ -195,8 +201,8 @@ fn ramp(ramp_s: f64, parts: u32) -> impl Iterator<Item = f64> {
 
 /// These of the first half, the middle, and their mirror images.
 fn mirrored(first_half: impl Iterator<Item = f64>, duration_s: f64) -> Vec<f64> {
-    let mut all: Vec<f64> = first_half.filter(|joint| *joint < duration_s / 2.0).collect();
-    let second_half: Vec<f64> = all.iter().rev().map(|joint| duration_s - joint).collect();
+    let mut all: Vec<f64> = first_half.filter(|breakpoint| *breakpoint < duration_s / 2.0).collect();
+    let second_half: Vec<f64> = all.iter().rev().map(|breakpoint| duration_s - breakpoint).collect();
     all.push(duration_s / 2.0);
     all.extend(second_half);
     all

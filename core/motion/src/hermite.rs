@@ -36,7 +36,7 @@ pub(super) struct Cubic {
     pub(super) to_speed: f64,
 }
 
-/// The cubic as seen from one of its ends: x from there on, the way gone without sign.
+/// The cubic as seen from one of its ends: x from there on, the travel without sign.
 #[derive(Clone, Copy)]
 struct Seen {
     near_speed: f64,
@@ -45,7 +45,7 @@ struct Seen {
 }
 
 impl Seen {
-    fn way(self, x: f64) -> f64 {
+    fn travel(self, x: f64) -> f64 {
         (self.near_speed + (self.square + self.cube * x) * x) * x
     }
 
@@ -53,18 +53,18 @@ impl Seen {
         self.near_speed + (2.0 * self.square + 3.0 * self.cube * x) * x
     }
 
-    /// The x of 0..=`length` at which the way gone is `way`, from 0 to half of all.
-    fn time(self, way: f64, length: f64) -> f64 {
+    /// The x of 0..=`length` at which the travel is `travel`, from 0 to half of all.
+    fn time(self, travel: f64, length: f64) -> f64 {
         // Without the cube; exact for a straight line, and near enough for Newton in the nearer half.
-        let square = self.near_speed * self.near_speed + 4.0 * self.square * way;
+        let square = self.near_speed * self.near_speed + 4.0 * self.square * travel;
         let slope = self.near_speed + square_root(greater(0.0, square));
-        let mut x = if slope > 0.0 { 2.0 * way / slope } else { length };
+        let mut x = if slope > 0.0 { 2.0 * travel / slope } else { length };
         let mut bracket = Bracket::new(0.0, length);
         if x > length {
             x = bracket.middle();
         }
         for _ in 0..MAX_NEWTON_STEPS {
-            let missing = way - self.way(x);
+            let missing = travel - self.travel(x);
             bracket.narrow(x, missing >= 0.0);
             let next = x + missing / self.speed(x);
             // Also where there is no slope to divide by.
@@ -109,9 +109,9 @@ impl Cubic {
     pub(super) fn position(&self, t: f64) -> f64 {
         let (since, until) = (t - self.from_s, self.to_s - t);
         if since <= until {
-            self.from + self.seen_from_start().way(greater(0.0, since))
+            self.from + self.seen_from_start().travel(greater(0.0, since))
         } else {
-            self.to - self.seen_from_end().way(greater(0.0, until))
+            self.to - self.seen_from_end().travel(greater(0.0, until))
         }
     }
 
@@ -145,11 +145,11 @@ impl Cubic {
 
     /// When it is at `place`, which lies within it, in s.
     pub(super) fn time_s(&self, place: f64) -> f64 {
-        let way = self.to - self.from;
+        let travel = self.to - self.from;
         let (behind, ahead) = (place - self.from, self.to - place);
-        // Turned so that the way goes to the right.
+        // Mirrored so that the travel is to the right.
         let right = |seen: Seen| {
-            let sign = if way < 0.0 { -1.0 } else { 1.0 };
+            let sign = if travel < 0.0 { -1.0 } else { 1.0 };
             Seen { near_speed: sign * seen.near_speed, square: sign * seen.square, cube: sign * seen.cube }
         };
         if libm::fabs(behind) <= libm::fabs(ahead) {

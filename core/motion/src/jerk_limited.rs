@@ -89,7 +89,7 @@ impl JerkLimited {
             let halves = Mirrored { steps, duration_s: all / speed + ramp_s };
             return Self { halves, jerk, jerk_s, steady_s, peak_speed: speed, ramp_s, ramp_steps };
         }
-        // No plateau: the two ramps are the whole way.
+        // No plateau: the two ramps are the whole travel.
         let (jerk_s, steady_s, peak_speed) = if all > 2.0 * acceleration * full_jerk_s * full_jerk_s {
             // v*(v/A + t_j) = n, solved without a difference.
             let root = square_root(full_jerk_s * full_jerk_s + 4.0 * all / acceleration);
@@ -148,14 +148,14 @@ impl JerkLimited {
             self.first_steps() + (self.first_speed() + self.peak_acceleration() * x / 2.0) * x
         } else if t < ramp {
             let left_s = ramp - t;
-            self.ramp_steps - self.way_left(left_s)
+            self.ramp_steps - self.travel_left(left_s)
         } else {
             self.ramp_steps + self.peak_speed * (t - ramp)
         }
     }
 
     /// Steps of the third phase from `left_s` before its end on.
-    fn way_left(&self, left_s: f64) -> f64 {
+    fn travel_left(&self, left_s: f64) -> f64 {
         (self.peak_speed - self.jerk * left_s * left_s / 6.0) * left_s
     }
 
@@ -174,7 +174,7 @@ impl JerkLimited {
         if left <= 0.0 {
             return self.ramp_s - left / self.peak_speed;
         }
-        if left > self.way_left(self.jerk_s) {
+        if left > self.travel_left(self.jerk_s) {
             let (speed, acceleration) = (self.first_speed(), self.peak_acceleration());
             let root = square_root(speed * speed + 2.0 * acceleration * past_first);
             return self.jerk_s + 2.0 * past_first / (speed + root);
@@ -184,7 +184,7 @@ impl JerkLimited {
         let mut u = left / self.peak_speed;
         for _ in 0..MAX_NEWTON_STEPS {
             let slope = self.peak_speed - self.jerk * u * u / 2.0;
-            let correction = (left - self.way_left(u)) / slope;
+            let correction = (left - self.travel_left(u)) / slope;
             u += correction;
             if correction <= u * f64::EPSILON {
                 break;

@@ -24,7 +24,7 @@ impl Mirrored {
         self.steps.unsigned_abs() as f64
     }
 
-    /// A magnitude with the sign of the way.
+    /// A magnitude with the sign of the travel.
     pub(super) fn signed(&self, magnitude: f64) -> f64 {
         if self.steps < 0 { -magnitude } else { magnitude }
     }

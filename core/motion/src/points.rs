@@ -78,7 +78,7 @@ impl Points {
     /// Steps of all pieces, whichever way they go.
     #[must_use]
     pub fn step_count(&self) -> u64 {
-        self.ways().map(|(_, from, to)| from.abs_diff(to)).sum()
+        self.counted().map(|(_, from, to)| from.abs_diff(to)).sum()
     }
 
     /// The greatest distance from the start, in steps.
@@ -95,14 +95,14 @@ impl Points {
     }
 
     /// Each piece with the steps made before and after it.
-    fn ways(&self) -> impl Iterator<Item = (&Cubic, i64, i64)> + '_ {
+    fn counted(&self) -> impl Iterator<Item = (&Cubic, i64, i64)> + '_ {
         let before = core::iter::once(&0).chain(&self.made);
         self.pieces.iter().zip(before.zip(&self.made)).map(|(piece, (from, to))| (piece, *from, *to))
     }
 
     /// When each step falls due in s, and whether it goes to the right.
     pub(super) fn due_s(&self) -> impl Iterator<Item = (f64, bool)> + '_ {
-        self.ways().flat_map(|(piece, from, to)| {
+        self.counted().flat_map(|(piece, from, to)| {
             let right = to > from;
             (0..from.abs_diff(to)).map(move |index| (piece.time_s(place(from, to, index)), right))
         })
@@ -111,7 +111,7 @@ impl Points {
     /// When step `k` (from 1) of all falls due, in s.
     pub(super) fn step_s(&self, k: u64) -> Option<f64> {
         let mut before = 0;
-        let (piece, from, to) = self.ways().find(|(_, from, to)| {
+        let (piece, from, to) = self.counted().find(|(_, from, to)| {
             let among = k <= before + from.abs_diff(*to);
             before += if among { 0 } else { from.abs_diff(*to) };
             among

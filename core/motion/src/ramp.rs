@@ -5,7 +5,7 @@
 //!
 //! ```text
 //!  1 |        .--         g(x)   part of the top speed
-//!    |      /             G(x)   its integral from 0, so the way is f_max*t_s*G(x)
+//!    |      /             G(x)   its integral from 0, so the travel is f_max*t_s*G(x)
 //!    |    /               A      G(1), the ramp's area: f_max = n/(T - 2*t_s*(1 - A))
 //!  0 | _-'
 //!    +-----------         straight      g = x                                  A = 1/2
@@ -95,11 +95,11 @@ impl Ramp {
         Self::Exponential(Exponential { constants, part: -libm::expm1(-constants) })
     }
 
-    /// A = G(1), at least 1/2: the part of the ramp's time at top speed that has the ramp's way.
+    /// A = G(1), at least 1/2: the part of the ramp's time at top speed that has the ramp's travel.
     #[must_use]
     pub fn area(&self) -> f64 {
         match self {
-            Self::Exponential(curve) => curve.way(1.0),
+            Self::Exponential(curve) => curve.travel(1.0),
             _ => 0.5,
         }
     }
@@ -115,14 +115,14 @@ impl Ramp {
         }
     }
 
-    /// G(x), the way in parts of that which the whole ramp's time has at top speed.
+    /// G(x), the travel in parts of that which the whole ramp's time has at top speed.
     #[must_use]
-    pub fn way(&self, x: f64) -> f64 {
+    pub fn travel(&self, x: f64) -> f64 {
         match self {
-            Self::Sigmoid(curve) => curve.way(x),
+            Self::Sigmoid(curve) => curve.travel(x),
             Self::Bezier => x * x * x * (1.0 - x / 2.0),
             Self::Straight => x * x / 2.0,
-            Self::Exponential(curve) => curve.way(x),
+            Self::Exponential(curve) => curve.travel(x),
         }
     }
 
@@ -168,29 +168,29 @@ impl Ramp {
         }
     }
 
-    /// The x of 0..=1 with G(x) = `way`, 0..=[`Ramp::area`], to the last digits.
+    /// The x of 0..=1 with G(x) = `travel`, 0..=[`Ramp::area`], to the last digits.
     #[must_use]
-    pub fn at_way(&self, way: f64) -> f64 {
+    pub fn at_travel(&self, travel: f64) -> f64 {
         let guess = match self {
-            _ if way <= 0.0 => return 0.0,
-            Self::Straight => return least(square_root(2.0 * way), 1.0),
+            _ if travel <= 0.0 => return 0.0,
+            Self::Straight => return least(square_root(2.0 * travel), 1.0),
             Self::Bezier => {
-                // From x^3 = way/(1 - x/2), once put into itself.
-                let root = libm::cbrt(way);
-                libm::cbrt(way / (1.0 - root / 2.0))
+                // From x^3 = travel/(1 - x/2), once put into itself.
+                let root = libm::cbrt(travel);
+                libm::cbrt(travel / (1.0 - root / 2.0))
             }
-            Self::Sigmoid(curve) => curve.guess(way),
-            Self::Exponential(curve) => curve.guess(way),
+            Self::Sigmoid(curve) => curve.guess(travel),
+            Self::Exponential(curve) => curve.guess(travel),
         };
-        self.newton(way, least(guess, 1.0))
+        self.newton(travel, least(guess, 1.0))
     }
 
-    /// From a guess to the x with G(x) = `way`. G rises and bends upwards, so from above Newton's steps
+    /// From a guess to the x with G(x) = `travel`. G rises and bends upwards, so from above Newton's steps
     /// fall towards it; a step that leaves what is known of it is halved into it.
-    fn newton(&self, way: f64, guess: f64) -> f64 {
+    fn newton(&self, travel: f64, guess: f64) -> f64 {
         let (mut bracket, mut x) = (Bracket::new(0.0, 1.0), guess);
         for _ in 0..MAX_STEPS {
-            let over = self.way(x) - way;
+            let over = self.travel(x) - travel;
             bracket.narrow(x, over < 0.0);
             let next = x - over / self.speed(x);
             if libm::fabs(next - x) <= 4.0 * f64::EPSILON * x {
@@ -215,7 +215,7 @@ impl Sigmoid {
     }
 
     /// G = (ln(1 + p*(e^z - 1)) - p*z)/(2*r*tanh(r/2)) with z = 2*r*x and p = S(-r).
-    fn way(&self, x: f64) -> f64 {
+    fn travel(&self, x: f64) -> f64 {
         let (p, z) = (self.low, 2.0 * self.range * x);
         let climbed = p * libm::expm1(z);
         let area = if z <= 1.0 {
@@ -228,8 +228,8 @@ impl Sigmoid {
     }
 
     /// Of G's formula e^z - 1 - z is as good as a square while z is small, and as e^z later.
-    fn guess(&self, way: f64) -> f64 {
-        let area = 2.0 * self.range * self.part * way;
+    fn guess(&self, travel: f64) -> f64 {
+        let area = 2.0 * self.range * self.part * travel;
         let rest = libm::expm1(area) / (self.low * (1.0 - self.low));
         libm::log1p(rest + square_root(2.0 * rest)) / (2.0 * self.range)
     }
@@ -244,13 +244,13 @@ impl Sigmoid {
 
 impl Exponential {
     /// G = (e^-z - 1 + z)/(k*(1 - e^-k)) with z = k*x.
-    fn way(&self, x: f64) -> f64 {
+    fn travel(&self, x: f64) -> f64 {
         exponential_rest(-self.constants * x) / (self.constants * self.part)
     }
 
-    /// The first terms of the series of z over the square root of twice the way.
-    fn guess(&self, way: f64) -> f64 {
-        let rest = way * self.constants * self.part;
+    /// The first terms of the series of z over the square root of twice the travel.
+    fn guess(&self, travel: f64) -> f64 {
+        let rest = travel * self.constants * self.part;
         (square_root(2.0 * rest) + rest / 3.0) / self.constants
     }
 }

@@ -90,7 +90,7 @@ impl Ramps {
         if place >= at_top * self.area {
             self.lost_s() + place / self.top_speed
         } else {
-            self.ramp_s * self.ramp.at_way(place / at_top)
+            self.ramp_s * self.ramp.at_travel(place / at_top)
         }
     }
 
@@ -102,7 +102,7 @@ impl Ramps {
     /// s(t) of the first half, in steps without sign.
     fn first_half(&self, t: f64) -> f64 {
         match self.part(t) {
-            Some(x) => self.top_speed * self.ramp_s * self.ramp.way(x),
+            Some(x) => self.top_speed * self.ramp_s * self.ramp.travel(x),
             None => self.top_speed * (t - self.lost_s()),
         }
     }

@@ -47,8 +47,8 @@ impl AxisPlan {
 }
 
 impl Profile {
-    /// The cycle of step `k` (from 1) after the move's start, of a clock of `clock_hz`, without walking to
-    /// it; `None` past the last one, and for sine segments, whose steps are only known in their order.
+    /// The cycle of step `k` (from 1) after the move's start, of a clock of `clock_hz`, without iterating
+    /// over those before it; `None` past the last one, and for sine segments, whose steps are only known in their order.
     #[must_use]
     pub fn step_cycle(&self, k: u64, clock_hz: u32) -> Option<u64> {
         if k == 0 || k > self.step_count() {

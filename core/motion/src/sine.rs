@@ -1,13 +1,13 @@
 //! Exact sine (DESIGN B6): every step where the cosine crosses its half-integer (B1).
 //!
 //! It starts at the right extreme, goes left to the other one and comes back, as the sine by segments
-//! does; with the amplitude A in whole steps, the period T and the way d from the extreme behind it:
+//! does; with the amplitude A in whole steps, the period T and the travel d from the extreme behind it:
 //!
 //! ```text
 //!  0   |'-.          .-'    s(t) = -2*A*sin^2(pi*t/T)       keeps its digits where 1 - cos loses them
 //!      |   \        /       d    = 2*A*sin^2(pi*t/T)        of the half period from its extreme on
 //! -2*A |    '-.__.-'        t    = T/pi*asin(sqrt(d/(2*A))) of step k at d = k - 1/2, k = 1..=A
-//!      0     T/2     T           and T/2 less that of the way that is left, k = A+1..=2*A
+//!      0     T/2     T           and T/2 less that of the travel that is left, k = A+1..=2*A
 //! ```
 //!
 //! So no step's time is a small difference of large numbers: the arc sine is taken up to 45 degrees
@@ -85,10 +85,10 @@ impl Sine {
 
 /// Part of a half period, 0 to 1, after which step `k` of its 2*`amplitude` falls due.
 fn part_of_half(k: u64, amplitude: u64) -> f64 {
-    let way = 2 * amplitude;
+    let travel = 2 * amplitude;
     // Twice the distance of the step's place from the nearer extreme is a whole number.
-    let from_extreme = |twice: u64| 2.0 / PI * libm::asin(square_root(twice as f64 / (2 * way) as f64));
-    if k <= amplitude { from_extreme(2 * k - 1) } else { 1.0 - from_extreme(2 * (way - k) + 1) }
+    let from_extreme = |twice: u64| 2.0 / PI * libm::asin(square_root(twice as f64 / (2 * travel) as f64));
+    if k <= amplitude { from_extreme(2 * k - 1) } else { 1.0 - from_extreme(2 * (travel - k) + 1) }
 }
 
 impl Curve for Sine {

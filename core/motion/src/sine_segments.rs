@@ -332,7 +332,7 @@ mod tests {
         }
         let peaks = sine.peaks();
         assert!((peaks.speed - 1000.0 * core::f64::consts::TAU / 0.5).abs() < 200.0, "{peaks:?}");
-        // At the extremes the first segment's rate turns round.
+        // At the extremes the first segment's rate is reversed.
         assert_eq!(peaks.jump.max(2.0 * sine.segments()[0].rate), peaks.jump);
     }
 }

@@ -11,7 +11,7 @@
 //!        where there is none, the tail's last steps are left out: its last slices stand still then, as
 //!        those after them do, so that the document counts no time error
 //!
-//! steps a slice |      __________....       the move ends earlier than asked by what the plateau lost:
+//! steps a slice |      __________....       the move ends earlier than requested by what the plateau lost:
 //!               |    _|          |   |_     its time error
 //!               |  _|            :     |_
 //!               |_|______________:_______|__
@@ -31,21 +31,15 @@
 //! assert!(sliced.time_error().relative.abs() < 0.008);
 //! ```
 
+mod compensation;
+
 use crate::{
-    Curve, MAX_SPEED, Peaks,
+    Curve, Peaks,
     cosine::Cosine,
-    curve::greater,
     format::{grouped, ramp_up_to},
-    round_half_up,
 };
 use alloc::{format, string::String, vec::Vec};
-use core::ops::Range;
-
-/// How near under a whole number of steps a slice still has that many.
-const NEARLY: f64 = 1e-9;
-/// Rounds of the coarse compensation after which its growth is doubled, and again after as many more. The
-/// document's moves need two or three.
-const PATIENCE: u32 = 1000;
+use compensation::{NEARLY, Slices, slices_in};
 
 /// A cosine S-curve in slices.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,21 +81,12 @@ pub enum NotSliced {
 /// The time error of a sliced move, against the exact one, which has none; negative is early.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeError {
-    /// End of the move less that asked for, in s.
+    /// End of the move less that requested, in s.
     pub end_s: f64,
-    /// The same in parts of the time asked for: the document's time error.
+    /// The same in parts of the requested time: the document's time error.
     pub relative: f64,
     /// Time of the last step less that of the exact curve's last, in s.
     pub last_step_s: f64,
-}
-
-/// Length of each slice and what part of the top speed its start has, as one product in s.
-struct Slices {
-    /// Part of the top speed times length, in s; one a slice.
-    weights: Vec<f64>,
-    /// Those that lie in the plateau; empty, at the start of the second half, where none does.
-    plateau: Range<usize>,
-    slice_s: f64,
 }
 
 impl Sliced {
@@ -145,7 +130,7 @@ impl Sliced {
         &self.exact
     }
 
-    /// n', the steps of the curve whose slices, rounded down, have at least those that were asked for.
+    /// n', the steps of the curve whose slices, rounded down, have at least those that were requested.
     #[must_use]
     pub fn compensated_steps(&self) -> u64 {
         self.compensated
@@ -171,14 +156,14 @@ impl Sliced {
         starts.zip(ends).map(|((from, before), (to, after))| (*from, *to, after - before))
     }
 
-    /// How much earlier it is than asked for, and than the exact curve.
+    /// How much earlier it is than requested, and than the exact curve.
     #[must_use]
     pub fn time_error(&self) -> TimeError {
-        let asked_s = self.exact.duration_s();
-        let end_s = self.duration_s() - asked_s;
+        let requested_s = self.exact.duration_s();
+        let end_s = self.duration_s() - requested_s;
         let last = self.exact.steps().unsigned_abs() as f64 - 0.5;
         let last_step_s = self.time_s(last) - self.exact.time_s(last);
-        TimeError { end_s, relative: end_s / asked_s, last_step_s }
+        TimeError { end_s, relative: end_s / requested_s, last_step_s }
     }
 
     /// Slice `index`; past the last none.
@@ -206,108 +191,6 @@ impl Sliced {
 
     fn signed(&self, magnitude: f64) -> f64 {
         if self.steps() < 0 { -magnitude } else { magnitude }
-    }
-}
-
-/// How many slices a time of so many has; one that is whole but for its last digits has no rest.
-fn slices_in(ratio: f64) -> u64 {
-    let whole = round_half_up(ratio);
-    let rest = ratio - whole as f64;
-    let more = rest > NEARLY * greater(1.0, ratio);
-    whole.unsigned_abs() + u64::from(more || whole == 0)
-}
-
-/// floor, of a number from 0 on.
-fn whole_steps(steps: f64) -> u64 {
-    (steps + NEARLY) as u64
-}
-
-impl Slices {
-    fn of(exact: &Cosine, count: u64, slice_s: f64) -> Self {
-        let (duration_s, ramp_s) = (exact.duration_s(), exact.ramp_s);
-        let start_s = |index: usize| index as f64 * slice_s;
-        let length_s = |index: usize| {
-            let left_s = duration_s - start_s(index);
-            if left_s < slice_s { left_s } else { slice_s }
-        };
-        let count = count as usize;
-        let weights = (0..count).map(|index| exact.part(start_s(index)) * length_s(index)).collect();
-        let digits = duration_s * f64::EPSILON * 4.0;
-        let in_plateau = |index: &usize| {
-            start_s(*index) >= ramp_s - digits && start_s(index + 1) <= duration_s - ramp_s + digits
-        };
-        let first = (0..count).find(in_plateau).unwrap_or(count / 2);
-        let plateau = first..first + (first..count).take_while(in_plateau).count();
-        Self { weights, plateau, slice_s }
-    }
-
-    /// Steps of a slice at a top speed; in the plateau all have the same.
-    fn steps(&self, index: usize, top_speed: f64) -> u64 {
-        let weight = self.weights.get(index).copied().unwrap_or(0.0);
-        whole_steps(top_speed * if self.plateau.contains(&index) { self.slice_s } else { weight })
-    }
-
-    /// N, the sum of all.
-    fn sum(&self, top_speed: f64) -> u64 {
-        let held = self.plateau.len() as u64 * whole_steps(top_speed * self.slice_s);
-        let ramps = (0..self.plateau.start).chain(self.plateau.end..self.weights.len());
-        held + ramps.map(|index| self.steps(index, top_speed)).sum::<u64>()
-    }
-
-    /// The coarse compensation: n' and its top speed; `None` where no speed that is allowed is enough.
-    fn coarse(&self, exact: &Cosine, ramp_s: f64) -> Option<(u64, f64)> {
-        let count = exact.steps().unsigned_abs();
-        let (mut compensated, mut round) = (count, 0);
-        loop {
-            let top_speed = compensated as f64 / (exact.duration_s() - ramp_s);
-            let missing = count.saturating_sub(self.sum(top_speed));
-            if missing == 0 {
-                return Some((compensated, top_speed));
-            }
-            if top_speed > MAX_SPEED {
-                return None;
-            }
-            compensated = compensated.saturating_add(missing << (round / PATIENCE).min(30));
-            round += 1;
-        }
-    }
-
-    /// The fine compensation: the starts of the slices that are left, the steps before each, and the highest rate.
-    fn fine(&self, top_speed: f64, exact: &Cosine) -> (Vec<f64>, Vec<u32>, f64) {
-        let all = self.weights.len();
-        let mut counts: Vec<u64> = (0..all).map(|index| self.steps(index, top_speed)).collect();
-        let held = whole_steps(top_speed * self.slice_s);
-        let mut above = counts.iter().sum::<u64>().saturating_sub(exact.steps().unsigned_abs());
-        let Range { start, end } = self.plateau;
-        for index in (start..end).rev().chain((end..all).rev()).chain((0..start).rev()) {
-            let Some(count) = counts.get_mut(index) else { continue };
-            let taken = above.min(*count);
-            *count -= taken;
-            above -= taken;
-        }
-        let (mut starts_s, mut sums) = (Vec::with_capacity(all + 1), Vec::with_capacity(all + 1));
-        let (mut shorter_s, mut sum, mut top_rate) = (0.0, 0, 0.0);
-        for (index, count) in counts.iter().enumerate() {
-            let shortened = self.plateau.contains(&index) && *count < held;
-            if !(shortened && *count == 0) {
-                starts_s.push(index as f64 * self.slice_s - shorter_s);
-                sums.push(sum as u32);
-            }
-            if shortened {
-                shorter_s += self.slice_s * ((held - count) as f64 / held as f64);
-            }
-            if *count > 0 {
-                // Rounded down, no slice has more than the top speed; a shortened one has the plateau's rate.
-                let left_s = exact.duration_s() - index as f64 * self.slice_s;
-                let length_s = if left_s < self.slice_s { left_s } else { self.slice_s };
-                let steps = if shortened { held } else { *count };
-                top_rate = greater(top_rate, libm::fmin(steps as f64 / length_s, top_speed));
-            }
-            sum += count;
-        }
-        starts_s.push(exact.duration_s() - shorter_s);
-        sums.push(sum as u32);
-        (starts_s, sums, top_rate)
     }
 }
 

@@ -161,8 +161,8 @@ mod tests {
 
     /// Compares s(half_cycles/2) in the ramp with k - 1/2, in whole numbers: a = num/den.
     fn compare(half_cycles: i128, k: i128, v0: i128, (num, den): (i128, i128)) -> Ordering {
-        let way = den * 4 * v0 * half_cycles * CLOCK + num * half_cycles * half_cycles;
-        way.cmp(&(den * 4 * (2 * k - 1) * CLOCK * CLOCK))
+        let travel = den * 4 * v0 * half_cycles * CLOCK + num * half_cycles * half_cycles;
+        travel.cmp(&(den * 4 * (2 * k - 1) * CLOCK * CLOCK))
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Trapezoid with every step in its ideal place (DESIGN B2's ideal curve, B1's rule).
 //!
 //! Uniform acceleration a from the start speed v0 to the top speed v1 and back, v^2 = v0^2 + 2*a*s;
-//! a short move turns round at its middle, a triangle:
+//! a short move has no plateau, a triangle:
 //!
 //! ```text
 //!  v1 |     ________               t_r = (v1 - v0)/a         time of a ramp
@@ -115,7 +115,7 @@ impl Curve for Trapezoid {
 
     fn peaks(&self) -> Peaks {
         let acceleration = if self.ramp_s > 0.0 { self.acceleration } else { 0.0 };
-        // At the tip of a triangle the acceleration turns round; else it ends where the plateau begins.
+        // At the tip of a triangle the acceleration is reversed; else it ends where the plateau begins.
         let turns = 2.0 * self.ramp_s >= self.halves.duration_s;
         let acceleration_jump = if turns { 2.0 * acceleration } else { acceleration };
         Peaks { speed: self.peak_speed, acceleration, acceleration_jump, ..Peaks::default() }
@@ -127,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn long_moves_have_a_plateau_and_short_ones_turn_round_in_the_middle() {
+    fn long_moves_have_a_plateau_and_short_ones_are_triangles() {
         // (steps, start, top, acceleration), (peak speed, ramp s, duration s)
         let rows = [
             ((10_000, 1000.0, 5000.0, 8000.0), (5000.0, 0.5, 2.4)),
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn the_square_of_the_speed_grows_with_the_way() {
+    fn the_square_of_the_speed_grows_with_the_travel() {
         let curve = Trapezoid::new(4000, 300.0, 4000.0, 9000.0);
         for i in 0..100 {
             let t = curve.ramp_s() * f64::from(i) / 100.0;

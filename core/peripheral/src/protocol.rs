@@ -195,3 +195,59 @@ impl fmt::Display for Reply {
         write!(f, ": {state}, {free} free, seq {expected_seq}, faults {faults:#04x}, {ticks_done} ticks done")
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::{string::ToString, vec::Vec};
+
+    #[test]
+    fn a_byte_means_what_the_contracts_table_says() {
+        let kinds = ["TICKS", "ENABLE", "DISABLE", "STATUS", "STOP", "RESYNC"];
+        let reasons =
+            ["BAD_SEQ", "QUEUE_FULL", "TOO_MANY_STEPS", "BUSY", "STOPPED", "BAD_BODY", "UNKNOWN_KIND"];
+        let states = ["BUSY", "READY", "MOVING", "STOPPED"];
+        for byte in 0..=u8::MAX {
+            let one = |names: &[&'static str], first: u8| {
+                byte.checked_sub(first).and_then(|index| names.get(usize::from(index))).copied()
+            };
+            assert_eq!(Kind::parse(byte).map(Kind::name), one(&kinds, 1), "kind {byte}");
+            assert_eq!(Reason::parse(byte).map(Reason::name), one(&reasons, 1), "reason {byte}");
+            assert_eq!(State::parse(byte).map(State::name), one(&states, 0), "state {byte}");
+        }
+        assert_eq!(Kind::ALL.iter().map(|&kind| kind as u8).collect::<Vec<_>>(), [1, 2, 3, 4, 5, 6]);
+        assert_eq!(Reason::ALL.len(), 7);
+    }
+
+    #[test]
+    fn what_became_of_a_frame_has_its_text_and_its_answer() {
+        let ticks = Some(Ok(Kind::Ticks));
+        let rows = [
+            (FrameOutcome::Queued(1), "1 tick queued", ticks),
+            (FrameOutcome::Queued(32), "32 ticks queued", ticks),
+            (FrameOutcome::Repeated, "repeated: acknowledged, not queued again", ticks),
+            (FrameOutcome::Taken(Kind::Stop), "STOP done", Some(Ok(Kind::Stop))),
+            (FrameOutcome::Refused(Reason::BadSeq), "refused: BAD_SEQ", Some(Err(Reason::BadSeq))),
+            (FrameOutcome::OtherAddress, "another address", None),
+            (FrameOutcome::Short, "dropped: SHORT_PACKET", None),
+            (
+                FrameOutcome::BadCheck { found: 0xab, expected: 0x1234_5678 },
+                "dropped: CRC 000000ab found, 12345678 expected",
+                None,
+            ),
+            (FrameOutcome::Overlong, "dropped: OVERLONG", None),
+        ];
+        for (outcome, text, answer) in rows {
+            assert_eq!((outcome.to_string().as_str(), outcome.answer()), (text, answer));
+        }
+    }
+
+    #[test]
+    fn a_reply_names_its_answer_and_all_of_its_status() {
+        let status = Status { state: State::Moving, free: 3, expected_seq: 7, faults: 0x82, ticks_done: 12 };
+        let text = |answer| Reply { address: 1, answer, status }.to_string();
+        let rest = "MOVING, 3 free, seq 7, faults 0x82, 12 ticks done";
+        assert_eq!(text(Ok(Kind::Ticks)), alloc::format!("ACK TICKS: {rest}"));
+        assert_eq!(text(Err(Reason::Busy)), alloc::format!("NAK BUSY: {rest}"));
+    }
+}

@@ -331,6 +331,16 @@ mod tests {
     }
 
     #[test]
+    fn a_step_takes_a_pulse_and_what_dir_needs_around_it_or_a_cycle() {
+        // W, D, H, the least interval.
+        let rows = [(1, 0, 0, 2), (3, 2, 1, 6), (3, 0, 1, 4), (3, 1, 0, 4), (u64::MAX, 5, 5, u64::MAX)];
+        for (width, setup, hold, expected) in rows {
+            let pulse = PulseTimes { width: Cycles(width), setup: Cycles(setup), hold: Cycles(hold) };
+            assert_eq!(pulse.least_interval(), Cycles(expected), "{pulse:?}");
+        }
+    }
+
+    #[test]
     fn what_a_run_makes_is_known_before() {
         let turn = |right| Segment::Steps { count: 10, interval: LEAST, add: 0, right };
         let list = |start, segments| SegmentList { start: Instant(start), segments };

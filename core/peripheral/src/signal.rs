@@ -256,3 +256,86 @@ impl<S: Sink> Sink for &mut S {
         (**self).paused()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec;
+
+    #[test]
+    fn every_bit_has_the_contracts_name() {
+        let rows = [
+            (0, Some("STEP0")),
+            (15, Some("STEP15")),
+            (16, Some("DIR0")),
+            (31, Some("DIR15")),
+            (32, Some("EN")),
+            (33, Some("RX")),
+            (34, Some("TX")),
+            (35, Some("DE")),
+            (36, None),
+        ];
+        for (bit, expected) in rows {
+            assert_eq!(name(bit).as_deref(), expected, "bit {bit}");
+        }
+    }
+
+    #[test]
+    fn levels_are_read_by_their_bits() {
+        let levels = Levels(Levels::EN | Levels::DE | 0xa55a_1234);
+        assert_eq!((levels.step(), levels.dir()), (0x1234, 0xa55a));
+        assert!(levels.has(Levels::EN) && levels.has(Levels::EN | Levels::DE));
+        assert!(!levels.has(Levels::EN | Levels::TX) && !levels.has(Levels::RX));
+        assert_eq!(Levels::RESET, Levels(0x7_0000_0000), "powered, and the line idle");
+    }
+
+    /// Takes everything, and may want to pause.
+    #[derive(Default)]
+    struct Taken {
+        records: Vec<Record>,
+        events: Vec<(Instant, Event)>,
+        is_full: bool,
+    }
+
+    impl Sink for Taken {
+        fn record(&mut self, record: Record) {
+            self.records.push(record);
+        }
+
+        fn event(&mut self, at: Instant, event: Event) {
+            self.events.push((at, event));
+        }
+
+        fn paused(&self) -> bool {
+            self.is_full
+        }
+    }
+
+    fn give(sink: &mut impl Sink) -> bool {
+        sink.record(Record { cycle: Instant(3), levels: Levels::RESET });
+        sink.event(Instant(4), Event::TickEnd);
+        sink.paused()
+    }
+
+    #[test]
+    fn sinks_that_stand_for_others_hand_everything_on() {
+        let full = || Taken { is_full: true, ..Taken::default() };
+        for (first, second, expected) in [
+            (Taken::default(), Taken::default(), false),
+            (full(), Taken::default(), true),
+            (Taken::default(), full(), true),
+        ] {
+            let mut both = (first, Some(second));
+            assert_eq!(give(&mut &mut both), expected);
+            let (first, second) = (both.0, both.1.expect("it is there"));
+            for taken in [first, second] {
+                assert_eq!(taken.records, [Record { cycle: Instant(3), levels: Levels::RESET }]);
+                assert_eq!(taken.events, [(Instant(4), Event::TickEnd)]);
+            }
+        }
+        assert!(!give(&mut None::<Taken>), "nobody asks for a pause");
+        let mut trace = vec![];
+        assert!(!give(&mut trace));
+        assert_eq!(trace.len(), 1);
+    }
+}

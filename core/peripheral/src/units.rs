@@ -62,3 +62,17 @@ impl Sub for Instant {
         Cycles(self.0 - earlier.0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_and_spans_are_told_apart_and_summed() {
+        let mut at = Instant(7);
+        assert_eq!((at + Cycles(5), Instant(12) - at, at.next()), (Instant(12), Cycles(5), Instant(8)));
+        at += Cycles(3);
+        assert_eq!((at, Instant::RESET, Instant::NEVER), (Instant(10), Instant(0), Instant(u64::MAX)));
+        assert_eq!(Instant(40_000_000).seconds(16_000_000), 2.5);
+    }
+}

@@ -19,9 +19,9 @@ pub(crate) fn carries(
         return Ok(());
     }
     // What a message cannot tell exactly is more than any line can do.
-    let told = |value: u128| u64::try_from(value).unwrap_or(u64::MAX);
+    let saturated = |value: u128| u64::try_from(value).unwrap_or(u64::MAX);
     let (packet_cycles, needed_baud) =
-        (told(packet_cycles), told((bits * u128::from(clock_hz)).div_ceil(tick)));
+        (saturated(packet_cycles), saturated((bits * u128::from(clock_hz)).div_ceil(tick)));
     let most_baud = u64::from(most_baud(clock_hz));
     Err(Cause::LineTooSlow { packet_cycles, tick_cycles, baud, needed_baud, most_baud })
 }

@@ -77,18 +77,18 @@ pub(super) fn plans(scenario: &Scenario) -> Result<Vec<Vec<AxisPlan>>, Vec<Probl
     let Source::Motion(motion) = &scenario.source else {
         return Ok(vec![Vec::new(); 1 + scenario.controllers.len()]);
     };
-    let further = scenario.controllers.iter().take(MAX_CONTROLLERS - 1).enumerate();
-    let further = further.map(|(index, one)| (format!("controllers[{index}].axes"), &one.axes[..]));
-    plan_lists([("source.motion.axes".into(), &motion.axes[..])].into_iter().chain(further))
+    let additional = scenario.controllers.iter().take(MAX_CONTROLLERS - 1).enumerate();
+    let additional = additional.map(|(index, one)| (format!("controllers[{index}].axes"), &one.axes[..]));
+    plan_lists([("source.motion.axes".into(), &motion.axes[..])].into_iter().chain(additional))
         .map_err(of_motion)
 }
 
 /// The ticks of each controller.
-pub(super) fn orders(
+pub(super) fn controller_plans(
     checked: &Checked,
     plans: Vec<Vec<AxisPlan>>,
 ) -> Result<Vec<ControllerPlan>, Vec<Problem>> {
-    let (mut orders, mut problems, mut total) = (Vec::new(), Vec::new(), 0);
+    let (mut controllers, mut problems, mut total) = (Vec::new(), Vec::new(), 0);
     for (index, (config, plans)) in checked.configs.iter().zip(plans).enumerate() {
         match ticks_of(checked, index, config, &plans) {
             Ok(mut ticks) => {
@@ -100,7 +100,7 @@ pub(super) fn orders(
                     ticks.len().is_multiple_of(config.channels().into()),
                     "a tick has a byte a channel"
                 );
-                orders.push(ControllerPlan { config: config.clone(), plans, ticks: ticks.into() });
+                controllers.push(ControllerPlan { config: config.clone(), plans, ticks: ticks.into() });
             }
             Err(found) => problems.extend(found),
         }
@@ -114,11 +114,11 @@ pub(super) fn orders(
             break;
         }
     }
-    if problems.is_empty() { Ok(orders) } else { Err(problems) }
+    if problems.is_empty() { Ok(controllers) } else { Err(problems) }
 }
 
 /// Path of the axes of an additional controller; `None` for the scenario's own.
-fn further_path(index: usize) -> Option<String> {
+fn additional_path(index: usize) -> Option<String> {
     index.checked_sub(1).map(|index| format!("controllers[{index}].axes"))
 }
 
@@ -128,19 +128,19 @@ fn ticks_of(
     config: &Config,
     plans: &[AxisPlan],
 ) -> Result<Vec<u8>, Vec<Problem>> {
-    let further = index.checked_sub(1).and_then(|index| checked.further.get(index));
+    let additional = index.checked_sub(1).and_then(|index| checked.further.get(index));
     Ok(match &checked.source {
         source if !source.is_ticks() => Vec::new(),
         Source::Motion(_) if plans.is_empty() => Vec::new(),
         Source::Motion(_) => {
             let tick = config.tick().0;
-            let own = further_path(index);
+            let own = additional_path(index);
             let at = own.as_deref().map_or(AxesPath::MOTION, |axes| AxesPath { axes, whole: axes });
             let ticks = ticks(plans, at, config.channels(), config.slots(), tick, config.clock_hz());
             ticks.map_err(of_motion)?.bytes().to_vec()
         }
         Source::Packets(source) => {
-            let packets = further.map_or(&source.packets, |further| &further.packets);
+            let packets = additional.map_or(&source.packets, |additional| &additional.packets);
             let address = usize::from(config.packet_address().is_some());
             packets.iter().flat_map(|packet| packet.0.iter().copied().skip(address)).collect()
         }
@@ -151,9 +151,9 @@ fn ticks_of(
 /// What the segment engine runs, where segments run the scenario.
 pub(super) fn segments(
     checked: &Checked,
-    orders: &[ControllerPlan],
+    controllers: &[ControllerPlan],
 ) -> Result<Option<CheckedSegments>, Vec<Problem>> {
-    match (&checked.source, orders.first()) {
+    match (&checked.source, controllers.first()) {
         (Source::Motion(_), Some(ControllerPlan { config, plans, .. })) if checked.source.runs_segments() => {
             let pulse = PulseTimes::from(config);
             let lists = exact_segments(plans, AxesPath::MOTION, config.channels(), pulse, config.clock_hz());
@@ -173,13 +173,13 @@ fn end_at_rest(ticks: &mut Vec<u8>, channels: u8) {
 }
 
 /// What the host sends without waiting for replies, and what noise forces on the line meanwhile.
-pub(super) fn schedule(checked: &Checked, orders: &[ControllerPlan]) -> (Schedule, Vec<Forced>) {
+pub(super) fn schedule(checked: &Checked, controllers: &[ControllerPlan]) -> (Schedule, Vec<Forced>) {
     let schedule = match &checked.source {
         Source::Line(script) => script.schedule(),
         _ if checked.waits_for_replies() => return (Schedule::default(), Vec::new()),
-        _ => paced(checked, orders),
+        _ => paced(checked, controllers),
     };
-    let clock_hz = orders.first().map_or(1, |first| first.config.clock_hz());
+    let clock_hz = controllers.first().map_or(1, |first| first.config.clock_hz());
     match Noise::new(&checked.noise, clock_hz, checked.baud) {
         Some(noise) => noise.schedule(&schedule),
         None => (schedule, Vec::new()),
@@ -192,11 +192,11 @@ fn start(checked: &Checked) -> Instant {
 }
 
 /// Packet j of all controllers in ascending address, back to back from start + j*M*Ts.
-fn paced(checked: &Checked, orders: &[ControllerPlan]) -> Schedule {
+fn paced(checked: &Checked, controllers: &[ControllerPlan]) -> Schedule {
     let mut turn: Vec<Packets<'_>> =
-        orders.iter().enumerate().map(|(index, orders)| Packets::of(checked, index, orders)).collect();
+        controllers.iter().enumerate().map(|(index, plan)| Packets::of(checked, index, plan)).collect();
     let last = turn.iter().map(Packets::count).max().unwrap_or(0);
-    turn.sort_by_key(|packets| packets.orders.config.address());
+    turn.sort_by_key(|packets| packets.plan.config.address());
     let Some(first) = checked.configs.first() else { return Schedule::default() };
     let joined = (0..last).map(|tick| {
         let mut packet = Vec::with_capacity(turn.len() * (1 + MAX_CHANNELS));
@@ -208,23 +208,25 @@ fn paced(checked: &Checked, orders: &[ControllerPlan]) -> Schedule {
 
 /// The packets of one controller as they go over a raw line.
 struct Packets<'a> {
-    orders: &'a ControllerPlan,
+    plan: &'a ControllerPlan,
     /// Where they are given as they are.
     given: Option<&'a [Hex]>,
 }
 
 impl<'a> Packets<'a> {
-    fn of(checked: &'a Checked, index: usize, orders: &'a ControllerPlan) -> Self {
-        let further = index.checked_sub(1).and_then(|index| checked.further.get(index));
+    fn of(checked: &'a Checked, index: usize, plan: &'a ControllerPlan) -> Self {
+        let additional = index.checked_sub(1).and_then(|index| checked.further.get(index));
         let given = match &checked.source {
-            Source::Packets(source) => Some(&further.map_or(&source.packets, |further| &further.packets)[..]),
+            Source::Packets(source) => {
+                Some(&additional.map_or(&source.packets, |additional| &additional.packets)[..])
+            }
             _ => None,
         };
-        Self { orders, given }
+        Self { plan, given }
     }
 
     fn count(&self) -> usize {
-        self.given.map_or_else(|| self.orders.each_tick().len(), <[Hex]>::len)
+        self.given.map_or_else(|| self.plan.each_tick().len(), <[Hex]>::len)
     }
 
     /// Adds the bytes of packet `index`, if there is one.
@@ -233,19 +235,18 @@ impl<'a> Packets<'a> {
             bytes.extend_from_slice(given.get(index).map_or(&[], |packet| &packet.0));
             return;
         }
-        let width = usize::from(self.orders.config.channels());
-        if let Some(tick) = self.orders.ticks.get(index * width..(index + 1) * width) {
-            bytes.extend(self.orders.config.packet_address());
+        let width = usize::from(self.plan.config.channels());
+        if let Some(tick) = self.plan.ticks.get(index * width..(index + 1) * width) {
+            bytes.extend(self.plan.config.packet_address());
             bytes.extend_from_slice(tick);
         }
     }
 }
 
 /// The host of a framed line.
-pub(super) fn framed_host(checked: &Checked, orders: &[ControllerPlan]) -> FramedHost {
-    let jobs =
-        orders.iter().filter(|orders| orders.has_ticks()).map(|orders| job(&orders.config, &orders.ticks));
-    let (clock_hz, baud) = (orders.first().map_or(1, |first| first.config.clock_hz()), checked.baud);
+pub(super) fn framed_host(checked: &Checked, controllers: &[ControllerPlan]) -> FramedHost {
+    let jobs = controllers.iter().filter(|plan| plan.has_ticks()).map(|plan| job(&plan.config, &plan.ticks));
+    let (clock_hz, baud) = (controllers.first().map_or(1, |first| first.config.clock_hz()), checked.baud);
     let noise = Noise::new(&checked.noise, clock_hz, baud);
     let start = start(checked);
     FramedHost::new(
@@ -257,13 +258,13 @@ pub(super) fn framed_host(checked: &Checked, orders: &[ControllerPlan]) -> Frame
     )
 }
 
-pub(super) fn job(config: &Config, orders: &Rc<[u8]>) -> Job {
+pub(super) fn job(config: &Config, ticks: &Rc<[u8]>) -> Job {
     Job {
         address: config.address().unwrap_or(0),
         channels: config.channels(),
         tick: config.tick(),
         queue_depth: config.queue_depth(),
-        orders: Rc::clone(orders),
+        commands: Rc::clone(ticks),
     }
 }
 
@@ -279,8 +280,8 @@ pub(super) fn line_load<'a>(checked: &'a Checked) -> Result<Option<f64>, Problem
     }
     let (clock_hz, tick) = (first.clock_hz(), first.tick().0);
     let busy = |(index, config): (usize, &'a Config)| {
-        let further = index.checked_sub(1).and_then(|index| checked.further.get(index));
-        further.is_none_or(Controller::is_busy).then_some(config)
+        let additional = index.checked_sub(1).and_then(|index| checked.further.get(index));
+        additional.is_none_or(Controller::is_busy).then_some(config)
     };
     let configs = checked.configs.iter().enumerate().filter_map(busy);
     let (cycles, bits) = if checked.waits_for_replies() {
@@ -307,7 +308,7 @@ fn frame_bits(checked: &Checked, config: &Config) -> u128 {
     PART_OF_BIT * (10 * bytes + EXCHANGE_BITS) / u128::from(ticks)
 }
 
-/// One tick's orders, from its bytes.
+/// Steps of all channels in one tick, from its bytes.
 pub(super) fn pulses(tick: &[u8]) -> u64 {
     let mut sum = 0;
     for byte in tick.get(..Tick::default().len()).unwrap_or(tick) {

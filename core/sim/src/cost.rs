@@ -24,7 +24,7 @@ const LAST_FALL_BIT: u64 = 8;
 /// Bits of a byte that has just begun and of the gap after it (45, A5), rounded up.
 const LONGEST_REST_BITS: u64 = 60;
 
-/// Bytes of a frame beside its ticks: address, kind, count, sequence number, check, COBS and end mark.
+/// Bytes of a frame beside its ticks: address, kind, count, sequence number, CRC, COBS and delimiter.
 const FRAME_OVERHEAD: u64 = 13;
 
 /// What a run costs, known before it starts. Where a host waits for replies the numbers are estimates.
@@ -50,20 +50,20 @@ impl Cost {
         self.records > BUDGET_RECORDS
     }
 
-    pub(super) fn of(checked: &Checked, orders: &[ControllerPlan], schedule: &Schedule) -> Self {
+    pub(super) fn of(checked: &Checked, controllers: &[ControllerPlan], schedule: &Schedule) -> Self {
         let sends = if checked.waits_for_replies() {
-            Sends::framed(checked, orders)
+            Sends::framed(checked, controllers)
         } else {
             Sends::scheduled(checked, schedule)
         };
         let edges = MAX_EDGES_A_BYTE * (sends.bytes + sends.reply_bytes) + 2 * checked.forced.len() as u64;
-        let records = orders.iter().map(|orders| 1 + edges + tick_records(checked, orders, schedule)).sum();
+        let records = controllers.iter().map(|plan| 1 + edges + tick_records(checked, plan, schedule)).sum();
         Self {
             records,
             sends: sends.count,
             bytes: sends.bytes,
             end_cycle: checked.run.map_or_else(
-                || last_cycle(schedule, checked, orders).max(sends.end_cycle),
+                || last_cycle(schedule, checked, controllers).max(sends.end_cycle),
                 |Cycles(run)| run,
             ),
         }
@@ -97,23 +97,23 @@ impl Sends {
     }
 
     /// Frames of a host that waits for replies. On a line that goes wrong each may be sent as often as
-    /// the host tries, and a host that dies asks every controller again: no bound, but a fair warning.
-    fn framed(checked: &Checked, orders: &[ControllerPlan]) -> Self {
+    /// the host tries, and a host that crashes asks every controller again: no bound, but a fair warning.
+    fn framed(checked: &Checked, controllers: &[ControllerPlan]) -> Self {
         let wrong = checked.noise != Noise::default() || !checked.forced.is_empty();
         let tries = if wrong { u64::from(checked.host.attempts) } else { 1 };
-        let repeats = tries * if checked.noise.host_crashes_ppm > 0 { orders.len() as u64 } else { 1 };
+        let repeats = tries * if checked.noise.host_crashes_ppm > 0 { controllers.len() as u64 } else { 1 };
         let mut sends = Self { count: 0, bytes: 0, reply_bytes: 0, end_cycle: 0 };
-        for orders in orders.iter().filter(|orders| orders.has_ticks()) {
-            let job = job(orders.config(), &orders.shared_ticks());
+        for plan in controllers.iter().filter(|plan| plan.has_ticks()) {
+            let job = job(plan.config(), &plan.shared_ticks());
             let frames = u64::from(job.ticks()).div_ceil(job.ticks_per_frame(&checked.host).into()) + 2;
             sends.count += repeats * frames;
-            sends.bytes += repeats * (orders.ticks().len() as u64 + FRAME_OVERHEAD * frames);
+            sends.bytes += repeats * (plan.ticks().len() as u64 + FRAME_OVERHEAD * frames);
             sends.reply_bytes += repeats * REPLY_LEN as u64 * frames;
             let ticks = u64::from(job.ticks()) * job.tick.0;
-            sends.end_cycle = sends.end_cycle.max(orders.config().boot().0 + ticks);
+            sends.end_cycle = sends.end_cycle.max(plan.config().boot().0 + ticks);
         }
         let bytes = (sends.bytes + sends.reply_bytes) / repeats;
-        let clock_hz = orders.first().map_or(1, |first| first.config().clock_hz());
+        let clock_hz = controllers.first().map_or(1, |first| first.config().clock_hz());
         // The line and the ticks go side by side, but for the first and the last exchange. How long a line
         // that goes wrong takes is not known; most such jobs still end with their ticks.
         sends.end_cycle = sends.end_cycle.max(line_time(bytes, clock_hz, checked.baud))
@@ -123,8 +123,8 @@ impl Sends {
 }
 
 /// Records of all ticks of one controller at most.
-fn tick_records(checked: &Checked, orders: &ControllerPlan, schedule: &Schedule) -> u64 {
-    let config = orders.config();
+fn tick_records(checked: &Checked, plan: &ControllerPlan, schedule: &Schedule) -> u64 {
+    let config = plan.config();
     if checked.waits_for_replies() || comes_as_ordered(checked, config) {
         if let Source::Packets(_) = &checked.source
             && config.protocol() == Protocol::Raw
@@ -134,7 +134,7 @@ fn tick_records(checked: &Checked, orders: &ControllerPlan, schedule: &Schedule)
             let most = schedule.iter().map(|send| pulses(send.bytes)).sum::<u64>();
             return records_of(config, most) + schedule.total_bytes() as u64;
         }
-        return orders.each_tick().map(|tick| records_of(config, pulses(tick))).sum();
+        return plan.each_tick().map(|tick| records_of(config, pulses(tick))).sum();
     }
     let most = u64::from(config.slots()) * u64::from(config.channels());
     most_ticks(checked, config, schedule) * records_of(config, most)
@@ -190,14 +190,14 @@ fn records_of(config: &Config, pulses: u64) -> u64 {
 /// A cycle by which everything has been sent and what can follow it has passed: a byte that is heard
 /// late (by a slow receiver, or begun by a forced level), the tick that runs and those that wait, or
 /// a reply and the gap.
-fn last_cycle(schedule: &Schedule, checked: &Checked, orders: &[ControllerPlan]) -> u64 {
+fn last_cycle(schedule: &Schedule, checked: &Checked, controllers: &[ControllerPlan]) -> u64 {
     let last = schedule.len().checked_sub(1).and_then(|index| schedule.get(index));
-    let clock_hz = orders.first().map_or(1, |first| first.config().clock_hz());
+    let clock_hz = controllers.first().map_or(1, |first| first.config().clock_hz());
     let sent =
         last.map_or(0, |send| send.start.0 + line_time(send.bytes.len() as u64, clock_hz, checked.baud));
     let forced = checked.forced.iter().map(|forced| forced.end.0).max().unwrap_or(0);
-    let rest = |orders: &ControllerPlan| {
-        let config = orders.config();
+    let rest = |plan: &ControllerPlan| {
+        let config = plan.config();
         let ticks = if checked.waits_for_replies() || comes_as_ordered(checked, config) {
             1
         } else {
@@ -207,7 +207,7 @@ fn last_cycle(schedule: &Schedule, checked: &Checked, orders: &[ControllerPlan])
         let late = if is_faithful(checked, config) { 0 } else { BYTE_BITS * config.bit().0 };
         late + (ticks * config.tick().0).max(LONGEST_REST_BITS * config.bit().0 + reply)
     };
-    sent.max(forced) + orders.iter().map(rest).max().unwrap_or(0) + 1
+    sent.max(forced) + controllers.iter().map(rest).max().unwrap_or(0) + 1
 }
 
 #[cfg(test)]

@@ -31,7 +31,7 @@ pub struct Experiment {
     /// What each controller is to do.
     ///
     /// Invariant: one at least, the scenario's own first.
-    orders: Vec<ControllerPlan>,
+    controllers: Vec<ControllerPlan>,
     /// What the host sends without waiting for replies.
     schedule: Rc<Schedule>,
     /// What the segment engine runs, where segments run the scenario; then nothing is sent.
@@ -52,20 +52,20 @@ impl Experiment {
         let Some(mut checked) = checked else { return Err(problems) };
         let line_load = controller_plan::line_load(&checked).map_err(|problem| problems.push(problem)).ok();
         let Some(plans) = plans else { return Err(problems) };
-        let orders = match controller_plan::orders(&checked, plans) {
-            Ok(orders) if problems.is_empty() => orders,
+        let controllers = match controller_plan::controller_plans(&checked, plans) {
+            Ok(controllers) if problems.is_empty() => controllers,
             judged => {
                 problems.extend(judged.err().unwrap_or_default());
                 return Err(problems);
             }
         };
-        debug_assert!(!orders.is_empty() && orders.len() == checked.configs.len());
-        let (schedule, forced) = controller_plan::schedule(&checked, &orders);
+        debug_assert!(!controllers.is_empty() && controllers.len() == checked.configs.len());
+        let (schedule, forced) = controller_plan::schedule(&checked, &controllers);
         checked.forced.extend(forced);
-        let segments = controller_plan::segments(&checked, &orders)?.map(Rc::new);
+        let segments = controller_plan::segments(&checked, &controllers)?.map(Rc::new);
         let cost = match &segments {
             Some(segments) => Cost::of_segments(segments, checked.run),
-            None => Cost::of(&checked, &orders, &schedule),
+            None => Cost::of(&checked, &controllers, &schedule),
         };
         if cost.bytes > MAX_LINE_BYTES {
             let (given, most) = (cost.bytes as f64, MAX_LINE_BYTES as f64);
@@ -77,8 +77,8 @@ impl Experiment {
                 ValueError::TooMuch { given: cost.end_cycle as f64, most: END_OF_TIME as f64, of: "cycles" };
             return Err(alloc::vec![Problem::new("source", cause)]);
         }
-        let line_load = line_load.flatten().filter(|_| orders.iter().any(ControllerPlan::has_ticks));
-        Ok(Self { checked, orders, schedule: Rc::new(schedule), segments, line_load, cost })
+        let line_load = line_load.flatten().filter(|_| controllers.iter().any(ControllerPlan::has_ticks));
+        Ok(Self { checked, controllers, schedule: Rc::new(schedule), segments, line_load, cost })
     }
 
     /// Reads, judges and prepares a scenario.
@@ -111,7 +111,7 @@ impl Experiment {
     /// How many controllers are on the line, 1 to 32.
     #[must_use]
     pub fn controllers(&self) -> usize {
-        self.orders.len()
+        self.controllers.len()
     }
 
     /// The configuration of the first controller: that of `bus` and `line.address`.
@@ -122,7 +122,7 @@ impl Experiment {
 
     /// The configuration of each controller, in the order of the scenario.
     pub fn configs(&self) -> impl ExactSizeIterator<Item = &Config> {
-        self.orders.iter().map(ControllerPlan::config)
+        self.controllers.iter().map(ControllerPlan::config)
     }
 
     /// The host's rate on the line.
@@ -140,14 +140,14 @@ impl Experiment {
     /// The plan of each axis of controller `index`.
     #[must_use]
     pub fn plans_of(&self, index: usize) -> &[AxisPlan] {
-        self.orders.get(index).map_or(&[], ControllerPlan::plans)
+        self.controllers.get(index).map_or(&[], ControllerPlan::plans)
     }
 
     /// The ticks that controller `index` is ordered, a byte a channel (A5), tick after tick; empty
     /// where the source is a line script.
     #[must_use]
     pub fn ticks_of(&self, index: usize) -> &[u8] {
-        self.orders.get(index).map_or(&[], ControllerPlan::ticks)
+        self.controllers.get(index).map_or(&[], ControllerPlan::ticks)
     }
 
     /// How far the host of a framed line has come in `run` with controller `index`; `None` where nobody
@@ -165,13 +165,13 @@ impl Experiment {
 
     /// Which of the host's jobs controller `index` is: it has one for each that has ticks.
     fn job(&self, index: usize) -> Option<usize> {
-        self.orders.get(index).filter(|orders| orders.has_ticks())?;
-        Some(self.orders.iter().take(index).filter(|orders| orders.has_ticks()).count())
+        self.controllers.get(index).filter(|plan| plan.has_ticks())?;
+        Some(self.controllers.iter().take(index).filter(|plan| plan.has_ticks()).count())
     }
 
     fn first(&self) -> &ControllerPlan {
         // There is always a first one.
-        &self.orders[0]
+        &self.controllers[0]
     }
 
     /// What the host sends without waiting for replies; empty for the host of a framed line, whose
@@ -216,7 +216,9 @@ impl Experiment {
 
     /// The host of a framed line, where it has ticks to send.
     fn host(&self) -> Option<FramedHost> {
-        self.checked.waits_for_replies().then(|| controller_plan::framed_host(&self.checked, &self.orders))
+        self.checked
+            .waits_for_replies()
+            .then(|| controller_plan::framed_host(&self.checked, &self.controllers))
     }
 
     /// The whole run, at the fast speed; `sink` takes what the first controller does.

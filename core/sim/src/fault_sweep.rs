@@ -149,8 +149,8 @@ fn off(baud: u32, random: &mut Random) -> u32 {
 /// Whether every receiver's rate is one at which bytes are heard.
 fn in_reach(scenario: &Scenario) -> bool {
     let baud = u64::from(scenario.line.baud);
-    let further = scenario.controllers.iter().map(|controller| controller.receiver_baud);
-    let mut rates = further.chain([scenario.line.receiver_baud]).flatten();
+    let additional = scenario.controllers.iter().map(|controller| controller.receiver_baud);
+    let mut rates = additional.chain([scenario.line.receiver_baud]).flatten();
     rates.all(|rate| u64::from(rate).abs_diff(baud) * 1000 <= IN_REACH * baud)
 }
 

@@ -3,20 +3,20 @@
 //! ```text
 //! each controller   opening: STATUS ── filling: TICKS, TICKS, … ── confirming: STATUS ── done
 //! each exchange     send ── reply ── ten bit times ── the next
-//!                     └── no reply in time: the same frame again, after an end mark
+//!                     └── no reply in time: the same frame again, after a delimiter
 //! ```
 //!
 //! - Opening, the host asks for the expected sequence number and for how many ticks are done. So one
-//!   that comes back after it died goes on where it was: it waits until the controller rests, and
+//!   that comes back after it crashed goes on where it was: it waits until the controller rests, and
 //!   takes up the ticks that are not done.
 //! - Filling, it sends as soon as a whole frame's ticks find a place. Places are counted from the
 //!   last reply on, one a tick. Of several controllers the one whose queue runs dry first comes first.
 //! - A frame is repeated with the sequence number that it had, so it never runs twice. A repetition
-//!   begins with an end mark: what was left of a broken frame cannot join it.
+//!   begins with a delimiter: what was left of a broken frame cannot join it.
 //! - The last tick of a job has no steps, so that its end is no underrun.
 //! - Confirming, it sees that every tick was done. It gives up on a controller that does not answer
 //!   `attempts` times, that is stopped, or that refuses a frame for good; and on one that answers but
-//!   makes no progress (a host that dies again and again), after `attempts` frames for each place of its
+//!   makes no progress (a host that crashes again and again), after `attempts` frames for each place of its
 //!   queue.
 //!
 //! ```
@@ -70,7 +70,7 @@ pub struct Counts {
     pub rejected: u64,
     /// Replies that refused a frame.
     pub refused: u64,
-    /// How often the host died.
+    /// How often the host crashed.
     pub crashes: u64,
 }
 
@@ -202,7 +202,7 @@ impl FramedHost {
         self.last = now;
         match self.phase {
             Phase::Pausing { .. } => self.next_exchange(now, line),
-            Phase::Sending { crashes: true, .. } => self.come_back(now),
+            Phase::Sending { crashes: true, .. } => self.restart(now),
             Phase::Sending { peer, kind, ticks, .. } => {
                 self.receiver = Receiver::new(self.bit);
                 self.deframer = Deframer::default();
@@ -227,8 +227,8 @@ impl FramedHost {
         self.phase = Phase::Pausing { until };
     }
 
-    /// A host that died knows nothing but its orders and where it began.
-    fn come_back(&mut self, now: Instant) {
+    /// A host that crashed knows nothing but its ticks and where it began.
+    fn restart(&mut self, now: Instant) {
         self.counts.crashes += 1;
         for peer in &mut self.peers {
             if peer.is_open() {
@@ -275,7 +275,7 @@ impl FramedHost {
             _ => (Kind::Status, 0),
         };
         let body = match kind {
-            Kind::Ticks => Ticks::emit(peer.seq, peer.job.channels, peer.orders(ticks)),
+            Kind::Ticks => Ticks::emit(peer.seq, peer.job.channels, peer.commands(ticks)),
             _ => Vec::new(),
         };
         let mut bytes = frame::emit(peer.job.address, kind as u8, &body);

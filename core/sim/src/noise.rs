@@ -1,7 +1,7 @@
 //! Random faults of the line and of the host, from a seed: the same seed, the same faults.
 //!
-//! Bits are turned over, bytes are lost or doubled, levels are forced, replies are not heard, and
-//! the host dies within a frame. Which, is decided frame by frame in the order of sending.
+//! Bits are flipped, bytes are lost or duplicated, levels are forced, replies are not heard, and
+//! the host crashes within a frame. Which, is decided frame by frame in the order of sending.
 //!
 //! ```
 //! use stepscope_peripheral::units::Instant;
@@ -63,7 +63,7 @@ pub struct Spoiled {
     pub bytes: Vec<u8>,
     /// A level that is forced while they are sent.
     pub forced: Option<Forced>,
-    /// Whether the host died within them; `bytes` are those sent before.
+    /// Whether the host crashed within them; `bytes` are those sent before.
     pub crashes: bool,
 }
 
@@ -176,11 +176,11 @@ mod tests {
         let spoil = |rates| noise(rates).send(Instant(100), &bytes);
         let lost = spoil(Rates { lost_bytes_ppm: SURE, ..Rates::default() });
         assert_eq!(lost, Spoiled { bytes: Vec::new(), forced: None, crashes: false });
-        let doubled = spoil(Rates { duplicated_bytes_ppm: SURE, ..Rates::default() });
-        assert_eq!(doubled.bytes, [1, 1, 2, 2, 3, 3]);
+        let duplicated = spoil(Rates { duplicated_bytes_ppm: SURE, ..Rates::default() });
+        assert_eq!(duplicated.bytes, [1, 1, 2, 2, 3, 3]);
         assert_eq!(spoil(Rates { flipped_bits_ppm: SURE, ..Rates::default() }).bytes, [254, 253, 252]);
-        let died = spoil(Rates { host_crashes_ppm: SURE, ..Rates::default() });
-        assert!(died.crashes && bytes.starts_with(&died.bytes));
+        let crashed = spoil(Rates { host_crashes_ppm: SURE, ..Rates::default() });
+        assert!(crashed.crashes && bytes.starts_with(&crashed.bytes));
         let forced = spoil(Rates { glitches_ppm: SURE, ..Rates::default() }).forced.expect("forced");
         assert!(Instant(100) <= forced.start && forced.start < forced.end);
         assert!(forced.end.0 < 100 + line_time(3, 16_000_000, 115_200) + 280);

@@ -183,8 +183,8 @@ impl Table {
             let part = count.min(u32::MAX.into()) as u32;
             count -= u64::from(part);
             match self.segments.last_mut() {
-                Some(Segment::Steps { count: before, interval: same, right: way, .. })
-                    if *same == interval && *way == right && before.checked_add(part).is_some() =>
+                Some(Segment::Steps { count: before, interval: same, right: direction, .. })
+                    if *same == interval && *direction == right && before.checked_add(part).is_some() =>
                 {
                     *before += part;
                 }

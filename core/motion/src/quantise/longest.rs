@@ -1,8 +1,8 @@
 //! The longest entry from a given time on (DESIGN B8): one parabola through as many windows as it goes.
 //!
-//! Whether an entry of n steps exists is asked of some of its steps first ([`super::feasible_window`]): those that stand at
+//! Whether an entry of n steps exists is tried with some of its steps first ([`super::feasible_window`]): those that stand at
 //! every eighth of it, and those that an earlier try has missed. If even these leave no interval and add, there is none
-//! for all; if they do, it is replayed through all of them, and the steps that it misses most are asked too. So a length
+//! for all; if they do, it is replayed through all of them, and the steps that it misses most are tried too. So a length
 //! is refused only with proof and taken only after replay, and few lengths are replayed.
 
 use crate::problem::Cause;
@@ -14,7 +14,7 @@ use alloc::vec::Vec;
 
 /// Steps that are looked ahead, at most: 24 bytes each.
 const MAX_AHEAD: usize = 1 << 20;
-/// Steps of an entry that are asked at first.
+/// Steps of an entry that are tried at first.
 const SAMPLES: usize = 8;
 /// Longest time of an entry in units, so that all sums of [`feasible_window`] stay in 64 bits.
 const MAX_SPAN: u64 = 1 << 56;
@@ -50,7 +50,7 @@ pub(super) struct Ahead {
     ended: bool,
     /// Steps, from 1, that tries have missed.
     missed: Vec<usize>,
-    /// Gates of the length that is asked for.
+    /// Gates of the length that is tried.
     gates: Vec<Gate>,
     /// Time before the entry's first step.
     from: u64,
@@ -121,14 +121,14 @@ impl Ahead {
         if first.wait > 0 {
             return Ok(Some(first));
         }
-        // Taken after replay, taken by what was asked, refused by what was asked.
-        let (mut taken, mut asked, mut refused) = (first, 1, most + 1);
+        // Taken after replay, taken by the samples, refused by the samples.
+        let (mut taken, mut sampled, mut refused) = (first, 1, most + 1);
         let mut add = None;
         let mut n = guess + guess / 8;
         loop {
             let top = refused - 1;
-            if asked < top {
-                n = n.clamp(asked + 1, top);
+            if sampled < top {
+                n = n.clamp(sampled + 1, top);
                 read(self, n)?;
                 let there = self.left().len();
                 if there < n {
@@ -137,28 +137,32 @@ impl Ahead {
                 }
                 match self.fit(n, add, false) {
                     Some(fit) => {
-                        (asked, add) = (n, Some(fit.add));
-                        n = if refused > most { n + n / 4 + 1 } else { asked + (refused - asked) / 2 };
+                        (sampled, add) = (n, Some(fit.add));
+                        n = if refused > most { n + n / 4 + 1 } else { sampled + (refused - sampled) / 2 };
                     }
                     None => {
                         refused = n;
                         // Twice as far back as before, until something passes.
-                        n = if asked > taken.count { asked + (refused - asked) / 2 } else { n - n / 8 - 1 };
+                        n = if sampled > taken.count {
+                            sampled + (refused - sampled) / 2
+                        } else {
+                            n - n / 8 - 1
+                        };
                     }
                 }
                 continue;
             }
-            if asked == taken.count {
-                let limited = asked == most || self.ends_with(asked);
-                let count = if limited || !self.is_tight(asked) { asked } else { asked - asked / 8 };
+            if sampled == taken.count {
+                let limited = sampled == most || self.ends_with(sampled);
+                let count = if limited || !self.is_tight(sampled) { sampled } else { sampled - sampled / 8 };
                 return Ok(Some(Longest { count, ..taken }));
             }
-            match self.replay(asked, add) {
+            match self.replay(sampled, add) {
                 Some(longest) => taken = longest,
                 None => {
-                    refused = asked;
-                    n = asked - asked / 16 - 1;
-                    asked = taken.count;
+                    refused = sampled;
+                    n = sampled - sampled / 16 - 1;
+                    sampled = taken.count;
                     add = None;
                 }
             }

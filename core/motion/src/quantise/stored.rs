@@ -3,7 +3,7 @@
 //! ```text
 //! exact        every step in its cycle; steps whose intervals differ by a constant share a segment
 //! document     the motion's own table, where it has one
-//! compressed   few entries, no step further from its due cycle than asked
+//! compressed   few entries, no step further from its due cycle than allowed
 //! ```
 
 use crate::quantise::{
@@ -52,7 +52,7 @@ pub struct Stored {
     pub format: EntryFormat,
     /// The list in these widths.
     pub entries: Vec<Entry>,
-    /// Bytes of the tables as their documents keep them, which are walked up and down again; None where a move has no
+    /// Bytes of the tables as their documents keep them, which are run up and down again; None where a move has no
     /// table.
     pub document_bytes: Option<u64>,
     /// How far the steps are from their due cycles.

@@ -139,18 +139,18 @@ fn ramps() -> Vec<Ramp> {
 #[test]
 fn each_goes_from_exactly_nothing_to_all_and_is_its_slopes_integral() {
     for ramp in ramps() {
-        assert_eq!((ramp.speed(0.0), ramp.way(0.0)), (0.0, 0.0), "{ramp:?}");
+        assert_eq!((ramp.speed(0.0), ramp.travel(0.0)), (0.0, 0.0), "{ramp:?}");
         assert!((ramp.speed(1.0) - 1.0).abs() < 1e-15, "{ramp:?}");
-        assert!((ramp.way(1.0) - ramp.area()).abs() < 1e-15, "{ramp:?}: {}", ramp.way(1.0));
-        let (slots, mut way, mut speed) = (20_000, 0.0, 0.0);
+        assert!((ramp.travel(1.0) - ramp.area()).abs() < 1e-15, "{ramp:?}: {}", ramp.travel(1.0));
+        let (slots, mut travel, mut speed) = (20_000, 0.0, 0.0);
         let (mut steepest, mut sharpest, mut before) = (0.0_f64, 0.0_f64, None);
         for slot in 0..slots {
             let x = (f64::from(slot) + 0.5) / f64::from(slots);
             let slope = ramp.slope(x);
-            way += ramp.speed(x) / f64::from(slots);
+            travel += ramp.speed(x) / f64::from(slots);
             speed += slope / f64::from(slots);
             let end = f64::from(slot + 1) / f64::from(slots);
-            assert!((way - ramp.way(end)).abs() < 1e-7, "{ramp:?} at {end}");
+            assert!((travel - ramp.travel(end)).abs() < 1e-7, "{ramp:?} at {end}");
             assert!((speed - ramp.speed(end)).abs() < 1e-6, "{ramp:?} at {end}");
             steepest = steepest.max(slope);
             let bend = before.map_or(0.0, |before: f64| (slope - before).abs() * f64::from(slots));
@@ -165,10 +165,10 @@ fn each_goes_from_exactly_nothing_to_all_and_is_its_slopes_integral() {
 
 #[test]
 fn the_numbers_that_a_calculator_gives_come_out() {
-    for (ramp, x, speed, way, slope) in ROWS {
+    for (ramp, x, speed, travel, slope) in ROWS {
         let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 4e-15;
         assert!(near(ramp().speed(*x), *speed), "{:?} at {x}: {}", ramp(), ramp().speed(*x));
-        assert!(near(ramp().way(*x), *way), "{:?} at {x}: {}", ramp(), ramp().way(*x));
+        assert!(near(ramp().travel(*x), *travel), "{:?} at {x}: {}", ramp(), ramp().travel(*x));
         assert!(near(ramp().slope(*x), *slope), "{:?} at {x}: {}", ramp(), ramp().slope(*x));
     }
     assert!((Ramp::exponential(4.0).area() - 0.768_657_360_363_773).abs() < 1e-14);
@@ -180,11 +180,11 @@ fn a_ways_place_is_found_to_the_last_digits() {
         let area = ramp.area();
         let powers = (-40..0).map(|power| area * libm::exp2(f64::from(power)));
         let parts = (0..=1000).map(|part| area * f64::from(part) / 1000.0);
-        for way in powers.chain(parts) {
-            let x = ramp.at_way(way);
+        for travel in powers.chain(parts) {
+            let x = ramp.at_travel(travel);
             assert!((0.0..=1.0).contains(&x), "{ramp:?}: {x}");
-            let error = (ramp.way(x) - way) / way.max(1e-300);
-            assert!(error.abs() < 2e-14, "{ramp:?} at {way}: {x} is off by {error}");
+            let error = (ramp.travel(x) - travel) / travel.max(1e-300);
+            assert!(error.abs() < 2e-14, "{ramp:?} at {travel}: {x} is off by {error}");
         }
     }
 }

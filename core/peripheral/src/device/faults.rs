@@ -75,3 +75,45 @@ impl Faults {
         flags.filter(move |flag| u32::from(self.0) & flag.mask() != 0).map(|flag| flag.name)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec::Vec;
+
+    #[test]
+    fn each_fault_has_the_contracts_bit_and_name() {
+        let rows = [
+            (Faults::FRAMING, "FRAMING"),
+            (Faults::SHORT_PACKET, "SHORT_PACKET"),
+            (Faults::CRC, "CRC"),
+            (Faults::OVERLONG, "OVERLONG"),
+            (Faults::QUEUE_OVERFLOW, "QUEUE_OVERFLOW"),
+            (Faults::TOO_MANY_STEPS, "TOO_MANY_STEPS"),
+            (Faults::BAD_SEQ, "BAD_SEQ"),
+            (Faults::UNDERRUN, "UNDERRUN"),
+        ];
+        for (bit, (fault, name)) in rows.into_iter().enumerate() {
+            assert_eq!((fault.bits(), fault.names().collect::<Vec<_>>()), (1 << bit, vec![name]));
+        }
+        assert_eq!(Faults::ALL.names().count(), rows.len());
+        assert_eq!(
+            Faults::from_bits(0xff00 | Faults::CRC.bits()),
+            Faults::CRC,
+            "bits of no fault are left out"
+        );
+    }
+
+    #[test]
+    fn faults_are_set_united_and_cleared_one_by_one() {
+        let mut faults = Faults::default();
+        faults.set(Faults::CRC);
+        faults.set(Faults::BAD_SEQ);
+        let both = Faults::CRC.union(Faults::BAD_SEQ);
+        assert_eq!(faults, both);
+        assert!(both.contains(Faults::CRC) && both.contains(both) && both.contains(Faults::default()));
+        assert!(!Faults::CRC.contains(both) && !both.contains(Faults::UNDERRUN));
+        faults.clear(Faults::CRC.union(Faults::FRAMING));
+        assert_eq!(faults, Faults::BAD_SEQ);
+    }
+}

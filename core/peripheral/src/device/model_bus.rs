@@ -85,3 +85,50 @@ impl<S: Sink> Sink for Unpaused<'_, S> {
         self.0.event(at, event);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::{Bus, SerialLine};
+    use alloc::vec::Vec;
+    use stepscope_registers::{orders, push, status, ticks_done};
+
+    /// Pauses at once, and is asked to in vain.
+    #[derive(Default)]
+    struct Pausing(Vec<Record>, u32);
+
+    impl Sink for Pausing {
+        fn record(&mut self, record: Record) {
+            self.0.record(record);
+        }
+
+        fn event(&mut self, _: Instant, _: Event) {
+            self.1 += 1;
+        }
+
+        fn paused(&self) -> bool {
+            true
+        }
+    }
+
+    #[test]
+    fn time_passes_with_accesses_and_waits_and_with_nothing_else() {
+        let bus = Bus { slots: 4, boot_cycles: 0, ..Bus::default() };
+        let config = Config::new(16_000_000, &bus, &SerialLine::default()).expect("it holds");
+        // Cycles of an access as given, and as they are.
+        for (given, access) in [(0, 1), (1, 1), (8, 8)] {
+            let mut bus = ModelBus::new(&config, Cycles(given), Pausing::default());
+            bus.write(orders::OFFSET, 0x82);
+            bus.write(push::OFFSET, 0);
+            assert_eq!(bus.device().now(), Instant(2 * access));
+            assert_eq!(status::STATE.of(bus.read(status::OFFSET)), status::STATE_MOVING);
+            bus.wait(Cycles(1000));
+            assert_eq!(bus.device().now(), Instant(3 * access + 1000));
+            bus.wait(config.tick());
+            assert_eq!(bus.read(ticks_done::OFFSET), 1);
+            assert_eq!(bus.device().positions()[0], 2);
+            let sink = bus.sink();
+            assert_eq!((sink.0.len(), sink.1), (1 + 1 + 4, 3), "reset, DIR, two pulses; pushed, start, end");
+        }
+    }
+}

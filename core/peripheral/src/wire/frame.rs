@@ -308,6 +308,81 @@ mod tests {
     }
 
     #[test]
+    fn frames_and_replies_have_the_contracts_bytes() {
+        assert_eq!(CHECK.checksum(b"123456789"), 0xe306_9283, "the published value of CRC-32/ISCSI");
+        let stuffed = |content: &[u8]| {
+            let crc = CHECK.checksum(content).to_le_bytes();
+            let mut wire = cobs::encode_vec(&[content, &crc].concat());
+            wire.push(0);
+            wire
+        };
+        assert_eq!(emit(7, Kind::Status as u8, &[]), stuffed(&[7, 4]));
+        assert_eq!(emit(7, Kind::Status as u8, &[]).len(), 8);
+        let status = Status {
+            state: State::Stopped,
+            free: 5,
+            expected_seq: 6,
+            faults: 0x0180,
+            ticks_done: 0x0102_0304,
+        };
+        let bytes = [3, 5, 6, 0x80, 0x01, 4, 3, 2, 1];
+        let ack = Reply { address: 9, answer: Ok(Kind::Stop), status };
+        assert_eq!(ack.emit(), stuffed(&[&[9, 0x85], bytes.as_slice()].concat()));
+        let nak = Reply { address: 9, answer: Err(Reason::QueueFull), status };
+        assert_eq!(nak.emit(), stuffed(&[&[9, 0xff, 2], bytes.as_slice()].concat()));
+        assert_eq!((ack.emit().len(), nak.emit().len(), REPLY_LEN), (17, 18, 18));
+    }
+
+    #[test]
+    fn a_ticks_body_is_judged_by_its_count_and_its_length() {
+        // Body, channels, ticks and first byte of each.
+        type Row<'a> = (&'a [u8], u8, Option<&'a [u8]>);
+        let long = [&[3, 32], [1; 64].as_slice()].concat();
+        let too_long = [&[3, 33], [1; 66].as_slice()].concat();
+        let rows: [Row<'_>; 8] = [
+            (&[], 2, None),
+            (&[1], 2, None),
+            (&[1, 0], 2, None),
+            (&[1, 1, 5], 2, None),
+            (&[1, 1, 5, 6], 2, Some(&[5])),
+            (&[1, 2, 5, 6, 7, 8], 2, Some(&[5, 7])),
+            (&long, 2, Some(&[1; 32])),
+            (&too_long, 2, None),
+        ];
+        for (body, channels, expected) in rows {
+            let ticks = Ticks::parse(body, channels);
+            let firsts = ticks.map(|ticks| ticks.iter().map(|tick| tick[0]).collect::<Vec<_>>());
+            assert_eq!(firsts.as_deref(), expected, "{body:?}");
+            if let Some(ticks) = ticks {
+                assert_eq!((ticks.seq, ticks.count(), ticks.orders()), (body[0], body[1].into(), &body[2..]));
+                assert_eq!(Ticks::emit(ticks.seq, channels, ticks.orders()), body);
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_reply_is_none() {
+        let body = [1; STATUS_LEN];
+        // Kind, body, whether it is one.
+        let rows: [(u8, &[u8], bool); 7] = [
+            (0x84, &body, true),
+            (0x04, &body, false),
+            (0x80, &body, false),
+            (0x84, &body[1..], false),
+            (0xff, &[&[7], body.as_slice()].concat(), true),
+            (0xff, &[&[8], body.as_slice()].concat(), false),
+            (0xff, &[], false),
+        ];
+        for (kind, body, expected) in rows {
+            assert_eq!(
+                Reply::parse(Frame { address: 1, kind, body }).is_some(),
+                expected,
+                "{kind:#x} {body:?}"
+            );
+        }
+    }
+
+    #[test]
     fn replies_are_read_as_they_were_written() {
         let status =
             Status { state: State::Moving, free: 3, expected_seq: 0, faults: 0x82, ticks_done: 0x0100_0000 };

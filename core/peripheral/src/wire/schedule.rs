@@ -106,3 +106,29 @@ impl Schedule {
 pub const fn line_time(bytes: u64, clock_hz: u32, baud: u32) -> u64 {
     BitTimes::new(clock_hz, baud).bytes(bytes).0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn packets_are_paced_one_a_tick() {
+        let packets: [&[u8]; 4] = [&[1, 2], &[3], &[], &[4, 5, 6]];
+        let schedule = Schedule::paced(Instant(101), Cycles(40), packets.iter());
+        let sent: Vec<(u64, &[u8])> = schedule.iter().map(|sent| (sent.start.0, sent.bytes)).collect();
+        assert_eq!(sent, [(101, packets[0]), (141, packets[1]), (181, packets[2]), (221, packets[3])]);
+        assert_eq!((schedule.len(), schedule.total_bytes(), schedule.is_empty()), (4, 6, false));
+        assert_eq!((schedule.get(4), Schedule::default().get(0)), (None, None));
+        assert!(Schedule::default().is_empty());
+    }
+
+    #[test]
+    fn bytes_hold_the_line_as_long_as_their_bits() {
+        // Bytes, clock, baud, cycles: 10.5 cycles a bit begin a byte at 105 and 210.
+        let rows =
+            [(0, 21, 2, 0), (1, 21, 2, 105), (3, 21, 2, 315), (2, 100, 7, 142 + 142), (5, 100, 0, 5000)];
+        for (bytes, clock_hz, baud, expected) in rows {
+            assert_eq!(line_time(bytes, clock_hz, baud), expected, "{bytes} at {baud} of {clock_hz}");
+        }
+    }
+}

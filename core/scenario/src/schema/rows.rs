@@ -63,9 +63,11 @@ macro_rules! rows {
         impl $crate::Compact for $name {
             fn parts(&self) -> $crate::Parts<'_> {
                 let default = Self::default();
+                // All of them: a field without a row does not compile.
+                let Self { $($field,)* } = self;
                 $crate::Parts::Fields(
                     $crate::schema::rows::group::<Self>(),
-                    alloc::vec![$((&self.$field as &dyn $crate::Compact, self.$field != default.$field),)*],
+                    alloc::vec![$(($field as &dyn $crate::Compact, *$field != default.$field),)*],
                 )
             }
         }

@@ -18,15 +18,15 @@ pub struct Job {
     pub tick: Cycles,
     /// Ticks that its queue holds.
     pub queue_depth: u8,
-    /// The orders, tick after tick.
-    pub orders: Rc<[u8]>,
+    /// The commands, a byte a channel, tick after tick.
+    pub commands: Rc<[u8]>,
 }
 
 impl Job {
     /// How many ticks.
     #[must_use]
     pub fn ticks(&self) -> u32 {
-        (self.orders.len() / usize::from(self.channels.max(1))) as u32
+        (self.commands.len() / usize::from(self.channels.max(1))) as u32
     }
 
     /// Most ticks that go into one frame: half of the queue, so that the other half runs meanwhile.
@@ -54,7 +54,7 @@ pub enum Progress {
 /// Why the host gave up on a controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GivenUp {
-    /// It did not answer, as often as it was asked.
+    /// It did not answer, as often as it was tried.
     NoReply,
     /// It is stopped.
     Stopped,
@@ -115,14 +115,14 @@ pub(super) struct Peer {
     pub(super) acknowledged: u32,
     pub(super) seq: u8,
     pub(super) free: u32,
-    /// When it is to be talked to again, and when its queue runs dry.
+    /// When the next frame may be sent to it, and when its queue runs dry.
     pub(super) ready_at: Instant,
     pub(super) dry_at: Instant,
     /// How often the frame that is due was sent.
     pub(super) attempts: u8,
     /// Frames since ticks were last acknowledged.
     pub(super) since_progress: u32,
-    /// What was left of a broken frame may wait at the controller for an end mark.
+    /// What was left of a broken frame may wait at the controller for a delimiter.
     pub(super) flush: bool,
 }
 
@@ -160,11 +160,11 @@ impl Peer {
         self.job.ticks() - self.acknowledged
     }
 
-    /// The next so many ticks' orders.
-    pub(super) fn orders(&self, ticks: u32) -> &[u8] {
+    /// The next so many ticks' commands.
+    pub(super) fn commands(&self, ticks: u32) -> &[u8] {
         let channels = usize::from(self.job.channels);
         let from = self.acknowledged as usize * channels;
-        self.job.orders.get(from..from + ticks as usize * channels).unwrap_or_default()
+        self.job.commands.get(from..from + ticks as usize * channels).unwrap_or_default()
     }
 
     /// Ticks that the queue still holds take so long.

@@ -33,7 +33,7 @@ impl Sink for Ticks {
     }
 }
 
-/// What reaches the line of one frame, and whether the host dies of it.
+/// What reaches the line of one frame, and whether the host crashes in it.
 type Spoiled = (Vec<u8>, bool);
 
 /// Runs the job with `spoil` between host and line, which is given the number of each frame. Gives
@@ -43,7 +43,7 @@ fn run(mut spoil: impl FnMut(usize, &[u8]) -> Spoiled) -> (Vec<u8>, Progress, Co
     let bus = Bus { channels: 2, slots: 4, step_period_cycles: 100, boot_cycles: 5, ..Bus::default() };
     let line = LineSettings { baud: BAUD, protocol: Protocol::Framed, ..LineSettings::default() };
     let config = Config::new(CLOCK_HZ, &bus, &line.serial()).expect("it holds");
-    let job = Job { address: 0, channels: 2, tick: config.tick(), queue_depth: 16, orders: ORDERS.into() };
+    let job = Job { address: 0, channels: 2, tick: config.tick(), queue_depth: 16, commands: ORDERS.into() };
     let settings = Settings { ticks_per_frame: 2, ..Settings::default() };
     let mut host =
         FramedHost::new(alloc::vec![job], &settings, (CLOCK_HZ, BAUD, config.bit()), Instant(6), None);
@@ -64,12 +64,12 @@ fn run(mut spoil: impl FnMut(usize, &[u8]) -> Spoiled) -> (Vec<u8>, Progress, Co
         let level = line.heard(true);
         host.clock(now, sending || line.replied(driven), &mut meant);
         if let Some(sent) = meant.schedule().get(frames.len()) {
-            let (bytes, died) = spoil(frames.len(), sent.bytes);
+            let (bytes, crashed) = spoil(frames.len(), sent.bytes);
             line.send(sent.start, &bytes);
             frames.push(sent.bytes.to_vec());
             if let Phase::Sending { end, crashes, .. } = &mut host.phase {
                 *end = sent.start + Cycles(line_time(bytes.len() as u64, CLOCK_HZ, BAUD));
-                *crashes = died;
+                *crashes = crashed;
             }
         }
         device.clock(level, &mut ticks);
@@ -110,7 +110,7 @@ fn a_byte_that_is_lost_costs_a_repetition_and_no_step() {
             }
             (bytes, false)
         });
-        // Without its end mark a frame is taken when its repetition begins; the answer to it and the
+        // Without its delimiter a frame is taken when its repetition begins; the answer to it and the
         // repetition meet, and only the next one is heard.
         let is_mark = byte + 1 == lengths[frame];
         assert_eq!(counts.repeated, if is_mark { 2 } else { 1 }, "byte {byte} of frame {frame}");
@@ -163,7 +163,7 @@ fn a_host_that_dies_within_a_frame_goes_on_with_the_tick_that_is_due() {
 
 #[test]
 fn what_is_left_of_each_frame_may_be_any_of_its_bytes_twice_over() {
-    // Two faults in a row: a frame without its end mark, and in its repetition each byte lost.
+    // Two faults in a row: a frame without its delimiter, and in its repetition each byte lost.
     each_byte(|frame, byte| {
         check(&alloc::format!("byte {byte} of the repetition of frame {frame}"), |index, bytes| {
             let mut bytes = bytes.to_vec();
@@ -181,7 +181,8 @@ fn what_is_left_of_each_frame_may_be_any_of_its_bytes_twice_over() {
 #[test]
 fn a_late_answer_to_the_frame_before_acknowledges_nothing() {
     for (expected_seq, acknowledged) in [(7, 0), (8, 2)] {
-        let job = Job { address: 0, channels: 2, tick: Cycles(400), queue_depth: 16, orders: ORDERS.into() };
+        let job =
+            Job { address: 0, channels: 2, tick: Cycles(400), queue_depth: 16, commands: ORDERS.into() };
         let wire = (CLOCK_HZ, BAUD, Cycles(11));
         let mut host = FramedHost::new(alloc::vec![job], &Settings::default(), wire, Instant(1), None);
         (host.peers[0].progress, host.peers[0].seq) = (Progress::Filling, 7);

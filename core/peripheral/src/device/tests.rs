@@ -1,0 +1,257 @@
+//! The order within one cycle (DESIGN A7), pair by pair: each row lets two things fall into one cycle, or a cycle apart,
+//! and says what is left of them. Another order of the two would leave something else.
+
+use super::*;
+use crate::{
+    config::{Bus, SerialLine},
+    protocol::{FrameOutcome, Kind, State},
+    units::Cycles,
+    wire::{Line, Schedule, frame::encode_frame, packet::ALL},
+};
+use alloc::{rc::Rc, vec, vec::Vec};
+
+const CLOCK_HZ: u32 = 1_600_000;
+const BAUD: u32 = 100_000;
+/// B, and a byte on the line.
+const BIT: u64 = 16;
+const BYTE: u64 = 10 * BIT;
+/// From the start of a byte to its delivery.
+const DELIVERY: u64 = BIT / 2 + 9 * BIT;
+/// A tick is as long as three frames take.
+const TICK: u64 = 4 * 1000;
+/// Commit of the first TICKS or packet, and the end of its first tick.
+const P: u64 = 2000;
+const E: u64 = P + 1 + TICK;
+
+#[derive(Debug, Default, PartialEq)]
+struct Left {
+    trace: Vec<Record>,
+    events: Vec<(u64, Event)>,
+}
+
+impl Sink for Left {
+    fn record(&mut self, record: Record) {
+        self.trace.record(record);
+    }
+
+    fn event(&mut self, at: Instant, event: Event) {
+        self.events.push((at.0, event));
+    }
+}
+
+impl Left {
+    fn starts(&self) -> Vec<u64> {
+        let starts = self.events.iter().filter(|(_, event)| matches!(event, Event::TickStart { .. }));
+        starts.map(|(at, _)| *at).collect()
+    }
+
+    fn frames(&self) -> Vec<FrameOutcome> {
+        let frame = |(_, event): &(u64, Event)| match event {
+            Event::Frame(outcome) => Some(*outcome),
+            _ => None,
+        };
+        self.events.iter().filter_map(frame).collect()
+    }
+}
+
+fn bus(channels: u8, queue_depth: u8) -> Bus {
+    Bus {
+        channels,
+        slots: 4,
+        step_period_cycles: 1000,
+        pulse_width_cycles: 5,
+        dir_setup_cycles: 3,
+        dir_hold_cycles: 0,
+        queue_depth,
+        boot_cycles: 0,
+        ..Bus::default()
+    }
+}
+
+/// Runs what is sent so that the last byte of each send is delivered in the given cycle, clock by clock and at the fast
+/// speed, to the end of cycle 20 000.
+fn run(bus: &Bus, protocol: Protocol, sends: &[(u64, Vec<u8>)]) -> (Device, Left) {
+    let serial = SerialLine { baud: BAUD, protocol, ..SerialLine::default() };
+    let config = Config::new(CLOCK_HZ, bus, &serial).expect("it holds");
+    let mut schedule = Schedule::default();
+    for (delivery, bytes) in sends {
+        schedule.push(Instant(delivery - DELIVERY - BYTE * (bytes.len() as u64 - 1)), bytes);
+    }
+    let line = || Line::new(Rc::new(schedule.clone()), &[], CLOCK_HZ, BAUD);
+    let end = Instant(20_001);
+    let (mut device, mut slow, mut clocked) = (Device::new(&config), line(), Left::default());
+    while device.now() < end {
+        if slow.next_change() == device.now() {
+            slow.change();
+        }
+        device.clock(slow.heard(true), &mut clocked);
+    }
+    let (mut device, mut fast, mut left) = (Device::new(&config), line(), Left::default());
+    while device.now() < end {
+        if fast.next_change() == device.now() {
+            fast.change();
+        }
+        device.run(fast.heard(true), fast.next_change().min(end), &mut left);
+    }
+    assert_eq!(left, clocked, "both speeds leave the same");
+    (device, left)
+}
+
+/// A frame for all, which is never answered.
+fn frame(kind: Kind, body: &[u8]) -> Vec<u8> {
+    encode_frame(&[&[ALL, kind as u8], body].concat())
+}
+
+#[test]
+fn a_place_freed_by_a_tick_that_starts_in_a_cycle_is_free_for_the_packet_that_ends_in_it() {
+    // One place: the second packet waits until the first one's tick ends in E.
+    for (third, outcome) in [(E - 1, PacketOutcome::QueueFull), (E, PacketOutcome::Queued)] {
+        let sends = [(P, vec![1]), (P + 500, vec![1]), (third, vec![1])];
+        let (device, left) = run(&bus(1, 1), Protocol::Raw, &sends);
+        assert!(left.events.contains(&(third, Event::Packet(outcome))), "{third}: {:?}", left.events);
+        let faults = if outcome == PacketOutcome::Queued { 0 } else { Faults::QUEUE_OVERFLOW.bits() };
+        assert_eq!(device.faults().bits(), faults, "{third}");
+    }
+}
+
+#[test]
+fn a_tick_starts_from_commits_of_earlier_cycles_only() {
+    // Commit, start.
+    for (commit, start) in [(E - 2, E), (E - 1, E), (E, E + 1), (E + 1, E + 2)] {
+        let (_, left) = run(&bus(1, 2), Protocol::Raw, &[(P, vec![1]), (commit, vec![1])]);
+        assert_eq!(left.starts(), [P + 1, start], "committed in {commit}");
+    }
+}
+
+#[test]
+fn a_gap_comes_before_the_byte_that_is_delivered_in_its_cycle() {
+    let gap = P + 45 * BIT + 1;
+    // Delivery of the second byte, whether it is the packet's.
+    for (second, continues) in [(gap - 1, true), (gap, false), (gap + 1, false)] {
+        let (device, left) = run(&bus(2, 2), Protocol::Raw, &[(P, vec![1]), (second, vec![2])]);
+        let byte =
+            left.events.iter().position(|(at, event)| *at == second && matches!(event, Event::Byte { .. }));
+        let cut = left.events.iter().position(|event| *event == (gap, Event::Gap { short: true }));
+        assert_eq!(cut.is_none(), continues, "{second}");
+        assert!(cut.is_none() || cut < byte, "{second}: {:?}", left.events);
+        assert_eq!(left.starts(), if continues { vec![second + 1] } else { vec![] }, "{second}");
+        // Without a third byte the second one's packet is cut short, too.
+        let faults = if continues { 0 } else { Faults::SHORT_PACKET.bits() };
+        assert_eq!(device.faults().bits(), faults, "{second}");
+    }
+}
+
+#[test]
+fn ignoring_ends_before_the_byte_that_is_delivered_in_the_gaps_cycle() {
+    // A break instead of a byte: its stop bit is low, and the line rises before the next one.
+    let gap = P + 45 * BIT + 1;
+    for (byte, taken) in [(gap - 1, false), (gap, true)] {
+        let serial = SerialLine { baud: BAUD, ..SerialLine::default() };
+        let config = Config::new(CLOCK_HZ, &bus(1, 2), &serial).expect("it holds");
+        let mut schedule = Schedule::default();
+        schedule.push(Instant(byte - DELIVERY), &[1]);
+        let start = Instant(P - DELIVERY);
+        let forced = crate::wire::Forced { start, end: start + Cycles(BYTE), level: false };
+        let mut line = Line::new(Rc::new(schedule), &[forced], CLOCK_HZ, BAUD);
+        let (mut device, mut left) = (Device::new(&config), Left::default());
+        while device.now() < Instant(10_000) {
+            if line.next_change() == device.now() {
+                line.change();
+            }
+            device.clock(line.heard(true), &mut left);
+        }
+        assert_eq!(left.starts(), if taken { vec![byte + 1] } else { vec![] }, "delivered in {byte}");
+        assert_eq!(device.faults(), Faults::FRAMING);
+    }
+}
+
+#[test]
+fn a_tick_ends_before_the_frame_of_its_cycle_is_judged() {
+    let (busy, done) = (FrameOutcome::Refused(Reason::Busy), FrameOutcome::Taken(Kind::Disable));
+    for (at, outcome) in [(E - 1, busy), (E, done)] {
+        let sends = [(P, frame(Kind::Ticks, &[0, 1, 1])), (at, frame(Kind::Disable, &[]))];
+        let (_, left) = run(&bus(1, 2), Protocol::Framed, &sends);
+        assert_eq!(left.frames(), [FrameOutcome::Queued(1), outcome], "DISABLE in {at}");
+    }
+}
+
+#[test]
+fn stop_abandons_what_runs_in_its_cycle_and_what_would_start_in_the_next() {
+    // STOP in, ticks that are done, starts.
+    let rows: [(u64, u32, &[u64]); 4] =
+        [(E - 2, 0, &[P + 1]), (E - 1, 0, &[P + 1]), (E, 1, &[P + 1, E]), (E + 1, 1, &[P + 1, E])];
+    for (at, done, starts) in rows {
+        let sends = [(P, frame(Kind::Ticks, &[0, 2, 1, 1])), (at, frame(Kind::Stop, &[]))];
+        let (device, left) = run(&bus(1, 2), Protocol::Framed, &sends);
+        assert_eq!((device.ticks_done(), left.starts()), (done, starts.to_vec()), "STOP in {at}");
+        assert_eq!(device.faults(), Faults::default(), "never because of STOP");
+        let off = left.trace.iter().find(|record| !record.levels.has(Levels::EN));
+        assert_eq!(
+            off.map(|record| record.cycle),
+            Some(Instant(at + 1)),
+            "what it does shows in the next cycle"
+        );
+    }
+}
+
+#[test]
+fn a_tick_that_is_committed_in_the_cycle_of_the_end_does_not_prevent_the_underrun() {
+    for (at, underrun) in [(E - 1, false), (E, true)] {
+        let next = frame(Kind::Ticks, &[1, 1, 0]);
+        let (device, left) =
+            run(&bus(1, 2), Protocol::Framed, &[(P, frame(Kind::Ticks, &[0, 1, 1])), (at, next)]);
+        assert_eq!(left.events.contains(&(E, Event::Underrun)), underrun, "TICKS in {at}");
+        assert_eq!(device.faults().contains(Faults::UNDERRUN), underrun);
+        assert_eq!(device.ticks_done(), 2);
+    }
+}
+
+#[test]
+fn a_reply_tells_what_is_so_at_the_end_of_its_cycle() {
+    // STATUS in, its state, free places, ticks done, faults.
+    let rows = [
+        (E - 1, State::Moving, 1, 0, 0),
+        (E, State::Moving, 2, 1, 0),
+        (E + TICK - 1, State::Moving, 2, 1, 0),
+        (E + TICK, State::Ready, 2, 2, Faults::UNDERRUN.bits()),
+    ];
+    for (at, state, free, ticks_done, faults) in rows {
+        let status = encode_frame(&[0, Kind::Status as u8]);
+        let sends = [(P, frame(Kind::Ticks, &[0, 2, 1, 1])), (at, status)];
+        let (_, left) = run(&bus(1, 2), Protocol::Framed, &sends);
+        let reply = left.events.iter().find_map(|(in_cycle, event)| match event {
+            Event::Reply { reply, start, end } => Some((*in_cycle, *reply, start.0, end.0)),
+            _ => None,
+        });
+        let (in_cycle, reply, start, end) = reply.expect("it is answered");
+        assert_eq!(
+            reply.status,
+            Status { state, free, expected_seq: 1, faults, ticks_done },
+            "STATUS in {at}"
+        );
+        assert_eq!((in_cycle, start, end), (at, at + 11 * BIT, at + 11 * BIT + 17 * BYTE));
+        // DE rises ten bits after the frame and falls with the end of the last stop bit.
+        let de: Vec<u64> = left
+            .trace
+            .windows(2)
+            .filter(|pair| (pair[0].levels.0 ^ pair[1].levels.0) & Levels::DE != 0)
+            .map(|pair| pair[1].cycle.0)
+            .collect();
+        assert_eq!(de, [at + 10 * BIT, end]);
+    }
+}
+
+#[test]
+fn the_line_is_heard_again_in_the_very_cycle_in_which_de_falls() {
+    let fall = P + 11 * BIT + 17 * BYTE;
+    let status = || encode_frame(&[0, Kind::Status as u8]);
+    // A byte begins, and is seen; the host's own start bit lasts to the look at it in all of them.
+    for (start, seen) in [(fall - 1, fall), (fall, fall), (fall + 1, fall + 1)] {
+        let (_, left) = run(&bus(1, 2), Protocol::Framed, &[(P, status()), (start + DELIVERY, vec![0xff])]);
+        let last = left.events.iter().rev().find_map(|(_, event)| match event {
+            Event::Byte { seen, .. } => Some(seen.0),
+            _ => None,
+        });
+        assert_eq!(last, Some(seen), "sent from {start} on");
+    }
+}
