@@ -5,7 +5,7 @@
 //! use stepscope_motion::problem::{Validator, ValueError};
 //!
 //! let mut validator: Validator = Validator::default();
-//! validator.range("axis.speed", 12_000.0, 1.0, 10_000.0, "steps/s");
+//! validator.range("axis.speed", 12_000.0, 1.0..=10_000.0, "steps/s");
 //! let problems = validator.end(()).unwrap_err();
 //! assert_eq!(problems[0].path, "axis.speed");
 //! assert!(problems[0].to_string().starts_with("axis.speed: 12000 steps/s"), "{}", problems[0]);
