@@ -53,7 +53,7 @@ macro_rules! rows {
                     doc: concat!($($doc, "\n"),*),
                     fields: FIELDS,
                     is_choice: false,
-                    is_foreign: $foreign,
+                    is_external: $foreign,
                     blank: || alloc::boxed::Box::new($name::default()),
                 };
                 $crate::schema::Type::Group(GROUP)
@@ -123,7 +123,7 @@ macro_rules! kinds {
                     doc: concat!($($doc, "\n"),*),
                     fields: KINDS,
                     is_choice: true,
-                    is_foreign: false,
+                    is_external: false,
                     blank: || alloc::boxed::Box::new(<$name as $crate::Read>::blank()),
                 };
                 $crate::schema::Type::Group(GROUP)
@@ -216,7 +216,7 @@ const NONE: &Group = &Group {
     doc: "",
     fields: &[],
     is_choice: false,
-    is_foreign: false,
+    is_external: false,
     blank: || alloc::boxed::Box::new(0_u8),
 };
 

@@ -104,7 +104,7 @@ pub struct Group {
     /// Whether JSON holds one of them, and not all.
     pub is_choice: bool,
     /// Whether another crate owns the type, and judges its numbers.
-    pub is_foreign: bool,
+    pub is_external: bool,
     /// One with all defaults.
     pub blank: fn() -> Box<dyn ToParts>,
 }
