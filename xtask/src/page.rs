@@ -42,7 +42,7 @@ pub(crate) async fn build(optimise: Optimise) -> Result<()> {
 /// Builds the crate in `folder` of the workspace for the browser into `package`.
 pub(crate) async fn wasm(tools: &WasmTools, folder: &str, package: &Path) -> Result<()> {
     let mut command = tools.wasm_pack()?;
-    command.args(["build", "--release", "--target", "web"]).args(tools.build_options());
+    command.args(["build", "--profile", "page", "--target", "web"]).args(tools.build_options());
     command.args([folder, "--out-dir"]).arg(package).args(["--", "--locked"]);
     tools.judge(run::to_end(command, run::LIMIT).await)
 }
