@@ -45,6 +45,7 @@ pub mod packet_table;
 pub mod position_error;
 pub mod ramp_costs;
 pub mod run_fingerprint;
+pub mod run_sink;
 pub mod sine_optimum;
 pub mod sine_polyline;
 pub mod source_code;
@@ -60,4 +61,3 @@ pub mod trace_diff;
 pub mod trace_window;
 #[cfg(feature = "std")]
 pub mod vcd;
-pub mod watched;

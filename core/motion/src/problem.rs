@@ -514,7 +514,7 @@ impl fmt::Display for Cause {
                 if *interval > u64::MAX.into() {
                     write!(f, "; give at most {}", u64::MAX)
                 } else {
-                    let least = pulse.least_interval().0 << FRACTION_BITS;
+                    let least = pulse.min_interval().0 << FRACTION_BITS;
                     write!(f, ", {}; give at least {least}, or shorter times of the pulse", Least(*pulse))
                 }
             }
@@ -540,7 +540,7 @@ struct Least(PulseTimes);
 impl fmt::Display for Least {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let PulseTimes { width, setup, hold } = self.0;
-        let least = self.0.least_interval().0;
+        let least = self.0.min_interval().0;
         write!(
             f,
             "a pulse needs width {} + max(hold {} + setup {}, 1) = {least} cycles",

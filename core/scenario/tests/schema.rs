@@ -80,7 +80,7 @@ fn a_range_is_one_of_its_type_and_nothing_is_said_where_it_may_stand() {
         (Limit::Whole(least, most), Type::Whole { most: type_most, .. }) => least > most || most > type_most,
         (Limit::Number(least, most), Type::Number | Type::Group(_)) => least > most,
         // The owner judges it as a float.
-        (Limit::Number(least, most), Type::Whole { .. }) => least > most || !group.is_foreign,
+        (Limit::Number(least, most), Type::Whole { .. }) => least > most || !group.is_external,
         (Limit::Length(least, most, of), Type::Text | Type::List(_)) => least > most || of.is_empty(),
         _ => true,
     };

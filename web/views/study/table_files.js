@@ -35,6 +35,10 @@ export function files(state, engine, { json, controller, axis }) {
     label: `${label}: axis ${axis}, ${form}, ${widths}`,
     language,
     make: () =>
-      engine.distribute("step_source", [[json, controller, axis, form, widths, us, language]], new AbortController().signal),
+      engine.distribute(
+        "step_source",
+        [[json, controller, axis, form, widths, us, language]],
+        new AbortController().signal,
+      ),
   }));
 }

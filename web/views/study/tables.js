@@ -120,7 +120,9 @@ export function createTables({ engine, now, panel }) {
         if (why === null && bytes === fewest) cells[1] = element("strong", {}, cells[1]);
         return [
           name,
-          alike(at) ? "all" : element("span", {}, widths, element("span", { class: "roomy" }, `: ${WIDTHS[widths]}`)),
+          alike(at)
+            ? "all"
+            : element("span", {}, widths, element("span", { class: "wide-only" }, `: ${WIDTHS[widths]}`)),
           ...cells,
         ];
       }),
