@@ -1,6 +1,7 @@
 //! The packages as others would get them: the library crates, packed and built from what was packed; and the npm package,
 //! packed, installed, and used by a plain Node program. Nothing is published.
 
+use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -25,13 +26,46 @@ pub(crate) async fn test() -> Result<()> {
 
 /// Packs the library crates and builds each from its package, with the packages of the others.
 async fn crates() -> Result<()> {
+    // cargo takes a package of one name and version for one that never changes. Here it changes with the sources, so what
+    // was unpacked and built of it before must go.
+    let folder = root().join("target").join("packages");
+    clear(&folder)?;
+    for unpacked in unpacked(&cargo_home()?.join("registry").join("src")) {
+        clear(&unpacked)?;
+    }
     let mut command = toolchain::cargo();
     // Packages are made of work in progress, too.
-    command.args(["package", "--locked", "--allow-dirty"]);
+    command.args(["package", "--locked", "--allow-dirty", "--target-dir"]).arg(&folder);
     for library in LIBRARIES {
         command.args(["--package", &format!("stepscope-{library}")]);
     }
     run::to_end(command, run::LIMIT).await
+}
+
+/// Where cargo keeps what it has unpacked.
+fn cargo_home() -> Result<PathBuf> {
+    match env::var_os("CARGO_HOME") {
+        Some(home) => Ok(home.into()),
+        None => Ok(etcetera::home_dir().context("the user has no home folder")?.join(".cargo")),
+    }
+}
+
+/// The library crates among what is unpacked in `sources`, in the folders of registries that are folders themselves: these
+/// have no host, so their names begin with the hyphen that follows it.
+fn unpacked(sources: &Path) -> Vec<PathBuf> {
+    let registries = fs::read_dir(sources).into_iter().flatten().flatten();
+    let own = registries.filter(|registry| registry.file_name().to_string_lossy().starts_with('-'));
+    let names = LIBRARIES.map(|library| format!("stepscope-{library}-{}", env!("CARGO_PKG_VERSION")));
+    own.flat_map(|registry| names.clone().map(|name| registry.path().join(name)))
+        .filter(|package| package.exists())
+        .collect()
+}
+
+fn clear(folder: &Path) -> Result<()> {
+    if folder.exists() {
+        fs::remove_dir_all(folder).with_context(|| format!("{} can't be cleared", folder.display()))?;
+    }
+    Ok(())
 }
 
 /// Packs the npm package, installs it where nothing else is, and runs a program that uses it.
@@ -39,9 +73,7 @@ async fn npm() -> Result<()> {
     page::built().await?;
     let npm = program("npm").await?;
     let folder = root().join("target").join("npm");
-    if folder.exists() {
-        fs::remove_dir_all(&folder).with_context(|| format!("{} can't be cleared", folder.display()))?;
-    }
+    clear(&folder)?;
     let user = folder.join("user");
     fs::create_dir_all(&user).with_context(|| format!("{} can't be made", user.display()))?;
 
@@ -107,6 +139,19 @@ fn completed(text: &str) -> Result<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn only_the_library_crates_of_registries_without_a_host_are_taken_for_unpacked() {
+        let sources = env::temp_dir().join(format!("stepscope-unpacked-{}", std::process::id()));
+        let version = env!("CARGO_PKG_VERSION");
+        for name in ["-1f/stepscope-motion", "-1f/other", "index-2f/stepscope-motion"] {
+            fs::create_dir_all(sources.join(format!("{name}-{version}"))).unwrap();
+        }
+        let expected = sources.join("-1f").join(format!("stepscope-motion-{version}"));
+        assert_eq!(unpacked(&sources), [expected]);
+        fs::remove_dir_all(&sources).unwrap();
+        assert!(unpacked(&sources).is_empty());
+    }
 
     #[test]
     fn what_wasm_pack_leaves_out_is_added_once() {
