@@ -9,9 +9,8 @@
  */
 import { byId } from "./dom.js";
 import { Dropped, Engine, unlessDropped } from "./engine/engine.js";
-import { SAMPLES } from "./form/fields.js";
 import { createForm } from "./form/form.js";
-import { SOURCES } from "./form/sources.js";
+import { samples, takeSchema } from "./form/schema.js";
 import { createCard } from "./help/card.js";
 import { createGuide, offerGuide } from "./help/guide.js";
 import { createKeys } from "./help/keys.js";
@@ -169,28 +168,6 @@ function cancel() {
   dispatch({ type: "failed", message: "The run was cancelled; the views show the last result." });
 }
 
-/** One of everything that can be added, with the core's own defaults. */
-async function samples() {
-  const filled = async (/** @type {object} */ sample) =>
-    readJson((await engine.ask("check", JSON.stringify(sample))).scenario);
-  const [all, line, ...sources] = await Promise.all([
-    filled(SAMPLES.all),
-    filled(SAMPLES.line),
-    ...Object.keys(SOURCES).map((kind) => filled({ source: { [kind]: {} } })),
-  ]);
-  const { axes } = all.source.motion;
-  return {
-    moves: Object.assign({}, ...axes[0].moves),
-    mechanics: Object.assign({}, ...axes.map((/** @type {any} */ axis) => axis.mechanics)),
-    sources: Object.assign({}, ...sources.map(({ source }) => source)),
-    glitch: all.line.glitches[0],
-    send: line.source.line.sends[0],
-    controller: all.controllers[0],
-    rules: all.driver_timing.rules,
-    motor: axes[0].motor,
-  };
-}
-
 /**
  * The state that an earlier visit left: the visitor's own scenario, also with problems in it, and the one
  * that was set aside for it, which undo brings back.
@@ -217,13 +194,15 @@ async function start() {
     byId("status").textContent = "no engine";
     return;
   }
-  const [fallback, presets, drivers, made] = await Promise.all([
+  const [fallback, presets, drivers, schema] = await Promise.all([
     engine.ask("default_scenario"),
     engine.ask("presets"),
     engine.ask("drivers"),
-    samples(),
+    engine.ask("schema"),
     loadCharts(),
   ]);
+  takeSchema(schema);
+  const made = samples();
   const { left, good } = await own(fallback);
   state = left;
   const page = { engine, dispatch, now: () => state };

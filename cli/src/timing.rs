@@ -8,7 +8,7 @@ use std::{
 };
 use stepscope_core::{
     inspect::{
-        drivers::{self, DRIVERS, Sheet},
+        drivers::{self, DRIVERS, DataSheet},
         timing::{Rule, RuleResult, TimingCheck},
     },
     peripheral::units::{Cycles, Instant},
@@ -29,7 +29,7 @@ pub(crate) struct Options {
     timing: bool,
     /// Check against this driver, whatever the scenario names; `stepscope drivers` lists them.
     #[arg(long, value_name = "DRIVER", value_parser = driver)]
-    driver: Option<&'static Sheet>,
+    driver: Option<&'static DataSheet>,
     /// Write a table of the violations, up to a million.
     #[arg(long, value_name = "FILE")]
     violations: Option<PathBuf>,
@@ -39,7 +39,7 @@ pub(crate) struct Options {
 }
 
 /// The driver of that name.
-fn driver(id: &str) -> Result<&'static Sheet, String> {
+fn driver(id: &str) -> Result<&'static DataSheet, String> {
     let found = DRIVERS.into_iter().find(|sheet| sheet.id == id);
     found.ok_or_else(|| "no such driver; `stepscope drivers` lists them".to_owned())
 }

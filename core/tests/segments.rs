@@ -62,7 +62,7 @@ fn lists() -> impl Strategy<Value = (PulseTimes, Vec<SegmentList>)> {
     let pulse = (cycles(1..=6_u64), cycles(0..=4_u64), cycles(0..=4_u64))
         .prop_map(|(width, setup, hold)| PulseTimes { width, setup, hold });
     pulse.prop_flat_map(|pulse| {
-        let least = pulse.least_interval().0 << 16;
+        let least = pulse.min_interval().0 << 16;
         let fraction = prop_oneof![Just(0_u64), 0..0x1_0000_u64];
         let spare = (prop_oneof![2 => Just(0), 2 => 0..3_u64, 1 => 0..400_u64], fraction.clone());
         let steps = (1..=12_u32, spare, prop_oneof![Just(0), -0x4000..0x4000_i64, -0x4_0000..0x4_0000_i64]);
@@ -105,7 +105,7 @@ proptest! {
         let lists = Rc::new(CheckedSegments::new(pulse, lists, 9).expect("they keep the rules"));
         let end = expected.last().map_or(0, |record| record.cycle.0);
         prop_assert_eq!(lists.end().0, end);
-        prop_assert!(lists.most_records() >= expected.len() as u64);
+        prop_assert!(lists.max_records() >= expected.len() as u64);
         let done = |engine: &SegmentEngine| {
             (engine.at_rest(), engine.cycles_until_event(), engine.now().0, engine.positions()) == (true, None, end + 1, positions)
         };

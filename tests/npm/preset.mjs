@@ -6,7 +6,7 @@
 import assert from "node:assert/strict";
 import { readFile, readdir } from "node:fs/promises";
 import { join } from "node:path";
-import init, { Simulation, presets, version } from "stepscope-wasm";
+import init, { Judged, presets, version } from "stepscope-wasm";
 
 const [golden] = process.argv.slice(2);
 assert.ok(golden, "give the folder of the golden cases");
@@ -27,12 +27,14 @@ assert.equal(version(), about.version);
 
 /** The digests of all controllers of a scenario's run, a line each. */
 function digests(scenario) {
-  const simulation = new Simulation(scenario);
+  const judged = new Judged(scenario);
+  const simulation = judged.run();
   try {
     while (!simulation.advance(100_000).done);
     return simulation.summary().controllers.map(({ digest }) => digest);
   } finally {
     simulation.free();
+    judged.free();
   }
 }
 

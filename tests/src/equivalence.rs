@@ -11,7 +11,7 @@ use stepscope_core::{
         signal::{Event, Levels, MAX_CHANNELS, PacketOutcome, Record, Sink},
         trace::{Digest, Recording, steps},
         units::{Cycles, Instant},
-        wire::{Forced, Line},
+        wire::{ForcedLevel, Line},
     },
     scenario::{Noise, Scenario},
     sim::{Experiment, Run},
@@ -189,11 +189,11 @@ fn by_hand(config: &Config, mut line: Line, cycles: Cycles, hurry: u64) -> (Left
 
 /// The line of a scenario, made from the outside.
 fn line(scenario: &Scenario, experiment: &Experiment) -> Line {
-    let forced = scenario.line.glitches.iter().map(|glitch| Forced {
+    let forced = scenario.line.glitches.iter().map(|glitch| ForcedLevel {
         start: Instant(glitch.start_cycle),
         end: Instant(glitch.start_cycle + glitch.length_cycles),
         level: glitch.level != 0,
     });
-    let forced: Vec<Forced> = forced.collect();
+    let forced: Vec<ForcedLevel> = forced.collect();
     Line::new(Rc::new(experiment.schedule().clone()), &forced, scenario.clock_hz, scenario.line.baud)
 }

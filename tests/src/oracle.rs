@@ -30,7 +30,7 @@ use controller::{Controller, Driven};
 use line::{forced_levels, host_levels};
 
 pub use frames::{LONGEST_FRAME, cobs, crc32c, frame};
-pub use line::{Heard, bit_start, byte_start, hear, line_levels, stop_sample};
+pub use line::{RxEvent, bit_start, byte_start, hear, line_levels, stop_sample};
 pub use orders::kinds;
 pub use packets::packets_schedule;
 pub use segments::run_segments;

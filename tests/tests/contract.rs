@@ -89,7 +89,7 @@ fn line(experiment: &Experiment, config: &oracle::Config, input: &oracle::Input)
     let forced: Vec<_> = input
         .forced
         .iter()
-        .map(|&(start, length, level)| stepscope_core::peripheral::wire::Forced {
+        .map(|&(start, length, level)| stepscope_core::peripheral::wire::ForcedLevel {
             start: stepscope_core::peripheral::units::Instant(start),
             end: stepscope_core::peripheral::units::Instant(start + length),
             level,

@@ -19,7 +19,7 @@ use stepscope_tests::{
 
 /// The same line in the core's words.
 fn experiment(line: &[oracle::Config], input: &oracle::Input) -> Result<Experiment, Vec<Problem>> {
-    let (first, further) = (&line[0], &line[1..]);
+    let (first, additional) = (&line[0], &line[1..]);
     let controller = |config: &oracle::Config| Controller {
         address: config.address.unwrap_or(0),
         receiver_baud: Some(config.receiver_baud as u32),
@@ -39,7 +39,7 @@ fn experiment(line: &[oracle::Config], input: &oracle::Input) -> Result<Experime
         },
         source: Source::Line(LineScript { sends: translate::sends(&input.sends) }),
         run_cycles: Some(input.cycles),
-        controllers: further.iter().map(controller).collect(),
+        controllers: additional.iter().map(controller).collect(),
         ..Scenario::default()
     })
 }

@@ -7,7 +7,7 @@ use stepscope_core::{
     peripheral::{
         config::Protocol,
         signal::{Event, Record},
-        wire::{Forced, schedule::Sent},
+        wire::{ForcedLevel, schedule::Sent},
     },
     scenario::{Glitch, Hex, LineScript, Noise, Scenario, ScriptedSend, Source},
     sim::{Experiment, Run, framed_host::Progress},
@@ -35,7 +35,7 @@ fn again(scenario: &Scenario, run: &Run) -> Scenario {
         bytes: Hex(send.bytes.to_vec()),
         ..ScriptedSend::default()
     };
-    let glitch = |forced: &Forced| Glitch {
+    let glitch = |forced: &ForcedLevel| Glitch {
         start_cycle: forced.start.0,
         length_cycles: forced.end.0 - forced.start.0,
         level: forced.level.into(),

@@ -11,12 +11,14 @@
 // Natively there is nothing to draw on but the tests' SVG.
 #![cfg(any(test, target_arch = "wasm32"))]
 
+mod axis;
 mod curve;
 #[cfg(all(test, not(target_arch = "wasm32")))]
 mod pictures;
 mod surface;
 mod ticks;
 
+pub(crate) use axis::Axis;
 use plotters::{
     coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged},
     prelude::*,
@@ -44,22 +46,6 @@ pub(crate) struct Spec {
     pub(crate) colors: Colors,
     /// From the back to the front.
     pub(crate) series: Vec<Series>,
-}
-
-/// Range and labels of one axis.
-#[derive(Deserialize)]
-pub(crate) struct Axis {
-    /// Least value shown.
-    pub(crate) min: f64,
-    /// Greatest value shown.
-    pub(crate) max: f64,
-    /// Unit behind the tick labels; takes an SI prefix. Empty for a plain number, which takes the
-    /// prefix alone.
-    pub(crate) unit: String,
-    /// False for units that take no prefix, such as dB, and for counts.
-    pub(crate) prefix: bool,
-    /// Space for the tick labels in CSS pixels; 0 for none.
-    pub(crate) label_px: f64,
 }
 
 /// Colours of what is no series, as `#rrggbb`.

@@ -6,7 +6,8 @@ use serde::Serialize;
 use std::{mem::take, rc::Rc};
 use stepscope_core::{
     inspect::{
-        changes::Changes, packet_table::Filter, timing::TimingCheck, trace_diff::TraceDiff, watched::Watched,
+        changes::Changes, drivers, packet_table::Filter, run_sink::RunSink, timing::TimingCheck,
+        trace_diff::TraceDiff,
     },
     peripheral::{
         config::Config,
@@ -19,6 +20,9 @@ use wasm_bindgen::prelude::*;
 
 /// Most records that a page keeps of all controllers together; 16 bytes each.
 const MAX_RECORDS: u64 = 40_000_000;
+
+/// Violations of the driver's timing that the page gets in full.
+const MAX_KEPT: usize = 1000;
 
 /// One scenario's run.
 #[wasm_bindgen]
@@ -84,13 +88,13 @@ impl Simulation {
     /// # Errors
     /// If the run makes more records than a page can keep.
     pub fn advance(&mut self, max_records: u32) -> Result<JsValue, JsError> {
-        let watched = |one: &mut ControllerRecording| Watched {
+        let watched = |one: &mut ControllerRecording| RunSink {
             recording: take(&mut one.recording),
             timing: one.timing.take(),
         };
-        let mut watched: Vec<Watched> = self.recordings.iter_mut().map(watched).collect();
+        let mut watched: Vec<RunSink> = self.recordings.iter_mut().map(watched).collect();
         let done = self.run.advance_each(u64::from(max_records.max(1)), &mut watched);
-        for (one, Watched { recording, timing }) in self.recordings.iter_mut().zip(watched) {
+        for (one, RunSink { recording, timing }) in self.recordings.iter_mut().zip(watched) {
             one.changes.extend(&recording.trace);
             (one.recording, one.timing) = (recording, timing);
         }
@@ -128,7 +132,7 @@ impl Simulation {
         let recording = |config: &Config| ControllerRecording {
             recording: Recording::default(),
             changes: Changes::default(),
-            timing: crate::timing::check(scenario),
+            timing: drivers::check(scenario, MAX_KEPT),
             steps: vec![None; usize::from(config.channels())],
         };
         Self {

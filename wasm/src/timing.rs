@@ -8,15 +8,12 @@ use serde::Serialize;
 use stepscope_core::{
     inspect::{
         drivers::{self, DRIVERS},
-        timing::{RuleResult, TimingCheck, Violation},
+        timing::{RuleResult, Violation},
     },
     peripheral::units::Instant,
-    scenario::{DriverTiming, Scenario, TimingRules},
+    scenario::{DriverTiming, TimingRules},
 };
 use wasm_bindgen::prelude::*;
-
-/// Violations that the page gets in full.
-const MAX_KEPT: usize = 1000;
 
 #[derive(Serialize)]
 struct Listed {
@@ -59,12 +56,6 @@ pub fn drivers() -> Result<JsValue, JsError> {
         })
         .collect();
     object(&listed)
-}
-
-/// The check that a scenario asks for, before its run.
-pub(crate) fn check(scenario: &Scenario) -> Option<TimingCheck> {
-    let rules = scenario.driver_timing.as_ref().map(drivers::rules)?;
-    Some(TimingCheck::new(&rules, scenario.clock_hz, MAX_KEPT))
 }
 
 #[derive(Serialize)]

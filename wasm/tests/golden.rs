@@ -5,7 +5,7 @@ mod js;
 
 use js::{get, list, number, text};
 use stepscope_tests::golden::{CASES, Case};
-use stepscope_wasm::Simulation;
+use stepscope_wasm::Judged;
 use wasm_bindgen_test::{wasm_bindgen_test, wasm_bindgen_test_configure};
 
 wasm_bindgen_test_configure!(run_in_dedicated_worker);
@@ -25,7 +25,8 @@ fn every_case_gives_its_trace_at_both_speeds() {
 #[wasm_bindgen_test]
 fn every_case_gives_its_digest_in_slices() {
     every_case(|case| {
-        let mut simulation = Simulation::new(case.json()?).map_err(|_| format!("{}: refused", case.name))?;
+        let mut simulation =
+            Judged::new(case.json()?).run().map_err(|_| format!("{}: refused", case.name))?;
         let controllers = case.experiment()?.controllers();
         let mut records = 0.0;
         for slice in [1, 2, 3, 100].into_iter().chain(std::iter::repeat(10_000)) {

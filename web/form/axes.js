@@ -1,15 +1,12 @@
 /** The axes of a controller in the form: their mechanics and their moves. The first controller's and any further one's alike. */
 import { button, element } from "../dom.js";
 import { get, MOST_CHANNELS, set } from "../state/state.js";
-import { MECHANICS } from "./fields.js";
-import { labels } from "./kit.js";
+import { pointsFirst } from "./fields.js";
 import { motorItems } from "./motor.js";
-import { MOVES } from "./moves/index.js";
+import { fieldsOfKind, labels, mostOf } from "./schema.js";
 
 /** @typedef {import("./kit.js").Kit} Kit */
 /** @typedef {{axes: string, bus: string, whose: string, least: number}} Place  Paths of the axes and of their bus; what tells them from another controller's; fewest axes. */
-
-const MOST_MOVES = 64;
 
 /** @param {Kit} kit @param {Place} place @returns {Node[]} */
 export function axisItems(kit, place) {
@@ -43,7 +40,7 @@ function axisItem(kit, place, axes, index) {
   const head = element(
     "div",
     { class: "item-head" },
-    kindSelect(`Mechanics of ${name}`, `${path}.mechanics`, kind, labels(MECHANICS), (chosen) =>
+    kindSelect(`Mechanics of ${name}`, `${path}.mechanics`, kind, labels("Mechanics"), (chosen) =>
       put(`${path}.mechanics`, { [chosen]: samples.mechanics[chosen] }),
     ),
     ...(axes.length > 1
@@ -64,20 +61,20 @@ function axisItem(kit, place, axes, index) {
     ),
     button("✕", `Remove ${name}`, () => removeAxis(kit, place, axes, index), axes.length <= place.least),
   );
-  const fields = block(`${path}.mechanics.${kind}`, MECHANICS[kind]?.fields ?? []);
+  const fields = block(`${path}.mechanics.${kind}`, fieldsOfKind("Mechanics", kind));
   const moves = axis.moves.map((/** @type {any} */ _, /** @type {number} */ i) => moveItem(kit, list, axis.moves, i));
   const last = axis.moves[axis.moves.length - 1];
   const add = button(
     "Add move",
     `Add move to ${name}`,
     () => put(list, [...axis.moves, structuredClone(last ?? { cosine: samples.moves.cosine })]),
-    axis.moves.length >= MOST_MOVES,
+    axis.moves.length >= mostOf("Axis", "moves"),
   );
   return item(
     `Axis ${index} · channel ${index}`,
     path,
     [head, ...fields, ...motorItems(kit, path, axis, name), ...moves, add],
-    kind,
+    `Mechanics.${kind}`,
   );
 }
 
@@ -88,14 +85,15 @@ function moveItem({ samples, put, block, item, kindSelect }, list, moves, index)
   const head = element(
     "div",
     { class: "item-head" },
-    kindSelect(`Kind of move ${index + 1}`, path, kind, labels(MOVES), (chosen) =>
+    kindSelect(`Kind of move ${index + 1}`, path, kind, labels("Move"), (chosen) =>
       put(path, { [chosen]: samples.moves[chosen] }),
     ),
     button("↑", `Move ${index + 1} earlier`, () => put(list, swapped(moves, index - 1)), index === 0),
     button("✕", `Remove move ${index + 1}`, () => put(list, moves.toSpliced(index, 1)), moves.length === 1),
   );
   const note = element("p", { class: "item-note", "data-note": path });
-  return item(`Move ${index + 1}`, path, [head, ...block(`${path}.${kind}`, MOVES[kind]?.fields ?? []), note], kind);
+  const fields = block(`${path}.${kind}`, pointsFirst(fieldsOfKind("Move", kind)));
+  return item(`Move ${index + 1}`, path, [head, ...fields, note], `Move.${kind}`);
 }
 
 /** An axis needs its channel: the bus grows with it. @param {Kit} kit @param {Place} place @param {any[]} axes @param {any} axis */

@@ -78,7 +78,7 @@ export function control(path, field, { dispatch, now }) {
   const root = element(
     "div",
     { class: wide ? "field wide" : "field" },
-    termButton(field.label, field.term ?? field.key, { id: `${id}-label`, tabindex: "-1" }),
+    termButton(field.label, field.term, { id: `${id}-label`, tabindex: "-1" }),
     box,
     also,
     hint,

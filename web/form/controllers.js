@@ -1,7 +1,7 @@
 /** Further controllers on the line, in the form: each with its address, its bus and what it is to do. */
 import { button, element } from "../dom.js";
 import { MOST_FURTHER } from "../state/state.js";
-import { CONTROLLER } from "./fields.js";
+import { controllerFields } from "./fields.js";
 import { hex, SOURCES } from "./sources.js";
 
 /** @typedef {import("../state/types.js").Scenario} Scenario */
@@ -26,6 +26,7 @@ function controllerPart({ put, block, part, errorOf, ...kit }, scenario, index, 
   const path = `controllers[${index}]`;
   const name = `Controller ${index + 2}`;
   const kind = Object.keys(scenario.source)[0];
+  const { own, bus, folded } = controllerFields();
   const head = element(
     "div",
     { class: "item-head end" },
@@ -35,9 +36,9 @@ function controllerPart({ put, block, part, errorOf, ...kit }, scenario, index, 
   return part(name, true, [
     errorOf(path),
     head,
-    ...block(path, CONTROLLER.own),
-    ...block(`${path}.bus`, CONTROLLER.bus),
-    part(`Pulses and queue of controller ${index + 2}`, false, block(`${path}.bus`, CONTROLLER.folded)),
+    ...block(path, own),
+    ...block(`${path}.bus`, bus),
+    part(`Pulses and queue of controller ${index + 2}`, false, block(`${path}.bus`, folded)),
     ...SOURCES[kind].orderForm({ put, block, part, errorOf, ...kit }, index),
   ]);
 }

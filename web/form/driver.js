@@ -1,8 +1,7 @@
 /** The driver that the pulses are checked against, in the form: none, one whose data sheet is known, or rules. */
 import { element } from "../dom.js";
 import { si } from "../state/number.js";
-import { RULES } from "../state/rules.js";
-import { RULE_FIELDS } from "./fields.js";
+import { fields, labelOf } from "./schema.js";
 
 /** @typedef {import("../state/types.js").DriverSheet} DriverSheet */
 
@@ -12,7 +11,7 @@ export function driverItems(kit, { driver_timing: driver }, sheets) {
   const kinds = {
     none: "not checked",
     ...Object.fromEntries(sheets.map(({ id, name }) => [id, name])),
-    rules: "rules of your own",
+    rules: labelOf("DriverTiming", "rules"),
   };
   const chosen = driver?.rules ? "rules" : (driver?.preset ?? "none");
   const select = kit.kindSelect("Driver", "driver_timing", chosen, kinds, (kind) =>
@@ -27,14 +26,14 @@ export function driverItems(kit, { driver_timing: driver }, sheets) {
     ),
   );
   const head = [kit.errorOf("driver_timing"), element("div", { class: "item-head" }, select)];
-  if (driver?.rules) return [...head, ...kit.block("driver_timing.rules", RULE_FIELDS)];
+  if (driver?.rules) return [...head, ...kit.block("driver_timing.rules", fields("TimingRules"))];
   return known ? [...head, element("p", { class: "item-note" }, summary(known))] : head;
 }
 
 /** What a driver asks for, and where that stands. @param {DriverSheet} sheet */
 function summary({ rules, source }) {
-  const times = Object.entries(RULES).flatMap(([rule, label]) => {
-    const ns = rules[`${rule}_ns`];
+  const times = fields("TimingRules").flatMap(({ key, label }) => {
+    const ns = rules[key];
     return ns ? [`${label} ${si(ns * 1e-9, "s")}`] : [];
   });
   return `At least: ${times.join(", ")}. ${source[0].toUpperCase()}${source.slice(1)}.`;

@@ -1,5 +1,5 @@
 /**
- * The form: built from the tables of `fields.js` and `sources.js`. It is built anew only when the scenario's shape
+ * The form: built from the layout of `fields.js` and the kinds of `sources.js`. It is built anew only when the scenario's shape
  * changes (kinds, numbers of axes, moves, rows, controllers); else values are put into the fields that stand.
  */
 
@@ -7,11 +7,11 @@ import { element, fill } from "../dom.js";
 import { get, held } from "../state/state.js";
 import { controllerItems } from "./controllers.js";
 import { driverItems } from "./driver.js";
-import { GLITCH, OF_SEGMENTS, SECTIONS } from "./fields.js";
+import { glitchFields, OF_SEGMENTS, sections } from "./fields.js";
 import { showAbout, showDerived, showProblems } from "./judgement.js";
-import { createKit, labels } from "./kit.js";
+import { createKit } from "./kit.js";
 import { showRemedy } from "./remedies.js";
-import { SOURCE_TERMS } from "./source_terms.js";
+import { labelOf, labels, termOf } from "./schema.js";
 import { runsAlone, SOURCES, withSource } from "./sources.js";
 
 /** @typedef {import("../state/types.js").State} State */
@@ -30,13 +30,13 @@ export function createForm({ root, samples, drivers, dispatch }) {
   /** @param {Scenario} scenario @returns {Node[]} */
   function source(scenario) {
     const kind = Object.keys(scenario.source)[0];
-    const select = kit.kindSelect("What the host sends", "source", kind, labels(SOURCES), (chosen) =>
+    const select = kit.kindSelect(labelOf("Scenario", "source"), "source", kind, labels("Source"), (chosen) =>
       kit.put("", withSource(state.scenario, chosen, samples)),
     );
     return [
       kit.errorOf("source"),
       element("div", { class: "item-head" }, select),
-      element("p", { class: "item-note" }, SOURCE_TERMS[SOURCES[kind].term].text),
+      element("p", { class: "item-note" }, termOf(`Source.${kind}`)?.text ?? ""),
       ...SOURCES[kind].form(kit, scenario),
     ];
   }
@@ -47,11 +47,11 @@ export function createForm({ root, samples, drivers, dispatch }) {
       kit.rows(
         "line.glitches",
         scenario.line.glitches,
-        GLITCH,
+        glitchFields(),
         "Glitch",
         (last) =>
           last ? { ...last, start_cycle: last.start_cycle + 2 * last.length_cycles } : structuredClone(samples.glitch),
-        "glitches_ppm",
+        "Noise.glitches_ppm",
       ),
     controllers: (scenario) => controllerItems(kit, scenario),
     driver_timing: (scenario) => driverItems(kit, scenario, drivers),
@@ -79,8 +79,8 @@ export function createForm({ root, samples, drivers, dispatch }) {
     const active = /** @type {HTMLElement | null} */ (document.activeElement);
     const focus = active && root.contains(active) ? focusOf(active) : null;
     const alone = runsAlone(scenario);
-    const asked = SECTIONS.filter(({ onLine }) => !(onLine && alone) || scenario.controllers.length > 0);
-    const sections = asked.map(({ title, open, blocks, group, list }) =>
+    const asked = sections().filter(({ onLine }) => !(onLine && alone) || scenario.controllers.length > 0);
+    const parts = asked.map(({ title, open, blocks, group, list }) =>
       kit.part(title, open, [
         ...blocks.flatMap(({ path, fields }) =>
           kit.block(path, path === "bus" && alone ? fields.filter(({ key }) => OF_SEGMENTS.includes(key)) : fields),
@@ -89,7 +89,7 @@ export function createForm({ root, samples, drivers, dispatch }) {
         ...(list ? LISTS[list](scenario) : []),
       ]),
     );
-    fill(root, kit.part("Source", true, source(scenario)), ...sections);
+    fill(root, kit.part("Source", true, source(scenario)), ...parts);
     if (!focus) return;
     const again = /** @type {HTMLElement | undefined} */ (root.querySelectorAll(focus.selector)[focus.nth]);
     // What was removed with the focus on it leaves it to what stands there now.

@@ -190,12 +190,12 @@ function isQuiet({ glitches, noise }) {
 
 /** What goes over the line: how much, or how often. @param {State} state @param {import("../state/types.js").Derived} derived @returns {[string, string, string, string]} */
 function sent({ scenario: { source, line }, result, revision }, { sends, line_load, controllers }) {
-  if ("line" in source) return ["Sends", count(sends), "", "line_script"];
+  if ("line" in source) return ["Sends", count(sends), "", "Source.line"];
   // How many are repeated on a noisy line only the run tells; a controller that dies is asked everything again.
   const ran = result?.revision === revision ? result.summary.host : null;
   const most = line.noise.host_crashes_ppm > 0 ? "after the run" : `at most ${count(sends)}`;
   if (line.protocol === "framed")
-    return ["Frames", ran ? count(ran.frames) : isQuiet(line) ? count(sends) : most, "", "frame"];
+    return ["Frames", ran ? count(ran.frames) : isQuiet(line) ? count(sends) : most, "", "ScriptedSend.frame"];
   const busy = controllers.filter(({ ticks }) => ticks > 0).length;
   return ["Packets", line_load === null ? "–" : plain(busy / controllers[0].tick_s, "/s"), "", "rate_of_packets"];
 }

@@ -104,8 +104,3 @@ export function createKit({ samples, now, dispatch }) {
 
   return { samples, now, put, row, block, errorOf, part, item, kindSelect, rows, clear, controls, groups };
 }
-
-/** The labels of a table of kinds. @param {{[kind: string]: {label: string}}} kinds */
-export function labels(kinds) {
-  return Object.fromEntries(Object.entries(kinds).map(([kind, { label }]) => [kind, label]));
-}

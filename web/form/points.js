@@ -3,10 +3,9 @@
  * semicolon, a tab or spaces. A table's line of names is left out, as the core does when it reads one.
  */
 
-/** @typedef {[number, number]} Point */
+import { mostOf } from "./schema.js";
 
-/** The most that a scenario may have; the core has the same. */
-const MOST = 4096;
+/** @typedef {[number, number]} Point */
 
 /** @param {Point[]} points */
 export function printPoints(points) {
@@ -21,6 +20,7 @@ export function readPoints(text) {
   const rows = lines
     .map((line) => line.trim())
     .map((line) => (line === "" ? [] : line.split(mark).map((cell) => bare(cell, mark))));
+  const most = mostOf("Points", "points");
   /** @type {Point[]} */
   const value = [];
   let [time, position] = [0, 1];
@@ -40,7 +40,7 @@ export function readPoints(text) {
         message: `Line ${index + 1}: “${lines[index].trim().slice(0, 40)}” is no point; give its time in s and its position, such as 0.25, 12.5.`,
       };
     value.push([point[0], point[1]]);
-    if (value.length > MOST) return { message: `Line ${index + 1}: more than ${MOST} points; give fewer.` };
+    if (value.length > most) return { message: `Line ${index + 1}: more than ${most} points; give fewer.` };
   }
   return { value };
 }

@@ -1,14 +1,13 @@
 /** What the host can send: a row a kind, with its part of the form and what it begins with. */
 import { axisItems } from "./axes.js";
-import { ENGINE, PACKET_LINES, SEGMENTS, SEND } from "./fields.js";
+import { packetLines, segmentFields } from "./fields.js";
+import { field, fields } from "./schema.js";
 
 /** @typedef {import("../state/types.js").Scenario} Scenario */
 /** @typedef {import("./kit.js").Kit} Kit */
 /** @typedef {import("./kit.js").Samples} Samples */
 /**
  * @typedef {object} SourceKind
- * @property {string} label
- * @property {string} term  What explains it.
  * @property {(scenario: Scenario, samples: Samples) => any} fresh  What stands in the source when it is chosen.
  * @property {(kit: Kit, scenario: Scenario) => Node[]} form
  * @property {(scenario: Scenario, samples: Samples, controller: any) => {axes?: any[], packets?: string[]}} order  What a further controller is to do when it is chosen.
@@ -18,11 +17,9 @@ import { ENGINE, PACKET_LINES, SEGMENTS, SEND } from "./fields.js";
 /** @type {{[kind: string]: SourceKind}} */
 export const SOURCES = {
   motion: {
-    label: "Motion of axes",
-    term: "motion",
     fresh: (_, samples) => structuredClone(samples.sources.motion),
     form: (kit) => [
-      kit.row("source.motion.engine", ENGINE),
+      kit.row("source.motion.engine", field("Motion", "engine")),
       ...axisItems(kit, { axes: "source.motion.axes", bus: "bus", whose: "", least: 1 }),
     ],
     order: (_, samples) => ({ axes: structuredClone(samples.sources.motion.axes) }),
@@ -35,42 +32,36 @@ export const SOURCES = {
       }),
   },
   packets: {
-    label: "Packets in hex",
-    term: "packets_in_hex",
     fresh: (scenario) => ({ packets: packets(scenario, scenario.bus, scenario.line.address) }),
-    form: (kit) => [kit.row("source.packets.packets", PACKET_LINES)],
+    form: (kit) => [kit.row("source.packets.packets", packetLines("Packets"))],
     order: (scenario, _, controller) => ({ packets: packets(scenario, controller.bus, controller.address) }),
-    orderForm: (kit, index) => [kit.row(`controllers[${index}].packets`, PACKET_LINES)],
+    orderForm: (kit, index) => [kit.row(`controllers[${index}].packets`, packetLines("Controller"))],
   },
   line: {
-    label: "Line script",
-    term: "line_script",
     fresh: (scenario) => ({ sends: sends(scenario) }),
     form: (kit, scenario) =>
       kit.rows(
         "source.line.sends",
         scenario.source.line.sends,
-        SEND,
+        fields("ScriptedSend"),
         "Send",
         (last) =>
           last ? { ...last, start_cycle: after(last, kit.now().scenario) } : structuredClone(kit.samples.send),
-        "line_script",
+        "Source.line",
       ),
     order: () => ({}),
     orderForm: () => [],
   },
   segments: {
-    label: "Lists of segments",
-    term: "lists_of_segments",
     fresh: ({ bus }) => ({ channels: Array.from({ length: Number(bus.channels) || 1 }, list) }),
     form: (kit, scenario) =>
       kit.rows(
         "source.segments.channels",
         scenario.source.segments.channels,
-        SEGMENTS,
+        segmentFields(),
         "List",
         (last) => structuredClone(last ?? list()),
-        "lists_of_segments",
+        "Source.segments",
       ),
     order: () => ({}),
     orderForm: () => [],

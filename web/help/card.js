@@ -3,8 +3,8 @@
  * all of them; a click elsewhere and Escape close it.
  */
 import { element, fill } from "../dom.js";
+import { documents, termOf } from "../form/schema.js";
 import { CARD, termButton } from "../form/term_button.js";
-import { termsOf } from "./terms.js";
 
 /** @typedef {import("../form/field.js").Term} Term */
 
@@ -51,8 +51,17 @@ export function createCard() {
 /** The word whose card is on show, or was last. @type {HTMLElement | null} */
 let opener = null;
 
-/** What the cards say. @type {Promise<typeof import("./texts.js")> | null} */
+/** What the cards say of no field. @type {Promise<typeof import("./texts.js")> | null} */
 let loading = null;
+
+/** Loads it, once; null where that fails. */
+async function load() {
+  loading ??= import("./texts.js");
+  return loading.catch(() => {
+    loading = null;
+    return null;
+  });
+}
 
 /** Fills the card for a word and shows it there. @param {HTMLElement} word */
 async function show(word) {
@@ -60,17 +69,13 @@ async function show(word) {
   if (!card) return;
   if (opener !== word) opener?.setAttribute("aria-expanded", "false");
   opener = word;
-  loading ??= import("./texts.js");
-  const texts = await loading.catch(() => {
-    loading = null;
-    return null;
-  });
+  const name = word.dataset.term ?? "";
+  const own = termOf(name);
+  const texts = own ? null : await load();
   // Another word was asked for meanwhile.
   if (opener !== word || !word.isConnected) return;
-  const DOCUMENTS = texts?.DOCUMENTS ?? {};
-  const TERMS = texts ? termsOf(texts) : {};
-  const name = word.dataset.term ?? "";
   const view = texts?.VIEWS[name.replace("view:", "")];
+  const term = own ?? texts?.DERIVED[name];
   const hint = word.closest(".field")?.querySelector(".hint")?.textContent;
   fill(
     card,
@@ -80,18 +85,14 @@ async function show(word) {
           element(
             "dl",
             {},
-            ...Object.values(view.terms).flatMap((term) => [
-              element("dt", {}, term.name ?? ""),
-              meaning("dd", term, DOCUMENTS),
-            ]),
+            ...Object.values(view.terms).flatMap((term) => [element("dt", {}, term.name ?? ""), meaning("dd", term)]),
           ),
         ]
       : [
-          element("strong", {}, TERMS[name]?.name ?? word.textContent ?? ""),
+          element("strong", {}, term?.name ?? word.textContent ?? ""),
           meaning(
             "p",
-            TERMS[name] ?? { text: texts ? "" : "The text could not be loaded; try again when the network is there." },
-            DOCUMENTS,
+            term ?? { text: texts ? "" : "The text could not be loaded; try again when the network is there." },
           ),
           ...(hint ? [element("p", { class: "range" }, hint)] : []),
         ]),
@@ -102,14 +103,10 @@ async function show(word) {
   word.setAttribute("aria-expanded", "true");
 }
 
-/** What is meant, with where it comes from. @param {"p" | "dd"} tag @param {Term} term @param {{[id: string]: {short: string}}} documents */
-export function meaning(tag, { text, from }, documents) {
-  return element(
-    tag,
-    {},
-    text,
-    ...(from && documents[from] ? [" ", element("span", { class: "from" }, `(${documents[from].short})`)] : []),
-  );
+/** What is meant, with where it comes from. @param {"p" | "dd"} tag @param {Term} term */
+export function meaning(tag, { text, from }) {
+  const document = documents()[from ?? ""];
+  return element(tag, {}, text, ...(document ? [" ", element("span", { class: "from" }, `(${document.short})`)] : []));
 }
 
 /** Puts the card under its word, or above it where there is more room. @param {HTMLElement} card @param {HTMLElement} word */

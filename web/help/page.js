@@ -1,25 +1,25 @@
 /** The help page: its lists are those that the page itself uses. */
 import { byId, element, fill } from "../dom.js";
-import { MECHANICS } from "../form/fields.js";
-import { MOVES } from "../form/moves/index.js";
+import { compiled } from "../engine/wasm.js";
+import { documents, labels, takeSchema, termOf, terms } from "../form/schema.js";
+import init, { schema } from "../pkg/stepscope_wasm.js";
 import { meaning } from "./card.js";
-import { termsOf } from "./terms.js";
-import * as texts from "./texts.js";
+import { DERIVED, VIEWS } from "./texts.js";
 
-const { DOCUMENTS, VIEWS } = texts;
-const TERMS = termsOf(texts);
+/** @typedef {import("../form/field.js").Term} Term */
 
-fill(
-  byId("moves"),
-  ...Object.values(MOVES).flatMap(({ label, about }) => [element("dt", {}, label), meaning("dd", about, DOCUMENTS)]),
-);
-fill(
-  byId("mechanics"),
-  ...Object.values(MECHANICS).flatMap(({ label, about }) => [
+await init({ module_or_path: await compiled() });
+takeSchema(schema());
+
+/** The kinds of a choice, each with what it is. @param {string} group */
+const kinds = (group) =>
+  Object.entries(labels(group)).flatMap(([kind, label]) => [
     element("dt", {}, label),
-    meaning("dd", about, DOCUMENTS),
-  ]),
-);
+    meaning("dd", /** @type {Term} */ (termOf(`${group}.${kind}`))),
+  ]);
+
+fill(byId("moves"), ...kinds("Move"));
+fill(byId("mechanics"), ...kinds("Mechanics"));
 fill(
   byId("view-list"),
   ...Object.entries(VIEWS).flatMap(([view, { about }]) => [
@@ -27,12 +27,12 @@ fill(
     element("dd", {}, about),
   ]),
 );
-fill(byId("documents"), ...Object.values(DOCUMENTS).map(({ title }) => element("li", {}, title)));
+fill(byId("documents"), ...Object.values(documents()).map(({ title }) => element("li", {}, title)));
 
-// Two terms can have one name, such as the width of a pulse and the rule for it.
-const kinds = new Set(Object.keys({ ...MOVES, ...MECHANICS }));
-const terms = Object.entries(TERMS)
-  .filter(([id]) => !kinds.has(id))
-  .map(([, term]) => term);
-terms.sort((a, b) => (a.name ?? "").localeCompare(b.name ?? "", "en"));
-fill(byId("terms"), ...terms.flatMap((term) => [element("dt", {}, term.name ?? ""), meaning("dd", term, DOCUMENTS)]));
+// Fields of several groups share a term; two terms can have one name, such as the width of a pulse and the rule for it.
+const all = Object.entries(terms()).filter(([id]) => !/^(Move|Mechanics)\./.test(id));
+const ofViews = Object.values(VIEWS).flatMap(({ terms }) => Object.values(terms));
+const each = [...all.map(([, term]) => term), ...Object.values(DERIVED), ...ofViews];
+const said = [...new Map(each.map((term) => [`${term.name}: ${term.text}`, term])).values()];
+said.sort((a, b) => (a.name ?? "").localeCompare(b.name ?? "", "en"));
+fill(byId("terms"), ...said.flatMap((term) => [element("dt", {}, term.name ?? ""), meaning("dd", term)]));

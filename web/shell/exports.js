@@ -5,7 +5,7 @@
 import { byId, element, fill, options, say } from "../dom.js";
 import { Dropped } from "../engine/engine.js";
 import { count, si, time } from "../state/number.js";
-import { isStale, lookedAt } from "../state/state.js";
+import { isStale, selected } from "../state/state.js";
 import { message } from "./link.js";
 import { dropDown } from "./popover.js";
 import { save } from "./save.js";
@@ -164,7 +164,7 @@ function offers(state, engine, span) {
         },
       ]
     : [];
-  const looked = lookedAt(state);
+  const looked = selected(state);
   if (!result || !looked) return [{ title: "Experiment", offers: settings }];
   const { controllers, end_cycle } = result.summary;
   const part = controllers.length > 1 ? `-controller-${result.controller + 1}` : "";

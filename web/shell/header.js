@@ -2,7 +2,7 @@
 import { byId, element, fill, options, say } from "../dom.js";
 import { readJson } from "../state/json.js";
 import { count, si } from "../state/number.js";
-import { held, isStale, lookedAt } from "../state/state.js";
+import { held, isStale, selected } from "../state/state.js";
 import { listen } from "./commands.js";
 import { health, ill } from "./health.js";
 import { loadTheme, saveTheme } from "./storage.js";
@@ -60,7 +60,7 @@ export function createHeader({ presets, cancel, retry, dispatch }) {
     line("health", health(state));
     byId("health").classList.toggle("error", ill(state));
     chooser(state);
-    say(byId("digest"), lookedAt(state)?.digest ?? "–");
+    say(byId("digest"), selected(state)?.digest ?? "–");
     byId("digest").classList.toggle("stale", isStale(state));
     messages(state);
     document.title = state.scenario.title ? `${state.scenario.title} – Stepscope` : "Stepscope";
@@ -99,7 +99,7 @@ function status(state, long) {
     return `${Math.round((100 * progress.cycle) / Math.max(1, progress.end_cycle))} %, ${count(progress.records)} edges so far`;
   const held_back = held(state) === "problems" ? "not run: the form needs attention" : "";
   if (!state.result) return held_back || (state.run.phase === "running" ? "running…" : "no result yet");
-  const { edges = 0 } = lookedAt(state) ?? {};
+  const { edges = 0 } = selected(state) ?? {};
   const parts = [`${count(edges)} edges`, si(state.result.summary.end_s, "s")];
   if (held_back) parts.unshift(`${held_back}; last result`);
   return parts.join(" · ");

@@ -1,13 +1,13 @@
 /** How a run went, in a sentence: what became of the host's orders, faults, and what a driver could not have followed. */
 import { count } from "../state/number.js";
-import { lookedAt } from "../state/state.js";
+import { selected } from "../state/state.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Summary} Summary */
 
 /** @param {State} state */
 export function health(state) {
-  const looked = lookedAt(state);
+  const looked = selected(state);
   if (!state.result || !looked) return "";
   const { faults, violations } = looked;
   return [
@@ -25,7 +25,7 @@ export function health(state) {
 
 /** Whether something went wrong that nothing made good. A framed line mends what noise does to it. @param {State} state */
 export function ill(state) {
-  const looked = lookedAt(state);
+  const looked = selected(state);
   const host = state.result?.summary.host;
   const failed = host ? host.jobs.some(({ progress }) => progress !== "done") : Boolean(looked?.faults.names.length);
   return failed || Boolean(looked?.violations);

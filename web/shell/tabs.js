@@ -1,6 +1,6 @@
 /** On a narrow screen the views are tabs and the form folds away; on a wide one all of them stand. */
 import { byId } from "../dom.js";
-import { lookedAt } from "../state/state.js";
+import { selected } from "../state/state.js";
 
 /** @typedef {import("../state/types.js").State} State */
 
@@ -23,7 +23,7 @@ export function createTabs({ dispatch }) {
 
   /** @param {State} state */
   function render(state) {
-    const driver = typeof lookedAt(state)?.violations === "number";
+    const driver = typeof selected(state)?.violations === "number";
     tab("timing").hidden = !driver;
     const shown = state.view === "timing" && !driver ? "spectrum" : state.view;
     for (const view of VIEWS) {

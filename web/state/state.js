@@ -26,7 +26,7 @@
  *   | {type: "open", view: import("./types.js").ViewPart}
  *   | {type: "seen", text: string} | {type: "compared", text: string, verdict: import("./types.js").Verdict}
  *   | {type: "hover", cycle: number | null}
- *   | {type: "light", lit: State["lit"]}
+ *   | {type: "light", highlighted: State["highlighted"]}
  *   | {type: "marker", digit: number, cycle: number | null}
  *   | {type: "cursor", which: "a" | "b", cycle: number | null}
  *   | {type: "row", row: number} | {type: "packet", packet: number | null}
@@ -84,7 +84,7 @@ export function initial(scenario) {
     axis: 0,
     unit: "steps",
     hover: null,
-    lit: null,
+    highlighted: null,
     cursors: { a: null, b: null },
     markers: NO_MARKERS,
     row: 0,
@@ -165,7 +165,7 @@ export function update(state, message) {
     case "hover":
       return state.hover === message.cycle ? state : { ...state, hover: message.cycle };
     case "light":
-      return sameLit(state.lit, message.lit) ? state : { ...state, lit: message.lit };
+      return sameLit(state.highlighted, message.highlighted) ? state : { ...state, highlighted: message.highlighted };
     case "marker":
       return { ...state, markers: state.markers.with(message.digit, message.cycle) };
     case "cursor":
@@ -219,7 +219,7 @@ const fresh = {
   filter: NO_FILTER,
   side: null,
   hover: null,
-  lit: null,
+  highlighted: null,
   cursors: { a: null, b: null },
   markers: NO_MARKERS,
   axis: 0,
@@ -238,7 +238,7 @@ function moveTo(state, { window: wanted, joins }) {
   return { ...state, window, gesture, zooms: [...state.zooms, state.window].slice(-DEPTH) };
 }
 
-/** @param {State["lit"]} one @param {State["lit"]} other */
+/** @param {State["highlighted"]} one @param {State["highlighted"]} other */
 function sameLit(one, other) {
   return one === other || JSON.stringify(one) === JSON.stringify(other);
 }
@@ -317,7 +317,7 @@ function done(state, { revision, summary, ms }) {
     gesture: null,
     cursors: { a: inside(state.cursors.a), b: inside(state.cursors.b) },
     markers: state.markers.map(inside),
-    lit: null,
+    highlighted: null,
   };
   return state.awaited ? opened(here, state.awaited) : here;
 }
@@ -332,7 +332,7 @@ function opened(state, view) {
     awaited: null,
     window: view.window ? within(view.window, last) : null,
     cursors: { a: inside(view.a), b: inside(view.b) },
-    axis: Math.min(view.axis ?? 0, (lookedAt(looked)?.channels ?? 1) - 1),
+    axis: Math.min(view.axis ?? 0, (selected(looked)?.channels ?? 1) - 1),
     view: view.view ?? state.view,
     side: view.side ?? null,
     study: view.study ?? state.study,
@@ -355,12 +355,12 @@ function lookAt(state, controller) {
     axis: Math.min(state.axis, channels - 1),
     packet: null,
     hover: null,
-    lit: null,
+    highlighted: null,
   };
 }
 
 /** What the run made of the controller on show; none before the first run. @param {State} state */
-export function lookedAt({ result }) {
+export function selected({ result }) {
   return result?.summary.controllers[result.controller];
 }
 

@@ -1,5 +1,5 @@
 /**
- * The shapes that the modules of the page share; no code. The core's own text (`core/src/scenario`) is
+ * The shapes that the modules of the page share; no code. The core's own text (`core/scenario/src/schema`) is
  * the reference for what a scenario may hold.
  *
  * @typedef {{[key: string]: any}} Scenario  Full JSON of one experiment, every field written.
@@ -105,7 +105,7 @@
  * @property {number} axis          Axis of the motion view.
  * @property {"steps" | "mm" | "deg"} unit  Unit of the motion view.
  * @property {number | null} hover  Cycle under the pointer.
- * @property {{start: number, end: number, from: string, packet: number | null, bit: number | null} | null} lit  What is pointed at, in cycles: a packet, a part of it, an edge, a bit of the line. All views light it up. `from` is the view that says so.
+ * @property {{start: number, end: number, from: string, packet: number | null, bit: number | null} | null} highlighted  What is pointed at, in cycles: a packet, a part of it, an edge, a bit of the line. All views light it up. `from` is the view that says so.
  * @property {(number | null)[]} markers  Cycles of the markers 0 to 9.
  * @property {{a: number | null, b: number | null}} cursors  Cycles.
  * @property {number} row           Signal bit whose edges are looked for.

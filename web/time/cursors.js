@@ -5,7 +5,7 @@ import { pixelOf } from "./timeline.js";
 /** @typedef {import("../state/types.js").State} State */
 
 /**
- * What is lit in all views, the pointer's line, cursors A and B, and the numbered markers.
+ * What is highlighted in all views, the pointer's line, cursors A and B, and the numbered markers.
  * @param {CanvasRenderingContext2D} context
  * @param {State} state
  * @param {{left: number, right: number}} plot
@@ -44,7 +44,7 @@ export function drawCursors(context, state, plot, height) {
     if (end >= start && from < plot.right && to > plot.left) context.fillRect(from, 0, Math.max(2, to - from), height);
     context.globalAlpha = 1;
   };
-  if (state.lit) band(state.lit, "--mark", 0.3);
+  if (state.highlighted) band(state.highlighted, "--mark", 0.3);
   if (state.picked) {
     band(state.picked, "--accent", 0.18);
     line(state.picked.start, "--accent", [], "");
@@ -60,7 +60,7 @@ export function drawCursors(context, state, plot, height) {
 export function overlaid(before, state) {
   return (
     before?.hover !== state.hover ||
-    before?.lit !== state.lit ||
+    before?.highlighted !== state.highlighted ||
     before?.cursors !== state.cursors ||
     before?.markers !== state.markers ||
     before?.picked !== state.picked

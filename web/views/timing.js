@@ -4,10 +4,10 @@
  */
 import { byId, element, fill, say } from "../dom.js";
 import { unlessDropped } from "../engine/engine.js";
+import { ruleName } from "../form/schema.js";
 import { listen } from "../shell/commands.js";
 import { count, si, time } from "../state/number.js";
-import { ruleName } from "../state/rules.js";
-import { endOf, lookedAt, shown } from "../state/state.js";
+import { endOf, selected, shown } from "../state/state.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Timing} Timing */
@@ -121,7 +121,7 @@ export function createTiming({ engine, drivers, speak, dispatch, now }) {
     current = -1;
     say(byId("timing-sentence"), "");
     const answer =
-      lookedAt(state)?.violations === null ? null : await engine.latest("timing", "timing").catch(unlessDropped);
+      selected(state)?.violations === null ? null : await engine.latest("timing", "timing").catch(unlessDropped);
     if (answer === undefined) return;
     timing = answer;
     paint(now());
@@ -206,7 +206,7 @@ export function createTiming({ engine, drivers, speak, dispatch, now }) {
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    const has = typeof lookedAt(state)?.violations === "number";
+    const has = typeof selected(state)?.violations === "number";
     const open = has && state.side !== "spectrum" ? "timing" : "spectrum";
     byId("views").classList.toggle("timing-open", open === "timing");
     for (const button of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("[data-side]"))) {

@@ -26,6 +26,8 @@ const TESTS: [&str; 7] =
     ["motion", "segments", "golden", "documents", "contract", "contract_line", "registers"];
 /// Of the mutants that can be built, so many in a hundred have to be caught.
 const LEAST_CAUGHT_PERCENT: usize = 95;
+/// Time after which a mutant's tests, with what is still built for them, are stopped: it goes round for ever.
+const TEST_LIMIT: Duration = Duration::from_secs(10 * 60);
 /// Time for the copy, its first build, and the tests as they are.
 const START: Duration = Duration::from_secs(40 * 60);
 /// Most time for one mutant, on average.
@@ -135,10 +137,12 @@ fn leave_out<'a>(results: &Path, names: impl Iterator<Item = &'a String>) -> Res
 fn testing(program: &Path, packages: &[&str], folder: &Path) -> Command {
     let mut command = cargo_mutants(program, packages);
     command.args(["--iterate", "--no-times", "--colors=never", "--jobs=1", "--output"]).arg(folder);
-    for package in TESTED {
-        command.args(["--test-package", package]);
-    }
+    command.arg(format!("--timeout={}", TEST_LIMIT.as_secs()));
+    // Named to `cargo test` alone: what is built before it are the changed package's own tests, and none of all the others.
     command.args(["--", "--locked", "--lib"]);
+    for package in TESTED {
+        command.args(["--package", package]);
+    }
     for test in TESTS {
         command.args(["--test", test]);
     }

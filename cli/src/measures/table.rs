@@ -5,7 +5,7 @@
 //! deviation   steps   |ideal, the steps of B1|   ticks   |those, the pulses|   pulses   |ideal, the pulses|
 //! ```
 
-use super::Distortion;
+use crate::measures::distortion::Distortion;
 use std::io::{self, Write};
 use stepscope_core::inspect::measures::{CurveMetrics, Measures, PulseErrors};
 

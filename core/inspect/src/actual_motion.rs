@@ -7,6 +7,28 @@
 //!        ___|       | tick  |___ | dwell|      |___       of a step of a segment 1 by its interval;
 //! STEP      ' |  | |'   |   '    '     '|   |  |'         where neither is, nothing moves
 //! ```
+//!
+//! ```
+//! use stepscope_inspect::actual_motion::Pulses;
+//!
+//! // Of a run of the default motion: 3200 steps in 0.4 s.
+//! # use stepscope_peripheral::trace::{Recording, steps};
+//! # use stepscope_sim::Experiment;
+//! # let experiment = Experiment::from_json("{}").expect("the default motion");
+//! # let mut recording = Recording::default();
+//! # let run = experiment.run(&mut recording);
+//! # let made = steps(&recording.trace, 0);
+//! let pulses = Pulses {
+//!     channel: 0,
+//!     steps: &made,
+//!     log: &recording.packets,
+//!     segments: None,
+//!     config: experiment.config(),
+//! };
+//! let start_s = pulses.zero() as f64 / pulses.hz();
+//! assert!((pulses.speed_at(start_s + 0.2) - 16_000.0).abs() < 500.0); // half-way, as fast as it gets
+//! assert_eq!(pulses.position_at(start_s + 0.5), 3200);
+//! ```
 
 use stepscope_peripheral::{
     config::Config,

@@ -7,6 +7,15 @@
 //! steps = k*length + offset   k = sum((l-l')*(s-s'))/sum((l-l')^2)  l', s' the means; beside it: an offset
 //!                                                                   tells of backlash or a misplaced zero
 //! ```
+//!
+//! ```
+//! use stepscope_inspect::calibration::{BadPairs, Calibration, Pair};
+//!
+//! let measured = [(10.0, 801.0), (20.0, 1601.0), (40.0, 3201.0)].map(|(length, steps)| Pair { length, steps });
+//! let fit = Calibration::of(&measured).expect("they have a line").with_offset;
+//! assert_eq!((fit.steps_per_unit.round(), fit.offset_steps.round()), (80.0, 1.0)); // one step of backlash
+//! assert_eq!(Calibration::of(&measured[..1]), Err(BadPairs::TooFew { given: 1 }));
+//! ```
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -73,6 +82,7 @@ pub struct Calibration {
 
 /// Why pairs have no line.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum BadPairs {
     /// Fewer than two.
     TooFew {

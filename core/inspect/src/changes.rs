@@ -9,6 +9,21 @@
 //!
 //! A block's two masks are exact, so a search steps over every block in which its signal stays as it is.
 //! All levels together take 16 / 64 * 16 / 15 of a byte more for a record: about a quarter of a byte.
+//!
+//! ```
+//! use stepscope_inspect::changes::{Changes, Edge};
+//!
+//! // Of the trace of a run: the first rise of STEP0, bit 0.
+//! # use stepscope_peripheral::trace::{Recording, steps};
+//! # use stepscope_sim::Experiment;
+//! # let experiment = Experiment::from_json("{}").expect("the default motion");
+//! # let mut recording = Recording::default();
+//! # let run = experiment.run(&mut recording);
+//! let mut changes = Changes::default();
+//! changes.extend(&recording.trace);
+//! let found = changes.next_edge(&recording.trace, 0, 0, Edge::Rise).expect("it steps");
+//! assert_eq!(recording.trace[found].cycle.0, steps(&recording.trace, 0)[0].cycle);
+//! ```
 
 use crate::columns::Columns;
 use alloc::{vec, vec::Vec};

@@ -1,6 +1,20 @@
 //! A stretch of a trace as the pixel columns of a logic view: which levels a signal had in each.
 //!
 //! Nothing is sampled: a glitch of one cycle within a column is in it, however wide the column is.
+//!
+//! ```
+//! use stepscope_inspect::columns::columns;
+//! use stepscope_peripheral::{
+//!     signal::{Levels, Record},
+//!     units::Instant,
+//! };
+//!
+//! // STEP0 is high in cycles 5 to 7; two columns of ten cycles each.
+//! let trace = [(0, 0), (5, 1), (8, 0)].map(|(cycle, levels)| Record { cycle: Instant(cycle), levels: Levels(levels) });
+//! let columns = columns(&trace, 0, 20, 2);
+//! assert_eq!((columns.high[0] & 1, columns.low[0] & 1), (1, 1)); // both within the first
+//! assert_eq!((columns.high[1] & 1, columns.last[1] & 1), (0, 0));
+//! ```
 
 use alloc::{vec, vec::Vec};
 use stepscope_peripheral::signal::Record;

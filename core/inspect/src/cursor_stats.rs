@@ -8,6 +8,17 @@
 //!   mean = | x dt / (B - A)         for the polynomials, and for cosines to the last digits
 //!          A                 made   from step to step and from tick to tick, sums of rectangles
 //! ```
+//!
+//! ```
+//! use stepscope_inspect::cursor_stats::ideal;
+//! use stepscope_motion::{moves::Axis, plan_axis};
+//!
+//! // Between two cursors that hold the whole of one turn in 0.4 s.
+//! let plan = plan_axis(&Axis::default(), "x").expect("it can be planned");
+//! let stats = ideal(&plan, 0.0, 0.0, 0.4);
+//! assert!((stats.speed.mean - 8000.0).abs() < 1.0);
+//! assert!(stats.speed.rms > stats.speed.mean);
+//! ```
 
 use crate::actual_motion::Pulses;
 use stepscope_motion::{AxisPlan, Breakpoints};

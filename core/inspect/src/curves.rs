@@ -1,5 +1,15 @@
 //! Position, speed and acceleration over a stretch of time, as the least and greatest value in
 //! each pixel column: of the ideal motion, and of the one that the simulated pulses make.
+//!
+//! ```
+//! use stepscope_inspect::curves::{Window, ideal};
+//! use stepscope_motion::{moves::Axis, plan_axis};
+//!
+//! let plan = plan_axis(&Axis::default(), "x").expect("it can be planned");
+//! let curves = ideal(&plan, 0.0, Window { start_s: 0.0, end_s: 0.4, columns: 4 });
+//! let top = curves.speed.max.iter().fold(0.0, |top: f64, speed| top.max(*speed));
+//! assert_eq!(top, 16_000.0); // no column leaves a peak out
+//! ```
 
 use crate::actual_motion::Pulses;
 use alloc::{vec, vec::Vec};

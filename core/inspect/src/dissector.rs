@@ -8,6 +8,21 @@
 //!
 //! COBS writes the distance to the next zero where a zero stood, so a decoded byte has one place on the
 //! wire, and what COBS adds (the first byte, and one after each 254 bytes without a zero) is its own field.
+//!
+//! ```
+//! use stepscope_inspect::dissector::Reading;
+//! use stepscope_peripheral::{
+//!     config::Protocol,
+//!     signal::PacketOutcome,
+//!     trace::RowOutcome,
+//! };
+//!
+//! // A raw packet for controller 7, two channels.
+//! let reading = Reading { protocol: Protocol::Raw, addressed: true, channels: &|_| 2 };
+//! let meaning = reading.of(&[7, 0x85, 0x03], RowOutcome::Packet(PacketOutcome::Queued));
+//! assert_eq!(meaning.fields.len(), 3); // the address, and an order a channel
+//! assert_eq!(meaning.fields[0].bytes, 0..1);
+//! ```
 
 mod summary;
 
@@ -21,8 +36,8 @@ use stepscope_peripheral::{
     protocol::{FrameOutcome, Kind, Reason, Reply},
     trace::RowOutcome,
     wire::{
-        cobs::{Unstuffed, Unstuffer},
-        frame::{ACK, CHECK, CHECK_LEN, DELIMITER, Frame, NAK, Ticks},
+        cobs::{CobsByte, CobsDecoder},
+        frame::{ACK, CHECK, CRC_LEN, DELIMITER, Frame, NAK, Ticks},
         packet::{ALL, ChannelCommand},
     },
 };
@@ -93,13 +108,13 @@ impl Head {
                 let kind = reply.answer.map_or(NAK, |kind| kind as u8 | ACK);
                 return Some(Self { address: reply.address, kind });
             }
-            RowOutcome::Frame(FrameOutcome::BadCheck { .. }) => return None,
+            RowOutcome::Frame(FrameOutcome::BadCrc { .. }) => return None,
             RowOutcome::Frame(outcome) if !untrusted.contains(&outcome) => {}
             _ => return None,
         }
-        let mut reader = Unstuffer::default();
+        let mut reader = CobsDecoder::default();
         let mut content = bytes.get(last_frame(bytes))?.iter().filter_map(|&byte| match reader.byte(byte) {
-            Unstuffed::Content(content) => Some(content),
+            CobsByte::Content(content) => Some(content),
             _ => None,
         });
         Some(Self { address: content.next()?, kind: content.next()? })
@@ -178,11 +193,11 @@ impl Content {
     /// Reads the bytes in `range`, of which none is a zero.
     fn of(bytes: &[u8], range: Range<usize>) -> Self {
         let mut content = Self { decoded: Vec::new(), places: Vec::new(), overhead: Vec::new(), whole: true };
-        let mut reader = Unstuffer::default();
+        let mut reader = CobsDecoder::default();
         for at in range.clone() {
             let byte = bytes.get(at).copied().unwrap_or(DELIMITER);
             match reader.byte(byte) {
-                Unstuffed::Content(decoded) => {
+                CobsByte::Content(decoded) => {
                     content.decoded.push(decoded);
                     content.places.push(at);
                 }
@@ -196,7 +211,7 @@ impl Content {
 
     /// The check of the bytes before it.
     fn check(&self) -> Check {
-        match self.decoded.split_last_chunk::<CHECK_LEN>() {
+        match self.decoded.split_last_chunk::<CRC_LEN>() {
             Some((frame, sum)) if self.whole && frame.len() >= 2 => {
                 Check::Compared { found: u32::from_le_bytes(*sum), expected: CHECK.checksum(frame) }
             }
@@ -206,7 +221,7 @@ impl Content {
 
     /// Address, kind and body, as far as they are there, without the check.
     fn without(&self, check: Check) -> &[u8] {
-        let checked = if check == Check::Missing { 0 } else { CHECK_LEN };
+        let checked = if check == Check::Missing { 0 } else { CRC_LEN };
         self.decoded.get(..self.decoded.len() - checked).unwrap_or_default()
     }
 
@@ -246,7 +261,7 @@ impl Content {
             } else {
                 format!("{found:08x} found, {expected:08x} expected")
             };
-            add("check".into(), end..end + CHECK_LEN, value);
+            add("check".into(), end..end + CRC_LEN, value);
         }
         fields
     }

@@ -4,12 +4,20 @@
 //! it allows is taken. What no sheet's text confirmed is said at the driver, in [`Sheet::source`]
 //! too, so that a user sees it beside the figures. A wake-up from a sleep mode is not one from EN:
 //! who ties SLEEP to EN gives rules of his own.
+//!
+//! ```
+//! use stepscope_inspect::drivers::DRIVERS;
+//!
+//! let slow = DRIVERS.iter().filter(|sheet| sheet.rules.step_high_ns > 1000).map(|sheet| sheet.id);
+//! assert_eq!(slow.collect::<Vec<_>>(), ["drv8825", "tb6600_class"]);
+//! ```
 
-use stepscope_scenario::{DriverModel, DriverTiming, TimingRules};
+use crate::timing::TimingCheck;
+use stepscope_scenario::{DriverModel, DriverTiming, Scenario, TimingRules};
 
 /// A driver's figures, and where they come from.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sheet {
+pub struct DataSheet {
     /// Which driver it is.
     pub model: DriverModel,
     /// Its word in a scenario and on the command line.
@@ -23,12 +31,12 @@ pub struct Sheet {
 }
 
 /// All drivers, by maker.
-pub const DRIVERS: [&Sheet; 6] = [&A4988, &A4979, &DRV8825, &TMC2209, &TMC262, &TB6600_CLASS];
+pub const DRIVERS: [&DataSheet; 6] = [&A4988, &A4979, &DRV8825, &TMC2209, &TMC262, &TB6600_CLASS];
 
 /// Allegro A4988, data sheet 4988-DS, "Logic interface timing": t_A STEP high 1 us, t_B STEP low
 /// 1 us, t_C set-up and t_D hold of DIR and the step mode about the rise of STEP 200 ns each. It
 /// gives no time from ENABLE to STEP; 1 ms is its wake-up from SLEEP.
-pub const A4988: Sheet = Sheet {
+pub const A4988: DataSheet = DataSheet {
     model: DriverModel::A4988,
     id: "a4988",
     name: "Allegro A4988",
@@ -44,7 +52,7 @@ pub const A4988: Sheet = Sheet {
 
 /// Allegro A4979: STEP high at least 1 us (so Zephyr's binding of this driver, `step-width-ns`).
 /// The other times are the A4988's and are **not confirmed** by the A4979's own sheet.
-pub const A4979: Sheet = Sheet {
+pub const A4979: DataSheet = DataSheet {
     model: DriverModel::A4979,
     id: "a4979",
     name: "Allegro A4979",
@@ -55,7 +63,7 @@ pub const A4979: Sheet = Sheet {
 /// Texas Instruments DRV8825, SLVSA73, "Timing requirements": t_WH(STEP) 1.9 us, t_WL(STEP) 1.9 us,
 /// t_SU(STEP) and t_H(STEP), "command" before and after STEP rising, 650 ns each, t_ENBL from
 /// nENBL active to STEP 650 ns. t_WAKE, 1.7 ms, is from nSLEEP.
-pub const DRV8825: Sheet = Sheet {
+pub const DRV8825: DataSheet = DataSheet {
     model: DriverModel::Drv8825,
     id: "drv8825",
     name: "Texas Instruments DRV8825",
@@ -73,7 +81,7 @@ pub const DRV8825: Sheet = Sheet {
 /// max(t_FILTSD, t_CLK + 20 ns) with a spike filter of 30 ns at most, t_DSU and t_DSH 20 ns. Its own
 /// oscillator has 11.5 MHz at least, so 87 + 20 ns; on an external clock of 4 MHz, the slowest, both
 /// are 270 ns. It gives no time from ENN.
-pub const TMC2209: Sheet = Sheet {
+pub const TMC2209: DataSheet = DataSheet {
     model: DriverModel::Tmc2209,
     id: "tmc2209",
     name: "Trinamic TMC2209",
@@ -92,7 +100,7 @@ pub const TMC2209: Sheet = Sheet {
 /// with a spike filter of 85 ns at most, is that of the TMC2100's data sheet, and the clock of
 /// 10 MHz, the slowest, that of boards with the sister TMC2660: **not confirmed** by the TMC262's
 /// own sheet.
-pub const TMC262: Sheet = Sheet {
+pub const TMC262: DataSheet = DataSheet {
     model: DriverModel::Tmc262,
     id: "tmc262",
     name: "Trinamic TMC262",
@@ -112,7 +120,7 @@ pub const TMC262: Sheet = Sheet {
 /// 2.5 us, low 2.5 us, DIR 5 us ahead of the pulse's active edge, ENA 5 us ahead of DIR, which makes
 /// 10 us from ENA to the pulse. The chart has no hold time. Boxes differ (a DM556T wants 200 ms
 /// after ENA): **check your driver's sheet**.
-pub const TB6600_CLASS: Sheet = Sheet {
+pub const TB6600_CLASS: DataSheet = DataSheet {
     model: DriverModel::Tb6600Class,
     id: "tb6600_class",
     name: "Opto-isolated, class of TB6600, DM542, AM882",
@@ -129,7 +137,7 @@ pub const TB6600_CLASS: Sheet = Sheet {
 
 /// The sheet of a driver.
 #[must_use]
-pub const fn sheet(model: DriverModel) -> &'static Sheet {
+pub const fn sheet(model: DriverModel) -> &'static DataSheet {
     match model {
         DriverModel::A4988 => &A4988,
         DriverModel::A4979 => &A4979,
@@ -138,6 +146,13 @@ pub const fn sheet(model: DriverModel) -> &'static Sheet {
         DriverModel::Tmc262 => &TMC262,
         DriverModel::Tb6600Class => &TB6600_CLASS,
     }
+}
+
+/// The check of a run that a scenario asks for, if it names a driver or rules; it lists `most` violations in full.
+#[must_use]
+pub fn check(scenario: &Scenario, most: usize) -> Option<TimingCheck> {
+    let rules = scenario.driver_timing.as_ref().map(rules)?;
+    Some(TimingCheck::new(&rules, scenario.clock_hz, most))
 }
 
 /// What a scenario's driver asks for.

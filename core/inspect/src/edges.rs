@@ -1,5 +1,22 @@
 //! The edges of a run's signals, as the logic view asks for them: the next one, the pulse at a cycle, lists, counts. No
 //! question looks at more records than its answer needs, however many there are.
+//!
+//! ```
+//! use stepscope_inspect::{changes::Changes, edges::Signals};
+//!
+//! // Of the trace of a run: the first pulse of STEP0, bit 0, and how long it is.
+//! # use stepscope_peripheral::trace::{Recording, steps};
+//! # use stepscope_sim::Experiment;
+//! # let experiment = Experiment::from_json("{}").expect("the default motion");
+//! # let mut recording = Recording::default();
+//! # experiment.run(&mut recording);
+//! let mut changes = Changes::default();
+//! changes.extend(&recording.trace);
+//! let signals = Signals { trace: &recording.trace, changes: &changes };
+//! let pulse = signals.pulse_at(0, steps(&recording.trace, 0)[0].cycle);
+//! assert!(pulse.high);
+//! assert_eq!(pulse.end.zip(pulse.begin).map(|(end, begin)| end - begin), Some(40));
+//! ```
 
 use crate::changes::{Changes, Edge};
 use alloc::vec::Vec;

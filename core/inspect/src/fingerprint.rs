@@ -8,6 +8,21 @@
 //! records    1 … 16    17 … 33    34 … 67    …    n
 //! spacing         1          2          4         least power of two s with n/s < 17
 //! ```
+//!
+//! ```
+//! use stepscope_inspect::fingerprint::{Fingerprint, FingerprintCheck, FingerprintMatch};
+//! use stepscope_peripheral::signal::Sink;
+//!
+//! # use stepscope_peripheral::trace::{Recording, steps};
+//! # use stepscope_sim::Experiment;
+//! # let experiment = Experiment::from_json("{}").expect("the default motion");
+//! # let mut recording = Recording::default();
+//! # let run = experiment.run(&mut recording);
+//! let sent = Fingerprint::of(&recording.trace); // what a link carries
+//! let mut check = FingerprintCheck::with(&sent);
+//! recording.trace.iter().for_each(|&record| check.record(record));
+//! assert!(matches!(check.finish(), FingerprintMatch::Same(_)));
+//! ```
 
 use alloc::vec::Vec;
 use stepscope_peripheral::trace::Digest;

@@ -1,4 +1,16 @@
 //! What is said of a scenario before it runs: every problem, what follows from its numbers, and what a run will cost.
+//!
+//! ```
+//! use stepscope_inspect::judgement::Judgement;
+//! use stepscope_sim::Judged;
+//!
+//! let judgement = Judgement::of(&Judged::from_json("{}"));
+//! assert_eq!(judgement.derived.map(|derived| derived.controllers[0].axes[0].steps), Some(3200));
+//!
+//! let judgement = Judgement::of(&Judged::from_json(r#"{ "bus": { "slots": 0 } }"#));
+//! assert_eq!(judgement.problems[0].path, "bus.slots");
+//! assert!(judgement.cost.is_none()); // what does not run costs nothing
+//! ```
 
 use crate::torque::{Demand, Machine};
 use alloc::{

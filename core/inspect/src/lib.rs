@@ -1,6 +1,21 @@
 //! What one looks at in a run and its plan: packets and their fields, changes of signals, curves for the eye, spectra and
 //! distortion, which segments make the best sine, what each shape of a ramp costs, whether a driver could follow the
 //! pulses and a motor the plan, and the files of all of it.
+//!
+//! ```
+//! use stepscope_inspect::{actual_motion::Pulses, measures::Measures};
+//! use stepscope_peripheral::trace::{Recording, steps};
+//! use stepscope_sim::Experiment;
+//!
+//! let experiment = Experiment::from_json("{}").expect("everything has a default");
+//! let mut recording = Recording::default();
+//! experiment.run(&mut recording);
+//! let made = steps(&recording.trace, 0);
+//! let pulses =
+//!     Pulses { channel: 0, steps: &made, log: &recording.packets, segments: None, config: experiment.config() };
+//! let measures = Measures::of(&experiment.plans()[0], &pulses, None);
+//! assert!(measures.pulses.largest_steps.abs() < 200.0);
+//! ```
 #![cfg_attr(not(any(test, feature = "std")), no_std)]
 
 extern crate alloc;
@@ -30,6 +45,7 @@ pub mod packet_table;
 pub mod position_error;
 pub mod ramp_costs;
 pub mod run_fingerprint;
+pub mod run_sink;
 pub mod sine_optimum;
 pub mod sine_polyline;
 pub mod source_code;
@@ -45,4 +61,3 @@ pub mod trace_diff;
 pub mod trace_window;
 #[cfg(feature = "std")]
 pub mod vcd;
-pub mod watched;

@@ -3,6 +3,21 @@
 //!
 //! RX is decoded as the controller heard it: each byte where its start bit was seen, each bit where the
 //! receiver looked. What the host sent there stands beside it where it differs.
+//!
+//! ```
+//! use stepscope_inspect::{line_decoder::LineDecoder, packet_table::PacketTable};
+//!
+//! # use stepscope_peripheral::trace::{Recording, steps};
+//! # use stepscope_sim::Experiment;
+//! # let experiment = Experiment::from_json("{}").expect("the default motion");
+//! # let mut recording = Recording::default();
+//! # let run = experiment.run(&mut recording);
+//! let table = PacketTable::new(&experiment, &run, 0, &recording.packets);
+//! let first = table.row(0).expect("there are packets");
+//! let decoded = LineDecoder::new(table, &recording.trace).decode(first.start_cycle, first.line_end_cycle, 100, 100);
+//! assert_eq!(decoded.rx.bytes.len(), 1); // one channel, so one byte a packet
+//! assert_eq!(decoded.rx.bits.len(), 10); // start, eight of data, stop
+//! ```
 
 mod fields;
 

@@ -12,11 +12,32 @@
 //! Times are on the motion's own axis: 0 is the start of the first tick, or of the list of segments. A comparison
 //! goes from 0 until all has come to rest. Areas and means are integrals of the curves themselves; Euclidean
 //! distance and sum of squares belong to a number of points, which is stated.
+//!
+//! ```
+//! use stepscope_inspect::{actual_motion::Pulses, measures::Measures};
+//!
+//! # use stepscope_peripheral::trace::{Recording, steps};
+//! # use stepscope_sim::Experiment;
+//! # let experiment = Experiment::from_json("{}").expect("the default motion");
+//! # let mut recording = Recording::default();
+//! # let run = experiment.run(&mut recording);
+//! # let made = steps(&recording.trace, 0);
+//! let pulses = Pulses {
+//!     channel: 0,
+//!     steps: &made,
+//!     log: &recording.packets,
+//!     segments: None,
+//!     config: experiment.config(),
+//! };
+//! let measures = Measures::of(&experiment.plans()[0], &pulses, None);
+//! assert_eq!((measures.counts.due, measures.counts.made, measures.counts.stray), (3200, 3200, 0));
+//! assert_eq!(measures.peaks.speed_steps_s, 16_000.0);
+//! ```
 
 mod curve_metrics;
 mod pulse_errors;
 
-pub use curve_metrics::CurveMetrics;
+pub use curve_metrics::{CurveMetrics, POINTS};
 pub use pulse_errors::PulseErrors;
 
 use crate::{actual_motion::Pulses, sine_polyline::differences};
@@ -31,9 +52,6 @@ use stepscope_motion::{
     sine_segments,
 };
 use stepscope_peripheral::trace::Step;
-
-/// Points at which curves are sampled: the document's 512 of a quarter, for a whole run.
-pub const POINTS: u32 = 2048;
 
 /// Most steps of a run that is measured: all of them are kept, those due beside those made, some 82 bytes each.
 pub const MAX_STEPS: u64 = 20_000_000;

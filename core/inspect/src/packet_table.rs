@@ -8,6 +8,19 @@
 //!
 //! A row is what the controller took for one packet or frame, and each of its own replies. The bytes of another
 //! controller's reply look like a frame's; whose they are says the schedule of what the host sent.
+//!
+//! ```
+//! use stepscope_inspect::packet_table::PacketTable;
+//!
+//! # use stepscope_peripheral::trace::{Recording, steps};
+//! # use stepscope_sim::Experiment;
+//! # let experiment = Experiment::from_json("{}").expect("the default motion");
+//! # let mut recording = Recording::default();
+//! # let run = experiment.run(&mut recording);
+//! let table = PacketTable::new(&experiment, &run, 0, &recording.packets);
+//! let row = table.row(0).expect("there are packets");
+//! assert_eq!((row.kind, row.outcome.as_str()), ("packet", "queued"));
+//! ```
 
 mod csv;
 mod detail;

@@ -5,6 +5,18 @@
 //! second     __|‾‾‾‾‾‾‾     steps; both stand at 0 before their first and stay where the last
 //! difference ‾‾|___|‾‾‾     brought them
 //! ```
+//!
+//! ```
+//! use stepscope_inspect::position_error::{Scaled, apart};
+//! use stepscope_peripheral::trace::Step;
+//!
+//! // Two runs that part at their second step.
+//! let steps = |second| [(100, 1), (second, 2)].map(|(cycle, position)| Step { cycle, position });
+//! let (one, other) = (steps(200), steps(300));
+//! let scaled = |steps| Scaled { steps, hz: 1000.0, unit: 1.0 };
+//! let apart = apart(scaled(&one), scaled(&other), 1.0);
+//! assert_eq!((apart.largest, apart.at_s), (1.0, 0.2));
+//! ```
 
 use crate::curves::{Band, Window};
 use stepscope_peripheral::trace::Step;

@@ -7,6 +7,16 @@
 //! ```
 //!
 //! The peaks are those of the axis: a move from rest to rest, with what it jumps by at its start and end.
+//!
+//! ```
+//! use stepscope_inspect::ramp_costs::{RampRequest, compare};
+//!
+//! // The same way in the same time, with ramps of every shape.
+//! let rows = compare(&RampRequest::new(3200, 0.4, 0.1));
+//! let accelerations = rows.iter().filter_map(|row| row.cost.as_ref().ok()).map(|cost| cost.peaks.acceleration);
+//! assert!(accelerations.into_iter().all(|acceleration| acceleration >= 0.0));
+//! assert!(rows.len() > 4);
+//! ```
 
 use alloc::{vec, vec::Vec};
 use stepscope_motion::Problem;

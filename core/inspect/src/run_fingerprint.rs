@@ -11,6 +11,19 @@
 //! checkpoints ([`Fingerprint`]), four bytes each, big-endian, in base64url. The check is the CRC-32
 //! (ISO-HDLC) of all that stands before its dot, in 8 hexadecimal digits: a part that was changed on the
 //! way must not tell of a difference that there is not.
+//!
+//! ```
+//! use stepscope_inspect::{fingerprint::Fingerprint, run_fingerprint::RunFingerprint};
+//!
+//! # use stepscope_peripheral::trace::{Recording, steps};
+//! # use stepscope_sim::Experiment;
+//! # let experiment = Experiment::from_json("{}").expect("the default motion");
+//! # let mut recording = Recording::default();
+//! # let run = experiment.run(&mut recording);
+//! let sent = RunFingerprint::of(vec![Fingerprint::of(&recording.trace)]);
+//! assert_eq!(RunFingerprint::parse(&sent.emit()), Ok(sent)); // the part `d` of a link
+//! assert!(RunFingerprint::parse("no fingerprint").is_err());
+//! ```
 
 use crate::fingerprint::{Fingerprint, FingerprintCheck, FingerprintMatch, Mark, Shorter, spacing};
 use alloc::{
@@ -39,6 +52,7 @@ pub struct RunFingerprint {
 
 /// Why a proof cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum RunFingerprintError {
     /// Written in a newer form.
     Newer {

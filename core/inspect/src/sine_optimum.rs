@@ -10,6 +10,15 @@
 //! from several first guesses, of which the best end counts. Sums go in one order and functions come from `libm`, so the
 //! result has the same bits on every target. That no other place is better is not proven; the tests hold it against
 //! optima that were found otherwise.
+//!
+//! ```
+//! use stepscope_inspect::sine_optimum::{Freedom, optimum};
+//!
+//! let on_curve = optimum(4, Freedom::OnCurve, 40).expect("there is one");
+//! let free = optimum(4, Freedom::Free, 40).expect("there is one");
+//! assert_eq!(free.vertices.len(), 5);
+//! assert!(free.distortion.position < on_curve.distortion.position);
+//! ```
 
 use crate::sine_polyline::{Distortion, OddCosines, Vertex, distortion, scale};
 use alloc::{vec, vec::Vec};

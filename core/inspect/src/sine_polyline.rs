@@ -14,6 +14,15 @@
 //! acceleration do not fall, so its distortion grows with the order. What an accelerometer on the rig feels of it has
 //! |H| = 1/sqrt(1 + (k/b)^2) times that, b being the sensor's bandwidth (-3 dB, a low pass of first order) over the
 //! frequency of the oscillation, and its distortion hardly changes once the order is well above b.
+//!
+//! ```
+//! use stepscope_inspect::sine_polyline::{distortion, vertices};
+//!
+//! // The document's six segments a quarter, and their distortion of 0.269 % over very many harmonics.
+//! let quarter = vertices(0.0054);
+//! assert_eq!(quarter.len(), 7);
+//! assert!((distortion(&quarter, 4000).position - 0.002_69).abs() < 0.000_02);
+//! ```
 
 use alloc::vec::Vec;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};

@@ -7,6 +7,25 @@
 //! ```
 //!
 //! What the numbers mean and how to walk them stands in the comment at the head of the file; CSV has a head line alone.
+//!
+//! ```
+//! use stepscope_inspect::source_code::{Language, Source, is_name};
+//! use stepscope_motion::{
+//!     moves::Axis,
+//!     plan_axis,
+//!     quantise::{EntryFormat, Form, stored},
+//! };
+//! use stepscope_peripheral::{segment::PulseTimes, units::Cycles};
+//!
+//! let plan = plan_axis(&Axis::default(), "x").expect("it can be planned");
+//! let pulse = PulseTimes { width: Cycles(40), setup: Cycles(40), hold: Cycles(0) };
+//! let table = stored(&plan, Form::Exact, EntryFormat::Q16, pulse, 16_000_000).expect("it fits");
+//! assert!(is_name("axis_0"));
+//! let source = Source { name: "axis_0", title: "one turn", clock_hz: 16_000_000, table: &table };
+//! let mut text = String::new();
+//! source.write(Language::C, &mut text).expect("a string takes it");
+//! assert!(text.contains("#define AXIS_0_STEPS 3200ull"));
+//! ```
 
 use alloc::{format, string::String};
 use core::fmt::{self, Write};

@@ -1,4 +1,26 @@
 //! The spectra of an axis side by side: of the ideal motion, and of the pulses as they come.
+//!
+//! ```
+//! use stepscope_inspect::{actual_motion::Pulses, spectra::Spectra};
+//! use stepscope_scenario::Scenario;
+//!
+//! # use stepscope_peripheral::trace::{Recording, steps};
+//! # use stepscope_sim::Experiment;
+//! # let experiment = Experiment::from_json("{}").expect("the default motion");
+//! # let mut recording = Recording::default();
+//! # experiment.run(&mut recording);
+//! # let made = steps(&recording.trace, 0);
+//! let pulses = Pulses {
+//!     channel: 0,
+//!     steps: &made,
+//!     log: &recording.packets,
+//!     segments: None,
+//!     config: experiment.config(),
+//! };
+//! let spectra = Spectra::of(&Scenario::default(), experiment.plans().first(), &pulses);
+//! let lines = |spectrum: Option<stepscope_inspect::spectrum::Spectrum>| spectrum.map(|spectrum| spectrum.order);
+//! assert_eq!((lines(spectra.ideal), lines(spectra.actual)), (Some(40), Some(40)));
+//! ```
 
 use crate::{
     actual_motion::Pulses,

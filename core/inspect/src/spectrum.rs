@@ -22,6 +22,19 @@
 //! A motion that is not periodic is looked at as a whole; the straight line from its first to its
 //! last point is taken off its position, for otherwise the jump back at the end would be in all
 //! three. Its lines are no harmonics of anything, so it has no distortion.
+//!
+//! ```
+//! use stepscope_inspect::spectrum::Spectrum;
+//! use stepscope_motion::{
+//!     moves::{Axis, Move, SineSegments},
+//!     plan_axis,
+//! };
+//!
+//! let axis = Axis { moves: vec![Move::SineSegments(SineSegments::default())], ..Axis::default() };
+//! let plan = plan_axis(&axis, "x").expect("it can be planned");
+//! let spectrum = Spectrum::ideal(&plan, 40, 4096).expect("it takes time");
+//! assert!(spectrum.position.distortion.is_some_and(|distortion| distortion < 0.003));
+//! ```
 
 pub use crate::analysis_window::AnalysisWindow;
 

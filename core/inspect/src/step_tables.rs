@@ -1,4 +1,15 @@
 //! The step times of a selected axis as tables for a firmware: what each form costs, and its source code (DESIGN B8).
+//!
+//! ```
+//! use stepscope_inspect::step_tables::StepTables;
+//! use stepscope_sim::Judged;
+//!
+//! let judged = Judged::from_json("{}");
+//! let tables = StepTables::new(judged.axis(0, 0).expect("one axis")).expect("its pulses fit");
+//! let (exact, compressed) = (tables.cost("exact", "q16", 0.0), tables.cost("compressed", "q16", 25.0));
+//! assert_eq!((exact.steps, compressed.steps), (3200, 3200));
+//! assert!(compressed.bytes < exact.bytes / 10);
+//! ```
 
 use crate::source_code::{Language, Source, headline};
 use alloc::{

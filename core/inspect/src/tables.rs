@@ -1,5 +1,18 @@
 //! A run as tables: a row for each record of the signals, each tick, each segment. CSV as in RFC 4180, with a line feed
 //! at the end of a row. The table of packets is [`crate::packet_table`].
+//!
+//! ```
+//! use stepscope_inspect::tables::{write_edges_head, write_edges_row};
+//! use stepscope_peripheral::{
+//!     signal::{Levels, Record},
+//!     units::Instant,
+//! };
+//!
+//! let mut table = String::new();
+//! write_edges_head(&mut table, 1).expect("a string takes it");
+//! write_edges_row(&mut table, Record { cycle: Instant(16), levels: Levels::RESET }, 16_000_000, 1).expect("as above");
+//! assert_eq!(table, "cycle,time_s,STEP0,DIR0,EN,RX,TX,DE\n16,0.000001,0,0,1,1,1,0\n");
+//! ```
 
 use core::fmt::{self, Write};
 use stepscope_peripheral::{

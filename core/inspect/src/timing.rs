@@ -28,6 +28,23 @@
 //!
 //! A time of n cycles keeps a rule of t ns if n*10^9 >= t*clock_hz. That is so exactly from
 //! ceil(t*clock_hz/10^9) cycles on, which is what is compared; no fraction is ever rounded.
+//!
+//! ```
+//! use stepscope_inspect::{drivers::TB6600_CLASS, timing::{Rule, TimingCheck}};
+//! use stepscope_scenario::TimingRules;
+//! use stepscope_sim::Experiment;
+//!
+//! // The default motion's pulses of 2.5 us are just long enough for an opto-isolated driver.
+//! let experiment = Experiment::from_json("{}").expect("the default motion");
+//! let violations = |rules: &TimingRules| {
+//!     let mut check = TimingCheck::new(rules, experiment.config().clock_hz(), 10);
+//!     experiment.run(&mut check);
+//!     (check.total(), check.violations().first().map(|violation| violation.rule))
+//! };
+//! assert_eq!(violations(&TB6600_CLASS.rules), (0, None));
+//! let longer = TimingRules { step_high_ns: 3000, ..TB6600_CLASS.rules.clone() };
+//! assert_eq!(violations(&longer), (3200, Some(Rule::StepHigh)));
+//! ```
 
 use alloc::vec::Vec;
 use stepscope_peripheral::{

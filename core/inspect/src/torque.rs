@@ -30,6 +30,21 @@
 //! it helps when slowing down. Braking is compared with the same curve, though the motor's losses help it there:
 //! the verdict is on the safe side. Where the speed jumps (a start above rate 0) no torque is finite and the model
 //! says nothing: [`Demand::jump`] tells how far.
+//!
+//! ```
+//! use stepscope_inspect::torque::{Demand, Machine};
+//! use stepscope_motion::{motor::Motor, moves::Axis, plan_axis};
+//!
+//! // The default turn, in 0.4 s, with the default motor.
+//! let axis = Axis { motor: Some(Motor::default()), ..Axis::default() };
+//! let machine = Machine::of(&axis).expect("it has a motor");
+//! let demand = Demand::of(&machine, &plan_axis(&axis, "x").expect("it can be planned"));
+//! assert!(demand.is_met());
+//! // Ten times the load, and it is not.
+//! let motor = Motor { load_torque_mn_m: 4000.0, ..Motor::default() };
+//! let machine = Machine::of(&Axis { motor: Some(motor), ..axis.clone() }).expect("it has a motor");
+//! assert!(!Demand::of(&machine, &plan_axis(&axis, "x").expect("it can be planned")).is_met());
+//! ```
 
 mod machine;
 mod ramps;

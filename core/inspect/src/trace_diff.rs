@@ -3,6 +3,23 @@
 //!
 //! A file may be a stretch of a run: its first row then stands for all the levels at its first cycle, and
 //! what the run does after the file's last row is not in question.
+//!
+//! ```
+//! use stepscope_inspect::trace_diff::TraceDiff;
+//! use stepscope_peripheral::trace::write_record;
+//!
+//! # use stepscope_peripheral::trace::{Recording, steps};
+//! # use stepscope_sim::Experiment;
+//! # let experiment = Experiment::from_json("{}").expect("the default motion");
+//! # let mut recording = Recording::default();
+//! # let run = experiment.run(&mut recording);
+//! let mut file = String::new(); // what `stepscope run --trace` writes
+//! recording.trace.iter().for_each(|&record| write_record(&mut file, record).expect("a string takes it"));
+//! let mut diff = TraceDiff::new(1);
+//! diff.feed(&recording.trace, file.as_bytes()).expect("it is a trace");
+//! let outcome = diff.finish(&recording.trace).expect("it has edges");
+//! assert_eq!((outcome.difference, outcome.same), (None, recording.trace.len() as u64));
+//! ```
 
 use alloc::{
     format,

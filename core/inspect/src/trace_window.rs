@@ -1,4 +1,17 @@
 //! A part of a trace as records of its own: the first one stands at the part's start, with the levels that hold there.
+//!
+//! ```
+//! use stepscope_inspect::trace_window::TraceWindow;
+//! use stepscope_peripheral::{
+//!     signal::{Levels, Record},
+//!     units::Instant,
+//! };
+//!
+//! let trace = [(0, 0), (5, 1), (8, 0)].map(|(cycle, levels)| Record { cycle: Instant(cycle), levels: Levels(levels) });
+//! let window = TraceWindow::of(&trace, Instant(6), Instant(20));
+//! assert_eq!(window.records(), 2);
+//! assert_eq!(window.get(0), Some(Record { cycle: Instant(6), levels: Levels(1) })); // still high
+//! ```
 
 use stepscope_peripheral::{signal::Record, trace::levels_at, units::Instant};
 

@@ -2,6 +2,18 @@
 //!
 //! Time is in ps: a cycle is rarely a whole number of anything coarser, and at up to 1 GHz no two
 //! cycles fall together. A cycle c stands at floor(c*10^12/clock_hz).
+//!
+//! ```
+//! use stepscope_inspect::vcd::VcdWriter;
+//! use stepscope_sim::Experiment;
+//!
+//! let experiment = Experiment::from_json("{}").expect("the default motion");
+//! let mut file = Vec::new();
+//! let mut writer = VcdWriter::new(&mut file, experiment.config().clock_hz(), 1).expect("memory takes it");
+//! let run = experiment.run(&mut writer);
+//! writer.finish(run.cycles().0).expect("memory takes it");
+//! assert!(file.starts_with(b"$timescale 1 ps $end"));
+//! ```
 
 use std::io;
 use stepscope_peripheral::signal::{Levels, Record, Sink, name};

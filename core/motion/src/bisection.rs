@@ -18,6 +18,14 @@
 //! Two searches of this crate are not among these: `quantise::feasible_window` goes by the slope of a concave function,
 //! and `quantise::longest` has three answers (refused, sampled, replayed) and tries that cost unequally. A place in a list
 //! that is there already is found by the standard library's `partition_point`.
+//!
+//! ```
+//! use stepscope_motion::bisection::border;
+//!
+//! let (last_that_holds, first_that_does_not) = border(0.0, 2.0, |x| x * x <= 2.0);
+//! assert!(last_that_holds * last_that_holds <= 2.0);
+//! assert!(first_that_does_not - last_that_holds < 1e-15);
+//! ```
 
 /// Halvings after which two numbers are no further apart than 2^-60 of what they were: less than an f64 tells apart,
 /// unless one of them is 0.

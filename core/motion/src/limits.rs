@@ -1,4 +1,11 @@
 //! The range of each number that a plan holds by itself; rules that join several stand where the curve is made.
+//!
+//! ```
+//! use stepscope_motion::{MAX_SPEED, limits};
+//!
+//! assert!(limits::MICROSTEPS.contains(&256.0));
+//! assert_eq!(*limits::SPEED_STEPS_S.end(), MAX_SPEED);
+//! ```
 
 use crate::{MAX_SPEED, motor::MAX_PEAK_CURRENT, moves::MAX_POINTS};
 use core::ops::RangeInclusive;

@@ -3,6 +3,7 @@
 //! A number is judged where it stands, with the path of its field; what only follows from several
 //! (a top speed, a table's length) is judged when the curve is made.
 
+mod budget;
 mod motor;
 mod points;
 mod staircase;
@@ -25,29 +26,11 @@ use crate::{
     problem::{Cause, Problem, ValueError},
 };
 use alloc::{format, string::String, vec::Vec};
+use budget::{Budget, MAX_SEGMENTS, MAX_TABLE_ROWS, hold_speed};
 use stepscope_peripheral::signal::MAX_CHANNELS;
 
-/// Most rows that all acceleration tables of a scenario may have together.
-const MAX_TABLE_ROWS: u64 = 1_000_000;
-/// Most segments that the quarters of all sines of a scenario may have together.
-const MAX_SEGMENTS: usize = 65_536;
-/// Most slices that all sliced cosines of a scenario may have together.
-const MAX_SLICES: u64 = 100_000;
 /// Longest time of an axis in s.
 const MAX_DURATION_S: f64 = 1e6;
-
-/// What the axes of a scenario may still ask of memory and work.
-struct Left {
-    table_rows: u64,
-    segments: usize,
-    slices: u64,
-}
-
-impl Default for Left {
-    fn default() -> Self {
-        Self { table_rows: MAX_TABLE_ROWS, segments: MAX_SEGMENTS, slices: MAX_SLICES }
-    }
-}
 
 /// Plans several lists of axes, one for each controller, each with its path.
 ///
@@ -59,12 +42,12 @@ impl Default for Left {
 pub fn plan_lists<'a>(
     lists: impl IntoIterator<Item = (String, &'a [Axis])>,
 ) -> Result<Vec<Vec<AxisPlan>>, Vec<Problem>> {
-    let (mut plans, mut problems, mut left) = (Vec::new(), Vec::new(), Left::default());
+    let (mut plans, mut problems, mut budget) = (Vec::new(), Vec::new(), Budget::default());
     for (path, axes) in lists {
         let mut list = Vec::new();
         // More axes than that are refused by their number.
         for (index, axis) in axes.iter().take(MAX_CHANNELS).enumerate() {
-            match plan_within(axis, &format!("{path}[{index}]"), &mut left) {
+            match plan_within(axis, &format!("{path}[{index}]"), &mut budget) {
                 Ok(plan) => list.push(plan),
                 Err(found) => problems.extend(found),
             }
@@ -82,17 +65,17 @@ pub fn plan_lists<'a>(
 /// # Errors
 /// Every problem of the axis, each with its path.
 pub fn plan_axis(axis: &Axis, path: &str) -> Result<AxisPlan, Vec<Problem>> {
-    plan_within(axis, path, &mut Left::default())
+    plan_within(axis, path, &mut Budget::default())
 }
 
-fn plan_within(axis: &Axis, path: &str, left: &mut Left) -> Result<AxisPlan, Vec<Problem>> {
+fn plan_within(axis: &Axis, path: &str, budget: &mut Budget) -> Result<AxisPlan, Vec<Problem>> {
     let mut quantities = Quantities::new(&axis.mechanics, path);
     motor::judge(&mut quantities, axis);
     quantities.validator.length("moves", axis.moves.len(), limits::MOVES, "moves");
     // Past the most moves none is planned: the list's length is refused already.
     let moves = axis.moves.iter().take(*limits::MOVES.end()).enumerate();
     let profiles = quantities.at("moves", |quantities| {
-        let plan = |(index, each)| quantities.at_entry(index, |here| plan_move(here, each, left));
+        let plan = |(index, each)| quantities.at_entry(index, |here| plan_move(here, each, budget));
         moves.filter_map(plan).collect()
     });
     let plan = AxisPlan::of(profiles);
@@ -103,13 +86,13 @@ fn plan_within(axis: &Axis, path: &str, left: &mut Left) -> Result<AxisPlan, Vec
     quantities.validator.end(plan)
 }
 
-fn plan_move(quantities: &mut Quantities<'_>, given: &Move, left: &mut Left) -> Option<Profile> {
+fn plan_move(quantities: &mut Quantities<'_>, given: &Move, budget: &mut Budget) -> Option<Profile> {
     match given {
-        Move::Trapezoid(given) => quantities.at("trapezoid", |here| plan_trapezoid(here, given, left)),
-        Move::Staircase(given) => quantities.at("staircase", |here| staircase::plan(here, given, left)),
-        Move::Cosine(given) => quantities.at("cosine", |here| timed::plan_cosine(here, given, left)),
+        Move::Trapezoid(given) => quantities.at("trapezoid", |here| plan_trapezoid(here, given, budget)),
+        Move::Staircase(given) => quantities.at("staircase", |here| staircase::plan(here, given, budget)),
+        Move::Cosine(given) => quantities.at("cosine", |here| timed::plan_cosine(here, given, budget)),
         Move::Ramps(given) => quantities.at("ramps", |here| timed::plan_ramps(here, given)),
-        Move::SineSegments(given) => quantities.at("sine_segments", |here| plan_sine(here, given, left)),
+        Move::SineSegments(given) => quantities.at("sine_segments", |here| plan_sine(here, given, budget)),
         Move::Sine(given) => quantities.at("sine", |here| plan_exact_sine(here, given)),
         Move::JerkLimited(given) => quantities.at("jerk_limited", |here| plan_jerk_limited(here, given)),
         Move::Points(given) => quantities.at("points", |here| points::plan(here, given)),
@@ -128,7 +111,7 @@ fn plan_move(quantities: &mut Quantities<'_>, given: &Move, left: &mut Left) -> 
 fn plan_trapezoid(
     quantities: &mut Quantities<'_>,
     given: &moves::Trapezoid,
-    left: &mut Left,
+    budget: &mut Budget,
 ) -> Option<Profile> {
     // The table's first rate has to round to a pulse a second; the exact curve may start from rest.
     let starts = match given.method {
@@ -155,13 +138,13 @@ fn plan_trapezoid(
         return Some(Profile::Trapezoid(Trapezoid::new(steps, start, top, acceleration)));
     }
     let table = AccelerationTable::new(start, top, acceleration, given.timer_hz);
-    match TrapezoidTable::new(steps, table, left.table_rows) {
+    match TrapezoidTable::new(steps, table, budget.table_rows) {
         Ok(table) => {
-            left.table_rows -= table.kept_rows();
+            budget.table_rows -= table.kept_rows();
             Some(Profile::TrapezoidTable(table))
         }
         Err(NoTable::Rows { needed }) => {
-            let (given, most) = ((MAX_TABLE_ROWS - left.table_rows).saturating_add(needed), MAX_TABLE_ROWS);
+            let (given, most) = ((MAX_TABLE_ROWS - budget.table_rows).saturating_add(needed), MAX_TABLE_ROWS);
             let cause = ValueError::TooMuch { given: given as f64, most: most as f64, of: "table rows" };
             quantities.refuse("", cause);
             None
@@ -177,7 +160,7 @@ fn plan_trapezoid(
 fn plan_sine(
     quantities: &mut Quantities<'_>,
     given: &moves::SineSegments,
-    left: &mut Left,
+    budget: &mut Budget,
 ) -> Option<Profile> {
     let amplitude = quantities.distance("amplitude", &given.amplitude);
     let period_s = quantities.duration("period_s", given.period_s);
@@ -187,13 +170,13 @@ fn plan_sine(
     periods?;
     let curve = SineSegments::new(amplitude, period_s, given.periods, deviation);
     let segments = curve.segments().len();
-    let Some(still_left) = left.segments.checked_sub(segments) else {
-        let (given, most) = (MAX_SEGMENTS - left.segments + segments, MAX_SEGMENTS);
+    let Some(still_left) = budget.segments.checked_sub(segments) else {
+        let (given, most) = (MAX_SEGMENTS - budget.segments + segments, MAX_SEGMENTS);
         let cause = ValueError::TooMuch { given: given as f64, most: most as f64, of: "sine segments" };
         quantities.refuse("", cause);
         return None;
     };
-    left.segments = still_left;
+    budget.segments = still_left;
     hold_speed(quantities, "period_s", curve.peaks().speed)?;
     Some(Profile::SineSegments(curve))
 }
@@ -214,13 +197,4 @@ fn plan_jerk_limited(quantities: &mut Quantities<'_>, given: &moves::JerkLimited
     let jerk = quantities.jerk("max_jerk", &given.max_jerk);
     let limits = Limits { speed: speed?, acceleration: acceleration?, jerk: jerk? };
     Some(Profile::JerkLimited(JerkLimited::new(steps?, limits)))
-}
-
-/// Refuses a speed that no one gave but that follows from the numbers.
-fn hold_speed(quantities: &mut Quantities<'_>, step: &str, rate: f64) -> Option<()> {
-    if rate <= MAX_SPEED {
-        return Some(());
-    }
-    quantities.refuse(step, Cause::TooFast { rate, most: MAX_SPEED });
-    None
 }

@@ -5,7 +5,7 @@
 //! use stepscope_motion::problem::{Validator, ValueError};
 //!
 //! let mut validator: Validator = Validator::default();
-//! validator.range("axis.speed", 12_000.0, 1.0, 10_000.0, "steps/s");
+//! validator.range("axis.speed", 12_000.0, 1.0..=10_000.0, "steps/s");
 //! let problems = validator.end(()).unwrap_err();
 //! assert_eq!(problems[0].path, "axis.speed");
 //! assert!(problems[0].to_string().starts_with("axis.speed: 12000 steps/s"), "{}", problems[0]);
@@ -220,6 +220,7 @@ impl<C: From<ValueError>> Validator<C> {
 
 /// What can be wrong with a value by itself.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum ValueError {
     /// A number out of its range.
     Range {
@@ -513,7 +514,7 @@ impl fmt::Display for Cause {
                 if *interval > u64::MAX.into() {
                     write!(f, "; give at most {}", u64::MAX)
                 } else {
-                    let least = pulse.least_interval().0 << FRACTION_BITS;
+                    let least = pulse.min_interval().0 << FRACTION_BITS;
                     write!(f, ", {}; give at least {least}, or shorter times of the pulse", Least(*pulse))
                 }
             }
@@ -539,7 +540,7 @@ struct Least(PulseTimes);
 impl fmt::Display for Least {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let PulseTimes { width, setup, hold } = self.0;
-        let least = self.0.least_interval().0;
+        let least = self.0.min_interval().0;
         write!(
             f,
             "a pulse needs width {} + max(hold {} + setup {}, 1) = {least} cycles",

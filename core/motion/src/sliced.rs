@@ -59,6 +59,7 @@ pub struct Sliced {
 
 /// Why a move cannot be sliced.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum NotSliced {
     /// It has more slices than allowed.
     Slices {

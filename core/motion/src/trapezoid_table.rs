@@ -52,6 +52,7 @@ pub struct TrapezoidTable {
 
 /// Why a table cannot be made.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum NoTable {
     /// The move needs more rows than allowed.
     Rows {

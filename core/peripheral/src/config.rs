@@ -225,7 +225,7 @@ pub enum ConfigError {
         /// Clock of the peripheral.
         clock_hz: u32,
         /// Highest rate that this clock can hear.
-        most_baud: u32,
+        max_baud: u32,
     },
     /// The pulses of a slot do not fit in it (A7).
     PulseTooLong {
@@ -270,9 +270,9 @@ impl fmt::Display for ConfigError {
                 }
                 write!(f, "{space}{unit}")
             }
-            Self::BitTooShort { bit_cycles, baud, clock_hz, most_baud } => write!(
+            Self::BitTooShort { bit_cycles, baud, clock_hz, max_baud } => write!(
                 f,
-                "{baud} baud at {clock_hz} Hz is {bit_cycles} cycles a bit, the receiver needs 11; give at most {most_baud} baud or a faster clock"
+                "{baud} baud at {clock_hz} Hz is {bit_cycles} cycles a bit, the receiver needs 11; give at most {max_baud} baud or a faster clock"
             ),
             Self::PulseTooLong { width, setup, hold, needed, pulses, of, period } => write!(
                 f,
@@ -355,13 +355,13 @@ impl Config {
         }
         let baud = line.receiver_baud.unwrap_or(line.baud);
         let field = Field::Line(if line.receiver_baud.is_some() { "receiver_baud" } else { "baud" });
-        let (bit_cycles, most_baud) = (bit_cycles(clock_hz, baud.max(1)), most_baud(clock_hz));
+        let (bit_cycles, max_baud) = (bit_cycles(clock_hz, baud.max(1)), max_baud(clock_hz));
         if !has_ticks {
             // No bit is heard.
         } else if baud == 0 {
-            rules.range(field, baud, 1..=most_baud.max(1).into(), "baud");
+            rules.range(field, baud, 1..=max_baud.max(1).into(), "baud");
         } else if bit_cycles < MIN_BIT_CYCLES && u64::from(clock_hz) >= *limits::CLOCK_HZ.start() {
-            rules.add(field, ConfigError::BitTooShort { bit_cycles, baud, clock_hz, most_baud });
+            rules.add(field, ConfigError::BitTooShort { bit_cycles, baud, clock_hz, max_baud });
         }
         rules.end(Self {
             clock_hz,
@@ -557,7 +557,7 @@ const fn bit_cycles(clock_hz: u32, baud: u32) -> u64 {
 
 /// The highest rate whose bit time is at least 11 cycles (A4).
 #[must_use]
-pub const fn most_baud(clock_hz: u32) -> u32 {
+pub const fn max_baud(clock_hz: u32) -> u32 {
     (2 * clock_hz as u64 / (2 * MIN_BIT_CYCLES - 1)) as u32
 }
 

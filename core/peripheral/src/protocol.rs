@@ -141,7 +141,7 @@ pub enum FrameOutcome {
     /// Not COBS, or too short for a frame.
     Short,
     /// Its CRC is wrong.
-    BadCheck {
+    BadCrc {
         /// The CRC that came.
         found: u32,
         /// The CRC of what came before it.
@@ -159,7 +159,7 @@ impl FrameOutcome {
             Self::Queued(_) | Self::Repeated => Some(Ok(Kind::Ticks)),
             Self::Taken(kind) => Some(Ok(kind)),
             Self::Refused(reason) => Some(Err(reason)),
-            Self::OtherAddress | Self::Short | Self::BadCheck { .. } | Self::Overlong => None,
+            Self::OtherAddress | Self::Short | Self::BadCrc { .. } | Self::Overlong => None,
         }
     }
 }
@@ -175,7 +175,7 @@ impl fmt::Display for FrameOutcome {
             Self::Refused(reason) => write!(f, "refused: {}", reason.name()),
             Self::OtherAddress => f.write_str("another address"),
             Self::Short => f.write_str("dropped: SHORT_PACKET"),
-            Self::BadCheck { found, expected } => {
+            Self::BadCrc { found, expected } => {
                 write!(f, "dropped: CRC {found:08x} found, {expected:08x} expected")
             }
             Self::Overlong => f.write_str("dropped: OVERLONG"),
@@ -231,7 +231,7 @@ mod tests {
             (FrameOutcome::OtherAddress, "another address", None),
             (FrameOutcome::Short, "dropped: SHORT_PACKET", None),
             (
-                FrameOutcome::BadCheck { found: 0xab, expected: 0x1234_5678 },
+                FrameOutcome::BadCrc { found: 0xab, expected: 0x1234_5678 },
                 "dropped: CRC 000000ab found, 12345678 expected",
                 None,
             ),

@@ -83,7 +83,7 @@ pub struct PulseTimes {
 impl PulseTimes {
     /// W + max(H + D, 1): the least time from step to step.
     #[must_use]
-    pub const fn least_interval(self) -> Cycles {
+    pub const fn min_interval(self) -> Cycles {
         let around = self.hold.0.saturating_add(self.setup.0);
         Cycles(self.width.0.saturating_add(if around == 0 { 1 } else { around }))
     }
@@ -199,7 +199,7 @@ impl CheckedSegments {
 
     /// The first step whose interval is too short or leaves u64, and the interval.
     fn first_bad(&self, count: u32, interval: u64, add: i64) -> Option<(u32, i128)> {
-        let least = i128::from(self.pulse.least_interval().0) << FRACTION_BITS;
+        let least = i128::from(self.pulse.min_interval().0) << FRACTION_BITS;
         let most = i128::from(u64::MAX);
         let at = |step: u32| i128::from(interval) + i128::from(step) * i128::from(add);
         let is_bad = |step: u32| !(least..=most).contains(&at(step));
@@ -247,7 +247,7 @@ impl CheckedSegments {
 
     /// Records of a trace of all of it, at most: the first, two edges a step, and the changes of DIR.
     #[must_use]
-    pub const fn most_records(&self) -> u64 {
+    pub const fn max_records(&self) -> u64 {
         self.steps.saturating_mul(2).saturating_add(self.turns).saturating_add(1)
     }
 
@@ -336,7 +336,7 @@ mod tests {
         let rows = [(1, 0, 0, 2), (3, 2, 1, 6), (3, 0, 1, 4), (3, 1, 0, 4), (u64::MAX, 5, 5, u64::MAX)];
         for (width, setup, hold, expected) in rows {
             let pulse = PulseTimes { width: Cycles(width), setup: Cycles(setup), hold: Cycles(hold) };
-            assert_eq!(pulse.least_interval(), Cycles(expected), "{pulse:?}");
+            assert_eq!(pulse.min_interval(), Cycles(expected), "{pulse:?}");
         }
     }
 
@@ -350,7 +350,7 @@ mod tests {
             list(100, vec![turn(true)]),
         ];
         let lists = CheckedSegments::new(PULSE, lists, 100).unwrap();
-        assert_eq!((lists.steps(), lists.most_records()), (40, 1 + 80 + 2));
+        assert_eq!((lists.steps(), lists.max_records()), (40, 1 + 80 + 2));
         assert_eq!(lists.end(), Instant(5 + 30 * 6 + 3));
         let many = vec![list(1, vec![]); 17];
         let refused = CheckedSegments::new(PULSE, many, 100).unwrap_err();

@@ -113,6 +113,7 @@ pub struct Record {
 
 /// Something that happened in a cycle beside the signals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Event {
     /// A byte was delivered; its start bit was seen at `seen`.
     Byte {

@@ -3,7 +3,7 @@
 use stepscope_peripheral::{
     config::{
         Bus, Config, ConfigError, ConfigProblem, DirLine, Distribution, Field, Protocol, PulsePhasing,
-        SerialLine, most_baud,
+        SerialLine, max_baud,
     },
     segment::PulseTimes,
     units::{Cycles, Instant},
@@ -129,7 +129,7 @@ fn a_bit_has_eleven_cycles_at_least() {
     for (clock_hz, baud, bit, most) in rows {
         let config = Config::new(clock_hz, &BUS, &SerialLine { baud, ..line() });
         assert_eq!(config.as_ref().ok().map(Config::bit), bit.map(Cycles), "{baud} at {clock_hz}");
-        assert_eq!(most_baud(clock_hz), most);
+        assert_eq!(max_baud(clock_hz), most);
         if let Err(problems) = config {
             let numbers = format!("{baud} baud at {clock_hz} Hz is 10 cycles a bit, the receiver needs 11");
             let text = problems[0].to_string();

@@ -6,7 +6,7 @@
 
 use crate::{
     Cause, Controller, Hex, Host, LineScript, Noise, Problem, Scenario, Source, Validator, ValueError,
-    schema::judge::judge,
+    limits::END_OF_TIME, schema::judge::judge,
 };
 use alloc::{
     format,
@@ -18,15 +18,11 @@ use stepscope_peripheral::{
     segment::CheckedSegments,
     signal::MAX_CHANNELS,
     units::{Cycles, Instant},
-    wire::{Forced, schedule::line_time},
+    wire::{ForcedLevel, schedule::line_time},
 };
 
-/// First cycle that no run reaches: a JavaScript number is exact up to 2^53, and this is below.
-pub const END_OF_TIME: u64 = 9_000_000_000_000_000;
 /// Most bytes of a line script, and most packets of a packet list.
 const MAX_BYTES: usize = 4 << 20;
-/// Most controllers on a line, the scenario's own first.
-pub const MAX_CONTROLLERS: usize = 32;
 
 /// A scenario whose numbers hold, but for its motions.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +30,7 @@ pub struct Checked {
     /// The controllers on the line, the scenario's own first.
     pub configs: Vec<Config>,
     /// What the further ones do.
-    pub further: Vec<Controller>,
+    pub additional: Vec<Controller>,
     /// The host's bit rate.
     pub baud: u32,
     /// How the host of a framed line behaves.
@@ -42,7 +38,7 @@ pub struct Checked {
     /// Random faults of the line.
     pub noise: Noise,
     /// Levels forced on the line; where two overlap the later one wins.
-    pub forced: Vec<Forced>,
+    pub forced: Vec<ForcedLevel>,
     /// What the host sends; its motions are not judged yet.
     pub source: Source,
     /// What the segment engine runs, where the source is segments.
@@ -86,7 +82,7 @@ impl Scenario {
             let detail = "segments run one controller by itself; take the others out, or choose ticks";
             validator.add("controllers", ValueError::Conflict { detail });
         }
-        let further = self.further(config.as_ref(), &mut validator);
+        let additional = self.additional(config.as_ref(), &mut validator);
         self.host(&mut validator);
         let forced = self.glitches(&mut validator);
         let mut segments = None;
@@ -98,9 +94,9 @@ impl Scenario {
             Source::Packets(packets) => {
                 let address = usize::from(self.line.protocol == Protocol::Raw && self.line.address.is_some());
                 let len = usize::from(self.bus.channels) + address;
-                let further = self.controllers.iter().map(|controller| &controller.packets);
+                let additional = self.controllers.iter().map(|controller| &controller.packets);
                 let total: usize =
-                    further.chain([&packets.packets]).flatten().map(|Hex(bytes)| bytes.len()).sum();
+                    additional.chain([&packets.packets]).flatten().map(|Hex(bytes)| bytes.len()).sum();
                 validator.at("source.packets.packets", |here| judge_packets(&packets.packets, len, here));
                 validator.length("source.packets.packets", total, 0..=MAX_BYTES, "bytes");
             }
@@ -114,8 +110,8 @@ impl Scenario {
         let last = axes.clamp(1, MAX_CHANNELS) as u64 - 1;
         validator.whole("analysis.axis", self.analysis.axis, 0..=last, "");
         validator.end(()).map(|()| Checked {
-            configs: config.into_iter().chain(further).collect(),
-            further: self.controllers.clone(),
+            configs: config.into_iter().chain(additional).collect(),
+            additional: self.controllers.clone(),
             // Where nothing is sent it has not been judged.
             baud: self.line.baud.max(1),
             host: self.line.host.clone(),
@@ -127,7 +123,7 @@ impl Scenario {
         })
     }
 
-    fn glitches(&self, validator: &mut Validator) -> Vec<Forced> {
+    fn glitches(&self, validator: &mut Validator) -> Vec<ForcedLevel> {
         let mut forced = Vec::new();
         let outside = validator.enter("line.glitches");
         for (index, glitch) in self.line.glitches.iter().enumerate() {
@@ -136,7 +132,7 @@ impl Scenario {
             validator.at_entry(index, |here| {
                 here.whole("length_cycles", glitch.length_cycles, 1..=room, "cycles");
             });
-            forced.push(Forced {
+            forced.push(ForcedLevel {
                 start: Instant(start),
                 end: Instant(start.saturating_add(glitch.length_cycles)),
                 level: glitch.level != 0,
@@ -147,7 +143,7 @@ impl Scenario {
     }
 
     /// The further controllers' configurations.
-    fn further(&self, first: Option<&Config>, validator: &mut Validator) -> Vec<Config> {
+    fn additional(&self, first: Option<&Config>, validator: &mut Validator) -> Vec<Config> {
         // Who writes the line himself may also ask what several of one address do.
         let scripted = matches!(self.source, Source::Line(_));
         let nameless = self.line.protocol == Protocol::Raw && self.line.address.is_none();

@@ -1,35 +1,17 @@
 //! The scenario's types as JSON: the canonical form that a link carries, fixed in order, with what equals its default
 //! left out; and the whole form, every field written.
 
-use crate::schema::{Field, Group};
+use crate::schema::{Field, Parts, ToParts};
 use alloc::{
     string::{String, ToString},
     vec::Vec,
 };
 use serde_json::{Map, Value};
 
-/// What a value of a scenario is made of: all that writing it needs to know, so that writing is code of its
-/// own and not of every type.
-pub enum Parts<'a> {
-    /// A value in one piece.
-    Whole(Value),
-    /// A number that may be -0.0.
-    Number(f64),
-    /// A list.
-    List(Vec<&'a dyn Compact>),
-    /// The values of a group's fields, in its order, and whether each differs from its default.
-    Fields(&'static Group, Vec<(&'a dyn Compact, bool)>),
-    /// A kind by its name, and what is in it.
-    Kind(&'static str, &'a dyn Compact),
-}
-
 /// A value with a canonical JSON: fixed order, defaults left out.
 ///
 /// Reading it back gives an equal value, and equal values have the same canonical form.
-pub trait Compact {
-    /// What it is made of.
-    fn parts(&self) -> Parts<'_>;
-
+pub trait Compact: ToParts {
     /// The canonical form.
     fn compact(&self) -> Value
     where
@@ -39,6 +21,8 @@ pub trait Compact {
     }
 }
 
+impl<T: ToParts> Compact for T {}
+
 fn compacted(parts: Parts<'_>) -> Value {
     match parts {
         Parts::Whole(value) => value,
@@ -47,7 +31,7 @@ fn compacted(parts: Parts<'_>) -> Value {
         Parts::List(entries) => entries.into_iter().map(|entry| compacted(entry.parts())).collect(),
         Parts::Fields(group, values) => {
             let fields = group.fields.iter().zip(values).filter(|(_, (_, differs))| *differs);
-            let entry = |(field, (value, _)): (&Field, (&dyn Compact, bool))| {
+            let entry = |(field, (value, _)): (&Field, (&dyn ToParts, bool))| {
                 (field.name.to_string(), compacted(value.parts()))
             };
             Value::Object(fields.map(entry).collect())
@@ -60,12 +44,12 @@ fn compacted(parts: Parts<'_>) -> Value {
 
 /// Writes a value with all its fields in the order of their declaration, as
 /// `serde_json::to_string_pretty` does; `indent` is the depth of the line that it begins in.
-pub(super) fn write_whole(out: &mut String, value: &dyn Compact, indent: usize) {
+pub(super) fn write_whole(out: &mut String, value: &dyn ToParts, indent: usize) {
     let begin_line = |out: &mut String, first: bool| {
         out.push_str(if first { "\n" } else { ",\n" });
         (0..=indent).for_each(|_| out.push_str("  "));
     };
-    let named = |out: &mut String, name: &str, value: &dyn Compact| {
+    let named = |out: &mut String, name: &str, value: &dyn ToParts| {
         out.push_str(&alloc::format!("\"{name}\": "));
         write_whole(out, value, indent + 1);
     };
@@ -104,7 +88,7 @@ pub(super) fn write_whole(out: &mut String, value: &dyn Compact, indent: usize) 
 
 macro_rules! plain {
     ($($ty:ty),*) => {$(
-        impl Compact for $ty {
+        impl ToParts for $ty {
             fn parts(&self) -> Parts<'_> {
                 Parts::Whole(Value::from(self.clone()))
             }
@@ -113,21 +97,21 @@ macro_rules! plain {
 }
 plain!(u8, u16, u32, u64, i64, String);
 
-impl Compact for f64 {
+impl ToParts for f64 {
     fn parts(&self) -> Parts<'_> {
         Parts::Number(*self)
     }
 }
 
-impl<T: Compact> Compact for Option<T> {
+impl<T: ToParts> ToParts for Option<T> {
     fn parts(&self) -> Parts<'_> {
-        self.as_ref().map_or(Parts::Whole(Value::Null), Compact::parts)
+        self.as_ref().map_or(Parts::Whole(Value::Null), ToParts::parts)
     }
 }
 
-impl<T: Compact> Compact for Vec<T> {
+impl<T: ToParts> ToParts for Vec<T> {
     fn parts(&self) -> Parts<'_> {
-        Parts::List(self.iter().map(|entry| entry as &dyn Compact).collect())
+        Parts::List(self.iter().map(|entry| entry as &dyn ToParts).collect())
     }
 }
 

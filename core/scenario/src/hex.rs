@@ -47,10 +47,14 @@ fn wrong_in(digits: &str) -> String {
     format!("{what}; give 0 to 9 and a to f, two a byte, such as 80 01 7f")
 }
 
-impl crate::Compact for Hex {
-    fn parts(&self) -> crate::Parts<'_> {
-        crate::Parts::Whole(Value::from(lower::encode_string(&self.0)))
+impl crate::schema::ToParts for Hex {
+    fn parts(&self) -> crate::schema::Parts<'_> {
+        crate::schema::Parts::Whole(Value::from(lower::encode_string(&self.0)))
     }
+}
+
+impl crate::schema::Typed for Hex {
+    const TYPE: crate::schema::Type = crate::schema::Type::Hex;
 }
 
 #[cfg(test)]

@@ -31,6 +31,8 @@ extern crate alloc;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+mod limits;
+
 mod problem;
 
 mod compact;
@@ -59,9 +61,10 @@ pub mod link;
 
 pub mod presets;
 
-pub use check::{Checked, END_OF_TIME, MAX_CONTROLLERS};
-pub use compact::{Compact, Kinds, Parts};
+pub use check::Checked;
+pub use compact::{Compact, Kinds};
 pub use hex::Hex;
+pub use limits::{END_OF_TIME, MAX_CONTROLLERS};
 pub use points::points_of_table;
 pub use problem::{Cause, Problem, Validator, ValueError, of_config, of_motion};
 pub use read::{part_from_json, to_json};
@@ -71,6 +74,7 @@ pub use schema::{
     LineScript, Motion, MotionEngine, Noise, Packets, Scenario, ScriptedSend, Segment, SegmentLists, Source,
     StepSegment, TimingRules,
 };
+pub use schema::{Parts, ToParts};
 pub use table::{BadTable, MAX_TABLE_BYTES};
 
 /// The scenario version that this crate writes, and the newest that it reads.

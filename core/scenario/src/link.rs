@@ -43,6 +43,7 @@ const TRAILING: &[char] = &['.', ',', ';', ':', '!', '?', ')', ']', '}', '>', '"
 
 /// Why a link does not open.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum LinkError {
     /// Longer than any link.
     TooLong {

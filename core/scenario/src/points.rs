@@ -7,7 +7,7 @@
 //! Both columns count from the first point: a record may begin at any time and place.
 
 use crate::{
-    Compact, Parts, Read, Reader,
+    Parts, Read, Reader, ToParts,
     table::{BadTable, Rows, short},
 };
 use alloc::{borrow::ToOwned, format, string::String, vec, vec::Vec};
@@ -31,7 +31,7 @@ impl Read for Point {
     }
 }
 
-impl Compact for Point {
+impl ToParts for Point {
     fn parts(&self) -> Parts<'_> {
         Parts::List(vec![&self.time_s, &self.position])
     }
@@ -85,6 +85,7 @@ pub fn points_of_table(table: &str) -> Result<Vec<Point>, BadTable> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Compact as _;
     use alloc::string::ToString;
 
     fn points(table: &str) -> Result<Vec<(f64, f64)>, String> {

@@ -81,7 +81,7 @@ pub enum Cause {
         /// The least rate that does.
         needed_baud: u64,
         /// The highest rate that the receiver can hear with this clock.
-        most_baud: u64,
+        max_baud: u64,
     },
     /// Two controllers of one address.
     SameAddress {
@@ -167,12 +167,12 @@ impl fmt::Display for Cause {
                 "starts at cycle {start} while the bytes before it last to cycle {}; start at {free_from} or later",
                 free_from - 1
             ),
-            Self::LineTooSlow { packet_cycles, tick_cycles, baud, needed_baud, most_baud } => {
+            Self::LineTooSlow { packet_cycles, tick_cycles, baud, needed_baud, max_baud } => {
                 write!(
                     f,
                     "at {baud} baud what is sent for a tick takes {packet_cycles} cycles, a tick has {tick_cycles}; give "
                 )?;
-                if needed_baud <= most_baud {
+                if needed_baud <= max_baud {
                     write!(
                         f,
                         "at least {needed_baud} baud, longer ticks or fewer channels; on a framed line also more ticks a frame and a deeper queue"
@@ -180,7 +180,7 @@ impl fmt::Display for Cause {
                 } else {
                     write!(
                         f,
-                        "longer ticks or fewer channels: it would need {needed_baud} baud, and this clock hears at most {most_baud}"
+                        "longer ticks or fewer channels: it would need {needed_baud} baud, and this clock hears at most {max_baud}"
                     )
                 }
             }

@@ -1,6 +1,6 @@
 //! Reads a scenario from JSON text, of any version, and writes it.
 
-use crate::{Cause, Compact, Problem, Read, Scenario, VERSION, compact, reader::read_into};
+use crate::{Cause, Problem, Read, Scenario, ToParts, VERSION, compact, reader::read_into};
 use alloc::{
     string::{String, ToString},
     vec::Vec,
@@ -63,7 +63,7 @@ pub fn part_from_json<T: Read>(text: &str) -> Result<T, Vec<Problem>> {
 
 /// A part of a scenario as JSON, every field written.
 #[must_use]
-pub fn to_json(part: &dyn Compact) -> String {
+pub fn to_json(part: &dyn ToParts) -> String {
     let mut text = String::new();
     compact::write_whole(&mut text, part, 0);
     text

@@ -44,7 +44,7 @@ impl Reader {
 
     /// Notes that a value is of another kind, and what would do. Always false.
     pub(super) fn refuse(&mut self, value: &Value, wanted: &str) -> bool {
-        self.note(format!("{}; give {wanted}", in_words(value)));
+        self.note(format!("{}; give {wanted}", describe(value)));
         false
     }
 
@@ -119,7 +119,7 @@ impl Reader {
 }
 
 /// A value as it is told to people.
-fn in_words(value: &Value) -> String {
+fn describe(value: &Value) -> String {
     const LONGEST: usize = 40;
     match value {
         Value::Null => "nothing (null)".into(),

@@ -51,6 +51,23 @@ fn every_row_says_what_it_is_and_what_it_is_called() {
 }
 
 #[test]
+fn what_the_form_asks_is_explained() {
+    // Segments are typed as lines, and the version is no one's to give.
+    let asked = |group: &Group, field: &Field| {
+        let quantity = |group: &Group| group.is_choice && matches!(group.fields[0].ty, Type::Number);
+        let one = match field.ty {
+            Type::Group(group) => quantity(group),
+            Type::Optional(Type::Group(_)) | Type::List(Type::Group(_)) => false,
+            _ => true,
+        };
+        one && !group.is_choice
+            && !["StepSegment", "DwellSegment"].contains(&group.name)
+            && field.name != "version"
+    };
+    assert_eq!(problems(|group, field| asked(group, field) && field.explained.is_empty()), [""; 0]);
+}
+
+#[test]
 fn a_range_is_one_of_its_type_and_nothing_is_said_where_it_may_stand() {
     let optional = |ty: &Type| matches!(ty, Type::Optional(_));
     assert_eq!(problems(|_, field| optional(&field.ty) == field.empty.is_empty()), [""; 0], "null");
@@ -63,7 +80,7 @@ fn a_range_is_one_of_its_type_and_nothing_is_said_where_it_may_stand() {
         (Limit::Whole(least, most), Type::Whole { most: type_most, .. }) => least > most || most > type_most,
         (Limit::Number(least, most), Type::Number | Type::Group(_)) => least > most,
         // The owner judges it as a float.
-        (Limit::Number(least, most), Type::Whole { .. }) => least > most || !group.is_foreign,
+        (Limit::Number(least, most), Type::Whole { .. }) => least > most || !group.is_external,
         (Limit::Length(least, most, of), Type::Text | Type::List(_)) => least > most || of.is_empty(),
         _ => true,
     };

@@ -1,6 +1,6 @@
 //! Whether the line can carry what is sent for a tick (DESIGN A9).
 
-use stepscope_peripheral::config::most_baud;
+use stepscope_peripheral::config::max_baud;
 use stepscope_scenario::Cause;
 
 /// Judges whether what is sent for one tick, `bits` bit times at `baud`, fits in its cycles (A9).
@@ -22,6 +22,6 @@ pub(crate) fn carries(
     let saturated = |value: u128| u64::try_from(value).unwrap_or(u64::MAX);
     let (packet_cycles, needed_baud) =
         (saturated(packet_cycles), saturated((bits * u128::from(clock_hz)).div_ceil(tick)));
-    let most_baud = u64::from(most_baud(clock_hz));
-    Err(Cause::LineTooSlow { packet_cycles, tick_cycles, baud, needed_baud, most_baud })
+    let max_baud = u64::from(max_baud(clock_hz));
+    Err(Cause::LineTooSlow { packet_cycles, tick_cycles, baud, needed_baud, max_baud })
 }

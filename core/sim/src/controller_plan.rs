@@ -18,7 +18,7 @@ use stepscope_peripheral::{
     signal::MAX_CHANNELS,
     units::Instant,
     wire::{
-        Forced, Schedule,
+        ForcedLevel, Schedule,
         frame::{REPLY_LEN, encode_frame},
         packet::{ChannelCommand, Tick},
     },
@@ -73,7 +73,7 @@ impl ControllerPlan {
 /// The plan of each axis of each controller; empty where the source is no motion.
 pub(super) fn plans(scenario: &Scenario) -> Result<Vec<Vec<AxisPlan>>, Vec<Problem>> {
     #[cfg(test)]
-    crate::judged::counts::PLANNED.set(crate::judged::counts::PLANNED.get() + 1);
+    crate::counts::PLANNED.set(crate::counts::PLANNED.get() + 1);
     let Source::Motion(motion) = &scenario.source else {
         return Ok(vec![Vec::new(); 1 + scenario.controllers.len()]);
     };
@@ -128,7 +128,7 @@ fn ticks_of(
     config: &Config,
     plans: &[AxisPlan],
 ) -> Result<Vec<u8>, Vec<Problem>> {
-    let additional = index.checked_sub(1).and_then(|index| checked.further.get(index));
+    let additional = index.checked_sub(1).and_then(|index| checked.additional.get(index));
     Ok(match &checked.source {
         source if !source.is_ticks() => Vec::new(),
         Source::Motion(_) if plans.is_empty() => Vec::new(),
@@ -173,7 +173,7 @@ fn end_at_rest(ticks: &mut Vec<u8>, channels: u8) {
 }
 
 /// What the host sends without waiting for replies, and what noise forces on the line meanwhile.
-pub(super) fn schedule(checked: &Checked, controllers: &[ControllerPlan]) -> (Schedule, Vec<Forced>) {
+pub(super) fn schedule(checked: &Checked, controllers: &[ControllerPlan]) -> (Schedule, Vec<ForcedLevel>) {
     let schedule = match &checked.source {
         Source::Line(script) => script.schedule(),
         _ if checked.waits_for_replies() => return (Schedule::default(), Vec::new()),
@@ -215,7 +215,7 @@ struct Packets<'a> {
 
 impl<'a> Packets<'a> {
     fn of(checked: &'a Checked, index: usize, plan: &'a ControllerPlan) -> Self {
-        let additional = index.checked_sub(1).and_then(|index| checked.further.get(index));
+        let additional = index.checked_sub(1).and_then(|index| checked.additional.get(index));
         let given = match &checked.source {
             Source::Packets(source) => {
                 Some(&additional.map_or(&source.packets, |additional| &additional.packets)[..])
@@ -280,7 +280,7 @@ pub(super) fn line_load<'a>(checked: &'a Checked) -> Result<Option<f64>, Problem
     }
     let (clock_hz, tick) = (first.clock_hz(), first.tick().0);
     let busy = |(index, config): (usize, &'a Config)| {
-        let additional = index.checked_sub(1).and_then(|index| checked.further.get(index));
+        let additional = index.checked_sub(1).and_then(|index| checked.additional.get(index));
         additional.is_none_or(Controller::is_busy).then_some(config)
     };
     let configs = checked.configs.iter().enumerate().filter_map(busy);

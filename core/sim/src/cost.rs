@@ -74,7 +74,7 @@ impl Cost {
     /// What a run of segments costs: nothing is sent.
     pub(super) fn of_segments(segments: &CheckedSegments, run: Option<Cycles>) -> Self {
         let end_cycle = run.map_or(segments.end().0 + 1, |Cycles(run)| run);
-        Self { records: segments.most_records().min(end_cycle), sends: 0, bytes: 0, end_cycle }
+        Self { records: segments.max_records().min(end_cycle), sends: 0, bytes: 0, end_cycle }
     }
 }
 

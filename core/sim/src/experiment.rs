@@ -16,7 +16,7 @@ use stepscope_peripheral::{
     segment::CheckedSegments,
     signal::{Event, MAX_CHANNELS, Record, Sink},
     units::{Cycles, Instant},
-    wire::{Forced, Line, Schedule},
+    wire::{ForcedLevel, Line, Schedule},
 };
 use stepscope_scenario::{Checked, END_OF_TIME, Problem, Scenario, ValueError};
 
@@ -287,7 +287,7 @@ impl Run {
     /// The levels that have been forced on the line and will be as far as that is known, those of noise
     /// among them, rising in time. Together with [`Self::schedule`] they are all that is done to the line.
     #[must_use]
-    pub fn forced(&self) -> &[Forced] {
+    pub fn forced(&self) -> &[ForcedLevel] {
         self.bus.line().forced()
     }
 

@@ -44,7 +44,7 @@ use stepscope_peripheral::wire::schedule::line_time;
 use stepscope_peripheral::wire::{
     Line,
     frame::{self, Deframed, Deframer, Kind, REPLY_LEN, Reply, Ticks},
-    uart::{Heard, Receiver},
+    uart::{Receiver, RxEvent},
 };
 use stepscope_scenario::{END_OF_TIME, Host as Settings};
 
@@ -186,7 +186,7 @@ impl FramedHost {
     pub fn clock(&mut self, now: Instant, level: bool, line: &mut Line) {
         let before = core::mem::replace(&mut self.heard, level);
         if let Phase::Waiting { peer, kind, ticks, .. } = self.phase
-            && let Some(Heard::Byte(byte)) = self.receiver.clock(now, before, level)
+            && let Some(RxEvent::Byte(byte)) = self.receiver.clock(now, before, level)
         {
             self.last = now;
             self.hear(byte, now, (peer, kind, ticks));

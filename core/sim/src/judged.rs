@@ -34,7 +34,7 @@ impl Judged {
     #[must_use]
     pub fn from_json(text: &str) -> Self {
         #[cfg(test)]
-        counts::READ.set(counts::READ.get() + 1);
+        crate::counts::READ.set(crate::counts::READ.get() + 1);
         let (scenario, unread) = Scenario::from_json_lenient(text);
         Self::of(scenario, unread)
     }
@@ -104,15 +104,6 @@ pub fn axes_of(scenario: &Scenario, controller: usize) -> &[Axis] {
 
 /// How often this thread has read and planned; in tests alone.
 #[cfg(test)]
-pub(crate) mod counts {
-    use core::cell::Cell;
-    std::thread_local! {
-        pub(crate) static READ: Cell<u32> = const { Cell::new(0) };
-        pub(crate) static PLANNED: Cell<u32> = const { Cell::new(0) };
-    }
-}
-
-#[cfg(test)]
 mod tests {
     use super::*;
     use stepscope_peripheral::trace::Digest;
@@ -130,7 +121,7 @@ mod tests {
             assert_eq!(selected.axis.moves.len(), selected.plan.moves().len());
         }
         assert!(judged.axis(0, 2).is_none() && judged.axis(1, 0).is_none());
-        assert_eq!((counts::READ.get(), counts::PLANNED.get()), (1, 1));
+        assert_eq!((crate::counts::READ.get(), crate::counts::PLANNED.get()), (1, 1));
         assert!(digest.records() > 1);
     }
 

@@ -21,6 +21,9 @@ struct Readme;
 
 mod bus_load;
 
+#[cfg(test)]
+mod counts;
+
 pub mod noise;
 
 pub mod framed_host;

@@ -27,7 +27,7 @@ use stepscope_peripheral::wire::Schedule;
 use stepscope_peripheral::wire::{BitTimes, schedule::line_time};
 use stepscope_peripheral::{
     units::{Cycles, Instant},
-    wire::Forced,
+    wire::ForcedLevel,
 };
 use stepscope_scenario::Noise as Rates;
 
@@ -58,11 +58,11 @@ pub struct Noise {
 
 /// What becomes of bytes on their way over the line.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Spoiled {
+pub struct CorruptedSend {
     /// What is really sent.
     pub bytes: Vec<u8>,
     /// A level that is forced while they are sent.
-    pub forced: Option<Forced>,
+    pub forced: Option<ForcedLevel>,
     /// Whether the host crashed within them; `bytes` are those sent before.
     pub crashes: bool,
 }
@@ -108,7 +108,7 @@ impl Noise {
     }
 
     /// What becomes of bytes that the host sends from `start` on.
-    pub fn send(&mut self, start: Instant, bytes: &[u8]) -> Spoiled {
+    pub fn send(&mut self, start: Instant, bytes: &[u8]) -> CorruptedSend {
         let mut spoiled = Vec::with_capacity(bytes.len());
         for &byte in bytes {
             self.byte(byte, &mut spoiled);
@@ -119,26 +119,26 @@ impl Noise {
         }
         let glitch = (0..bytes.len()).any(|_| self.happens(self.rates.glitches_ppm));
         let forced = glitch.then(|| self.glitch(start, spoiled.len() as u64));
-        Spoiled { bytes: spoiled, forced, crashes }
+        CorruptedSend { bytes: spoiled, forced, crashes }
     }
 
     /// A level forced somewhere within so many bytes, for one cycle to two bit times.
-    fn glitch(&mut self, start: Instant, bytes: u64) -> Forced {
+    fn glitch(&mut self, start: Instant, bytes: u64) -> ForcedLevel {
         let room = line_time(bytes.max(1), self.clock_hz, self.baud);
         let Cycles(longest) = BitTimes::new(self.clock_hz, self.baud).bit(2);
         let start = start + Cycles(self.random.below(room));
         let end = start + Cycles(1 + self.random.below(longest.max(1)));
         debug_assert!(start < end);
-        Forced { start, end, level: self.random.below(2) == 1 }
+        ForcedLevel { start, end, level: self.random.below(2) == 1 }
     }
 
     /// What becomes of a whole schedule, and the levels that are forced upon it. A send ends before
     /// the next one, as it does on a good line.
     #[must_use]
-    pub fn schedule(mut self, schedule: &Schedule) -> (Schedule, Vec<Forced>) {
+    pub fn schedule(mut self, schedule: &Schedule) -> (Schedule, Vec<ForcedLevel>) {
         let (mut noisy, mut all_forced) = (Schedule::default(), Vec::new());
         for (index, send) in schedule.iter().enumerate() {
-            let Spoiled { mut bytes, forced, .. } = self.send(send.start, send.bytes);
+            let CorruptedSend { mut bytes, forced, .. } = self.send(send.start, send.bytes);
             if let Some(next) = schedule.get(index + 1) {
                 let room = next.start - send.start;
                 while line_time(bytes.len() as u64, self.clock_hz, self.baud) > room.0 {
@@ -175,7 +175,7 @@ mod tests {
         let bytes = [1, 2, 3];
         let spoil = |rates| noise(rates).send(Instant(100), &bytes);
         let lost = spoil(Rates { lost_bytes_ppm: SURE, ..Rates::default() });
-        assert_eq!(lost, Spoiled { bytes: Vec::new(), forced: None, crashes: false });
+        assert_eq!(lost, CorruptedSend { bytes: Vec::new(), forced: None, crashes: false });
         let duplicated = spoil(Rates { duplicated_bytes_ppm: SURE, ..Rates::default() });
         assert_eq!(duplicated.bytes, [1, 1, 2, 2, 3, 3]);
         assert_eq!(spoil(Rates { flipped_bits_ppm: SURE, ..Rates::default() }).bytes, [254, 253, 252]);

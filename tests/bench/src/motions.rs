@@ -103,7 +103,7 @@ pub fn varied() -> Result<Experiment, Vec<Problem>> {
 
 /// Sixteen channels at 10 kHz each for 10 s in slots of 100 us: room for pulses that come after each
 /// other.
-fn roomy(bus: Bus) -> Result<Experiment, Vec<Problem>> {
+fn with_room(bus: Bus) -> Result<Experiment, Vec<Problem>> {
     let mut scenario = sixteen(vec![constant(1e5, 1e4); 16]);
     let (channels, slots) = (scenario.bus.channels, scenario.bus.slots);
     scenario.bus = Bus {
@@ -122,7 +122,7 @@ fn roomy(bus: Bus) -> Result<Experiment, Vec<Problem>> {
 /// # Errors
 /// None, as long as the scenario's rules stay as they are.
 pub fn common_dir() -> Result<Experiment, Vec<Problem>> {
-    roomy(Bus { dir_line: DirLine::Common, ..Bus::default() })
+    with_room(Bus { dir_line: DirLine::Common, ..Bus::default() })
 }
 
 /// With pulses one after another.
@@ -130,7 +130,7 @@ pub fn common_dir() -> Result<Experiment, Vec<Problem>> {
 /// # Errors
 /// None, as long as the scenario's rules stay as they are.
 pub fn staggered() -> Result<Experiment, Vec<Problem>> {
-    roomy(Bus { pulse_phasing: PulsePhasing::Staggered, settle_cycles: 100, ..Bus::default() })
+    with_room(Bus { pulse_phasing: PulsePhasing::Staggered, settle_cycles: 100, ..Bus::default() })
 }
 
 /// The steady motion over the framed protocol; the line is fast enough for frames and replies.

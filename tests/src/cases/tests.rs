@@ -10,7 +10,7 @@ use super::lines::LONGEST_CONVERSATION;
 use super::*;
 use crate::oracle::segments::{Rule, Segment};
 use crate::oracle::{
-    BAD_SEQ, CRC, FRAMING, Heard, OVERLONG, QUEUE_OVERFLOW, Run, SHORT_PACKET, TOO_MANY_STEPS, UNDERRUN,
+    BAD_SEQ, CRC, FRAMING, OVERLONG, QUEUE_OVERFLOW, Run, RxEvent, SHORT_PACKET, TOO_MANY_STEPS, UNDERRUN,
     bits, byte_start, hear, kinds, refused, run, run_line, run_segments,
 };
 
@@ -164,7 +164,7 @@ fn framed_lines_reach_every_fault_reply_and_state() {
             let replies = hear(config, &levels(run, bits::TX, input.cycles));
             let said: Vec<u8> = replies
                 .into_iter()
-                .filter_map(|(_, heard)| if let Heard::Byte(byte) = heard { Some(byte) } else { None })
+                .filter_map(|(_, heard)| if let RxEvent::Byte(byte) = heard { Some(byte) } else { None })
                 .collect();
             for reason in 1..=7 {
                 if said.windows(2).any(|pair| pair == [kinds::NAK, reason]) {

@@ -65,7 +65,7 @@ fn verdicts(bytes: &[u8]) -> Vec<RowOutcome> {
     let of = |deframed: Deframed<'_>| match deframed {
         Deframed::Frame(frame) => Ok((frame.address, frame.kind, frame.body.to_vec())),
         Deframed::Short => Err("short"),
-        Deframed::BadCheck { .. } => Err("check"),
+        Deframed::BadCrc { .. } => Err("check"),
         Deframed::Overlong => Err("overlong"),
     };
     let each = bytes.iter().enumerate();

@@ -4,7 +4,7 @@ use super::frames::Frames;
 use super::line::{Receiver, byte_start, send};
 use super::orders::Device;
 use super::packets::Packets;
-use super::{Config, FRAMING, Heard, Run, State, UNDERRUN, bit_time, bits};
+use super::{Config, FRAMING, Run, RxEvent, State, UNDERRUN, bit_time, bits};
 
 /// A reply on its way: DE is high, and TX as given, from `de_rises` on for as many cycles as there are levels.
 struct Reply {
@@ -109,8 +109,8 @@ impl<'a> Controller<'a> {
                 // is left of its run is judged like any other run ("the frame then fails its check" is what comes of
                 // that, not a rule of its own): an error before a good frame's first byte does not harm the frame. And
                 // the flag is set also where OVERLONG drops what is heard: "no further flag" speaks of the run's own.
-                Heard::FramingError => self.device.faults |= FRAMING,
-                Heard::Byte(byte) => match frames.hear(byte) {
+                RxEvent::FramingError => self.device.faults |= FRAMING,
+                RxEvent::Byte(byte) => match frames.hear(byte) {
                     Err(fault) => self.device.faults |= fault,
                     Ok(None) => {}
                     Ok(Some(good)) => {

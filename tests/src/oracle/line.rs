@@ -72,7 +72,7 @@ pub fn line_levels(config: &Config, input: &Input) -> Vec<bool> {
 
 /// What the receiver makes of the line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Heard {
+pub enum RxEvent {
     /// A byte, delivered.
     Byte(u8),
     /// The stop bit was low: the byte is dropped.
@@ -93,7 +93,7 @@ pub(super) enum Receiver {
 
 impl Receiver {
     /// What the receiver delivers in `cycle`, in which it hears the line `high` or low.
-    pub(super) fn hear(&mut self, config: &Config, cycle: u64, high: bool) -> Option<Heard> {
+    pub(super) fn hear(&mut self, config: &Config, cycle: u64, high: bool) -> Option<RxEvent> {
         let bit_time = bit_time(config);
         let mut heard = None;
         // The state that a cycle leaves is the next cycle's: "arms again in the next cycle", "is armed from
@@ -103,7 +103,7 @@ impl Receiver {
             Receiver::Armed => Receiver::InByte { t: cycle, byte: 0 },
             Receiver::InByte { t, .. } if cycle == t + bit_time / 2 && high => Receiver::Armed,
             Receiver::InByte { t, byte } if cycle == stop_sample(config, t) => {
-                heard = Some(if high { Heard::Byte(byte) } else { Heard::FramingError });
+                heard = Some(if high { RxEvent::Byte(byte) } else { RxEvent::FramingError });
                 if high { Receiver::Armed } else { Receiver::WaitingForHigh }
             }
             Receiver::InByte { t, mut byte } => {
@@ -122,7 +122,7 @@ impl Receiver {
 }
 
 /// The deliveries and framing errors that a receiver makes of a line, each with its cycle.
-pub fn hear(config: &Config, line: &[bool]) -> Vec<(u64, Heard)> {
+pub fn hear(config: &Config, line: &[bool]) -> Vec<(u64, RxEvent)> {
     let mut receiver = Receiver::Armed;
     let mut heard = Vec::new();
     for (cycle, &high) in line.iter().enumerate() {

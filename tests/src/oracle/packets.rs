@@ -1,7 +1,7 @@
 //! A5: raw packets, committed byte by byte, the gap between them, and A9's paced host.
 
 use super::sequencer::Sequencer;
-use super::{Config, FRAMING, Heard, QUEUE_OVERFLOW, SHORT_PACKET, TOO_MANY_STEPS, bit_time};
+use super::{Config, FRAMING, QUEUE_OVERFLOW, RxEvent, SHORT_PACKET, TOO_MANY_STEPS, bit_time};
 
 /// Raw host, paced (A9): "packet j starts at boot + 1 + j*M*Ts".
 ///
@@ -42,16 +42,22 @@ impl Packets {
     ///
     /// Reading: a framing error has a delivered byte's place in the order, after the gap timer; so in the cycle d +
     /// 45*B + 1 a partial packet is SHORT_PACKET first, and then the error is FRAMING.
-    pub(super) fn hear(&mut self, config: &Config, heard: Heard, cycle: u64, device: &mut Sequencer) -> u16 {
+    pub(super) fn hear(
+        &mut self,
+        config: &Config,
+        heard: RxEvent,
+        cycle: u64,
+        device: &mut Sequencer,
+    ) -> u16 {
         self.last_heard = Some(cycle);
         match heard {
-            Heard::FramingError => {
+            RxEvent::FramingError => {
                 self.partial.clear();
                 self.ignoring = true;
                 FRAMING
             }
-            Heard::Byte(_) if self.ignoring => 0,
-            Heard::Byte(byte) => {
+            RxEvent::Byte(_) if self.ignoring => 0,
+            RxEvent::Byte(byte) => {
                 self.partial.push(byte);
                 if self.partial.len() < config.channels + usize::from(config.address.is_some()) {
                     return 0;

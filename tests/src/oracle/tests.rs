@@ -82,8 +82,8 @@ fn said(config: &Config, run: &Run, cycles: u64) -> Vec<u8> {
     hear(config, &levels(run, bits::TX, cycles))
         .into_iter()
         .map(|(_, heard)| match heard {
-            Heard::Byte(byte) => byte,
-            Heard::FramingError => panic!("TX breaks off"),
+            RxEvent::Byte(byte) => byte,
+            RxEvent::FramingError => panic!("TX breaks off"),
         })
         .collect()
 }

@@ -10,9 +10,9 @@ use stepscope_core::{
 
 /// Scenarios of which nearly all run, for some ten thousand cycles to some hundred thousand.
 pub fn shared() -> impl Strategy<Value = Scenario> {
-    let further = prop::collection::vec((any::<u8>(), prop::option::weighted(0.3, 970..1_030_u32)), 0..4);
-    (small(), further, any::<bool>(), host(), noise(), any::<u64>()).prop_map(
-        |(scenario, further, framed, host, noise, choice)| {
+    let additional = prop::collection::vec((any::<u8>(), prop::option::weighted(0.3, 970..1_030_u32)), 0..4);
+    (small(), additional, any::<bool>(), host(), noise(), any::<u64>()).prop_map(
+        |(scenario, additional, framed, host, noise, choice)| {
             let mut scenario = scenario;
             let protocol = if framed { Protocol::Framed } else { Protocol::Raw };
             let address = scenario.line.address.unwrap_or(254);
@@ -22,7 +22,7 @@ pub fn shared() -> impl Strategy<Value = Scenario> {
             scenario.line.protocol = protocol;
             // A faster clock and line under ticks of the same time: there is room for the packets of all,
             // or for a frame's share.
-            let faster = if framed { 20 } else { 2 } * (1 + further.len() as u32);
+            let faster = if framed { 20 } else { 2 } * (1 + additional.len() as u32);
             scenario.clock_hz *= faster;
             scenario.line.baud *= faster;
             scenario.line.receiver_baud = scenario.line.receiver_baud.map(|baud| baud * faster);
@@ -42,7 +42,7 @@ pub fn shared() -> impl Strategy<Value = Scenario> {
                 script.sends.iter_mut().enumerate().for_each(|(index, send)| seal(send, index, address));
                 script.sends.truncate(1 + (choice % 4) as usize);
             }
-            let controllers = further.into_iter().enumerate().map(|(index, (bits, off))| {
+            let controllers = additional.into_iter().enumerate().map(|(index, (bits, off))| {
                 let mut bus = scenario.bus.clone();
                 if framed {
                     bus.channels = 1 + bits % 3;

@@ -218,8 +218,9 @@ fn a_harmonic_that_is_pointed_at_lights_up_as_stem_and_row() -> Result<()> {
         }
         let dark = page.canvas("spectrum-cursor").await?.hash;
         page.press("#spectrum-pane", "\u{e014}\u{e014}\u{e014}").await?;
-        let lit = "[...document.querySelectorAll('#harmonics .lit')].map((row) => row.dataset.n).join()";
-        page.until_equal(lit, &json!("3")).await?;
+        let highlighted =
+            "[...document.querySelectorAll('#harmonics .highlighted')].map((row) => row.dataset.n).join()";
+        page.until_equal(highlighted, &json!("3")).await?;
         let third = page.canvas("spectrum-cursor").await?.hash;
         ensure!(third != dark, "the stem is marked");
         let spoken: String = page.eval("document.getElementById('spectrum-pane').ariaValueText").await?;
@@ -228,15 +229,15 @@ fn a_harmonic_that_is_pointed_at_lights_up_as_stem_and_row() -> Result<()> {
             "{spoken}"
         );
         page.press("#spectrum-pane", "\u{e010}").await?;
-        page.until_equal(lit, &json!("1000")).await?;
+        page.until_equal(highlighted, &json!("1000")).await?;
         page.js::<Value>(
             "document.querySelector('#harmonics tr[data-n=\"5\"] td').dispatchEvent(new PointerEvent('pointerover', { bubbles: true })); return null;",
             vec![],
         )
         .await?;
-        page.until_equal(lit, &json!("5")).await?;
+        page.until_equal(highlighted, &json!("5")).await?;
         page.press("#spectrum-pane", "\u{e00c}").await?;
-        page.until_equal(lit, &json!("")).await
+        page.until_equal(highlighted, &json!("")).await
     })
 }
 

@@ -69,8 +69,8 @@ fn bytes_and_fields_are_decoded_lit_in_all_views_and_choose_their_packet() -> Re
         point(&page, &known, BYTES, middle(0), false).await?;
         until_reads(&page, "bytes: 87, sent as 83").await?;
         for overlay in ["charts-cursor", "pulses-cursor"] {
-            let lit = page.canvas(overlay).await?.colours;
-            ensure!(lit > 0, "{overlay} shows what is pointed at");
+            let highlighted = page.canvas(overlay).await?.colours;
+            ensure!(highlighted > 0, "{overlay} shows what is pointed at");
         }
         point(&page, &known, FIELDS, middle(0), false).await?;
         until_reads(&page, "fields: ch0: +7").await?;

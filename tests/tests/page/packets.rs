@@ -50,7 +50,7 @@ const CURRENT: &str = "Number(document.querySelector('#packets tr.current')?.dat
 const FOUND: &str = "document.getElementById('packets-found').textContent";
 const COUNT: &str = "document.getElementById('packets-count').textContent";
 const LIT: &str =
-    "[...document.querySelectorAll('#packet-bytes > .lit')].map((cell) => Number(cell.id.slice(5)))";
+    "[...document.querySelectorAll('#packet-bytes > .highlighted')].map((cell) => Number(cell.id.slice(5)))";
 
 #[test]
 fn a_search_goes_from_match_to_match_and_a_filter_leaves_the_others_out() -> Result<()> {
@@ -62,7 +62,7 @@ fn a_search_goes_from_match_to_match_and_a_filter_leaves_the_others_out() -> Res
             (0..log.rows().len()).filter(|&row| wanted(row)).collect::<Vec<_>>()
         };
         let bad =
-            with(&|row| matches!(log.rows()[row].outcome, RowOutcome::Frame(FrameOutcome::BadCheck { .. })));
+            with(&|row| matches!(log.rows()[row].outcome, RowOutcome::Frame(FrameOutcome::BadCrc { .. })));
         ensure!(bad.len() > 2, "the noise breaks frames");
         let all = log.rows().len();
 
@@ -212,7 +212,7 @@ fn a_field_lights_its_bytes_and_its_place_on_the_wave_and_the_wave_lights_the_by
         // A row lights its stretch, too; it is marked itself.
         let over = "document.querySelector('#packet-2').dispatchEvent(new PointerEvent('pointerover', { bubbles: true }));";
         page.js::<Value>(over, Vec::new()).await?;
-        page.until("document.querySelector('#packet-2').classList.contains('lit')").await?;
+        page.until("document.querySelector('#packet-2').classList.contains('highlighted')").await?;
         page.until(marked).await
     })
 }

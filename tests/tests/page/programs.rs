@@ -25,14 +25,14 @@ pub(crate) const START_LIMIT: Duration = Duration::from_secs(120);
 const LOOK_AGAIN: Duration = Duration::from_millis(20);
 
 /// What a program and those that it started have said so far.
-type Heard = Arc<Mutex<Vec<String>>>;
+type RxEvent = Arc<Mutex<Vec<String>>>;
 
 /// A program that listens. It ends, with all that it started, when this is dropped, and when this process ends.
 pub(crate) struct Program {
     /// Address of what it serves, with a slash at the end.
     pub(crate) address: String,
     child: Child,
-    heard: Heard,
+    heard: RxEvent,
 }
 
 impl Program {
@@ -69,7 +69,7 @@ impl Program {
         let (said, lines) = mpsc::channel();
         let output = child.stdout.take().context("has no output")?;
         let errors = child.stderr.take().context("has no output")?;
-        let mut program = Self { address: String::new(), child, heard: Heard::default() };
+        let mut program = Self { address: String::new(), child, heard: RxEvent::default() };
         program.hear(output, said.clone());
         program.hear(errors, said);
         program.address = program.place(says, &lines)?;

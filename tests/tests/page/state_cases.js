@@ -102,7 +102,7 @@ return import(new URL("state/state.js", document.baseURI)).then(({ DEPTH, LEAST_
     ["so does undo", [edit("a.b", 2), seen, undo], (s) => s.seen, null],
     ["an edit forgets a link's window", [open(10, 50), edit("a.b", 2), done(1)], (s) => s.window, null],
     // What is pointed at.
-    ["the same light is no change", [{ type: "light", lit: { start: 1, end: 2 } }, { type: "light", lit: { start: 1, end: 2 } }], (s) => s.lit, { start: 1, end: 2 }],
+    ["the same light is no change", [{ type: "light", highlighted: { start: 1, end: 2 } }, { type: "light", highlighted: { start: 1, end: 2 } }], (s) => s.highlighted, { start: 1, end: 2 }],
     ["all channels fold at once", [{ type: "fold-all", folded: true }, { type: "fold", channel: 3, folded: false }], (s) => [s.folds[2], s.folds[3], s.folds[15]], [true, false, true]],
   ];
 

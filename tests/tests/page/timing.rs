@@ -66,7 +66,11 @@ fn a_driver_and_rules_of_ones_own_are_chosen_and_taken_back() -> Result<()> {
         page.until_digest(&known.digest).await?;
         page.choose(&field("driver_timing#kind"), "rules").await?;
         page.ready().await?;
-        assert_eq!(page.field("driver_timing.rules.step_high_ns").await?.value, "1000", "they begin as the A4988's");
+        assert_eq!(
+            page.field("driver_timing.rules.step_high_ns").await?.value,
+            "1000",
+            "they begin as the A4988's"
+        );
         page.fill("driver_timing.rules.step_high_ns", "3 us").await?;
         page.until("document.getElementById('health').textContent.includes('timing violations')").await?;
         page.fill("driver_timing.rules.step_high_ns", "2 s").await?;

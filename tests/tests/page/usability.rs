@@ -1,10 +1,9 @@
 //! What helps people: the guide, terms, help, remedies, panes; and what they rely on: a history of 50 steps, every
 //! digit of a number.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use anyhow::{Context, Result, ensure};
-use serde::Deserialize;
 use serde_json::{Value, json};
 use stepscope_core::{
     motion::{grouped, moves::Move},
@@ -78,42 +77,14 @@ fn a_new_visitor_is_offered_the_guide_once_and_it_points_at_what_is_there() -> R
     })
 }
 
-/// All fields that the form's tables know, and all that is said of them.
-const FIELDS: &str = "Promise.all(['./form/fields.js', './form/moves/index.js', './help/terms.js', './help/texts.js'].map((name) => import(name)))
-    .then(([tables, { MOVES }, { termsOf }, texts]) => {
-        const { VIEWS, DOCUMENTS } = texts;
-        const TERMS = termsOf(texts);
-        const fields = [];
-        const seek = (value) => {
-            if (typeof value !== 'object' || value === null) return;
-            if ('kind' in value && 'label' in value && 'key' in value) fields.push(value.term ?? value.key);
-            for (const inner of Object.values(value)) seek(inner);
-        };
-        seek({ ...tables }); seek(MOVES);
-        const all = [...Object.values(TERMS), ...Object.values(VIEWS).flatMap(({ terms }) => Object.values(terms))];
-        return { fields, unsaid: fields.filter((id) => !TERMS[id]?.text || !TERMS[id]?.name), names: all.map(({ name }) => name),
-            unknown: all.filter(({ from }) => from && !DOCUMENTS[from]).map(({ name }) => name),
-            moves: Object.fromEntries(Object.entries(MOVES).map(([kind, { fields }]) => [kind, fields.map(({ key }) => key)])) };
-    })";
-
-#[derive(Deserialize)]
-struct Fields {
-    fields: Vec<String>,
-    unsaid: Vec<String>,
-    names: Vec<Option<String>>,
-    unknown: Vec<Option<String>>,
-    moves: std::collections::BTreeMap<String, BTreeSet<String>>,
-}
+/// The fields that the form has for each kind of move.
+const FIELDS: &str = "import('./form/schema.js').then(({ labels, fieldsOfKind }) =>
+    Object.fromEntries(Object.keys(labels('Move')).map((kind) => [kind, fieldsOfKind('Move', kind).map(({ key }) => key)])))";
 
 #[test]
-fn every_field_is_explained_and_names_its_document() -> Result<()> {
+fn every_field_of_the_form_is_explained() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
-        let found: Fields = page.eval(FIELDS).await?;
-        ensure!(found.fields.len() > 60, "{} fields", found.fields.len());
-        assert_eq!(found.unsaid, [""; 0], "without a term");
-        assert_eq!(found.unknown, [None::<String>; 0], "from a document that is not known");
-        // What stands in the form is what the tables say, for every source and driver.
         for id in
             ["driver-timing-broken", "sonobe-2011-segments", "glitches-and-breaks", "two-controllers-raw"]
         {
@@ -121,8 +92,9 @@ fn every_field_is_explained_and_names_its_document() -> Result<()> {
             page.ready().await?;
             let dumb: Vec<String> = page
                 .eval(
-                    "Promise.all([import('./help/terms.js'), import('./help/texts.js')]).then(([{ termsOf }, texts]) => [...document.querySelectorAll('#form .term')]\
-                     .filter((word) => !termsOf(texts)[word.dataset.term]?.text).map((word) => word.dataset.term))",
+                    "Promise.all([import('./form/schema.js'), import('./help/texts.js')]).then(([{ termOf }, { DERIVED }]) =>
+                     [...document.querySelectorAll('#form .term')].map((word) => word.dataset.term)
+                     .filter((term) => !(termOf(term) ?? DERIVED[term])?.text))",
                 )
                 .await?;
             assert_eq!(dumb, [""; 0], "{id}");
@@ -135,15 +107,15 @@ fn every_field_is_explained_and_names_its_document() -> Result<()> {
 fn every_kind_of_move_has_a_form_with_all_of_its_fields() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
-        let found: Fields = page.eval(FIELDS).await?;
+        let found: BTreeMap<String, BTreeSet<String>> = page.eval(FIELDS).await?;
         for kind in Move::KINDS {
             let json = format!(r#"{{"source":{{"motion":{{"axes":[{{"moves":[{{"{kind}":{{}}}}]}}]}}}}}}"#);
             let full: Value = serde_json::from_str(&Known::of(&json)?.scenario.to_json())?;
             let fields = &full["source"]["motion"]["axes"][0]["moves"][0][kind];
             let fields: BTreeSet<String> = fields.as_object().context("a map")?.keys().cloned().collect();
-            assert_eq!(found.moves.get(*kind), Some(&fields), "{kind}");
+            assert_eq!(found.get(*kind), Some(&fields), "{kind}");
         }
-        assert_eq!(found.moves.len(), Move::KINDS.len());
+        assert_eq!(found.len(), Move::KINDS.len());
         Ok(())
     })
 }
@@ -204,7 +176,13 @@ fn the_help_lists_every_key_and_the_help_page_every_term_and_document() -> Resul
             page.click("#keys-close").await?;
             page.until("!document.getElementById('keys').open").await?;
         }
-        let names: Vec<String> = page.eval::<Fields>(FIELDS).await?.names.into_iter().flatten().collect();
+        let names: Vec<String> = page
+            .eval(
+                "Promise.all([import('./form/schema.js'), import('./help/texts.js')]).then(([{ terms }, { DERIVED, VIEWS }]) =>
+                 [terms(), DERIVED, ...Object.values(VIEWS).map(({ terms }) => terms)].flatMap(Object.values).map(({ name }) => name))",
+            )
+            .await?;
+        ensure!(names.len() > 80, "{} terms", names.len());
         page.load("help.html").await?;
         page.until("document.querySelectorAll('#terms dt').length > 0").await?;
         let said: String = page.eval("document.body.textContent").await?;

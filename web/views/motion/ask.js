@@ -15,20 +15,20 @@ export function unitPair(state) {
  * @param {State} state
  * @param {import("../../state/types.js").Span} span
  * @param {number} columns
- * @param {string} [lane]  Of questions in one lane only the newest is answered.
+ * @param {string} [slot]  Of questions in one slot only the newest is answered.
  * @returns {Promise<import("./bands.js").Seen | null>}
  */
-export async function ask(engine, state, { start, end }, columns, lane = "motion") {
+export async function ask(engine, state, { start, end }, columns, slot = "motion") {
   const clock = state.result?.summary.clock_hz ?? 1;
   const window = [start / clock, end / clock, columns];
   const { reference, axis } = state;
   const of = keptAxis(state).index;
   const [own, kept, apart] = await Promise.all([
-    engine.latest(lane, "motion", axis, ...window),
-    reference && engine.latest(`${lane} kept`, "baseline_motion", reference.controller, of, ...window),
+    engine.latest(slot, "motion", axis, ...window),
+    reference && engine.latest(`${slot} kept`, "baseline_motion", reference.controller, of, ...window),
     reference && state.difference
       ? engine.latest(
-          `${lane} apart`,
+          `${slot} apart`,
           "baseline_difference",
           reference.controller,
           axis,

@@ -2,7 +2,7 @@
 import { button, byId, element, fill, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count, plain, short, si, time } from "../../state/number.js";
-import { lookedAt } from "../../state/state.js";
+import { selected } from "../../state/state.js";
 import { unitPair } from "./ask.js";
 import { keptAxis, unitOf } from "./bands.js";
 
@@ -48,7 +48,7 @@ export function createCompare({ engine, dispatch, now }) {
     const { reference, result } = state;
     place.hidden = !reference;
     if (!reference || !result) return;
-    const looked = lookedAt(state);
+    const looked = selected(state);
     const kept = keptAxis(state);
     const own = state.derived?.controllers[result.controller]?.axes[state.axis];
     const { unit, scale, kept: keptScale } = unitOf(state);

@@ -2,7 +2,7 @@
 import { byId, options, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count, short, si, time } from "../../state/number.js";
-import { lookedAt, shown } from "../../state/state.js";
+import { selected, shown } from "../../state/state.js";
 import { drawCursors, overlaid } from "../../time/cursors.js";
 import { cleared, draw, fit, GUTTER, MARGIN, watch } from "../../time/plot.js";
 import { gestures } from "../../time/timeline.js";
@@ -179,7 +179,7 @@ export function createMotion({ engine, dispatch, now }) {
       before?.axis !== state.axis ||
       before?.unit !== state.unit
     ) {
-      const axes = lookedAt(state)?.channels ?? 1;
+      const axes = selected(state)?.channels ?? 1;
       /** @type {HTMLElement} */ (axisSelect.parentElement).hidden = axes === 1;
       options(
         axisSelect,

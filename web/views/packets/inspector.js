@@ -1,6 +1,6 @@
 /**
  * The inspector: all of one row. Its bytes, its fields with the bytes that they stand in, its check, and the times
- * around it. What is pointed at, or has the focus, is lit in all views; what others point at is lit here.
+ * around it. What is pointed at, or has the focus, is highlighted in all views; what others point at is highlighted here.
  */
 import { byId, element, fill, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
@@ -60,7 +60,7 @@ export function createInspector({ engine, dispatch, now }) {
     for (const each of list.children) each.setAttribute("aria-selected", String(each === cell));
     if (!row || !cell) {
       list.removeAttribute("aria-activedescendant");
-      return dispatch({ type: "light", lit: null });
+      return dispatch({ type: "light", highlighted: null });
     }
     list.setAttribute("aria-activedescendant", cell.id);
     if (list.matches(":focus")) cell.scrollIntoView({ block: "nearest" });
@@ -71,7 +71,7 @@ export function createInspector({ engine, dispatch, now }) {
     const own = row.kind === "reply" && row.mark !== "foreign";
     dispatch({
       type: "light",
-      lit: { start, end: last + row.byte_length, from: "packets", packet: row.index, bit: own ? TX : RX },
+      highlighted: { start, end: last + row.byte_length, from: "packets", packet: row.index, bit: own ? TX : RX },
     });
   }
 
@@ -143,18 +143,19 @@ export function createInspector({ engine, dispatch, now }) {
   }
 
   /** Lights the bytes and fields that something points at. @param {State} state */
-  function light({ lit, result }) {
+  function light({ highlighted, result }) {
     const told = row;
     const over =
-      lit && told && (lit.packet === null || lit.packet === told.index)
-        ? told.byte_cycles.map((start) => start < lit.end && start + told.byte_length > lit.start)
+      highlighted && told && (highlighted.packet === null || highlighted.packet === told.index)
+        ? told.byte_cycles.map((start) => start < highlighted.end && start + told.byte_length > highlighted.start)
         : [];
     // All of a row is said by the row itself.
     const some = over.includes(false) || over.length === 1 ? over : [];
-    for (const [place, cell] of [...bytes.children].entries()) cell.classList.toggle("lit", some[place] === true);
+    for (const [place, cell] of [...bytes.children].entries())
+      cell.classList.toggle("highlighted", some[place] === true);
     for (const [place, cell] of [...fields.children].entries()) {
       const { from, until } = told?.layout[place] ?? { from: 0, until: 0 };
-      cell.classList.toggle("lit", some.slice(from, until).includes(true));
+      cell.classList.toggle("highlighted", some.slice(from, until).includes(true));
     }
     const [first, last] = [some.indexOf(true), some.lastIndexOf(true)];
     if (told) say(byId("packet-reading"), reading(told, first, last, result?.summary.clock_hz ?? 1));

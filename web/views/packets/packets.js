@@ -114,7 +114,7 @@ export function createPackets(page) {
 
   /** @param {State} state @param {State | undefined} before */
   async function render(state, before) {
-    if (before?.lit !== state.lit) {
+    if (before?.highlighted !== state.highlighted) {
       table.light(state);
       inspector.light(state);
     }

@@ -58,10 +58,10 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
     if (row)
       dispatch({
         type: "light",
-        lit: { start: row.start_cycle, end: row.line_end_cycle, from: "packets", packet: row.index, bit: null },
+        highlighted: { start: row.start_cycle, end: row.line_end_cycle, from: "packets", packet: row.index, bit: null },
       });
   });
-  body.addEventListener("pointerleave", () => dispatch({ type: "light", lit: null }));
+  body.addEventListener("pointerleave", () => dispatch({ type: "light", highlighted: null }));
 
   const visible = () => Math.max(1, Math.floor((scroller.clientHeight - ROW_PX) / ROW_PX));
 
@@ -154,14 +154,16 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
   }
 
   /** Marks the rows that another view, or this one, points at. @param {State} state */
-  function light({ lit }) {
+  function light({ highlighted }) {
     for (const [place, node] of [...body.rows].entries()) {
       const row = answer.rows[place];
       const over =
-        lit &&
+        highlighted &&
         row &&
-        (lit.packet === null ? lit.start < row.line_end_cycle && lit.end > row.start_cycle : lit.packet === row.index);
-      node.classList.toggle("lit", Boolean(over));
+        (highlighted.packet === null
+          ? highlighted.start < row.line_end_cycle && highlighted.end > row.start_cycle
+          : highlighted.packet === row.index);
+      node.classList.toggle("highlighted", Boolean(over));
     }
   }
 

@@ -1,4 +1,4 @@
-/** The picture of the logic view: its rows, one below the other, and what is lit in them. */
+/** The picture of the logic view: its rows, one below the other, and what is highlighted in them. */
 
 import { shown } from "../../state/state.js";
 import { color, fit, ratio } from "../../time/plot.js";
@@ -78,22 +78,22 @@ function placed(state, plot, { start, end, sample, ...rest }) {
   return { ...rest, from: x(start), to: x(end), sample: typeof sample === "number" ? x(sample + 0.5) : null };
 }
 
-/** A frame around the spans that are lit, whoever points at them, and around a lit edge. @param {CanvasRenderingContext2D} context  In CSS pixels. @param {State} state @param {Plot} plot @param {Spans} spans */
+/** A frame around the spans that are highlighted, whoever points at them, and around a highlighted edge. @param {CanvasRenderingContext2D} context  In CSS pixels. @param {State} state @param {Plot} plot @param {Spans} spans */
 export function drawLit(context, state, plot, spans) {
-  const { lit } = state;
-  if (!lit) return;
+  const { highlighted } = state;
+  if (!highlighted) return;
   context.setLineDash([]);
   context.strokeStyle = color("--ink");
   context.lineWidth = 1.5;
   for (const [index, row] of rowsOf(state).entries()) {
     const top = index * ROW_PX;
     if ("bit" in row) {
-      if (lit.bit === null || !shows(row, lit.bit)) continue;
-      context.strokeRect(pixelOf(state, plot, lit.start) - 3, top + 3, 6, ROW_PX - 4);
+      if (highlighted.bit === null || !shows(row, highlighted.bit)) continue;
+      context.strokeRect(pixelOf(state, plot, highlighted.start) - 3, top + 3, 6, ROW_PX - 4);
     } else if (!spans.isDense(row)) {
       for (const { start, end, packet } of spans.spansOf(state, row)) {
-        const same = start === lit.start && end === lit.end;
-        if (!same && (packet === null || packet !== lit.packet || "lane" in row)) continue;
+        const same = start === highlighted.start && end === highlighted.end;
+        if (!same && (packet === null || packet !== highlighted.packet || "lane" in row)) continue;
         const [from, to] = [
           Math.max(plot.left, pixelOf(state, plot, start)),
           Math.min(plot.right, pixelOf(state, plot, end)),

@@ -3,7 +3,7 @@ import { byId, options, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { listen } from "../../shell/commands.js";
 import { time } from "../../state/number.js";
-import { lookedAt, shown } from "../../state/state.js";
+import { selected, shown } from "../../state/state.js";
 import { drawCursors, overlaid } from "../../time/cursors.js";
 import { fit, GUTTER, MARGIN, ratio, watch } from "../../time/plot.js";
 import { createRange } from "../../time/range.js";
@@ -87,7 +87,7 @@ export function createPulses({ engine, dispatch, now }) {
   function light(what) {
     dispatch({
       type: "light",
-      lit: what && {
+      highlighted: what && {
         start: what.start,
         end: what.end,
         from: "pulses",
@@ -97,7 +97,7 @@ export function createPulses({ engine, dispatch, now }) {
     });
   }
 
-  /** What is pointed at is lit in all views: a span, or an edge that is near. @param {PointerEvent} event */
+  /** What is pointed at is highlighted in all views: a span, or an edge that is near. @param {PointerEvent} event */
   async function point(event) {
     const row = rowAt(event);
     const { hover } = now();
@@ -237,7 +237,7 @@ export function createPulses({ engine, dispatch, now }) {
 
   /** The head's choices and the height that the rows take. @param {State} state */
   function layout(state) {
-    const channels = lookedAt(state)?.channels ?? 1;
+    const channels = selected(state)?.channels ?? 1;
     options(
       rowSelect,
       signalsOf(state).map(({ name, bit }) => [String(bit), name]),

@@ -3,7 +3,7 @@
  * beside the first channels; a channel is DIR and STEP, or both in one row when it is folded. Under RX and TX
  * stand their decoders, until they are folded.
  */
-import { lookedAt } from "../../state/state.js";
+import { selected } from "../../state/state.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /**
@@ -30,7 +30,7 @@ const LINE = [
 
 /** @param {State} state */
 function channelsOf(state) {
-  return lookedAt(state)?.channels ?? 1;
+  return selected(state)?.channels ?? 1;
 }
 
 /** Whether a channel is one row, or the decoders of RX or TX are put away. @param {State} state @param {number} channel */
@@ -52,18 +52,18 @@ export function channelOf(bit) {
 
 /** Signals that never change in this run and are not asked for. @param {State} state */
 export function idle(state) {
-  const changing = lookedAt(state)?.changing ?? [];
+  const changing = selected(state)?.changing ?? [];
   return LINE.filter(({ bit }) => !changing.includes(bit));
 }
 
 /** Whether anything is on the line. @param {State} state */
 export function hasLine(state) {
-  return lookedAt(state)?.changing.includes(RX) ?? false;
+  return selected(state)?.changing.includes(RX) ?? false;
 }
 
 /** A signal of the line with its decoders. @param {State} state @param {{name: string, bit: number}} signal @returns {Row[]} */
 function lineRows(state, { name, bit }) {
-  const quiet = !lookedAt(state)?.changing.includes(bit);
+  const quiet = !selected(state)?.changing.includes(bit);
   if (bit === DE || quiet) return [{ kind: "signal", name, bit, ink: "--wire" }];
   const open = !isFolded(state, bit);
   /** @type {Row} */
@@ -96,8 +96,8 @@ export function rowsOf(state) {
       rows.push({ kind: "packets", name: framed ? "frames" : "packets", ink: "--packet" });
     if (signal.bit === TX && framed) rows.push({ kind: "replies", name: "replies", ink: "--reply" });
   }
-  if (hasLine(state) || lookedAt(state)?.ticks_done) rows.push({ kind: "ticks", name: "ticks", ink: "--tick" });
-  if (lookedAt(state)?.violations) rows.push({ kind: "violations", name: "timing", ink: "--error" });
+  if (hasLine(state) || selected(state)?.ticks_done) rows.push({ kind: "ticks", name: "ticks", ink: "--tick" });
+  if (selected(state)?.violations) rows.push({ kind: "violations", name: "timing", ink: "--error" });
   for (let channel = 0; channel < channelsOf(state); channel++) {
     if (isFolded(state, channel))
       rows.push({

@@ -1,8 +1,8 @@
 /** The decoded rows of the logic view: bits, bytes and fields, packets and frames, replies, ticks, and what breaks the driver's timing. */
 import { unlessDropped } from "../../engine/engine.js";
+import { ruleName } from "../../form/schema.js";
 import { si } from "../../state/number.js";
-import { ruleName } from "../../state/rules.js";
-import { lookedAt, shown } from "../../state/state.js";
+import { selected, shown } from "../../state/state.js";
 import { asked } from "../timing.js";
 import { hasLine } from "./rows.js";
 
@@ -67,7 +67,7 @@ export function createSpans({ engine }) {
       ),
       known ||
         taken(
-          lookedAt(state)?.violations
+          selected(state)?.violations
             ? engine.latest("violations", "timing")
             : { driver: null, total: 0, rules: [], violations: [] },
           (answer) => {

@@ -173,11 +173,11 @@ export function createSpectrum({ engine, dispatch, now }) {
     slider.setAttribute("aria-valuemax", String(Math.max(1, rows.length)));
     slider.setAttribute("aria-valuenow", String(row?.n ?? 1));
     slider.setAttribute("aria-valuetext", text || "no harmonic chosen");
-    for (const other of body.querySelectorAll(".lit")) other.classList.remove("lit");
+    for (const other of body.querySelectorAll(".highlighted")) other.classList.remove("highlighted");
     const layer = cleared(overlay);
     if (!row) return;
     const line = /** @type {HTMLElement} */ (body.children[row.n - 1]);
-    line.classList.add("lit");
+    line.classList.add("highlighted");
     const scroll = byId("harmonics-scroll");
     // Below the head, which stays; only the table itself is moved.
     const [above, below] = [

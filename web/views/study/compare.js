@@ -7,7 +7,7 @@ import { unlessDropped } from "../../engine/engine.js";
 import { count, plain, pretty, short, si } from "../../state/number.js";
 import { cleared, color, draw, watch } from "../../time/plot.js";
 import { field, focusRow, table } from "./parts.js";
-import { place, subject } from "./subject.js";
+import { place, selectedAxis } from "./selected_axis.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /**
@@ -99,7 +99,7 @@ export function createCompare({ engine, dispatch, now, panel }) {
 
   /** @param {State} state */
   async function refresh(state) {
-    const of = subject(state);
+    const of = selectedAxis(state);
     const turn = ++asking;
     // Rows of another axis must not be put into this one.
     if (!rowsOf.startsWith(`${placeOf(state)} `)) empty();
@@ -175,7 +175,7 @@ export function createCompare({ engine, dispatch, now, panel }) {
 
   /** Puts a shape into the scenario as it is now. @param {{[kind: string]: any}} made */
   function take(made) {
-    const of = subject(now());
+    const of = selectedAxis(now());
     if (!of || typeof of === "string" || rowsOf !== `${placeOf(now())} ${move}` || !of.moves[move]) return;
     const [kind, values] = Object.entries(made)[0];
     const { distance } = /** @type {any} */ (Object.values(of.moves[move])[0]);

@@ -34,10 +34,10 @@ export function field(label, unit, start, { least, most, integer = false }, chan
   );
   let value = start;
   /** What is wrong with what is typed; and with its value, beside others. */
-  let [wrong, amiss] = ["", ""];
+  let [wrong, invalid] = ["", ""];
   const tell = () => {
-    say(error, wrong || amiss);
-    if (wrong || amiss) input.setAttribute("aria-invalid", "true");
+    say(error, wrong || invalid);
+    if (wrong || invalid) input.setAttribute("aria-invalid", "true");
     else input.removeAttribute("aria-invalid");
   };
   input.addEventListener("change", () => {
@@ -55,12 +55,12 @@ export function field(label, unit, start, { least, most, integer = false }, chan
     if (next === value) return;
     value = next;
     input.value = String(next);
-    [wrong, amiss] = ["", ""];
+    [wrong, invalid] = ["", ""];
     tell();
   };
   /** @param {string} message */
   const fail = (message) => {
-    amiss = message;
+    invalid = message;
     tell();
   };
   return { root, value: () => value, set, fail };
@@ -86,7 +86,7 @@ export function focusRow(row) {
 /** A table that scrolls, and keeps the focus in its row when it is filled anew; a column whose head begins with `#` has numbers, one with `~` before it is left out on a narrow screen. @param {string} label @param {string[]} head */
 export function table(label, head) {
   const kinds = head.map((text) =>
-    `${text.includes("#") ? "number" : ""} ${text.startsWith("~") ? "roomy" : ""}`.trim(),
+    `${text.includes("#") ? "number" : ""} ${text.startsWith("~") ? "wide-only" : ""}`.trim(),
   );
   const body = element("tbody");
   const root = element(

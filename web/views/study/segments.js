@@ -14,7 +14,7 @@ export function createSegments({ engine }) {
   root.hidden = true;
   let asked = "";
 
-  /** @param {import("./subject.js").Subject | null} of */
+  /** @param {import("./selected_axis.js").SelectedAxis | null} of */
   async function show(of) {
     const key = of ? `${of.controller} ${of.axis} ${of.json}` : "";
     if (key === asked) return;

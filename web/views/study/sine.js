@@ -10,7 +10,7 @@ import { get } from "../../state/state.js";
 import { cleared, color, draw, fit, watch } from "../../time/plot.js";
 import { choice, createJob, field, table } from "./parts.js";
 import { createSegments } from "./segments.js";
-import { subject } from "./subject.js";
+import { selectedAxis } from "./selected_axis.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {"position" | "speed" | "acceleration" | "felt"} Quantity */
@@ -176,7 +176,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
 
   /** The sine of the looked-at axis. @param {State} state */
   function sineOf(state) {
-    const of = subject(state);
+    const of = selectedAxis(state);
     if (!of || typeof of === "string") return { of: null, move: -1 };
     return { of, move: of.moves.findIndex((/** @type {any} */ each) => each.sine_segments) };
   }
@@ -188,7 +188,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     if (!of)
       return say(
         note,
-        subject(now())
+        selectedAxis(now())
           ? "The scenario has no axis that could take it."
           : "Not while the form has a problem, or is being looked at.",
       );

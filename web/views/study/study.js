@@ -10,7 +10,7 @@ import { byId, element, fill, options } from "../../dom.js";
 import { listen } from "../../shell/commands.js";
 import { arrows, choose } from "../../shell/tabs.js";
 import { STUDIES } from "../../shell/view_part.js";
-import { lookedAt } from "../../state/state.js";
+import { selected } from "../../state/state.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{engine: import("../../engine/engine.js").Engine, samples: import("../../form/kit.js").Samples} & import("../../state/types.js").Page} Given */
@@ -109,7 +109,7 @@ export function createStudy(page) {
     }
     const each = all.find(({ name }) => name === state.study);
     if (!open || !each) return undefined;
-    const channels = lookedAt(state)?.channels ?? 1;
+    const channels = selected(state)?.channels ?? 1;
     options(
       axes,
       Array.from({ length: channels }, (_, axis) => [String(axis), String(axis)]),

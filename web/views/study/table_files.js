@@ -1,10 +1,10 @@
 /** The step tables of an axis as files for a firmware: in the study's tab Tables and in the export panel. */
 import { baseName } from "../../shell/exports.js";
-import { subject } from "./subject.js";
+import { selectedAxis } from "./selected_axis.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../engine/engine.js").Engine} Engine */
-/** @typedef {import("./subject.js").Subject} Subject */
+/** @typedef {import("./selected_axis.js").SelectedAxis} SelectedAxis */
 /** @typedef {{form: string, widths: string, us: number}} Choice */
 
 /** @type {{[form: string]: string}} */
@@ -21,11 +21,11 @@ export const chosen = { form: "compressed", widths: "q16", us: 25 };
 
 /** Files of the table that is chosen, for the export panel. @param {State} state @param {Engine} engine @returns {import("../../shell/exports.js").Offer[]} */
 export function tableFiles(state, engine) {
-  const of = subject(state);
+  const of = selectedAxis(state);
   return of && typeof of !== "string" ? files(state, engine, of) : [];
 }
 
-/** @param {State} state @param {Engine} engine @param {Subject} of */
+/** @param {State} state @param {Engine} engine @param {SelectedAxis} of */
 export function files(state, engine, { json, controller, axis }) {
   const { form, widths, us } = chosen;
   const part = controller > 0 ? `-controller-${controller + 1}` : "";
@@ -35,6 +35,10 @@ export function files(state, engine, { json, controller, axis }) {
     label: `${label}: axis ${axis}, ${form}, ${widths}`,
     language,
     make: () =>
-      engine.distribute("step_source", [[json, controller, axis, form, widths, us, language]], new AbortController().signal),
+      engine.distribute(
+        "step_source",
+        [[json, controller, axis, form, widths, us, language]],
+        new AbortController().signal,
+      ),
   }));
 }

@@ -6,7 +6,7 @@ import { element, fill, say } from "../../dom.js";
 import { save } from "../../shell/save.js";
 import { count, counted, plain, pretty, short, si } from "../../state/number.js";
 import { createJob, field, table } from "./parts.js";
-import { subject } from "./subject.js";
+import { selectedAxis } from "./selected_axis.js";
 import { chosen, FORMS, files, LANGUAGES } from "./table_files.js";
 
 /** @typedef {import("../../state/types.js").State} State */
@@ -56,7 +56,7 @@ export function createTables({ engine, now, panel }) {
       pick.checked = pick.value === `${chosen.form}-${chosen.widths}`;
       pick.closest("tr")?.classList.toggle("chosen", pick.checked);
     }
-    const of = subject(now());
+    const of = selectedAxis(now());
     if (!of || typeof of === "string") return fill(saves);
     const none =
       told[ROWS.findIndex(({ form, widths }) => form === chosen.form && widths === chosen.widths)]?.why !== null;
@@ -120,7 +120,9 @@ export function createTables({ engine, now, panel }) {
         if (why === null && bytes === fewest) cells[1] = element("strong", {}, cells[1]);
         return [
           name,
-          alike(at) ? "all" : element("span", {}, widths, element("span", { class: "roomy" }, `: ${WIDTHS[widths]}`)),
+          alike(at)
+            ? "all"
+            : element("span", {}, widths, element("span", { class: "wide-only" }, `: ${WIDTHS[widths]}`)),
           ...cells,
         ];
       }),
@@ -141,7 +143,7 @@ export function createTables({ engine, now, panel }) {
 
   /** @param {State} state */
   function refresh(state) {
-    const of = subject(state);
+    const of = selectedAxis(state);
     if (of === null) return;
     panel.classList.toggle("stale", of === "");
     if (of === "") return;

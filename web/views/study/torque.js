@@ -7,7 +7,7 @@ import { count, plain, short, si } from "../../state/number.js";
 import { get } from "../../state/state.js";
 import { color, draw, watch } from "../../time/plot.js";
 import { createJob, table } from "./parts.js";
-import { subject } from "./subject.js";
+import { selectedAxis } from "./selected_axis.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{at_s: number, rate: number, needed_mn_m: number, available_mn_m: number}} Moment */
@@ -183,7 +183,7 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
   const add = () =>
     button("Add the document's motor", "Add the document's motor: Song, Han and Lu 2021", () => {
       // What is looked at by now; the button goes with the answer.
-      const of = subject(now());
+      const of = selectedAxis(now());
       if (!of || typeof of === "string" || get(now().scenario, `${of.path}.motor`)) return;
       about.focus({ preventScroll: true });
       dispatch({ type: "edit", path: `${of.path}.motor`, value: samples.motor });
@@ -191,7 +191,7 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
 
   /** @param {State} state */
   function refresh(state) {
-    const of = subject(state);
+    const of = selectedAxis(state);
     panel.classList.toggle("stale", of === "");
     if (!of) return;
     if (typeof of === "string") {

@@ -8,12 +8,14 @@
 
 use crate::{
     cursor_stats::POINTS as GAUSS,
-    measures::POINTS,
     position_error::{Difference, Scaled},
 };
 use serde::Serialize;
 use stepscope_motion::{AxisPlan, Breakpoints, Interval};
 use stepscope_peripheral::trace::Step;
+
+/// Points at which curves are sampled: the document's 512 of a quarter, for a whole run.
+pub const POINTS: u32 = 2048;
 
 /// How far the second of two curves is from the first, in steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

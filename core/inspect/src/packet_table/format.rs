@@ -66,7 +66,7 @@ pub(super) fn outcome(outcome: RowOutcome) -> String {
 pub(super) fn short(row: RowOutcome) -> String {
     match row {
         RowOutcome::Frame(FrameOutcome::Repeated) => "\u{21bb} repeated".to_owned(),
-        RowOutcome::Frame(FrameOutcome::BadCheck { .. }) => "\u{2715} CRC".to_owned(),
+        RowOutcome::Frame(FrameOutcome::BadCrc { .. }) => "\u{2715} CRC".to_owned(),
         RowOutcome::Packet(PacketOutcome::Booting) => "\u{2715} self-test".to_owned(),
         RowOutcome::Ignored => "\u{2715} ignored".to_owned(),
         RowOutcome::Collision => "\u{2715} collision".to_owned(),

@@ -1,6 +1,6 @@
 //! Plans a curve through points (DESIGN B6).
 
-use crate::plan::hold_speed;
+use crate::plan::budget::hold_speed;
 use crate::{
     Curve, Profile, limits,
     moves::{self, Interpolation},

@@ -1,6 +1,6 @@
 //! Plans a staircase of rates (DESIGN B3).
 
-use crate::plan::{Left, MAX_TABLE_ROWS};
+use crate::plan::budget::{Budget, MAX_TABLE_ROWS};
 use crate::{
     Profile, limits, moves,
     problem::{Cause, ValueError},
@@ -16,7 +16,7 @@ const LEVEL_ACCELERATION: f64 = 1000.0;
 pub(super) fn plan(
     quantities: &mut Quantities<'_>,
     given: &moves::Staircase,
-    left: &mut Left,
+    budget: &mut Budget,
 ) -> Option<Profile> {
     let steps = quantities.distance("distance", &given.distance);
     let top = quantities.speed_within("top_speed", &given.top_speed, limits::TABLE_RATE_STEPS_S);
@@ -37,13 +37,13 @@ pub(super) fn plan(
     }
     let table = StaircaseTable::new(start?, most?, level? * LEVEL_ACCELERATION);
     let top_rate = round_half_up(top?).unsigned_abs();
-    match Staircase::new(steps?, table, top_rate, given.short_move, left.table_rows) {
+    match Staircase::new(steps?, table, top_rate, given.short_move, budget.table_rows) {
         Ok(staircase) => {
-            left.table_rows -= staircase.ramp_rows() + 1;
+            budget.table_rows -= staircase.ramp_rows() + 1;
             Some(Profile::Staircase(staircase))
         }
         Err(needed) => {
-            let (given, most) = ((MAX_TABLE_ROWS - left.table_rows).saturating_add(needed), MAX_TABLE_ROWS);
+            let (given, most) = ((MAX_TABLE_ROWS - budget.table_rows).saturating_add(needed), MAX_TABLE_ROWS);
             let cause = ValueError::TooMuch { given: given as f64, most: most as f64, of: "table rows" };
             quantities.refuse("", cause);
             None

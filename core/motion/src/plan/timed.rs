@@ -1,6 +1,6 @@
 //! Plans the moves of so many steps in so much time: the cosine S-curve and ramps of other shapes (DESIGN B4).
 
-use crate::plan::{Left, MAX_SLICES, hold_speed};
+use crate::plan::budget::{Budget, MAX_SLICES, hold_speed};
 use crate::{
     MAX_SPEED, Profile,
     cosine::Cosine,
@@ -22,7 +22,7 @@ const MIN_RAMP_S: f64 = 1e-9;
 pub(super) fn plan_cosine(
     quantities: &mut Quantities<'_>,
     given: &moves::Cosine,
-    left: &mut Left,
+    budget: &mut Budget,
 ) -> Option<Profile> {
     let front = front(quantities, &given.distance, given.duration_s, given.ramp_s);
     let slice_s = match given.method {
@@ -36,16 +36,16 @@ pub(super) fn plan_cosine(
     if given.method == CosineMethod::Exact {
         return Some(Profile::Cosine(curve));
     }
-    let cause = match Sliced::new(steps, duration_s, ramp_s, slice_s, left.slices) {
+    let cause = match Sliced::new(steps, duration_s, ramp_s, slice_s, budget.slices) {
         Ok(curve) => {
-            left.slices -= curve.slice_count();
+            budget.slices -= curve.slice_count();
             let rate = curve.top_rate();
             let rate = if rate <= MAX_SPEED * (1.0 + DIGITS) { libm::fmin(rate, MAX_SPEED) } else { rate };
             hold_speed(quantities, "duration_s", rate)?;
             return Some(Profile::Sliced(curve));
         }
         Err(NotSliced::Slices { needed }) => {
-            let given = (MAX_SLICES - left.slices).saturating_add(needed);
+            let given = (MAX_SLICES - budget.slices).saturating_add(needed);
             ValueError::TooMuch { given: given as f64, most: MAX_SLICES as f64, of: "slices" }.into()
         }
         Err(NotSliced::TooShort { rate }) => Cause::SliceTooShort { rate, slice_s },

@@ -89,7 +89,7 @@ pub fn compressed(
     }
     let mut windows = Windows::new(steps.into_iter(), tolerance, format, pulse);
     let mut writer = Writer::new(format);
-    let mut ahead = Ahead::new(format, pulse.least_interval().0);
+    let mut ahead = Ahead::new(format, pulse.min_interval().0);
     let mut length = 64;
     while windows.begin(&mut ahead)? {
         while let Some(longest) = ahead.longest(writer.time, length, |ahead| windows.fill(ahead))? {
@@ -151,7 +151,7 @@ impl<I: Iterator<Item = ScheduledStep>> Windows<I> {
         self.next = self.steps.next();
         let before = step.cycle.saturating_sub(self.before);
         let after = self.next.map(|next| next.cycle.saturating_sub(step.cycle));
-        if before < self.pulse.least_interval().0 {
+        if before < self.pulse.min_interval().0 {
             return Err(Cause::StepTooSoon { step: self.count, interval: before, pulse: self.pulse });
         }
         self.before = step.cycle;

@@ -66,7 +66,7 @@ pub fn exact_segments(
 /// # Errors
 /// The first step that comes too soon for a pulse, or too late for 48.16 fixed point.
 pub(super) fn exact(plan: &AxisPlan, pulse: PulseTimes, clock_hz: u32) -> Result<SegmentList, Cause> {
-    let least = pulse.least_interval().0;
+    let least = pulse.min_interval().0;
     let last = LAST_CYCLE.0 - START.0;
     let mut merge = Merge::default();
     let mut before = 0;

@@ -15,7 +15,6 @@ use crate::{
     problem::{Cause, Problem, ValueError},
 };
 use alloc::{vec, vec::Vec};
-use stepscope_peripheral::wire::packet::MAX_STEPS;
 
 /// Most ticks of a run.
 const MAX_TICKS: u64 = 2_000_000;
@@ -23,7 +22,8 @@ const MAX_TICKS: u64 = 2_000_000;
 const MAX_BYTES: u64 = 4_000_000;
 /// Bit of a byte that says right (A5).
 const RIGHT: u8 = 1 << 7;
-const _: () = assert!(!RIGHT == MAX_STEPS);
+/// Most steps that a byte of a tick can order.
+const MAX_STEPS: u8 = !RIGHT;
 
 /// Ticks for the whole peripheral: one byte a channel and tick, bit 7 = right, bits 6..=0 = steps.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -50,9 +50,9 @@ impl Controller {
                 machine.fault(Faults::SHORT_PACKET);
                 FrameOutcome::Short
             }
-            Some(Deframed::BadCheck { found, expected }) => {
+            Some(Deframed::BadCrc { found, expected }) => {
                 machine.fault(Faults::CRC);
-                FrameOutcome::BadCheck { found, expected }
+                FrameOutcome::BadCrc { found, expected }
             }
             Some(Deframed::Overlong) => {
                 machine.fault(Faults::OVERLONG);

@@ -60,7 +60,7 @@ use crate::{
     units::Instant,
     wire::{
         packet::{Tick, Unpacked, Unpacker},
-        uart::{Heard, Receiver},
+        uart::{Receiver, RxEvent},
     },
 };
 use controller::Controller;
@@ -176,8 +176,8 @@ impl Device {
             }
         }
         match self.receiver.clock(now, before, self.rx) {
-            Some(Heard::Byte(byte)) => self.byte(byte, sink),
-            Some(Heard::FramingError) => {
+            Some(RxEvent::Byte(byte)) => self.byte(byte, sink),
+            Some(RxEvent::FramingError) => {
                 self.machine.fault(Faults::FRAMING);
                 let drops = if let Framing::Raw(unpacker) = &mut self.framing {
                     unpacker.framing_error(now);

@@ -25,7 +25,7 @@ use crate::{
 };
 use alloc::{rc::Rc, vec::Vec};
 use earliest::Earliest;
-use falls::Falls;
+use falls::FallingEdges;
 
 // What a list can order is due in a cycle that the tree can hold.
 const _: () = assert!(LAST_CYCLE.0 <= Earliest::LAST.0);
@@ -61,7 +61,7 @@ pub struct SegmentEngine {
     /// When each channel's DIR changes or its STEP rises next.
     due: Earliest,
     /// When the pulses that are high fall.
-    falls: Falls,
+    falls: FallingEdges,
     positions: [i32; MAX_CHANNELS],
 }
 
@@ -142,7 +142,7 @@ impl SegmentEngine {
         let channels = channels.collect();
         let positions = [0; MAX_CHANNELS];
         let (now, levels) = (Instant::RESET, Levels::RESET);
-        Self { lists, now, levels, channels, due, falls: Falls::default(), positions }
+        Self { lists, now, levels, channels, due, falls: FallingEdges::default(), positions }
     }
 
     /// The cycle that the next call of [`Self::clock`] is; as many have passed.

@@ -151,7 +151,7 @@ fn ignoring_ends_before_the_byte_that_is_delivered_in_the_gaps_cycle() {
         let mut schedule = Schedule::default();
         schedule.push(Instant(byte - DELIVERY), &[1]);
         let start = Instant(P - DELIVERY);
-        let forced = crate::wire::Forced { start, end: start + Cycles(BYTE), level: false };
+        let forced = crate::wire::ForcedLevel { start, end: start + Cycles(BYTE), level: false };
         let mut line = Line::new(Rc::new(schedule), &[forced], CLOCK_HZ, BAUD);
         let (mut device, mut left) = (Device::new(&config), Left::default());
         while device.now() < Instant(10_000) {

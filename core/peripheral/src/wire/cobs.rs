@@ -6,12 +6,20 @@
 //! ```
 //!
 //! The one place where COBS is taken apart: the controller, the host and the dissector read through it.
+//!
+//! ```
+//! use stepscope_peripheral::wire::cobs::{CobsByte, CobsDecoder};
+//!
+//! let mut reader = CobsDecoder::default();
+//! let read = [2, 7, 2, 8, 0].map(|byte| reader.byte(byte)); // carries 7, 0, 8
+//! assert_eq!(read[1..], [CobsByte::Content(7), CobsByte::Content(0), CobsByte::Content(8), CobsByte::End]);
+//! ```
 
 use cobs::{DecodeResult, DecoderState};
 
 /// What one byte is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unstuffed {
+pub enum CobsByte {
     /// The first code of a frame: what came before it is over.
     First,
     /// A byte that carries no content: a code that owes no zero, or the zero of an empty run.
@@ -26,9 +34,9 @@ pub enum Unstuffed {
 
 /// A reader between two bytes.
 #[derive(Debug)]
-pub struct Unstuffer(DecoderState);
+pub struct CobsDecoder(DecoderState);
 
-impl Clone for Unstuffer {
+impl Clone for CobsDecoder {
     #[allow(clippy::needless_match, reason = "the decoder's state has no Clone of its own")]
     fn clone(&self) -> Self {
         Self(match self.0 {
@@ -39,21 +47,21 @@ impl Clone for Unstuffer {
     }
 }
 
-impl Default for Unstuffer {
+impl Default for CobsDecoder {
     fn default() -> Self {
         Self(DecoderState::Idle)
     }
 }
 
-impl Unstuffer {
+impl CobsDecoder {
     /// Takes the next byte.
-    pub fn byte(&mut self, byte: u8) -> Unstuffed {
+    pub fn byte(&mut self, byte: u8) -> CobsByte {
         match self.0.feed(byte) {
-            Ok(DecodeResult::DataStart) => Unstuffed::First,
-            Ok(DecodeResult::NoData) => Unstuffed::Overhead,
-            Ok(DecodeResult::DataContinue(content)) => Unstuffed::Content(content),
-            Ok(DecodeResult::DataComplete) => Unstuffed::End,
-            Err(_) => Unstuffed::Broken,
+            Ok(DecodeResult::DataStart) => CobsByte::First,
+            Ok(DecodeResult::NoData) => CobsByte::Overhead,
+            Ok(DecodeResult::DataContinue(content)) => CobsByte::Content(content),
+            Ok(DecodeResult::DataComplete) => CobsByte::End,
+            Err(_) => CobsByte::Broken,
         }
     }
 
@@ -73,19 +81,19 @@ impl Unstuffer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use Unstuffed::{Broken, Content, End, First, Overhead};
+    use CobsByte::{Broken, Content, End, First, Overhead};
     use alloc::vec::Vec;
 
     #[test]
     fn each_byte_says_what_it_carries() {
-        let rows: [(&[u8], &[Unstuffed]); 4] = [
+        let rows: [(&[u8], &[CobsByte]); 4] = [
             (&[0, 0], &[Overhead, Overhead]),
             (&[2, 7, 1, 2, 9, 0], &[First, Content(7), Content(0), Content(0), Content(9), End]),
             (&[3, 7, 0, 1, 0], &[First, Content(7), Broken, First, End]),
             (&[1, 1], &[First, Content(0)]),
         ];
         for (wire, expected) in rows {
-            let mut reader = Unstuffer::default();
+            let mut reader = CobsDecoder::default();
             let found: Vec<_> = wire.iter().map(|&byte| reader.byte(byte)).collect();
             assert_eq!(found, expected, "{wire:?}");
         }
@@ -93,7 +101,7 @@ mod tests {
 
     #[test]
     fn a_run_of_254_bytes_owes_no_zero() {
-        let mut reader = Unstuffer::default();
+        let mut reader = CobsDecoder::default();
         let wire = [[255].as_slice(), &[5; 254], &[2, 6]].concat();
         let found: Vec<_> = wire.iter().map(|&byte| reader.byte(byte)).collect();
         assert_eq!((found[0], found[254], found[255], found[256]), (First, Content(5), Overhead, Content(6)));

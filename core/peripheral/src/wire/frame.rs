@@ -27,7 +27,7 @@
 pub use crate::protocol::{Kind, MAX_TICKS, Reason, Reply, State, Status};
 use crate::signal::MAX_CHANNELS;
 use crate::wire::{
-    cobs::{Unstuffed, Unstuffer},
+    cobs::{CobsByte, CobsDecoder},
     packet::Tick,
 };
 use alloc::vec::Vec;
@@ -49,15 +49,15 @@ pub fn encode_frame(content: &[u8]) -> Vec<u8> {
 }
 
 /// Bytes of the CRC.
-pub const CHECK_LEN: usize = 4;
+pub const CRC_LEN: usize = 4;
 /// Fewest decoded bytes of a frame: address, kind and CRC.
-const MIN_DECODED: usize = 2 + CHECK_LEN;
+const MIN_DECODED: usize = 2 + CRC_LEN;
 /// Most decoded bytes of a frame.
 pub const MAX_DECODED: usize = 600;
 /// Bytes of a status.
 pub const STATUS_LEN: usize = 9;
 /// Most bytes of a reply on the wire: a NAK in COBS with its delimiter.
-pub const REPLY_LEN: usize = 3 + STATUS_LEN + CHECK_LEN + 2;
+pub const REPLY_LEN: usize = 3 + STATUS_LEN + CRC_LEN + 2;
 /// Most bytes that COBS puts one code before.
 const COBS_RUN: usize = 254;
 /// Set in the kind of a reply that acknowledges.
@@ -201,7 +201,7 @@ pub enum Deframed<'a> {
     /// Not COBS, or too short for a frame.
     Short,
     /// The CRC is wrong: what stood there, and what would have been right.
-    BadCheck {
+    BadCrc {
         /// The CRC that came.
         found: u32,
         /// The CRC of what came before it.
@@ -214,7 +214,7 @@ pub enum Deframed<'a> {
 /// Joins bytes to frames.
 #[derive(Clone, Debug)]
 pub struct Deframer {
-    cobs: Unstuffer,
+    cobs: CobsDecoder,
     /// Decoded bytes of the frame.
     ///
     /// Invariant: at most [`MAX_DECODED`].
@@ -225,7 +225,7 @@ pub struct Deframer {
 
 impl Default for Deframer {
     fn default() -> Self {
-        Self { cobs: Unstuffer::default(), content: Vec::with_capacity(MAX_DECODED), dropping: false }
+        Self { cobs: CobsDecoder::default(), content: Vec::with_capacity(MAX_DECODED), dropping: false }
     }
 }
 
@@ -237,23 +237,23 @@ impl Deframer {
             return None;
         }
         match self.cobs.byte(byte) {
-            Unstuffed::Overhead => None,
-            Unstuffed::First => {
+            CobsByte::Overhead => None,
+            CobsByte::First => {
                 self.content.clear();
                 None
             }
-            Unstuffed::Content(_) if self.content.len() == MAX_DECODED => {
-                self.cobs = Unstuffer::default();
+            CobsByte::Content(_) if self.content.len() == MAX_DECODED => {
+                self.cobs = CobsDecoder::default();
                 self.dropping = true;
                 Some(Deframed::Overlong)
             }
-            Unstuffed::Content(decoded) => {
+            CobsByte::Content(decoded) => {
                 self.content.push(decoded);
                 debug_assert!(self.content.len() <= MAX_DECODED, "a byte too many is kept");
                 None
             }
-            Unstuffed::End => Some(judge(&self.content)),
-            Unstuffed::Broken => Some(Deframed::Short),
+            CobsByte::End => Some(judge(&self.content)),
+            CobsByte::Broken => Some(Deframed::Short),
         }
     }
 
@@ -266,14 +266,14 @@ impl Deframer {
 
 /// The frame that decoded bytes are, if their CRC is right.
 fn judge(content: &[u8]) -> Deframed<'_> {
-    match content.split_last_chunk::<CHECK_LEN>() {
+    match content.split_last_chunk::<CRC_LEN>() {
         Some((frame, crc)) if content.len() >= MIN_DECODED => {
             let (found, expected) = (u32::from_le_bytes(*crc), CHECK.checksum(frame));
             match *frame {
                 [address, kind, ref body @ ..] if found == expected => {
                     Deframed::Frame(Frame { address, kind, body })
                 }
-                _ => Deframed::BadCheck { found, expected },
+                _ => Deframed::BadCrc { found, expected },
             }
         }
         _ => Deframed::Short,
@@ -409,7 +409,7 @@ mod tests {
                 None => continue,
                 Some(Deframed::Frame(_)) => "frame",
                 Some(Deframed::Short) => "short",
-                Some(Deframed::BadCheck { .. }) => "check",
+                Some(Deframed::BadCrc { .. }) => "check",
                 Some(Deframed::Overlong) => "overlong",
             };
             found.push((index, name));

@@ -39,7 +39,7 @@ use alloc::{collections::BTreeSet, rc::Rc, vec::Vec};
 
 /// A level forced on the line (A4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Forced {
+pub struct ForcedLevel {
     /// First forced cycle.
     pub start: Instant,
     /// First cycle after it.
@@ -53,7 +53,7 @@ pub struct Forced {
 pub struct Line {
     sender: Sender,
     /// Invariant: disjoint and rising; those before `passed` are over.
-    forced: Rc<Vec<Forced>>,
+    forced: Rc<Vec<ForcedLevel>>,
     passed: usize,
     /// The level that is forced now.
     force: Option<bool>,
@@ -66,7 +66,7 @@ pub struct Line {
 impl Line {
     /// The line before cycle 1: idle. A rate of 0 counts as 1 baud.
     #[must_use]
-    pub fn new(schedule: Rc<Schedule>, forced: &[Forced], clock_hz: u32, baud: u32) -> Self {
+    pub fn new(schedule: Rc<Schedule>, forced: &[ForcedLevel], clock_hz: u32, baud: u32) -> Self {
         let sender = Sender::new(schedule, clock_hz, baud);
         let mut line = Self {
             sender,
@@ -95,15 +95,15 @@ impl Line {
     }
 
     /// Forces a level in cycles that are still to come; where another one is forced too, this one wins.
-    pub fn force(&mut self, new: Forced) {
+    pub fn force(&mut self, new: ForcedLevel) {
         let forced = Rc::make_mut(&mut self.forced);
         let first = forced.partition_point(|one| one.end <= new.start);
         let end = forced.partition_point(|one| one.start < new.end);
         let met = forced.get(first..end).unwrap_or_default();
         let before = met.first().filter(|one| one.start < new.start);
         let after = met.last().filter(|one| one.end > new.end);
-        let before = before.map(|one| Forced { end: new.start, ..*one });
-        let after = after.map(|one| Forced { start: new.end, ..*one });
+        let before = before.map(|one| ForcedLevel { end: new.start, ..*one });
+        let after = after.map(|one| ForcedLevel { start: new.end, ..*one });
         forced.splice(first..end, [before, Some(new), after].into_iter().flatten());
         let around = first.saturating_sub(1)..forced.len().min(first + 4);
         debug_assert!(
@@ -116,7 +116,7 @@ impl Line {
 
     /// What has been forced and will be, as far as it is known: rising in time and not overlapping.
     #[must_use]
-    pub fn forced(&self) -> &[Forced] {
+    pub fn forced(&self) -> &[ForcedLevel] {
         &self.forced
     }
 
@@ -209,12 +209,12 @@ impl Line {
 }
 
 /// Makes disjoint, rising spans of forced levels that overlap: the later entry wins.
-fn flatten(forced: &[Forced]) -> Vec<Forced> {
+fn flatten(forced: &[ForcedLevel]) -> Vec<ForcedLevel> {
     let mut bounds: Vec<(Instant, usize)> =
         forced.iter().enumerate().flat_map(|(i, f)| [(f.start, i), (f.end, i)]).collect();
     bounds.sort_unstable();
     let mut active = BTreeSet::new();
-    let mut flat: Vec<Forced> = Vec::new();
+    let mut flat: Vec<ForcedLevel> = Vec::new();
     let mut from = Instant::RESET;
     for (at, index) in bounds {
         let top = active.last().and_then(|&i: &usize| forced.get(i));
@@ -223,7 +223,7 @@ fn flatten(forced: &[Forced]) -> Vec<Forced> {
         {
             match flat.last_mut() {
                 Some(last) if last.end == from && last.level == top.level => last.end = at,
-                _ => flat.push(Forced { start: from, end: at, level: top.level }),
+                _ => flat.push(ForcedLevel { start: from, end: at, level: top.level }),
             }
         }
         from = at;
@@ -236,7 +236,7 @@ fn flatten(forced: &[Forced]) -> Vec<Forced> {
 }
 
 /// Whether spans are disjoint and rising.
-fn is_flat(forced: &[Forced]) -> bool {
+fn is_flat(forced: &[ForcedLevel]) -> bool {
     forced.iter().all(|one| one.start < one.end) && forced.is_sorted_by(|one, next| one.end <= next.start)
 }
 
@@ -248,9 +248,9 @@ mod tests {
     fn changes(sends: &[(u64, &[u8])], forced: &[(u64, u64, bool)], clock_hz: u32, baud: u32) -> Vec<u64> {
         let mut schedule = Schedule::default();
         sends.iter().for_each(|(start, bytes)| schedule.push(Instant(*start), bytes));
-        let forced: Vec<Forced> = forced
+        let forced: Vec<ForcedLevel> = forced
             .iter()
-            .map(|&(start, length, level)| Forced {
+            .map(|&(start, length, level)| ForcedLevel {
                 start: Instant(start),
                 end: Instant(start + length),
                 level,
@@ -304,8 +304,11 @@ mod tests {
     /// What is forced while the line runs wins over what was known before, and comes in its turn.
     #[test]
     fn what_is_forced_later_finds_its_place() {
-        let span =
-            |(start, length, level)| Forced { start: Instant(start), end: Instant(start + length), level };
+        let span = |(start, length, level)| ForcedLevel {
+            start: Instant(start),
+            end: Instant(start + length),
+            level,
+        };
         type Row<'a> = (&'a [(u64, u64, bool)], (u64, u64, bool), &'a [(u64, u64, bool)]);
         let rows: &[Row<'_>] = &[
             (&[], (20, 5, false), &[(20, 5, false)]),
@@ -318,10 +321,10 @@ mod tests {
             (&[(50, 2, false), (60, 2, true)], (40, 40, true), &[(40, 40, true)]),
         ];
         for (before, new, expected) in rows {
-            let before: Vec<Forced> = before.iter().copied().map(span).collect();
+            let before: Vec<ForcedLevel> = before.iter().copied().map(span).collect();
             let mut line = Line::new(Rc::new(Schedule::default()), &before, 100, 10);
             line.force(span(*new));
-            let expected: Vec<Forced> = expected.iter().copied().map(span).collect();
+            let expected: Vec<ForcedLevel> = expected.iter().copied().map(span).collect();
             assert_eq!(line.forced(), expected, "{before:?} {new:?}");
             let low = |at| expected.iter().any(|one| !one.level && one.start <= at && at < one.end);
             let due: Vec<u64> = (1..100).filter(|&at| low(Instant(at)) != low(Instant(at - 1))).collect();

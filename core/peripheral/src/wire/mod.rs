@@ -25,6 +25,6 @@ pub mod sender;
 pub mod uart;
 
 pub use bit_times::BitTimes;
-pub use line::{Forced, Line};
+pub use line::{ForcedLevel, Line};
 pub use schedule::{Schedule, Sent};
 pub use sender::Sender;

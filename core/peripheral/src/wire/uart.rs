@@ -13,7 +13,7 @@
 //! ```
 //! use stepscope_peripheral::{
 //!     units::{Cycles, Instant},
-//!     wire::uart::{Heard, Receiver},
+//!     wire::uart::{RxEvent, Receiver},
 //! };
 //!
 //! // Bits of 16 cycles; the line is low from cycle 100 to 179: a start bit and four zeros.
@@ -22,7 +22,7 @@
 //! let heard = (1..300).find_map(|cycle| {
 //!     receiver.clock(Instant(cycle), level(cycle - 1), level(cycle)).map(|heard| (cycle, heard))
 //! });
-//! assert_eq!(heard, Some((252, Heard::Byte(0xf0)))); // 100 + 8 + 9 * 16
+//! assert_eq!(heard, Some((252, RxEvent::Byte(0xf0)))); // 100 + 8 + 9 * 16
 //! ```
 
 use crate::units::{Cycles, Instant};
@@ -32,7 +32,7 @@ const STOP: u8 = 9;
 
 /// What the receiver heard in a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Heard {
+pub enum RxEvent {
     /// A byte.
     Byte(u8),
     /// A byte whose stop bit was low; it is dropped.
@@ -96,7 +96,7 @@ impl Receiver {
     /// Cycle `now` with the line at `rx`, which was at `before` in the cycles since the last call.
     /// No cycle of [`Self::deadline`] may have been left out between.
     #[inline(always)]
-    pub fn clock(&mut self, now: Instant, before: bool, rx: bool) -> Option<Heard> {
+    pub fn clock(&mut self, now: Instant, before: bool, rx: bool) -> Option<RxEvent> {
         match self.state {
             State::Armed if !rx => {
                 self.seen = now;
@@ -130,16 +130,16 @@ impl Receiver {
     }
 
     /// The look that is due in this cycle.
-    fn look(&mut self, rx: bool) -> Option<Heard> {
+    fn look(&mut self, rx: bool) -> Option<RxEvent> {
         match (self.bit, rx) {
             (0, true) => self.state = State::Armed,
             (STOP, true) => {
                 self.state = State::Armed;
-                return Some(Heard::Byte(self.byte));
+                return Some(RxEvent::Byte(self.byte));
             }
             (STOP, false) => {
                 self.state = State::Broken;
-                return Some(Heard::FramingError);
+                return Some(RxEvent::FramingError);
             }
             _ => self.take(rx),
         }
@@ -153,7 +153,7 @@ mod tests {
     use alloc::vec::Vec;
 
     /// B = 11: looks at t+5 (start), t+16+11*i (data), t+104 (stop).
-    fn heard(low: &[(u64, u64)], cycles: u64) -> Vec<(u64, Heard)> {
+    fn heard(low: &[(u64, u64)], cycles: u64) -> Vec<(u64, RxEvent)> {
         let mut receiver = Receiver::new(Cycles(11));
         let level = |c| !low.iter().any(|&(from, to)| (from..to).contains(&c));
         (1..cycles)
@@ -166,17 +166,17 @@ mod tests {
 
     #[test]
     fn a_byte_is_delivered_in_the_cycle_that_looks_at_its_stop_bit() {
-        assert_eq!(heard(&[(10, 21)], 300), [(114, Heard::Byte(0xff))]);
-        assert_eq!(heard(&[(10, 109)], 300), [(114, Heard::Byte(0x00))]);
-        assert_eq!(heard(&[(10, 32)], 300), [(114, Heard::Byte(0xfe))]);
+        assert_eq!(heard(&[(10, 21)], 300), [(114, RxEvent::Byte(0xff))]);
+        assert_eq!(heard(&[(10, 109)], 300), [(114, RxEvent::Byte(0x00))]);
+        assert_eq!(heard(&[(10, 32)], 300), [(114, RxEvent::Byte(0xfe))]);
     }
 
     #[test]
     fn a_low_shorter_than_half_a_bit_is_a_glitch_and_the_next_cycle_arms() {
         // Low in 10..15 only: at 15 the line is high, armed in 16.
-        assert_eq!(heard(&[(10, 15), (16, 27)], 300), [(120, Heard::Byte(0xff))]);
+        assert_eq!(heard(&[(10, 15), (16, 27)], 300), [(120, RxEvent::Byte(0xff))]);
         // A low that begins in the cycle of the look and ends in it is not seen.
-        assert_eq!(heard(&[(10, 14), (15, 16)], 300), [(114, Heard::Byte(0xff))]);
+        assert_eq!(heard(&[(10, 14), (15, 16)], 300), [(114, RxEvent::Byte(0xff))]);
     }
 
     #[test]
@@ -184,9 +184,9 @@ mod tests {
         // Held low to 200: error at 114. High in 200 only arms 201; the low of 201 is a start bit.
         assert_eq!(
             heard(&[(10, 200), (201, 212)], 500),
-            [(114, Heard::FramingError), (305, Heard::Byte(0xff))]
+            [(114, RxEvent::FramingError), (305, RxEvent::Byte(0xff))]
         );
         // Two lows that meet leave no high cycle.
-        assert_eq!(heard(&[(10, 200), (200, 212)], 500), [(114, Heard::FramingError)]);
+        assert_eq!(heard(&[(10, 200), (200, 212)], 500), [(114, RxEvent::FramingError)]);
     }
 }

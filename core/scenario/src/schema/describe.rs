@@ -9,7 +9,7 @@
 
 use crate::{
     Scenario, compact,
-    schema::{DOCUMENTS, Field, Group, Type, Typed, When, markdown::range_of},
+    schema::{DOCUMENTS, Field, Group, Limit, Type, Typed, When, markdown::range_of},
 };
 use alloc::{
     string::{String, ToString},
@@ -78,6 +78,9 @@ fn of_field(field: &Field, groups: &mut Map<String, Value>) -> Value {
     }
     map.insert("type".into(), type_of(&field.ty, groups));
     map.insert("range".into(), range_of(field).into());
+    if let Limit::Length(_, most, _) = field.limit {
+        map.insert("most".into(), most.into());
+    }
     if let Some(When { field, is_path, is }) = field.when {
         map.insert("when".into(), json!({ if is_path { "path" } else { "key" }: field, "is": is }));
     }

@@ -2,15 +2,15 @@
 //! another crate owns by that crate.
 
 use crate::{
-    Compact, Parts, Validator, ValueError,
+    Parts, ToParts, Validator, ValueError,
     schema::{Field, Group, Limit, Type},
 };
 use serde_json::Value;
 
 /// Judges a part of a scenario and all that is in it.
-pub(crate) fn judge(part: &dyn Compact, validator: &mut Validator) {
+pub(crate) fn judge(part: &dyn ToParts, validator: &mut Validator) {
     match part.parts() {
-        Parts::Fields(Group { is_foreign: true, .. }, _) => {}
+        Parts::Fields(Group { is_external: true, .. }, _) => {}
         Parts::Fields(group, values) => {
             for (field, (value, _)) in group.fields.iter().zip(values) {
                 let outside = validator.enter(field.name);
@@ -28,7 +28,7 @@ pub(crate) fn judge(part: &dyn Compact, validator: &mut Validator) {
     }
 }
 
-fn of_field(field: &Field, value: &dyn Compact, validator: &mut Validator) {
+fn of_field(field: &Field, value: &dyn ToParts, validator: &mut Validator) {
     match field.limit {
         Limit::Type | Limit::Follows(_) => {}
         Limit::Whole(least, most) => {
@@ -66,7 +66,7 @@ fn holds_limits(ty: &Type) -> bool {
             let judged = |field: &Field| {
                 !matches!(field.limit, Limit::Type | Limit::Follows(_)) || holds_limits(&field.ty)
             };
-            !group.is_foreign && group.fields.iter().any(judged)
+            !group.is_external && group.fields.iter().any(judged)
         }
         Type::Optional(inner) | Type::List(inner) => holds_limits(inner),
         _ => false,

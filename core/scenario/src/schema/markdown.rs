@@ -1,7 +1,7 @@
 //! docs/scenario.md, as it follows from the schema: a section a group, a row a field.
 
 use crate::{
-    Compact, Parts, Scenario, VERSION,
+    Parts, Scenario, ToParts, VERSION,
     schema::{Field, Group, Limit, Type, Typed, Word},
 };
 use alloc::{
@@ -75,7 +75,7 @@ fn inside(out: &mut String, ty: &Type, (path, label): (&str, &str), done: &mut V
     }
 }
 
-fn row(out: &mut String, field: &Field, default: &dyn Compact) {
+fn row(out: &mut String, field: &Field, default: &dyn ToParts) {
     let quantity = quantity_of(&field.ty).map(|group| group.name.to_lowercase());
     let unit = quantity.as_deref().unwrap_or(field.unit);
     let range = range_of(field);
@@ -108,7 +108,7 @@ fn row(out: &mut String, field: &Field, default: &dyn Compact) {
 }
 
 /// The default as a table has it: what has a section of its own is not written out.
-fn default_of(ty: &Type, default: &dyn Compact) -> String {
+fn default_of(ty: &Type, default: &dyn ToParts) -> String {
     match (ty, default.parts()) {
         (Type::Group(group), Parts::Kind(name, value)) if is_quantity(group) => {
             let unit = group.fields.iter().find(|kind| kind.name == name).map_or("", |kind| kind.label);
@@ -128,7 +128,7 @@ fn default_of(ty: &Type, default: &dyn Compact) -> String {
 }
 
 /// A value on one line.
-fn plain(value: &dyn Compact) -> String {
+fn plain(value: &dyn ToParts) -> String {
     match value.parts() {
         Parts::Number(number) => number.to_string(),
         Parts::List(entries) => {

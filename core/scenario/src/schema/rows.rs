@@ -53,19 +53,21 @@ macro_rules! rows {
                     doc: concat!($($doc, "\n"),*),
                     fields: FIELDS,
                     is_choice: false,
-                    is_foreign: $foreign,
+                    is_external: $foreign,
                     blank: || alloc::boxed::Box::new($name::default()),
                 };
                 $crate::schema::Type::Group(GROUP)
             };
         }
 
-        impl $crate::Compact for $name {
-            fn parts(&self) -> $crate::Parts<'_> {
+        impl $crate::schema::ToParts for $name {
+            fn parts(&self) -> $crate::schema::Parts<'_> {
                 let default = Self::default();
-                $crate::Parts::Fields(
+                // All of them: a field without a row does not compile.
+                let Self { $($field,)* } = self;
+                $crate::schema::Parts::Fields(
                     $crate::schema::rows::group::<Self>(),
-                    alloc::vec![$((&self.$field as &dyn $crate::Compact, self.$field != default.$field),)*],
+                    alloc::vec![$(($field as &dyn $crate::schema::ToParts, *$field != default.$field),)*],
                 )
             }
         }
@@ -121,17 +123,17 @@ macro_rules! kinds {
                     doc: concat!($($doc, "\n"),*),
                     fields: KINDS,
                     is_choice: true,
-                    is_foreign: false,
+                    is_external: false,
                     blank: || alloc::boxed::Box::new(<$name as $crate::Read>::blank()),
                 };
                 $crate::schema::Type::Group(GROUP)
             };
         }
 
-        impl $crate::Compact for $name {
-            fn parts(&self) -> $crate::Parts<'_> {
+        impl $crate::schema::ToParts for $name {
+            fn parts(&self) -> $crate::schema::Parts<'_> {
                 match self {
-                    $(Self::$variant(inner) => $crate::Parts::Kind($key, inner),)*
+                    $(Self::$variant(inner) => $crate::schema::Parts::Kind($key, inner),)*
                 }
             }
         }
@@ -181,9 +183,9 @@ macro_rules! words {
             };
         }
 
-        impl $crate::Compact for $ty {
-            fn parts(&self) -> $crate::Parts<'_> {
-                $crate::Parts::Whole(serde_json::Value::from(match self {
+        impl $crate::schema::ToParts for $ty {
+            fn parts(&self) -> $crate::schema::Parts<'_> {
+                $crate::schema::Parts::Whole(serde_json::Value::from(match self {
                     $(Self::$variant => $word,)*
                 }))
             }
@@ -214,7 +216,7 @@ const NONE: &Group = &Group {
     doc: "",
     fields: &[],
     is_choice: false,
-    is_foreign: false,
+    is_external: false,
     blank: || alloc::boxed::Box::new(0_u8),
 };
 

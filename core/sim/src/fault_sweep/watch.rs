@@ -35,7 +35,7 @@ impl Sink for Watch {
         let place = match event {
             Event::TickStart { orders } => return self.ticks.push(orders),
             Event::FramingError { .. } => &mut counted.framing,
-            Event::Frame(FrameOutcome::BadCheck { .. }) => &mut counted.bad_check,
+            Event::Frame(FrameOutcome::BadCrc { .. }) => &mut counted.bad_check,
             Event::Frame(FrameOutcome::Short) | Event::Gap { short: true } => &mut counted.short,
             Event::Frame(FrameOutcome::Overlong) => &mut counted.overlong,
             Event::Frame(FrameOutcome::Refused(_))

@@ -34,12 +34,12 @@ impl Sink for Ticks {
 }
 
 /// What reaches the line of one frame, and whether the host crashes in it.
-type Spoiled = (Vec<u8>, bool);
+type CorruptedSend = (Vec<u8>, bool);
 
 /// Runs the job with `spoil` between host and line, which is given the number of each frame. Gives
 /// the executed orders, where the host ended, what it counted, and the bytes of each frame as it was
 /// meant.
-fn run(mut spoil: impl FnMut(usize, &[u8]) -> Spoiled) -> (Vec<u8>, Progress, Counts, Vec<Vec<u8>>) {
+fn run(mut spoil: impl FnMut(usize, &[u8]) -> CorruptedSend) -> (Vec<u8>, Progress, Counts, Vec<Vec<u8>>) {
     let bus = Bus { channels: 2, slots: 4, step_period_cycles: 100, boot_cycles: 5, ..Bus::default() };
     let line = LineSettings { baud: BAUD, protocol: Protocol::Framed, ..LineSettings::default() };
     let config = Config::new(CLOCK_HZ, &bus, &line.serial()).expect("it holds");
@@ -78,7 +78,7 @@ fn run(mut spoil: impl FnMut(usize, &[u8]) -> Spoiled) -> (Vec<u8>, Progress, Co
 }
 
 /// Every tick was executed once, and the host knows.
-fn check(what: &str, spoil: impl FnMut(usize, &[u8]) -> Spoiled) -> Counts {
+fn check(what: &str, spoil: impl FnMut(usize, &[u8]) -> CorruptedSend) -> Counts {
     let (executed, progress, counts, _) = run(spoil);
     assert_eq!((executed.as_slice(), progress), (ORDERS, Progress::Done), "{what}");
     counts

@@ -7,14 +7,14 @@ fn uneven() -> Config {
     Config { clock_hz: 1_000, baud: 90, receiver_baud: 90, ..base() }
 }
 
-fn heard(config: &Config, input: &Input) -> Vec<(u64, Heard)> {
+fn heard(config: &Config, input: &Input) -> Vec<(u64, RxEvent)> {
     hear(config, &line_levels(config, input))
 }
 
 /// (cycle, length, level).
-type Forced = (u64, u64, bool);
+type ForcedLevel = (u64, u64, bool);
 
-fn forced(entries: &[Forced], cycles: u64) -> Input {
+fn forced(entries: &[ForcedLevel], cycles: u64) -> Input {
     Input { sends: Vec::new(), forced: entries.to_vec(), cycles }
 }
 
@@ -68,8 +68,8 @@ fn the_receivers_bit_time_is_rounded_half_up() {
 #[test]
 fn a_byte_is_delivered_at_its_stop_sample() {
     // t + floor(B/2) + 9*B.
-    assert_eq!(heard(&base(), &sent(&[(10, &[0xA7])], 400)), [(162, Heard::Byte(0xA7))]);
-    assert_eq!(heard(&uneven(), &sent(&[(10, &[0xA7])], 400)), [(114, Heard::Byte(0xA7))]);
+    assert_eq!(heard(&base(), &sent(&[(10, &[0xA7])], 400)), [(162, RxEvent::Byte(0xA7))]);
+    assert_eq!(heard(&uneven(), &sent(&[(10, &[0xA7])], 400)), [(114, RxEvent::Byte(0xA7))]);
     // A run ends with cycle N-1.
     assert_eq!(heard(&uneven(), &sent(&[(10, &[0xA7])], 115)).len(), 1);
     assert_eq!(heard(&uneven(), &sent(&[(10, &[0xA7])], 114)).len(), 0);
@@ -77,7 +77,7 @@ fn a_byte_is_delivered_at_its_stop_sample() {
     let expected: Vec<_> = [1, 112, 223, 334, 445, 556, 667, 778, 889, 1_001]
         .into_iter()
         .zip(1..)
-        .map(|(start, byte)| (start + 104, Heard::Byte(byte)))
+        .map(|(start, byte)| (start + 104, RxEvent::Byte(byte)))
         .collect();
     assert_eq!(heard(&uneven(), &sent(&[(1, &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10])], 1_200)), expected);
 }
@@ -91,7 +91,7 @@ fn data_bit_i_is_sampled_in_one_cycle_only() {
             let input = Input { forced: vec![(glitch, 1, true)], ..sent(&[(10, &[0])], 400) };
             assert_eq!(
                 heard(&uneven(), &input),
-                [(114, Heard::Byte(expected))],
+                [(114, RxEvent::Byte(expected))],
                 "one cycle high at {glitch}"
             );
         }
@@ -100,7 +100,8 @@ fn data_bit_i_is_sampled_in_one_cycle_only() {
 
 #[test]
 fn the_stop_bit_is_sampled_in_one_cycle_only() {
-    for (glitch, expected) in [(113, Heard::Byte(0)), (114, Heard::FramingError), (115, Heard::Byte(0))] {
+    for (glitch, expected) in [(113, RxEvent::Byte(0)), (114, RxEvent::FramingError), (115, RxEvent::Byte(0))]
+    {
         let input = Input { forced: vec![(glitch, 1, false)], ..sent(&[(10, &[0])], 118) };
         assert_eq!(heard(&uneven(), &input), [(114, expected)], "one cycle low at {glitch}");
     }
@@ -122,11 +123,11 @@ fn after_a_glitch_the_receiver_arms_in_the_next_cycle() {
     // belongs to t = 10.
     for (start, t) in [(14, 10), (18, 10), (19, 19), (20, 20)] {
         let input = Input { forced: vec![(10, 1, false)], ..sent(&[(start, &[0x5A])], 400) };
-        assert_eq!(heard(&base(), &input), [(t + 152, Heard::Byte(0x5A))], "a byte sent at {start}");
+        assert_eq!(heard(&base(), &input), [(t + 152, RxEvent::Byte(0x5A))], "a byte sent at {start}");
     }
     // Low before the look and still low at 19, but high at 18.
     let input = forced(&[(10, 200, false), (18, 1, true)], 400);
-    assert_eq!(heard(&base(), &input), [(19 + 152, Heard::FramingError)]);
+    assert_eq!(heard(&base(), &input), [(19 + 152, RxEvent::FramingError)]);
 }
 
 #[test]
@@ -136,11 +137,11 @@ fn after_a_delivery_the_receiver_arms_in_the_next_cycle() {
         let input = Input { forced: vec![(low_from, 40, false)], ..sent(&[(1, &[0xFF])], 400) };
         let heard = heard(&base(), &input);
         if low_from == 153 {
-            assert_eq!(heard, [(153, Heard::FramingError)]);
+            assert_eq!(heard, [(153, RxEvent::FramingError)]);
         } else {
             assert_eq!(
                 heard,
-                [(153, Heard::Byte(0xFF)), (expected, Heard::Byte(0xFE))],
+                [(153, RxEvent::Byte(0xFF)), (expected, RxEvent::Byte(0xFE))],
                 "low from {low_from}"
             );
         }
@@ -151,7 +152,7 @@ fn after_a_delivery_the_receiver_arms_in_the_next_cycle() {
 fn after_a_framing_error_the_receiver_arms_one_cycle_after_the_line_is_high() {
     // "arms in the cycle after the first cycle, counted from the one after the sample, in which the line is
     // high".
-    let rows: &[(&[Forced], &[u64])] = &[
+    let rows: &[(&[ForcedLevel], &[u64])] = &[
         // A break from 1 to 300: high at 301, armed at 302 and low there.
         (&[(1, 300, false), (302, 100, false)], &[153, 302 + 152]),
         // High at 301 and 302; low at 303.
@@ -178,17 +179,17 @@ fn a_slow_receiver_takes_the_stop_bit_for_a_data_bit() {
     // bits 0..=7 see 0 1 2 4 5 6 7 stop.
     let slow = Config { receiver_baud: 889, ..base() };
     assert_eq!(bit_time(&slow), 18);
-    assert_eq!(heard(&slow, &sent(&[(1, &[0b0000_0000])], 400)), [(172, Heard::Byte(0b1000_0000))]);
-    assert_eq!(heard(&slow, &sent(&[(1, &[0b0000_1000])], 400)), [(172, Heard::Byte(0b1000_0000))]);
-    assert_eq!(heard(&slow, &sent(&[(1, &[0b1000_0001])], 400)), [(172, Heard::Byte(0b1100_0001))]);
+    assert_eq!(heard(&slow, &sent(&[(1, &[0b0000_0000])], 400)), [(172, RxEvent::Byte(0b1000_0000))]);
+    assert_eq!(heard(&slow, &sent(&[(1, &[0b0000_1000])], 400)), [(172, RxEvent::Byte(0b1000_0000))]);
+    assert_eq!(heard(&slow, &sent(&[(1, &[0b1000_0001])], 400)), [(172, RxEvent::Byte(0b1100_0001))]);
     // Sent back to back, its stop sample falls into the next byte's start bit (160..=175 after the first's
     // start).
-    assert_eq!(heard(&slow, &sent(&[(1, &[0, 0xFF])], 400)), [(172, Heard::FramingError)]);
+    assert_eq!(heard(&slow, &sent(&[(1, &[0, 0xFF])], 400)), [(172, RxEvent::FramingError)]);
 }
 
 #[test]
 fn forced_levels_override_what_is_sent_and_the_later_entry_wins() {
-    let rx = |entries: &[Forced]| edges(&run(&base(), &forced(entries, 60)), bits::RX);
+    let rx = |entries: &[ForcedLevel]| edges(&run(&base(), &forced(entries, 60)), bits::RX);
     assert_eq!(rx(&[(10, 3, false)]), [(10, false), (13, true)]);
     assert_eq!(rx(&[(10, 10, false), (12, 3, true)]), [(10, false), (12, true), (15, false), (20, true)]);
     assert_eq!(rx(&[(12, 3, true), (10, 10, false)]), [(10, false), (20, true)]);

@@ -11,7 +11,7 @@ struct Fall {
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Falls {
+pub(super) struct FallingEdges {
     /// A ring: channels fall together or in cycles of their own, so there are never more than 16.
     ring: [Fall; MAX_CHANNELS],
     first: usize,
@@ -20,14 +20,14 @@ pub(super) struct Falls {
     cycle: Instant,
 }
 
-impl Default for Falls {
+impl Default for FallingEdges {
     fn default() -> Self {
         let none = Fall { cycle: Instant::NEVER, steps: 0 };
         Self { ring: [none; MAX_CHANNELS], first: 0, count: 0, cycle: Instant::NEVER }
     }
 }
 
-impl Falls {
+impl FallingEdges {
     /// The next fall; [`Instant::NEVER`] where there is none.
     pub(super) const fn cycle(&self) -> Instant {
         self.cycle

@@ -2,7 +2,7 @@
 import { get } from "../../state/state.js";
 
 /** @typedef {import("../../state/types.js").State} State */
-/** @typedef {{json: string, controller: number, axis: number, path: string, moves: any[]}} Subject  Scenario as text, and one of its axes: its path there, its moves. */
+/** @typedef {{json: string, controller: number, axis: number, path: string, moves: any[]}} SelectedAxis  Scenario as text, and one of its axes: its path there, its moves. */
 
 /** Where the looked-at axis is in the scenario, whether or not the form has problems; no path where there is none. @param {State} state */
 export function place({ scenario, result, axis: wanted }) {
@@ -15,9 +15,9 @@ export function place({ scenario, result, axis: wanted }) {
 
 /**
  * The axis that the study is about. @param {State} state
- * @returns {Subject | string | null}  Why there is none: empty where the form has problems, and what was shown may stay; null until it is judged.
+ * @returns {SelectedAxis | string | null}  Why there is none: empty where the form has problems, and what was shown may stay; null until it is judged.
  */
-export function subject(state) {
+export function selectedAxis(state) {
   const { judgement, judged, revision } = state;
   if (judged !== revision || !judgement) return null;
   if (judgement.problems.length > 0) return "";

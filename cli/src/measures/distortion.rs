@@ -1,0 +1,44 @@
+//! The distortion that the table of measures has beside them.
+
+use stepscope_core::{
+    inspect::{
+        actual_motion::Pulses,
+        spectrum::{AnalysisWindow, Harmonics, Spectrum},
+    },
+    motion::AxisPlan,
+    scenario::Analysis,
+};
+
+/// Distortion of a motion that repeats: of the ideal curve and of the pulses.
+pub(super) struct Distortion {
+    pub(super) ideal: Spectrum,
+    pub(super) pulses: Spectrum,
+}
+
+impl Distortion {
+    pub(super) fn of(plan: &AxisPlan, run: &Pulses<'_>, analysis: &Analysis) -> Option<Self> {
+        let stretch = AnalysisWindow::of(plan).filter(|stretch| stretch.periodic)?;
+        let ideal = Spectrum::ideal(plan, analysis.order, analysis.fft_length)?;
+        // To the same order, which the number of samples may have cut.
+        let pulses = Spectrum::of_pulses(&stretch.pulses_of(plan, run), stretch, ideal.order);
+        Some(Self {
+            ideal: ideal.filtered_by(analysis.sensor_hz),
+            pulses: pulses.filtered_by(analysis.sensor_hz),
+        })
+    }
+
+    /// Name, and the ratios of the ideal curve and of the pulses.
+    pub(super) fn rows(&self) -> impl Iterator<Item = (&'static str, [Option<f64>; 2])> + '_ {
+        type Of = fn(&Spectrum) -> Option<&Harmonics>;
+        let of: [(_, Of); 4] = [
+            ("position", |spectrum| Some(&spectrum.position)),
+            ("speed", |spectrum| Some(&spectrum.speed)),
+            ("acceleration", |spectrum| Some(&spectrum.acceleration)),
+            ("acceleration_felt", |spectrum| spectrum.acceleration_filtered.as_ref()),
+        ];
+        of.into_iter().filter_map(|(name, of)| {
+            let ratio = |spectrum| of(spectrum).map(|harmonics| harmonics.distortion);
+            Some((name, [ratio(&self.ideal)?, ratio(&self.pulses)?]))
+        })
+    }
+}
