@@ -52,6 +52,7 @@ struct Ramp {
 
 impl Ramp {
     /// Cycles until `place`, not rounded.
+    #[inline]
     fn cycles(&self, place: f64) -> f64 {
         let speed = square_root(self.start_squared + self.twice_acceleration * place);
         if self.divides {
@@ -63,6 +64,7 @@ impl Ramp {
 }
 
 /// floor(cycles + 1/2), for times from 0 on, where truncation is the floor.
+#[inline]
 pub(super) fn cycle(cycles: f64) -> u64 {
     (cycles + 0.5) as i64 as u64
 }
@@ -101,19 +103,23 @@ impl Trapezoid {
 }
 
 impl StepTimes {
+    #[inline]
     fn climbing(&self, place: f64) -> f64 {
         self.ramp.cycles(place)
     }
 
+    #[inline]
     fn steady(&self, place: f64) -> f64 {
         self.plateau_zero + place * self.cycles_per_step
     }
 
+    #[inline]
     fn slowing(&self, place: f64) -> f64 {
         self.end - self.ramp.cycles(self.count - place)
     }
 
     /// Cycles until the next step, not rounded.
+    #[inline]
     pub(super) fn next_unrounded(&mut self) -> Option<f64> {
         let place = self.place;
         let time = if place < self.ramp_end {
@@ -133,6 +139,7 @@ impl StepTimes {
 impl Iterator for StepTimes {
     type Item = u64;
 
+    #[inline]
     fn next(&mut self) -> Option<u64> {
         self.next_unrounded().map(cycle)
     }

@@ -197,6 +197,7 @@ pub trait Sink {
 
 /// A stored trace.
 impl Sink for Vec<Record> {
+    #[inline(always)]
     fn record(&mut self, record: Record) {
         debug_assert!(
             self.last().is_none_or(|last| last.cycle < record.cycle && last.levels != record.levels),

@@ -365,6 +365,7 @@ struct Slice<'a, S> {
 }
 
 impl<S: Sink> Sink for Slice<'_, S> {
+    #[inline(always)]
     fn record(&mut self, record: Record) {
         self.left = self.left.saturating_sub(1);
         self.sink.record(record);

@@ -25,6 +25,7 @@ impl Device {
         }
     }
 
+    #[inline(always)]
     fn input_deadline(&self) -> Instant {
         let framing = match &self.framing {
             Framing::Raw(unpacker) => unpacker.deadline(),
@@ -53,6 +54,7 @@ impl Device {
     /// Runs until cycle `until` is the next, as fast as the edges allow, while the line stays at
     /// `line`; with [`Instant::NEVER`], until nothing can change any more ([`Self::last_active`] then
     /// tells when that was). Stops early where the sink asks for a pause.
+    #[inline(always)]
     pub fn run(&mut self, line: bool, until: Instant, sink: &mut impl Sink) {
         if self.now < until && (line != self.line || self.now == self.wake) {
             self.clock(line, sink);

@@ -150,6 +150,7 @@ impl Sequencer {
     }
 
     /// Cycle `now`.
+    #[inline(always)]
     pub(super) fn clock(&mut self, now: Instant, sink: &mut impl Sink) {
         debug_assert!(now <= self.deadline, "{:?} was left out", self.deadline);
         if self.deadline == now {

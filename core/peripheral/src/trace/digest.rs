@@ -53,6 +53,7 @@ impl Digest {
 }
 
 impl Sink for Digest {
+    #[inline(always)]
     fn record(&mut self, record: Record) {
         if let Some(place) = self.block[self.filled..].first_chunk_mut::<RECORD>() {
             place[..8].copy_from_slice(&record.cycle.0.to_le_bytes());

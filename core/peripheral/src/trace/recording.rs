@@ -19,6 +19,7 @@ pub struct Recording {
 }
 
 impl Sink for Recording {
+    #[inline(always)]
     fn record(&mut self, record: Record) {
         self.trace.push(record);
         self.digest.record(record);

@@ -82,6 +82,7 @@ impl Receiver {
     /// Next cycle after `now` in which something comes of what the receiver does if the line stays
     /// at `rx`: the look at the start bit or at the stop bit, or arming.
     #[must_use]
+    #[inline(always)]
     pub fn deadline(&self, now: Instant, rx: bool) -> Instant {
         match self.state {
             State::Sampling if self.bit == 0 => self.at,
@@ -94,6 +95,7 @@ impl Receiver {
 
     /// Cycle `now` with the line at `rx`, which was at `before` in the cycles since the last call.
     /// No cycle of [`Self::deadline`] may have been left out between.
+    #[inline(always)]
     pub fn clock(&mut self, now: Instant, before: bool, rx: bool) -> Option<RxEvent> {
         match self.state {
             State::Armed if !rx => {
