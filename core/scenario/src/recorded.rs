@@ -50,8 +50,8 @@ impl LineScript {
             let sent = base16ct::mixed::decode_vec(&hex).map_err(|_| {
                 rows.bad(at, format!("bytes are “{}”; give pairs of hexadecimal digits", short(given)))
             })?;
-            if !sent.is_empty() && !(outcome.is_some_and(|at| field(at) == OTHER_ADDRESS) && is_reply(&sent))
-            {
+            let of_another = outcome.is_some_and(|at| field(at) == OTHER_ADDRESS) && is_reply(&sent);
+            if !sent.is_empty() && !of_another {
                 sends.push(ScriptedSend { start_cycle, bytes: Hex(sent), frame: None });
             }
         }
