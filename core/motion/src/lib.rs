@@ -15,7 +15,7 @@
 //! sine             B6          ~~            a sine with every step in its place
 //! jerk_limited     B6          ( 7 phases )  rest to rest under limits of speed, acceleration and jerk
 //! points           B6          . ' .         a curve through points, straight or smooth
-//! steady           B6          ---           constant rate, dwell
+//! constant_velocity B6          ---           constant rate, dwell
 //! ```
 //!
 //! Positions are in steps, f64, and not rounded: [`round_half_up`] is the one rounding (B1's R),
