@@ -12,12 +12,12 @@
 //!     device::{Device, Faults},
 //!     signal::Record,
 //!     units::{Cycles, Instant},
-//!     wire::{Forced, Line, Schedule},
+//!     wire::{ForcedLevel, Line, Schedule},
 //! };
 //!
 //! // A packet of one channel, and a break that is held over its stop bit.
 //! let host = Schedule::paced(Instant(2000), Cycles(32_000), [[0x85]].iter());
-//! let broken = Forced { start: Instant(2000), end: Instant(5000), level: false };
+//! let broken = ForcedLevel { start: Instant(2000), end: Instant(5000), level: false };
 //! let mut line = Line::new(Rc::new(host), &[broken], 16_000_000, 115_200);
 //!
 //! let config = Config::new(16_000_000, &Bus::default(), &SerialLine::default()).expect("the defaults hold");
