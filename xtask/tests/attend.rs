@@ -32,6 +32,8 @@ fn the_end_of_input_ends_the_program_what_it_started_and_its_folder() {
 fn a_program_that_ends_by_itself_is_not_waited_for_and_its_failure_is_told() {
     for (script, well) in [("exit 0", true), ("exit 3", false)] {
         let mut attended = attend(script);
+        // Held to the end: to let it go is to ask for the program's end.
+        let _input = attended.stdin.take();
         assert_eq!(attended.wait().expect("it ends").success(), well, "{script}");
     }
 }

@@ -120,16 +120,16 @@ impl<'a> LineDecoder<'a> {
         self.table.own()
     }
 
-    fn log(&self) -> &'a PacketLog {
-        self.table.log()
+    fn packets(&self) -> &'a PacketLog {
+        self.table.packets()
     }
 
     /// The bytes that touch a stretch of cycles; `None` if there are more than `most`.
     fn bytes_in(&self, start: u64, end: u64, most: usize) -> Option<Vec<PlacedByte>> {
         let mut bytes = Vec::new();
-        for packet in self.log().touching(Instant(start), Instant(end)) {
+        for packet in self.packets().touching(Instant(start), Instant(end)) {
             // Of a row of megabytes only what is on show is looked at.
-            let seen = self.log().seen(packet);
+            let seen = self.packets().seen(packet);
             let before =
                 if self.table.is_own_reply(packet) { 0 } else { seen.partition_point(|at| at.0 < start) };
             let placed =
@@ -193,7 +193,7 @@ impl<'a> LineDecoder<'a> {
 
     /// Adds the bytes whose stop bit was low.
     fn broken_in(&self, start: u64, end: u64, rx: &mut Spans, with_bits: bool) {
-        let broken = self.log().broken();
+        let broken = self.packets().broken();
         let length = BYTE_BITS * self.own().bit().0;
         let first = broken.partition_point(|seen| seen.0 + length <= start);
         for &Instant(seen) in broken.iter().skip(first).take_while(|seen| seen.0 < end) {
@@ -205,7 +205,7 @@ impl<'a> LineDecoder<'a> {
                 "FE".into(),
                 "!".into(),
             ];
-            let packet = self.log().touching(Instant(seen), Instant(seen)).next();
+            let packet = self.packets().touching(Instant(seen), Instant(seen)).next();
             rx.bytes.push(Span { start: seen, end: seen + length, texts, bad: true, packet, sample: None });
             if with_bits {
                 rx.bits.extend(self.heard_bits(seen, packet));

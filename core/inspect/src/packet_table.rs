@@ -317,7 +317,7 @@ impl<'a> PacketTable<'a> {
         self.own
     }
 
-    pub(crate) fn log(&self) -> &'a PacketLog {
+    pub(crate) fn packets(&self) -> &'a PacketLog {
         self.log
     }
 

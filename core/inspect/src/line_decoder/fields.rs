@@ -14,9 +14,9 @@ const MAX_BYTES: usize = 1024;
 impl LineDecoder<'_> {
     /// The fields of a row of the packets.
     pub(super) fn fields_of(&self, packet: usize) -> Vec<Span> {
-        let Some(row) = self.log().rows().get(packet) else { return Vec::new() };
+        let Some(row) = self.packets().rows().get(packet) else { return Vec::new() };
         // No packet and no frame is longer: what is, was ignored or is none.
-        if self.log().bytes(packet).len() > MAX_BYTES {
+        if self.packets().bytes(packet).len() > MAX_BYTES {
             return Vec::new();
         }
         let bytes = self.table.placed(packet);

@@ -1,6 +1,6 @@
 //! The motor with its load as numbers of the phasor model, and what it can at a rate.
 
-use crate::torque::Moment;
+use crate::torque::moment::Moment;
 use core::f64::consts::{PI, SQRT_2};
 use stepscope_motion::{AxisPlan, MAX_SPEED, bisection::border, moves::Axis};
 

@@ -18,6 +18,15 @@
 //! A struct of the scenario's own is declared together with its rows (`settings!`), an enum of its own with its kinds
 //! (`choices!`); what peripheral and motion own only gets names (`fields!`, `kinds!`), and they judge their numbers
 //! themselves, by the constants that the rows name. Words are choices without anything inside (`words!`).
+//!
+//! ```
+//! use stepscope_scenario::schema::{Limit, Type, Typed};
+//! use stepscope_peripheral::config::Bus;
+//!
+//! let Type::Group(bus) = Bus::TYPE else { panic!("a map of fields") };
+//! let slots = bus.fields.iter().find(|field| field.name == "slots").expect("it has a row");
+//! assert!(matches!(slots.limit, Limit::Whole(1, 127)), "{:?}", slots.limit);
+//! ```
 
 pub(crate) mod rows;
 
