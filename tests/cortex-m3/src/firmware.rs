@@ -11,14 +11,11 @@ use cortex_m_semihosting::{
 use embedded_alloc::TlsfHeap;
 // A panic, also that of an allocation for which there is no room, is printed and ends with failure.
 use panic_semihosting as _;
-use stepscope_core::{
-    peripheral::{
-        config::{Bus, Config},
-        device::ModelBus,
-        signal::Record,
-        units::Cycles,
-    },
-    scenario::Line,
+use stepscope_core::peripheral::{
+    config::{Bus, Config, SerialLine},
+    device::ModelBus,
+    signal::Record,
+    units::Cycles,
 };
 use stepscope_firmware::{ChannelCommand, Driver, Error};
 use stepscope_tests::golden::CASES;
@@ -59,7 +56,9 @@ fn main() -> ! {
 /// The example driver, built for this processor, moves two axes of the model: where they end.
 fn drive() -> Result<[i32; 2], Error> {
     let bus = Bus { channels: 2, ..Bus::default() };
-    let Ok(config) = Config::new(16_000_000, &bus, &Line::default()) else { return Err(Error::NotFound(0)) };
+    let Ok(config) = Config::new(16_000_000, &bus, &SerialLine::default()) else {
+        return Err(Error::NotFound(0));
+    };
     let mut driver = Driver::new(ModelBus::new(&config, Cycles(8), Vec::<Record>::new()))?;
     driver.wait_for_self_test();
     let mut ticks = (1..=5).map(|tick| [ChannelCommand::right(10 * tick), ChannelCommand::left(5 * tick)]);

@@ -3,6 +3,7 @@
 
 use super::{Mark, PacketTable, RowKind, format};
 use crate::dissector::Head;
+use alloc::vec;
 use alloc::{borrow::ToOwned, format, string::String, vec::Vec};
 
 /// Rows on show, and matches of the search among them.
