@@ -1,7 +1,7 @@
 //! Drivers and the times that their data sheets ask for.
 //!
 //! Figures are the sheets' minima in ns. Where a sheet counts its own clock, the slowest clock that
-//! it allows is taken. What no sheet's text confirmed is said at the driver, in [`Sheet::source`]
+//! it allows is taken. What no sheet's text confirmed is said at the driver, in [`DataSheet::source`]
 //! too, so that a user sees it beside the figures. A wake-up from a sleep mode is not one from EN:
 //! who ties SLEEP to EN gives rules of his own.
 //!

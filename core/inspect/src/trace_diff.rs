@@ -1,5 +1,5 @@
-//! A trace that was saved, held against a run: a table of edges ([`super::write_edges_row`]) or a trace's
-//! text ([`super::write_record`]), read in pieces of any size.
+//! A trace that was saved, held against a run: a table of edges ([`write_edges_row`](crate::tables::write_edges_row)) or a trace's
+//! text ([`write_record`](stepscope_peripheral::trace::write_record)), read in pieces of any size.
 //!
 //! A file may be a stretch of a run: its first row then stands for all the levels at its first cycle, and
 //! what the run does after the file's last row is not in question.

@@ -11,7 +11,7 @@ pub struct Moment {
     pub rate: f64,
     /// Torque in the direction of the motion that the plan needs, in mN*m; negative where the motor brakes.
     pub needed_mn_m: f64,
-    /// Torque that the motor has at that rate, in mN*m ([`Machine::available_mn_m`]); negative where it only
+    /// Torque that the motor has at that rate, in mN*m ([`available_mn_m`](crate::torque::Machine::available_mn_m)); negative where it only
     /// brakes.
     pub available_mn_m: f64,
 }

@@ -10,7 +10,7 @@
 //!
 //! | follows | where |
 //! | --- | --- |
-//! | reading and writing JSON ([`Read`](crate::Read), [`Compact`]) | `rows`, the macros that declare rows |
+//! | reading and writing JSON ([`Read`](crate::Read), [`Compact`](crate::Compact)) | `rows`, the macros that declare rows |
 //! | judging each number and each length by itself | `judge` |
 //! | docs/scenario.md | [`markdown`] |
 //! | what the page's form and help are made of | [`describe`] |
