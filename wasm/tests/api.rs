@@ -117,7 +117,7 @@ fn links_go_there_and_back_and_bad_ones_say_why() {
         (String::new(), "no scenario"),
         ("v=1".into(), "no scenario"),
         (link[..link.len() - 1].into(), "cut short"),
-        (link.replacen("c=1.", "c=2.", 1), "newer version"),
+        (link.replacen("c=2.", "c=3.", 1), "newer version"),
         ("c=1".repeat(10_000), "too long"),
         ("c=1.z.__proto__.00000000".into(), "cut short"),
     ] {
