@@ -57,7 +57,7 @@ impl<C: fmt::Display> fmt::Display for Problem<C> {
 
 impl<C: fmt::Debug + fmt::Display> core::error::Error for Problem<C> {}
 
-/// Collects problems, [`MAX_PROBLEMS`] at most, and knows the way to the value that is being judged: a path is made
+/// Collects problems, lists [`MAX_PROBLEMS`] of them at most and counts all, and knows the way to the value that is being judged: a path is made
 /// where its problem is found, and never rewritten.
 ///
 /// A `step` is what stands one step further in: the name of a field or several with dots between them; empty is the
@@ -65,7 +65,10 @@ impl<C: fmt::Debug + fmt::Display> core::error::Error for Problem<C> {}
 #[derive(Clone, Debug)]
 pub struct Validator<C = Cause> {
     path: String,
+    /// The first of them.
     problems: Vec<Problem<C>>,
+    /// How many there are: what is not listed is wrong all the same.
+    found: usize,
 }
 
 impl<C> Default for Validator<C> {
@@ -78,7 +81,7 @@ impl<C> Validator<C> {
     /// A collector for a part that stands at `path` in the whole.
     #[must_use]
     pub fn within(path: impl Into<String>) -> Self {
-        Self { path: path.into(), problems: Vec::new() }
+        Self { path: path.into(), problems: Vec::new(), found: 0 }
     }
 
     /// Goes a step further in; gives what [`Self::leave`] takes to come back.
@@ -132,6 +135,7 @@ impl<C> Validator<C> {
 impl<C: From<ValueError>> Validator<C> {
     /// Adds a problem of what stands a `step` further in.
     pub fn add(&mut self, step: &str, cause: impl Into<C>) {
+        self.found += 1;
         if self.problems.len() < MAX_PROBLEMS {
             let outside = self.enter(step);
             self.problems.push(Problem::new(self.path.as_str(), cause));
@@ -141,9 +145,12 @@ impl<C: From<ValueError>> Validator<C> {
 
     /// Adds problems whose paths are whole already, such as those of a plan; they may be of a narrower kind.
     pub fn extend<D: Into<C>>(&mut self, problems: impl IntoIterator<Item = Problem<D>>) {
-        let room = MAX_PROBLEMS.saturating_sub(self.problems.len());
-        let problems = problems.into_iter().take(room);
-        self.problems.extend(problems.map(|Problem { path, cause }| Problem { path, cause: cause.into() }));
+        for Problem { path, cause } in problems {
+            self.found += 1;
+            if self.problems.len() < MAX_PROBLEMS {
+                self.problems.push(Problem { path, cause: cause.into() });
+            }
+        }
     }
 
     /// What a part gives, or its problems.
@@ -190,31 +197,30 @@ impl<C: From<ValueError>> Validator<C> {
         }
     }
 
-    /// How many problems there are so far.
+    /// How many problems there are so far, those that are not listed among them.
     #[must_use]
-    #[allow(clippy::len_without_is_empty, reason = "is_ok says it")]
-    pub fn len(&self) -> usize {
-        self.problems.len()
+    pub const fn count(&self) -> usize {
+        self.found
     }
 
     /// Whether nothing is wrong so far.
     #[must_use]
-    pub fn is_ok(&self) -> bool {
-        self.problems.is_empty()
+    pub const fn is_ok(&self) -> bool {
+        self.found == 0
     }
 
-    /// All problems.
+    /// The problems that are listed.
     #[must_use]
     pub fn problems(self) -> Vec<Problem<C>> {
         self.problems
     }
 
-    /// The value, or all problems.
+    /// The value, or the problems that are listed.
     ///
     /// # Errors
     /// If there is a problem.
     pub fn end<T>(self, value: T) -> Result<T, Vec<Problem<C>>> {
-        if self.problems.is_empty() { Ok(value) } else { Err(self.problems) }
+        if self.is_ok() { Ok(value) } else { Err(self.problems) }
     }
 }
 
@@ -586,5 +592,26 @@ fn shown(unit: &str) -> &str {
         "mm_s3" => "mm/s^3",
         "deg_s3" => "deg/s^3",
         other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_listed_any_more_is_wrong_all_the_same() {
+        let mut validator = Validator::<Cause>::default();
+        for _ in 0..MAX_PROBLEMS {
+            validator.add("a", Cause::NoSegmentSteps);
+        }
+        let before = validator.count();
+        validator.add("b", Cause::NoSegmentSteps);
+        assert_eq!(validator.count(), before + 1);
+        validator.extend([Problem::<Cause>::new("c", Cause::NoSegmentSteps)]);
+        assert_eq!((validator.count(), validator.is_ok()), (before + 2, false));
+        let problems = validator.problems();
+        assert_eq!(problems.len(), MAX_PROBLEMS);
+        assert!(problems.iter().all(|problem| problem.path == "a"));
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! The table is one that a run exports: `bytes`, and `start_cycle` or `start_s`, are among its columns, in
 //! any order; others are left alone. Rows whose `kind` is `reply` or `collision` came from a controller and are not
-//! sent; nor are replies of other controllers, which tables without that kind for them call frames. A packet's bytes go
+//! sent; nor are replies of other controllers that older tables, those without `meaning`, call frames. A packet's bytes go
 //! back to back from its start bit on; pauses within it are not in the table.
 
 use crate::{
@@ -28,7 +28,9 @@ impl LineScript {
         let start = place("start_cycle").map(|at| (at, false)).or(place("start_s").map(|at| (at, true)));
         let (start, in_seconds) = start.ok_or_else(|| missing("start_cycle"))?;
         let bytes = place("bytes").ok_or_else(|| missing("bytes"))?;
-        let (kind, outcome) = (place("kind"), place("outcome"));
+        let kind = place("kind");
+        // A table with meanings calls every reply a reply; the outcome is asked in those without.
+        let outcome = place("outcome").filter(|_| place("meaning").is_none());
         let mut sends = Vec::new();
         while let Some((at, row)) = rows.next() {
             let field = |index: usize| row.get(index).map_or("", |field| field.trim());
@@ -119,6 +121,8 @@ mod tests {
         };
         assert_eq!(starts("another address"), [9]);
         assert_eq!(starts("refused: UNKNOWN_KIND"), [9, 500], "the host did send that");
+        let told = format!("start_cycle,bytes,outcome,kind,meaning\n500,{reply},another address,frame,\n");
+        assert_eq!(sends(&told).map(|sends| sends.len()), Ok(1), "that table knows who sent it");
     }
 
     #[test]

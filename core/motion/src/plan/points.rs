@@ -41,7 +41,7 @@ pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::Points) -> Op
 
 /// Times and positions in steps of points that hold.
 fn judge(quantities: &mut Quantities<'_>, given: &moves::Points, size: f64) -> Option<Vec<(f64, f64)>> {
-    let earlier = quantities.validator.len();
+    let earlier = quantities.validator.count();
     let mut points = Vec::with_capacity(given.points.len());
     let mut before = None;
     for (index, point) in given.points.iter().enumerate() {
@@ -52,11 +52,11 @@ fn judge(quantities: &mut Quantities<'_>, given: &moves::Points, size: f64) -> O
             points.extend(here.position(&given.unit.of(point.position), size).map(|y| (point.time_s, y)));
         });
         before = Some(point.time_s);
-        if quantities.validator.len() >= earlier + MAX_TOLD {
+        if quantities.validator.count() >= earlier + MAX_TOLD {
             break;
         }
     }
-    (quantities.validator.len() == earlier).then_some(points)
+    (quantities.validator.count() == earlier).then_some(points)
 }
 
 /// Whether a time comes late enough; not-a-number does not.
