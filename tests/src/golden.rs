@@ -150,7 +150,7 @@ impl Case {
 }
 
 impl Outcome {
-    /// Makes a run by `go`, which takes the sinks of the controllers' records; of the further ones digest and status
+    /// Makes a run by `go`, which takes the sinks of the controllers' records; of the additional ones digest and status
     /// are kept, of the first the records too.
     pub fn of(go: impl FnOnce(&mut [Keep]) -> Run, experiment: &Experiment) -> Self {
         let mut keeps: Vec<Keep> = (0..experiment.controllers()).map(|_| Keep::default()).collect();

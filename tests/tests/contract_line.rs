@@ -156,7 +156,7 @@ proptest! {
     fn framed_controllers_of_one_address_do_what_the_model_does(
         (line, input) in framed_lines_of_one_address(every_mode())
     ) {
-        // A controller without an address has 0, and the further ones need one to be written down.
+        // A controller without an address has 0, and the additional ones need one to be written down.
         let line: Vec<_> = line
             .into_iter()
             .map(|config| oracle::Config { address: Some(config.address.unwrap_or(0)), ..config })

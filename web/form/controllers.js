@@ -1,4 +1,4 @@
-/** Further controllers on the line, in the form: each with its address, its bus and what it is to do. */
+/** Additional controllers on the line, in the form: each with its address, its bus and what it is to do. */
 import { button, element } from "../dom.js";
 import { MOST_FURTHER } from "../state/state.js";
 import { controllerFields } from "./fields.js";

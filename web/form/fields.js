@@ -6,7 +6,7 @@ import { field, fields, labelOf } from "./schema.js";
 
 /** @typedef {import("./field.js").Field} Field */
 
-/** Packets, one a line: of the host, and of a further controller. @param {"Packets" | "Controller"} group @returns {Field} */
+/** Packets, one a line: of the host, and of an additional controller. @param {"Packets" | "Controller"} group @returns {Field} */
 export const packetLines = (group) => ({ ...field(group, "packets"), rows: 8 });
 
 /** A channel's list of segments. @returns {Field[]} */
@@ -25,7 +25,7 @@ const BUS_SIZE = ["channels", "slots", "step_period_cycles"];
 /** What of a bus counts where segments run it; and nothing of the line does. */
 export const OF_SEGMENTS = ["channels", "pulse_width_cycles", "dir_setup_cycles", "dir_hold_cycles"];
 
-/** A further controller: its own fields, its bus, and what of that is folded away. @returns {{own: Field[], bus: Field[], folded: Field[]}} */
+/** An additional controller: its own fields, its bus, and what of that is folded away. @returns {{own: Field[], bus: Field[], folded: Field[]}} */
 export const controllerFields = () => ({
   own: fields("Controller").filter(({ kind }) => kind !== "lines"),
   bus: fields("Bus", BUS_SIZE),

@@ -135,7 +135,7 @@ export function showDerived(state, form) {
 /** Name, value, `over` where it is too much, and the term that explains it. @param {State} state @param {import("../state/types.js").Derived} derived @returns {[string, string, string, string][]} */
 function rowsOf(state, derived) {
   const [{ tick_s, limit_steps_s }] = derived.controllers;
-  // Further controllers can have ticks of another length.
+  // Additional controllers can have ticks of another length.
   const several = derived.controllers.length > 1;
   const ticks = several ? derived.controllers.reduce((sum, controller) => sum + controller.ticks, 0) : derived.ticks;
   const axes = derived.controllers.flatMap((controller) => controller.axes);

@@ -10,8 +10,8 @@ import { field, fields } from "./schema.js";
  * @typedef {object} SourceKind
  * @property {(scenario: Scenario, samples: Samples) => any} fresh  What stands in the source when it is chosen.
  * @property {(kit: Kit, scenario: Scenario) => Node[]} form
- * @property {(scenario: Scenario, samples: Samples, controller: any) => {axes?: any[], packets?: string[]}} order  What a further controller is to do when it is chosen.
- * @property {(kit: Kit, index: number) => Node[]} orderForm  The same in the form of further controller `index`.
+ * @property {(scenario: Scenario, samples: Samples, controller: any) => {axes?: any[], packets?: string[]}} order  What an additional controller is to do when it is chosen.
+ * @property {(kit: Kit, index: number) => Node[]} orderForm  The same in the form of additional controller `index`.
  */
 
 /** @type {{[kind: string]: SourceKind}} */

@@ -153,8 +153,7 @@ export const VIEWS = {
     },
   },
   study: {
-    about:
-      "Which profile, stored how, for this motor? The questions that a design begins with, for the looked-at axis.",
+    about: "Which profile, stored how, for this motor? The questions that a design begins with, for the selected axis.",
     terms: {
       exact_list: {
         name: "Exact list",

@@ -29,7 +29,7 @@ const MAX_BYTES: usize = 4 << 20;
 pub struct Checked {
     /// The controllers on the line, the scenario's own first.
     pub configs: Vec<Config>,
-    /// What the further ones do.
+    /// What the additional ones do.
     pub additional: Vec<Controller>,
     /// The host's bit rate.
     pub baud: u32,
@@ -142,7 +142,7 @@ impl Scenario {
         forced
     }
 
-    /// The further controllers' configurations.
+    /// The additional controllers' configurations.
     fn additional(&self, first: Option<&Config>, validator: &mut Validator) -> Vec<Config> {
         // Who writes the line himself may also ask what several of one address do.
         let scripted = matches!(self.source, Source::Line(_));
@@ -196,7 +196,7 @@ impl Scenario {
         configs
     }
 
-    /// What a further controller is to do.
+    /// What an additional controller is to do.
     fn orders(&self, controller: &Controller, here: &mut Validator) {
         let most = usize::from(controller.bus.channels).clamp(1, MAX_CHANNELS);
         here.length("axes", controller.axes.len(), 0..=most, "axes");

@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! cycles 6401602
-//! records 13201                     of each controller, the further ones below `controller 1`, …
+//! records 13201                     of each controller, the additional ones below `controller 1`, …
 //! ticks_done 200
 //! positions 3200
 //! faults 0x0000 none

@@ -58,12 +58,12 @@ pub fn shared() -> impl Strategy<Value = Scenario> {
     )
 }
 
-/// The address of the `index`th further controller.
+/// The address of the `index`th additional controller.
 fn other_address(first: u8, index: usize) -> u8 {
     ((usize::from(first) + 1 + index) % 255) as u8
 }
 
-/// What a further controller does: as much as the first, on its own channels.
+/// What an additional controller does: as much as the first, on its own channels.
 fn orders(
     scenario: &Scenario,
     index: u8,

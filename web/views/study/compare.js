@@ -1,5 +1,5 @@
 /**
- * The tab Compare of the study: the looked-at move's steps in its time, with ramps of every shape side by side: their curves,
+ * The tab Compare of the study: the selected move's steps in its time, with ramps of every shape side by side: their curves,
  * and what each costs. What a tab is, says study.js.
  */
 import { button, element, fill, say } from "../../dom.js";

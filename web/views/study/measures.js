@@ -1,5 +1,5 @@
 /**
- * The tab Measures of the study: how good the looked-at axis is, in numbers. The ideal curve, the steps that are made of it and
+ * The tab Measures of the study: how good the selected axis is, in numbers. The ideal curve, the steps that are made of it and
  * the pulses as they come are held against each other. What a tab is, says study.js.
  */
 import { element, fill, say } from "../../dom.js";

@@ -4,7 +4,7 @@ import { get } from "../../state/state.js";
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{json: string, controller: number, axis: number, path: string, moves: any[]}} SelectedAxis  Scenario as text, and one of its axes: its path there, its moves. */
 
-/** Where the looked-at axis is in the scenario, whether or not the form has problems; no path where there is none. @param {State} state */
+/** Where the selected axis is in the scenario, whether or not the form has problems; no path where there is none. @param {State} state */
 export function place({ scenario, result, axis: wanted }) {
   const controller = result?.controller ?? 0;
   const list = controller > 0 ? `controllers[${controller - 1}].axes` : "source.motion.axes";

@@ -174,7 +174,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     if (row) put(row.d1);
   }
 
-  /** The sine of the looked-at axis. @param {State} state */
+  /** The sine of the selected axis. @param {State} state */
   function sineOf(state) {
     const of = selectedAxis(state);
     if (!of || typeof of === "string") return { of: null, move: -1 };

@@ -1,5 +1,5 @@
 /**
- * The tab Tables of the study: how the step times of the looked-at axis can be stored, what each form costs, how good it is,
+ * The tab Tables of the study: how the step times of the selected axis can be stored, what each form costs, how good it is,
  * and each as a file for a firmware. What a tab is, says study.js.
  */
 import { element, fill, say } from "../../dom.js";

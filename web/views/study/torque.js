@@ -1,5 +1,5 @@
 /**
- * The tab Torque of the study: the torque that the looked-at axis' motor has at each rate, what the plan needs of it, where that is
+ * The tab Torque of the study: the torque that the selected axis' motor has at each rate, what the plan needs of it, where that is
  * too much, and which ramps leave enough. What a tab is, says study.js.
  */
 import { button, element, fill, say } from "../../dom.js";

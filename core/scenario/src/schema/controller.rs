@@ -1,4 +1,4 @@
-//! A further controller on the line (DESIGN A9).
+//! An additional controller on the line (DESIGN A9).
 
 use crate::{
     Hex,

@@ -46,9 +46,9 @@ settings! {
             .term("Length of the run", "When to stop looking. By itself a run ends when nothing can change any more."),
         /// What the spectrum is taken of.
         pub analysis: Analysis = Analysis::default() => label("Spectrum"),
-        /// Further controllers on the line.
-        pub controllers: Vec<Controller> = Vec::new() => label("Further controllers")
-            .length(0..=MAX_CONTROLLERS - 1, "further controllers"),
+        /// Additional controllers on the line.
+        pub controllers: Vec<Controller> = Vec::new() => label("Additional controllers")
+            .length(0..=MAX_CONTROLLERS - 1, "additional controllers"),
         /// The driver that the pulses are checked against; it changes nothing in a run.
         pub driver_timing: Option<DriverTiming> = None => label("Driver timing").empty("not checked"),
     }
