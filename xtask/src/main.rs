@@ -40,6 +40,8 @@ mod wasm_opt;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::LazyLock;
+use std::{env, io};
 
 use anyhow::Result;
 use clap::{Args, Parser, Subcommand};
@@ -159,6 +161,10 @@ fn root() -> &'static Path {
     here.parent().unwrap_or(here)
 }
 
+/// Where this program lies, for the tests that start it again. It is read before anything else happens: a step that
+/// compiles the workspace may put a newer build in its place, and the system would then name a file that is gone.
+static THIS_PROGRAM: LazyLock<io::Result<PathBuf>> = LazyLock::new(env::current_exe);
+
 async fn perform(task: Task) -> Result<()> {
     let web = root().join("web");
     match task {
@@ -199,6 +205,7 @@ async fn perform(task: Task) -> Result<()> {
 
 #[tokio::main(flavor = "current_thread")]
 async fn main() -> ExitCode {
+    LazyLock::force(&THIS_PROGRAM);
     let task = Cli::parse().task;
     // Dropping the task's future kills the process group of whatever child it was waiting for.
     let done = tokio::select! {

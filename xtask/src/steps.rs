@@ -1,7 +1,6 @@
 //! `cargo xtask test`: every check of the project, one step after the other, with its time. Stops at
 //! the first that fails.
 
-use std::env;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
@@ -130,7 +129,7 @@ async fn page_tests() -> Result<Command> {
 /// Cargo's call of something that drives the page in Chromium. It starts the driver and the server itself; the
 /// environment says where all of it is.
 pub(crate) async fn with_page(line: &str) -> Result<Command> {
-    let this = env::current_exe().context("this program's own path is unknown")?;
+    let this = crate::THIS_PROGRAM.as_ref().context("this program's own path is unknown")?;
     let browser = Browser::ready().await?;
     page::built().await?;
     let mut command = toolchain::cargo();
