@@ -63,7 +63,7 @@ const engine = new Engine({
   },
   crashed: (message) => {
     ran = state.revision;
-    dispatch({ type: "reference", reference: null });
+    dispatch({ type: "baseline", baseline: null });
     dispatch({
       type: "failed",
       message: `The engine stopped and was started again; the form is as it was (${message}).`,
@@ -74,7 +74,7 @@ const engine = new Engine({
     if (state.result) dispatch({ type: "controller", controller: state.result.controller });
   },
   stopped: () => {
-    dispatch({ type: "reference", reference: null });
+    dispatch({ type: "baseline", baseline: null });
     if (held(state) === "unjudged") judge();
   },
 });

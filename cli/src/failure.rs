@@ -112,7 +112,7 @@ impl fmt::Display for Failure {
             }
             Self::WrongSteps(count) => {
                 let s = if *count == 1 { "" } else { "s" };
-                write!(f, "framed: wrong, doubled or missing ticks with {count} seed{s}")
+                write!(f, "framed: wrong, duplicated or missing ticks with {count} seed{s}")
             }
         }
     }

@@ -108,7 +108,7 @@ impl Report {
 pub(crate) fn faults(arguments: &Arguments) -> Result<(), Failure> {
     let base = arguments.file.as_deref().map(scenarios::read).transpose()?;
     let path = arguments.file.clone().unwrap_or_else(|| PathBuf::from("the small scenario"));
-    let campaign = |protocol| {
+    let sweep = |protocol| {
         let mut base = base.clone().unwrap_or_else(|| FaultSweep::small(protocol));
         base.line.protocol = protocol;
         FaultSweep::new(base).map_err(|problems| Failure::Scenario(path.clone(), problems))
@@ -116,7 +116,7 @@ pub(crate) fn faults(arguments: &Arguments) -> Result<(), Failure> {
     let protocols = arguments.protocol.protocols();
     if let Some(seed) = arguments.seed.filter(|_| arguments.scenario || arguments.link) {
         let scenarios: Result<Vec<_>, _> =
-            protocols.iter().map(|&protocol| Ok(campaign(protocol)?.scenario(seed))).collect();
+            protocols.iter().map(|&protocol| Ok(sweep(protocol)?.scenario(seed))).collect();
         return write(&scenarios?, arguments.link);
     }
     let seeds = match arguments.seed {
@@ -127,10 +127,10 @@ pub(crate) fn faults(arguments: &Arguments) -> Result<(), Failure> {
     let seeds = seeds.start..seeds.end.min(1 << 32);
     let mut reports = Vec::new();
     for &protocol in protocols {
-        let (name, campaign) =
-            (if protocol == Protocol::Framed { FRAMED } else { "raw" }, campaign(protocol)?);
+        let (name, sweep) =
+            (if protocol == Protocol::Framed { FRAMED } else { "raw" }, sweep(protocol)?);
         let progress = Progress::new(name, arguments.progress);
-        let report = run(&campaign, &seeds, arguments.threads, progress);
+        let report = run(&sweep, &seeds, arguments.threads, progress);
         reports.push((name, report.map_err(|problems| Failure::Scenario(path.clone(), problems))?));
     }
     print(&reports).map_err(Failure::output)?;
@@ -143,7 +143,7 @@ pub(crate) fn faults(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Runs seeds, a batch at a time on each thread.
 fn run(
-    campaign: &FaultSweep,
+    sweep: &FaultSweep,
     seeds: &Range<u64>,
     threads: Option<NonZero<usize>>,
     mut progress: Progress,
@@ -157,7 +157,7 @@ fn run(
             scope.spawn(move || {
                 let batches = std::iter::repeat_with(|| next.fetch_add(BATCH, Ordering::Relaxed));
                 for from in batches.take_while(|&from| from < seeds.end) {
-                    let batch = batch(campaign, from..seeds.end.min(from + BATCH));
+                    let batch = batch(sweep, from..seeds.end.min(from + BATCH));
                     if sender.send(batch).is_err() {
                         return;
                     }
@@ -174,10 +174,10 @@ fn run(
     })
 }
 
-fn batch(campaign: &FaultSweep, seeds: Range<u64>) -> Result<Report, Vec<Problem>> {
+fn batch(sweep: &FaultSweep, seeds: Range<u64>) -> Result<Report, Vec<Problem>> {
     let mut report = Report::default();
     for seed in seeds {
-        report.add(seed as u32, campaign.run(seed as u32)?);
+        report.add(seed as u32, sweep.run(seed as u32)?);
     }
     Ok(report)
 }
@@ -216,7 +216,7 @@ const ROWS: &[Row] = &[
     ("  not reached: host gave up", false, |tally| tally.unreached),
     ("  missing", true, |tally| tally.missing),
     ("  wrong", true, |tally| tally.wrong),
-    ("  doubled or not ordered", true, |tally| tally.doubled),
+    ("  duplicated or not ordered", true, |tally| tally.duplicated),
     ("wrong steps", true, |tally| tally.wrong_steps),
     ("steps of missing ticks", true, |tally| tally.missing_steps),
     ("distance of end positions", true, |tally| tally.position_error),

@@ -47,7 +47,7 @@ enum Command {
     /// it and the pulses as they come held against each other, peaks, durations, distortion.
     Measures(measures::Arguments),
     /// Says whether the motors have the torque that a scenario's plans ask for, and which ramps they can
-    /// follow; or writes a motor's torque over its rate.
+    /// follow; or writes a motor's torque-speed curve.
     Torque(torque::Arguments),
     /// Steps a millimetre by least squares, from measured lengths and the steps that made them.
     Calibrate(calibrate::Arguments),

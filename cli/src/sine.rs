@@ -130,7 +130,7 @@ fn sweep(range: &Range, points: u32, out: &mut impl Write) -> io::Result<()> {
 }
 
 fn head(range: &Range, out: &mut impl Write) -> io::Result<()> {
-    let filtered = if range.sensor_hz.is_some() { ",thd_acceleration_felt_percent" } else { "" };
+    let filtered = if range.sensor_hz.is_some() { ",thd_acceleration_filtered_percent" } else { "" };
     writeln!(
         out,
         "d1,segments,thd_position_percent,thd_speed_percent,thd_acceleration_percent,euclidean_distance{filtered}"

@@ -40,7 +40,7 @@ pub(crate) struct Arguments {
 enum Written {
     /// Words and numbers.
     Text,
-    /// Available torque over rate.
+    /// The torque-speed curve: available torque at each rate.
     Csv,
 }
 
@@ -178,9 +178,9 @@ fn shortages(demand: &Demand, machine: &Machine, out: &mut impl Write) -> io::Re
     }
     writeln!(
         out,
-        "  warning: too little torque in {} stretch{}; give more time, gentler ramps, less load, or a higher supply voltage",
+        "  warning: too little torque in {} interval{}; give more time, gentler ramps, less load, or a higher supply voltage",
         demand.total,
-        if demand.total == 1 { "" } else { "es" }
+        if demand.total == 1 { "" } else { "s" }
     )?;
     for found in demand.shortages.iter().take(MAX_SHOWN) {
         let (from, to, short) = (found.from_s, found.to_s, -found.worst.margin_mn_m());
@@ -210,7 +210,7 @@ fn ramps(index: usize, planned: &PlannedMove, found: &Ramps, out: &mut impl Writ
         match found.longest_s {
             Some(longest_s) if longest_s > found.room_s => {
                 let room_s = found.room_s;
-                writeln!(out, "a ramp of at most {longest_s:.4} s; the move has room for {room_s:.4} s")?;
+                writeln!(out, "a ramp of at most {longest_s:.4} s; the longest possible is {room_s:.4} s")?;
             }
             Some(longest_s) => writeln!(out, "a ramp of at most {longest_s:.4} s")?,
             None => {

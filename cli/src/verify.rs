@@ -35,7 +35,7 @@ pub(crate) fn verify(scenario: &Scenario, part: Option<&str>) -> Result<(), Fail
         Verification::Same { edges } => {
             let digests: Vec<String> =
                 proof.controllers.iter().map(|fingerprint| format!("{:016x}", fingerprint.digest)).collect();
-            eprintln!("reproduced bit-exactly: {edges} edges, digest {}", digests.join(" "));
+            eprintln!("identical, bit for bit: {edges} edges, digest {}", digests.join(" "));
             return Ok(());
         }
         Verification::Differs { controller, after, until, shorter } => (controller, after, until, shorter),

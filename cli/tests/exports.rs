@@ -62,7 +62,7 @@ fn a_links_digests_tell_whether_the_run_is_the_senders_and_where_it_is_not() {
     let digest = stepscope(&["run", &scenario, "--digest"]).1;
     let (code, said) = complaint(&["open", &link, "--verify"]);
     assert_eq!(code, Some(0));
-    assert!(said.starts_with("reproduced bit-exactly: ") && said.contains(digest.trim()), "{said}");
+    assert!(said.starts_with("identical, bit for bit: ") && said.contains(digest.trim()), "{said}");
 
     // Another scenario with this one's digests.
     let other = preset("song-2021-plateau", "verified-other.json");

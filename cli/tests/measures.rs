@@ -33,9 +33,9 @@ fn the_three_formats_have_the_same_figures() {
         (["deviation", "area between", "ticks"], "/ticks/area_steps_s", 1.0),
         (["deviation", "Euclidean (2048 points)", "pulses"], "/pulses/euclidean_steps", 1.0),
         (["pulses", "largest time error", "ticks"], "/tick_errors/largest_s", 1e6),
-        (["duration", "asked", ""], "/duration/asked_s", 1.0),
+        (["duration", "requested", ""], "/duration/requested_s", 1.0),
         (["peaks", "start-stop rate", ""], "/peaks/start_stop_steps_s", 1.0),
-        (["distortion", "acceleration felt", "ideal"], "/distortion/acceleration_felt/ideal", 100.0),
+        (["distortion", "acceleration filtered", "ideal"], "/distortion/acceleration_filtered/ideal", 100.0),
         (["sine", "Ev in parts of the amplitude", "sine"], "/sine/euclidean", 1.0),
     ];
     for (names, pointer, factor) in checks {
@@ -46,11 +46,11 @@ fn the_three_formats_have_the_same_figures() {
         assert!(found == expected && found != 0.0, "{names:?}: {found} {expected}");
         assert!(text.lines().any(|line| line.trim_start().starts_with(names[1])), "{names:?} in {text}");
     }
-    // What was asked for: the document's segments, felt by a sensor, to the order that was asked for.
+    // What was asked for: the document's segments, filtered by a sensor, to the order that was asked for.
     assert_eq!((&json["sine"]["segments"], &json["distortion"]["order"]), (&6.into(), &99.into()));
     let ratio = |name: &str| json["distortion"][name]["ideal"].as_f64().expect("a ratio");
-    assert!(ratio("position") < ratio("speed") && ratio("speed") < ratio("acceleration_felt"));
-    assert!(ratio("acceleration_felt") < ratio("acceleration"));
+    assert!(ratio("position") < ratio("speed") && ratio("speed") < ratio("acceleration_filtered"));
+    assert!(ratio("acceleration_filtered") < ratio("acceleration"));
 }
 
 #[test]

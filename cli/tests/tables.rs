@@ -102,14 +102,14 @@ fn the_sines_tables_have_their_columns_and_the_documents_rows() {
         assert!((found - percent).abs() < 3e-4, "{row:?}");
     }
     // An accelerometer of 50 Hz at 2 Hz: what it feels is the last column, and hardly grows with the order.
-    let felt = |order: &str| -> f64 {
+    let filtered = |order: &str| -> f64 {
         let sensor = ["--sensor-hz", "50", "--period-s", "0.5", "--points", "2", "--order", order];
         let (code, out, _) = stepscope(&[&["sine", "sweep"], sensor.as_slice()].concat(), "");
         assert_eq!((code, out.lines().next().map(|head| head.split(',').count())), (Some(0), Some(7)));
-        let last = out.trim_end().rsplit(',').next().and_then(|felt| felt.parse().ok());
+        let last = out.trim_end().rsplit(',').next().and_then(|filtered| filtered.parse().ok());
         last.expect("a number")
     };
-    let (low, high) = (felt("999"), felt("9999"));
+    let (low, high) = (filtered("999"), filtered("9999"));
     assert!(low > 50.0 && high > low && high < 1.02 * low, "{low} {high}");
     assert_eq!(stepscope(&["sine", "sweep", "--sensor-hz", "50"], "").0, Some(2));
     let (code, out, _) = stepscope(&["sine", "best", "--from", "0.005", "--to", "0.008"], "");

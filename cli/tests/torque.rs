@@ -23,7 +23,7 @@ axis 0
   least margin     281.7 mN*m: at 0.100000 s, 8000 steps/s, 1.1 needed of 282.8 mN*m
   enough torque throughout
   move 0           3200 steps in 0.4 s
-    under 19200 steps/s  a ramp of at most 0.2333 s; the move has room for 0.2000 s
+    under 19200 steps/s  a ramp of at most 0.2333 s; the longest possible is 0.2000 s
     enough torque with ramps of 0.0004 to 0.2000 s
 ";
     assert_eq!(out, expected);
@@ -39,7 +39,7 @@ fn a_shortage_is_a_warning_with_numbers_and_a_remedy() {
     for line in [
         "  least margin     -63.9 mN*m: at 0.100000 s, 8000 steps/s, 346.7 needed of 282.8 mN*m",
         "  jump of speed    250 steps/s at once; the motor's start-stop rate has to be higher",
-        "  warning: too little torque in 1 stretch; give more time, gentler ramps, less load, or a higher supply voltage",
+        "  warning: too little torque in 1 interval; give more time, gentler ramps, less load, or a higher supply voltage",
         "    0.053133 to 0.146867 s: 63.9 mN*m short at 0.100000 s, 8000 steps/s, 346.7 needed of 282.8 mN*m",
         "    no ramp leaves enough torque; give more time or less load",
     ] {
@@ -87,7 +87,7 @@ fn what_limits_a_moves_ramps_is_named() {
     );
     assert!(out.contains("  greatest rate    271 steps/s with a load of 0.0 mN*m\n"), "{out}");
     assert!(
-        out.contains("  warning: too little torque in 1 stretch") && !out.contains("throughout"),
+        out.contains("  warning: too little torque in 1 interval") && !out.contains("throughout"),
         "{out}"
     );
 }

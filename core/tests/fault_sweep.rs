@@ -8,21 +8,21 @@ use stepscope_core::{
     sim::fault_sweep::{FaultSweep, Tally},
 };
 
-fn campaign(protocol: Protocol) -> FaultSweep {
+fn sweep(protocol: Protocol) -> FaultSweep {
     FaultSweep::new(FaultSweep::small(protocol)).expect("the small scenario has no problems")
 }
 
-fn run(campaign: &FaultSweep, seeds: u32) -> Tally {
+fn run(sweep: &FaultSweep, seeds: u32) -> Tally {
     (0..seeds).fold(Tally::default(), |mut sum, seed| {
-        sum += campaign.run(seed).expect("seeds make no problems");
+        sum += sweep.run(seed).expect("seeds make no problems");
         sum
     })
 }
 
 #[test]
 fn framed_ticks_are_executed_once_and_as_ordered_whatever_the_line_does() {
-    let campaign = campaign(Protocol::Framed);
-    let tally = run(&campaign, 300);
+    let sweep = sweep(Protocol::Framed);
+    let tally = run(&sweep, 300);
     assert_eq!((tally.seeds, tally.wrong_seeds, tally.is_wrong()), (300, 0, false), "{tally:?}");
     // A host that may repeat gets there, but where no byte does; and it gives up for no other reason.
     assert_eq!((tally.given_up_in_reach, tally.stuck, tally.cut), (0, 0, 0), "{tally:?}");
@@ -45,7 +45,7 @@ fn framed_ticks_are_executed_once_and_as_ordered_whatever_the_line_does() {
 
 #[test]
 fn raw_packets_are_executed_wrong_or_not_at_all() {
-    let tally = run(&campaign(Protocol::Raw), 100);
+    let tally = run(&sweep(Protocol::Raw), 100);
     assert_eq!((tally.repeated, tally.replies, tally.unreached), (0, 0, 0));
     for count in [tally.wrong_seeds, tally.wrong, tally.wrong_steps, tally.missing, tally.position_error] {
         assert!(count > 0, "{tally:?}");
@@ -55,14 +55,14 @@ fn raw_packets_are_executed_wrong_or_not_at_all() {
 #[test]
 fn a_line_without_faults_does_what_is_ordered_with_both_protocols() {
     let quiet = |protocol| {
-        let campaign = campaign(protocol);
+        let sweep = sweep(protocol);
         let is_quiet = |scenario: &Scenario| {
             let noise = Noise { seed: scenario.line.noise.seed, ..Noise::default() };
             scenario.line.noise == noise && scenario.line.receiver_baud.is_none()
         };
         // A mixture may draw no noise at all.
-        let seed = (0..10_000).find(|&seed| is_quiet(&campaign.scenario(seed))).expect("there is one");
-        campaign.run(seed).expect("no problems")
+        let seed = (0..10_000).find(|&seed| is_quiet(&sweep.scenario(seed))).expect("there is one");
+        sweep.run(seed).expect("no problems")
     };
     for protocol in [Protocol::Raw, Protocol::Framed] {
         let tally = quiet(protocol);
@@ -73,9 +73,9 @@ fn a_line_without_faults_does_what_is_ordered_with_both_protocols() {
 /// A seed stands for a scenario that anyone can run.
 #[test]
 fn a_seeds_scenario_stands_for_itself() {
-    let campaign = campaign(Protocol::Framed);
+    let sweep = sweep(Protocol::Framed);
     for seed in 0..50 {
-        let scenario = campaign.scenario(seed);
+        let scenario = sweep.scenario(seed);
         assert_eq!(scenario.line.noise.seed, seed);
         let again = FaultSweep::new(scenario.clone()).expect("no problems").scenario(seed);
         assert_eq!((again.line, again.source), (scenario.line, scenario.source));

@@ -26,10 +26,10 @@ fn made_distortion(json: &str) -> (f64, i32) {
         .map(|(i, step)| (step.cycle - zero, Step::direction(&steps, i) as i8))
         .collect();
     let plan = &experiment.plans()[0];
-    let stretch = AnalysisWindow::of(plan).unwrap();
+    let window = AnalysisWindow::of(plan).unwrap();
     let config = experiment.config();
-    let own = stretch.own_pulses(plan, TickClock::new(config.tick().0, config.clock_hz()), &pulses);
-    let spectrum = Spectrum::of_pulses(&own, stretch, 40);
+    let own = window.own_pulses(plan, TickClock::new(config.tick().0, config.clock_hz()), &pulses);
+    let spectrum = Spectrum::of_pulses(&own, window, 40);
     (spectrum.position.distortion.unwrap() * 100.0, own.iter().map(|(_, way)| i32::from(*way)).sum())
 }
 
@@ -73,8 +73,8 @@ fn with_segments_every_step_of_the_sine_counts_whatever_the_ticks_are() {
                 let (config, log) = (experiment.config(), &recording.packets);
                 let run = Pulses { channel: 0, steps: &steps, log, segments, config };
                 let plan = &experiment.plans()[0];
-                let stretch = AnalysisWindow::of(plan).unwrap();
-                let own = stretch.pulses_of(plan, &run);
+                let window = AnalysisWindow::of(plan).unwrap();
+                let own = window.pulses_of(plan, &run);
                 let hz = f64::from(config.clock_hz());
                 let due: Vec<(f64, i8)> = plan
                     .due_steps(config.clock_hz())
@@ -83,7 +83,7 @@ fn with_segments_every_step_of_the_sine_counts_whatever_the_ticks_are() {
                     .map(|due| (due.cycle as f64 / hz, if due.right { 1 } else { -1 }))
                     .collect();
                 assert_eq!(own, due, "{json}");
-                let distortion = Spectrum::of_pulses(&own, stretch, 40).position.distortion.unwrap();
+                let distortion = Spectrum::of_pulses(&own, window, 40).position.distortion.unwrap();
                 assert!(distortion < 0.03, "{json}: {distortion}");
             }
         }

@@ -93,7 +93,7 @@ fn text_has_four_and_a_half_to_one() {
 #[test]
 fn what_is_drawn_and_where_the_focus_is_has_three_to_one() {
     let curves =
-        ["ideal", "made", "step", "dir", "enable", "wire", "packet", "reply", "tick", "axis", "kept"];
+        ["ideal", "actual", "step", "dir", "enable", "wire", "packet", "reply", "tick", "axis", "baseline"];
     at_least(3.0, &curves, &["pane"]);
     at_least(3.0, &["cursor-a", "cursor-b", "accent"], &["pane", "ground"]);
     at_least(3.0, &["focus"], &["pane", "ground", "raised"]);

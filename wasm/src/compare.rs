@@ -12,7 +12,7 @@ use wasm_bindgen::prelude::*;
 
 /// A row without its curves.
 #[derive(Serialize)]
-struct Told {
+struct ShapeCost {
     /// Why it cannot be.
     why: Option<String>,
     /// Peaks in steps and s.
@@ -64,7 +64,7 @@ pub fn compare_ramps(
         let plan = if why.is_none() { plan_axis(&axis, "").ok() } else { None };
         let curve = plan.as_ref().and_then(|plan| plan.moves().first()).map(|planned| &planned.profile);
         let Cost { peaks, time_error_s, last_step_s, .. } = cost;
-        let told = Told {
+        let cost = ShapeCost {
             why,
             speed: peaks.speed,
             jump: peaks.jump,
@@ -74,7 +74,7 @@ pub fn compare_ramps(
             time_error_s,
             last_step_s,
         };
-        let shown: Object = object(&told)?.into();
+        let shown: Object = object(&cost)?.into();
         let wanted = JSON::parse(&to_json(&wanted)).map_err(|_| JsError::new("a move is no JSON"))?;
         field(&shown, "move", &wanted);
         let sampled = |of: &dyn Fn(f64) -> f64| -> Vec<f64> {

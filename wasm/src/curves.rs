@@ -31,7 +31,7 @@ struct Readings {
 #[derive(Serialize)]
 struct BothReadings {
     ideal: Option<Readings>,
-    made: Readings,
+    actual: Readings,
 }
 
 #[derive(Serialize)]
@@ -76,8 +76,8 @@ impl Simulation {
             }
         }
         self.count_steps(axis);
-        let made = curves::actual(&self.pulses_of(axis), window);
-        for (name, band) in [("made_position", made.position), ("made_speed", made.speed)] {
+        let actual = curves::actual(&self.pulses_of(axis), window);
+        for (name, band) in [("actual_position", actual.position), ("actual_speed", actual.speed)] {
             numbers(&result, &format!("{name}_min"), &band.min);
             numbers(&result, &format!("{name}_max"), &band.max);
         }
@@ -105,8 +105,8 @@ impl Simulation {
         self.count_steps(axis);
         let pulses = self.pulses_of(axis);
         let read = |t: f64| Vec::from([f64::from(pulses.position_at(t)), pulses.speed_at(t)]);
-        let made = Readings::new(at.map(read), cursor_stats::actual(&pulses, from, to));
-        object(&BothReadings { ideal, made })
+        let actual = Readings::new(at.map(read), cursor_stats::actual(&pulses, from, to));
+        object(&BothReadings { ideal, actual })
     }
 
     /// The difference of this run's position and another's in columns, `{min, max}`, over a stretch of

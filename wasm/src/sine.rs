@@ -31,13 +31,13 @@ fn columns(rows: &[Row]) -> Object {
     put("position", &|row| row.distortion.position);
     put("speed", &|row| row.distortion.speed);
     put("acceleration", &|row| row.distortion.acceleration);
-    put("felt", &|row| row.distortion.acceleration_filtered.unwrap_or(f64::NAN));
+    put("filtered", &|row| row.distortion.acceleration_filtered.unwrap_or(f64::NAN));
     put("euclidean", &|row| row.euclidean);
     made
 }
 
 /// Rows `first` to before `end` of the sweep over `count` values of d1, as columns `d1`, `segments`, `position`, `speed`,
-/// `acceleration` (THD as ratios), `felt` (that of the acceleration through a sensor whose bandwidth is `sensor` times the
+/// `acceleration` (THD as ratios), `filtered` (that of the acceleration through a sensor whose bandwidth is `sensor` times the
 /// fundamental, NaN without one) and `euclidean`.
 #[wasm_bindgen]
 #[must_use]

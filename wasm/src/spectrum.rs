@@ -44,10 +44,10 @@ fn columns(spectrum: &Spectrum) -> Result<JsValue, JsError> {
         periodic: bool,
     }
     let facts = object(&Facts {
-        fundamental_hz: spectrum.stretch.fundamental_hz(),
-        periods: spectrum.stretch.periods,
+        fundamental_hz: spectrum.window.fundamental_hz(),
+        periods: spectrum.window.periods,
         order: spectrum.order,
-        periodic: spectrum.stretch.periodic,
+        periodic: spectrum.window.periodic,
     })?;
     let target: &Object = facts.unchecked_ref();
     for (name, harmonics) in [

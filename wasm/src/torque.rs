@@ -1,4 +1,4 @@
-//! Torque against rate of an axis' motor, what its plan needs, and which ramps it can follow.
+//! Torque-speed curve of an axis' motor, what its plan needs, and which ramps it can follow.
 
 use crate::{
     convert::{field, numbers, object},
@@ -10,7 +10,7 @@ use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
 impl Judged {
-    /// What an axis' motor has and what its plan asks: `told` with the numbers ([`TorqueReport`]), `rate`, `available`
+    /// What an axis' motor has and what its plan asks: `report` with the numbers ([`TorqueReport`]), `rate`, `available`
     /// and `needed` (the most at each rate, NaN at rates that the plan has not), torques in mN*m; undefined where the
     /// axis has no motor.
     ///
@@ -20,7 +20,7 @@ impl Judged {
         let selected = self.axis(controller, axis)?;
         let Some(report) = TorqueReport::of(selected.axis, selected.plan) else { return Ok(None) };
         let result = Object::new();
-        field(&result, "told", &object(&report)?);
+        field(&result, "report", &object(&report)?);
         numbers(&result, "rate", &report.curve.rate);
         numbers(&result, "available", &report.curve.available);
         numbers(&result, "needed", &report.curve.needed);

@@ -113,8 +113,8 @@ impl Simulation {
         let outcome = diff.finish(&self.recordings[index].recording.trace)?;
         object(&Held {
             same: outcome.same,
-            start_cycle: outcome.stretch.0.0,
-            end_cycle: outcome.stretch.1.0,
+            start_cycle: outcome.range.0.0,
+            end_cycle: outcome.range.1.0,
             goes_on: outcome.goes_on,
             difference: outcome.difference.map(|difference| Differs {
                 line: difference.line,

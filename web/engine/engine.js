@@ -139,10 +139,10 @@ export class Engine {
    * Neither the run nor the views' questions wait for it.
    * @param {string} method @param {any[][]} pieces  The arguments of each call.
    * @param {AbortSignal} signal  Ends it at once, in `Dropped`.
-   * @param {(at: number, answer: any) => void} [told]  Hears each answer as it comes.
+   * @param {(at: number, answer: any) => void} [onAnswer]  Hears each answer as it comes.
    * @returns {Promise<any[]>}  All answers, in the order of the pieces.
    */
-  async distribute(method, pieces, signal, told = () => {}) {
+  async distribute(method, pieces, signal, onAnswer = () => {}) {
     /** @type {any[]} */
     const answers = Array(pieces.length);
     let next = 0;
@@ -152,7 +152,7 @@ export class Engine {
         while (next < pieces.length) {
           const at = next++;
           answers[at] = await call(worker, method, pieces[at], signal);
-          told(at, answers[at]);
+          onAnswer(at, answers[at]);
         }
         this.#rest(worker);
       } catch (error) {

@@ -1,6 +1,6 @@
 /** The axes of a controller in the form: their mechanics and their moves. The first controller's and any further one's alike. */
 import { button, element } from "../dom.js";
-import { get, MOST_CHANNELS, set } from "../state/state.js";
+import { get, MAX_CHANNELS, set } from "../state/state.js";
 import { pointsFirst } from "./fields.js";
 import { motorItems } from "./motor.js";
 import { fieldsOfKind, labels, mostOf } from "./schema.js";
@@ -24,7 +24,7 @@ export function axisItems(kit, place) {
       "Add axis",
       `Add axis${place.whose}`,
       () => addAxis(kit, place, axes, structuredClone(axes[axes.length - 1] ?? fresh())),
-      axes.length >= MOST_CHANNELS,
+      axes.length >= MAX_CHANNELS,
     ),
   ];
 }
@@ -57,7 +57,7 @@ function axisItem(kit, place, axes, index) {
       "Copy",
       `Copy ${name}`,
       () => addAxis(kit, place, axes, structuredClone(axis)),
-      axes.length >= MOST_CHANNELS,
+      axes.length >= MAX_CHANNELS,
     ),
     button("✕", `Remove ${name}`, () => removeAxis(kit, place, axes, index), axes.length <= place.least),
   );
@@ -109,8 +109,8 @@ function removeAxis({ put, now }, place, axes, index) {
   const left = axes.toSpliced(index, 1);
   const without = set(now().scenario, place.axes, left);
   if (!place.axes.startsWith("source")) return put("", without);
-  const looked = without.analysis.axis;
-  put("", set(without, "analysis.axis", Math.min(looked > index ? looked - 1 : looked, left.length - 1)));
+  const selected = without.analysis.axis;
+  put("", set(without, "analysis.axis", Math.min(selected > index ? selected - 1 : selected, left.length - 1)));
 }
 
 /** @param {any[]} list @param {number} index */

@@ -103,7 +103,7 @@ export function control(path, field, { dispatch, now }) {
     if ("message" in result) draft(result.message);
     else edit(result.value);
   });
-  input.addEventListener("change", () => dispatch({ type: "seal" }));
+  input.addEventListener("change", () => dispatch({ type: "committed" }));
   unitSelect?.addEventListener("change", () => {
     typed = null;
     dispatch({ type: "edit", path, value: convert(value, unitSelect.value, path, now()) });
@@ -149,7 +149,7 @@ export function control(path, field, { dispatch, now }) {
 }
 
 /** Most bytes of a file whose text goes into a field. */
-const MOST_FILE = 1 << 20;
+const MAX_FILE = 1 << 20;
 
 /** A button that puts a file's text into a field. @param {string} label @param {(text: string) => void} put @param {(message: string) => void} refuse */
 function fileChooser(label, put, refuse) {
@@ -158,7 +158,7 @@ function fileChooser(label, put, refuse) {
     const [chosen] = file.files ?? [];
     file.value = "";
     if (!chosen) return;
-    if (chosen.size > MOST_FILE) return refuse(`${chosen.name} has ${chosen.size} bytes; give at most ${MOST_FILE}.`);
+    if (chosen.size > MAX_FILE) return refuse(`${chosen.name} has ${chosen.size} bytes; give at most ${MAX_FILE}.`);
     try {
       put(await chosen.text());
     } catch {

@@ -1,6 +1,6 @@
 /** Additional controllers on the line, in the form: each with its address, its bus and what it is to do. */
 import { button, element } from "../dom.js";
-import { MOST_FURTHER } from "../state/state.js";
+import { MAX_FURTHER } from "../state/state.js";
 import { controllerFields } from "./fields.js";
 import { hex, SOURCES } from "./sources.js";
 
@@ -16,7 +16,7 @@ export function controllerItems(kit, scenario) {
   return [
     errorOf("controllers"),
     ...all.map((_, index) => controllerPart(kit, scenario, index, add)),
-    button("Add controller", "Add controller", () => add(all[all.length - 1] ?? null), all.length >= MOST_FURTHER),
+    button("Add controller", "Add controller", () => add(all[all.length - 1] ?? null), all.length >= MAX_FURTHER),
   ];
 }
 
@@ -30,7 +30,7 @@ function controllerPart({ put, block, part, errorOf, ...kit }, scenario, index, 
   const head = element(
     "div",
     { class: "item-head end" },
-    button("Copy", `Copy ${name.toLowerCase()}`, () => add(all[index]), all.length >= MOST_FURTHER),
+    button("Copy", `Copy ${name.toLowerCase()}`, () => add(all[index]), all.length >= MAX_FURTHER),
     button("✕", `Remove ${name.toLowerCase()}`, () => put("controllers", all.toSpliced(index, 1))),
   );
   return part(name, true, [

@@ -79,8 +79,8 @@ export function createForm({ root, samples, drivers, dispatch }) {
     const active = /** @type {HTMLElement | null} */ (document.activeElement);
     const focus = active && root.contains(active) ? focusOf(active) : null;
     const alone = runsAlone(scenario);
-    const asked = sections().filter(({ onLine }) => !(onLine && alone) || scenario.controllers.length > 0);
-    const parts = asked.map(({ title, open, blocks, group, list }) =>
+    const shown = sections().filter(({ onLine }) => !(onLine && alone) || scenario.controllers.length > 0);
+    const parts = shown.map(({ title, open, blocks, group, list }) =>
       kit.part(title, open, [
         ...blocks.flatMap(({ path, fields }) =>
           kit.block(path, path === "bus" && alone ? fields.filter(({ key }) => OF_SEGMENTS.includes(key)) : fields),

@@ -50,7 +50,7 @@ export const VIEWS = {
     terms: {
       ideal: { name: "Ideal", text: "The curve that was asked for." },
       made: {
-        name: "Made by the pulses",
+        name: "From pulses",
         text: "What the STEP pulses really make of it: whole steps, at whole cycles.",
       },
       step: { name: "Step", text: "The least move of a motor: one STEP pulse, one microstep.", from: "sonobe" },

@@ -164,8 +164,8 @@ function offers(state, engine, span) {
         },
       ]
     : [];
-  const looked = selected(state);
-  if (!result || !looked) return [{ title: "Experiment", offers: settings }];
+  const controller = selected(state);
+  if (!result || !controller) return [{ title: "Experiment", offers: settings }];
   const { controllers, end_cycle } = result.summary;
   const part = controllers.length > 1 ? `-controller-${result.controller + 1}` : "";
   const cut = span ? `-${span.start}-${span.end}` : "";
@@ -191,7 +191,7 @@ function offers(state, engine, span) {
       title: "Signals",
       offers: [
         file("vcd", ".vcd", "text/plain", "VCD, for GTKWave, Surfer, PulseView"),
-        file("edges", "-edges.csv", "text/csv", `CSV of edges, ${count(looked.records)} rows in the whole run`),
+        file("edges", "-edges.csv", "text/csv", `CSV of edges, ${count(controller.records)} rows in the whole run`),
         file("trace", ".trace", "text/plain", "Trace, cycle and levels in hex"),
       ],
     },
@@ -202,7 +202,7 @@ function offers(state, engine, span) {
           ? file("segments", "-segments.csv", "text/csv", "Segment lists")
           : file("ticks", "-ticks.csv", "text/csv", "Ticks, steps of each channel"),
         table("-harmonics.csv", "Harmonics", "spectrum", harmonicsTable),
-        ...(looked.violations === null
+        ...(controller.violations === null
           ? []
           : [
               table("-margins.csv", "Driver timing: margins", "timing", marginsTable),

@@ -7,16 +7,16 @@ import { selected } from "../state/state.js";
 
 /** @param {State} state */
 export function health(state) {
-  const looked = selected(state);
-  if (!state.result || !looked) return "";
-  const { faults, violations } = looked;
+  const controller = selected(state);
+  if (!state.result || !controller) return "";
+  const { faults, violations } = controller;
   return [
     state.result.summary.host ? outcome(state.result.summary) : "",
     faults.names.length ? `faults: ${faults.names.join(", ")}` : "",
     violations === null
       ? ""
       : violations === 0
-        ? "driver timing kept"
+        ? "driver timing met"
         : `${count(violations)} timing ${violations === 1 ? "violation" : "violations"}`,
   ]
     .filter(Boolean)
@@ -25,10 +25,10 @@ export function health(state) {
 
 /** Whether something went wrong that nothing made good. A framed line mends what noise does to it. @param {State} state */
 export function ill(state) {
-  const looked = selected(state);
+  const controller = selected(state);
   const host = state.result?.summary.host;
-  const failed = host ? host.jobs.some(({ progress }) => progress !== "done") : Boolean(looked?.faults.names.length);
-  return failed || Boolean(looked?.violations);
+  const failed = host ? host.jobs.some(({ progress }) => progress !== "done") : Boolean(controller?.faults.names.length);
+  return failed || Boolean(controller?.violations);
 }
 
 /** What became of the orders on a framed line. @param {Summary} summary */

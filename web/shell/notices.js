@@ -79,7 +79,7 @@ function words(verdict, { result }) {
     const which = controllers.length > 1 ? `all ${controllers.length} controllers, ` : "";
     const made = version ? ` It was sent by version ${version}; this is ${verdict.own_version}.` : "";
     return {
-      text: `Reproduced bit-exactly: ${which}${count(verdict.edges)} edges, digest ${controllers[result.controller].digest}.${made}`,
+      text: `Identical, bit for bit: ${which}${count(verdict.edges)} edges, digest ${controllers[result.controller].digest}.${made}`,
       place: null,
     };
   }

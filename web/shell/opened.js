@@ -13,15 +13,15 @@ import { around } from "./notices.js";
 /** @typedef {{engine: import("../engine/engine.js").Engine, openLink: (fragment: string) => Promise<void>} & import("../state/types.js").Page} Given */
 
 /** Most bytes of a scenario's file. */
-const MOST_SCENARIO = 32 << 20;
+const MAX_SCENARIO = 32 << 20;
 /** Most bytes of a table of packets; the core has the same. */
-const MOST_TABLE = 32 << 20;
+const MAX_TABLE = 32 << 20;
 /** What a file is, its first bytes tell. */
 const HEAD = 16 << 10;
 /** Bytes that are read and compared at a time. */
 const PIECE = 4 << 20;
 /** Problems that one message names. */
-const MOST_TOLD = 8;
+const MAX_TOLD = 8;
 const LINK = /(?:^|[#&\s])c(?:=|%3D)\d+(?:\.|%2E)/i;
 
 const WHAT =
@@ -72,7 +72,7 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
   /** @param {File} file */
   async function scenario(file) {
     await take(
-      await whole(file, MOST_SCENARIO),
+      await whole(file, MAX_SCENARIO),
       file,
       (scenario) => `Opened ${scenario.title ? `“${scenario.title}” from ` : ""}${file.name}.`,
     );
@@ -80,7 +80,7 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
 
   /** @param {File} file */
   async function packets(file) {
-    const text = await engine.ask("replay", await whole(file, MOST_TABLE), JSON.stringify(now().scenario));
+    const text = await engine.ask("replay", await whole(file, MAX_TABLE), JSON.stringify(now().scenario));
     await take(
       text,
       file,
@@ -93,15 +93,15 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
   async function take(json, file, words) {
     const { problems, scenario } = await engine.ask("check", json);
     if (problems.length > 0) {
-      const told = problems
-        .slice(0, MOST_TOLD)
+      const listed = problems
+        .slice(0, MAX_TOLD)
         .map((/** @type {import("../state/types.js").Problem} */ { path, message }) =>
           path ? `${path}: ${message}` : message,
         );
-      const more = problems.length > MOST_TOLD ? `; and ${problems.length - MOST_TOLD} more` : "";
+      const more = problems.length > MAX_TOLD ? `; and ${problems.length - MAX_TOLD} more` : "";
       return tell(
         "error",
-        `${file.name} has ${problems.length === 1 ? "a problem" : `${problems.length} problems`}: ${told.join("; ")}${more}. Your own work is as it was.`,
+        `${file.name} has ${problems.length === 1 ? "a problem" : `${problems.length} problems`}: ${listed.join("; ")}${more}. Your own work is as it was.`,
       );
     }
     const read = readJson(scenario);
@@ -135,7 +135,7 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
       const range = all
         ? "all of this run"
         : `this run from ${seconds(start_cycle)} to ${seconds(end_cycle)}; what lies outside is not in the file`;
-      return tell("info", `${file.name} is equal bit-exactly: ${count(same)} rows, ${range}.`);
+      return tell("info", `${file.name} is identical, bit for bit: ${count(same)} rows, ${range}.`);
     }
     const { cycle, line, signals } = difference;
     const which = signals.map(

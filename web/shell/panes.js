@@ -32,9 +32,9 @@ const EDGES = [
   },
 ];
 /** Least size of a pane in CSS pixels. */
-const LEAST_PX = { form: 270, motion: 120, pulses: 110, packets: 200 };
+const MIN_PX = { form: 270, motion: 120, pulses: 110, packets: 200 };
 /** Least room that is left for the views beside the form. */
-const LEAST_VIEWS_PX = 480;
+const MIN_VIEWS_PX = 480;
 /** A key moves an edge by so many CSS pixels, with Shift by five times as many. */
 const STEP_PX = 16;
 
@@ -115,8 +115,8 @@ export function createPanes({ dispatch, now }) {
   function limits(edge) {
     const [before, after] = boxes(edge);
     const both = edge.upright ? before.width + after.width : before.height + after.height;
-    const rest = edge.pane === "form" ? LEAST_VIEWS_PX : LEAST_PX[edge.upright ? "packets" : "pulses"];
-    return { least: LEAST_PX[edge.pane], most: Math.max(LEAST_PX[edge.pane], both - rest), both };
+    const rest = edge.pane === "form" ? MIN_VIEWS_PX : MIN_PX[edge.upright ? "packets" : "pulses"];
+    return { least: MIN_PX[edge.pane], most: Math.max(MIN_PX[edge.pane], both - rest), both };
   }
 
   /** @param {Partial<Panes>} some @returns {import("../state/state.js").Message} */
@@ -306,7 +306,7 @@ function read() {
     const parts = (/** @type {any} */ list, /** @type {number} */ length) =>
       Array.isArray(list) && list.length === length && list.every((part) => part > 0 && part < 1) ? list : null;
     return {
-      form: form === 0 || (form >= LEAST_PX.form && form <= 4000) ? form : null,
+      form: form === 0 || (form >= MIN_PX.form && form <= 4000) ? form : null,
       rows: /** @type {any} */ (parts(rows, 3)),
       columns: /** @type {any} */ (parts(columns, 2)),
       folded: VIEWS.filter((view) => Array.isArray(folded) && folded.includes(view)),

@@ -9,7 +9,7 @@ export function csv(rows) {
   return rows.map((row) => `${row.map((value) => field(String(value ?? ""))).join(",")}\n`).join("");
 }
 
-/** Amplitudes of the harmonics (peak), and the total distortion to the highest one in the row `thd`, and what a sensor feels of it in the row `thd_felt`. @param {Spectra} spectra */
+/** Amplitudes of the harmonics (peak), and the total distortion to the highest one in the row `thd`, and what a sensor feels of it in the row `thd_filtered`. @param {Spectra} spectra */
 export function harmonicsTable({ ideal, pulses }) {
   const some = ideal ?? pulses;
   const names = /** @type {const} */ (["position", "speed", "acceleration"]);
@@ -26,8 +26,8 @@ export function harmonicsTable({ ideal, pulses }) {
     ...kinds.flatMap((kind) => names.map((name) => kind?.[name][i])),
   ]);
   const total = kinds.flatMap((kind) => [kind?.thd_position, kind?.thd_speed, kind?.thd_acceleration]);
-  const felt = kinds.flatMap((kind) => [null, null, kind?.thd_acceleration_felt]);
-  return csv([head, ...rows, ["thd", "", ...total], ...(felt.some((part) => part) ? [["thd_felt", "", ...felt]] : [])]);
+  const filtered = kinds.flatMap((kind) => [null, null, kind?.thd_acceleration_filtered]);
+  return csv([head, ...rows, ["thd", "", ...total], ...(filtered.some((part) => part) ? [["thd_filtered", "", ...filtered]] : [])]);
 }
 
 /** @param {Timing | null} timing */

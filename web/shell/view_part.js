@@ -6,7 +6,7 @@
  * | part | what |
  * | --- | --- |
  * | `120-4500` | shown time, first and last cycle |
- * | `k1` | controller that is looked at, 0 the first |
+ * | `k1` | selected controller, 0 the first |
  * | `x2` | axis of the motion view |
  * | `a300`, `b900` | cursors, in cycles |
  * | `tpackets` | tab on a narrow screen |

@@ -11,7 +11,7 @@
 /**
  * @typedef {{type: "edit", path: string, value: any, joins?: boolean}
  *   | {type: "draft", path: string, text: string, message: string}
- *   | {type: "seal"}
+ *   | {type: "committed"}
  *   | {type: "replace", scenario: Scenario, origin: Origin}
  *   | {type: "undo"} | {type: "redo"}
  *   | {type: "judged", revision: number, judgement: import("./types.js").Judgement}
@@ -21,7 +21,7 @@
  *   | {type: "failed", message: string}
  *   | {type: "window", window: Span | null, joins?: string} | {type: "back"}
  *   | {type: "box", on: boolean} | {type: "pick", picked: Span | null}
- *   | {type: "reference", reference: State["reference"]} | {type: "difference", on: boolean}
+ *   | {type: "baseline", baseline: State["baseline"]} | {type: "difference", on: boolean}
  *   | {type: "harmonic", harmonic: number | null}
  *   | {type: "open", view: import("./types.js").ViewPart}
  *   | {type: "seen", text: string} | {type: "compared", text: string, verdict: import("./types.js").Verdict}
@@ -42,13 +42,13 @@
 /** Steps of history that are kept. */
 export const DEPTH = 50;
 /** Controllers that a line can have beside the first. */
-export const MOST_FURTHER = 31;
+export const MAX_FURTHER = 31;
 /** Channels that a bus can have. */
-export const MOST_CHANNELS = 16;
+export const MAX_CHANNELS = 16;
 /** Revision of the result that an earlier visit left, shown while the form has problems. */
 export const EARLIER = -1;
 /** Least cycles that the time axis shows. */
-export const LEAST_SPAN = 16;
+export const MIN_SPAN = 16;
 /** Markers 0 to 9, none of them set. @type {(number | null)[]} */
 const NO_MARKERS = Array(10).fill(null);
 
@@ -75,7 +75,7 @@ export function initial(scenario) {
     gesture: null,
     box: false,
     picked: null,
-    reference: null,
+    baseline: null,
     difference: false,
     harmonic: null,
     controller: 0,
@@ -110,7 +110,7 @@ export function update(state, message) {
       const { path, text, message: said } = message;
       return { ...state, drafts: { ...state.drafts, [path]: { text, message: said } } };
     }
-    case "seal":
+    case "committed":
       return state.edited === null ? state : { ...state, edited: null };
     case "replace":
       return { ...changed(remember(state), message.scenario, message.origin), ...fresh };
@@ -146,8 +146,8 @@ export function update(state, message) {
       return { ...state, box: message.on, picked: null };
     case "pick":
       return { ...state, picked: message.picked };
-    case "reference":
-      return { ...state, reference: message.reference, difference: message.reference !== null && state.difference };
+    case "baseline":
+      return { ...state, baseline: message.baseline, difference: message.baseline !== null && state.difference };
     case "harmonic":
       return state.harmonic === message.harmonic ? state : { ...state, harmonic: message.harmonic };
     case "difference":
@@ -179,7 +179,7 @@ export function update(state, message) {
         ...state,
         folds: {
           ...state.folds,
-          ...Object.fromEntries(Array.from({ length: MOST_CHANNELS }, (_, channel) => [channel, message.folded])),
+          ...Object.fromEntries(Array.from({ length: MAX_CHANNELS }, (_, channel) => [channel, message.folded])),
         },
       };
     case "all-signals":
@@ -326,13 +326,13 @@ function done(state, { revision, summary, ms }) {
 function opened(state, view) {
   const last = endOf(state);
   const inside = (/** @type {number | undefined} */ cycle) => (cycle !== undefined && cycle <= last ? cycle : null);
-  const looked = lookAt(state, view.controller ?? 0);
+  const shown = lookAt(state, view.controller ?? 0);
   return {
-    ...looked,
+    ...shown,
     awaited: null,
     window: view.window ? within(view.window, last) : null,
     cursors: { a: inside(view.a), b: inside(view.b) },
-    axis: Math.min(view.axis ?? 0, (selected(looked)?.channels ?? 1) - 1),
+    axis: Math.min(view.axis ?? 0, (selected(shown)?.channels ?? 1) - 1),
     view: view.view ?? state.view,
     side: view.side ?? null,
     study: view.study ?? state.study,
@@ -346,7 +346,7 @@ function lookAt(state, controller) {
   const { controllers } = state.result.summary;
   const shown = Math.min(controller, controllers.length - 1);
   const { channels } = controllers[shown];
-  const row = state.row < 2 * MOST_CHANNELS && state.row % MOST_CHANNELS >= channels ? 0 : state.row;
+  const row = state.row < 2 * MAX_CHANNELS && state.row % MAX_CHANNELS >= channels ? 0 : state.row;
   return {
     ...state,
     controller,
@@ -378,7 +378,7 @@ export function isFiltering({ text, kind, address, outcome }) {
 
 /** Last cycle of the time axis. @param {State} state */
 export function endOf(state) {
-  return Math.max(LEAST_SPAN, state.result?.summary.end_cycle ?? LEAST_SPAN);
+  return Math.max(MIN_SPAN, state.result?.summary.end_cycle ?? MIN_SPAN);
 }
 
 /** The shown part of the time axis. @param {State} state @returns {Span} */
@@ -388,8 +388,8 @@ export function shown(state) {
 
 /** Keeps a window inside the run and at least a few cycles long. @param {Span} window @param {number} last @returns {Span | null} */
 export function clamp({ start, end }, last) {
-  const most = Math.max(LEAST_SPAN, last);
-  const span = Math.min(most, Math.max(LEAST_SPAN, Math.round(end - start)));
+  const most = Math.max(MIN_SPAN, last);
+  const span = Math.min(most, Math.max(MIN_SPAN, Math.round(end - start)));
   const from = Math.min(Math.max(0, Math.round(start)), most - span);
   return Number.isFinite(from + span) ? { start: from, end: from + span } : null;
 }

@@ -57,7 +57,7 @@
  * @typedef {{at_a: number[], at_b: number[], mean: number[], rms: number[]}} Readings  Position, speed, acceleration; of pulses the first two.
  * @typedef {{ideal: Readings | null, made: Readings}} Between
  * @typedef {{common_s: number, largest: number, at_s: number, rms: number}} Apart
- * @typedef {{title: string, revision: number, summary: Summary, controller: number, derived: DerivedController | null}} Reference
+ * @typedef {{title: string, revision: number, summary: Summary, controller: number, derived: DerivedController | null}} Baseline
  *
  * @typedef {{start: number, end: number}} Span  Cycles, start < end.
  * @typedef {{left: number, top: number, right: number, bottom: number}} Plot  CSS pixels in a canvas.
@@ -97,7 +97,7 @@
  * @property {string | null} gesture  The gesture that moves the window; what it moves on joins one step of `zooms`.
  * @property {boolean} box          Dragging on the time axis zooms to what it spans.
  * @property {Span | null} picked   What such a drag spans so far.
- * @property {Reference | null} reference  The run that was kept to compare with.
+ * @property {Baseline | null} baseline  The run that others are compared with.
  * @property {number | null} harmonic  Number of the harmonic that is pointed at.
  * @property {boolean} difference   The position's chart shows the difference to it.
  * @property {ViewPart | null} awaited  What a link asks to be shown, until there is a result to show it of.

@@ -56,7 +56,7 @@ export async function motionSheet(state, engine) {
     charts.flatMap(({ bands }) =>
       bands.map(({ name, ink, dash }) => [
         name,
-        { name: name === "kept" ? `kept: ${state.reference?.title}` : name, ink, dash },
+        { name: name === "baseline" ? `baseline: ${state.baseline?.title}` : name, ink, dash },
       ]),
     ),
   );
@@ -82,7 +82,7 @@ export async function spectrumSheet(state, engine) {
   return {
     title,
     note: `${thd}${note}`,
-    legend: all.map(([name]) => ({ name, ink: name === "ideal" ? "--ideal" : "--made", dash: 0 })),
+    legend: all.map(([name]) => ({ name, ink: name === "ideal" ? "--ideal" : "--actual", dash: 0 })),
     panels: [
       {
         caption: `amplitude of ${quantity} over the order of the harmonic, fundamental ${si(all[0][1].fundamental_hz, "Hz", 5)}`,
@@ -190,7 +190,7 @@ function motionTable(state, columns) {
     const { unit } = chartOf(state, columns, quantity);
     return bandsOf(state, columns, quantity)
       .reverse()
-      .map((band) => ({ ...band, head: `${band.name} ${quantity}`, unit }));
+      .map((band) => ({ ...band, head: `${quantity} ${band.name}`, unit }));
   });
   const cell = (/** @type {number} */ value) => (Number.isFinite(value) ? value : "");
   const head = [

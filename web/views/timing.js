@@ -1,6 +1,6 @@
 /**
  * The timing check: could the driver have followed the pulses? A row a rule with what was measured, what is
- * asked for and the slack, and the violations one by one. It takes the spectrum's place where there is a driver.
+ * required and the slack, and the violations one by one. It takes the spectrum's place where there is a driver.
  */
 import { byId, element, fill, say } from "../dom.js";
 import { unlessDropped } from "../engine/engine.js";
@@ -104,7 +104,7 @@ export function createTiming({ engine, drivers, speak, dispatch, now }) {
     go(violation);
     const clock = now().result?.summary.clock_hz ?? 1;
     tell(
-      `Violation ${index + 1} of ${timing?.violations.length}: channel ${channel}, ${ruleName(rule)} ${si(measured_cycles / clock, "s")} at ${time(cycle / clock)}, ${asked(timing, rule)} asked for.`,
+      `Violation ${index + 1} of ${timing?.violations.length}: channel ${channel}, ${ruleName(rule)} ${si(measured_cycles / clock, "s")} at ${time(cycle / clock)}, ${required(timing, rule)} required.`,
     );
   }
 
@@ -140,7 +140,7 @@ export function createTiming({ engine, drivers, speak, dispatch, now }) {
     say(
       byId("timing-total"),
       total === 0
-        ? "The driver can follow: no violation."
+        ? "The pulses meet the data sheet’s timing: no violation."
         : `${count(total)} ${total === 1 ? "violation" : "violations"}${few}.`,
     );
     byId("timing-total").classList.toggle("error", total > 0);
@@ -150,7 +150,7 @@ export function createTiming({ engine, drivers, speak, dispatch, now }) {
     byId("pulses-violations").hidden = timing === null;
     say(
       byId("pulses-violations-count"),
-      total === 0 ? "timing kept" : `${count(total)} ${total === 1 ? "violation" : "violations"}`,
+      total === 0 ? "timing met" : `${count(total)} ${total === 1 ? "violation" : "violations"}`,
     );
     byId("pulses-violations-count").classList.toggle("error", total > 0);
     const example = timing?.rules
@@ -185,7 +185,7 @@ export function createTiming({ engine, drivers, speak, dispatch, now }) {
         element(
           "tr",
           { "data-index": String(index) },
-          ...[String(channel), ruleName(rule), time(cycle / clock), at(measured_cycles), asked(timing, rule)].map(
+          ...[String(channel), ruleName(rule), time(cycle / clock), at(measured_cycles), required(timing, rule)].map(
             (text, column) => element("td", column === 1 ? {} : { class: "number" }, text),
           ),
         ),
@@ -219,12 +219,12 @@ export function createTiming({ engine, drivers, speak, dispatch, now }) {
   return { render };
 }
 
-/** How much longer than asked for the whole cycles of a rule are, in s. @param {import("../state/types.js").RuleResult} rule @param {number} clock */
+/** How much longer than required the whole cycles of a rule are, in s. @param {import("../state/types.js").RuleResult} rule @param {number} clock */
 function rounding({ required_ns, required_cycles }, clock) {
   return required_cycles / clock - required_ns * 1e-9;
 }
 
 /** The least time that a rule asks for; in cycles it is rounded up. @param {Timing | null} timing @param {string} rule */
-export function asked(timing, rule) {
+export function required(timing, rule) {
   return si((timing?.rules.find((each) => each.rule === rule)?.required_ns ?? 0) * 1e-9, "s");
 }

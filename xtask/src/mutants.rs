@@ -25,7 +25,7 @@ const TESTED: [&str; 4] = ["stepscope-peripheral", "stepscope-motion", "stepscop
 const TESTS: [&str; 7] =
     ["motion", "segments", "golden", "documents", "contract", "contract_line", "registers"];
 /// Of the mutants that can be built, so many in a hundred have to be caught.
-const LEAST_CAUGHT_PERCENT: usize = 95;
+const MIN_CAUGHT_PERCENT: usize = 95;
 /// Time that a mutant's tests have at least before they are stopped; else it is a few times what those of the unchanged
 /// code take.
 const TEST_LIMIT: Duration = Duration::from_secs(2 * 60);
@@ -73,7 +73,7 @@ pub(crate) async fn run(options: Options) -> Result<()> {
     );
     ensure!(
         verdict.is_enough(),
-        "less than {LEAST_CAUGHT_PERCENT} % were caught: give what was missed a test, or, if no test could notice, \
+        "less than {MIN_CAUGHT_PERCENT} % were caught: give what was missed a test, or, if no test could notice, \
          a line with the reason in .cargo/mutants.toml"
     );
     Ok(())
@@ -200,7 +200,7 @@ impl Verdict {
     }
 
     fn is_enough(&self) -> bool {
-        (self.caught + self.timeouts.len()) * 100 >= self.viable() * LEAST_CAUGHT_PERCENT
+        (self.caught + self.timeouts.len()) * 100 >= self.viable() * MIN_CAUGHT_PERCENT
     }
 }
 

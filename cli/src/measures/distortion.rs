@@ -17,10 +17,10 @@ pub(super) struct Distortion {
 
 impl Distortion {
     pub(super) fn of(plan: &AxisPlan, run: &Pulses<'_>, analysis: &Analysis) -> Option<Self> {
-        let stretch = AnalysisWindow::of(plan).filter(|stretch| stretch.periodic)?;
+        let window = AnalysisWindow::of(plan).filter(|window| window.periodic)?;
         let ideal = Spectrum::ideal(plan, analysis.order, analysis.fft_length)?;
         // To the same order, which the number of samples may have cut.
-        let pulses = Spectrum::of_pulses(&stretch.pulses_of(plan, run), stretch, ideal.order);
+        let pulses = Spectrum::of_pulses(&window.pulses_of(plan, run), window, ideal.order);
         Some(Self {
             ideal: ideal.filtered_by(analysis.sensor_hz),
             pulses: pulses.filtered_by(analysis.sensor_hz),
@@ -34,7 +34,7 @@ impl Distortion {
             ("position", |spectrum| Some(&spectrum.position)),
             ("speed", |spectrum| Some(&spectrum.speed)),
             ("acceleration", |spectrum| Some(&spectrum.acceleration)),
-            ("acceleration_felt", |spectrum| spectrum.acceleration_filtered.as_ref()),
+            ("acceleration_filtered", |spectrum| spectrum.acceleration_filtered.as_ref()),
         ];
         of.into_iter().filter_map(|(name, of)| {
             let ratio = |spectrum| of(spectrum).map(|harmonics| harmonics.distortion);

@@ -134,14 +134,14 @@ fn duration(found: &Measures) -> Group {
     let mut group = Group::new("duration", "duration", ONE);
     let times = &found.duration;
     let rows = [
-        ("asked", "s", times.asked_s),
+        ("requested", "s", times.requested_s),
         ("planned", "s", Some(times.planned_s)),
-        ("planned less asked", "s", times.plan_error_s),
+        ("planned minus requested", "s", times.plan_error_s),
         ("last step due", "s", times.last_due_s),
         ("last pulse", "s", times.last_pulse_s),
         ("last pulse late by", "us", times.end_error_s.map(|late_s| late_s * 1e6)),
         ("steps due", "", Some(found.counts.due as f64)),
-        ("pulses made", "", Some(found.counts.made as f64)),
+        ("actual pulses", "", Some(found.counts.actual as f64)),
     ];
     rows.into_iter().for_each(|(measure, unit, value)| group.row(measure, unit, vec![value]));
     group

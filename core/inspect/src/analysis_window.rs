@@ -1,4 +1,4 @@
-//! The stretch of time that a spectrum is taken of: whole periods, or a whole motion.
+//! The window of time that a spectrum is taken of: whole periods, or a whole motion.
 //!
 //! ```text
 //!        start_s    period_s        all whole periods of the sine: no window, no leakage
@@ -7,7 +7,7 @@
 //! ```
 //!
 //! The pulses that a move makes begin with the tick in which it starts and end with the tick in
-//! which it ends, so some come before the stretch and some after; taken on into the next period
+//! which it ends, so some come before the window and some after; taken on into the next period
 //! (whole periods later or earlier) they are the motion that repeats for ever. In a tick that two
 //! moves share the pulses of the move before come first: of the tick of its start a move has the
 //! last ones, of the tick of its end the first ones, as many as it asks for there. Where the two
@@ -24,7 +24,7 @@ use stepscope_peripheral::trace::Step;
 /// Longest transform.
 const MAX_POINTS: usize = 1 << 20;
 
-/// The stretch of time that a spectrum is taken of.
+/// The window of time that a spectrum is taken of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AnalysisWindow {
     /// Its start in s.
@@ -46,11 +46,11 @@ impl AnalysisWindow {
             .moves()
             .iter()
             .find_map(|planned| planned.profile.repeats().map(|repeats| (planned.start_s, repeats)));
-        let stretch = match repeating {
+        let window = match repeating {
             Some((start_s, (period_s, periods))) => Self { start_s, period_s, periods, periodic: true },
             None => Self { start_s: 0.0, period_s: plan.duration_s(), periods: 1, periodic: false },
         };
-        (stretch.period_s > 0.0).then_some(stretch)
+        (window.period_s > 0.0).then_some(window)
     }
 
     /// Its length in s.
@@ -65,7 +65,7 @@ impl AnalysisWindow {
         1.0 / self.period_s
     }
 
-    /// The pulses of a run that belong to the stretch, as (time in s, +1 right or -1 left): of a run by
+    /// The pulses of a run that belong to the window, as (time in s, +1 right or -1 left): of a run by
     /// ticks as [`Self::own_pulses`] tells them, of one by segments those of the steps of its moves.
     #[must_use]
     pub fn pulses_of(&self, plan: &AxisPlan, run: &Pulses<'_>) -> Vec<(f64, i8)> {
@@ -83,7 +83,7 @@ impl AnalysisWindow {
         self.own_pulses(plan, TickClock::new(run.config.tick().0, run.config.clock_hz()), &pulses)
     }
 
-    /// Of pulses that are the steps of `plan`, one by one, those of the moves within the stretch.
+    /// Of pulses that are the steps of `plan`, one by one, those of the moves within the window.
     fn own_steps<'p>(&self, plan: &AxisPlan, pulses: &'p [(u64, i8)]) -> &'p [(u64, i8)] {
         // A move's middle, which no rounding of its ends takes into another.
         let middle_s = |planned: &PlannedMove| planned.start_s + planned.profile.duration_s() / 2.0;
@@ -97,7 +97,7 @@ impl AnalysisWindow {
         pulses.get(own).unwrap_or_default()
     }
 
-    /// The pulses that belong to the stretch, see the module, as (time in s, +1 right or -1 left).
+    /// The pulses that belong to the window, see the module, as (time in s, +1 right or -1 left).
     ///
     /// `pulses` are all that the axis of `plan` makes, as (cycle from the start of its first tick
     /// on, +1 right or -1 left), rising in time.
@@ -112,7 +112,7 @@ impl AnalysisWindow {
         let going = |way: i64| move |pulse: &&(u64, i8)| i64::from(pulse.1) == way.signum();
         let mut own: Vec<&(u64, i8)> = Vec::new();
         if first == last {
-            // Shorter than a tick: the tick's pulses are taken for the stretch's.
+            // Shorter than a tick: the tick's pulses are taken for the window's.
             own.extend(within(first, first + 1));
         } else {
             let asked = due_by_end(first) - begin;
@@ -133,12 +133,12 @@ impl AnalysisWindow {
     }
 }
 
-/// The ideal position over the stretch less its straight line, at equal steps of time.
-pub(super) fn sampled(plan: &AxisPlan, stretch: &AnalysisWindow, points: usize) -> Vec<f64> {
+/// The ideal position over the window less its straight line, at equal steps of time.
+pub(super) fn sampled(plan: &AxisPlan, window: &AnalysisWindow, points: usize) -> Vec<f64> {
     let points = points.clamp(16, MAX_POINTS);
-    let at = |part: f64| plan.position(stretch.start_s + stretch.length_s() * part);
+    let at = |part: f64| plan.position(window.start_s + window.length_s() * part);
     let first = at(0.0);
-    let way = if stretch.periodic { 0.0 } else { at(1.0) - first };
+    let way = if window.periodic { 0.0 } else { at(1.0) - first };
     (0..points)
         .map(|i| {
             let part = i as f64 / points as f64;

@@ -105,27 +105,27 @@ pub struct Ideal {
 
 /// The ideal motion of an axis whose time 0 is at `zero_s`.
 ///
-/// Between two joints every curve rises, falls or stays, so a column's extremes are at its own ends
-/// and at either side of the joints in it.
+/// Between two breakpoints every curve rises, falls or stays, so a column's extremes are at its own ends
+/// and at either side of the breakpoints in it.
 #[must_use]
 pub fn ideal(plan: &AxisPlan, zero_s: f64, window: Window) -> Ideal {
     let n = window.columns;
     let mut bands = Ideal { position: Band::new(n), speed: Band::new(n), acceleration: Band::new(n) };
-    let joints = Breakpoints::of(plan);
+    let breakpoints = Breakpoints::of(plan);
     let mut period = None;
     for column in 0..n {
         let (from, to) = (window.edge_s(column) - zero_s, window.edge_s(column + 1) - zero_s);
-        let extremes = match joints.period_within(from, to) {
+        let extremes = match breakpoints.period_within(from, to) {
             // Thousands of periods over a few columns are one period's work.
             Some(bounds) => match period {
                 Some((known, extremes)) if known == bounds => extremes,
                 _ => {
-                    let extremes = extremes(plan, &joints, bounds.0, bounds.1);
+                    let extremes = extremes(plan, &breakpoints, bounds.0, bounds.1);
                     period = Some((bounds, extremes));
                     extremes
                 }
             },
-            None => extremes(plan, &joints, from, to),
+            None => extremes(plan, &breakpoints, from, to),
         };
         let bands = [&mut bands.position, &mut bands.speed, &mut bands.acceleration];
         for (band, values) in bands.into_iter().zip(extremes) {
@@ -136,12 +136,12 @@ pub fn ideal(plan: &AxisPlan, zero_s: f64, window: Window) -> Ideal {
 }
 
 /// Least and greatest position, speed and acceleration of a stretch.
-fn extremes(plan: &AxisPlan, joints: &Breakpoints, from_s: f64, to_s: f64) -> [[f64; 2]; 3] {
+fn extremes(plan: &AxisPlan, breakpoints: &Breakpoints, from_s: f64, to_s: f64) -> [[f64; 2]; 3] {
     let mut found = [[f64::NAN; 2]; 3];
-    let mut look = |piece: Interval| {
+    let mut look = |interval: Interval| {
         // Just inside: at a joint itself the value may be that of the other side.
-        let inset = (piece.to_s - piece.from_s) * 1e-9;
-        for t in [piece.from_s + inset, piece.to_s - inset] {
+        let inset = (interval.to_s - interval.from_s) * 1e-9;
+        for t in [interval.from_s + inset, interval.to_s - inset] {
             let values = [plan.position(t), plan.speed(t), plan.acceleration(t)];
             for ([least, greatest], value) in found.iter_mut().zip(values) {
                 *least = libm::fmin(*least, value);
@@ -150,11 +150,11 @@ fn extremes(plan: &AxisPlan, joints: &Breakpoints, from_s: f64, to_s: f64) -> [[
         }
     };
     let (mut count, mut last) = (0, None);
-    joints.pieces(from_s, to_s, &mut |piece| {
+    breakpoints.intervals(from_s, to_s, &mut |interval| {
         count += 1;
-        last = Some(piece);
+        last = Some(interval);
         if count <= MAX_PIECES || count % 16 == 0 {
-            look(piece);
+            look(interval);
         }
     });
     if let Some(last) = last {

@@ -30,7 +30,7 @@
 //!     config: experiment.config(),
 //! };
 //! let measures = Measures::of(&experiment.plans()[0], &pulses, None);
-//! assert_eq!((measures.counts.due, measures.counts.made, measures.counts.stray), (3200, 3200, 0));
+//! assert_eq!((measures.counts.due, measures.counts.actual, measures.counts.stray), (3200, 3200, 0));
 //! assert_eq!(measures.peaks.speed_steps_s, 16_000.0);
 //! ```
 
@@ -103,7 +103,7 @@ pub struct Counts {
     /// Steps of the motion, there and back.
     pub due: u64,
     /// Pulses that came. Steps to and fro within one tick cancel and are not made.
-    pub made: u64,
+    pub actual: u64,
     /// Pulses at a place, or in a direction, in which no step was due near that time.
     pub stray: u64,
 }
@@ -132,7 +132,7 @@ pub struct Duration {
     /// Of the plan, in s.
     pub planned_s: f64,
     /// As it was asked for, in s; `None` where no move names a time. Moves that name none count as planned.
-    pub asked_s: Option<f64>,
+    pub requested_s: Option<f64>,
     /// Planned less asked, in s.
     pub plan_error_s: Option<f64>,
     /// When the last step is due, in s.
@@ -171,21 +171,21 @@ impl Measures {
         // One cycle at least, so that there is something to look at.
         let ends = [Some(plan.duration_s()), last_due_s, last_pulse_s];
         let length_s = ends.into_iter().flatten().fold(1.0 / hz, libm::fmax);
-        let joints = Breakpoints::of(plan);
-        let asked_s = asked.and_then(|axis| asked_s(axis, plan));
+        let breakpoints = Breakpoints::of(plan);
+        let requested_s = asked.and_then(|axis| requested_s(axis, plan));
         Self {
             length_s,
-            steps: curve_and_steps(plan, &joints, &due, hz, length_s),
+            steps: curve_and_steps(plan, &breakpoints, &due, hz, length_s),
             ticks: steps_and_steps(&due, &made, hz, length_s),
-            pulses: curve_and_steps(plan, &joints, &made, hz, length_s),
+            pulses: curve_and_steps(plan, &breakpoints, &made, hz, length_s),
             step_errors,
             tick_errors,
-            counts: Counts { due: due.len() as u64, made: made.len() as u64, stray },
-            peaks: extremes(plan, &joints),
+            counts: Counts { due: due.len() as u64, actual: made.len() as u64, stray },
+            peaks: extremes(plan, &breakpoints),
             duration: Duration {
                 planned_s: plan.duration_s(),
-                asked_s,
-                plan_error_s: asked_s.map(|asked_s| plan.duration_s() - asked_s),
+                requested_s,
+                plan_error_s: requested_s.map(|requested_s| plan.duration_s() - requested_s),
                 last_due_s,
                 last_pulse_s,
                 end_error_s: last_pulse_s.zip(last_due_s).map(|(pulse, due)| pulse - due),
@@ -199,7 +199,7 @@ impl Measures {
 }
 
 /// The time that the moves name, those that name none as planned; `None` where none does.
-fn asked_s(axis: &Axis, plan: &AxisPlan) -> Option<f64> {
+fn requested_s(axis: &Axis, plan: &AxisPlan) -> Option<f64> {
     let named = |asked: &Move| match asked {
         Move::Cosine(cosine) => Some(cosine.duration_s),
         Move::Ramps(ramps) => Some(ramps.duration_s),
@@ -221,7 +221,7 @@ fn asked_s(axis: &Axis, plan: &AxisPlan) -> Option<f64> {
     names_one.then_some(sum)
 }
 
-fn extremes(plan: &AxisPlan, joints: &Breakpoints) -> Extremes {
+fn extremes(plan: &AxisPlan, breakpoints: &Breakpoints) -> Extremes {
     let peaks = plan.peaks();
     let (mut before, mut start_stop) = (0.0, 0.0);
     let mut meets = |before: f64, after: f64| {
@@ -229,12 +229,12 @@ fn extremes(plan: &AxisPlan, joints: &Breakpoints) -> Extremes {
             start_stop = libm::fmax(start_stop, libm::fmax(libm::fabs(before), libm::fabs(after)));
         }
     };
-    joints.pieces(0.0, plan.duration_s(), &mut |piece| {
+    breakpoints.intervals(0.0, plan.duration_s(), &mut |interval| {
         // Just inside, for at a joint the speed is that of one side; and from there to the joint itself.
-        let inset = (piece.to_s - piece.from_s) * 1e-9;
+        let inset = (interval.to_s - interval.from_s) * 1e-9;
         let speed = |t: f64, by: f64| plan.speed(t) + plan.acceleration(t) * by;
-        meets(before, speed(piece.from_s + inset, -inset));
-        before = speed(piece.to_s - inset, inset);
+        meets(before, speed(interval.from_s + inset, -inset));
+        before = speed(interval.to_s - inset, inset);
     });
     meets(before, 0.0);
     Extremes {
@@ -263,7 +263,7 @@ fn polyline(sine: &sine_segments::SineSegments) -> SineMeasures {
         sums.look(at_s, off);
         sums.sample(off);
         // Line and cosine meet at both ends, so a sum over the points is the rule of trapezoids.
-        sums.stretch(&[(cosine, off, sine.point_s())]);
+        sums.interval(&[(cosine, off, sine.point_s())]);
     }
     let quarter = sums.ended();
     SineMeasures { segments: segments.len(), euclidean: quarter.euclidean_steps / amplitude, quarter }

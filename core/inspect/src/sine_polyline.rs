@@ -338,7 +338,7 @@ mod tests {
             .collect();
         let expected = libm::sqrt(squares[1..].iter().sum::<f64>() / squares[0]);
         assert!((low - expected).abs() < 1e-9 * expected, "{low} {expected}");
-        // A sensor without bounds feels all of it; without a sensor nothing is felt.
+        // A sensor without bounds passes all of it; without a sensor nothing is filtered.
         let all = of(99, Some(1e9));
         assert!((all.acceleration_filtered.unwrap() - all.acceleration).abs() < 1e-9);
         assert_eq!(of(99, None), Row::of(0.006, 99).distortion);

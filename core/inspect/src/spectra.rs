@@ -60,7 +60,7 @@ impl Spectra {
         let note = if window.periodic {
             ""
         } else {
-            "The motion does not repeat: its lines are no harmonics, and it has no distortion."
+            "The motion is not periodic: no harmonics, no THD."
         };
         Self {
             ideal: ideal.map(|ideal| ideal.filtered_by(analysis.sensor_hz)),

@@ -12,11 +12,11 @@
 //!
 //! The order belongs to the figure: segments of fixed rate have jumps of speed, so the harmonics
 //! of their acceleration do not fall at all and its distortion grows with the order. An accelerometer
-//! on the rig does not feel all of that: it is a low pass, of first order here, with the bandwidth f_b
-//! (-3 dB), and what it feels has a distortion that the order hardly changes any more:
+//! on the rig does not pass all of that: it is a low pass, of first order here, with the bandwidth f_b
+//! (-3 dB), and what it lets through has a distortion that the order hardly changes any more:
 //!
 //! ```text
-//! felt  A_k*(2*pi*k*f0)^2 * |H(k*f0)|        |H(f)| = 1/sqrt(1 + (f/f_b)^2)
+//! filtered  A_k*(2*pi*k*f0)^2 * |H(k*f0)|        |H(f)| = 1/sqrt(1 + (f/f_b)^2)
 //! ```
 //!
 //! A motion that is not periodic is looked at as a whole; the straight line from its first to its
@@ -74,7 +74,7 @@ fn distortion(amplitudes: &[f64]) -> Option<f64> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
     /// What it is taken of; no window is laid over it.
-    pub stretch: AnalysisWindow,
+    pub window: AnalysisWindow,
     /// Highest harmonic, also of the distortion.
     pub order: u16,
     /// Position, in steps.
@@ -90,16 +90,16 @@ pub struct Spectrum {
 
 impl Spectrum {
     /// From the position's harmonics.
-    fn of_position(stretch: AnalysisWindow, position: Vec<f64>) -> Self {
-        let per_s = |k: usize| TAU * (k + 1) as f64 / stretch.period_s;
+    fn of_position(window: AnalysisWindow, position: Vec<f64>) -> Self {
+        let per_s = |k: usize| TAU * (k + 1) as f64 / window.period_s;
         let speed: Vec<f64> = position.iter().enumerate().map(|(k, a)| a * per_s(k)).collect();
         let acceleration = speed.iter().enumerate().map(|(k, a)| a * per_s(k)).collect();
         Self {
-            stretch,
+            window,
             order: u16::try_from(position.len()).unwrap_or(u16::MAX),
-            position: Harmonics::new(position, stretch.periodic),
-            speed: Harmonics::new(speed, stretch.periodic),
-            acceleration: Harmonics::new(acceleration, stretch.periodic),
+            position: Harmonics::new(position, window.periodic),
+            speed: Harmonics::new(speed, window.periodic),
+            acceleration: Harmonics::new(acceleration, window.periodic),
             acceleration_filtered: None,
         }
     }
@@ -110,10 +110,10 @@ impl Spectrum {
     pub fn filtered_by(mut self, sensor_hz: Option<f64>) -> Self {
         self.acceleration_filtered = sensor_hz.map(|sensor_hz| {
             let harmonics = (1..).zip(&self.acceleration.amplitudes);
-            let line_hz = |k: u32| f64::from(k) * self.stretch.fundamental_hz();
+            let line_hz = |k: u32| f64::from(k) * self.window.fundamental_hz();
             let filtered =
                 harmonics.map(|(k, amplitude)| amplitude * low_pass(line_hz(k) / sensor_hz)).collect();
-            Harmonics::new(filtered, self.stretch.periodic)
+            Harmonics::new(filtered, self.window.periodic)
         });
         self
     }
@@ -126,29 +126,29 @@ impl Spectrum {
     /// stated in the result.
     #[must_use]
     pub fn ideal(plan: &AxisPlan, order: u16, points: u32) -> Option<Self> {
-        let stretch = AnalysisWindow::of(plan)?;
-        let samples = sampled(plan, &AnalysisWindow { periods: 1, ..stretch }, points as usize);
-        Some(Self::of_position(stretch, amplitudes(&samples, order.into())))
+        let window = AnalysisWindow::of(plan)?;
+        let samples = sampled(plan, &AnalysisWindow { periods: 1, ..window }, points as usize);
+        Some(Self::of_position(window, amplitudes(&samples, order.into())))
     }
 
     /// Of the motion that pulses make: `pulses` are (time in s, on the same axis of time as the
-    /// stretch; +1 right or -1 left), in any order, such as [`AnalysisWindow::own_pulses`]. All count; one
-    /// outside the stretch stands where whole periods take it.
+    /// window; +1 right or -1 left), in any order, such as [`AnalysisWindow::own_pulses`]. All count; one
+    /// outside the window stands where whole periods take it.
     ///
     /// Straight from the pulses' times, see `fourier`: nothing is sampled, nothing folds back. The
     /// time grows with the pulses, some 10 ns each, and not with pulses times order.
     #[must_use]
-    pub fn of_pulses(pulses: &[(f64, i8)], stretch: AnalysisWindow, order: u16) -> Self {
+    pub fn of_pulses(pulses: &[(f64, i8)], window: AnalysisWindow, order: u16) -> Self {
         let phases = pulses
             .iter()
-            .map(|&(time_s, way)| ((time_s - stretch.start_s) / stretch.period_s, f64::from(way)));
+            .map(|&(time_s, way)| ((time_s - window.start_s) / window.period_s, f64::from(way)));
         let position = sums(phases, order.into())
             .into_iter()
             .enumerate()
             // |v_k| = |sum|/L; the speed's amplitude is twice that, the position's 1/(2*pi*k*f0).
-            .map(|(k, sum)| magnitude(sum) / (PI * (k + 1) as f64 * f64::from(stretch.periods)))
+            .map(|(k, sum)| magnitude(sum) / (PI * (k + 1) as f64 * f64::from(window.periods)))
             .collect();
-        Self::of_position(stretch, position)
+        Self::of_position(window, position)
     }
 }
 
@@ -208,7 +208,7 @@ mod tests {
     fn a_motion_of_many_steps_has_the_spectrum_of_its_polyline() {
         let plan = plan(vec![Move::Dwell(Dwell { duration_s: 0.3 }), sine(-5e5, 0.006)]);
         let spectrum = Spectrum::ideal(&plan, DOCUMENT_ORDER, 2048).unwrap();
-        assert_eq!((spectrum.stretch.start_s, spectrum.stretch.periods, spectrum.order), (0.3, 4, 1023));
+        assert_eq!((spectrum.window.start_s, spectrum.window.periods, spectrum.order), (0.3, 4, 1023));
         close(spectrum.position.distortion.unwrap() * 100.0, 0.26710, 1e-3);
         close(spectrum.position.amplitudes[0], 5e5, 1e-2);
         close(spectrum.speed.amplitudes[0], spectrum.position.amplitudes[0] * TAU * 2.0, 1e-12);
@@ -237,7 +237,7 @@ mod tests {
     #[test]
     fn what_a_sensor_feels_of_segments_has_a_distortion_that_the_order_hardly_changes() {
         let plan = plan(vec![sine(5e5, 0.006)]);
-        // 2 Hz felt with 40 Hz.
+        // 2 Hz filtered with 40 Hz.
         let of = |order| Spectrum::ideal(&plan, order, 65_536).unwrap().filtered_by(Some(40.0));
         let [low, high] = [of(300), of(1000)];
         let thd = |found: &Harmonics| found.distortion.unwrap();
@@ -257,9 +257,9 @@ mod tests {
             Cosine { distance: Distance::Steps(6400.0), duration_s: 0.4, ramp_s: 0.2, ..Cosine::default() };
         let plan = plan(vec![Move::Cosine(cosine)]);
         let spectrum = Spectrum::ideal(&plan, 5, 4096).unwrap();
-        assert!(!spectrum.stretch.periodic && spectrum.position.distortion.is_none());
+        assert!(!spectrum.window.periodic && spectrum.position.distortion.is_none());
         // Its speed is 16000*(1 - cos(2*pi*2.5 Hz*t)): one line.
-        close(spectrum.stretch.fundamental_hz(), 2.5, 1e-15);
+        close(spectrum.window.fundamental_hz(), 2.5, 1e-15);
         close(spectrum.speed.amplitudes[0], 16_000.0, 1e-6);
         assert!(spectrum.speed.amplitudes[1..].iter().all(|a| *a < 1e-3), "{spectrum:?}");
         assert_eq!(
@@ -271,10 +271,10 @@ mod tests {
     #[test]
     fn a_step_to_and_fro_is_a_square_wave() {
         // Two periods of 1 s, height 1.
-        let stretch = AnalysisWindow { start_s: 10.0, period_s: 1.0, periods: 2, periodic: true };
+        let window = AnalysisWindow { start_s: 10.0, period_s: 1.0, periods: 2, periodic: true };
         // The last two are a step outside and where periods take it back.
         let pulses = [(10.25, 1), (10.75, -1), (11.25, 1), (11.75, -1), (9.99, 1), (11.99, -1)];
-        let spectrum = Spectrum::of_pulses(&pulses, stretch, 101);
+        let spectrum = Spectrum::of_pulses(&pulses, window, 101);
         for (k, amplitude) in (1..).zip(&spectrum.position.amplitudes) {
             let expected = if k % 2 == 1 { 2.0 / (PI * f64::from(k)) } else { 0.0 };
             assert!((amplitude - expected).abs() < 1e-12, "{k}: {amplitude} {expected}");
@@ -284,11 +284,11 @@ mod tests {
 
     #[test]
     fn pulses_through_the_grid_weigh_as_much_as_one_by_one() {
-        let stretch = AnalysisWindow { start_s: 0.0, period_s: 0.125, periods: 3, periodic: true };
+        let window = AnalysisWindow { start_s: 0.0, period_s: 0.125, periods: 3, periodic: true };
         let pulses: Vec<(f64, i8)> = (0..1001)
             .map(|i| (f64::from(i * i % 4099) * 0.375 / 4099.0, if i % 3 == 0 { -1 } else { 1 }))
             .collect();
-        let found = Spectrum::of_pulses(&pulses, stretch, 1000);
+        let found = Spectrum::of_pulses(&pulses, window, 1000);
         for (k, amplitude) in (1..).zip(&found.position.amplitudes) {
             let k = f64::from(k);
             let (re, im) = pulses.iter().fold((0.0, 0.0), |(re, im), &(t, way)| {
@@ -313,7 +313,7 @@ mod tests {
             due = now;
         }
         let ideal = Spectrum::ideal(&plan, 40, 4096).unwrap();
-        let made = Spectrum::of_pulses(&pulses, ideal.stretch, 40);
+        let made = Spectrum::of_pulses(&pulses, ideal.window, 40);
         close(made.position.amplitudes[0], ideal.position.amplitudes[0], 1e-5);
         close(made.position.distortion.unwrap(), ideal.position.distortion.unwrap(), 0.02);
     }
@@ -332,8 +332,8 @@ mod tests {
                 max_deviation: 1.0,
             };
             let plan = plan(vec![constant.clone(), Move::SineSegments(sine), constant]);
-            let stretch = AnalysisWindow::of(&plan).unwrap();
-            let own = stretch.own_pulses(&plan, TickClock::new(1000, 1_000_000), pulses);
+            let window = AnalysisWindow::of(&plan).unwrap();
+            let own = window.own_pulses(&plan, TickClock::new(1000, 1_000_000), pulses);
             own.iter().map(|(t, way)| (round_half_up(t * 1e6) as u64, *way)).collect::<Vec<_>>()
         };
         // On the grid nothing is shared. The sine goes 2 steps a tick: left in two, right in two.

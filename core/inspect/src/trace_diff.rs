@@ -80,7 +80,7 @@ pub struct Outcome {
     /// Records of the file that are the run's own.
     pub same: u64,
     /// First and last cycle of the file; of a file that differs, the last that was the same.
-    pub stretch: (Instant, Instant),
+    pub range: (Instant, Instant),
     /// Where they part.
     pub difference: Option<Difference>,
     /// Whether the run has records after the file's last.
@@ -161,7 +161,7 @@ impl TraceDiff {
         }
         Ok(Outcome {
             same: self.same,
-            stretch: (self.first, self.last.cycle),
+            range: (self.first, self.last.cycle),
             difference: self.difference,
             goes_on: self.next.is_some_and(|next| next < run.len()),
         })

@@ -65,7 +65,7 @@ parameters! {
         pub full_step_deg: f64 = 1.8,
         /// Microsteps in a full step, 1 to 512.
         pub microsteps: u16 = 16,
-        /// Way of the nut in one turn, in mm.
+        /// Travel of the nut in one turn, in mm.
         pub lead_mm: f64 = 8.0,
     }
 }

@@ -104,7 +104,7 @@ pub enum ShortMove {
     /// The document's: the whole move at the start speed.
     #[default]
     Document,
-    /// Up as many rows of the table as there is room for, and down again.
+    /// Up as many rows of the table as fit, and down again.
     Reverse,
 }
 

@@ -34,17 +34,17 @@ fn between_two_joints_every_curve_is_smooth() {
         let plan = plan(moves);
         let (from, to) = (-0.01, plan.duration_s() + 0.01);
         let mut covered = 0.0;
-        Breakpoints::of(&plan).pieces(from, to, &mut |piece| {
-            let length = piece.to_s - piece.from_s;
-            covered += length * piece.times;
-            let at = |part: f64| piece.from_s + length * part;
+        Breakpoints::of(&plan).intervals(from, to, &mut |interval| {
+            let length = interval.to_s - interval.from_s;
+            covered += length * interval.times;
+            let at = |part: f64| interval.from_s + length * part;
             // Its speed is straight, or bends as little as a 64th of a cosine's ramp does.
             let [a, b, c] = [0.001, 0.5, 0.999].map(|part| plan.speed(at(part)));
             let bend = (b - (a + c) / 2.0).abs();
-            assert!(bend <= 1e-3 * plan.peaks().speed, "{moves}: {piece:?} bends by {bend}");
+            assert!(bend <= 1e-3 * plan.peaks().speed, "{moves}: {interval:?} bends by {bend}");
             let [a, b, c] = [0.001, 0.5, 0.999].map(|part| plan.acceleration(at(part)));
             let within = (a.min(c)..=a.max(c)).contains(&b);
-            assert!(within || (b - a).abs() <= 1e-6 * plan.peaks().acceleration, "{moves}: {piece:?}");
+            assert!(within || (b - a).abs() <= 1e-6 * plan.peaks().acceleration, "{moves}: {interval:?}");
         });
         assert!((covered - (to - from)).abs() < 1e-9, "{moves}: {covered} of {}", to - from);
     }
@@ -54,12 +54,12 @@ fn between_two_joints_every_curve_is_smooth() {
 fn whole_periods_are_cut_once_and_stand_for_all() {
     for moves in MOVES.iter().filter(|moves| moves.contains(r#""sine"#)) {
         let plan = plan(moves);
-        let joints = Breakpoints::of(&plan);
+        let breakpoints = Breakpoints::of(&plan);
         for (from, to, wholes) in [(0.09, 0.71, 3.0), (0.15, 0.71, 2.0), (0.15, 0.6, 1.0), (0.15, 0.4, 1.0)] {
             let (mut most, mut covered) = (0.0_f64, 0.0);
-            joints.pieces(from, to, &mut |piece| {
-                most = most.max(piece.times);
-                covered += piece.times * (piece.to_s - piece.from_s);
+            breakpoints.intervals(from, to, &mut |interval| {
+                most = most.max(interval.times);
+                covered += interval.times * (interval.to_s - interval.from_s);
             });
             assert_eq!(most, wholes, "{from} to {to}");
             assert!((covered - (to - from)).abs() < 1e-12, "{from} to {to}: {covered}");

@@ -171,14 +171,14 @@ fn host() -> impl Strategy<Value = Host> {
 fn noise() -> impl Strategy<Value = Noise> {
     let rate = || small_or_any(0_u32);
     (small_or_any(0), rate(), rate(), rate(), rate(), rate(), rate()).prop_map(
-        |(seed, flipped, lost, doubled, glitches, replies, deaths)| Noise {
+        |(seed, flipped, lost, duplicated, glitches, replies, crashes)| Noise {
             seed,
             flipped_bits_ppm: flipped,
             lost_bytes_ppm: lost,
-            duplicated_bytes_ppm: doubled,
+            duplicated_bytes_ppm: duplicated,
             glitches_ppm: glitches,
             lost_replies_ppm: replies,
-            host_crashes_ppm: deaths,
+            host_crashes_ppm: crashes,
         },
     )
 }

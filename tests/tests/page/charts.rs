@@ -1,4 +1,4 @@
-//! The motion and the spectrum view: what lies between two cursors, zooming by a box and back, a kept run to
+//! The motion and the spectrum view: what lies between two cursors, zooming by a box and back, a baseline run to
 //! compare with, harmonics that light up, the values as a table and as files.
 
 use anyhow::{Context, Result, ensure};
@@ -145,7 +145,7 @@ fn a_moving_pointer_draws_on_the_cursors_layer_alone() -> Result<()> {
         }
         page.actions(mouse).await?;
         page.until("document.getElementById('motion-time').textContent.includes('cycle')").await?;
-        page.until("document.getElementById('read-speed').textContent.includes('made')").await?;
+        page.until("document.getElementById('read-speed').textContent.includes('from pulses')").await?;
         let drawn: std::collections::BTreeMap<String, u32> = page.eval("window.strokes").await?;
         for layer in ["charts-cursor", "pulses-cursor"] {
             ensure!(drawn.get(layer).is_some_and(|strokes| *strokes > 0), "{layer} follows: {drawn:?}");
@@ -158,30 +158,30 @@ fn a_moving_pointer_draws_on_the_cursors_layer_alone() -> Result<()> {
 }
 
 #[test]
-fn a_kept_run_is_drawn_and_measured_beside_a_later_one() -> Result<()> {
+fn a_baseline_is_drawn_and_measured_beside_a_later_one() -> Result<()> {
     in_browser(|page| async move {
-        let kept = Known::of(r#"{"title":"S-curve"}"#)?;
+        let baseline = Known::of(r#"{"title":"S-curve"}"#)?;
         let later = Known::of(
             r#"{"source":{"motion":{"axes":[{"moves":[{"trapezoid":{"distance":{"steps":3000}}}]}]}}}"#,
         )?;
-        page.open(&format!("#{}", kept.link)).await?;
-        page.until_digest(&kept.digest).await?;
-        assert_eq!(page.canvas("chart-position").await?.ink("--kept").pixels, 0);
+        page.open(&format!("#{}", baseline.link)).await?;
+        page.until_digest(&baseline.digest).await?;
+        assert_eq!(page.canvas("chart-position").await?.ink("--baseline").pixels, 0);
         page.click("#keep-run").await?;
-        page.until("document.getElementById('compared').textContent.includes('Kept: S-curve')").await?;
+        page.until("document.getElementById('compared').textContent.includes('Baseline: S-curve')").await?;
 
         // Another experiment, without loading the page anew.
         page.js::<Value>("location.hash = arguments[0]; return null;", vec![json!(later.link)]).await?;
         page.until_digest(&later.digest).await?;
         page.until("document.getElementById('compared').textContent.includes('differs by')").await?;
         for chart in ["chart-position", "chart-speed", "chart-acceleration"] {
-            let look = async || Ok((page.canvas(chart).await?.ink("--kept").columns > 100.0).then_some(()));
-            page.eventually(&format!("{chart} has the kept curve"), look).await?;
+            let look = async || Ok((page.canvas(chart).await?.ink("--baseline").columns > 100.0).then_some(()));
+            page.eventually(&format!("{chart} has the baseline's curve"), look).await?;
         }
         let cycles = |known: &Known| known.experiment.run(&mut Vec::new()).cycles().0;
-        let (own, other) = (steps(&later.recording.trace, 0), steps(&kept.recording.trace, 0));
-        let scaled = |steps| Scaled { steps, hz: f64::from(kept.experiment.config().clock_hz()), unit: 1.0 };
-        let common_s = kept.seconds(cycles(&later).min(cycles(&kept)));
+        let (own, other) = (steps(&later.recording.trace, 0), steps(&baseline.recording.trace, 0));
+        let scaled = |steps| Scaled { steps, hz: f64::from(baseline.experiment.config().clock_hz()), unit: 1.0 };
+        let common_s = baseline.seconds(cycles(&later).min(cycles(&baseline)));
         let apart = position_error::apart(scaled(&own), scaled(&other), common_s);
         let told = page.text("#compared").await?.replace('\u{2212}', "-");
         ensure!(told.contains(&format!("differs by {} steps", apart.largest)), "{} in {told}", apart.largest);
@@ -189,20 +189,20 @@ fn a_kept_run_is_drawn_and_measured_beside_a_later_one() -> Result<()> {
             ensure!(told.contains(fact), "{fact} in {told}");
         }
         page.press("#charts", "\u{e008}\u{e012}").await?;
-        page.until("/ideal .*kept /.test(document.getElementById('read-position').textContent)").await?;
+        page.until("/ideal .*baseline /.test(document.getElementById('read-position').textContent)").await?;
 
         let both = page.canvas("chart-position").await?.hash;
         page.click("#show-difference").await?;
-        page.until("document.getElementById('caption-position').textContent.includes('less the kept')")
+        page.until("document.getElementById('caption-position').textContent.includes('less the baseline')")
             .await?;
         let look = async || Ok((page.canvas("chart-position").await?.hash != both).then_some(()));
         page.eventually("the difference is drawn", look).await?;
-        assert_eq!(page.canvas("chart-position").await?.ink("--kept").pixels, 0);
+        assert_eq!(page.canvas("chart-position").await?.ink("--baseline").pixels, 0);
 
-        page.click("[aria-label='Drop the kept run']").await?;
+        page.click("[aria-label='Drop the baseline']").await?;
         page.until("document.getElementById('compared').hidden").await?;
-        let look = async || Ok((page.canvas("chart-speed").await?.ink("--kept").pixels == 0).then_some(()));
-        page.eventually("the kept curve is gone", look).await
+        let look = async || Ok((page.canvas("chart-speed").await?.ink("--baseline").pixels == 0).then_some(()));
+        page.eventually("the baseline's curve is gone", look).await
     })
 }
 
@@ -288,7 +288,7 @@ fn charts_are_saved_as_pictures_and_tables_of_what_is_seen() -> Result<()> {
             return window.saved[name]";
         let text = async |ends: &str| page.js::<String>(&format!("{read}.text();"), vec![json!(ends)]).await;
         let csv = text("-motion.csv").await?;
-        ensure!(csv.starts_with("time (s),ideal position min (steps),"), "{}", &csv[..200]);
+        ensure!(csv.starts_with("time (s),position ideal min (steps),"), "{}", &csv[..200]);
         ensure!(csv.lines().count() > 500, "{} lines", csv.lines().count());
         ensure!(csv.lines().all(|line| line.split(',').count() == 11), "a column is missing");
         for (ends, charts) in [("-motion.svg", 3), ("-spectrum.svg", 1)] {

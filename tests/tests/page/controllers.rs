@@ -22,7 +22,7 @@ async fn added(page: &Session) -> Result<()> {
 }
 
 #[test]
-fn an_added_controller_is_looked_at_changed_and_taken_back() -> Result<()> {
+fn an_added_controller_is_selected_changed_and_taken_back() -> Result<()> {
     let shorter = r#"{"line":{"address":0},"controllers":[{"axes":[{"moves":[
         {"cosine":{"distance":{"steps":-800}}}]}]}]}"#;
     in_browser(move |page| async move {

@@ -23,7 +23,7 @@ fn the_page_opens_and_draws_the_default_motion() -> Result<()> {
         }
         for id in ["chart-position", "chart-speed"] {
             let canvas = page.canvas(id).await?;
-            ensure!(canvas.ink("--made").columns > 300.0, "{id} shows what the pulses make: {canvas:?}");
+            ensure!(canvas.ink("--actual").columns > 300.0, "{id} shows what the pulses make: {canvas:?}");
         }
         let pulses = page.pulses().await?;
         for ink in ["--step", "--dir", "--enable", "--wire"] {
@@ -32,7 +32,7 @@ fn the_page_opens_and_draws_the_default_motion() -> Result<()> {
         let overview = page.canvas("overview").await?;
         ensure!(overview.colours >= 2, "the overview is drawn: {overview:?}");
         let spectrum = page.canvas("spectrum-chart").await?;
-        for ink in ["--ideal", "--made"] {
+        for ink in ["--ideal", "--actual"] {
             ensure!(spectrum.ink(ink).pixels > 100, "the spectrum has stems in {ink}: {spectrum:?}");
         }
 

@@ -19,11 +19,11 @@ use stepscope_core::scenario::presets::PRESETS;
 use crate::{bench::in_browser, native::Known, session::Session};
 
 /// Most that the colours may differ by in the mean, of 255.
-const MOST_MEAN: f64 = 1.0;
+const MAX_MEAN: f64 = 1.0;
 /// A pixel differs clearly from so much on, in one of its colours.
 const CLEAR: u8 = 64;
 /// Most pixels that may differ clearly, of all.
-const MOST_CLEAR: f64 = 0.004;
+const MAX_CLEAR: f64 = 0.004;
 
 /// So many looks in a row must see the same before a picture is written.
 const STILL: u32 = 5;
@@ -59,9 +59,9 @@ impl Picture {
         let each: Vec<u8> = differences().collect();
         let clear = each.chunks(4).filter(|pixel| pixel.iter().any(|&part| part >= CLEAR)).count();
         let clear = clear as f64 / f64::from(self.width * self.height);
-        (mean > MOST_MEAN || clear > MOST_CLEAR).then(|| {
-            format!("colours differ by {mean:.3} in the mean (at most {MOST_MEAN}), {:.3} % of the pixels clearly (at most {:.3} %)",
-                100.0 * clear, 100.0 * MOST_CLEAR)
+        (mean > MAX_MEAN || clear > MAX_CLEAR).then(|| {
+            format!("colours differ by {mean:.3} in the mean (at most {MAX_MEAN}), {:.3} % of the pixels clearly (at most {:.3} %)",
+                100.0 * clear, 100.0 * MAX_CLEAR)
         })
     }
 }

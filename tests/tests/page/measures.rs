@@ -97,7 +97,7 @@ fn measures_stand_side_by_side_as_the_core_has_them() -> Result<()> {
         );
         let distortions = [
             ("position", ideal.position.distortion, pulses.position.distortion),
-            ("acceleration felt", felt(&ideal), felt(&pulses)),
+            ("acceleration filtered", filtered(&ideal), filtered(&pulses)),
         ];
         for (name, ideal, pulses) in distortions {
             let cells = cells(&page, "Distortion", name, 0).await?;
@@ -124,7 +124,7 @@ fn measures_stand_side_by_side_as_the_core_has_them() -> Result<()> {
     })
 }
 
-fn felt(spectrum: &Spectrum) -> Option<f64> {
+fn filtered(spectrum: &Spectrum) -> Option<f64> {
     spectrum.acceleration_filtered.as_ref()?.distortion
 }
 
@@ -136,14 +136,14 @@ fn the_sensors_bandwidth_is_a_field_and_its_distortion_stands_beside_the_acceler
         page.until_digest(&known.digest).await?;
         page.choose("#spectrum-quantity", "acceleration").await?;
         page.until("document.getElementById('thd').textContent.startsWith('THD of acceleration')").await?;
-        ensure!(!page.text("#thd").await?.contains("felt"));
-        assert_eq!(page.field("analysis.sensor_hz").await?.value, "", "nothing is felt by itself");
+        ensure!(!page.text("#thd").await?.contains("filtered"));
+        assert_eq!(page.field("analysis.sensor_hz").await?.value, "", "nothing is filtered by itself");
         page.fill("analysis.sensor_hz", "40").await?;
-        page.until("document.getElementById('thd').textContent.includes('felt by the sensor: ideal')")
+        page.until("document.getElementById('thd').textContent.includes('filtered by the sensor: ideal')")
             .await?;
         let said = page.text("#thd").await?;
         let (_, [ideal, _]) = measured(&Known::of(SINE)?);
-        let wanted = 100.0 * felt(&ideal).expect("a ratio");
+        let wanted = 100.0 * filtered(&ideal).expect("a ratio");
         let text =
             said.rsplit_once("ideal ").map(|(_, rest)| rest.split(' ').next().unwrap_or("")).unwrap_or("");
         ensure!((text.parse::<f64>()? - wanted).abs() < 1e-3 * wanted, "{said} is not {wanted}");

@@ -43,7 +43,7 @@ impl Session {
     pub(crate) async fn canvas(&self, id: &str) -> Result<Canvas> {
         let inks = [
             "--ideal",
-            "--made",
+            "--actual",
             "--step",
             "--dir",
             "--enable",
@@ -52,7 +52,7 @@ impl Session {
             "--tick",
             "--cursor-a",
             "--cursor-b",
-            "--kept",
+            "--baseline",
             "--accent",
         ];
         self.js(READ, vec![json!(id), json!(inks), json!(LABELS_PX)]).await

@@ -115,7 +115,7 @@ const CONTRAST: &str = "
     const probe = document.createElement('i');
     document.body.append(probe);
     const of = (name) => { probe.style.color = `var(${name})`; return light(rgb(getComputedStyle(probe).color)); };
-    const names = ['--ideal', '--made', '--step', '--dir', '--enable', '--wire', '--packet', '--reply', '--tick', '--axis'];
+    const names = ['--ideal', '--actual', '--step', '--dir', '--enable', '--wire', '--packet', '--reply', '--tick', '--axis'];
     const curves = names.map((name) => [name, ratio(of(name), ground)]);
     const text = ratio(of('--ink'), ground);
     probe.remove();
@@ -130,7 +130,7 @@ async fn contrasts(page: &Session, dark: bool) -> Result<()> {
     }
     page.pulses().await?;
     // The curves on the canvases have the theme's own colours.
-    for (canvas, ink) in [("chart-position", "--ideal"), ("pulses", "--step"), ("spectrum-chart", "--made")] {
+    for (canvas, ink) in [("chart-position", "--ideal"), ("pulses", "--step"), ("spectrum-chart", "--actual")] {
         drawn(page, canvas, ink).await?;
     }
     page.canvas("chart-position").await?.has_curve("--ideal")

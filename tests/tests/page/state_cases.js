@@ -1,6 +1,6 @@
 // Cases of the page's state, run in the page by `state.rs`: each row has a name, the messages, and what is wanted of
 // the state that they lead to. Gives the rows that failed, as sentences; no document is touched.
-return import(new URL("state/state.js", document.baseURI)).then(({ DEPTH, LEAST_SPAN, clamp, endOf, held, initial, isStale, set, shown, update }) => {
+return import(new URL("state/state.js", document.baseURI)).then(({ DEPTH, MIN_SPAN, clamp, endOf, held, initial, isStale, set, shown, update }) => {
   const first = { a: { b: 1 }, list: [{ c: 1 }, { c: 2 }] };
   const begin = () => initial(structuredClone(first));
   const play = (messages, from = begin()) => messages.flat().reduce(update, from);
@@ -39,7 +39,7 @@ return import(new URL("state/state.js", document.baseURI)).then(({ DEPTH, LEAST_
     ["an edit after undo ends the future", [edit("a.b", 2), undo, edit("a.b", 3), redo], (s) => [b(s), s.future.length], [3, 0]],
     ["typing in one field is one step", [edit("a.b", 2, true), edit("a.b", 23, true), undo], b, 1],
     ["typing in another field is another step", [edit("a.b", 2, true), edit("list[0].c", 5, true), undo], (s) => [b(s), s.scenario.list[0].c], [2, 1]],
-    ["leaving the field ends the step", [edit("a.b", 2, true), { type: "seal" }, edit("a.b", 3, true), undo], b, 2],
+    ["leaving the field ends the step", [edit("a.b", 2, true), { type: "committed" }, edit("a.b", 3, true), undo], b, 2],
     ["undo ends the step", [edit("a.b", 2, true), undo, edit("a.b", 3, true), edit("a.b", 4, true), undo], b, 1],
     ["the history is as deep as it says", [many(DEPTH + 20)], (s) => s.past.length, DEPTH],
     ["fifty steps back", [many(DEPTH), Array(DEPTH).fill(undo)], (s) => [b(s), s.past.length, s.future.length], [1, 0, DEPTH]],
@@ -83,11 +83,11 @@ return import(new URL("state/state.js", document.baseURI)).then(({ DEPTH, LEAST_
       edit("a.b", 3), done(2, 1000, { controllers: [controller(1), controller(1)] })], (s) => s.result.controller, 1],
     // The shown time.
     ["without a window all is shown", [done(0)], shown, { start: 0, end: 1000 }],
-    ["before a result the least is shown", [], shown, { start: 0, end: LEAST_SPAN }],
+    ["before a result the least is shown", [], shown, { start: 0, end: MIN_SPAN }],
     ["a window is kept inside the run", [done(0), window(-50, 100)], (s) => s.window, { start: 0, end: 150 }],
     ["on the right as well", [done(0), window(950, 1050)], (s) => s.window, { start: 900, end: 1000 }],
     ["a window is no longer than the run", [done(0), window(-5000, 5000)], (s) => s.window, { start: 0, end: 1000 }],
-    ["a window has a least length", [done(0), window(500, 500)], (s) => s.window, { start: 500, end: 500 + LEAST_SPAN }],
+    ["a window has a least length", [done(0), window(500, 500)], (s) => s.window, { start: 500, end: 500 + MIN_SPAN }],
     ["a window of no numbers is none", [done(0), window(NaN, 5)], (s) => s.window, null],
     ["a window is whole cycles", [done(0), window(10.4, 99.6)], (s) => s.window, { start: 10, end: 99 }],
     ["a link's window waits for the result", [open(10, 50), done(0)], (s) => [s.window, s.awaited], [{ start: 10, end: 50 }, null]],
@@ -125,10 +125,10 @@ return import(new URL("state/state.js", document.baseURI)).then(({ DEPTH, LEAST_
   // What an edit does not touch is shared, so that views can tell what changed by identity.
   const base = begin();
   check("untouched parts are shared", play([edit("a.b", 2)], base).scenario.list === base.scenario.list, true);
-  check("a message without effect gives the same state", ["hover", "seal", "undo"].map((type) => update(base, { type, cycle: null }) === base), [true, true, true]);
+  check("a message without effect gives the same state", ["hover", "committed", "undo"].map((type) => update(base, { type, cycle: null }) === base), [true, true, true]);
   for (const [given, last, wanted] of [
     [{ start: 5, end: 100 }, 1000, { start: 5, end: 100 }],
-    [{ start: 0, end: 1 }, 3, { start: 0, end: LEAST_SPAN }],
+    [{ start: 0, end: 1 }, 3, { start: 0, end: MIN_SPAN }],
     [{ start: 1e300, end: 2e300 }, 1000, { start: 0, end: 1000 }],
     [{ start: -Infinity, end: 5 }, 1000, { start: 0, end: 1000 }],
     [{ start: 0, end: NaN }, 1000, null],

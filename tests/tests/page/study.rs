@@ -368,7 +368,7 @@ fn the_comparison_is_the_cores_and_a_shape_is_taken_and_given_back() -> Result<(
         }
         // They lie over each other, and each is to be seen.
         let speeds = page.canvas("compare-speeds").await?;
-        for ink in ["--made", "--ideal", "--enable", "--wire"] {
+        for ink in ["--actual", "--ideal", "--enable", "--wire"] {
             ensure!(speeds.ink(ink).columns > 100.0, "{ink} has {} columns", speeds.ink(ink).columns);
         }
 

@@ -79,7 +79,7 @@ fn the_tab_torque_has_the_cores_numbers_and_its_curves() -> Result<()> {
         let corner = format!("{} steps/s", machine.corner_rate().expect("a corner") as u64);
         ensure!(facts[1][1] == corner, "{facts:?}");
         let outcome: String = page.eval("document.getElementById('torque-verdict').textContent").await?;
-        ensure!(outcome.starts_with("⚠ Too little torque in one stretch"), "{outcome}");
+        ensure!(outcome.starts_with("⚠ Too little torque in one interval"), "{outcome}");
         // The other axis has no motor; the button gives it the document's.
         page.eval::<Value>("(() => { const axes = document.getElementById('study-axis'); axes.value = '1'; axes.dispatchEvent(new Event('change')); return null; })()").await?;
         page.until("document.querySelector('#study-torque button[aria-label^=\"Add the \"]')").await?;

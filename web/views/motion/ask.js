@@ -1,13 +1,13 @@
-/** Asks the engine for a stretch of the motion in columns: this run's, and the kept one's where there is one. */
-import { keptAxis, unitOf } from "./bands.js";
+/** Asks the engine for a stretch of the motion in columns: this run's, and the baseline's where there is one. */
+import { baselineAxis, unitOf } from "./bands.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../engine/engine.js").Engine} Engine */
 
-/** What a step is in the chosen unit, here and in the kept run. @param {State} state */
+/** What a step is in the chosen unit, here and in the baseline. @param {State} state */
 export function unitPair(state) {
-  const { scale, kept } = unitOf(state);
-  return new Float64Array([scale, kept]);
+  const { scale, baseline } = unitOf(state);
+  return new Float64Array([scale, baseline]);
 }
 
 /**
@@ -21,16 +21,16 @@ export function unitPair(state) {
 export async function ask(engine, state, { start, end }, columns, slot = "motion") {
   const clock = state.result?.summary.clock_hz ?? 1;
   const window = [start / clock, end / clock, columns];
-  const { reference, axis } = state;
-  const of = keptAxis(state).index;
-  const [own, kept, apart] = await Promise.all([
+  const { baseline, axis } = state;
+  const of = baselineAxis(state).index;
+  const [own, other, apart] = await Promise.all([
     engine.latest(slot, "motion", axis, ...window),
-    reference && engine.latest(`${slot} kept`, "baseline_motion", reference.controller, of, ...window),
-    reference && state.difference
+    baseline && engine.latest(`${slot} baseline`, "baseline_motion", baseline.controller, of, ...window),
+    baseline && state.difference
       ? engine.latest(
           `${slot} apart`,
           "baseline_difference",
-          reference.controller,
+          baseline.controller,
           axis,
           of,
           unitPair(state),
@@ -39,5 +39,5 @@ export async function ask(engine, state, { start, end }, columns, slot = "motion
         )
       : null,
   ]);
-  return own && { columns: own, kept, apart };
+  return own && { columns: own, baseline: other, apart };
 }

@@ -8,7 +8,7 @@ import { color, GUTTER } from "../../time/plot.js";
 /** @typedef {{min: Float64Array, max: Float64Array}} Columns */
 /** @typedef {"position" | "speed" | "acceleration"} Quantity */
 /** @typedef {{name: string, ink: string, opacity: number, width: number, dash: number} & Columns} Band */
-/** @typedef {{columns: MotionColumns, kept: MotionColumns | null, apart: Columns | null}} Seen  This run, the kept one, and the difference of their positions where that is shown. */
+/** @typedef {{columns: MotionColumns, baseline: MotionColumns | null, apart: Columns | null}} Seen  This run, the baseline, and the difference of their positions where that is shown. */
 /** @typedef {{low: number, high: number, min: number, max: number}} Range */
 
 export const QUANTITIES = /** @type {const} */ (["position", "speed", "acceleration"]);
@@ -20,11 +20,11 @@ function axisOnShow(state) {
   return state.derived?.controllers[state.result?.controller ?? 0]?.axes[state.axis];
 }
 
-/** The same axis of the kept run, or the last that it has. @param {State} state */
-export function keptAxis({ reference, axis }) {
-  const channels = reference?.summary.controllers[reference.controller]?.channels ?? 1;
+/** The same axis of the baseline, or the last that it has. @param {State} state */
+export function baselineAxis({ baseline, axis }) {
+  const channels = baseline?.summary.controllers[baseline.controller]?.channels ?? 1;
   const index = Math.min(axis, channels - 1);
-  return { index, derived: reference?.derived?.axes[index] };
+  return { index, derived: baseline?.derived?.axes[index] };
 }
 
 /** @param {State} state @returns {[string, string][]} */
@@ -35,15 +35,15 @@ export function unitsOf(state) {
   );
 }
 
-/** The chosen unit, or steps where the axis has no such unit; what a step is in it, here and in the kept run. @param {State} state */
+/** The chosen unit, or steps where the axis has no such unit; what a step is in it, here and in the baseline. @param {State} state */
 export function unitOf(state) {
   const axis = axisOnShow(state);
-  const { derived } = keptAxis(state);
+  const { derived } = baselineAxis(state);
   if (state.unit === "mm" && axis?.step_mm)
-    return { name: "mm", unit: "mm", scale: axis.step_mm, kept: derived?.step_mm ?? axis.step_mm };
+    return { name: "mm", unit: "mm", scale: axis.step_mm, baseline: derived?.step_mm ?? axis.step_mm };
   if (state.unit === "deg" && axis?.step_deg)
-    return { name: "deg", unit: "°", scale: axis.step_deg, kept: derived?.step_deg ?? axis.step_deg };
-  return { name: "steps", unit: "steps", scale: 1, kept: 1 };
+    return { name: "deg", unit: "°", scale: axis.step_deg, baseline: derived?.step_deg ?? axis.step_deg };
+  return { name: "steps", unit: "steps", scale: 1, baseline: 1 };
 }
 
 /** The unit of a quantity. @param {State} state @param {Quantity} quantity */
@@ -64,29 +64,29 @@ function curves(columns, quantity, scale) {
   };
   return {
     ideal: columns.has_ideal ? of(quantity) : null,
-    made: quantity === "acceleration" ? null : of(`made_${quantity}`),
+    actual: quantity === "acceleration" ? null : of(`actual_${quantity}`),
   };
 }
 
 /** From the back to the front. @param {State} state @param {Seen} seen @param {Quantity} quantity @returns {Band[]} */
-export function bandsOf(state, { columns, kept, apart }, quantity) {
+export function bandsOf(state, { columns, baseline, apart }, quantity) {
   if (quantity === "position" && apart)
-    return [{ name: "difference", ink: "--made", opacity: 1, width: 1.6, dash: 0, ...apart }];
-  const { scale, kept: keptScale } = unitOf(state);
-  const { ideal, made } = curves(columns, quantity, scale);
-  const other = kept ? curves(kept, quantity, keptScale) : null;
+    return [{ name: "difference", ink: "--actual", opacity: 1, width: 1.6, dash: 0, ...apart }];
+  const { scale, baseline: baselineScale } = unitOf(state);
+  const { ideal, actual } = curves(columns, quantity, scale);
+  const other = baseline ? curves(baseline, quantity, baselineScale) : null;
   return [
-    made && { name: "made", ink: "--made", opacity: 0.55, width: 4, dash: 0, ...made },
+    actual && { name: "from pulses", ink: "--actual", opacity: 0.55, width: 4, dash: 0, ...actual },
     ideal && { name: "ideal", ink: "--ideal", opacity: 1, width: 1.6, dash: 0, ...ideal },
-    // Dashed: of two plans the plans are compared, of what has none what was made.
+    // Dashed: of two plans the plans are compared, of what has none the actual curves.
     other &&
-      (other.ideal ?? other.made) && {
-        name: "kept",
-        ink: "--kept",
+      (other.ideal ?? other.actual) && {
+        name: "baseline",
+        ink: "--baseline",
         opacity: 1,
         width: 1.8,
         dash: 5,
-        .../** @type {Columns} */ (other.ideal ?? other.made),
+        .../** @type {Columns} */ (other.ideal ?? other.actual),
       },
   ].filter((band) => band !== null);
 }
@@ -115,7 +115,7 @@ export function chartOf(state, seen, quantity) {
     bands,
     range,
     unit: unitFor(state, quantity),
-    caption: quantity === "position" && seen.apart ? "position less the kept run’s, by the pulses" : quantity,
+    caption: quantity === "position" && seen.apart ? "position less the baseline’s, by the pulses" : quantity,
     chart: {
       x: { min: start / clock, max: end / clock, unit: "s", prefix: true, label_px },
       y: { min: range.min, max: range.max, unit: "", prefix: true, label_px: GUTTER },
@@ -138,7 +138,7 @@ export function withoutAcceleration({ has_ideal, acceleration_min, acceleration_
   if (!acceleration_min.every(still) || !acceleration_max.every(still)) return "";
   const [low, high] = [Math.min(...speed_min), Math.max(...speed_max)];
   return high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high))
-    ? "The speed only jumps here; between the jumps there is no acceleration."
+    ? "The speed is stepwise here: acceleration undefined."
     : "The speed does not change here; no acceleration.";
 }
 

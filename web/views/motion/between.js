@@ -1,4 +1,4 @@
-/** What lies between the two cursors: the values at both, their difference, mean and root mean square, ideal and made. */
+/** What lies between the two cursors: the values at both, their difference, mean and root mean square, ideal and actual. */
 import { byId, element, fill, say } from "../../dom.js";
 import { short, si, time } from "../../state/number.js";
 import { QUANTITIES, unitFor, unitOf } from "./bands.js";
@@ -30,18 +30,18 @@ export function createBetween({ engine }) {
       byId("between-tables"),
       ...[
         ["ideal", answer.ideal],
-        ["made", answer.made],
+        ["from pulses", answer.actual],
       ].flatMap(([name, readings]) =>
         readings ? [table(state, /** @type {string} */ (name), /** @type {Readings} */ (readings))] : [],
       ),
     );
     const mean = QUANTITIES.flatMap((quantity, index) => {
-      const from = answer.ideal ?? answer.made;
+      const from = answer.ideal ?? answer.actual;
       return from.mean[index] === undefined
         ? []
         : [`${quantity} ${short(from.mean[index] * unitOf(state).scale)} ${unitFor(state, quantity)}`];
     });
-    said = `Between the cursors: ${span}; means of ${answer.ideal ? "the ideal curve" : "what is made"}: ${mean.join(", ")}.`;
+    said = `Between the cursors: ${span}; means of ${answer.ideal ? "the ideal curve" : "the pulses"}: ${mean.join(", ")}.`;
     place.hidden = false;
   }
 
@@ -58,7 +58,7 @@ function table(state, name, { at_a, at_b, mean, rms }) {
     const values =
       at_a[index] === undefined ? [] : [at_a[index], at_b[index], at_b[index] - at_a[index], mean[index], rms[index]];
     const cells = values.map((value) => element("td", { class: "number" }, short(value * scale, 6)));
-    const none = element("td", { class: "none", colspan: "5" }, "– the pulses’ speed only jumps");
+    const none = element("td", { class: "none", colspan: "5" }, "– speed is stepwise, acceleration undefined");
     return element("tr", {}, element("th", { scope: "row" }, quantity), ...(cells.length ? cells : [none]));
   });
   return element(

@@ -1,10 +1,10 @@
-/** Two runs on one axis: a run is kept, and every later one is drawn and measured beside it. */
+/** Two runs on one axis: a run is kept as the baseline, and every later one is drawn and measured beside it. */
 import { button, byId, element, fill, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count, plain, short, si, time } from "../../state/number.js";
 import { selected } from "../../state/state.js";
 import { unitPair } from "./ask.js";
-import { keptAxis, unitOf } from "./bands.js";
+import { baselineAxis, unitOf } from "./bands.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 
@@ -13,12 +13,12 @@ export function createCompare({ engine, dispatch, now }) {
   const place = byId("compared");
   const keepButton = /** @type {HTMLButtonElement} */ (byId("keep-run"));
   const change = /** @type {HTMLInputElement} */ (byId("show-difference"));
-  const drop = button("Drop", "Drop the kept run", () => {
-    dispatch({ type: "reference", reference: null });
+  const drop = button("Drop", "Drop the baseline", () => {
+    dispatch({ type: "baseline", baseline: null });
     keepButton.focus();
   });
-  [drop.className, drop.hidden] = ["with-kept", true];
-  byId("kept-buttons").append(drop);
+  [drop.className, drop.hidden] = ["with-baseline", true];
+  byId("baseline-buttons").append(drop);
   keepButton.addEventListener("click", () => void keep());
   change.addEventListener("change", () => dispatch({ type: "difference", on: change.checked }));
 
@@ -32,8 +32,8 @@ export function createCompare({ engine, dispatch, now }) {
         ? origin.slice(7)
         : `of digest ${result.summary.controllers[result.controller].digest.slice(0, 8)}`);
     dispatch({
-      type: "reference",
-      reference: {
+      type: "baseline",
+      baseline: {
         title,
         revision,
         summary: result.summary,
@@ -45,36 +45,36 @@ export function createCompare({ engine, dispatch, now }) {
 
   /** @param {State} state */
   async function tell(state) {
-    const { reference, result } = state;
-    place.hidden = !reference;
-    if (!reference || !result) return;
-    const looked = selected(state);
-    const kept = keptAxis(state);
+    const { baseline, result } = state;
+    place.hidden = !baseline;
+    if (!baseline || !result) return;
+    const controller = selected(state);
+    const other = baselineAxis(state);
     const own = state.derived?.controllers[result.controller]?.axes[state.axis];
-    const { unit, scale, kept: keptScale } = unitOf(state);
-    const same = reference.revision === result.revision;
+    const { unit, scale, baseline: baselineScale } = unitOf(state);
+    const same = baseline.revision === result.revision;
     const apart = same
       ? null
       : /** @type {import("../../state/types.js").Apart | null} */ (
           await engine
-            .latest("apart", "baseline_apart", reference.controller, state.axis, kept.index, unitPair(state))
+            .latest("apart", "baseline_apart", baseline.controller, state.axis, other.index, unitPair(state))
             .catch(unlessDropped)
         );
     const rows = [
-      row("duration", own?.duration_s, kept.derived?.duration_s, (value) => time(value)),
+      row("duration", own?.duration_s, other.derived?.duration_s, (value) => time(value)),
       row(
         "peak speed",
         own && own.peak_speed_steps_s * scale,
-        kept.derived && kept.derived.peak_speed_steps_s * keptScale,
+        other.derived && other.derived.peak_speed_steps_s * baselineScale,
         (value) => plain(value, `${unit}/s`),
       ),
       row(
         "peak acceleration",
         own && own.peak_acceleration_steps_s2 * scale,
-        kept.derived && kept.derived.peak_acceleration_steps_s2 * keptScale,
+        other.derived && other.derived.peak_acceleration_steps_s2 * baselineScale,
         (value) => plain(value, `${unit}/s²`),
       ),
-      row("edges", looked?.edges, reference.summary.controllers[reference.controller].edges, count),
+      row("edges", controller?.edges, baseline.summary.controllers[baseline.controller].edges, count),
     ];
     const far = apart
       ? [
@@ -87,8 +87,8 @@ export function createCompare({ engine, dispatch, now }) {
     say(
       byId("compared-title"),
       same
-        ? `Kept: ${reference.title}. Change the experiment or choose a preset; the kept run stays as dashed curves.`
-        : `Against the kept run: ${reference.title}`,
+        ? `Baseline: ${baseline.title}. Change the experiment or choose a preset; the baseline stays as dashed curves.`
+        : `Against the baseline: ${baseline.title}`,
     );
     fill(
       byId("compared-facts"),
@@ -96,29 +96,29 @@ export function createCompare({ engine, dispatch, now }) {
     );
   }
 
-  /** @param {string} name @param {number | undefined} own @param {number | undefined} kept @param {(value: number) => string} print */
-  function row(name, own, kept, print) {
-    if (own === undefined || kept === undefined) return [name, "–"];
-    const by = own - kept;
+  /** @param {string} name @param {number | undefined} own @param {number | undefined} baseline @param {(value: number) => string} print */
+  function row(name, own, baseline, print) {
+    if (own === undefined || baseline === undefined) return [name, "–"];
+    const by = own - baseline;
     return [
       name,
-      `${print(own)}, kept ${print(kept)}, ${by === 0 ? "the same" : `${by > 0 ? "+" : "−"}${print(Math.abs(by))}`}`,
+      `${print(own)}, baseline ${print(baseline)}, ${by === 0 ? "the same" : `${by > 0 ? "+" : "−"}${print(Math.abs(by))}`}`,
     ];
   }
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
     keepButton.disabled = state.result === null || state.result.revision !== state.revision;
-    const { reference, result, axis, unit, derived } = state;
-    if (before?.reference !== reference) {
-      if (before?.reference && !reference) engine.ask("baseline", false).catch(unlessDropped);
-      for (const node of document.querySelectorAll(".with-kept")) /** @type {HTMLElement} */ (node).hidden = !reference;
-      keepButton.textContent = reference ? "Keep this instead" : "Keep to compare";
+    const { baseline, result, axis, unit, derived } = state;
+    if (before?.baseline !== baseline) {
+      if (before?.baseline && !baseline) engine.ask("baseline", false).catch(unlessDropped);
+      for (const node of document.querySelectorAll(".with-baseline")) /** @type {HTMLElement} */ (node).hidden = !baseline;
+      keepButton.textContent = baseline ? "Keep this instead" : "Keep to compare";
     }
     change.checked = state.difference;
     if (
-      before?.reference !== reference ||
-      (reference &&
+      before?.baseline !== baseline ||
+      (baseline &&
         (before?.result !== result || before?.axis !== axis || before?.unit !== unit || before?.derived !== derived))
     )
       void tell(state);

@@ -65,7 +65,7 @@ export function createMotion({ engine, dispatch, now }) {
     const wanted = Math.max(16, Math.round(plot.right - plot.left));
     const answer = await ask(engine, state, shown(state), wanted).catch(unlessDropped);
     if (!answer) return;
-    if (state.reference && !answer.kept) dispatch({ type: "reference", reference: null });
+    if (state.baseline && !answer.baseline) dispatch({ type: "baseline", baseline: null });
     seen = answer;
     paint(now());
   }
@@ -127,8 +127,8 @@ export function createMotion({ engine, dispatch, now }) {
   function sentence(state) {
     const { start, end } = shown(state);
     const clock = state.result?.summary.clock_hz ?? 1;
-    const kept = state.reference ? ` Beside it, dashed, the kept run ${state.reference.title}.` : "";
-    return `Axis ${state.axis}, ${si(start / clock, "s")} to ${si(end / clock, "s")}.${kept} ${between.sentence()}`.trim();
+    const baseline = state.baseline ? ` Beside it, dashed, the baseline ${state.baseline.title}.` : "";
+    return `Axis ${state.axis}, ${si(start / clock, "s")} to ${si(end / clock, "s")}.${baseline} ${between.sentence()}`.trim();
   }
 
   /** Says a cursor's values once it stands, where keys moved it. @param {State} state @param {"a" | "b"} which */
@@ -144,7 +144,7 @@ export function createMotion({ engine, dispatch, now }) {
       const texts = QUANTITIES.flatMap((quantity, index) => {
         const values = [
           ["ideal", answer.ideal],
-          ["made", answer.made],
+          ["from pulses", answer.actual],
         ].flatMap(([name, of]) => {
           const value = /** @type {import("../../state/types.js").Readings | null} */ (of)?.at_a[index];
           return value === undefined ? [] : [`${name} ${short(value * scale)}`];
@@ -190,7 +190,7 @@ export function createMotion({ engine, dispatch, now }) {
     }
     compare.render(state, before);
     const other =
-      before?.axis !== state.axis || before?.result !== state.result || before?.reference !== state.reference;
+      before?.axis !== state.axis || before?.result !== state.result || before?.baseline !== state.baseline;
     const moved = other || before?.window !== state.window;
     if (before?.window !== state.window || other || before?.unit !== state.unit) record.render(state);
     if (before && byKeys && before.cursors !== state.cursors)

@@ -14,7 +14,7 @@ import { worded } from "./table.js";
 /** Signal bits of the line (contract A3). */
 const [RX, TX] = [33, 34];
 /** Bytes whose bits are written out. */
-const MOST_BITS = 4;
+const MAX_BITS = 4;
 
 /** @param {import("./packets.js").Page} page */
 export function createInspector({ engine, dispatch, now }) {
@@ -87,20 +87,20 @@ export function createInspector({ engine, dispatch, now }) {
     light(now());
   }
 
-  /** @param {PacketDetail} told @param {State} state */
-  function paint(told, state) {
+  /** @param {PacketDetail} row @param {State} state */
+  function paint(row, state) {
     const clock = state.result?.summary.clock_hz ?? 1;
     const said = (/** @type {number} */ cycles) => time(cycles / clock);
-    say(byId("packet-detail"), [`#${count(told.index)}`, worded(told), told.outcome].filter(Boolean).join(" · "));
+    say(byId("packet-detail"), [`#${count(row.index)}`, worded(row), row.outcome].filter(Boolean).join(" · "));
     fill(
       byId("packet-facts"),
-      ...facts(told, said).map(([name, value, bad]) =>
+      ...facts(row, said).map(([name, value, bad]) =>
         element("div", bad ? { class: "bad" } : {}, element("dt", {}, name), element("dd", {}, value)),
       ),
     );
-    const hex = told.hex === "" ? [] : told.hex.split(" ");
+    const hex = row.hex === "" ? [] : row.hex.split(" ");
     const named = hex.map(
-      (_, place) => told.layout.find(({ from, until }) => from <= place && place < until)?.name ?? "",
+      (_, place) => row.layout.find(({ from, until }) => from <= place && place < until)?.name ?? "",
     );
     fill(
       bytes,
@@ -120,7 +120,7 @@ export function createInspector({ engine, dispatch, now }) {
     );
     fill(
       fields,
-      ...told.layout.map(({ name, value, from, until }, place) => {
+      ...row.layout.map(({ name, value, from, until }, place) => {
         const range = until - from > 1 ? `${from}–${until - 1}` : String(from);
         return element(
           "span",
@@ -129,7 +129,7 @@ export function createInspector({ engine, dispatch, now }) {
             id: `field-${place}`,
             "aria-selected": "false",
             title: until - from > 1 ? `bytes ${range}` : `byte ${range}`,
-            class: name === "check" && told.check === "fails" ? "bad" : "",
+            class: name === "check" && row.check === "fails" ? "bad" : "",
           },
           element("b", {}, name),
           " ",
@@ -144,21 +144,20 @@ export function createInspector({ engine, dispatch, now }) {
 
   /** Lights the bytes and fields that something points at. @param {State} state */
   function light({ highlighted, result }) {
-    const told = row;
     const over =
-      highlighted && told && (highlighted.packet === null || highlighted.packet === told.index)
-        ? told.byte_cycles.map((start) => start < highlighted.end && start + told.byte_length > highlighted.start)
+      highlighted && row && (highlighted.packet === null || highlighted.packet === row.index)
+        ? row.byte_cycles.map((start) => start < highlighted.end && start + row.byte_length > highlighted.start)
         : [];
     // All of a row is said by the row itself.
     const some = over.includes(false) || over.length === 1 ? over : [];
     for (const [place, cell] of [...bytes.children].entries())
       cell.classList.toggle("highlighted", some[place] === true);
     for (const [place, cell] of [...fields.children].entries()) {
-      const { from, until } = told?.layout[place] ?? { from: 0, until: 0 };
+      const { from, until } = row?.layout[place] ?? { from: 0, until: 0 };
       cell.classList.toggle("highlighted", some.slice(from, until).includes(true));
     }
     const [first, last] = [some.indexOf(true), some.lastIndexOf(true)];
-    if (told) say(byId("packet-reading"), reading(told, first, last, result?.summary.clock_hz ?? 1));
+    if (row) say(byId("packet-reading"), reading(row, first, last, result?.summary.clock_hz ?? 1));
   }
 
   return {
@@ -182,8 +181,8 @@ function reading(row, first, last, clock) {
   const when = `${time(row.byte_cycles[first] / clock)} to ${time((row.byte_cycles[last] + row.byte_length) / clock)}`;
   return [
     first === last ? `byte ${first}` : `bytes ${first} to ${last}`,
-    hex.length <= MOST_BITS ? hex.join(" ") : "",
-    hex.length <= MOST_BITS ? `bits ${bits.join(" ")}` : "",
+    hex.length <= MAX_BITS ? hex.join(" ") : "",
+    hex.length <= MAX_BITS ? `bits ${bits.join(" ")}` : "",
     when,
   ]
     .filter(Boolean)

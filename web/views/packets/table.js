@@ -9,7 +9,7 @@ import { count } from "../../state/number.js";
 
 const ROW_PX = 24;
 /** Browsers refuse boxes taller than some ten million pixels; a longer list scrolls in larger steps. */
-const MOST_PX = 6_000_000;
+const MAX_PX = 6_000_000;
 /** Air at both sides of a cell's text. */
 const CELL_PX = 17;
 /** Most of the column of bytes where words say more than they do. */
@@ -105,7 +105,7 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
     if (others) {
       current = Math.min(current, Math.max(0, answer.shown - 1));
       table.setAttribute("aria-rowcount", String(answer.shown + 1));
-      space.style.height = `${Math.min(MOST_PX, (answer.shown + 1) * ROW_PX + 2)}px`;
+      space.style.height = `${Math.min(MAX_PX, (answer.shown + 1) * ROW_PX + 2)}px`;
       // Fewer rows may have moved the scroll bar.
       if (first() !== from) return reload();
     }

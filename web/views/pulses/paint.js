@@ -137,7 +137,7 @@ export function paintSpans(context, spans, { top, height, ratio, ink, left, righ
 /** One thin strip: how busy each column of the whole run is. @param {CanvasRenderingContext2D} context @param {PulseColumns} columns @param {{left: number, height: number}} place */
 export function paintOverview(context, columns, { left, height }) {
   const picture = { columns, from: 0, to: columns.high.length / 2, at: (/** @type {number} */ i) => left + i };
-  const lane = (
+  const strip = (
     /** @type {number} */ index,
     /** @type {string} */ ink,
     /** @type {(column: number) => boolean} */ holds,
@@ -147,7 +147,7 @@ export function paintOverview(context, columns, { left, height }) {
   };
   const busy = (/** @type {number} */ mask) => (/** @type {number} */ i) =>
     (columns.high[2 * i] & columns.low[2 * i] & mask) !== 0;
-  lane(0, "--step", busy(0x0000ffff));
-  lane(1, "--dir", busy(0xffff0000));
-  lane(2, "--wire", (i) => has(columns.low, i, RX) || has(columns.low, i, TX));
+  strip(0, "--step", busy(0x0000ffff));
+  strip(1, "--dir", busy(0xffff0000));
+  strip(2, "--wire", (i) => has(columns.low, i, RX) || has(columns.low, i, TX));
 }

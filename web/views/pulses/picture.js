@@ -61,7 +61,7 @@ export function paintRows(canvas, state, plot, answer, spans) {
     context.clip();
     if (row.kind === "folded") paintTint(context, picture, row.dir, true, { ...place, ink: color("--dir") });
     if ("bit" in row) paintSignal(context, picture, row.bit, place);
-    else if ("lane" in row && spans.isDense(row)) paintTint(context, picture, row.line, false, place);
+    else if ("wire" in row && spans.isDense(row)) paintTint(context, picture, row.line, false, place);
     else
       paintSpans(
         context,
@@ -93,7 +93,7 @@ export function drawLit(context, state, plot, spans) {
     } else if (!spans.isDense(row)) {
       for (const { start, end, packet } of spans.spansOf(state, row)) {
         const same = start === highlighted.start && end === highlighted.end;
-        if (!same && (packet === null || packet !== highlighted.packet || "lane" in row)) continue;
+        if (!same && (packet === null || packet !== highlighted.packet || "wire" in row)) continue;
         const [from, to] = [
           Math.max(plot.left, pixelOf(state, plot, start)),
           Math.min(plot.right, pixelOf(state, plot, end)),

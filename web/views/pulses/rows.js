@@ -10,7 +10,7 @@ import { selected } from "../../state/state.js";
  * @typedef {{kind: "signal", name: string, bit: number, ink: string, channel?: number, open?: boolean}} SignalRow  With the sign that folds its `channel` where it has `open`.
  * @typedef {{kind: "folded", name: string, bit: number, dir: number, ink: string, channel: number, open: false}} FoldedRow  STEP over its DIR.
  * @typedef {{kind: "packets" | "replies" | "ticks" | "violations", name: string, ink: string}} SpanRow
- * @typedef {{kind: "bits" | "bytes" | "fields", lane: "rx" | "tx", line: number, name: string, ink: string}} LineRow  A decoder of the signal `line`.
+ * @typedef {{kind: "bits" | "bytes" | "fields", wire: "rx" | "tx", line: number, name: string, ink: string}} LineRow  A decoder of the signal `line`.
  * @typedef {SignalRow | FoldedRow | SpanRow | LineRow} Row
  */
 
@@ -19,7 +19,7 @@ export const ROW_PX = 19;
 /** Signal bits (contract A3). */
 const [DIR, EN, RX, TX, DE] = [16, 32, 33, 34, 35];
 /** With more channels than these, all begin folded. The decoders do so too: the curves need the room. */
-const MOST_UNFOLDED = 4;
+const MAX_UNFOLDED = 4;
 
 /** Signals of the line, that a run may leave as they are. */
 const LINE = [
@@ -35,7 +35,7 @@ function channelsOf(state) {
 
 /** Whether a channel is one row, or the decoders of RX or TX are put away. @param {State} state @param {number} channel */
 export function isFolded(state, channel) {
-  return state.folds[channel] ?? (channel === RX || channel === TX || channelsOf(state) > MOST_UNFOLDED);
+  return state.folds[channel] ?? (channel === RX || channel === TX || channelsOf(state) > MAX_UNFOLDED);
 }
 
 /** Whether every channel is folded. @param {State} state */
@@ -68,14 +68,14 @@ function lineRows(state, { name, bit }) {
   const open = !isFolded(state, bit);
   /** @type {Row} */
   const row = { kind: "signal", name, bit, ink: "--wire", channel: bit, open };
-  const lane = bit === RX ? "rx" : "tx";
+  const wire = bit === RX ? "rx" : "tx";
   /** @type {("bits" | "bytes" | "fields")[]} */
   const kinds = open ? ["bits", "bytes", "fields"] : [];
   return [
     row,
     ...kinds.map(
       (kind) =>
-        /** @type {const} */ ({ kind, lane, line: bit, name: kind, ink: lane === "rx" ? "--packet" : "--reply" }),
+        /** @type {const} */ ({ kind, wire, line: bit, name: kind, ink: wire === "rx" ? "--packet" : "--reply" }),
     ),
   ];
 }

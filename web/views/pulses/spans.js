@@ -3,7 +3,7 @@ import { unlessDropped } from "../../engine/engine.js";
 import { ruleName } from "../../form/schema.js";
 import { si } from "../../state/number.js";
 import { selected, shown } from "../../state/state.js";
-import { asked } from "../timing.js";
+import { required } from "../timing.js";
 import { hasLine } from "./rows.js";
 
 /** @typedef {import("../../state/types.js").State} State */
@@ -82,9 +82,9 @@ export function createSpans({ engine }) {
   /** Whether a decoder has too much in the shown time to tell it apart. @param {DecodedRow} row */
   function isDense(row) {
     if (row.kind === "ticks") return ticks.more;
-    if (!("lane" in row)) return row.kind !== "violations" && packets.more;
+    if (!("wire" in row)) return row.kind !== "violations" && packets.more;
     return (
-      decoded.more || (row.kind === "bits" && decoded[row.lane].bits.length === 0 && decoded[row.lane].bytes.length > 0)
+      decoded.more || (row.kind === "bits" && decoded[row.wire].bits.length === 0 && decoded[row.wire].bytes.length > 0)
     );
   }
 
@@ -105,8 +105,8 @@ export function createSpans({ engine }) {
         },
       ];
     }
-    if ("lane" in row) {
-      return decoded[row.lane][row.kind].map((span) => ({
+    if ("wire" in row) {
+      return decoded[row.wire][row.kind].map((span) => ({
         ...span,
         marked: span.packet !== null && span.packet === state.packet,
         ink: span.bad ? "--error" : null,
@@ -143,7 +143,7 @@ export function createSpans({ engine }) {
       ink: "--error",
       packet: null,
       texts: [
-        `ch ${channel}: ${ruleName(rule)} ${si(measured_cycles / clock, "s")}, ${asked(timing, rule)} asked for`,
+        `ch ${channel}: ${ruleName(rule)} ${si(measured_cycles / clock, "s")}, ${required(timing, rule)} required`,
         ruleName(rule),
         "!",
       ],

@@ -58,7 +58,7 @@ export function value({ amplitude, part }, quantity, db) {
 }
 
 /** One harmonic in words. @param {ReturnType<typeof harmonics>[number]} row @param {Quantity} quantity @param {boolean} periodic */
-export function told({ n, hz, parts }, quantity, periodic) {
+export function describe({ n, hz, parts }, quantity, periodic) {
   const each = parts.map(
     ({ name, amplitude, part }) =>
       `${name} ${short(amplitude, 4)} ${UNITS[quantity]}, ${short(100 * part, 3)} %, ${decibels(part)}`,
@@ -75,12 +75,12 @@ export function distortion(spectra, quantity) {
     const value = spectrum[/** @type {const} */ (`thd_${quantity}`)];
     return `${name} ${value === null ? "none" : percent(value)}`;
   });
-  const felt =
-    quantity === "acceleration" ? given(spectra).filter(([, spectrum]) => spectrum.thd_acceleration_felt !== null) : [];
-  const through = felt
-    .map(([name, spectrum]) => `${name} ${percent(Number(spectrum.thd_acceleration_felt))}`)
+  const filtered =
+    quantity === "acceleration" ? given(spectra).filter(([, spectrum]) => spectrum.thd_acceleration_filtered !== null) : [];
+  const through = filtered
+    .map(([name, spectrum]) => `${name} ${percent(Number(spectrum.thd_acceleration_filtered))}`)
     .join(", ");
-  return `THD of ${quantity}, axis ${spectra.axis}: ${parts.join(", ")}${through && `; felt by the sensor: ${through}`}`;
+  return `THD of ${quantity}, axis ${spectra.axis}: ${parts.join(", ")}${through && `; filtered by the sensor: ${through}`}`;
 }
 
 /** How the distortion is defined. @param {Spectrum} some */

@@ -4,7 +4,7 @@ import { unlessDropped } from "../../engine/engine.js";
 import { listen } from "../../shell/commands.js";
 import { short, si } from "../../state/number.js";
 import { cleared, color, draw, fit, watch } from "../../time/plot.js";
-import { distortion, FLOOR_DB, given, harmonics, heard, method, reference, told, value } from "./harmonics.js";
+import { distortion, FLOOR_DB, given, harmonics, heard, method, reference, describe, value } from "./harmonics.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").Spectra} Spectra */
@@ -26,7 +26,7 @@ export function spectrumChart(spectra, quantity, db, width) {
       ? { min: FLOOR_DB, max: 10, unit: "dB", prefix: false, label_px: GUTTER }
       : { min: 0, max: top * 1.1, unit: "", prefix: true, label_px: GUTTER },
     series: all.map(([name, spectrum]) => ({
-      color: color(name === "ideal" ? "--ideal" : "--made"),
+      color: color(name === "ideal" ? "--ideal" : "--actual"),
       opacity: 1,
       width: thick,
       x,
@@ -161,7 +161,7 @@ export function createSpectrum({ engine, dispatch, now }) {
     const row = harmonic === null ? undefined : rows[harmonic - 1];
     const { quantity } = chosenSpectrum();
     const some = spectra?.ideal ?? spectra?.pulses;
-    const text = row ? told(row, quantity, some?.periodic ?? false) : "";
+    const text = row ? describe(row, quantity, some?.periodic ?? false) : "";
     const short = (/** @type {string} */ of) => {
       const part = row?.parts.find(({ name }) => name === of);
       return part ? `${of} ${value(part, quantity, chosenSpectrum().db)}` : of;

@@ -12,12 +12,12 @@ import { place, selectedAxis } from "./selected_axis.js";
 /** @typedef {import("../../state/types.js").State} State */
 /**
  * @typedef {{move: {[kind: string]: any}, why: string | null, speed: number, jump: number, acceleration: number, jerk: number, acceleration_jump: number,
- *   time_error_s: number, last_step_s: number, at_speed?: Float64Array, at_acceleration?: Float64Array}} Told
+ *   time_error_s: number, last_step_s: number, at_speed?: Float64Array, at_acceleration?: Float64Array}} ShapeCost
  */
 
 /** In the order of the core's rows: name, colour and dash, which tells them apart where colour does not. @type {[string, string, number][]} */
 const LOOKS = [
-  ["Cosine, exact", "--made", 0],
+  ["Cosine, exact", "--actual", 0],
   ["Cosine, in slices", "--ideal", 2],
   ["Sigmoid", "--enable", 4],
   ["Bezier", "--wire", 7],
@@ -85,7 +85,7 @@ export function createCompare({ engine, dispatch, now, panel }) {
     refresh(now());
   });
   watch(speeds, paint);
-  /** @type {Told[]} */
+  /** @type {ShapeCost[]} */
   let rows = [];
   let duration = 0;
   let key = "";
@@ -143,7 +143,7 @@ export function createCompare({ engine, dispatch, now, panel }) {
     rows = answer;
     key = kindOf(asked);
     rowsOf = `${placeOf(state)} ${move}`;
-    // What is wrong with the ramp for every shape is told once, at its field.
+    // What is wrong with the ramp for every shape is said once, at its field.
     const [{ why }] = rows;
     const refused = why !== null && rows.every((row) => row.why === why);
     ramp.fail(refused ? pretty(why) : "");

@@ -16,7 +16,7 @@ import { table } from "./parts.js";
  *   points: number, sum_of_squares_steps2: number, euclidean_steps: number, correlation: number | null, uncorrelated: number | null}} Comparison
  * @typedef {{pulses: number, largest_s: number, largest_at_s: number, mean_s: number, rms_s: number, largest_steps: number, rms_steps: number}} Errors
  * @typedef {{length_s: number, steps: Comparison, ticks: Comparison, pulses: Comparison, step_errors: Errors, tick_errors: Errors,
- *   counts: {due: number, made: number, stray: number}, peaks: {[name: string]: number}, duration: {[name: string]: number | null},
+ *   counts: {due: number, actual: number, stray: number}, peaks: {[name: string]: number}, duration: {[name: string]: number | null},
  *   sine: {segments: number, euclidean: number, quarter: Comparison} | null}} Measures
  */
 
@@ -96,9 +96,9 @@ const PEAKS = [
 ];
 /** @type {[string, string, string][]} */
 const DURATION = [
-  ["asked", "asked_s", "Sum of the times that the moves name; moves that name none count as planned."],
+  ["requested", "requested_s", "Sum of the times that the moves name; moves that name none count as planned."],
   ["planned", "planned_s", "Time of the ideal curve."],
-  ["planned less asked", "plan_error_s", "The plan's time error."],
+  ["planned minus requested", "plan_error_s", "The plan's time error."],
   ["last step due", "last_due_s", "From the motion's start."],
   ["last pulse", "last_pulse_s", "From the start of the first tick, or of the segments."],
   ["last pulse late by", "end_error_s", "The run's time error at the end."],
@@ -148,7 +148,7 @@ export function createMeasures({ engine, panel }) {
         text,
       ]),
       ["steps due", count(counts.due), "There and back."],
-      ["pulses made", count(counts.made), "Steps to and fro within one tick cancel and are not made."],
+      ["actual pulses", count(counts.actual), "Steps to and fro within one tick cancel and are not made."],
       ["pulses without a step", count(counts.stray), "At a place, or in a direction, in which no step was due."],
     ]);
     peaks.show(PEAKS.map(([name, key, unit, text]) => [name, plain(found.peaks[key], unit), text]));
@@ -187,13 +187,13 @@ export function createMeasures({ engine, panel }) {
         percent(pulses.thd_acceleration),
         "Harmonic k counts k² times: of segments of fixed rate it grows with the order.",
       ],
-      ...(ideal.thd_acceleration_felt === null
+      ...(ideal.thd_acceleration_filtered === null
         ? []
         : [
             [
-              "acceleration felt",
-              percent(ideal.thd_acceleration_felt),
-              percent(pulses.thd_acceleration_felt),
+              "acceleration filtered",
+              percent(ideal.thd_acceleration_filtered),
+              percent(pulses.thd_acceleration_filtered),
               "Behind the sensor's low pass, which the form sets.",
             ],
           ]),

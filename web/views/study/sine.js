@@ -13,8 +13,8 @@ import { createSegments } from "./segments.js";
 import { selectedAxis } from "./selected_axis.js";
 
 /** @typedef {import("../../state/types.js").State} State */
-/** @typedef {"position" | "speed" | "acceleration" | "felt"} Quantity */
-/** @typedef {{d1: Float64Array, segments: Float64Array, position: Float64Array, speed: Float64Array, acceleration: Float64Array, felt: Float64Array, euclidean: Float64Array}} Rows */
+/** @typedef {"position" | "speed" | "acceleration" | "filtered"} Quantity */
+/** @typedef {{d1: Float64Array, segments: Float64Array, position: Float64Array, speed: Float64Array, acceleration: Float64Array, filtered: Float64Array, euclidean: Float64Array}} Rows */
 /** @typedef {{[name in keyof Rows]: number}} Row */
 /** @typedef {{angle_deg: Float64Array, height: Float64Array, thd: number}} Vertices */
 
@@ -29,7 +29,7 @@ const NAMES = /** @type {(keyof Rows)[]} */ ([
   "position",
   "speed",
   "acceleration",
-  "felt",
+  "filtered",
   "euclidean",
 ]);
 
@@ -50,7 +50,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   });
   const quantity = choice(
     "THD of",
-    { position: "position", speed: "speed", acceleration: "acceleration", felt: "acceleration, felt" },
+    { position: "position", speed: "speed", acceleration: "acceleration", filtered: "acceleration, filtered" },
     paint,
   );
   const job = createJob("Sweep", () => (rows ? " The charts show the sweep before." : ""));
@@ -84,7 +84,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     "#THD position",
     "~#speed",
     "~#acceleration",
-    "~#felt",
+    "~#filtered",
     "#Ev",
     "",
   ]);
@@ -253,17 +253,17 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
         ]);
         let done = 0;
         const all = pieces.length + STRETCHES;
-        const told = () =>
+        const progress = () =>
           tell(
             ++done / all,
             done < pieces.length ? `${Math.min(number, done * PIECE)} of ${number} points` : "the best d1 of the range",
           );
         tell(0, `0 of ${number} points`);
         // The rows before stay until these are there.
-        const answers = joined(await engine.distribute("sine_rows", pieces, signal, told));
+        const answers = joined(await engine.distribute("sine_rows", pieces, signal, progress));
         [rows, at, least, sweptOrder] = [answers, null, null, highest];
         paint();
-        const found = await engine.distribute("sine_best", stretches, signal, told);
+        const found = await engine.distribute("sine_best", stretches, signal, progress);
         return joined(found);
       },
       (found) => {
@@ -326,10 +326,10 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   function paint() {
     const chosen = /** @type {Quantity} */ (quantity.value());
     const what =
-      chosen !== "felt"
+      chosen !== "filtered"
         ? chosen
         : sensor === undefined
-          ? "acceleration, felt"
+          ? "acceleration, filtered"
           : `the acceleration that a sensor of ${short(sensor, 4)} harmonics feels`;
     fill(
       thdCaption,
@@ -373,7 +373,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
           rows[chosen].map((ratio) => 100 * ratio),
           "--ideal",
         );
-      plot = line(distanceCanvas, rows.euclidean, "--made");
+      plot = line(distanceCanvas, rows.euclidean, "--actual");
       fit(overlay);
     }
     mark();
@@ -405,7 +405,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
               percent(row.position),
               percent(row.speed),
               percent(row.acceleration),
-              percent(row.felt),
+              percent(row.filtered),
               short(row.euclidean, 4),
             ]
           : [none, "", "", "", "", "", ""]),

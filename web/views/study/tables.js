@@ -10,7 +10,7 @@ import { selectedAxis } from "./selected_axis.js";
 import { chosen, FORMS, files, LANGUAGES } from "./table_files.js";
 
 /** @typedef {import("../../state/types.js").State} State */
-/** @typedef {{steps: number, entries: number, bytes: number, document_bytes: number | null, largest_s: number, rms_s: number, why: string | null}} Told */
+/** @typedef {{steps: number, entries: number, bytes: number, document_bytes: number | null, largest_s: number, rms_s: number, why: string | null}} Form */
 
 /** @type {{[widths: string]: string}} */
 const WIDTHS = { q16: "20 bytes, 1/65536 cycle", q8: "8 bytes, 1/256 cycle", ticks: "8 bytes, whole cycles" };
@@ -35,8 +35,8 @@ export function createTables({ engine, now, panel }) {
   const saves = element("p", { class: "study-bar", role: "group", "aria-label": "Save the chosen table" });
   const said = element("span", { "aria-live": "polite" });
   fill(panel, element("div", { class: "study-bar" }, error.root, job.root), about, list.root, note, saves);
-  /** What the table shows, and what it was made of. @type {Told[]} */
-  let told = [];
+  /** What the table shows, and what it was made of. @type {Form[]} */
+  let forms = [];
   let key = "";
   list.body.addEventListener("click", ({ target }) => {
     const row = /** @type {Element} */ (target).closest("tr");
@@ -59,7 +59,7 @@ export function createTables({ engine, now, panel }) {
     const of = selectedAxis(now());
     if (!of || typeof of === "string") return fill(saves);
     const none =
-      told[ROWS.findIndex(({ form, widths }) => form === chosen.form && widths === chosen.widths)]?.why !== null;
+      forms[ROWS.findIndex(({ form, widths }) => form === chosen.form && widths === chosen.widths)]?.why !== null;
     say(said, "");
     fill(
       saves,
@@ -88,18 +88,18 @@ export function createTables({ engine, now, panel }) {
   }
 
   function show() {
-    const steps = told[0].steps;
+    const steps = forms[0].steps;
     // What is refused in all widths for one reason is one row.
     const alike = (/** @type {number} */ at) =>
       ROWS.every(
-        ({ form }, other) => form !== ROWS[at].form || (told[other].why !== null && told[other].why === told[at].why),
+        ({ form }, other) => form !== ROWS[at].form || (forms[other].why !== null && forms[other].why === forms[at].why),
       );
-    const kept = told.map((_, at) => at).filter((at) => !alike(at) || ROWS[at].widths === "q16");
-    const fewest = Math.min(...told.filter(({ why }) => why === null).map(({ bytes }) => bytes));
-    const best = told.findIndex(({ why, bytes }) => why === null && bytes === fewest);
+    const kept = forms.map((_, at) => at).filter((at) => !alike(at) || ROWS[at].widths === "q16");
+    const fewest = Math.min(...forms.filter(({ why }) => why === null).map(({ bytes }) => bytes));
+    const best = forms.findIndex(({ why, bytes }) => why === null && bytes === fewest);
     list.show(
       kept.map((at) => {
-        const { entries, bytes, document_bytes, largest_s, rms_s, why } = told[at];
+        const { entries, bytes, document_bytes, largest_s, rms_s, why } = forms[at];
         const { form, widths } = ROWS[at];
         const pick = element("input", { type: "radio", name: "study-table", value: `${form}-${widths}` });
         pick.disabled = why !== null;
@@ -129,11 +129,11 @@ export function createTables({ engine, now, panel }) {
     );
     kept.forEach((at, row) => {
       const cell = list.body.children[row].children[2];
-      if (told[at].why === null) return;
+      if (forms[at].why === null) return;
       cell.setAttribute("colspan", "6");
       cell.className = "why";
     });
-    const own = told.find(({ document_bytes }) => document_bytes !== null);
+    const own = forms.find(({ document_bytes }) => document_bytes !== null);
     say(
       note,
       `${best < 0 ? "" : `Fewest bytes, in bold: ${FORMS[ROWS[best].form].toLowerCase()}, ${ROWS[best].widths}. `}The exact list takes the next step into an entry only where the entry foretells its interval, the compressed one searches for the longest entry: so the exact list can be longer even than a compressed one with error 0. One interval of 4 bytes for each step would take ${count(4 * steps)} bytes.${own ? " In brackets: bytes of the table as the motion's document keeps it." : ""} No step is ever lost or added: a list that has not all of them is refused.`,
@@ -167,7 +167,7 @@ export function createTables({ engine, now, panel }) {
         );
       },
       (made) => {
-        told = made;
+        forms = made;
         for (const each of [list.root, note, saves]) each.hidden = false;
         const derived = now().derived?.controllers[of.controller]?.axes[of.axis];
         say(

@@ -16,8 +16,8 @@ import { selectedAxis } from "./selected_axis.js";
 /**
  * @typedef {{standing_mn_m: number, load_mn_m: number, corner_rate: number | null, torque_rate: number | null, working_rate: number | null,
  *   over_working_rate: number | null, jump: number, least: Moment | null, total: number,
- *   shortages: {from_s: number, to_s: number, times: number, worst: Moment}[], ramps: Ramps[]}} Told
- * @typedef {{told: Told, rate: Float64Array, available: Float64Array, needed: Float64Array}} Torque
+ *   shortages: {from_s: number, to_s: number, times: number, worst: Moment}[], ramps: Ramps[]}} Report
+ * @typedef {{report: Report, rate: Float64Array, available: Float64Array, needed: Float64Array}} Torque
  */
 
 /** @param {number} torque In mN·m. */
@@ -40,16 +40,16 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
   const job = createJob("Torque");
   const about = element("p", { class: "study-note", "aria-live": "polite", tabindex: "-1" });
   const verdict = element("p", { id: "torque-verdict", "aria-live": "polite" });
-  const canvas = element("canvas", { role: "img", "aria-label": "Torque against rate" });
+  const canvas = element("canvas", { role: "img", "aria-label": "Torque-speed curve" });
   const key = (/** @type {string} */ kind, /** @type {string} */ text) =>
     element("span", {}, element("span", { class: `key ${kind}` }), ` ${text} `);
   const stated = element("span", {}, "; dashed: the stated working rate");
   const caption = element(
     "div",
     { class: "caption" },
-    element("span", {}, "Torque in mN·m against rate: "),
+    element("span", {}, "Torque-speed curve, mN·m over steps/s: "),
     key("ideal", "available"),
-    key("made", "needed, driving or braking"),
+    key("actual", "needed, driving or braking"),
     stated,
   );
   const chart = element("div", { class: "chart torque-chart" }, caption, canvas);
@@ -64,7 +64,7 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
     "~#available",
     "~#periods",
   ]);
-  const ramps = table("Ramps", ["move", "#enough torque", "#longest by rate", "#room"]);
+  const ramps = table("Ramps", ["move", "#enough torque", "#longest ramp for the rate limit", "#longest ramp possible"]);
   const ramped = element("h3", {}, "Ramps");
   const note = element("p", { class: "study-note" });
   const body = element(
@@ -76,25 +76,25 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
   fill(panel, element("div", { class: "study-bar" }, about, job.root), body);
   body.hidden = true;
   /** @type {Torque | null} */
-  let made = null;
+  let torque = null;
   let asked = "";
   watch(chart, paint);
 
   function paint() {
-    if (!made || body.hidden) return;
+    if (!torque || body.hidden) return;
     const {
       rate,
       available,
       needed,
-      told: { working_rate: working },
-    } = made;
+      report: { working_rate: working },
+    } = torque;
     stated.hidden = working === null;
     const most = Math.max(...available, ...needed.filter((torque) => !Number.isNaN(torque)));
     draw(canvas, {
       x: { min: 0, max: rate[rate.length - 1], unit: "steps/s", prefix: true, label_px: 20 },
       y: { min: 0, max: 1.08 * most, unit: "", prefix: false, label_px: 58 },
       series: [
-        { color: color("--made"), opacity: 0.75, width: 2, x: rate, shape: { stems: { y: needed, shift: 0 } } },
+        { color: color("--actual"), opacity: 0.75, width: 2, x: rate, shape: { stems: { y: needed, shift: 0 } } },
         {
           color: color("--ideal"),
           opacity: 1,
@@ -118,21 +118,21 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
     });
   }
 
-  /** @param {Told} told */
-  function show(told) {
-    const { least, jump, total, shortages, over_working_rate, working_rate } = told;
+  /** @param {Report} report */
+  function show(report) {
+    const { least, jump, total, shortages, over_working_rate, working_rate } = report;
     facts.show([
-      ...(told.corner_rate === 0
+      ...(report.corner_rate === 0
         ? [
-            ["Torque at standstill", torques(told.standing_mn_m)],
-            ["whole current up to", "no rate: the supply is too low"],
+            ["Torque at standstill", torques(report.standing_mn_m)],
+            ["full current up to", "no rate: the supply is too low"],
           ]
         : [
-            ["Full torque", torques(told.standing_mn_m)],
-            ["as far as", upTo(told.corner_rate)],
+            ["Full torque", torques(report.standing_mn_m)],
+            ["full torque up to", upTo(report.corner_rate)],
           ]),
-      ["Load", torques(told.load_mn_m)],
-      ["torque for it up to", upTo(told.torque_rate)],
+      ["Load", torques(report.load_mn_m)],
+      ["torque for it up to", upTo(report.torque_rate)],
       ...(working_rate === null ? [] : [["Stated working rate", rates(working_rate)]]),
       ...(least
         ? [
@@ -149,7 +149,7 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
     const lack =
       total === 0
         ? ""
-        : `⚠ Too little torque in ${total === 1 ? "one stretch" : `${count(total)} stretches`}: give more time, gentler ramps, less load or a higher supply voltage.`;
+        : `⚠ Too little torque in ${total === 1 ? "one interval" : `${count(total)} intervals`}: give more time, gentler ramps, less load or a higher supply voltage.`;
     say(verdict, fast + lack || "Enough torque throughout.");
     verdict.classList.toggle("error", fast + lack !== "");
     lacks.root.hidden = total === 0;
@@ -165,9 +165,9 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
         count(times),
       ]),
     );
-    ramped.hidden = ramps.root.hidden = told.ramps.length === 0;
+    ramped.hidden = ramps.root.hidden = report.ramps.length === 0;
     ramps.show(
-      told.ramps.map((found) => [
+      report.ramps.map((found) => [
         `${found.index + 1}, ${si(found.duration_s, "s")}`,
         enough(found),
         found.longest_s === null ? (found.too_fast ? "too fast" : "any") : ramp(found.longest_s),
@@ -176,7 +176,7 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
     );
     say(
       note,
-      `${told.ramps.length ? "Enough torque: ramps with which it suffices throughout. Longest by rate: T − n/f_s (for ramps of area 1/2), with the motor's greatest rate for its load as f_s; the move has room for T/2. " : ""}${jump > 0 ? "A motor follows a jump of speed up to its start-stop rate, which these data do not tell. " : ""}The model: fundamental waves only, no saturation, no losses of iron and friction in the motor, no resonance.`,
+      `${report.ramps.length ? "Enough torque: ramps with which it suffices throughout. Longest ramp for the rate limit: T − n/f_s (for ramps of area 1/2), with the motor's greatest rate for its load as f_s; the longest ramp possible is T/2. " : ""}${jump > 0 ? "A motor follows a jump of speed up to its start-stop rate, which these data do not tell. " : ""}The model: fundamental waves only, no saturation, no losses of iron and friction in the motor, no resonance.`,
     );
   }
 
@@ -205,16 +205,16 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
     job.run(
       async (signal) => (await engine.distribute("torque", [[of.json, of.controller, of.axis]], signal))[0],
       (/** @type {Torque | undefined} */ answer) => {
-        made = answer ?? null;
-        body.hidden = made === null;
-        if (!made)
+        torque = answer ?? null;
+        body.hidden = torque === null;
+        if (!torque)
           return fill(
             about,
             `Axis ${of.axis} has no motor yet: the form has its data under the axis' mechanics. `,
             add(),
           );
         say(about, `Axis ${of.axis}: what its motor has, and what its plan needs. Its data are in the form.`);
-        show(made.told);
+        show(torque.report);
         paint();
       },
     );

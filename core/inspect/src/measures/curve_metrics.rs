@@ -61,7 +61,7 @@ pub(super) struct Sums {
 
 impl Sums {
     /// A stretch in which the deviation keeps its sign, as (first, deviation, seconds).
-    pub(super) fn stretch(&mut self, looks: &[(f64, f64, f64)]) {
+    pub(super) fn interval(&mut self, looks: &[(f64, f64, f64)]) {
         let mut off_sum = 0.0;
         for &(first, off, seconds) in looks {
             self.seconds += seconds;
@@ -122,7 +122,7 @@ impl Sums {
 /// The ideal curve, and steps in cycles from the motion's start.
 pub(super) fn curve_and_steps(
     plan: &AxisPlan,
-    joints: &Breakpoints,
+    breakpoints: &Breakpoints,
     steps: &[Step],
     hz: f64,
     length_s: f64,
@@ -130,7 +130,7 @@ pub(super) fn curve_and_steps(
     let mut sums = Sums::default();
     let (mut since_s, mut place) = (0.0, 0.0);
     let mut stay = |since_s: f64, to_s: f64, place: f64| {
-        joints.pieces(since_s, to_s, &mut |piece| curve_and_place(plan, piece, place, hz, &mut sums));
+        breakpoints.intervals(since_s, to_s, &mut |interval| curve_and_place(plan, interval, place, hz, &mut sums));
     };
     for step in steps {
         let at_s = step.cycle as f64 / hz;
@@ -142,23 +142,23 @@ pub(super) fn curve_and_steps(
     sums.ended()
 }
 
-/// A smooth piece of the ideal curve, and a place at which the steps stay.
-fn curve_and_place(plan: &AxisPlan, piece: Interval, place: f64, hz: f64, sums: &mut Sums) {
+/// A smooth interval of the ideal curve, and a place at which the steps stay.
+fn curve_and_place(plan: &AxisPlan, interval: Interval, place: f64, hz: f64, sums: &mut Sums) {
     let off = |t: f64| place - plan.position(t);
     // Just inside: a table's curve ends with half a step at once.
-    let inset = (piece.to_s - piece.from_s) * 1e-9;
-    let ends = [piece.from_s + inset, piece.to_s - inset].map(|t| (t, off(t)));
+    let inset = (interval.to_s - interval.from_s) * 1e-9;
+    let ends = [interval.from_s + inset, interval.to_s - inset].map(|t| (t, off(t)));
     // What lasts less than a cycle is the rounding of the step's time.
-    if (piece.to_s - piece.from_s) * hz > 0.75 {
+    if (interval.to_s - interval.from_s) * hz > 0.75 {
         ends.into_iter().for_each(|(t, off)| sums.look(t, off));
     }
-    let middle_s = if ends[0].1 * ends[1].1 < 0.0 { crossing(ends, off) } else { piece.to_s };
-    for (from_s, to_s) in [(piece.from_s, middle_s), (middle_s, piece.to_s)] {
+    let middle_s = if ends[0].1 * ends[1].1 < 0.0 { crossing(ends, off) } else { interval.to_s };
+    for (from_s, to_s) in [(interval.from_s, middle_s), (middle_s, interval.to_s)] {
         let (middle, half) = ((from_s + to_s) / 2.0, (to_s - from_s) / 2.0);
         if half > 0.0 {
-            sums.stretch(&GAUSS.map(|(point, weight)| {
+            sums.interval(&GAUSS.map(|(point, weight)| {
                 let position = plan.position(middle + half * point);
-                (position, place - position, 2.0 * half * weight * piece.times)
+                (position, place - position, 2.0 * half * weight * interval.times)
             }));
         }
     }
@@ -201,7 +201,7 @@ pub(super) fn steps_and_steps(first: &[Step], second: &[Step], hz: f64, length_s
     let mut stay = |since_s: f64, to_s: f64, [first, second]: [f64; 2]| {
         if to_s > since_s {
             sums.look(since_s, second - first);
-            sums.stretch(&[(first, second - first, to_s - since_s)]);
+            sums.interval(&[(first, second - first, to_s - since_s)]);
         }
     };
     walk.changes(length_s, &mut |time_s, now| {

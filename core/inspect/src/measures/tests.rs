@@ -145,7 +145,7 @@ fn a_constant_rate_has_the_figures_of_a_saw() {
     close(found.step_errors.largest_steps, 0.0, 1e-9, "place");
     // Of 1000 steps/s an error in time is one in place, and late means behind.
     let ticks = found.tick_errors;
-    assert_eq!((ticks.pulses, found.counts), (100, Counts { due: 100, made: 100, stray: 0 }));
+    assert_eq!((ticks.pulses, found.counts), (100, Counts { due: 100, actual: 100, stray: 0 }));
     close(ticks.largest_steps, ticks.largest_s * 1000.0, 1e-9, "place of time");
     close(ticks.rms_steps, ticks.rms_s * 1000.0, 1e-9, "place of time");
     close(found.ticks.area_difference_steps_s, -100.0 * ticks.mean_s, 1e-9, "area of time");
@@ -184,7 +184,7 @@ fn steps_are_within_half_a_step_and_half_a_cycle_and_segments_add_nothing() {
         assert!(found.step_errors.rms_s < 0.33 / 16e6, "{moves}: {:?}", found.step_errors);
         let none = PulseErrors { pulses: found.counts.due, ..PulseErrors::default() };
         assert_eq!((found.tick_errors, found.counts.stray), (none, 0), "{moves}");
-        assert_eq!(found.counts.due, found.counts.made);
+        assert_eq!(found.counts.due, found.counts.actual);
         assert_eq!((found.ticks.area_steps_s, found.ticks.uncorrelated), (0.0, Some(0.0)), "{moves}");
         assert_eq!(found.pulses, found.steps, "{moves}");
         assert_eq!(found.duration.end_error_s, Some(0.0));
@@ -204,7 +204,7 @@ fn ticks_add_less_than_a_tick_and_what_cancels_in_one_moves_no_other() {
     let fine = r#"{"constant":{"distance":{"steps":25},"speed":{"steps_s":5000}}},
         {"constant":{"distance":{"steps":-26},"speed":{"steps_s":5000}}}"#;
     let found = measured(fine);
-    assert_eq!((found.counts.due, found.counts.made, found.counts.stray), (51, 41, 0));
+    assert_eq!((found.counts.due, found.counts.actual, found.counts.stray), (51, 41, 0));
     assert!(found.tick_errors.largest_s.abs() < 0.002, "{:?}", found.tick_errors);
 }
 
@@ -214,7 +214,7 @@ fn pulses_that_a_broken_line_lost_leave_the_others_with_their_steps() {
     let json = r#"{"source":{"motion":{"axes":[{"moves":[{"constant":{"distance":{"steps":100},"speed":{"steps_s":1000}}}]}]}},
         "line":{"glitches":[{"start_cycle":100000,"length_cycles":40000,"level":0}]}}"#;
     let found = Ran::of(json).measures();
-    let Counts { due, made, stray } = found.counts;
+    let Counts { due, actual: made, stray } = found.counts;
     assert!(due == 100 && made < 100 && stray == 0, "{:?}", found.counts);
     // What is left goes over the first places, later than it should.
     assert!(
@@ -266,7 +266,7 @@ fn the_start_stop_rate_is_what_rest_turns_into_at_once() {
 fn a_duration_is_held_against_the_one_that_was_asked_for() {
     let cosine = r#"{"cosine":{"distance":{"steps":3200},"duration_s":0.4,"ramp_s":0.2}}"#;
     let found = measured(cosine).duration;
-    assert_eq!((found.planned_s, found.asked_s, found.plan_error_s), (0.4, Some(0.4), Some(0.0)));
+    assert_eq!((found.planned_s, found.requested_s, found.plan_error_s), (0.4, Some(0.4), Some(0.0)));
     // The last pulse comes before the end of the last tick, 0.4 s.
     assert!(found.last_pulse_s.unwrap() < 0.4 && found.last_due_s.unwrap() < 0.4);
     assert_eq!(found.end_error_s, Some(found.last_pulse_s.unwrap() - found.last_due_s.unwrap()));
@@ -275,11 +275,11 @@ fn a_duration_is_held_against_the_one_that_was_asked_for() {
     let found = measured(sliced).duration;
     let error = found.plan_error_s.unwrap();
     assert!(error != 0.0 && error.abs() < 0.008 * 0.4, "{found:?}");
-    assert_eq!((found.asked_s, error), (Some(0.4), found.planned_s - 0.4));
+    assert_eq!((found.requested_s, error), (Some(0.4), found.planned_s - 0.4));
     let trapezoid = r#"{"trapezoid":{"distance":{"steps":3000}}}"#;
-    assert_eq!(measured(trapezoid).duration.asked_s, None);
+    assert_eq!(measured(trapezoid).duration.requested_s, None);
     let found = measured(&format!("{trapezoid},{cosine}")).duration;
-    close(found.asked_s.unwrap(), found.planned_s, 1e-12, "what names no time is as planned");
+    close(found.requested_s.unwrap(), found.planned_s, 1e-12, "what names no time is as planned");
     let found = measured(r#"{"dwell":{"duration_s":0.1}}"#);
     assert_eq!((found.duration.last_due_s, found.duration.end_error_s), (None, None));
     assert_eq!((found.pulses.correlation, found.pulses.rms_steps, found.length_s), (None, 0.0, 0.1));

@@ -40,16 +40,16 @@ fn a_file_of_the_same_run_and_of_a_stretch_of_it_is_the_same() {
     for text in texts(&run) {
         for text in [text.clone(), text.replace('\n', "\r\n"), text.trim_end().into()] {
             let outcome = against(&run, &text).expect("reads");
-            let stretch = (Instant(0), Instant(30));
-            assert_eq!(outcome, Outcome { same: 5, stretch, difference: None, goes_on: false });
+            let range = (Instant(0), Instant(30));
+            assert_eq!(outcome, Outcome { same: 5, range, difference: None, goes_on: false });
         }
     }
-    let mut stretch = run[1..4].to_vec();
-    stretch[0].cycle = Instant(9);
-    for text in texts(&stretch) {
+    let mut range = run[1..4].to_vec();
+    range[0].cycle = Instant(9);
+    for text in texts(&range) {
         let outcome = against(&run, &text).expect("reads");
-        let stretch = (Instant(9), Instant(17));
-        assert_eq!(outcome, Outcome { same: 3, stretch, difference: None, goes_on: true });
+        let range = (Instant(9), Instant(17));
+        assert_eq!(outcome, Outcome { same: 3, range, difference: None, goes_on: true });
     }
 }
 

@@ -68,11 +68,11 @@ fields! {
         full_step_deg: f64 => FULL_STEP,
         /// Parts of a full step.
         microsteps: u16 => MICROSTEPS,
-        /// Way of the nut in one turn.
+        /// Travel of the nut in one turn.
         lead_mm: f64 => label("Lead")
             .unit("mm")
             .number(limits::LENGTH_MM)
-            .term("Lead", "Way of the nut in one turn of the screw.")
+            .term("Lead", "Travel of the nut in one turn of the screw.")
             .from(ZHANG),
     }
     /// It has mm.

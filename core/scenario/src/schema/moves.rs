@@ -25,7 +25,7 @@ fields! {
         /// The motor, its supply and its load.
         motor: Option<Motor> => label("Motor")
             .empty("nothing is said of torque")
-            .term("Motor", "What its torque over the rate follows from, by the textbooks' model of a two-phase hybrid motor on a driver that regulates the current. It changes nothing in a run: a move that asks for more torque than there is gets a warning, and the study's tab Torque shows both. It begins as the document's motor.")
+            .term("Motor", "What its torque-speed curve follows from, by the textbooks' model of a two-phase hybrid motor on a driver that regulates the current. It changes nothing in a run: a move that asks for more torque than there is gets a warning, and the study's tab Torque shows both. It begins as the document's motor.")
             .from(SONG),
     }
 }
@@ -304,7 +304,7 @@ words! {
     ShortMove {
         /// the whole of it at the start speed, as in the document
         Document = "document", "at start speed";
-        /// up as many rows as there is room for, and down again
+        /// up as many rows as fit, and down again
         Reverse = "reverse", "reverse at the highest row";
     }
     CosineMethod {

@@ -46,8 +46,8 @@ settings! {
         /// The axes, each with its mechanics and its moves.
         pub axes: Vec<Axis> = vec![Axis::default()] => label("Axes").follows("1 to 16, no more than `bus.channels`"),
         /// Who makes the steps.
-        pub engine: MotionEngine = MotionEngine::Ticks => label("Steps made by")
-            .term("Steps made by", "With ticks the host says how many steps each tick has, as in the patent. With segments the controller runs the move alone, from a table of intervals, as in the other documents.")
+        pub engine: MotionEngine = MotionEngine::Ticks => label("Step generation")
+            .term("Step generation", "With ticks the host says how many steps each tick has, as in the patent. With segments the controller runs the move alone, from a table of intervals, as in the other documents.")
             .from(PATENT),
     }
 }

@@ -64,10 +64,10 @@ tally! {
     /// Ticks executed with other steps than ordered.
     wrong,
     /// Ticks executed twice, or never ordered.
-    doubled,
+    duplicated,
     /// Ticks left out, of those that the host holds for done; on a raw line, of all.
     missing,
-    /// Steps by which wrong ticks differ, and those of doubled ticks.
+    /// Steps by which wrong ticks differ, and those of duplicated ticks.
     wrong_steps,
     /// Steps of missing ticks.
     missing_steps,
@@ -79,7 +79,7 @@ impl Tally {
     /// Whether something was done that was not ordered, or left out and held for done.
     #[must_use]
     pub const fn is_wrong(&self) -> bool {
-        self.wrong + self.doubled + self.missing + self.position_error > 0
+        self.wrong + self.duplicated + self.missing + self.position_error > 0
     }
 
     pub(super) fn give_up(&mut self, reason: GivenUp, in_reach: bool) {
@@ -96,7 +96,7 @@ impl Tally {
 
     pub(super) fn add_alignment(&mut self, alignment: &Alignment) {
         self.wrong += alignment.wrong;
-        self.doubled += alignment.extra;
+        self.duplicated += alignment.extra;
         self.missing += alignment.missing;
         self.wrong_steps += alignment.wrong_steps;
         self.missing_steps += alignment.missing_steps;

@@ -114,7 +114,7 @@ fn what_is_not_a_frame_sets_the_fault_that_the_text_names() {
         (CRC, flipped(2)),
         (CRC, flipped(6)),
         (SHORT_PACKET, flipped(0)),
-        // A lost and a doubled byte.
+        // A lost and a duplicated byte.
         (SHORT_PACKET, [&status[..3], &status[4..]].concat()),
         (SHORT_PACKET, [&status[..3], &status[2..]].concat()),
         // The check is judged before the address.
@@ -177,10 +177,10 @@ fn a_byte_with_a_framing_error_is_missing_from_its_frame() {
     assert_eq!(broken(&status, 3, 1_274), FRAMING | SHORT_PACKET);
     // In place of the code byte the next one is the code: 5, then 4 bytes, then 0xD3 of which too few come.
     assert_eq!(broken(&status, 0, 3_000), FRAMING | SHORT_PACKET);
-    // A missing byte that leaves COBS as it was: the last of `3 5 1 7 1 …` is doubled here, one of them is missing.
-    let doubled = [&status[..7], &[0x6B, 0]].concat();
-    assert_eq!(broken(&doubled, 9, 3_000), SHORT_PACKET);
-    assert_eq!(broken(&doubled, 7, 3_000), FRAMING);
+    // A missing byte that leaves COBS as it was: the last of `3 5 1 7 1 …` is duplicated here, one of them is missing.
+    let duplicated = [&status[..7], &[0x6B, 0]].concat();
+    assert_eq!(broken(&duplicated, 9, 3_000), SHORT_PACKET);
+    assert_eq!(broken(&duplicated, 7, 3_000), FRAMING);
     // Zeros that are missing change nothing else in the blocks: a check fails.
     let zeros = frame(5, 4, &[0, 0, 0]);
     assert_eq!(zeros[..6], [3, 5, 4, 1, 1, 5]);
