@@ -372,6 +372,32 @@ fn a_room_knows_of_another_only_what_it_may() {
     }
 }
 
+#[test]
+fn every_file_that_the_documents_name_is_there() {
+    let root = root();
+    let own = ["README.md", "CONTRIBUTING.md"].map(|name| root.join(name));
+    let others = fs::read_dir(root.join("docs")).unwrap().map(|entry| entry.unwrap().path());
+    let mut named = 0;
+    for document in others.chain(own).filter(|path| path.extension().is_some_and(|found| found == "md")) {
+        let text = fs::read_to_string(&document).unwrap();
+        for path in text.split('`').skip(1).step_by(2).filter(|words| is_source(words)) {
+            named += 1;
+            assert!(root.join(path).exists(), "{} names {path}, which is not there", document.display());
+        }
+    }
+    assert!(named > 60, "only {named} paths were found");
+}
+
+/// Whether these words are the path of one source file or folder.
+fn is_source(words: &str) -> bool {
+    let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"/_-.".contains(&byte);
+    words.bytes().all(plain)
+        && words.split_once('/').is_some_and(|(first, rest)| {
+            ["core", "cli", "wasm", "web", "firmware", "tests", "xtask"].contains(&first)
+                && !rest.starts_with("pkg")
+        })
+}
+
 fn is_excepted(file: &str, what: &str) -> bool {
     EXCEPTIONS.iter().any(|(where_, which, _)| *where_ == file && *which == what)
 }

@@ -66,7 +66,7 @@ pub struct Bus {
     pub step_period_cycles: u32,
     /// W, how long STEP stays high, in cycles.
     pub pulse_width_cycles: u32,
-    /// D, from the start of a slot (DIR changes there) to the rise of STEP, in cycles.
+    /// D, from the start of a slot to the rise of STEP, in cycles: DIR has changed by then.
     pub dir_setup_cycles: u32,
     /// H, how long DIR is held after STEP has fallen, in cycles.
     pub dir_hold_cycles: u32,
@@ -81,7 +81,7 @@ pub struct Bus {
     pub settle_cycles: u32,
     /// Ticks that the queue holds, 1 to 255.
     pub queue_depth: u8,
-    /// Self-test after reset in cycles; packets that end within it are dropped.
+    /// Self-test after reset in cycles. Packets that end within it are dropped, framed ticks answered with BUSY.
     pub boot_cycles: u32,
 }
 
@@ -120,7 +120,7 @@ pub enum DirLine {
     /// One a channel; they change when a tick starts.
     #[default]
     PerChannel,
-    /// One for all channels; it changes within each slot.
+    /// One for all channels; it changes within each slot that has a step.
     Common,
 }
 

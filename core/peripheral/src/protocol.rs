@@ -70,7 +70,7 @@ meanings! {
 
     /// Why a frame was refused (DESIGN A6).
     pub enum Reason {
-        /// Neither the expected sequence number nor the one before it.
+        /// Neither the expected sequence number nor a repeat of the one before it.
         BadSeq = 1 "BAD_SEQ",
         /// Fewer free places in the queue than ticks.
         QueueFull = 2 "QUEUE_FULL",

@@ -1,5 +1,5 @@
 //! All controllers of a line and what is done to it (DESIGN A9): those of a raw line listen, each by
-//! itself; those of a framed line line with each other and the host.
+//! itself; those of a framed line with each other and the host.
 
 use crate::framed_host::FramedHost;
 use crate::{framed_line::FramedLine, ignored::Ignored, raw_receiver::RawReceiver};

@@ -208,7 +208,7 @@ mod tests {
             (vec![constant(-4.0, 2000.0)], &[0x02, 0x02]),
             // Without steps the direction stays.
             (vec![constant(2.0, 2000.0), dwell(0.002), constant(-2.0, 2000.0)], &[0x82, 0x80, 0x80, 0x02]),
-            // The half step at 0.5 ms is due (R rounds it up), the one at 1.5 ms in the next tick.
+            // A step each 2 ms, due at 1 ms and 3 ms: to the right each at the end of the tick before.
             (vec![constant(2.0, 500.0)], &[0x81, 0x80, 0x81, 0x80]),
         ];
         for (moves, expected) in rows {

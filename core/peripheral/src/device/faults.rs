@@ -19,17 +19,17 @@ pub struct Faults(u16);
 impl Faults {
     /// A stop bit was low.
     pub const FRAMING: Self = Self(faults::FRAMING.mask() as u16);
-    /// A gap cut a packet short.
+    /// A gap cut a packet short, or a frame was no COBS or decoded to fewer than 6 bytes.
     pub const SHORT_PACKET: Self = Self(faults::SHORT_PACKET.mask() as u16);
     /// A frame's check failed.
     pub const CRC: Self = Self(faults::CRC.mask() as u16);
     /// A frame had more than 600 decoded bytes.
     pub const OVERLONG: Self = Self(faults::OVERLONG.mask() as u16);
-    /// A packet found the queue full.
+    /// A packet found the queue full, or a frame was refused with QUEUE_FULL.
     pub const QUEUE_OVERFLOW: Self = Self(faults::QUEUE_OVERFLOW.mask() as u16);
-    /// A packet ordered more steps than a tick has slots.
+    /// A packet or a framed tick ordered more steps than a tick has slots.
     pub const TOO_MANY_STEPS: Self = Self(faults::TOO_MANY_STEPS.mask() as u16);
-    /// TICKS had neither the expected sequence number nor the one before it.
+    /// TICKS had neither the expected sequence number nor, as a repeat, the one before it.
     pub const BAD_SEQ: Self = Self(faults::BAD_SEQ.mask() as u16);
     /// A tick with steps ended and none was there to follow (framed protocol).
     pub const UNDERRUN: Self = Self(faults::UNDERRUN.mask() as u16);

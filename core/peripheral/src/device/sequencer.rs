@@ -35,10 +35,10 @@ pub(super) struct Sequencer {
     /// Invariant: no cycle is run past it.
     deadline: Instant,
     lines: Lines,
-    /// Positions as of the end of the last tick.
+    /// Positions as of the end of the last tick, or of STOP.
     positions: [i32; MAX_CHANNELS],
     ticks_done: u32,
-    /// Where the last tick ended.
+    /// Where the last tick ended, or STOP abandoned it.
     last_active: Instant,
 }
 

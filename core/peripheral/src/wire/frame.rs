@@ -400,7 +400,7 @@ mod tests {
         }
     }
 
-    /// The last judgement of `bytes`, and which byte made it.
+    /// The judgements of `bytes`, each with the byte that made it.
     fn verdicts(bytes: &[u8]) -> Vec<(usize, &'static str)> {
         let mut deframer = Deframer::default();
         let mut found = Vec::new();

@@ -54,7 +54,7 @@ impl ChannelCommand {
 /// One tick's commands as they came, a byte a channel; bytes past the channels in use are 0.
 pub type Tick = [u8; MAX_CHANNELS];
 
-/// What a byte, an error or a pause completed.
+/// What a byte completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unpacked {
     /// A packet for this controller.

@@ -175,7 +175,7 @@ mod tests {
     fn a_low_shorter_than_half_a_bit_is_a_glitch_and_the_next_cycle_arms() {
         // Low in 10..15 only: at 15 the line is high, armed in 16.
         assert_eq!(heard(&[(10, 15), (16, 27)], 300), [(120, RxEvent::Byte(0xff))]);
-        // A low that begins in the cycle of the look and ends in it is not seen.
+        // Low again in the cycle of the look: the start bit holds, whatever was between.
         assert_eq!(heard(&[(10, 14), (15, 16)], 300), [(114, RxEvent::Byte(0xff))]);
     }
 

@@ -32,7 +32,7 @@ fields! {
             .whole(limits::PULSE_WIDTH_CYCLES)
             .term("STEP high", "How long a step pulse lasts. A driver overlooks pulses shorter than its data sheet asks for.")
             .from(SHEETS),
-        /// D, from DIR's change, at the slot's start, to the rise of STEP.
+        /// D, from the slot's start to the rise of STEP; DIR has changed by then.
         dir_setup_cycles: u32 => label("DIR set-up")
             .unit("cycles")
             .whole(limits::DIR_SETUP_CYCLES)
@@ -70,7 +70,7 @@ fields! {
             .whole(limits::QUEUE_DEPTH)
             .term("Queue", "Ticks that wait in the controller, so that motion goes on while the host is busy. When it is empty in the middle of a motion, that is an underrun.")
             .from(PATENT),
-        /// Self-test after reset; packets that end in it are dropped.
+        /// Self-test after reset; packets that end in it are dropped, framed ticks answered with BUSY.
         boot_cycles: u32 => label("Self-test")
             .unit("cycles")
             .term("Self-test", "After reset the controller checks itself and is busy; what is sent meanwhile is dropped.")
@@ -88,7 +88,7 @@ words! {
     DirLine {
         /// one a channel, changed when a tick starts
         PerChannel = "per_channel", "one a channel";
-        /// one for all, changed within each slot
+        /// one for all, changed within each slot that has a step
         Common = "common", "one for all";
     }
     PulsePhasing {
