@@ -22,10 +22,10 @@ import { createNotices } from "./shell/notices.js";
 import { keepOffline } from "./shell/offline.js";
 import { createPanes } from "./shell/panes.js";
 import { createShare } from "./shell/share.js";
-import { loadGood, loadPrevious, loadScenario, saveGood, saveScenario, setAside } from "./shell/storage.js";
+import { loadGood, loadNewer, loadPrevious, loadScenario, saveGood, saveScenario, setAside } from "./shell/storage.js";
 import { createTabs } from "./shell/tabs.js";
 import { readJson } from "./state/json.js";
-import { EARLIER, held, initial, isStale, update } from "./state/state.js";
+import { EARLIER, held, initial, isStale, OWN_TEXTS, update } from "./state/state.js";
 import { load as loadCharts } from "./time/plot.js";
 import { chartFiles } from "./views/chart_offers.js";
 import { createMotion } from "./views/motion/motion.js";
@@ -181,7 +181,13 @@ async function own(fallback) {
   const past =
     previous === null || previous === saved
       ? []
-      : [{ scenario: readJson((await read(previous)).scenario), origin: /** @type {const} */ ("own") }];
+      : [
+          {
+            scenario: readJson((await read(previous)).scenario),
+            origin: /** @type {const} */ ("own"),
+            borrowed: OWN_TEXTS,
+          },
+        ];
   return { left: { ...initial(readJson(scenario)), past }, good: problems.length > 0 ? loadGood() : null };
 }
 
@@ -244,6 +250,17 @@ async function start() {
     // What stood before it went wrong is shown, dimmed.
     if (good !== null) engine.run(EARLIER, good);
   }
+  await offerNewer();
+}
+
+/** Offers the work that another tab kept after this one's. */
+async function offerNewer() {
+  const newer = loadNewer();
+  if (newer === null) return;
+  const scenario = readJson((await engine.ask("check", newer)).scenario);
+  const name = scenario.title ? `, “${scenario.title}”` : "";
+  const text = `Another tab has newer work${name}. This tab shows its own.`;
+  dispatch({ type: "notice", notice: { kind: "info", text, offer: { label: "Open the newer work", scenario } } });
 }
 
 start().catch((error) => {

@@ -1,8 +1,9 @@
 //! The page's charts: one chart on one canvas, described by plain numbers (DESIGN Part D).
 //!
-//! Everything is drawn through plotters' `DrawingBackend`, so the same code draws on a canvas in
+//! Axes, grid and labels are drawn through plotters' `DrawingBackend`, so the same code draws on a canvas in
 //! the page and as SVG in a native test. plotters-canvas knows no device-pixel ratio: the canvas
-//! has CSS size times ratio, and every length here is multiplied by the ratio.
+//! has CSS size times ratio, and every length here is multiplied by the ratio. Nor does plotters know
+//! fractions of a pixel: the curves over its axes are strokes of our own.
 //!
 //! A `band` is a curve that was decimated to the least and greatest value of each pixel column.
 //! It is drawn as an oscilloscope draws it, as one line that visits both values of every column;
@@ -15,6 +16,7 @@ mod axis;
 mod curve;
 #[cfg(all(test, not(target_arch = "wasm32")))]
 mod pictures;
+mod stroke;
 mod surface;
 mod ticks;
 
@@ -26,6 +28,7 @@ use plotters::{
 };
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
+use stroke::Stroke;
 use surface::Surface;
 use ticks::Ticks;
 
@@ -115,11 +118,24 @@ pub(crate) struct Plot {
     pub(crate) bottom: f64,
 }
 
-/// Draws one chart and tells where its plotting area lies.
+/// One chart as the text of an SVG file of this size in pixels, and where its plotting area lies.
 ///
 /// # Errors
 /// The backend's own message, or that an axis has no length.
-pub(crate) fn draw(surface: Surface<'_>, spec: &Spec) -> Result<Plot, String> {
+pub(crate) fn svg(size: (u32, u32), spec: &Spec) -> Result<(String, Plot), String> {
+    let mut text = String::new();
+    let (plot, strokes) = draw(Surface::Svg(SVGBackend::with_string(&mut text, size)), spec)?;
+    let end = text.rfind("</svg>").unwrap_or(text.len());
+    let curves: String = strokes.iter().map(Stroke::svg).collect();
+    text.insert_str(end, &curves);
+    Ok((text, plot))
+}
+
+/// Draws the axes of a chart and tells where its plotting area lies, and what is drawn over them.
+///
+/// # Errors
+/// The backend's own message, or that an axis has no length.
+fn draw(surface: Surface<'_>, spec: &Spec) -> Result<(Plot, Vec<Stroke>), String> {
     let root = surface.into_drawing_area();
     for (name, axis) in [("x", &spec.x), ("y", &spec.y)] {
         // Also refuses what is not a number.
@@ -169,31 +185,34 @@ pub(crate) fn draw(surface: Surface<'_>, spec: &Spec) -> Result<Plot, String> {
         .map_err(|error| error.to_string())?;
 
     let (across, down) = chart.plotting_area().get_pixel_range();
+    let area = chart.plotting_area();
+    let (left, bottom) = area.map_coordinate(&(spec.x.min, spec.y.min));
+    let (right, top) = area.map_coordinate(&(spec.x.max, spec.y.max));
     let frame = curve::Frame {
         x: (spec.x.min, spec.x.max),
         y: (spec.y.min, spec.y.max),
-        width: f64::from(across.end - across.start),
-        height: f64::from(down.end - down.start),
+        corner: (f64::from(left), f64::from(bottom)),
+        width: f64::from(right - left),
+        height: f64::from(bottom - top),
     };
-    for series in &spec.series {
-        let style = ShapeStyle {
-            color: color(&series.color).mix(series.opacity),
-            filled: false,
-            stroke_width: px(series.width).max(1) as u32,
-        };
+    let stroke = |series: &Series| {
         let lines = match &series.shape {
-            Shape::Line { y } => curve::band(&frame, &series.x, y, y),
+            Shape::Line { y } => curve::line(&frame, &series.x, y),
             Shape::Band { min, max } => curve::band(&frame, &series.x, min, max),
             Shape::Stems { y, shift } => curve::stems(&frame, &series.x, y, shift * spec.ratio),
         };
-        let lines =
-            if series.dash > 0.0 { curve::dashes(&frame, &lines, series.dash * spec.ratio) } else { lines };
-        let paths = lines.into_iter().map(|line| PathElement::new(line, style));
-        chart.draw_series(paths).map_err(|error| error.to_string())?;
-    }
-
+        Stroke {
+            lines: if series.dash > 0.0 { curve::dashes(&lines, series.dash * spec.ratio) } else { lines },
+            color: color(&series.color),
+            opacity: series.opacity,
+            width: series.width * spec.ratio,
+        }
+    };
+    let strokes = spec.series.iter().map(stroke).collect();
     let css = |pixels: i32| f64::from(pixels) / spec.ratio;
-    Ok(Plot { left: css(across.start), top: css(down.start), right: css(across.end), bottom: css(down.end) })
+    let plot =
+        Plot { left: css(across.start), top: css(down.start), right: css(across.end), bottom: css(down.end) };
+    Ok((plot, strokes))
 }
 
 /// A range with its ticks.
@@ -228,12 +247,11 @@ fn color(text: &str) -> RGBColor {
 
 #[cfg(target_arch = "wasm32")]
 mod page {
-    use super::{Spec, draw, surface::Surface};
-    use plotters::prelude::SVGBackend;
+    use super::{Spec, draw, surface::Surface, svg};
     use plotters_canvas::CanvasBackend;
     use serde::Serialize as _;
-    use wasm_bindgen::{JsError, JsValue, prelude::wasm_bindgen};
-    use web_sys::HtmlCanvasElement;
+    use wasm_bindgen::{JsCast as _, JsError, JsValue, prelude::wasm_bindgen};
+    use web_sys::{CanvasRenderingContext2d, HtmlCanvasElement};
 
     /// Draws one chart on a canvas that has its device size already, and gives the plotting area
     /// in CSS pixels: `{left, top, right, bottom}`.
@@ -244,9 +262,13 @@ mod page {
     #[allow(unreachable_pub, reason = "wasm-bindgen exports public functions only")]
     pub fn draw_chart(canvas: HtmlCanvasElement, spec: JsValue) -> Result<JsValue, JsError> {
         let spec: Spec = serde_wasm_bindgen::from_value(spec)?;
-        let backend = CanvasBackend::with_canvas_object(canvas)
-            .ok_or_else(|| JsError::new("this canvas has no 2D context"))?;
-        let plot = draw(Surface::Canvas(backend), &spec).map_err(|message| JsError::new(&message))?;
+        let none = || JsError::new("this canvas has no 2D context");
+        let context = canvas.get_context("2d").ok().flatten().ok_or_else(none)?;
+        let context: CanvasRenderingContext2d = context.dyn_into().map_err(|_| none())?;
+        let backend = CanvasBackend::with_canvas_object(canvas).ok_or_else(none)?;
+        let (plot, strokes) =
+            draw(Surface::Canvas(backend), &spec).map_err(|message| JsError::new(&message))?;
+        strokes.iter().for_each(|stroke| stroke.draw(&context));
         Ok(plot.serialize(&serde_wasm_bindgen::Serializer::json_compatible())?)
     }
 
@@ -258,10 +280,7 @@ mod page {
     #[allow(unreachable_pub, reason = "wasm-bindgen exports public functions only")]
     pub fn chart_svg(width: u32, height: u32, spec: JsValue) -> Result<String, JsError> {
         let spec: Spec = serde_wasm_bindgen::from_value(spec)?;
-        let mut text = String::new();
-        let surface = Surface::Svg(SVGBackend::with_string(&mut text, (width, height)));
-        draw(surface, &spec).map_err(|message| JsError::new(&message))?;
-        Ok(text)
+        svg((width, height), &spec).map(|(text, _)| text).map_err(|message| JsError::new(&message))
     }
 }
 
@@ -286,12 +305,6 @@ mod tests {
         Spec { ratio: 2.0, font: "sans-serif".into(), font_px: 11.0, x, y, colors, series: vec![series] }
     }
 
-    fn svg(spec: &Spec) -> (String, Result<Plot, String>) {
-        let mut text = String::new();
-        let plot = draw(Surface::Svg(SVGBackend::with_string(&mut text, (800, 400))), spec);
-        (text, plot)
-    }
-
     #[test]
     fn each_shape_is_drawn_inside_the_plotting_area() {
         let (nan, values) = (f64::NAN, vec![1.0, 9e9, 2.0]);
@@ -302,8 +315,8 @@ mod tests {
             (Shape::Stems { y: values, shift: 0.0 }, 3),
         ];
         for (shape, lines) in shapes {
-            let (text, plot) = svg(&spec(axis(0.0, 1.0, "s"), axis(0.0, 10.0, ""), shape));
-            let plot = plot.expect("draws");
+            let chart = spec(axis(0.0, 1.0, "s"), axis(0.0, 10.0, ""), shape);
+            let (text, plot) = svg((800, 400), &chart).expect("draws");
             assert_eq!(plot.left, 40.0);
             assert!(plot.right > 300.0 && plot.right < 400.0 && plot.top < plot.bottom, "{plot:?}");
             let drawn: Vec<&str> = text.lines().filter(|line| line.contains("#0072B2")).collect();
@@ -320,8 +333,8 @@ mod tests {
     fn an_axis_without_length_is_refused_with_its_numbers() {
         for (min, max) in [(1.0, 1.0), (2.0, 1.0), (f64::NAN, 1.0), (0.0, f64::INFINITY)] {
             let shape = Shape::Line { y: vec![0.0; 3] };
-            let (_, plot) = svg(&spec(axis(0.0, 1.0, "s"), axis(min, max, ""), shape));
-            let message = plot.expect_err("refuses");
+            let chart = spec(axis(0.0, 1.0, "s"), axis(min, max, ""), shape);
+            let message = svg((800, 400), &chart).expect_err("refuses");
             assert!(message.contains("axis y") && message.contains("no length"), "{message}");
         }
     }

@@ -57,7 +57,8 @@ impl Readings {
 
 #[wasm_bindgen]
 impl Simulation {
-    /// Position, speed and acceleration of an axis over a stretch of time, in columns.
+    /// Position, speed and acceleration of an axis over a stretch of time: least and greatest values of each column,
+    /// and the points of the ideal curve's line.
     #[must_use]
     pub fn motion(&mut self, axis: u8, t0_s: f64, t1_s: f64, columns: u32) -> Object {
         let window = window(t0_s, t1_s, columns);
@@ -74,6 +75,15 @@ impl Simulation {
                 numbers(&result, &format!("{name}_min"), &band.min);
                 numbers(&result, &format!("{name}_max"), &band.max);
             }
+            let line = curves::ideal_line(plan, self.zero_s(), window);
+            for (name, values) in [
+                ("time_s", line.time_s),
+                ("position", line.position),
+                ("speed", line.speed),
+                ("acceleration", line.acceleration),
+            ] {
+                numbers(&result, &format!("line_{name}"), &values);
+            }
         }
         self.count_steps(axis);
         let actual = curves::actual(&self.pulses_of(axis), window);
@@ -85,7 +95,7 @@ impl Simulation {
     }
 
     /// What is read at two cursors, given in cycles, and the mean and root mean square between them:
-    /// `{ideal: {at_a, at_b, mean, rms} | null, made: {…}}`, each of position, speed and acceleration in
+    /// `{ideal: {at_a, at_b, mean, rms} | null, actual: {…}}`, each of position, speed and acceleration in
     /// steps and s. The pulses have no acceleration.
     ///
     /// # Errors

@@ -61,6 +61,6 @@ fn columns(spectrum: &Spectrum) -> Result<JsValue, JsError> {
     }
     // A figure of its own, without amplitudes: they are the acceleration's times the low pass.
     let filtered = spectrum.acceleration_filtered.as_ref().and_then(|filtered| filtered.distortion);
-    field(target, "thd_acceleration_felt", &filtered.map_or(JsValue::NULL, JsValue::from));
+    field(target, "thd_acceleration_filtered", &filtered.map_or(JsValue::NULL, JsValue::from));
     Ok(facts)
 }

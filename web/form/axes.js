@@ -4,6 +4,7 @@ import { get, MAX_CHANNELS, set } from "../state/state.js";
 import { pointsFirst } from "./fields.js";
 import { motorItems } from "./motor.js";
 import { fieldsOfKind, labels, mostOf } from "./schema.js";
+import { removed } from "./structure.js";
 
 /** @typedef {import("./kit.js").Kit} Kit */
 /** @typedef {{axes: string, bus: string, whose: string, least: number}} Place  Paths of the axes and of their bus; what tells them from another controller's; fewest axes. */
@@ -23,7 +24,7 @@ export function axisItems(kit, place) {
     button(
       "Add axis",
       `Add axis${place.whose}`,
-      () => addAxis(kit, place, axes, structuredClone(axes[axes.length - 1] ?? fresh())),
+      () => addAxis(kit, place, (now) => now[now.length - 1] ?? fresh()),
       axes.length >= MAX_CHANNELS,
     ),
   ];
@@ -31,7 +32,7 @@ export function axisItems(kit, place) {
 
 /** @param {Kit} kit @param {Place} place @param {any[]} axes @param {number} index */
 function axisItem(kit, place, axes, index) {
-  const { samples, put, block, item, kindSelect } = kit;
+  const { samples, become, append, block, item, kindSelect } = kit;
   const axis = axes[index];
   const path = `${place.axes}[${index}]`;
   const list = `${path}.moves`;
@@ -41,33 +42,18 @@ function axisItem(kit, place, axes, index) {
     "div",
     { class: "item-head" },
     kindSelect(`Mechanics of ${name}`, `${path}.mechanics`, kind, labels("Mechanics"), (chosen) =>
-      put(`${path}.mechanics`, { [chosen]: samples.mechanics[chosen] }),
+      become(`${path}.mechanics`, "Mechanics", chosen, samples.mechanics[chosen]),
     ),
-    ...(axes.length > 1
-      ? [
-          button("To all", `Copy ${name} to all others`, () =>
-            put(
-              place.axes,
-              axes.map((other) => (other === axis ? axis : structuredClone(axis))),
-            ),
-          ),
-        ]
-      : []),
-    button(
-      "Copy",
-      `Copy ${name}`,
-      () => addAxis(kit, place, axes, structuredClone(axis)),
-      axes.length >= MAX_CHANNELS,
-    ),
-    button("✕", `Remove ${name}`, () => removeAxis(kit, place, axes, index), axes.length <= place.least),
+    ...(axes.length > 1 ? [button("To all", `Copy ${name} to all others`, () => copyToAll(kit, place, index))] : []),
+    button("Copy", `Copy ${name}`, () => addAxis(kit, place, (now) => now[index]), axes.length >= MAX_CHANNELS),
+    button("✕", `Remove ${name}`, () => removeAxis(kit, place, index), axes.length <= place.least),
   );
   const fields = block(`${path}.mechanics.${kind}`, fieldsOfKind("Mechanics", kind));
   const moves = axis.moves.map((/** @type {any} */ _, /** @type {number} */ i) => moveItem(kit, list, axis.moves, i));
-  const last = axis.moves[axis.moves.length - 1];
   const add = button(
     "Add move",
     `Add move to ${name}`,
-    () => put(list, [...axis.moves, structuredClone(last ?? { cosine: samples.moves.cosine })]),
+    () => append(list, (last) => structuredClone(last ?? { cosine: samples.moves.cosine })),
     axis.moves.length >= mostOf("Axis", "moves"),
   );
   return item(
@@ -79,41 +65,57 @@ function axisItem(kit, place, axes, index) {
 }
 
 /** @param {Kit} kit @param {string} list @param {any[]} moves @param {number} index */
-function moveItem({ samples, put, block, item, kindSelect }, list, moves, index) {
+function moveItem({ samples, become, raise, remove, block, item, kindSelect }, list, moves, index) {
   const path = `${list}[${index}]`;
   const kind = Object.keys(moves[index])[0];
   const head = element(
     "div",
     { class: "item-head" },
     kindSelect(`Kind of move ${index + 1}`, path, kind, labels("Move"), (chosen) =>
-      put(path, { [chosen]: samples.moves[chosen] }),
+      become(path, "Move", chosen, samples.moves[chosen]),
     ),
-    button("↑", `Move ${index + 1} earlier`, () => put(list, swapped(moves, index - 1)), index === 0),
-    button("✕", `Remove move ${index + 1}`, () => put(list, moves.toSpliced(index, 1)), moves.length === 1),
+    button("↑", `Move ${index + 1} earlier`, () => raise(list, index), index === 0),
+    button("✕", `Remove move ${index + 1}`, () => remove(list, index), moves.length === 1),
   );
   const note = element("p", { class: "item-note", "data-note": path });
   const fields = block(`${path}.${kind}`, pointsFirst(fieldsOfKind("Move", kind)));
   return item(`Move ${index + 1}`, path, [head, ...fields, note], `Move.${kind}`);
 }
 
-/** An axis needs its channel: the bus grows with it. @param {Kit} kit @param {Place} place @param {any[]} axes @param {any} axis */
-function addAxis({ put, now }, place, axes, axis) {
-  const grown = [...axes, axis];
+/** An axis needs its channel: the bus grows with it. @param {Kit} kit @param {Place} place @param {(axes: any[]) => any} like */
+function addAxis({ change }, place, like) {
   const path = `${place.bus}.channels`;
-  const channels = Math.max(Number(get(now().scenario, path)) || 1, grown.length);
-  put("", set(set(now().scenario, path, channels), place.axes, grown));
+  change("", (scenario) => {
+    const axes = get(scenario, place.axes) ?? [];
+    const grown = [...axes, structuredClone(like(axes))];
+    const channels = Math.max(Number(get(scenario, path)) || 1, grown.length);
+    return set(set(scenario, path, channels), place.axes, grown);
+  });
 }
 
-/** The spectrum stays with its axis, or goes to a neighbour of the one that is removed. @param {Kit} kit @param {Place} place @param {any[]} axes @param {number} index */
-function removeAxis({ put, now }, place, axes, index) {
-  const left = axes.toSpliced(index, 1);
-  const without = set(now().scenario, place.axes, left);
-  if (!place.axes.startsWith("source")) return put("", without);
-  const selected = without.analysis.axis;
-  put("", set(without, "analysis.axis", Math.min(selected > index ? selected - 1 : selected, left.length - 1)));
+/** @param {Kit} kit @param {Place} place @param {number} index */
+function copyToAll({ change, now }, place, index) {
+  const others = get(now().scenario, place.axes).flatMap((/** @type {any} */ _, /** @type {number} */ at) =>
+    at === index ? [] : [[`${place.axes}[${at}]`, null]],
+  );
+  change(
+    place.axes,
+    (axes) => axes.map((/** @type {any} */ axis) => (axis === axes[index] ? axis : structuredClone(axes[index]))),
+    others,
+  );
 }
 
-/** @param {any[]} list @param {number} index */
-function swapped(list, index) {
-  return list.toSpliced(index, 2, list[index + 1], list[index]);
+/** The spectrum stays with its axis, or goes to a neighbour of the one that is removed. @param {Kit} kit @param {Place} place @param {number} index */
+function removeAxis({ change, now }, place, index) {
+  change(
+    "",
+    (scenario) => {
+      const left = get(scenario, place.axes).toSpliced(index, 1);
+      const without = set(scenario, place.axes, left);
+      if (!place.axes.startsWith("source")) return without;
+      const selected = without.analysis.axis;
+      return set(without, "analysis.axis", Math.min(selected > index ? selected - 1 : selected, left.length - 1));
+    },
+    removed(place.axes, index, now()),
+  );
 }

@@ -9,19 +9,21 @@ import { hex, SOURCES } from "./sources.js";
 
 /** @param {Kit} kit @param {Scenario} scenario @returns {Node[]} */
 export function controllerItems(kit, scenario) {
-  const { put, errorOf, now, samples } = kit;
+  const { change, errorOf, samples } = kit;
   /** @type {any[]} */
   const all = scenario.controllers;
-  const add = (/** @type {any} */ like) => put("", withAnother(now().scenario, like, samples));
+  /** One like the controller of this index, or like the first. @param {number} index */
+  const add = (index) => change("", (now) => withAnother(now, now.controllers[index] ?? null, samples));
   return [
     errorOf("controllers"),
     ...all.map((_, index) => controllerPart(kit, scenario, index, add)),
-    button("Add controller", "Add controller", () => add(all[all.length - 1] ?? null), all.length >= MAX_FURTHER),
+    button("Add controller", "Add controller", () => add(all.length - 1), all.length >= MAX_FURTHER),
   ];
 }
 
-/** @param {Kit} kit @param {Scenario} scenario @param {number} index @param {(like: any) => void} add */
-function controllerPart({ put, block, part, errorOf, ...kit }, scenario, index, add) {
+/** @param {Kit} kit @param {Scenario} scenario @param {number} index @param {(index: number) => void} add */
+function controllerPart(kit, scenario, index, add) {
+  const { block, part, errorOf } = kit;
   const all = scenario.controllers;
   const path = `controllers[${index}]`;
   const name = `Controller ${index + 2}`;
@@ -30,8 +32,8 @@ function controllerPart({ put, block, part, errorOf, ...kit }, scenario, index, 
   const head = element(
     "div",
     { class: "item-head end" },
-    button("Copy", `Copy ${name.toLowerCase()}`, () => add(all[index]), all.length >= MAX_FURTHER),
-    button("✕", `Remove ${name.toLowerCase()}`, () => put("controllers", all.toSpliced(index, 1))),
+    button("Copy", `Copy ${name.toLowerCase()}`, () => add(index), all.length >= MAX_FURTHER),
+    button("✕", `Remove ${name.toLowerCase()}`, () => kit.remove("controllers", index)),
   );
   return part(name, true, [
     errorOf(path),
@@ -39,7 +41,7 @@ function controllerPart({ put, block, part, errorOf, ...kit }, scenario, index, 
     ...block(path, own),
     ...block(`${path}.bus`, bus),
     part(`Pulses and queue of controller ${index + 2}`, false, block(`${path}.bus`, folded)),
-    ...SOURCES[kind].orderForm({ put, block, part, errorOf, ...kit }, index),
+    ...SOURCES[kind].orderForm(kit, index),
   ]);
 }
 

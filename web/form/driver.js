@@ -15,14 +15,16 @@ export function driverItems(kit, { driver_timing: driver }, sheets) {
   };
   const chosen = driver?.rules ? "rules" : (driver?.preset ?? "none");
   const select = kit.kindSelect("Driver", "driver_timing", chosen, kinds, (kind) =>
-    kit.put(
+    kit.change(
       "driver_timing",
-      kind === "none"
-        ? null
-        : // Rules of one's own begin with those of the driver that was chosen.
-          kind === "rules"
-          ? { rules: { ...kit.samples.rules, ...known?.rules } }
-          : { preset: kind },
+      () =>
+        kind === "none"
+          ? null
+          : // Rules of one's own begin with those of the driver that was chosen.
+            kind === "rules"
+            ? { rules: { ...kit.samples.rules, ...known?.rules } }
+            : { preset: kind },
+      [["driver_timing", null]],
     ),
   );
   const head = [kit.errorOf("driver_timing"), element("div", { class: "item-head" }, select)];

@@ -3,7 +3,7 @@
  * changes (kinds, numbers of axes, moves, rows, controllers); else values are put into the fields that stand.
  */
 
-import { element, fill } from "../dom.js";
+import { byId, element, fill, say } from "../dom.js";
 import { get, held } from "../state/state.js";
 import { controllerItems } from "./controllers.js";
 import { driverItems } from "./driver.js";
@@ -12,7 +12,7 @@ import { showAbout, showDerived, showProblems } from "./judgement.js";
 import { createKit } from "./kit.js";
 import { showRemedy } from "./remedies.js";
 import { labelOf, labels, termOf } from "./schema.js";
-import { runsAlone, SOURCES, withSource } from "./sources.js";
+import { replacedBySource, runsAlone, SOURCES, withSource } from "./sources.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Scenario} Scenario */
@@ -25,13 +25,17 @@ export function createForm({ root, samples, drivers, dispatch }) {
   let shape = "";
   /** @type {State} */
   let state;
+  const hand = createHand(root.closest("form") ?? root, () => draw(state));
+  showHints(root);
+  /** The state that the form shows. @type {State | undefined} */
+  let drawn;
   const kit = createKit({ samples, now: () => state, dispatch });
 
   /** @param {Scenario} scenario @returns {Node[]} */
   function source(scenario) {
     const kind = Object.keys(scenario.source)[0];
     const select = kit.kindSelect(labelOf("Scenario", "source"), "source", kind, labels("Source"), (chosen) =>
-      kit.put("", withSource(state.scenario, chosen, samples)),
+      kit.change("", (now) => withSource(now, chosen, samples), replacedBySource(scenario)),
     );
     return [
       kit.errorOf("source"),
@@ -97,10 +101,17 @@ export function createForm({ root, samples, drivers, dispatch }) {
     (again?.matches(":enabled, summary") ? again : there[Math.min(focus.place, there.length - 1)])?.focus();
   }
 
-  /** @param {State} next */
+  /** What is under the pointer stays where it is until it is let go. @param {State} next */
   function render(next) {
-    const before = state;
     state = next;
+    if (!hand.holds()) draw(next);
+  }
+
+  /** @param {State} next */
+  function draw(next) {
+    const before = drawn;
+    if (before === next) return;
+    drawn = next;
     const nextShape = shapeOf(next.scenario);
     if (nextShape !== shape) {
       shape = nextShape;
@@ -123,7 +134,7 @@ export function createForm({ root, samples, drivers, dispatch }) {
       before?.scenario !== next.scenario ||
       before?.drafts !== next.drafts
     ) {
-      showRemedy(next, drivers, (scenario) => kit.put("", scenario));
+      showRemedy(next, drivers, (scenario) => kit.change("", () => scenario));
     }
     if (
       judged &&
@@ -133,6 +144,37 @@ export function createForm({ root, samples, drivers, dispatch }) {
   }
 
   return { render };
+}
+
+/** The hint of the field that has the focus, where it moves nothing; to a screen reader the field itself describes it. @param {HTMLElement} root */
+function showHints(root) {
+  const place = byId("field-hint");
+  root.addEventListener("focusin", ({ target }) => {
+    const field = /** @type {Element} */ (target).closest(".field:not(.wide)");
+    say(place, field?.querySelector(".hint")?.textContent ?? "");
+  });
+  root.addEventListener("focusout", () => say(place, ""));
+}
+
+/**
+ * Whether the pointer is pressed on the form: what is computed meanwhile is drawn when it is let go, so that nothing
+ * moves between press and release. A select opens at the press, and what ends it is not always told.
+ * @param {HTMLElement} root @param {() => void} draw
+ */
+function createHand(root, draw) {
+  let holds = false;
+  root.addEventListener("pointerdown", ({ target }) => {
+    holds = !(/** @type {Element} */ (target).closest("select"));
+  });
+  // A click comes after its release.
+  const free = () =>
+    setTimeout(() => {
+      if (!holds) return;
+      holds = false;
+      draw();
+    });
+  for (const event of ["pointerup", "pointercancel", "keydown", "blur"]) window.addEventListener(event, free);
+  return { holds: () => holds };
 }
 
 /** Whether anything in a group of numbers is other than 0. @param {{[key: string]: number}} group */

@@ -1,7 +1,7 @@
 /** Shows what the core says about the scenario: problems beside their fields, and what follows from it. */
 import { button, byId, element, fill, flash, say } from "../dom.js";
 import { count, counted, plain, pretty, short, si } from "../state/number.js";
-import { derivedAxis, get } from "../state/state.js";
+import { derivedAxis, derivedShown, get } from "../state/state.js";
 import { runsAlone } from "./sources.js";
 import { termButton } from "./term_button.js";
 
@@ -98,12 +98,15 @@ function markSections() {
   }
 }
 
+const OF_LAST_RUN = "of the last run: what the form holds is refused";
+
 /** @param {State} state @param {HTMLElement} form */
 export function showDerived(state, form) {
   const root = byId("derived");
-  const fresh = state.judgement?.derived !== null && Object.keys(state.drafts).length === 0;
+  const { derived, fresh } = derivedShown(state);
   root.classList.toggle("stale", !fresh);
-  const rows = state.derived ? rowsOf(state, state.derived) : [];
+  root.title = fresh ? "" : OF_LAST_RUN;
+  const rows = derived ? rowsOf(state, derived) : [];
   const terms = [...root.querySelectorAll("dt")];
   if (rows.length !== terms.length || rows.some(([name], index) => terms[index].textContent !== name)) {
     fill(
@@ -126,7 +129,9 @@ export function showDerived(state, form) {
     }
   }
   for (const note of /** @type {NodeListOf<HTMLElement>} */ (form.querySelectorAll("[data-note]"))) {
-    const { text, warning } = moveNote(note.dataset.note ?? "", state);
+    const { text, warning } = moveNote(note.dataset.note ?? "", { ...state, derived });
+    note.classList.toggle("stale", !fresh);
+    note.title = fresh ? "" : OF_LAST_RUN;
     if (note.textContent !== text + warning)
       fill(note, text, ...(warning ? [element("strong", { class: "short" }, warning)] : []));
   }

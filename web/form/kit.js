@@ -2,6 +2,7 @@
 
 import { button, element } from "../dom.js";
 import { control } from "./control.js";
+import { createStructure } from "./structure.js";
 import { termButton } from "./term_button.js";
 
 /** @typedef {import("../state/types.js").State} State */
@@ -22,8 +23,7 @@ export function createKit({ samples, now, dispatch }) {
   /** @type {Map<string, boolean>} Which parts stand open. */
   const open = new Map();
 
-  /** @param {string} path @param {any} value */
-  const put = (path, value) => dispatch({ type: "edit", path, value });
+  const structure = createStructure({ now, dispatch });
 
   /** @param {string} path @param {Field} field */
   function row(path, field) {
@@ -83,16 +83,14 @@ export function createKit({ samples, now, dispatch }) {
         `${path}[${index}]`,
         [
           ...block(`${path}[${index}]`, fields),
-          button("Remove", `Remove ${name.toLowerCase()} ${index + 1}`, () => put(path, values.toSpliced(index, 1))),
+          button("Remove", `Remove ${name.toLowerCase()} ${index + 1}`, () => structure.remove(path, index)),
         ],
         term,
       ),
     );
     return [
       ...items,
-      button(`Add ${name.toLowerCase()}`, `Add ${name.toLowerCase()}`, () =>
-        put(path, [...values, fresh(values[values.length - 1])]),
-      ),
+      button(`Add ${name.toLowerCase()}`, `Add ${name.toLowerCase()}`, () => structure.append(path, fresh)),
     ];
   }
 
@@ -102,5 +100,5 @@ export function createKit({ samples, now, dispatch }) {
     groups.clear();
   }
 
-  return { samples, now, put, row, block, errorOf, part, item, kindSelect, rows, clear, controls, groups };
+  return { samples, now, ...structure, row, block, errorOf, part, item, kindSelect, rows, clear, controls, groups };
 }

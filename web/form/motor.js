@@ -7,7 +7,9 @@ export function motorItems(kit, path, { motor }, name) {
   const at = `${path}.motor`;
   const check = element("input", { type: "checkbox", "data-path": `${at}#kind`, "aria-label": `Motor of ${name}` });
   check.checked = motor !== null;
-  check.addEventListener("change", () => kit.put(at, check.checked ? kit.samples.motor : null));
+  check.addEventListener("change", () =>
+    kit.change(at, () => (check.checked ? kit.samples.motor : null), [[at, null]]),
+  );
   const label = element("label", { class: "check" }, check, "Check the torque of its motor");
   return [kit.errorOf(at), label, ...(motor ? kit.block(at, fields("Motor")) : [])];
 }

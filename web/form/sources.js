@@ -97,6 +97,14 @@ export function withSource(scenario, kind, samples) {
   return { ...scenario, source: { [kind]: SOURCES[kind].fresh(scenario, samples) }, controllers };
 }
 
+/** What another kind of source takes the place of. @param {Scenario} scenario @returns {import("../state/state.js").Moved} */
+export function replacedBySource({ controllers }) {
+  const parts = controllers.flatMap((/** @type {any} */ _, /** @type {number} */ index) =>
+    ["axes", "packets"].map((key) => `controllers[${index}].${key}`),
+  );
+  return ["source", ...parts].map((path) => [path, null]);
+}
+
 /** @param {number} byte */
 export function hex(byte) {
   return Number(byte).toString(16).padStart(2, "0");

@@ -27,7 +27,9 @@ export function health(state) {
 export function ill(state) {
   const controller = selected(state);
   const host = state.result?.summary.host;
-  const failed = host ? host.jobs.some(({ progress }) => progress !== "done") : Boolean(controller?.faults.names.length);
+  const failed = host
+    ? host.jobs.some(({ progress }) => progress !== "done")
+    : Boolean(controller?.faults.names.length);
   return failed || Boolean(controller?.violations);
 }
 

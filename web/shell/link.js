@@ -59,7 +59,7 @@ export function createLink({ engine, dispatch, now }) {
     return { full, digests: digests !== null && full.endsWith(digests) };
   }
 
-  /** The address at the page's start; after a reload it may only repeat the visitor's own work. @param {boolean} saved */
+  /** The address at the page's start; after a reload it may only repeat the work that this tab kept. @param {boolean} saved */
   async function start(saved) {
     if (!saved || history.state?.own !== true) return read();
     written = location.hash;

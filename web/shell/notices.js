@@ -2,7 +2,7 @@
  * The lines under the header: what there is to say of a link or a file, and whether the run is the one that a
  * link's sender saw, with a button that shows the place that is meant.
  */
-import { byId, element, fill } from "../dom.js";
+import { button, byId, element, fill } from "../dom.js";
 import { unlessDropped } from "../engine/engine.js";
 import { count, time } from "../state/number.js";
 
@@ -21,19 +21,20 @@ export function createNotices(page) {
     if (verdict && now().result?.summary === result?.summary) dispatch({ type: "compared", text, verdict });
   }
 
-  /** @param {string} id @param {string} text @param {Place | null | undefined} place */
-  function tell(id, text, place) {
+  /** @param {string} id @param {string} text @param {Place | null | undefined} place @param {NonNullable<State["notice"]>["offer"]} [offer] */
+  function tell(id, text, place, offer) {
     const line = byId(id);
     line.hidden = text === "";
     const known = line.dataset.said;
-    const key = JSON.stringify([text, place]);
+    const key = JSON.stringify([text, place, offer?.label]);
     if (known === key) return;
     line.dataset.said = key;
     fill(line, element("span", {}, text));
-    if (!place) return;
-    const press = element("button", { type: "button" }, "Show the place");
-    press.addEventListener("click", () => show(place));
-    line.append(press);
+    if (place) line.append(button("Show the place", "Show the place", () => show(place)));
+    if (offer) {
+      const { label, scenario } = offer;
+      line.append(button(label, label, () => dispatch({ type: "replace", scenario, origin: "own" })));
+    }
   }
 
   /** Shows a time in the pulses. @param {Place} place */
@@ -49,7 +50,7 @@ export function createNotices(page) {
   function render(state, before) {
     const { notice, seen, result, revision } = state;
     if (before?.notice !== notice) {
-      tell("link-message", notice?.text ?? "", notice?.place);
+      tell("link-message", notice?.text ?? "", notice?.place, notice?.offer);
       byId("link-message").classList.toggle("error", notice?.kind === "error");
     }
     const current = result?.revision === revision;

@@ -1,43 +1,85 @@
-/** What this device keeps: the visitor's own scenario, the last that ran, the choice of colours, the sizes of the panes. Storage may be refused; then nothing is kept. */
+/**
+ * What this device keeps: the visitor's own scenario, the last that ran, the choice of colours, the sizes of the panes.
+ * Work is a tab's own: it is kept for the tab, and beside that for all as the last that any tab had, with which a new tab
+ * begins. Storage may be refused; then nothing is kept.
+ */
 
 const SCENARIO = "stepscope.scenario";
 const PREVIOUS = "stepscope.previous";
 const GOOD = "stepscope.good";
+/** Which tab the work that is kept for all is of, and when it was kept. */
+const LATEST = "stepscope.latest";
+const TAB = "stepscope.tab";
 const THEME = "stepscope.theme";
 const GUIDED = "stepscope.guide";
 const PANES = "stepscope.panes";
 
-/** @param {string} key @returns {string | null} */
-function load(key) {
+/** @typedef {() => Storage} Place */
+/** @type {Place} */
+const ofAll = () => localStorage;
+/** @type {Place} */
+const ofTab = () => sessionStorage;
+
+/** @param {string} key @param {Place} [place] @returns {string | null} */
+function load(key, place = ofAll) {
   try {
-    return localStorage.getItem(key);
+    return place().getItem(key);
   } catch {
     return null;
   }
 }
 
-/** @param {string} key @param {string} value */
-function save(key, value) {
+/** @param {string} key @param {string} value @param {Place} [place] */
+function save(key, value, place = ofAll) {
   try {
-    localStorage.setItem(key, value);
+    place().setItem(key, value);
   } catch {
     // Private windows and full disks refuse; the page works without.
   }
 }
 
-export const loadScenario = () => load(SCENARIO);
+/** This tab's name, the same after a reload. */
+function tab() {
+  const known = load(TAB, ofTab);
+  if (known !== null) return known;
+  const name = `${Date.now()}.${Math.random()}`;
+  save(TAB, name, ofTab);
+  return name;
+}
+
+/** @param {string} key */
+const loadWork = (key) => load(key, ofTab) ?? load(key);
+/** @param {string} key @param {string} json */
+function saveWork(key, json) {
+  save(key, json, ofTab);
+  save(key, json);
+}
+
+export const loadScenario = () => loadWork(SCENARIO);
 /** @param {string} json */
-export const saveScenario = (json) => save(SCENARIO, json);
+export function saveScenario(json) {
+  saveWork(SCENARIO, json);
+  const latest = JSON.stringify({ tab: tab(), at: Date.now() });
+  save(LATEST, latest);
+  save(LATEST, latest, ofTab);
+}
+/** The work that another tab kept after this one's; null where there is none, or this tab has none of its own. */
+export function loadNewer() {
+  const [own, all] = [load(LATEST, ofTab), load(LATEST)].map((text) => JSON.parse(text ?? "null"));
+  if (!own || !all || all.tab === tab() || !(all.at > own.at)) return null;
+  const newer = load(SCENARIO);
+  return newer === load(SCENARIO, ofTab) ? null : newer;
+}
 /** Keeps the saved scenario beside the one that is about to take its place, if that is another. @param {string} next */
 export function setAside(next) {
-  const saved = load(SCENARIO);
-  if (saved !== null && saved !== next) save(PREVIOUS, saved);
+  const saved = loadScenario();
+  if (saved !== null && saved !== next) saveWork(PREVIOUS, saved);
 }
-export const loadPrevious = () => load(PREVIOUS);
+export const loadPrevious = () => loadWork(PREVIOUS);
 /** The last own scenario that ran to its end. */
-export const loadGood = () => load(GOOD);
+export const loadGood = () => loadWork(GOOD);
 /** @param {string} json */
-export const saveGood = (json) => save(GOOD, json);
+export const saveGood = (json) => saveWork(GOOD, json);
 export const loadTheme = () => load(THEME);
 /** @param {string} theme */
 export const saveTheme = (theme) => save(THEME, theme);

@@ -27,7 +27,12 @@ export function harmonicsTable({ ideal, pulses }) {
   ]);
   const total = kinds.flatMap((kind) => [kind?.thd_position, kind?.thd_speed, kind?.thd_acceleration]);
   const filtered = kinds.flatMap((kind) => [null, null, kind?.thd_acceleration_filtered]);
-  return csv([head, ...rows, ["thd", "", ...total], ...(filtered.some((part) => part) ? [["thd_filtered", "", ...filtered]] : [])]);
+  return csv([
+    head,
+    ...rows,
+    ["thd", "", ...total],
+    ...(filtered.some((part) => part) ? [["thd_filtered", "", ...filtered]] : []),
+  ]);
 }
 
 /** @param {Timing | null} timing */

@@ -7,9 +7,11 @@
 /** @typedef {import("./types.js").Scenario} Scenario */
 /** @typedef {import("./types.js").Origin} Origin */
 /** @typedef {import("./types.js").Span} Span */
+/** @typedef {import("./types.js").Borrowed} Borrowed */
+/** @typedef {[from: string, to: string | null][]} Moved  Where parts of the scenario went: from path to path, null where they are gone. */
 
 /**
- * @typedef {{type: "edit", path: string, value: any, joins?: boolean}
+ * @typedef {{type: "edit", path: string, value: any, joins?: boolean, moved?: Moved}
  *   | {type: "draft", path: string, text: string, message: string}
  *   | {type: "committed"}
  *   | {type: "replace", scenario: Scenario, origin: Origin}
@@ -55,11 +57,17 @@ const NO_MARKERS = Array(10).fill(null);
 /** All packets are shown. @type {State["filter"]} */
 export const NO_FILTER = { text: "", kind: "", address: null, outcome: "", only: false };
 
+/** Name and note are the visitor's own. @type {Borrowed} */
+export const OWN_TEXTS = { title: false, note: false };
+/** What an edited experiment is called until it has a name of its own; its note goes. */
+export const CHANGED_FROM = "changed from ";
+
 /** @param {Scenario} scenario @returns {State} */
 export function initial(scenario) {
   return {
     scenario,
     origin: "own",
+    borrowed: OWN_TEXTS,
     revision: 0,
     edited: null,
     past: [],
@@ -113,7 +121,11 @@ export function update(state, message) {
     case "committed":
       return state.edited === null ? state : { ...state, edited: null };
     case "replace":
-      return { ...changed(remember(state), message.scenario, message.origin), ...fresh };
+      return {
+        ...changed(remember(state), message.scenario, message.origin),
+        borrowed: message.origin === "own" ? OWN_TEXTS : { title: true, note: true },
+        ...fresh,
+      };
     case "undo":
       return travel(state, "past", "future");
     case "redo":
@@ -243,13 +255,52 @@ function sameLit(one, other) {
   return one === other || JSON.stringify(one) === JSON.stringify(other);
 }
 
-/** @param {State} state @param {{path: string, value: any, joins?: boolean}} message */
-function edit(state, { path, value, joins = false }) {
-  const drafts = Object.fromEntries(Object.entries(state.drafts).filter(([at]) => !isWithin(at, path)));
+/**
+ * What is typed in a part that is replaced goes with it; where `moved` says what became of the parts, it goes where
+ * they go.
+ * @param {State} state @param {{path: string, value: any, joins?: boolean, moved?: Moved}} message
+ */
+function edit(state, { path, value, joins = false, moved = [[path, null]] }) {
+  const drafts = Object.fromEntries(
+    Object.entries(state.drafts).flatMap(([at, draft]) => {
+      const to = movedTo(at, moved);
+      return to === null ? [] : [[to, draft]];
+    }),
+  );
   if (Object.is(get(state.scenario, path), value)) return { ...state, drafts };
   const joined = joins && state.edited === path;
   const before = joined ? state : remember(state);
-  return { ...changed(before, set(state.scenario, path, value), "own"), drafts, edited: joins ? path : null };
+  const { scenario, borrowed } = owned(state, set(state.scenario, path, value));
+  return { ...changed(before, scenario, "own"), borrowed, drafts, edited: joins ? path : null };
+}
+
+/** Where a path goes when parts of the scenario move; null where it is gone. @param {string} at @param {Moved} moved */
+export function movedTo(at, moved) {
+  const found = moved.find(([from]) => isWithin(at, from));
+  if (!found) return at;
+  const [from, to] = found;
+  return to === null ? null : to + at.slice(from.length);
+}
+
+/**
+ * A preset or shared experiment that is edited is no longer what its name and note tell: it is "changed from" that
+ * until the visitor names it, and the note goes.
+ * @param {State} state @param {Scenario} next
+ */
+function owned({ scenario, borrowed }, next) {
+  const named = next.title !== scenario.title;
+  const noted = next.note !== scenario.note;
+  if (named || noted)
+    return { scenario: next, borrowed: { title: borrowed.title && !named, note: borrowed.note && !noted } };
+  const title = borrowed.title && next.title ? changedFrom(String(next.title)) : next.title;
+  const note = borrowed.note && next.note ? "" : next.note;
+  if (title === next.title && note === next.note) return { scenario: next, borrowed: OWN_TEXTS };
+  return { scenario: { ...next, title, note }, borrowed: OWN_TEXTS };
+}
+
+/** @param {string} title */
+function changedFrom(title) {
+  return title.startsWith(CHANGED_FROM) ? title : `${CHANGED_FROM}${title}`;
 }
 
 /** Whether `path` is `outer` or a part of it: what was typed there goes with it. @param {string} path @param {string} outer */
@@ -257,10 +308,14 @@ function isWithin(path, outer) {
   return outer === "" || path === outer || path.startsWith(`${outer}.`) || path.startsWith(`${outer}[`);
 }
 
+/** @param {State} state @returns {import("./types.js").Moment} */
+function momentOf({ scenario, origin, borrowed }) {
+  return { scenario, origin, borrowed };
+}
+
 /** @param {State} state @returns {State} */
 function remember(state) {
-  const now = { scenario: state.scenario, origin: state.origin };
-  return { ...state, past: [...state.past, now].slice(-DEPTH), future: [] };
+  return { ...state, past: [...state.past, momentOf(state)].slice(-DEPTH), future: [] };
 }
 
 /** @param {State} state @param {Scenario} scenario @param {Origin} origin @returns {State} */
@@ -286,9 +341,8 @@ function travel(state, from, to) {
   if (from === "past" && Object.keys(state.drafts).length > 0) return { ...state, drafts: {}, edited: null };
   const moment = state[from][state[from].length - 1];
   if (!moment) return state;
-  const now = { scenario: state.scenario, origin: state.origin };
-  const moved = { ...changed(state, moment.scenario, moment.origin) };
-  return { ...moved, [from]: state[from].slice(0, -1), [to]: [...state[to], now].slice(-DEPTH) };
+  const moved = { ...changed(state, moment.scenario, moment.origin), borrowed: moment.borrowed };
+  return { ...moved, [from]: state[from].slice(0, -1), [to]: [...state[to], momentOf(state)].slice(-DEPTH) };
 }
 
 /** @param {State} state @param {{revision: number, judgement: import("./types.js").Judgement}} message @returns {State} */
@@ -303,7 +357,8 @@ function done(state, { revision, summary, ms }) {
   if (revision !== state.revision && !earlier) return state;
   /** @type {State["run"]} */
   const run = earlier ? state.run : { phase: "done", progress: null, message: "" };
-  const next = lookAt({ ...state, result: { revision, summary, ms, controller: 0 }, run }, state.controller);
+  const derived = earlier ? null : (state.judgement?.derived ?? null);
+  const next = lookAt({ ...state, result: { revision, summary, ms, controller: 0, derived }, run }, state.controller);
   // An old window over a run of another length or clock would show another time.
   const same = state.result?.summary.clock_hz === summary.clock_hz;
   const kept = state.window && same ? clamp(state.window, summary.end_cycle) : null;
@@ -362,6 +417,15 @@ function lookAt(state, controller) {
 /** What the run made of the controller on show; none before the first run. @param {State} state */
 export function selected({ result }) {
   return result?.summary.controllers[result.controller];
+}
+
+/**
+ * What follows from the scenario in the form; where it is refused, what followed from the one of the last run.
+ * @param {State} state @returns {{derived: import("./types.js").Derived | null, fresh: boolean}}
+ */
+export function derivedShown({ judgement, drafts, result, judged, revision }) {
+  const fresh = judged === revision && Boolean(judgement?.derived) && Object.keys(drafts).length === 0;
+  return { derived: (fresh ? judgement?.derived : result?.derived) ?? null, fresh };
 }
 
 /** What follows from the axis that a field of the form belongs to. @param {State} state @param {string} path */

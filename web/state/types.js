@@ -27,8 +27,9 @@
  * @typedef {{x: Float64Array, has_ideal: boolean,
  *   position_min: Float64Array, position_max: Float64Array, speed_min: Float64Array, speed_max: Float64Array,
  *   acceleration_min: Float64Array, acceleration_max: Float64Array,
- *   made_position_min: Float64Array, made_position_max: Float64Array,
- *   made_speed_min: Float64Array, made_speed_max: Float64Array}} MotionColumns
+ *   actual_position_min: Float64Array, actual_position_max: Float64Array,
+ *   actual_speed_min: Float64Array, actual_speed_max: Float64Array,
+ *   line_time_s: Float64Array, line_position: Float64Array, line_speed: Float64Array, line_acceleration: Float64Array}} MotionColumns
  * @typedef {{high: Uint32Array, low: Uint32Array, last: Uint32Array}} PulseColumns
  * @typedef {{start: number, end: number, texts: string[], bad: boolean, packet: number | null, sample: number | null}} LineSpan
  * @typedef {{bits: LineSpan[], bytes: LineSpan[], fields: LineSpan[]}} Lane
@@ -51,19 +52,20 @@
  * @typedef {{driver: string | null, total: number, rules: RuleResult[], violations: Violation[]}} Timing
  * @typedef {{fundamental_hz: number, periods: number, order: number, periodic: boolean,
  *   position: Float64Array, speed: Float64Array, acceleration: Float64Array,
- *   thd_position: number | null, thd_speed: number | null, thd_acceleration: number | null, thd_acceleration_felt: number | null}} Spectrum
+ *   thd_position: number | null, thd_speed: number | null, thd_acceleration: number | null, thd_acceleration_filtered: number | null}} Spectrum
  * @typedef {{axis: number, ideal: Spectrum | null, pulses: Spectrum | null, note: string}} Spectra
  *
  * @typedef {{at_a: number[], at_b: number[], mean: number[], rms: number[]}} Readings  Position, speed, acceleration; of pulses the first two.
- * @typedef {{ideal: Readings | null, made: Readings}} Between
+ * @typedef {{ideal: Readings | null, actual: Readings}} Between
  * @typedef {{common_s: number, largest: number, at_s: number, rms: number}} Apart
  * @typedef {{title: string, revision: number, summary: Summary, controller: number, derived: DerivedController | null}} Baseline
  *
  * @typedef {{start: number, end: number}} Span  Cycles, start < end.
  * @typedef {{left: number, top: number, right: number, bottom: number}} Plot  CSS pixels in a canvas.
  * @typedef {"own" | "shared" | `preset:${string}`} Origin  Where the scenario on show comes from.
- * @typedef {{scenario: Scenario, origin: Origin}} Moment  One step of the history.
- * @typedef {{revision: number, summary: Summary, ms: number, controller: number}} Result  As one of its controllers shows it.
+ * @typedef {{title: boolean, note: boolean}} Borrowed  Whether name and note are still those of the preset, link or file.
+ * @typedef {{scenario: Scenario, origin: Origin, borrowed: Borrowed}} Moment  One step of the history.
+ * @typedef {{revision: number, summary: Summary, ms: number, controller: number, derived: Derived | null}} Result  As one of its controllers shows it, and what followed from its scenario.
  * @typedef {{phase: "idle" | "waiting" | "running" | "done" | "failed", progress: Progress | null, message: string}} Run
  *
  * @typedef {{form: number | null, rows: [number, number, number] | null, columns: [number, number] | null, folded: string[], largest: string | null}} Panes
@@ -80,6 +82,7 @@
  * @typedef {object} State
  * @property {Scenario} scenario
  * @property {Origin} origin
+ * @property {Borrowed} borrowed
  * @property {number} revision      Counts the changes of the scenario.
  * @property {string | null} edited Path of the last edit, while further edits of it join that step of the history.
  * @property {Moment[]} past
@@ -117,7 +120,7 @@
  * @property {StudyName} study      Open tab of the study.
  * @property {Panes} panes          Of a wide screen.
  * @property {"spectrum" | "timing" | null} side  Which of the two shares their place on a wide screen; null: the timing check, if there is one.
- * @property {{text: string, kind: "info" | "error", place?: Place | null} | null} notice  About links, files and the engine.
+ * @property {{text: string, kind: "info" | "error", place?: Place | null, offer?: {label: string, scenario: Scenario}} | null} notice  About links, files and the engine.
  *
  * @typedef {{dispatch: (message: import("./state.js").Message) => void, now: () => State}} Page  What each part of the page is given.
  */

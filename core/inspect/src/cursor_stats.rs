@@ -69,7 +69,7 @@ pub(super) const POINTS: [(f64, f64); 3] =
 #[must_use]
 pub fn ideal(plan: &AxisPlan, zero_s: f64, from_s: f64, to_s: f64) -> CursorStats {
     let [mut position, mut speed, mut acceleration] = [Sums::default(); 3];
-    Breakpoints::of(plan).pieces(from_s - zero_s, to_s - zero_s, &mut |piece| {
+    Breakpoints::of(plan).intervals(from_s - zero_s, to_s - zero_s, &mut |piece| {
         let (middle, half) = ((piece.from_s + piece.to_s) / 2.0, (piece.to_s - piece.from_s) / 2.0);
         for (point, weight) in POINTS {
             let (t, seconds) = (middle + half * point, 2.0 * half * weight * piece.times);

@@ -16,9 +16,13 @@ use alloc::{vec, vec::Vec};
 use stepscope_motion::{AxisPlan, Breakpoints, Interval};
 use stepscope_peripheral::trace::Step;
 
-/// Smooth pieces of a column that are all looked at; of more, every 16th and the last. Only a table
+/// Smooth intervals of a column that are all looked at; of more, every 16th and the last. Only a table
 /// of some hundred thousand rows has as many, and its speed rises from row to row.
-const MAX_PIECES: usize = 256;
+const MAX_INTERVALS: usize = 256;
+/// Smooth intervals of a column that a line follows one by one; of more it goes from the least to the greatest value.
+const MAX_FOLLOWED: usize = 32;
+/// Points of a line in a column without breakpoints.
+const POINTS: usize = 4;
 
 /// The least and greatest value in each column; NaN where there is none.
 #[derive(Clone, Debug, PartialEq)]
@@ -135,6 +139,74 @@ pub fn ideal(plan: &AxisPlan, zero_s: f64, window: Window) -> Ideal {
     bands
 }
 
+/// Points on the ideal motion, to be joined by straight lines.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct IdealLine {
+    /// Times in s, of the window; at a breakpoint two points stand at one time.
+    pub time_s: Vec<f64>,
+    /// Position in steps from the start.
+    pub position: Vec<f64>,
+    /// Speed in steps/s.
+    pub speed: Vec<f64>,
+    /// Acceleration in steps/s^2.
+    pub acceleration: Vec<f64>,
+}
+
+impl IdealLine {
+    fn push(&mut self, time_s: f64, [position, speed, acceleration]: [f64; 3]) {
+        self.time_s.push(time_s);
+        self.position.push(position);
+        self.speed.push(speed);
+        self.acceleration.push(acceleration);
+    }
+}
+
+/// The ideal motion of an axis whose time 0 is at `zero_s`, as the lines that a chart of so many columns draws: each
+/// smooth interval is followed from end to end, several points to a column, so that on a chart a hundred columns high
+/// no corner can be seen. Where a column holds more intervals than that shows, the line visits its least and its
+/// greatest values.
+#[must_use]
+pub fn ideal_line(plan: &AxisPlan, zero_s: f64, window: Window) -> IdealLine {
+    let breakpoints = Breakpoints::of(plan);
+    let mut line = IdealLine::default();
+    let mut few = Vec::with_capacity(MAX_FOLLOWED);
+    for column in 0..window.columns {
+        let (from, to) = (window.edge_s(column) - zero_s, window.edge_s(column + 1) - zero_s);
+        let mut followed = breakpoints.period_within(from, to).is_none();
+        few.clear();
+        if followed {
+            breakpoints.intervals(from, to, &mut |interval| {
+                followed = followed && few.len() < MAX_FOLLOWED && interval.times == 1.0;
+                if followed {
+                    few.push(interval);
+                }
+            });
+        }
+        if followed {
+            few.iter().for_each(|interval| follow(plan, zero_s, *interval, to - from, &mut line));
+        } else {
+            let (from, to) = breakpoints.period_within(from, to).unwrap_or((from, to));
+            let [position, speed, acceleration] = extremes(plan, &breakpoints, from, to);
+            for end in [0, 1] {
+                line.push(window.centre_s(column), [position[end], speed[end], acceleration[end]]);
+            }
+        }
+    }
+    line
+}
+
+/// Points on an interval, from just inside its start to just inside its end.
+fn follow(plan: &AxisPlan, zero_s: f64, interval: Interval, column_s: f64, line: &mut IdealLine) {
+    let length_s = interval.to_s - interval.from_s;
+    let parts = libm::fmax(1.0, libm::ceil(POINTS as f64 * length_s / column_s)) as usize;
+    let inset = length_s * 1e-9;
+    for part in 0..=parts {
+        let t = interval.from_s + length_s * (part as f64 / parts as f64);
+        let inside = libm::fmin(libm::fmax(t, interval.from_s + inset), interval.to_s - inset);
+        line.push(t + zero_s, [plan.position(inside), plan.speed(inside), plan.acceleration(inside)]);
+    }
+}
+
 /// Least and greatest position, speed and acceleration of a stretch.
 fn extremes(plan: &AxisPlan, breakpoints: &Breakpoints, from_s: f64, to_s: f64) -> [[f64; 2]; 3] {
     let mut found = [[f64::NAN; 2]; 3];
@@ -153,7 +225,7 @@ fn extremes(plan: &AxisPlan, breakpoints: &Breakpoints, from_s: f64, to_s: f64) 
     breakpoints.intervals(from_s, to_s, &mut |interval| {
         count += 1;
         last = Some(interval);
-        if count <= MAX_PIECES || count % 16 == 0 {
+        if count <= MAX_INTERVALS || count % 16 == 0 {
             look(interval);
         }
     });

@@ -110,7 +110,7 @@ impl Demand {
         };
         let mut walk = Walk { machine, plan, demand, open: None, before: None };
         let look_s = plan.duration_s() / LOOKS;
-        Breakpoints::of(plan).pieces(0.0, plan.duration_s(), &mut |piece| walk.piece(piece, look_s));
+        Breakpoints::of(plan).intervals(0.0, plan.duration_s(), &mut |piece| walk.piece(piece, look_s));
         walk.close();
         walk.demand
     }

@@ -25,7 +25,7 @@ const JERK_PARTS: u32 = 16;
 /// Parts that a smooth curve through points is cut into, about: its pieces in 4 to 64 each.
 const CURVE_PARTS: u32 = 256;
 
-/// A stretch of time in which a motion is smooth.
+/// An interval of time in which a motion is smooth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     /// Its start in s on the axis' time.
@@ -77,9 +77,9 @@ impl Breakpoints {
         inside.then_some((planned_move.start_s, planned_move.start_s + period_s))
     }
 
-    /// The smooth pieces of a stretch of time, in order but for a sine's whole periods, of which only
+    /// The smooth intervals of a stretch of time, in order but for a sine's whole periods, of which only
     /// the first is cut and stands for all.
-    pub fn pieces(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Interval)) {
+    pub fn intervals(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Interval)) {
         let once = |from_s: f64, to_s: f64, each: &mut dyn FnMut(Interval)| {
             if to_s > from_s {
                 each(Interval { from_s, to_s, times: 1.0 });
@@ -92,7 +92,7 @@ impl Breakpoints {
         for planned_move in
             self.moves.iter().skip(first).take_while(|planned_move| planned_move.start_s < to_s)
         {
-            planned_move.pieces(
+            planned_move.intervals(
                 greatest(from_s, planned_move.start_s),
                 least(to_s, planned_move.end_s),
                 each,
@@ -103,7 +103,7 @@ impl Breakpoints {
 }
 
 impl MoveBreakpoints {
-    fn pieces(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Interval)) {
+    fn intervals(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Interval)) {
         let Some(period_s) = self.period_s else { return self.cut(from_s, to_s, 0.0, 1.0, each) };
         // Whole periods from the end of the one that is begun to the start of the one not ended.
         let (first, last) =

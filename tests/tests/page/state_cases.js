@@ -6,6 +6,9 @@ return import(new URL("state/state.js", document.baseURI)).then(({ DEPTH, MIN_SP
   const play = (messages, from = begin()) => messages.flat().reduce(update, from);
 
   const edit = (path, value, joins) => ({ type: "edit", path, value, joins });
+  const restructure = (value, moved) => ({ type: "edit", path: "list", value, moved });
+  const named = { title: "S", note: "n", a: { b: 7 } };
+  const texts = (state) => [state.scenario.title, state.scenario.note];
   const undo = { type: "undo" };
   const redo = { type: "redo" };
   const judged = (revision, { problems = [], over = false, derived = null } = {}) =>
@@ -56,6 +59,21 @@ return import(new URL("state/state.js", document.baseURI)).then(({ DEPTH, MIN_SP
     ["a number takes its draft's place", [draft("a.b"), edit("a.b", 2)], (s) => Object.keys(s.drafts), []],
     ["the same number again takes the draft away", [draft("a.b"), edit("a.b", 1)], (s) => [Object.keys(s.drafts), s.revision], [[], 0]],
     ["an edit of the whole takes drafts of its parts", [draft("list[0].c"), draft("a.b"), edit("list", [{ c: 1 }])], (s) => Object.keys(s.drafts), ["a.b"]],
+    ["a part that is added leaves what is typed", [draft("list[0].c"), restructure([{ c: 1 }, { c: 2 }, { c: 3 }], [])], (s) => Object.keys(s.drafts), ["list[0].c"]],
+    ["what is typed goes where its part goes", [draft("list[0].c"), draft("a.b"), restructure([{ c: 2 }, { c: 1 }], [["list[0]", "list[1]"], ["list[1]", "list[0]"]])],
+      (s) => Object.keys(s.drafts), ["list[1].c", "a.b"]],
+    ["and away with its part", [draft("list[0].c"), draft("list[1].c"), restructure([{ c: 2 }], [["list[0]", null], ["list[1]", "list[0]"]])], (s) => Object.keys(s.drafts), ["list[0].c"]],
+    // Name and note.
+    ["an edited preset is changed from it and loses its note", [replace(named), edit("a.b", 8)], texts, ["changed from S", ""]],
+    ["once", [replace(named), edit("a.b", 8), edit("a.b", 9)], texts, ["changed from S", ""]],
+    ["also what was changed from it before", [replace({ ...named, title: "changed from S" }, "shared"), edit("a.b", 8)], texts, ["changed from S", ""]],
+    ["until it has a name", [replace(named), edit("a.b", 8), edit("title", "mine"), edit("a.b", 9)], texts, ["mine", ""]],
+    ["a name that is given first stays", [replace(named), edit("title", "mine"), edit("a.b", 8)], texts, ["mine", ""]],
+    ["a note that is written stays", [replace(named), edit("note", "why"), edit("a.b", 8)], texts, ["changed from S", "why"]],
+    ["undo gives name and note back", [replace(named), edit("a.b", 8), undo], texts, ["S", "n"]],
+    ["and they are the preset's again", [replace(named), edit("a.b", 8), undo, edit("a.b", 9)], texts, ["changed from S", ""]],
+    ["redo as well", [replace(named), edit("a.b", 8), undo, redo, edit("a.b", 9)], texts, ["changed from S", ""]],
+    ["one's own experiment keeps both", [replace(named, "own"), edit("a.b", 8)], texts, ["S", "n"]],
     // Judgements.
     ["a judgement is taken", [judged(0)], (s) => [s.judged, held(s)], [0, null]],
     ["a stale judgement is ignored", [edit("a.b", 2), judged(0, { problems: [{ path: "", message: "" }] })], (s) => [s.judgement, s.judged, held(s)], [null, -1, "unjudged"]],

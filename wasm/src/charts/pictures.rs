@@ -2,8 +2,7 @@
 //! and dark colours. `STEPSCOPE_BLESS=1 cargo test -p stepscope-wasm --lib pictures` writes them anew; look
 //! at them before they are kept.
 
-use super::{Axis, Colors, Series, Shape, Spec, draw, surface::Surface};
-use plotters::prelude::SVGBackend;
+use super::{Axis, Colors, Series, Shape, Spec, svg};
 use std::{env, fs, path::Path};
 
 /// The page's colours of a theme.
@@ -13,8 +12,8 @@ struct Theme {
     axis: &'static str,
     grid: &'static str,
     ideal: &'static str,
-    made: &'static str,
-    kept: &'static str,
+    actual: &'static str,
+    baseline: &'static str,
 }
 
 const THEMES: [Theme; 2] = [
@@ -24,8 +23,8 @@ const THEMES: [Theme; 2] = [
         axis: "#76808c",
         grid: "#e6e9ed",
         ideal: "#d55e00",
-        made: "#0072b2",
-        kept: "#00704f",
+        actual: "#0072b2",
+        baseline: "#00704f",
     },
     Theme {
         name: "dark",
@@ -33,8 +32,8 @@ const THEMES: [Theme; 2] = [
         axis: "#8590a0",
         grid: "#262c35",
         ideal: "#e69f00",
-        made: "#56b4e9",
-        kept: "#3ad3a5",
+        actual: "#56b4e9",
+        baseline: "#3ad3a5",
     },
 ];
 
@@ -60,14 +59,14 @@ fn motion(theme: &Theme) -> Spec {
         x.iter().map(|t| (t.min(0.4 - t) / ramp_s).min(1.0) * top).collect::<Vec<f64>>()
     };
     let ideal = trapezoid(0.1, 12_000.0);
-    let made: Vec<f64> = ideal.iter().map(|speed| (speed / 1000.0).round() * 1000.0).collect();
+    let actual: Vec<f64> = ideal.iter().map(|speed| (speed / 1000.0).round() * 1000.0).collect();
     let rises: Vec<f64> = made.iter().skip(1).chain(made.last()).copied().collect();
     let low = made.iter().zip(&rises).map(|(a, b)| a.min(*b)).collect();
     let high = made.iter().zip(&rises).map(|(a, b)| a.max(*b)).collect();
     let series = vec![
-        series(theme.made, 0.55, 4.0, 0.0, &x, Shape::Band { min: low, max: high }),
+        series(theme.actual, 0.55, 4.0, 0.0, &x, Shape::Band { min: low, max: high }),
         series(theme.ideal, 1.0, 1.6, 0.0, &x, Shape::Line { y: ideal }),
-        series(theme.kept, 1.0, 1.8, 5.0, &x, Shape::Line { y: trapezoid(0.18, 15_000.0) }),
+        series(theme.baseline, 1.0, 1.8, 5.0, &x, Shape::Line { y: trapezoid(0.18, 15_000.0) }),
     ];
     chart(theme, axis(0.0, 0.4, "s", true, 20.0), axis(-1200.0, 16_200.0, "", true, 68.0), series)
 }
@@ -80,7 +79,7 @@ fn band(theme: &Theme) -> Spec {
     };
     let max = (0..120).map(|column| if column == 90 { 400.0 } else { swing(column) }).collect();
     let min = (0..120).map(|column| -swing(column)).collect();
-    let series = vec![series(theme.made, 1.0, 1.6, 0.0, &x, Shape::Band { min, max })];
+    let series = vec![series(theme.actual, 1.0, 1.6, 0.0, &x, Shape::Band { min, max })];
     chart(theme, axis(0.0, 119.0, "", false, 20.0), axis(-108.0, 432.0, "", true, 68.0), series)
 }
 
@@ -93,7 +92,7 @@ fn spectrum(theme: &Theme) -> Spec {
     };
     let series = vec![
         series(theme.ideal, 1.0, 3.0, 0.0, &x, Shape::Stems { y: level(2.0), shift: -2.0 }),
-        series(theme.made, 1.0, 3.0, 0.0, &x, Shape::Stems { y: level(1.8), shift: 2.0 }),
+        series(theme.actual, 1.0, 3.0, 0.0, &x, Shape::Stems { y: level(1.8), shift: 2.0 }),
     ];
     chart(theme, axis(0.0, 41.0, "", false, 20.0), axis(-120.0, 10.0, "dB", false, 58.0), series)
 }
@@ -104,10 +103,7 @@ fn pictures_are_those_that_were_looked_at() {
     let drawings: [(&str, Drawing); 3] = [("motion", motion), ("band", band), ("spectrum", spectrum)];
     for theme in &THEMES {
         for (name, make) in drawings {
-            let mut text = String::new();
-            let surface = Surface::Svg(SVGBackend::with_string(&mut text, (1200, 400)));
-            let plot = draw(surface, &make(theme));
-            assert!(plot.is_ok(), "{name}: {plot:?}");
+            let (text, _) = svg((1200, 400), &make(theme)).expect("draws");
             let file = folder.join(format!("{name}-{}.svg", theme.name));
             if env::var_os("STEPSCOPE_BLESS").is_some() {
                 fs::create_dir_all(&folder).expect("a folder");

@@ -7,7 +7,8 @@ import { color, GUTTER } from "../../time/plot.js";
 /** @typedef {import("../../state/types.js").MotionColumns} MotionColumns */
 /** @typedef {{min: Float64Array, max: Float64Array}} Columns */
 /** @typedef {"position" | "speed" | "acceleration"} Quantity */
-/** @typedef {{name: string, ink: string, opacity: number, width: number, dash: number} & Columns} Band */
+/** @typedef {{x: Float64Array, y: Float64Array}} Line */
+/** @typedef {{name: string, ink: string, opacity: number, width: number, dash: number, line?: Line} & Columns} Band  Columns, and the line that is drawn where there is one. */
 /** @typedef {{columns: MotionColumns, baseline: MotionColumns | null, apart: Columns | null}} Seen  This run, the baseline, and the difference of their positions where that is shown. */
 /** @typedef {{low: number, high: number, min: number, max: number}} Range */
 
@@ -62,8 +63,9 @@ function curves(columns, quantity, scale) {
     const [min, max] = ["min", "max"].map((end) => /** @type {any} */ (columns)[`${name}_${end}`]);
     return { min: scaled(min, scale), max: scaled(max, scale) };
   };
+  const line = () => ({ x: columns.line_time_s, y: scaled(columns[`line_${quantity}`], scale) });
   return {
-    ideal: columns.has_ideal ? of(quantity) : null,
+    ideal: columns.has_ideal ? { ...of(quantity), line: line() } : null,
     actual: quantity === "acceleration" ? null : of(`actual_${quantity}`),
   };
 }
@@ -119,13 +121,13 @@ export function chartOf(state, seen, quantity) {
     chart: {
       x: { min: start / clock, max: end / clock, unit: "s", prefix: true, label_px },
       y: { min: range.min, max: range.max, unit: "", prefix: true, label_px: GUTTER },
-      series: bands.map(({ ink, opacity, width, dash, min, max }) => ({
+      series: bands.map(({ ink, opacity, width, dash, line, min, max }) => ({
         color: color(ink),
         opacity,
         width,
         dash,
-        x: seen.columns.x,
-        shape: { band: { min, max } },
+        x: line?.x ?? seen.columns.x,
+        shape: line ? { line: { y: line.y } } : { band: { min, max } },
       })),
     },
   };

@@ -189,8 +189,7 @@ export function createMotion({ engine, dispatch, now }) {
       options(unitSelect, unitsOf(state), unitOf(state).name);
     }
     compare.render(state, before);
-    const other =
-      before?.axis !== state.axis || before?.result !== state.result || before?.baseline !== state.baseline;
+    const other = before?.axis !== state.axis || before?.result !== state.result || before?.baseline !== state.baseline;
     const moved = other || before?.window !== state.window;
     if (before?.window !== state.window || other || before?.unit !== state.unit) record.render(state);
     if (before && byKeys && before.cursors !== state.cursors)

@@ -144,20 +144,21 @@ export function createInspector({ engine, dispatch, now }) {
 
   /** Lights the bytes and fields that something points at. @param {State} state */
   function light({ highlighted, result }) {
+    const shown = row;
     const over =
-      highlighted && row && (highlighted.packet === null || highlighted.packet === row.index)
-        ? row.byte_cycles.map((start) => start < highlighted.end && start + row.byte_length > highlighted.start)
+      highlighted && shown && (highlighted.packet === null || highlighted.packet === shown.index)
+        ? shown.byte_cycles.map((start) => start < highlighted.end && start + shown.byte_length > highlighted.start)
         : [];
     // All of a row is said by the row itself.
     const some = over.includes(false) || over.length === 1 ? over : [];
     for (const [place, cell] of [...bytes.children].entries())
       cell.classList.toggle("highlighted", some[place] === true);
     for (const [place, cell] of [...fields.children].entries()) {
-      const { from, until } = row?.layout[place] ?? { from: 0, until: 0 };
+      const { from, until } = shown?.layout[place] ?? { from: 0, until: 0 };
       cell.classList.toggle("highlighted", some.slice(from, until).includes(true));
     }
     const [first, last] = [some.indexOf(true), some.lastIndexOf(true)];
-    if (row) say(byId("packet-reading"), reading(row, first, last, result?.summary.clock_hz ?? 1));
+    if (shown) say(byId("packet-reading"), reading(shown, first, last, result?.summary.clock_hz ?? 1));
   }
 
   return {

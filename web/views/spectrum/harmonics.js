@@ -76,11 +76,15 @@ export function distortion(spectra, quantity) {
     return `${name} ${value === null ? "none" : percent(value)}`;
   });
   const filtered =
-    quantity === "acceleration" ? given(spectra).filter(([, spectrum]) => spectrum.thd_acceleration_filtered !== null) : [];
+    quantity === "acceleration"
+      ? given(spectra).filter(([, spectrum]) => spectrum.thd_acceleration_filtered !== null)
+      : [];
   const through = filtered
     .map(([name, spectrum]) => `${name} ${percent(Number(spectrum.thd_acceleration_filtered))}`)
     .join(", ");
-  return `THD of ${quantity}, axis ${spectra.axis}: ${parts.join(", ")}${through && `; filtered by the sensor: ${through}`}`;
+  const [first] = given(spectra);
+  const to = first ? ` to harmonic ${first[1].order}` : "";
+  return `THD of ${quantity}${to}, axis ${spectra.axis}: ${parts.join(", ")}${through && `; filtered by the sensor: ${through}`}`;
 }
 
 /** How the distortion is defined. @param {Spectrum} some */

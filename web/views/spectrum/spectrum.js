@@ -4,7 +4,7 @@ import { unlessDropped } from "../../engine/engine.js";
 import { listen } from "../../shell/commands.js";
 import { short, si } from "../../state/number.js";
 import { cleared, color, draw, fit, watch } from "../../time/plot.js";
-import { distortion, FLOOR_DB, given, harmonics, heard, method, reference, describe, value } from "./harmonics.js";
+import { describe, distortion, FLOOR_DB, given, harmonics, heard, method, reference, value } from "./harmonics.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").Spectra} Spectra */

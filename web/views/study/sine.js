@@ -23,6 +23,10 @@ const PIECE = 10;
 /** Pieces of the range in which the best d1 of each number of segments is looked for. */
 const STRETCHES = 16;
 const GUTTER = 58;
+/** A distortion has harmonics 2 and 3 at least. */
+const MIN_ORDER = 3;
+/** The most that the scenario takes. */
+const MAX_ORDER = 1000;
 const NAMES = /** @type {(keyof Rows)[]} */ ([
   "d1",
   "segments",
@@ -43,11 +47,10 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   const from = field("d1 from", "", 0.002, { least: 1e-5, most: 1 }, refresh);
   const to = field("to", "", 0.06, { least: 1e-5, most: 1 }, refresh);
   const points = field("points", "", 500, { least: 2, most: 20000, integer: true }, refresh);
-  const order = field("harmonics to", "", 399, { least: 3, most: 9999, integer: true }, () => {
-    refresh();
-    vertices();
-    current(now());
-  });
+  // The one setting of the experiment: what is read here is what the spectrum tells.
+  const order = field("harmonics to", "", MIN_ORDER, { least: MIN_ORDER, most: MAX_ORDER, integer: true }, () =>
+    dispatch({ type: "edit", path: "analysis.order", value: order.value() }),
+  );
   const quantity = choice(
     "THD of",
     { position: "position", speed: "speed", acceleration: "acceleration", filtered: "acceleration, filtered" },
@@ -480,8 +483,13 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     const { analysis } = state.scenario;
     const wanted =
       of && move >= 0 && analysis?.sensor_hz ? analysis.sensor_hz * of.moves[move].sine_segments.period_s : undefined;
-    const other = of !== null && wanted !== sensor;
-    if (other) sensor = wanted;
+    const highest = Math.max(MIN_ORDER, Number(analysis?.order) || 0);
+    const other = (of !== null && wanted !== sensor) || highest !== order.value();
+    if (of !== null) sensor = wanted;
+    if (highest !== order.value()) {
+      order.set(highest);
+      swept = false;
+    }
     // An undo takes away what the note tells of.
     if (claim && JSON.stringify(get(state.scenario, claim.path)) !== claim.json) {
       claim = null;

@@ -92,7 +92,8 @@ export function createTables({ engine, now, panel }) {
     // What is refused in all widths for one reason is one row.
     const alike = (/** @type {number} */ at) =>
       ROWS.every(
-        ({ form }, other) => form !== ROWS[at].form || (forms[other].why !== null && forms[other].why === forms[at].why),
+        ({ form }, other) =>
+          form !== ROWS[at].form || (forms[other].why !== null && forms[other].why === forms[at].why),
       );
     const kept = forms.map((_, at) => at).filter((at) => !alike(at) || ROWS[at].widths === "q16");
     const fewest = Math.min(...forms.filter(({ why }) => why === null).map(({ bytes }) => bytes));

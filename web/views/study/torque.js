@@ -64,7 +64,12 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
     "~#available",
     "~#periods",
   ]);
-  const ramps = table("Ramps", ["move", "#enough torque", "#longest ramp for the rate limit", "#longest ramp possible"]);
+  const ramps = table("Ramps", [
+    "move",
+    "#enough torque",
+    "#longest ramp for the rate limit",
+    "#longest ramp possible",
+  ]);
   const ramped = element("h3", {}, "Ramps");
   const note = element("p", { class: "study-note" });
   const body = element(
