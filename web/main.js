@@ -92,9 +92,10 @@ function follow(before) {
   if (before?.scenario !== scenario) {
     document.documentElement.dataset.state = "busy";
     judge();
-    if (state.origin === "own") {
+    // What stands at the start is no work of this tab.
+    if (before && state.origin === "own") {
       // An edited link or preset becomes the visitor's own work; what was so before is set aside.
-      if (before && before.origin !== "own") setAside(JSON.stringify(scenario));
+      if (before.origin !== "own") setAside(JSON.stringify(scenario));
       saveScenario(JSON.stringify(scenario));
     }
   }

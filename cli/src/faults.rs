@@ -127,8 +127,7 @@ pub(crate) fn faults(arguments: &Arguments) -> Result<(), Failure> {
     let seeds = seeds.start..seeds.end.min(1 << 32);
     let mut reports = Vec::new();
     for &protocol in protocols {
-        let (name, sweep) =
-            (if protocol == Protocol::Framed { FRAMED } else { "raw" }, sweep(protocol)?);
+        let (name, sweep) = (if protocol == Protocol::Framed { FRAMED } else { "raw" }, sweep(protocol)?);
         let progress = Progress::new(name, arguments.progress);
         let report = run(&sweep, &seeds, arguments.threads, progress);
         reports.push((name, report.map_err(|problems| Failure::Scenario(path.clone(), problems))?));

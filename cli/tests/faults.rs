@@ -26,7 +26,8 @@ fn framed_has_no_wrong_steps_raw_has_and_the_threads_do_not_matter() {
     let (code, table, err) = call("1");
     assert_eq!((code, err.as_str()), (Some(0), ""));
     assert_eq!(row(&table, "seeds"), [300, 300]);
-    for name in ["missing", "wrong", "duplicated or not ordered", "wrong steps", "distance of end positions"] {
+    for name in ["missing", "wrong", "duplicated or not ordered", "wrong steps", "distance of end positions"]
+    {
         let numbers = row(&table, name);
         assert!(numbers[0] == 0 && numbers[1] > 0, "{name}: {numbers:?}");
     }

@@ -265,7 +265,7 @@ fn the_sines_return_and_their_pulses_have_the_documents_distortion() {
             .collect();
         let order = made.scenario.analysis.order;
         let ideal = Spectrum::ideal(&made.experiment.plans()[0], order, 2048).expect("it lasts");
-        let spectrum = Spectrum::of_pulses(&pulses, ideal.stretch, order);
+        let spectrum = Spectrum::of_pulses(&pulses, ideal.window, order);
         for spectrum in [&ideal, &spectrum] {
             close(spectrum.position.distortion.expect("it repeats") * 100.0, distortion, 3e-3);
             close(spectrum.position.amplitudes[0], amplitude, 1e-2);

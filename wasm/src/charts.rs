@@ -24,7 +24,7 @@ pub(crate) use axis::Axis;
 use plotters::{
     coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged},
     prelude::*,
-    style::{FontStyle, RGBColor, ShapeStyle, TextStyle},
+    style::{FontStyle, RGBColor, TextStyle},
 };
 use serde::{Deserialize, Serialize};
 use std::ops::Range;

@@ -5,6 +5,7 @@
 import { Dropped } from "../engine/engine.js";
 import { readJson } from "../state/json.js";
 import { held, isStale } from "../state/state.js";
+import { ownIsKept } from "./storage.js";
 import { parseView, viewOf } from "./view_part.js";
 
 /** @typedef {import("../state/types.js").State} State */
@@ -95,7 +96,7 @@ export function createLink({ engine, dispatch, now }) {
         const name = scenario.title ? `“${scenario.title}”` : "a scenario";
         dispatch({
           type: "notice",
-          notice: { kind: "info", text: `Shared with you: ${name}. Your own work is kept; Undo brings it back.` },
+          notice: { kind: "info", text: `Shared with you: ${name}.${ownIsKept()}` },
         });
       }
       await open(fragment);

@@ -8,6 +8,7 @@ import { count, si, time } from "../state/number.js";
 import { isStale } from "../state/state.js";
 import { message } from "./link.js";
 import { around } from "./notices.js";
+import { ownIsKept } from "./storage.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {{engine: import("../engine/engine.js").Engine, openLink: (fragment: string) => Promise<void>} & import("../state/types.js").Page} Given */
@@ -108,7 +109,7 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
     if (JSON.stringify(read) === JSON.stringify(now().scenario))
       return tell("info", `${file.name} holds the very experiment that is on show.`);
     dispatch({ type: "replace", scenario: read, origin: "shared" });
-    tell("info", `${words(read)} Your own work is kept; Undo brings it back.`);
+    tell("info", `${words(read)}${ownIsKept()}`);
   }
 
   /** Holds saved edges against the run. @param {File} file */

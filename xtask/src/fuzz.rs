@@ -4,11 +4,12 @@
 //! stable one counts coverage all the same, and builds with debug assertions and overflow checks.
 //!
 //! Every run begins anew with the same inputs (seeds made from the repository, and what was found before), so the same
-//! `--seed` takes the same way; another seed takes another.
+//! `--seed` takes the same way; another seed takes another, and a run without one takes a new one and prints it.
 
 mod report;
 
 use std::fs::{self, File};
+use std::hash::{BuildHasher as _, RandomState};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -33,6 +34,12 @@ pub(crate) struct Options {
     pub(crate) seconds: u32,
     /// libFuzzer's seed; not 0, which means any.
     pub(crate) seed: u32,
+}
+
+/// A seed that nobody has chosen.
+pub(crate) fn new_seed() -> u32 {
+    let chance = RandomState::new().hash_one(std::process::id());
+    (chance as u32).max(1)
 }
 
 /// Builds, runs the targets one after another, and says what each did; an error if one found something.

@@ -123,9 +123,9 @@ enum Task {
         /// How long each target runs
         #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=86_400))]
         seconds: u32,
-        /// Where chance begins: the same seed takes the same way
-        #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
-        seed: u32,
+        /// Where chance begins: the same seed takes the same way. Without one each run takes a new one, and says which
+        #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+        seed: Option<u32>,
     },
     /// Change the peripheral and the motions one thing at a time, and see whether the tests notice
     Mutants {
@@ -196,7 +196,10 @@ async fn perform(task: Task) -> Result<()> {
         Task::Bench { page: true, quick: _ } => bench::page().await,
         Task::Bench { page: false, quick } => bench::run(quick).await,
         Task::Attend { words } => attend::attend(&words).await,
-        Task::Fuzz { targets, seconds, seed } => fuzz::run(fuzz::Options { targets, seconds, seed }).await,
+        Task::Fuzz { targets, seconds, seed } => {
+            let seed = seed.unwrap_or_else(fuzz::new_seed);
+            fuzz::run(fuzz::Options { targets, seconds, seed }).await
+        }
         Task::Mutants { sample, seed, package } => {
             mutants::run(mutants::Options { sample: sample as usize, seed, packages: package }).await
         }

@@ -57,11 +57,7 @@ impl Spectra {
         };
         let ideal = Spectrum::ideal(plan, analysis.order, analysis.fft_length);
         let actual = Spectrum::of_pulses(&window.pulses_of(plan, run), window, analysis.order);
-        let note = if window.periodic {
-            ""
-        } else {
-            "The motion is not periodic: no harmonics, no THD."
-        };
+        let note = if window.periodic { "" } else { "The motion is not periodic: no harmonics, no THD." };
         Self {
             ideal: ideal.map(|ideal| ideal.filtered_by(analysis.sensor_hz)),
             actual: Some(actual.filtered_by(analysis.sensor_hz)),

@@ -139,9 +139,8 @@ impl Spectrum {
     /// time grows with the pulses, some 10 ns each, and not with pulses times order.
     #[must_use]
     pub fn of_pulses(pulses: &[(f64, i8)], window: AnalysisWindow, order: u16) -> Self {
-        let phases = pulses
-            .iter()
-            .map(|&(time_s, way)| ((time_s - window.start_s) / window.period_s, f64::from(way)));
+        let phases =
+            pulses.iter().map(|&(time_s, way)| ((time_s - window.start_s) / window.period_s, f64::from(way)));
         let position = sums(phases, order.into())
             .into_iter()
             .enumerate()

@@ -196,18 +196,39 @@ fn last_cycle(schedule: &Schedule, checked: &Checked, controllers: &[ControllerP
     let sent =
         last.map_or(0, |send| send.start.0 + line_time(send.bytes.len() as u64, clock_hz, checked.baud));
     let forced = checked.forced.iter().map(|forced| forced.end.0).max().unwrap_or(0);
-    let rest = |plan: &ControllerPlan| {
+    let sent = sent.max(forced);
+    let end = |plan: &ControllerPlan| {
         let config = plan.config();
-        let ticks = if checked.waits_for_replies() || comes_as_ordered(checked, config) {
-            1
+        let late = if is_faithful(checked, config) { 0 } else { BYTE_BITS * config.bit().0 };
+        let ticks_end = if checked.waits_for_replies() {
+            sent + late + config.tick().0
+        } else if comes_as_ordered(checked, config) {
+            ordered_end(schedule, checked, controllers.len(), plan)
         } else {
-            most_ticks(checked, config, schedule).min(u64::from(config.queue_depth()) + 1)
+            let ticks = most_ticks(checked, config, schedule).min(u64::from(config.queue_depth()) + 1);
+            sent + late + ticks * config.tick().0
         };
         let reply = line_time(REPLY_LEN as u64, clock_hz, config.reply_baud());
-        let late = if is_faithful(checked, config) { 0 } else { BYTE_BITS * config.bit().0 };
-        late + (ticks * config.tick().0).max(LONGEST_REST_BITS * config.bit().0 + reply)
+        ticks_end.max(sent + late + LONGEST_REST_BITS * config.bit().0 + reply)
     };
-    sent.max(forced) + controllers.iter().map(rest).max().unwrap_or(0) + 1
+    controllers.iter().map(end).max().unwrap_or(sent) + 1
+}
+
+/// The end of a controller's last tick where each packet is heard as it was sent. A tick waits for the one before: one
+/// whose packet came late, behind many others', makes all that follow late, also when theirs have the line for themselves.
+fn ordered_end(schedule: &Schedule, checked: &Checked, controllers: usize, plan: &ControllerPlan) -> u64 {
+    let config = plan.config();
+    let tick = config.tick().0;
+    // A list of packets may speak to any controller, and more than once in a turn.
+    let (turns, each) = match &checked.source {
+        Source::Packets(_) if controllers > 1 => (schedule.len(), controllers as u64),
+        _ => (plan.each_tick().len(), 1),
+    };
+    let most_waiting = u64::from(config.queue_depth()) + 1;
+    schedule.iter().take(turns).fold(0, |end, send| {
+        let heard = send.start.0 + line_time(send.bytes.len() as u64, config.clock_hz(), checked.baud);
+        (end.max(heard) + each * tick).min(heard + most_waiting * tick)
+    })
 }
 
 #[cfg(test)]
@@ -246,6 +267,20 @@ mod tests {
         let run = experiment.run(&mut vec![]);
         assert_eq!(run.cycles().0, 105 + 1 + 32_000 + 1);
         assert!(run.cycles().0 <= experiment.cost().end_cycle);
+    }
+
+    #[test]
+    fn a_tick_that_came_late_behind_others_makes_all_that_follow_late() {
+        // Three controllers share the first turns of the line, then one has it for itself (found by `cargo xtask fuzz`).
+        let json = r#"{"bus":{"channels":2},"line":{"address":9},"controllers":[
+            {"address":3,"bus":{"channels":2},"axes":[{"moves":[
+                {"constant":{"distance":{"steps":-19},"speed":{"steps_s":500}}}]}]},
+            {"address":4,"bus":{"channels":2},"axes":[]}],
+            "source":{"motion":{"axes":[{"moves":[
+                {"constant":{"distance":{"steps":40},"speed":{"steps_s":1000}}}]}]}}}"#;
+        let experiment = Experiment::from_json(json).expect("runs");
+        assert_eq!(experiment.cost().end_cycle, 649_867);
+        assert_eq!(experiment.run(&mut vec![]).cycles().0, 649_867);
     }
 
     #[test]

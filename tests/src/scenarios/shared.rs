@@ -4,13 +4,15 @@
 use super::small;
 use proptest::prelude::*;
 use stepscope_core::{
+    motion::moves::Axis,
     peripheral::config::Protocol,
     scenario::{Controller, Hex, Host, Noise, Scenario, ScriptedSend, Source},
 };
 
 /// Scenarios of which nearly all run, for some ten thousand cycles to some hundred thousand.
 pub fn shared() -> impl Strategy<Value = Scenario> {
-    let additional = prop::collection::vec((any::<u8>(), prop::option::weighted(0.3, 970..1_030_u32)), 0..4);
+    let one = (any::<u8>(), prop::option::weighted(0.3, 970..1_030_u32), share());
+    let additional = prop::collection::vec(one, 0..4);
     (small(), additional, any::<bool>(), host(), noise(), any::<u64>()).prop_map(
         |(scenario, additional, framed, host, noise, choice)| {
             let mut scenario = scenario;
@@ -42,13 +44,13 @@ pub fn shared() -> impl Strategy<Value = Scenario> {
                 script.sends.iter_mut().enumerate().for_each(|(index, send)| seal(send, index, address));
                 script.sends.truncate(1 + (choice % 4) as usize);
             }
-            let controllers = additional.into_iter().enumerate().map(|(index, (bits, off))| {
+            let controllers = additional.into_iter().enumerate().map(|(index, (bits, off, share))| {
                 let mut bus = scenario.bus.clone();
                 if framed {
                     bus.channels = 1 + bits % 3;
                 }
                 bus.queue_depth = 1 + bits / 64;
-                let (axes, packets) = orders(&scenario, index as u8, bus.channels);
+                let (axes, packets) = orders(&scenario, index as u8, bus.channels, share);
                 let receiver_baud = off.map(|off| scenario.line.baud / 1_000 * off);
                 Controller { address: other_address(address, index), receiver_baud, bus, axes, packets }
             });
@@ -63,15 +65,23 @@ fn other_address(first: u8, index: usize) -> u8 {
     ((usize::from(first) + 1 + index) % 255) as u8
 }
 
-/// What an additional controller does: as much as the first, on its own channels.
-fn orders(
-    scenario: &Scenario,
-    index: u8,
-    channels: u8,
-) -> (Vec<stepscope_core::motion::moves::Axis>, Vec<Hex>) {
+/// Quarters of the first controller's orders that another one has: as many mostly, or it is done earlier, or has none.
+fn share() -> impl Strategy<Value = usize> {
+    prop_oneof![2 => Just(4_usize), 3 => 0..4_usize]
+}
+
+/// What an additional controller does, on its own channels: as much as the first, or some quarters of it.
+fn orders(scenario: &Scenario, index: u8, channels: u8, share: usize) -> (Vec<Axis>, Vec<Hex>) {
     let address = other_address(scenario.line.address.unwrap_or(0), index.into());
     match &scenario.source {
-        Source::Motion(motion) => (motion.axes.iter().take(channels.into()).cloned().collect(), Vec::new()),
+        Source::Motion(_) if share == 0 => (Vec::new(), Vec::new()),
+        Source::Motion(motion) => {
+            let some = |axis: &Axis| {
+                let moves = axis.moves.iter().take((axis.moves.len() * share).div_ceil(4)).cloned().collect();
+                Axis { moves, ..axis.clone() }
+            };
+            (motion.axes.iter().take(channels.into()).map(some).collect(), Vec::new())
+        }
         Source::Packets(source) => {
             let own = |Hex(packet): &Hex| {
                 let skipped = usize::from(scenario.line.protocol == Protocol::Raw);
@@ -80,7 +90,10 @@ fn orders(
                 let address = (skipped == 1).then_some(address);
                 Hex(address.into_iter().chain(orders).collect())
             };
-            (Vec::new(), source.packets.iter().map(own).collect())
+            (
+                Vec::new(),
+                source.packets.iter().take((source.packets.len() * share).div_ceil(4)).map(own).collect(),
+            )
         }
         _ => (Vec::new(), Vec::new()),
     }

@@ -175,12 +175,14 @@ fn a_baseline_is_drawn_and_measured_beside_a_later_one() -> Result<()> {
         page.until_digest(&later.digest).await?;
         page.until("document.getElementById('compared').textContent.includes('differs by')").await?;
         for chart in ["chart-position", "chart-speed", "chart-acceleration"] {
-            let look = async || Ok((page.canvas(chart).await?.ink("--baseline").columns > 100.0).then_some(()));
+            let look =
+                async || Ok((page.canvas(chart).await?.ink("--baseline").columns > 100.0).then_some(()));
             page.eventually(&format!("{chart} has the baseline's curve"), look).await?;
         }
         let cycles = |known: &Known| known.experiment.run(&mut Vec::new()).cycles().0;
         let (own, other) = (steps(&later.recording.trace, 0), steps(&baseline.recording.trace, 0));
-        let scaled = |steps| Scaled { steps, hz: f64::from(baseline.experiment.config().clock_hz()), unit: 1.0 };
+        let scaled =
+            |steps| Scaled { steps, hz: f64::from(baseline.experiment.config().clock_hz()), unit: 1.0 };
         let common_s = baseline.seconds(cycles(&later).min(cycles(&baseline)));
         let apart = position_error::apart(scaled(&own), scaled(&other), common_s);
         let told = page.text("#compared").await?.replace('\u{2212}', "-");
@@ -201,7 +203,8 @@ fn a_baseline_is_drawn_and_measured_beside_a_later_one() -> Result<()> {
 
         page.click("[aria-label='Drop the baseline']").await?;
         page.until("document.getElementById('compared').hidden").await?;
-        let look = async || Ok((page.canvas("chart-speed").await?.ink("--baseline").pixels == 0).then_some(()));
+        let look =
+            async || Ok((page.canvas("chart-speed").await?.ink("--baseline").pixels == 0).then_some(()));
         page.eventually("the baseline's curve is gone", look).await
     })
 }

@@ -1,10 +1,13 @@
-//! Nothing that a visitor typed is lost: over a reload, behind a link, beside a field that is gone.
+//! Nothing that a visitor typed is lost: over a reload, behind a link, beside a field that is gone, by a button of the
+//! form's structure, by another kind, by another tab.
 
 use anyhow::{Result, ensure};
+use fantoccini::actions::{InputSource, MOUSE_BUTTON_LEFT, MouseActions, PointerAction};
 
 use crate::{
     bench::in_browser,
-    native::{Known, with_distance},
+    native::{Known, link_of, with_distance},
+    session::{ENTER, Session, field},
 };
 
 const DISTANCE: &str = "source.motion.axes[0].moves[0].cosine.distance";
@@ -68,5 +71,233 @@ fn what_was_typed_into_a_field_that_is_gone_holds_nothing() -> Result<()> {
         page.choose("[data-path='source#kind']", "packets").await?;
         page.until("!document.querySelector('#status').textContent.startsWith('not run')").await?;
         page.ready().await
+    })
+}
+
+/// Types into a field, then presses a button of the form's structure by its key, as a visitor who does not wait does.
+async fn edit_and_press(page: &Session, path: &str, text: &str, button: &str) -> Result<()> {
+    page.fill(path, text).await?;
+    page.press(&format!("#fields button[aria-label='{button}']"), &ENTER.to_string()).await
+}
+
+#[test]
+fn structure_buttons_act_on_what_the_form_holds_when_they_are_pressed() -> Result<()> {
+    const MOVE: &str = r#"{"constant":{"distance":{"steps":40},"speed":{"steps_s":1000}}}"#;
+    let motion = |axes: &str, rest: &str| format!(r#"{{{rest}"source":{{"motion":{{"axes":[{axes}]}}}}}}"#);
+    let axis = |moves: usize| format!(r#"{{"moves":[{}]}}"#, vec![MOVE; moves].join(","));
+    let distance =
+        |axis: usize, at: usize| format!("source.motion.axes[{axis}].moves[{at}].constant.distance");
+    let controllers = r#""line":{"address":1},"controllers":[{"address":2,"axes":[]}],"#;
+    let two = motion(&format!("{},{}", axis(1), axis(1)), r#""bus":{"channels":2},"#);
+    let send = r#"{"start_cycle":2000,"bytes":"81"}"#;
+    let lines = format!(r#"{{"source":{{"line":{{"sends":[{send}]}}}}}}"#);
+    let glitch = r#""line":{"glitches":[{"start_cycle":5,"length_cycles":3,"level":0}]},"#;
+    let list = r#"{"source":{"segments":{"channels":[{"start_cycle":5,"segments":[{"dwell":{"length_q16":65536}}]}]}}}"#;
+    let rows: [(String, String, &str, &str, String, &str); 12] = [
+        (motion(&axis(1), ""), distance(0, 0), "71", "Add move to axis 0", distance(0, 1), "71"),
+        (motion(&axis(2), ""), distance(0, 1), "72", "Move 2 earlier", distance(0, 0), "72"),
+        (motion(&axis(2), ""), distance(0, 1), "73", "Remove move 1", distance(0, 0), "73"),
+        (motion(&axis(1), ""), distance(0, 0), "74", "Copy axis 0", distance(1, 0), "74"),
+        (motion(&axis(1), ""), distance(0, 0), "75", "Add axis", distance(1, 0), "75"),
+        (two.clone(), distance(0, 0), "76", "Copy axis 0 to all others", distance(1, 0), "76"),
+        (two, distance(1, 0), "77", "Remove axis 0", distance(0, 0), "77"),
+        (
+            motion(&axis(1), controllers),
+            "controllers[0].bus.slots".into(),
+            "78",
+            "Copy controller 2",
+            "controllers[1].bus.slots".into(),
+            "78",
+        ),
+        (
+            motion(&axis(1), controllers),
+            "controllers[0].bus.slots".into(),
+            "79",
+            "Add controller",
+            "controllers[1].bus.slots".into(),
+            "79",
+        ),
+        (
+            lines,
+            "source.line.sends[0].bytes".into(),
+            "05",
+            "Add send",
+            "source.line.sends[1].bytes".into(),
+            "05",
+        ),
+        (
+            motion(&axis(1), glitch),
+            "line.glitches[0].length_cycles".into(),
+            "7",
+            "Add glitch",
+            "line.glitches[1].length_cycles".into(),
+            "7",
+        ),
+        (
+            list.into(),
+            "source.segments.channels[0].start_cycle".into(),
+            "9",
+            "Add list",
+            "source.segments.channels[1].start_cycle".into(),
+            "9",
+        ),
+    ];
+    in_browser(|page| async move {
+        for (json, path, text, button, found, expected) in rows {
+            page.open(&format!("#{}", link_of(&json)?)).await?;
+            edit_and_press(&page, &path, text, button).await?;
+            let value = page.field(&found).await?.value;
+            ensure!(value == expected, "{button} after {path}: {found} is {value}, not {expected}");
+        }
+        // What is no number yet stays where it was typed, or goes where its part goes.
+        page.open(&format!("#{}", link_of(&motion(&axis(2), ""))?)).await?;
+        edit_and_press(&page, &distance(0, 1), "zz", "Add move to axis 0").await?;
+        assert_eq!(page.field(&distance(0, 1)).await?.value, "zz");
+        page.press("#fields button[aria-label='Remove move 1']", &ENTER.to_string()).await?;
+        assert_eq!(page.field(&distance(0, 0)).await?.value, "zz");
+        Ok(())
+    })
+}
+
+#[test]
+fn another_kind_of_move_keeps_what_both_have_and_the_first_kind_comes_back_whole() -> Result<()> {
+    const MOVE: &str = "source.motion.axes[0].moves[0]";
+    let at = |field: &str| format!("{MOVE}.{field}");
+    in_browser(|page| async move {
+        let kind = format!("[data-path='{MOVE}#kind']");
+        page.open("").await?;
+        for (field, text) in [("distance", "1234"), ("duration_s", "0.5"), ("ramp_s", "0.11")] {
+            page.fill(&at(&format!("cosine.{field}")), text).await?;
+        }
+        page.choose(&kind, "ramps").await?;
+        for (field, text) in [("distance", "1234"), ("duration_s", "0.5"), ("ramp_s", "0.11")] {
+            assert_eq!(page.field(&at(&format!("ramps.{field}"))).await?.value, text, "{field}");
+        }
+        page.choose(&kind, "trapezoid").await?;
+        assert_eq!(page.field(&at("trapezoid.distance")).await?.value, "1234");
+        page.fill(&at("trapezoid.distance"), "777").await?;
+        page.choose(&kind, "cosine").await?;
+        for (field, text) in [("distance", "777"), ("duration_s", "0.5"), ("ramp_s", "0.11")] {
+            assert_eq!(page.field(&at(&format!("cosine.{field}"))).await?.value, text, "{field}");
+        }
+        Ok(())
+    })
+}
+
+#[test]
+fn a_changed_preset_is_called_so_until_it_has_a_name() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        page.choose("#preset", "song-2021-one-turn").await?;
+        page.ready().await?;
+        let title = page.text("#about h2").await?;
+        ensure!(
+            !title.is_empty() && !page.text("#about p").await?.is_empty(),
+            "a preset has a name and a note"
+        );
+        page.fill("bus.queue_depth", "7").await?;
+        page.until_equal(
+            "document.querySelector('#about h2').textContent",
+            &format!("changed from {title}").into(),
+        )
+        .await?;
+        assert_eq!(page.text("#about p").await?, "");
+        page.fill("title", "Mine").await?;
+        page.fill("bus.queue_depth", "8").await?;
+        assert_eq!(page.text("#about h2").await?, "Mine");
+        Ok(())
+    })
+}
+
+/// Types 77, and 0 as soon as what follows from 77 is told: before it is run.
+const BETWEEN_RUNS: &str = "const input = document.querySelector(arguments[0]);
+    const note = document.querySelector('[data-note]');
+    const type = (text) => { input.value = text; input.dispatchEvent(new Event('input')); };
+    return new Promise((done) => {
+        new MutationObserver((_, observer) => {
+            if (!note.textContent.includes('77 steps')) return;
+            observer.disconnect();
+            type('0');
+            done(true);
+        }).observe(note, { childList: true, characterData: true, subtree: true });
+        type('77');
+    });";
+
+#[test]
+fn while_a_run_is_refused_derived_figures_are_the_last_runs_and_dimmed() -> Result<()> {
+    const NOTE: &str = "document.querySelector('[data-note]')";
+    in_browser(|page| async move {
+        page.open("").await?;
+        let (note, derived) = (page.text("[data-note]").await?, page.text("#derived").await?);
+        // Each key is judged: what stood between the last run and the refused number is not told.
+        page.fill(DISTANCE, "3200").await?;
+        page.js::<bool>(BETWEEN_RUNS, vec![field(DISTANCE).into()]).await?;
+        page.until(&format!("{NOTE}.classList.contains('stale')")).await?;
+        assert_eq!((page.text("[data-note]").await?, page.text("#derived").await?), (note, derived));
+        page.fill(DISTANCE, "78").await?;
+        page.until(&format!("!{NOTE}.classList.contains('stale') && {NOTE}.textContent.includes('78 steps')"))
+            .await
+    })
+}
+
+#[test]
+fn a_tab_keeps_its_own_work_and_is_offered_another_ones() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        page.fill(DISTANCE, "1234").await?;
+        page.until(&format!("{SAVED}.includes('1234')")).await?;
+        page.ready().await?;
+        // A second tab, as the browser makes it: storage of all is shared, that of the tab is not.
+        let own = page.client.window().await?;
+        let second = page.client.new_window(true).await?;
+        page.client.switch_to_window(second.handle).await?;
+        page.open("").await?;
+        assert_eq!(page.field(DISTANCE).await?.value, "1234", "a new tab begins with the last work");
+        page.fill(DISTANCE, "555").await?;
+        page.until(&format!("{SAVED}.includes('555')")).await?;
+        page.ready().await?;
+        page.client.goto("about:blank").await?;
+
+        page.client.switch_to_window(own).await?;
+        page.client.refresh().await?;
+        page.listen().await?;
+        page.ready().await?;
+        assert_eq!(page.field(DISTANCE).await?.value, "1234", "its own stays");
+        page.until(
+            "document.getElementById('link-message').textContent.startsWith('Another tab has newer work')",
+        )
+        .await?;
+        page.click("#link-message button").await?;
+        assert_eq!(page.field(DISTANCE).await?.value, "555");
+        page.click("#undo").await?;
+        assert_eq!(page.field(DISTANCE).await?.value, "1234");
+        Ok(())
+    })
+}
+
+#[test]
+fn nothing_moves_between_press_and_release() -> Result<()> {
+    const BELOW: &str = "source.motion.axes[0].moves[0].cosine.ramp_s";
+    in_browser(|page| async move {
+        page.open("").await?;
+        page.fill(DISTANCE, "1").await?;
+        let hint = page.text("#field-hint").await?;
+        ensure!(hint.len() > 20, "the hint of the field with the focus has its place: {hint}");
+        let middle = format!(
+            "(() => {{ const box = document.querySelector({:?}).getBoundingClientRect(); return [box.left + 5, box.top + box.height / 2]; }})()",
+            field(BELOW)
+        );
+        let before: [f64; 2] = page.eval(&middle).await?;
+        let [x, y] = before;
+        let mouse = MouseActions::new("mouse".into())
+            .then(PointerAction::MoveTo { duration: None, x, y })
+            .then(PointerAction::Down { button: MOUSE_BUTTON_LEFT });
+        page.actions(mouse).await?;
+        // What was typed is judged meanwhile, and too little: its message waits for the release.
+        page.until("document.querySelector('#status').textContent.startsWith('not run') || document.documentElement.dataset.state === 'ready'").await?;
+        assert_eq!(page.eval::<[f64; 2]>(&middle).await?, before, "the field is where it was pressed");
+        let up = MouseActions::new("mouse".into()).then(PointerAction::Up { button: MOUSE_BUTTON_LEFT });
+        page.actions(up).await?;
+        page.until(&format!("document.activeElement?.dataset.path === '{BELOW}'")).await
     })
 }

@@ -61,7 +61,7 @@ async fn distortion(page: &Session, preset: &Preset, known: &Known) -> Result<bo
     let analysis = &known.scenario.analysis;
     let Some(plan) = known.experiment.plans().get(usize::from(analysis.axis)) else { return Ok(false) };
     let Some(ideal) = Spectrum::ideal(plan, analysis.order, analysis.fft_length) else { return Ok(false) };
-    if !ideal.stretch.periodic {
+    if !ideal.window.periodic {
         return Ok(false);
     }
     for (quantity, harmonics) in

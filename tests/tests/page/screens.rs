@@ -130,7 +130,8 @@ async fn contrasts(page: &Session, dark: bool) -> Result<()> {
     }
     page.pulses().await?;
     // The curves on the canvases have the theme's own colours.
-    for (canvas, ink) in [("chart-position", "--ideal"), ("pulses", "--step"), ("spectrum-chart", "--actual")] {
+    for (canvas, ink) in [("chart-position", "--ideal"), ("pulses", "--step"), ("spectrum-chart", "--actual")]
+    {
         drawn(page, canvas, ink).await?;
     }
     page.canvas("chart-position").await?.has_curve("--ideal")

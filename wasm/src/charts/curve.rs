@@ -217,7 +217,8 @@ mod tests {
 
     #[test]
     fn a_column_that_holds_much_is_visited_twice_and_a_gap_ends_the_line() {
-        let frame = Frame { x: (0.0, 4.0), y: (0.0, 128.0), corner: (5.0, 130.0), width: 40.0, height: 128.0 };
+        let frame =
+            Frame { x: (0.0, 4.0), y: (0.0, 128.0), corner: (5.0, 130.0), width: 40.0, height: 128.0 };
         let (x, nan) = ([0.0, 1.0, 2.0, 3.0], f64::NAN);
         let lines = band(&frame, &x, &[5.0, 10.0, nan, 7.0], &[5.0, 90.0, 1.0, 7.5]);
         assert_eq!(lines, [vec![(5.0, 125.0), (15.0, 120.0), (15.0, 40.0)], vec![(35.0, 122.75)]]);

@@ -59,10 +59,10 @@ fn motion(theme: &Theme) -> Spec {
         x.iter().map(|t| (t.min(0.4 - t) / ramp_s).min(1.0) * top).collect::<Vec<f64>>()
     };
     let ideal = trapezoid(0.1, 12_000.0);
-    let actual: Vec<f64> = ideal.iter().map(|speed| (speed / 1000.0).round() * 1000.0).collect();
-    let rises: Vec<f64> = made.iter().skip(1).chain(made.last()).copied().collect();
-    let low = made.iter().zip(&rises).map(|(a, b)| a.min(*b)).collect();
-    let high = made.iter().zip(&rises).map(|(a, b)| a.max(*b)).collect();
+    let steps: Vec<f64> = ideal.iter().map(|speed| (speed / 1000.0).round() * 1000.0).collect();
+    let rises: Vec<f64> = steps.iter().skip(1).chain(steps.last()).copied().collect();
+    let low = steps.iter().zip(&rises).map(|(a, b)| a.min(*b)).collect();
+    let high = steps.iter().zip(&rises).map(|(a, b)| a.max(*b)).collect();
     let series = vec![
         series(theme.actual, 0.55, 4.0, 0.0, &x, Shape::Band { min: low, max: high }),
         series(theme.ideal, 1.0, 1.6, 0.0, &x, Shape::Line { y: ideal }),

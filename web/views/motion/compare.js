@@ -112,8 +112,8 @@ export function createCompare({ engine, dispatch, now }) {
     const { baseline, result, axis, unit, derived } = state;
     if (before?.baseline !== baseline) {
       if (before?.baseline && !baseline) engine.ask("baseline", false).catch(unlessDropped);
-      /** @type {HTMLElement} */ for (const node of document.querySelectorAll(".with-baseline"))
-        (node).hidden = !baseline;
+      for (const node of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll(".with-baseline")))
+        node.hidden = !baseline;
       keepButton.textContent = baseline ? "Keep this instead" : "Keep to compare";
     }
     change.checked = state.difference;

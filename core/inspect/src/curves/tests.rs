@@ -137,3 +137,61 @@ fn in_a_dwell_of_segments_the_speed_is_none() {
         assert!((speed.max[column] - expected).abs() < 0.01, "{column}: {speed:?}");
     }
 }
+
+/// Greatest distance of the drawn line from the true curve, in pixels of a chart of `columns` by `height`, looked at
+/// between its points.
+fn corner(plan: &AxisPlan, window: Window, height: f64) -> f64 {
+    let line = ideal_line(plan, 0.0, window);
+    // What is narrower than a thousandth of a column stands upright.
+    let column_s = (window.end_s - window.start_s) / window.columns as f64;
+    let mut worst: f64 = 0.0;
+    for (values, curve) in [
+        (&line.position, (|plan, t| plan.position(t)) as fn(&AxisPlan, f64) -> f64),
+        (&line.speed, |plan, t| plan.speed(t)),
+        (&line.acceleration, |plan, t| plan.acceleration(t)),
+    ] {
+        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        for (at, pair) in
+            line.time_s.windows(2).enumerate().filter(|(_, pair)| pair[1] - pair[0] > 1e-3 * column_s)
+        {
+            for part in [0.25, 0.5, 0.75] {
+                let t = pair[0] + (pair[1] - pair[0]) * part;
+                let drawn = values[at] + (values[at + 1] - values[at]) * part;
+                worst = worst.max((drawn - curve(plan, t)).abs() / (most - least).max(1e-9) * height);
+            }
+        }
+    }
+    worst
+}
+
+#[test]
+fn the_line_of_an_ideal_curve_has_no_corner_that_can_be_seen() {
+    let others = [
+        r#"{"jerk_limited":{"distance":{"steps":3000}}}"#,
+        r#"{"ramps":{"distance":{"steps":3200}}}"#,
+        r#"{"sine":{"amplitude":{"steps":400},"period_s":1,"periods":3}}"#,
+        // Seven columns a period; of less than four a line visits the extremes alone.
+        r#"{"sine":{"amplitude":{"steps":50},"period_s":0.01,"periods":28}}"#,
+    ];
+    for moves in MOTIONS.iter().chain(&others) {
+        let ran = motion(moves);
+        let plan = &ran.experiment.plans()[0];
+        for columns in [200, 700, 1500] {
+            let window = Window { start_s: 0.0, end_s: plan.duration_s(), columns };
+            // Device pixels: a chart 200 of them high.
+            let worst = corner(plan, window, 200.0);
+            assert!(worst <= 0.1, "{moves}: {worst} px in {columns} columns");
+        }
+    }
+}
+
+#[test]
+fn a_line_through_more_periods_than_columns_visits_its_extremes() {
+    let ran = motion(r#"{"sine":{"amplitude":{"steps":10},"period_s":0.001,"periods":1000}}"#);
+    let line = ideal_line(&ran.experiment.plans()[0], 0.0, Window { start_s: 0.0, end_s: 1.0, columns: 10 });
+    assert_eq!(line.time_s.len(), 20);
+    for pair in line.position.chunks(2) {
+        assert!((pair[0] + 20.0).abs() < 1e-6 && pair[1].abs() < 1e-6, "{pair:?}");
+    }
+}

@@ -130,7 +130,8 @@ pub(super) fn curve_and_steps(
     let mut sums = Sums::default();
     let (mut since_s, mut place) = (0.0, 0.0);
     let mut stay = |since_s: f64, to_s: f64, place: f64| {
-        breakpoints.intervals(since_s, to_s, &mut |interval| curve_and_place(plan, interval, place, hz, &mut sums));
+        breakpoints
+            .intervals(since_s, to_s, &mut |interval| curve_and_place(plan, interval, place, hz, &mut sums));
     };
     for step in steps {
         let at_s = step.cycle as f64 / hz;
