@@ -14,6 +14,7 @@ import { samples, takeSchema } from "./form/schema.js";
 import { createCard } from "./help/card.js";
 import { createGuide, offerGuide } from "./help/guide.js";
 import { createKeys } from "./help/keys.js";
+import { createExperiments } from "./shell/experiments.js";
 import { createExports } from "./shell/exports.js";
 import { createHeader, createTheme } from "./shell/header.js";
 import { createImports } from "./shell/imports.js";
@@ -22,7 +23,17 @@ import { createNotices } from "./shell/notices.js";
 import { keepOffline } from "./shell/offline.js";
 import { createPanes } from "./shell/panes.js";
 import { createShare } from "./shell/share.js";
-import { loadGood, loadNewer, loadPrevious, loadScenario, saveGood, saveScenario, setAside } from "./shell/storage.js";
+import {
+  loadGood,
+  loadHistory,
+  loadNewer,
+  loadPrevious,
+  loadScenario,
+  saveGood,
+  saveHistory,
+  saveScenario,
+  setAside,
+} from "./shell/storage.js";
 import { createTabs } from "./shell/tabs.js";
 import { readJson } from "./state/json.js";
 import { EARLIER, held, initial, isStale, OWN_TEXTS, update } from "./state/state.js";
@@ -98,6 +109,7 @@ function follow(before) {
       if (before.origin !== "own") setAside(JSON.stringify(scenario));
       saveScenario(JSON.stringify(scenario));
     }
+    if (before) saveHistory(version(), state);
   }
   if (before?.judgement !== judgement || before?.approved !== approved || before?.drafts !== drafts) plan();
   if (result && before?.result !== result) {
@@ -116,6 +128,9 @@ function follow(before) {
   if (result && before?.result !== result) settle(Promise.allSettled(drawn));
   else if (state.run.phase === "failed") settle(Promise.resolve());
 }
+
+/** Of the page: what a tab kept with another one is not read. */
+const version = () => byId("version").textContent ?? "";
 
 /** Shows the form and the views: they stand, or it takes longer. */
 function unveil() {
@@ -179,9 +194,10 @@ async function own(fallback) {
   const [saved, previous] = [loadScenario(), loadPrevious()];
   if (saved === null) return { left: initial(readJson(fallback)), good: null };
   const { scenario, problems } = await read(saved);
+  const kept = loadHistory(version());
   const past =
-    previous === null || previous === saved
-      ? []
+    kept.past.length > 0 || previous === null || previous === saved
+      ? kept.past
       : [
           {
             scenario: readJson((await read(previous)).scenario),
@@ -189,7 +205,8 @@ async function own(fallback) {
             borrowed: OWN_TEXTS,
           },
         ];
-  return { left: { ...initial(readJson(scenario)), past }, good: problems.length > 0 ? loadGood() : null };
+  const left = { ...initial(readJson(scenario)), past, future: kept.future };
+  return { left, good: problems.length > 0 ? loadGood() : null };
 }
 
 async function start() {
@@ -236,6 +253,7 @@ async function start() {
     createStudy({ samples: made, ...page }),
     createNotices(page),
     createShare({ shared: link.shared, ...page }),
+    createExperiments({ fresh: fallback, ...page }),
     createExports(page, [
       ["Charts", chartFiles],
       ["Packets", packetFiles],

@@ -103,7 +103,14 @@ export function control(path, field, { dispatch, now }) {
     if ("message" in result) draft(result.message);
     else edit(result.value);
   });
-  input.addEventListener("change", () => dispatch({ type: "committed" }));
+  input.addEventListener("change", () => {
+    // A box of cycles shows cycles: a time that was typed is what it comes to, and stands beside it.
+    if (field.kind.endsWith("cycles") && !(path in now().drafts)) {
+      typed = null;
+      input.value = print(get(now().scenario, path), field);
+    }
+    dispatch({ type: "committed" });
+  });
   unitSelect?.addEventListener("change", () => {
     typed = null;
     dispatch({ type: "edit", path, value: convert(value, unitSelect.value, path, now()) });
@@ -195,9 +202,9 @@ function spaced(hex) {
     .replace(/(..)(?=.)/g, "$1 ");
 }
 
-/** @param {string} text */
+/** The digits alone, however bytes are written: `81 0A`, `0x81 0x0a`. @param {string} text */
 function bare(text) {
-  return text.replace(/\s+/g, "").toLowerCase();
+  return text.replace(/\b0x/gi, "").replace(/\s+/g, "").toLowerCase();
 }
 
 /** @param {string} text @param {Field} field @param {State} state @param {any} before @returns {{value: any} | {message: string}} */

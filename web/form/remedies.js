@@ -29,7 +29,7 @@ export function showRemedy(state, sheets, apply) {
   );
 }
 
-/** A driver that cannot follow the pulses: they get the times that its sheet asks for. @param {State} state @param {DriverSheet[]} sheets @returns {Remedy | null} */
+/** Pulses that do not meet a driver's timing: they get the times that its sheet asks for. @param {State} state @param {DriverSheet[]} sheets @returns {Remedy | null} */
 function timing({ scenario, result }, sheets) {
   const { driver_timing: driver, clock_hz: clock, controllers } = scenario;
   const sheet = sheets.find(({ id }) => id === driver?.preset);
@@ -37,7 +37,7 @@ function timing({ scenario, result }, sheets) {
   if (!rules) return null;
   const least = (/** @type {string} */ rule) => Math.ceil(((rules[`${rule}_ns`] ?? 0) * clock) / 1e9);
   const broken = (result?.summary.controllers ?? []).flatMap(({ violations }, index) => (violations ? [index] : []));
-  let mended = scenario;
+  let fixed = scenario;
   const changes = [];
   const wrongs = [];
   for (const index of broken) {
@@ -46,7 +46,7 @@ function timing({ scenario, result }, sheets) {
     const wanted = wantedOf(bus, least, runsAlone(scenario));
     for (const [key, [name, needed]] of Object.entries(wanted)) {
       if (needed <= bus[key]) continue;
-      mended = set(mended, `${path}.${key}`, needed);
+      fixed = set(fixed, `${path}.${key}`, needed);
       changes.push(`${name} ${count(needed)} cycles${controllers.length ? ` on controller ${index + 1}` : ""}`);
       wrongs.push(
         `${name} is ${si(bus[key] / clock, "s")}, ${count(needed)} cycles (${si(needed / clock, "s")}) would do`,
@@ -55,10 +55,10 @@ function timing({ scenario, result }, sheets) {
   }
   if (changes.length === 0) return null;
   return {
-    wrong: "The driver cannot follow these pulses",
+    wrong: "The pulses do not meet the driver’s timing",
     why: `${sheet?.name ?? "The driver"}: ${[...new Set(wrongs)].join("; ")}. A pulse that is too short may be overlooked, and one that comes too soon after DIR may step the old way.`,
     change: changes.join(", "),
-    scenario: mended,
+    scenario: fixed,
   };
 }
 

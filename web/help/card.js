@@ -37,6 +37,9 @@ export function createCard() {
     const word = /** @type {HTMLElement | null} */ (/** @type {Element} */ (event.target).closest?.(".term"));
     if (word && word !== closing && !(word === opener && card.matches(":popover-open"))) show(word);
     else if (word) card.hidePopover();
+    // As a label does: what is typed next goes into its field.
+    const field = word?.closest(".field")?.querySelector("input, select, textarea");
+    if (field instanceof HTMLElement) field.focus({ preventScroll: true });
     closing = null;
   });
   card.addEventListener("toggle", (event) => {

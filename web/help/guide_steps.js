@@ -33,7 +33,7 @@ export const STEPS = [
     text: "A row a packet, with its bytes and what the controller did with it. Choose one: it is shown in the pulses.",
   },
   {
-    title: "Break it, and mend it",
+    title: "Break it, and fix it",
     at: "#preset",
     text: "“Pulses too short for a DRV8825” and “Raw packets on a noisy line” go wrong on purpose. The page says what is wrong and why, and “Fix it” puts it right; Undo takes that back.",
   },

@@ -117,7 +117,7 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
     const { result } = now();
     if (!result) throw new Error("nothing was run yet that it could be compared with");
     if (isStale(now()))
-      throw new Error("the experiment has not been run as it stands; mend the form, or run it, then compare");
+      throw new Error("the experiment has not been run as it stands; fix the form, or run it, then compare");
     const { controller, summary } = result;
     await engine.ask("diff_begin", controller);
     for (let at = 0; at < file.size; at += PIECE) {

@@ -26,7 +26,7 @@ export function createShare({ shared, now }) {
     text.value = "";
     say(about, "Making the link…");
     if (held(now()) === "problems")
-      return say(about, "No link yet: fields of the form need other values; mend them first.");
+      return say(about, "No link yet: fields of the form need other values; fix them first.");
     try {
       const { full, digests } = await shared();
       if (mine !== asked) return;

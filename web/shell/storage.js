@@ -13,6 +13,10 @@ const TAB = "stepscope.tab";
 const THEME = "stepscope.theme";
 const GUIDED = "stepscope.guide";
 const PANES = "stepscope.panes";
+const EXPERIMENTS = "stepscope.experiments";
+const HISTORY = "stepscope.history";
+/** Characters of the history that a tab keeps: half of what a browser allows. */
+const MAX_HISTORY = 1 << 21;
 
 /** @typedef {() => Storage} Place */
 /** @type {Place} */
@@ -29,12 +33,13 @@ function load(key, place = ofAll) {
   }
 }
 
-/** @param {string} key @param {string} value @param {Place} [place] */
+/** Whether it is kept: private windows and full disks refuse, and the page works without. @param {string} key @param {string} value @param {Place} [place] */
 function save(key, value, place = ofAll) {
   try {
     place().setItem(key, value);
+    return true;
   } catch {
-    // Private windows and full disks refuse; the page works without.
+    return false;
   }
 }
 
@@ -76,6 +81,28 @@ export function loadNewer() {
 export function setAside(next) {
   const saved = loadScenario();
   if (saved !== null && saved !== next) saveWork(PREVIOUS, saved);
+}
+/** Experiments that the visitor named. @returns {any[]} */
+export const loadExperiments = () => JSON.parse(load(EXPERIMENTS) ?? "[]");
+/** Whether they are kept. @param {any[]} experiments */
+export const saveExperiments = (experiments) => save(EXPERIMENTS, JSON.stringify(experiments));
+/** @typedef {Pick<import("../state/types.js").State, "past" | "future">} History */
+/** Steps back and forth of this tab, of the same version of the page. @param {string} version @returns {History} */
+export function loadHistory(version) {
+  const kept = JSON.parse(load(HISTORY, ofTab) ?? "null");
+  return kept?.version === version ? kept : { past: [], future: [] };
+}
+/** Keeps as many steps as there is space for, the nearest ones. @param {string} version @param {History} history */
+export function saveHistory(version, { past, future }) {
+  let left = MAX_HISTORY;
+  const near = (/** @type {History["past"]} */ steps) => {
+    const first = steps.findLastIndex((step) => {
+      left -= JSON.stringify(step).length;
+      return left < 0;
+    });
+    return steps.slice(first + 1);
+  };
+  save(HISTORY, JSON.stringify({ version, past: near(past), future: near(future) }), ofTab);
 }
 export const loadPrevious = () => loadWork(PREVIOUS);
 /** The last own scenario that ran to its end. */

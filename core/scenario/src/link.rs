@@ -177,8 +177,8 @@ pub fn decode(fragment: &str) -> Result<Scenario, LinkError> {
 }
 
 /// Part `name` of a fragment, without what a chat program put behind it. Some programs
-/// percent-encode a link when it is copied, also its `&`; what is wrong with another part does not
-/// matter.
+/// percent-encode a link when it is copied, also its `&`, some break it into lines (`%0A`); what is wrong with
+/// another part does not matter.
 #[must_use]
 pub fn part(fragment: &str, name: &str) -> Option<String> {
     fragment.trim().split('&').filter_map(|part| percent_decode_str(part).decode_utf8().ok()).find_map(
@@ -186,9 +186,14 @@ pub fn part(fragment: &str, name: &str) -> Option<String> {
             part.trim_start_matches('#')
                 .split('&')
                 .find_map(|part| part.strip_prefix(name)?.strip_prefix('='))
-                .map(|part| part.trim_end_matches(TRAILING).to_string())
+                .map(|part| part.trim_end_matches(TRAILING).replace(is_blank, ""))
         },
     )
+}
+
+/// What a mail program puts into a link that it wraps; no part of a link has any.
+fn is_blank(letter: char) -> bool {
+    letter.is_ascii_whitespace()
 }
 
 #[cfg(test)]
@@ -245,6 +250,9 @@ mod tests {
             format!("{link}%26v=1"),
             format!("  #{link}  "),
             encoded,
+            // Wrapped by a mail program.
+            format!("{}%0D%0A{}", &link[..76], &link[76..]),
+            format!("{}\n{}\n", &link[..76], &link[76..]),
         ] {
             assert_eq!(decode(&copy), Ok(scenario.clone()), "{copy}");
         }

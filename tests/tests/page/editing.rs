@@ -61,6 +61,7 @@ fn prefixes_units_and_times_are_taken_as_they_are_written() -> Result<()> {
         ("bus.pulse_width_cycles", "3 us", r#"{"bus":{"pulse_width_cycles":48}}"#.to_owned()),
         ("clock_hz", "20M", r#"{"clock_hz":20000000}"#.to_owned()),
         ("run_cycles", "20 ms", r#"{"run_cycles":320000}"#.to_owned()),
+        ("run_cycles", "320000", r#"{"run_cycles":320000}"#.to_owned()),
     ];
     in_browser(move |page| async move {
         page.open("").await?;
@@ -80,6 +81,22 @@ fn prefixes_units_and_times_are_taken_as_they_are_written() -> Result<()> {
 
 fn with_move(settings: &str) -> String {
     format!(r#"{{"source":{{"motion":{{"axes":[{{"moves":[{{"cosine":{{{settings}}}}}]}}]}}}}}}"#)
+}
+
+#[test]
+fn a_box_of_cycles_shows_cycles_and_bytes_are_taken_as_programs_write_them() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        page.fill("bus.pulse_width_cycles", "3 us").await?;
+        page.press(&field("bus.slots"), "").await?;
+        assert_eq!(page.field("bus.pulse_width_cycles").await?.value, "48");
+        page.choose("[data-path='source#kind']", "packets").await?;
+        page.fill("source.packets.packets", "0x8A\n0x05").await?;
+        page.until_digest(&Known::of(
+            r#"{"bus":{"pulse_width_cycles":48},"source":{"packets":{"packets":["8a","05"]}}}"#,
+        )?.digest)
+        .await
+    })
 }
 
 #[test]

@@ -133,10 +133,10 @@ settings! {
             .from(OWN),
         /// Frames (on a raw line: packets) within which the host crashes, of all of them; it restarts and remembers
         /// nothing but its orders.
-        pub host_crashes_ppm: u32 = 0 => label("Host crashes")
+        pub host_crashes_ppm: u32 = 0 => label("Host restarts")
             .unit("ppm")
             .whole(PPM)
-            .term("Host crashes", "The program that sends crashes in the middle of a frame and starts again: the next frames must not be harmed by the first half.")
+            .term("Host restarts", "The program that sends crashes in the middle of a frame and starts again: the next frames must not be harmed by the first half.")
             .from(OWN),
     }
 }

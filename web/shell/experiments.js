@@ -1,0 +1,171 @@
+/**
+ * The visitor's own experiments: kept under a name on this device, listed beside the presets, opened again, put into one
+ * file and taken from one.
+ */
+import { button, byId, element, fill, say } from "../dom.js";
+import { Dropped } from "../engine/engine.js";
+import { readJson } from "../state/json.js";
+import { counted } from "../state/number.js";
+import { message } from "./link.js";
+import { dropDown } from "./popover.js";
+import { loadExperiments, saveExperiments } from "./storage.js";
+
+/** @typedef {import("../state/types.js").State} State */
+/** @typedef {import("../state/types.js").Scenario} Scenario */
+
+/** What the file says of itself, so that it is told from one scenario. */
+export const FILE = "stepscope_experiments";
+const FILE_NAME = "stepscope-experiments.json";
+
+/** @param {{fresh: string, engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} page  `fresh`: what a new experiment begins with, as JSON. */
+export function createExperiments({ fresh, engine, dispatch, now }) {
+  const name = /** @type {HTMLInputElement} */ (byId("experiment-name"));
+  const keep = /** @type {HTMLButtonElement} */ (byId("experiment-keep"));
+  const list = byId("experiment-list");
+  const about = byId("experiment-about");
+  const exportAll = /** @type {HTMLButtonElement} */ (byId("experiments-export"));
+  const chooser = /** @type {HTMLInputElement} */ (byId("experiments-file"));
+  const { close, isOpen } = dropDown("experiments", "experiments-panel", () => {
+    name.value = String(now().scenario.title ?? "");
+    say(about, "");
+    show();
+  });
+
+  name.addEventListener("input", show);
+  name.addEventListener("keydown", (event) => {
+    if (event.key === "Enter") keepAs();
+  });
+  keep.addEventListener("click", keepAs);
+  byId("experiment-new").addEventListener("click", () => {
+    dispatch({ type: "replace", scenario: readJson(fresh), origin: "own" });
+    close();
+  });
+  exportAll.addEventListener("click", save);
+  byId("experiments-import").addEventListener("click", () => chooser.click());
+  chooser.addEventListener("change", async () => {
+    const [file] = chooser.files ?? [];
+    chooser.value = "";
+    if (file) say(about, await takeExperiments(await file.text(), engine));
+    show();
+  });
+
+  function keepAs() {
+    const title = name.value.trim();
+    if (title === "") {
+      say(about, "Give it a name first.");
+      return name.focus();
+    }
+    const scenario = { ...now().scenario, title };
+    if (now().scenario.title !== title) dispatch({ type: "edit", path: "title", value: title });
+    if (!saveExperiments([...loadExperiments().filter((each) => each.title !== title), scenario]))
+      return say(
+        about,
+        "This browser keeps nothing here (a private window, or no space is left): export it as a file.",
+      );
+    say(about, `Kept on this device as “${title}”.`);
+    return show();
+  }
+
+  /** @param {Scenario} scenario */
+  function open(scenario) {
+    dispatch({ type: "replace", scenario, origin: "own" });
+    close();
+  }
+
+  /** @param {string} title */
+  function remove(title) {
+    saveExperiments(loadExperiments().filter((each) => each.title !== title));
+    say(about, `“${title}” is removed.`);
+    show();
+    name.focus();
+  }
+
+  function save() {
+    const text = JSON.stringify({ [FILE]: 1, experiments: loadExperiments() }, null, 1);
+    const link = element("a", { download: FILE_NAME });
+    link.href = URL.createObjectURL(new Blob([text], { type: "application/json" }));
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+    say(about, `Saved ${FILE_NAME}.`);
+  }
+
+  function show() {
+    const kept = loadExperiments();
+    const title = name.value.trim();
+    say(keep, kept.some((each) => each.title === title) ? "Replace" : "Keep");
+    exportAll.disabled = kept.length === 0;
+    fill(
+      list,
+      ...kept.map((each) =>
+        element(
+          "li",
+          {},
+          button(each.title, `Open ${each.title}`, () => open(each)),
+          button("✕", `Remove ${each.title}`, () => remove(each.title)),
+        ),
+      ),
+    );
+    listed(kept);
+  }
+
+  /** Lists them beside the presets. @param {Scenario[]} kept */
+  function listed(kept) {
+    const preset = /** @type {HTMLSelectElement} */ (byId("preset"));
+    const { value } = preset;
+    preset.querySelector("optgroup[data-own]")?.remove();
+    if (kept.length > 0) {
+      const options = kept.map(({ title }) => element("option", { value: `own:${title}` }, title));
+      preset.firstElementChild?.after(element("optgroup", { label: "Your own", "data-own": "" }, ...options));
+    }
+    preset.value = value;
+  }
+
+  byId("preset").addEventListener("change", () => {
+    const { value } = /** @type {HTMLSelectElement} */ (byId("preset"));
+    const chosen = loadExperiments().find(({ title }) => `own:${title}` === value);
+    if (chosen) open(chosen);
+  });
+  listed(loadExperiments());
+
+  return {
+    /** @param {State} state @param {State | undefined} before */
+    render(state, before) {
+      if (isOpen() && before?.scenario.title !== state.scenario.title && document.activeElement !== name) {
+        name.value = String(state.scenario.title ?? "");
+        show();
+      }
+    },
+  };
+}
+
+/** Takes the experiments of a file beside those that are kept: one of a name that there is gets another. @param {string} text @param {import("../engine/engine.js").Engine} engine @returns {Promise<string>}  What became of them. */
+export async function takeExperiments(text, engine) {
+  try {
+    const file = readJson(text);
+    if (!Array.isArray(file?.experiments) || !(FILE in file))
+      return `This is no file of experiments; give one that “Export all” has made. One experiment is opened with “Open…”.`;
+    const kept = loadExperiments();
+    const refused = [];
+    for (const each of file.experiments) {
+      const { problems, scenario } = await engine.ask("check", JSON.stringify(each));
+      const read = readJson(scenario);
+      if (problems.length > 0) refused.push(`“${read.title}” (${problems[0].path}: ${problems[0].message})`);
+      else if (!kept.some((known) => JSON.stringify(known) === JSON.stringify(read)))
+        kept.push({ ...read, title: freeName(read.title || "experiment", kept) });
+    }
+    if (!saveExperiments(kept)) return "This browser keeps nothing here (a private window, or no space is left).";
+    const not = refused.length > 0 ? ` Not taken: ${refused.join("; ")}.` : "";
+    return `${counted(file.experiments.length - refused.length, "experiment")} taken.${not}`;
+  } catch (error) {
+    if (error instanceof Dropped) return "The engine was started again; import again.";
+    return `This file cannot be read: ${message(error)}`;
+  }
+}
+
+/** @param {string} title @param {Scenario[]} kept */
+function freeName(title, kept) {
+  const taken = (/** @type {string} */ name) => kept.some((each) => each.title === name);
+  let name = title;
+  for (let number = 2; taken(name); number++) name = `${title} (${number})`;
+  return name;
+}
