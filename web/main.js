@@ -240,9 +240,10 @@ async function start() {
     judge();
   };
   const pulses = createPulses(page);
+  const remedies = (/** @type {string} */ json) => engine.latest("remedies", "remedies", json).catch(unlessDropped);
   views = [
     createHeader({ presets, cancel, retry, ...page }),
-    createForm({ root: byId("fields"), samples: made, drivers, dispatch }),
+    createForm({ root: byId("fields"), samples: made, drivers, dispatch, remedies }),
     createTabs(page),
     createPanes(page),
     createMotion(page),

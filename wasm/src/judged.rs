@@ -3,7 +3,7 @@
 use crate::{convert::object, simulation::Simulation};
 use serde::Serialize;
 use stepscope_core::{
-    inspect::judgement::Judgement,
+    inspect::{judgement::Judgement, remedies::Remedies},
     scenario::{
         Problem, Scenario,
         link::{LinkError, encode},
@@ -71,6 +71,15 @@ impl Judged {
     /// Never for any text: what is wrong with it is in the result.
     pub fn check(&self) -> Result<JsValue, JsError> {
         object(&Judgement::of(&self.0))
+    }
+
+    /// What would let a motion run that its bus is too slow for: `{wrong, offers: [{change, scenario}]}`; null where
+    /// that is not what is wrong.
+    ///
+    /// # Errors
+    /// Never in practice.
+    pub fn remedies(&self) -> Result<JsValue, JsError> {
+        object(&Remedies::of(&self.0))
     }
 
     /// A run before its first cycle.

@@ -10,7 +10,7 @@ import { driverItems } from "./driver.js";
 import { glitchFields, OF_SEGMENTS, sections } from "./fields.js";
 import { showAbout, showDerived, showProblems } from "./judgement.js";
 import { createKit } from "./kit.js";
-import { showRemedy } from "./remedies.js";
+import { showOffers, showRemedy } from "./remedies.js";
 import { labelOf, labels, termOf } from "./schema.js";
 import { replacedBySource, runsAlone, SOURCES, withSource } from "./sources.js";
 
@@ -19,9 +19,10 @@ import { replacedBySource, runsAlone, SOURCES, withSource } from "./sources.js";
 
 /**
  * @param {{root: HTMLElement, samples: import("./kit.js").Samples, drivers: import("../state/types.js").DriverSheet[],
- *   dispatch: (message: import("../state/state.js").Message) => void}} given
+ *   dispatch: (message: import("../state/state.js").Message) => void,
+ *   remedies: Parameters<typeof showOffers>[0]}} given
  */
-export function createForm({ root, samples, drivers, dispatch }) {
+export function createForm({ root, samples, drivers, dispatch, remedies }) {
   let shape = "";
   /** @type {State} */
   let state;
@@ -127,6 +128,11 @@ export function createForm({ root, samples, drivers, dispatch }) {
     const judged = held(next) !== "unjudged";
     if (judged && (before?.judgement !== next.judgement || before?.drafts !== next.drafts)) {
       showProblems(next, kit.controls, kit.groups);
+      showOffers(
+        remedies,
+        () => state,
+        (scenario) => kit.change("", () => scenario),
+      );
     }
     if (
       before?.result !== next.result ||

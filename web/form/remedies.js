@@ -3,7 +3,8 @@
  * one step of the history. One function a cause.
  */
 import { button, byId, element, fill } from "../dom.js";
-import { count, si } from "../state/number.js";
+import { readJson } from "../state/json.js";
+import { count, pretty, si } from "../state/number.js";
 import { isStale, set } from "../state/state.js";
 import { runsAlone } from "./sources.js";
 
@@ -26,6 +27,35 @@ export function showRemedy(state, sheets, apply) {
     button("Fix it", `Fix it: ${remedy.change}`, () => apply(remedy.scenario)),
     " ",
     element("span", { class: "range" }, remedy.change),
+  );
+}
+
+/**
+ * A motion that is too fast for its bus, while it is refused: the rate that it needs, and what would do, each a step of
+ * the history.
+ * @param {(json: string) => Promise<{wrong: string, offers: {change: string, scenario: string}[]} | null>} ask
+ * @param {() => State} now @param {(scenario: Scenario) => void} apply
+ */
+export async function showOffers(ask, now, apply) {
+  const { revision, scenario, judgement, drafts } = now();
+  const root = byId("offers");
+  const refused = (judgement?.problems.length ?? 0) > 0 && Object.keys(drafts).length === 0;
+  const found = refused ? await ask(JSON.stringify(scenario)) : null;
+  if (now().revision !== revision) return;
+  root.hidden = !found;
+  if (!found) return fill(root);
+  fill(
+    root,
+    element("h2", {}, pretty(found.wrong)),
+    ...found.offers.map(({ change, scenario }) =>
+      element(
+        "p",
+        {},
+        button("Fix it", `Fix it: ${change}`, () => apply(readJson(scenario))),
+        " ",
+        element("span", { class: "range" }, change),
+      ),
+    ),
   );
 }
 

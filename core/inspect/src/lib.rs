@@ -44,6 +44,7 @@ pub mod measures;
 pub mod packet_table;
 pub mod position_error;
 pub mod ramp_costs;
+pub mod remedies;
 pub mod run_fingerprint;
 pub mod run_sink;
 pub mod sine_optimum;

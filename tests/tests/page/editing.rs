@@ -92,9 +92,10 @@ fn a_box_of_cycles_shows_cycles_and_bytes_are_taken_as_programs_write_them() -> 
         assert_eq!(page.field("bus.pulse_width_cycles").await?.value, "48");
         page.choose("[data-path='source#kind']", "packets").await?;
         page.fill("source.packets.packets", "0x8A\n0x05").await?;
-        page.until_digest(&Known::of(
-            r#"{"bus":{"pulse_width_cycles":48},"source":{"packets":{"packets":["8a","05"]}}}"#,
-        )?.digest)
+        page.until_digest(
+            &Known::of(r#"{"bus":{"pulse_width_cycles":48},"source":{"packets":{"packets":["8a","05"]}}}"#)?
+                .digest,
+        )
         .await
     })
 }
