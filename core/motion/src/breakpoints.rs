@@ -1,6 +1,7 @@
-//! Where the formula of a motion changes ([`Curve::breakpoints_s`] of each move): between two breakpoints its position, speed and acceleration
-//! are smooth, and each rises or falls or stays. So the values at both ends of such a stretch are
-//! its least and its greatest, and three points of Gauss and Legendre integrate it and its square.
+//! Where the formula of a motion changes: between two breakpoints its position, speed and acceleration are smooth, and
+//! each rises or falls or stays. So the values at both ends of such a stretch are its least and its greatest, and three
+//! points of Gauss and Legendre integrate it and its square. Each curve knows its own ([`Curve::breakpoints_s`]); here
+//! they stand one move after another.
 //!
 //! ```text
 //! |   .----.     | a trapezoid has a breakpoint at each end of its ramps and in its middle,
