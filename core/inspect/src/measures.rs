@@ -46,11 +46,7 @@ use curve_metrics::{Sums, curve_and_steps, steps_and_steps};
 use pulse_errors::{due_steps, placed};
 use serde::Serialize;
 use stepscope_motion::ValueError;
-use stepscope_motion::{
-    AxisPlan, Breakpoints, Profile,
-    moves::{Axis, Move},
-    sine_segments,
-};
+use stepscope_motion::{AxisPlan, Breakpoints, Curve, Profile, moves::Axis, sine_segments};
 use stepscope_peripheral::trace::Step;
 
 /// Most steps of a run that is measured: all of them are kept, those due beside those made, some 82 bytes each.
@@ -200,23 +196,11 @@ impl Measures {
 
 /// The time that the moves name, those that name none as planned; `None` where none does.
 fn requested_s(axis: &Axis, plan: &AxisPlan) -> Option<f64> {
-    let named = |asked: &Move| match asked {
-        Move::Cosine(cosine) => Some(cosine.duration_s),
-        Move::Ramps(ramps) => Some(ramps.duration_s),
-        Move::SineSegments(sine) => Some(sine.period_s * f64::from(sine.periods)),
-        Move::Sine(sine) => Some(sine.period_s * f64::from(sine.periods)),
-        Move::Points(given) => {
-            let (first, last) = (given.points.first()?, given.points.last()?);
-            Some(last.time_s - first.time_s)
-        }
-        Move::Dwell(dwell) => Some(dwell.duration_s),
-        Move::Trapezoid(_) | Move::Staircase(_) | Move::JerkLimited(_) | Move::Constant(_) => None,
-    };
-    let names_one = axis.moves.iter().any(|asked| named(asked).is_some());
+    let names_one = axis.moves.iter().any(|asked| asked.requested_s().is_some());
     let times = axis.moves.iter().zip(plan.moves());
     // In the order in which the plan adds them, so that equal times give equal sums.
     let sum = times.fold(0.0, |sum, (asked, planned)| {
-        sum + named(asked).unwrap_or_else(|| stepscope_motion::Curve::duration_s(&planned.profile))
+        sum + asked.requested_s().unwrap_or_else(|| planned.profile.duration_s())
     });
     names_one.then_some(sum)
 }

@@ -21,7 +21,7 @@
 use alloc::{vec, vec::Vec};
 use stepscope_motion::Problem;
 use stepscope_motion::{
-    Peaks, Profile,
+    Curve, Peaks,
     mechanics::Distance,
     moves::{Axis, Cosine, CosineMethod, Move, RampShape, Ramps},
     plan_axis,
@@ -125,12 +125,7 @@ fn cost(request: &RampRequest, candidate: Candidate) -> Result<Cost, Vec<Problem
     let axis = Axis { moves: vec![request.ask(candidate)], ..Axis::default() };
     let plan = plan_axis(&axis, "comparison")?;
     let last = request.steps.unsigned_abs() as f64 - 0.5;
-    let last_step_s = match plan.moves().first().map(|planned| &planned.profile) {
-        Some(Profile::Cosine(curve)) => curve.time_s(last),
-        Some(Profile::Sliced(curve)) => curve.time_s(last),
-        Some(Profile::Ramps(curve)) => curve.time_s(last),
-        _ => plan.duration_s(),
-    };
+    let last_step_s = plan.moves().first().map_or(0.0, |planned| planned.profile.time_s(last));
     let time_error_s = plan.duration_s() - request.duration_s;
     let time_error = time_error_s / request.duration_s;
     Ok(Cost { peaks: plan.peaks(), time_error_s, time_error, last_step_s })

@@ -1,6 +1,7 @@
-//! Where the formula of a motion changes: between two breakpoints its position, speed and acceleration
-//! are smooth, and each rises or falls or stays. So the values at both ends of such a stretch are
-//! its least and its greatest, and three points of Gauss and Legendre integrate it and its square.
+//! Where the formula of a motion changes: between two breakpoints its position, speed and acceleration are smooth, and
+//! each rises or falls or stays. So the values at both ends of such a stretch are its least and its greatest, and three
+//! points of Gauss and Legendre integrate it and its square. Each curve knows its own ([`Curve::breakpoints_s`]); here
+//! they stand one move after another.
 //!
 //! ```text
 //! |   .----.     | a trapezoid has a breakpoint at each end of its ramps and in its middle,
@@ -9,21 +10,8 @@
 //!                | these are no polynomials, so they are cut small
 //! ```
 
-use crate::{
-    AxisPlan, Curve, Profile, jerk_limited::JerkLimited, polyline::POINTS, sine::Sine,
-    sine_segments::SineSegments,
-};
+use crate::{AxisPlan, Curve};
 use alloc::vec::Vec;
-
-/// Parts that a cosine's ramp is cut into; even, so that the middle of the ramp, where its
-/// acceleration is greatest, is a breakpoint.
-const RAMP_PARTS: u32 = 64;
-/// Parts that a sine's period is cut into; its extremes and its middle are breakpoints.
-const PERIOD_PARTS: u32 = 128;
-/// Parts that a phase of constant jerk is cut into: the speed bends in it.
-const JERK_PARTS: u32 = 16;
-/// Parts that a smooth curve through points is cut into, about: its pieces in 4 to 64 each.
-const CURVE_PARTS: u32 = 256;
 
 /// An interval of time in which a motion is smooth.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,7 +48,7 @@ impl Breakpoints {
         let moves = plan.moves().iter().map(|planned| {
             let period_s = planned.profile.repeats().map(|(period_s, _)| period_s);
             let end_s = planned.start_s + planned.profile.duration_s();
-            let breakpoints = breakpoints(&planned.profile);
+            let breakpoints = planned.profile.breakpoints_s();
             debug_assert!(breakpoints.is_sorted(), "breakpoints go back in time: {breakpoints:?}");
             MoveBreakpoints { start_s: planned.start_s, end_s, breakpoints, period_s }
         });
@@ -145,86 +133,4 @@ fn least(a: f64, b: f64) -> f64 {
 
 fn greatest(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
-}
-
-/// Breakpoints of a move between its ends, rising; of a sine those of its first period.
-fn breakpoints(profile: &Profile) -> Vec<f64> {
-    match profile {
-        Profile::Trapezoid(curve) => mirrored([curve.ramp_s()].into_iter(), curve.duration_s()),
-        Profile::Cosine(curve) => mirrored(ramp(curve.ramp_s, RAMP_PARTS), curve.duration_s()),
-        Profile::Sliced(curve) => {
-            let inside = 1..curve.starts_s.len().saturating_sub(1);
-            curve.starts_s.get(inside).map_or_else(Vec::new, <[f64]>::to_vec)
-        }
-        Profile::Ramps(curve) => {
-            // A shape that bends more than a cosine is cut into more pieces, and its middle stays a breakpoint.
-            let times = 1 + (curve.ramp.sharpness() / 8.0) as u32;
-            mirrored(ramp(curve.ramp_s, times * RAMP_PARTS), curve.duration_s())
-        }
-        Profile::TrapezoidTable(curve) => {
-            // One interval more than the ramp: its slope to the next shows the ramp's end.
-            let count = curve.steps().unsigned_abs();
-            let near = curve.kept_rows().min(count);
-            let far = count.saturating_sub(curve.kept_rows()).max(near + 1);
-            (1..=near).chain(far..count).map(|k| curve.step_s(k)).collect()
-        }
-        Profile::Staircase(curve) => {
-            // The first interval climbs half a step only.
-            let rows = curve.starts_s.iter().skip(1).copied();
-            mirrored([curve.step_s(1)].into_iter().chain(rows), curve.duration_s())
-        }
-        Profile::SineSegments(sine) => quarters(sine),
-        Profile::Sine(sine) => period(sine),
-        Profile::JerkLimited(curve) => mirrored(phases(curve).into_iter(), curve.duration_s()),
-        Profile::Points(points) => points.joints_s(CURVE_PARTS).collect(),
-        Profile::Constant(_) | Profile::Dwell(_) => Vec::new(),
-    }
-}
-
-fn period(sine: &Sine) -> Vec<f64> {
-    let part_s = sine.period_s() / f64::from(PERIOD_PARTS);
-    (1..=PERIOD_PARTS).map(|part| f64::from(part) * part_s).collect()
-}
-
-/// The ends of the first three phases, and the parts of those of constant jerk.
-fn phases(curve: &JerkLimited) -> Vec<f64> {
-    let [rising_s, steady_s, ramp_s] = curve.joints_s();
-    let parts = |from_s: f64, to_s: f64| {
-        (1..=JERK_PARTS).map(move |part| from_s + (to_s - from_s) * f64::from(part) / f64::from(JERK_PARTS))
-    };
-    parts(0.0, rising_s).chain([steady_s]).chain(parts(steady_s, ramp_s)).collect()
-}
-
-fn ramp(ramp_s: f64, parts: u32) -> impl Iterator<Item = f64> {
-    (1..=parts).map(move |part| ramp_s * f64::from(part) / f64::from(parts))
-}
-
-/// These of the first half, the middle, and their mirror images.
-fn mirrored(first_half: impl Iterator<Item = f64>, duration_s: f64) -> Vec<f64> {
-    let mut all: Vec<f64> = first_half.filter(|breakpoint| *breakpoint < duration_s / 2.0).collect();
-    let second_half: Vec<f64> = all.iter().rev().map(|breakpoint| duration_s - breakpoint).collect();
-    all.push(duration_s / 2.0);
-    all.extend(second_half);
-    all
-}
-
-/// The ends of a sine's segments in its first period, the last of them the period's.
-fn quarters(sine: &SineSegments) -> Vec<f64> {
-    let point_s = sine.period_s() / f64::from(POINTS);
-    let quarter = POINTS / 4;
-    (0..4_u16)
-        .flat_map(|index| {
-            let segments = sine.segments();
-            let (base, count) = (index * quarter, segments.len());
-            (0..count).filter_map(move |place| {
-                // Every other quarter goes from the middle to the extreme.
-                let point = if index % 2 == 0 {
-                    segments.get(place)?.to
-                } else {
-                    quarter - segments.get(count - 1 - place)?.from
-                };
-                Some(f64::from(base + point) * point_s)
-            })
-        })
-        .collect()
 }

@@ -13,8 +13,8 @@
 //! assert_eq!(Dwell::new(0.1).position(0.05), 0.0);
 //! ```
 
-use crate::{Curve, Peaks};
-use alloc::string::String;
+use crate::{Curve, Peaks, moves, quantities::Quantities};
+use alloc::{string::String, vec::Vec};
 
 /// One rate from end to end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +30,13 @@ impl Constant {
     #[must_use]
     pub fn new(steps: i64, speed: f64) -> Self {
         Self { steps, speed, duration_s: steps.unsigned_abs() as f64 / speed }
+    }
+
+    /// From what is asked.
+    pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::Constant) -> Option<Self> {
+        let steps = quantities.distance("distance", &given.distance);
+        let speed = quantities.speed("speed", &given.speed);
+        Some(Self::new(steps?, speed?))
     }
 
     fn signed_speed(&self) -> f64 {
@@ -68,6 +75,10 @@ impl Curve for Constant {
         Peaks { speed: self.speed, ..Peaks::default() }
     }
 
+    fn breakpoints_s(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
     fn detail(&self, _: f64) -> String {
         String::new()
     }
@@ -84,6 +95,12 @@ impl Dwell {
     #[must_use]
     pub fn new(duration_s: f64) -> Self {
         Self { duration_s }
+    }
+
+    /// From what is asked.
+    pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::Dwell) -> Option<Self> {
+        let duration_s = quantities.pause("duration_s", given.duration_s);
+        Some(Self::new(duration_s?))
     }
 }
 
@@ -110,6 +127,10 @@ impl Curve for Dwell {
 
     fn peaks(&self) -> Peaks {
         Peaks::default()
+    }
+
+    fn breakpoints_s(&self) -> Vec<f64> {
+        Vec::new()
     }
 
     fn detail(&self, _: f64) -> String {

@@ -21,8 +21,13 @@
 //! assert_eq!((turn.position(0.2), turn.position(0.4)), (1600.0, 3200.0));
 //! ```
 
-use crate::{Curve, Peaks, format::ramp_up_to, mirrored::Mirrored, ramp::longest_ramp_s};
-use alloc::string::String;
+use crate::{
+    Curve, Peaks,
+    format::ramp_up_to,
+    mirrored::{Mirrored, RAMP_PARTS, parts_s},
+    ramp::longest_ramp_s,
+};
+use alloc::{string::String, vec::Vec};
 use core::f64::consts::PI;
 
 /// A cosine S-curve.
@@ -68,13 +73,6 @@ impl Cosine {
             let sine = libm::sin(phase / 2.0);
             sine * sine
         })
-    }
-
-    /// When the curve is at `place`, in s; `place` in steps without sign, 0 to all.
-    /// Step k falls due at k - 1/2 (B1).
-    #[must_use]
-    pub fn time_s(&self, place: f64) -> f64 {
-        self.halves.time_s(place, |place| self.climb_s(place))
     }
 
     /// When the first half is at `place`: the phase solves x - sin(x) = pi*place/(steps of the ramp).
@@ -134,6 +132,14 @@ impl Curve for Cosine {
         } else {
             Peaks { speed, ..Peaks::default() }
         }
+    }
+
+    fn breakpoints_s(&self) -> Vec<f64> {
+        self.halves.breakpoints_s(parts_s(self.ramp_s, RAMP_PARTS))
+    }
+
+    fn time_s(&self, place: f64) -> f64 {
+        self.halves.time_s(place, |place| self.climb_s(place))
     }
 
     fn detail(&self, limit_steps_s: f64) -> String {

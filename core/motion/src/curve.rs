@@ -1,7 +1,7 @@
 //! What all motions share: a curve over time, in steps (DESIGN B1).
 
-use crate::format::grouped;
-use alloc::{format, string::String};
+use crate::{bisection::border, format::grouped};
+use alloc::{format, string::String, vec::Vec};
 
 /// The curve of one move: position, speed and acceleration over time since the move's start.
 ///
@@ -26,6 +26,20 @@ pub trait Curve {
 
     /// The greatest values within the move; what its start and its end jump by is the axis' to know.
     fn peaks(&self) -> Peaks;
+
+    /// Where its formula changes, in s between its ends, rising: between two breakpoints position, speed and
+    /// acceleration are smooth, and each rises or falls or stays. Where the speed is no polynomial it is cut so small
+    /// that it bends by less than a thousandth of its peak. Of a move that repeats itself those of its first period.
+    fn breakpoints_s(&self) -> Vec<f64>;
+
+    /// When a curve that goes one way is at `place`, in s; `place` in steps without sign, above 0 and below all.
+    /// Step k falls due at k - 1/2 (B1).
+    ///
+    /// It is looked for in the curve, some sixty positions for a place; a formula that can be solved for the time is
+    /// quicker.
+    fn time_s(&self, place: f64) -> f64 {
+        border(0.0, self.duration_s(), |t| libm::fabs(self.position(t)) < place).1
+    }
 
     /// What a user wants to know of the move beside its times, in a few words, on a bus that can
     /// give `limit_steps_s`; empty where there is nothing to say.
@@ -73,4 +87,24 @@ impl Peaks {
 /// The greater of two magnitudes.
 pub(super) fn greater(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Curve, trapezoid::Trapezoid};
+
+    #[test]
+    fn a_place_is_found_in_a_curve_that_tells_only_its_positions() {
+        for steps in [1, -2, 801, -40_000] {
+            let curve = Trapezoid::new(steps, 250.0, 4000.0, 9000.0);
+            let times = curve.step_times(1_000_000_000).map(|cycle| cycle as f64 * 1e-9);
+            let mut before = 0.0;
+            for (k, expected) in (1..).zip(times) {
+                let found = curve.time_s(f64::from(k) - 0.5);
+                assert!((found - expected).abs() <= 1e-9, "step {k} of {steps}: {found}, {expected}");
+                assert!(found > before, "step {k} of {steps}: {found} after {before}");
+                before = found;
+            }
+        }
+    }
 }

@@ -36,11 +36,16 @@
 //! assert_eq!((go.position(go.duration_s()), go.speed(0.0)), (3200.0, 0.0));
 //! ```
 
-use crate::{Curve, Peaks, curve::greater, format::grouped, mirrored::Mirrored, square_root};
+use crate::{
+    Curve, Peaks, curve::greater, format::grouped, mirrored::Mirrored, moves, quantities::Quantities,
+    square_root,
+};
 use alloc::{format, string::String, vec::Vec};
 
 /// Newton's steps after which a root has all its digits; at most six do.
 const MAX_NEWTON_STEPS: u32 = 12;
+/// Parts that a phase of constant jerk is cut into: the speed bends in it.
+const JERK_PARTS: u32 = 16;
 
 /// Limits of a move, each above 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,6 +109,16 @@ impl JerkLimited {
         Self { halves, jerk, jerk_s, steady_s, peak_speed, ramp_s, ramp_steps: all / 2.0 }
     }
 
+    /// From what is asked.
+    pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::JerkLimited) -> Option<Self> {
+        let steps = quantities.distance("distance", &given.distance);
+        let speed = quantities.speed("max_speed", &given.max_speed);
+        let acceleration = quantities.acceleration("max_acceleration", &given.max_acceleration);
+        let jerk = quantities.jerk("max_jerk", &given.max_jerk);
+        let limits = Limits { speed: speed?, acceleration: acceleration?, jerk: jerk? };
+        Some(Self::new(steps?, limits))
+    }
+
     /// Highest speed that is reached, in steps/s.
     #[must_use]
     pub fn peak_speed(&self) -> f64 {
@@ -124,7 +139,7 @@ impl JerkLimited {
     }
 
     /// Ends of the first three phases in s; the third is t_r.
-    pub(super) fn joints_s(&self) -> [f64; 3] {
+    fn joints_s(&self) -> [f64; 3] {
         [self.jerk_s, self.jerk_s + self.steady_s, self.ramp_s]
     }
 
@@ -157,11 +172,6 @@ impl JerkLimited {
     /// Steps of the third phase from `left_s` before its end on.
     fn travel_left(&self, left_s: f64) -> f64 {
         (self.peak_speed - self.jerk * left_s * left_s / 6.0) * left_s
-    }
-
-    /// When the curve is at `place`, in s; `place` in steps without sign, 0 to all.
-    pub(super) fn time_s(&self, place: f64) -> f64 {
-        self.halves.time_s(place, |place| self.climb_s(place))
     }
 
     /// When the first half is at `place`.
@@ -239,6 +249,20 @@ impl Curve for JerkLimited {
     fn peaks(&self) -> Peaks {
         let acceleration = self.peak_acceleration();
         Peaks { speed: self.peak_speed, acceleration, jump: 0.0, jerk: self.jerk, acceleration_jump: 0.0 }
+    }
+
+    /// The ends of the first three phases, the parts of those of constant jerk, and their mirror images.
+    fn breakpoints_s(&self) -> Vec<f64> {
+        let [rising_s, steady_s, ramp_s] = self.joints_s();
+        let parts = |from_s: f64, to_s: f64| {
+            (1..=JERK_PARTS)
+                .map(move |part| from_s + (to_s - from_s) * f64::from(part) / f64::from(JERK_PARTS))
+        };
+        self.halves.breakpoints_s(parts(0.0, rising_s).chain([steady_s]).chain(parts(steady_s, ramp_s)))
+    }
+
+    fn time_s(&self, place: f64) -> f64 {
+        self.halves.time_s(place, |place| self.climb_s(place))
     }
 
     fn detail(&self, _: f64) -> String {

@@ -54,6 +54,7 @@ pub mod acceleration_table;
 mod axis;
 pub mod bisection;
 mod breakpoints;
+mod budget;
 pub mod constant_velocity;
 pub mod cosine;
 mod curve;

@@ -9,6 +9,16 @@
 //! ```
 
 use crate::curve::greater;
+use alloc::vec::Vec;
+
+/// Parts that a cosine's ramp is cut into; even, so that the middle of the ramp, where its acceleration is greatest, is
+/// a breakpoint.
+pub(super) const RAMP_PARTS: u32 = 64;
+
+/// The ends of so many equal parts of a ramp, in s.
+pub(super) fn parts_s(ramp_s: f64, parts: u32) -> impl Iterator<Item = f64> {
+    (1..=parts).map(move |part| ramp_s * f64::from(part) / f64::from(parts))
+}
 
 /// What the two halves of such a move share.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,5 +68,15 @@ impl Mirrored {
     /// The acceleration at `t`, of its magnitude there.
     pub(super) fn acceleration(&self, t: f64, magnitude: f64) -> f64 {
         self.signed(if self.is_first_half(t) { magnitude } else { -magnitude })
+    }
+
+    /// Breakpoints of the whole: these of the first half, the middle, and their mirror images.
+    pub(super) fn breakpoints_s(&self, first_half: impl Iterator<Item = f64>) -> Vec<f64> {
+        let middle = self.duration_s / 2.0;
+        let mut all: Vec<f64> = first_half.filter(|breakpoint| *breakpoint < middle).collect();
+        let second_half: Vec<f64> = all.iter().rev().map(|breakpoint| self.duration_s - breakpoint).collect();
+        all.push(middle);
+        all.extend(second_half);
+        all
     }
 }

@@ -46,6 +46,25 @@ pub enum Move {
     Dwell(Dwell),
 }
 
+impl Move {
+    /// The time in s that it names, `None` of a kind whose time follows from other numbers.
+    #[must_use]
+    pub fn requested_s(&self) -> Option<f64> {
+        match self {
+            Self::Cosine(cosine) => Some(cosine.duration_s),
+            Self::Ramps(ramps) => Some(ramps.duration_s),
+            Self::SineSegments(sine) => Some(sine.period_s * f64::from(sine.periods)),
+            Self::Sine(sine) => Some(sine.period_s * f64::from(sine.periods)),
+            Self::Points(given) => {
+                let (first, last) = (given.points.first()?, given.points.last()?);
+                Some(last.time_s - first.time_s)
+            }
+            Self::Dwell(dwell) => Some(dwell.duration_s),
+            Self::Trapezoid(_) | Self::Staircase(_) | Self::JerkLimited(_) | Self::Constant(_) => None,
+        }
+    }
+}
+
 impl Default for Move {
     fn default() -> Self {
         Self::Cosine(Cosine::default())

@@ -29,6 +29,9 @@
 use crate::{Curve, Peaks, curve::greater, format::grouped, hermite::Cubic, round_half_up};
 use alloc::{format, string::String, vec::Vec};
 
+/// Parts that a smooth curve is cut into, about: its pieces in 4 to 64 each.
+const CURVE_PARTS: u32 = 256;
+
 /// How a curve goes from point to point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Between {
@@ -117,26 +120,6 @@ impl Points {
             among
         })?;
         Some(piece.time_s(place(from, to, k - before - 1)))
-    }
-
-    /// Times at which the curve changes its formula or its speed turns, and parts of each smooth piece
-    /// between them, in all about `all_parts`; rising.
-    pub(super) fn joints_s(&self, all_parts: u32) -> impl Iterator<Item = f64> + '_ {
-        let parts = match self.between {
-            Between::Straight => 1,
-            Between::Smooth => (all_parts / self.pieces.len() as u32).clamp(4, 64),
-        };
-        self.pieces.iter().flat_map(move |piece| {
-            let at = move |part: u32| {
-                piece.from_s + (piece.to_s - piece.from_s) * f64::from(part) / f64::from(parts)
-            };
-            let turn_s = piece.turn_s();
-            (1..=parts).flat_map(move |part| {
-                let end_s = if part == parts { piece.to_s } else { at(part) };
-                let turn_s = turn_s.filter(|turn_s| *turn_s > at(part - 1) && *turn_s < end_s);
-                turn_s.into_iter().chain([end_s])
-            })
-        })
     }
 
     fn piece(&self, t: f64) -> Option<&Cubic> {
@@ -244,6 +227,26 @@ impl Curve for Points {
             })
         });
         within.chain(between).fold(Peaks::default(), Peaks::or)
+    }
+
+    /// Where a piece ends or its speed turns, and parts of each smooth piece between them.
+    fn breakpoints_s(&self) -> Vec<f64> {
+        let parts = match self.between {
+            Between::Straight => 1,
+            Between::Smooth => (CURVE_PARTS / self.pieces.len() as u32).clamp(4, 64),
+        };
+        let pieces = self.pieces.iter().flat_map(|piece| {
+            let at = move |part: u32| {
+                piece.from_s + (piece.to_s - piece.from_s) * f64::from(part) / f64::from(parts)
+            };
+            let turn_s = piece.turn_s();
+            (1..=parts).flat_map(move |part| {
+                let end_s = if part == parts { piece.to_s } else { at(part) };
+                let turn_s = turn_s.filter(|turn_s| *turn_s > at(part - 1) && *turn_s < end_s);
+                turn_s.into_iter().chain([end_s])
+            })
+        });
+        pieces.collect()
     }
 
     fn detail(&self, _: f64) -> String {

@@ -1,11 +1,22 @@
-//! The curve of one move, of any family: what the planner makes and everything after it asks.
+//! The curve of one move, of any family: what each kind of move becomes, and everything after it asks.
+//!
+//! Which kinds there are stands here three times: [`Profile`] declares them, `each!` tells them apart for what all
+//! curves can do, and [`Profile::plan`] makes them of what is asked.
+
+mod points;
+mod staircase;
+mod timed;
+mod trapezoid;
 
 use crate::{
+    budget::Budget,
     constant_velocity::{Constant, Dwell},
     cosine::Cosine,
     curve::{Curve, Peaks},
     jerk_limited::JerkLimited,
+    moves::{CosineMethod, Move, TrapezoidMethod},
     points::Points,
+    quantities::Quantities,
     ramps::Ramps,
     sine::Sine,
     sine_segments::SineSegments,
@@ -14,7 +25,7 @@ use crate::{
     trapezoid::Trapezoid,
     trapezoid_table::TrapezoidTable,
 };
-use alloc::string::String;
+use alloc::{string::String, vec::Vec};
 
 /// The curve of one move, of any family.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,6 +56,7 @@ pub enum Profile {
     Dwell(Dwell),
 }
 
+/// Does the same with the curve of any kind, compiled for each.
 macro_rules! each {
     ($profile:expr, $curve:ident => $what:expr) => {
         match $profile {
@@ -64,7 +76,41 @@ macro_rules! each {
     };
 }
 
+pub(crate) use each;
+
 impl Profile {
+    /// From what is asked of a move to its curve, or to its problems, each with its path from the move on.
+    pub(super) fn plan(quantities: &mut Quantities<'_>, given: &Move, budget: &mut Budget) -> Option<Self> {
+        match given {
+            Move::Trapezoid(given) => quantities.at("trapezoid", |here| match given.method {
+                TrapezoidMethod::Exact => trapezoid::exact(here, given).map(Self::Trapezoid),
+                TrapezoidMethod::Table => trapezoid::table(here, given, budget).map(Self::TrapezoidTable),
+            }),
+            Move::Staircase(given) => {
+                quantities.at("staircase", |here| staircase::plan(here, given, budget)).map(Self::Staircase)
+            }
+            Move::Cosine(given) => quantities.at("cosine", |here| match given.method {
+                CosineMethod::Exact => timed::cosine(here, given).map(Self::Cosine),
+                CosineMethod::Sliced => timed::sliced(here, given, budget).map(Self::Sliced),
+            }),
+            Move::Ramps(given) => quantities.at("ramps", |here| timed::ramps(here, given)).map(Self::Ramps),
+            Move::SineSegments(given) => quantities
+                .at("sine_segments", |here| SineSegments::plan(here, given, budget))
+                .map(Self::SineSegments),
+            Move::Sine(given) => quantities.at("sine", |here| Sine::plan(here, given)).map(Self::Sine),
+            Move::JerkLimited(given) => {
+                quantities.at("jerk_limited", |here| JerkLimited::plan(here, given)).map(Self::JerkLimited)
+            }
+            Move::Points(given) => {
+                quantities.at("points", |here| points::plan(here, given)).map(Self::Points)
+            }
+            Move::Constant(given) => {
+                quantities.at("constant", |here| Constant::plan(here, given)).map(Self::Constant)
+            }
+            Move::Dwell(given) => quantities.at("dwell", |here| Dwell::plan(here, given)).map(Self::Dwell),
+        }
+    }
+
     /// The period in s and how many of them, of a move that repeats itself.
     #[must_use]
     pub fn repeats(&self) -> Option<(f64, u32)> {
@@ -110,6 +156,14 @@ impl Curve for Profile {
 
     fn peaks(&self) -> Peaks {
         each!(self, curve => curve.peaks())
+    }
+
+    fn breakpoints_s(&self) -> Vec<f64> {
+        each!(self, curve => curve.breakpoints_s())
+    }
+
+    fn time_s(&self, place: f64) -> f64 {
+        each!(self, curve => curve.time_s(place))
     }
 
     fn detail(&self, limit_steps_s: f64) -> String {

@@ -26,17 +26,17 @@
 use crate::{
     Curve, Peaks,
     format::{grouped, ramp_up_to},
-    mirrored::Mirrored,
+    mirrored::{Mirrored, RAMP_PARTS, parts_s},
     ramp::{Ramp, longest_ramp_s},
 };
-use alloc::{format, string::String};
+use alloc::{format, string::String, vec::Vec};
 
 /// A move with ramps of a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ramps {
     halves: Mirrored,
-    pub(super) ramp_s: f64,
-    pub(super) ramp: Ramp,
+    ramp_s: f64,
+    ramp: Ramp,
     /// A.
     area: f64,
     /// f_max in steps/s.
@@ -75,13 +75,6 @@ impl Ramps {
     /// x of the ramp at `t` after the start or before the end, 0 to 1; `None` in the plateau.
     fn part(&self, t: f64) -> Option<f64> {
         (t < self.ramp_s).then(|| t / self.ramp_s)
-    }
-
-    /// When the curve is at `place`, in s; `place` in steps without sign, 0 to all.
-    /// Step k falls due at k - 1/2 (B1).
-    #[must_use]
-    pub fn time_s(&self, place: f64) -> f64 {
-        self.halves.time_s(place, |place| self.climb_s(place))
     }
 
     /// When the first half is at `place`.
@@ -147,6 +140,16 @@ impl Curve for Ramps {
             acceleration_jump: if turns { 2.0 * last } else { last },
             ..Peaks::default()
         }
+    }
+
+    fn breakpoints_s(&self) -> Vec<f64> {
+        // A shape that bends more than a cosine is cut into more pieces, and its middle stays a breakpoint.
+        let times = 1 + (self.ramp.sharpness() / 8.0) as u32;
+        self.halves.breakpoints_s(parts_s(self.ramp_s, times * RAMP_PARTS))
+    }
+
+    fn time_s(&self, place: f64) -> f64 {
+        self.halves.time_s(place, |place| self.climb_s(place))
     }
 
     fn detail(&self, limit_steps_s: f64) -> String {

@@ -7,7 +7,7 @@
 //! A move's own times are formed in cycles from its start, those of a timer's table in whole
 //! numbers; to them comes the start of the move, and the sum is rounded once.
 
-use crate::{AxisPlan, Curve, Profile, step_times::cycle};
+use crate::{AxisPlan, Curve, Profile, profile::each, step_times::cycle};
 use alloc::boxed::Box;
 
 /// A step that is due.
@@ -59,19 +59,17 @@ impl Profile {
             Self::Trapezoid(curve) => return curve.step_times(clock_hz).nth(usize::try_from(k - 1).ok()?),
             Self::TrapezoidTable(table) => table.step_cycles(k, clock_hz),
             Self::Staircase(staircase) => staircase.step_s(k) * clock,
-            Self::Cosine(curve) => curve.time_s(place) * clock,
-            Self::Sliced(curve) => curve.time_s(place) * clock,
-            Self::Ramps(curve) => curve.time_s(place) * clock,
             Self::Sine(sine) => sine.due_half(k) * (sine.period_s() / 2.0 * clock),
-            Self::JerkLimited(curve) => curve.time_s(place) * clock,
             Self::Points(points) => points.step_s(k)? * clock,
             Self::Constant(constant) => place * (clock / libm::fabs(constant.speed(0.0))),
             Self::SineSegments(_) | Self::Dwell(_) => return None,
+            one_way => one_way.time_s(place) * clock,
         };
         Some(cycle(cycles))
     }
 }
 
+/// A kind that does not stand here by itself goes one way, and its curve is asked for each step's time.
 fn due(profile: &Profile, clock_hz: u32) -> Due<'_> {
     let clock = f64::from(clock_hz);
     let (right, steps) = (profile.steps() >= 0, 1..=profile.steps().unsigned_abs());
@@ -86,9 +84,6 @@ fn due(profile: &Profile, clock_hz: u32) -> Due<'_> {
             Box::new(steps.map(move |k| (table.step_cycles(k, clock_hz), right)))
         }
         Profile::Staircase(staircase) => Box::new(steps.map(move |k| (staircase.step_s(k) * clock, right))),
-        Profile::Cosine(curve) => Box::new(places.map(move |place| (curve.time_s(place) * clock, right))),
-        Profile::Sliced(curve) => Box::new(places.map(move |place| (curve.time_s(place) * clock, right))),
-        Profile::Ramps(curve) => Box::new(places.map(move |place| (curve.time_s(place) * clock, right))),
         Profile::SineSegments(sine) => {
             let cycles_per_point = sine.point_s() * clock;
             Box::new(sine.due_points().map(move |(point, right)| (point * cycles_per_point, right)))
@@ -97,14 +92,14 @@ fn due(profile: &Profile, clock_hz: u32) -> Due<'_> {
             let cycles_per_half = sine.period_s() / 2.0 * clock;
             Box::new(sine.due_halves().map(move |(half, right)| (half * cycles_per_half, right)))
         }
-        Profile::JerkLimited(curve) => {
-            Box::new(places.map(move |place| (curve.time_s(place) * clock, right)))
-        }
         Profile::Points(points) => Box::new(points.due_s().map(move |(t, right)| (t * clock, right))),
         Profile::Constant(constant) => {
             let cycles_per_step = clock / libm::fabs(constant.speed(0.0));
             Box::new(places.map(move |place| (place * cycles_per_step, right)))
         }
         Profile::Dwell(_) => Box::new(core::iter::empty()),
+        one_way => each!(one_way, curve => {
+            Box::new(places.map(move |place| (curve.time_s(place) * clock, right)))
+        }),
     }
 }

@@ -22,9 +22,15 @@
 //! assert_eq!(sine.position(0.25), -200.0);
 //! ```
 
-use crate::{Curve, Peaks, oscillation::Oscillation, square_root};
-use alloc::{format, string::String};
+use crate::{
+    Curve, Peaks, budget::hold_speed, limits, moves, oscillation::Oscillation, quantities::Quantities,
+    square_root,
+};
+use alloc::{format, string::String, vec::Vec};
 use core::f64::consts::{PI, TAU};
+
+/// Parts that a period is cut into; its extremes and its middle are breakpoints.
+const PERIOD_PARTS: u32 = 128;
 
 /// A sine, each step in its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,6 +44,16 @@ impl Sine {
     #[must_use]
     pub fn new(amplitude: i64, period_s: f64, periods: u32) -> Self {
         Self { oscillation: Oscillation::new(amplitude, period_s, periods) }
+    }
+
+    /// From what is asked.
+    pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::Sine) -> Option<Self> {
+        let amplitude = quantities.distance("amplitude", &given.amplitude);
+        let period_s = quantities.duration("period_s", given.period_s);
+        quantities.range("periods", given.periods.into(), limits::PERIODS, "")?;
+        let curve = Self::new(amplitude?, period_s?, given.periods);
+        hold_speed(quantities, "period_s", curve.peaks().speed)?;
+        Some(curve)
     }
 
     /// Time of a period in s.
@@ -129,6 +145,11 @@ impl Curve for Sine {
         Peaks { speed, acceleration, jump: 0.0, jerk: acceleration * turning, acceleration_jump: 0.0 }
     }
 
+    fn breakpoints_s(&self) -> Vec<f64> {
+        let part_s = self.oscillation.period_s / f64::from(PERIOD_PARTS);
+        (1..=PERIOD_PARTS).map(|part| f64::from(part) * part_s).collect()
+    }
+
     fn detail(&self, _: f64) -> String {
         let hertz = 1.0 / self.oscillation.period_s;
         format!("{hertz:.4} Hz; {}", self.peaks().to_text())
@@ -138,7 +159,6 @@ impl Curve for Sine {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use alloc::vec::Vec;
 
     /// Half periods of the steps of one half period.
     fn half(amplitude: i64) -> Vec<f64> {

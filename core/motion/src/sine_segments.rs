@@ -25,10 +25,14 @@
 
 use crate::{
     Curve, Peaks,
+    budget::{Budget, MAX_SEGMENTS, hold_speed},
     curve::greater,
     format::grouped,
+    limits, moves,
     oscillation::Oscillation,
     polyline::{Folded, POINTS, QUARTER, breakpoints, cosine_at, fold},
+    problem::ValueError,
+    quantities::Quantities,
     round_half_up,
 };
 use alloc::{format, string::String, vec::Vec};
@@ -124,6 +128,31 @@ impl SineSegments {
             "the segments do not cover the quarter"
         );
         Self { oscillation: Oscillation::new(amplitude, period_s, periods), segments }
+    }
+
+    /// From what is asked.
+    pub(super) fn plan(
+        quantities: &mut Quantities<'_>,
+        given: &moves::SineSegments,
+        budget: &mut Budget,
+    ) -> Option<Self> {
+        let amplitude = quantities.distance("amplitude", &given.amplitude);
+        let period_s = quantities.duration("period_s", given.period_s);
+        let periods = quantities.range("periods", given.periods.into(), limits::PERIODS, "");
+        let deviation = quantities.range("max_deviation", given.max_deviation, limits::MAX_DEVIATION, "");
+        let (amplitude, period_s, deviation) = (amplitude?, period_s?, deviation?);
+        periods?;
+        let curve = Self::new(amplitude, period_s, given.periods, deviation);
+        let segments = curve.segments.len();
+        let Some(still_left) = budget.segments.checked_sub(segments) else {
+            let (given, most) = (MAX_SEGMENTS - budget.segments + segments, MAX_SEGMENTS);
+            let cause = ValueError::TooMuch { given: given as f64, most: most as f64, of: "sine segments" };
+            quantities.refuse("", cause);
+            return None;
+        };
+        budget.segments = still_left;
+        hold_speed(quantities, "period_s", curve.peaks().speed)?;
+        Some(curve)
     }
 
     /// The segments of the first quarter, from the extreme to the middle.
@@ -259,6 +288,24 @@ impl Curve for SineSegments {
             before = Some(rate);
         }
         peaks
+    }
+
+    /// The ends of the segments, the last of them the period's.
+    fn breakpoints_s(&self) -> Vec<f64> {
+        let count = self.segments.len();
+        (0..4_u16)
+            .flat_map(|index| {
+                (0..count).filter_map(move |place| {
+                    // Every other quarter goes from the middle to the extreme.
+                    let point = if index % 2 == 0 {
+                        self.segments.get(place)?.to
+                    } else {
+                        QUARTER - self.segments.get(count - 1 - place)?.from
+                    };
+                    Some(f64::from(index * QUARTER + point) * self.point_s())
+                })
+            })
+            .collect()
     }
 
     fn detail(&self, _: f64) -> String {

@@ -49,7 +49,7 @@ pub struct Sliced {
     /// Start of each slice in s, and the end of the last; rising.
     ///
     /// Invariant: one entry more than there are slices, of which there is at least one.
-    pub(super) starts_s: Vec<f64>,
+    starts_s: Vec<f64>,
     /// Steps before each slice, without sign, and all of them.
     ///
     /// Invariant: as long as `starts_s`, from 0 to the move's steps, not falling.
@@ -180,15 +180,6 @@ impl Sliced {
         self.slice(after.saturating_sub(1).min(last))
     }
 
-    /// When the curve is at `place`, in s; `place` in steps without sign, between two whole ones.
-    /// Step k falls due at k - 1/2 (B1).
-    #[must_use]
-    pub fn time_s(&self, place: f64) -> f64 {
-        let after = self.sums.partition_point(|sum| f64::from(*sum) <= place);
-        let (from, to, before, count) = self.slice(after.saturating_sub(1)).unwrap_or_default();
-        from + (place - f64::from(before)) * (to - from) / f64::from(count.max(1))
-    }
-
     fn signed(&self, magnitude: f64) -> f64 {
         if self.steps() < 0 { -magnitude } else { magnitude }
     }
@@ -231,6 +222,17 @@ impl Curve for Sliced {
             before = Some(rate);
         }
         peaks
+    }
+
+    fn breakpoints_s(&self) -> Vec<f64> {
+        let inside = 1..self.starts_s.len().saturating_sub(1);
+        self.starts_s.get(inside).map_or_else(Vec::new, <[f64]>::to_vec)
+    }
+
+    fn time_s(&self, place: f64) -> f64 {
+        let after = self.sums.partition_point(|sum| f64::from(*sum) <= place);
+        let (from, to, before, count) = self.slice(after.saturating_sub(1)).unwrap_or_default();
+        from + (place - f64::from(before)) * (to - from) / f64::from(count.max(1))
     }
 
     fn detail(&self, limit_steps_s: f64) -> String {

@@ -27,6 +27,7 @@ use crate::{
     bisection::least,
     curve::greater,
     format::{count, grouped},
+    mirrored::Mirrored,
     staircase_table::StaircaseTable,
     stepped,
 };
@@ -44,7 +45,7 @@ pub struct Staircase {
     /// Start of each row of the ramp, and its end, in s.
     ///
     /// Invariant: at least one entry, the first 0, rising.
-    pub(super) starts_s: Vec<f64>,
+    starts_s: Vec<f64>,
     duration_s: f64,
 }
 
@@ -222,6 +223,13 @@ impl Curve for Staircase {
             before = Some(rate);
         }
         peaks
+    }
+
+    /// The first interval climbs half a step only.
+    fn breakpoints_s(&self) -> Vec<f64> {
+        let rows = self.starts_s.iter().skip(1).copied();
+        let halves = Mirrored { steps: self.steps, duration_s: self.duration_s };
+        halves.breakpoints_s([self.step_s(1)].into_iter().chain(rows))
     }
 
     fn detail(&self, _: f64) -> String {

@@ -22,6 +22,7 @@
 //! ```
 
 use crate::{Curve, Peaks, mirrored::Mirrored, square_root};
+use alloc::vec::Vec;
 
 /// A trapezoid or triangle of uniform acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,6 +120,10 @@ impl Curve for Trapezoid {
         let turns = 2.0 * self.ramp_s >= self.halves.duration_s;
         let acceleration_jump = if turns { 2.0 * acceleration } else { acceleration };
         Peaks { speed: self.peak_speed, acceleration, acceleration_jump, ..Peaks::default() }
+    }
+
+    fn breakpoints_s(&self) -> Vec<f64> {
+        self.halves.breakpoints_s([self.ramp_s].into_iter())
     }
 }
 

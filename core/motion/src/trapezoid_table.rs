@@ -260,6 +260,13 @@ impl Curve for TrapezoidTable {
         peaks
     }
 
+    /// One interval more than the ramp: its slope to the next shows the ramp's end.
+    fn breakpoints_s(&self) -> Vec<f64> {
+        let near = self.kept_rows().min(self.count());
+        let far = self.count().saturating_sub(self.kept_rows()).max(near + 1);
+        (1..=near).chain(far..self.count()).map(|k| self.step_s(k)).collect()
+    }
+
     fn detail(&self, _: f64) -> String {
         format!("peak {} steps/s, table of {} rows", grouped(self.peaks().speed), self.rows())
     }

@@ -387,6 +387,25 @@ impl Config {
         })
     }
 
+    /// The bus that it was made of.
+    pub(crate) const fn bus(&self) -> Bus {
+        // Each of these came from 32 bits.
+        Bus {
+            channels: self.channels,
+            slots: self.slots,
+            step_period_cycles: self.step_period as u32,
+            pulse_width_cycles: self.pulse_width as u32,
+            dir_setup_cycles: self.dir_setup as u32,
+            dir_hold_cycles: self.dir_hold as u32,
+            distribution: self.distribution,
+            dir_line: self.dir_line,
+            pulse_phasing: self.pulse_phasing,
+            settle_cycles: self.settle as u32,
+            queue_depth: self.queue_depth,
+            boot_cycles: self.boot.0 as u32,
+        }
+    }
+
     /// The same controller with another bus: checked as [`Self::new`] does.
     ///
     /// # Errors

@@ -1,7 +1,10 @@
 //! Where the pieces of a plan meet.
 
 use super::{axis, plan_axis};
-use stepscope_core::motion::{AxisPlan, Breakpoints};
+use stepscope_core::{
+    motion::{AxisPlan, Breakpoints},
+    scenario::{Source, presets::PRESETS},
+};
 
 /// Plans an axis from the JSON of its moves.
 fn plan(moves: &str) -> AxisPlan {
@@ -28,10 +31,21 @@ const MOVES: &[&str] = &[
     r#"{"dwell":{"duration_s":0.1}},{"sine_segments":{"amplitude":{"steps":500},"period_s":0.2,"periods":3}},{"dwell":{"duration_s":0.05}}"#,
 ];
 
+/// These moves, and all axes of the presets, among which is every kind of move.
+fn plans() -> impl Iterator<Item = (&'static str, AxisPlan)> {
+    let presets = PRESETS.iter().flat_map(|preset| {
+        let axes = match preset.scenario().source {
+            Source::Motion(motion) => motion.axes,
+            _ => Vec::new(),
+        };
+        axes.into_iter().map(|axis| (preset.id, plan_axis(&axis, preset.id).expect("plans")))
+    });
+    MOVES.iter().map(|moves| (*moves, plan(moves))).chain(presets)
+}
+
 #[test]
-fn between_two_joints_every_curve_is_smooth() {
-    for moves in MOVES {
-        let plan = plan(moves);
+fn between_two_breakpoints_every_curve_is_smooth() {
+    for (moves, plan) in plans() {
         let (from, to) = (-0.01, plan.duration_s() + 0.01);
         let mut covered = 0.0;
         Breakpoints::of(&plan).intervals(from, to, &mut |interval| {

@@ -74,12 +74,7 @@ pub(super) fn document_bytes(plan: &AxisPlan) -> Option<u64> {
             Profile::Sliced(sliced) => 4 * sliced.slice_count(),
             Profile::Constant(_) => 8,
             Profile::Dwell(_) => 4,
-            Profile::Trapezoid(_)
-            | Profile::Cosine(_)
-            | Profile::Ramps(_)
-            | Profile::Sine(_)
-            | Profile::JerkLimited(_)
-            | Profile::Points(_) => return None,
+            _ => return None,
         };
         Some(sum + bytes)
     })
@@ -128,12 +123,7 @@ fn rates(profile: &Profile, clock_hz: u32) -> Result<Box<dyn Iterator<Item = Rat
             Box::new([Rate { first: each / 2.0, ..held(each, profile.steps().unsigned_abs()) }].into_iter())
         }
         Profile::Dwell(_) => Box::new(core::iter::empty()),
-        Profile::Trapezoid(_)
-        | Profile::Cosine(_)
-        | Profile::Ramps(_)
-        | Profile::Sine(_)
-        | Profile::JerkLimited(_)
-        | Profile::Points(_) => {
+        _ => {
             let detail = "a move of this kind has no table of its own; ask for the exact or a compressed list, or plan \
                           the move with a table";
             return Err(ValueError::Conflict { detail }.into());

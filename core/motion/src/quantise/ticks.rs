@@ -201,7 +201,7 @@ mod tests {
     fn each_byte_has_direction_and_steps_of_its_tick() {
         // moves at 1 kHz in ticks of 1 ms of 1 MHz, bytes of one channel
         let dwell = |duration_s| Move::Dwell(Dwell { duration_s });
-        let rows: [(Vec<Move>, &[u8]); 6] = [
+        let rows: [(Vec<Move>, &[u8]); 7] = [
             (vec![dwell(0.0)], &[0x00]),
             (vec![dwell(0.002)], &[0x00, 0x00]),
             (vec![constant(4.0, 2000.0)], &[0x82, 0x82]),
@@ -210,6 +210,8 @@ mod tests {
             (vec![constant(2.0, 2000.0), dwell(0.002), constant(-2.0, 2000.0)], &[0x82, 0x80, 0x80, 0x02]),
             // A step each 2 ms, due at 1 ms and 3 ms: to the right each at the end of the tick before.
             (vec![constant(2.0, 500.0)], &[0x81, 0x80, 0x81, 0x80]),
+            // To the left R(-1/2) is still 0 at the end of the tick: each is of the next.
+            (vec![constant(-2.0, 500.0)], &[0x00, 0x01, 0x00, 0x01]),
         ];
         for (moves, expected) in rows {
             let found = ticks(&[plan(moves.clone())], AxesPath::MOTION, 1, 100, 1000, 1_000_000).unwrap();

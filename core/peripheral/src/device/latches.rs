@@ -31,31 +31,31 @@ pub(super) struct Timing {
 }
 
 impl Timing {
-    /// The registers of a configuration, whose times have 32 bits.
+    /// The registers of a configuration.
     pub(super) fn of(config: &Config) -> Self {
-        let distribution = match config.distribution {
+        let bus = config.bus();
+        let distribution = match bus.distribution {
             Distribution::Burst => map::mode::DISTRIBUTION_BURST,
             Distribution::Spread => map::mode::DISTRIBUTION_SPREAD,
         };
-        let pulses = match config.pulse_phasing {
+        let pulses = match bus.pulse_phasing {
             PulsePhasing::Simultaneous => map::mode::PULSES_SIMULTANEOUS,
             PulsePhasing::Staggered => map::mode::PULSES_STAGGERED,
         };
         Self {
-            slots: config.slots.into(),
-            step_period: config.step_period as u32,
-            pulse_width: config.pulse_width as u32,
-            dir_setup: config.dir_setup as u32,
-            dir_hold: config.dir_hold as u32,
-            settle: config.settle as u32,
+            slots: bus.slots.into(),
+            step_period: bus.step_period_cycles,
+            pulse_width: bus.pulse_width_cycles,
+            dir_setup: bus.dir_setup_cycles,
+            dir_hold: bus.dir_hold_cycles,
+            settle: bus.settle_cycles,
             mode: map::mode::DISTRIBUTION.with(distribution) | map::mode::PULSES.with(pulses),
         }
     }
 
-    /// `config` with this timing, if it holds A7's rules.
+    /// `config` with this timing, if each code of MODE has a meaning and A7's rules hold.
     pub(super) fn apply(self, config: &Config) -> Option<Config> {
         let bus = Bus {
-            channels: config.channels,
             slots: u8::try_from(self.slots).ok()?,
             step_period_cycles: self.step_period,
             pulse_width_cycles: self.pulse_width,
@@ -63,16 +63,16 @@ impl Timing {
             dir_hold_cycles: self.dir_hold,
             distribution: match map::mode::DISTRIBUTION.of(self.mode) {
                 map::mode::DISTRIBUTION_BURST => Distribution::Burst,
-                _ => Distribution::Spread,
+                map::mode::DISTRIBUTION_SPREAD => Distribution::Spread,
+                _ => return None,
             },
-            dir_line: config.dir_line,
             pulse_phasing: match map::mode::PULSES.of(self.mode) {
                 map::mode::PULSES_SIMULTANEOUS => PulsePhasing::Simultaneous,
-                _ => PulsePhasing::Staggered,
+                map::mode::PULSES_STAGGERED => PulsePhasing::Staggered,
+                _ => return None,
             },
             settle_cycles: self.settle,
-            queue_depth: config.queue_depth,
-            boot_cycles: config.boot.0 as u32,
+            ..config.bus()
         };
         config.with_bus(&bus).ok()
     }

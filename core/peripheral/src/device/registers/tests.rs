@@ -320,6 +320,20 @@ fn commit_makes_the_peripheral_one_that_was_built_with_the_timing() {
 }
 
 #[test]
+fn every_code_of_mode_that_has_a_meaning_is_put_in_force_and_no_other_is() {
+    for field in map::mode::REGISTER.fields {
+        for code in 0..=field.of(u32::MAX) {
+            let known = field.values.iter().any(|named| named.value == code);
+            let expected = if known { (CODE_DONE, 0) } else { (CODE_BAD_TIMING, 1) };
+            let mut bench = Bench::ready();
+            bench.write(map::mode::OFFSET, field.with(code));
+            let found = (bench.command(COMMIT), bench.status(PENDING));
+            assert_eq!(found, expected, "code {code} of {}", field.name);
+        }
+    }
+}
+
+#[test]
 fn a_refused_commit_changes_nothing() {
     let rows = [
         (map::pulse_width::OFFSET, 18, CODE_BAD_TIMING),

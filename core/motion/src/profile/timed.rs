@@ -1,12 +1,12 @@
 //! Plans the moves of so many steps in so much time: the cosine S-curve and ramps of other shapes (DESIGN B4).
 
-use crate::plan::budget::{Budget, MAX_SLICES, hold_speed};
 use crate::{
-    MAX_SPEED, Profile,
+    MAX_SPEED,
+    budget::{Budget, MAX_SLICES, hold_speed},
     cosine::Cosine,
     limits,
     mechanics::Distance,
-    moves::{self, CosineMethod, RampShape},
+    moves::{self, RampShape},
     problem::{Cause, ValueError},
     quantities::Quantities,
     ramp::Ramp,
@@ -19,30 +19,33 @@ use crate::{
 const DIGITS: f64 = 1e-12;
 /// Ramps in s under this are none: it is the shortest cycle that a clock may have.
 const MIN_RAMP_S: f64 = 1e-9;
-pub(super) fn plan_cosine(
+
+/// The exact curve.
+pub(super) fn cosine(quantities: &mut Quantities<'_>, given: &moves::Cosine) -> Option<Cosine> {
+    let (steps, duration_s, ramp_s) = front(quantities, &given.distance, given.duration_s, given.ramp_s)?;
+    let curve = Cosine::new(steps, duration_s, ramp_s);
+    hold_speed(quantities, "duration_s", curve.top_speed())?;
+    Some(curve)
+}
+
+/// The curve in slices; the exact one has to hold, too.
+pub(super) fn sliced(
     quantities: &mut Quantities<'_>,
     given: &moves::Cosine,
     budget: &mut Budget,
-) -> Option<Profile> {
+) -> Option<Sliced> {
     let front = front(quantities, &given.distance, given.duration_s, given.ramp_s);
-    let slice_s = match given.method {
-        CosineMethod::Sliced => quantities.range("slice_s", given.slice_s, limits::SLICE_S, "s"),
-        CosineMethod::Exact => Some(0.0),
-    };
+    let slice_s = quantities.range("slice_s", given.slice_s, limits::SLICE_S, "s");
     let (steps, duration_s, ramp_s) = front?;
     let slice_s = slice_s?;
-    let curve = Cosine::new(steps, duration_s, ramp_s);
-    hold_speed(quantities, "duration_s", curve.top_speed())?;
-    if given.method == CosineMethod::Exact {
-        return Some(Profile::Cosine(curve));
-    }
+    hold_speed(quantities, "duration_s", Cosine::new(steps, duration_s, ramp_s).top_speed())?;
     let cause = match Sliced::new(steps, duration_s, ramp_s, slice_s, budget.slices) {
         Ok(curve) => {
             budget.slices -= curve.slice_count();
             let rate = curve.top_rate();
             let rate = if rate <= MAX_SPEED * (1.0 + DIGITS) { libm::fmin(rate, MAX_SPEED) } else { rate };
             hold_speed(quantities, "duration_s", rate)?;
-            return Some(Profile::Sliced(curve));
+            return Some(curve);
         }
         Err(NotSliced::Slices { needed }) => {
             let given = (MAX_SLICES - budget.slices).saturating_add(needed);
@@ -57,7 +60,8 @@ pub(super) fn plan_cosine(
     None
 }
 
-pub(super) fn plan_ramps(quantities: &mut Quantities<'_>, given: &moves::Ramps) -> Option<Profile> {
+/// Ramps of a shape.
+pub(super) fn ramps(quantities: &mut Quantities<'_>, given: &moves::Ramps) -> Option<Ramps> {
     let front = front(quantities, &given.distance, given.duration_s, given.ramp_s);
     let mut parameter = |key: &str, value: f64| quantities.range(key, value, limits::RAMP_PARAMETER, "");
     let ramp = match given.shape {
@@ -69,7 +73,7 @@ pub(super) fn plan_ramps(quantities: &mut Quantities<'_>, given: &moves::Ramps) 
     let (steps, duration_s, ramp_s) = front?;
     let curve = Ramps::new(steps, duration_s, ramp_s, ramp);
     hold_speed(quantities, "duration_s", curve.top_speed())?;
-    Some(Profile::Ramps(curve))
+    Some(curve)
 }
 
 /// B4's front: so many steps in so much time with two ramps, none where they are too short for any clock.

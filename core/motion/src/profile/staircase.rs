@@ -1,8 +1,8 @@
 //! Plans a staircase of rates (DESIGN B3).
 
-use crate::plan::budget::{Budget, MAX_TABLE_ROWS};
 use crate::{
-    Profile, limits, moves,
+    budget::{Budget, MAX_TABLE_ROWS},
+    limits, moves,
     problem::{Cause, ValueError},
     quantities::Quantities,
     round_half_up,
@@ -17,7 +17,7 @@ pub(super) fn plan(
     quantities: &mut Quantities<'_>,
     given: &moves::Staircase,
     budget: &mut Budget,
-) -> Option<Profile> {
+) -> Option<Staircase> {
     let steps = quantities.distance("distance", &given.distance);
     let top = quantities.speed_within("top_speed", &given.top_speed, limits::TABLE_RATE_STEPS_S);
     let level = quantities.range("level", given.level.into(), limits::LEVEL, "");
@@ -40,7 +40,7 @@ pub(super) fn plan(
     match Staircase::new(steps?, table, top_rate, given.short_move, budget.table_rows) {
         Ok(staircase) => {
             budget.table_rows -= staircase.ramp_rows() + 1;
-            Some(Profile::Staircase(staircase))
+            Some(staircase)
         }
         Err(needed) => {
             let (given, most) = ((MAX_TABLE_ROWS - budget.table_rows).saturating_add(needed), MAX_TABLE_ROWS);

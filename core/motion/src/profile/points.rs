@@ -1,8 +1,9 @@
 //! Plans a curve through points (DESIGN B6).
 
-use crate::plan::budget::hold_speed;
 use crate::{
-    Curve, Profile, limits,
+    Curve,
+    budget::hold_speed,
+    limits,
     moves::{self, Interpolation},
     points::{Between, Points},
     problem::Cause,
@@ -15,7 +16,7 @@ const MIN_TIME_S: f64 = 1e-9;
 /// Problems of single points that are told; in a table of another kind every row would be one.
 const MAX_TOLD: usize = 16;
 
-pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::Points) -> Option<Profile> {
+pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::Points) -> Option<Points> {
     let count = given.points.len();
     quantities.validator.length("points", count, limits::POINTS, "points");
     if !limits::POINTS.contains(&count) {
@@ -36,7 +37,7 @@ pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::Points) -> Op
     // The point that the curve is on its way to when it is too fast.
     let (piece, speed) = curve.quickest();
     quantities.at("points", |here| here.at_entry(piece + 1, |here| hold_speed(here, "", speed)))?;
-    Some(Profile::Points(curve))
+    Some(curve)
 }
 
 /// Times and positions in steps of points that hold.

@@ -1,0 +1,157 @@
+//! In which order a TICKS frame is judged (DESIGN A6), walked from its first reason to its last:
+//!
+//! ```text
+//! BAD_BODY > repeat > BAD_SEQ > STOPPED > BUSY > TOO_MANY_STEPS > QUEUE_FULL > queued
+//! ```
+//!
+//! For each two neighbours a frame for which both hold, which gets the first one's answer; then the same with the first
+//! put right, which shows that the second did hold.
+#![allow(clippy::expect_used, reason = "a configuration that does not hold fails the test")]
+
+use std::rc::Rc;
+use stepscope_peripheral::{
+    config::{Bus, Config, DirLine, Distribution, Protocol, PulsePhasing, SerialLine},
+    device::{Device, Faults},
+    protocol::{FrameOutcome, Kind, Reason, Reply},
+    signal::{Event, Record, Sink},
+    units::{Cycles, Instant},
+    wire::{
+        Line, Schedule,
+        frame::{Ticks, emit},
+        packet::ALL,
+    },
+};
+
+const CLOCK_HZ: u32 = 1_600_000;
+const BAUD: u32 = 100_000;
+/// From the start of a frame to that of the next: more than any of them takes.
+const APART: u64 = 30 * 10 * 16;
+/// Longer than any row lasts.
+const LONG: u32 = 100_000;
+
+/// A tick has four slots and the queue two places; what is queued goes on for longer than a row lasts.
+const BUS: Bus = Bus {
+    channels: 1,
+    slots: 4,
+    step_period_cycles: LONG,
+    pulse_width_cycles: 5,
+    dir_setup_cycles: 3,
+    dir_hold_cycles: 0,
+    distribution: Distribution::Burst,
+    dir_line: DirLine::PerChannel,
+    pulse_phasing: PulsePhasing::Simultaneous,
+    settle_cycles: 0,
+    queue_depth: 2,
+    boot_cycles: 0,
+};
+/// The same in its self-test.
+const BOOTING: Bus = Bus { boot_cycles: LONG, ..BUS };
+
+/// What became of the frames, and what was replied.
+#[derive(Default)]
+struct Judged {
+    outcomes: Vec<FrameOutcome>,
+    replies: Vec<Reply>,
+}
+
+impl Sink for Judged {
+    fn record(&mut self, _: Record) {}
+
+    fn event(&mut self, _: Instant, event: Event) {
+        match event {
+            Event::Frame(outcome) => self.outcomes.push(outcome),
+            Event::Reply { reply, .. } => self.replies.push(reply),
+            _ => {}
+        }
+    }
+}
+
+/// A frame's kind and its body.
+type Sent<'a> = (Kind, &'a [u8]);
+/// The bus, what came before, the body of TICKS (sequence number, count, orders), what becomes of it, and the faults.
+type Case<'a> = (&'a Bus, &'a [Sent<'a>], &'a [u8], FrameOutcome, Faults);
+
+/// Sends the frames of `before` to all, which is never answered, and then TICKS with this body to the controller.
+fn judge(bus: &Bus, before: &[Sent], body: &[u8]) -> (FrameOutcome, Faults) {
+    let serial = SerialLine { baud: BAUD, protocol: Protocol::Framed, ..SerialLine::default() };
+    let config = Config::new(CLOCK_HZ, bus, &serial).expect("it holds");
+    let mut schedule = Schedule::default();
+    let frames = before.iter().map(|(kind, body)| emit(ALL, *kind as u8, body));
+    let frames = frames.chain([emit(0, Kind::Ticks as u8, body)]);
+    let mut end = Instant(APART);
+    for frame in frames {
+        schedule.push(end, &frame);
+        end += Cycles(APART);
+    }
+    let (mut device, mut judged) = (Device::new(&config), Judged::default());
+    let mut line = Line::new(Rc::new(schedule), &[], CLOCK_HZ, BAUD);
+    while device.now() < end {
+        if line.next_change() == device.now() {
+            line.change();
+        }
+        device.run(line.heard(true), line.next_change().min(end), &mut judged);
+    }
+    assert_eq!(judged.outcomes.len(), before.len() + 1, "each frame is judged");
+    let outcome = *judged.outcomes.last().expect("the last one, too");
+    let answers: Vec<_> = judged.replies.iter().map(|reply| Some(reply.answer)).collect();
+    assert_eq!(answers, [outcome.answer()], "the one frame for this controller alone is answered");
+    (outcome, device.faults())
+}
+
+#[test]
+fn of_two_reasons_that_hold_at_once_the_earlier_is_told() {
+    let refused = FrameOutcome::Refused;
+    let taken: Sent = (Kind::Ticks, &[0, 1, 1]);
+    let [stop, enable, resync]: [Sent; 3] =
+        [Kind::Stop, Kind::Enable, Kind::Resync].map(|kind| (kind, &[][..]));
+    let none = Faults::default();
+
+    // A case for which both reasons hold, and one for which only the second does.
+    let rows: [[Case; 2]; 7] = [
+        // Two ticks are said and one is there, in a repeat.
+        [
+            (&BUS, &[taken], &[0, 2, 1], refused(Reason::BadBody), none),
+            (&BUS, &[taken], &[0, 1, 1], FrameOutcome::Repeated, none),
+        ],
+        // A repeat never has the expected number; without a TICKS since RESYNC the one before it is no repeat.
+        [
+            (&BUS, &[taken], &[0, 1, 1], FrameOutcome::Repeated, none),
+            (&BUS, &[taken, resync], &[255, 1, 1], refused(Reason::BadSeq), Faults::BAD_SEQ),
+        ],
+        [
+            (&BUS, &[stop], &[1, 1, 1], refused(Reason::BadSeq), Faults::BAD_SEQ),
+            (&BUS, &[stop], &[0, 1, 1], refused(Reason::Stopped), none),
+        ],
+        [
+            (&BOOTING, &[stop], &[0, 1, 1], refused(Reason::Stopped), none),
+            (&BOOTING, &[stop, enable], &[0, 1, 1], refused(Reason::Busy), none),
+        ],
+        // Five steps in four slots.
+        [
+            (&BOOTING, &[], &[0, 1, 5], refused(Reason::Busy), none),
+            (&BUS, &[], &[0, 1, 5], refused(Reason::TooManySteps), Faults::TOO_MANY_STEPS),
+        ],
+        // Three ticks for two places, the last of them with too many steps.
+        [
+            (&BUS, &[], &[0, 3, 4, 4, 5], refused(Reason::TooManySteps), Faults::TOO_MANY_STEPS),
+            (&BUS, &[], &[0, 3, 4, 4, 4], refused(Reason::QueueFull), Faults::QUEUE_OVERFLOW),
+        ],
+        [
+            (&BUS, &[], &[0, 3, 4, 4, 4], refused(Reason::QueueFull), Faults::QUEUE_OVERFLOW),
+            (&BUS, &[], &[0, 2, 4, 4], FrameOutcome::Queued(2), none),
+        ],
+    ];
+    for (bus, before, body, outcome, faults) in rows.into_iter().flatten() {
+        assert_eq!(judge(bus, before, body), (outcome, faults), "{before:?}, then TICKS {body:?}");
+    }
+    // Each row's second is the next one's first.
+    assert!(rows.windows(2).all(|pair| pair[0][1].3 == pair[1][0].3), "the walk has no gap");
+}
+
+#[test]
+fn a_frame_for_which_every_later_reason_holds_is_refused_for_its_sequence_number() {
+    // Stopped, in the self-test, five steps in four slots, three ticks for two places.
+    let body = Ticks::emit(1, 1, &[5, 5, 5]);
+    let (outcome, faults) = judge(&BOOTING, &[(Kind::Stop, &[])], &body);
+    assert_eq!((outcome, faults), (FrameOutcome::Refused(Reason::BadSeq), Faults::BAD_SEQ));
+}
