@@ -14,13 +14,13 @@ import { samples, takeSchema } from "./form/schema.js";
 import { createCard } from "./help/card.js";
 import { createGuide, offerGuide } from "./help/guide.js";
 import { createKeys } from "./help/keys.js";
-import { createExperiments } from "./shell/experiments.js";
 import { createExports } from "./shell/exports.js";
 import { createHeader, createTheme } from "./shell/header.js";
 import { createImports } from "./shell/imports.js";
 import { createLink } from "./shell/link.js";
 import { createNotices } from "./shell/notices.js";
 import { keepOffline } from "./shell/offline.js";
+import { createOwn } from "./shell/own.js";
 import { createPanes } from "./shell/panes.js";
 import { createShare } from "./shell/share.js";
 import {
@@ -254,7 +254,6 @@ async function start() {
     createStudy({ samples: made, ...page }),
     createNotices(page),
     createShare({ shared: link.shared, ...page }),
-    createExperiments({ fresh: fallback, ...page }),
     createExports(page, [
       ["Charts", chartFiles],
       ["Packets", packetFiles],
@@ -262,6 +261,7 @@ async function start() {
     ]),
     link,
   ];
+  createOwn({ fresh: fallback, ...page });
   createKeys();
   createGuide(page);
   await link.start(loadScenario() !== null);

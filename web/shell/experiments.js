@@ -1,35 +1,30 @@
 /**
- * The visitor's own experiments: kept under a name on this device, listed beside the presets, opened again, put into one
- * file and taken from one.
+ * The panel of the visitor's own experiments: kept under a name on this device, opened again, put into one file and taken
+ * from one. It loads when it is first opened.
  */
 import { button, byId, element, fill, say } from "../dom.js";
 import { Dropped } from "../engine/engine.js";
 import { readJson } from "../state/json.js";
 import { counted } from "../state/number.js";
 import { message } from "./link.js";
-import { dropDown } from "./popover.js";
 import { loadExperiments, saveExperiments } from "./storage.js";
 
-/** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Scenario} Scenario */
 
 /** What the file says of itself, so that it is told from one scenario. */
-export const FILE = "stepscope_experiments";
+const FILE = "stepscope_experiments";
 const FILE_NAME = "stepscope-experiments.json";
 
-/** @param {{fresh: string, engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} page  `fresh`: what a new experiment begins with, as JSON. */
-export function createExperiments({ fresh, engine, dispatch, now }) {
+/** @typedef {{fresh: string, engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} Given  `fresh`: what a new experiment begins with, as JSON. */
+
+/** What the panel does; what it gives is called whenever it opens. @param {Given} page @param {{close: () => void, changed: () => void}} panel  `changed`: other experiments are kept than before. */
+export function createExperiments({ fresh, engine, dispatch, now }, { close, changed }) {
   const name = /** @type {HTMLInputElement} */ (byId("experiment-name"));
   const keep = /** @type {HTMLButtonElement} */ (byId("experiment-keep"));
   const list = byId("experiment-list");
   const about = byId("experiment-about");
   const exportAll = /** @type {HTMLButtonElement} */ (byId("experiments-export"));
   const chooser = /** @type {HTMLInputElement} */ (byId("experiments-file"));
-  const { close, isOpen } = dropDown("experiments", "experiments-panel", () => {
-    name.value = String(now().scenario.title ?? "");
-    say(about, "");
-    show();
-  });
 
   name.addEventListener("input", show);
   name.addEventListener("keydown", (event) => {
@@ -105,41 +100,18 @@ export function createExperiments({ fresh, engine, dispatch, now }) {
         ),
       ),
     );
-    listed(kept);
+    changed();
   }
 
-  /** Lists them beside the presets. @param {Scenario[]} kept */
-  function listed(kept) {
-    const preset = /** @type {HTMLSelectElement} */ (byId("preset"));
-    const { value } = preset;
-    preset.querySelector("optgroup[data-own]")?.remove();
-    if (kept.length > 0) {
-      const options = kept.map(({ title }) => element("option", { value: `own:${title}` }, title));
-      preset.firstElementChild?.after(element("optgroup", { label: "Your own", "data-own": "" }, ...options));
-    }
-    preset.value = value;
-  }
-
-  byId("preset").addEventListener("change", () => {
-    const { value } = /** @type {HTMLSelectElement} */ (byId("preset"));
-    const chosen = loadExperiments().find(({ title }) => `own:${title}` === value);
-    if (chosen) open(chosen);
-  });
-  listed(loadExperiments());
-
-  return {
-    /** @param {State} state @param {State | undefined} before */
-    render(state, before) {
-      if (isOpen() && before?.scenario.title !== state.scenario.title && document.activeElement !== name) {
-        name.value = String(state.scenario.title ?? "");
-        show();
-      }
-    },
+  return () => {
+    name.value = String(now().scenario.title ?? "");
+    say(about, "");
+    show();
   };
 }
 
 /** Takes the experiments of a file beside those that are kept: one of a name that there is gets another. @param {string} text @param {import("../engine/engine.js").Engine} engine @returns {Promise<string>}  What became of them. */
-export async function takeExperiments(text, engine) {
+async function takeExperiments(text, engine) {
   try {
     const file = readJson(text);
     if (!Array.isArray(file?.experiments) || !(FILE in file))

@@ -301,3 +301,53 @@ fn nothing_moves_between_press_and_release() -> Result<()> {
         page.until(&format!("document.activeElement?.dataset.path === '{BELOW}'")).await
     })
 }
+
+#[test]
+fn own_experiments_are_kept_by_name_and_undo_survives_a_reload() -> Result<()> {
+    const NAMES: &str = "[...document.querySelectorAll('#experiment-list li > :first-child')].map((each) => each.textContent)";
+    in_browser(|page| async move {
+        page.open("").await?;
+        page.fill(DISTANCE, "1234").await?;
+        page.ready().await?;
+        page.click("#experiments").await?;
+        page.press("#experiment-name", &format!("Rig{ENTER}")).await?;
+        page.until_equal(NAMES, &serde_json::json!(["Rig"])).await?;
+        page.click("#experiment-new").await?;
+        page.until_digest(&Known::of("{}")?.digest).await?;
+        assert_eq!(page.field("title").await?.value, "");
+
+        page.open("").await?;
+        page.ready().await?;
+        // Listed beside the presets, and opened with its name.
+        page.choose("#preset", "own:Rig").await?;
+        page.until_digest(&Known::of(&with_distance(1234.0))?.digest).await?;
+        assert_eq!(page.field("title").await?.value, "Rig");
+        page.click("#undo").await?;
+        page.until_digest(&Known::of("{}")?.digest).await?;
+        // The step before is of the visit before.
+        page.click("#undo").await?;
+        page.until_digest(&Known::of(&with_distance(1234.0))?.digest).await?;
+
+        page.click("#experiments").await?;
+        page.click("[aria-label='Remove Rig']").await?;
+        page.until_equal(NAMES, &serde_json::json!([])).await
+    })
+}
+
+#[test]
+fn a_motion_too_fast_for_its_bus_is_offered_what_would_do() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        page.fill("bus.step_period_cycles", "2000").await?;
+        page.until(
+            "document.querySelector('#offers h2')?.textContent.startsWith('The motion needs up to 16')",
+        )
+        .await?;
+        ensure!(page.text("#offers").await?.contains("slot 1000 cycles"), "the first that would do");
+        page.click("#offers button").await?;
+        page.until_digest(&Known::of(r#"{"bus":{"step_period_cycles":1000}}"#)?.digest).await?;
+        ensure!(!page.visible("#offers").await?, "it was taken");
+        page.click("#undo").await?;
+        page.until("!document.getElementById('offers').hidden").await
+    })
+}
