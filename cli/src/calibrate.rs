@@ -1,7 +1,8 @@
 //! `stepscope calibrate`: steps a millimetre from measured lengths (DESIGN B3, Zhang 2012).
 
-use crate::{failure::Failure, scenarios};
+use crate::{failure::Failure, json::Tables, scenarios};
 use clap::Args;
+use serde_json::json;
 use std::{
     io::{self, Write},
     path::PathBuf,
@@ -17,6 +18,9 @@ pub(crate) struct Arguments {
     /// A CSV file with the columns length_mm (or length_cm, length_m) and steps, a measurement a row; `-` reads
     /// standard input.
     table: PathBuf,
+    /// Print it as JSON: one object of tables (docs/command.md).
+    #[arg(long)]
+    json: bool,
 }
 
 /// Fits the lines and prints them.
@@ -25,7 +29,30 @@ pub(crate) fn calibrate(arguments: &Arguments) -> Result<(), Failure> {
     let bad = |what| Failure::Table(arguments.table.clone(), what);
     let pairs = pairs(&text).map_err(bad)?;
     let found = Calibration::of(&pairs).map_err(|error| bad(error.to_string()))?;
+    if arguments.json {
+        return tables(&found, &pairs).print();
+    }
     print(&found, &pairs).map_err(Failure::output)
+}
+
+/// What is printed, as tables.
+fn tables(found: &Calibration, pairs: &[Pair]) -> Tables {
+    let row = |name: &str, fit: &Fit| {
+        let k = fit.steps_per_unit;
+        let (index, largest) = fit.largest().unzip();
+        json!({
+            "fit": name,
+            "pairs": pairs.len(),
+            "steps_per_mm": k,
+            "step_mm": 1.0 / k,
+            "offset_steps": fit.offset_steps,
+            "rms_residual_steps": fit.rms(),
+            "largest_residual_steps": largest,
+            "largest_at_mm": index.and_then(|index| pairs.get(index)).map(|pair| pair.length),
+        })
+    };
+    let fits = [row("through_origin", &found.through_origin), row("with_offset", &found.with_offset)];
+    Tables::of("calibrate").with("fits", fits)
 }
 
 /// The pairs of a table, lengths in mm.

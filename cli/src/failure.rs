@@ -2,7 +2,7 @@
 
 use std::{fmt, io, path::PathBuf, process::ExitCode};
 use stepscope_core::{
-    inspect::run_fingerprint::RunFingerprintError,
+    inspect::{run_fingerprint::RunFingerprintError, vcd::TooCoarse},
     scenario::{Problem, link::LinkError},
 };
 
@@ -10,6 +10,12 @@ use stepscope_core::{
 pub(crate) enum Failure {
     /// A file could not be read or written.
     File(PathBuf, io::Error),
+    /// An output that cannot be one beside the others, and why.
+    Output(PathBuf, &'static str),
+    /// The dump's timescale does not go with the clock.
+    Timescale(TooCoarse),
+    /// The file is longer than this many bytes.
+    TooLong(PathBuf, usize),
     /// The scenario's file is not text.
     NotText(PathBuf),
     /// The scenario is wrong.
@@ -44,11 +50,21 @@ impl Failure {
         Self::File(PathBuf::from("standard output"), error)
     }
 
+    /// Whether what failed is only that nobody reads any more, as behind `| head`.
+    pub(crate) fn is_closed_pipe(&self) -> bool {
+        matches!(self, Self::File(_, error) if error.kind() == io::ErrorKind::BrokenPipe)
+    }
+
     /// The command's exit code.
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
+            // What a shell says of a command that its closed pipe has ended.
+            _ if self.is_closed_pipe() => ExitCode::from(141),
             Self::File(..) => ExitCode::from(1),
-            Self::NotText(_)
+            Self::Output(..)
+            | Self::Timescale(_)
+            | Self::TooLong(..)
+            | Self::NotText(_)
             | Self::Scenario(..)
             | Self::Link(_)
             | Self::NoProof
@@ -67,6 +83,13 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::File(path, error) => write!(f, "{}: {error}", path.display()),
+            Self::Output(path, detail) => write!(f, "{}: {detail}", path.display()),
+            Self::Timescale(error) => write!(f, "--vcd-timescale: {error}"),
+            Self::TooLong(path, most) => write!(
+                f,
+                "{}: more than {most} bytes; give a shorter text: no scenario or table needs as many",
+                path.display()
+            ),
             Self::NotText(path) => {
                 write!(f, "{}: not UTF-8 text; save it as UTF-8", path.display())
             }

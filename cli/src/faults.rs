@@ -1,7 +1,8 @@
 //! `stepscope faults`: the same orders over a line that goes wrong in thousands of ways.
 
-use crate::{failure::Failure, progress::Progress, scenarios};
+use crate::{failure::Failure, json::Tables, progress::Progress, scenarios};
 use clap::{Args, ValueEnum};
+use serde_json::json;
 use std::{
     io::{self, Write},
     num::NonZero,
@@ -29,7 +30,7 @@ const MAX_NAMED: usize = 8;
 /// What `stepscope faults` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// The scenario whose orders are sent, a JSON file; `-` reads standard input. Its noise and its
+    /// The scenario whose orders are sent: a JSON file, or a preset's name; `-` reads standard input. Its noise and its
     /// receivers' rates give way to those of each seed. Without a file two motors turn against each
     /// other for 40 ticks.
     file: Option<PathBuf>,
@@ -54,6 +55,9 @@ pub(crate) struct Arguments {
     /// Print the share link of the scenario of `--seed` and run nothing.
     #[arg(long, requires = "seed", conflicts_with = "scenario")]
     link: bool,
+    /// Print the counts as JSON: one object of tables (docs/command.md).
+    #[arg(long, conflicts_with_all = ["scenario", "link"])]
+    json: bool,
     /// Show the progress also where standard error is no terminal.
     #[arg(long)]
     progress: bool,
@@ -132,7 +136,11 @@ pub(crate) fn faults(arguments: &Arguments) -> Result<(), Failure> {
         let report = run(&sweep, &seeds, arguments.threads, progress);
         reports.push((name, report.map_err(|problems| Failure::Scenario(path.clone(), problems))?));
     }
-    print(&reports).map_err(Failure::output)?;
+    if arguments.json {
+        tables(&reports).print()?;
+    } else {
+        print(&reports).map_err(Failure::output)?;
+    }
     // On a raw line wrong steps are what is to be seen.
     match reports.iter().find(|(name, report)| *name == FRAMED && report.tally.is_wrong()) {
         Some((_, report)) => Err(Failure::WrongSteps(report.tally.wrong_seeds)),
@@ -223,6 +231,20 @@ const ROWS: &[Row] = &[
     ("  with rates within 4 %", false, |tally| tally.given_up_in_reach),
     ("given up: other reasons", false, |tally| tally.stuck),
 ];
+
+/// The counts as tables: a row for each protocol and each count, and the first seeds that went wrong.
+fn tables(reports: &[(&str, Report)]) -> Tables {
+    let counts = reports.iter().flat_map(|(protocol, report)| {
+        let shown = ROWS.iter().filter(move |(_, everywhere, _)| *everywhere || *protocol == FRAMED);
+        shown.map(move |(name, _, value)| {
+            json!({ "protocol": protocol, "count": name.trim(), "value": value(&report.tally) })
+        })
+    });
+    let wrong = reports.iter().flat_map(|(protocol, report)| {
+        report.wrong.iter().map(move |seed| json!({ "protocol": protocol, "seed": seed }))
+    });
+    Tables::of("faults").with("counts", counts).with("wrong_seeds", wrong)
+}
 
 fn print(reports: &[(&str, Report)]) -> io::Result<()> {
     let mut out = io::stdout().lock();

@@ -1,9 +1,9 @@
 //! Files that `stepscope run` writes while a run is made.
 
+use crate::output::Out;
 use std::{
-    fs,
-    io::{self, BufWriter, Write},
-    path::{Path, PathBuf},
+    io::{self, Write},
+    path::PathBuf,
 };
 use stepscope_core::{
     inspect::{
@@ -11,7 +11,7 @@ use stepscope_core::{
         packet_table::PacketTable,
         tables::{write_edges_head, write_edges_row},
         timing::TimingCheck,
-        vcd::VcdWriter,
+        vcd::{Timescale, VcdWriter},
     },
     peripheral::{
         signal::{Event, Record, Sink},
@@ -21,18 +21,13 @@ use stepscope_core::{
     sim::{Experiment, Run},
 };
 
-/// Where a file goes: its path, or standard output for `-`.
-pub(crate) type Out = BufWriter<Box<dyn Write>>;
-
-/// Creates `path`, or takes standard output for `-`.
-pub(crate) fn create(path: &Path) -> io::Result<Out> {
-    let out: Box<dyn Write> =
-        if path == Path::new("-") { Box::new(io::stdout()) } else { Box::new(fs::File::create(path)?) };
-    Ok(BufWriter::new(out))
-}
-
 /// A file that takes a run and is finished after it.
 pub(crate) trait Output: Sink {
+    /// Whether writing has failed, so that nothing more will be written.
+    fn has_failed(&self) -> bool {
+        false
+    }
+
     /// Writes what is left; the first error of all writing.
     fn finish(self: Box<Self>, experiment: &Experiment, run: &Run) -> io::Result<()>;
 }
@@ -53,6 +48,10 @@ impl<F: FnMut(&mut Out, Record) -> io::Result<()>> Sink for Lines<F> {
 }
 
 impl<F: FnMut(&mut Out, Record) -> io::Result<()>> Output for Lines<F> {
+    fn has_failed(&self) -> bool {
+        self.result.is_err()
+    }
+
     fn finish(mut self: Box<Self>, _: &Experiment, _: &Run) -> io::Result<()> {
         self.result.and_then(|()| self.out.flush())
     }
@@ -83,11 +82,20 @@ pub(crate) fn csv(mut out: Out, clock_hz: u32, channels: u8) -> io::Result<Box<d
 }
 
 /// A value change dump.
-pub(crate) fn vcd(out: Out, clock_hz: u32, channels: u8) -> io::Result<Box<dyn Output>> {
-    Ok(Box::new(VcdWriter::new(out, clock_hz, channels)?))
+pub(crate) fn vcd(
+    out: Out,
+    timescale: Timescale,
+    clock_hz: u32,
+    channels: u8,
+) -> io::Result<Box<dyn Output>> {
+    Ok(Box::new(VcdWriter::with_timescale(out, timescale, clock_hz, channels)?))
 }
 
 impl Output for VcdWriter<Out> {
+    fn has_failed(&self) -> bool {
+        VcdWriter::has_failed(self)
+    }
+
     fn finish(self: Box<Self>, _: &Experiment, run: &Run) -> io::Result<()> {
         VcdWriter::finish(*self, run.cycles().0)
     }
@@ -143,6 +151,13 @@ pub(crate) struct Station {
     pub(crate) files: Files,
     /// Its timing check.
     pub(crate) timing: Option<TimingCheck>,
+}
+
+impl Station {
+    /// Whether one of its files cannot be written.
+    pub(crate) fn has_failed(&self) -> bool {
+        self.files.iter().any(|(_, file)| file.has_failed())
+    }
 }
 
 impl Sink for Station {

@@ -1,6 +1,6 @@
 //! `stepscope run --line`: what was done to the line in a run, as a scenario of its own.
 
-use crate::{failure::Failure, files};
+use crate::{failure::Failure, output::Out};
 use std::{io::Write, path::Path};
 use stepscope_core::{
     scenario::Scenario,
@@ -9,7 +9,7 @@ use stepscope_core::{
 
 /// Writes the scenario that gives the same traces without host, noise and motion.
 pub(crate) fn write(
-    path: &Path,
+    (path, mut out): (&Path, Out),
     scenario: Scenario,
     experiment: &Experiment,
     run: &Run,
@@ -17,10 +17,6 @@ pub(crate) fn write(
     let scripted = scripted(scenario, experiment, run);
     // A long noisy run may have more forced levels than a scenario may.
     scripted.check().map_err(|problems| Failure::Scenario(path.to_owned(), problems))?;
-    let write = || {
-        let mut out = files::create(path)?;
-        writeln!(out, "{}", scripted.to_json())?;
-        out.flush()
-    };
-    write().map_err(|error| Failure::File(path.to_owned(), error))
+    let written = writeln!(out, "{}", scripted.to_json()).and_then(|()| out.flush());
+    written.map_err(|error| Failure::File(path.to_owned(), error))
 }

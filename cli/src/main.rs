@@ -1,16 +1,16 @@
 //! The `stepscope` command: the native front of the model.
 //!
-//! Results go to standard output, errors to standard error. Exit codes: 0 the run was made, 1 a
-//! file could not be read or written, 2 the scenario, link or command line is wrong, 3 something was to
-//! hold and does not: `--strict` and the timing check found violations, `faults` found wrong steps on a
-//! framed line, or `open --verify` found another run than the link's.
+//! Results go to standard output, errors to standard error; [`EXIT_CODES`] says how a command ends.
 
 mod calibrate;
 mod failure;
 mod faults;
 mod files;
+mod json;
 mod line;
+mod manual;
 mod measures;
+mod output;
 mod points;
 mod progress;
 mod run;
@@ -22,8 +22,22 @@ mod timing;
 mod torque;
 mod verify;
 
-use clap::{Parser, Subcommand};
-use std::process::ExitCode;
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use std::{
+    io::{self, Write},
+    process::ExitCode,
+};
+
+/// How a command ends, below the help of each.
+const EXIT_CODES: &str = "\
+Exit codes:
+  0    done
+  1    a file could not be read or written
+  2    the scenario, the link or the command line is wrong
+  3    something was to hold and does not: --strict found violations, faults found wrong steps on a framed line,
+       open --verify found another run than the link's
+  130  ended by Ctrl-C; no file was changed
+  141  standard output was closed, as behind | head";
 
 /// A stepper-motion laboratory: runs scenarios to the clock cycle.
 #[derive(Parser)]
@@ -69,13 +83,40 @@ enum Command {
     Presets {
         /// The preset to write.
         id: Option<String>,
+        /// Print the list as JSON: one object of tables (docs/command.md).
+        #[arg(long, conflicts_with = "id")]
+        json: bool,
     },
     /// Lists the drivers that pulses can be checked against, with their data sheets' figures.
-    Drivers,
+    Drivers {
+        /// Print the list as JSON: one object of tables (docs/command.md).
+        #[arg(long)]
+        json: bool,
+    },
+    /// Writes what completes this command's words in a shell.
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// Writes the manual page of this command, or a page of each of its commands into a folder.
+    Man {
+        /// The folder, which is made if it is not there.
+        #[arg(long, value_name = "FOLDER")]
+        dir: Option<std::path::PathBuf>,
+    },
+}
+
+/// The command line, with the exit codes below the help of each command.
+fn command_line() -> clap::Command {
+    fn with_codes(command: clap::Command) -> clap::Command {
+        command.after_help(EXIT_CODES).mut_subcommands(with_codes)
+    }
+    with_codes(Arguments::command())
 }
 
 fn main() -> ExitCode {
-    let result = match Arguments::parse().command {
+    let arguments = Arguments::from_arg_matches(&command_line().get_matches());
+    let result = match arguments.unwrap_or_else(|error| error.exit()).command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Faults(arguments) => faults::faults(&arguments),
         Command::Tables(arguments) => tables::tables(&arguments),
@@ -85,13 +126,18 @@ fn main() -> ExitCode {
         Command::Sine(command) => sine::sine(&command),
         Command::Points(arguments) => points::points(&arguments),
         Command::Open { link, verify } => scenarios::open(&link, verify),
-        Command::Presets { id } => scenarios::presets(id.as_deref()),
-        Command::Drivers => timing::drivers(),
+        Command::Presets { id, json } => scenarios::presets(id.as_deref(), json),
+        Command::Drivers { json } => timing::drivers(json),
+        Command::Completions { shell } => manual::completions(shell, command_line()),
+        Command::Man { dir } => manual::pages(dir.as_deref(), command_line()),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("{failure}");
+            if !failure.is_closed_pipe() {
+                // Who has closed standard error has the exit code.
+                let _ = writeln!(io::stderr(), "{failure}");
+            }
             failure.exit_code()
         }
     }

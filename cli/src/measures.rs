@@ -22,7 +22,7 @@ use stepscope_core::{
 /// What `stepscope measures` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// The scenario, a JSON file whose source is a motion; `-` reads standard input.
+    /// The scenario, whose source is a motion: a JSON file, or a preset's name; `-` reads standard input.
     scenario: PathBuf,
     /// The axis, from 0; that of the scenario's `analysis` without it.
     #[arg(long, value_name = "K")]
@@ -30,6 +30,9 @@ pub(crate) struct Arguments {
     /// How it is written: for the eye, as one JSON object, or as a table of one figure a row.
     #[arg(long, value_enum, default_value = "text")]
     format: Written,
+    /// Write all figures as JSON: one object of tables, a figure a row (docs/command.md).
+    #[arg(long, conflicts_with = "format")]
+    json: bool,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -71,6 +74,7 @@ pub(crate) fn measures(arguments: &Arguments) -> Result<(), Failure> {
     let distortion = Distortion::of(plan, &run, &scenario.analysis);
     let mut out = io::stdout().lock();
     let written = match arguments.format {
+        _ if arguments.json => table::tables(axis, &found, distortion.as_ref()).write(&mut out),
         Written::Text => table::text(axis, &found, distortion.as_ref(), &mut out),
         Written::Csv => table::csv(&found, distortion.as_ref(), &mut out),
         Written::Json => json(axis, &found, distortion.as_ref(), &mut out),

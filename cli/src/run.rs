@@ -2,18 +2,21 @@
 
 use crate::{
     failure::Failure,
-    files::{self, Files, Out, Output, Station},
+    files::{self, Files, Output, Station},
+    json::Tables,
     line,
+    output::{Out, Outputs, STANDARD},
     progress::Progress,
     scenarios, status, timing,
 };
 use clap::Args;
+use serde_json::json;
 use std::{
     io::{self, Write},
-    path::PathBuf,
+    path::{Path, PathBuf},
 };
 use stepscope_core::{
-    inspect::{fingerprint::Fingerprinter, run_fingerprint::RunFingerprint},
+    inspect::{fingerprint::Fingerprinter, run_fingerprint::RunFingerprint, vcd::Timescale},
     peripheral::config::Config,
     scenario::{Scenario, link},
     sim::{Experiment, Run, Summary},
@@ -25,7 +28,7 @@ const SLICE: u64 = 1 << 16;
 /// What `stepscope run` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// The scenario, a JSON file; `-` reads standard input.
+    /// The scenario: a JSON file, or a preset's name; `-` reads standard input.
     scenario: PathBuf,
     /// Print only the digest of the trace: XXH64, 16 hexadecimal digits; of several controllers, one a
     /// line.
@@ -45,6 +48,10 @@ pub(crate) struct Arguments {
     /// Write a value change dump, for GTKWave, Surfer or PulseView.
     #[arg(long, value_name = "FILE")]
     vcd: Option<PathBuf>,
+    /// What the dump counts time in: 1, 10 or 100 of s, ms, us, ns, ps or fs, at most a cycle, so that none is lost. A
+    /// cycle is round(t*clock); the clock stands in the dump's head.
+    #[arg(long, value_name = "TIME", default_value = "1ns", requires = "vcd", value_parser = timescale)]
+    vcd_timescale: Timescale,
     /// Write a table of the signals: cycle, time in s, and a level each.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -60,6 +67,10 @@ pub(crate) struct Arguments {
     /// Without it digest and status are those of all, files and timing those of controller 0.
     #[arg(long, value_name = "K")]
     controller: Option<usize>,
+    /// Print status, timing and link as JSON: one object of tables (docs/command.md). No file goes to standard output
+    /// then.
+    #[arg(long)]
+    json: bool,
     /// Show the progress also where standard error is no terminal.
     #[arg(long)]
     progress: bool,
@@ -67,7 +78,19 @@ pub(crate) struct Arguments {
     timing: timing::Options,
 }
 
+fn timescale(text: &str) -> Result<Timescale, String> {
+    text.parse().map_err(str::to_owned)
+}
+
 impl Arguments {
+    /// Where the files go.
+    fn outputs(&self) -> impl Iterator<Item = &Path> {
+        [&self.trace, &self.vcd, &self.csv, &self.packets, &self.line, &self.timing.violations]
+            .into_iter()
+            .flatten()
+            .map(PathBuf::as_path)
+    }
+
     /// Whether something else than digest and status was asked for.
     const fn asks_for_a_file(&self) -> bool {
         self.trace.is_some()
@@ -83,6 +106,8 @@ impl Arguments {
 /// Runs the scenario and writes what was asked for; digest and status if nothing was.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
+    let table = arguments.json.then_some(Path::new(STANDARD));
+    let mut outputs = Outputs::judge(Some(path), arguments.outputs().chain(table))?;
     let (scenario, experiment) = scenarios::judged(path)?;
     let controllers = experiment.controllers();
     let chosen = arguments.controller.unwrap_or(0);
@@ -91,12 +116,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     let mut stations: Vec<Station> = (0..controllers).map(|_| Station::default()).collect();
     if let Some(station) = stations.get_mut(chosen) {
-        station.files = open(arguments, chosen, config)?;
         station.timing = arguments.timing.check(path, &scenario)?;
+        station.files = open(arguments, &mut outputs, chosen, config)?;
     }
     if arguments.link {
         stations.iter_mut().for_each(|station| station.fingerprint = Some(Fingerprinter::default()));
     }
+    let mut create = |path: &Option<PathBuf>| path.as_ref().map(|path| outputs.create(path)).transpose();
+    let (line, violations) = (create(&arguments.line)?, create(&arguments.timing.violations)?);
     let finished = go(&experiment, &mut stations, arguments.progress);
     let mut timing = None;
     for station in &mut stations {
@@ -105,34 +132,62 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             file.finish(&experiment, &finished).map_err(|error| Failure::File(path, error))?;
         }
     }
-    if let Some(file) = &arguments.line {
+    if let Some(file) = arguments.line.as_deref().zip(line) {
         line::write(file, Scenario::clone(&scenario), &experiment, &finished)?;
     }
-    if arguments.link {
-        let link = link::encode(&scenario).map_err(Failure::Link)?;
-        let seen = stations.iter_mut().filter_map(|station| station.fingerprint.take());
-        let proof = RunFingerprint::of(seen.map(Fingerprinter::finish).collect());
-        let link = link::with_part(link, "d", &proof.emit());
-        writeln!(io::stdout(), "#{link}").map_err(Failure::output)?;
+    if let (Some(path), Some(out), Some(timing)) = (&arguments.timing.violations, violations, &timing) {
+        let written = timing::write_violations(out, timing, scenario.clock_hz);
+        written.map_err(|error| Failure::File(path.clone(), error))?;
     }
+    outputs.commit()?;
+
     let summary = Summary::new(&experiment, &finished, stations.iter().map(|station| &station.digest));
     let summary = match arguments.controller {
         Some(controller) => summary.only(controller),
         None => summary,
     };
-    if arguments.digest && !arguments.status {
-        status::digests(&summary).map_err(Failure::output)?;
-    } else if arguments.status || !arguments.asks_for_a_file() {
-        status::print(&summary).map_err(Failure::output)?;
+    let link = if arguments.link { Some(link_of(&scenario, &mut stations)?) } else { None };
+    if arguments.json {
+        let mut tables = status::tables(Tables::of("run"), &summary, chosen);
+        if let Some(timing) = &timing {
+            tables = timing::tables(tables, timing, scenario.clock_hz);
+        }
+        if let Some(link) = link {
+            tables = tables.with("links", [json!({ "link": format!("#{link}") })]);
+        }
+        tables.print()?;
+    } else {
+        if let Some(link) = link {
+            writeln!(io::stdout(), "#{link}").map_err(Failure::output)?;
+        }
+        if arguments.digest && !arguments.status {
+            status::digests(&summary).map_err(Failure::output)?;
+        } else if arguments.status || !arguments.asks_for_a_file() {
+            status::print(&summary).map_err(Failure::output)?;
+        }
+        if let Some(timing) = &timing {
+            arguments.timing.report(timing, scenario.clock_hz)?;
+        }
     }
-    timing.map_or(Ok(()), |timing| arguments.timing.report(&timing, scenario.clock_hz))
+    timing.map_or(Ok(()), |timing| arguments.timing.verdict(&timing))
 }
 
-/// The whole run; a long one says how far it is.
+/// The share link of a scenario, with the digests of its run.
+fn link_of(scenario: &Scenario, stations: &mut [Station]) -> Result<String, Failure> {
+    let link = link::encode(scenario).map_err(Failure::Link)?;
+    let seen = stations.iter_mut().filter_map(|station| station.fingerprint.take());
+    let proof = RunFingerprint::of(seen.map(Fingerprinter::finish).collect());
+    Ok(link::with_part(link, "d", &proof.emit()))
+}
+
+/// The whole run, or as much of it as its files take; a long one says how far it is.
 fn go(experiment: &Experiment, stations: &mut [Station], wanted: bool) -> Run {
     let mut progress = Progress::new("run", wanted);
     let mut run = experiment.start();
     while !run.advance_each(SLICE, stations) {
+        if stations.iter().any(Station::has_failed) {
+            return run;
+        }
         progress.tell(run.cycles().0, experiment.cost().end_cycle);
     }
     if wanted {
@@ -141,18 +196,27 @@ fn go(experiment: &Experiment, stations: &mut [Station], wanted: bool) -> Run {
     run
 }
 
-/// The files that were asked for, each with its path.
-fn open(arguments: &Arguments, controller: usize, config: &Config) -> Result<Files, Failure> {
+/// The files that take the run, each with its path.
+fn open(
+    arguments: &Arguments,
+    outputs: &mut Outputs,
+    controller: usize,
+    config: &Config,
+) -> Result<Files, Failure> {
     let (clock_hz, channels) = (config.clock_hz(), config.channels());
+    let timescale = arguments.vcd_timescale;
+    if arguments.vcd.is_some() {
+        timescale.of_clock(clock_hz).map_err(Failure::Timescale)?;
+    }
     let mut opened = Vec::new();
     let mut add = |path: &Option<PathBuf>, make: &dyn Fn(Out) -> io::Result<Box<dyn Output>>| {
         let Some(path) = path else { return Ok(()) };
-        let file = files::create(path).and_then(make).map_err(|error| Failure::File(path.clone(), error))?;
+        let file = make(outputs.create(path)?).map_err(|error| Failure::File(path.clone(), error))?;
         opened.push((path.clone(), file));
         Ok(())
     };
     add(&arguments.trace, &|out| Ok(files::trace(out)))?;
-    add(&arguments.vcd, &|out| files::vcd(out, clock_hz, channels))?;
+    add(&arguments.vcd, &|out| files::vcd(out, timescale, clock_hz, channels))?;
     add(&arguments.csv, &|out| files::csv(out, clock_hz, channels))?;
     add(&arguments.packets, &|out| Ok(files::packets(out, controller)))?;
     Ok(opened)

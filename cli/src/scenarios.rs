@@ -1,6 +1,7 @@
 //! Scenarios from files; `stepscope open` and `stepscope presets`: from links and from the documents.
 
-use crate::{failure::Failure, verify};
+use crate::{failure::Failure, json, verify};
+use serde_json::json;
 use std::{
     fs,
     io::{self, Read, Write},
@@ -9,7 +10,7 @@ use std::{
 };
 use stepscope_core::{
     scenario::{
-        Problem, Scenario, link,
+        MAX_TEXT_BYTES, Problem, Scenario, link,
         presets::{PRESETS, Preset},
     },
     sim::{Experiment, Judged},
@@ -17,7 +18,7 @@ use stepscope_core::{
 
 /// Reads a scenario of the right types; `-` is standard input.
 pub(crate) fn read(path: &Path) -> Result<Scenario, Failure> {
-    match Scenario::from_json_lenient(&text(path)?) {
+    match Scenario::from_json_lenient(&scenario_text(path)?) {
         (scenario, problems) if problems.is_empty() => Ok(scenario),
         (_, problems) => Err(Failure::Scenario(path.to_owned(), problems)),
     }
@@ -25,22 +26,41 @@ pub(crate) fn read(path: &Path) -> Result<Scenario, Failure> {
 
 /// A scenario that was judged, and its experiment; `-` is standard input.
 pub(crate) fn judged(path: &Path) -> Result<(Rc<Scenario>, Rc<Experiment>), Failure> {
-    let judged = Judged::from_json(&text(path)?);
+    let judged = Judged::from_json(&scenario_text(path)?);
     let experiment = judged.experiment().cloned();
     let wrong = |problems: &[Problem]| Failure::Scenario(path.to_owned(), problems.to_vec());
     Ok((Rc::clone(judged.scenario()), experiment.map_err(wrong)?))
 }
 
-/// The text of a scenario's file; `-` is standard input.
+/// The text of a scenario: as [`text`], or of the preset of that name where there is no such file.
+fn scenario_text(path: &Path) -> Result<String, Failure> {
+    match text(path) {
+        Err(Failure::File(path, error)) if error.kind() == io::ErrorKind::NotFound => {
+            let preset = path.to_str().and_then(preset);
+            preset.map(|preset| preset.json.to_owned()).ok_or(Failure::File(path, error))
+        }
+        read => read,
+    }
+}
+
+/// The text of a file, or of standard input for `-`. Of what is too long no more is read than shows it.
 pub(crate) fn text(path: &Path) -> Result<String, Failure> {
-    let bytes = if path == Path::new("-") {
-        let mut bytes = Vec::new();
-        io::stdin().read_to_end(&mut bytes).map(|_| bytes)
+    let failed = |error| Failure::File(path.to_owned(), error);
+    let input: Box<dyn Read> = if path == Path::new("-") {
+        Box::new(io::stdin())
     } else {
-        fs::read(path)
+        Box::new(fs::File::open(path).map_err(failed)?)
     };
-    let bytes = bytes.map_err(|error| Failure::File(path.to_owned(), error))?;
+    let mut bytes = Vec::new();
+    input.take(MAX_TEXT_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(failed)?;
+    if bytes.len() > MAX_TEXT_BYTES {
+        return Err(Failure::TooLong(path.to_owned(), MAX_TEXT_BYTES));
+    }
     String::from_utf8(bytes).map_err(|_| Failure::NotText(path.to_owned()))
+}
+
+fn preset(id: &str) -> Option<&'static Preset> {
+    PRESETS.iter().find(|preset| preset.id == id)
 }
 
 /// Writes the scenario of a link, or of an address that ends with one, as JSON; with `verify` it is also
@@ -53,13 +73,17 @@ pub(crate) fn open(link: &str, verify: bool) -> Result<(), Failure> {
 }
 
 /// Lists the presets, or writes the one that is asked for as JSON.
-pub(crate) fn presets(id: Option<&str>) -> Result<(), Failure> {
-    let Some(id) = id else {
-        let line = |preset: &Preset| format!("{:28} {}", preset.id, preset.scenario().title);
-        return print(&PRESETS.iter().map(line).collect::<Vec<_>>().join("\n"));
-    };
-    let preset = PRESETS.iter().find(|preset| preset.id == id);
-    print(preset.ok_or_else(|| Failure::Preset(id.to_owned()))?.json.trim_end())
+pub(crate) fn presets(id: Option<&str>, as_json: bool) -> Result<(), Failure> {
+    if let Some(id) = id {
+        let preset = preset(id).ok_or_else(|| Failure::Preset(id.to_owned()))?;
+        return print(preset.json.trim_end());
+    }
+    if as_json {
+        let row = |preset: &Preset| json!({ "id": preset.id, "title": preset.scenario().title });
+        return json::Tables::of("presets").with("presets", PRESETS.iter().map(row)).print();
+    }
+    let line = |preset: &Preset| format!("{:28} {}", preset.id, preset.scenario().title);
+    print(&PRESETS.iter().map(line).collect::<Vec<_>>().join("\n"))
 }
 
 /// Writes a text to standard output.

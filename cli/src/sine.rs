@@ -1,7 +1,13 @@
 //! `stepscope sine`: which segments make a sine with least distortion, as tables (CSV).
 
-use crate::{failure::Failure, files, progress::Progress};
+use crate::{
+    failure::Failure,
+    json::Tables,
+    output::{self, Outputs},
+    progress::Progress,
+};
 use clap::{Args, Subcommand};
+use serde_json::{Value, json};
 use std::{
     io::{self, Write},
     path::PathBuf,
@@ -79,6 +85,9 @@ pub(crate) struct Common {
     /// Where the table goes (`-`: standard output).
     #[arg(long, value_name = "FILE", default_value = "-")]
     out: PathBuf,
+    /// Write it as JSON: one object of tables (docs/command.md).
+    #[arg(long)]
+    json: bool,
 }
 
 fn part(text: &str) -> Result<f64, String> {
@@ -97,31 +106,41 @@ pub(crate) fn sine(command: &Command) -> Result<(), Failure> {
         Command::Sweep { range, .. } | Command::Best { range, .. } => &range.common,
         Command::Vertices { common, .. } => common,
     };
-    let write = || {
-        let mut out = files::create(&common.out)?;
-        match command {
-            Command::Sweep { range, points } => sweep(range, *points, &mut out)?,
-            Command::Best { range, segments } => {
-                head(range, &mut out)?;
-                let rows = Distinct::new(range.from, range.to, range.bounds());
-                let asked = |row: &Row| segments.is_none_or(|segments| segments == row.segments);
-                let best = sine_polyline::best(rows.filter(asked));
-                best.iter().try_for_each(|best| row(best, &mut out))?;
+    let outputs = Outputs::judge(None, [common.out.as_path()])?;
+    output::write_whole(outputs, &common.out, |out| match command {
+        Command::Sweep { range, points } => sweep(range, *points, out),
+        Command::Best { range, segments } => {
+            let rows = Distinct::new(range.from, range.to, range.bounds());
+            let asked = |row: &Row| segments.is_none_or(|segments| segments == row.segments);
+            let best = sine_polyline::best(rows.filter(asked));
+            if common.json {
+                return json_of("sine best", "polylines", best.iter().map(cells)).write(out);
             }
-            Command::Vertices { segments, free, common } => {
-                let freedom = if *free { Freedom::Free } else { Freedom::OnCurve };
-                vertices((*segments).into(), freedom, common.order, &mut out)?;
-            }
+            head(range, out)?;
+            best.iter().try_for_each(|best| row(best, out))
         }
-        out.flush()
-    };
-    write().map_err(|error| Failure::File(common.out.clone(), error))
+        Command::Vertices { segments, free, common } => {
+            let freedom = if *free { Freedom::Free } else { Freedom::OnCurve };
+            vertices((*segments).into(), freedom, common, out)
+        }
+    })
+}
+
+fn json_of(command: &'static str, table: &str, rows: impl IntoIterator<Item = Value>) -> Tables {
+    Tables::of(command).with(table, rows)
 }
 
 fn sweep(range: &Range, points: u32, out: &mut impl Write) -> io::Result<()> {
-    head(range, out)?;
     let mut progress = Progress::new("sweep", false);
     let rows = sine_polyline::sweep(range.from, range.to, points, range.bounds());
+    if range.common.json {
+        let rows = (1..).zip(rows).map(|(done, found)| {
+            progress.tell(done, points.into());
+            cells(&found)
+        });
+        return json_of("sine sweep", "polylines", rows).write(out);
+    }
+    head(range, out)?;
     for (done, found) in (1..).zip(rows) {
         row(&found, out)?;
         progress.tell(done, points.into());
@@ -152,11 +171,32 @@ fn row(row: &Row, out: &mut impl Write) -> io::Result<()> {
     writeln!(out)
 }
 
-fn vertices(segments: usize, freedom: Freedom, order: u16, out: &mut impl Write) -> io::Result<()> {
-    writeln!(out, "vertex,angle_deg,height,thd_position_percent")?;
-    let found =
-        optimum(segments, freedom, order).ok_or_else(|| io::Error::other("no such number of segments"))?;
+/// A row as JSON.
+fn cells(row: &Row) -> Value {
+    let distortion = row.distortion;
+    json!({
+        "d1": row.d1,
+        "segments": row.segments,
+        "thd_position_percent": 100.0 * distortion.position,
+        "thd_speed_percent": 100.0 * distortion.speed,
+        "thd_acceleration_percent": 100.0 * distortion.acceleration,
+        "thd_acceleration_filtered_percent": distortion.acceleration_filtered.map(|ratio| 100.0 * ratio),
+        "euclidean_distance": row.euclidean,
+    })
+}
+
+fn vertices(segments: usize, freedom: Freedom, common: &Common, out: &mut impl Write) -> io::Result<()> {
+    let found = optimum(segments, freedom, common.order)
+        .ok_or_else(|| io::Error::other("no such number of segments"))?;
     let percent = found.distortion.position * 100.0;
+    if common.json {
+        let rows = found.vertices.iter().enumerate().map(|(index, vertex)| {
+            let angle_deg = vertex.angle.to_degrees();
+            json!({ "vertex": index, "angle_deg": angle_deg, "height": vertex.height, "thd_position_percent": percent })
+        });
+        return json_of("sine vertices", "vertices", rows).write(out);
+    }
+    writeln!(out, "vertex,angle_deg,height,thd_position_percent")?;
     for (index, vertex) in found.vertices.iter().enumerate() {
         writeln!(out, "{index},{:.9},{:.9},{percent:.6}", vertex.angle.to_degrees(), vertex.height)?;
     }

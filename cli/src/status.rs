@@ -1,7 +1,9 @@
 //! What `stepscope run` prints: digests, and what controllers and host have come to.
 
+use crate::json::Tables;
+use serde_json::{Value, json};
 use std::io::{self, Write};
-use stepscope_core::sim::Summary;
+use stepscope_core::sim::{ControllerSummary, Summary};
 
 /// One digest a line.
 pub(crate) fn digests(summary: &Summary) -> io::Result<()> {
@@ -16,4 +18,57 @@ pub(crate) fn print(summary: &Summary) -> io::Result<()> {
         writeln!(out, "digest {:016x}", controller.digest)?;
     }
     write!(out, "{summary}")
+}
+
+/// The same as tables; the first of the controllers has the number `first`.
+pub(crate) fn tables(tables: Tables, summary: &Summary, first: usize) -> Tables {
+    let numbered = || (first..).zip(&summary.controllers);
+    let run = json!({
+        "cycles": summary.cycles.0,
+        "clock_hz": summary.clock_hz,
+        "length_s": summary.cycles.0 as f64 / f64::from(summary.clock_hz.max(1)),
+        "line_load_percent": summary.line_load.map(|load| 100.0 * load),
+    });
+    let positions = numbered().flat_map(|(index, controller)| {
+        let channels = controller.positions.iter().enumerate();
+        channels
+            .map(move |(channel, steps)| json!({ "controller": index, "channel": channel, "steps": steps }))
+    });
+    let faults = numbered().flat_map(|(index, controller)| {
+        controller.faults.names().map(move |name| json!({ "controller": index, "fault": name.to_string() }))
+    });
+    let host = summary.host.map(|host| {
+        json!({
+            "frames": host.frames,
+            "repeated": host.repeated,
+            "replies": host.replies,
+            "rejected": host.rejected,
+            "refused": host.refused,
+            "crashes": host.crashes,
+        })
+    });
+    tables
+        .with("run", [run])
+        .with("controllers", numbered().map(|(index, controller)| row(index, controller)))
+        .with("positions", positions)
+        .with("faults", faults)
+        .with("host", host)
+}
+
+fn row(index: usize, controller: &ControllerSummary) -> Value {
+    let status = controller.status;
+    json!({
+        "controller": index,
+        "address": controller.address,
+        "channels": controller.channels,
+        "digest": format!("{:016x}", controller.digest),
+        "records": controller.records,
+        "ticks_done": controller.ticks_done,
+        "state": status.map(|status| status.state.name()),
+        "expected_seq": status.map(|status| status.expected_seq),
+        "free_ticks": status.map(|status| status.free),
+        "host": controller.job.map(|job| job.progress.to_string()),
+        "host_ticks": controller.job.map(|job| job.ticks),
+        "host_acknowledged": controller.job.map(|job| job.acknowledged),
+    })
 }

@@ -1,7 +1,13 @@
 //! `stepscope tables`: the step times of a scenario's axes as tables for a firmware, and what each form costs.
 
-use crate::{failure::Failure, files, scenarios};
+use crate::{
+    failure::Failure,
+    json::Tables,
+    output::{self, Outputs},
+    scenarios,
+};
 use clap::{Args, ValueEnum};
+use serde_json::json;
 use std::{
     io::{self, Write},
     num::NonZeroU32,
@@ -24,7 +30,7 @@ use stepscope_core::{
 /// What `stepscope tables` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// The scenario, a JSON file whose source is a motion; `-` reads standard input.
+    /// The scenario, whose source is a motion: a JSON file, or a preset's name; `-` reads standard input.
     scenario: PathBuf,
     /// How the step times are kept; a summary without it shows all three.
     #[arg(long, value_enum)]
@@ -45,12 +51,18 @@ pub(crate) struct Arguments {
     /// The axis whose table is written, from 0.
     #[arg(long, value_name = "K", default_value = "0")]
     axis: usize,
-    /// Name of the table in source code: small letters, digits and underscores. `axis_K` without it.
+    /// Name of the table in source code: up to 32 small letters, digits and underscores, a letter first, and not letters
+    /// alone; `axis_K` without it. Refused is what C keeps for itself: names that begin with is, to, str, mem, wcs or
+    /// e and a letter, with e and a digit, or with int, uint, sig, lc_, fe_, pri, scn, atomic_, memory_, cnd_, mtx_, thrd_
+    /// or tss_.
     #[arg(long, value_parser = name)]
     name: Option<String>,
     /// Where it goes (`-`: standard output).
     #[arg(long, value_name = "FILE", default_value = "-")]
     out: PathBuf,
+    /// Write the summary as JSON: one object of tables (docs/command.md).
+    #[arg(long, conflicts_with_all = ["format", "name"])]
+    json: bool,
 }
 
 /// How step times are kept.
@@ -115,7 +127,7 @@ fn name(text: &str) -> Result<String, String> {
     if is_name(text) {
         Ok(text.to_owned())
     } else {
-        Err("give up to 32 small letters, digits and underscores, a letter first and not letters alone"
+        Err("give up to 32 small letters, digits and underscores, a letter first and not letters alone, and none of the beginnings that C keeps for itself (`stepscope tables --help` lists them), such as x_axis"
             .to_owned())
     }
 }
@@ -167,11 +179,12 @@ impl Axes {
 
 /// Writes the table, or the summary.
 pub(crate) fn tables(arguments: &Arguments) -> Result<(), Failure> {
+    let outputs = Outputs::judge(Some(&arguments.scenario), [arguments.out.as_path()])?;
     let axes = Axes::new(arguments)?;
-    let failed = |error| Failure::File(arguments.out.clone(), error);
     let Some(language) = arguments.format.language() else {
-        let mut out = files::create(&arguments.out).map_err(failed)?;
-        return summary(&axes, arguments, &mut out).and_then(|()| out.flush()).map_err(failed);
+        return output::write_whole(outputs, &arguments.out, |out| {
+            if arguments.json { json_of(&axes, arguments).write(out) } else { summary(&axes, arguments, out) }
+        });
     };
     let axis = arguments.axis;
     let plan = axes.plans.get(axis);
@@ -183,13 +196,32 @@ pub(crate) fn tables(arguments: &Arguments) -> Result<(), Failure> {
     let title = headline(&axes.title, axis, form.name());
     let source = Source { name: &name, title: &title, clock_hz: axes.clock_hz, table: &table };
     let mut text = String::new();
-    source.write(language, &mut text).map_err(|error| failed(io::Error::other(error)))?;
-    let write = || {
-        let mut out = files::create(&arguments.out)?;
-        out.write_all(text.as_bytes())?;
-        out.flush()
-    };
-    write().map_err(failed)
+    let written = source.write(language, &mut text).map_err(io::Error::other);
+    output::write_whole(outputs, &arguments.out, |out| {
+        written.and_then(|()| out.write_all(text.as_bytes()))
+    })?;
+    for warning in source.warnings(language) {
+        // The same stands in the file.
+        let _ = writeln!(io::stderr(), "warning: {warning}");
+    }
+    Ok(())
+}
+
+/// Each axis, form and width that is asked for, with its table or why there is none.
+fn each<'a>(
+    axes: &'a Axes,
+    arguments: &'a Arguments,
+) -> impl Iterator<Item = (usize, FormName, EntryFormat, Result<Stored, Cause>)> + 'a {
+    let forms = [FormName::Exact, FormName::Document, FormName::Compressed];
+    let forms = forms.into_iter().filter(|form| arguments.form.is_none_or(|only| only == *form));
+    let formats = EntryFormat::ALL.into_iter();
+    let formats = formats.filter(|format| arguments.entries.is_none_or(|only| only == *format));
+    axes.plans.iter().enumerate().flat_map(move |(axis, plan)| {
+        let formats = formats.clone();
+        forms.clone().flat_map(move |form| {
+            formats.clone().map(move |format| (axis, form, format, axes.kept(plan, form, format)))
+        })
+    })
 }
 
 /// A row for each axis, form and width.
@@ -198,22 +230,36 @@ fn summary(axes: &Axes, arguments: &Arguments, out: &mut impl Write) -> io::Resu
         out,
         "axis form       entries    count        bytes  document_bytes      steps  largest_error_us  rms_error_us"
     )?;
-    let forms = [FormName::Exact, FormName::Document, FormName::Compressed];
-    for (axis, plan) in axes.plans.iter().enumerate() {
-        for form in forms.into_iter().filter(|form| arguments.form.is_none_or(|only| only == *form)) {
-            for format in EntryFormat::ALL {
-                if arguments.entries.is_some_and(|only| only != format) {
-                    continue;
-                }
-                write!(out, "{axis:4} {:10} {:7}", form.name(), format.name)?;
-                match axes.kept(plan, form, format) {
-                    Ok(table) => row(&table, axes.clock_hz, out)?,
-                    Err(cause) => writeln!(out, "  {cause}")?,
-                }
-            }
+    for (axis, form, format, table) in each(axes, arguments) {
+        write!(out, "{axis:4} {:10} {:7}", form.name(), format.name)?;
+        match table {
+            Ok(table) => row(&table, axes.clock_hz, out)?,
+            Err(cause) => writeln!(out, "  {cause}")?,
         }
     }
     Ok(())
+}
+
+/// The same as JSON.
+fn json_of(axes: &Axes, arguments: &Arguments) -> Tables {
+    let micros = |cycles: f64| cycles * 1e6 / f64::from(axes.clock_hz.max(1));
+    let rows = each(axes, arguments).map(|(axis, form, format, table)| {
+        let why = table.as_ref().err().map(ToString::to_string);
+        let table = table.as_ref().ok();
+        json!({
+            "axis": axis,
+            "form": form.name(),
+            "entries": format.name,
+            "count": table.map(|table| table.entries.len()),
+            "bytes": table.map(Stored::bytes),
+            "document_bytes": table.and_then(|table| table.document_bytes),
+            "steps": table.map(|table| table.error.steps),
+            "largest_error_us": table.map(|table| micros(table.error.greatest as f64)),
+            "rms_error_us": table.map(|table| micros(table.error.rms())),
+            "why_not": why,
+        })
+    });
+    Tables::of("tables").with("tables", rows)
 }
 
 fn row(table: &Stored, clock_hz: u32, out: &mut impl Write) -> io::Result<()> {

@@ -1,7 +1,8 @@
 //! `stepscope run --timing` and `stepscope drivers`: could a driver follow the pulses?
 
-use crate::{failure::Failure, files};
+use crate::{failure::Failure, json::Tables, output::Out};
 use clap::Args;
+use serde_json::{Value, json};
 use std::{
     io::{self, Write},
     path::{Path, PathBuf},
@@ -32,7 +33,7 @@ pub(crate) struct Options {
     driver: Option<&'static DataSheet>,
     /// Write a table of the violations, up to a million.
     #[arg(long, value_name = "FILE")]
-    violations: Option<PathBuf>,
+    pub(crate) violations: Option<PathBuf>,
     /// End with exit code 3 if the timing check finds a violation.
     #[arg(long)]
     strict: bool,
@@ -62,21 +63,62 @@ impl Options {
         Ok(Some(TimingCheck::new(&rules, scenario.clock_hz, kept)))
     }
 
-    /// Writes the file and prints what the check found.
+    /// Prints what the check found.
     pub(crate) fn report(&self, check: &TimingCheck, clock_hz: u32) -> Result<(), Failure> {
-        if let Some(path) = &self.violations {
-            table(path, check, clock_hz).map_err(|error| Failure::File(path.clone(), error))?;
-        }
         // A table on standard output stands alone, as the other files do.
         if self.violations.is_none() || self.timing {
             print(check, clock_hz).map_err(Failure::output)?;
         }
+        Ok(())
+    }
+
+    /// Fails if nothing was to be found, and something was.
+    pub(crate) fn verdict(&self, check: &TimingCheck) -> Result<(), Failure> {
         if self.strict && check.total() > 0 { Err(Failure::Violations(check.total())) } else { Ok(()) }
     }
 }
 
+/// What the check found as tables.
+pub(crate) fn tables(tables: Tables, check: &TimingCheck, clock_hz: u32) -> Tables {
+    let rule = |result: &RuleResult| {
+        let least = result.least.as_ref();
+        let asked = (result.nanos > 0).then_some(result.nanos);
+        let spare = asked.and_then(|asked| Some(Tenths::over(least?.measured, asked, clock_hz).nanos()));
+        json!({
+            "rule": result.rule.name(),
+            "required_ns": asked,
+            "least_ns": least.map(|least| Tenths::over(least.measured, 0, clock_hz).nanos()),
+            "spare_ns": spare,
+            "at_cycle": least.map(|least| least.at.0),
+            "channel": least.map(|least| least.channel),
+            "violations": result.total(),
+        })
+    };
+    let violations = check.violations().iter().map(|found| -> Value {
+        json!({
+            "cycle": found.at.0,
+            "channel": found.channel,
+            "rule": found.rule.name(),
+            "measured_cycles": found.measured.0,
+            "required_cycles": found.required.0,
+        })
+    });
+    tables.with("timing", check.results().iter().map(rule)).with("violations", violations)
+}
+
 /// Lists the drivers with their figures.
-pub(crate) fn drivers() -> Result<(), Failure> {
+pub(crate) fn drivers(as_json: bool) -> Result<(), Failure> {
+    if as_json {
+        let figure = |sheet: &'static DataSheet| {
+            Rule::ALL.iter().filter(|rule| rule.nanos(&sheet.rules) > 0).map(|rule| {
+                json!({ "driver": sheet.id, "rule": rule.name(), "required_ns": rule.nanos(&sheet.rules) })
+            })
+        };
+        let driver =
+            |sheet: &'static DataSheet| json!({ "id": sheet.id, "name": sheet.name, "source": sheet.source });
+        let tables = Tables::of("drivers").with("drivers", DRIVERS.into_iter().map(driver));
+        return tables.with("rules", DRIVERS.into_iter().flat_map(figure)).print();
+    }
     let list = |out: &mut dyn Write| {
         DRIVERS.iter().try_for_each(|sheet| {
             writeln!(out, "{:14} {}", sheet.id, sheet.name)?;
@@ -93,9 +135,8 @@ fn figures(rules: &TimingRules) -> String {
     asked.map(|rule| format!("{} {} ns", rule.name(), rule.nanos(rules))).collect::<Vec<_>>().join(", ")
 }
 
-/// The violations as a table.
-fn table(path: &Path, check: &TimingCheck, clock_hz: u32) -> io::Result<()> {
-    let mut out = files::create(path)?;
+/// The violations as a file.
+pub(crate) fn write_violations(mut out: Out, check: &TimingCheck, clock_hz: u32) -> io::Result<()> {
     writeln!(out, "cycle,time_s,channel,rule,measured_cycles,required_cycles,measured_ns,required_ns")?;
     for found in check.violations() {
         let Instant(cycle) = found.at;
@@ -155,6 +196,11 @@ impl Tenths {
     fn over(measured: Cycles, nanos: u32, clock_hz: u32) -> Self {
         let clock = i128::from(clock_hz.max(1));
         Self((i128::from(measured.0) * 10_000_000_000 - i128::from(nanos) * 10 * clock).div_euclid(clock))
+    }
+
+    /// In ns.
+    fn nanos(&self) -> f64 {
+        self.0 as f64 / 10.0
     }
 }
 

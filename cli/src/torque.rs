@@ -1,7 +1,13 @@
 //! `stepscope torque`: does a motor have what a plan asks of it, and which ramps can it follow?
 
-use crate::{failure::Failure, files, scenarios};
+use crate::{
+    failure::Failure,
+    json::Tables,
+    output::{self, Outputs},
+    scenarios,
+};
 use clap::{Args, ValueEnum};
+use serde_json::{Value, json};
 use std::{
     io::{self, Write},
     path::PathBuf,
@@ -22,7 +28,7 @@ const POINTS: u32 = 201;
 /// What `stepscope torque` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// The scenario, a JSON file whose source is a motion with a motor; `-` reads standard input.
+    /// The scenario, whose source is a motion with a motor: a JSON file, or a preset's name; `-` reads standard input.
     scenario: PathBuf,
     /// Only this axis, from 0; the curve is of axis 0 without it.
     #[arg(long, value_name = "K")]
@@ -33,6 +39,9 @@ pub(crate) struct Arguments {
     /// Where it goes (`-`: standard output).
     #[arg(long, value_name = "FILE", default_value = "-")]
     out: PathBuf,
+    /// Write it as JSON: one object of tables (docs/command.md).
+    #[arg(long, conflicts_with = "format")]
+    json: bool,
 }
 
 /// What is written.
@@ -53,16 +62,70 @@ struct Driven {
 
 /// Writes what the motors have and what is asked of them.
 pub(crate) fn torque(arguments: &Arguments) -> Result<(), Failure> {
+    let outputs = Outputs::judge(Some(&arguments.scenario), [arguments.out.as_path()])?;
     let driven = driven(arguments)?;
-    let write = || {
-        let mut out = files::create(&arguments.out)?;
-        match arguments.format {
-            Written::Text => driven.iter().try_for_each(|driven| report(driven, &mut out))?,
-            Written::Csv => driven.first().map_or(Ok(()), |driven| curve(driven, &mut out))?,
-        }
-        out.flush()
+    output::write_whole(outputs, &arguments.out, |out| match arguments.format {
+        _ if arguments.json => tables(&driven).write(out),
+        Written::Text => driven.iter().try_for_each(|driven| report(driven, out)),
+        Written::Csv => driven.first().map_or(Ok(()), |driven| curve(driven, out)),
+    })
+}
+
+/// What the text says, as tables.
+fn tables(driven: &[Driven]) -> Tables {
+    let demands: Vec<(&Driven, Demand)> =
+        driven.iter().map(|driven| (driven, Demand::of(&driven.machine, &driven.plan))).collect();
+    let axis = |(Driven { axis, machine, .. }, demand): &(&Driven, Demand)| {
+        let least = demand.least.as_ref();
+        json!({
+            "axis": axis,
+            "standing_torque_mn_m": machine.available_mn_m(0.0),
+            "full_torque_up_to_steps_s": machine.corner_rate(),
+            "greatest_rate_steps_s": machine.torque_rate(),
+            "load_mn_m": machine.load_mn_m(),
+            "working_rate_steps_s": machine.working_rate(),
+            "least_margin_mn_m": least.map(Moment::margin_mn_m),
+            "least_margin_at_s": least.map(|least| least.at_s),
+            "speed_jump_steps_s": demand.jump,
+            "over_working_rate_steps_s": demand.over_working_rate,
+            "shortages": demand.total,
+            "enough": demand.is_met(),
+        })
     };
-    write().map_err(|error| Failure::File(arguments.out.clone(), error))
+    let shortages = demands.iter().flat_map(|(driven, demand)| {
+        demand.shortages.iter().map(|found| {
+            json!({
+                "axis": driven.axis,
+                "from_s": found.from_s,
+                "to_s": found.to_s,
+                "times": found.times,
+                "short_mn_m": -found.worst.margin_mn_m(),
+                "worst_at_s": found.worst.at_s,
+                "worst_rate_steps_s": found.worst.rate,
+                "needed_mn_m": found.worst.needed_mn_m,
+                "available_mn_m": found.worst.available_mn_m,
+            })
+        })
+    });
+    let ramps = driven.iter().flat_map(|Driven { axis, machine, plan }| {
+        plan.moves().iter().enumerate().filter_map(move |(index, planned)| {
+            let found = Ramps::of(machine, &planned.profile)?;
+            Some(json!({
+                "axis": axis,
+                "move": index,
+                "steps": planned.profile.steps(),
+                "duration_s": planned.profile.duration_s(),
+                "greatest_rate_steps_s": found.greatest_rate,
+                "longest_ramp_s": found.longest_s,
+                "longest_possible_ramp_s": found.room_s,
+                "enough_torque_from_ramp_s": found.enough_s.map(|(shortest, _)| shortest),
+                "enough_torque_to_ramp_s": found.enough_s.map(|(_, longest)| longest),
+                "enough_torque_without_ramps": found.without_ramps,
+            }))
+        })
+    });
+    let axes: Vec<Value> = demands.iter().map(axis).collect();
+    Tables::of("torque").with("axes", axes).with("shortages", shortages).with("ramps", ramps)
 }
 
 /// The axes that are asked for and have a motor: at least one.

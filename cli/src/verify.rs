@@ -1,7 +1,10 @@
 //! `stepscope open --verify`: whether a run is the one that the sender of a link saw.
 
 use crate::{failure::Failure, progress::Progress};
-use std::path::PathBuf;
+use std::{
+    io::{self, Write},
+    path::PathBuf,
+};
 use stepscope_core::{
     inspect::{
         fingerprint::Shorter,
@@ -35,7 +38,9 @@ pub(crate) fn verify(scenario: &Scenario, part: Option<&str>) -> Result<(), Fail
         Verification::Same { edges } => {
             let digests: Vec<String> =
                 proof.controllers.iter().map(|fingerprint| format!("{:016x}", fingerprint.digest)).collect();
-            eprintln!("identical, bit for bit: {edges} edges, digest {}", digests.join(" "));
+            // Who has closed standard error has the exit code.
+            let _ =
+                writeln!(io::stderr(), "identical, bit for bit: {edges} edges, digest {}", digests.join(" "));
             return Ok(());
         }
         Verification::Differs { controller, after, until, shorter } => (controller, after, until, shorter),

@@ -65,13 +65,13 @@ fn each_controller_has_its_digest_status_and_files() {
     let lines: Vec<&str> = status.lines().filter(|line| !line.starts_with("records ")).collect();
     assert_eq!(lines[..3], digests.iter().map(|digest| format!("digest {digest}")).collect::<Vec<_>>());
     let block = |from: usize| lines[from..from + 6].to_vec();
-    assert_eq!((block(4)[1], block(4)[4]), ("positions 60 -30", "host done"));
-    assert_eq!((block(9)[0], block(9)[2]), ("controller 1", "positions 0"));
+    assert_eq!((block(4)[0], block(4)[2], block(4)[5]), ("controller 0", "positions 60 -30", "host done"));
+    assert_eq!((block(10)[0], block(10)[2]), ("controller 1", "positions 0"));
     // Controller 1 has nothing to do: no host speaks with it.
-    assert!(block(9)[4].starts_with("state READY"), "{status}");
-    assert_eq!((block(14)[0], block(14)[2], block(14)[5]), ("controller 2", "positions -40", "host done"));
-    assert!(lines[20].starts_with("frames ") && lines[21].starts_with("line_load "), "{status}");
-    assert_eq!(lines.len(), 22);
+    assert!(block(10)[4].starts_with("state READY"), "{status}");
+    assert_eq!((block(15)[0], block(15)[2], block(15)[5]), ("controller 2", "positions -40", "host done"));
+    assert!(lines[21].starts_with("frames ") && lines[22].starts_with("line_load "), "{status}");
+    assert_eq!(lines.len(), 23);
 }
 
 #[test]

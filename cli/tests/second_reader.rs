@@ -1,7 +1,7 @@
-//! A value change dump as GTKWave's own programs read it: `vcd2fst` makes its waveform file of it,
-//! `fst2vcd` tells what stands in that, and it is the trace.
+//! A value change dump as other people's programs read it, edge by edge as the trace has it: GTKWave's (`vcd2fst` makes its
+//! waveform file of it, `fst2vcd` tells what stands in that) and sigrok's, on which PulseView stands.
 //!
-//! `cargo xtask test --only vcd` runs it, and installs GTKWave first; without the feature `gtkwave` there is no such test.
+//! `cargo xtask test --only vcd` runs it, and installs both first; without the feature `dump-readers` there is no such test.
 #![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
 
 use std::{
@@ -9,6 +9,7 @@ use std::{
     fs,
     path::{Path, PathBuf},
     process::Command,
+    time::{Duration, Instant},
 };
 use stepscope_core::{
     peripheral::{
@@ -17,19 +18,24 @@ use stepscope_core::{
     },
     scenario::presets::PRESETS,
 };
-use vcd::{Command as Entry, IdCode, Parser, ScopeItem, Value};
+use vcd::{Command as Entry, IdCode, Parser, ScopeItem, TimescaleUnit, Value};
 
-/// Two controllers and replies, at a clock of which no cycle is a whole number of picoseconds.
+/// Two controllers and replies, at a clock of which no cycle is a whole number of nanoseconds.
 const FRAMED: &str = r#"{
     "clock_hz": 14745600, "bus": { "channels": 2 },
     "line": { "protocol": "framed", "noise": { "seed": 3, "lost_bytes_ppm": 20000, "glitches_ppm": 20000 } },
     "source": { "packets": { "packets": [ "8102", "8304", "0506", "8708" ] } } }"#;
 
-/// The changes of each signal: time in ps, and the level from then on.
+/// The changes of each signal: cycle, and the level from then on.
 type Edges = BTreeMap<String, Vec<(u64, bool)>>;
 
 fn path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
+}
+
+fn program(name: &str) -> PathBuf {
+    which::which(name)
+        .unwrap_or_else(|_| panic!("{name} is not on PATH; `cargo xtask test --only vcd` installs it"))
 }
 
 fn call(program: &Path, arguments: &[&Path]) {
@@ -37,25 +43,46 @@ fn call(program: &Path, arguments: &[&Path]) {
     assert!(output.status.success(), "{}: {output:?}", program.display());
 }
 
-/// The edges of a trace, at floor(cycle*10^12/clock_hz).
-fn edges_of_trace(text: &str, clock_hz: u64, channels: u8) -> Edges {
+/// Runs a scenario and writes its trace and its dump.
+fn run(title: &str, json: &str, more: &[&str]) -> (String, PathBuf) {
+    let file = |ending: &str| path(&format!("second-reader-{title}.{ending}"));
+    let (scenario, trace, dump) = (file("json"), file("trace"), file("vcd"));
+    fs::write(&scenario, json).expect("a file");
+    let more: Vec<&Path> = more.iter().map(Path::new).collect();
+    let options = [Path::new("run"), &scenario, Path::new("--trace"), &trace, Path::new("--vcd"), &dump];
+    call(Path::new(env!("CARGO_BIN_EXE_stepscope")), &[&options[..], &more].concat());
+    (fs::read_to_string(trace).expect("the trace"), dump)
+}
+
+/// The edges of a trace.
+fn edges_of_trace(text: &str, channels: u8) -> Edges {
     let records: Vec<Record> = text.lines().map(|line| parse_line(line).expect("a record")).collect();
-    let stamp = |cycle: u64| (u128::from(cycle) * 1_000_000_000_000 / u128::from(clock_hz)) as u64;
     let signal = |bit: u32| {
         let mut edges: Vec<(u64, bool)> =
-            records.iter().map(|record| (stamp(record.cycle.0), record.levels.has(1 << bit))).collect();
+            records.iter().map(|record| (record.cycle.0, record.levels.has(1 << bit))).collect();
         edges.dedup_by_key(|edge| edge.1);
         (name(bit).expect("it has a name"), edges)
     };
     shown_signals(channels).map(signal).collect()
 }
 
-/// The edges that a value change dump tells of.
-fn edges_of_dump(text: &[u8]) -> Edges {
-    let mut parser = Parser::new(text);
+/// The edges that a value change dump tells of, each at round(t*clock_hz).
+fn edges_of_dump(text: &[u8], scope: &str, clock_hz: u64) -> Edges {
+    // sigrok-cli says something of its own before.
+    let start = text.iter().position(|byte| *byte == b'$').unwrap_or(0);
+    let mut parser = Parser::new(&text[start..]);
     let header = parser.parse_header().expect("a header");
-    assert_eq!(header.timescale, Some((1, vcd::TimescaleUnit::PS)));
-    let scope = header.find_scope(&["stepscope"]).expect("the module");
+    let (count, unit) = header.timescale.expect("a timescale");
+    let a_second: u128 = match unit {
+        TimescaleUnit::NS => 1_000_000_000,
+        TimescaleUnit::PS => 1_000_000_000_000,
+        other => panic!("a timescale in {other}"),
+    };
+    let cycle = |stamp: u64| {
+        let twice = u128::from(stamp) * u128::from(count) * u128::from(clock_hz) * 2;
+        ((twice + a_second) / (2 * a_second)) as u64
+    };
+    let scope = header.find_scope(&[scope]).expect("the module");
     let names: BTreeMap<IdCode, String> = scope
         .items
         .iter()
@@ -67,7 +94,7 @@ fn edges_of_dump(text: &[u8]) -> Edges {
     let (mut now, mut edges) = (0, Edges::new());
     for entry in parser {
         match entry.expect("an entry") {
-            Entry::Timestamp(at) => now = at,
+            Entry::Timestamp(at) => now = cycle(at),
             // Before its first level a signal is unknown.
             Entry::ChangeScalar(_, Value::X) => {}
             Entry::ChangeScalar(code, value) => {
@@ -80,36 +107,71 @@ fn edges_of_dump(text: &[u8]) -> Edges {
     edges
 }
 
-#[test]
-fn a_second_program_reads_the_same_edges() {
-    let [to_waves, from_waves] = ["vcd2fst", "fst2vcd"].map(|program| {
-        which::which(program).unwrap_or_else(|_| {
-            panic!("GTKWave's {program} is not on PATH; `cargo xtask test --only vcd` installs it")
-        })
-    });
+fn compare(found: &Edges, trace: &str, channels: u8, title: &str) {
+    let expected = edges_of_trace(trace, channels);
+    assert!(expected.values().map(Vec::len).sum::<usize>() > 100, "{title}: there is something to compare");
+    assert_eq!(found.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>(), "{title}");
+    for (signal, edges) in &expected {
+        assert_eq!(found[signal], *edges, "{title}: {signal}");
+    }
+}
+
+/// Title, scenario, clock and channels of what is read back, and the options of the dump.
+fn cases() -> [(&'static str, &'static str, u64, u8, &'static [&'static str]); 4] {
     let preset = PRESETS.iter().find(|preset| preset.id == "patent-2019-four-motors").expect("it is there");
-    for (title, json, clock_hz, channels) in
-        [("preset", preset.json, preset.scenario().clock_hz, 4), ("framed", FRAMED, 14_745_600, 2)]
-    {
-        let file = |ending: &str| path(&format!("second-reader-{title}.{ending}"));
-        let (scenario, trace, dump, waves, told) =
-            (file("json"), file("trace"), file("vcd"), file("fst"), file("told.vcd"));
-        fs::write(&scenario, json).expect("a file");
-        let stepscope = Path::new(env!("CARGO_BIN_EXE_stepscope"));
-        let options = ["run", "--trace", "--vcd"].map(Path::new);
-        call(stepscope, &[options[0], &scenario, options[1], &trace, options[2], &dump]);
+    let clock_hz = preset.scenario().clock_hz.into();
+    [
+        ("preset", preset.json, clock_hz, 4, &[]),
+        ("preset-10ns", preset.json, clock_hz, 4, &["--vcd-timescale", "10ns"]),
+        ("framed", FRAMED, 14_745_600, 2, &[]),
+        ("framed-1ps", FRAMED, 14_745_600, 2, &["--vcd-timescale", "1ps"]),
+    ]
+}
+
+#[test]
+fn gtkwaves_programs_read_the_same_edges() {
+    let [to_waves, from_waves] = ["vcd2fst", "fst2vcd"].map(program);
+    for (title, json, clock_hz, channels, options) in cases() {
+        let (trace, dump) = run(title, json, options);
+        let (waves, told) = (dump.with_extension("fst"), dump.with_extension("told.vcd"));
         call(&to_waves, &[&dump, &waves]);
         call(&from_waves, &[Path::new("-f"), &waves, Path::new("-o"), &told]);
-        let expected =
-            edges_of_trace(&fs::read_to_string(trace).expect("the trace"), clock_hz.into(), channels);
-        let found = edges_of_dump(&fs::read(told).expect("what the program tells"));
-        assert!(
-            expected.values().map(Vec::len).sum::<usize>() > 100,
-            "{title}: there is something to compare"
-        );
-        assert_eq!(found.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>(), "{title}");
-        for (signal, edges) in &expected {
-            assert_eq!(found[signal], *edges, "{title}: {signal}");
-        }
+        let found = edges_of_dump(&fs::read(told).expect("what it tells"), "stepscope", clock_hz);
+        compare(&found, &trace, channels, title);
     }
+}
+
+#[test]
+fn sigrok_reads_the_same_edges() {
+    let sigrok = program("sigrok-cli");
+    // A picosecond is a sample to sigrok: nobody reads a recording at 1 THz.
+    for (title, json, clock_hz, channels, options) in
+        cases().into_iter().filter(|case| case.0 != "framed-1ps")
+    {
+        let title = format!("sigrok-{title}");
+        let (trace, dump) = run(&title, json, options);
+        let told = dump.with_extension("told.vcd");
+        let arguments = ["-I", "vcd", "-i"].map(Path::new);
+        let output = ["-O", "vcd", "-o"].map(Path::new);
+        call(&sigrok, &[&arguments[..], &[&dump], &output, &[&told]].concat());
+        let found = edges_of_dump(&fs::read(told).expect("what it tells"), "libsigrok", clock_hz);
+        compare(&found, &trace, channels, &title);
+    }
+}
+
+/// A dump whose unit is a picosecond takes sigrok a minute and a half for 10 ms of motion.
+#[test]
+fn sigrok_opens_a_move_of_0_4_s_in_less_than_5_s() {
+    let sigrok = program("sigrok-cli");
+    let (_, dump) = run("sigrok-move", "{}", &[]);
+    let nothing = ["-O", "null"].map(Path::new);
+    // The machine may be busy with something else.
+    let best = (0..3).map(|_| {
+        let begun = Instant::now();
+        call(&sigrok, &[&["-I", "vcd", "-i"].map(Path::new)[..], &[&dump], &nothing].concat());
+        begun.elapsed()
+    });
+    let best = best.min().expect("three of them");
+    println!("sigrok-cli opened it in {:.2} s", best.as_secs_f64());
+    assert!(best < Duration::from_secs(5), "{best:?}");
 }

@@ -50,10 +50,18 @@ fn a_table_of_too_many_steps_is_refused_before_one_is_looked_at() {
 #[test]
 fn a_table_is_written_in_each_language() {
     let rows: [(&[&str], &[&str]); 4] = [
-        (&["--format", "c"], &["A table: axis 0, compressed step table", "const uint64_t axis_0_interval["]),
+        (
+            &["--format", "c"],
+            &[
+                "A table: axis 0, compressed step table",
+                "\n#ifndef AXIS_0_H\n#define AXIS_0_H\n",
+                "static const uint64_t axis_0_interval[",
+                " * time comes to ",
+            ],
+        ),
         (
             &["--format", "avr", "--entries", "ticks", "--axis", "1"],
-            &["int16_t axis_1_add[", "] PROGMEM = {"],
+            &["static const int16_t axis_1_add[", "] PROGMEM = {", "ul, "],
         ),
         (&["--format", "rust", "--name", "x_axis", "--form", "exact"], &["pub static X_AXIS_COUNT: [u32; "]),
         (&["--format", "csv", "--entries", "q8", "--form", "document"], &["interval_q8,count,add_q8\n"]),
@@ -65,6 +73,96 @@ fn a_table_is_written_in_each_language() {
             assert!(out.contains(part), "{options:?}: {part} in {}", &out[..out.len().min(800)]);
         }
     }
+}
+
+/// A compiler of C takes the files as they are, twice in one source, without a warning; and walking a table, in types as
+/// wide as the comment says, comes to the time and the steps that it says.
+#[cfg(unix)]
+#[test]
+fn a_compiler_takes_the_files_and_the_walk_comes_where_the_comment_says() {
+    use std::{env, fs, path::PathBuf, process::Command};
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("tables-c");
+    fs::create_dir_all(folder.join("avr")).expect("a folder");
+    fs::write(folder.join("avr/pgmspace.h"), "#define PROGMEM\n").expect("a file");
+    for format in ["c", "avr"] {
+        for entries in ["q16", "q8", "ticks"] {
+            let out = folder.join("table.h").display().to_string();
+            let options =
+                ["tables", "-", "--format", format, "--entries", entries, "--name", "x_axis", "--out", &out];
+            let (code, _, err) = stepscope(&options, MOTION);
+            assert_eq!((code, err.as_str()), (Some(0), ""), "{options:?}");
+            let text = fs::read_to_string(&out).expect("a file");
+            let line =
+                text.lines().find_map(|line| line.strip_prefix(" * time comes to ")).expect("a comment");
+            let (time, rest) = line.split_once(": it needs ").expect("a time");
+            let width = rest.split_once(", ").and_then(|(_, rest)| rest.split_once(',')).expect("a type").0;
+            let main = format!(
+                r#"#include "table.h"
+#include "table.h"
+#include <stdio.h>
+int main(void) {{
+    {width} time = 0;
+    unsigned long long steps = 0;
+    for (unsigned long i = 0; i < X_AXIS_ENTRIES; i++) {{
+        uint64_t interval = x_axis_interval[i];
+        if (x_axis_count[i] == 0) time += ({width})interval;
+        for (uint32_t n = 0; n < x_axis_count[i]; n++) {{
+            time += ({width})interval;
+            steps++;
+            interval += (uint64_t)(int64_t)x_axis_add[i];
+        }}
+    }}
+    printf("%llu %d", (unsigned long long)time, steps == X_AXIS_STEPS);
+    return 0;
+}}
+"#
+            );
+            fs::write(folder.join("main.c"), main).expect("a file");
+            let compiler = env::var("CC").unwrap_or_else(|_| "cc".to_owned());
+            let compiled = Command::new(compiler)
+                .args(["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-I.", "-o", "walk", "main.c"])
+                .current_dir(&folder)
+                .output()
+                .expect("there is a compiler of C, as Rust's linker is one");
+            assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
+            let walked = Command::new(folder.join("walk")).output().expect("it starts");
+            assert_eq!(String::from_utf8_lossy(&walked.stdout), format!("{time} 1"), "{format} {entries}");
+        }
+    }
+}
+
+#[test]
+fn an_array_that_the_compiler_may_refuse_is_a_warning_with_numbers() {
+    let motion = r#"{ "clock_hz": 200000000, "source": { "motion": { "axes": [ { "moves": [
+        { "sine": { "amplitude": { "steps": 20000 }, "period_s": 40, "periods": 1 } } ] } ] } } }"#;
+    let options = ["tables", "-", "--form", "exact", "--entries", "ticks", "--format"];
+    let (code, out, err) = stepscope(&[&options[..], &["avr"]].concat(), motion);
+    assert_eq!(code, Some(0), "{err}");
+    let warning = err.lines().next().expect("a warning");
+    assert!(
+        warning.starts_with(
+            "warning: axis_0_interval has 124356 bytes, and avr-gcc takes at most 32767 in an array: "
+        ),
+        "{err}"
+    );
+    assert!(
+        out.contains(&format!(" * WARNING: {}.", warning.trim_start_matches("warning: "))),
+        "it is in the file"
+    );
+    // What Rust's compiler takes has no such bound.
+    assert_eq!(stepscope(&[&options[..], &["rust"]].concat(), motion).2, "");
+}
+
+#[test]
+fn names_that_c_keeps_for_itself_are_refused_and_told() {
+    for name in ["string_1", "memory_x", "is_a", "total_1", "uint8_t", "e1_axis", "isr_x", "int"] {
+        let (code, _, err) = stepscope(&["tables", "-", "--format", "c", "--name", name], MOTION);
+        let expected = if name == "is_a" { Some(0) } else { Some(2) };
+        assert_eq!(code, expected, "{name}: {err}");
+    }
+    let help = stepscope(&["tables", "--help"], "").1;
+    let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(help.contains("names that begin with is, to, str, mem, wcs or e and a letter"), "{help}");
 }
 
 #[test]

@@ -7,7 +7,7 @@
 //! | `sources` | form, lints and types of the page's sources |
 //! | `dist` | the page as hosts serve it: names with hashes, lists, licences |
 //! | `headers`, `serve` | the local server, whose headers are `web/_headers`' |
-//! | `steps`, `browser`, `engines`, `bare_metal`, `gtkwave` | `cargo xtask test`, step by step |
+//! | `steps`, `browser`, `engines`, `bare_metal`, `dump_readers` | `cargo xtask test`, step by step |
 //! | `bench` | `cargo xtask bench` |
 //! | `fuzz` | `cargo xtask fuzz` |
 //! | `mutants` | `cargo xtask mutants` |
@@ -21,9 +21,9 @@ mod bare_metal;
 mod bench;
 mod browser;
 mod dist;
+mod dump_readers;
 mod engines;
 mod fuzz;
-mod gtkwave;
 mod headers;
 mod mutants;
 mod npm;

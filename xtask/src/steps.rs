@@ -11,7 +11,7 @@ use crate::browser::{self, Browser};
 use crate::engines::{self, Firefox, WebKit};
 use crate::toolchain::{self, BARE_METAL, WASM};
 use crate::tools::{Optimise, WasmTools};
-use crate::{bare_metal, dist, gtkwave, npm, package, page, root, run, sources};
+use crate::{bare_metal, dist, dump_readers, npm, package, page, root, run, sources};
 
 /// Both workspaces: the fuzz targets are one of their own.
 const RUSTFMT: [&str; 2] = ["fmt --all", "fmt --manifest-path fuzz/Cargo.toml"];
@@ -27,7 +27,7 @@ pub(crate) enum Step {
     Docs,
     /// Unit, integration and documentation tests, as native code
     Native,
-    /// Value change dumps, read by GTKWave's programs
+    /// Value change dumps, read by GTKWave's and sigrok's programs
     Vcd,
     /// The golden cases on a Cortex-M3 without an operating system, in QEMU
     BareMetal,
@@ -77,7 +77,7 @@ impl Step {
                 run::to_end(command, run::LIMIT).await
             }
             Self::Native => cargo("test --workspace --locked").await,
-            Self::Vcd => gtkwave::test().await,
+            Self::Vcd => dump_readers::test().await,
             Self::BareMetal => bare_metal::test().await,
             Self::Wasm => wasm().await,
             Self::Types => {

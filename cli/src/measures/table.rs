@@ -5,7 +5,8 @@
 //! deviation   steps   |ideal, the steps of B1|   ticks   |those, the pulses|   pulses   |ideal, the pulses|
 //! ```
 
-use crate::measures::distortion::Distortion;
+use crate::{json::Tables, measures::distortion::Distortion};
+use serde_json::json;
 use std::io::{self, Write};
 use stepscope_core::inspect::measures::{CurveMetrics, Measures, PulseErrors};
 
@@ -76,6 +77,20 @@ pub(super) fn csv(found: &Measures, distortion: Option<&Distortion>, out: &mut i
         }
     }
     Ok(())
+}
+
+/// The rows of the CSV as a table.
+pub(super) fn tables(axis: usize, found: &Measures, distortion: Option<&Distortion>) -> Tables {
+    let mut figures = Vec::new();
+    for Group { name, columns, rows, .. } in groups(found, distortion) {
+        for Row { measure, unit, values } in &rows {
+            for ((of, _), value) in columns.iter().zip(values) {
+                let row = json!({ "axis": axis, "group": name, "measure": measure, "of": of, "value": value, "unit": unit });
+                figures.push(row);
+            }
+        }
+    }
+    Tables::of("measures").with("figures", figures)
 }
 
 fn groups(found: &Measures, distortion: Option<&Distortion>) -> Vec<Group> {

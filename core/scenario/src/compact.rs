@@ -17,27 +17,28 @@ pub trait Compact: ToParts {
     where
         Self: Sized,
     {
-        compacted(self.parts())
+        value_of(self.parts(), false)
     }
 }
 
 impl<T: ToParts> Compact for T {}
 
-fn compacted(parts: Parts<'_>) -> Value {
+/// A value as JSON, with what equals its default left out, or `whole`, with every field.
+pub(super) fn value_of(parts: Parts<'_>, whole: bool) -> Value {
     match parts {
         Parts::Whole(value) => value,
         // -0.0 equals 0.0, so it is written like it.
         Parts::Number(number) => Value::from(number + 0.0),
-        Parts::List(entries) => entries.into_iter().map(|entry| compacted(entry.parts())).collect(),
+        Parts::List(entries) => entries.into_iter().map(|entry| value_of(entry.parts(), whole)).collect(),
         Parts::Fields(group, values) => {
-            let fields = group.fields.iter().zip(values).filter(|(_, (_, differs))| *differs);
+            let fields = group.fields.iter().zip(values).filter(|(_, (_, differs))| whole || *differs);
             let entry = |(field, (value, _)): (&Field, (&dyn ToParts, bool))| {
-                (field.name.to_string(), compacted(value.parts()))
+                (field.name.to_string(), value_of(value.parts(), whole))
             };
             Value::Object(fields.map(entry).collect())
         }
         Parts::Kind(name, value) => {
-            Value::Object(Map::from_iter([(name.to_string(), compacted(value.parts()))]))
+            Value::Object(Map::from_iter([(name.to_string(), value_of(value.parts(), whole))]))
         }
     }
 }

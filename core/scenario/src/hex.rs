@@ -1,6 +1,6 @@
 //! Bytes as hexadecimal text.
 
-use crate::{Read, Reader};
+use crate::{Json, Read, Reader};
 use alloc::{format, string::String, vec::Vec};
 use base16ct::{lower, mixed};
 use serde_json::Value;
@@ -11,11 +11,11 @@ use serde_json::Value;
 pub struct Hex(pub Vec<u8>);
 
 impl Read for Hex {
-    fn read(&mut self, value: &Value, reader: &mut Reader) -> bool {
-        let Some(text) = value.as_str() else {
+    fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
+        let Some(text) = value.text() else {
             return reader.refuse(value, "bytes in hex, such as \"80 01 7f\"");
         };
-        match Self::of_text(text) {
+        match Self::of_text(&text) {
             Ok(bytes) => {
                 *self = bytes;
                 true

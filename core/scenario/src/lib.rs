@@ -37,6 +37,8 @@ mod problem;
 
 mod compact;
 
+mod json;
+
 mod reader;
 
 mod hex;
@@ -64,7 +66,8 @@ pub mod presets;
 pub use check::Checked;
 pub use compact::{Compact, Kinds};
 pub use hex::Hex;
-pub use limits::{END_OF_TIME, MAX_CONTROLLERS};
+pub use json::Json;
+pub use limits::{END_OF_TIME, MAX_CONTROLLERS, MAX_TEXT_BYTES};
 pub use points::points_of_table;
 pub use problem::{Cause, Problem, Validator, ValueError, of_config, of_motion};
 pub use read::{part_from_json, to_json};

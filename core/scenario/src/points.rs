@@ -7,22 +7,21 @@
 //! Both columns count from the first point: a record may begin at any time and place.
 
 use crate::{
-    Parts, Read, Reader, ToParts,
+    Json, Parts, Read, Reader, ToParts,
     table::{BadTable, Rows, short},
 };
 use alloc::{borrow::ToOwned, format, string::String, vec, vec::Vec};
-use serde_json::Value;
 use stepscope_motion::moves::{MAX_POINTS, Point};
 
 impl Read for Point {
-    fn read(&mut self, value: &Value, reader: &mut Reader) -> bool {
+    fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
         let wanted = "a point's time in s and its position, such as [0.25, 12.5]";
-        let Some(numbers) = value.as_array() else { return reader.refuse(value, wanted) };
+        let Some(numbers) = value.list() else { return reader.refuse(value, wanted) };
         let [time_s, position] = &numbers[..] else {
             return reader.wrong(format!("a point of {} numbers; give {wanted}", numbers.len()));
         };
-        reader.entry(0, time_s, &mut self.time_s);
-        reader.entry(1, position, &mut self.position);
+        reader.entry(0, *time_s, &mut self.time_s);
+        reader.entry(1, *position, &mut self.position);
         true
     }
 

@@ -1,21 +1,17 @@
 //! Reads a scenario from JSON text, of any version, and writes it.
 
-use crate::{Cause, Problem, Read, Scenario, ToParts, VERSION, compact, reader::read_into};
-use alloc::{
-    string::{String, ToString},
-    vec::Vec,
-};
-use serde_json::Value;
+use crate::{Cause, Json, Problem, Read, Scenario, ToParts, VERSION, compact, reader::read_into};
+use alloc::{string::String, vec::Vec};
 use stepscope_motion::problem::MAX_PROBLEMS;
 
 impl Scenario {
     /// Reads a scenario from JSON text of any version up to [`VERSION`].
     ///
     /// # Errors
-    /// Every field of the wrong type or name, with its path; ranges are judged by
+    /// Every field of the wrong type or name, or given twice, with its path; ranges are judged by
     /// [`Scenario::check`].
     pub fn from_json(text: &str) -> Result<Self, Vec<Problem>> {
-        Self::strictly(parse(text)?)
+        strictly(read(text, None))
     }
 
     /// Reads a scenario whose version stands elsewhere, as in a link.
@@ -23,25 +19,13 @@ impl Scenario {
     /// # Errors
     /// As [`Self::from_json`].
     pub fn from_json_of(text: &str, version: u64) -> Result<Self, Vec<Problem>> {
-        let mut value = parse(text)?;
-        if let Some(map) = value.as_object_mut() {
-            map.insert("version".into(), version.into());
-        }
-        Self::strictly(value)
-    }
-
-    fn strictly(value: Value) -> Result<Self, Vec<Problem>> {
-        let (scenario, problems) = read(&upgrade(value)?);
-        if problems.is_empty() { Ok(scenario) } else { Err(problems) }
+        strictly(read(text, Some(version)))
     }
 
     /// Reads what can be read and lists the rest: fields that cannot be read have their defaults.
     #[must_use]
     pub fn from_json_lenient(text: &str) -> (Self, Vec<Problem>) {
-        match parse(text).and_then(upgrade) {
-            Ok(value) => read(&value),
-            Err(problems) => (Self::default(), problems),
-        }
+        read(text, None)
     }
 
     /// The whole scenario as JSON, every field written.
@@ -51,13 +35,17 @@ impl Scenario {
     }
 }
 
+fn strictly((scenario, problems): (Scenario, Vec<Problem>)) -> Result<Scenario, Vec<Problem>> {
+    if problems.is_empty() { Ok(scenario) } else { Err(problems) }
+}
+
 /// Reads a part of a scenario, such as an axis or a move, with this version's names.
 ///
 /// # Errors
 /// Every field of the wrong type or name, with its path in the part.
 pub fn part_from_json<T: Read>(text: &str) -> Result<T, Vec<Problem>> {
     let mut part = T::blank();
-    let problems = read_into(&mut part, &parse(text)?);
+    let problems = read_into(&mut part, parse(text)?, false);
     if problems.is_empty() { Ok(part) } else { Err(problems) }
 }
 
@@ -69,34 +57,56 @@ pub fn to_json(part: &dyn ToParts) -> String {
     text
 }
 
-fn parse(text: &str) -> Result<Value, Vec<Problem>> {
+fn parse(text: &str) -> Result<Json<'_>, Vec<Problem>> {
     // Some editors put a byte order mark before the text.
-    serde_json::from_str(text.trim_start_matches('\u{feff}')).map_err(|error| {
+    Json::parse(text.trim_start_matches('\u{feff}')).map_err(|error| {
         let (line, column) = (error.line(), error.column());
-        let detail = error.to_string();
+        let detail = alloc::string::ToString::to_string(&error);
         let detail = detail.split(" at line ").next().unwrap_or_default().into();
         alloc::vec![Problem::new("", Cause::Syntax { line, column, detail })]
     })
 }
 
-/// Brings a scenario of any older version to [`VERSION`], one version a step; a step that was
-/// published is never removed. Without a version it may have any version's names.
-fn upgrade(mut value: Value) -> Result<Value, Vec<Problem>> {
-    let given = value.get("version").map_or(Some(1), Value::as_u64);
-    match given {
-        Some(given) if given > u64::from(VERSION) => {
-            return Err(alloc::vec![Problem::new("version", Cause::NewerVersion { given, newest: VERSION })]);
-        }
-        Some(1) => crate::upgrade::from_1(&mut value),
-        _ => {}
+/// Which version's names a scenario has; `None` where that cannot be read. Without a version it may have any version's.
+fn version(value: Json<'_>) -> Option<u64> {
+    let mut given = None;
+    if value.is_map() {
+        value.members(&mut |name, value| {
+            if name == "version" {
+                given.get_or_insert(value);
+            }
+        });
     }
-    Ok(value)
+    match given.map(Json::whole) {
+        None => Some(1),
+        Some(Some((false, version))) => Some(version),
+        Some(_) => None,
+    }
 }
 
-/// What can be read, and what is wrong with the rest; of too much of that nothing is read.
-fn read(value: &Value) -> (Scenario, Vec<Problem>) {
+/// What can be read, and what is wrong with the rest; of too much of that nothing is read. A version that is `known` counts
+/// before that of the text.
+fn read(text: &str, known: Option<u64>) -> (Scenario, Vec<Problem>) {
+    let value = match parse(text) {
+        Ok(value) => value,
+        Err(problems) => return (Scenario::default(), problems),
+    };
+    let given = known.or_else(|| version(value));
+    if let Some(given) = given.filter(|given| *given > u64::from(VERSION)) {
+        let newer = Problem::new("version", Cause::NewerVersion { given, newest: VERSION });
+        return (Scenario::default(), alloc::vec![newer]);
+    }
     let mut scenario = Scenario::default();
-    let problems = read_into(&mut scenario, value);
+    let mut problems = read_into(&mut scenario, value, given == Some(1));
+    if known.is_some() {
+        problems.retain(|problem| problem.path != "version");
+    }
+    if given == Some(1) {
+        scenario.version = VERSION;
+    } else if let Some(known) = known {
+        // It is at most VERSION.
+        scenario.version = known as u32;
+    }
     let read = if problems.len() < MAX_PROBLEMS { scenario } else { Scenario::default() };
     (read, problems)
 }

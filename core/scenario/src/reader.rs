@@ -4,19 +4,28 @@
 //! that the page carries it once. What cannot be read keeps its default. It is stricter than serde, which
 //! takes a map's fields from a list, by their order: a scenario has names.
 
-use crate::{Cause, Problem, Validator};
+use crate::{
+    Cause, Json, Problem, Validator,
+    schema::{Field, Group, Limit},
+    upgrade,
+};
 use alloc::{
+    borrow::ToOwned,
     format,
     string::{String, ToString},
     vec::Vec,
 };
-use serde_json::{Map, Value};
+use core::{fmt::Display, mem::size_of};
+
+/// Most memory of a list, in bytes, beside what its entries hold: a short text must not become a great deal of them. Every
+/// list that a scenario may have is shorter.
+const MAX_LIST_BYTES: usize = 256 << 20;
 
 /// A part of a scenario that JSON can say.
 pub trait Read {
     /// Takes a value. False where it is of another kind altogether, which `reader` has noted: then nothing
     /// was taken. A map is taken also where some of its fields are not.
-    fn read(&mut self, value: &Value, reader: &mut Reader) -> bool;
+    fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool;
 
     /// What a value is read into where nothing stands yet, such as an entry of a list.
     fn blank() -> Self
@@ -28,11 +37,16 @@ pub trait Read {
 #[derive(Default)]
 pub struct Reader {
     validator: Validator,
+    /// The row of the field that is being read: what is allowed in it.
+    row: Option<&'static Field>,
+    /// Whether names of version 1 are read, too.
+    old_names: bool,
 }
 
-/// Reads a value into `target`; gives every problem, each with its path, at most [`stepscope_motion::problem::MAX_PROBLEMS`].
-pub(super) fn read_into(target: &mut dyn Read, value: &Value) -> Vec<Problem> {
-    let mut reader = Reader::default();
+/// Reads a value into `target`, with `old_names` also by the names of version 1; gives every problem, each with its path, at
+/// most [`stepscope_motion::problem::MAX_PROBLEMS`].
+pub(super) fn read_into(target: &mut dyn Read, value: Json<'_>, old_names: bool) -> Vec<Problem> {
+    let mut reader = Reader { old_names, ..Reader::default() };
     target.read(value, &mut reader);
     reader.validator.problems()
 }
@@ -43,7 +57,7 @@ impl Reader {
     }
 
     /// Notes that a value is of another kind, and what would do. Always false.
-    pub(super) fn refuse(&mut self, value: &Value, wanted: &str) -> bool {
+    pub(super) fn refuse(&mut self, value: Json<'_>, wanted: &str) -> bool {
         self.note(format!("{}; give {wanted}", describe(value)));
         false
     }
@@ -54,63 +68,181 @@ impl Reader {
         false
     }
 
-    /// Reads what stands one step further in, under a name.
-    pub(super) fn below(&mut self, name: &str, value: &Value, target: &mut dyn Read) -> bool {
-        let outside = self.validator.enter(name);
+    /// Notes that something is no number, or no whole one of its type: the field's own range is told, if it has one.
+    fn refuse_number(
+        &mut self,
+        value: Json<'_>,
+        kind: &str,
+        range: Option<(&dyn Display, &dyn Display)>,
+    ) -> bool {
+        let row = self.row.filter(|row| !row.unit.is_empty());
+        let unit = row.map_or_else(String::new, |row| format!(" {}", row.unit));
+        let of_type = || range.map_or_else(String::new, |(least, most)| format!(" from {least} to {most}"));
+        let range = match self.row.map(|row| row.limit) {
+            Some(Limit::Whole(least, most)) => format!(" from {least} to {most}{unit}"),
+            Some(Limit::Number(least, most)) => format!(" from {least} to {most}{unit}"),
+            Some(Limit::Follows(words)) => format!(": {words}"),
+            _ => of_type(),
+        };
+        self.refuse(value, &format!("{kind}{range}"))
+    }
+
+    /// Notes that something is no text or list: how long one may be is told, where the field says so.
+    fn refuse_length(&mut self, value: Json<'_>, kind: &str) -> bool {
+        let length = match self.row.map(|row| row.limit) {
+            Some(Limit::Length(least, most, of)) => format!(" of {least} to {most} {of}"),
+            _ => String::new(),
+        };
+        self.refuse(value, &format!("{kind}{length}"))
+    }
+
+    /// Reads what stands one step further in, under a name, where `row` says what is allowed.
+    pub(super) fn below(
+        &mut self,
+        row: Option<&'static Field>,
+        name: &str,
+        value: Json<'_>,
+        target: &mut dyn Read,
+    ) -> bool {
+        let (outside, outer) = (self.validator.enter(name), core::mem::replace(&mut self.row, row));
         let taken = target.read(value, self);
+        self.row = outer;
         self.validator.leave(outside);
         taken
     }
 
     /// Reads an entry of a list.
-    pub(super) fn entry(&mut self, index: usize, value: &Value, target: &mut dyn Read) -> bool {
-        let outside = self.validator.enter_entry(index);
+    pub(super) fn entry(&mut self, index: usize, value: Json<'_>, target: &mut dyn Read) -> bool {
+        let (outside, outer) = (self.validator.enter_entry(index), self.row.take());
         let taken = target.read(value, self);
+        self.row = outer;
         self.validator.leave(outside);
         taken
     }
 
-    fn map<'v>(&mut self, value: &'v Value, wanted: &str) -> Option<&'v Map<String, Value>> {
-        let map = value.as_object();
-        if map.is_none() {
-            self.refuse(value, wanted);
+    /// Walks over the names of a map; false, and noted, where it is none.
+    fn map<'v>(
+        &mut self,
+        value: Json<'v>,
+        wanted: &str,
+        each: &mut dyn FnMut(&mut Self, &str, Json<'v>),
+    ) -> bool {
+        if !value.is_map() {
+            return self.refuse(value, wanted);
         }
-        map
-    }
-
-    /// Reads a map of names and values; those that are not given stay as they are.
-    pub(super) fn fields(&mut self, value: &Value, fields: &mut [(&'static str, &mut dyn Read)]) -> bool {
-        let Some(map) = self.map(value, "a map of names and values") else { return false };
-        for (name, value) in map {
-            if let Some((_, target)) = fields.iter_mut().find(|(field, _)| field == name) {
-                self.below(name, value, *target);
-            } else {
-                let names: Vec<&str> = fields.iter().map(|(field, _)| *field).collect();
-                let detail = format!("there is no such field; give one of {}", names.join(", "));
-                self.validator.add(name, Cause::Type { detail });
-            }
+        if !value.members(&mut |name, value| each(self, name, value)) {
+            return self
+                .wrong("a name in it is no text: half of a surrogate pair; give another name".to_owned());
         }
         true
     }
 
-    /// The name of a choice, which is in `kinds`, and its value: the only ones of a map.
-    pub(super) fn choice<'v>(&mut self, value: &'v Value, kinds: &[&str]) -> Option<(&'v str, &'v Value)> {
-        let wanted = "a map of one key that names the choice, such as {\"mm\": 250}";
-        let map = self.map(value, wanted)?;
-        let (Some((name, content)), 1) = (map.iter().next(), map.len()) else {
-            self.note(format!("a map of {} keys; give {wanted}", map.len()));
-            return None;
-        };
-        if kinds.contains(&name.as_str()) {
-            return Some((name, content));
+    /// Reads a map of names and values; those that are not given stay as they are, of those that are given twice the first
+    /// counts. `fields` are those of `group`, in its order.
+    pub(super) fn fields(
+        &mut self,
+        value: Json<'_>,
+        group: &'static Group,
+        fields: &mut [(&'static str, &mut dyn Read)],
+    ) -> bool {
+        let mut given: Vec<&'static str> = Vec::new();
+        // Where an old name and its new one stand, the new one counts, wherever it stands.
+        let mut older: Vec<(&'static str, &'static str, Json<'_>)> = Vec::new();
+        let is_map = self.map(value, "a map of names and values", &mut |reader, name, value| {
+            if let Some((field, target)) = fields.iter_mut().find(|(field, _)| *field == name) {
+                reader.field(group, &mut given, (*field, *field), value, *target);
+            } else if let Some((old, new)) = reader.renamed(name, fields) {
+                older.push((old, new, value));
+            } else {
+                reader.unknown(name, fields);
+            }
+        });
+        for (old, new, value) in older {
+            match fields.iter_mut().find(|(field, _)| *field == new) {
+                Some((_, target)) if !given.contains(&new) || given.contains(&old) => {
+                    self.field(group, &mut given, (old, new), value, *target);
+                    given.push(new);
+                }
+                _ => self.unknown(old, fields),
+            }
         }
-        self.note(format!("\u{201c}{name}\u{201d} is no choice here; give one of {}", kinds.join(", ")));
+        is_map
+    }
+
+    /// Reads a field that may have been `given` before, as it was `called`: in the text, and by its row.
+    fn field(
+        &mut self,
+        group: &'static Group,
+        given: &mut Vec<&'static str>,
+        (called, name): (&'static str, &'static str),
+        value: Json<'_>,
+        target: &mut dyn Read,
+    ) {
+        if given.contains(&called) {
+            let detail = "given twice; give it once".to_owned();
+            return self.validator.add(called, Cause::Type { detail });
+        }
+        given.push(called);
+        let row = group.fields.iter().find(|row| row.name == name);
+        self.below(row, name, value, target);
+    }
+
+    fn unknown(&mut self, name: &str, fields: &[(&'static str, &mut dyn Read)]) {
+        let names: Vec<&str> = fields.iter().map(|(field, _)| *field).collect();
+        let detail = format!("there is no such field; give one of {}", names.join(", "));
+        self.validator.add(name, Cause::Type { detail });
+    }
+
+    /// The old name of one of the fields, and its new one.
+    fn renamed(
+        &self,
+        name: &str,
+        fields: &[(&'static str, &mut dyn Read)],
+    ) -> Option<(&'static str, &'static str)> {
+        let mut names = upgrade::FIELDS.iter().filter(|_| self.old_names);
+        names.find(|(old, new)| *old == name && fields.iter().any(|(field, _)| field == new)).copied()
+    }
+
+    /// The name of a choice, which is one of the kinds of `group`, and its value: the only ones of a map.
+    pub(super) fn choice<'v>(
+        &mut self,
+        value: Json<'v>,
+        group: &'static Group,
+    ) -> Option<(&'static Field, Json<'v>)> {
+        let wanted = "a map of one key that names the choice, such as {\"mm\": 250}";
+        let (mut first, mut count) = (None, 0_usize);
+        let is_map = self.map(value, wanted, &mut |_, name, content| {
+            count += 1;
+            first.get_or_insert_with(|| {
+                let kind = group.fields.iter().find(|kind| kind.name == name);
+                (kind.ok_or_else(|| name.to_owned()), content)
+            });
+        });
+        if !is_map {
+            return None;
+        }
+        match first {
+            Some((Ok(kind), content)) if count == 1 => return Some((kind, content)),
+            Some((Err(name), _)) if count == 1 => {
+                let kinds: Vec<&str> = group.fields.iter().map(|kind| kind.name).collect();
+                self.note(format!(
+                    "\u{201c}{name}\u{201d} is no choice here; give one of {}",
+                    kinds.join(", ")
+                ));
+            }
+            _ => self.note(format!("a map of {count} keys; give {wanted}")),
+        }
         None
     }
 
     /// Reads one of some words, and gives its place among them.
-    pub(super) fn word(&mut self, value: &Value, words: &[&str]) -> Option<usize> {
-        let found = value.as_str().and_then(|text| words.iter().position(|word| *word == text));
+    pub(super) fn word(&mut self, value: Json<'_>, words: &[&str]) -> Option<usize> {
+        let text = value.text();
+        let named = |text: &str| words.iter().position(|word| *word == text);
+        let found = text.as_deref().and_then(|text| {
+            let renamed = || upgrade::WORDS.iter().find(|(old, _)| self.old_names && *old == text);
+            named(text).or_else(|| named(renamed()?.1))
+        });
         if found.is_none() {
             self.refuse(value, &format!("one of {}", words.join(", ")));
         }
@@ -119,30 +251,43 @@ impl Reader {
 }
 
 /// A value as it is told to people.
-fn describe(value: &Value) -> String {
+fn describe(value: Json<'_>) -> String {
     const LONGEST: usize = 40;
-    match value {
-        Value::Null => "nothing (null)".into(),
-        Value::Bool(_) | Value::Number(_) => value.to_string(),
-        Value::String(text) if text.chars().count() > LONGEST => {
-            format!("\u{201c}{}\u{2026}\u{201d}", text.chars().take(LONGEST).collect::<String>())
-        }
-        Value::String(text) => format!("\u{201c}{text}\u{201d}"),
-        Value::Array(_) => "a list".into(),
-        Value::Object(_) => "a map".into(),
+    let short = |text: &str| match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}\u{2026}", text.get(..end).unwrap_or_default()),
+        None => text.to_owned(),
+    };
+    if value.is_null() {
+        "nothing (null)".to_owned()
+    } else if value.is_list() {
+        "a list".to_owned()
+    } else if value.is_map() {
+        "a map".to_owned()
+    } else if value.written().starts_with('"') {
+        let text = value.text();
+        text.map_or_else(
+            || "a text with half of a surrogate pair".to_owned(),
+            |text| format!("\u{201c}{}\u{201d}", short(&text)),
+        )
+    } else {
+        short(value.written())
     }
 }
 
 macro_rules! whole {
-    ($($ty:ty: $as:ident),*) => {$(
+    ($($ty:ty: $below:expr),*) => {$(
         impl Read for $ty {
-            fn read(&mut self, value: &Value, reader: &mut Reader) -> bool {
-                match value.$as().and_then(|number| Self::try_from(number).ok()) {
+            fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
+                let below: fn(u64) -> Option<Self> = $below;
+                let found = value.whole().and_then(|(is_below, size)| {
+                    if is_below { below(size) } else { Self::try_from(size).ok() }
+                });
+                match found {
                     Some(number) => {
                         *self = number;
                         true
                     }
-                    None => reader.refuse(value, &format!("a whole number from {} to {}", Self::MIN, Self::MAX)),
+                    None => reader.refuse_number(value, "a whole number", Some((&Self::MIN, &Self::MAX))),
                 }
             }
 
@@ -152,16 +297,17 @@ macro_rules! whole {
         }
     )*};
 }
-whole!(u8: as_u64, u16: as_u64, u32: as_u64, u64: as_u64, i64: as_i64);
+// What a number below zero of a size is.
+whole!(u8: |_| None, u16: |_| None, u32: |_| None, u64: |_| None, i64: |size| 0_i64.checked_sub_unsigned(size));
 
 impl Read for f64 {
-    fn read(&mut self, value: &Value, reader: &mut Reader) -> bool {
-        match value.as_f64() {
+    fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
+        match value.number() {
             Some(number) => {
                 *self = number;
                 true
             }
-            None => reader.refuse(value, "a number"),
+            None => reader.refuse_number(value, "a number", None),
         }
     }
 
@@ -171,13 +317,13 @@ impl Read for f64 {
 }
 
 impl Read for String {
-    fn read(&mut self, value: &Value, reader: &mut Reader) -> bool {
-        match value.as_str() {
+    fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
+        match value.text() {
             Some(text) => {
-                *self = text.into();
+                *self = text.to_string();
                 true
             }
-            None => reader.refuse(value, "a text"),
+            None => reader.refuse_length(value, "a text"),
         }
     }
 
@@ -187,7 +333,7 @@ impl Read for String {
 }
 
 impl<T: Read> Read for Option<T> {
-    fn read(&mut self, value: &Value, reader: &mut Reader) -> bool {
+    fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
         if value.is_null() {
             *self = None;
             return true;
@@ -206,14 +352,25 @@ impl<T: Read> Read for Option<T> {
 }
 
 impl<T: Read> Read for Vec<T> {
-    fn read(&mut self, value: &Value, reader: &mut Reader) -> bool {
-        let Some(entries) = value.as_array() else { return reader.refuse(value, "a list") };
+    fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
+        if !value.is_list() {
+            return reader.refuse_length(value, "a list");
+        }
         self.clear();
-        for (index, entry) in entries.iter().enumerate() {
-            // An entry that is not taken stays blank, so that the others keep their places.
-            let mut target = T::blank();
-            reader.entry(index, entry, &mut target);
-            self.push(target);
+        let most = MAX_LIST_BYTES / size_of::<T>().max(1);
+        let mut index = 0_usize;
+        value.entries(&mut |entry| {
+            if index < most {
+                // An entry that is not taken stays blank, so that the others keep their places.
+                let mut target = T::blank();
+                reader.entry(index, entry, &mut target);
+                self.push(target);
+            }
+            index += 1;
+        });
+        if index > most {
+            *self = Self::new();
+            return reader.wrong(format!("{index} entries; give at most {most}"));
         }
         true
     }

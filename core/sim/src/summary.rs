@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! cycles 6401602
-//! records 13201                     of each controller, the additional ones below `controller 1`, …
+//! records 13201                     of each controller, of several below `controller 0`, `controller 1`, …
 //! ticks_done 200
 //! positions 3200
 //! faults 0x0000 none
@@ -144,7 +144,7 @@ impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "cycles {}", self.cycles.0)?;
         for (index, controller) in self.controllers.iter().enumerate() {
-            if index > 0 {
+            if self.controllers.len() > 1 {
                 writeln!(f, "controller {index}")?;
             }
             controller.fmt(f)?;

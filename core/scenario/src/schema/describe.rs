@@ -55,9 +55,7 @@ fn type_of(ty: &Type, groups: &mut Map<String, Value>) -> Value {
 
 fn of_group(group: &Group, groups: &mut Map<String, Value>) -> Value {
     let fields: Vec<Value> = group.fields.iter().map(|field| of_field(field, groups)).collect();
-    let mut text = String::new();
-    compact::write_whole(&mut text, &*(group.blank)(), 0);
-    let default: Value = serde_json::from_str(&text).unwrap_or_default();
+    let default = compact::value_of((group.blank)().parts(), true);
     json!({ "doc": group.doc.trim(), "choice": group.is_choice, "default": default, "fields": fields })
 }
 

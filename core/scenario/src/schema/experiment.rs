@@ -9,9 +9,10 @@ use stepscope_peripheral::config::{Bus, limits};
 
 settings! {
     /// A scenario is one experiment as JSON: what a file, a share link and the page's form hold. Every
-    /// field has a default, so `{}` is a scenario; unknown fields are refused. Units stand in the names:
-    /// `_cycles` counts the peripheral's clock, `_s` is seconds, `_hz` hertz. A choice is a map of one key
-    /// that names it: `{ "mm": 250 }`, `{ "cosine": { … } }`.
+    /// field has a default, so `{}` is a scenario; unknown fields, and fields that are given twice, are
+    /// refused. Units stand in the names: `_cycles` counts the peripheral's clock, `_s` is seconds, `_hz`
+    /// hertz. A choice is a map of one key that names it: `{ "mm": 250 }`, `{ "cosine": { … } }`. A whole
+    /// number may be written as `16000000.0` or `16e6`, too.
     ///
     /// All problems of a scenario are reported at once, each with its path, the value, and what is allowed.
     /// Files and links of version 1, which had other names for a few fields, are read too.

@@ -73,8 +73,12 @@ macro_rules! rows {
         }
 
         impl $crate::Read for $name {
-            fn read(&mut self, value: &serde_json::Value, reader: &mut $crate::Reader) -> bool {
-                reader.fields(value, &mut [$((stringify!($field), &mut self.$field),)*])
+            fn read(&mut self, value: $crate::Json<'_>, reader: &mut $crate::Reader) -> bool {
+                reader.fields(
+                    value,
+                    $crate::schema::rows::group::<Self>(),
+                    &mut [$((stringify!($field), &mut self.$field),)*],
+                )
             }
 
             fn blank() -> Self {
@@ -139,12 +143,13 @@ macro_rules! kinds {
         }
 
         impl $crate::Read for $name {
-            fn read(&mut self, value: &serde_json::Value, reader: &mut $crate::Reader) -> bool {
-                let Some((name, content)) = reader.choice(value, <Self as $crate::Kinds>::KINDS) else { return false };
-                match name {
+            fn read(&mut self, value: $crate::Json<'_>, reader: &mut $crate::Reader) -> bool {
+                let kinds = $crate::schema::rows::group::<Self>();
+                let Some((kind, content)) = reader.choice(value, kinds) else { return false };
+                match kind.name {
                     $($key => {
                         let mut inner = <$ty as $crate::Read>::blank();
-                        let taken = reader.below(name, content, &mut inner);
+                        let taken = reader.below(Some(kind), kind.name, content, &mut inner);
                         if taken {
                             *self = Self::$variant(inner);
                         }
@@ -192,7 +197,7 @@ macro_rules! words {
         }
 
         impl $crate::Read for $ty {
-            fn read(&mut self, value: &serde_json::Value, reader: &mut $crate::Reader) -> bool {
+            fn read(&mut self, value: $crate::Json<'_>, reader: &mut $crate::Reader) -> bool {
                 let found = reader.word(value, &[$($word),*]);
                 let kinds = [$(Self::$variant),*];
                 let found = found.and_then(|place| kinds.into_iter().nth(place));

@@ -1,0 +1,186 @@
+//! What a command reads: bounded, and told by what is allowed.
+#![cfg(not(target_arch = "wasm32"))]
+#![allow(clippy::expect_used, reason = "what is missing fails the test")]
+
+mod program;
+
+use program::stepscope;
+use std::{
+    fs::{self, File},
+    io::{BufWriter, Write},
+    path::PathBuf,
+    process::{Command, Stdio},
+};
+use stepscope_core::scenario::{MAX_TEXT_BYTES, presets::PRESETS};
+
+fn file(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name)
+}
+
+#[test]
+fn input_without_an_end_is_read_no_further_than_is_allowed() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_stepscope"))
+        .args(["run", "-"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("it starts");
+    let mut stdin = child.stdin.take().expect("it is piped");
+    let braces = "{\n".repeat(1 << 15);
+    let mut written = 0;
+    while stdin.write_all(braces.as_bytes()).is_ok() {
+        written += braces.len();
+        assert!(written < 2 * MAX_TEXT_BYTES, "it reads on and on");
+    }
+    let output = child.wait_with_output().expect("it ends");
+    let err = String::from_utf8(output.stderr).expect("text");
+    assert_eq!(output.status.code(), Some(2), "{err}");
+    assert!(err.starts_with("-: more than 67108864 bytes; "), "{err}");
+    assert!(written <= MAX_TEXT_BYTES + (1 << 20), "{written} bytes");
+}
+
+/// As `yes '{'` gives it, as long as may be: braces within braces need no memory of their own.
+#[test]
+fn a_text_of_braces_is_refused_as_what_it_is() {
+    let braces = "{\"bus\":".repeat(1 << 20);
+    let (code, out, err) = stepscope(&["run", "-"], &braces);
+    assert_eq!((code, out.as_str()), (Some(2), ""));
+    assert!(err.contains("not JSON at line 1, column "), "{err}");
+}
+
+/// The most memory that a command had at once, in bytes: as the system counted it.
+#[cfg(target_os = "linux")]
+fn peak(arguments: &[&str]) -> u64 {
+    use std::{thread, time::Duration};
+    let mut child = Command::new(env!("CARGO_BIN_EXE_stepscope"))
+        .args(arguments)
+        .stdout(Stdio::null())
+        .spawn()
+        .expect("it starts");
+    let status = format!("/proc/{}/status", child.id());
+    let mut peak = 0;
+    while child.try_wait().expect("a child").is_none() {
+        let text = fs::read_to_string(&status).unwrap_or_default();
+        let high = text.lines().find_map(|line| line.strip_prefix("VmHWM:")?.trim().strip_suffix(" kB"));
+        peak = high.and_then(|kilobytes| kilobytes.parse().ok()).unwrap_or(0).max(peak);
+        thread::sleep(Duration::from_millis(2));
+    }
+    assert!(child.wait().expect("it ends").success());
+    peak * 1024
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_million_segments_take_at_most_ten_times_their_text() {
+    let path = file("million.json");
+    let mut out = BufWriter::new(File::create(&path).expect("a file"));
+    let begun = r#"{"run_cycles":1000,"source":{"segments":{"channels":[{"segments":["#;
+    write!(out, "{begun}").expect("room");
+    for index in 0..1_000_000 {
+        let comma = if index == 0 { "" } else { "," };
+        let interval = 1_048_576_000 + index;
+        write!(out, r#"{comma}{{"steps":{{"count":1,"interval_q16":{interval},"dir":1}}}}"#).expect("room");
+    }
+    write!(out, "]}}]}}}}}}").expect("room");
+    out.into_inner().expect("room");
+    let text = fs::metadata(&path).expect("a file").len();
+    let peak = peak(&["run", &path.display().to_string(), "--digest"]);
+    println!("text {text} bytes, memory {peak} bytes: {:.2} times", peak as f64 / text as f64);
+    assert!(peak > text && peak <= 10 * text, "{peak} bytes for {text}");
+}
+
+/// What is read of an entry takes more than its text, so a list of very many that say nothing is refused.
+#[test]
+fn a_short_text_of_very_many_entries_is_refused() {
+    let sends = vec!["{}"; 6_000_000].join(",");
+    let (code, out, err) =
+        stepscope(&["run", "-"], &format!(r#"{{"source":{{"line":{{"sends":[{sends}]}}}}}}"#));
+    assert_eq!((code, out.as_str()), (Some(2), ""));
+    assert!(err.contains("source.line.sends: 6000000 entries; give at most "), "{err}");
+}
+
+#[test]
+fn a_field_that_is_given_twice_is_refused_with_its_path() {
+    for (given, path) in [
+        (r#"{"clock_hz":16000000,"clock_hz":8000000}"#, "clock_hz"),
+        (r#"{"bus":{"slots":5,"channels":1,"slots":5}}"#, "bus.slots"),
+        (
+            r#"{"source":{"motion":{"axes":[{"moves":[{"cosine":{"ramp_s":0.1,"ramp_s":0.2}}]}]}}}"#,
+            "source.motion.axes[0].moves[0].cosine.ramp_s",
+        ),
+        (r#"{"version":1,"bus":{"pulses":"staggered","pulses":"staggered"}}"#, "bus.pulses"),
+    ] {
+        let (code, out, err) = stepscope(&["run", "-"], given);
+        assert_eq!((code, out.as_str()), (Some(2), ""), "{given}");
+        assert_eq!(err, format!("-: 1 problem\n  {path}: given twice; give it once\n"), "{given}");
+    }
+    let both = r#"{"source":{"motion":{"axes":[{"moves":[{"dwell":{},"dwell":{}}]}]}}}"#;
+    let (code, _, err) = stepscope(&["run", "-"], both);
+    assert!(code == Some(2) && err.contains("moves[0]: a map of 2 keys"), "{err}");
+}
+
+#[test]
+fn a_whole_number_may_be_written_as_other_programs_write_it() {
+    let plain = stepscope(&["run", "-", "--digest"], r#"{"clock_hz":16000000,"bus":{"slots":50}}"#);
+    assert_eq!(plain.0, Some(0));
+    for given in
+        [r#"{"clock_hz":16000000.0,"bus":{"slots":50.0}}"#, r#"{"clock_hz":1.6e7,"bus":{"slots":5E1}}"#]
+    {
+        assert_eq!(stepscope(&["run", "-", "--digest"], given), plain, "{given}");
+    }
+}
+
+#[test]
+fn a_value_of_the_wrong_type_is_told_the_documented_range() {
+    for (given, says) in [
+        (r#"{"clock_hz":-1}"#, "clock_hz: -1; give a whole number from 11 to 1000000000 Hz"),
+        (r#"{"clock_hz":16000000.5}"#, "clock_hz: 16000000.5; give a whole number from 11 to 1000000000 Hz"),
+        (r#"{"bus":{"slots":300}}"#, "bus.slots: 300; give a whole number from 1 to 127"),
+        (
+            r#"{"bus":{"channels":"four"}}"#,
+            "bus.channels: \u{201c}four\u{201d}; give a whole number from 1 to 16",
+        ),
+        (r#"{"run_cycles":1e30}"#, "run_cycles: 1e30; give a whole number from 1 to 9000000000000000 cycles"),
+        (r#"{"title":5}"#, "title: 5; give a text of 0 to 120 characters"),
+        (r#"{"controllers":{}}"#, "controllers: a map; give a list of 0 to 31 additional controllers"),
+        (r#"{"version":"x"}"#, "version: \u{201c}x\u{201d}; give a whole number: 1 or 2"),
+        (r#"{"analysis":{"sensor_hz":"x"}}"#, "analysis.sensor_hz: \u{201c}x\u{201d}; give a number from "),
+        (r#"{"title":"\ud800"}"#, "title: a text with half of a surrogate pair; give a text of 0 to 120"),
+    ] {
+        let (code, _, err) = stepscope(&["run", "-"], given);
+        assert_eq!(code, Some(2), "{given}");
+        assert!(err.lines().nth(1).is_some_and(|line| line.trim().starts_with(says)), "{given}: {err}");
+    }
+}
+
+#[test]
+fn a_presets_name_stands_for_its_file_wherever_one_does() {
+    let preset = PRESETS.iter().find(|preset| preset.id == "sonobe-2011-table").expect("it is there");
+    for arguments in [
+        &["run"] as &[&str],
+        &["measures"],
+        &["tables", "--form", "compressed"],
+        &["faults", "--seeds", "2"],
+        &["run", "--link"],
+    ] {
+        let call = |scenario: &str, input: &str| {
+            stepscope(&[&[arguments[0], scenario], &arguments[1..]].concat(), input)
+        };
+        let (code, out, err) = call(preset.id, "");
+        assert_eq!(code, Some(0), "{arguments:?}: {err}");
+        assert_eq!(out, call("-", preset.json).1, "{arguments:?}");
+    }
+    // A file of that name is meant, where there is one.
+    let folder = file("preset-name");
+    fs::create_dir_all(&folder).expect("a folder");
+    fs::write(folder.join(preset.id), r#"{"clock_hz":0}"#).expect("a file");
+    let output = Command::new(env!("CARGO_BIN_EXE_stepscope"))
+        .args(["run", preset.id])
+        .current_dir(&folder)
+        .output()
+        .expect("it starts");
+    assert_eq!(output.status.code(), Some(2));
+    let (code, _, err) = stepscope(&["run", "no-such-preset"], "");
+    assert!(code == Some(1) && err.starts_with("no-such-preset: "), "{err}");
+}

@@ -1,0 +1,198 @@
+//! A text that is known to be JSON, looked at where it stands: a value is the piece of the text that it is written as.
+//!
+//! Nothing is kept of what was passed over, so reading takes no memory beside the text and what is read from it, and every
+//! name is seen, those that are given twice as well. The price is time: what lies under a value is passed over once for
+//! each level that it lies below, and a scenario has nine.
+
+use alloc::{borrow::Cow, borrow::ToOwned, vec::Vec};
+use core::fmt;
+use serde::{
+    Deserialize, Deserializer as _,
+    de::{Error, MapAccess, SeqAccess, Visitor},
+};
+use serde_json::{Deserializer, value::RawValue};
+
+/// Whole numbers up to this one are exact also where they are written with a point or a power of ten.
+const MAX_EXACT: f64 = 9_007_199_254_740_992.0;
+
+/// A value in a JSON text.
+#[derive(Clone, Copy, Debug)]
+pub struct Json<'t>(&'t RawValue);
+
+impl<'t> Json<'t> {
+    /// The value that a whole text is.
+    ///
+    /// # Errors
+    /// If it is not JSON, where and why.
+    pub(crate) fn parse(text: &'t str) -> Result<Self, serde_json::Error> {
+        serde_json::from_str(text).map(Self)
+    }
+
+    /// As it is written.
+    pub(crate) fn written(self) -> &'t str {
+        self.0.get()
+    }
+
+    fn begins_with(self, mark: char) -> bool {
+        self.written().starts_with(mark)
+    }
+
+    pub(crate) fn is_null(self) -> bool {
+        self.begins_with('n')
+    }
+
+    pub(crate) fn is_map(self) -> bool {
+        self.begins_with('{')
+    }
+
+    pub(crate) fn is_list(self) -> bool {
+        self.begins_with('[')
+    }
+
+    /// The text, if it is one: not if half of a surrogate pair stands in it.
+    pub(crate) fn text(self) -> Option<Cow<'t, str>> {
+        let text = self.begins_with('"').then(|| serde_json::from_str::<Text<'_>>(self.written()));
+        text?.ok().map(|Text(text)| text)
+    }
+
+    /// The number, if it is one that is not beyond all numbers.
+    pub(crate) fn number(self) -> Option<f64> {
+        serde_json::from_str(self.written()).ok()
+    }
+
+    /// The whole number, if it is one: whether it is below zero, and its size. `16000000.0` and `16e6` are whole, too.
+    pub(crate) fn whole(self) -> Option<(bool, u64)> {
+        let written = self.written();
+        let size = written.strip_prefix('-').unwrap_or(written);
+        let below = size.len() < written.len();
+        if let Ok(size) = size.parse::<u64>() {
+            return Some((below && size > 0, size));
+        }
+        let number = self.number()?;
+        let size = number.abs() as u64;
+        (number.abs() <= MAX_EXACT && size as f64 == number.abs()).then_some((number < 0.0, size))
+    }
+
+    /// Each name of a map and its value, in their order; false if it is no map, or a name in it is no text.
+    pub(crate) fn members(self, each: &mut dyn FnMut(&str, Json<'t>)) -> bool {
+        Deserializer::from_str(self.written()).deserialize_map(Members(each)).is_ok()
+    }
+
+    /// Each entry of a list, in their order; false if it is no list.
+    pub(crate) fn entries(self, each: &mut dyn FnMut(Json<'t>)) -> bool {
+        self.is_list() && Deserializer::from_str(self.written()).deserialize_seq(Entries(each)).is_ok()
+    }
+
+    /// The entries of a list.
+    pub(crate) fn list(self) -> Option<Vec<Json<'t>>> {
+        let mut list = Vec::new();
+        self.entries(&mut |entry| list.push(entry)).then_some(list)
+    }
+}
+
+/// A text that is a piece of the whole one, or was written with escapes.
+struct Text<'t>(Cow<'t, str>);
+
+impl<'t> Deserialize<'t> for Text<'t> {
+    fn deserialize<D: serde::Deserializer<'t>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Borrowing;
+
+        impl<'t> Visitor<'t> for Borrowing {
+            type Value = Text<'t>;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a text")
+            }
+
+            fn visit_borrowed_str<E: Error>(self, text: &'t str) -> Result<Text<'t>, E> {
+                Ok(Text(Cow::Borrowed(text)))
+            }
+
+            fn visit_str<E: Error>(self, text: &str) -> Result<Text<'t>, E> {
+                Ok(Text(Cow::Owned(text.to_owned())))
+            }
+        }
+
+        deserializer.deserialize_str(Borrowing)
+    }
+}
+
+struct Members<'f, 't>(&'f mut dyn FnMut(&str, Json<'t>));
+
+impl<'t> Visitor<'t> for Members<'_, 't> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a map")
+    }
+
+    fn visit_map<A: MapAccess<'t>>(self, mut map: A) -> Result<(), A::Error> {
+        while let Some((Text(name), value)) = map.next_entry()? {
+            (self.0)(&name, Json(value));
+        }
+        Ok(())
+    }
+}
+
+struct Entries<'f, 't>(&'f mut dyn FnMut(Json<'t>));
+
+impl<'t> Visitor<'t> for Entries<'_, 't> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a list")
+    }
+
+    fn visit_seq<A: SeqAccess<'t>>(self, mut list: A) -> Result<(), A::Error> {
+        while let Some(entry) = list.next_element()? {
+            (self.0)(Json(entry));
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::{format, string::String};
+
+    #[test]
+    fn a_whole_number_may_be_written_with_a_point_or_a_power() {
+        for (given, expected) in [
+            ("16000000", Some((false, 16_000_000))),
+            ("16000000.0", Some((false, 16_000_000))),
+            ("16e6", Some((false, 16_000_000))),
+            ("-3.0", Some((true, 3))),
+            ("-0", Some((false, 0))),
+            ("18446744073709551615", Some((false, u64::MAX))),
+            ("9007199254740992.0", Some((false, 1 << 53))),
+            // Not exact any more: who means it writes it without a point.
+            ("9007199254740994.0", None),
+            ("18446744073709551616", None),
+            ("1.5", None),
+            ("1e999", None),
+            ("\"1\"", None),
+            ("true", None),
+        ] {
+            assert_eq!(Json::parse(given).expect(given).whole(), expected, "{given}");
+        }
+    }
+
+    #[test]
+    fn every_name_is_seen_in_its_order_also_twice() {
+        let json = Json::parse(r#" { "b": [1, {"x": "]"}], "a" : null, "b": "\u0041\"" } "#).expect("JSON");
+        let mut seen = String::new();
+        assert!(json.members(&mut |name, value| seen += &format!("{name}={};", value.written())));
+        assert_eq!(seen, r#"b=[1, {"x": "]"}];a=null;b="\u0041\"";"#);
+        assert!(!Json::parse("[]").expect("JSON").members(&mut |_, _| {}));
+        assert!(!Json::parse("{}").expect("JSON").entries(&mut |_| {}));
+        assert_eq!(Json::parse("[1, [2]]").expect("JSON").list().map(|list| list.len()), Some(2));
+    }
+
+    #[test]
+    fn half_of_a_surrogate_pair_is_no_text() {
+        assert_eq!(Json::parse(r#""\u00fc""#).expect("JSON").text().as_deref(), Some("\u{fc}"));
+        assert_eq!(Json::parse(r#""\ud800""#).expect("JSON").text(), None);
+        assert!(!Json::parse(r#"{"\ud800": 1}"#).expect("JSON").members(&mut |_, _| {}));
+    }
+}
