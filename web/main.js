@@ -14,13 +14,13 @@ import { samples, takeSchema } from "./form/schema.js";
 import { createCard } from "./help/card.js";
 import { createGuide, offerGuide } from "./help/guide.js";
 import { createKeys } from "./help/keys.js";
-import { createExports } from "./shell/exports.js";
 import { createHeader, createTheme } from "./shell/header.js";
 import { createImports } from "./shell/imports.js";
 import { createLink } from "./shell/link.js";
 import { createNotices } from "./shell/notices.js";
 import { keepOffline } from "./shell/offline.js";
 import { createOwn } from "./shell/own.js";
+import { createPanel } from "./shell/panel.js";
 import { createPanes } from "./shell/panes.js";
 import { createShare } from "./shell/share.js";
 import {
@@ -38,14 +38,11 @@ import { createTabs } from "./shell/tabs.js";
 import { readJson } from "./state/json.js";
 import { EARLIER, held, initial, isStale, OWN_TEXTS, update } from "./state/state.js";
 import { load as loadCharts } from "./time/plot.js";
-import { chartFiles } from "./views/chart_offers.js";
 import { createMotion } from "./views/motion/motion.js";
-import { packetFiles } from "./views/packets/files.js";
 import { createPackets } from "./views/packets/packets.js";
 import { createPulses } from "./views/pulses/pulses.js";
 import { createSpectrum } from "./views/spectrum/spectrum.js";
 import { createStudy } from "./views/study/study.js";
-import { tableFiles } from "./views/study/table_files.js";
 import { createTiming } from "./views/timing.js";
 
 /** @typedef {import("./state/types.js").State} State */
@@ -209,6 +206,25 @@ async function own(fallback) {
   return { left, good: problems.length > 0 ? loadGood() : null };
 }
 
+/** What the panel of exports holds; it loads when that is first opened. @param {{engine: Engine} & import("./state/types.js").Page} page @param {import("./shell/panel.js").Panel} panel */
+async function exportsOf(page, panel) {
+  const [{ createExports }, { chartFiles }, { packetFiles }, { tableFiles }] = await Promise.all([
+    import("./shell/exports.js"),
+    import("./views/chart_offers.js"),
+    import("./views/packets/files.js"),
+    import("./views/study/table_files.js"),
+  ]);
+  return createExports(
+    page,
+    [
+      ["Charts", chartFiles],
+      ["Packets", packetFiles],
+      ["Step tables", tableFiles],
+    ],
+    panel,
+  );
+}
+
 async function start() {
   createTheme();
   createCard();
@@ -254,14 +270,10 @@ async function start() {
     createStudy({ samples: made, ...page }),
     createNotices(page),
     createShare({ shared: link.shared, ...page }),
-    createExports(page, [
-      ["Charts", chartFiles],
-      ["Packets", packetFiles],
-      ["Step tables", tableFiles],
-    ]),
+    createPanel("export", "export-panel", (panel) => exportsOf(page, panel), "export-status"),
+    createOwn({ fresh: fallback, ...page }),
     link,
   ];
-  createOwn({ fresh: fallback, ...page });
   createKeys();
   createGuide(page);
   await link.start(loadScenario() !== null);

@@ -7,6 +7,7 @@ import { Dropped } from "../engine/engine.js";
 import { readJson } from "../state/json.js";
 import { counted } from "../state/number.js";
 import { message } from "./link.js";
+import { save } from "./save.js";
 import { loadExperiments, saveExperiments } from "./storage.js";
 
 /** @typedef {import("../state/types.js").Scenario} Scenario */
@@ -17,7 +18,7 @@ const FILE_NAME = "stepscope-experiments.json";
 
 /** @typedef {{fresh: string, engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} Given  `fresh`: what a new experiment begins with, as JSON. */
 
-/** What the panel does; what it gives is called whenever it opens. @param {Given} page @param {{close: () => void, changed: () => void}} panel  `changed`: other experiments are kept than before. */
+/** What the panel does; made once. @param {Given} page @param {{close: () => void, changed: () => void}} panel  `changed`: other experiments are kept than before. */
 export function createExperiments({ fresh, engine, dispatch, now }, { close, changed }) {
   const name = /** @type {HTMLInputElement} */ (byId("experiment-name"));
   const keep = /** @type {HTMLButtonElement} */ (byId("experiment-keep"));
@@ -35,7 +36,7 @@ export function createExperiments({ fresh, engine, dispatch, now }, { close, cha
     dispatch({ type: "replace", scenario: readJson(fresh), origin: "own" });
     close();
   });
-  exportAll.addEventListener("click", save);
+  exportAll.addEventListener("click", exportThem);
   byId("experiments-import").addEventListener("click", () => chooser.click());
   chooser.addEventListener("change", async () => {
     const [file] = chooser.files ?? [];
@@ -75,12 +76,8 @@ export function createExperiments({ fresh, engine, dispatch, now }, { close, cha
     name.focus();
   }
 
-  function save() {
-    const text = JSON.stringify({ [FILE]: 1, experiments: loadExperiments() }, null, 1);
-    const link = element("a", { download: FILE_NAME });
-    link.href = URL.createObjectURL(new Blob([text], { type: "application/json" }));
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+  function exportThem() {
+    save(FILE_NAME, "application/json", [JSON.stringify({ [FILE]: 1, experiments: loadExperiments() }, null, 1)]);
     say(about, `Saved ${FILE_NAME}.`);
   }
 
@@ -103,11 +100,13 @@ export function createExperiments({ fresh, engine, dispatch, now }, { close, cha
     changed();
   }
 
-  return () => {
+  function opened() {
     name.value = String(now().scenario.title ?? "");
     say(about, "");
     show();
-  };
+  }
+
+  return { opened };
 }
 
 /** Takes the experiments of a file beside those that are kept: one of a name that there is gets another. @param {string} text @param {import("../engine/engine.js").Engine} engine @returns {Promise<string>}  What became of them. */

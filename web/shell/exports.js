@@ -7,27 +7,23 @@ import { Dropped } from "../engine/engine.js";
 import { count, si, time } from "../state/number.js";
 import { isStale, selected } from "../state/state.js";
 import { message } from "./link.js";
-import { dropDown } from "./popover.js";
+import { baseName, between } from "./offers.js";
 import { save } from "./save.js";
 import { harmonicsTable, marginsTable, violationsTable } from "./tables.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Span} Span */
 /** @typedef {import("../engine/engine.js").Engine} Engine */
-/**
- * A file that can be saved. `make` gives its parts; `pace` is to be called as it goes on, and throws where the
- * visitor leaves off.
- * @typedef {{name: string, type: string, label: string, make: (pace: (part: number) => void) => Promise<BlobPart[]>}} Offer
- * @typedef {{title: string, offers: Offer[]}} Group
- */
+/** @typedef {import("./offers.js").Offer} Offer */
+/** @typedef {import("./offers.js").Group} Group */
 
 /** Pieces of a file that become one blob, which the browser may keep on disk. */
 const PIECES = 16;
 
 class Cancelled extends Error {}
 
-/** @param {{engine: Engine} & import("../state/types.js").Page} page  @param {[string, (state: State, engine: Engine) => Offer[]][]} others  What other parts of the page offer, each list with its title. */
-export function createExports({ engine, now }, others) {
+/** @param {{engine: Engine} & import("../state/types.js").Page} page  @param {[string, (state: State, engine: Engine) => Offer[]][]} others  What other parts of the page offer, each list with its title. @param {import("./panel.js").Panel} panel @returns {import("./panel.js").Content} */
+export function createExports({ engine, now }, others, { isOpen }) {
   const stretch = /** @type {HTMLSelectElement} */ (byId("export-stretch"));
   const list = byId("export-list");
   const status = byId("export-status");
@@ -35,7 +31,6 @@ export function createExports({ engine, now }, others) {
   const bar = /** @type {HTMLProgressElement} */ (byId("export-progress"));
   let stopped = false;
   let busy = false;
-  const { isOpen } = dropDown("export", "export-panel", offer);
   stretch.addEventListener("change", offer);
   cancel.addEventListener("click", () => {
     stopped = true;
@@ -133,7 +128,6 @@ export function createExports({ engine, now }, others) {
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    /** @type {HTMLButtonElement} */ (byId("export")).disabled = false;
     if (
       isOpen() &&
       !busy &&
@@ -142,12 +136,7 @@ export function createExports({ engine, now }, others) {
     )
       offer();
   }
-  return { render };
-}
-
-/** What lies between the cursors, if both are set. @param {State} state @returns {Span | null} */
-export function between({ cursors: { a, b } }) {
-  return a === null || b === null || a === b ? null : { start: Math.min(a, b), end: Math.max(a, b) };
+  return { opened: offer, render };
 }
 
 /** @param {State} state @param {Engine} engine @param {Span | null} span  Cycles, both in it; null is the whole run. @returns {Group[]} */
@@ -245,15 +234,4 @@ async function pieces(engine, kind, controller, start, end, pace) {
     pace((from ?? piece.rows) / Math.max(1, piece.rows));
   }
   return blobs;
-}
-
-/** A name for files of an experiment. @param {State} state */
-export function baseName({ scenario }) {
-  const name = (scenario.title ?? "")
-    .normalize("NFKD")
-    .replace(/[^\w]+/g, "-")
-    .replace(/^-+|-+$/g, "")
-    .toLowerCase()
-    .slice(0, 40);
-  return name || "stepscope";
 }

@@ -1,6 +1,6 @@
 /** The visitor's own experiments among the presets, and the button of their panel, which loads when it is first opened. */
-import { byId, element, say } from "../dom.js";
-import { dropDown } from "./popover.js";
+import { byId, element } from "../dom.js";
+import { createPanel } from "./panel.js";
 import { loadExperiments } from "./storage.js";
 
 /** Lists the own experiments beside the presets. */
@@ -16,20 +16,17 @@ export function listOwn() {
 
 /** @param {import("./experiments.js").Given} page */
 export function createOwn(page) {
-  /** @type {(() => void) | null} */
-  let opened = null;
-  const { close } = dropDown("experiments", "experiments-panel", async () => {
-    try {
-      opened ??= (await import("./experiments.js")).createExperiments(page, { close, changed: listOwn });
-      opened();
-    } catch {
-      say(byId("experiment-about"), "This part of the page could not be loaded; try again when the network is there.");
-    }
-  });
+  const panel = createPanel(
+    "experiments",
+    "experiments-panel",
+    async ({ close }) => (await import("./experiments.js")).createExperiments(page, { close, changed: listOwn }),
+    "experiment-about",
+  );
   byId("preset").addEventListener("change", () => {
     const { value } = /** @type {HTMLSelectElement} */ (byId("preset"));
     const scenario = loadExperiments().find(({ title }) => `own:${title}` === value);
     if (scenario) page.dispatch({ type: "replace", scenario, origin: "own" });
   });
   listOwn();
+  return panel;
 }

@@ -1,12 +1,12 @@
 /** What can be saved of the motion and the spectrum as they are; how that is made loads with the first of them. */
-import { baseName } from "../shell/exports.js";
+import { baseName } from "../shell/offers.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../engine/engine.js").Engine} Engine */
 
 const files = () => import("./chart_files.js");
 
-/** @param {State} state @param {Engine} engine @returns {import("../shell/exports.js").Offer[]} */
+/** @param {State} state @param {Engine} engine @returns {import("../shell/offers.js").Offer[]} */
 export function chartFiles(state, engine) {
   if (!state.result) return [];
   const [png, svg, csv] = ["image/png", "image/svg+xml", "text/csv"];

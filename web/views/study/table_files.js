@@ -1,5 +1,5 @@
 /** The step tables of an axis as files for a firmware: in the study's tab Tables and in the export panel. */
-import { baseName } from "../../shell/exports.js";
+import { baseName } from "../../shell/offers.js";
 import { selectedAxis } from "./selected_axis.js";
 
 /** @typedef {import("../../state/types.js").State} State */
@@ -19,7 +19,7 @@ export const LANGUAGES = {
 /** The table that is chosen in the tab, which the export panel offers, too. @type {Choice} */
 export const chosen = { form: "compressed", widths: "q16", us: 25 };
 
-/** Files of the table that is chosen, for the export panel. @param {State} state @param {Engine} engine @returns {import("../../shell/exports.js").Offer[]} */
+/** Files of the table that is chosen, for the export panel. @param {State} state @param {Engine} engine @returns {import("../../shell/offers.js").Offer[]} */
 export function tableFiles(state, engine) {
   const of = selectedAxis(state);
   return of && typeof of !== "string" ? files(state, engine, of) : [];
