@@ -30,7 +30,7 @@ use crate::units::Instant;
 use crate::wire::{BitTimes, Schedule, bit_times::BYTE_BITS};
 use alloc::rc::Rc;
 
-const _: () = assert!(BYTE_BITS <= u16::BITS as u64, "the edges of a byte have a bit each");
+const _: () = assert!(BYTE_BITS <= u32::BITS as u64, "the edges of a byte have a bit each");
 
 /// Iterates over the edges of a schedule's bytes.
 #[derive(Clone, Debug)]
@@ -44,7 +44,10 @@ pub struct Sender {
     byte: usize,
     byte_start: Instant,
     /// Bits of the byte that differ from the bit before them and have not passed.
-    edges: u16,
+    ///
+    /// 32 bits, though ten are used: x86-64 code loads a narrower number as 32 bits, and right after a narrower store
+    /// that load waits for the cache, at every edge of a run.
+    edges: u32,
 }
 
 impl Sender {
@@ -92,7 +95,7 @@ impl Sender {
             if let Some(&byte) = send.bytes.get(self.byte) {
                 self.byte_start = send.start + self.times.byte(self.byte as u64);
                 // Start bit 0, data, stop bit 1; before the start bit the line is high.
-                let frame = u16::from(byte) << 1 | 1 << 9;
+                let frame = u32::from(byte) << 1 | 1 << 9;
                 self.edges = (frame ^ (frame << 1 | 1)) & ((1 << BYTE_BITS) - 1);
                 debug_assert!(self.edges & 1 == 1, "every byte begins with the edge of its start bit");
                 return;
