@@ -10,10 +10,10 @@ import { count } from "../../state/number.js";
 const ROW_PX = 24;
 /** Browsers refuse boxes taller than some ten million pixels; a longer list scrolls in larger steps. */
 const MAX_PX = 6_000_000;
-/** Air at both sides of a cell's text. */
-const CELL_PX = 17;
 /** Most of the column of bytes where words say more than they do. */
 const FRAMED_BYTES_PX = 104;
+/** Least widths of columns where there is little room; texts are then cut off. */
+const [LEAST_BYTES_PX, LEAST_MEANING_PX, LEAST_OUTCOME_PX] = [96, 64, 52];
 /** Texts of a row's cells, each with what its pointer tells where that is more. @type {((row: PacketRow) => [string, string?])[]} */
 const COLUMNS = [
   ({ index }) => [count(index)],
@@ -40,6 +40,7 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
   let current = 0;
   /** Widest texts of the columns so far, in CSS pixels: columns do not jump while the table scrolls. @type {{[column: string]: number}} */
   let widest = {};
+  let cellAir = 0;
 
   scroller.addEventListener("scroll", reload);
   new ResizeObserver(reload).observe(scroller);
@@ -167,8 +168,14 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
     }
   }
 
-  /** Columns as wide as their texts; the meaning takes what is left. */
+  /**
+   * Columns as wide as their texts; the meaning takes what is left. Where there is little room the gap goes first, which
+   * the inspector tells, then the outcome becomes narrow; the bytes always stay.
+   */
   function widen() {
+    // Air at both sides of a cell's text.
+    const air = 1 + 2 * Number.parseFloat(getComputedStyle(table.querySelector("th") ?? table).paddingLeft);
+    if (air !== cellAir) [cellAir, widest] = [air, {}];
     const fontOf = (/** @type {string} */ cell) => {
       const { fontWeight, fontSize, fontFamily } = getComputedStyle(table.querySelector(cell) ?? table);
       return `${fontWeight} ${fontSize} ${fontFamily}`;
@@ -177,7 +184,7 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
       ruler.font = font;
       widest[column] = Math.max(
         widest[column] ?? 0,
-        ...texts.map((text) => Math.ceil(ruler.measureText(text).width) + CELL_PX),
+        ...texts.map((text) => Math.ceil(ruler.measureText(text).width) + air),
       );
     };
     const { rows, unit } = answer;
@@ -192,13 +199,15 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
     measure("bytes", hex, ...rows.map((row) => row.hex));
     measure("bytes", head, "bytes (hex)");
     // Of a frame the bytes say less than the words.
-    const spare = table.clientWidth - widest.index - widest.time - widest.gap - widest.outcome;
     const framed = now().result?.summary.framed;
-    const bytes = Math.min(
-      widest.bytes,
-      framed ? Math.min(FRAMED_BYTES_PX, Math.max(spare / 3, 60)) : Math.max(spare / 2, 96),
-    );
-    for (const [column, width] of Object.entries({ ...widest, bytes }))
+    const wanted = framed ? Math.min(FRAMED_BYTES_PX, widest.bytes) : widest.bytes;
+    const room = table.clientWidth - widest.index - widest.time - LEAST_MEANING_PX;
+    const tight = room < wanted + widest.outcome + widest.gap;
+    const left = room - (tight ? 0 : widest.gap);
+    const outcome = Math.max(Math.min(LEAST_OUTCOME_PX, widest.outcome), Math.min(widest.outcome, left - wanted));
+    const bytes = Math.max(Math.min(LEAST_BYTES_PX, wanted), Math.min(wanted, left - outcome));
+    table.classList.toggle("tight", tight);
+    for (const [column, width] of Object.entries({ ...widest, outcome, bytes }))
       table.style.setProperty(`--${column}-px`, `${width}px`);
   }
 
