@@ -52,7 +52,8 @@ export function paintRows(canvas, state, plot, answer, spans) {
     context.textBaseline = "middle";
     context.font = `${chosen ? "bold " : ""}${font}`;
     const folds = "open" in row && row.open !== undefined;
-    context.fillText(fitting(context, row.name, left - (folds ? 28 : 12) * scale), left - 8 * scale, top + height / 2);
+    const name = ("short" in row && row.short) || row.name;
+    context.fillText(fitting(context, name, left - (folds ? 28 : 12) * scale), left - 8 * scale, top + height / 2);
     if (folds) {
       context.textAlign = "left";
       context.fillText(row.open ? "▾" : "▸", 8 * scale, top + height / 2);

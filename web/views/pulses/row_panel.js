@@ -111,7 +111,7 @@ export function createRowPanel({ canvas, speak, dispatch, now }) {
     const box = element("input", { type: "checkbox" });
     const field = element("input", { type: "text", maxlength: String(MOST_LETTERS), spellcheck: "false" });
     box.addEventListener("change", () => hide(what, !box.checked));
-    field.addEventListener("change", () => choose(named(choices(), what.group, field.value, what.own)));
+    field.addEventListener("input", () => choose(named(choices(), what.group, field.value, what.own)));
     const press = (/** @type {number} */ by) => {
       move(what, by, groupsOf(now()));
       const { up, down } = made;

@@ -8,7 +8,7 @@ import { selected } from "../../state/state.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /**
- * @typedef {{kind: "signal", name: string, bit: number, ink: string, channel?: number, open?: boolean}} SignalRow  With the sign that folds its `channel` where it has `open`.
+ * @typedef {{kind: "signal", name: string, bit: number, ink: string, short?: string, channel?: number, open?: boolean}} SignalRow  With the sign that folds its `channel` where it has `open`; `short` stands beside it where there is no room for the name.
  * @typedef {{kind: "folded", name: string, bit: number, dir: number, ink: string, channel: number, open: false}} FoldedRow  STEP over its DIR.
  * @typedef {{kind: "packets" | "replies" | "ticks" | "violations", name: string, ink: string}} SpanRow
  * @typedef {{kind: "bits" | "bytes" | "fields", wire: "rx" | "tx", line: number, name: string, ink: string}} LineRow  A decoder of the signal `line`.
@@ -111,6 +111,7 @@ export function groupsOf(state) {
 /** @param {State} state @param {number} channel @returns {Row[]} */
 function channelRows(state, channel) {
   const [dir, step] = signalsOfChannel(state, channel);
+  const { [channel]: called } = state.panes.pulses.names;
   return isFolded(state, channel)
     ? [
         {
@@ -124,8 +125,8 @@ function channelRows(state, channel) {
         },
       ]
     : [
-        { kind: "signal", ...dir, ink: "--dir", channel, open: true },
-        { kind: "signal", ...step, ink: "--step", channel },
+        { kind: "signal", ...dir, short: called && "DIR", ink: "--dir", channel, open: true },
+        { kind: "signal", ...step, short: called, ink: "--step", channel },
       ];
 }
 
