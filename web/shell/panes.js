@@ -24,8 +24,8 @@ import { loadPanes, savePanes } from "./storage.js";
  * @property {number} rest    Least size that is left for what comes after it.
  */
 
-/** Least widths of the form and of the views beside it in CSS pixels. */
-const [MIN_FORM_PX, MIN_VIEWS_PX] = [270, 480];
+/** Least widths of the form, of all views beside it, and of one view beside another, in CSS pixels. */
+const [MIN_FORM_PX, MIN_VIEWS_PX, MIN_VIEW_PX] = [270, 480, 200];
 /** A key moves an edge by so many CSS pixels, with Shift by five times as many. */
 const STEP_PX = 16;
 
@@ -64,8 +64,8 @@ function between(before, after, upright) {
     before: all(before),
     after: all(after),
     place: after.place,
-    least: before.place.least_px,
-    rest: upright ? before.place.least_px : after.place.least_px,
+    least: upright ? MIN_VIEW_PX : before.place.least_px,
+    rest: upright ? MIN_VIEW_PX : after.place.least_px,
   };
 }
 

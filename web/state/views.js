@@ -23,7 +23,7 @@ import { selected } from "./state.js";
  * @property {number} band  From the top, 0 the first.
  * @property {string} [height]  Of the band, of its first view: at most so much, but what it holds has its room. Without it just that.
  * @property {number} part  Of the room of all, in which an edge that is moved leaves the others: of the height, or of the width beside others.
- * @property {number} least_px  Least size that an edge can be moved to.
+ * @property {number} least_px  Least height that an edge can be moved to.
  */
 
 const ROWS = /** @type {const} */ ([
@@ -37,26 +37,26 @@ const ROWS = /** @type {const} */ ([
     name: "pulses",
     title: "Pulses",
     about: "All signals between controller, drivers and line, exact to the cycle.",
-    place: { area: "pulses", band: 1, height: "min(var(--rows-px, 158px) + 92px, 40%)", part: 0.26, least_px: 110 },
+    place: { area: "pulses", band: 1, height: "min(var(--rows-px, 158px) + 90px, 40%)", part: 0.26, least_px: 110 },
   },
   {
     name: "packets",
     title: "Packets",
     about: "What went over the line, and what the controller did with it.",
-    place: { area: "packets", band: 2, height: "27%", part: 6 / 11, least_px: 200 },
+    place: { area: "packets", band: 2, height: "27%", part: 6 / 11, least_px: 110 },
   },
   {
     name: "spectrum",
     title: "Spectrum",
     about: "Which frequencies the motion is made of.",
-    place: { area: "spectrum", band: 2, part: 5 / 11, least_px: 200 },
+    place: { area: "spectrum", band: 2, part: 5 / 11, least_px: 110 },
   },
   {
     name: "timing",
     title: "Driver timing",
     tab: "Timing",
     about: "Could the driver have followed? Each rule of its data sheet against the pulses.",
-    place: { area: "spectrum", band: 2, part: 5 / 11, least_px: 200 },
+    place: { area: "spectrum", band: 2, part: 5 / 11, least_px: 110 },
     offered: (/** @type {State} */ state) => typeof selected(state)?.violations === "number",
   },
   {

@@ -97,7 +97,7 @@ fn the_height_of_the_rows_is_chosen_by_a_slider_and_by_keys() -> Result<()> {
         page.open("").await?;
         until_rows(&page, 6).await?;
         let tall = "document.getElementById('pulses-stack').offsetHeight";
-        let first: f64 = page.eval(tall).await?;
+        let first: u32 = page.eval(tall).await?;
         page.press("#pulses", &format!("{ALT}{DOWN}{RELEASE}")).await?;
         page.until_equal(&format!("{tall} - {first}"), &json!(18)).await?;
         page.press("#pulses", &format!("{ALT}{UP}{RELEASE}")).await?;

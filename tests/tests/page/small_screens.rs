@@ -111,6 +111,10 @@ fn a_view_with_nothing_to_show_gives_its_room_away_until_it_is_unfolded() -> Res
             page.until(&format!("document.getElementById('spectrum-chart').checkVisibility() === {large}"))
                 .await?;
         }
+        // What has something to show has its room again.
+        page.choose("#preset", "song-2021-one-turn").await?;
+        page.ready().await?;
+        page.until("document.querySelectorAll('#packets tbody tr').length > 3 && document.getElementById('packets').checkVisibility()").await?;
         // The choice is kept on this device.
         page.open("").await?;
         page.until("document.getElementById('spectrum-chart').checkVisibility()").await

@@ -351,6 +351,7 @@ async fn size(page: &Session, css: &str) -> Result<(f64, f64)> {
 fn panes_are_resized_folded_and_maximised_by_keys_and_stay_so() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
+        page.unfold_spectrum().await?;
         let now = async |id: &str| {
             page.eval::<String>(&format!("document.getElementById('{id}').ariaValueNow")).await
         };

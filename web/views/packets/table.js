@@ -10,10 +10,12 @@ import { count } from "../../state/number.js";
 const ROW_PX = 24;
 /** Browsers refuse boxes taller than some ten million pixels; a longer list scrolls in larger steps. */
 const MAX_PX = 6_000_000;
-/** Most of the column of bytes where words say more than they do. */
-const FRAMED_BYTES_PX = 104;
-/** Least widths of columns where there is little room; texts are then cut off. */
-const [LEAST_BYTES_PX, LEAST_MEANING_PX, LEAST_OUTCOME_PX] = [96, 64, 52];
+/** Room for a few bytes: the most that they get of a frame, where words say more than they do. */
+const FEW_BYTES_PX = 104;
+/** Of the columns of bytes and of the outcome there is always so much. */
+const [LEAST_BYTES_PX, LEAST_OUTCOME_PX] = [80, 52];
+/** Of the meaning there is so much while the bytes can give way, and then at least the other. */
+const [MEANING_PX, LEAST_MEANING_PX] = [64, 30];
 /** Texts of a row's cells, each with what its pointer tells where that is more. @type {((row: PacketRow) => [string, string?])[]} */
 const COLUMNS = [
   ({ index }) => [count(index)],
@@ -97,10 +99,14 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
 
   /** Asks for the rows on show. */
   async function reload() {
-    if (!now().result || scroller.clientHeight < ROW_PX) return;
-    const from = first();
-    const page = await engine.latest("packets", "packets", from, visible() + 2).catch(unlessDropped);
+    const { result, bare } = now();
+    // Out of sight nothing is drawn; whether there is anything to show has to be known all the same.
+    const unseen = scroller.clientHeight < ROW_PX;
+    if (!result || (unseen && !bare.includes("packets"))) return;
+    const from = unseen ? 0 : first();
+    const page = await engine.latest("packets", "packets", from, unseen ? 1 : visible() + 2).catch(unlessDropped);
     if (!page) return;
+    if (unseen) return counted(page);
     const others = page.shown !== answer.shown || page.total !== answer.total;
     answer = page;
     if (others) {
@@ -170,7 +176,7 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
 
   /**
    * Columns as wide as their texts; the meaning takes what is left. Where there is little room the gap goes first, which
-   * the inspector tells, then the outcome becomes narrow; the bytes always stay.
+   * the inspector tells, then the bytes and the meaning become narrow, and last the outcome.
    */
   function widen() {
     // Air at both sides of a cell's text.
@@ -200,12 +206,13 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
     measure("bytes", head, "bytes (hex)");
     // Of a frame the bytes say less than the words.
     const framed = now().result?.summary.framed;
-    const wanted = framed ? Math.min(FRAMED_BYTES_PX, widest.bytes) : widest.bytes;
-    const room = table.clientWidth - widest.index - widest.time - LEAST_MEANING_PX;
-    const tight = room < wanted + widest.outcome + widest.gap;
-    const left = room - (tight ? 0 : widest.gap);
-    const outcome = Math.max(Math.min(LEAST_OUTCOME_PX, widest.outcome), Math.min(widest.outcome, left - wanted));
-    const bytes = Math.max(Math.min(LEAST_BYTES_PX, wanted), Math.min(wanted, left - outcome));
+    const all = table.clientWidth - widest.index - widest.time;
+    const half = (all - widest.gap - widest.outcome) / 2;
+    const wanted = Math.min(widest.bytes, framed ? FEW_BYTES_PX : Math.max(half, FEW_BYTES_PX));
+    const tight = all < wanted + widest.outcome + widest.gap + MEANING_PX;
+    const room = all - (tight ? 0 : widest.gap);
+    const bytes = Math.max(Math.min(LEAST_BYTES_PX, wanted), Math.min(wanted, room - widest.outcome - MEANING_PX));
+    const outcome = Math.min(widest.outcome, Math.max(LEAST_OUTCOME_PX, room - bytes - LEAST_MEANING_PX));
     table.classList.toggle("tight", tight);
     for (const [column, width] of Object.entries({ ...widest, outcome, bytes }))
       table.style.setProperty(`--${column}-px`, `${width}px`);
