@@ -141,7 +141,7 @@ fn the_chosen_row_is_moved_and_hidden_by_keys_and_said() -> Result<()> {
         until_rows(&page, 3).await?;
         // A hidden signal is shown while it is chosen.
         page.choose("#edge-row", "0").await?;
-        until_rows(&page, 4).await?;
+        until_rows(&page, 5).await?;
         ensure!(
             page.eval::<bool>("document.getElementById('pulses').ariaLabel.endsWith('row STEP 0')").await?
         );
