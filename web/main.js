@@ -37,6 +37,7 @@ import {
 import { createTabs } from "./shell/tabs.js";
 import { readJson } from "./state/json.js";
 import { EARLIER, held, initial, isStale, OWN_TEXTS, update } from "./state/state.js";
+import { NAMES } from "./state/views.js";
 import { load as loadCharts } from "./time/plot.js";
 import { createMotion } from "./views/motion/motion.js";
 import { createPackets } from "./views/packets/packets.js";
@@ -257,17 +258,21 @@ async function start() {
   };
   const pulses = createPulses(page);
   const remedies = (/** @type {string} */ json) => engine.latest("remedies", "remedies", json).catch(unlessDropped);
+  /** @type {{[view in import("./state/views.js").ViewName]: View}} */
+  const all = {
+    motion: createMotion(page),
+    pulses,
+    packets: createPackets(page),
+    spectrum: createSpectrum(page),
+    timing: createTiming({ drivers, speak: pulses.speak, ...page }),
+    study: createStudy({ samples: made, ...page }),
+  };
   views = [
     createHeader({ presets, cancel, retry, ...page }),
     createForm({ root: byId("fields"), samples: made, drivers, dispatch, remedies }),
     createTabs(page),
     createPanes(page),
-    createMotion(page),
-    pulses,
-    createPackets(page),
-    createSpectrum(page),
-    createTiming({ drivers, speak: pulses.speak, ...page }),
-    createStudy({ samples: made, ...page }),
+    ...NAMES.map((name) => all[/** @type {import("./state/views.js").ViewName} */ (name)]),
     createNotices(page),
     createShare({ shared: link.shared, ...page }),
     createPanel("export", "export-panel", (panel) => exportsOf(page, panel), "export-status"),

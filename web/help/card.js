@@ -2,9 +2,10 @@
  * The card that a word with dots under it opens: what the word means and which document it comes from. One card serves
  * all of them; a click elsewhere and Escape close it.
  */
-import { element, fill } from "../dom.js";
+import { byId, element, fill } from "../dom.js";
 import { documents, termOf } from "../form/schema.js";
 import { CARD, termButton } from "../form/term_button.js";
+import { VIEWS } from "../state/views.js";
 
 /** @typedef {import("../form/field.js").Term} Term */
 
@@ -46,9 +47,7 @@ export function createCard() {
     const open = /** @type {ToggleEvent} */ (event).newState === "open";
     opener?.setAttribute("aria-expanded", String(open));
   });
-  for (const title of document.querySelectorAll("h2[id^='title-']")) {
-    fill(title, termButton(title.textContent ?? "", title.id.replace("title-", "view:")));
-  }
+  for (const { name, title } of VIEWS) fill(byId(`title-${name}`), termButton(title, `view:${name}`));
 }
 
 /** The word whose card is on show, or was last. @type {HTMLElement | null} */
@@ -77,7 +76,7 @@ async function show(word) {
   const texts = own ? null : await load();
   // Another word was asked for meanwhile.
   if (opener !== word || !word.isConnected) return;
-  const view = texts?.VIEWS[name.replace("view:", "")];
+  const view = texts?.CARDS[name.replace("view:", "")];
   const term = own ?? texts?.DERIVED[name];
   const hint = word.closest(".field")?.querySelector(".hint")?.textContent;
   fill(

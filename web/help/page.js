@@ -4,7 +4,7 @@ import { compiled } from "../engine/wasm.js";
 import { documents, labels, takeSchema, termOf, terms } from "../form/schema.js";
 import init, { schema } from "../pkg/stepscope_wasm.js";
 import { meaning } from "./card.js";
-import { DERIVED, VIEWS } from "./texts.js";
+import { CARDS, DERIVED } from "./texts.js";
 
 /** @typedef {import("../form/field.js").Term} Term */
 
@@ -22,16 +22,13 @@ fill(byId("moves"), ...kinds("Move"));
 fill(byId("mechanics"), ...kinds("Mechanics"));
 fill(
   byId("view-list"),
-  ...Object.entries(VIEWS).flatMap(([view, { about }]) => [
-    element("dt", {}, view === "timing" ? "Driver timing" : view[0].toUpperCase() + view.slice(1)),
-    element("dd", {}, about),
-  ]),
+  ...Object.values(CARDS).flatMap(({ title, about }) => [element("dt", {}, title), element("dd", {}, about)]),
 );
 fill(byId("documents"), ...Object.values(documents()).map(({ title }) => element("li", {}, title)));
 
 // Fields of several groups share a term; two terms can have one name, such as the width of a pulse and the rule for it.
 const all = Object.entries(terms()).filter(([id]) => !/^(Move|Mechanics)\./.test(id));
-const ofViews = Object.values(VIEWS).flatMap(({ terms }) => Object.values(terms));
+const ofViews = Object.values(CARDS).flatMap(({ terms }) => Object.values(terms));
 const each = [...all.map(([, term]) => term), ...Object.values(DERIVED), ...ofViews];
 const said = [...new Map(each.map((term) => [`${term.name}: ${term.text}`, term])).values()];
 said.sort((a, b) => (a.name ?? "").localeCompare(b.name ?? "", "en"));

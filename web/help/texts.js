@@ -3,6 +3,8 @@
  * that loads when the first card of one of them is opened. All other terms stand with their fields in the schema.
  */
 
+import { VIEWS } from "../state/views.js";
+
 /** @typedef {import("../form/field.js").Term} Term */
 
 /** Of what follows from the scenario. @type {{[id: string]: Term}} */
@@ -40,136 +42,120 @@ export const DERIVED = {
   },
 };
 
-/**
- * What each view uses, explained behind its heading.
- * @type {{[view: string]: {about: string, terms: {[id: string]: Term}}}}
- */
-export const VIEWS = {
+/** What the words of each view mean. @type {{[view: string]: {[id: string]: Term}}} */
+const TERMS = {
   motion: {
-    about: "Position, speed and acceleration of one axis.",
-    terms: {
-      ideal: { name: "Ideal", text: "The curve that was asked for." },
-      made: {
-        name: "From pulses",
-        text: "What the STEP pulses really make of it: whole steps, at whole cycles.",
-      },
-      step: { name: "Step", text: "The least move of a motor: one STEP pulse, one microstep.", from: "sonobe" },
-      jerk: {
-        name: "Jerk",
-        text: "How fast acceleration changes. A jump of it shakes the machine; S-curves have none.",
-        from: "song",
-      },
+    ideal: { name: "Ideal", text: "The curve that was asked for." },
+    made: {
+      name: "From pulses",
+      text: "What the STEP pulses really make of it: whole steps, at whole cycles.",
+    },
+    step: { name: "Step", text: "The least move of a motor: one STEP pulse, one microstep.", from: "sonobe" },
+    jerk: {
+      name: "Jerk",
+      text: "How fast acceleration changes. A jump of it shakes the machine; S-curves have none.",
+      from: "song",
     },
   },
   pulses: {
-    about: "All signals between controller, drivers and line, exact to the cycle.",
-    terms: {
-      step_dir_en: {
-        name: "STEP, DIR, EN",
-        text: "A rise of STEP is one step; DIR says which way (high is right); EN high powers the windings.",
-        from: "patent",
-      },
-      rx_tx_de: {
-        name: "RX, TX, DE",
-        text: "What the controller hears, what it answers, and when its RS-485 transceiver drives the line.",
-        from: "own",
-      },
-      cycle: { name: "Cycle", text: "One beat of the controller's clock: 62.5 ns at 16 MHz.", from: "patent" },
-      interval: {
-        name: "Step interval",
-        text: "Time from one rise of STEP to the next; one over it is the rate.",
-        from: "sonobe",
-      },
-      bit_time: {
-        name: "B, bit time",
-        text: "Length of one bit in whole cycles, as the receiver counts it: clock / bit rate.",
-        from: "own",
-      },
-      digest: {
-        name: "Digest",
-        text: "A fingerprint of all edges of a run (XXH64). Two runs with the same digest have every edge in the same cycle, whoever computed them.",
-        from: "own",
-      },
+    step_dir_en: {
+      name: "STEP, DIR, EN",
+      text: "A rise of STEP is one step; DIR says which way (high is right); EN high powers the windings.",
+      from: "patent",
+    },
+    rx_tx_de: {
+      name: "RX, TX, DE",
+      text: "What the controller hears, what it answers, and when its RS-485 transceiver drives the line.",
+      from: "own",
+    },
+    cycle: { name: "Cycle", text: "One beat of the controller's clock: 62.5 ns at 16 MHz.", from: "patent" },
+    interval: {
+      name: "Step interval",
+      text: "Time from one rise of STEP to the next; one over it is the rate.",
+      from: "sonobe",
+    },
+    bit_time: {
+      name: "B, bit time",
+      text: "Length of one bit in whole cycles, as the receiver counts it: clock / bit rate.",
+      from: "own",
+    },
+    digest: {
+      name: "Digest",
+      text: "A fingerprint of all edges of a run (XXH64). Two runs with the same digest have every edge in the same cycle, whoever computed them.",
+      from: "own",
     },
   },
   packets: {
-    about: "What went over the line, and what the controller did with it.",
-    terms: {
-      framing: {
-        name: "Framing error",
-        text: "No stop bit where one is due: the byte is dropped. Raw packets are then ignored until the line has been quiet for 45 bit times.",
-        from: "own",
-      },
-      gap: {
-        name: "Gap",
-        text: "Raw packets are told apart by pauses: after 45 bit times of silence the next byte begins a packet.",
-        from: "patent",
-      },
-      seq: {
-        name: "seq",
-        text: "Number of a TICKS frame. One that comes again with the same number is acknowledged and not done twice.",
-        from: "own",
-      },
-      crc: {
-        name: "CRC",
-        text: "Checksum of a frame, 32 bits (Castagnoli): a frame with any one bit wrong is never taken.",
-        from: "own",
-      },
-      ack: { name: "ACK and NAK", text: "The controller's answers: done, or refused and why.", from: "own" },
-      underrun: {
-        name: "Underrun",
-        text: "The queue was empty although the last tick had steps: the motors stood still in the middle of a motion.",
-        from: "own",
-      },
+    framing: {
+      name: "Framing error",
+      text: "No stop bit where one is due: the byte is dropped. Raw packets are then ignored until the line has been quiet for 45 bit times.",
+      from: "own",
+    },
+    gap: {
+      name: "Gap",
+      text: "Raw packets are told apart by pauses: after 45 bit times of silence the next byte begins a packet.",
+      from: "patent",
+    },
+    seq: {
+      name: "seq",
+      text: "Number of a TICKS frame. One that comes again with the same number is acknowledged and not done twice.",
+      from: "own",
+    },
+    crc: {
+      name: "CRC",
+      text: "Checksum of a frame, 32 bits (Castagnoli): a frame with any one bit wrong is never taken.",
+      from: "own",
+    },
+    ack: { name: "ACK and NAK", text: "The controller's answers: done, or refused and why.", from: "own" },
+    underrun: {
+      name: "Underrun",
+      text: "The queue was empty although the last tick had steps: the motors stood still in the middle of a motion.",
+      from: "own",
     },
   },
   spectrum: {
-    about: "Which frequencies the motion is made of.",
-    terms: {
-      harmonic: {
-        name: "Harmonic",
-        text: "Part of the motion at a whole multiple of its own frequency, the fundamental. A pure sine has none but the first.",
-        from: "sine",
-      },
-      thd: {
-        name: "THD",
-        text: "Total harmonic distortion: root of the sum of squares of harmonics 2 to the order given, divided by the fundamental.",
-        from: "sine",
-      },
-      db: { name: "dB", text: "20 times the logarithm of the part: −20 dB is a tenth, −40 dB a hundredth." },
-      window: { name: "Window", text: "None: whole periods are taken, so every line falls on its own place." },
+    harmonic: {
+      name: "Harmonic",
+      text: "Part of the motion at a whole multiple of its own frequency, the fundamental. A pure sine has none but the first.",
+      from: "sine",
     },
+    thd: {
+      name: "THD",
+      text: "Total harmonic distortion: root of the sum of squares of harmonics 2 to the order given, divided by the fundamental.",
+      from: "sine",
+    },
+    db: { name: "dB", text: "20 times the logarithm of the part: −20 dB is a tenth, −40 dB a hundredth." },
+    window: { name: "Window", text: "None: whole periods are taken, so every line falls on its own place." },
   },
   timing: {
-    about: "Could the driver have followed? Each rule of its data sheet against the pulses.",
-    terms: {
-      least: { name: "Least", text: "The shortest time that was found.", from: "sheets" },
-      required: { name: "Required", text: "The least that the data sheet asks for.", from: "sheets" },
-      slack: {
-        name: "Slack",
-        text: "By how much the shortest time is longer than required; below 0 the rule is broken.",
-        from: "sheets",
-      },
+    least: { name: "Least", text: "The shortest time that was found.", from: "sheets" },
+    required: { name: "Required", text: "The least that the data sheet asks for.", from: "sheets" },
+    slack: {
+      name: "Slack",
+      text: "By how much the shortest time is longer than required; below 0 the rule is broken.",
+      from: "sheets",
     },
   },
   study: {
-    about: "Which profile, stored how, for this motor? The questions that a design begins with, for the selected axis.",
-    terms: {
-      exact_list: {
-        name: "Exact list",
-        text: "Every step in its cycle. Steps whose intervals differ by a constant share an entry.",
-        from: "own",
-      },
-      compressed: {
-        name: "Compressed list",
-        text: "Few entries, each for many steps, none of which is off by more than the error that is allowed.",
-        from: "own",
-      },
-      ev: {
-        name: "Ev",
-        text: "Euclidean distance: root of the sum of squares of what lies between the segments and the sine, over a quarter's 512 points.",
-        from: "sine",
-      },
+    exact_list: {
+      name: "Exact list",
+      text: "Every step in its cycle. Steps whose intervals differ by a constant share an entry.",
+      from: "own",
+    },
+    compressed: {
+      name: "Compressed list",
+      text: "Few entries, each for many steps, none of which is off by more than the error that is allowed.",
+      from: "own",
+    },
+    ev: {
+      name: "Ev",
+      text: "Euclidean distance: root of the sum of squares of what lies between the segments and the sine, over a quarter's 512 points.",
+      from: "sine",
     },
   },
 };
+
+/** What is explained behind the heading of each view. */
+export const CARDS = Object.fromEntries(
+  VIEWS.map(({ name, title, about }) => [name, { title, about, terms: TERMS[name] ?? {} }]),
+);

@@ -1,42 +1,73 @@
 /**
  * Panes of a wide screen: lines between them move their edges (pointer, arrow keys), each view folds to its head or
- * takes the whole place. The state has it all, this device keeps it; a narrow screen has tabs and none of this.
+ * takes the whole place, and one that has nothing to show gives its room away. The state has it all, this device keeps
+ * it; a narrow screen has tabs and none of this.
  */
 import { button, byId, element } from "../dom.js";
+import { keptRows } from "../state/row_choices.js";
+import { inPlace, isOffered, PLACED, SHARED, VIEWS } from "../state/views.js";
 import { listen } from "./commands.js";
+import { bandsOf, GAP_PX, template } from "./grid.js";
 import { loadPanes, savePanes } from "./storage.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Panes} Panes */
 /**
  * @typedef {object} Edge  A line between two panes.
- * @property {"form" | "motion" | "pulses" | "packets"} pane  The pane before it, whose size it is.
+ * @property {string} pane  The pane before it, whose size it is: a view, or the form.
  * @property {string} label
  * @property {boolean} upright
  * @property {string} before  Selector of the pane before it.
  * @property {string} after   And of the one after it.
+ * @property {import("../state/views.js").Place | null} place  Of the one after it; null for the views beside the form.
+ * @property {number} least   Least size of the pane before it in CSS pixels.
+ * @property {number} rest    Least size that is left for what comes after it.
  */
 
-const VIEWS = ["motion", "pulses", "packets", "spectrum", "timing"];
-/** @type {Edge[]} */
-const EDGES = [
-  { pane: "form", label: "Width of the form", upright: true, before: "#sheet", after: "#views" },
-  { pane: "motion", label: "Height of the curves", upright: false, before: "#view-motion", after: "#view-pulses" },
-  { pane: "pulses", label: "Height of the pulses", upright: false, before: "#view-pulses", after: "#view-packets" },
-  {
-    pane: "packets",
-    label: "Width of the packets",
-    upright: true,
-    before: "#view-packets",
-    after: ":is(#view-spectrum, #view-timing)",
-  },
-];
-/** Least size of a pane in CSS pixels. */
-const MIN_PX = { form: 270, motion: 120, pulses: 110, packets: 200 };
-/** Least room that is left for the views beside the form. */
-const MIN_VIEWS_PX = 480;
+/** Least widths of the form, of all views beside it, and of one view beside another, in CSS pixels. */
+const [MIN_FORM_PX, MIN_VIEWS_PX, MIN_VIEW_PX] = [270, 480, 200];
 /** A key moves an edge by so many CSS pixels, with Shift by five times as many. */
 const STEP_PX = 16;
+
+/** All views by their bands, and the line between two neighbours, which goes by the name of the first. */
+const BANDS = bandsOf(PLACED);
+/** @type {Edge[]} */
+const EDGES = [
+  {
+    pane: "form",
+    label: "Width of the form",
+    upright: true,
+    before: "#sheet",
+    after: "#views",
+    place: null,
+    least: MIN_FORM_PX,
+    rest: MIN_VIEWS_PX,
+  },
+  ...BANDS.slice(1).map(([after], at) => between(BANDS[at][BANDS[at].length - 1], after, false)),
+  ...BANDS.flatMap((band) =>
+    band
+      .slice(1)
+      .flatMap((after, at) => (after.place.area === band[at].place.area ? [] : [between(band[at], after, true)])),
+  ),
+];
+
+/** @param {import("../state/views.js").Placed} before @param {import("../state/views.js").Placed} after @param {boolean} upright @returns {Edge} */
+function between(before, after, upright) {
+  const all = (/** @type {import("../state/views.js").Placed} */ { place }) =>
+    `:is(${PLACED.filter((each) => each.place.area === place.area)
+      .map(({ name }) => `#view-${name}`)
+      .join(", ")})`;
+  return {
+    pane: before.name,
+    label: `${upright ? "Width" : "Height"} of ${before.title.toLowerCase()}`,
+    upright,
+    before: all(before),
+    after: all(after),
+    place: after.place,
+    least: upright ? MIN_VIEW_PX : before.place.least_px,
+    rest: upright ? MIN_VIEW_PX : after.place.least_px,
+  };
+}
 
 /** @param {import("../state/types.js").Page} page */
 export function createPanes({ dispatch, now }) {
@@ -44,7 +75,9 @@ export function createPanes({ dispatch, now }) {
   const views = byId("views");
   const wide = matchMedia("(min-width: 900px)");
   const edges = EDGES.map((edge) => ({ edge, line: line(edge) }));
-  for (const view of VIEWS) buttons(view);
+  for (const { name } of VIEWS) byId(`view-${name}`).style.gridArea = areaOf(name);
+  const sideways = [...SHARED.values()].flatMap(sides);
+  for (const view of PLACED) buttons(view);
   const kept = read();
   if (kept) queueMicrotask(() => dispatch({ type: "pane", panes: kept }));
   wide.addEventListener("change", () => apply(now()));
@@ -61,13 +94,15 @@ export function createPanes({ dispatch, now }) {
       tabindex: "0",
       "aria-orientation": edge.upright ? "vertical" : "horizontal",
       "aria-label": edge.label,
-      "aria-controls": edge.before.slice(1),
+      "aria-controls": edge.pane === "form" ? "sheet" : `view-${edge.pane}`,
       "aria-valuemin": "0",
       "aria-valuemax": "100",
       "aria-valuenow": "50",
       title: `${edge.label}: drag, or arrow keys; Enter or double click: as it was`,
     });
     document.querySelector(edge.after)?.before(made);
+    const { area } = edge.place ?? {};
+    if (area) made.style.gridArea = edge.upright ? area : `${area} / 1 / ${area} / -1`;
     made.addEventListener("pointerdown", (event) => {
       if (event.button !== 0) return;
       event.preventDefault();
@@ -115,8 +150,7 @@ export function createPanes({ dispatch, now }) {
   function limits(edge) {
     const [before, after] = boxes(edge);
     const both = edge.upright ? before.width + after.width : before.height + after.height;
-    const rest = edge.pane === "form" ? MIN_VIEWS_PX : MIN_PX[edge.upright ? "packets" : "pulses"];
-    return { least: MIN_PX[edge.pane], most: Math.max(MIN_PX[edge.pane], both - rest), both };
+    return { least: edge.least, most: Math.max(edge.least, both - edge.rest), both };
   }
 
   /** @param {Partial<Panes>} some @returns {import("../state/state.js").Message} */
@@ -127,27 +161,39 @@ export function createPanes({ dispatch, now }) {
     const { least, most, both } = limits(edge);
     const wanted = Math.round(Math.max(least, Math.min(most, px)));
     if (edge.pane === "form") return dispatch(change({ form: wanted }));
-    if (edge.pane === "packets") return dispatch(change({ columns: [wanted / both, 1 - wanted / both] }));
-    const heights = [EDGES[1], EDGES[2]].map(size);
-    const [, below] = boxes(EDGES[2]);
-    const all = [...heights, below.height];
-    const at = edge.pane === "motion" ? 0 : 1;
-    all[at] = wanted;
-    all[at + 1] = both - wanted;
-    const sum = all[0] + all[1] + all[2];
-    dispatch(change({ rows: /** @type {[number, number, number]} */ (all.map((height) => height / sum)) }));
+    if (edge.upright) return dispatch(change({ columns: [wanted / both, 1 - wanted / both] }));
+    const shown = bandsOf(onShow(now()));
+    const heights = shown.map((band) => Math.max(...band.map(({ name }) => byId(`view-${name}`).offsetHeight)));
+    const at = shown.findIndex(([{ place }]) => place.band === edge.place?.band);
+    [heights[at - 1], heights[at]] = [wanted, both - wanted];
+    const room = Math.max(1, views.clientHeight - GAP_PX * (shown.length - 1));
+    dispatch(change({ rows: heights.map((height) => height / room) }));
   }
 
   /** @param {Edge} edge */
-  function reset({ pane }) {
-    dispatch(change(pane === "form" ? { form: null } : pane === "packets" ? { columns: null } : { rows: null }));
+  function reset({ pane, upright }) {
+    dispatch(change(pane === "form" ? { form: null } : upright ? { columns: null } : { rows: null }));
   }
 
-  /** Fold and maximise, in the head of a view. @param {string} view */
-  function buttons(view) {
+  /** Buttons in the heads of views that share a place, each to another of them. @param {import("../state/views.js").Placed[]} here */
+  function sides(here) {
+    return here.flatMap(({ name }) =>
+      here
+        .filter((other) => other.name !== name)
+        .map((view) => {
+          const made = element("button", { type: "button", class: "side", "data-side": view.name }, view.title);
+          made.addEventListener("click", () => dispatch({ type: "side", side: view.name }));
+          byId(`view-${name}`).querySelector(".head")?.append(made);
+          return { made, view };
+        }),
+    );
+  }
+
+  /** Fold and maximise, in the head of a view. @param {import("../state/views.js").Placed} view */
+  function buttons({ name: view, title }) {
     const section = byId(`view-${view}`);
     const head = /** @type {HTMLElement} */ (section.querySelector(".head"));
-    const name = (head.querySelector("h2")?.textContent ?? view).trim();
+    const name = title.toLowerCase();
     const fold = button("–", `Fold ${name}`, () => foldOrNot(view));
     const most = button("□", `Maximise ${name}`, () => maximise(view));
     fold.classList.add("fold");
@@ -168,13 +214,16 @@ export function createPanes({ dispatch, now }) {
     ]);
   }
 
-  /** @param {string} view */
+  /** Also a view that has nothing to show can be unfolded, and folded again. @param {string} view */
   function foldOrNot(view) {
-    const { folded } = now().panes;
+    const { panes, bare } = now();
+    const without = (/** @type {string[]} */ list) => list.filter((each) => each !== view);
+    const small = isSmall(now(), view);
     dispatch(
       change({
         largest: null,
-        folded: folded.includes(view) ? folded.filter((each) => each !== view) : [...folded, view],
+        folded: small || bare.includes(view) ? without(panes.folded) : [...panes.folded, view],
+        open: small && bare.includes(view) ? [...panes.open, view] : without(panes.open),
       }),
     );
   }
@@ -183,7 +232,7 @@ export function createPanes({ dispatch, now }) {
   function maximise(view) {
     dispatch(
       change({
-        largest: now().panes.largest === view ? null : view,
+        largest: areaOf(now().panes.largest) === areaOf(view) ? null : view,
         folded: now().panes.folded.filter((each) => each !== view),
       }),
     );
@@ -192,12 +241,14 @@ export function createPanes({ dispatch, now }) {
   /** Says where an edge is. @param {Edge} edge @param {HTMLElement} made */
   function tell(edge, made) {
     const { both } = limits(edge);
-    const { panes } = now();
+    const small = PLACED.filter(({ name }) => isSmall(now(), name)).map(({ name }) => `#view-${name}`);
     const gone =
       !wide.matches ||
       (edge.pane !== "form" &&
         (largestOf(now()) !== null ||
-          [edge.before, edge.after].some((css) => panes.folded.some((view) => css.includes(`view-${view}`)))));
+          [edge.before, edge.after].some((css) =>
+            small.some((id) => document.querySelector(id)?.matches(`${css}:not(.behind)`)),
+          )));
     made.hidden = gone;
     if (both > 0) made.setAttribute("aria-valuenow", String(Math.round((100 * size(edge)) / both)));
   }
@@ -206,59 +257,79 @@ export function createPanes({ dispatch, now }) {
   function apply(state) {
     const { form, rows, columns, folded } = state.panes;
     const largest = largestOf(state);
-    const side = byId("views").classList.contains("timing-open") ? "timing" : "spectrum";
-    const isFolded = (/** @type {string} */ view) => wide.matches && largest === null && folded.includes(view);
+    const shown = onShow(state);
     main.classList.toggle("formless", wide.matches && form === 0);
     main.style.gridTemplateColumns =
       wide.matches && form !== null ? `${form === 0 ? "0px" : `minmax(0, ${form}px)`} minmax(0, 1fr)` : "";
-    for (const view of VIEWS) {
-      const section = byId(`view-${view}`);
-      section.classList.toggle("folded", isFolded(view));
-      section.classList.toggle(
-        "away",
-        wide.matches &&
-          largest !== null &&
-          largest !== view &&
-          !(largest === "spectrum" && view === "timing") &&
-          !(largest === "timing" && view === "spectrum"),
-      );
-      const [fold, most] = /** @type {HTMLElement[]} */ ([...section.querySelectorAll(".pane-buttons button")]);
+    const most = shown.find(({ place }) => place.area === areaOf(largest));
+    for (const view of PLACED) {
+      const { name, title } = view;
+      const section = byId(`view-${name}`);
+      const small = isSmall(state, name);
+      section.classList.toggle("folded", wide.matches && small && folded.includes(name));
+      section.classList.toggle("bare", wide.matches && small && !folded.includes(name));
+      section.classList.toggle("behind", wide.matches && !shown.includes(view));
+      section.classList.toggle("away", wide.matches && largest !== null && view !== most);
+      const [foldButton, mostButton] = /** @type {HTMLElement[]} */ ([
+        ...section.querySelectorAll(".pane-buttons button"),
+      ]);
+      label(foldButton, small ? "+" : "–", `${small ? "Unfold" : "Fold"} ${title.toLowerCase()}`);
       label(
-        fold,
-        folded.includes(view) ? "+" : "–",
-        `${folded.includes(view) ? "Unfold" : "Fold"} ${titleOf(section)}`,
+        mostButton,
+        view === most ? "❐" : "□",
+        view === most ? "Show all views (F)" : `Maximise ${title.toLowerCase()} (F)`,
       );
-      label(
-        most,
-        largest === view ? "❐" : "□",
-        largest === view ? "Show all views (F)" : `Maximise ${titleOf(section)} (F)`,
-      );
-      fold.setAttribute("aria-expanded", String(!isFolded(view)));
-      most.setAttribute("aria-pressed", String(largest === view));
+      foldButton.setAttribute("aria-expanded", String(!small));
+      mostButton.setAttribute("aria-pressed", String(view === most));
     }
-    views.style.gridTemplate = wide.matches ? template(rows, columns, isFolded, side, largest) : "";
+    for (const { name, place } of VIEWS)
+      if (!place) byId(`view-${name}`).classList.toggle("away", wide.matches && name !== state.view);
+    for (const { made, view } of sideways) made.hidden = !isOffered(view, state);
+    views.classList.toggle("arranged", rows !== null);
+    views.style.gridTemplate = !wide.matches
+      ? ""
+      : largest !== null
+        ? `"${areaOf(largest)}" minmax(0, 1fr) / minmax(0, 1fr)`
+        : template({ shown, rows, columns, isSmall: (view) => isSmall(state, view) });
   }
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
     const changed =
       before?.panes !== state.panes ||
+      before?.bare !== state.bare ||
       before?.result !== state.result ||
       before?.side !== state.side ||
       before?.view !== state.view;
     if (!changed) return;
-    // After the timing check has taken or left the spectrum's place.
-    queueMicrotask(() => {
-      apply(now());
-      for (const each of edges) tell(each.edge, each.line);
-    });
+    apply(state);
+    for (const each of edges) tell(each.edge, each.line);
     if (before && before.panes !== state.panes) savePanes(JSON.stringify(state.panes));
   }
   return { render };
 }
 
-/** What takes the whole place: the study, while it is open, or a view made to. @param {State} state */
-const largestOf = ({ view, panes }) => (view === "study" ? view : panes.largest);
+/** What takes the whole place: a view that has none of its own, while it is open, or one made to. @param {State} state */
+const largestOf = ({ view, panes }) => (isAlone(view) ? view : panes.largest);
+
+/** The place of a view in the grid. @param {string | null} view */
+function areaOf(view) {
+  return PLACED.find(({ name }) => name === view)?.place.area ?? view ?? "";
+}
+
+/** @param {string} view */
+const isAlone = (view) => !PLACED.some(({ name }) => name === view);
+
+/** The views on show, one a place. @param {State} state */
+function onShow(state) {
+  return PLACED.filter(({ name, place }) => inPlace(state, place.area) === name);
+}
+
+/** Whether a view is not more than its head: folded, or with nothing to show. @param {State} state @param {string} view */
+function isSmall(state, view) {
+  if (largestOf(state) !== null) return false;
+  return state.panes.folded.includes(view) || (state.bare.includes(view) && !state.panes.open.includes(view));
+}
 
 /** @param {HTMLElement} node @param {string} text @param {string} said */
 function label(node, text, said) {
@@ -267,49 +338,21 @@ function label(node, text, said) {
   node.setAttribute("aria-label", said);
 }
 
-/** @param {HTMLElement} section */
-function titleOf(section) {
-  return (section.querySelector("h2")?.textContent ?? "").toLowerCase();
-}
-
-/**
- * The grid of the views; empty for the style sheet's own.
- * @param {Panes["rows"]} rows @param {Panes["columns"]} columns @param {(view: string) => boolean} isFolded @param {string} side  What has the place beside the packets. @param {string | null} largest
- */
-export function template(rows, columns, isFolded, side, largest) {
-  if (largest !== null) {
-    const area = largest === "timing" ? "spectrum" : largest;
-    return `"${area} ${area}" minmax(0, 1fr) / minmax(0, 1fr) minmax(0, 1fr)`;
-  }
-  const [packets, other] = [isFolded("packets"), isFolded(side)];
-  if (!rows && !columns && !isFolded("motion") && !isFolded("pulses") && !packets && !other) return "";
-  const [motion, pulses, low] = rows ?? [0.47, 0.26, 0.27];
-  const tall = (/** @type {boolean} */ folded, /** @type {number} */ part) =>
-    folded ? "min-content" : `minmax(0, ${(100 * part).toFixed(2)}fr)`;
-  // Of the two beside each other a folded one lies under the other.
-  const lowest =
-    packets && other
-      ? '"packets packets" min-content "spectrum spectrum" min-content'
-      : packets
-        ? `"spectrum spectrum" ${tall(false, low)} "packets packets" min-content`
-        : other
-          ? `"packets packets" ${tall(false, low)} "spectrum spectrum" min-content`
-          : `"packets spectrum" ${tall(false, low)}`;
-  const [left, right] = columns ?? [6 / 11, 5 / 11];
-  return `"motion motion" ${tall(isFolded("motion"), motion)} "pulses pulses" ${tall(isFolded("pulses"), pulses)} ${lowest} / minmax(0, ${left.toFixed(4)}fr) minmax(0, ${right.toFixed(4)}fr)`;
-}
-
 /** What an earlier visit left; nothing where it cannot be read. @returns {Partial<Panes> | null} */
 function read() {
   try {
-    const { form, rows, columns, folded } = JSON.parse(loadPanes() ?? "null");
-    const parts = (/** @type {any} */ list, /** @type {number} */ length) =>
-      Array.isArray(list) && list.length === length && list.every((part) => part > 0 && part < 1) ? list : null;
+    const { form, rows, columns, folded, open, pulses } = JSON.parse(loadPanes() ?? "null");
+    const parts = (/** @type {any} */ list, /** @type {number} */ length, /** @type {number} */ most) =>
+      Array.isArray(list) && list.length === length && list.every((part) => part > 0 && part < most) ? list : null;
+    const views = (/** @type {any} */ list) =>
+      PLACED.map(({ name }) => name).filter((view) => Array.isArray(list) && list.includes(view));
     return {
-      form: form === 0 || (form >= MIN_PX.form && form <= 4000) ? form : null,
-      rows: /** @type {any} */ (parts(rows, 3)),
-      columns: /** @type {any} */ (parts(columns, 2)),
-      folded: VIEWS.filter((view) => Array.isArray(folded) && folded.includes(view)),
+      form: form === 0 || (form >= MIN_FORM_PX && form <= 4000) ? form : null,
+      rows: parts(rows, BANDS.length, 4),
+      columns: parts(columns, 2, 1),
+      folded: views(folded),
+      open: views(open),
+      pulses: keptRows(pulses),
     };
   } catch {
     return null;

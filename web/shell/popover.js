@@ -3,6 +3,10 @@ import { byId } from "../dom.js";
 
 /** Least distance of a panel from the window's edge, in CSS pixels. */
 const EDGE = 8;
+/** Between a panel and its button. */
+const GAP = 4;
+/** With less room than this a panel opens the other way. */
+const LEAST_PX = 260;
 
 /**
  * @param {string} button  Id of the button that opens it.
@@ -20,11 +24,15 @@ export function dropDown(button, panel, opened) {
     if (open) opened();
   });
   const place = () => {
-    const { right, bottom } = opener.getBoundingClientRect();
-    const wide = document.documentElement.clientWidth;
-    box.style.top = `${Math.max(EDGE, bottom + 4)}px`;
+    const { right, top, bottom } = opener.getBoundingClientRect();
+    const { clientWidth: wide, clientHeight: high } = document.documentElement;
+    const [above, under] = [top - GAP - EDGE, high - Math.max(EDGE, bottom + GAP) - EDGE];
+    // Over the button where there is too little room under it.
+    const over = under < Math.min(box.scrollHeight, LEAST_PX) && above > under;
+    box.style.top = over ? "auto" : `${Math.max(EDGE, bottom + GAP)}px`;
+    box.style.bottom = over ? `${high - top + GAP}px` : "auto";
     box.style.left = `${Math.max(EDGE, Math.min(right, wide - EDGE) - box.offsetWidth)}px`;
-    box.style.maxHeight = `calc(100vh - ${Math.max(EDGE, bottom + 4) + EDGE}px)`;
+    box.style.maxHeight = `${over ? above : under}px`;
   };
   box.addEventListener("toggle", (event) => {
     if (/** @type {ToggleEvent} */ (event).newState === "open") place();

@@ -1,18 +1,23 @@
 /** On a narrow screen the views are tabs and the form folds away; on a wide one all of them stand. */
-import { byId } from "../dom.js";
-import { selected } from "../state/state.js";
+import { byId, element } from "../dom.js";
+import { isOffered, openTab, VIEWS } from "../state/views.js";
 
 /** @typedef {import("../state/types.js").State} State */
 
-const VIEWS = ["motion", "pulses", "packets", "spectrum", "timing", "study"];
-
 /** @param {import("../state/types.js").Page} page */
 export function createTabs({ dispatch }) {
-  const tab = (/** @type {string} */ view) => byId(`tab-${view}`);
-  for (const view of VIEWS) {
-    tab(view).addEventListener("click", () => dispatch({ type: "view", view }));
-  }
-  arrows(VIEWS.map(tab));
+  const tabs = VIEWS.map((view) => {
+    const { name, title, tab: text = title } = view;
+    const made = element(
+      "button",
+      { type: "button", role: "tab", id: `tab-${name}`, "aria-controls": `view-${name}` },
+      text,
+    );
+    made.addEventListener("click", () => dispatch({ type: "view", view: name }));
+    return { view, tab: made, section: byId(`view-${name}`) };
+  });
+  byId("tabs").append(...tabs.map(({ tab }) => tab));
+  arrows(tabs.map(({ tab }) => tab));
   const narrow = matchMedia("(max-width: 899px)");
   const sheet = /** @type {HTMLDetailsElement} */ (byId("sheet"));
   const fold = () => {
@@ -23,13 +28,12 @@ export function createTabs({ dispatch }) {
 
   /** @param {State} state */
   function render(state) {
-    const driver = typeof selected(state)?.violations === "number";
-    tab("timing").hidden = !driver;
-    const shown = state.view === "timing" && !driver ? "spectrum" : state.view;
-    for (const view of VIEWS) {
-      const open = view === shown;
-      choose(tab(view), open);
-      byId(`view-${view}`).classList.toggle("open", open);
+    const shown = openTab(state);
+    for (const { view, tab, section } of tabs) {
+      const open = view.name === shown;
+      tab.hidden = !isOffered(view, state);
+      choose(tab, open);
+      section.classList.toggle("open", open);
     }
   }
   return { render };

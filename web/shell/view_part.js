@@ -18,13 +18,14 @@
  * ignored, of two of one kind the first counts. A part that was published keeps its meaning for ever.
  */
 
+import { NAMES, SHARED } from "../state/views.js";
+
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").ViewPart} ViewPart */
 
-const VIEWS = ["motion", "pulses", "packets", "spectrum", "timing", "study"];
 /** Tabs of the study, in their order. @type {import("../state/types.js").StudyName[]} */
 export const STUDIES = ["compare", "measures", "tables", "sine", "torque"];
-const SIDES = ["spectrum", "timing"];
+const SIDES = [...SHARED.values()].flat().map(({ name }) => name);
 const UNITS = ["steps", "mm", "deg"];
 /** No part is longer, and there are not more kinds of them. */
 const MOST = 200;
@@ -35,7 +36,7 @@ const PARTS = {
   x: ["axis", (text) => number(text, 15)],
   a: ["a", (text) => number(text)],
   b: ["b", (text) => number(text)],
-  t: ["view", (text) => known(text, VIEWS)],
+  t: ["view", (text) => known(text, NAMES)],
   s: ["side", (text) => known(text, SIDES)],
   u: ["unit", (text) => known(text, UNITS)],
   y: ["study", (text) => known(text, STUDIES)],

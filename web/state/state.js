@@ -3,6 +3,8 @@
  * no clock: what follows from a change (judging, running, drawing) is done by who sends the message.
  */
 
+import { AS_THEY_ARE } from "./row_choices.js";
+
 /** @typedef {import("./types.js").State} State */
 /** @typedef {import("./types.js").Scenario} Scenario */
 /** @typedef {import("./types.js").Origin} Origin */
@@ -35,9 +37,10 @@
  *   | {type: "filter", filter: Partial<State["filter"]>}
  *   | {type: "fold", channel: number, folded: boolean} | {type: "fold-all", folded: boolean}
  *   | {type: "all-signals", on: boolean}
- *   | {type: "controller", controller: number} | {type: "side", side: "spectrum" | "timing"}
+ *   | {type: "controller", controller: number} | {type: "side", side: string}
  *   | {type: "axis", axis: number} | {type: "unit", unit: State["unit"]}
- *   | {type: "pane", panes: Partial<import("./types.js").Panes>}
+ *   | {type: "pane", panes: Partial<import("./types.js").Panes>} | {type: "bare", view: string, bare: boolean}
+ *   | {type: "rows", rows: Partial<import("./row_choices.js").RowChoices>}
  *   | {type: "view", view: string} | {type: "study", study: import("./types.js").StudyName} | {type: "notice", notice: State["notice"]}} Message
  */
 
@@ -104,7 +107,8 @@ export function initial(scenario) {
     study: "compare",
     side: null,
     notice: null,
-    panes: { form: null, rows: null, columns: null, folded: [], largest: null },
+    panes: { form: null, rows: null, columns: null, folded: [], open: [], largest: null, pulses: AS_THEY_ARE },
+    bare: [],
     seen: null,
   };
 }
@@ -210,6 +214,13 @@ export function update(state, message) {
       return { ...state, unit: message.unit };
     case "pane":
       return { ...state, panes: { ...state.panes, ...message.panes } };
+    case "bare": {
+      const { view, bare } = message;
+      if (state.bare.includes(view) === bare) return state;
+      return { ...state, bare: bare ? [...state.bare, view] : state.bare.filter((each) => each !== view) };
+    }
+    case "rows":
+      return { ...state, panes: { ...state.panes, pulses: { ...state.panes.pulses, ...message.rows } } };
     case "view":
       return { ...state, view: message.view };
     case "study":

@@ -68,13 +68,15 @@
  * @typedef {{revision: number, summary: Summary, ms: number, controller: number, derived: Derived | null}} Result  As one of its controllers shows it, and what followed from its scenario.
  * @typedef {{phase: "idle" | "waiting" | "running" | "done" | "failed", progress: Progress | null, message: string}} Run
  *
- * @typedef {{form: number | null, rows: [number, number, number] | null, columns: [number, number] | null, folded: string[], largest: string | null}} Panes
- *   Width of the form in CSS pixels, 0 where it is folded; parts of the views' height and width; null: as the style sheet has it.
+ * @typedef {{form: number | null, rows: number[] | null, columns: number[] | null, folded: string[], open: string[],
+ *   largest: string | null, pulses: import("./row_choices.js").RowChoices}} Panes
+ *   Width of the form in CSS pixels, 0 where it is folded; parts of the views' height and width; null: as the views' list has it;
+ *   views that are folded, and those that are unfolded although they have nothing to show; the rows of the pulses, on any screen.
  * @typedef {{start: number, end: number, controller: number, cycle: number}} Place  A time that a message can show, in cycles.
  * @typedef {{edge: number, cycle: number}} Mark
  * @typedef {{error: string | null, same: boolean, edges: number, version: string | null, own_version: string, controller: number,
  *   after: Mark | null, until: Mark | null, shorter: "this" | "other" | null}} Verdict  How a run stands to a link's sender's.
- * @typedef {{window?: Span, controller?: number, axis?: number, a?: number, b?: number, view?: string, side?: "spectrum" | "timing",
+ * @typedef {{window?: Span, controller?: number, axis?: number, a?: number, b?: number, view?: string, side?: string,
  *   unit?: "steps" | "mm" | "deg", study?: StudyName}} ViewPart  What a link says of the view; what it leaves out is as on a fresh page.
  *
  * @typedef {"compare" | "measures" | "tables" | "sine" | "torque"} StudyName  Tabs of the study.
@@ -118,8 +120,9 @@
  * @property {{text: string, kind: string, address: number | null, outcome: string, only: boolean}} filter  Of the packets: what is searched for, and which rows are shown; `only` leaves out what the search does not find.
  * @property {string} view          Tab on a narrow screen; "study" takes the place of all views on a wide one, too.
  * @property {StudyName} study      Open tab of the study.
- * @property {Panes} panes          Of a wide screen.
- * @property {"spectrum" | "timing" | null} side  Which of the two shares their place on a wide screen; null: the timing check, if there is one.
+ * @property {Panes} panes          What this device keeps of how the views stand.
+ * @property {string[]} bare        Views that have nothing to show of this run but a line.
+ * @property {string | null} side   Which of the views that share a place on a wide screen is on show; null: the one that is not always there, if it is.
  * @property {{text: string, kind: "info" | "error", place?: Place | null, offer?: {label: string, scenario: Scenario}} | null} notice  About links, files and the engine.
  *
  * @typedef {{dispatch: (message: import("./state.js").Message) => void, now: () => State}} Page  What each part of the page is given.

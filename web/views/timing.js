@@ -34,10 +34,6 @@ export function createTiming({ engine, drivers, speak, dispatch, now }) {
       { keys: ["Shift+V"], text: "previous violation", run: () => void next(false) },
     ]);
   }
-  for (const side of /** @type {const} */ (["spectrum", "timing"])) {
-    for (const button of document.querySelectorAll(`[data-side="${side}"]`))
-      button.addEventListener("click", () => dispatch({ type: "side", side }));
-  }
   body.addEventListener("click", (event) => {
     const row = /** @type {HTMLElement} */ (event.target).closest("tr");
     if (row) show(Number(row.dataset.index));
@@ -206,13 +202,6 @@ export function createTiming({ engine, drivers, speak, dispatch, now }) {
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    const has = typeof selected(state)?.violations === "number";
-    const open = has && state.side !== "spectrum" ? "timing" : "spectrum";
-    byId("views").classList.toggle("timing-open", open === "timing");
-    for (const button of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("[data-side]"))) {
-      button.hidden = !has;
-      button.setAttribute("aria-pressed", String(button.dataset.side === open));
-    }
     if (before?.result !== state.result) return refresh(state);
     return undefined;
   }

@@ -31,6 +31,7 @@ fn the_page_opens_and_draws_the_default_motion() -> Result<()> {
         }
         let overview = page.canvas("overview").await?;
         ensure!(overview.colours >= 2, "the overview is drawn: {overview:?}");
+        page.unfold_spectrum().await?;
         let spectrum = page.canvas("spectrum-chart").await?;
         for ink in ["--ideal", "--actual"] {
             ensure!(spectrum.ink(ink).pixels > 100, "the spectrum has stems in {ink}: {spectrum:?}");

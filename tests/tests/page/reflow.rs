@@ -180,6 +180,7 @@ fn forced_colours_leave_every_control_and_every_curve_to_be_seen() -> Result<()>
         let features = json!({ "features": [{ "name": "forced-colors", "value": "active" }] });
         page.devtools("Emulation.setEmulatedMedia", features).await?;
         page.open("").await?;
+        page.unfold_spectrum().await?;
         page.picture("forced").await?;
         ensure!(page.eval::<bool>("matchMedia('(forced-colors: active)').matches").await?);
         // A border is what is left of a button or a field there.

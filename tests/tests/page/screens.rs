@@ -129,6 +129,7 @@ async fn contrasts(page: &Session, dark: bool) -> Result<()> {
         ensure!(*ratio >= 3.0, "{name} has a contrast of {ratio} on {}", if dark { "dark" } else { "light" });
     }
     page.pulses().await?;
+    page.unfold_spectrum().await?;
     // The curves on the canvases have the theme's own colours.
     for (canvas, ink) in [("chart-position", "--ideal"), ("pulses", "--step"), ("spectrum-chart", "--actual")]
     {

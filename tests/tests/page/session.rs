@@ -165,6 +165,14 @@ impl Session {
         self.find(css).await?.click().await.with_context(|| format!("{css} can't be clicked"))
     }
 
+    /// Shows the spectrum's chart where it is a line, because the motion is not periodic.
+    pub(crate) async fn unfold_spectrum(&self) -> Result<()> {
+        if !self.visible("#spectrum-chart").await? {
+            self.click("#view-spectrum .fold").await?;
+        }
+        self.until("document.getElementById('spectrum-chart').checkVisibility()").await
+    }
+
     /// Puts the focus on an element and types.
     pub(crate) async fn press(&self, css: &str, keys: &str) -> Result<()> {
         let element = self.find(css).await?;

@@ -28,6 +28,9 @@ return import(new URL("state/state.js", document.baseURI)).then(({ DEPTH, MIN_SP
   const many = (count) => Array.from({ length: count }, (_, at) => edit("a.b", at + 100));
   const b = (state) => state.scenario.a.b;
 
+  const bare = (view, bare) => ({ type: "bare", view, bare });
+  const rows = (some) => ({ type: "rows", rows: some });
+
   /** @type {[string, any[], (state: any) => any, any][]} name, messages, what is looked at, what it must be */
   const cases = [
     // History.
@@ -122,6 +125,14 @@ return import(new URL("state/state.js", document.baseURI)).then(({ DEPTH, MIN_SP
     // What is pointed at.
     ["the same light is no change", [{ type: "light", highlighted: { start: 1, end: 2 } }, { type: "light", highlighted: { start: 1, end: 2 } }], (s) => s.highlighted, { start: 1, end: 2 }],
     ["all channels fold at once", [{ type: "fold-all", folded: true }, { type: "fold", channel: 3, folded: false }], (s) => [s.folds[2], s.folds[3], s.folds[15]], [true, false, true]],
+    // How the views and the rows of the pulses stand.
+    ["a view that has nothing to show is told once", [bare("packets", true), bare("packets", true), bare("spectrum", true)], (s) => s.bare, ["packets", "spectrum"]],
+    ["until it has", [bare("packets", true), bare("spectrum", true), bare("packets", false)], (s) => s.bare, ["spectrum"]],
+    ["rows have a height, an order and names, each by itself", [rows({ px: 30 }), rows({ order: ["RX", "EN"] }), rows({ names: { 0: "X" } }), rows({ hidden: ["ticks"] })],
+      (s) => s.panes.pulses, { px: 30, order: ["RX", "EN"], hidden: ["ticks"], names: { 0: "X" } }],
+    ["which outlive the scenario", [rows({ px: 30 }), replace({ a: { b: 7 } })], (s) => s.panes.pulses.px, 30],
+    ["and what is done to the panes", [rows({ px: 30 }), { type: "pane", panes: { folded: ["motion"] } }], (s) => [s.panes.pulses.px, s.panes.folded], [30, ["motion"]]],
+    ["a side is any of the views of a place", [{ type: "side", side: "spectrum" }], (s) => s.side, "spectrum"],
   ];
 
   const failures = [];
@@ -143,7 +154,7 @@ return import(new URL("state/state.js", document.baseURI)).then(({ DEPTH, MIN_SP
   // What an edit does not touch is shared, so that views can tell what changed by identity.
   const base = begin();
   check("untouched parts are shared", play([edit("a.b", 2)], base).scenario.list === base.scenario.list, true);
-  check("a message without effect gives the same state", ["hover", "committed", "undo"].map((type) => update(base, { type, cycle: null }) === base), [true, true, true]);
+  check("a message without effect gives the same state", ["hover", "committed", "undo", "bare"].map((type) => update(base, { type, cycle: null, bare: false }) === base), [true, true, true, true]);
   for (const [given, last, wanted] of [
     [{ start: 5, end: 100 }, 1000, { start: 5, end: 100 }],
     [{ start: 0, end: 1 }, 3, { start: 0, end: MIN_SPAN }],

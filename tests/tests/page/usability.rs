@@ -178,8 +178,8 @@ fn the_help_lists_every_key_and_the_help_page_every_term_and_document() -> Resul
         }
         let names: Vec<String> = page
             .eval(
-                "Promise.all([import('./form/schema.js'), import('./help/texts.js')]).then(([{ terms }, { DERIVED, VIEWS }]) =>
-                 [terms(), DERIVED, ...Object.values(VIEWS).map(({ terms }) => terms)].flatMap(Object.values).map(({ name }) => name))",
+                "Promise.all([import('./form/schema.js'), import('./help/texts.js')]).then(([{ terms }, { CARDS, DERIVED }]) =>
+                 [terms(), DERIVED, ...Object.values(CARDS).map(({ terms }) => terms)].flatMap(Object.values).map(({ name }) => name))",
             )
             .await?;
         ensure!(names.len() > 80, "{} terms", names.len());
@@ -351,6 +351,7 @@ async fn size(page: &Session, css: &str) -> Result<(f64, f64)> {
 fn panes_are_resized_folded_and_maximised_by_keys_and_stay_so() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
+        page.unfold_spectrum().await?;
         let now = async |id: &str| {
             page.eval::<String>(&format!("document.getElementById('{id}').ariaValueNow")).await
         };

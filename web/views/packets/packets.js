@@ -58,6 +58,7 @@ export function createPackets(page) {
     byId("packets-unmatched").hidden = total === 0;
     byId("packet-inspector").hidden = total === 0 || (rows === 0 && state.packet === null);
     byId("packets-scroll").classList.toggle("none", rows === 0);
+    dispatch({ type: "bare", view: "packets", bare: total === 0 });
     for (const id of ["packets-search", "packets-filters"]) {
       /** @type {HTMLButtonElement} */ (byId(id)).disabled = total === 0;
     }

@@ -10,10 +10,12 @@ import { count } from "../../state/number.js";
 const ROW_PX = 24;
 /** Browsers refuse boxes taller than some ten million pixels; a longer list scrolls in larger steps. */
 const MAX_PX = 6_000_000;
-/** Air at both sides of a cell's text. */
-const CELL_PX = 17;
-/** Most of the column of bytes where words say more than they do. */
-const FRAMED_BYTES_PX = 104;
+/** Room for a few bytes: the most that they get of a frame, where words say more than they do. */
+const FEW_BYTES_PX = 104;
+/** Of the columns of bytes and of the outcome there is always so much. */
+const [LEAST_BYTES_PX, LEAST_OUTCOME_PX] = [80, 52];
+/** Of the meaning there is so much while the bytes can give way, and then at least the other. */
+const [MEANING_PX, LEAST_MEANING_PX] = [64, 30];
 /** Texts of a row's cells, each with what its pointer tells where that is more. @type {((row: PacketRow) => [string, string?])[]} */
 const COLUMNS = [
   ({ index }) => [count(index)],
@@ -40,6 +42,7 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
   let current = 0;
   /** Widest texts of the columns so far, in CSS pixels: columns do not jump while the table scrolls. @type {{[column: string]: number}} */
   let widest = {};
+  let cellAir = 0;
 
   scroller.addEventListener("scroll", reload);
   new ResizeObserver(reload).observe(scroller);
@@ -96,10 +99,14 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
 
   /** Asks for the rows on show. */
   async function reload() {
-    if (!now().result || scroller.clientHeight < ROW_PX) return;
-    const from = first();
-    const page = await engine.latest("packets", "packets", from, visible() + 2).catch(unlessDropped);
+    const { result, bare } = now();
+    // Out of sight nothing is drawn; whether there is anything to show has to be known all the same.
+    const unseen = scroller.clientHeight < ROW_PX;
+    if (!result || (unseen && !bare.includes("packets"))) return;
+    const from = unseen ? 0 : first();
+    const page = await engine.latest("packets", "packets", from, unseen ? 1 : visible() + 2).catch(unlessDropped);
     if (!page) return;
+    if (unseen) return counted(page);
     const others = page.shown !== answer.shown || page.total !== answer.total;
     answer = page;
     if (others) {
@@ -167,8 +174,14 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
     }
   }
 
-  /** Columns as wide as their texts; the meaning takes what is left. */
+  /**
+   * Columns as wide as their texts; the meaning takes what is left. Where there is little room the gap goes first, which
+   * the inspector tells, then the bytes and the meaning become narrow, and last the outcome.
+   */
   function widen() {
+    // Air at both sides of a cell's text.
+    const air = 1 + 2 * Number.parseFloat(getComputedStyle(table.querySelector("th") ?? table).paddingLeft);
+    if (air !== cellAir) [cellAir, widest] = [air, {}];
     const fontOf = (/** @type {string} */ cell) => {
       const { fontWeight, fontSize, fontFamily } = getComputedStyle(table.querySelector(cell) ?? table);
       return `${fontWeight} ${fontSize} ${fontFamily}`;
@@ -177,7 +190,7 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
       ruler.font = font;
       widest[column] = Math.max(
         widest[column] ?? 0,
-        ...texts.map((text) => Math.ceil(ruler.measureText(text).width) + CELL_PX),
+        ...texts.map((text) => Math.ceil(ruler.measureText(text).width) + air),
       );
     };
     const { rows, unit } = answer;
@@ -192,13 +205,16 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
     measure("bytes", hex, ...rows.map((row) => row.hex));
     measure("bytes", head, "bytes (hex)");
     // Of a frame the bytes say less than the words.
-    const spare = table.clientWidth - widest.index - widest.time - widest.gap - widest.outcome;
     const framed = now().result?.summary.framed;
-    const bytes = Math.min(
-      widest.bytes,
-      framed ? Math.min(FRAMED_BYTES_PX, Math.max(spare / 3, 60)) : Math.max(spare / 2, 96),
-    );
-    for (const [column, width] of Object.entries({ ...widest, bytes }))
+    const all = table.clientWidth - widest.index - widest.time;
+    const half = (all - widest.gap - widest.outcome) / 2;
+    const wanted = Math.min(widest.bytes, framed ? FEW_BYTES_PX : Math.max(half, FEW_BYTES_PX));
+    const tight = all < wanted + widest.outcome + widest.gap + MEANING_PX;
+    const room = all - (tight ? 0 : widest.gap);
+    const bytes = Math.max(Math.min(LEAST_BYTES_PX, wanted), Math.min(wanted, room - widest.outcome - MEANING_PX));
+    const outcome = Math.min(widest.outcome, Math.max(LEAST_OUTCOME_PX, room - bytes - LEAST_MEANING_PX));
+    table.classList.toggle("tight", tight);
+    for (const [column, width] of Object.entries({ ...widest, outcome, bytes }))
       table.style.setProperty(`--${column}-px`, `${width}px`);
   }
 

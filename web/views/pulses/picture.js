@@ -1,10 +1,11 @@
 /** The picture of the logic view: its rows, one below the other, and what is highlighted in them. */
 
+import { rowPx } from "../../state/row_choices.js";
 import { shown } from "../../state/state.js";
 import { color, fit, ratio } from "../../time/plot.js";
 import { pixelOf } from "../../time/timeline.js";
 import { paintSignal, paintSpans, paintTint } from "./paint.js";
-import { ROW_PX, rowsOf, shows } from "./rows.js";
+import { rowsOf, shows } from "./rows.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").PulseColumns} PulseColumns */
@@ -37,20 +38,23 @@ export function paintRows(canvas, state, plot, answer, spans) {
   const right = Math.round(plot.right * scale);
   const picture = placedColumns(state, answer, left, right);
   const font = `${11 * scale}px ${getComputedStyle(document.body).fontFamily}`;
+  const px = rowPx(state.panes.pulses);
   for (const [index, row] of rowsOf(state).entries()) {
-    const top = Math.round((index * ROW_PX + 4) * scale);
-    const height = Math.round((ROW_PX - 6) * scale);
+    const top = Math.round((index * px + 4) * scale);
+    const height = Math.round((px - 6) * scale);
     const chosen = shows(row, state.row);
     if (chosen) {
       context.fillStyle = color("--chosen");
-      context.fillRect(0, top - 3 * scale, width * scale, ROW_PX * scale);
+      context.fillRect(0, top - 3 * scale, width * scale, px * scale);
     }
     context.fillStyle = color(chosen ? "--ink" : "--quiet");
     context.textAlign = "right";
     context.textBaseline = "middle";
     context.font = `${chosen ? "bold " : ""}${font}`;
-    context.fillText(row.name, left - 8 * scale, top + height / 2);
-    if ("open" in row && row.open !== undefined) {
+    const folds = "open" in row && row.open !== undefined;
+    const name = ("short" in row && row.short) || row.name;
+    context.fillText(fitting(context, name, left - (folds ? 28 : 12) * scale), left - 8 * scale, top + height / 2);
+    if (folds) {
       context.textAlign = "left";
       context.fillText(row.open ? "▾" : "▸", 8 * scale, top + height / 2);
     }
@@ -72,6 +76,16 @@ export function paintRows(canvas, state, plot, answer, spans) {
   }
 }
 
+/** A name, or as much of its beginning as there is room for. @param {CanvasRenderingContext2D} context @param {string} name @param {number} room  Device pixels. */
+function fitting(context, name, room) {
+  if (context.measureText(name).width <= room) return name;
+  for (let length = name.length - 1; length > 1; length--) {
+    const text = `${name.slice(0, length).trimEnd()}…`;
+    if (context.measureText(text).width <= room) return text;
+  }
+  return name.slice(0, 1);
+}
+
 /** A span in device pixels. @param {State} state @param {Plot} plot @param {import("./spans.js").Span} span */
 function placed(state, plot, { start, end, sample, ...rest }) {
   const x = (/** @type {number} */ cycle) => pixelOf(state, plot, cycle) * ratio();
@@ -85,11 +99,12 @@ export function drawLit(context, state, plot, spans) {
   context.setLineDash([]);
   context.strokeStyle = color("--ink");
   context.lineWidth = 1.5;
+  const px = rowPx(state.panes.pulses);
   for (const [index, row] of rowsOf(state).entries()) {
-    const top = index * ROW_PX;
+    const top = index * px;
     if ("bit" in row) {
       if (highlighted.bit === null || !shows(row, highlighted.bit)) continue;
-      context.strokeRect(pixelOf(state, plot, highlighted.start) - 3, top + 3, 6, ROW_PX - 4);
+      context.strokeRect(pixelOf(state, plot, highlighted.start) - 3, top + 3, 6, px - 4);
     } else if (!spans.isDense(row)) {
       for (const { start, end, packet } of spans.spansOf(state, row)) {
         const same = start === highlighted.start && end === highlighted.end;
@@ -98,7 +113,7 @@ export function drawLit(context, state, plot, spans) {
           Math.max(plot.left, pixelOf(state, plot, start)),
           Math.min(plot.right, pixelOf(state, plot, end)),
         ];
-        if (to > from) context.strokeRect(from, top + 3, Math.max(2, to - from), ROW_PX - 5);
+        if (to > from) context.strokeRect(from, top + 3, Math.max(2, to - from), px - 5);
       }
     }
   }

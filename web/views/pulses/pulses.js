@@ -3,6 +3,7 @@ import { byId, options, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { listen } from "../../shell/commands.js";
 import { time } from "../../state/number.js";
+import { rowPx } from "../../state/row_choices.js";
 import { selected, shown } from "../../state/state.js";
 import { drawCursors, overlaid } from "../../time/cursors.js";
 import { fit, GUTTER, MARGIN, ratio, watch } from "../../time/plot.js";
@@ -13,7 +14,8 @@ import { createMarkers } from "./markers.js";
 import { createOverview } from "./overview.js";
 import { drawLit, paintRows } from "./picture.js";
 import { createReading } from "./reading.js";
-import { allFolded, channelOf, idle, isFolded, nameOf, ROW_PX, rowsOf, shows, signalsOf } from "./rows.js";
+import { createRowPanel } from "./row_panel.js";
+import { allFolded, channelOf, idle, isFolded, nameOf, rowsOf, shows, signalsOf } from "./rows.js";
 import { createSpans } from "./spans.js";
 
 /** @typedef {import("../../state/types.js").State} State */
@@ -39,6 +41,8 @@ export function createPulses({ engine, dispatch, now }) {
   const spans = createSpans({ engine });
   const markers = createMarkers({ ...page, speak: reading.speak });
   const edges = createEdges({ engine, now });
+  const panel = createRowPanel({ ...page, canvas, speak: reading.speak });
+  const px = () => rowPx(now().panes.pulses);
   /** @type {import("./picture.js").Answer | null} */
   let answer = null;
   let frame = 0;
@@ -70,7 +74,8 @@ export function createPulses({ engine, dispatch, now }) {
   function step(by) {
     const all = rowsOf(now()).flatMap((row) => ("bit" in row ? [row] : []));
     const at = all.findIndex((row) => shows(row, now().row));
-    dispatch({ type: "row", row: all[Math.min(all.length - 1, Math.max(0, at + by))].bit });
+    const to = all[Math.min(all.length - 1, Math.max(0, at + by))];
+    if (to) dispatch({ type: "row", row: to.bit });
   }
 
   /** Folds a channel's two rows into one, or unfolds them. @param {number | null} channel */
@@ -127,7 +132,7 @@ export function createPulses({ engine, dispatch, now }) {
 
   /** The row under a pointer. @param {MouseEvent} event */
   function rowAt(event) {
-    return rowsOf(now())[Math.floor((event.clientY - canvas.getBoundingClientRect().top) / ROW_PX)];
+    return rowsOf(now())[Math.floor((event.clientY - canvas.getBoundingClientRect().top) / px())];
   }
 
   /** The edge of a row within a few pixels of a cycle, else the cycle. @param {number} bit @param {number} cycle */
@@ -248,7 +253,7 @@ export function createPulses({ engine, dispatch, now }) {
     say(foldAll, folded ? "Unfold channels" : "Fold channels");
     allSignals.checked = state.allSignals;
     /** @type {HTMLElement} */ (allSignals.parentElement).hidden = idle(state).length === 0;
-    const tall = rowsOf(state).length * ROW_PX + 6;
+    const tall = rowsOf(state).length * px() + 6;
     stack.style.height = `${tall}px`;
     // On a wide screen this view takes what its rows need, and the curves the rest.
     byId("views").style.setProperty("--rows-px", `${tall}px`);
@@ -257,10 +262,11 @@ export function createPulses({ engine, dispatch, now }) {
   /** Scrolls the chosen row into view. @param {State} state */
   function follow(state) {
     const scroller = /** @type {HTMLElement} */ (stack.parentElement);
-    const top = rowsOf(state).findIndex((row) => shows(row, state.row)) * ROW_PX;
+    const tall = px();
+    const top = rowsOf(state).findIndex((row) => shows(row, state.row)) * tall;
     if (top < scroller.scrollTop) scroller.scrollTop = top;
-    else if (top + ROW_PX + 6 > scroller.scrollTop + scroller.clientHeight)
-      scroller.scrollTop = top + ROW_PX + 6 - scroller.clientHeight;
+    else if (top + tall + 6 > scroller.scrollTop + scroller.clientHeight)
+      scroller.scrollTop = top + tall + 6 - scroller.clientHeight;
   }
 
   /** @param {State} state @param {State | undefined} before */
@@ -273,8 +279,10 @@ export function createPulses({ engine, dispatch, now }) {
       before?.result !== state.result ||
       before?.row !== state.row ||
       before?.folds !== state.folds ||
-      before?.allSignals !== state.allSignals;
+      before?.allSignals !== state.allSignals ||
+      before?.panes.pulses !== state.panes.pulses;
     if (arranged) layout(state);
+    panel.render(state, before);
     if (before && before.row !== state.row) follow(state);
     const walked = before && (before.cursors.a !== state.cursors.a || before.row !== state.row);
     if (walked && document.activeElement === canvas && before.result === state.result) reading.speakCursor();

@@ -1,21 +1,21 @@
 /**
- * The rows of the logic view: which there are, which are on show. The line comes first, so that it is in view
- * beside the first channels; a channel is DIR and STEP, or both in one row when it is folded. Under RX and TX
- * stand their decoders, until they are folded.
+ * The rows of the logic view: which there are, which are on show. They come in groups, which the visitor orders, hides and
+ * names: at first the line, so that it is in view beside the first channels; a channel is DIR and STEP, or both in one row
+ * when it is folded. Under RX and TX stand their decoders, until they are folded.
  */
+import { ordered } from "../../state/row_choices.js";
 import { selected } from "../../state/state.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /**
- * @typedef {{kind: "signal", name: string, bit: number, ink: string, channel?: number, open?: boolean}} SignalRow  With the sign that folds its `channel` where it has `open`.
+ * @typedef {{kind: "signal", name: string, bit: number, ink: string, short?: string, channel?: number, open?: boolean}} SignalRow  With the sign that folds its `channel` where it has `open`; `short` stands beside it where there is no room for the name.
  * @typedef {{kind: "folded", name: string, bit: number, dir: number, ink: string, channel: number, open: false}} FoldedRow  STEP over its DIR.
  * @typedef {{kind: "packets" | "replies" | "ticks" | "violations", name: string, ink: string}} SpanRow
  * @typedef {{kind: "bits" | "bytes" | "fields", wire: "rx" | "tx", line: number, name: string, ink: string}} LineRow  A decoder of the signal `line`.
  * @typedef {SignalRow | FoldedRow | SpanRow | LineRow} Row
+ * @typedef {{group: string, own: string, rows: Row[]}} Group  Its rows, named as the visitor does; `own` is what it is called without that.
  */
 
-/** Height of a row in CSS pixels. */
-export const ROW_PX = 19;
 /** Signal bits (contract A3). */
 const [DIR, EN, RX, TX, DE] = [16, 32, 33, 34, 35];
 /** With more channels than these, all begin folded. The decoders do so too: the curves need the room. */
@@ -61,8 +61,14 @@ export function hasLine(state) {
   return selected(state)?.changing.includes(RX) ?? false;
 }
 
+/** What the visitor calls a group, or what it is called without that. @param {State} state @param {string} group @param {string} own */
+export function calledBy(state, group, own) {
+  return state.panes.pulses.names[group] ?? own;
+}
+
 /** A signal of the line with its decoders. @param {State} state @param {{name: string, bit: number}} signal @returns {Row[]} */
-function lineRows(state, { name, bit }) {
+function lineRows(state, { name: own, bit }) {
+  const name = calledBy(state, own, own);
   const quiet = !selected(state)?.changing.includes(bit);
   if (bit === DE || quiet) return [{ kind: "signal", name, bit, ink: "--wire" }];
   const open = !isFolded(state, bit);
@@ -80,52 +86,77 @@ function lineRows(state, { name, bit }) {
   ];
 }
 
+/** All groups that the run has something of, in the visitor's order, also those that are hidden. @param {State} state @returns {Group[]} */
+export function groupsOf(state) {
+  const away = state.allSignals ? [] : idle(state).filter(({ bit }) => bit !== state.row);
+  const framed = state.result?.summary.framed ?? false;
+  /** @type {Group[]} */
+  const groups = [];
+  /** @param {string} own @param {(name: string) => Row[]} rows @param {string} [group] */
+  const add = (own, rows, group = own) => groups.push({ group, own, rows: rows(calledBy(state, group, own)) });
+  add("EN", (name) => [{ kind: "signal", name, bit: EN, ink: "--enable" }]);
+  for (const signal of LINE) {
+    if (!away.includes(signal)) add(signal.name, () => lineRows(state, signal));
+    if (signal.bit === RX && hasLine(state))
+      add(framed ? "frames" : "packets", (name) => [{ kind: "packets", name, ink: "--packet" }], "packets");
+    if (signal.bit === TX && framed) add("replies", (name) => [{ kind: "replies", name, ink: "--reply" }]);
+  }
+  if (hasLine(state) || selected(state)?.ticks_done) add("ticks", (name) => [{ kind: "ticks", name, ink: "--tick" }]);
+  if (selected(state)?.violations) add("timing", (name) => [{ kind: "violations", name, ink: "--error" }]);
+  for (let channel = 0; channel < channelsOf(state); channel++)
+    add(`ch ${channel}`, () => channelRows(state, channel), `${channel}`);
+  return ordered(state.panes.pulses, groups, ({ group }) => group);
+}
+
+/** @param {State} state @param {number} channel @returns {Row[]} */
+function channelRows(state, channel) {
+  const [dir, step] = signalsOfChannel(state, channel);
+  const { [channel]: called } = state.panes.pulses.names;
+  return isFolded(state, channel)
+    ? [
+        {
+          kind: "folded",
+          name: calledBy(state, `${channel}`, `ch ${channel}`),
+          bit: channel,
+          dir: DIR + channel,
+          ink: "--step",
+          channel,
+          open: false,
+        },
+      ]
+    : [
+        { kind: "signal", ...dir, short: called && "DIR", ink: "--dir", channel, open: true },
+        { kind: "signal", ...step, short: called, ink: "--step", channel },
+      ];
+}
+
+/** Groups on show: those that are not hidden, and that of the chosen signal. @param {State} state */
+export function shownGroups(state) {
+  const { hidden } = state.panes.pulses;
+  return groupsOf(state).filter(
+    ({ group, rows }) => !hidden.includes(group) || rows.some((row) => shows(row, state.row)),
+  );
+}
+
 /** The rows on show. @param {State} state @returns {Row[]} */
 export function rowsOf(state) {
-  const away = state.allSignals
-    ? []
-    : idle(state)
-        .filter(({ bit }) => bit !== state.row)
-        .map(({ bit }) => bit);
-  const framed = state.result?.summary.framed ?? false;
-  /** @type {Row[]} */
-  const rows = [{ kind: "signal", name: "EN", bit: EN, ink: "--enable" }];
-  for (const signal of LINE) {
-    if (!away.includes(signal.bit)) rows.push(...lineRows(state, signal));
-    if (signal.bit === RX && hasLine(state))
-      rows.push({ kind: "packets", name: framed ? "frames" : "packets", ink: "--packet" });
-    if (signal.bit === TX && framed) rows.push({ kind: "replies", name: "replies", ink: "--reply" });
-  }
-  if (hasLine(state) || selected(state)?.ticks_done) rows.push({ kind: "ticks", name: "ticks", ink: "--tick" });
-  if (selected(state)?.violations) rows.push({ kind: "violations", name: "timing", ink: "--error" });
-  for (let channel = 0; channel < channelsOf(state); channel++) {
-    if (isFolded(state, channel))
-      rows.push({
-        kind: "folded",
-        name: `ch ${channel}`,
-        bit: channel,
-        dir: DIR + channel,
-        ink: "--step",
-        channel,
-        open: false,
-      });
-    else {
-      rows.push(
-        { kind: "signal", name: `DIR ${channel}`, bit: DIR + channel, ink: "--dir", channel, open: true },
-        { kind: "signal", name: `STEP ${channel}`, bit: channel, ink: "--step", channel },
-      );
-    }
-  }
-  return rows;
+  return shownGroups(state).flatMap(({ rows }) => rows);
+}
+
+/** @param {State} state @param {number} channel */
+function signalsOfChannel(state, channel) {
+  const name = calledBy(state, `${channel}`, `${channel}`);
+  return [
+    { name: `DIR ${name}`, bit: DIR + channel },
+    { name: `STEP ${name}`, bit: channel },
+  ];
 }
 
 /** Every signal that there is, on show or not. @param {State} state @returns {{name: string, bit: number}[]} */
 export function signalsOf(state) {
-  const channels = Array.from({ length: channelsOf(state) }, (_, i) => [
-    { name: `DIR ${i}`, bit: DIR + i },
-    { name: `STEP ${i}`, bit: i },
-  ]);
-  return [{ name: "EN", bit: EN }, ...LINE, ...channels.flat()];
+  const line = [{ name: "EN", bit: EN }, ...LINE].map(({ name, bit }) => ({ name: calledBy(state, name, name), bit }));
+  const channels = Array.from({ length: channelsOf(state) }, (_, channel) => signalsOfChannel(state, channel));
+  return [...line, ...channels.flat()];
 }
 
 /** What a signal is called. @param {State} state @param {number} bit */

@@ -100,6 +100,7 @@ export function createSpectrum({ engine, dispatch, now }) {
     const answer = await engine.latest("spectrum", "spectrum").catch(unlessDropped);
     if (answer === undefined) return;
     spectra = answer;
+    dispatch({ type: "bare", view: "spectrum", bare: !(answer.ideal ?? answer.pulses)?.periodic });
     paint();
   }
 

@@ -1,0 +1,122 @@
+//! Small screens: every view has room for what it is for, and what has nothing to show gives its room away.
+
+use anyhow::{Result, ensure};
+use serde::Deserialize;
+use serde_json::json;
+
+use crate::{bench::in_browser, session::Session};
+
+/// What there is to see, in CSS pixels.
+#[derive(Debug, Deserialize)]
+struct Seen {
+    /// Heights of the canvases of position, speed and acceleration.
+    charts: Vec<f64>,
+    /// Height of the room for the pulses, and of what is in it.
+    pulses: (f64, f64),
+    /// Height of the room for the rows of packets.
+    packets: f64,
+    /// Width of the column of bytes, and whether a text in it is cut off.
+    bytes: (f64, bool),
+}
+
+const SEEN: &str = "
+    const height = (css) => document.querySelector(css).clientHeight;
+    const cells = [...document.querySelectorAll('#packets tbody td:nth-child(3)')];
+    return {
+        charts: ['position', 'speed', 'acceleration'].map((name) => height(`#chart-${name}`)),
+        pulses: [height('#view-pulses > .scroll'), document.getElementById('pulses-stack').offsetHeight],
+        packets: height('#packets-scroll'),
+        bytes: [cells[0]?.offsetWidth ?? 0, cells.some((cell) => cell.scrollWidth > cell.clientWidth)],
+    };";
+
+async fn open(page: &Session, preset: &str) -> Result<()> {
+    page.open("").await?;
+    if !preset.is_empty() {
+        page.choose("#preset", preset).await?;
+        page.ready().await?;
+    }
+    page.js::<()>("return new Promise((seen) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(seen))));", vec![]).await
+}
+
+#[test]
+fn on_a_small_laptop_curves_rows_and_bytes_have_room() -> Result<()> {
+    in_browser(|page| async move {
+        for (width, height) in [(1366, 768), (1024, 768)] {
+            page.screen(width, height).await?;
+            for preset in ["", "driver-timing-broken", "four-controllers-framed"] {
+                open(&page, preset).await?;
+                page.picture(&format!("small-{width}-{preset}")).await?;
+                let seen: Seen = page.js(SEEN, vec![]).await?;
+                let what = format!("{width} x {height} {preset}: {seen:?}");
+                ensure!(seen.charts.iter().all(|&chart| chart >= 80.0), "curves are flat at {what}");
+                let (room, rows) = seen.pulses;
+                ensure!(room >= rows.min(10.0 * 19.0), "too few rows at {what}");
+                ensure!(seen.packets >= 96.0, "too few packets at {what}");
+                let framed = preset.starts_with("four");
+                ensure!(seen.bytes.0 >= 80.0 && (framed || !seen.bytes.1), "no bytes at {what}");
+            }
+        }
+        Ok(())
+    })
+}
+
+#[test]
+fn on_a_phone_a_view_begins_near_the_top_and_shows_the_bytes() -> Result<()> {
+    in_browser(|page| async move {
+        for preset in ["", "driver-timing-broken", "four-controllers-framed"] {
+            page.screen(390, 844).await?;
+            open(&page, preset).await?;
+            for tab in ["motion", "pulses", "packets", "spectrum"] {
+                page.click(&format!("#tab-{tab}")).await?;
+                let top: f64 = page
+                    .eval("document.querySelector('.view.open').getBoundingClientRect().top + scrollY")
+                    .await?;
+                ensure!(top <= 160.0, "{tab} of {preset} begins at {top} px");
+            }
+            for width in [390, 320] {
+                page.screen(width, 844).await?;
+                page.click("#tab-packets").await?;
+                page.until("document.querySelector('#packets tbody td:nth-child(3)')?.offsetWidth >= 80")
+                    .await?;
+            }
+        }
+        Ok(())
+    })
+}
+
+#[test]
+fn a_view_with_nothing_to_show_gives_its_room_away_until_it_is_unfolded() -> Result<()> {
+    in_browser(|page| async move {
+        page.screen(1366, 768).await?;
+        open(&page, "song-2021-one-turn").await?;
+        let height = async |view: &str| {
+            page.js::<f64>(
+                "return document.getElementById(arguments[0]).offsetHeight;",
+                vec![json!(format!("view-{view}"))],
+            )
+            .await
+        };
+        let curves = height("motion").await?;
+        // Segments run alone: nothing is on the line, and the page says so.
+        open(&page, "sonobe-2011-segments").await?;
+        page.until("document.getElementById('view-packets').offsetHeight < 100").await?;
+        ensure!(page.text("#packets-empty").await?.starts_with("Segments come from the controller itself"));
+        ensure!(!page.visible("#packets-search").await?, "there is nothing to search");
+        ensure!(height("motion").await? > curves + 40.0, "the curves have none of the room");
+        // Not periodic: a line, until somebody wants to see it.
+        ensure!(page.text("#spectrum-note").await?.contains("not periodic"));
+        ensure!(height("spectrum").await? < 100.0 && !page.visible("#spectrum-chart").await?);
+        for large in [true, false, true] {
+            page.click("#view-spectrum .fold").await?;
+            page.until(&format!("document.getElementById('spectrum-chart').checkVisibility() === {large}"))
+                .await?;
+        }
+        // What has something to show has its room again.
+        page.choose("#preset", "song-2021-one-turn").await?;
+        page.ready().await?;
+        page.until("document.querySelectorAll('#packets tbody tr').length > 3 && document.getElementById('packets').checkVisibility()").await?;
+        // The choice is kept on this device.
+        page.open("").await?;
+        page.until("document.getElementById('spectrum-chart').checkVisibility()").await
+    })
+}

@@ -1,0 +1,103 @@
+/**
+ * The views, a row each, in the order of their tabs: the one list that the page makes tabs, headings, panes, links and
+ * help from. Nothing but data and what follows from it.
+ *
+ * A wide screen shows them in bands, one below the other, of which the last may hold several beside each other; views
+ * that name one place share it, and a button in their heads goes from one to the other. A view without a place stands
+ * alone while it is open.
+ */
+import { selected } from "./state.js";
+
+/** @typedef {import("./types.js").State} State */
+/**
+ * @typedef {object} View
+ * @property {string} name   As links, tabs and ids have it (`view-motion`). Published in links: it stays.
+ * @property {string} title  Its heading.
+ * @property {string} [tab]  Its tab, where that is shorter.
+ * @property {string} about  What the card behind its heading says first; what its words mean stands in `help/texts.js`.
+ * @property {Place | null} place  On a wide screen; null stands alone.
+ * @property {(state: State) => boolean} [offered]  Whether there is such a view now; always without it.
+ *
+ * @typedef {object} Place
+ * @property {string} area  Name of the place; views of one name share it.
+ * @property {number} band  From the top, 0 the first.
+ * @property {string} [height]  Of the band, of its first view: at most so much, but what it holds has its room. Without it just that.
+ * @property {number} part  Of the room of all, in which an edge that is moved leaves the others: of the height, or of the width beside others.
+ * @property {number} least_px  Least height that an edge can be moved to.
+ */
+
+const ROWS = /** @type {const} */ ([
+  {
+    name: "motion",
+    title: "Motion",
+    about: "Position, speed and acceleration of one axis.",
+    place: { area: "motion", band: 0, height: "1fr", part: 0.47, least_px: 120 },
+  },
+  {
+    name: "pulses",
+    title: "Pulses",
+    about: "All signals between controller, drivers and line, exact to the cycle.",
+    place: { area: "pulses", band: 1, height: "min(var(--rows-px, 158px) + 90px, 40%)", part: 0.26, least_px: 110 },
+  },
+  {
+    name: "packets",
+    title: "Packets",
+    about: "What went over the line, and what the controller did with it.",
+    place: { area: "packets", band: 2, height: "27%", part: 6 / 11, least_px: 110 },
+  },
+  {
+    name: "spectrum",
+    title: "Spectrum",
+    about: "Which frequencies the motion is made of.",
+    place: { area: "spectrum", band: 2, part: 5 / 11, least_px: 110 },
+  },
+  {
+    name: "timing",
+    title: "Driver timing",
+    tab: "Timing",
+    about: "Could the driver have followed? Each rule of its data sheet against the pulses.",
+    place: { area: "spectrum", band: 2, part: 5 / 11, least_px: 110 },
+    offered: (/** @type {State} */ state) => typeof selected(state)?.violations === "number",
+  },
+  {
+    name: "study",
+    title: "Study",
+    about: "Which profile, stored how, for this motor? The questions that a design begins with, for the selected axis.",
+    place: null,
+  },
+]);
+
+/** @typedef {(typeof ROWS)[number]["name"]} ViewName */
+/** @typedef {View & {place: Place}} Placed */
+
+/** @type {readonly View[]} */
+export const VIEWS = ROWS;
+export const NAMES = VIEWS.map(({ name }) => name);
+/** Those that stand on a wide screen beside others. */
+export const PLACED = /** @type {Placed[]} */ (VIEWS.filter(({ place }) => place !== null));
+/** Places that several views share: from the name of the place to them. */
+export const SHARED = new Map(
+  PLACED.map(({ place: { area } }) => [area, PLACED.filter(({ place }) => place.area === area)]),
+);
+for (const [area, views] of SHARED) if (views.length < 2) SHARED.delete(area);
+
+/** Whether there is such a view now. @param {View} view @param {State} state */
+export function isOffered({ offered }, state) {
+  return offered?.(state) ?? true;
+}
+
+/**
+ * The view on show in the place of one: that which was chosen, else that which is not always there, else the first.
+ * @param {State} state @param {string} area
+ */
+export function inPlace(state, area) {
+  const here = PLACED.filter((view) => view.place.area === area && isOffered(view, state));
+  const found = here.find(({ name }) => name === state.side) ?? here.find(({ offered }) => offered) ?? here[0];
+  return found.name;
+}
+
+/** The open tab of a narrow screen: that which was chosen, or what has its place where there is none. @param {State} state */
+export function openTab(state) {
+  const chosen = VIEWS.find(({ name }) => name === state.view) ?? VIEWS[0];
+  return isOffered(chosen, state) || !chosen.place ? chosen.name : inPlace(state, chosen.place.area);
+}
