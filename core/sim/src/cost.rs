@@ -279,8 +279,8 @@ mod tests {
             "source":{"motion":{"axes":[{"moves":[
                 {"constant":{"distance":{"steps":40},"speed":{"steps_s":1000}}}]}]}}}"#;
         let experiment = Experiment::from_json(json).expect("runs");
-        assert_eq!(experiment.cost().end_cycle, 649_867);
         assert_eq!(experiment.run(&mut vec![]).cycles().0, 649_867);
+        assert_eq!(experiment.cost().end_cycle, 649_934, "647 106 were announced");
     }
 
     #[test]
