@@ -22,7 +22,6 @@ import { keepOffline } from "./shell/offline.js";
 import { createOwn } from "./shell/own.js";
 import { createPanel } from "./shell/panel.js";
 import { createPanes } from "./shell/panes.js";
-import { createShare } from "./shell/share.js";
 import {
   loadGood,
   loadHistory,
@@ -274,7 +273,12 @@ async function start() {
     createPanes(page),
     ...NAMES.map((name) => all[/** @type {import("./state/views.js").ViewName} */ (name)]),
     createNotices(page),
-    createShare({ shared: link.shared, ...page }),
+    createPanel(
+      "share",
+      "share-panel",
+      async (panel) => (await import("./shell/share.js")).createShare({ shared: link.shared, ...page }, panel),
+      "link-about",
+    ),
     createPanel("export", "export-panel", (panel) => exportsOf(page, panel), "export-status"),
     createOwn({ fresh: fallback, ...page }),
     link,

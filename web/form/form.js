@@ -10,7 +10,6 @@ import { driverItems } from "./driver.js";
 import { glitchFields, OF_SEGMENTS, sections } from "./fields.js";
 import { showAbout, showDerived, showProblems } from "./judgement.js";
 import { createKit } from "./kit.js";
-import { showOffers, showRemedy } from "./remedies.js";
 import { labelOf, labels, termOf } from "./schema.js";
 import { replacedBySource, runsAlone, SOURCES, withSource } from "./sources.js";
 
@@ -20,7 +19,7 @@ import { replacedBySource, runsAlone, SOURCES, withSource } from "./sources.js";
 /**
  * @param {{root: HTMLElement, samples: import("./kit.js").Samples, drivers: import("../state/types.js").DriverSheet[],
  *   dispatch: (message: import("../state/state.js").Message) => void,
- *   remedies: Parameters<typeof showOffers>[0]}} given
+ *   remedies: Parameters<typeof import("./remedies.js").showOffers>[0]}} given
  */
 export function createForm({ root, samples, drivers, dispatch, remedies }) {
   let shape = "";
@@ -102,6 +101,19 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
     (again?.matches(":enabled, summary") ? again : there[Math.min(focus.place, there.length - 1)])?.focus();
   }
 
+  /** @param {Scenario} scenario */
+  const take = (scenario) => kit.change("", () => scenario);
+  /** What puts things right; it loads when something is wrong for the first time. @type {Promise<typeof import("./remedies.js")> | null} */
+  let loading = null;
+  /** @param {(fixes: typeof import("./remedies.js")) => void} show */
+  function putRight(show) {
+    if (!loading && !isIll(state)) return;
+    loading ??= import("./remedies.js");
+    loading.then(show).catch(() => {
+      loading = null;
+    });
+  }
+
   /** What is under the pointer stays where it is until it is let go. @param {State} next */
   function render(next) {
     state = next;
@@ -128,11 +140,7 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
     const judged = held(next) !== "unjudged";
     if (judged && (before?.judgement !== next.judgement || before?.drafts !== next.drafts)) {
       showProblems(next, kit.controls, kit.groups);
-      showOffers(
-        remedies,
-        () => state,
-        (scenario) => kit.change("", () => scenario),
-      );
+      putRight(({ showOffers }) => showOffers(remedies, () => state, take));
     }
     if (
       before?.result !== next.result ||
@@ -140,7 +148,7 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
       before?.scenario !== next.scenario ||
       before?.drafts !== next.drafts
     ) {
-      showRemedy(next, drivers, (scenario) => kit.change("", () => scenario));
+      putRight(({ showRemedy }) => showRemedy(state, drivers, take));
     }
     if (
       judged &&
@@ -150,6 +158,16 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
   }
 
   return { render };
+}
+
+/** Whether something is wrong, or the line is made to go wrong. @param {State} state */
+function isIll({ judgement, result, scenario: { line } }) {
+  return (
+    (judgement?.problems.length ?? 0) > 0 ||
+    (result?.summary.controllers ?? []).some(({ violations }) => violations) ||
+    line.glitches.length > 0 ||
+    Object.entries(line.noise).some(([key, value]) => key !== "seed" && value !== 0)
+  );
 }
 
 /** The hint of the field that has the focus, where it moves nothing; to a screen reader the field itself describes it. @param {HTMLElement} root */

@@ -3,20 +3,18 @@ import { byId, say } from "../dom.js";
 import { count } from "../state/number.js";
 import { held, isStale } from "../state/state.js";
 import { message } from "./link.js";
-import { dropDown } from "./popover.js";
 import { viewOf } from "./view_part.js";
 
 /** @typedef {import("../state/types.js").State} State */
 
-/** @param {{shared: () => Promise<{full: string, digests: boolean}>} & import("../state/types.js").Page} page */
-export function createShare({ shared, now }) {
+/** @param {{shared: () => Promise<{full: string, digests: boolean}>} & import("../state/types.js").Page} page @param {import("./panel.js").Panel} panel @returns {import("./panel.js").Content} */
+export function createShare({ shared, now }, { isOpen }) {
   const text = /** @type {HTMLTextAreaElement} */ (byId("link-text"));
   const copy = /** @type {HTMLButtonElement} */ (byId("copy-link"));
   const about = byId("link-about");
   let timer = 0;
   /** Counts the links that were asked for: an older one comes too late. */
   let asked = 0;
-  const { isOpen } = dropDown("share", "share-panel", make);
   copy.addEventListener("click", toClipboard);
 
   async function make() {
@@ -59,7 +57,6 @@ export function createShare({ shared, now }) {
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    /** @type {HTMLButtonElement} */ (byId("share")).disabled = false;
     if (
       isOpen() &&
       before &&
@@ -67,7 +64,7 @@ export function createShare({ shared, now }) {
     )
       make();
   }
-  return { render };
+  return { opened: make, render };
 }
 
 /** What is in the link, in words. @param {State} state @param {boolean} digests */
