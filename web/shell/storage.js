@@ -68,8 +68,9 @@ export function saveScenario(json) {
   save(LATEST, latest);
   save(LATEST, latest, ofTab);
 }
-/** What there is to say of the own work where something else is shown; nothing where there is none. */
-export const ownIsKept = () => (loadScenario() === null ? "" : " Your own work is kept; Undo brings it back.");
+/** What there is to say of what was shown before, where something else takes its place. */
+export const ownIsKept = () =>
+  loadScenario() === null ? " Undo brings the first example back." : " Your own work is kept; Undo brings it back.";
 /** The work that another tab kept after this one's; null where there is none, or this tab has none of its own. */
 export function loadNewer() {
   const [own, all] = [load(LATEST, ofTab), load(LATEST)].map((text) => JSON.parse(text ?? "null"));

@@ -282,6 +282,7 @@ fn charts_are_saved_as_pictures_and_tables_of_what_is_seen() -> Result<()> {
         page.before_scripts(KEEP).await?;
         page.open("").await?;
         page.click("#export").await?;
+        page.until("document.querySelector('#export-list [data-file]') !== null").await?;
         for ends in ["-motion.svg", "-motion.csv", "-motion.png", "-spectrum.svg", "-spectrum.png"] {
             page.click(&format!("[data-file$='{ends}']")).await?;
             page.until(&format!("Object.keys(window.saved).some((name) => name.endsWith('{ends}'))")).await?;

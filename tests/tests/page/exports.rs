@@ -71,6 +71,7 @@ fn files_of_the_whole_run_and_of_a_stretch_are_the_cores_bytes() -> Result<()> {
         page.open(&format!("#{}", known.link)).await?;
         page.until_digest(&known.digest).await?;
         page.click("#export").await?;
+        page.until("document.querySelector('#export-list [data-file]') !== null").await?;
         let (name, text) = saved(&page, ".vcd").await?;
         ensure!(name == "stepscope.vcd" && text == vcd(&known, trace, cycles)?, "{name}: other bytes");
         let (_, text) = saved(&page, "-edges.csv").await?;
@@ -97,6 +98,7 @@ fn files_of_the_whole_run_and_of_a_stretch_are_the_cores_bytes() -> Result<()> {
         page.open(&format!("#{}&v=a{a}.b{b}", known.link)).await?;
         page.until_digest(&known.digest).await?;
         page.click("#export").await?;
+        page.until("document.querySelector('#export-list [data-file]') !== null").await?;
         page.choose("#export-stretch", "cursors").await?;
         let part = cut(trace, a, b).context("a part")?;
         let (name, text) = saved(&page, ".vcd").await?;
@@ -116,6 +118,7 @@ fn tables_have_the_numbers_of_the_views_and_a_long_file_can_be_left_off() -> Res
         page.choose("#preset", "driver-timing-broken").await?;
         page.until("document.querySelector('#health').textContent.includes('131 timing violations')").await?;
         page.click("#export").await?;
+        page.until("document.querySelector('#export-list [data-file]') !== null").await?;
         let (_, text) = saved(&page, "-violations.csv").await?;
         assert_eq!(text.lines().count(), 132);
         assert_eq!(text.lines().nth(1), Some("2930,0.000183125,0,dir_setup,8,11"));

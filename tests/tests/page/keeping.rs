@@ -58,6 +58,8 @@ fn work_from_before_an_edited_link_comes_back_by_undo_after_a_reload() -> Result
         page.open("").await?;
         page.until_digest(&Known::of(&with_distance(801.0))?.digest).await?;
         page.click("#undo").await?;
+        page.until_digest(&shared.digest).await?;
+        page.click("#undo").await?;
         page.until_digest(&own.digest).await
     })
 }
@@ -310,6 +312,7 @@ fn own_experiments_are_kept_by_name_and_undo_survives_a_reload() -> Result<()> {
         page.fill(DISTANCE, "1234").await?;
         page.ready().await?;
         page.click("#experiments").await?;
+        page.until("document.getElementById('experiment-keep').offsetWidth > 0").await?;
         page.press("#experiment-name", &format!("Rig{ENTER}")).await?;
         page.until_equal(NAMES, &serde_json::json!(["Rig"])).await?;
         page.click("#experiment-new").await?;
@@ -329,6 +332,7 @@ fn own_experiments_are_kept_by_name_and_undo_survives_a_reload() -> Result<()> {
         page.until_digest(&Known::of(&with_distance(1234.0))?.digest).await?;
 
         page.click("#experiments").await?;
+        page.until_equal(NAMES, &serde_json::json!(["Rig"])).await?;
         page.click("[aria-label='Remove Rig']").await?;
         page.until_equal(NAMES, &serde_json::json!([])).await
     })

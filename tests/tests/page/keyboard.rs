@@ -168,6 +168,11 @@ fn a_whole_experiment_is_done_by_keys_alone() -> Result<()> {
         page.until("document.getElementById('copy-link').textContent === 'Copied'").await?;
         still(&page, "copy-link").await?;
         let link = page.clipboard().await?;
+        // It is no preset any more, and says so.
+        let title = scenario["title"].as_str().context("a preset has a title")?;
+        scenario["title"] = json!(format!("changed from {title}"));
+        scenario["note"] = json!("");
+        let known = Known::of(&scenario.to_string())?;
         ensure!(link.contains(&format!("#{}", known.link)), "{link}");
         Ok(())
     })

@@ -135,6 +135,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   /** What the note tells of the scenario, which it does only as long as that is so. @type {{path: string, json: string} | null} */
   let claim = null;
   let swept = false;
+  let shownOrder = 0;
   /** Bandwidth of the sensor that feels the acceleration, in harmonics. @type {number | undefined} */
   let sensor;
 
@@ -484,9 +485,11 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     const wanted =
       of && move >= 0 && analysis?.sensor_hz ? analysis.sensor_hz * of.moves[move].sine_segments.period_s : undefined;
     const highest = Math.max(MIN_ORDER, Number(analysis?.order) || 0);
-    const other = (of !== null && wanted !== sensor) || highest !== order.value();
-    if (of !== null) sensor = wanted;
-    if (highest !== order.value()) {
+    const other = of !== null && wanted !== sensor;
+    if (other) sensor = wanted;
+    // All that is shown is to one order.
+    if (highest !== shownOrder) {
+      shownOrder = highest;
       order.set(highest);
       swept = false;
     }
