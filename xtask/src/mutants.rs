@@ -22,8 +22,17 @@ const PACKAGES: [&str; 2] = ["stepscope-peripheral", "stepscope-motion"];
 /// Packages whose tests run.
 const TESTED: [&str; 4] = ["stepscope-peripheral", "stepscope-motion", "stepscope-core", "stepscope-tests"];
 /// Their unit tests, and these: the ones that are about the two, and quick.
-const TESTS: [&str; 7] =
-    ["motion", "segments", "golden", "documents", "contract", "contract_line", "registers"];
+const TESTS: [&str; 9] = [
+    "motion",
+    "plans",
+    "tables",
+    "segments",
+    "golden",
+    "documents",
+    "contract",
+    "contract_line",
+    "registers",
+];
 /// Of the mutants that can be built, so many in a hundred have to be caught.
 const MIN_CAUGHT_PERCENT: usize = 95;
 /// Time that a mutant's tests have at least before they are stopped; else it is a few times what those of the unchanged
