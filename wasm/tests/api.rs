@@ -164,7 +164,7 @@ fn the_default_motion_is_there_from_curve_to_packet() {
             "{name}: {least:?} {most:?}"
         );
     }
-    assert_eq!(numbers(&motion, "made_position_max").last(), Some(&3200.0));
+    assert_eq!(numbers(&motion, "actual_position_max").last(), Some(&3200.0));
 
     let packets = sure(simulation.packets(100, 3));
     assert_eq!(number(&packets, "total"), 200.0);
@@ -366,7 +366,7 @@ fn the_views_look_at_the_controller_that_is_selected() {
     let end_s = number(&summary, "end_s");
     for (index, expected) in expected.iter().enumerate() {
         simulation.select(index as u32);
-        let made = numbers(&simulation.motion(0, 0.0, end_s, 20), "made_position_max");
+        let made = numbers(&simulation.motion(0, 0.0, end_s, 20), "actual_position_max");
         assert_eq!(made.last(), Some(&expected[0]), "controller {index}");
         let rows = rows(&simulation);
         let own = |kind: &str| {
@@ -381,7 +381,7 @@ fn the_views_look_at_the_controller_that_is_selected() {
         assert!(get(&spectrum, "ideal").is_object(), "controller {index}");
     }
     simulation.select(4);
-    let made = numbers(&simulation.motion(0, 0.0, end_s, 20), "made_position_max");
+    let made = numbers(&simulation.motion(0, 0.0, end_s, 20), "actual_position_max");
     assert_eq!(made.last(), Some(&0.0), "there is no fifth one: still the fourth");
 }
 
@@ -430,6 +430,6 @@ fn measures_are_those_of_the_axis_that_is_asked_for() {
     assert_eq!([0, 1].map(|axis| counts(&sure(simulation.measures(axis)))), [3200.0, 100.0]);
     let measures = sure(simulation.measures(1));
     assert!((number(&get(&measures, "steps"), "rms_steps") - 0.288_675).abs() < 1e-5);
-    assert!(get(&measures, "sine").is_null() && get(&get(&measures, "duration"), "asked_s").is_null());
+    assert!(get(&measures, "sine").is_null() && get(&get(&measures, "duration"), "requested_s").is_null());
     assert!(sure(simulation.measures(2)).is_null(), "there is no third axis");
 }
