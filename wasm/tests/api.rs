@@ -155,7 +155,7 @@ fn the_default_motion_is_there_from_curve_to_packet() {
     let end_s = number(&summary, "end_s");
     let motion = simulation.motion(0, 0.0, end_s, 50);
     assert!(get(&motion, "has_ideal").is_truthy());
-    for name in ["position", "speed", "acceleration", "made_position", "made_speed"] {
+    for name in ["position", "speed", "acceleration", "actual_position", "actual_speed"] {
         let (least, most) =
             (numbers(&motion, &format!("{name}_min")), numbers(&motion, &format!("{name}_max")));
         assert_eq!((least.len(), most.len()), (50, 50), "{name}");
