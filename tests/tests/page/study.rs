@@ -205,6 +205,9 @@ fn a_long_sweep_says_how_far_it_is_and_is_left_off() -> Result<()> {
         page.until("document.getElementById('sine-charts')?.ariaValueMax === '499'").await?;
         page.until("document.querySelector('#study-sine .study-job').hidden").await?;
         fill(&page, "harmonics to", "1000").await?;
+        page.until("document.getElementById('sine-charts').textContent.includes('harmonics 2 to 1000')")
+            .await?;
+        page.until("document.querySelector('#study-sine .study-job').hidden").await?;
         fill(&page, "points", "20000").await?;
         page.until(
             "/^[1-9]\\d* of 20000 points/.test(document.querySelector('#study-sine .study-job').innerText)",
