@@ -50,6 +50,8 @@ import { createTiming } from "./views/timing.js";
 
 /** Rest after a change before it runs, in ms: typing a number is one run. */
 const REST_MS = 120;
+/** Rest after a change before it is looked what would do, in ms. */
+const OFFER_REST_MS = 250;
 /** A run that has told nothing for so long is still planning, in ms. */
 const PLANNING_MS = 100;
 
@@ -206,6 +208,25 @@ async function own(fallback) {
   return { left, good: problems.length > 0 ? loadGood() : null };
 }
 
+/**
+ * What would let a refused motion run. Each answer plans some motions more: it is asked for once the numbers rest, and of
+ * another worker, so that no judgement waits for it.
+ * @param {Engine} engine
+ */
+function remediesOf(engine) {
+  let asking = new AbortController();
+  return async (/** @type {string | null} */ json) => {
+    asking.abort();
+    if (json === null) return null;
+    asking = new AbortController();
+    const { signal } = asking;
+    await new Promise((rested) => setTimeout(rested, OFFER_REST_MS));
+    if (signal.aborted) return null;
+    const answers = await engine.distribute("remedies", [[json]], signal).catch(unlessDropped);
+    return answers?.[0] ?? null;
+  };
+}
+
 /** What the panel of exports holds; it loads when that is first opened. @param {{engine: Engine} & import("./state/types.js").Page} page @param {import("./shell/panel.js").Panel} panel */
 async function exportsOf(page, panel) {
   const [{ createExports }, { chartFiles }, { packetFiles }, { tableFiles }] = await Promise.all([
@@ -256,7 +277,7 @@ async function start() {
     judge();
   };
   const pulses = createPulses(page);
-  const remedies = (/** @type {string} */ json) => engine.latest("remedies", "remedies", json).catch(unlessDropped);
+  const remedies = remediesOf(engine);
   /** @type {{[view in import("./state/views.js").ViewName]: View}} */
   const all = {
     motion: createMotion(page),

@@ -140,7 +140,7 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
     const judged = held(next) !== "unjudged";
     if (judged && (before?.judgement !== next.judgement || before?.drafts !== next.drafts)) {
       showProblems(next, kit.controls, kit.groups);
-      putRight(({ showOffers }) => showOffers(remedies, () => state, take));
+      putRight(({ showOffers }) => showOffers(remedies, () => state, take, hand.released));
     }
     if (
       before?.result !== next.result ||
@@ -187,6 +187,8 @@ function showHints(root) {
  */
 function createHand(root, draw) {
   let holds = false;
+  /** Who waits for the release. @type {(() => void)[]} */
+  const waiting = [];
   root.addEventListener("pointerdown", ({ target }) => {
     holds = !(/** @type {Element} */ (target).closest("select"));
   });
@@ -196,9 +198,13 @@ function createHand(root, draw) {
       if (!holds) return;
       holds = false;
       draw();
+      for (const go of waiting.splice(0)) go();
     });
   for (const event of ["pointerup", "pointercancel", "keydown", "blur"]) window.addEventListener(event, free);
-  return { holds: () => holds };
+  const released = async () => {
+    if (holds) await new Promise((/** @type {(value?: any) => void} */ go) => waiting.push(go));
+  };
+  return { holds: () => holds, released };
 }
 
 /** Whether anything in a group of numbers is other than 0. @param {{[key: string]: number}} group */

@@ -33,15 +33,19 @@ export function showRemedy(state, sheets, apply) {
 /**
  * A motion that is too fast for its bus, while it is refused: the rate that it needs, and what would do, each a step of
  * the history.
- * @param {(json: string) => Promise<{wrong: string, offers: {change: string, scenario: string}[]} | null>} ask
- * @param {() => State} now @param {(scenario: Scenario) => void} apply
+ * @param {(json: string | null) => Promise<{wrong: string, offers: {change: string, scenario: string}[]} | null>} ask
+ * @param {() => State} now @param {(scenario: Scenario) => void} apply @param {() => Promise<void>} released  Waits for the pointer: what comes late moves nothing under it.
  */
-export async function showOffers(ask, now, apply) {
+export async function showOffers(ask, now, apply, released) {
   const { revision, scenario, judgement, drafts } = now();
   const root = byId("offers");
   const refused = (judgement?.problems.length ?? 0) > 0 && Object.keys(drafts).length === 0;
-  const found = refused ? await ask(JSON.stringify(scenario)) : null;
-  if (now().revision !== revision) return;
+  // Those that stand are of numbers before: nothing that was typed since may go with them.
+  for (const press of root.querySelectorAll("button")) press.disabled = true;
+  const found = await ask(refused ? JSON.stringify(scenario) : null);
+  await released();
+  const isCurrent = () => now().revision === revision;
+  if (!isCurrent()) return;
   root.hidden = !found;
   if (!found) return fill(root);
   fill(
@@ -51,7 +55,7 @@ export async function showOffers(ask, now, apply) {
       element(
         "p",
         {},
-        button("Fix it", `Fix it: ${change}`, () => apply(readJson(scenario))),
+        button("Fix it", `Fix it: ${change}`, () => isCurrent() && apply(readJson(scenario))),
         " ",
         element("span", { class: "range" }, change),
       ),
