@@ -108,7 +108,6 @@ function follow(before) {
       if (before.origin !== "own") setAside(JSON.stringify(scenario));
       saveScenario(JSON.stringify(scenario));
     }
-    if (before) saveHistory(version(), state);
   }
   if (before?.judgement !== judgement || before?.approved !== approved || before?.drafts !== drafts) plan();
   if (result && before?.result !== result) {
@@ -267,6 +266,8 @@ async function start() {
   const { left, good } = await own(fallback);
   state = left;
   const page = { engine, dispatch, now: () => state };
+  // At its end, for many long steps cost more than a keystroke may.
+  window.addEventListener("pagehide", () => saveHistory(version(), state));
   // Nothing is ever sent; Enter in a field must not try to.
   byId("form").addEventListener("submit", (event) => event.preventDefault());
   const link = createLink(page);

@@ -5,7 +5,7 @@
 import { button, byId, element, fill, say } from "../dom.js";
 import { Dropped } from "../engine/engine.js";
 import { readJson } from "../state/json.js";
-import { counted } from "../state/number.js";
+import { counted, si } from "../state/number.js";
 import { message } from "./link.js";
 import { save } from "./save.js";
 import { loadExperiments, saveExperiments } from "./storage.js";
@@ -15,11 +15,13 @@ import { loadExperiments, saveExperiments } from "./storage.js";
 /** What the file says of itself, so that it is told from one scenario. */
 const FILE = "stepscope_experiments";
 const FILE_NAME = "stepscope-experiments.json";
+/** Most bytes of such a file. */
+const MAX_FILE = 32 << 20;
 
 /** @typedef {{fresh: string, engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} Given  `fresh`: what a new experiment begins with, as JSON. */
 
-/** What the panel does; made once. @param {Given} page @param {{close: () => void, changed: () => void}} panel  `changed`: other experiments are kept than before. */
-export function createExperiments({ fresh, engine, dispatch, now }, { close, changed }) {
+/** What the panel does; made once. @param {Given} page @param {{close: () => void, changed: () => void, open: (kept: Scenario) => void}} panel  `changed`: other experiments are kept than before. */
+export function createExperiments({ fresh, engine, dispatch, now }, { close, changed, open }) {
   const name = /** @type {HTMLInputElement} */ (byId("experiment-name"));
   const keep = /** @type {HTMLButtonElement} */ (byId("experiment-keep"));
   const list = byId("experiment-list");
@@ -41,7 +43,13 @@ export function createExperiments({ fresh, engine, dispatch, now }, { close, cha
   chooser.addEventListener("change", async () => {
     const [file] = chooser.files ?? [];
     chooser.value = "";
-    if (file) say(about, await takeExperiments(await file.text(), engine));
+    if (!file) return;
+    say(
+      about,
+      file.size > MAX_FILE
+        ? `${file.name} has ${si(file.size, "B", 3)}; at most ${si(MAX_FILE, "B", 3)} are read.`
+        : await takeExperiments(await file.text(), engine),
+    );
     show();
   });
 
@@ -62,18 +70,19 @@ export function createExperiments({ fresh, engine, dispatch, now }, { close, cha
     return show();
   }
 
-  /** @param {Scenario} scenario */
-  function open(scenario) {
-    dispatch({ type: "replace", scenario, origin: "own" });
-    close();
-  }
-
-  /** @param {string} title */
-  function remove(title) {
+  /** @param {Scenario} removed */
+  function remove(removed) {
+    const { title } = removed;
     saveExperiments(loadExperiments().filter((each) => each.title !== title));
-    say(about, `“${title}” is removed.`);
+    const back = button("Put it back", `Put ${title} back`, () => {
+      saveExperiments([...loadExperiments().filter((each) => each.title !== title), removed]);
+      say(about, `“${title}” is kept again.`);
+      show();
+      name.focus();
+    });
+    fill(about, `“${title}” is removed. `, back);
     show();
-    name.focus();
+    back.focus();
   }
 
   function exportThem() {
@@ -92,8 +101,11 @@ export function createExperiments({ fresh, engine, dispatch, now }, { close, cha
         element(
           "li",
           {},
-          button(each.title, `Open ${each.title}`, () => open(each)),
-          button("✕", `Remove ${each.title}`, () => remove(each.title)),
+          button(each.title, `Open ${each.title}`, () => {
+            open(each);
+            close();
+          }),
+          button("✕", `Remove ${each.title}`, () => remove(each)),
         ),
       ),
     );

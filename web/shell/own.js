@@ -1,5 +1,7 @@
 /** The visitor's own experiments among the presets, and the button of their panel, which loads when it is first opened. */
 import { byId, element } from "../dom.js";
+import { unlessDropped } from "../engine/engine.js";
+import { readJson } from "../state/json.js";
 import { createPanel } from "./panel.js";
 import { loadExperiments } from "./storage.js";
 
@@ -14,18 +16,29 @@ export function listOwn() {
   preset.value = value;
 }
 
+/** Shows an own experiment: an earlier version may have kept it, so the core reads it. @param {import("./experiments.js").Given} page @param {any} kept */
+async function openOwn({ engine, dispatch }, kept) {
+  const read = await engine.ask("check", JSON.stringify(kept)).catch(unlessDropped);
+  if (read) dispatch({ type: "replace", scenario: readJson(read.scenario), origin: "own" });
+}
+
 /** @param {import("./experiments.js").Given} page */
 export function createOwn(page) {
   const panel = createPanel(
     "experiments",
     "experiments-panel",
-    async ({ close }) => (await import("./experiments.js")).createExperiments(page, { close, changed: listOwn }),
+    async ({ close }) =>
+      (await import("./experiments.js")).createExperiments(page, {
+        close,
+        changed: listOwn,
+        open: (kept) => openOwn(page, kept),
+      }),
     "experiment-about",
   );
   byId("preset").addEventListener("change", () => {
     const { value } = /** @type {HTMLSelectElement} */ (byId("preset"));
     const scenario = loadExperiments().find(({ title }) => `own:${title}` === value);
-    if (scenario) page.dispatch({ type: "replace", scenario, origin: "own" });
+    if (scenario) openOwn(page, scenario);
   });
   listOwn();
   return panel;

@@ -43,6 +43,15 @@ function save(key, value, place = ofAll) {
   }
 }
 
+/** What a text that is kept says; nothing where it is not what this page writes. @param {string | null} text @returns {any} */
+function parsed(text) {
+  try {
+    return JSON.parse(text ?? "null");
+  } catch {
+    return null;
+  }
+}
+
 /** This tab's name, the same after a reload. */
 function tab() {
   const known = load(TAB, ofTab);
@@ -73,7 +82,7 @@ export const ownIsKept = () =>
   loadScenario() === null ? " Undo brings the first example back." : " Your own work is kept; Undo brings it back.";
 /** The work that another tab kept after this one's; null where there is none, or this tab has none of its own. */
 export function loadNewer() {
-  const [own, all] = [load(LATEST, ofTab), load(LATEST)].map((text) => JSON.parse(text ?? "null"));
+  const [own, all] = [load(LATEST, ofTab), load(LATEST)].map(parsed);
   if (!own || !all || all.tab === tab() || !(all.at > own.at)) return null;
   const newer = load(SCENARIO);
   return newer === load(SCENARIO, ofTab) ? null : newer;
@@ -84,14 +93,18 @@ export function setAside(next) {
   if (saved !== null && saved !== next) saveWork(PREVIOUS, saved);
 }
 /** Experiments that the visitor named. @returns {any[]} */
-export const loadExperiments = () => JSON.parse(load(EXPERIMENTS) ?? "[]");
+export function loadExperiments() {
+  const kept = parsed(load(EXPERIMENTS));
+  return Array.isArray(kept) ? kept.filter((each) => typeof each?.title === "string") : [];
+}
 /** Whether they are kept. @param {any[]} experiments */
 export const saveExperiments = (experiments) => save(EXPERIMENTS, JSON.stringify(experiments));
 /** @typedef {Pick<import("../state/types.js").State, "past" | "future">} History */
 /** Steps back and forth of this tab, of the same version of the page. @param {string} version @returns {History} */
 export function loadHistory(version) {
-  const kept = JSON.parse(load(HISTORY, ofTab) ?? "null");
-  return kept?.version === version ? kept : { past: [], future: [] };
+  const kept = parsed(load(HISTORY, ofTab));
+  const whole = kept?.version === version && Array.isArray(kept.past) && Array.isArray(kept.future);
+  return whole ? kept : { past: [], future: [] };
 }
 /** Keeps as many steps as there is space for, the nearest ones. @param {string} version @param {History} history */
 export function saveHistory(version, { past, future }) {

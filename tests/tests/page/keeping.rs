@@ -334,7 +334,9 @@ fn own_experiments_are_kept_by_name_and_undo_survives_a_reload() -> Result<()> {
         page.click("#experiments").await?;
         page.until_equal(NAMES, &serde_json::json!(["Rig"])).await?;
         page.click("[aria-label='Remove Rig']").await?;
-        page.until_equal(NAMES, &serde_json::json!([])).await
+        page.until_equal(NAMES, &serde_json::json!([])).await?;
+        page.click("[aria-label='Put Rig back']").await?;
+        page.until_equal(NAMES, &serde_json::json!(["Rig"])).await
     })
 }
 
@@ -353,5 +355,34 @@ fn a_motion_too_fast_for_its_bus_is_offered_what_would_do() -> Result<()> {
         ensure!(!page.visible("#offers").await?, "it was taken");
         page.click("#undo").await?;
         page.until("!document.getElementById('offers').hidden").await
+    })
+}
+
+#[test]
+fn what_is_kept_and_broken_stops_nothing() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        for (place, key) in [
+            ("localStorage", "experiments"),
+            ("localStorage", "latest"),
+            ("sessionStorage", "latest"),
+            ("sessionStorage", "history"),
+        ] {
+            for text in ["{", "null", "7", r#"[{"title":5},null]"#, r#"{"version":"development","past":{}}"#]
+            {
+                page.eval::<bool>(&format!("({place}.setItem('stepscope.{key}', {text:?}), true)")).await?;
+                page.open("").await?;
+                page.until_digest(&Known::of("{}")?.digest)
+                    .await
+                    .map_err(|error| error.context(format!("{place} {key}: {text}")))?;
+            }
+        }
+        // Kept by an earlier version: its names of then are read.
+        let old = r#"[{"title":"Old","bus":{"pulses":"staggered","settle_cycles":60}}]"#;
+        page.eval::<bool>(&format!("(localStorage.setItem('stepscope.experiments', {old:?}), true)")).await?;
+        page.open("").await?;
+        page.choose("#preset", "own:Old").await?;
+        page.until_digest(&Known::of(r#"{"bus":{"pulse_phasing":"staggered","settle_cycles":60}}"#)?.digest)
+            .await
     })
 }
