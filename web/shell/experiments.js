@@ -6,6 +6,7 @@ import { button, byId, element, fill, say } from "../dom.js";
 import { Dropped } from "../engine/engine.js";
 import { readJson } from "../state/json.js";
 import { counted, si } from "../state/number.js";
+import { MAX_TITLE } from "../state/state.js";
 import { message } from "./link.js";
 import { save } from "./save.js";
 import { loadExperiments, saveExperiments } from "./storage.js";
@@ -149,6 +150,9 @@ async function takeExperiments(text, engine) {
 function freeName(title, kept) {
   const taken = (/** @type {string} */ name) => kept.some((each) => each.title === name);
   let name = title;
-  for (let number = 2; taken(name); number++) name = `${title} (${number})`;
+  for (let number = 2; taken(name); number++) {
+    const tail = ` (${number})`;
+    name = [...title].slice(0, MAX_TITLE - tail.length).join("") + tail;
+  }
   return name;
 }

@@ -64,6 +64,8 @@ export const NO_FILTER = { text: "", kind: "", address: null, outcome: "", only:
 export const OWN_TEXTS = { title: false, note: false };
 /** What an edited experiment is called until it has a name of its own; its note goes. */
 export const CHANGED_FROM = "changed from ";
+/** Characters that a name can have; a longer one would be refused. */
+export const MAX_TITLE = 120;
 
 /** @param {Scenario} scenario @returns {State} */
 export function initial(scenario) {
@@ -311,7 +313,8 @@ function owned({ scenario, borrowed }, next) {
 
 /** @param {string} title */
 function changedFrom(title) {
-  return title.startsWith(CHANGED_FROM) ? title : `${CHANGED_FROM}${title}`;
+  if (title.startsWith(CHANGED_FROM)) return title;
+  return [...`${CHANGED_FROM}${title}`].slice(0, MAX_TITLE).join("");
 }
 
 /** Whether `path` is `outer` or a part of it: what was typed there goes with it. @param {string} path @param {string} outer */

@@ -68,6 +68,7 @@ return import(new URL("state/state.js", document.baseURI)).then(({ DEPTH, MIN_SP
     ["and away with its part", [draft("list[0].c"), draft("list[1].c"), restructure([{ c: 2 }], [["list[0]", null], ["list[1]", "list[0]"]])], (s) => Object.keys(s.drafts), ["list[0].c"]],
     // Name and note.
     ["an edited preset is changed from it and loses its note", [replace(named), edit("a.b", 8)], texts, ["changed from S", ""]],
+    ["in no more letters than a name can have", [replace({ ...named, title: "é".repeat(120) }), edit("a.b", 8)], texts, [`changed from ${"é".repeat(107)}`, ""]],
     ["once", [replace(named), edit("a.b", 8), edit("a.b", 9)], texts, ["changed from S", ""]],
     ["also what was changed from it before", [replace({ ...named, title: "changed from S" }, "shared"), edit("a.b", 8)], texts, ["changed from S", ""]],
     ["until it has a name", [replace(named), edit("a.b", 8), edit("title", "mine"), edit("a.b", 9)], texts, ["mine", ""]],
