@@ -22,7 +22,8 @@ const PACKAGES: [&str; 2] = ["stepscope-peripheral", "stepscope-motion"];
 /// Packages whose tests run.
 const TESTED: [&str; 4] = ["stepscope-peripheral", "stepscope-motion", "stepscope-core", "stepscope-tests"];
 /// Their unit tests, and these: the ones that are about the two, and quick.
-const TESTS: [&str; 9] = [
+const TESTS: [&str; 10] = [
+    "as_before",
     "motion",
     "plans",
     "tables",

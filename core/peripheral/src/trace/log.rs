@@ -309,6 +309,19 @@ mod tests {
     }
 
     #[test]
+    fn a_tick_that_is_stopped_in_the_cycle_of_its_start_lasts_no_time() {
+        let mut log = PacketLog::default();
+        log.event(Instant(5), Event::Stopped);
+        log.event(Instant(9), Event::TickStart { orders: [0; 16] });
+        log.event(Instant(9), Event::Stopped);
+        assert_eq!(
+            log.tick_end(&log.ticks()[0], Cycles(100)),
+            Instant(9),
+            "not the stop before, nor by itself"
+        );
+    }
+
+    #[test]
     fn finished_rows_stand_in_the_order_of_their_starts_with_their_bytes_and_ticks() {
         let mut log = PacketLog::default();
         let events = [
