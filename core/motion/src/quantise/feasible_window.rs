@@ -198,6 +198,45 @@ mod tests {
         (adds.0..=adds.1).filter_map(fit).collect()
     }
 
+    /// Where two gates leave no room, the look says how many adds further they are first without a gap: there, and not
+    /// one add before.
+    #[test]
+    fn a_look_ahead_is_the_least_that_closes_the_gap() {
+        let mut noise = Xoshiro256StarStar::seed_from_u64(2);
+        let mut draw = |from: i64, to: i64| from + (noise.next_u64() % (to - from + 1) as u64) as i64;
+        let mut seen = 0;
+        for _ in 0..20_000 {
+            let gate = |n, low| Gate { n, low, high: low + 3 };
+            let (first, second) = (gate(draw(1, 9), draw(0, 300)), gate(draw(1, 9), draw(0, 300)));
+            let look = Look::at(&[first, second], 0).expect("there are gates");
+            // The interval that one asks for at least, less what the other has at most.
+            let gap = |low: Gate, high: Gate, add: i64| {
+                let (low, high) = (low.shifted(add), high.shifted(add));
+                low.low * high.n - high.high * low.n
+            };
+            let pairs = [(first, second), (second, first)];
+            let Some((low, high)) = pairs.into_iter().find(|(low, high)| gap(*low, *high, 0) > 0) else {
+                continue;
+            };
+            if low.n == high.n {
+                continue;
+            }
+            let further = |adds: i64| if look.slope > 0 { adds } else { -adds };
+            assert!(
+                gap(low, high, further(look.ahead)) <= 0,
+                "{first:?} {second:?}: {} is too few",
+                look.ahead
+            );
+            assert!(
+                gap(low, high, further(look.ahead - 1)) > 0,
+                "{first:?} {second:?}: {} is too many",
+                look.ahead
+            );
+            seen += 1;
+        }
+        assert!(seen > 5000, "{seen}");
+    }
+
     #[test]
     fn a_fit_is_found_where_trying_all_finds_one_and_nowhere_else() {
         let mut noise = Xoshiro256StarStar::seed_from_u64(1);

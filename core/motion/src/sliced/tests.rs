@@ -1,6 +1,10 @@
 //! The sliced cosine, held against the document's tables and its own rule.
 
 use super::*;
+use rand_xoshiro::{
+    Xoshiro256StarStar,
+    rand_core::{Rng, SeedableRng},
+};
 
 fn sliced(steps: i64, duration_s: f64, ramp_s: f64) -> Sliced {
     Sliced::new(steps, duration_s, ramp_s, 0.001, 1_000_000).unwrap()
@@ -128,4 +132,27 @@ fn a_plateau_that_jumps_all_at_once_is_still_compensated_in_time() {
     let curve = Sliced::new(100_001, 100.0, 0.0, 0.001, 1_000_000).unwrap();
     assert_eq!(curve.position(curve.duration_s()), 100_001.0);
     assert!((curve.time_error().relative + 0.5).abs() < 1e-4, "{:?}", curve.time_error());
+}
+
+#[test]
+fn the_highest_rate_is_that_of_the_fastest_slice_whole_or_not() {
+    let mut noise = Xoshiro256StarStar::seed_from_u64(3);
+    let mut draw =
+        |from: f64, to: f64| from + (to - from) * (noise.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+    let (mut made, mut in_last) = (0, 0);
+    for _ in 0..4000 {
+        // Few slices, of which the last is seldom a whole one.
+        let (slice_s, ramp) = (0.01, draw(0.0, 0.5));
+        let duration_s = draw(2.5, 9.5) * slice_s;
+        let steps = draw(20.0, 400.0) as i64;
+        let Ok(sliced) = Sliced::new(steps, duration_s, ramp * duration_s, slice_s, 1000) else { continue };
+        let rates: Vec<f64> =
+            sliced.slices().map(|(from, to, count)| f64::from(count) / (to - from)).collect();
+        let fastest = rates.iter().copied().fold(0.0, f64::max);
+        let found = sliced.top_rate();
+        assert!((found - fastest).abs() <= 1e-9 * fastest, "{steps} in {duration_s} s: {found}, {rates:?}");
+        made += 1;
+        in_last += usize::from(rates.last() == Some(&fastest) && rates[rates.len() - 2] < fastest);
+    }
+    assert!(made > 1000 && in_last > 0, "{made}, {in_last}");
 }
