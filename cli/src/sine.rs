@@ -5,16 +5,24 @@ use crate::{
     json::Tables,
     output::{self, Outputs},
     progress::Progress,
+    scenarios,
 };
 use clap::{Args, Subcommand};
 use serde_json::{Value, json};
 use std::{
     io::{self, Write},
-    path::PathBuf,
+    path::{Path, PathBuf},
 };
-use stepscope_core::inspect::{
-    sine_optimum::{Freedom, MAX_SEGMENTS, optimum},
-    sine_polyline::{self, Bounds, Distinct, Row},
+use stepscope_core::{
+    inspect::{
+        sine_optimum::{Freedom, MAX_SEGMENTS, optimum},
+        sine_polyline::{self, Bounds, Distinct, Row},
+    },
+    motion::{
+        Profile,
+        sine_segments::{Memory, Segment, SineSegments},
+    },
+    scenario::{Problem, ValueError},
 };
 
 /// What `stepscope sine` does.
@@ -46,6 +54,16 @@ pub(crate) enum Command {
         free: bool,
         #[command(flatten)]
         common: Common,
+    },
+    /// The segments of a scenario's sines: where they break, their steps and rates, and the bytes of a quarter.
+    Segments {
+        /// The scenario, whose source is a motion: a JSON file, or a preset's name; `-` reads standard input.
+        scenario: PathBuf,
+        /// Only this axis, from 0.
+        #[arg(long, value_name = "K")]
+        axis: Option<usize>,
+        #[command(flatten)]
+        written: Written,
     },
 }
 
@@ -82,6 +100,13 @@ pub(crate) struct Common {
     /// Highest harmonic of the distortion.
     #[arg(long, value_name = "K", default_value = "399", value_parser = clap::value_parser!(u16).range(3..=9999))]
     order: u16,
+    #[command(flatten)]
+    written: Written,
+}
+
+/// Where a table goes, and how.
+#[derive(Args)]
+pub(crate) struct Written {
     /// Where the table goes (`-`: standard output).
     #[arg(long, value_name = "FILE", default_value = "-")]
     out: PathBuf,
@@ -102,18 +127,25 @@ fn positive(text: &str) -> Result<f64, String> {
 
 /// Writes the table.
 pub(crate) fn sine(command: &Command) -> Result<(), Failure> {
-    let common = match command {
-        Command::Sweep { range, .. } | Command::Best { range, .. } => &range.common,
-        Command::Vertices { common, .. } => common,
+    let written = match command {
+        Command::Sweep { range, .. } | Command::Best { range, .. } => &range.common.written,
+        Command::Vertices { common, .. } => &common.written,
+        Command::Segments { written, .. } => written,
     };
-    let outputs = Outputs::judge(None, [common.out.as_path()])?;
-    output::write_whole(outputs, &common.out, |out| match command {
+    let input =
+        if let Command::Segments { scenario, .. } = command { Some(scenario.as_path()) } else { None };
+    let outputs = Outputs::judge(input, [written.out.as_path()])?;
+    let sines = match command {
+        Command::Segments { scenario, axis, .. } => sines(scenario, *axis)?,
+        _ => Vec::new(),
+    };
+    output::write_whole(outputs, &written.out, |out| match command {
         Command::Sweep { range, points } => sweep(range, *points, out),
         Command::Best { range, segments } => {
             let rows = Distinct::new(range.from, range.to, range.bounds());
             let asked = |row: &Row| segments.is_none_or(|segments| segments == row.segments);
             let best = sine_polyline::best(rows.filter(asked));
-            if common.json {
+            if written.json {
                 return json_of("sine best", "polylines", best.iter().map(cells)).write(out);
             }
             head(range, out)?;
@@ -123,7 +155,84 @@ pub(crate) fn sine(command: &Command) -> Result<(), Failure> {
             let freedom = if *free { Freedom::Free } else { Freedom::OnCurve };
             vertices((*segments).into(), freedom, common, out)
         }
+        Command::Segments { written, .. } => segments(&sines, written.json, out),
     })
+}
+
+/// A sine in segments, and where it stands.
+struct Placed {
+    axis: usize,
+    index: usize,
+    sine: SineSegments,
+}
+
+/// The sines of a scenario's axes.
+fn sines(scenario: &Path, only: Option<usize>) -> Result<Vec<Placed>, Failure> {
+    let (_, experiment) = scenarios::judged(scenario)?;
+    let plans = experiment.plans();
+    if let Some(axis) = only.filter(|axis| *axis >= plans.len()) {
+        return Err(Failure::Axis(scenario.to_owned(), axis, plans.len()));
+    }
+    let axes = plans.iter().enumerate().filter(|(axis, _)| only.is_none_or(|only| only == *axis));
+    let found: Vec<Placed> = axes
+        .flat_map(|(axis, plan)| {
+            plan.moves().iter().enumerate().filter_map(move |(index, planned)| match &planned.profile {
+                Profile::SineSegments(sine) => Some(Placed { axis, index, sine: sine.clone() }),
+                _ => None,
+            })
+        })
+        .collect();
+    if found.is_empty() {
+        let detail = "no sine in segments; give a scenario with a move sine_segments, such as the preset sine-2022-d00054";
+        let problem = Problem::new("source", ValueError::Conflict { detail });
+        return Err(Failure::Scenario(scenario.to_owned(), vec![problem]));
+    }
+    Ok(found)
+}
+
+/// The report of DESIGN B5: each segment of a quarter, the others follow by symmetry.
+fn segments(sines: &[Placed], as_json: bool, out: &mut impl Write) -> io::Result<()> {
+    let rows = sines.iter().flat_map(|placed| {
+        let Memory { segments: segment_bytes, intervals } = placed.sine.memory();
+        placed
+            .sine
+            .segments()
+            .iter()
+            .enumerate()
+            .map(move |(number, segment)| (placed, number, *segment, segment_bytes, intervals))
+    });
+    if as_json {
+        let rows =
+            rows.map(|(Placed { axis, index, .. }, number, segment, segment_bytes, interval_bytes)| {
+                json!({
+                    "axis": axis,
+                    "move": index,
+                    "segment": number,
+                    "from_point": segment.from,
+                    "to_point": segment.to,
+                    "from_deg": segment.from_deg,
+                    "to_deg": segment.to_deg,
+                    "steps": segment.steps,
+                    "rate_steps_s": segment.rate,
+                    "duration_s": segment.duration_s,
+                    "quarter_bytes": segment_bytes,
+                    "quarter_bytes_as_intervals": interval_bytes,
+                })
+            });
+        return json_of("sine segments", "segments", rows).write(out);
+    }
+    writeln!(
+        out,
+        "axis,move,segment,from_point,to_point,from_deg,to_deg,steps,rate_steps_s,duration_s,quarter_bytes,quarter_bytes_as_intervals"
+    )?;
+    for (Placed { axis, index, .. }, number, segment, segment_bytes, interval_bytes) in rows {
+        let Segment { from, to, from_deg, to_deg, steps, rate, duration_s, .. } = segment;
+        writeln!(
+            out,
+            "{axis},{index},{number},{from},{to},{from_deg},{to_deg},{steps},{rate},{duration_s},{segment_bytes},{interval_bytes}"
+        )?;
+    }
+    Ok(())
 }
 
 fn json_of(command: &'static str, table: &str, rows: impl IntoIterator<Item = Value>) -> Tables {
@@ -133,7 +242,7 @@ fn json_of(command: &'static str, table: &str, rows: impl IntoIterator<Item = Va
 fn sweep(range: &Range, points: u32, out: &mut impl Write) -> io::Result<()> {
     let mut progress = Progress::new("sweep", false);
     let rows = sine_polyline::sweep(range.from, range.to, points, range.bounds());
-    if range.common.json {
+    if range.common.written.json {
         let rows = (1..).zip(rows).map(|(done, found)| {
             progress.tell(done, points.into());
             cells(&found)
@@ -189,7 +298,7 @@ fn vertices(segments: usize, freedom: Freedom, common: &Common, out: &mut impl W
     let found = optimum(segments, freedom, common.order)
         .ok_or_else(|| io::Error::other("no such number of segments"))?;
     let percent = found.distortion.position * 100.0;
-    if common.json {
+    if common.written.json {
         let rows = found.vertices.iter().enumerate().map(|(index, vertex)| {
             let angle_deg = vertex.angle.to_degrees();
             json!({ "vertex": index, "angle_deg": angle_deg, "height": vertex.height, "thd_position_percent": percent })

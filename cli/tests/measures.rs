@@ -92,3 +92,38 @@ fn what_cannot_be_measured_ends_with_2_and_says_why() {
         assert!(err.contains(part), "{options:?}: {err}");
     }
 }
+
+#[test]
+fn the_segments_of_a_scenarios_sine_are_those_of_its_document() {
+    let (code, text, err) = stepscope(&["sine", "segments", "sine-2022-d00054"], "");
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    let [head, rows @ ..] = rows.as_slice() else { panic!("{text}") };
+    let column = |name: &str| {
+        let place =
+            head.iter().position(|each| *each == name).unwrap_or_else(|| panic!("no {name}: {head:?}"));
+        rows.iter().map(|row| row[place].parse::<f64>().expect("a number")).collect::<Vec<_>>()
+    };
+    // SWorldJournal, issue 11: breakpoints of 2048 a period.
+    assert_eq!(column("from_point"), [0.0, 67.0, 136.0, 208.0, 287.0, 381.0]);
+    assert_eq!(column("to_point"), [67.0, 136.0, 208.0, 287.0, 381.0, 512.0]);
+    for (steps, (rate, lasts)) in
+        column("steps").iter().zip(column("rate_steps_s").iter().zip(column("duration_s")))
+    {
+        assert!((steps - rate * lasts).abs() < 1e-9 * steps, "{text}");
+    }
+
+    let (_, json, _) = stepscope(&["sine", "segments", "sine-2022-d00054", "--json"], "");
+    let json: serde_json::Value = serde_json::from_str(&json).expect("it is JSON");
+    let first = &json["tables"]["segments"][0];
+    assert_eq!((&first["to_point"], &first["to_deg"]), (&67.into(), &(67.0 * 360.0 / 2048.0).into()));
+    assert_eq!(first["steps"], column("steps")[0] as u64);
+
+    for (arguments, said) in [
+        (["sine", "segments", "exact-sine"].as_slice(), "no sine in segments"),
+        (&["sine", "segments", "sine-2022-d00054", "--axis", "3"], "axis"),
+    ] {
+        let (code, _, err) = stepscope(arguments, "");
+        assert!(code != Some(0) && err.contains(said), "{arguments:?}: {err}");
+    }
+}
