@@ -1,18 +1,25 @@
-//! So many steps in so much time, with ramps of every shape side by side (DESIGN B4).
+//! So many steps in so much time, by every kind of motion side by side (DESIGN B4).
 
-use crate::convert::{field, numbers, object};
+use crate::{
+    convert::{field, numbers, object},
+    judged::Judged,
+};
 use js_sys::{Array, JSON, Object};
 use serde::Serialize;
 use stepscope_core::{
-    inspect::ramp_costs::{Cost, RampRequest, compare},
-    motion::{Curve, Peaks, moves::Axis, plan_axis},
+    inspect::{
+        comparison::{Request, Row, compare},
+        torque::Moment,
+    },
+    motion::{Curve, PlannedMove},
     scenario::to_json,
 };
 use wasm_bindgen::prelude::*;
 
 /// A row without its curves.
-#[derive(Serialize)]
-struct ShapeCost {
+#[derive(Default, Serialize)]
+struct Shown {
+    name: &'static str,
     /// Why it cannot be.
     why: Option<String>,
     /// Peaks in steps and s.
@@ -23,73 +30,74 @@ struct ShapeCost {
     acceleration_jump: f64,
     time_error_s: f64,
     last_step_s: f64,
+    torque: Option<Torque>,
 }
 
-/// Every shape for `steps` in `duration_s` with ramps of `ramp_s`, a row each: its move as a scenario has it, why it
-/// cannot be or its peaks, its time error, when its last step falls due, and its curve as columns `at_speed` and
-/// `at_acceleration`, at `points` times evenly from 0 to `duration_s`. What only some shapes need is as a scenario
-/// has it where it is not given.
-///
-/// # Errors
-/// Never in practice.
-#[wasm_bindgen]
-pub fn compare_ramps(
-    steps: f64,
-    duration_s: f64,
-    ramp_s: f64,
-    slice_s: Option<f64>,
-    sigmoid_range: Option<f64>,
-    time_constants: Option<f64>,
-    points: u32,
-) -> Result<Array, JsError> {
-    let default = RampRequest::new(steps as i64, duration_s, ramp_s);
-    let asked = RampRequest {
-        slice_s: slice_s.unwrap_or(default.slice_s),
-        sigmoid_range: sigmoid_range.unwrap_or(default.sigmoid_range),
-        time_constants: time_constants.unwrap_or(default.time_constants),
-        ..default
-    };
-    let made = Array::new();
-    for row in compare(&asked) {
-        let wanted = asked.ask(row.candidate);
-        let nothing = Cost { peaks: Peaks::default(), time_error_s: 0.0, time_error: 0.0, last_step_s: 0.0 };
-        let (cost, why) = match row.cost {
-            Ok(cost) => (cost, None),
+#[derive(Serialize)]
+struct Torque {
+    is_met: bool,
+    least: Option<Moment>,
+}
+
+impl Shown {
+    fn of(row: &Row) -> Self {
+        let name = row.candidate.name();
+        match &row.cost {
             Err(problems) => {
                 let lines: Vec<String> = problems.iter().map(|problem| problem.cause.to_string()).collect();
-                (nothing, Some(lines.join("; ")))
+                Self { name, why: Some(lines.join("; ")), ..Self::default() }
             }
-        };
-        let axis = Axis { moves: vec![wanted.clone()], ..Axis::default() };
-        let plan = if why.is_none() { plan_axis(&axis, "").ok() } else { None };
-        let curve = plan.as_ref().and_then(|plan| plan.moves().first()).map(|planned| &planned.profile);
-        let Cost { peaks, time_error_s, last_step_s, .. } = cost;
-        let cost = ShapeCost {
-            why,
-            speed: peaks.speed,
-            jump: peaks.jump,
-            acceleration: peaks.acceleration,
-            jerk: peaks.jerk,
-            acceleration_jump: peaks.acceleration_jump,
-            time_error_s,
-            last_step_s,
-        };
-        let shown: Object = object(&cost)?.into();
-        let wanted = JSON::parse(&to_json(&wanted)).map_err(|_| JsError::new("a move is no JSON"))?;
-        field(&shown, "move", &wanted);
-        let sampled = |of: &dyn Fn(f64) -> f64| -> Vec<f64> {
-            let time = |index| duration_s * f64::from(index) / f64::from(points.max(2) - 1);
-            (0..points).map(|index| of(time(index))).collect()
-        };
-        if let Some(curve) = curve {
-            numbers(
-                &shown,
-                "at_speed",
-                &sampled(&|t| if t > curve.duration_s() { 0.0 } else { curve.speed(t) }),
-            );
-            numbers(&shown, "at_acceleration", &sampled(&|t| curve.acceleration(t)));
+            Ok(cost) => Self {
+                name,
+                why: None,
+                speed: cost.peaks.speed,
+                jump: cost.peaks.jump,
+                acceleration: cost.peaks.acceleration,
+                jerk: cost.peaks.jerk,
+                acceleration_jump: cost.peaks.acceleration_jump,
+                time_error_s: cost.time_error_s,
+                last_step_s: cost.last_step_s,
+                torque: cost.torque.map(|found| Torque { is_met: found.is_met, least: found.least }),
+            },
         }
-        made.push(&shown);
     }
-    Ok(made)
+}
+
+#[wasm_bindgen]
+impl Judged {
+    /// What a move of an axis does, by every kind of motion with ramps of `ramp_s`, a row each: its `name`, its `move` as
+    /// a scenario has it, `why` it cannot be or its peaks, time error, last step and `torque`, and its curve as columns
+    /// `at_speed` and `at_acceleration`, at `points` times evenly over the time that was asked for. No rows for a move
+    /// that ends where it begins.
+    ///
+    /// # Errors
+    /// If the scenario has problems, or no such axis.
+    pub fn compare(
+        &self,
+        controller: usize,
+        axis: usize,
+        index: usize,
+        ramp_s: f64,
+        points: u32,
+    ) -> Result<Array, JsError> {
+        let selected = self.axis(controller, axis)?;
+        let made = Array::new();
+        let Some(request) = Request::of(selected.axis, selected.plan, index, ramp_s) else { return Ok(made) };
+        for row in compare(&request) {
+            let shown: Object = object(&Shown::of(&row))?.into();
+            let wanted = JSON::parse(&to_json(&row.wanted)).map_err(|_| JsError::new("a move is no JSON"))?;
+            field(&shown, "move", &wanted);
+            let sampled = |of: &dyn Fn(f64) -> f64| -> Vec<f64> {
+                let time = |look| request.duration_s * f64::from(look) / f64::from(points.max(2) - 1);
+                (0..points).map(|look| of(time(look))).collect()
+            };
+            if let Some([PlannedMove { profile: curve, .. }]) = row.plan.as_ref().map(|plan| plan.moves()) {
+                let within = |t| t <= curve.duration_s();
+                numbers(&shown, "at_speed", &sampled(&|t| if within(t) { curve.speed(t) } else { 0.0 }));
+                numbers(&shown, "at_acceleration", &sampled(&|t| curve.acceleration(t)));
+            }
+            made.push(&shown);
+        }
+        Ok(made)
+    }
 }

@@ -23,7 +23,6 @@ mod timing;
 mod torque;
 mod verify;
 
-pub use compare::compare_ramps;
 pub use judged::{Judged, default_scenario, presets, version};
 pub use link::{decode_link, link_part, link_with, replay};
 pub use schema::schema;

@@ -4,12 +4,15 @@ use anyhow::{Context, Result, anyhow, ensure};
 use serde_json::{Value, json};
 use stepscope_core::{
     inspect::{
-        ramp_costs::{RampRequest, compare},
+        comparison::{Request, compare},
         sine_optimum::{Freedom, optimum},
         sine_polyline::{Distinct, Row, best, sweep},
         source_code::{Language, Source, headline},
     },
-    motion::quantise::{EntryFormat, Form, Stored, Tolerance, stored},
+    motion::{
+        motor::Motor,
+        quantise::{EntryFormat, Form, Stored, Tolerance, stored},
+    },
     peripheral::{segment::PulseTimes, units::Cycles},
 };
 
@@ -334,14 +337,17 @@ const MOVE: &str = "source.motion.axes[0].moves[0]";
 #[test]
 fn the_comparison_is_the_cores_and_a_shape_is_taken_and_given_back() -> Result<()> {
     in_browser(|page| async move {
-        let given = r#"{"source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":6400},"duration_s":0.4,"ramp_s":0.1}}]}]}}}"#;
+        let given = r#"{"source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":6400},"duration_s":0.4,"ramp_s":0.1}}],"motor":{}}]}}}"#;
         let known = Known::of(given)?;
         page.open(&format!("#{}&v=tstudy", known.link)).await?;
-        page.until("document.querySelectorAll('table[aria-label=\"Shapes\"] tbody tr').length === 6").await?;
-        let names = ["Cosine, exact", "Cosine, in slices", "Sigmoid", "Bezier", "Straight", "Exponential"];
-        for (name, row) in names.into_iter().zip(compare(&RampRequest::new(6400, 0.4, 0.1))) {
-            let shown = cells(&page, "Shapes", name).await?;
-            ensure!(shown.len() == 7, "{shown:?}");
+        page.until(
+            "document.querySelectorAll('table[aria-label=\"Kinds of motion\"] tbody tr').length === 12",
+        )
+        .await?;
+        for row in compare(&Request { motor: Some(Motor::default()), ..Request::new(6400, 0.4, 0.1) }) {
+            let name = row.candidate.name();
+            let shown = cells(&page, "Kinds of motion", name).await?;
+            ensure!(shown.len() == 8, "{shown:?}");
             let cost = row.cost.map_err(|problems| anyhow!("{problems:?}"))?;
             let peaks = cost.peaks;
             // Written to the whole step.
@@ -366,9 +372,19 @@ fn the_comparison_is_the_cores_and_a_shape_is_taken_and_given_back() -> Result<(
                     whole(&shown[3], peaks.jerk)?;
                 }
             }
-            ensure!((shown[4] == "none") == (cost.time_error_s == 0.0), "{shown:?}");
-            close(&shown[5], cost.last_step_s)?;
-            ensure!((shown[6] == "in use") == (name == "Cosine, exact"), "{shown:?}");
+            let torque = cost.torque.context("there is a motor")?;
+            ensure!(shown[4].starts_with('✕') != torque.is_met, "{shown:?}");
+            let least = torque.least.context("a move takes time")?;
+            if least.available_mn_m > 0.0 {
+                let part = value(shown[4].trim_start_matches("✕ "))?;
+                let wanted = least.needed_mn_m.abs() / least.available_mn_m;
+                ensure!((part - wanted).abs() <= 6e-3 * wanted, "{shown:?} is not {wanted}");
+            } else {
+                ensure!(shown[4].ends_with("none left"), "{shown:?}");
+            }
+            ensure!((shown[5] == "none") == (cost.time_error.abs() < 1e-9), "{shown:?}");
+            close(&shown[6], cost.last_step_s)?;
+            ensure!((shown[7] == "in use") == (name == "Cosine, exact"), "{shown:?}");
         }
         // They lie over each other, and each is to be seen.
         let speeds = page.canvas("compare-speeds").await?;
@@ -381,7 +397,7 @@ fn the_comparison_is_the_cores_and_a_shape_is_taken_and_given_back() -> Result<(
             "document.querySelector('[data-path=\"{MOVE}.ramps.shape\"]')?.value === 'bezier'"
         ))
         .await?;
-        let bezier = r#"{"source":{"motion":{"axes":[{"moves":[{"ramps":{"distance":{"steps":6400},"duration_s":0.4,"ramp_s":0.1,"shape":"bezier"}}]}]}}}"#;
+        let bezier = r#"{"source":{"motion":{"axes":[{"moves":[{"ramps":{"distance":{"steps":6400},"duration_s":0.4,"ramp_s":0.1,"shape":"bezier"}}],"motor":{}}]}}}"#;
         page.until_digest(&Known::of(bezier)?.digest).await?;
         page.until("document.querySelector('#study-compare tr.chosen').innerText.startsWith('Bezier')")
             .await?;
@@ -393,7 +409,7 @@ fn the_comparison_is_the_cores_and_a_shape_is_taken_and_given_back() -> Result<(
         page.open(&format!("#{}&v=tstudy", Known::of(constant)?.link)).await?;
         fill(&page, "Ramp", "50 ms").await?;
         page.until("document.querySelector('[aria-label=\"Use: Straight\"]')").await?;
-        let straight = compare(&RampRequest::new(1000, 0.5, 0.05))
+        let straight = compare(&Request::new(1000, 0.5, 0.05))
             .remove(4)
             .cost
             .map_err(|problems| anyhow!("{problems:?}"))?;
@@ -416,13 +432,13 @@ fn a_shape_goes_into_the_axis_that_is_looked_at_or_nowhere() -> Result<()> {
             r#"{{"bus":{{"channels":2}},"source":{{"motion":{{"axes":[{one},{one}]}}}}}}"#
         ))?;
         page.open(&format!("#{}&v=tstudy", known.link)).await?;
-        page.until_equal(ROWS, &json!(6)).await?;
+        page.until_equal(ROWS, &json!(12)).await?;
         page.choose("#study-axis", "1").await?;
         page.until(
             "document.querySelector('#study-compare .study-bar').textContent.includes('Axis 1, move 1')",
         )
         .await?;
-        page.until_equal(USABLE, &json!(5)).await?;
+        page.until_equal(USABLE, &json!(11)).await?;
         page.press("[aria-label='Use: Bezier']", &ENTER.to_string()).await?;
         page.until("document.querySelector('[data-path=\"source.motion.axes[1].moves[0].ramps.shape\"]')?.value === 'bezier'").await?;
         ensure!(
@@ -440,7 +456,7 @@ fn a_shape_goes_into_the_axis_that_is_looked_at_or_nowhere() -> Result<()> {
         page.fill("source.motion.axes[1].moves[0].ramps.duration_s", "0").await?;
         page.until_equal(USABLE, &json!(0)).await?;
         page.fill("source.motion.axes[1].moves[0].ramps.duration_s", "0.4").await?;
-        page.until_equal(USABLE, &json!(5)).await?;
+        page.until_equal(USABLE, &json!(11)).await?;
         // A ramp that no shape can have is told once, at its field.
         fill(&page, "Ramp", "0.5").await?;
         page.until(
@@ -449,7 +465,7 @@ fn a_shape_goes_into_the_axis_that_is_looked_at_or_nowhere() -> Result<()> {
         .await?;
         page.until_equal(ROWS, &json!(0)).await?;
         fill(&page, "Ramp", "100 ms").await?;
-        page.until_equal(ROWS, &json!(6)).await?;
+        page.until_equal(ROWS, &json!(12)).await?;
         // Another source leaves no rows of the axis before.
         page.choose("[data-path='source#kind']", "packets").await?;
         page.until_equal(ROWS, &json!(0)).await?;

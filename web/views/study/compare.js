@@ -1,5 +1,5 @@
 /**
- * The tab Compare of the study: the selected move's steps in its time, with ramps of every shape side by side: their curves,
+ * The tab Compare of the study: the selected move's steps in its time, with every kind of motion side by side: their curves,
  * and what each costs. What a tab is, says study.js.
  */
 import { button, element, fill, say } from "../../dom.js";
@@ -10,28 +10,57 @@ import { field, focusRow, table } from "./parts.js";
 import { place, selectedAxis } from "./selected_axis.js";
 
 /** @typedef {import("../../state/types.js").State} State */
+/** @typedef {{is_met: boolean, least: {needed_mn_m: number, available_mn_m: number, at_s: number} | null}} Torque */
 /**
- * @typedef {{move: {[kind: string]: any}, why: string | null, speed: number, jump: number, acceleration: number, jerk: number, acceleration_jump: number,
- *   time_error_s: number, last_step_s: number, at_speed?: Float64Array, at_acceleration?: Float64Array}} ShapeCost
+ * @typedef {{name: string, move: {[kind: string]: any}, why: string | null, speed: number, jump: number, acceleration: number, jerk: number,
+ *   acceleration_jump: number, time_error_s: number, last_step_s: number, torque: Torque | null, at_speed?: Float64Array,
+ *   at_acceleration?: Float64Array}} Cost
  */
 
-/** In the order of the core's rows: name, colour and dash, which tells them apart where colour does not. @type {[string, string, number][]} */
+/** In the order of the core's rows: colour and dash, which tells them apart where colour does not. @type {[string, number][]} */
 const LOOKS = [
-  ["Cosine, exact", "--actual", 0],
-  ["Cosine, in slices", "--ideal", 2],
-  ["Sigmoid", "--enable", 4],
-  ["Bezier", "--wire", 7],
-  ["Straight", "--ink", 10],
-  ["Exponential", "--reply", 15],
+  ["--actual", 0],
+  ["--ideal", 2],
+  ["--enable", 4],
+  ["--wire", 7],
+  ["--ink", 10],
+  ["--reply", 15],
+  ["--actual", 15],
+  ["--ideal", 10],
+  ["--enable", 0],
+  ["--wire", 2],
+  ["--ink", 4],
+  ["--reply", 7],
 ];
 const POINTS = 401;
 const GUTTER = 68;
 /** A number whose unit stands over it. @param {number} value */
 const bare = (value) => plain(value, "").trim();
 
+/** Two numbers that differ by less than this part are the same: one went through a division. */
+const SAME = 1e-6;
+
 /** Which of the rows a move of a scenario is. @param {{[kind: string]: any}} move */
-function kindOf({ cosine, ramps }) {
-  return cosine ? `cosine ${cosine.method}` : ramps ? `ramps ${ramps.shape}` : "";
+function kindOf(move) {
+  const [[kind, { method, shape, interpolation }]] = Object.entries(move);
+  return [kind, method, shape, interpolation].filter((part) => part).join(" ");
+}
+
+/** Whether two values are the same but for last digits. @param {any} one @param {any} other @returns {boolean} */
+function same(one, other) {
+  if (typeof one === "number" && typeof other === "number")
+    return Math.abs(one - other) <= SAME * Math.max(Math.abs(one), Math.abs(other));
+  if (one === null || typeof one !== "object" || typeof other !== "object") return one === other;
+  return Object.keys(one).every((key) => key === "distance" || same(one[key], other?.[key]));
+}
+
+/** The part of the motor's torque that a motion needs where most is missing. @param {Torque} torque */
+function torqueCell({ is_met, least }) {
+  if (!least) return "none";
+  const { needed_mn_m: needed, available_mn_m: available, at_s } = least;
+  const part = available > 0 ? `${short((100 * Math.abs(needed)) / available, 3)} %` : "none left";
+  const title = `${short(Math.abs(needed), 4)} of ${short(available, 4)} mN·m at ${si(at_s, "s")}`;
+  return element("span", { title, class: is_met ? "" : "error" }, is_met ? part : `✕ ${part}`);
 }
 
 /** @param {import("./study.js").StudyPage} page @returns {import("./study.js").StudyTab} */
@@ -47,20 +76,21 @@ export function createCompare({ engine, dispatch, now, panel }) {
   const speeds = element("canvas", {
     id: "compare-speeds",
     role: "img",
-    "aria-label": "Speed of every shape over time",
+    "aria-label": "Speed of every kind of motion over time",
   });
-  const list = table("Shapes", [
-    "shape",
+  const list = table("Kinds of motion", [
+    "motion",
     "#peak rate, steps/s",
     "#peak acceleration, steps/s²",
     "#peak jerk, steps/s³",
+    "#torque",
     "#time error",
     "#last step",
     "",
   ]);
-  const small = LOOKS.map(([name]) => ({
-    name,
-    canvas: element("canvas", { role: "img", "aria-label": `Acceleration, ${name}` }),
+  const small = LOOKS.map(() => ({
+    name: element("span"),
+    canvas: element("canvas", { role: "img" }),
     key: element("canvas", { class: "study-key", "aria-hidden": "true" }),
   }));
   const multiples = element(
@@ -85,7 +115,7 @@ export function createCompare({ engine, dispatch, now, panel }) {
     refresh(now());
   });
   watch(speeds, paint);
-  /** @type {ShapeCost[]} */
+  /** @type {Cost[]} */
   let rows = [];
   let duration = 0;
   let key = "";
@@ -118,7 +148,7 @@ export function createCompare({ engine, dispatch, now, panel }) {
     moves.value = String(move);
     moveLabel.hidden = of.moves.length < 2;
     const asked = of.moves[move];
-    const { duration_s, ramp_s, slice_s, sigmoid_range, time_constants } = asked.cosine ?? asked.ramps ?? {};
+    const { duration_s, ramp_s } = asked.cosine ?? asked.ramps ?? {};
     const derived = state.derived?.controllers[of.controller]?.axes[of.axis]?.moves[move];
     const steps = derived?.steps ?? 0;
     duration = duration_s ?? derived?.duration_s ?? 0;
@@ -131,21 +161,22 @@ export function createCompare({ engine, dispatch, now, panel }) {
     if (steps === 0)
       return say(
         about,
-        `Move ${move + 1} of axis ${of.axis} ends where it begins: choose one that goes somewhere to compare shapes for it.`,
+        `Move ${move + 1} of axis ${of.axis} ends where it begins: choose one that goes somewhere to compare motions for it. Sines are compared under Sine.`,
       );
     say(
       about,
       `Axis ${of.axis}, move ${move + 1}: ${count(steps)} steps in ${si(duration, "s")}${ramp_s === undefined ? "; it has no ramp of its own, so give one" : ""}.`,
     );
-    const question = [steps, duration, ramp.value(), slice_s, sigmoid_range, time_constants, POINTS];
-    const answer = await engine.latest("compare", "compare_ramps", ...question).catch(unlessDropped);
+    const question = [of.json, of.controller, of.axis, move, ramp.value(), POINTS];
+    const answer = await engine.latest("compare", "compare", ...question).catch(unlessDropped);
     if (!answer || turn !== asking) return undefined;
     rows = answer;
     key = kindOf(asked);
     rowsOf = `${placeOf(state)} ${move}`;
-    // What is wrong with the ramp for every shape is said once, at its field.
-    const [{ why }] = rows;
-    const refused = why !== null && rows.every((row) => row.why === why);
+    // What is wrong with the ramp for every kind that takes it as it is, is said once, at its field.
+    const { why } = rows[0];
+    const refused =
+      why !== null && rows.every(({ move, why: other }) => !("cosine" in move || "ramps" in move) || other === why);
     ramp.fail(refused ? pretty(why) : "");
     all.hidden = refused;
     if (refused) return empty();
@@ -173,35 +204,31 @@ export function createCompare({ engine, dispatch, now, panel }) {
     }
   }
 
-  /** Puts a shape into the scenario as it is now. @param {{[kind: string]: any}} made */
+  /** Puts a motion into the scenario as it is now. @param {{[kind: string]: any}} made */
   function take(made) {
     const of = selectedAxis(now());
     if (!of || typeof of === "string" || rowsOf !== `${placeOf(now())} ${move}` || !of.moves[move]) return;
     const [kind, values] = Object.entries(made)[0];
     const { distance } = /** @type {any} */ (Object.values(of.moves[move])[0]);
-    dispatch({
-      type: "edit",
-      path: `${of.path}.moves[${move}]`,
-      value: { [kind]: { ...values, distance: distance ?? values.distance } },
-    });
+    const value = { [kind]: "distance" in values ? { ...values, distance: distance ?? values.distance } : values };
+    // The ramp with which it was compared stays.
+    shown = JSON.stringify([of.path, move, value]);
+    own = false;
+    dispatch({ type: "edit", path: `${of.path}.moves[${move}]`, value });
   }
 
   /** @param {{[kind: string]: any}} asked */
   function show(asked) {
     list.show(
-      rows.map(({ move: made, why, ...cost }, at) => {
-        const [kind, values] = Object.entries(made)[0];
-        const press =
-          kindOf(made) === key && values.ramp_s === asked[kind]?.ramp_s
-            ? "in use"
-            : button("Use", `Use: ${LOOKS[at][0]}`, () => take(made));
+      rows.map(({ name: called, move: made, why, ...cost }) => {
+        const press = same(made, asked) ? "in use" : button("Use", `Use: ${called}`, () => take(made));
         const name = element(
           "span",
           { class: "study-name" },
           element("canvas", { class: "study-key", "aria-hidden": "true" }),
-          LOOKS[at][0],
+          called,
         );
-        if (why !== null) return [name, pretty(why), "", "", "", "", ""];
+        if (why !== null) return [name, pretty(why), "", "", "", "", "", ""];
         const jump = (/** @type {number} */ by, /** @type {string} */ unit) =>
           element("span", { class: "jump" }, `unbounded, jumps by ${plain(by, unit).replace(" ", "\u00a0")}`);
         return [
@@ -213,7 +240,8 @@ export function createCompare({ engine, dispatch, now, panel }) {
             : cost.acceleration_jump > 0
               ? jump(cost.acceleration_jump, "steps/s²")
               : bare(cost.jerk),
-          cost.time_error_s === 0
+          cost.torque ? torqueCell(cost.torque) : "no motor",
+          Math.abs(cost.time_error_s) <= SAME * duration
             ? "none"
             : `${si(cost.time_error_s, "s")} (${short((100 * cost.time_error_s) / duration, 3)} %)`,
           si(cost.last_step_s, "s", 5),
@@ -226,7 +254,7 @@ export function createCompare({ engine, dispatch, now, panel }) {
       if (why === null) return;
       const row = /** @type {HTMLTableRowElement} */ (list.body.children[at]);
       while (row.cells.length > 2) row.deleteCell(-1);
-      row.cells[1].colSpan = 6;
+      row.cells[1].colSpan = 7;
       row.cells[1].className = "why";
     });
   }
@@ -239,7 +267,7 @@ export function createCompare({ engine, dispatch, now, panel }) {
       which.flatMap((at) => {
         const y = rows[at][what];
         return y
-          ? [{ color: color(LOOKS[at][1]), opacity: 1, width: 1.8, dash: LOOKS[at][2], x, shape: { line: { y } } }]
+          ? [{ color: color(LOOKS[at][0]), opacity: 1, width: 1.8, dash: LOOKS[at][1], x, shape: { line: { y } } }]
           : [];
       });
     const every = rows.map((_, at) => at);
@@ -250,7 +278,9 @@ export function createCompare({ engine, dispatch, now, panel }) {
     };
     draw(speeds, { x: axis, y: range("at_speed"), series: of("at_speed", every) });
     const accelerations = { ...range("at_acceleration"), label_px: 44 };
-    small.forEach(({ canvas, key }, at) => {
+    small.forEach(({ name, canvas, key }, at) => {
+      say(name, rows[at].name);
+      canvas.setAttribute("aria-label", `Acceleration, ${rows[at].name}`);
       /** @type {HTMLElement} */ (canvas.parentElement).hidden = !rows[at].at_acceleration || rows[at].jump > 0;
       draw(canvas, {
         x: axis,
@@ -263,7 +293,7 @@ export function createCompare({ engine, dispatch, now, panel }) {
   }
   /** A piece of a curve's line. @param {HTMLCanvasElement} canvas @param {number} at */
   function drawKey(canvas, at) {
-    const [, ink, dash] = LOOKS[at];
+    const [ink, dash] = LOOKS[at];
     [canvas.width, canvas.height] = [88, 16];
     const context = canvas.getContext("2d");
     if (!context) return;
