@@ -11,12 +11,12 @@ import { cleared, color, draw, fit, watch } from "../../time/plot.js";
 import { choice, createJob, field, table } from "./parts.js";
 import { createSegments } from "./segments.js";
 import { selectedAxis } from "./selected_axis.js";
+import { createVertices } from "./vertices.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {"position" | "speed" | "acceleration" | "filtered"} Quantity */
 /** @typedef {{d1: Float64Array, segments: Float64Array, position: Float64Array, speed: Float64Array, acceleration: Float64Array, filtered: Float64Array, euclidean: Float64Array}} Rows */
 /** @typedef {{[name in keyof Rows]: number}} Row */
-/** @typedef {{angle_deg: Float64Array, height: Float64Array, thd: number}} Vertices */
 
 /** Points of one piece of the sweep: a few ms. */
 const PIECE = 10;
@@ -92,12 +92,9 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     "",
   ]);
   const note = element("p", { class: "study-note", id: "sine-note", "aria-live": "polite", tabindex: "-1" });
-  const segments = field("segments of a quarter", "", 6, { least: 1, most: 32, integer: true }, vertices);
-  const verticesJob = createJob("Vertices");
   const bestOf = table("Best d1 of each number of segments", ["segments", "#best d1", "#THD position", "~#Ev", ""]);
-  const best = table("Best vertices", ["vertex", "#on the curve", "#height", "#free", "#height"]);
+  const vertices = createVertices({ engine, order: order.value, take: putMove });
   const quarter = createSegments({ engine });
-  const bestNote = element("p", { class: "study-note", id: "sine-vertices" });
   fill(
     panel,
     element("div", { class: "study-bar" }, from.root, to.root, points.root, order.root, quantity.root, job.root),
@@ -110,10 +107,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
         { class: "study-column study-side" },
         element("h3", {}, "Best d1 of each number of segments, by position"),
         bestOf.root,
-        element("h3", {}, "Best vertices"),
-        element("div", { class: "study-bar" }, segments.root, verticesJob.root),
-        bestNote,
-        best.root,
+        vertices.root,
         quarter.root,
       ),
     ),
@@ -209,6 +203,21 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     dispatch({ type: "edit", path, value });
   }
 
+  /** Puts a move in the place of the axis' sine, or behind its moves. @param {(sine: any) => object | string} made  Of the sine; or why not. */
+  function putMove(made) {
+    const { of, move } = sineOf(now());
+    claim = null;
+    if (!of) return say(note, "Not while the form has a problem, or is being looked at.");
+    const value = made((of.moves[move] ?? samples.moves).sine_segments);
+    if (typeof value === "string") return say(note, value);
+    if (move < 0) {
+      edit(`${of.path}.moves`, [...of.moves, value]);
+      return say(note, `Axis ${of.axis} ends with a curve through these vertices now; undo takes it away.`);
+    }
+    edit(`${of.path}.moves[${move}]`, value);
+    return say(note, `Move ${move + 1} of axis ${of.axis} goes through these vertices now; undo brings the sine back.`);
+  }
+
   /** @param {Row} row @param {string} name */
   const use = (row, name) => button("Use", `Use: ${name}`, () => put(row.d1));
 
@@ -292,39 +301,6 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
       },
     );
     return undefined;
-  }
-
-  /** The best vertices, on the curve and free. */
-  function vertices() {
-    const number = segments.value();
-    verticesJob.run(
-      (signal, tell) => {
-        tell(0, counted(number, "segment"));
-        return engine.distribute(
-          "sine_vertices",
-          [
-            [number, false, order.value()],
-            [number, true, order.value()],
-          ],
-          signal,
-        );
-      },
-      ([onCurve, free]) => {
-        say(
-          bestNote,
-          `Least THD of position with ${counted(number, "segment")}: ${percent(onCurve.thd)} with vertices on the curve, ${percent(free.thd)} with free ones.`,
-        );
-        best.show(
-          Array.from(onCurve.angle_deg, (_, i) => [
-            String(i),
-            ...[onCurve, free].flatMap(({ angle_deg, height }) => [
-              `${angle_deg[i].toFixed(3)}°`,
-              height[i].toFixed(5),
-            ]),
-          ]),
-        );
-      },
-    );
   }
 
   function paint() {
@@ -498,7 +474,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
       claim = null;
       say(note, "");
     }
-    if (!swept) vertices();
+    if (!swept) vertices.find();
     if (!swept || other) refresh();
     if (before?.view !== state.view || before?.study !== state.study) paint();
     return current(state);

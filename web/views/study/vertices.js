@@ -1,0 +1,104 @@
+/**
+ * The vertices of so many segments a quarter that make a sine with least distortion, on the curve or free; and the move
+ * through them, as points with straight lines between.
+ */
+import { button, element, fill } from "../../dom.js";
+import { mostOf } from "../../form/schema.js";
+import { count, counted, short } from "../../state/number.js";
+import { createJob, field, table } from "./parts.js";
+
+/** @typedef {{angle_deg: Float64Array, height: Float64Array, thd: number}} Vertices  Of a quarter, from the extreme to the middle. */
+/** @typedef {{amplitude: {[unit: string]: number}, period_s: number, periods: number}} Sine  As a scenario has it. */
+
+/** Digits of a time or a position: more than decide any cycle. */
+const DIGITS = 12;
+
+/**
+ * @param {{engine: import("../../engine/engine.js").Engine, order: () => number, take: (made: (sine: Sine) => object | string) => void}} page
+ *   The highest harmonic that counts, and who puts a move into the scenario in place of its sine.
+ */
+export function createVertices({ engine, order, take }) {
+  const segments = field("segments of a quarter", "", 6, { least: 1, most: 32, integer: true }, find);
+  const job = createJob("Vertices");
+  const note = element("p", { class: "study-note", id: "sine-vertices" });
+  const list = table("Best vertices", ["vertex", "#on the curve", "#height", "#free", "#height"]);
+  const root = element(
+    "div",
+    {},
+    element("h3", {}, "Best vertices"),
+    element("div", { class: "study-bar" }, segments.root, job.root),
+    note,
+    list.root,
+  );
+
+  /** Looks for the best vertices, on the curve and free. */
+  function find() {
+    const number = segments.value();
+    job.run(
+      (signal, tell) => {
+        tell(0, counted(number, "segment"));
+        const questions = [false, true].map((free) => [number, free, order()]);
+        return engine.distribute("sine_vertices", questions, signal);
+      },
+      (/** @type {Vertices[]} */ [onCurve, free]) => {
+        const use = (/** @type {Vertices} */ vertices, /** @type {string} */ name) =>
+          button("Use", `Use: ${counted(number, "segment")}, vertices ${name}`, () =>
+            take((sine) => through(vertices, sine)),
+          );
+        fill(
+          note,
+          `Least THD of position with ${counted(number, "segment")}: ${percent(onCurve.thd)} with vertices on the curve `,
+          use(onCurve, "on the curve"),
+          `, ${percent(free.thd)} with free ones `,
+          use(free, "free"),
+          ".",
+        );
+        list.show(
+          Array.from(onCurve.angle_deg, (_, i) => [
+            String(i),
+            ...[onCurve, free].flatMap(({ angle_deg, height }) => [
+              `${angle_deg[i].toFixed(3)}°`,
+              height[i].toFixed(5),
+            ]),
+          ]),
+        );
+      },
+    );
+  }
+
+  return { root, find };
+}
+
+/** The move through the vertices, all periods of it; why not, where it would be too long. @param {Vertices} vertices @param {Sine} sine */
+function through({ angle_deg, height }, { amplitude, period_s, periods }) {
+  const [[unit, size]] = Object.entries(amplitude);
+  const most = mostOf("Points", "points");
+  const quarter = angle_deg.length - 1;
+  if (4 * quarter * periods + 1 > most)
+    return `${counted(periods, "period")} of ${count(4 * quarter)} vertices are more than the ${count(most)} points of a move; give at most ${count(Math.floor((most - 1) / (4 * quarter)))} periods.`;
+  const half = [...angle_deg.keys()].map((i) => [angle_deg[i], height[i]]);
+  const down = [
+    ...half,
+    ...half
+      .slice(0, -1)
+      .reverse()
+      .map(([angle, level]) => [180 - angle, -level]),
+  ];
+  const period = [
+    ...down,
+    ...down
+      .slice(0, -1)
+      .reverse()
+      .map(([angle, level]) => [360 - angle, level]),
+  ];
+  const digits = (/** @type {number} */ value) => Number(value.toPrecision(DIGITS));
+  const points = Array.from({ length: periods }, (_, turn) =>
+    period
+      .slice(turn === 0 ? 0 : 1)
+      .map(([angle, level]) => [digits((turn + angle / 360) * period_s), digits(size * (level - height[0]))]),
+  ).flat();
+  return { points: { unit, interpolation: "straight", points } };
+}
+
+/** @param {number} ratio */
+const percent = (ratio) => `${short(100 * ratio, 4)} %`;
