@@ -136,6 +136,15 @@ impl Simulation {
         object(&self.table().detail(index as usize))
     }
 
+    /// The fault flags that were raised, in the order of their bits: `[{name, times, cycle, row}]`, with the cycle and the
+    /// row (null where none did) that raised it first.
+    ///
+    /// # Errors
+    /// Never in practice.
+    pub fn fault_places(&self) -> Result<JsValue, JsError> {
+        object(&self.table().fault_places())
+    }
+
     /// The rows whose time on the line touches a stretch of cycles, none of them where there are more than `limit`:
     /// `{rows, more}`.
     ///

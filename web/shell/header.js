@@ -4,7 +4,7 @@ import { readJson } from "../state/json.js";
 import { count, si } from "../state/number.js";
 import { held, isStale, selected } from "../state/state.js";
 import { listen } from "./commands.js";
-import { health, ill } from "./health.js";
+import { createHealth } from "./health.js";
 import { loadTheme, saveTheme } from "./storage.js";
 
 /** @typedef {import("../state/types.js").State} State */
@@ -13,8 +13,10 @@ import { loadTheme, saveTheme } from "./storage.js";
 /** Progress is shown only for runs longer than this, in ms. */
 const PATIENCE_MS = 90;
 
-/** @param {{presets: Preset[], cancel: () => void, retry: () => void} & import("../state/types.js").Page} page */
-export function createHeader({ presets, cancel, retry, dispatch }) {
+/** @param {{presets: Preset[], cancel: () => void, retry: () => void, engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} page */
+export function createHeader({ presets, cancel, retry, ...page }) {
+  const { dispatch } = page;
+  const health = createHealth(page);
   const preset = /** @type {HTMLSelectElement} */ (byId("preset"));
   const controller = /** @type {HTMLSelectElement} */ (byId("controller"));
   const undo = /** @type {HTMLButtonElement} */ (byId("undo"));
@@ -55,10 +57,11 @@ export function createHeader({ presets, cancel, retry, dispatch }) {
     progress.hidden = !long;
     byId("cancel").hidden = !long;
     if (state.run.progress) progress.value = state.run.progress.cycle / Math.max(1, state.run.progress.end_cycle);
-    line("status", status(state, long));
+    const said = status(state, long);
+    say(byId("status"), said);
+    if (byId("status").title !== said) byId("status").title = said;
     say(byId("computed"), state.result && !long ? `computed in ${si(state.result.ms / 1000, "s", 2)}` : "");
-    line("health", health(state));
-    byId("health").classList.toggle("error", ill(state));
+    health.render(state);
     chooser(state);
     say(byId("digest"), selected(state)?.digest ?? "–");
     byId("digest").classList.toggle("stale", isStale(state));
@@ -80,12 +83,6 @@ export function createHeader({ presets, cancel, retry, dispatch }) {
   return { render };
 }
 
-/** A line of the header, whole in its tip where there is no room for all of it. @param {string} id @param {string} text */
-function line(id, text) {
-  say(byId(id), text);
-  if (byId(id).title !== text) byId(id).title = text;
-}
-
 /** Whether a key is meant for a text that is no part of the experiment. @param {KeyboardEvent} event */
 function isElsewhere({ target }) {
   return target instanceof Element && target.matches("input, textarea") && !target.closest("#form");
@@ -96,7 +93,7 @@ function status(state, long) {
   const { progress } = state.run;
   if (long && progress?.end_cycle === 0) return "planning the motion…";
   if (long && progress)
-    return `${Math.round((100 * progress.cycle) / Math.max(1, progress.end_cycle))} %, ${count(progress.records)} edges so far`;
+    return `${Math.round((100 * progress.cycle) / Math.max(1, progress.end_cycle))} % simulated`;
   const held_back = held(state) === "problems" ? "not run: the form needs attention" : "";
   if (!state.result) return held_back || (state.run.phase === "running" ? "running…" : "no result yet");
   const { edges = 0 } = selected(state) ?? {};

@@ -1,30 +1,82 @@
-/** How a run went, in a sentence: what became of the host's orders, faults, and what a driver could not have followed. */
+/**
+ * How a run went, in a line: what became of the host's orders, faults, and what a driver could not have followed. Faults
+ * and violations are buttons that lead to their place.
+ */
+import { byId, element, fill } from "../dom.js";
+import { unlessDropped } from "../engine/engine.js";
 import { count } from "../state/number.js";
 import { selected } from "../state/state.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Summary} Summary */
+/** @typedef {{name: string, times: number, cycle: number, row: number | null}} FaultPlace  Where a fault was raised first. */
+/** @typedef {string | {text: string, press: () => void}} Piece */
 
-/** @param {State} state */
-export function health(state) {
-  const controller = selected(state);
-  if (!state.result || !controller) return "";
-  const { faults, violations } = controller;
-  return [
-    state.result.summary.host ? outcome(state.result.summary) : "",
-    faults.names.length ? `faults: ${faults.names.join(", ")}` : "",
-    violations === null
-      ? ""
-      : violations === 0
-        ? "driver timing met"
-        : `${count(violations)} timing ${violations === 1 ? "violation" : "violations"}`,
-  ]
-    .filter(Boolean)
-    .join(" · ");
+/** Shown around a fault, in s. */
+const AROUND_S = 0.001;
+
+/** @param {{engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} page */
+export function createHealth({ engine, dispatch, now }) {
+  const line = byId("health");
+
+  /** Shows where a fault was raised first. @param {string} name */
+  async function lead(name) {
+    /** @type {FaultPlace[] | null} */
+    const places = await engine.ask("fault_places").catch(unlessDropped);
+    const place = places?.find((each) => each.name === name);
+    if (!place) return;
+    const around = AROUND_S * (now().result?.summary.clock_hz ?? 1);
+    dispatch({ type: "window", window: { start: place.cycle - around, end: place.cycle + around } });
+    dispatch({ type: "cursor", which: "a", cycle: place.cycle });
+    if (place.row !== null) dispatch({ type: "packet", packet: place.row });
+    dispatch({ type: "view", view: place.row === null ? "pulses" : "packets" });
+  }
+
+  function violations() {
+    dispatch({ type: "side", side: "timing" });
+    dispatch({ type: "view", view: "timing" });
+  }
+
+  /** @param {State} state @returns {Piece[]} */
+  function pieces(state) {
+    const controller = selected(state);
+    if (!state.result || !controller) return [];
+    const { faults, violations: broken } = controller;
+    const said = state.result.summary.host ? outcome(state.result.summary) : "";
+    /** @type {Piece[]} */
+    const all = said ? [said, SEPARATOR] : [];
+    for (const [place, name] of faults.names.entries())
+      all.push(place === 0 ? "faults: " : ", ", { text: name, press: () => lead(name) });
+    if (faults.names.length > 0) all.push(SEPARATOR);
+    if (broken === 0) all.push("driver timing met");
+    else if (broken !== null)
+      all.push({ text: `${count(broken)} timing ${broken === 1 ? "violation" : "violations"}`, press: violations });
+    return all.at(-1) === SEPARATOR ? all.slice(0, -1) : all;
+  }
+
+  /** @param {State} state */
+  function render(state) {
+    const all = pieces(state);
+    const text = all.map((piece) => (typeof piece === "string" ? piece : piece.text)).join("");
+    line.classList.toggle("error", ill(state));
+    if (line.textContent === text) return;
+    line.title = text;
+    const made = all.map((piece) => {
+      if (typeof piece === "string") return piece;
+      const link = element("button", { type: "button", title: `Show where: ${piece.text}` }, piece.text);
+      link.addEventListener("click", piece.press);
+      return link;
+    });
+    fill(line, ...made);
+  }
+
+  return { render };
 }
 
+const SEPARATOR = " · ";
+
 /** Whether something went wrong that nothing made good. A framed line mends what noise does to it. @param {State} state */
-export function ill(state) {
+function ill(state) {
   const controller = selected(state);
   const host = state.result?.summary.host;
   const failed = host

@@ -37,7 +37,7 @@
  * @typedef {{high: boolean, begin: number | null, end: number | null, next: number | null}} Pulse  A level and the edges around it, cycles.
  * @typedef {{cycle: number, bit: number, high: boolean}} EdgeRow
  * @typedef {{index: number, kind: "packet" | "frame" | "reply" | "collision", start_cycle: number, end_cycle: number,
- *   line_end_cycle: number, start: string, gap: string, hex: string, fields: string, outcome: string, short: string,
+ *   line_end_cycle: number, start: string, gap: string, hex: string, fields: string, outcome: string, short: string, why: string,
  *   mark: "good" | "foreign" | "repeated" | "bad", tick_start_cycle: number | null, tick_end_cycle: number | null,
  *   position: number, rank: number | null}} PacketRow  Position among the rows on show, rank among those that the search finds: of the table alone.
  * @typedef {PacketRow & {layout: {name: string, from: number, until: number, value: string}[],

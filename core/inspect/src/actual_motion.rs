@@ -8,6 +8,10 @@
 //! STEP      ' |  | |'   |   '    '     '|   |  |'         where neither is, nothing moves
 //! ```
 //!
+//! Before the first step, and the first after a dwell, no more than a part of an interval may have passed: step 1 of a
+//! constant rate is due after half of one (DESIGN B1). Taken for a whole one it would make twice the speed, so it counts
+//! for no faster than the interval after it.
+//!
 //! ```
 //! use stepscope_inspect::actual_motion::Pulses;
 //!
@@ -130,17 +134,22 @@ impl Pulses<'_> {
         }
     }
 
-    /// Of the intervals of a list of segments: each ends with its step.
+    /// Of the intervals of a list of segments, each from one step to the next.
     fn intervals(&self, list: &SegmentList, from_s: f64, to_s: f64, each: &mut dyn FnMut(Rate)) {
         let (hz, one) = (self.hz(), (1_u64 << FRACTION_BITS) as f64);
         let seconds = |next: i128| next as f64 / one / hz;
         let mut next = i128::from(list.start.0) << FRACTION_BITS;
-        for segment in &list.segments {
+        // Whether what comes next follows a step at once.
+        let mut follows = false;
+        for (place, segment) in list.segments.iter().enumerate() {
             if seconds(next) > to_s {
                 break;
             }
             match *segment {
-                Segment::Dwell(dwell) => next += i128::from(dwell),
+                Segment::Dwell(dwell) => {
+                    next += i128::from(dwell);
+                    follows &= dwell == 0;
+                }
                 Segment::Steps { count, interval, add, right } => {
                     // A8's next after k steps of this segment.
                     let start = next;
@@ -155,13 +164,28 @@ impl Pulses<'_> {
                         if seconds(begin) > to_s {
                             break;
                         }
-                        let speed = hz * one / (end - begin) as f64;
+                        let mut whole = end - begin;
+                        if k == 0 && !follows {
+                            let second =
+                                if count > 1 { Some(after(2) - end) } else { interval_after(list, place) };
+                            whole = whole.max(second.unwrap_or(whole));
+                        }
+                        let speed = hz * one / whole as f64;
                         let speed = if right { speed } else { -speed };
                         each(Rate { from_s: seconds(begin), to_s: seconds(end), speed });
                     }
+                    follows |= count > 0;
                 }
             }
         }
+    }
+}
+
+/// The interval to the step that follows the segment at `place` at once, if one does.
+fn interval_after(list: &SegmentList, place: usize) -> Option<i128> {
+    match list.segments.get(place + 1)? {
+        Segment::Steps { count: 1.., interval, .. } => Some(i128::from(*interval)),
+        _ => None,
     }
 }
 
@@ -178,11 +202,46 @@ fn first_not(count: u32, before: impl Fn(u32) -> bool) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use alloc::vec;
     use stepscope_peripheral::{
         config::{Bus, SerialLine},
         signal::{Event, Sink},
         units::Instant,
     };
+
+    #[test]
+    fn a_first_step_after_half_an_interval_makes_no_twofold_speed() {
+        let config =
+            Config::new(16_000_000, &Bus::default(), &SerialLine::default()).expect("the defaults hold");
+        let cycles = |count: u64| count << FRACTION_BITS;
+        let steps =
+            |count, interval| Segment::Steps { count, interval: cycles(interval), add: 0, right: true };
+        // 1000 steps/s, from rest after half an interval; then a slow start of 250 steps/s.
+        let rest = Segment::Dwell(cycles(32_000));
+        let segments = vec![
+            steps(1, 8000),
+            steps(2, 16_000),
+            rest,
+            steps(1, 8000),
+            steps(1, 16_000),
+            rest,
+            steps(1, 64_000),
+        ];
+        let list = SegmentList { start: Instant(16_000), segments };
+        let log = PacketLog::default();
+        let pulses = Pulses { channel: 0, steps: &[], log: &log, segments: Some(&list), config: &config };
+        let mut found = Vec::new();
+        pulses.rates(0.0, 1.0, &mut |rate| found.push((rate.from_s, rate.to_s, rate.speed)));
+        let expected = [
+            (0.001, 0.0015, 1000.0),
+            (0.0015, 0.0025, 1000.0),
+            (0.0025, 0.0035, 1000.0),
+            (0.0055, 0.006, 1000.0),
+            (0.006, 0.007, 1000.0),
+            (0.009, 0.013, 250.0),
+        ];
+        assert_eq!(found, expected);
+    }
 
     #[test]
     fn a_tick_that_stop_ends_has_no_speed_afterwards() {

@@ -166,16 +166,22 @@ impl Reading<'_> {
         for &(at, code) in &content.overhead {
             // What COBS adds within a body goes with the body.
             if !meant.iter().any(|field| field.bytes.contains(&at)) {
-                meant.push(field("COBS", at..at + 1, cobs_to_text(code)));
+                let place = meant.partition_point(|field| field.bytes.start < at);
+                meant.insert(place, field("COBS", at..at + 1, cobs_to_text(code)));
             }
         }
-        meant.sort_by_key(|field| field.bytes.start);
         fields.extend(meant);
         if place.end < bytes.len() {
             fields.push(field("end mark", place.end..bytes.len(), "00"));
         }
         Meaning { fields, check }
     }
+}
+
+/// What the frame of a row carries, and whether it is whole COBS.
+pub(crate) fn decoded(bytes: &[u8]) -> (Vec<u8>, bool) {
+    let Content { decoded, whole, .. } = Content::of(bytes, last_frame(bytes));
+    (decoded, whole)
 }
 
 /// What COBS holds, and where on the wire.

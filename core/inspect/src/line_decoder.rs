@@ -253,7 +253,8 @@ impl LineDecoder<'_> {
             })
             .collect();
         if let (RowOutcome::Short, Some(last)) = (row.outcome, bytes.last()) {
-            let texts = vec!["SHORT_PACKET: cut by a gap".into(), "SHORT_PACKET".into(), "!".into()];
+            let why = format!("SHORT_PACKET: {}", self.table.why(packet));
+            let texts = vec![why, "SHORT_PACKET".into(), "!".into()];
             spans.push(span(last.end, row.end.0.max(last.end), texts, true));
         }
         spans

@@ -24,11 +24,13 @@
 
 mod csv;
 mod detail;
+mod faults;
 mod filter;
 mod format;
 mod places;
 
 pub use detail::{Detail, FieldRow};
+pub use faults::FaultPlace;
 pub use filter::{Filter, Request};
 pub use format::{Mark, TimeScale};
 pub use places::PlacedByte;
@@ -95,6 +97,8 @@ pub struct Row {
     pub outcome: String,
     /// The outcome for a narrow column.
     pub short: String,
+    /// [`PacketTable::why`].
+    pub why: String,
     /// [`Mark::name`].
     pub mark: &'static str,
     /// First cycle of the first tick that it brought, if that has begun.
@@ -240,6 +244,7 @@ impl<'a> PacketTable<'a> {
             fields,
             outcome: format::outcome(logged.outcome),
             short: format::short(logged.outcome),
+            why: self.why(index),
             mark: Mark::of(logged.outcome).name(),
             tick_start_cycle: logged.tick_start.map(|at| at.0),
             tick_end_cycle: logged.tick_end.map(|at| at.0),

@@ -193,10 +193,13 @@ fn start(checked: &Checked) -> Instant {
 
 /// Packet j of all controllers in ascending address, back to back from start + j*M*Ts.
 fn paced(checked: &Checked, controllers: &[ControllerPlan]) -> Schedule {
-    let mut turn: Vec<Packets<'_>> =
-        controllers.iter().enumerate().map(|(index, plan)| Packets::of(checked, index, plan)).collect();
+    let mut turn: Vec<Packets<'_>> = Vec::new();
+    for (index, plan) in controllers.iter().enumerate() {
+        let packets = Packets::of(checked, index, plan);
+        let address = plan.config.address();
+        turn.insert(turn.partition_point(|before| before.plan.config.address() <= address), packets);
+    }
     let last = turn.iter().map(Packets::count).max().unwrap_or(0);
-    turn.sort_by_key(|packets| packets.plan.config.address());
     let Some(first) = checked.configs.first() else { return Schedule::default() };
     let joined = (0..last).map(|tick| {
         let mut packet = Vec::with_capacity(turn.len() * (1 + MAX_CHANNELS));

@@ -6,7 +6,7 @@ use stepscope_core::peripheral::{protocol::FrameOutcome, trace::RowOutcome};
 use crate::{
     bench::in_browser,
     native::{Known, problems},
-    session::{Session, field},
+    session::{Session, WINDOW_S, field},
 };
 
 const FRAMED: &str = r#"{"line":{"protocol":"framed"}}"#;
@@ -65,12 +65,6 @@ fn a_framed_line_shows_frames_with_their_ticks_and_replies() -> Result<()> {
         page.until_digest(&framed.digest).await
     })
 }
-
-/// The shown time in s, as the fields of the pulses have it.
-const WINDOW_S: &str = "['window-start', 'window-end'].map((id) => {
-    const [number, unit] = document.getElementById(id).value.split(/\\s/);
-    return Number(number) * { s: 1, ms: 1e-3, 'µs': 1e-6 }[unit];
-})";
 
 #[test]
 fn noise_is_repeated_away_and_its_seed_changes_the_run() -> Result<()> {

@@ -11,7 +11,7 @@ use stepscope_core::{
 use crate::{
     bench::in_browser,
     native::Known,
-    session::{CONTROL, ENTER, RELEASE, Session},
+    session::{CONTROL, ENTER, RELEASE, Session, WINDOW_S},
 };
 
 /// A preset by its name, natively.
@@ -321,6 +321,29 @@ fn little_room_needs_no_scrolling_sideways() -> Result<()> {
                 .await?;
             page.picture(&format!("packets-{width}")).await?;
         }
+        Ok(())
+    })
+}
+
+#[test]
+fn a_fault_in_the_header_leads_to_the_row_that_raised_it_and_that_says_why() -> Result<()> {
+    let known = preset("patent-2019-addressed")?;
+    let log = &known.recording.packets;
+    let short = log.rows().iter().position(|row| row.outcome == RowOutcome::Short).context("one is cut")?;
+    in_browser(move |page| async move {
+        open(&page, &known).await?;
+        assert_eq!(page.text("#health").await?, "faults: SHORT_PACKET, TOO_MANY_STEPS");
+        page.click("#health button").await?;
+        page.until(&format!("{CURRENT} === {short}")).await?;
+        let why = "2 of 3 bytes, then 45 bit times of silence";
+        page.until(&format!("document.getElementById('packet-detail').textContent.endsWith('{why}')"))
+            .await?;
+        let titles = "[...document.querySelectorAll('#packets tr.current td')].map((cell) => cell.title)";
+        ensure!(page.eval::<Vec<String>>(titles).await?.contains(&format!("dropped: SHORT_PACKET: {why}")));
+        let edge = known.recording.packets.rows()[short].end.0;
+        let window = page.eval::<Vec<f64>>(WINDOW_S).await?;
+        let at = edge as f64 / f64::from(known.experiment.config().clock_hz());
+        ensure!(window.len() == 2 && window[0] < at && at < window[1], "{at} s is not within {window:?}");
         Ok(())
     })
 }

@@ -249,6 +249,12 @@ impl Session {
     }
 }
 
+/// The shown time in s, as the fields of the pulses have it.
+pub(crate) const WINDOW_S: &str = "['window-start', 'window-end'].map((id) => {
+    const [number, unit] = document.getElementById(id).value.split(/\\s/);
+    return Number(number) * { s: 1, ms: 1e-3, 'µs': 1e-6 }[unit];
+})";
+
 /// Keys as WebDriver writes them.
 pub(crate) const CONTROL: char = '\u{e009}';
 /// See [`CONTROL`].

@@ -91,7 +91,7 @@ export function createInspector({ engine, dispatch, now }) {
   function paint(row, state) {
     const clock = state.result?.summary.clock_hz ?? 1;
     const said = (/** @type {number} */ cycles) => time(cycles / clock);
-    say(byId("packet-detail"), [`#${count(row.index)}`, worded(row), row.outcome].filter(Boolean).join(" · "));
+    say(byId("packet-detail"), [`#${count(row.index)}`, worded(row), row.outcome, row.why].filter(Boolean).join(" · "));
     fill(
       byId("packet-facts"),
       ...facts(row, said).map(([name, value, bad]) =>

@@ -22,7 +22,7 @@ const COLUMNS = [
   ({ start }) => [start],
   ({ hex }) => [hex],
   (row) => [worded(row)],
-  ({ short, outcome }) => [short, outcome],
+  ({ short, outcome, why }) => [short, why ? `${outcome}: ${why}` : outcome],
   ({ gap }) => [gap || "–"],
 ];
 const ruler = /** @type {CanvasRenderingContext2D} */ (document.createElement("canvas").getContext("2d"));

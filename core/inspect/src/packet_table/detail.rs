@@ -92,7 +92,7 @@ impl PacketTable<'_> {
     }
 
     /// The row that a reply of this controller answers.
-    fn answered(&self, index: usize) -> Option<usize> {
+    pub(super) fn answered(&self, index: usize) -> Option<usize> {
         let reply = self.logged(index).filter(|row| matches!(row.outcome, RowOutcome::Reply(_)))?;
         let wait = Cycles(REPLY_BITS * self.own.bit().0);
         let is_frame = |at: &usize| {

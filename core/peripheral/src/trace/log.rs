@@ -100,6 +100,8 @@ pub struct PacketLog {
     ticks: Vec<LoggedTick>,
     /// When the controller was stopped.
     stops: Vec<Instant>,
+    /// When a tick with steps ended and none was there to follow.
+    underruns: Vec<Instant>,
 }
 
 impl PacketLog {
@@ -144,6 +146,12 @@ impl PacketLog {
         &self.broken
     }
 
+    /// When a tick with steps ended and none was there to follow (fault UNDERRUN), rising in time.
+    #[must_use]
+    pub fn underruns(&self) -> &[Instant] {
+        &self.underruns
+    }
+
     /// Indices of the rows of a finished log whose time on the line touches the cycles `start..=end`, rising.
     pub fn touching(&self, start: Instant, end: Instant) -> impl Iterator<Item = usize> {
         let first = self.rows.partition_point(|row| row.latest < start);
@@ -178,7 +186,7 @@ impl PacketLog {
         for (new, &old) in order.iter().enumerate() {
             place[old] = new;
         }
-        self.rows.sort_by_key(|row| row.start);
+        self.rows = order.iter().filter_map(|&old| self.rows.get(old).copied()).collect();
         for tick in &mut self.ticks {
             tick.row = tick.row.and_then(|row| place.get(row).copied());
         }
@@ -265,7 +273,7 @@ impl Sink for PacketLog {
                 self.bytes.extend(coming);
                 self.open = open;
             }
-            Event::Underrun => {}
+            Event::Underrun => self.underruns.push(at),
             Event::Pushed => self.waiting.push_back(None),
             Event::Stopped => self.stop(at),
             Event::TickStart { orders } => {

@@ -51,7 +51,7 @@ pub fn encode_frame(content: &[u8]) -> Vec<u8> {
 /// Bytes of the CRC.
 pub const CRC_LEN: usize = 4;
 /// Fewest decoded bytes of a frame: address, kind and CRC.
-const MIN_DECODED: usize = 2 + CRC_LEN;
+pub const MIN_DECODED: usize = 2 + CRC_LEN;
 /// Most decoded bytes of a frame.
 pub const MAX_DECODED: usize = 600;
 /// Bytes of a status.

@@ -25,7 +25,7 @@ pub const MAX_STEPS: u8 = RIGHT - 1;
 /// The address that means every controller.
 pub const ALL: u8 = 255;
 /// Bit times after the last byte that still continue a packet.
-const GAP_BITS: u64 = 45;
+pub const GAP_BITS: u64 = 45;
 
 /// What one channel is to do in one tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

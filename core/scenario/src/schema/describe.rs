@@ -22,10 +22,10 @@ use serde_json::{Map, Value, json};
 pub fn describe() -> String {
     let mut groups = Map::new();
     let root = type_of(&Scenario::TYPE, &mut groups);
-    let documents = DOCUMENTS.iter().map(|document| {
-        (document.id.to_string(), json!({ "short": document.short, "title": document.title }))
-    });
-    let documents: Map<String, Value> = documents.collect();
+    let mut documents = Map::new();
+    for document in DOCUMENTS {
+        documents.insert(document.id.into(), json!({ "short": document.short, "title": document.title }));
+    }
     json!({ "root": root, "documents": documents, "groups": groups }).to_string()
 }
 
