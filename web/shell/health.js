@@ -29,12 +29,18 @@ export function createHealth({ engine, dispatch, now }) {
     dispatch({ type: "window", window: { start: place.cycle - around, end: place.cycle + around } });
     dispatch({ type: "cursor", which: "a", cycle: place.cycle });
     if (place.row !== null) dispatch({ type: "packet", packet: place.row });
-    dispatch({ type: "view", view: place.row === null ? "pulses" : "packets" });
+    open(place.row === null ? "pulses" : "packets");
+  }
+
+  /** Brings a view into sight: on a narrow screen its tab, on a wide one its place. @param {string} view */
+  function open(view) {
+    dispatch({ type: "view", view });
+    byId(`view-${view}`).scrollIntoView({ block: "nearest" });
   }
 
   function violations() {
     dispatch({ type: "side", side: "timing" });
-    dispatch({ type: "view", view: "timing" });
+    open("timing");
   }
 
   /** @param {State} state @returns {Piece[]} */

@@ -14,6 +14,8 @@ use stepscope_core::{
         quantise::{EntryFormat, Form, Stored, Tolerance, stored},
     },
     peripheral::{segment::PulseTimes, units::Cycles},
+    scenario::{Scenario, link::decode},
+    sim::Experiment,
 };
 
 use crate::{bench::in_browser, exports::KEEP, native::Known, session::Session};
@@ -166,6 +168,44 @@ fn the_sweep_is_the_cores_and_a_d1_is_taken_and_given_back() -> Result<()> {
         )
         .await?;
         page.until(&format!("document.querySelector('[data-path=\"{D1}\"]').value === '0.012'")).await
+    })
+}
+
+/// The scenario on show, as the core reads it.
+async fn shown(page: &Session) -> Result<Scenario> {
+    let link: String = page.eval("location.hash.slice(1).split('&')[0]").await?;
+    decode(&link).map_err(|error| anyhow!("{error}"))
+}
+
+#[test]
+fn the_best_vertices_are_taken_as_points_that_have_their_distortion() -> Result<()> {
+    in_browser(|page| async move {
+        let known = Known::of(&SINE.replace("\"steps\":800", "\"steps\":2000"))?;
+        page.open(&format!("#{}&v=tstudy.ysine", known.link)).await?;
+        page.click("[aria-label='Use: 6 segments, vertices free']").await?;
+        page.until("document.getElementById('sine-note').textContent.includes('undo brings the sine back')")
+            .await?;
+        page.until("document.querySelector('[data-path=\"source.motion.axes[0].moves[0]#kind\"]').value === 'points'").await?;
+        page.ready().await?;
+        page.until(&format!("document.getElementById('digest').textContent !== '{}'", known.digest)).await?;
+        let scenario = shown(&page).await?;
+        let experiment = Experiment::new(&scenario).map_err(|problems| anyhow!("{problems:?}"))?;
+        let plan = &experiment.plans()[0];
+        assert_eq!(
+            (plan.steps(), plan.duration_s()),
+            (0, 1.0),
+            "it ends where it begins, after both periods"
+        );
+        // Vertex by vertex, over a quarter that starts at the extreme.
+        let best = optimum(6, Freedom::Free, 399).context("none of six")?;
+        for vertex in &best.vertices {
+            let t = 0.5 * vertex.angle.to_degrees() / 360.0;
+            let wanted = 2000.0 * (vertex.height - best.vertices[0].height);
+            let found = plan.position(t);
+            ensure!((found - wanted).abs() < 1e-3, "at {t} s {found} is not {wanted}");
+        }
+        page.click("#undo").await?;
+        page.until_digest(&known.digest).await
     })
 }
 

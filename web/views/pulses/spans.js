@@ -159,10 +159,14 @@ function onReplies({ kind, mark }) {
 }
 
 /** @param {State} state @param {PacketRow} row @returns {Span} */
-function ofPacket(state, { index, kind, start_cycle, end_cycle, hex, fields, outcome, mark }) {
+function ofPacket(state, { index, kind, start_cycle, end_cycle, hex, fields, outcome, why, mark }) {
   const said = mark === "good" ? "" : outcome;
   const [short] = fields.split(/, |: (?=[A-Z]+,)/);
-  const texts = kind === "packet" ? [[hex, fields, said], [hex]] : [[fields, said], [short], [fields ? "" : said]];
+  const whole = why ? [[fields, `${said}: ${why}`]] : [];
+  const texts =
+    kind === "packet"
+      ? [...whole, [hex, fields, said], [hex]]
+      : [...whole, [fields, said], [short], [fields ? "" : said]];
   const ink = INKS[mark] ?? null;
   return {
     start: start_cycle,
