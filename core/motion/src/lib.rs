@@ -58,6 +58,7 @@ mod budget;
 pub mod constant_velocity;
 pub mod cosine;
 mod curve;
+mod exact;
 pub mod excitation;
 mod format;
 mod hermite;

@@ -14,7 +14,7 @@
 //! assert_eq!((refused.unit, refused.mechanics), ("mm", "rotary"));
 //! ```
 
-use crate::parameters::parameters;
+use crate::{exact::Exact, parameters::parameters, round_half_up};
 use core::f64::consts::PI;
 
 /// What one step is.
@@ -112,6 +112,26 @@ impl Mechanics {
         }
     }
 
+    /// So many degrees in steps.
+    fn degrees(&self, given: Exact) -> Option<Exact> {
+        let (full_step_deg, microsteps) = match self {
+            Self::Rotary(m) => (m.full_step_deg, m.microsteps),
+            Self::Wheel(m) => (m.full_step_deg, m.microsteps),
+            Self::Screw(m) => (m.full_step_deg, m.microsteps),
+            Self::Direct(_) => return None,
+        };
+        Some(given.times(microsteps.into()).divided_by(full_step_deg))
+    }
+
+    /// So many millimetres in steps; none of a wheel, whose circumference has pi.
+    fn millimetres(&self, given: Exact) -> Option<Exact> {
+        match self {
+            Self::Rotary(_) | Self::Wheel(_) => None,
+            Self::Screw(m) => self.degrees(given.times(360.0).divided_by(m.lead_mm)),
+            Self::Direct(m) => Some(given.divided_by(m.step_mm)),
+        }
+    }
+
     fn name(&self) -> &'static str {
         match self {
             Self::Rotary(_) => "rotary",
@@ -132,7 +152,7 @@ pub struct NoSuchUnit {
 }
 
 macro_rules! quantity {
-    ($(#[$meta:meta])* $name:ident, $($(#[$variant_meta:meta])* $variant:ident = $key:literal per $factor:expr;)*) => {
+    ($(#[$meta:meta])* $name:ident, $($(#[$variant_meta:meta])* $variant:ident = $key:literal per $factor:expr, by $exact:expr;)*) => {
         $(#[$meta])*
         #[derive(Clone, Debug, PartialEq)]
         pub enum $name {
@@ -170,12 +190,24 @@ macro_rules! quantity {
                 step.ok_or(NoSuchUnit { unit: self.unit(), mechanics: mechanics.name() })
             }
 
-            /// The quantity in steps (a second, a second squared or cubed), not rounded.
+            /// The quantity in steps (a second, a second squared or cubed): the nearest number to what its decimal makes
+            /// (DESIGN B1), of a wheel's millimetres the quotient.
             ///
             /// # Errors
             /// [`NoSuchUnit`] where the mechanics have no millimetres or no degrees.
             pub fn in_steps(&self, mechanics: &Mechanics) -> Result<f64, NoSuchUnit> {
-                self.step(mechanics).map(|step| self.value() / step)
+                let quotient = self.step(mechanics).map(|step| self.value() / step)?;
+                Ok(self.exact(mechanics).map_or(quotient, |exact| exact.nearest()))
+            }
+
+            /// The quantity in steps as its decimal makes it; `None` where it is in steps already, or has pi.
+            fn exact(&self, mechanics: &Mechanics) -> Option<Exact> {
+                match self {
+                    $(Self::$variant(value) => {
+                        let of: fn(&Mechanics, Exact) -> Option<Exact> = $exact;
+                        of(mechanics, Exact::of(*value))
+                    })*
+                }
             }
         }
     };
@@ -185,44 +217,71 @@ quantity! {
     /// A way along an axis.
     Distance,
     /// In steps.
-    Steps = "steps" per |_| Some(1.0);
+    Steps = "steps" per |_| Some(1.0), by |_, _| None;
     /// In millimetres.
-    Millimetres = "mm" per Mechanics::step_mm;
+    Millimetres = "mm" per Mechanics::step_mm, by Mechanics::millimetres;
     /// In degrees.
-    Degrees = "deg" per Mechanics::step_deg;
+    Degrees = "deg" per Mechanics::step_deg, by Mechanics::degrees;
+}
+
+impl Distance {
+    /// The distance in whole steps, halves rounded up (DESIGN B1): 88.35 mm of 0.1 mm a step are 884.
+    ///
+    /// # Errors
+    /// [`NoSuchUnit`] where the mechanics have no millimetres or no degrees.
+    pub fn whole_steps(&self, mechanics: &Mechanics) -> Result<i64, NoSuchUnit> {
+        let quotient = self.step(mechanics).map(|step| self.value() / step)?;
+        Ok(self.exact(mechanics).map_or_else(|| round_half_up(quotient), |exact| exact.rounded()))
+    }
+
+    /// The way from `first`, in the same unit, to this position, in steps: the nearest number to what the decimals make.
+    ///
+    /// # Errors
+    /// [`NoSuchUnit`] where the mechanics have no millimetres or no degrees.
+    pub fn steps_from(&self, first: f64, mechanics: &Mechanics) -> Result<f64, NoSuchUnit> {
+        let step = self.step(mechanics)?;
+        let way = Exact::of(self.value()).minus(first);
+        let exact = match self {
+            Self::Steps(_) => Some(way),
+            Self::Millimetres(_) => mechanics.millimetres(way),
+            Self::Degrees(_) => mechanics.degrees(way),
+        };
+        Ok(exact.map_or_else(|| (self.value() - first) / step, |exact| exact.nearest()))
+    }
 }
 
 quantity! {
     /// A speed along an axis.
     Speed,
     /// In steps a second (the documents' Hz or pps).
-    StepsPerSecond = "steps_s" per |_| Some(1.0);
+    StepsPerSecond = "steps_s" per |_| Some(1.0), by |_, _| None;
     /// In millimetres a second.
-    MillimetresPerSecond = "mm_s" per Mechanics::step_mm;
+    MillimetresPerSecond = "mm_s" per Mechanics::step_mm, by Mechanics::millimetres;
     /// In degrees a second.
-    DegreesPerSecond = "deg_s" per Mechanics::step_deg;
+    DegreesPerSecond = "deg_s" per Mechanics::step_deg, by Mechanics::degrees;
     /// In turns a minute.
-    TurnsPerMinute = "rpm" per |mechanics| mechanics.step_deg().map(|deg| deg / 6.0);
+    TurnsPerMinute = "rpm" per |mechanics| mechanics.step_deg().map(|deg| deg / 6.0),
+    by |mechanics, rpm| mechanics.degrees(rpm.times(6.0));
 }
 
 quantity! {
     /// An acceleration along an axis.
     Acceleration,
     /// In steps a second squared.
-    StepsPerSecond2 = "steps_s2" per |_| Some(1.0);
+    StepsPerSecond2 = "steps_s2" per |_| Some(1.0), by |_, _| None;
     /// In millimetres a second squared.
-    MillimetresPerSecond2 = "mm_s2" per Mechanics::step_mm;
+    MillimetresPerSecond2 = "mm_s2" per Mechanics::step_mm, by Mechanics::millimetres;
     /// In degrees a second squared.
-    DegreesPerSecond2 = "deg_s2" per Mechanics::step_deg;
+    DegreesPerSecond2 = "deg_s2" per Mechanics::step_deg, by Mechanics::degrees;
 }
 
 quantity! {
     /// A jerk along an axis: the change of an acceleration in a second.
     Jerk,
     /// In steps a second cubed.
-    StepsPerSecond3 = "steps_s3" per |_| Some(1.0);
+    StepsPerSecond3 = "steps_s3" per |_| Some(1.0), by |_, _| None;
     /// In millimetres a second cubed.
-    MillimetresPerSecond3 = "mm_s3" per Mechanics::step_mm;
+    MillimetresPerSecond3 = "mm_s3" per Mechanics::step_mm, by Mechanics::millimetres;
     /// In degrees a second cubed.
-    DegreesPerSecond3 = "deg_s3" per Mechanics::step_deg;
+    DegreesPerSecond3 = "deg_s3" per Mechanics::step_deg, by Mechanics::degrees;
 }

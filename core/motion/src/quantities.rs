@@ -92,9 +92,10 @@ impl<'s> Quantities<'s> {
     /// A way in whole steps, rounded half up, not 0; left negative.
     pub(super) fn distance(&mut self, step: &str, given: &Distance) -> Option<i64> {
         let sizes = given.step(self.mechanics);
-        let steps = self.convert(step, given.value(), given.unit(), sizes, limits::STEPS)?;
-        let whole = super::round_half_up(steps);
+        self.judge(step, given.value(), given.unit(), sizes, limits::STEPS)?;
+        let whole = given.whole_steps(self.mechanics).ok()?;
         if whole == 0 {
+            let steps = given.in_steps(self.mechanics).ok()?;
             self.refuse(step, Cause::NoSteps { steps });
             return None;
         }
@@ -113,18 +114,21 @@ impl<'s> Quantities<'s> {
         given: &Speed,
         range: RangeInclusive<f64>,
     ) -> Option<f64> {
-        self.convert(step, given.value(), given.unit(), given.step(self.mechanics), range)
+        self.judge(step, given.value(), given.unit(), given.step(self.mechanics), range)?;
+        given.in_steps(self.mechanics).ok()
     }
 
     /// An acceleration in steps/s^2 above 0.
     pub(super) fn acceleration(&mut self, step: &str, given: &Acceleration) -> Option<f64> {
         let sizes = given.step(self.mechanics);
-        self.convert(step, given.value(), given.unit(), sizes, limits::ACCELERATION_STEPS_S2)
+        self.judge(step, given.value(), given.unit(), sizes, limits::ACCELERATION_STEPS_S2)?;
+        given.in_steps(self.mechanics).ok()
     }
 
     /// A jerk in steps/s^3 above 0.
     pub(super) fn jerk(&mut self, step: &str, given: &Jerk) -> Option<f64> {
-        self.convert(step, given.value(), given.unit(), given.step(self.mechanics), limits::JERK_STEPS_S3)
+        self.judge(step, given.value(), given.unit(), given.step(self.mechanics), limits::JERK_STEPS_S3)?;
+        given.in_steps(self.mechanics).ok()
     }
 
     /// One step in the unit of a distance, where the axis has that unit.
@@ -132,10 +136,10 @@ impl<'s> Quantities<'s> {
         self.size(step, given.value(), given.unit(), given.step(self.mechanics))
     }
 
-    /// A position in steps, not rounded; `size` is one step in its unit.
-    pub(super) fn position(&mut self, given: &Distance, size: f64) -> Option<f64> {
+    /// The way from a first position to another in the same unit, in steps, not rounded; `size` is one step in that unit.
+    pub(super) fn way(&mut self, first: f64, given: &Distance, size: f64) -> Option<f64> {
         self.in_own_unit("", given.value(), size, limits::STEPS, given.unit())?;
-        Some(given.value() / size)
+        given.steps_from(first, self.mechanics).ok()
     }
 
     /// The size of a step in the quantity's unit.
@@ -155,18 +159,17 @@ impl<'s> Quantities<'s> {
         }
     }
 
-    /// The quantity in steps, within limits in steps.
-    fn convert(
+    /// Judges a quantity against limits in steps.
+    fn judge(
         &mut self,
         step: &str,
         given: f64,
         unit: &'static str,
         size: Result<f64, NoSuchUnit>,
         range: RangeInclusive<f64>,
-    ) -> Option<f64> {
+    ) -> Option<()> {
         let size = self.size(step, given, unit, size)?;
-        self.in_own_unit(step, given, size, range, unit)?;
-        Some(given / size)
+        self.in_own_unit(step, given, size, range, unit).map(|_| ())
     }
 
     /// Judges a quantity against limits in steps and tells them in its own unit.

@@ -40,17 +40,20 @@ pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::Points) -> Op
     Some(curve)
 }
 
-/// Times and positions in steps of points that hold.
+/// Times and positions in steps of points that hold, positions counted from the first (DESIGN B1).
 fn judge(quantities: &mut Quantities<'_>, given: &moves::Points, size: f64) -> Option<Vec<(f64, f64)>> {
     let earlier = quantities.validator.count();
     let mut points = Vec::with_capacity(given.points.len());
     let mut before = None;
+    let first =
+        given.points.first().map(|first| first.position).filter(|first| first.is_finite()).unwrap_or(0.0);
     for (index, point) in given.points.iter().enumerate() {
         quantities.at_entry(index, |here| {
             if let Some(before) = before.filter(|before| !is_after(point.time_s, *before)) {
                 here.refuse("", Cause::NotRising { given: point.time_s, before, least: MIN_TIME_S });
             }
-            points.extend(here.position(&given.unit.of(point.position), size).map(|y| (point.time_s, y)));
+            let way = here.way(first, &given.unit.of(point.position), size);
+            points.extend(way.map(|y| (point.time_s, y)));
         });
         before = Some(point.time_s);
         if quantities.validator.count() >= earlier + MAX_TOLD {

@@ -1,0 +1,116 @@
+//! Distances and points are what their decimals make of them (DESIGN B1): held against whole numbers of 128 bits, written
+//! without the planner's arithmetic.
+
+use rand_xoshiro::{
+    Xoshiro256PlusPlus,
+    rand_core::{Rng, SeedableRng},
+};
+use stepscope_motion::{
+    mechanics::{Direct, Distance, Mechanics, Rotary, Screw, Speed},
+    moves::{Axis, Constant, Interpolation, Move, Point, PointUnit, Points},
+    plan_axis,
+};
+
+fn steps_of(mechanics: Mechanics, one: Move) -> i64 {
+    let axis = Axis { mechanics, moves: vec![one], ..Axis::default() };
+    plan_axis(&axis, "x").unwrap_or_else(|problems| panic!("{problems:?}")).steps()
+}
+
+fn constant(distance: Distance) -> Move {
+    Move::Constant(Constant { distance, speed: Speed::StepsPerSecond(1000.0) })
+}
+
+fn points(unit: PointUnit, points: &[(f64, f64)]) -> Move {
+    let points = points.iter().map(|&(time_s, position)| Point { time_s, position }).collect();
+    Move::Points(Points { unit, interpolation: Interpolation::Straight, points })
+}
+
+#[test]
+fn half_steps_are_rounded_as_they_are_printed() {
+    let direct = |step_mm| Mechanics::Direct(Direct { step_mm });
+    assert_eq!(steps_of(direct(0.1), constant(Distance::Millimetres(88.35))), 884);
+    assert_eq!(steps_of(direct(0.1), constant(Distance::Millimetres(-88.35))), -883);
+    let shaft = Mechanics::Rotary(Rotary { full_step_deg: 1.8, microsteps: 16 });
+    assert_eq!(steps_of(shaft, constant(Distance::Degrees(41.456_25))), 369);
+    let table = points(PointUnit::Millimetres, &[(0.0, 0.0), (1.0, 0.145)]);
+    assert_eq!(steps_of(direct(0.01), table), 15);
+}
+
+/// Decimals n/10^places, so that the quotient is one of whole numbers: floor(a/b + 1/2) = floor((2a + b)/(2b)).
+#[test]
+fn distances_are_the_quotients_of_their_decimals() {
+    let mut noise = Xoshiro256PlusPlus::seed_from_u64(1);
+    let mut draw = |from: i128, to: i128| from + i128::from(noise.next_u64()).rem_euclid(to - from + 1);
+    let mut halves = 0;
+    for _ in 0..20_000 {
+        let (places, unit_places) = (draw(0, 5) as u32, draw(0, 4) as u32);
+        let (ten, unit_ten) = (10_i128.pow(places), 10_i128.pow(unit_places));
+        let (whole, unit) = (draw(-200_000, 200_000), draw(1, 99));
+        // As JSON reads them: the number nearest to the decimal.
+        let number = |digits: i128, ten: i128| digits as f64 / ten as f64;
+        let (given, size) = (number(whole, ten), number(unit, unit_ten));
+        let (mechanics, distance, over, under) = match draw(0, 2) {
+            0 => (
+                Mechanics::Direct(Direct { step_mm: size }),
+                Distance::Millimetres(given),
+                whole * unit_ten,
+                unit * ten,
+            ),
+            1 => {
+                let microsteps = [1, 8, 10, 256][draw(0, 3) as usize];
+                let screw = Screw { full_step_deg: 1.8, microsteps, lead_mm: size };
+                // lead*1.8/microsteps/360 mm a step.
+                let over = whole * 3600 * i128::from(microsteps) * unit_ten;
+                (Mechanics::Screw(screw), Distance::Millimetres(given), over, unit * 18 * ten)
+            }
+            _ => {
+                let microsteps = [1, 16, 5, 128][draw(0, 3) as usize];
+                let shaft = Rotary { full_step_deg: 0.9, microsteps };
+                (
+                    Mechanics::Rotary(shaft),
+                    Distance::Degrees(given),
+                    whole * 10 * i128::from(microsteps),
+                    9 * ten,
+                )
+            }
+        };
+        let expected = (2 * over + under).div_euclid(2 * under);
+        halves +=
+            usize::from((2 * over).rem_euclid(under) == 0 && (2 * over).div_euclid(under).rem_euclid(2) == 1);
+        if expected == 0 || expected.abs() > 1_000_000 {
+            continue;
+        }
+        let found = distance.whole_steps(&mechanics);
+        assert_eq!(found.map(i128::from), Ok(expected), "{distance:?} on {mechanics:?}");
+        assert_eq!(i128::from(steps_of(mechanics, constant(distance))), expected);
+    }
+    assert!(halves > 300, "only {halves} halves were drawn");
+}
+
+#[test]
+fn an_offset_of_the_points_changes_no_step() {
+    let steps = |list: &[(f64, f64)]| steps_of(Mechanics::default(), points(PointUnit::Steps, list));
+    assert_eq!(
+        steps(&[(0.0, 20.45), (1.0, 46.95), (2.0, 39.95)]),
+        steps(&[(0.0, 0.0), (1.0, 26.5), (2.0, 19.5)])
+    );
+    assert_eq!(steps(&[(0.0, -15.87), (1.0, -21.37)]), -5);
+
+    let mut noise = Xoshiro256PlusPlus::seed_from_u64(2);
+    let mut draw = |from: i64, to: i64| from + (noise.next_u64() % (to - from + 1) as u64) as i64;
+    for _ in 0..2000 {
+        let offset = draw(-100_000, 100_000);
+        let ways: Vec<i64> = (0..6).map(|_| 50 * draw(-20, 20)).collect();
+        let at = |offset: i64| {
+            let positions = core::iter::once(0).chain(ways.iter().copied());
+            let list: Vec<(f64, f64)> =
+                (0..7_u8).map(f64::from).zip(positions.map(|way| (offset + way) as f64 / 100.0)).collect();
+            let axis = Axis { moves: vec![points(PointUnit::Steps, &list)], ..Axis::default() };
+            plan_axis(&axis, "x").map(|plan| plan.due_steps(16_000_000).collect::<Vec<_>>())
+        };
+        match (at(0), at(offset)) {
+            (Ok(own), Ok(moved)) => assert_eq!(own, moved, "{offset} {ways:?}"),
+            (own, moved) => assert!(own.is_err() && moved.is_err(), "{offset} {ways:?}: {own:?} {moved:?}"),
+        }
+    }
+}
