@@ -81,30 +81,34 @@ impl AxisPlan {
         self.at(t).map_or(0.0, |(planned, t)| planned.start_steps as f64 + planned.profile.position(t))
     }
 
-    /// Steps due by `t` s: B1's rounding of the position.
+    /// Steps due by `t` s: B1's rounding of the position, and of a table's steps those to the right at `t` itself, those to
+    /// the left before it (B7).
     ///
     /// A move starts at a whole step, so only its own part is rounded.
     #[must_use]
     pub fn steps_due(&self, t: f64) -> i64 {
-        if t >= self.duration_s {
-            return self.steps;
-        }
-        self.at(t).map_or(0, |(planned, t)| {
-            planned.start_steps.saturating_add(round_half_up(planned.profile.position(t)))
-        })
+        self.steps_due_after(t, 0)
     }
 
     /// [`Self::steps_due`], quick where `before` were due a short time before: then a table's row is
     /// looked for from there on.
     pub(crate) fn steps_due_after(&self, t: f64, before: i64) -> i64 {
-        match self.at(t) {
-            Some((PlannedMove { profile: Profile::TrapezoidTable(table), start_steps, .. }, since))
-                if t < self.duration_s =>
-            {
-                start_steps.saturating_add(table.steps_due(since, before.saturating_sub(*start_steps)))
-            }
-            _ => self.steps_due(t),
+        // In the instant in which a move ends its last step may still wait.
+        let ended = self.moves.partition_point(|planned| planned.start_s + planned.profile.duration_s() < t);
+        if let Some(PlannedMove { profile, start_s, start_steps }) = self.moves.get(ended)
+            && profile.last_step_waits()
+            && *start_s + profile.duration_s() == t
+        {
+            return start_steps.saturating_add(profile.steps()).saturating_add(1);
         }
+        if t >= self.duration_s {
+            return self.steps;
+        }
+        let Some((PlannedMove { profile, start_steps, .. }, since)) = self.at(t) else { return 0 };
+        start_steps.saturating_add(match profile {
+            Profile::TrapezoidTable(table) => table.steps_due(since, before.saturating_sub(*start_steps)),
+            profile => round_half_up(profile.position(since)),
+        })
     }
 
     /// Speed at `t` s in steps/s; 0 before the start and from the end on.

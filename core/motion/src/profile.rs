@@ -133,6 +133,13 @@ impl Profile {
     }
 }
 
+impl Profile {
+    /// Whether its last step falls in the very instant of its end, and is not due in it yet: of a table to the left (B7).
+    pub(crate) fn last_step_waits(&self) -> bool {
+        matches!(self, Self::TrapezoidTable(_) | Self::Staircase(_)) && self.steps() < 0
+    }
+}
+
 impl Curve for Profile {
     fn duration_s(&self) -> f64 {
         each!(self, curve => curve.duration_s())

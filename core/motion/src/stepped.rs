@@ -5,13 +5,16 @@
 //!            0 at the start, n at the end, so the first interval climbs half a step
 //!            and the last half step comes with the last pulse.
 //! ```
+//!
+//! In the very instant of a step R counts it if it goes to the right, and not yet if it goes to the left, as it does where
+//! a curve crosses a half-integer (B7).
 
-/// How far past a step's place the curve stands at the very time of the step, in steps. With it
-/// R counts the step at its own time to the left as well as to the right.
+/// How far from a step's place the curve keeps before and after the step, in steps: so R of it counts as many steps as
+/// have fallen, whatever the last digit of the place between two of them.
 const PAST_THE_STEP: f64 = 1.0 / 1_048_576.0;
 
-/// Position at `t` in steps, without sign, of a move of `count` steps, of which `fallen` have
-/// fallen by then; step k (from 1) falls at `step_s(k)`, and `step_s(0)` is the start.
+/// Position at `t` in steps, without sign, of a move of `count` steps, of which `fallen` are
+/// due by then; step k (from 1) falls at `step_s(k)`, and `step_s(0)` is the start.
 pub(super) fn position(t: f64, fallen: u64, count: u64, step_s: impl Fn(u64) -> f64) -> f64 {
     if fallen >= count || t <= 0.0 {
         return fallen as f64;
@@ -26,14 +29,34 @@ pub(super) fn position(t: f64, fallen: u64, count: u64, step_s: impl Fn(u64) -> 
     }
 }
 
+/// Whether a step at an instant counts in that instant.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Counts {
+    /// At once.
+    Then,
+    /// Only after it.
+    After,
+}
+
+impl Counts {
+    /// The steps of a move that goes to the right or to the left (B7).
+    pub(super) const fn of(steps: i64) -> Self {
+        if steps < 0 { Self::After } else { Self::Then }
+    }
+}
+
 /// Steps of `count` that have fallen by `t`, from a guess that can be off by a rounding: the times
 /// themselves decide.
-pub(super) fn fallen(t: f64, guess: u64, count: u64, step_s: impl Fn(u64) -> f64) -> u64 {
+pub(super) fn fallen(t: f64, guess: u64, count: u64, counts: Counts, step_s: impl Fn(u64) -> f64) -> u64 {
+    let has_fallen = |k| match counts {
+        Counts::Then => step_s(k) <= t,
+        Counts::After => step_s(k) < t,
+    };
     let mut fallen = if guess > count { count } else { guess };
-    while fallen > 0 && step_s(fallen) > t {
+    while fallen > 0 && !has_fallen(fallen) {
         fallen -= 1;
     }
-    while fallen < count && step_s(fallen + 1) <= t {
+    while fallen < count && has_fallen(fallen + 1) {
         fallen += 1;
     }
     fallen

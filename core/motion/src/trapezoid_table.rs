@@ -31,8 +31,12 @@
 //! ```
 
 use crate::{
-    Curve, Peaks, acceleration_table::AccelerationTable, bisection::least_near, curve::greater,
-    format::grouped, stepped,
+    Curve, Peaks,
+    acceleration_table::AccelerationTable,
+    bisection::least_near,
+    curve::greater,
+    format::grouped,
+    stepped::{self, Counts},
 };
 use alloc::{format, string::String, vec::Vec};
 
@@ -163,7 +167,7 @@ impl TrapezoidTable {
 
     /// Steps that have fallen by `t`; looked for from `near` on, which changes the time that it
     /// takes and not what is found.
-    fn fallen(&self, t: f64, near: u64) -> u64 {
+    fn fallen(&self, t: f64, near: u64, counts: Counts) -> u64 {
         let count = self.count();
         // From the timer's ticks comes a guess that can be off by one; the times themselves decide.
         let ticks = (t * f64::from(self.table.timer_hz())) as u64;
@@ -176,13 +180,13 @@ impl TrapezoidTable {
             let left = all.saturating_sub(ticks);
             count - self.first_sum(left, count.saturating_sub(near))
         };
-        stepped::fallen(t, guess, count, |k| self.step_s(k))
+        stepped::fallen(t, guess, count, counts, |k| self.step_s(k))
     }
 
     /// Steps due by `t`, as B1's rounding of the position gives them, looked for from those that
     /// were due some time before on.
     pub(super) fn steps_due(&self, t: f64, before: i64) -> i64 {
-        let fallen = self.fallen(t, before.unsigned_abs()) as i64;
+        let fallen = self.fallen(t, before.unsigned_abs(), Counts::of(self.steps)) as i64;
         if self.steps < 0 { -fallen } else { fallen }
     }
 
@@ -209,7 +213,7 @@ impl TrapezoidTable {
 
     /// Interval at `t`, from 0.
     fn interval(&self, t: f64) -> u64 {
-        self.fallen(t, 0).min(self.count().saturating_sub(1))
+        self.fallen(t, 0, Counts::Then).min(self.count().saturating_sub(1))
     }
 
     fn signed(&self, magnitude: f64) -> f64 {
@@ -227,7 +231,11 @@ impl Curve for TrapezoidTable {
     }
 
     fn position(&self, t: f64) -> f64 {
-        self.signed(stepped::position(t, self.fallen(t, 0), self.count(), |k| self.step_s(k)))
+        if t >= self.duration_s() {
+            return self.steps as f64;
+        }
+        let fallen = self.fallen(t, 0, Counts::of(self.steps));
+        self.signed(stepped::position(t, fallen, self.count(), |k| self.step_s(k)))
     }
 
     fn speed(&self, t: f64) -> f64 {
@@ -361,13 +369,15 @@ mod tests {
     }
 
     #[test]
-    fn a_step_is_due_at_its_time_and_not_before() {
+    fn a_step_is_due_at_its_time_to_the_left_after_it_and_never_before() {
         for (steps, sign) in [(1, 1), (2, -1), (40, 1), (41, -1), (2000, 1), (2001, -1)] {
             let table = table(steps * sign, 700.0);
             for k in 1..=steps {
                 let ticks = table.step_ticks(k as u64) as f64;
                 let due = |ticks: f64| sign * round_half_up(table.position(ticks / 1e6));
-                assert_eq!((due(ticks - 1.0), due(ticks), due(ticks + 1.0)), (k - 1, k, k), "of {steps}");
+                // The end is where the move ends.
+                let then = if sign < 0 && k < steps { k - 1 } else { k };
+                assert_eq!((due(ticks - 1.0), due(ticks), due(ticks + 1.0)), (k - 1, then, k), "of {steps}");
             }
             assert_eq!(table.position(table.duration_s()), (steps * sign) as f64);
         }
@@ -396,7 +406,8 @@ mod tests {
             let table = table(steps, 700.0);
             for look in -1..400 {
                 let t = table.duration_s() * f64::from(look) / 397.0;
-                let due = round_half_up(table.position(t));
+                let waits = i64::from(steps < 0 && t == table.duration_s());
+                let due = round_half_up(table.position(t)) + waits;
                 for before in [0, due - 1, due, due + 3, steps, i64::MIN, i64::MAX] {
                     assert_eq!(table.steps_due(t, before), due, "{steps} steps, {t} s, {before} before");
                 }

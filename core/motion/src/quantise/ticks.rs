@@ -81,7 +81,13 @@ pub fn ticks(
         let cause = ValueError::Length { given: plans.len(), least: 1, most: channels.into(), of: "axes" };
         return Err(vec![Problem::new(at.axes, cause)]);
     }
-    let needed = plans.iter().map(|plan| clock.ticks_until(plan.duration_s())).max().unwrap_or(1);
+    // One more where the last step is due in the instant in which a tick ends, and goes into the next.
+    let until = |plan: &AxisPlan| {
+        let ticks = clock.ticks_until(plan.duration_s());
+        let all_due = ticks > 0 && plan.steps_due(clock.end_s(ticks - 1)) == plan.steps();
+        if all_due { ticks } else { ticks.saturating_add(1) }
+    };
+    let needed = plans.iter().map(until).max().unwrap_or(1);
     let all = needed.saturating_mul(channels.into());
     for (given, most, of) in [(needed, MAX_TICKS, "ticks"), (all, MAX_BYTES, "ticks of all channels")] {
         if given > most {
