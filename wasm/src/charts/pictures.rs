@@ -3,7 +3,7 @@
 //! at them before they are kept.
 
 use super::{Axis, Colors, Series, Shape, Spec, svg};
-use std::{env, fs, path::Path};
+use std::{env, f64::consts::LOG10_2, fs, path::Path};
 
 /// The page's colours of a theme.
 struct Theme {
@@ -90,7 +90,7 @@ fn spectrum(theme: &Theme) -> Spec {
 
 /// The same over the logarithm of the frequency.
 fn spectrum_log(theme: &Theme) -> Spec {
-    let ticks = vec![-0.301_03, 0.0, 0.301_03, 0.698_97, 1.0];
+    let ticks = vec![-LOG10_2, 0.0, LOG10_2, 1.0 - LOG10_2, 1.0];
     let labels = "500 mHz\n1 Hz\n2 Hz\n5 Hz\n10 Hz".into();
     let frequency = axis(-0.75, 1.15, "Hz", true, 20.0);
     spectrum_over(theme, Axis { ticks, labels, ..frequency }, log10)

@@ -9,7 +9,6 @@ import { cleared, draw, fit, GUTTER, MARGIN, watch } from "../../time/plot.js";
 import { onTimeAxis } from "../../time/timeline.js";
 import { ask } from "./ask.js";
 import { chartOf, QUANTITIES, TIME_PX, unitOf, unitsOf, withoutAcceleration } from "./bands.js";
-import { createBetween } from "./between.js";
 import { createCompare } from "./compare.js";
 import { createReading } from "./reading.js";
 
@@ -25,7 +24,8 @@ export function createMotion({ engine, dispatch, now }) {
   const overlay = /** @type {HTMLCanvasElement} */ (byId("charts-cursor"));
   const axisSelect = /** @type {HTMLSelectElement} */ (byId("motion-axis"));
   const unitSelect = /** @type {HTMLSelectElement} */ (byId("motion-unit"));
-  const between = createBetween({ engine });
+  /** What lies between the cursors; it loads when both are first set. @type {ReturnType<typeof import("./between.js").createBetween> | null} */
+  let between = null;
   const compare = createCompare({ engine, dispatch, now });
   const fold = /** @type {HTMLDetailsElement} */ (byId("motion-data"));
   /** The table of what the charts show; it loads when it is first opened. @type {ReturnType<typeof import("./record.js").createRecord> | null} */
@@ -114,7 +114,24 @@ export function createMotion({ engine, dispatch, now }) {
     const { start, end } = shown(state);
     const clock = state.result?.summary.clock_hz ?? 1;
     const baseline = state.baseline ? ` Beside it, dashed, the baseline ${state.baseline.title}.` : "";
-    return `Axis ${state.axis}, ${si(start / clock, "s")} to ${si(end / clock, "s")}.${baseline} ${between.sentence()}`.trim();
+    return `Axis ${state.axis}, ${si(start / clock, "s")} to ${si(end / clock, "s")}.${baseline} ${between?.sentence() ?? ""}`.trim();
+  }
+
+  /** @param {State} state */
+  async function tellBetween({ cursors: { a, b } }) {
+    if (!between && (a === null || b === null)) return;
+    try {
+      const { createBetween } = await import("./between.js");
+      between ??= createBetween({ engine });
+    } catch {
+      byId("between").hidden = false;
+      return say(
+        byId("between-span"),
+        "This part of the page could not be loaded; try again when the network is there.",
+      );
+    }
+    await between.render(now());
+    say(byId("motion-sentence"), sentence(now()));
   }
 
   /** Follows the shown time, but leaves the frames between to the pulses. */
@@ -154,7 +171,7 @@ export function createMotion({ engine, dispatch, now }) {
     if (before && byKeys && before.cursors !== state.cursors)
       reading.speak(state, before.cursors.b === state.cursors.b ? "a" : "b");
     if (before?.cursors !== state.cursors || other || before?.unit !== state.unit)
-      between.render(state).then(() => say(byId("motion-sentence"), sentence(now())), unlessDropped);
+      void tellBetween(state).catch(unlessDropped);
     if (before && !other && before.window !== state.window && before.difference === state.difference) return follow();
     if (moved || before?.difference !== state.difference || (state.difference && before?.unit !== state.unit))
       return refresh(state);

@@ -40,16 +40,23 @@ export function createReading({ engine, now }) {
     ]);
   }
 
-  /** The values at the pointer, else at a cursor that is on show. @param {State} state */
-  async function render(state) {
+  /** The cycle of the pointer, else of a cursor, that is on show. @param {State} state */
+  function wanted(state) {
     const { start, end } = shown(state);
+    return (
+      [state.hover, state.cursors.a, state.cursors.b].find((at) => at !== null && at >= start && at <= end) ?? null
+    );
+  }
+
+  /** The values there. @param {State} state */
+  async function render(state) {
     const { a, b } = state.cursors;
-    const cycle = [state.hover, a, b].find((at) => at !== null && at >= start && at <= end) ?? null;
+    const cycle = wanted(state);
     const result = state.result;
     if (cycle === null || !result) return write("", []);
     const [own, other] = await ask(state, cycle, "reading");
-    // What has moved on meanwhile has asked anew.
-    if (!own || now().result !== result) return undefined;
+    // What has gone on meanwhile has asked anew, or has nothing to say.
+    if (!own || now().result !== result || wanted(now()) === null) return undefined;
     const name = cycle === a ? "A " : cycle === b ? "B " : "";
     const { scale, baseline } = unitOf(state);
     const seconds = cycle / result.summary.clock_hz;
