@@ -41,7 +41,7 @@ import { load as loadCharts } from "./time/plot.js";
 import { createMotion } from "./views/motion/motion.js";
 import { createPackets } from "./views/packets/packets.js";
 import { createPulses } from "./views/pulses/pulses.js";
-import { createSpectrum } from "./views/spectrum/spectrum.js";
+import { createSpectrum } from "./views/spectrum/pane.js";
 import { createStudy } from "./views/study/study.js";
 import { createTiming } from "./views/timing.js";
 

@@ -289,7 +289,15 @@ mod tests {
     use super::*;
 
     fn axis(min: f64, max: f64, unit: &str) -> Axis {
-        Axis { min, max, unit: unit.into(), prefix: true, label_px: 40.0 }
+        Axis {
+            min,
+            max,
+            unit: unit.into(),
+            prefix: true,
+            label_px: 40.0,
+            ticks: Vec::new(),
+            labels: String::new(),
+        }
     }
 
     fn spec(x: Axis, y: Axis, shape: Shape) -> Spec {

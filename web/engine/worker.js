@@ -113,9 +113,10 @@ function setBaseline(on) {
 function ofBaseline(method, [controller, ...args]) {
   if (!baseline) return null;
   // A run cannot be compared with itself: it is no other.
-  if (baseline === finished && method !== "motion") return null;
+  const own = method === "motion" || method === "between";
+  if (baseline === finished && !own) return null;
   baseline.select(controller);
-  const value = method === "motion" ? baseline.motion(...args) : finished[method](baseline, ...args);
+  const value = own ? baseline[method](...args) : finished[method](baseline, ...args);
   if (baseline === finished) baseline.select(selected);
   return value;
 }

@@ -18,7 +18,7 @@ export const STEPS = [
     title: "Look at the curves",
     at: "#view-motion",
     view: "motion",
-    text: "Position, speed and acceleration: the thin line is what was asked for, the broad one what the pulses make of it. A click sets cursor A, with Shift cursor B.",
+    text: "Position, speed and acceleration: the thin line is what was asked for, the broad one what the pulses make of it. A click sets cursor A, with Shift cursor B; their handles can be dragged.",
   },
   {
     title: "Zoom into the pulses",

@@ -171,3 +171,8 @@ export function pretty(text) {
 export function time(seconds) {
   return si(seconds, "s", 7);
 }
+
+/** The time of a cycle, with all the digits that tell it from the next cycle, however late it is. @param {number} cycle @param {number} clockHz */
+export function exactTime(cycle, clockHz) {
+  return si(cycle / clockHz, "s", Math.max(7, String(Math.abs(cycle)).length + 1));
+}

@@ -37,7 +37,7 @@ const ROWS = /** @type {const} */ ([
     name: "pulses",
     title: "Pulses",
     about: "All signals between controller, drivers and line, exact to the cycle.",
-    place: { area: "pulses", band: 1, height: "min(var(--rows-px, 158px) + 90px, 40%)", part: 0.26, least_px: 110 },
+    place: { area: "pulses", band: 1, height: "min(var(--rows-px, 158px) + 110px, 40%)", part: 0.26, least_px: 110 },
   },
   {
     name: "packets",

@@ -1,38 +1,29 @@
-/** What lies over every view of the time axis: what is pointed at, the pointer, cursors, markers. */
-import { color, font } from "./plot.js";
+/** What lies over every view of the time axis: what is pointed at, the lines of pointer, cursors and markers. */
+import { color } from "./plot.js";
 import { pixelOf } from "./timeline.js";
 
 /** @typedef {import("../state/types.js").State} State */
 
 /**
- * What is highlighted in all views, the pointer's line, cursors A and B, and the numbered markers.
+ * What is highlighted in all views, the pointer's line, those of the cursors A and B, and of the markers.
  * @param {CanvasRenderingContext2D} context
  * @param {State} state
  * @param {{left: number, right: number}} plot
  * @param {number} height
  */
 export function drawCursors(context, state, plot, height) {
-  /** @param {number | null} cycle @param {string} ink @param {number[]} dash @param {string} name */
-  const line = (cycle, ink, dash, name) => {
+  /** @param {number | null} cycle @param {string} ink @param {number[]} dash @param {number} [width] */
+  const line = (cycle, ink, dash, width = 1) => {
     if (cycle === null) return;
     const x = Math.round(pixelOf(state, plot, cycle)) + 0.5;
     if (x < plot.left - 1 || x > plot.right + 1) return;
     context.strokeStyle = color(ink);
     context.setLineDash(dash);
-    context.lineWidth = name ? 1.5 : 1;
+    context.lineWidth = width;
     context.beginPath();
     context.moveTo(x, 0);
     context.lineTo(x, height);
     context.stroke();
-    if (!name) return;
-    context.setLineDash([]);
-    context.fillStyle = color(ink);
-    context.fillRect(x - 6, 0, 12, 13);
-    context.fillStyle = color("--pane");
-    context.font = `bold 10px ${font()}`;
-    context.textAlign = "center";
-    context.textBaseline = "middle";
-    context.fillText(name, x, 7);
   };
   /** @param {{start: number, end: number}} span @param {string} ink @param {number} opacity */
   const band = ({ start, end }, ink, opacity) => {
@@ -47,13 +38,13 @@ export function drawCursors(context, state, plot, height) {
   if (state.highlighted) band(state.highlighted, "--mark", 0.3);
   if (state.picked) {
     band(state.picked, "--accent", 0.18);
-    line(state.picked.start, "--accent", [], "");
-    line(state.picked.end, "--accent", [], "");
+    line(state.picked.start, "--accent", []);
+    line(state.picked.end, "--accent", []);
   }
-  line(state.hover, "--axis", [3, 3], "");
-  for (const [digit, cycle] of state.markers.entries()) line(cycle, "--accent", [2, 2], String(digit));
-  line(state.cursors.a, "--cursor-a", [], "A");
-  line(state.cursors.b, "--cursor-b", [5, 3], "B");
+  line(state.hover, "--axis", [3, 3]);
+  for (const cycle of state.markers) line(cycle, "--accent", [2, 2], 1.5);
+  line(state.cursors.a, "--cursor-a", [], 1.5);
+  line(state.cursors.b, "--cursor-b", [5, 3], 1.5);
 }
 
 /** Whether what lies over the views has changed. @param {State | undefined} before @param {State} state */

@@ -96,7 +96,7 @@ export function cleared(canvas) {
 const fitted = new WeakMap();
 
 /**
- * @typedef {{min: number, max: number, unit: string, prefix: boolean, label_px: number}} Axis
+ * @typedef {{min: number, max: number, unit: string, prefix: boolean, label_px: number, ticks?: number[], labels?: string}} Axis
  * @typedef {{color: string, opacity: number, width: number, dash?: number, x: Float64Array | number[],
  *   shape: {line: {y: ArrayLike<number>}} | {band: {min: ArrayLike<number>, max: ArrayLike<number>}}
  *     | {stems: {y: ArrayLike<number>, shift: number}}}} Series

@@ -4,13 +4,13 @@
  */
 import { unlessDropped } from "../engine/engine.js";
 import { csv } from "../shell/tables.js";
-import { si, time } from "../state/number.js";
+import { time } from "../state/number.js";
 import { shown } from "../state/state.js";
 import { color, drawing, font, picture } from "../time/plot.js";
 import { ask } from "./motion/ask.js";
 import { bandsOf, chartOf, QUANTITIES } from "./motion/bands.js";
-import { distortion, given } from "./spectrum/harmonics.js";
-import { chosenSpectrum, spectrumChart } from "./spectrum/spectrum.js";
+import { chosenSpectrum, spectrumChart } from "./spectrum/chart.js";
+import { distortion, given, overFrequency, UNITS } from "./spectrum/harmonics.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../engine/engine.js").Engine} Engine */
@@ -85,7 +85,7 @@ export async function spectrumSheet(state, engine) {
     legend: all.map(([name]) => ({ name, ink: name === "ideal" ? "--ideal" : "--actual", dash: 0 })),
     panels: [
       {
-        caption: `amplitude of ${quantity} over the order of the harmonic, fundamental ${si(all[0][1].fundamental_hz, "Hz", 5)}`,
+        caption: `amplitude of ${quantity}, ${db ? "dB of the fundamental" : UNITS[quantity]}, over ${overFrequency(all[0][1])}`,
         chart: spectrumChart(found, quantity, db, WIDTH),
         height: 2 * PANEL,
       },

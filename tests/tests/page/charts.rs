@@ -219,6 +219,9 @@ fn a_harmonic_that_is_pointed_at_lights_up_as_stem_and_row() -> Result<()> {
         for said in ["no window", "coherent", "harmonics 2 to 1000", "250 mHz"] {
             ensure!(note.contains(said), "{said} in {note}");
         }
+        // Chart and table beside each other.
+        page.click("#view-spectrum .most").await?;
+        page.until("document.getElementById('harmonics').checkVisibility()").await?;
         let dark = page.canvas("spectrum-cursor").await?.hash;
         page.press("#spectrum-pane", "\u{e014}\u{e014}\u{e014}").await?;
         let highlighted =
@@ -233,11 +236,13 @@ fn a_harmonic_that_is_pointed_at_lights_up_as_stem_and_row() -> Result<()> {
         );
         page.press("#spectrum-pane", "\u{e010}").await?;
         page.until_equal(highlighted, &json!("1000")).await?;
-        page.js::<Value>(
-            "document.querySelector('#harmonics tr[data-n=\"5\"] td').dispatchEvent(new PointerEvent('pointerover', { bubbles: true })); return null;",
-            vec![],
-        )
-        .await?;
+        page.press("#spectrum-pane", "\u{e011}").await?;
+        page.until_equal(highlighted, &json!("1")).await?;
+        let (x, y): (f64, f64) = page
+            .eval("(({ x, y }) => [x + 4, y + 4])(document.querySelector('#harmonics tr[data-n=\"5\"] td').getBoundingClientRect())")
+            .await?;
+        let to = PointerAction::MoveTo { duration: None, x, y };
+        page.actions(MouseActions::new("mouse".into()).then(to)).await?;
         page.until_equal(highlighted, &json!("5")).await?;
         page.press("#spectrum-pane", "\u{e00c}").await?;
         page.until_equal(highlighted, &json!("")).await

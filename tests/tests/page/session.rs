@@ -170,7 +170,7 @@ impl Session {
         if !self.visible("#spectrum-chart").await? {
             self.click("#view-spectrum .fold").await?;
         }
-        self.until("document.getElementById('spectrum-chart').checkVisibility()").await
+        self.until("document.getElementById('spectrum-reading').checkVisibility()").await
     }
 
     /// Puts the focus on an element and types.

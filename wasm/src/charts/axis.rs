@@ -16,4 +16,10 @@ pub(crate) struct Axis {
     pub(crate) prefix: bool,
     /// Space for the tick labels in CSS pixels; 0 for none.
     pub(crate) label_px: f64,
+    /// Ticks where these are not to be found here, but come with their labels: those of an axis of logarithms.
+    #[serde(default)]
+    pub(crate) ticks: Vec<f64>,
+    /// A line a label.
+    #[serde(default)]
+    pub(crate) labels: String,
 }

@@ -3,7 +3,7 @@
 //! at them before they are kept.
 
 use super::{Axis, Colors, Series, Shape, Spec, svg};
-use std::{env, fs, path::Path};
+use std::{env, f64::consts::LOG10_2, fs, path::Path};
 
 /// The page's colours of a theme.
 struct Theme {
@@ -40,7 +40,7 @@ const THEMES: [Theme; 2] = [
 type Drawing = fn(&Theme) -> Spec;
 
 fn axis(min: f64, max: f64, unit: &str, prefix: bool, label_px: f64) -> Axis {
-    Axis { min, max, unit: unit.into(), prefix, label_px }
+    Axis { min, max, unit: unit.into(), prefix, label_px, ticks: Vec::new(), labels: String::new() }
 }
 
 fn series(color: &str, opacity: f64, width: f64, dash: f64, x: &[f64], shape: Shape) -> Series {
@@ -83,24 +83,49 @@ fn band(theme: &Theme) -> Spec {
     chart(theme, axis(0.0, 119.0, "", false, 20.0), axis(-108.0, 432.0, "", true, 68.0), series)
 }
 
-/// Two series of stems side by side over dB.
+/// Two series of stems side by side over frequency, in dB.
 fn spectrum(theme: &Theme) -> Spec {
-    let x: Vec<f64> = (1..=40).map(f64::from).collect();
+    spectrum_over(theme, axis(0.0, 10.25, "Hz", true, 20.0), |hz| hz)
+}
+
+/// The same over the logarithm of the frequency.
+fn spectrum_log(theme: &Theme) -> Spec {
+    let ticks = vec![-LOG10_2, 0.0, LOG10_2, 1.0 - LOG10_2, 1.0];
+    let labels = "500 mHz\n1 Hz\n2 Hz\n5 Hz\n10 Hz".into();
+    let frequency = axis(-0.75, 1.15, "Hz", true, 20.0);
+    spectrum_over(theme, Axis { ticks, labels, ..frequency }, log10)
+}
+
+/// A common logarithm from its series: the same bits on every machine.
+fn log10(value: f64) -> f64 {
+    let (mut mantissa, mut whole) = (value, 0.0);
+    while mantissa > 1.0 {
+        (mantissa, whole) = (mantissa / 10.0, whole + 1.0);
+    }
+    let part = (mantissa - 1.0) / (mantissa + 1.0);
+    let terms = (0..200).map(|k| 2.0 * (0..=2 * k).fold(1.0, |power, _| power * part) / f64::from(2 * k + 1));
+    whole + terms.sum::<f64>() / std::f64::consts::LN_10
+}
+
+fn spectrum_over(theme: &Theme, frequency: Axis, place: fn(f64) -> f64) -> Spec {
+    let n: Vec<f64> = (1..=40).map(f64::from).collect();
+    let x: Vec<f64> = n.iter().map(|n| place(n * 0.25)).collect();
     let level = |odd: f64| {
         let level = |n: &f64| if n % 2.0 == 0.0 { f64::NEG_INFINITY } else { (1.0 - n) * odd };
-        x.iter().map(level).collect::<Vec<f64>>()
+        n.iter().map(level).collect::<Vec<f64>>()
     };
     let series = vec![
         series(theme.ideal, 1.0, 3.0, 0.0, &x, Shape::Stems { y: level(2.0), shift: -2.0 }),
         series(theme.actual, 1.0, 3.0, 0.0, &x, Shape::Stems { y: level(1.8), shift: 2.0 }),
     ];
-    chart(theme, axis(0.0, 41.0, "", false, 20.0), axis(-120.0, 10.0, "dB", false, 58.0), series)
+    chart(theme, frequency, axis(-120.0, 10.0, "dB", false, 58.0), series)
 }
 
 #[test]
 fn pictures_are_those_that_were_looked_at() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pictures");
-    let drawings: [(&str, Drawing); 3] = [("motion", motion), ("band", band), ("spectrum", spectrum)];
+    let drawings: [(&str, Drawing); 4] =
+        [("motion", motion), ("band", band), ("spectrum", spectrum), ("spectrum-log", spectrum_log)];
     for theme in &THEMES {
         for (name, make) in drawings {
             let (text, _) = svg((1200, 400), &make(theme)).expect("draws");

@@ -4,7 +4,7 @@
 use crate::charts::axis::Axis;
 
 /// The ticks of one axis, 1, 2 or 5 times a power of ten apart, with one prefix and one number of
-/// digits for all labels.
+/// digits for all labels; or those that the axis brings.
 pub(super) struct Ticks<'a> {
     /// From the least to the greatest.
     pub(super) values: Vec<f64>,
@@ -12,7 +12,7 @@ pub(super) struct Ticks<'a> {
     digits: usize,
     space: &'static str,
     prefix: &'static str,
-    unit: &'a str,
+    axis: &'a Axis,
 }
 
 impl<'a> Ticks<'a> {
@@ -26,6 +26,9 @@ impl<'a> Ticks<'a> {
         if values.len() > most.max(2) {
             // Some around zero, and no room for all: the outer ones.
             values = values.first().into_iter().chain(values.last()).copied().collect();
+        }
+        if !axis.ticks.is_empty() {
+            values.clone_from(&axis.ticks);
         }
         let largest = axis.min.abs().max(axis.max.abs());
         let (scale, prefix) = PREFIXES
@@ -41,17 +44,20 @@ impl<'a> Ticks<'a> {
             digits += 1;
         }
         let space = if axis.unit.is_empty() { "" } else { " " };
-        Self { values, scale, digits, space, prefix, unit: &axis.unit }
+        Self { values, scale, digits, space, prefix, axis }
     }
 
     pub(super) fn print(&self, value: f64) -> String {
+        if let Some(place) = self.axis.ticks.iter().position(|tick| *tick == value) {
+            return self.axis.labels.lines().nth(place).unwrap_or_default().to_owned();
+        }
         // Adding zero makes a plain zero of a negative one.
         let number = value / self.scale + 0.0;
         let text = format!("{number:.*}", self.digits);
         let zero = text.chars().all(|c| matches!(c, '0' | '.' | '-'));
         let text = if zero { "0" } else { &text };
-        let prefix = if zero && self.unit.is_empty() { "" } else { self.prefix };
-        format!("{text}{}{prefix}{}", self.space, self.unit).replace('-', "\u{2212}")
+        let prefix = if zero && self.axis.unit.is_empty() { "" } else { self.prefix };
+        format!("{text}{}{prefix}{}", self.space, self.axis.unit).replace('-', "\u{2212}")
     }
 }
 
@@ -99,7 +105,15 @@ mod tests {
     use super::*;
 
     fn axis(min: f64, max: f64, unit: &str) -> Axis {
-        Axis { min, max, unit: unit.into(), prefix: true, label_px: 40.0 }
+        Axis {
+            min,
+            max,
+            unit: unit.into(),
+            prefix: true,
+            label_px: 40.0,
+            ticks: Vec::new(),
+            labels: String::new(),
+        }
     }
 
     #[test]
@@ -143,5 +157,16 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn an_axis_that_brings_its_ticks_has_those_and_their_labels() {
+        let axis = Axis { ticks: vec![-1.0, 0.5], labels: "100 mHz\n3.2 Hz".into(), ..axis(-1.2, 1.4, "Hz") };
+        let found = Ticks::new(&axis, 6, 6);
+        assert_eq!(found.values, [-1.0, 0.5]);
+        assert_eq!(
+            found.values.iter().map(|value| found.print(*value)).collect::<Vec<_>>(),
+            ["100 mHz", "3.2 Hz"]
+        );
     }
 }

@@ -143,10 +143,3 @@ export function withoutAcceleration({ has_ideal, acceleration_min, acceleration_
     ? "The speed is stepwise here: acceleration undefined."
     : "The speed does not change here; no acceleration.";
 }
-
-/** The column of a time. @param {MotionColumns} columns @param {number} seconds */
-export function columnAt({ x }, seconds) {
-  if (x.length < 2) return x.length - 1;
-  const index = Math.round((seconds - x[0]) / (x[1] - x[0]));
-  return Math.min(x.length - 1, Math.max(0, index));
-}

@@ -1,6 +1,6 @@
 /** What lies between the two cursors: the values at both, their difference, mean and root mean square, ideal and actual. */
 import { byId, element, fill, say } from "../../dom.js";
-import { short, si, time } from "../../state/number.js";
+import { exactTime, short, si } from "../../state/number.js";
 import { QUANTITIES, unitFor, unitOf } from "./bands.js";
 
 /** @typedef {import("../../state/types.js").State} State */
@@ -24,7 +24,7 @@ export function createBetween({ engine }) {
     );
     if (!answer) return;
     const seconds = (b - a) / state.result.summary.clock_hz;
-    const span = `B−A ${time(seconds)}${seconds === 0 ? "" : ` · 1/(B−A) ${si(1 / Math.abs(seconds), "Hz", 6)}`}`;
+    const span = `B−A ${exactTime(b - a, state.result.summary.clock_hz)}${seconds === 0 ? "" : ` · 1/(B−A) ${si(1 / Math.abs(seconds), "Hz", 6)}`}`;
     say(byId("between-span"), `${span} · in ${unitOf(state).unit} and s`);
     fill(
       byId("between-tables"),

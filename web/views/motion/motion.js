@@ -1,22 +1,19 @@
 /** The motion view: position, speed and acceleration over one time axis, the ideal curve over what the pulses make. */
 import { byId, options, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
-import { count, short, si, time } from "../../state/number.js";
+import { short, si } from "../../state/number.js";
 import { selected, shown } from "../../state/state.js";
 import { drawCursors, overlaid } from "../../time/cursors.js";
+import { createHandles } from "../../time/handles.js";
 import { cleared, draw, fit, GUTTER, MARGIN, watch } from "../../time/plot.js";
-import { gestures } from "../../time/timeline.js";
+import { onTimeAxis } from "../../time/timeline.js";
 import { ask } from "./ask.js";
-import { chartOf, columnAt, QUANTITIES, TIME_PX, unitFor, unitOf, unitsOf, withoutAcceleration } from "./bands.js";
-import { createBetween } from "./between.js";
+import { chartOf, QUANTITIES, TIME_PX, unitOf, unitsOf, withoutAcceleration } from "./bands.js";
 import { createCompare } from "./compare.js";
-import { createRecord } from "./record.js";
+import { createReading } from "./reading.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {ReturnType<typeof chartOf>} Drawn */
-
-/** Rest after a cursor moved by keys before its values are spoken, in ms. */
-const SPEAK_MS = 500;
 
 /** While the shown time moves, the charts follow at most so often, in ms. */
 const FOLLOW_MS = 80;
@@ -27,16 +24,20 @@ export function createMotion({ engine, dispatch, now }) {
   const overlay = /** @type {HTMLCanvasElement} */ (byId("charts-cursor"));
   const axisSelect = /** @type {HTMLSelectElement} */ (byId("motion-axis"));
   const unitSelect = /** @type {HTMLSelectElement} */ (byId("motion-unit"));
-  const between = createBetween({ engine });
+  /** What lies between the cursors; it loads when both are first set. @type {ReturnType<typeof import("./between.js").createBetween> | null} */
+  let between = null;
   const compare = createCompare({ engine, dispatch, now });
-  const record = createRecord({ engine, now });
+  const fold = /** @type {HTMLDetailsElement} */ (byId("motion-data"));
+  /** The table of what the charts show; it loads when it is first opened. @type {ReturnType<typeof import("./record.js").createRecord> | null} */
+  let record = null;
+  const reading = createReading({ engine, now });
+  const handles = createHandles(byId("charts-handles"), () => plot, { dispatch, now });
   /** @type {import("./bands.js").Seen | null} */
   let seen = null;
   /** @type {Drawn[]} */
   let drawn = [];
   let plot = { left: GUTTER, right: GUTTER + 1 };
   let byKeys = false;
-  let speaking = 0;
 
   axisSelect.addEventListener("change", () => dispatch({ type: "axis", axis: Number(axisSelect.value) }));
   unitSelect.addEventListener("change", () =>
@@ -52,7 +53,16 @@ export function createMotion({ engine, dispatch, now }) {
   stack.addEventListener("pointerdown", () => {
     byKeys = false;
   });
-  gestures(stack, () => plot, { dispatch, now });
+  fold.addEventListener("toggle", async () => {
+    try {
+      const { createRecord } = await import("./record.js");
+      record ??= createRecord({ engine, now });
+      record.render(now());
+    } catch {
+      say(byId("record-page"), "The table could not be loaded; open it again when the network is there.");
+    }
+  });
+  onTimeAxis(stack, () => plot, { dispatch, now });
   /** When the charts were asked for last, and the timer that will ask again. */
   let [asked, later] = [0, 0];
   watch(stack, () => refresh(now()));
@@ -94,33 +104,9 @@ export function createMotion({ engine, dispatch, now }) {
     const layer = cleared(overlay);
     if (!layer || !seen || !state.result) return;
     drawCursors(layer.context, state, plot, layer.height - TIME_PX);
-    const values = read(state, [state.hover, state.cursors.a]);
-    say(byId("motion-time"), values ? values.at : "");
-    for (const [index, quantity] of QUANTITIES.entries()) say(byId(`read-${quantity}`), values?.texts[index] ?? "");
+    handles.render(state);
+    void reading.render(state);
     say(byId("motion-sentence"), sentence(state));
-  }
-
-  /** Values at the first of these cycles that is on show. @param {State} state @param {(number | null)[]} cycles */
-  function read(state, cycles) {
-    const { start, end } = shown(state);
-    const cycle = cycles.find((at) => at !== null && at >= start && at <= end) ?? null;
-    if (!seen || cycle === null) return null;
-    const clock = state.result?.summary.clock_hz ?? 1;
-    const at = columnAt(seen.columns, cycle / clock);
-    return {
-      at: `${time(cycle / clock)} · cycle ${count(cycle)}`,
-      texts: drawn.map(({ bands, unit }) => {
-        const values = bands
-          .map(({ name, min, max }) => {
-            const [low, high] = [min[at], max[at]];
-            if (!Number.isFinite(low)) return "";
-            const same = Math.abs(high - low) <= 1e-6 * Math.max(1e-9, Math.abs(high));
-            return `${name} ${same ? short(low) : `${short(low)} to ${short(high)}`}`;
-          })
-          .filter(Boolean);
-        return values.length ? `${values.join("  ·  ")} ${unit}` : "";
-      }),
-    };
   }
 
   /** What the charts show now. @param {State} state */
@@ -128,34 +114,24 @@ export function createMotion({ engine, dispatch, now }) {
     const { start, end } = shown(state);
     const clock = state.result?.summary.clock_hz ?? 1;
     const baseline = state.baseline ? ` Beside it, dashed, the baseline ${state.baseline.title}.` : "";
-    return `Axis ${state.axis}, ${si(start / clock, "s")} to ${si(end / clock, "s")}.${baseline} ${between.sentence()}`.trim();
+    return `Axis ${state.axis}, ${si(start / clock, "s")} to ${si(end / clock, "s")}.${baseline} ${between?.sentence() ?? ""}`.trim();
   }
 
-  /** Says a cursor's values once it stands, where keys moved it. @param {State} state @param {"a" | "b"} which */
-  function speak(state, which) {
-    clearTimeout(speaking);
-    const cycle = state.cursors[which];
-    speaking = window.setTimeout(async () => {
-      if (cycle === null) return say(byId("motion-spoken"), `Cursor ${which.toUpperCase()} is removed.`);
-      /** @type {import("../../state/types.js").Between | null} */
-      const answer = (await engine.latest("spoken", "between", state.axis, cycle, cycle).catch(unlessDropped)) ?? null;
-      if (!answer) return;
-      const { scale } = unitOf(state);
-      const texts = QUANTITIES.flatMap((quantity, index) => {
-        const values = [
-          ["ideal", answer.ideal],
-          ["from pulses", answer.actual],
-        ].flatMap(([name, of]) => {
-          const value = /** @type {import("../../state/types.js").Readings | null} */ (of)?.at_a[index];
-          return value === undefined ? [] : [`${name} ${short(value * scale)}`];
-        });
-        return values.length ? [`${quantity}: ${values.join(", ")} ${unitFor(state, quantity)}.`] : [];
-      });
-      say(
-        byId("motion-spoken"),
-        `Cursor ${which.toUpperCase()} at ${time(cycle / (state.result?.summary.clock_hz ?? 1))}. ${texts.join(" ")}`,
+  /** @param {State} state */
+  async function tellBetween({ cursors: { a, b } }) {
+    if (!between && (a === null || b === null)) return;
+    try {
+      const { createBetween } = await import("./between.js");
+      between ??= createBetween({ engine });
+    } catch {
+      byId("between").hidden = false;
+      return say(
+        byId("between-span"),
+        "This part of the page could not be loaded; try again when the network is there.",
       );
-    }, SPEAK_MS);
+    }
+    await between.render(now());
+    say(byId("motion-sentence"), sentence(now()));
   }
 
   /** Follows the shown time, but leaves the frames between to the pulses. */
@@ -191,11 +167,11 @@ export function createMotion({ engine, dispatch, now }) {
     compare.render(state, before);
     const other = before?.axis !== state.axis || before?.result !== state.result || before?.baseline !== state.baseline;
     const moved = other || before?.window !== state.window;
-    if (before?.window !== state.window || other || before?.unit !== state.unit) record.render(state);
+    if (before?.window !== state.window || other || before?.unit !== state.unit) record?.render(state);
     if (before && byKeys && before.cursors !== state.cursors)
-      speak(state, before.cursors.b === state.cursors.b ? "a" : "b");
+      reading.speak(state, before.cursors.b === state.cursors.b ? "a" : "b");
     if (before?.cursors !== state.cursors || other || before?.unit !== state.unit)
-      between.render(state).then(() => say(byId("motion-sentence"), sentence(now())), unlessDropped);
+      void tellBetween(state).catch(unlessDropped);
     if (before && !other && before.window !== state.window && before.difference === state.difference) return follow();
     if (moved || before?.difference !== state.difference || (state.difference && before?.unit !== state.unit))
       return refresh(state);

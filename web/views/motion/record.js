@@ -21,7 +21,6 @@ export function createRecord({ engine, now }) {
   };
   const [previous, next] = [button("⇤", "Earlier rows", () => go(-1)), button("⇥", "Later rows", () => go(1))];
   byId("record-buttons").append(previous, next);
-  fold.addEventListener("toggle", () => void show(now()));
   fold.addEventListener("keydown", (event) => {
     if (event.key !== "Escape" || !fold.open) return;
     fold.open = false;

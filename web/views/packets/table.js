@@ -2,14 +2,12 @@
 import { byId, element, fill, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count } from "../../state/number.js";
+import { ROW_PX, virtualRows } from "../virtual_rows.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").PacketRow} PacketRow */
 /** @typedef {import("../../state/types.js").PacketPage} PacketPage */
 
-const ROW_PX = 24;
-/** Browsers refuse boxes taller than some ten million pixels; a longer list scrolls in larger steps. */
-const MAX_PX = 6_000_000;
 /** Room for a few bytes: the most that they get of a frame, where words say more than they do. */
 const FEW_BYTES_PX = 104;
 /** Of the columns of bytes and of the outcome there is always so much. */
@@ -66,23 +64,7 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
   });
   body.addEventListener("pointerleave", () => dispatch({ type: "light", highlighted: null }));
 
-  const visible = () => Math.max(1, Math.floor((scroller.clientHeight - ROW_PX) / ROW_PX));
-
-  function first() {
-    const path = space.offsetHeight - scroller.clientHeight;
-    if (path <= 0) return 0;
-    const last = Math.max(0, answer.shown - visible());
-    return Math.min(last, Math.round((scroller.scrollTop / path) * last));
-  }
-
-  /** @param {number} position */
-  function scrollTo(position) {
-    const from = first();
-    if (position >= from && position < from + visible()) return;
-    const target = position < from ? position : position - visible() + 1;
-    const last = Math.max(1, answer.shown - visible());
-    scroller.scrollTop = (target / last) * (space.offsetHeight - scroller.clientHeight);
-  }
+  const { first, visible, scrollTo, resize } = virtualRows(scroller, space, () => answer.shown);
 
   /** Makes another row the current one. @param {number} position */
   function moveTo(position) {
@@ -112,7 +94,7 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
     if (others) {
       current = Math.min(current, Math.max(0, answer.shown - 1));
       table.setAttribute("aria-rowcount", String(answer.shown + 1));
-      space.style.height = `${Math.min(MAX_PX, (answer.shown + 1) * ROW_PX + 2)}px`;
+      resize();
       // Fewer rows may have moved the scroll bar.
       if (first() !== from) return reload();
     }

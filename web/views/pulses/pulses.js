@@ -6,9 +6,10 @@ import { time } from "../../state/number.js";
 import { rowPx } from "../../state/row_choices.js";
 import { selected, shown } from "../../state/state.js";
 import { drawCursors, overlaid } from "../../time/cursors.js";
+import { createHandles } from "../../time/handles.js";
 import { fit, GUTTER, MARGIN, ratio, watch } from "../../time/plot.js";
 import { createRange } from "../../time/range.js";
-import { cycleAt, gestures, reveal } from "../../time/timeline.js";
+import { cycleAt, onTimeAxis, reveal } from "../../time/timeline.js";
 import { createEdges } from "./edges.js";
 import { createMarkers } from "./markers.js";
 import { createOverview } from "./overview.js";
@@ -42,13 +43,17 @@ export function createPulses({ engine, dispatch, now }) {
   const markers = createMarkers({ ...page, speak: reading.speak });
   const edges = createEdges({ engine, now });
   const panel = createRowPanel({ ...page, canvas, speak: reading.speak });
+  const handles = createHandles(byId("pulses-handles"), () => plot, {
+    ...page,
+    settle: (cycle) => snapped(now().row, cycle),
+  });
   const px = () => rowPx(now().panes.pulses);
   /** @type {import("./picture.js").Answer | null} */
   let answer = null;
   let frame = 0;
   let plot = { left: GUTTER, right: GUTTER + 1 };
 
-  gestures(canvas, () => plot, { ...page, click: pick });
+  onTimeAxis(canvas, () => plot, { ...page, click: pick });
   watch(stack, () => refresh(now()));
   byId("edge-next").addEventListener("click", () => jump(true));
   byId("edge-previous").addEventListener("click", () => jump(false));
@@ -227,6 +232,7 @@ export function createPulses({ engine, dispatch, now }) {
     context.scale(scale, scale);
     drawCursors(context, state, plot, height);
     drawLit(context, state, plot, spans);
+    handles.render(state);
     reading.render(state);
   }
 

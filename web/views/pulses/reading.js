@@ -1,7 +1,7 @@
 /** The line under the pulses: the pointer's time, the pulse or span under it, the cursors and what lies between them; and what is spoken. */
 import { byId, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
-import { count, short, si, time } from "../../state/number.js";
+import { count, exactTime, short, si, time } from "../../state/number.js";
 import { nameOf } from "./rows.js";
 
 /** @typedef {import("../../state/types.js").State} State */
@@ -9,6 +9,7 @@ import { nameOf } from "./rows.js";
 
 /** Rest before a sentence is spoken, in ms: keys that are held down say what they come to. */
 const SPEAK_MS = 250;
+const coarse = () => matchMedia("(pointer: coarse)").matches;
 
 /** @param {{engine: import("../../engine/engine.js").Engine, now: () => State}} page */
 export function createReading({ engine, now }) {
@@ -25,11 +26,14 @@ export function createReading({ engine, now }) {
     const clock = state.result?.summary.clock_hz ?? 1;
     const { a, b } = state.cursors;
     const texts = [];
-    if (a !== null) texts.push(`A ${time(a / clock)}`);
-    if (b !== null) texts.push(`B ${time(b / clock)}`);
+    if (a !== null) texts.push(`A ${exactTime(a, clock)}`);
+    if (b !== null) texts.push(`B ${exactTime(b, clock)}`);
     if (a !== null && b !== null)
-      texts.push(`B−A ${time((b - a) / clock)}${a === b ? "" : ` = ${si(clock / Math.abs(b - a), "Hz", 6)}`}`);
-    else texts.push(a === null ? "click sets cursor A" : "shift-click sets B");
+      texts.push(`B−A ${exactTime(b - a, clock)}${a === b ? "" : ` = ${si(clock / Math.abs(b - a), "Hz", 6)}`}`);
+    else
+      texts.push(
+        a === null ? (coarse() ? "a tap sets A" : "click sets cursor A") : coarse() ? "drag B" : "shift-click sets B",
+      );
     say(byId("cursor-readings"), texts.join(" · "));
   }
 
@@ -57,7 +61,7 @@ export function createReading({ engine, now }) {
     say(
       byId("hover-reading"),
       text ||
-        (matchMedia("(pointer: coarse)").matches
+        (coarse()
           ? "two fingers zoom, dragging moves, a double tap shows the whole run"
           : "wheel zooms, dragging moves, double click shows the whole run"),
     );

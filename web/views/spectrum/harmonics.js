@@ -67,7 +67,7 @@ export function describe({ n, hz, parts }, quantity, periodic) {
 }
 
 /** A distortion in percent; what is left of an exact sine is rounding. @param {number} ratio */
-const percent = (ratio) => `${ratio < 1e-9 ? 0 : short(ratio * 100, 5)} %`;
+const percent = (ratio) => `${ratio < 1e-9 ? 0 : short(ratio * 100, 5)}\u00a0%`;
 
 /** @param {Spectra} spectra @param {Quantity} quantity */
 export function distortion(spectra, quantity) {
@@ -85,6 +85,11 @@ export function distortion(spectra, quantity) {
   const [first] = given(spectra);
   const to = first ? ` to harmonic ${first[1].order}` : "";
   return `THD of ${quantity}${to}, axis ${spectra.axis}: ${parts.join(", ")}${through && `; filtered by the sensor: ${through}`}`;
+}
+
+/** What the axis of frequencies is called. @param {Spectrum} some */
+export function overFrequency({ fundamental_hz, periodic }) {
+  return `frequency, ${periodic ? "harmonics" : "lines"} at multiples of ${si(fundamental_hz, "Hz", 5)}`;
 }
 
 /** How the distortion is defined. @param {Spectrum} some */

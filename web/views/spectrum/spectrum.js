@@ -1,209 +1,228 @@
-/** The spectrum view: harmonics of the ideal motion beside those of the pulses that make it, and the distortion. */
-import { byId, element, fill, say } from "../../dom.js";
-import { unlessDropped } from "../../engine/engine.js";
+/**
+ * The spectrum where it is on show: harmonics of the ideal motion beside those of the pulses that make it, as chart and as
+ * table, and the distortion. It loads with the first spectrum that there is room for.
+ */
+import { button, byId, element, say } from "../../dom.js";
 import { listen } from "../../shell/commands.js";
-import { short, si } from "../../state/number.js";
+import { si } from "../../state/number.js";
+import { gestures, moved, zoomed } from "../../time/gestures.js";
 import { cleared, color, draw, fit, watch } from "../../time/plot.js";
-import { describe, distortion, FLOOR_DB, given, harmonics, heard, method, reference, value } from "./harmonics.js";
+import { chosenSpectrum, spectrumChart } from "./chart.js";
+import { createFields } from "./fields.js";
+import { frequency } from "./frequency.js";
+import { describe, distortion, harmonics, method, overFrequency, UNITS, value } from "./harmonics.js";
+import { createHarmonicsTable } from "./table.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").Spectra} Spectra */
-/** @typedef {import("./harmonics.js").Quantity} Quantity */
 
-/** Width of the tick labels in CSS pixels. */
-const GUTTER = 58;
+/** Of the harmonics within so many CSS pixels of the pointer the strongest is meant. */
+const NEAR_PX = 2;
 
-/** @param {Spectra} spectra @param {Quantity} quantity @param {boolean} db @param {number} width  CSS pixels. */
-export function spectrumChart(spectra, quantity, db, width) {
-  const all = given(spectra);
-  const order = Math.max(...all.map(([, spectrum]) => spectrum[quantity].length));
-  const x = Array.from({ length: order }, (_, i) => i + 1);
-  const thick = Math.max(1.5, Math.min(5, (width - GUTTER) / order / 3));
-  const top = Math.max(...all.flatMap(([, spectrum]) => [...spectrum[quantity]]), 1e-12);
-  return {
-    x: { min: 0, max: order + 1, unit: "", prefix: false, label_px: 20 },
-    y: db
-      ? { min: FLOOR_DB, max: 10, unit: "dB", prefix: false, label_px: GUTTER }
-      : { min: 0, max: top * 1.1, unit: "", prefix: true, label_px: GUTTER },
-    series: all.map(([name, spectrum]) => ({
-      color: color(name === "ideal" ? "--ideal" : "--actual"),
-      opacity: 1,
-      width: thick,
-      x,
-      shape: {
-        stems: {
-          shift: (name === "ideal" ? -1 : 1) * (thick / 2 + 0.5),
-          y: db
-            ? spectrum[quantity].map((value) => 20 * Math.log10(heard(value) / reference(spectrum, quantity)))
-            : spectrum[quantity],
-        },
-      },
-    })),
-  };
-}
-
-/** What is chosen in the view's head. @returns {{quantity: Quantity, db: boolean}} */
-export function chosenSpectrum() {
-  const value = (/** @type {string} */ id) => /** @type {HTMLSelectElement} */ (byId(id)).value;
-  return { quantity: /** @type {Quantity} */ (value("spectrum-quantity")), db: value("spectrum-scale") === "db" };
-}
-
-/** @param {{engine: import("../../engine/engine.js").Engine} & import("../../state/types.js").Page} page */
-export function createSpectrum({ engine, dispatch, now }) {
+/** @param {import("../../state/types.js").Page} page */
+export function createSpectrumView({ dispatch, now }) {
   const canvas = /** @type {HTMLCanvasElement} */ (byId("spectrum-chart"));
   const overlay = /** @type {HTMLCanvasElement} */ (byId("spectrum-cursor"));
   const slider = byId("spectrum-pane");
-  const body = /** @type {HTMLElement} */ (byId("harmonics").querySelector("tbody"));
+  const view = byId("view-spectrum");
   /** @type {Spectra | null} */
   let spectra = null;
   /** @type {ReturnType<typeof harmonics>} */
   let rows = [];
   /** @type {import("../../state/types.js").Plot | null} */
   let plot = null;
+  /** @type {import("../../state/types.js").Span | null} */
+  let picked = null;
+  let frame = 0;
+
+  const point = (/** @type {number | null} */ harmonic) => dispatch({ type: "harmonic", harmonic });
+  const table = createHarmonicsTable(point);
+  const show = (/** @type {import("../../state/types.js").Span | null} */ window, /** @type {string} */ joins) => {
+    frequency.show(window, joins);
+    soon();
+  };
+  /** The chosen harmonic's place, if it is on show. */
+  const anchor = () => {
+    const { start, end } = frequency.shown();
+    const at = frequency.place(rows[(now().harmonic ?? 0) - 1]?.hz ?? Number.NaN);
+    return at >= start && at <= end ? at : undefined;
+  };
+  const actions = {
+    zoom: (/** @type {number} */ factor) => show(zoomed(frequency.shown(), factor, anchor()), "zoom"),
+    fit: () => show(null, ""),
+    back: () => {
+      frequency.back();
+      soon();
+    },
+    log: () => {
+      frequency.setLog(!frequency.isLog());
+      soon();
+    },
+    changed: soon,
+  };
+  const fields = createFields(byId("spectrum-tools"), actions);
+  const tableButton = button("Table", "Table of the harmonics in place of the chart", () => {
+    tableButton.setAttribute("aria-pressed", String(view.classList.toggle("tabled")));
+  });
+  const [amplitudes, frequencies] = ["of-amplitudes", "of-frequencies"].map((name) =>
+    element("p", { class: `axis-name ${name}` }),
+  );
+  slider.append(amplitudes, frequencies);
+  tableButton.id = "spectrum-table";
+  tableButton.setAttribute("aria-pressed", "false");
+  byId("spectrum-log").after(tableButton);
 
   for (const id of ["spectrum-quantity", "spectrum-scale"]) byId(id).addEventListener("change", paint);
-  watch(canvas, paint);
-  const point = (/** @type {number | null} */ harmonic) => dispatch({ type: "harmonic", harmonic });
-  slider.addEventListener("pointermove", (event) => {
+  watch(canvas, soon);
+  gestures(slider, () => plot ?? { left: 0, right: 1 }, {
+    shown: frequency.shown,
+    show: (window, joins) => show(window, joins ?? ""),
+    boxing: () => now().box,
+    picked: () => picked,
+    pick: (span) => {
+      picked = span;
+      mark(now());
+    },
+    hover: (at) => at !== null && choose(at),
+    click: (_, at) => choose(at),
+  });
+
+  /** Chooses the harmonic that is meant by a place. @param {number} at */
+  function choose(at) {
     if (!plot || rows.length === 0) return;
-    const x = event.clientX - slider.getBoundingClientRect().left;
-    const n = Math.round(((x - plot.left) / (plot.right - plot.left)) * (rows.length + 1));
-    if (n >= 1 && n <= rows.length) point(n);
-  });
-  body.addEventListener("pointerover", (event) => {
-    const row = event.target instanceof Element ? event.target.closest("tr") : null;
-    if (row?.dataset.n) point(Number(row.dataset.n));
-  });
-  const move = (/** @type {number} */ by) =>
-    point(Math.min(rows.length, Math.max(1, (now().harmonic ?? (by > 0 ? 0 : 2)) + by)));
+    const { start, end } = frequency.shown();
+    const reach = (NEAR_PX * (end - start)) / (plot.right - plot.left);
+    const strength = (/** @type {number} */ n) => Math.max(...rows[n - 1].parts.map(({ part }) => part));
+    let best = Math.round((frequency.isLog() ? 10 ** at : at) / rows[0].hz);
+    best = Math.min(rows.length, Math.max(1, best));
+    const near = (/** @type {number} */ n) => rows[n - 1] && Math.abs(frequency.place(rows[n - 1].hz) - at) <= reach;
+    for (const by of [-1, 1]) for (let n = best + by; near(n); n += by) if (strength(n) > strength(best)) best = n;
+    point(best);
+  }
+
+  /** @param {number} n */
+  function go(n) {
+    const to = Math.min(rows.length, Math.max(1, n));
+    if (rows.length === 0) return;
+    point(to);
+    const { start, end } = frequency.shown();
+    const at = frequency.place(rows[to - 1].hz);
+    if (at < start || at > end) show({ start: at - (end - start) / 2, end: at + (end - start) / 2 }, "follow");
+  }
+  const step = (/** @type {number} */ by) => go((now().harmonic ?? (by > 0 ? 0 : 2)) + by);
   for (const target of [slider, byId("harmonics-scroll")]) {
+    const upright = target === slider;
     listen(target, "Spectrum", [
+      { keys: upright ? ["ArrowRight", "ArrowUp"] : ["ArrowRight"], text: "the next harmonic", run: () => step(1) },
+      { keys: upright ? ["ArrowLeft", "ArrowDown"] : ["ArrowLeft"], text: "the harmonic before", run: () => step(-1) },
+      { keys: ["Home"], text: "the fundamental", run: () => go(1) },
+      { keys: ["End"], text: "the highest harmonic", run: () => go(rows.length) },
+      { keys: ["+", "="], text: "zoom in, around the chosen harmonic", run: () => actions.zoom(0.5) },
+      { keys: ["-", "−"], text: "zoom out", run: () => actions.zoom(2) },
       {
-        keys: ["ArrowRight", "ArrowUp"].slice(0, target === slider ? 2 : 1),
-        text: "the next harmonic",
-        run: () => move(1),
+        keys: ["Shift+ArrowLeft"],
+        text: "lower frequencies",
+        run: () => show(moved(frequency.shown(), -0.1), "pan"),
       },
       {
-        keys: target === slider ? ["ArrowLeft", "ArrowDown"] : ["ArrowLeft"],
-        text: "the harmonic before",
-        run: () => move(-1),
+        keys: ["Shift+ArrowRight"],
+        text: "higher frequencies",
+        run: () => show(moved(frequency.shown(), 0.1), "pan"),
       },
-      { keys: ["Home"], text: "the fundamental", run: () => point(1) },
-      { keys: ["End"], text: "the highest harmonic", run: () => point(rows.length) },
+      { keys: ["0"], text: "show the whole spectrum", run: actions.fit },
+      { keys: ["Backspace"], text: "back to what was shown before", run: actions.back },
+      { keys: ["l"], text: "logarithmic or linear frequencies", run: actions.log },
+      { keys: ["b"], text: "drag a box to zoom, or no longer", run: () => dispatch({ type: "box", on: !now().box }) },
       { keys: ["Escape"], text: "no harmonic", run: () => point(null) },
     ]);
   }
 
-  /** @param {State} state */
-  async function refresh(state) {
-    if (!state.result) return;
-    const answer = await engine.latest("spectrum", "spectrum").catch(unlessDropped);
-    if (answer === undefined) return;
-    spectra = answer;
-    dispatch({ type: "bare", view: "spectrum", bare: !(answer.ideal ?? answer.pulses)?.periodic });
+  /** Draws in the next frame, however much has changed until then. */
+  function soon() {
+    frame ||= requestAnimationFrame(drawChart);
+  }
+
+  /** @param {Spectra} found */
+  function take(found) {
+    spectra = found;
     paint();
   }
 
+  /** What follows from the spectra and from what is chosen of them. */
   function paint() {
     const { quantity, db } = chosenSpectrum();
     const some = spectra?.ideal ?? spectra?.pulses ?? null;
+    const note = byId("spectrum-note");
     say(byId("thd"), spectra && some?.periodic ? distortion(spectra, quantity) : "");
-    say(byId("spectrum-note"), spectra && some ? `${method(some)} ${spectra.note}`.trim() : (spectra?.note ?? ""));
+    say(note, `${spectra?.note ?? ""} ${some ? method(some) : ""}`.trim());
+    note.title = note.textContent ?? "";
     byId("spectrum-split").hidden = !some;
+    byId("spectrum-reading").hidden = !some;
+    say(amplitudes, db ? "dB of the fundamental" : UNITS[quantity]);
+    say(frequencies, some ? overFrequency(some) : "");
     rows = spectra && some ? harmonics(spectra, quantity) : [];
-    table();
-    if (spectra && some) {
+    table.show(rows);
+    drawChart();
+  }
+
+  function drawChart() {
+    cancelAnimationFrame(frame);
+    frame = 0;
+    const { quantity, db } = chosenSpectrum();
+    if (spectra && rows.length > 0 && canvas.clientWidth > 0) {
       plot = draw(canvas, spectrumChart(spectra, quantity, db, canvas.clientWidth));
       fit(overlay);
+      const { start, end } = frequency.hertz();
       canvas.setAttribute(
         "aria-label",
-        `Spectrum of ${quantity}, harmonics 1 to ${rows.length} of ${si(some.fundamental_hz, "Hz")}; the table beside it has the numbers`,
+        `Spectrum of ${quantity} in ${db ? "dB" : "plain amplitudes"}, ${si(start, "Hz")} to ${si(end, "Hz")}, ${rows.length} harmonics of ${si(rows[0].hz, "Hz")}; the table has the numbers`,
       );
+      fields.render(frequency.hertz());
     }
     mark(now());
   }
 
-  function table() {
-    const names = rows[0]?.parts.map(({ name }) => name) ?? [];
-    const head = [
-      ["n", ""],
-      ["frequency", "wide"],
-      ...names.flatMap((name) => [
-        [name, "amplitude"],
-        [`${name} %`, ""],
-      ]),
-    ];
-    fill(
-      /** @type {Element} */ (byId("harmonics").querySelector("thead")),
-      element("tr", {}, ...head.map(([text, kind]) => element("th", { scope: "col", class: `number ${kind}` }, text))),
-    );
-    fill(
-      body,
-      ...rows.map(({ n, hz, parts }) => {
-        const cells = [
-          [String(n), ""],
-          [si(hz, "Hz"), "wide"],
-          ...parts.flatMap(({ amplitude, part }) => [
-            [short(amplitude, 4), "amplitude"],
-            [short(100 * part, 3), ""],
-          ]),
-        ];
-        return element(
-          "tr",
-          { "data-n": String(n) },
-          ...cells.map(([text, kind]) => element("td", { class: `number ${kind}` }, text)),
-        );
-      }),
-    );
-  }
-
-  /** Lights up the harmonic that is pointed at, stem and row. @param {State} state */
+  /** Lights up the harmonic that is pointed at, stem and row, and draws the box. @param {State} state */
   function mark({ harmonic }) {
     const row = harmonic === null ? undefined : rows[harmonic - 1];
-    const { quantity } = chosenSpectrum();
+    const { quantity, db } = chosenSpectrum();
     const some = spectra?.ideal ?? spectra?.pulses;
     const text = row ? describe(row, quantity, some?.periodic ?? false) : "";
-    const short = (/** @type {string} */ of) => {
+    const reading = (/** @type {string} */ of) => {
       const part = row?.parts.find(({ name }) => name === of);
-      return part ? `${of} ${value(part, quantity, chosenSpectrum().db)}` : of;
+      return part ? `${of} ${value(part, quantity, db)}` : of;
     };
-    byId("spectrum-reading").hidden = rows.length === 0;
     say(byId("spectrum-at"), row ? `n ${row.n} · ${si(row.hz, "Hz", 5)}` : "");
-    say(byId("spectrum-ideal"), short("ideal"));
-    say(byId("spectrum-pulses"), short("pulses"));
+    say(byId("spectrum-ideal"), reading("ideal"));
+    say(byId("spectrum-pulses"), reading("pulses"));
     slider.setAttribute("aria-valuemax", String(Math.max(1, rows.length)));
     slider.setAttribute("aria-valuenow", String(row?.n ?? 1));
     slider.setAttribute("aria-valuetext", text || "no harmonic chosen");
-    for (const other of body.querySelectorAll(".highlighted")) other.classList.remove("highlighted");
+    table.mark(row?.n ?? null);
     const layer = cleared(overlay);
-    if (!row) return;
-    const line = /** @type {HTMLElement} */ (body.children[row.n - 1]);
-    line.classList.add("highlighted");
-    const scroll = byId("harmonics-scroll");
-    // Below the head, which stays; only the table itself is moved.
-    const [above, below] = [
-      line.offsetTop - 24 - scroll.scrollTop,
-      line.offsetTop + line.offsetHeight - scroll.scrollTop - scroll.clientHeight,
-    ];
-    if (above < 0) scroll.scrollTop += above;
-    else if (below > 0) scroll.scrollTop += below;
     if (!layer || !plot) return;
-    const x = plot.left + (row.n / (rows.length + 1)) * (plot.right - plot.left);
-    const half = Math.max(4, (plot.right - plot.left) / (rows.length + 1) / 2);
+    const { left, right, top, bottom } = plot;
+    const { start, end } = frequency.shown();
+    const px = (/** @type {number} */ at) =>
+      Math.min(right, Math.max(left, left + ((at - start) / (end - start)) * (right - left)));
     layer.context.fillStyle = color("--mark");
+    if (picked) {
+      layer.context.globalAlpha = 0.3;
+      layer.context.fillRect(px(picked.start), top, px(picked.end) - px(picked.start), bottom - top);
+    }
+    const at = row ? frequency.place(row.hz) : Number.NaN;
+    if (!(at >= start && at <= end)) return;
+    const half = Math.max(4, Math.min(12, px(frequency.place((row?.hz ?? 0) + rows[0].hz)) - px(at)) / 2);
     layer.context.globalAlpha = 0.3;
-    layer.context.fillRect(x - half, plot.top, 2 * half, plot.bottom - plot.top);
+    layer.context.fillRect(px(at) - half, top, 2 * half, bottom - top);
     layer.context.globalAlpha = 1;
     layer.context.strokeStyle = color("--axis");
-    layer.context.strokeRect(x - half + 0.5, plot.top + 0.5, 2 * half - 1, plot.bottom - plot.top - 1);
+    layer.context.strokeRect(px(at) - half + 0.5, top + 0.5, 2 * half - 1, bottom - top - 1);
   }
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    if (before?.result !== state.result) return refresh(state);
-    if (before?.view !== state.view) paint();
-    else if (before?.harmonic !== state.harmonic) mark(state);
-    return undefined;
+    if (before?.harmonic !== state.harmonic) mark(state);
   }
-  return { render };
+  return { take, render };
 }

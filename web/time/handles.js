@@ -1,0 +1,141 @@
+/**
+ * Handles of the cursors A and B, and flags of the markers, in a strip beside what is drawn: so they cover no reading.
+ * A handle is dragged by mouse, pen or finger, keys do the same. It waits at the left while its cursor is not on show;
+ * a press brings it into the middle, and dragged back there it is removed.
+ */
+import { element, fill } from "../dom.js";
+import { listen } from "../shell/commands.js";
+import { exactTime } from "../state/number.js";
+import { endOf, shown } from "../state/state.js";
+import { cycleAt, middleOf, nudge, pixelOf } from "./timeline.js";
+
+/** @typedef {import("../state/types.js").State} State */
+/** @typedef {import("../state/types.js").Page} Page */
+
+/** A press that moves less than this many CSS pixels is a click. */
+const CLICK_PX = 4;
+/** So far left of the plotting area a cursor is let go. */
+const LET_GO_PX = 14;
+/** A cursor that is moved fast goes so many columns. */
+const FAST = 10;
+
+/**
+ * @param {HTMLElement} strip
+ * @param {() => {left: number, right: number}} plot  Plotting area in the strip's CSS pixels.
+ * @param {Page & {settle?: (cycle: number) => Promise<number>}} page  `settle` says where a cursor that was let go there comes to stand.
+ */
+export function createHandles(strip, plot, page) {
+  const { dispatch, now } = page;
+  const flags = element("div", { "aria-hidden": "true" });
+  const handles = /** @type {const} */ (["a", "b"]).map((which) => ({ which, node: handle(which) }));
+  strip.append(flags, ...handles.map(({ node }) => node));
+  let flagged = "";
+
+  /** @param {"a" | "b"} which */
+  function handle(which) {
+    const name = which.toUpperCase();
+    const node = element(
+      "div",
+      {
+        class: `handle ${which}`,
+        role: "slider",
+        tabindex: "0",
+        "aria-label": `Cursor ${name}`,
+        "aria-valuemin": "0",
+        title: `Cursor ${name}: drag it, or arrow keys; Delete removes it`,
+      },
+      element("span", {}, name),
+    );
+    const move = (/** @type {number | null} */ cycle) => dispatch({ type: "cursor", which, cycle });
+    /** Where the press began, how far from the cursor's line, and whether it moved since. @type {{x: number, by: number, moved: boolean} | null} */
+    let drag = null;
+    const xOf = (/** @type {PointerEvent} */ event) => event.clientX - strip.getBoundingClientRect().left;
+    const isParked = () => node.classList.contains("parked");
+    const place = () => {
+      if (isParked()) move(middleOf(now()));
+    };
+
+    node.addEventListener("pointerdown", (event) => {
+      if (event.button !== 0) return;
+      // What lies under it is not dragged with it.
+      event.stopPropagation();
+      event.preventDefault();
+      node.focus();
+      node.setPointerCapture(event.pointerId);
+      const x = xOf(event);
+      drag = { x, by: isParked() ? 0 : x - pixelOf(now(), plot(), now().cursors[which] ?? 0), moved: false };
+    });
+    node.addEventListener("pointermove", (event) => {
+      event.stopPropagation();
+      if (!drag) return;
+      const { left, right } = plot();
+      const x = xOf(event) - drag.by;
+      if (!drag.moved && Math.abs(xOf(event) - drag.x) < CLICK_PX) return;
+      drag.moved = true;
+      const cycle = x < left - LET_GO_PX ? null : cycleAt(now(), plot(), Math.min(right, Math.max(left, x)));
+      move(cycle);
+      dispatch({ type: "hover", cycle });
+    });
+    node.addEventListener("pointerup", async (event) => {
+      event.stopPropagation();
+      const { moved = false } = drag ?? {};
+      drag = null;
+      if (!moved) return place();
+      dispatch({ type: "hover", cycle: null });
+      const cycle = now().cursors[which];
+      const settled = cycle === null ? null : await page.settle?.(cycle);
+      if (typeof settled === "number" && now().cursors[which] === cycle) move(settled);
+    });
+    node.addEventListener("pointercancel", () => {
+      drag = null;
+      dispatch({ type: "hover", cycle: null });
+    });
+    const by = (/** @type {number} */ columns) => () => nudge(page, plot(), which, columns);
+    listen(node, "Handle of a cursor", [
+      { keys: ["ArrowLeft", "ArrowDown"], text: "the cursor to the left", run: by(-1) },
+      { keys: ["ArrowRight", "ArrowUp"], text: "the cursor to the right", run: by(1) },
+      { keys: ["Shift+ArrowLeft", "PageDown"], text: "far to the left", run: by(-FAST) },
+      { keys: ["Shift+ArrowRight", "PageUp"], text: "far to the right", run: by(FAST) },
+      { keys: ["Home"], text: "to the beginning of what is shown", run: () => move(Math.ceil(shown(now()).start)) },
+      { keys: ["End"], text: "to its end", run: () => move(Math.floor(shown(now()).end)) },
+      { keys: ["Enter", "Space"], text: "bring it into the middle, where it is not on show", run: place },
+      { keys: ["Delete", "Backspace"], text: "remove it", run: () => move(null) },
+    ]);
+    return node;
+  }
+
+  /** @param {State} state */
+  function render(state) {
+    const { start, end } = shown(state);
+    const clock = state.result?.summary.clock_hz ?? 1;
+    const { a, b } = state.cursors;
+    for (const { which, node } of handles) {
+      const cycle = state.cursors[which];
+      const parked = cycle === null || cycle < start || cycle > end;
+      // The one that is earlier stands left of its line: so both can be taken where they meet.
+      const left = which === "a" ? b === null || (a ?? 0) <= b : a !== null && (b ?? 0) < a;
+      node.classList.toggle("parked", parked);
+      node.classList.toggle("left", !parked && left);
+      node.style.left = parked ? "" : `${pixelOf(state, plot(), cycle).toFixed(1)}px`;
+      node.setAttribute("aria-valuemax", String(Math.round(endOf(state))));
+      node.setAttribute("aria-valuenow", String(cycle ?? 0));
+      node.setAttribute("aria-valuetext", cycle === null ? "not set" : `${exactTime(cycle, clock)}, cycle ${cycle}`);
+    }
+    const marks = state.markers.flatMap((cycle, digit) =>
+      cycle === null || cycle < start || cycle > end
+        ? []
+        : [[String(digit), `${pixelOf(state, plot(), cycle).toFixed(1)}px`]],
+    );
+    if (flagged === String(marks)) return;
+    flagged = String(marks);
+    fill(
+      flags,
+      ...marks.map(([digit, left]) => {
+        const flag = element("span", { class: "flag" }, digit);
+        flag.style.left = left;
+        return flag;
+      }),
+    );
+  }
+  return { render };
+}

@@ -1,0 +1,112 @@
+/** The chart of a spectrum: a stem each harmonic, over frequency; what it shows is chosen in the view. */
+import { byId } from "../../dom.js";
+import { si } from "../../state/number.js";
+import { color } from "../../time/plot.js";
+import { frequency } from "./frequency.js";
+import { FLOOR_DB, given, heard, reference } from "./harmonics.js";
+
+/** @typedef {import("../../state/types.js").Spectra} Spectra */
+/** @typedef {import("./harmonics.js").Quantity} Quantity */
+
+/** Width of the tick labels in CSS pixels. */
+const GUTTER = 58;
+/** Height of the frequencies under the chart. */
+const TICKS_PX = 20;
+/** Room for a frequency's text, in CSS pixels. */
+const LABEL_PX = 56;
+
+/** What is chosen in the view's head. @returns {{quantity: Quantity, db: boolean}} */
+export function chosenSpectrum() {
+  const value = (/** @type {string} */ id) => /** @type {HTMLSelectElement} */ (byId(id)).value;
+  return { quantity: /** @type {Quantity} */ (value("spectrum-quantity")), db: value("spectrum-scale") === "db" };
+}
+
+/**
+ * Of harmonics that fall into one pixel the strongest: more cannot be seen, and each stem takes its time.
+ * @param {ArrayLike<number>} amplitudes  Of the first harmonic first.
+ * @param {(n: number) => number} pixel
+ * @param {number} from @param {number} to  The harmonics on show.
+ */
+function strongest(amplitudes, pixel, from, to) {
+  /** @type {Map<number, number>} */
+  const columns = new Map();
+  for (let n = from; n <= to; n++) {
+    const column = Math.floor(pixel(n));
+    const other = columns.get(column);
+    if (other === undefined || amplitudes[n - 1] > amplitudes[other - 1]) columns.set(column, n);
+  }
+  return [...columns.values()];
+}
+
+/**
+ * Ticks of a logarithmic axis and their labels, a line each: 1, 2 and 5, or 1, times powers of ten; of the powers each
+ * second, third or so where they are more than wanted; and where that leaves too few, round numbers as on a linear axis.
+ * @param {number} min @param {number} max  Hz. @param {number} wanted  Most ticks.
+ */
+function logarithmic(min, max, wanted) {
+  const powers = Array.from({ length: 19 }, (_, at) => at - 9);
+  const multiples = (/** @type {number} */ every, /** @type {number[]} */ times) =>
+    powers
+      .filter((power) => power % every === 0)
+      .flatMap((power) => times.map((time) => Number(`${time}e${power}`)))
+      .filter((hz) => hz >= min && hz <= max);
+  const coarser = [multiples(1, [1, 2, 5]), ...powers.slice(10).map((every) => multiples(every, [1]))];
+  let ticks = coarser.find(({ length }) => length <= Math.max(2, wanted)) ?? [];
+  if (ticks.length < 3) {
+    const power = 10 ** Math.floor(Math.log10((max - min) / 2));
+    const step = power * ([5, 2, 1].find((time) => (max - min) / (time * power) >= 2) ?? 1);
+    const first = Math.ceil(min / step);
+    ticks = Array.from({ length: Math.floor(max / step) - first + 1 }, (_, at) => (first + at) * step);
+  }
+  return { ticks: ticks.map(frequency.place), labels: ticks.map((hz) => si(hz, "Hz", 6)).join("\n") };
+}
+
+/** @param {Spectra} spectra @param {Quantity} quantity @param {boolean} db @param {number} width  CSS pixels. */
+export function spectrumChart(spectra, quantity, db, width) {
+  const all = given(spectra);
+  const [, { fundamental_hz }] = all[0];
+  const order = Math.max(...all.map(([, spectrum]) => spectrum[quantity].length));
+  frequency.of(fundamental_hz, order);
+  const { start: min, end: max } = frequency.hertz();
+  const from = Math.max(1, Math.ceil(min / fundamental_hz));
+  const to = Math.min(order, Math.floor(max / fundamental_hz));
+  const { start, end } = frequency.shown();
+  const across = Math.max(1, width - GUTTER - 26);
+  const pixel = (/** @type {number} */ n) => ((frequency.place(n * fundamental_hz) - start) / (end - start)) * across;
+  const apart = to > from ? pixel(to) - pixel(to - 1) : across;
+  const thick = Math.max(1.5, Math.min(5, apart / 3));
+  const stems = all.map(([name, spectrum]) => ({
+    name,
+    spectrum,
+    shown: strongest(spectrum[quantity], pixel, from, to),
+  }));
+  const top = Math.max(1e-12, ...stems.flatMap(({ spectrum, shown }) => shown.map((n) => spectrum[quantity][n - 1])));
+  return {
+    x: {
+      min: start,
+      max: end,
+      unit: "Hz",
+      prefix: true,
+      label_px: TICKS_PX,
+      ...(frequency.isLog() ? logarithmic(min, max, across / LABEL_PX) : {}),
+    },
+    y: db
+      ? { min: FLOOR_DB, max: 10, unit: "dB", prefix: false, label_px: GUTTER }
+      : { min: 0, max: top * 1.1, unit: "", prefix: true, label_px: GUTTER },
+    series: stems.map(({ name, spectrum, shown }) => ({
+      color: color(name === "ideal" ? "--ideal" : "--actual"),
+      opacity: 1,
+      width: thick,
+      x: shown.map((n) => frequency.place(n * fundamental_hz)),
+      shape: {
+        stems: {
+          shift: all.length === 1 ? 0 : (name === "ideal" ? -1 : 1) * (thick / 2 + 0.5),
+          y: shown.map((n) => {
+            const amplitude = spectrum[quantity][n - 1];
+            return db ? 20 * Math.log10(heard(amplitude) / reference(spectrum, quantity)) : amplitude;
+          }),
+        },
+      },
+    })),
+  };
+}

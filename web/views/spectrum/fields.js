@@ -1,0 +1,55 @@
+/** The frequencies on show in fields and buttons: from, to, zoom in, zoom out, all of it, back, logarithmic. */
+import { button, byId, element, say } from "../../dom.js";
+import { parseNumber, si } from "../../state/number.js";
+import { frequency } from "./frequency.js";
+
+/**
+ * @param {HTMLElement} place
+ * @param {{zoom: (factor: number) => void, fit: () => void, back: () => void, log: () => void, changed: () => void}} actions
+ */
+export function createFields(place, { zoom, fit, back, log, changed }) {
+  const wrong = element("span", { class: "error", id: "spectrum-error", "aria-live": "polite" });
+  const inputs = ["from", "to"].map((name) =>
+    element("input", { class: "time", id: `spectrum-${name}`, "aria-describedby": wrong.id }),
+  );
+  const press = (/** @type {string} */ text, /** @type {string} */ label, /** @type {() => void} */ run) =>
+    button(text, label, run);
+  const backButton = press("Back", "Back to what was shown before (Backspace)", back);
+  const logButton = press("log", "Logarithmic frequencies (L)", log);
+  logButton.id = "spectrum-log";
+  byId("spectrum-scale").parentElement?.after(logButton);
+  place.append(
+    ...inputs.map((input, at) => element("label", {}, `${["from", "to"][at]} `, input)),
+    press("+", "Zoom in (+)", () => zoom(0.5)),
+    press("−", "Zoom out (−)", () => zoom(2)),
+    press("Fit", "Show the whole spectrum (0 or double click)", fit),
+    backButton,
+    wrong,
+  );
+  for (const input of inputs) input.addEventListener("change", typed);
+
+  function typed() {
+    const [from, to] = inputs.map((input) => {
+      const read = parseNumber(input.value, "Hz");
+      input.setAttribute("aria-invalid", String("message" in read));
+      return read;
+    });
+    const message = "message" in from ? from.message : "message" in to ? to.message : "";
+    if (message || "message" in from || "message" in to) return say(wrong, message);
+    if (from.value < 0) return say(wrong, "Frequencies begin at 0 Hz; give that or more for “from”.");
+    if (to.value <= from.value) return say(wrong, "“to” is to lie above “from”.");
+    say(wrong, "");
+    frequency.showHertz(from.value, to.value);
+    changed();
+    render(frequency.hertz(), true);
+  }
+
+  /** @param {import("../../state/types.js").Span} shown  In Hz. @param {boolean} [all]  Also the field that has the focus. */
+  function render({ start, end }, all = false) {
+    for (const [at, hz] of [start, end].entries())
+      if (all || document.activeElement !== inputs[at]) inputs[at].value = si(hz, "Hz", 5);
+    backButton.disabled = !frequency.canGoBack();
+    logButton.setAttribute("aria-pressed", String(frequency.isLog()));
+  }
+  return { render };
+}

@@ -1,0 +1,58 @@
+/**
+ * The pane of the spectrum: asks for it while the pane is on show, and says in a line where there is nothing but a note.
+ * What draws it (spectrum.js) loads with the first one that there is room for.
+ */
+import { byId, say } from "../../dom.js";
+import { unlessDropped } from "../../engine/engine.js";
+
+/** @typedef {import("../../state/types.js").State} State */
+
+/** @param {{engine: import("../../engine/engine.js").Engine} & import("../../state/types.js").Page} page */
+export function createSpectrum({ engine, dispatch, now }) {
+  const split = byId("spectrum-split");
+  const note = byId("spectrum-note");
+  /** @type {import("../../state/types.js").Spectra | null} */
+  let spectra = null;
+  /** What the view has drawn. @type {import("../../state/types.js").Spectra | null} */
+  let drawn = null;
+  /** The result that it is of. @type {State["result"]} */
+  let about = null;
+  /** @type {ReturnType<typeof import("./spectrum.js").createSpectrumView> | null} */
+  let view = null;
+  const watcher = new ResizeObserver(() => void refresh(now()));
+  for (const node of [byId("view-spectrum"), split]) watcher.observe(node);
+
+  /** @param {State} state */
+  async function refresh(state) {
+    if (!state.result || !byId("view-spectrum").checkVisibility()) return;
+    if (about !== state.result) {
+      about = state.result;
+      const answer = await engine.latest("spectrum", "spectrum").catch(unlessDropped);
+      if (about !== state.result) return;
+      if (!answer) {
+        about = null;
+        return;
+      }
+      spectra = answer;
+      dispatch({ type: "bare", view: "spectrum", bare: !(answer.ideal ?? answer.pulses)?.periodic });
+      say(note, answer.note);
+    }
+    if (!spectra || spectra === drawn || !split.checkVisibility()) return;
+    try {
+      const { createSpectrumView } = await import("./spectrum.js");
+      view ??= createSpectrumView({ dispatch, now });
+    } catch {
+      return say(note, "The spectrum could not be loaded; fold and unfold it when the network is there.");
+    }
+    drawn = spectra;
+    view.take(spectra);
+  }
+
+  /** @param {State} state @param {State | undefined} before */
+  function render(state, before) {
+    view?.render(state, before);
+    if (before?.result !== state.result) return refresh(state);
+    return undefined;
+  }
+  return { render };
+}
