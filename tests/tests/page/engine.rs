@@ -96,6 +96,16 @@ fn a_keystroke_costs_one_reading_and_one_plan_also_with_its_run_link_and_study()
             [judged + 5, runs + 1],
             "five keystrokes, one run, one link"
         );
+        page.click("#study").await?;
+        for (tab, shown) in [("compare", "tbody tr"), ("torque", ".study-note button")] {
+            page.click(&format!("#study-tab-{tab}")).await?;
+            page.until(&format!("document.querySelector('#study-{tab} {shown}')")).await?;
+        }
+        assert_eq!(
+            page.eval::<[u32; 2]>(COUNTS).await?,
+            [judged + 5, runs + 1],
+            "the study takes what was judged"
+        );
         Ok(())
     })
 }
