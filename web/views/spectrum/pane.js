@@ -45,7 +45,7 @@ export function createSpectrum({ engine, dispatch, now }) {
       return say(note, "The spectrum could not be loaded; fold and unfold it when the network is there.");
     }
     drawn = spectra;
-    view.take(spectra);
+    await view.take(spectra);
   }
 
   /** @param {State} state @param {State | undefined} before */

@@ -142,9 +142,10 @@ export function createSpectrumView({ dispatch, now }) {
     frame ||= requestAnimationFrame(drawChart);
   }
 
-  /** @param {Spectra} found */
-  function take(found) {
+  /** Draws other spectra, once the curves and pulses are on the screen: a key that is pressed meanwhile waits for one of them, not for all. @param {Spectra} found */
+  async function take(found) {
     spectra = found;
+    await new Promise((shown) => requestAnimationFrame(() => setTimeout(shown)));
     paint();
   }
 
