@@ -47,8 +47,6 @@ struct Look {
     slope: i64,
     /// How far the next add with any room is at least, on the side to which the room grows.
     ahead: i64,
-    /// There is room, but less than one unit, and no whole number in it.
-    between: bool,
 }
 
 impl Look {
@@ -76,7 +74,7 @@ impl Look {
             let adds = (2 * short).div_euclid(each) + i128::from((2 * short).rem_euclid(each) > 0);
             ahead = i64::try_from(adds).unwrap_or(i64::MAX).max(1);
         }
-        Some(Self { add, least, most, slope, ahead, between: least > most && short <= 0 })
+        Some(Self { add, least, most, slope, ahead })
     }
 
     fn room(&self) -> i64 {
@@ -123,13 +121,6 @@ pub(super) fn fit(gates: &[Gate], adds: (i64, i64), guess: i64, centre: bool) ->
             best = Some(fit);
             if !centre {
                 break;
-            }
-        }
-        if look.between && best.is_none() {
-            // The next add on the other side may still have a whole number, the one after it has no room.
-            let other = if look.slope > 0 { add.saturating_sub(1) } else { add.saturating_add(1) };
-            if (adds.0..=adds.1).contains(&other) {
-                best = Look::at(gates, other)?.fit();
             }
         }
         // Where nothing passed yet it goes beyond the bound by half, to come to the other side.

@@ -204,6 +204,13 @@ mod tests {
     }
 
     #[test]
+    fn a_tick_clock_tells_its_tick_and_where_each_ends() {
+        let clock = TickClock::new(32_000, 16_000_000);
+        assert_eq!((clock.tick_cycles(), clock.end_s(0), clock.end_s(4)), (32_000, 0.002, 0.01));
+        assert_eq!([0.0, 0.001, 0.002, 0.0021].map(|end_s| clock.ticks_until(end_s)), [1, 1, 1, 2]);
+    }
+
+    #[test]
     fn each_byte_has_direction_and_steps_of_its_tick() {
         // moves at 1 kHz in ticks of 1 ms of 1 MHz, bytes of one channel
         let dwell = |duration_s| Move::Dwell(Dwell { duration_s });
