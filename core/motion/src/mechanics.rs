@@ -240,7 +240,7 @@ impl Distance {
     /// [`NoSuchUnit`] where the mechanics have no millimetres or no degrees.
     pub fn steps_from(&self, first: f64, mechanics: &Mechanics) -> Result<f64, NoSuchUnit> {
         let step = self.step(mechanics)?;
-        let way = Exact::of(self.value()).minus(first);
+        let way = Exact::difference(self.value(), first);
         let exact = match self {
             Self::Steps(_) => Some(way),
             Self::Millimetres(_) => mechanics.millimetres(way),

@@ -111,7 +111,7 @@ impl Slices {
             if *count > 0 {
                 // Rounded down, no slice has more than the top speed; a shortened one has the plateau's rate.
                 let left_s = exact.duration_s() - index as f64 * self.slice_s;
-                let length_s = if left_s < self.slice_s { left_s } else { self.slice_s };
+                let length_s = libm::fmin(left_s, self.slice_s);
                 let steps = if shortened { held } else { *count };
                 top_rate = greater(top_rate, libm::fmin(steps as f64 / length_s, top_speed));
             }

@@ -123,6 +123,15 @@ mod tests {
     }
 
     #[test]
+    fn the_last_send_until_a_cycle_begins_in_it_or_before() {
+        let packets: [&[u8]; 2] = [&[1, 2], &[3]];
+        let schedule = Schedule::paced(Instant(101), Cycles(40), packets.iter());
+        let found =
+            [100, 101, 140, 141, 9000].map(|at| schedule.last_until(Instant(at)).map(|sent| sent.bytes));
+        assert_eq!(found, [None, Some(packets[0]), Some(packets[0]), Some(packets[1]), Some(packets[1])]);
+    }
+
+    #[test]
     fn bytes_hold_the_line_as_long_as_their_bits() {
         // Bytes, clock, baud, cycles: 10.5 cycles a bit begin a byte at 105 and 210.
         let rows =
