@@ -1,7 +1,7 @@
 //! The scenario's types as JSON: the canonical form that a link carries, fixed in order, with what equals its default
 //! left out; and the whole form, every field written.
 
-use crate::schema::{Field, Parts, ToParts};
+use crate::schema::{Parts, ToParts};
 use alloc::{
     string::{String, ToString},
     vec::Vec,
@@ -31,14 +31,18 @@ pub(super) fn value_of(parts: Parts<'_>, whole: bool) -> Value {
         Parts::Number(number) => Value::from(number + 0.0),
         Parts::List(entries) => entries.into_iter().map(|entry| value_of(entry.parts(), whole)).collect(),
         Parts::Fields(group, values) => {
-            let fields = group.fields.iter().zip(values).filter(|(_, (_, differs))| whole || *differs);
-            let entry = |(field, (value, _)): (&Field, (&dyn ToParts, bool))| {
-                (field.name.to_string(), value_of(value.parts(), whole))
-            };
-            Value::Object(fields.map(entry).collect())
+            let mut map = Map::new();
+            for (field, (value, differs)) in group.fields.iter().zip(values) {
+                if whole || differs {
+                    map.insert(field.name.to_string(), value_of(value.parts(), whole));
+                }
+            }
+            Value::Object(map)
         }
         Parts::Kind(name, value) => {
-            Value::Object(Map::from_iter([(name.to_string(), value_of(value.parts(), whole))]))
+            let mut map = Map::new();
+            map.insert(name.to_string(), value_of(value.parts(), whole));
+            Value::Object(map)
         }
     }
 }

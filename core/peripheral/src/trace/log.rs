@@ -180,8 +180,16 @@ impl PacketLog {
     }
 
     fn sort(&mut self) {
+        // Few rows are out of place, and by little: each goes back past those that start after it.
         let mut order: Vec<usize> = (0..self.rows.len()).collect();
-        order.sort_by_key(|&index| self.rows.get(index).map(|row| row.start));
+        let start = |row: usize| self.rows.get(row).map(|row| row.start);
+        for next in 1..order.len() {
+            let mut at = next;
+            while at > 0 && start(order[at - 1]) > start(order[at]) {
+                order.swap(at - 1, at);
+                at -= 1;
+            }
+        }
         let mut place = alloc::vec![0; order.len()];
         for (new, &old) in order.iter().enumerate() {
             place[old] = new;
