@@ -287,7 +287,7 @@ mod tests {
     fn drawn(noise: &mut Xoshiro256StarStar, signed: bool) -> (BigInt, i32, f64) {
         let bits = 1 + noise.next_u64() % 50;
         let digits = 1 + (noise.next_u64() >> (64 - bits)) as i64;
-        let digits = if signed && noise.next_u64() % 2 == 0 { -digits } else { digits };
+        let digits = if signed && noise.next_u64().is_multiple_of(2) { -digits } else { digits };
         let exponent = (noise.next_u64() % 24) as i32 - 16;
         let number: f64 = format!("{digits}e{exponent}").parse().expect("a number");
         (digits.into(), exponent, number)

@@ -6,6 +6,8 @@
 //! texts behind it are written, and two commits' texts can be compared by `diff`. `STEPSCOPE_BLESS=1 cargo test -p
 //! stepscope-motion --test as_before` writes the checksums anew.
 
+#![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
+
 use crc::{CRC_64_XZ, Crc};
 use rand_xoshiro::{
     Xoshiro256PlusPlus,
@@ -203,8 +205,11 @@ impl Draw {
     }
 }
 
+/// Adds what a plan tells to a text.
+type Tell = fn(&AxisPlan, &mut String);
+
 /// What a line of the file is about.
-const ASPECTS: [(&str, fn(&AxisPlan, &mut String)); 5] = [
+const ASPECTS: [(&str, Tell); 5] = [
     ("curve", curves),
     ("breakpoints", breakpoints),
     ("step times", step_times),

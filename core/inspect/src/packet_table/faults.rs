@@ -190,7 +190,9 @@ mod tests {
     use stepscope_sim::Experiment;
 
     /// What is said of each row, and of the flags: name, times, row.
-    fn told(json: &str) -> (Vec<String>, Vec<(&'static str, u64, Option<usize>)>) {
+    type Told = (Vec<String>, Vec<(&'static str, u64, Option<usize>)>);
+
+    fn told(json: &str) -> Told {
         let experiment = Experiment::from_json(json).expect("no problems");
         let mut recording = Recording::default();
         let run = experiment.run(&mut recording);
@@ -202,7 +204,7 @@ mod tests {
         (why, places.iter().map(|place| (place.name, place.times, place.row)).collect())
     }
 
-    fn raw(line: &str, sends: &[(u64, &str)]) -> (Vec<String>, Vec<(&'static str, u64, Option<usize>)>) {
+    fn raw(line: &str, sends: &[(u64, &str)]) -> Told {
         let sends =
             sends.iter().map(|(start, bytes)| format!(r#"{{"start_cycle":{start},"bytes":"{bytes}"}}"#));
         let sends = sends.collect::<Vec<_>>().join(",");
