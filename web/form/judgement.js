@@ -142,7 +142,7 @@ function rowsOf(state, derived) {
   const [{ tick_s, limit_steps_s }] = derived.controllers;
   // Additional controllers can have ticks of another length.
   const several = derived.controllers.length > 1;
-  const ticks = several ? derived.controllers.reduce((sum, controller) => sum + controller.ticks, 0) : derived.ticks;
+  const ticks = several ? derived.controllers[0].ticks : derived.ticks;
   const axes = derived.controllers.flatMap((controller) => controller.axes);
   const peak = Math.max(0, ...axes.map((axis) => axis.peak_speed_steps_s));
   const load = derived.line_load;

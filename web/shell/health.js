@@ -10,7 +10,7 @@ import { selected } from "../state/state.js";
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Summary} Summary */
 /** @typedef {{name: string, times: number, cycle: number, row: number | null}} FaultPlace  Where a fault was raised first. */
-/** @typedef {string | {text: string, press: () => void}} Piece */
+/** @typedef {{text: string, bad?: boolean, press?: () => void}} Piece */
 
 /** Shown around a fault, in s. */
 const AROUND_S = 0.001;
@@ -25,15 +25,16 @@ export function createHealth({ engine, dispatch, now }) {
     const places = await engine.ask("fault_places").catch(unlessDropped);
     const place = places?.find((each) => each.name === name);
     if (!place) return;
+    open(place.row === null ? "pulses" : "packets");
     const around = AROUND_S * (now().result?.summary.clock_hz ?? 1);
     dispatch({ type: "window", window: { start: place.cycle - around, end: place.cycle + around } });
     dispatch({ type: "cursor", which: "a", cycle: place.cycle });
     if (place.row !== null) dispatch({ type: "packet", packet: place.row });
-    open(place.row === null ? "pulses" : "packets");
   }
 
   /** Brings a view into sight: on a narrow screen its tab, on a wide one its place. @param {string} view */
   function open(view) {
+    if (now().panes.largest) dispatch({ type: "pane", panes: { largest: null } });
     dispatch({ type: "view", view });
     byId(`view-${view}`).scrollIntoView({ block: "nearest" });
   }
@@ -48,47 +49,47 @@ export function createHealth({ engine, dispatch, now }) {
     const controller = selected(state);
     if (!state.result || !controller) return [];
     const { faults, violations: broken } = controller;
-    const said = state.result.summary.host ? outcome(state.result.summary) : "";
-    /** @type {Piece[]} */
-    const all = said ? [said, SEPARATOR] : [];
-    for (const [place, name] of faults.names.entries())
-      all.push(place === 0 ? "faults: " : ", ", { text: name, press: () => lead(name) });
-    if (faults.names.length > 0) all.push(SEPARATOR);
-    if (broken === 0) all.push("driver timing met");
-    else if (broken !== null)
-      all.push({ text: `${count(broken)} timing ${broken === 1 ? "violation" : "violations"}`, press: violations });
-    return all.at(-1) === SEPARATOR ? all.slice(0, -1) : all;
+    const { host } = state.result.summary;
+    const lost = host?.jobs.some(({ progress }) => progress !== "done");
+    /** @type {Piece[][]} */
+    const groups = [host ? [{ text: outcome(state.result.summary), bad: lost }] : []];
+    // A framed line mends what noise does to it.
+    const bad = !host || lost;
+    groups.push(
+      faults.names.flatMap((name, place) => [
+        { text: place === 0 ? "faults: " : ", ", bad },
+        { text: name, bad, press: () => lead(name) },
+      ]),
+    );
+    const counted = `${count(broken ?? 0)} timing ${broken === 1 ? "violation" : "violations"}`;
+    if (broken === 0) groups.push([{ text: "driver timing met" }]);
+    else if (broken !== null) groups.push([{ text: counted, bad: true, press: violations }]);
+    return groups
+      .filter((group) => group.length > 0)
+      .flatMap((group, place) => (place === 0 ? group : [{ text: " · " }, ...group]));
   }
 
   /** @param {State} state */
   function render(state) {
     const all = pieces(state);
-    const text = all.map((piece) => (typeof piece === "string" ? piece : piece.text)).join("");
-    line.classList.toggle("error", ill(state));
+    const text = all.map(({ text }) => text).join("");
+    line.classList.toggle(
+      "error",
+      all.some(({ bad }) => bad),
+    );
     if (line.textContent === text) return;
     line.title = text;
-    const made = all.map((piece) => {
-      if (typeof piece === "string") return piece;
-      const link = element("button", { type: "button", title: `Show where: ${piece.text}` }, piece.text);
-      link.addEventListener("click", piece.press);
+    const made = all.map(({ text, bad, press }) => {
+      const kind = { class: bad ? "bad" : "" };
+      if (!press) return element("span", kind, text);
+      const link = element("button", { type: "button", title: `Show where: ${text}`, ...kind }, text);
+      link.addEventListener("click", press);
       return link;
     });
     fill(line, ...made);
   }
 
   return { render };
-}
-
-const SEPARATOR = " · ";
-
-/** Whether something went wrong that nothing made good. A framed line mends what noise does to it. @param {State} state */
-function ill(state) {
-  const controller = selected(state);
-  const host = state.result?.summary.host;
-  const failed = host
-    ? host.jobs.some(({ progress }) => progress !== "done")
-    : Boolean(controller?.faults.names.length);
-  return failed || Boolean(controller?.violations);
 }
 
 /** What became of the orders on a framed line. @param {Summary} summary */

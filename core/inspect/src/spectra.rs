@@ -30,6 +30,9 @@ use alloc::{borrow::ToOwned, format, string::String};
 use stepscope_motion::AxisPlan;
 use stepscope_scenario::{Scenario, Source};
 
+/// So many samples a harmonic bring the acceleration of a curve with corners to a part in a hundred or so.
+const FOLDING: u32 = 16;
+
 /// Both spectra, and what has to be said of them.
 #[derive(Clone, Debug, Default)]
 pub struct Spectra {
@@ -57,11 +60,20 @@ impl Spectra {
         };
         let ideal = Spectrum::ideal(plan, analysis.order, analysis.fft_length);
         let actual = Spectrum::of_pulses(&window.pulses_of(plan, run), window, analysis.order);
-        let note = if window.periodic { "" } else { "The motion is not periodic: no harmonics, no THD." };
+        let note = if !window.periodic {
+            "The motion is not periodic: no harmonics, no THD.".to_owned()
+        } else if u32::from(analysis.order) * FOLDING > analysis.fft_length {
+            format!(
+                "Of {} samples a period the ideal curve's harmonics up to {} fold back, in the acceleration most: more samples, or a lower order, come nearer to the truth.",
+                analysis.fft_length, analysis.order
+            )
+        } else {
+            String::new()
+        };
         Self {
             ideal: ideal.map(|ideal| ideal.filtered_by(analysis.sensor_hz)),
             actual: Some(actual.filtered_by(analysis.sensor_hz)),
-            note: note.to_owned(),
+            note,
         }
     }
 }

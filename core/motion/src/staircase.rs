@@ -165,7 +165,7 @@ impl Staircase {
     }
 
     /// Steps that have fallen by `t`.
-    fn fallen(&self, t: f64, counts: Counts) -> u64 {
+    fn fallen(&self, t: f64) -> u64 {
         let (ramp_s, left_s) = (self.ramp_s(), self.duration_s - t);
         let guess = if t < ramp_s {
             self.guess_in_ramp(t)
@@ -174,7 +174,7 @@ impl Staircase {
         } else {
             self.count().saturating_sub(self.guess_in_ramp(greater(0.0, left_s)))
         };
-        stepped::fallen(t, guess, self.count(), counts, |k| self.step_s(k))
+        stepped::fallen(t, guess, self.count(), Counts::Then, |k| self.step_s(k))
     }
 
     /// Rate of interval `i`, from 0.
@@ -202,12 +202,12 @@ impl Curve for Staircase {
         if t >= self.duration_s {
             return self.steps as f64;
         }
-        let fallen = self.fallen(t, Counts::of(self.steps));
+        let fallen = self.fallen(t);
         self.signed(stepped::position(t, fallen, self.count(), |k| self.step_s(k)))
     }
 
     fn speed(&self, t: f64) -> f64 {
-        let interval = self.fallen(t, Counts::Then).min(self.count().saturating_sub(1));
+        let interval = self.fallen(t).min(self.count().saturating_sub(1));
         self.signed(self.rate(interval) as f64)
     }
 

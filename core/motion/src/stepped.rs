@@ -13,15 +13,18 @@
 /// have fallen, whatever the last digit of the place between two of them.
 const PAST_THE_STEP: f64 = 1.0 / 1_048_576.0;
 
-/// Position at `t` in steps, without sign, of a move of `count` steps, of which `fallen` are
-/// due by then; step k (from 1) falls at `step_s(k)`, and `step_s(0)` is the start.
+/// Position at `t` in steps, without sign, of a move of `count` steps, of which `fallen` have
+/// fallen by then; step k (from 1) falls at `step_s(k)`, and `step_s(0)` is the start.
 pub(super) fn position(t: f64, fallen: u64, count: u64, step_s: impl Fn(u64) -> f64) -> f64 {
     if fallen >= count || t <= 0.0 {
         return fallen as f64;
     }
     let (from, to) = (step_s(fallen), step_s(fallen + 1));
     let part = (t - from) / (to - from);
-    if fallen == 0 {
+    if fallen > 0 && t == from {
+        // The half itself: R counts it to the right, and not to the left.
+        fallen as f64 - 0.5
+    } else if fallen == 0 {
         // Half a step in the first interval, and short of it until the step falls.
         part * (0.5 - PAST_THE_STEP)
     } else {

@@ -234,7 +234,7 @@ impl Curve for TrapezoidTable {
         if t >= self.duration_s() {
             return self.steps as f64;
         }
-        let fallen = self.fallen(t, 0, Counts::of(self.steps));
+        let fallen = self.fallen(t, 0, Counts::Then);
         self.signed(stepped::position(t, fallen, self.count(), |k| self.step_s(k)))
     }
 

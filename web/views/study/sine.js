@@ -107,7 +107,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
         { class: "study-column study-side" },
         element("h3", {}, "Best d1 of each number of segments, by position"),
         bestOf.root,
-        vertices.root,
+        ...vertices.parts,
         quarter.root,
       ),
     ),

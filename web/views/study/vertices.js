@@ -22,14 +22,12 @@ export function createVertices({ engine, order, take }) {
   const job = createJob("Vertices");
   const note = element("p", { class: "study-note", id: "sine-vertices" });
   const list = table("Best vertices", ["vertex", "#on the curve", "#height", "#free", "#height"]);
-  const root = element(
-    "div",
-    {},
+  const parts = [
     element("h3", {}, "Best vertices"),
     element("div", { class: "study-bar" }, segments.root, job.root),
     note,
     list.root,
-  );
+  ];
 
   /** Looks for the best vertices, on the curve and free. */
   function find() {
@@ -66,7 +64,7 @@ export function createVertices({ engine, order, take }) {
     );
   }
 
-  return { root, find };
+  return { parts, find };
 }
 
 /** The move through the vertices, all periods of it; why not, where it would be too long. @param {Vertices} vertices @param {Sine} sine */
