@@ -130,6 +130,26 @@ impl Exact {
         if self.negative { -nearest } else { nearest }
     }
 
+    /// The greatest whole number that is no more, and the rest, as near as an f64 is; of a quotient from 0 to below 2^64.
+    pub(super) fn whole_and_part(&self) -> (u64, f64) {
+        debug_assert!(!self.negative || self.over.is_zero(), "{self:?} is negative");
+        let (mut rest, mut whole) = (self.over.clone(), 0);
+        for bit in (0..=self.over.bits().saturating_sub(self.under.bits()).min(u64::BITS - 1)).rev() {
+            let mut part = self.under.clone();
+            part.shift_left(bit);
+            if rest.cmp(&part) != Ordering::Less {
+                rest = rest.less(&part);
+                whole |= 1 << bit;
+            }
+        }
+        (whole, Self { negative: false, over: rest, under: self.under.clone() }.nearest())
+    }
+
+    /// The shortest decimal that reads back as a number: its digits as a whole number, times 10 to a power.
+    pub(super) fn decimal(number: f64) -> (i64, i32) {
+        decimal(number)
+    }
+
     /// Times 10 to this power.
     fn scale(&mut self, exponent: i32) {
         let side = if exponent < 0 { &mut self.under } else { &mut self.over };

@@ -58,6 +58,7 @@ mod budget;
 pub mod constant_velocity;
 pub mod cosine;
 mod curve;
+mod cycle_time;
 mod exact;
 pub mod excitation;
 mod format;

@@ -4,10 +4,16 @@
 //! cycle = floor(t*clock_hz + 1/2)     t where s(t) = k - 1/2, or the time that a table gives
 //! ```
 //!
-//! A move's own times are formed in cycles from its start, those of a timer's table in whole
-//! numbers; to them comes the start of the move, and the sum is rounded once.
+//! A move's own times are formed in cycles from its start, those of a timer's table and of one rate in whole
+//! numbers; to them comes the start of the move, which the decimals of those before it make, and the sum is rounded once.
 
-use crate::{AxisPlan, Curve, Profile, profile::each, step_times::cycle};
+use crate::{
+    AxisPlan, Curve, Profile,
+    cycle_time::{CycleTime, EvenSteps},
+    exact::Exact,
+    profile::each,
+    step_times::cycle,
+};
 use alloc::boxed::Box;
 
 /// A step that is due.
@@ -36,17 +42,68 @@ impl AxisPlan {
 
     /// All steps, each with its instant before B1 rounds it, in cycles of a clock of `clock_hz`.
     pub fn due_instants(&self, clock_hz: u32) -> impl Iterator<Item = (f64, ScheduledStep)> + '_ {
-        self.moves().iter().flat_map(move |planned| {
-            let start = planned.start_s * f64::from(clock_hz);
-            due(&planned.profile, clock_hz).map(move |(cycles, right)| {
+        let starts = self.moves().iter().scan(CycleTime::default(), move |next, planned| {
+            let start = *next;
+            *next = start.plus(planned.profile.length(clock_hz));
+            Some((start, &planned.profile))
+        });
+        starts.flat_map(move |(start, profile)| due_from(profile, start, clock_hz))
+    }
+}
+
+/// The steps of a move that starts at `start`.
+fn due_from(
+    profile: &Profile,
+    start: CycleTime,
+    clock_hz: u32,
+) -> Box<dyn Iterator<Item = (f64, ScheduledStep)> + '_> {
+    let (right, count) = (profile.steps() >= 0, profile.steps().unsigned_abs());
+    let exactly = move |since: CycleTime| {
+        let time = start.plus(since);
+        (time.cycles(), ScheduledStep { cycle: time.cycle(), right })
+    };
+    let even = match profile {
+        Profile::Constant(constant) => EvenSteps::new(libm::fabs(constant.speed(0.0)), clock_hz, count),
+        _ => None,
+    };
+    match (profile, even) {
+        (Profile::TrapezoidTable(table), _) => {
+            Box::new((1..=count).map(move |k| exactly(table.step_time(k, clock_hz))))
+        }
+        (_, Some(even)) => Box::new((1..=count).zip(even.steps()).map(move |(_, since)| exactly(since))),
+        (profile, None) => {
+            let start = start.cycles();
+            Box::new(due(profile, clock_hz).map(move |(cycles, right)| {
                 let instant = start + cycles;
                 (instant, ScheduledStep { cycle: cycle(instant), right })
-            })
-        })
+            }))
+        }
     }
 }
 
 impl Profile {
+    /// How long the move lasts: what its decimals make, where it is told by them.
+    fn length(&self, clock_hz: u32) -> CycleTime {
+        let clock = f64::from(clock_hz);
+        let told =
+            |duration_s: f64, times: f64| CycleTime::exact(&Exact::of(duration_s).times(times).times(clock));
+        match self {
+            Self::TrapezoidTable(table) => table.step_time(self.steps().unsigned_abs(), clock_hz),
+            Self::Constant(constant) => {
+                let steps = Exact::of(self.steps().unsigned_abs() as f64).times(clock);
+                CycleTime::exact(&steps.divided_by(libm::fabs(constant.speed(0.0))))
+            }
+            Self::Sine(sine) => told(sine.period_s(), sine.periods().into()),
+            Self::SineSegments(sine) => told(sine.period_s(), sine.periods().into()),
+            Self::Cosine(_) | Self::Ramps(_) | Self::Points(_) | Self::Dwell(_) => {
+                told(self.duration_s(), 1.0)
+            }
+            Self::Trapezoid(_) | Self::Staircase(_) | Self::Sliced(_) | Self::JerkLimited(_) => {
+                CycleTime::of(self.duration_s() * clock)
+            }
+        }
+    }
+
     /// The cycle of step `k` (from 1) after the move's start, of a clock of `clock_hz`, without iterating
     /// over those before it; `None` past the last one, and for sine segments, whose steps are only known in their order.
     #[must_use]
@@ -57,11 +114,17 @@ impl Profile {
         let (clock, place) = (f64::from(clock_hz), k as f64 - 0.5);
         let cycles = match self {
             Self::Trapezoid(curve) => return curve.step_times(clock_hz).nth(usize::try_from(k - 1).ok()?),
-            Self::TrapezoidTable(table) => table.step_cycles(k, clock_hz),
+            Self::TrapezoidTable(table) => return Some(table.step_time(k, clock_hz).cycle()),
             Self::Staircase(staircase) => staircase.step_s(k) * clock,
             Self::Sine(sine) => sine.due_half(k) * (sine.period_s() / 2.0 * clock),
             Self::Points(points) => points.step_s(k)? * clock,
-            Self::Constant(constant) => place * (clock / libm::fabs(constant.speed(0.0))),
+            Self::Constant(constant) => {
+                let speed = libm::fabs(constant.speed(0.0));
+                match EvenSteps::new(speed, clock_hz, self.step_count()) {
+                    Some(even) => return Some(even.step(k).cycle()),
+                    None => place * (clock / speed),
+                }
+            }
             Self::SineSegments(_) | Self::Dwell(_) => return None,
             one_way => one_way.time_s(place) * clock,
         };
@@ -80,8 +143,9 @@ fn due(profile: &Profile, clock_hz: u32) -> Due<'_> {
             let mut times = curve.step_times(clock_hz);
             Box::new(core::iter::from_fn(move || times.next_unrounded().map(|cycles| (cycles, right))))
         }
+        // In whole numbers, and rounded once: `due_from`.
         Profile::TrapezoidTable(table) => {
-            Box::new(steps.map(move |k| (table.step_cycles(k, clock_hz), right)))
+            Box::new(steps.map(move |k| (table.step_time(k, clock_hz).cycles(), right)))
         }
         Profile::Staircase(staircase) => Box::new(steps.map(move |k| (staircase.step_s(k) * clock, right))),
         Profile::SineSegments(sine) => {

@@ -147,14 +147,6 @@ impl TrapezoidTable {
         }
     }
 
-    /// Cycles of a clock of `clock_hz` from the start to step `k`, in whole numbers but for the
-    /// fraction of a cycle.
-    pub(super) fn step_cycles(&self, k: u64, clock_hz: u32) -> f64 {
-        let timer_hz = u128::from(self.table.timer_hz().max(1));
-        let product = u128::from(self.step_ticks(k)) * u128::from(clock_hz);
-        (product / timer_hz) as f64 + (product % timer_hz) as f64 / timer_hz as f64
-    }
-
     /// Time of step `k` in s, rounded once.
     pub(super) fn step_s(&self, k: u64) -> f64 {
         self.step_ticks(k) as f64 / f64::from(self.table.timer_hz())

@@ -1,0 +1,156 @@
+//! Times in cycles, with the digits that decide a rounding however late they are (DESIGN B1): whole cycles, and a part of
+//! one.
+//!
+//! A number alone loses a bit of the part each time the whole doubles; at 10^12 cycles the part has 14 bits left.
+
+use crate::{exact::Exact, trapezoid_table::TrapezoidTable};
+
+/// Whole cycles and a part of one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct CycleTime {
+    pub(super) whole: u64,
+    /// 0 to below 1.
+    pub(super) part: f64,
+}
+
+impl CycleTime {
+    /// A time from 0 on.
+    pub(super) fn of(cycles: f64) -> Self {
+        let whole = cycles as u64;
+        Self { whole, part: cycles - whole as f64 }
+    }
+
+    /// A quotient, from 0 on, in cycles.
+    pub(super) fn exact(cycles: &Exact) -> Self {
+        let (whole, part) = cycles.whole_and_part();
+        Self::default().plus(Self { whole, part })
+    }
+
+    pub(super) fn plus(self, other: Self) -> Self {
+        let (whole, part) = (self.whole.saturating_add(other.whole), self.part + other.part);
+        if part < 1.0 {
+            Self { whole, part }
+        } else {
+            Self { whole: whole.saturating_add(1), part: part - 1.0 }
+        }
+    }
+
+    /// B1's cycle: floor(time + 1/2).
+    pub(super) fn cycle(self) -> u64 {
+        self.whole.saturating_add(u64::from(self.part >= 0.5))
+    }
+
+    /// As a number.
+    pub(super) fn cycles(self) -> f64 {
+        self.whole as f64 + self.part
+    }
+}
+
+/// Steps of one rate: step k is due after (2k - 1)/2 of its intervals, a quotient of whole numbers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EvenSteps {
+    /// Half an interval in cycles is `over/under`.
+    over: u128,
+    /// Invariant: below [`MAX_UNDER`].
+    under: u64,
+}
+
+/// Sums of two rests stay in 64 bits below this.
+const MAX_UNDER: u64 = 1 << 62;
+
+impl EvenSteps {
+    /// Of a rate in steps/s as it is printed; `None` where the numbers of `count` steps are too long.
+    pub(super) fn new(steps_s: f64, clock_hz: u32, count: u64) -> Option<Self> {
+        let (digits, exponent) = Exact::decimal(steps_s);
+        let ten = 10_u128.checked_pow(exponent.unsigned_abs())?;
+        let digits = u128::from(digits.unsigned_abs()).checked_mul(2)?;
+        let (over, under) = if exponent < 0 {
+            (ten.checked_mul(clock_hz.into())?, digits)
+        } else {
+            (clock_hz.into(), digits.checked_mul(ten)?)
+        };
+        let common = common_divisor(over, under);
+        let (over, under) = (over.checked_div(common)?, u64::try_from(under.checked_div(common)?).ok()?);
+        let last = over.checked_mul(2 * u128::from(count) + 1)?.checked_div(under.into())?;
+        (under < MAX_UNDER && last < u64::MAX.into()).then_some(Self { over, under })
+    }
+
+    /// When step `k` (from 1) is due.
+    pub(super) fn step(self, k: u64) -> CycleTime {
+        let (whole, rest) = self.divided(self.over * (2 * u128::from(k) - 1));
+        self.time(whole, rest)
+    }
+
+    fn divided(self, over: u128) -> (u64, u64) {
+        let under = u128::from(self.under);
+        ((over / under) as u64, (over % under) as u64)
+    }
+
+    fn time(self, whole: u64, rest: u64) -> CycleTime {
+        CycleTime { whole, part: rest as f64 / self.under as f64 }
+    }
+
+    /// When each step is due, without a division for each.
+    pub(super) fn steps(self) -> impl Iterator<Item = CycleTime> {
+        let ((add, add_rest), (mut whole, mut rest)) = (self.divided(2 * self.over), self.divided(self.over));
+        core::iter::from_fn(move || {
+            let time = self.time(whole, rest);
+            (whole, rest) = (whole.wrapping_add(add), rest + add_rest);
+            if rest >= self.under {
+                (whole, rest) = (whole.wrapping_add(1), rest - self.under);
+            }
+            Some(time)
+        })
+    }
+}
+
+fn common_divisor(mut a: u128, mut b: u128) -> u128 {
+    while b > 0 {
+        (a, b) = (b, a % b);
+    }
+    a
+}
+
+impl TrapezoidTable {
+    /// Time of step `k` (from 1; 0 is the start, from the last step on the end) in cycles of a clock of `clock_hz`.
+    pub(super) fn step_time(&self, k: u64, clock_hz: u32) -> CycleTime {
+        let timer_hz = u128::from(self.table().timer_hz().max(1));
+        let product = u128::from(self.step_ticks(k)) * u128::from(clock_hz);
+        CycleTime { whole: (product / timer_hz) as u64, part: (product % timer_hz) as f64 / timer_hz as f64 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn even_steps_are_quotients_of_whole_numbers() {
+        // 3 steps/s of a clock of 10 Hz: half an interval is 5/3 cycles.
+        let even = EvenSteps::new(3.0, 10, 100).expect("they are short");
+        for (k, time) in (1..=100).zip(even.steps()) {
+            assert_eq!(time, even.step(k));
+            let halves = 5 * (2 * k - 1);
+            assert_eq!((time.whole, time.part), (halves / 3, (halves % 3) as f64 / 3.0), "step {k}");
+        }
+        // Ties: of 0.8 steps/s every step stands at a half.
+        let even = EvenSteps::new(0.8, 2, 10).expect("they are short");
+        assert!(
+            even.steps().take(10).all(|time| time.part == 0.25 || time.part == 0.75),
+            "1.25 cycles, and 2.5 further"
+        );
+        let even = EvenSteps::new(1e7 / 3.0, 1_000_000_000, 1_000_000_000).expect("they are short");
+        // The number that is printed, 3333333.3333333335, is a little more than the third.
+        let last = even.step(1_000_000_000);
+        assert!(last.whole == 299_999_999_849 && last.part > 0.999, "{last:?}");
+    }
+
+    #[test]
+    fn parts_add_up_to_whole_cycles() {
+        let time = CycleTime::of(3.75).plus(CycleTime { whole: 1 << 60, part: 0.5 });
+        assert_eq!((time.whole, time.part, time.cycle()), ((1 << 60) + 4, 0.25, (1 << 60) + 4));
+        assert_eq!(CycleTime::of(0.499_999_999_999_999_94).cycle(), 0);
+        assert_eq!(CycleTime::of(0.5).cycle(), 1);
+        assert_eq!(CycleTime::exact(&Exact::of(7.0).divided_by(2.0)), CycleTime { whole: 3, part: 0.5 });
+    }
+}

@@ -1,0 +1,78 @@
+//! Steps that whole numbers tell have the cycle that these give (DESIGN B1): of a timer's table, of one rate, and of moves
+//! in a row; held against whole numbers of 128 bits.
+#![allow(clippy::panic, reason = "what cannot be planned fails the test")]
+
+use rand_xoshiro::{
+    Xoshiro256PlusPlus,
+    rand_core::{Rng, SeedableRng},
+};
+use stepscope_motion::{
+    AxisPlan,
+    mechanics::{Acceleration, Distance, Speed},
+    moves::{Axis, Constant, Dwell, Move, Trapezoid, TrapezoidMethod},
+    plan_axis,
+};
+
+fn plan(moves: Vec<Move>) -> AxisPlan {
+    plan_axis(&Axis { moves, ..Axis::default() }, "x").unwrap_or_else(|problems| panic!("{problems:?}"))
+}
+
+#[test]
+fn a_late_step_of_a_table_has_the_cycle_of_its_whole_numbers() {
+    let table = plan(vec![Move::Trapezoid(Trapezoid {
+        distance: Distance::Steps(20_000.0),
+        start_speed: Speed::StepsPerSecond(1.0),
+        top_speed: Speed::StepsPerSecond(2.0),
+        acceleration: Acceleration::StepsPerSecond2(1.0),
+        method: TrapezoidMethod::Table,
+        timer_hz: u32::MAX,
+    })]);
+    let step = |k: usize| table.due_steps(1_000_000_000).nth(k - 1).map(|due| due.cycle);
+    // (4294967295 + 7426*2147483647)/4294967295 s are 3713999999135.4998 cycles.
+    assert_eq!(step(7427), Some(3_713_999_999_135));
+    let profile = &table.moves()[0].profile;
+    assert_eq!(profile.step_cycle(7427, 1_000_000_000), step(7427));
+}
+
+/// floor(a/b + 1/2).
+fn rounded(a: i128, b: i128) -> i128 {
+    (2 * a + b).div_euclid(2 * b)
+}
+
+#[test]
+fn constant_rates_and_what_waits_before_them_are_quotients_of_decimals() {
+    let mut noise = Xoshiro256PlusPlus::seed_from_u64(4);
+    let mut draw = |from: i128, to: i128| from + i128::from(noise.next_u64()).rem_euclid(to - from + 1);
+    let mut ties = 0;
+    for _ in 0..400 {
+        let clock = [16_000_000, 1_000_000_000, 72_000_000, 1000][draw(0, 3) as usize];
+        // Half of them of twos and fives, whose steps often stand at a half.
+        let digits = match draw(0, 1) {
+            0 => draw(1, 99_999),
+            _ => (1 << draw(0, 12)) * 5_i128.pow(draw(0, 3) as u32),
+        };
+        let ten = 10_i128.pow(draw(0, 4) as u32);
+        let wait_ms = [0, 1, 125, 333, 86_400_000][draw(0, 4) as usize];
+        let speed = digits as f64 / ten as f64;
+        let count = draw(1, 2000);
+        // At most ten days of either.
+        if count * ten > digits * 86_400 {
+            continue;
+        }
+        let moves = vec![
+            Move::Dwell(Dwell { duration_s: wait_ms as f64 / 1000.0 }),
+            Move::Constant(Constant {
+                distance: Distance::Steps(count as f64),
+                speed: Speed::StepsPerSecond(speed),
+            }),
+        ];
+        for (k, due) in (1..).zip(plan(moves).due_steps(clock as u32)) {
+            // wait + (2k - 1)/(2v), over the common 2000*digits.
+            let (over, under) = (clock * (2 * wait_ms * digits + 1000 * (2 * k - 1) * ten), 2000 * digits);
+            ties += i128::from((2 * over) % under == 0 && (2 * over / under) % 2 == 1);
+            let cycle = i128::from(due.cycle);
+            assert_eq!(cycle, rounded(over, under), "step {k} of {speed}/s after {wait_ms} ms at {clock} Hz");
+        }
+    }
+    assert!(ties > 1000, "only {ties} steps stood at a half");
+}
