@@ -92,7 +92,8 @@ function isElsewhere({ target }) {
 function status(state, long) {
   const { progress } = state.run;
   if (long && progress?.end_cycle === 0) return "planning the motion…";
-  if (long && progress) return `${Math.round((100 * progress.cycle) / Math.max(1, progress.end_cycle))} % simulated`;
+  if (long && progress)
+    return `${Math.round((100 * progress.cycle) / Math.max(1, progress.end_cycle))} %, edges in ${count(progress.records)} cycles so far`;
   const held_back = held(state) === "problems" ? "not run: the form needs attention" : "";
   if (!state.result) return held_back || (state.run.phase === "running" ? "running…" : "no result yet");
   const { edges = 0 } = selected(state) ?? {};

@@ -39,6 +39,7 @@ export function createHandles(strip, plot, page) {
       {
         class: `handle ${which}`,
         role: "slider",
+        "aria-valuenow": "0",
         tabindex: "0",
         "aria-label": `Cursor ${name}`,
         "aria-valuemin": "0",

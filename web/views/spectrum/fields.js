@@ -15,14 +15,14 @@ export function createFields(place, { zoom, fit, back, log, changed }) {
   const press = (/** @type {string} */ text, /** @type {string} */ label, /** @type {() => void} */ run) =>
     button(text, label, run);
   const backButton = press("Back", "Back to what was shown before (Backspace)", back);
-  const logButton = press("log", "Logarithmic frequencies (L)", log);
+  const logButton = press("log", "log: logarithmic frequencies (L)", log);
   logButton.id = "spectrum-log";
   byId("spectrum-scale").parentElement?.after(logButton);
   place.append(
     ...inputs.map((input, at) => element("label", {}, `${["from", "to"][at]} `, input)),
     press("+", "Zoom in (+)", () => zoom(0.5)),
     press("−", "Zoom out (−)", () => zoom(2)),
-    press("Fit", "Show the whole spectrum (0 or double click)", fit),
+    press("Fit", "Fit: the whole spectrum (0 or double click)", fit),
     backButton,
     wrong,
   );
