@@ -230,8 +230,10 @@ export function createPanes({ dispatch, now }) {
 
   /** @param {string} view */
   function maximise(view) {
+    const { bare, panes } = now();
     dispatch(
       change({
+        open: bare.includes(view) && !panes.open.includes(view) ? [...panes.open, view] : panes.open,
         largest: areaOf(now().panes.largest) === areaOf(view) ? null : view,
         folded: now().panes.folded.filter((each) => each !== view),
       }),
@@ -310,7 +312,8 @@ export function createPanes({ dispatch, now }) {
 }
 
 /** What takes the whole place: a view that has none of its own, while it is open, or one made to. @param {State} state */
-const largestOf = ({ view, panes }) => (isAlone(view) ? view : panes.largest);
+const largestOf = ({ view, panes: { largest, open }, bare }) =>
+  isAlone(view) ? view : largest && bare.includes(largest) && !open.includes(largest) ? null : largest;
 
 /** The place of a view in the grid. @param {string | null} view */
 function areaOf(view) {

@@ -24,7 +24,7 @@ export function createBetween({ engine }) {
     );
     if (!answer) return;
     const seconds = (b - a) / state.result.summary.clock_hz;
-    const span = `B−A ${exactTime(b - a, state.result.summary.clock_hz)}${seconds === 0 ? "" : ` · 1/(B−A) ${si(1 / Math.abs(seconds), "Hz", 6)}`}`;
+    const span = `B−A ${exactTime(b - a, state.result.summary.clock_hz)}${seconds === 0 ? "" : ` · 1/|B−A| ${si(1 / Math.abs(seconds), "Hz", 6)}`}`;
     say(byId("between-span"), `${span} · in ${unitOf(state).unit} and s`);
     fill(
       byId("between-tables"),

@@ -29,7 +29,9 @@ export function createReading({ engine, now }) {
     if (a !== null) texts.push(`A ${exactTime(a, clock)}`);
     if (b !== null) texts.push(`B ${exactTime(b, clock)}`);
     if (a !== null && b !== null)
-      texts.push(`B−A ${exactTime(b - a, clock)}${a === b ? "" : ` = ${si(clock / Math.abs(b - a), "Hz", 6)}`}`);
+      texts.push(
+        `B−A ${exactTime(b - a, clock)}, ${count(Math.abs(b - a))} cycles${a === b ? "" : ` = ${si(clock / Math.abs(b - a), "Hz", 6)}`}`,
+      );
     else
       texts.push(
         a === null ? (coarse() ? "a tap sets A" : "click sets cursor A") : coarse() ? "drag B" : "shift-click sets B",
