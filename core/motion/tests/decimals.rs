@@ -104,10 +104,13 @@ fn an_offset_of_the_points_changes_no_step() {
     for _ in 0..2000 {
         let offset = draw(-100_000, 100_000);
         let ways: Vec<i64> = (0..6).map(|_| 50 * draw(-20, 20)).collect();
+        let tenths: i64 = draw(1, 9);
+        // Times and positions both begin elsewhere.
         let at = |offset: i64| {
             let positions = core::iter::once(0).chain(ways.iter().copied());
+            let time_s = |index: i64| (offset.abs() + tenths * index) as f64 / 10.0;
             let list: Vec<(f64, f64)> =
-                (0..7_u8).map(f64::from).zip(positions.map(|way| (offset + way) as f64 / 100.0)).collect();
+                (0..7).map(time_s).zip(positions.map(|way| (offset + way) as f64 / 100.0)).collect();
             let axis = Axis { moves: vec![points(PointUnit::Steps, &list)], ..Axis::default() };
             plan_axis(&axis, "x").map(|plan| plan.due_steps(16_000_000).collect::<Vec<_>>())
         };

@@ -3,6 +3,7 @@
 use crate::{
     Curve,
     budget::hold_speed,
+    exact::Exact,
     limits,
     moves::{self, Interpolation},
     points::{Between, Points},
@@ -40,20 +41,24 @@ pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::Points) -> Op
     Some(curve)
 }
 
-/// Times and positions in steps of points that hold, positions counted from the first (DESIGN B1).
+/// Times and positions in steps of points that hold, both counted from the first as their decimals have it (DESIGN B1).
 fn judge(quantities: &mut Quantities<'_>, given: &moves::Points, size: f64) -> Option<Vec<(f64, f64)>> {
     let earlier = quantities.validator.count();
     let mut points = Vec::with_capacity(given.points.len());
     let mut before = None;
     let first =
         given.points.first().map(|first| first.position).filter(|first| first.is_finite()).unwrap_or(0.0);
+    let first_s =
+        given.points.first().map(|first| first.time_s).filter(|first_s| first_s.is_finite()).unwrap_or(0.0);
+    let since =
+        |time_s: f64| if time_s.is_finite() { Exact::difference(time_s, first_s).nearest() } else { time_s };
     for (index, point) in given.points.iter().enumerate() {
         quantities.at_entry(index, |here| {
             if let Some(before) = before.filter(|before| !is_after(point.time_s, *before)) {
                 here.refuse("", Cause::NotRising { given: point.time_s, before, least: MIN_TIME_S });
             }
             let way = here.way(first, &given.unit.of(point.position), size);
-            points.extend(way.map(|y| (point.time_s, y)));
+            points.extend(way.map(|way| (since(point.time_s), way)));
         });
         before = Some(point.time_s);
         if quantities.validator.count() >= earlier + MAX_TOLD {
