@@ -26,7 +26,10 @@
 //! assert_eq!(Points::new(&[(0.0, 0.0), (0.0, 1.0)], Between::Straight), None);
 //! ```
 
-use crate::{Curve, Peaks, curve::greater, format::grouped, hermite::Cubic, round_half_up};
+use crate::{
+    Curve, Peaks, curve::greater, cycle_time::CycleTime, exact::Exact, format::grouped, hermite::Cubic,
+    round_half_up,
+};
 use alloc::{format, string::String, vec::Vec};
 
 /// Parts that a smooth curve is cut into, about: its pieces in 4 to 64 each.
@@ -103,27 +106,56 @@ impl Points {
         self.pieces.iter().zip(before.zip(&self.made)).map(|(piece, (from, to))| (piece, *from, *to))
     }
 
-    /// When each step falls due in s, and whether it goes to the right.
-    pub(super) fn due_s(&self) -> impl Iterator<Item = (f64, bool)> + '_ {
-        self.counted().flat_map(|(piece, from, to)| {
+    /// Where each step falls due, and whether it goes to the right.
+    pub(super) fn due(&self) -> impl Iterator<Item = (Due<'_>, bool)> + '_ {
+        self.counted().flat_map(move |(piece, from, to)| {
             let right = to > from;
-            (0..from.abs_diff(to)).map(move |index| (piece.time_s(place(from, to, index)), right))
+            let due = move |index| Due { piece, place: place(from, to, index), between: self.between };
+            (0..from.abs_diff(to)).map(move |index| (due(index), right))
         })
     }
 
-    /// When step `k` (from 1) of all falls due, in s.
-    pub(super) fn step_s(&self, k: u64) -> Option<f64> {
+    /// Where step `k` (from 1) of all falls due.
+    pub(super) fn step(&self, k: u64) -> Option<Due<'_>> {
         let mut before = 0;
         let (piece, from, to) = self.counted().find(|(_, from, to)| {
             let among = k <= before + from.abs_diff(*to);
             before += if among { 0 } else { from.abs_diff(*to) };
             among
         })?;
-        Some(piece.time_s(place(from, to, k - before - 1)))
+        Some(Due { piece, place: place(from, to, k - before - 1), between: self.between })
     }
 
     fn piece(&self, t: f64) -> Option<&Cubic> {
         self.pieces.get(self.pieces.partition_point(|piece| piece.to_s <= t)).or(self.pieces.last())
+    }
+}
+
+/// A place in which a step falls due.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Due<'p> {
+    piece: &'p Cubic,
+    place: f64,
+    between: Between,
+}
+
+impl Due<'_> {
+    /// When, in cycles of a clock of `clock_hz` after `start`.
+    ///
+    /// On a straight piece that is a quotient of decimals. A time in f64 is off by some last digits; where these could
+    /// decide the rounding, the quotient does.
+    pub(super) fn cycles(&self, start: CycleTime, clock_hz: u32) -> CycleTime {
+        let clock = f64::from(clock_hz);
+        let time = CycleTime::of(start.cycles() + self.piece.time_s(self.place) * clock);
+        let digits = 1e-12 + 1e-14 * time.cycles();
+        if self.between == Between::Smooth || libm::fabs(time.part - 0.5) > digits {
+            return time;
+        }
+        let Cubic { from_s, to_s, from, to, .. } = *self.piece;
+        let way = |a: f64, b: f64| if a < b { Exact::difference(b, a) } else { Exact::difference(a, b) };
+        let since = way(from, self.place).times(way(from_s, to_s).nearest()).times(clock);
+        let since = since.divided_by(way(from, to).nearest());
+        start.plus(CycleTime::exact(&Exact::of(from_s).times(clock))).plus(CycleTime::exact(&since))
     }
 }
 
@@ -268,7 +300,8 @@ mod tests {
 
     fn due(points: &[(f64, f64)], between: Between) -> Vec<(f64, bool)> {
         let curve = Points::new(points, between).unwrap();
-        let due: Vec<(f64, bool)> = curve.due_s().collect();
+        let due: Vec<(f64, bool)> =
+            curve.due().map(|(due, right)| (due.piece.time_s(due.place), right)).collect();
         assert_eq!(due.len() as u64, curve.step_count());
         let made: i64 = due.iter().map(|(_, right)| if *right { 1 } else { -1 }).sum();
         assert_eq!(made, curve.steps(), "{points:?}");

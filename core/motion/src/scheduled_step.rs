@@ -70,6 +70,10 @@ fn due_from(
         (Profile::TrapezoidTable(table), _) => {
             Box::new((1..=count).map(move |k| exactly(table.step_time(k, clock_hz))))
         }
+        (Profile::Points(points), _) => Box::new(points.due().map(move |(due, right)| {
+            let time = due.cycles(start, clock_hz);
+            (time.cycles(), ScheduledStep { cycle: time.cycle(), right })
+        })),
         (_, Some(even)) => Box::new((1..=count).zip(even.steps()).map(move |(_, since)| exactly(since))),
         (profile, None) => {
             let start = start.cycles();
@@ -117,7 +121,9 @@ impl Profile {
             Self::TrapezoidTable(table) => return Some(table.step_time(k, clock_hz).cycle()),
             Self::Staircase(staircase) => staircase.step_s(k) * clock,
             Self::Sine(sine) => sine.due_half(k) * (sine.period_s() / 2.0 * clock),
-            Self::Points(points) => points.step_s(k)? * clock,
+            Self::Points(points) => {
+                return Some(points.step(k)?.cycles(CycleTime::default(), clock_hz).cycle());
+            }
             Self::Constant(constant) => {
                 let speed = libm::fabs(constant.speed(0.0));
                 match EvenSteps::new(speed, clock_hz, self.step_count()) {
@@ -156,7 +162,12 @@ fn due(profile: &Profile, clock_hz: u32) -> Due<'_> {
             let cycles_per_half = sine.period_s() / 2.0 * clock;
             Box::new(sine.due_halves().map(move |(half, right)| (half * cycles_per_half, right)))
         }
-        Profile::Points(points) => Box::new(points.due_s().map(move |(t, right)| (t * clock, right))),
+        // Rounded once: `due_from`.
+        Profile::Points(points) => Box::new(
+            points
+                .due()
+                .map(move |(due, right)| (due.cycles(CycleTime::default(), clock_hz).cycles(), right)),
+        ),
         Profile::Constant(constant) => {
             let cycles_per_step = clock / libm::fabs(constant.speed(0.0));
             Box::new(places.map(move |place| (place * cycles_per_step, right)))

@@ -9,7 +9,9 @@ use rand_xoshiro::{
 use stepscope_motion::{
     AxisPlan,
     mechanics::{Acceleration, Distance, Speed},
-    moves::{Axis, Constant, Dwell, Move, Trapezoid, TrapezoidMethod},
+    moves::{
+        Axis, Constant, Dwell, Interpolation, Move, Point, PointUnit, Points, Trapezoid, TrapezoidMethod,
+    },
     plan_axis,
 };
 
@@ -32,6 +34,40 @@ fn a_late_step_of_a_table_has_the_cycle_of_its_whole_numbers() {
     assert_eq!(step(7427), Some(3_713_999_999_135));
     let profile = &table.moves()[0].profile;
     assert_eq!(profile.step_cycle(7427, 1_000_000_000), step(7427));
+}
+
+/// Straight pieces between decimals: t_0 + (k - 1/2 - y_0)*(t_1 - t_0)/(y_1 - y_0) in whole numbers.
+#[test]
+fn points_on_straight_pieces_are_quotients_of_decimals() {
+    let mut noise = Xoshiro256PlusPlus::seed_from_u64(8);
+    let mut draw = |from: i128, to: i128| from + i128::from(noise.next_u64()).rem_euclid(to - from + 1);
+    let mut ties = 0;
+    for _ in 0..2000 {
+        let clock = [16_000_000, 1_000_000_000, 1000][draw(0, 2) as usize];
+        // In ms and tenths of steps; the axis goes on to the right.
+        let (mut t, mut y) = (0, 0);
+        let mut list = vec![(t, y)];
+        for _ in 0..3 {
+            (t, y) = (t + draw(100, 4000), y + 2 * draw(1, 400));
+            list.push((t, y));
+        }
+        let points =
+            list.iter().map(|&(t, y)| Point { time_s: t as f64 / 1e3, position: y as f64 / 10.0 }).collect();
+        let given = Points { unit: PointUnit::Steps, interpolation: Interpolation::Straight, points };
+        let axis = Axis { moves: vec![Move::Points(given)], ..Axis::default() };
+        let Ok(plan) = plan_axis(&axis, "x") else { continue };
+        for (k, due) in (1..).zip(plan.due_steps(clock as u32)) {
+            // 10*(k - 1/2), in tenths.
+            let place = 10 * k - 5;
+            let piece = list.windows(2).find(|pair| pair[0].1 < place && place <= pair[1].1);
+            let Some(&[(t_0, y_0), (t_1, y_1)]) = piece else { panic!("no piece has {place}") };
+            let under = 1000 * (y_1 - y_0);
+            let over = clock * (t_0 * (y_1 - y_0) + (place - y_0) * (t_1 - t_0));
+            ties += i128::from((2 * over) % under == 0 && (2 * over / under) % 2 == 1);
+            assert_eq!(i128::from(due.cycle), rounded(over, under), "step {k} of {list:?} at {clock} Hz");
+        }
+    }
+    assert!(ties > 300, "only {ties} steps stood at a half");
 }
 
 /// floor(a/b + 1/2).
