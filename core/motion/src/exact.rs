@@ -6,7 +6,8 @@
 //! ```
 //!
 //! The whole numbers are of any length, but few operations are made of them: products with small ones, comparisons, one
-//! quotient of 64 bits. A library for all operations would make the page 13 kB heavier; the tests hold these against one.
+//! quotient of 64 bits. A library for all operations would make the page 13 kB heavier; the tests hold these against one. None
+//! of them is called often, so none is copied into its callers.
 
 use crate::round_half_up;
 use alloc::{format, vec, vec::Vec};
@@ -34,6 +35,7 @@ impl Exact {
     }
 
     /// The decimal of a number less that of another.
+    #[inline(never)]
     pub(super) fn difference(number: f64, less: f64) -> Self {
         let ((own, own_exponent), (other, other_exponent)) = (decimal(number), decimal(less));
         let exponent = own_exponent.min(other_exponent);
@@ -58,6 +60,7 @@ impl Exact {
     }
 
     /// The quotient times the decimal of a number from 0 on.
+    #[inline(never)]
     pub(super) fn times(mut self, number: f64) -> Self {
         let (digits, exponent) = decimal(number);
         debug_assert!(digits >= 0, "times {number}");
@@ -67,6 +70,7 @@ impl Exact {
     }
 
     /// The quotient divided by the decimal of a number above 0.
+    #[inline(never)]
     pub(super) fn divided_by(mut self, number: f64) -> Self {
         let (digits, exponent) = decimal(number);
         debug_assert!(digits > 0, "divided by {number}");
@@ -106,6 +110,7 @@ impl Exact {
     }
 
     /// The nearest f64, of two as near the one that ends in an even digit.
+    #[inline(never)]
     pub(super) fn nearest(&self) -> f64 {
         let (mut over, mut under) = (self.over.clone(), self.under.clone());
         if over.is_zero() {
@@ -131,6 +136,7 @@ impl Exact {
     }
 
     /// The greatest whole number that is no more, and the rest, as near as an f64 is; of a quotient from 0 to below 2^64.
+    #[inline(never)]
     pub(super) fn whole_and_part(&self) -> (u64, f64) {
         debug_assert!(!self.negative || self.over.is_zero(), "{self:?} is negative");
         let (mut rest, mut whole) = (self.over.clone(), 0);
@@ -190,6 +196,7 @@ impl Natural {
         self.0.get(index).copied().unwrap_or(0)
     }
 
+    #[inline(never)]
     fn multiply_by(&mut self, factor: u64) {
         let mut carry: u128 = 0;
         for limb in &mut self.0 {
@@ -204,12 +211,14 @@ impl Natural {
         self.trim();
     }
 
+    #[inline(never)]
     fn multiply_by_power_of_ten(&mut self, exponent: u32) {
         for _ in 0..exponent {
             self.multiply_by(10);
         }
     }
 
+    #[inline(never)]
     fn shift_left(&mut self, bits: u32) {
         if !self.is_zero() {
             let limbs = (bits / LIMB_BITS) as usize;
@@ -232,6 +241,7 @@ impl Natural {
     }
 
     /// This less one that is no greater.
+    #[inline(never)]
     fn less(&self, other: &Self) -> Self {
         debug_assert!(self.cmp(other) != Ordering::Less, "{self:?} is less than {other:?}");
         let mut borrow: i64 = 0;
@@ -246,20 +256,23 @@ impl Natural {
         rest
     }
 
+    #[inline(never)]
     fn cmp(&self, other: &Self) -> Ordering {
         self.0.len().cmp(&other.0.len()).then_with(|| self.0.iter().rev().cmp(other.0.iter().rev()))
     }
 }
 
 /// The shortest decimal that reads back as a number: its digits as a whole number, times 10 to a power.
+#[inline(never)]
 fn decimal(number: f64) -> (i64, i32) {
     debug_assert!(number.is_finite(), "{number} is not printed as a decimal");
-    let text = format!("{number:e}");
-    let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-    let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
-    let exponent: i32 = exponent.parse().unwrap_or(0);
-    let digits = format!("{whole}{fraction}").parse().unwrap_or(0);
-    (digits, exponent - fraction.len() as i32)
+    let text = format!("{number}");
+    let (whole, fraction) = text.split_once('.').unwrap_or((&text, ""));
+    let all = format!("{whole}{fraction}");
+    let digits = all.trim_end_matches('0');
+    let exponent = (all.len() - digits.len()) as i32 - fraction.len() as i32;
+    // None are left of a zero.
+    digits.parse().map_or((0, 0), |digits| (digits, exponent))
 }
 
 #[cfg(test)]
