@@ -164,7 +164,7 @@ fn frequencies_are_zoomed_by_wheel_box_keys_buttons_and_fields_and_back() -> Res
         ensure!(((nearer.1 - nearer.0) * 2.0 - whole.1).abs() < 1.0, "{nearer:?}");
         page.press("#spectrum-pane", "-").await?;
         changed(&page, nearer).await?;
-        page.click("#spectrum-tools [aria-label^='Show the whole']").await?;
+        page.click("#spectrum-tools [aria-label^='Fit']").await?;
 
         for (field, text) in [("#spectrum-to", "5"), ("#spectrum-from", "500 mHz")] {
             page.press(field, &format!("{CONTROL}a{RELEASE}{text}{ENTER}")).await?;

@@ -90,7 +90,7 @@ export function createCompare({ engine, dispatch, now, panel }) {
   ]);
   const small = LOOKS.map(() => ({
     name: element("span"),
-    canvas: element("canvas", { role: "img" }),
+    canvas: element("canvas", { role: "img", "aria-label": "Acceleration" }),
     key: element("canvas", { class: "study-key", "aria-hidden": "true" }),
   }));
   const multiples = element(
