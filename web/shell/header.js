@@ -60,7 +60,10 @@ export function createHeader({ presets, cancel, retry, ...page }) {
     const said = status(state, long);
     say(byId("status"), said);
     if (byId("status").title !== said) byId("status").title = said;
-    say(byId("computed"), state.result && !long ? `computed in ${si(state.result.ms / 1000, "s", 2)}` : "");
+    say(
+      byId("computed"),
+      state.result && !long && held(state) !== "problems" ? `computed in ${si(state.result.ms / 1000, "s", 2)}` : "",
+    );
     health.render(state);
     chooser(state);
     say(byId("digest"), selected(state)?.digest ?? "–");
@@ -94,12 +97,11 @@ function status(state, long) {
   if (long && progress?.end_cycle === 0) return "planning the motion…";
   if (long && progress)
     return `${Math.round((100 * progress.cycle) / Math.max(1, progress.end_cycle))} %, edges in ${count(progress.records)} cycles so far`;
-  const held_back = held(state) === "problems" ? "not run: the form needs attention" : "";
-  if (!state.result) return held_back || (state.run.phase === "running" ? "running…" : "no result yet");
+  // What is most to be known has the line for itself.
+  if (held(state) === "problems") return "not run: the form needs attention";
+  if (!state.result) return state.run.phase === "running" ? "running…" : "no result yet";
   const { edges = 0 } = selected(state) ?? {};
-  const parts = [`${count(edges)} edges`, si(state.result.summary.end_s, "s")];
-  if (held_back) parts.unshift(`${held_back}; last result`);
-  return parts.join(" · ");
+  return `${count(edges)} edges · ${si(state.result.summary.end_s, "s")}`;
 }
 
 /** @param {State} state */
