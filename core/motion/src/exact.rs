@@ -80,6 +80,7 @@ impl Exact {
     }
 
     /// B1's R: the greatest whole number that is at most a half more; the ends of the range beyond it.
+    #[inline(never)]
     pub(super) fn rounded(&self) -> i64 {
         let nearest = round_half_up(self.nearest());
         // The last digit of `nearest` may have been on the wrong side of a half.
@@ -227,6 +228,7 @@ impl Natural {
         }
     }
 
+    #[inline(never)]
     fn plus(&self, other: &Self) -> Self {
         let mut carry: u64 = 0;
         let sum = (0..self.0.len().max(other.0.len()) + 1).map(|index| {

@@ -112,7 +112,20 @@ impl Mechanics {
         }
     }
 
+    /// Whether a number, and all its own, which are above 0, are printed as decimals.
+    #[inline(never)]
+    fn can_tell(&self, number: f64) -> bool {
+        let (one, other) = match self {
+            Self::Rotary(m) => (m.full_step_deg, 1.0),
+            Self::Wheel(m) => (m.full_step_deg, 1.0),
+            Self::Screw(m) => (m.full_step_deg, m.lead_mm),
+            Self::Direct(m) => (m.step_mm, 1.0),
+        };
+        number.is_finite() && [one, other].iter().all(|own| *own > 0.0 && own.is_finite())
+    }
+
     /// So many degrees in steps.
+    #[inline(never)]
     fn degrees(&self, given: Exact) -> Option<Exact> {
         let (full_step_deg, microsteps) = match self {
             Self::Rotary(m) => (m.full_step_deg, m.microsteps),
@@ -124,6 +137,7 @@ impl Mechanics {
     }
 
     /// So many millimetres in steps; none of a wheel, whose circumference has pi.
+    #[inline(never)]
     fn millimetres(&self, given: Exact) -> Option<Exact> {
         match self {
             Self::Rotary(_) | Self::Wheel(_) => None,
@@ -200,8 +214,12 @@ macro_rules! quantity {
                 Ok(self.exact(mechanics).map_or(quotient, |exact| exact.nearest()))
             }
 
-            /// The quantity in steps as its decimal makes it; `None` where it is in steps already, or has pi.
+            /// The quantity in steps as its decimal makes it; `None` where it is in steps already, has pi, or is no number
+            /// that a plan would take.
             fn exact(&self, mechanics: &Mechanics) -> Option<Exact> {
+                if !mechanics.can_tell(self.value()) {
+                    return None;
+                }
                 match self {
                     $(Self::$variant(value) => {
                         let of: fn(&Mechanics, Exact) -> Option<Exact> = $exact;
@@ -239,14 +257,17 @@ impl Distance {
     /// # Errors
     /// [`NoSuchUnit`] where the mechanics have no millimetres or no degrees.
     pub fn steps_from(&self, first: f64, mechanics: &Mechanics) -> Result<f64, NoSuchUnit> {
-        let step = self.step(mechanics)?;
+        let quotient = (self.value() - first) / self.step(mechanics)?;
+        if !mechanics.can_tell(self.value() - first) {
+            return Ok(quotient);
+        }
         let way = Exact::difference(self.value(), first);
         let exact = match self {
             Self::Steps(_) => Some(way),
             Self::Millimetres(_) => mechanics.millimetres(way),
             Self::Degrees(_) => mechanics.degrees(way),
         };
-        Ok(exact.map_or_else(|| (self.value() - first) / step, |exact| exact.nearest()))
+        Ok(exact.map_or(quotient, |exact| exact.nearest()))
     }
 }
 

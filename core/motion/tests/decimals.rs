@@ -38,6 +38,21 @@ fn half_steps_are_rounded_as_they_are_printed() {
     assert_eq!(steps_of(direct(0.01), table), 15);
 }
 
+#[test]
+fn what_is_no_quantity_gives_what_the_quotient_gives() {
+    let direct = |step_mm| Mechanics::Direct(Direct { step_mm });
+    let steps =
+        |mm: f64, step_mm: f64| Distance::Millimetres(mm).in_steps(&direct(step_mm)).expect("they have mm");
+    assert!(steps(f64::NAN, 0.1).is_nan() && steps(0.0, 0.0).is_nan());
+    assert_eq!(
+        (steps(f64::INFINITY, 0.1), steps(1.0, 0.0), steps(1.0, -0.5)),
+        (f64::INFINITY, f64::INFINITY, -2.0)
+    );
+    assert_eq!(Distance::Millimetres(f64::NAN).whole_steps(&direct(0.1)), Ok(0));
+    let way = Distance::Millimetres(f64::NAN).steps_from(1.0, &direct(0.1)).expect("they have mm");
+    assert!(way.is_nan());
+}
+
 /// Decimals n/10^places, so that the quotient is one of whole numbers: floor(a/b + 1/2) = floor((2a + b)/(2b)).
 #[test]
 fn distances_are_the_quotients_of_their_decimals() {
