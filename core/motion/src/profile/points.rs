@@ -1,7 +1,6 @@
 //! Plans a curve through points (DESIGN B6).
 
 use crate::{
-    Curve,
     budget::hold_speed,
     exact::Exact,
     limits,
@@ -25,12 +24,13 @@ pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::Points) -> Op
     }
     let size = quantities.step_of("unit", &given.unit.of(0.0))?;
     let points = quantities.at("points", |here| judge(here, given, size))?;
+    // Before the curve is made: times that differ by less than the digits of so long a one would be no curve.
+    quantities.duration("points", points.last().map_or(0.0, |(since_s, _)| *since_s))?;
     let between = match given.interpolation {
         Interpolation::Straight => Between::Straight,
         Interpolation::Smooth => Between::Smooth,
     };
     let curve = Points::new(&points, between)?;
-    quantities.duration("points", curve.duration_s())?;
     if curve.step_count() == 0 {
         quantities.refuse("points", Cause::NoSteps { steps: curve.reach() });
         return None;
@@ -87,7 +87,12 @@ mod tests {
     #[test]
     fn every_problem_of_points_is_told_with_its_place() {
         let straight = Interpolation::Straight;
-        let rows: [Row; 9] = [
+        let rows: [Row; 10] = [
+            (
+                PointUnit::Steps,
+                vec![(-1e12, 0.0), (-1e-6, 0.0), (0.0, 5.0)],
+                &["points: 1000000000000 s is out of range; give 1e-6 to 86400 s"],
+            ),
             (PointUnit::Steps, vec![(5.0, 3.0), (5.5, 4.0)], &[]),
             (PointUnit::Steps, vec![(0.0, 0.0)], &["points: 1 points; give 2 to 4096"]),
             (PointUnit::Steps, vec![(0.0, 0.0); MAX_POINTS + 1], &["points: 4097 points; give 2 to 4096"]),
