@@ -24,7 +24,7 @@ pub(crate) use axis::Axis;
 use plotters::{
     coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged},
     prelude::*,
-    style::{FontStyle, RGBColor, TextStyle},
+    style::{FontFamily, FontStyle, RGBColor, TextStyle},
 };
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -165,7 +165,8 @@ fn draw(surface: Surface<'_>, spec: &Spec) -> Result<(Plot, Vec<Stroke>), String
         )
         .map_err(|error| error.to_string())?;
 
-    let font = (spec.font.as_str(), spec.font_px * spec.ratio, FontStyle::Normal);
+    // By its name: to look for the generic families plotters would bring in the tables of all letters' cases.
+    let font = (FontFamily::Name(&spec.font), spec.font_px * spec.ratio, FontStyle::Normal);
     let ink = color(&spec.colors.label);
     let label: TextStyle<'_> = TextStyle::from(font).color(&ink);
     let thin = px(1.0).max(1) as u32;
