@@ -279,12 +279,13 @@ async function start() {
   };
   const pulses = createPulses(page);
   const remedies = remediesOf(engine);
+  const spectrum = createSpectrum(page);
   /** @type {{[view in import("./state/views.js").ViewName]: View}} */
   const all = {
     motion: createMotion(page),
     pulses,
     packets: createPackets(page),
-    spectrum: createSpectrum(page),
+    spectrum,
     timing: createTiming({ drivers, speak: pulses.speak, ...page }),
     study: createStudy({ samples: made, ...page }),
   };
@@ -305,7 +306,7 @@ async function start() {
     createOwn({ fresh: fallback, ...page }),
     link,
   ];
-  createKeys();
+  createKeys(spectrum.load);
   createGuide(page);
   await link.start(loadScenario() !== null);
   if (state.revision === 0) {

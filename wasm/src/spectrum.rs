@@ -15,7 +15,7 @@ use wasm_bindgen::prelude::*;
 #[wasm_bindgen]
 impl Simulation {
     /// Spectra of the ideal motion and of the pulses, for the axis that the scenario's analysis names: `{axis, ideal,
-    /// pulses, note}`.
+    /// pulses, note}`; `acceleration_filtered` is there where the analysis has a sensor.
     ///
     /// # Errors
     /// Never in practice.
@@ -51,16 +51,16 @@ fn columns(spectrum: &Spectrum) -> Result<JsValue, JsError> {
     })?;
     let target: &Object = facts.unchecked_ref();
     for (name, harmonics) in [
-        ("position", &spectrum.position),
-        ("speed", &spectrum.speed),
-        ("acceleration", &spectrum.acceleration),
+        ("position", Some(&spectrum.position)),
+        ("speed", Some(&spectrum.speed)),
+        ("acceleration", Some(&spectrum.acceleration)),
+        ("acceleration_filtered", spectrum.acceleration_filtered.as_ref()),
     ] {
-        let Harmonics { amplitudes, distortion } = harmonics;
-        numbers(target, name, amplitudes);
+        if let Some(Harmonics { amplitudes, .. }) = harmonics {
+            numbers(target, name, amplitudes);
+        }
+        let distortion = harmonics.and_then(|harmonics| harmonics.distortion);
         field(target, &format!("thd_{name}"), &distortion.map_or(JsValue::NULL, JsValue::from));
     }
-    // A figure of its own, without amplitudes: they are the acceleration's times the low pass.
-    let filtered = spectrum.acceleration_filtered.as_ref().and_then(|filtered| filtered.distortion);
-    field(target, "thd_acceleration_filtered", &filtered.map_or(JsValue::NULL, JsValue::from));
     Ok(facts)
 }

@@ -15,11 +15,14 @@ import { termButton } from "./term_button.js";
 /**
  * @typedef {object} Control
  * @property {HTMLElement} root
+ * @property {string} label
  * @property {(value: any, state: State) => void} show
  * @property {(message: string) => void} fail  Shows an error, or none.
  * @property {() => void} focus
  */
 
+/** More characters than an input beside its label shows. */
+const LONG = 12;
 let made = 0;
 
 /**
@@ -125,6 +128,7 @@ export function control(path, field, { dispatch, now }) {
 
   return {
     root,
+    label: field.label,
     show(next, state) {
       place(state);
       const was = value;
@@ -139,6 +143,7 @@ export function control(path, field, { dispatch, now }) {
         typed = null;
         if (was !== undefined && document.activeElement !== input) flash(input);
       }
+      root.classList.toggle("long", !wide && input.value.length > LONG);
       if (unitSelect && next && typeof next === "object") unitSelect.value = Object.keys(next)[0];
       say(also, meaning(next, field, state));
     },

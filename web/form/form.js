@@ -25,8 +25,10 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
   let shape = "";
   /** @type {State} */
   let state;
-  const hand = createHand(root.closest("form") ?? root, () => draw(state));
+  const scroller = byId("sheet-scroll");
+  const hand = createHand(byId("sheet"), () => draw(state));
   showHints(root);
+  keepFocusInSight(scroller);
   /** The state that the form shows. @type {State | undefined} */
   let drawn;
   const kit = createKit({ samples, now: () => state, dispatch });
@@ -135,8 +137,7 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
     }
     if (before?.scenario !== next.scenario) showAbout(next);
     // Another experiment begins with what it is about.
-    if (before && before.origin !== next.origin && next.origin !== "own")
-      /** @type {Element} */ (root.closest(".sheet")).scrollTop = 0;
+    if (before && before.origin !== next.origin && next.origin !== "own") scroller.scrollTop = 0;
     const judged = held(next) !== "unjudged";
     if (judged && (before?.judgement !== next.judgement || before?.drafts !== next.drafts)) {
       showProblems(next, kit.controls, kit.groups);
@@ -152,7 +153,10 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
     }
     if (
       judged &&
-      (before?.judgement !== next.judgement || before?.drafts !== next.drafts || before?.result !== next.result)
+      (before?.judgement !== next.judgement ||
+        before?.drafts !== next.drafts ||
+        before?.result !== next.result ||
+        before?.unit !== next.unit)
     )
       showDerived(next, root);
   }
@@ -178,6 +182,14 @@ function showHints(root) {
     say(place, field?.querySelector(".hint")?.textContent ?? "");
   });
   root.addEventListener("focusout", () => say(place, ""));
+}
+
+/** The field that has the focus stays in sight when what is said under the form takes room. @param {HTMLElement} scroller */
+function keepFocusInSight(scroller) {
+  new ResizeObserver(() => {
+    const active = document.activeElement;
+    if (active && scroller.contains(active)) active.scrollIntoView({ block: "nearest" });
+  }).observe(scroller);
 }
 
 /**

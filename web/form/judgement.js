@@ -8,6 +8,9 @@ import { termButton } from "./term_button.js";
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("./control.js").Control} Control */
 
+/** Places that are told one by one. */
+const MAX_TOLD = 3;
+
 /** @param {State} state @param {Map<string, Control>} controls @param {Map<string, HTMLElement>} groups */
 export function showProblems(state, controls, groups) {
   const problems = [
@@ -37,28 +40,32 @@ export function showProblems(state, controls, groups) {
 
   const list = byId("problems");
   list.hidden = problems.length === 0;
-  const beside = problems.length - others.length;
   say(
     /** @type {Element} */ (list.querySelector("h2")),
     problems.length === 0 ? "" : state.result ? "Not run: the views show the last good result." : "Not run.",
   );
-  const items = others.map(({ path, message }) => element("li", {}, path ? `${path}: ${message}` : message));
-  const first = atField.keys().next().value;
-  const firstGroup = groups.get(atGroup.keys().next().value ?? "");
-  if (beside > 0) {
-    const text = beside === 1 ? "One field needs another value" : `${beside} fields need other values`;
-    items.unshift(
-      element(
-        "li",
-        {},
-        button(text, text, () => {
-          if (first !== undefined) controls.get(first)?.focus();
-          else firstGroup?.scrollIntoView({ block: "center" });
-        }),
-      ),
-    );
-  }
+  const fields = [...atField].map(([path, message]) => {
+    const control = /** @type {Control} */ (controls.get(path));
+    const text = `${nameOf(control)}: ${message}`;
+    return button(text, text, () => control.focus());
+  });
+  const parts = [...atGroup].map(([path, message]) =>
+    button(message, message, () => groups.get(path)?.scrollIntoView({ block: "center" })),
+  );
+  const ways = [...fields, ...parts];
+  const more = ways.length - MAX_TOLD;
+  const items = [
+    ...ways.slice(0, MAX_TOLD),
+    ...(more > 0 ? [`and ${counted(more, "other place")}`] : []),
+    ...others.map(({ path, message }) => (path ? `${path}: ${message}` : message)),
+  ].map((item) => element("li", {}, item));
   fill(/** @type {Element} */ (list.querySelector("ul")), ...items);
+}
+
+/** A field with the part of the form that it is in. @param {Control} control */
+function nameOf({ label, root }) {
+  const part = root.closest(".item")?.querySelector("legend")?.textContent;
+  return part ? `${label}, ${part}` : label;
 }
 
 /** Whether a path is another one, or of something in it. @param {string} path @param {string} other */
@@ -145,6 +152,9 @@ function rowsOf(state, derived) {
   const ticks = several ? derived.controllers[0].ticks : derived.ticks;
   const axes = derived.controllers.flatMap((controller) => controller.axes);
   const peak = Math.max(0, ...axes.map((axis) => axis.peak_speed_steps_s));
+  const way =
+    state.unit === "steps" ? null : axes.find((axis) => axis.peak_speed_steps_s === peak)?.[`step_${state.unit}`];
+  const along = way ? ` · ${short(peak * way, 5)}\u00a0${state.unit === "deg" ? "°" : "mm"}/s` : "";
   const load = derived.line_load;
   const { source, line } = state.scenario;
   const sends = "line" in source;
@@ -166,7 +176,7 @@ function rowsOf(state, derived) {
       "",
       "duration",
     ],
-    ["Peak rate", axes.length ? plain(peak, "steps/s") : "–", over ? "over" : "", "peak_rate"],
+    ["Peak rate", axes.length ? plain(peak, "steps/s") + along : "–", over ? "over" : "", "peak_rate"],
     ...(alone
       ? [/** @type {[string, string, string, string]} */ (["On the line", "nothing", "", "on_the_line"])]
       : /** @type {[string, string, string, string][]} */ ([

@@ -14,10 +14,10 @@ const CAPS = {
   pagedown: "Page down",
 };
 
-export function createKeys() {
+/** @param {() => Promise<unknown>} load  Loads what has keys of its own and may not be there yet. */
+export function createKeys(load) {
   const dialog = /** @type {HTMLDialogElement} */ (byId("keys"));
-  const open = () => {
-    if (dialog.open) return;
+  const list = () =>
     fill(
       byId("keys-list"),
       ...listed().flatMap(({ title, commands }) => [
@@ -32,7 +32,11 @@ export function createKeys() {
         ),
       ]),
     );
+  const open = () => {
+    if (dialog.open) return;
+    list();
     dialog.showModal();
+    load().then(list, () => {});
   };
   byId("help").addEventListener("click", open);
   byId("keys-close").addEventListener("click", () => dialog.close());

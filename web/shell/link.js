@@ -62,7 +62,8 @@ export function createLink({ engine, dispatch, now }) {
 
   /** The address at the page's start; after a reload it may only repeat the work that this tab kept. @param {boolean} saved */
   async function start(saved) {
-    if (!saved || history.state?.own !== true) return read();
+    // An address that this page wrote before a reload is no news.
+    if (!saved || history.state?.own !== true) return read(history.state !== null);
     written = location.hash;
     await open(location.hash.replace(/^#/, ""));
   }
@@ -75,18 +76,18 @@ export function createLink({ engine, dispatch, now }) {
     if (seen) dispatch({ type: "seen", text: seen });
   }
 
-  /** Reads the address; shows what it holds as a shared scenario, or says why it cannot. */
-  async function read() {
+  /** Reads the address; shows what it holds as a shared scenario, or says why it cannot. @param {boolean} [isKnown] */
+  async function read(isKnown = false) {
     const fragment = location.hash.replace(/^#/, "");
     written = location.hash;
     if (fragment === "") return;
     // A place in the page is no link; the address takes the scenario back.
     if (document.getElementById(fragment)) return write();
-    await openLink(fragment);
+    await openLink(fragment, isKnown);
   }
 
-  /** Shows the scenario of a link as a shared one, or says why it cannot. @param {string} fragment */
-  async function openLink(fragment) {
+  /** Shows the scenario of a link as a shared one and says so unless it is known, or says why it cannot. @param {string} fragment @param {boolean} [isKnown] */
+  async function openLink(fragment, isKnown = false) {
     try {
       const answer = await engine.ask("decode_link", fragment);
       if ("error" in answer) return refuse(answer.error);
@@ -94,10 +95,8 @@ export function createLink({ engine, dispatch, now }) {
       if (JSON.stringify(scenario) !== JSON.stringify(now().scenario)) {
         dispatch({ type: "replace", scenario, origin: "shared" });
         const name = scenario.title ? `“${scenario.title}”` : "a scenario";
-        dispatch({
-          type: "notice",
-          notice: { kind: "info", text: `Shared with you: ${name}.${ownIsKept()}` },
-        });
+        const text = `Shared with you: ${name}.${ownIsKept()}`;
+        if (!isKnown) dispatch({ type: "notice", notice: { kind: "info", text } });
       }
       await open(fragment);
     } catch (error) {

@@ -24,17 +24,23 @@ export function createNotices(page) {
   /** @param {string} id @param {string} text @param {Place | null | undefined} place @param {NonNullable<State["notice"]>["offer"]} [offer] */
   function tell(id, text, place, offer) {
     const line = byId(id);
-    line.hidden = text === "";
     const known = line.dataset.said;
     const key = JSON.stringify([text, place, offer?.label]);
     if (known === key) return;
     line.dataset.said = key;
+    line.hidden = text === "";
     fill(line, element("span", {}, text));
     if (place) line.append(button("Show the place", "Show the place", () => show(place)));
     if (offer) {
       const { label, scenario } = offer;
       line.append(button(label, label, () => dispatch({ type: "replace", scenario, origin: "own" })));
     }
+    const close = button("", "Close this message", () => {
+      line.hidden = true;
+      dispatch({ type: "notice", notice: null });
+    });
+    close.classList.add("close");
+    line.append(close);
   }
 
   /** Shows a time in the pulses. @param {Place} place */

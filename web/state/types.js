@@ -51,7 +51,7 @@
  *   least: {measured_cycles: number, cycle: number, channel: number} | null}} RuleResult
  * @typedef {{driver: string | null, total: number, rules: RuleResult[], violations: Violation[]}} Timing
  * @typedef {{fundamental_hz: number, periods: number, order: number, periodic: boolean,
- *   position: Float64Array, speed: Float64Array, acceleration: Float64Array,
+ *   position: Float64Array, speed: Float64Array, acceleration: Float64Array, acceleration_filtered?: Float64Array,
  *   thd_position: number | null, thd_speed: number | null, thd_acceleration: number | null, thd_acceleration_filtered: number | null}} Spectrum
  * @typedef {{axis: number, ideal: Spectrum | null, pulses: Spectrum | null, note: string}} Spectra
  *

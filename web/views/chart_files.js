@@ -10,7 +10,7 @@ import { color, drawing, font, picture } from "../time/plot.js";
 import { ask } from "./motion/ask.js";
 import { bandsOf, chartOf, QUANTITIES } from "./motion/bands.js";
 import { chosenSpectrum, spectrumChart } from "./spectrum/chart.js";
-import { distortion, given, overFrequency, UNITS } from "./spectrum/harmonics.js";
+import { distortion, given, nameOf, overFrequency, UNITS } from "./spectrum/harmonics.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../engine/engine.js").Engine} Engine */
@@ -85,7 +85,7 @@ export async function spectrumSheet(state, engine) {
     legend: all.map(([name]) => ({ name, ink: name === "ideal" ? "--ideal" : "--actual", dash: 0 })),
     panels: [
       {
-        caption: `amplitude of ${quantity}, ${db ? "dB of the fundamental" : UNITS[quantity]}, over ${overFrequency(all[0][1])}`,
+        caption: `amplitude of ${nameOf(quantity)}, ${db ? "dB of the fundamental" : UNITS[quantity]}, over ${overFrequency(all[0][1])}`,
         chart: spectrumChart(found, quantity, db, WIDTH),
         height: 2 * PANEL,
       },

@@ -170,6 +170,12 @@ fn several_problems_are_shown_at_once_and_each_goes_when_it_is_mended() -> Resul
                 );
             }
             ensure!(page.visible("#problems").await?, "the list of problems is hidden");
+            let listed = page.text("#problems").await?;
+            let told = wrong[index..].iter().filter(|(_, _, _, says)| listed.contains(says)).count();
+            ensure!(
+                told >= wrong.len().min(index + 3) - index,
+                "{told} are told, and where they are: {listed}"
+            );
             page.fill(mended, good).await?;
             let mended = page.find(&field(mended)).await?;
             page.until(&format!(

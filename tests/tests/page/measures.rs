@@ -147,6 +147,15 @@ fn the_sensors_bandwidth_is_a_field_and_its_distortion_stands_beside_the_acceler
         let text =
             said.rsplit_once("ideal ").map(|(_, rest)| rest.split(' ').next().unwrap_or("")).unwrap_or("");
         ensure!((text.parse::<f64>()? - wanted).abs() < 1e-3 * wanted, "{said} is not {wanted}");
+        // It is drawn, too: what a sensor lets through of each harmonic.
+        let drawn = "document.getElementById('spectrum-chart').toDataURL()";
+        let unfiltered: String = page.eval(drawn).await?;
+        page.choose("#spectrum-quantity", "acceleration_filtered").await?;
+        page.until("document.getElementById('thd').textContent.startsWith('THD of acceleration, filtered by the sensor to harmonic')").await?;
+        ensure!(page.text("#thd").await?.contains(text), "the same figure");
+        ensure!(page.eval::<String>(drawn).await? != unfiltered, "other stems");
+        page.click("#undo").await?;
+        page.until("document.getElementById('spectrum-quantity').value === 'acceleration'").await?;
         page.fill("analysis.sensor_hz", "-1").await?;
         page.ready().await?;
         ensure!(page.field("analysis.sensor_hz").await?.invalid);

@@ -8,7 +8,7 @@ import { ROW_PX, virtualRows } from "../virtual_rows.js";
 /** @typedef {import("../../state/types.js").PacketRow} PacketRow */
 /** @typedef {import("../../state/types.js").PacketPage} PacketPage */
 
-/** Room for a few bytes: the most that they get of a frame, where words say more than they do. */
+/** Room for a few bytes: the most that they get of a frame whose words need the rest. */
 const FEW_BYTES_PX = 104;
 /** Of the columns of bytes and of the outcome there is always so much. */
 const [LEAST_BYTES_PX, LEAST_OUTCOME_PX] = [80, 52];
@@ -186,11 +186,12 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
     measure("outcome", head, "outcome");
     measure("bytes", hex, ...rows.map((row) => row.hex));
     measure("bytes", head, "bytes (hex)");
-    // Of a frame the bytes say less than the words.
+    measure("meaning", plain, ...rows.map(worded));
+    // Of a frame the bytes say less than the words: they get what these leave.
     const framed = now().result?.summary.framed;
     const all = table.clientWidth - widest.index - widest.time;
-    const half = (all - widest.gap - widest.outcome) / 2;
-    const wanted = Math.min(widest.bytes, framed ? FEW_BYTES_PX : Math.max(half, FEW_BYTES_PX));
+    const both = all - widest.gap - widest.outcome;
+    const wanted = Math.min(widest.bytes, Math.max(framed ? both - widest.meaning : both / 2, FEW_BYTES_PX));
     const tight = all < wanted + widest.outcome + widest.gap + MEANING_PX;
     const room = all - (tight ? 0 : widest.gap);
     const bytes = Math.max(Math.min(LEAST_BYTES_PX, wanted), Math.min(wanted, room - widest.outcome - MEANING_PX));

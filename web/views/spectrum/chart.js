@@ -3,7 +3,7 @@ import { byId } from "../../dom.js";
 import { si } from "../../state/number.js";
 import { color } from "../../time/plot.js";
 import { frequency } from "./frequency.js";
-import { FLOOR_DB, given, heard, reference } from "./harmonics.js";
+import { amplitudesOf, FLOOR_DB, given, heard, reference } from "./harmonics.js";
 
 /** @typedef {import("../../state/types.js").Spectra} Spectra */
 /** @typedef {import("./harmonics.js").Quantity} Quantity */
@@ -65,7 +65,7 @@ function logarithmic(min, max, wanted) {
 export function spectrumChart(spectra, quantity, db, width) {
   const all = given(spectra);
   const [, { fundamental_hz }] = all[0];
-  const order = Math.max(...all.map(([, spectrum]) => spectrum[quantity].length));
+  const order = Math.max(...all.map(([, spectrum]) => amplitudesOf(spectrum, quantity).length));
   frequency.of(fundamental_hz, order);
   const { start: min, end: max } = frequency.hertz();
   const from = Math.max(1, Math.ceil(min / fundamental_hz));
@@ -78,9 +78,10 @@ export function spectrumChart(spectra, quantity, db, width) {
   const stems = all.map(([name, spectrum]) => ({
     name,
     spectrum,
-    shown: strongest(spectrum[quantity], pixel, from, to),
+    amplitudes: amplitudesOf(spectrum, quantity),
+    shown: strongest(amplitudesOf(spectrum, quantity), pixel, from, to),
   }));
-  const top = Math.max(1e-12, ...stems.flatMap(({ spectrum, shown }) => shown.map((n) => spectrum[quantity][n - 1])));
+  const top = Math.max(1e-12, ...stems.flatMap(({ amplitudes, shown }) => shown.map((n) => amplitudes[n - 1])));
   return {
     x: {
       min: start,
@@ -93,7 +94,7 @@ export function spectrumChart(spectra, quantity, db, width) {
     y: db
       ? { min: FLOOR_DB, max: 10, unit: "dB", prefix: false, label_px: GUTTER }
       : { min: 0, max: top * 1.1, unit: "", prefix: true, label_px: GUTTER },
-    series: stems.map(({ name, spectrum, shown }) => ({
+    series: stems.map(({ name, spectrum, amplitudes, shown }) => ({
       color: color(name === "ideal" ? "--ideal" : "--actual"),
       opacity: 1,
       width: thick,
@@ -102,7 +103,7 @@ export function spectrumChart(spectra, quantity, db, width) {
         stems: {
           shift: all.length === 1 ? 0 : (name === "ideal" ? -1 : 1) * (thick / 2 + 0.5),
           y: shown.map((n) => {
-            const amplitude = spectrum[quantity][n - 1];
+            const amplitude = amplitudes[n - 1];
             return db ? 20 * Math.log10(heard(amplitude) / reference(spectrum, quantity)) : amplitude;
           }),
         },

@@ -3,7 +3,7 @@ import { short, si } from "../../state/number.js";
 
 /** @typedef {import("../../state/types.js").Spectrum} Spectrum */
 /** @typedef {import("../../state/types.js").Spectra} Spectra */
-/** @typedef {"position" | "speed" | "acceleration"} Quantity */
+/** @typedef {"position" | "speed" | "acceleration" | "acceleration_filtered"} Quantity */
 /** @typedef {{name: string, amplitude: number, part: number}} Part  Part of the fundamental; 0 where there is nothing but rounding. */
 
 /** Lowest level of the dB scale. */
@@ -13,11 +13,27 @@ const NOISE = 1e-11;
 /** And so it is below this many steps, steps/s or steps/s². */
 const LEAST = 1e-9;
 
-export const UNITS = { position: "steps", speed: "steps/s", acceleration: "steps/s²" };
+export const UNITS = {
+  position: "steps",
+  speed: "steps/s",
+  acceleration: "steps/s²",
+  acceleration_filtered: "steps/s²",
+};
+
+/** A quantity in words. @param {Quantity} quantity */
+export function nameOf(quantity) {
+  return quantity === "acceleration_filtered" ? "acceleration, filtered by the sensor" : quantity;
+}
+
+/** Amplitudes of a quantity that is there. @param {Spectrum} spectrum @param {Quantity} quantity */
+export function amplitudesOf(spectrum, quantity) {
+  return /** @type {Float64Array} */ (spectrum[quantity]);
+}
 
 /** What the parts are parts of: the fundamental, or the greatest line where there is no fundamental. @param {Spectrum} spectrum @param {Quantity} quantity */
 export function reference(spectrum, quantity) {
-  return Math.max(LEAST, spectrum.periodic ? spectrum[quantity][0] : Math.max(...spectrum[quantity]));
+  const amplitudes = amplitudesOf(spectrum, quantity);
+  return Math.max(LEAST, spectrum.periodic ? amplitudes[0] : Math.max(...amplitudes));
 }
 
 /** @param {number} amplitude */
@@ -36,13 +52,14 @@ export function given({ ideal, pulses }) {
 /** @param {Spectra} spectra @param {Quantity} quantity @returns {{n: number, hz: number, parts: Part[]}[]} */
 export function harmonics(spectra, quantity) {
   const all = given(spectra);
-  const length = Math.max(0, ...all.map(([, spectrum]) => spectrum[quantity].length));
+  const length = Math.max(0, ...all.map(([, spectrum]) => amplitudesOf(spectrum, quantity).length));
   return Array.from({ length }, (_, i) => ({
     n: i + 1,
     hz: all[0][1].fundamental_hz * (i + 1),
     parts: all.map(([name, spectrum]) => {
-      const part = heard(spectrum[quantity][i]) / reference(spectrum, quantity);
-      return part >= NOISE ? { name, amplitude: spectrum[quantity][i], part } : { name, amplitude: 0, part: 0 };
+      const amplitude = amplitudesOf(spectrum, quantity)[i];
+      const part = heard(amplitude) / reference(spectrum, quantity);
+      return part >= NOISE ? { name, amplitude, part } : { name, amplitude: 0, part: 0 };
     }),
   }));
 }
@@ -84,7 +101,7 @@ export function distortion(spectra, quantity) {
     .join(", ");
   const [first] = given(spectra);
   const to = first ? ` to harmonic ${first[1].order}` : "";
-  return `THD of ${quantity}${to}, axis ${spectra.axis}: ${parts.join(", ")}${through && `; filtered by the sensor: ${through}`}`;
+  return `THD of ${nameOf(quantity)}${to}, axis ${spectra.axis}: ${parts.join(", ")}${through && `; filtered by the sensor: ${through}`}`;
 }
 
 /** What the axis of frequencies is called. @param {Spectrum} some */

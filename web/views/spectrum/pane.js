@@ -34,18 +34,24 @@ export function createSpectrum({ engine, dispatch, now }) {
         return;
       }
       spectra = answer;
-      dispatch({ type: "bare", view: "spectrum", bare: !(answer.ideal ?? answer.pulses)?.periodic });
+      const bare = !(answer.ideal ?? answer.pulses)?.periodic;
+      dispatch({ type: "bare", view: "spectrum", bare });
+      // Until the view has drawn it, and where there is no room to, the figure before is not this run's.
+      if (bare) say(byId("thd"), "");
       say(note, answer.note);
     }
     if (!spectra || spectra === drawn || !split.checkVisibility()) return;
-    try {
-      const { createSpectrumView } = await import("./spectrum.js");
-      view ??= createSpectrumView({ dispatch, now });
-    } catch {
-      return say(note, "The spectrum could not be loaded; fold and unfold it when the network is there.");
-    }
+    const loaded = await load().catch(() => null);
+    if (!loaded) return say(note, "The spectrum could not be loaded; fold and unfold it when the network is there.");
     drawn = spectra;
-    await view.take(spectra);
+    await loaded.take(spectra);
+  }
+
+  /** What draws it, with its keys. */
+  async function load() {
+    const { createSpectrumView } = await import("./spectrum.js");
+    view ??= createSpectrumView({ dispatch, now });
+    return view;
   }
 
   /** @param {State} state @param {State | undefined} before */
@@ -54,5 +60,5 @@ export function createSpectrum({ engine, dispatch, now }) {
     if (before?.result !== state.result) return refresh(state);
     return undefined;
   }
-  return { render };
+  return { render, load };
 }

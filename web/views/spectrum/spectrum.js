@@ -10,7 +10,7 @@ import { cleared, color, draw, fit, watch } from "../../time/plot.js";
 import { chosenSpectrum, spectrumChart } from "./chart.js";
 import { createFields } from "./fields.js";
 import { frequency } from "./frequency.js";
-import { describe, distortion, harmonics, method, overFrequency, UNITS, value } from "./harmonics.js";
+import { describe, distortion, harmonics, method, nameOf, overFrequency, UNITS, value } from "./harmonics.js";
 import { createHarmonicsTable } from "./table.js";
 
 /** @typedef {import("../../state/types.js").State} State */
@@ -145,6 +145,11 @@ export function createSpectrumView({ dispatch, now }) {
   /** Draws other spectra, once the curves and pulses are on the screen: a key that is pressed meanwhile waits for one of them, not for all. @param {Spectra} found */
   async function take(found) {
     spectra = found;
+    // What a sensor lets through is there where there is one.
+    const select = /** @type {HTMLSelectElement} */ (byId("spectrum-quantity"));
+    const filtered = select.options[select.options.length - 1];
+    filtered.hidden = !(found.ideal ?? found.pulses)?.acceleration_filtered;
+    if (filtered.hidden && filtered.selected) select.value = "acceleration";
     await new Promise((shown) => requestAnimationFrame(() => setTimeout(shown)));
     paint();
   }
@@ -176,7 +181,7 @@ export function createSpectrumView({ dispatch, now }) {
       const { start, end } = frequency.hertz();
       canvas.setAttribute(
         "aria-label",
-        `Spectrum of ${quantity} in ${db ? "dB" : "plain amplitudes"}, ${si(start, "Hz")} to ${si(end, "Hz")}, ${rows.length} harmonics of ${si(rows[0].hz, "Hz")}; the table has the numbers`,
+        `Spectrum of ${nameOf(quantity)} in ${db ? "dB" : "plain amplitudes"}, ${si(start, "Hz")} to ${si(end, "Hz")}, ${rows.length} harmonics of ${si(rows[0].hz, "Hz")}; the table has the numbers`,
       );
       fields.render(frequency.hertz());
     }

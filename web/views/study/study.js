@@ -11,6 +11,7 @@ import { listen } from "../../shell/commands.js";
 import { arrows, choose } from "../../shell/tabs.js";
 import { STUDIES } from "../../shell/view_part.js";
 import { selected } from "../../state/state.js";
+import { place } from "./selected_axis.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{engine: import("../../engine/engine.js").Engine, samples: import("../../form/kit.js").Samples} & import("../../state/types.js").Page} Given */
@@ -99,9 +100,22 @@ export function createStudy(page) {
     return render(now());
   }
 
+  let wasOpened = false;
+  /** A sine makes no n steps in a time that could be compared: the study of one begins with its own tab. @param {State} state */
+  function begins(state) {
+    const first = !wasOpened;
+    wasOpened = true;
+    return (
+      first &&
+      state.study === STUDIES[0] &&
+      place(state).moves?.some((/** @type {object} */ move) => "sine" in move || "sine_segments" in move)
+    );
+  }
+
   /** @param {State} state @returns {any} */
   function render(state) {
     const open = state.view === "study";
+    if (open && begins(state)) return dispatch({ type: "study", study: "sine" });
     byId("study").setAttribute("aria-pressed", String(open));
     for (const { name, tab, panel } of all) {
       choose(tab, name === state.study);
