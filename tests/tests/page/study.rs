@@ -272,6 +272,7 @@ fn a_long_sweep_says_how_far_it_is_and_is_left_off() -> Result<()> {
             "/^[1-9]\\d* of 20000 points/.test(document.querySelector('#study-sine .study-job').innerText)",
         )
         .await?;
+        page.until("document.querySelector('#study-sine .study-job button').offsetWidth > 0").await?;
         // By its key: the button may move while the numbers beside it grow.
         page.press("#study-sine .study-job button", &ENTER.to_string()).await?;
         page.until("document.querySelector('#study-sine .study-job').innerText.startsWith('Left off: ')")
