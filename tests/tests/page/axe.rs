@@ -7,7 +7,7 @@ use std::fs;
 use anyhow::{Context, Result, ensure};
 use serde_json::json;
 
-use crate::{bench::in_browser_shipped, browser::named, session::Session};
+use crate::{bench::in_browser, browser::named, session::Session};
 
 const RUN: &str = "
     const tags = ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice'];
@@ -43,7 +43,7 @@ fn none(wrong: &[String]) -> Result<()> {
 
 #[test]
 fn axe_finds_nothing_on_a_wide_screen_in_any_colours() -> Result<()> {
-    in_browser_shipped(|page| async move {
+    in_browser(|page| async move {
         let mut wrong = Vec::new();
         page.open("").await?;
         for (state, features) in [
@@ -60,7 +60,7 @@ fn axe_finds_nothing_on_a_wide_screen_in_any_colours() -> Result<()> {
 
 #[test]
 fn axe_finds_nothing_in_any_kind_of_experiment() -> Result<()> {
-    in_browser_shipped(|page| async move {
+    in_browser(|page| async move {
         let mut wrong = Vec::new();
         page.open("").await?;
         for preset in ["driver-timing-broken", "four-controllers-framed", "sonobe-2011-segments"] {
@@ -74,7 +74,7 @@ fn axe_finds_nothing_in_any_kind_of_experiment() -> Result<()> {
 
 #[test]
 fn axe_finds_nothing_in_any_tab_of_the_study() -> Result<()> {
-    in_browser_shipped(|page| async move {
+    in_browser(|page| async move {
         let mut wrong = Vec::new();
         page.open("").await?;
         page.choose("#preset", "sine-2022-d0006").await?;
@@ -94,7 +94,7 @@ fn axe_finds_nothing_in_any_tab_of_the_study() -> Result<()> {
 
 #[test]
 fn axe_finds_nothing_on_a_narrow_screen_at_any_tab() -> Result<()> {
-    in_browser_shipped(|page| async move {
+    in_browser(|page| async move {
         let mut wrong = Vec::new();
         page.screen(390, 844).await?;
         page.open("").await?;
@@ -116,7 +116,7 @@ fn axe_finds_nothing_on_a_narrow_screen_at_any_tab() -> Result<()> {
 
 #[test]
 fn axe_finds_nothing_where_something_is_wrong_or_asked() -> Result<()> {
-    in_browser_shipped(|page| async move {
+    in_browser(|page| async move {
         let mut wrong = Vec::new();
         page.open("#c=1.z.broken").await?;
         look(&page, "a broken link", &mut wrong).await?;

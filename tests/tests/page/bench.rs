@@ -38,7 +38,7 @@ pub(crate) struct Bench {
     visitors: Mutex<Vec<(Session, Option<Lent>)>>,
 }
 
-/// Runs `test` in a Chromium that other tests use too, as a visitor that it has never seen.
+/// Runs `test` with the page as it is shipped in a Chromium that other tests use too, as a visitor that it has never seen.
 pub(crate) fn in_browser<T, F>(test: T) -> Result<()>
 where
     T: FnOnce(Session) -> F,
@@ -57,13 +57,14 @@ fn web() -> Result<PathBuf> {
     named("STEPSCOPE_WEB").map(PathBuf::from)
 }
 
-/// As [`in_browser`], with the page as it is shipped.
-pub(crate) fn in_browser_shipped<T, F>(test: T) -> Result<()>
+/// As [`in_browser`], with the page's sources, of which single modules can be tested. They are many files: they take
+/// longer to load.
+pub(crate) fn in_sources<T, F>(test: T) -> Result<()>
 where
     T: FnOnce(Session) -> F,
     F: Future<Output = Result<()>> + 'static,
 {
-    in_engine_at(pool::served(&dist()?)?, Browser::Chromium, test)
+    in_engine_at(pool::served(&web()?)?, Browser::Chromium, test)
 }
 
 /// As [`in_browser`], with the page at the address of a server of the test's own.
@@ -81,7 +82,7 @@ where
     T: FnOnce(Session) -> F,
     F: Future<Output = Result<()>> + 'static,
 {
-    in_engine_at(pool::served(&web()?)?, browser, test)
+    in_engine_at(pool::served(&dist()?)?, browser, test)
 }
 
 fn in_engine_at<T, F>(page: String, browser: Browser, test: T) -> Result<()>

@@ -14,7 +14,7 @@ use stepscope_core::{
 };
 
 use crate::{
-    bench::in_browser,
+    bench::{in_browser, in_sources},
     links::{copied, whole},
     native::{Known, with_distance},
     session::Session,
@@ -147,7 +147,7 @@ const CUTS: &str = "
 
 #[test]
 fn no_cut_and_no_changed_character_of_a_view_does_more_than_leave_parts_out() -> Result<()> {
-    in_browser(|page| async move {
+    in_sources(|page| async move {
         page.open("").await?;
         let script = format!("return (async () => {{ {CUTS} }})();");
         let found: Value = page.js(&script, vec![]).await?;

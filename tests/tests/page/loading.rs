@@ -3,7 +3,7 @@
 use anyhow::{Result, ensure};
 use serde::Deserialize;
 
-use crate::{bench::in_browser_shipped, session::Session};
+use crate::{bench::in_browser, session::Session};
 
 /// Notes, from the document's beginning on, what the browser measures of the visit.
 const OBSERVE: &str = "{
@@ -29,7 +29,7 @@ async fn seen(page: &Session) -> Result<Seen> {
 
 #[test]
 fn all_that_loads_is_of_this_site_and_the_core_is_fetched_once() -> Result<()> {
-    in_browser_shipped(|page| async move {
+    in_browser(|page| async move {
         page.before_scripts(OBSERVE).await?;
         page.open("").await?;
         let names: Vec<String> =
@@ -48,7 +48,7 @@ fn all_that_loads_is_of_this_site_and_the_core_is_fetched_once() -> Result<()> {
 
 #[test]
 fn nothing_moves_while_the_page_comes_in() -> Result<()> {
-    in_browser_shipped(|page| async move {
+    in_browser(|page| async move {
         page.before_scripts(OBSERVE).await?;
         for (width, height) in [(1440, 900), (1024, 768), (390, 844)] {
             page.screen(width, height).await?;

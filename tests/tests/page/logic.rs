@@ -8,7 +8,7 @@ use stepscope_core::{
 };
 
 use crate::{
-    bench::in_browser,
+    bench::{in_browser, in_sources},
     native::Known,
     session::{ENTER, RELEASE, SHIFT, Session},
 };
@@ -95,7 +95,7 @@ fn bytes_and_fields_are_decoded_lit_in_all_views_and_choose_their_packet() -> Re
 
 #[test]
 fn frames_and_replies_are_decoded_to_their_fields() -> Result<()> {
-    in_browser(|page| async move {
+    in_sources(|page| async move {
         let known = preset("framed-link")?;
         open(&page, &known).await?;
         // One frame and its reply fill the view.

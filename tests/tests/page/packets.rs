@@ -9,7 +9,7 @@ use stepscope_core::{
 };
 
 use crate::{
-    bench::in_browser,
+    bench::{in_browser, in_sources},
     native::Known,
     session::{CONTROL, ENTER, RELEASE, Session, WINDOW_S},
 };
@@ -250,7 +250,7 @@ fn bytes_are_copied_as_hex_and_selected_where_the_browser_refuses() -> Result<()
 #[test]
 fn files_hold_all_rows_those_on_show_or_those_between_the_cursors() -> Result<()> {
     let known = preset("framed-noisy-line")?;
-    in_browser(move |page| async move {
+    in_sources(move |page| async move {
         open(&page, &known).await?;
         let log = &known.recording.packets;
         let made = "const { packetFiles } = await import('./views/packets/files.js');

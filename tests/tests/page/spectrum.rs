@@ -9,7 +9,7 @@ use serde::Deserialize;
 use serde_json::json;
 
 use crate::{
-    bench::in_browser,
+    bench::{in_browser, in_sources},
     session::{CONTROL, END, ENTER, RELEASE, Session},
 };
 
@@ -34,7 +34,7 @@ async fn open_large(page: &Session) -> Result<()> {
 
 #[test]
 fn the_spectrum_loads_when_there_is_room_for_it() -> Result<()> {
-    in_browser(|page| async move {
+    in_sources(|page| async move {
         let loaded = "performance.getEntriesByType('resource').some(({ name }) => name.includes('/spectrum/spectrum'))";
         page.open("").await?;
         ensure!(!page.eval::<bool>(loaded).await?, "one move has no harmonics to draw");

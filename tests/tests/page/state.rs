@@ -3,7 +3,7 @@
 use anyhow::{Result, ensure};
 use serde::Deserialize;
 
-use crate::bench::in_browser;
+use crate::bench::in_sources;
 
 #[derive(Deserialize)]
 struct Outcome {
@@ -13,7 +13,7 @@ struct Outcome {
 
 #[test]
 fn every_message_leads_to_the_state_that_it_should() -> Result<()> {
-    in_browser(|page| async move {
+    in_sources(|page| async move {
         page.open("").await?;
         let Outcome { cases, failures } = page.js(include_str!("state_cases.js"), vec![]).await?;
         ensure!(cases > 50, "only {cases} cases came back");

@@ -12,7 +12,7 @@ use stepscope_core::{
 };
 
 use crate::{
-    bench::in_browser,
+    bench::{in_browser, in_sources},
     native::{Known, problems},
     session::{ENTER, SHIFT, Session, field},
 };
@@ -31,7 +31,7 @@ const FOCUS: &str = "document.activeElement.id";
 
 #[test]
 fn a_new_visitor_is_offered_the_guide_once_and_it_points_at_what_is_there() -> Result<()> {
-    in_browser(|page| async move {
+    in_sources(|page| async move {
         for (width, height) in [(1440, 900), (390, 844)] {
             page.screen(width, height).await?;
             page.js::<Value>("localStorage.clear(); return null;", vec![]).await.ok();
@@ -83,7 +83,7 @@ const FIELDS: &str = "import('./form/schema.js').then(({ labels, fieldsOfKind })
 
 #[test]
 fn every_field_of_the_form_is_explained() -> Result<()> {
-    in_browser(|page| async move {
+    in_sources(|page| async move {
         page.open("").await?;
         for id in
             ["driver-timing-broken", "sonobe-2011-segments", "glitches-and-breaks", "two-controllers-raw"]
@@ -105,7 +105,7 @@ fn every_field_of_the_form_is_explained() -> Result<()> {
 
 #[test]
 fn every_kind_of_move_has_a_form_with_all_of_its_fields() -> Result<()> {
-    in_browser(|page| async move {
+    in_sources(|page| async move {
         page.open("").await?;
         let found: BTreeMap<String, BTreeSet<String>> = page.eval(FIELDS).await?;
         for kind in Move::KINDS {
@@ -160,7 +160,7 @@ fn a_word_opens_its_card_by_pointer_and_by_key_and_escape_closes_it() -> Result<
 
 #[test]
 fn the_help_lists_every_key_and_the_help_page_every_term_and_document() -> Result<()> {
-    in_browser(|page| async move {
+    in_sources(|page| async move {
         page.open("").await?;
         for (at, key) in [("#charts", F1), ("#pulses", '?')] {
             page.press(at, &key.to_string()).await?;
