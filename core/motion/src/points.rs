@@ -27,8 +27,8 @@
 //! ```
 
 use crate::{
-    Curve, Peaks, curve::greater, cycle_time::CycleTime, exact::Exact, format::grouped, hermite::Cubic,
-    round_half_up,
+    Curve, Peaks, crossing::Rounding, curve::greater, cycle_time::CycleTime, double::Double, exact::Exact,
+    format::grouped, hermite::Cubic, round_half_up,
 };
 use alloc::{format, string::String, vec::Vec};
 
@@ -140,22 +140,22 @@ pub(super) struct Due<'p> {
 }
 
 impl Due<'_> {
-    /// When, in cycles of a clock of `clock_hz` after `start`.
+    /// When, in cycles of a clock of `clock_hz`, and its cycle, of a move that begins at `start`.
     ///
     /// On a straight piece that is a quotient of decimals. A time in f64 is off by some last digits; where these could
     /// decide the rounding, the quotient does.
-    pub(super) fn cycles(&self, start: CycleTime, clock_hz: u32) -> CycleTime {
+    pub(super) fn cycle(&self, start: CycleTime, clock_hz: u32) -> (f64, u64) {
         let clock = f64::from(clock_hz);
-        let time = CycleTime::of(start.cycles() + self.piece.time_s(self.place) * clock);
-        let digits = 1e-12 + 1e-14 * time.cycles();
-        if self.between == Between::Smooth || libm::fabs(time.part - 0.5) > digits {
-            return time;
-        }
-        let Cubic { from_s, to_s, from, to, .. } = *self.piece;
-        let way = |a: f64, b: f64| if a < b { Exact::difference(b, a) } else { Exact::difference(a, b) };
-        let since = way(from, self.place).times(way(from_s, to_s).nearest()).times(clock);
-        let since = since.divided_by(way(from, to).nearest());
-        start.plus(CycleTime::exact(&Exact::of(from_s).times(clock))).plus(CycleTime::exact(&since))
+        let cycles = self.piece.time_s(self.place) * clock;
+        let instant = start.cycles() + cycles;
+        let off = if self.between == Between::Smooth { -1.0 } else { 1e-12 + 1e-14 * instant };
+        let cycle = Rounding::new(start, off).cycle((0, cycles), |since| {
+            let Cubic { from_s, to_s, from, to, .. } = *self.piece;
+            let way = |a: f64, b: f64| Exact::difference(b, a).double();
+            let past = way(from, self.place) * way(from_s, to_s) / way(from, to);
+            (since / clock.into()).exceeds(Double::decimal(from_s) + past)
+        });
+        (instant, cycle)
     }
 }
 

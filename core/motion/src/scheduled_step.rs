@@ -5,14 +5,16 @@
 //! ```
 //!
 //! A move's own times are formed in cycles from its start, those of a timer's table and of one rate in whole
-//! numbers; to them comes the start of the move, which the decimals of those before it make, and the sum is rounded once.
+//! numbers, those of a curve in f64; to them comes the start of the move, which the decimals of those before it make, and
+//! the sum is rounded once. Where the digits of an f64 do not decide that, `crossing` does.
 
 use crate::{
     AxisPlan, Curve, Profile,
-    cycle_time::{CycleTime, EvenSteps},
+    crossing::{MAX_OFF, Rounding},
+    cycle_time::{CycleTime, EvenSteps, Quotient},
+    double::Double,
     exact::Exact,
     profile::each,
-    step_times::cycle,
 };
 use alloc::boxed::Box;
 
@@ -58,9 +60,9 @@ fn due_from(
     clock_hz: u32,
 ) -> Box<dyn Iterator<Item = (f64, ScheduledStep)> + '_> {
     let (right, count) = (profile.steps() >= 0, profile.steps().unsigned_abs());
-    let exactly = move |since: CycleTime| {
-        let time = start.plus(since);
-        (time.cycles(), ScheduledStep { cycle: time.cycle(), right })
+    let exactly = move |since: Quotient| {
+        let time = start.plus(CycleTime { whole: since.whole, part: since.part().into() });
+        (time.cycles(), ScheduledStep { cycle: since.cycle(start), right })
     };
     let even = match profile {
         Profile::Constant(constant) => EvenSteps::new(libm::fabs(constant.speed(0.0)), clock_hz, count),
@@ -71,19 +73,23 @@ fn due_from(
             Box::new((1..=count).map(move |k| exactly(table.step_time(k, clock_hz))))
         }
         (Profile::Points(points), _) => Box::new(points.due().map(move |(due, right)| {
-            let time = due.cycles(start, clock_hz);
-            (time.cycles(), ScheduledStep { cycle: time.cycle(), right })
+            let (instant, cycle) = due.cycle(start, clock_hz);
+            (instant, ScheduledStep { cycle, right })
         })),
         (_, Some(even)) => Box::new((1..=count).zip(even.steps()).map(move |(_, since)| exactly(since))),
         (profile, None) => {
+            let (rounding, is_due_before) = profile.rounding(start, clock_hz);
             let start = start.cycles();
-            Box::new(due(profile, clock_hz).map(move |(cycles, right)| {
-                let instant = start + cycles;
-                (instant, ScheduledStep { cycle: cycle(instant), right })
+            Box::new((1..).zip(due(profile, clock_hz)).map(move |(k, (cycles, right))| {
+                let cycle = rounding.cycle((0, cycles), |since| is_due_before(k, since));
+                (start + cycles, ScheduledStep { cycle, right })
             }))
         }
     }
 }
+
+/// Whether a step (from 1) is due before a time in cycles from its move's start.
+type IsDueBefore<'p> = Box<dyn Fn(u64, Double) -> bool + 'p>;
 
 impl Profile {
     /// How long the move lasts: what its decimals make, where it is told by them.
@@ -92,7 +98,7 @@ impl Profile {
         let told =
             |duration_s: f64, times: f64| CycleTime::exact(&Exact::of(duration_s).times(times).times(clock));
         match self {
-            Self::TrapezoidTable(table) => table.step_time(self.steps().unsigned_abs(), clock_hz),
+            Self::TrapezoidTable(table) => table.step_time(self.steps().unsigned_abs(), clock_hz).time(),
             Self::Constant(constant) => {
                 let steps = Exact::of(self.steps().unsigned_abs() as f64).times(clock);
                 CycleTime::exact(&steps.divided_by(libm::fabs(constant.speed(0.0))))
@@ -103,9 +109,20 @@ impl Profile {
                 told(self.duration_s(), 1.0)
             }
             Self::Trapezoid(_) | Self::Staircase(_) | Self::Sliced(_) | Self::JerkLimited(_) => {
-                CycleTime::of(self.duration_s() * clock)
+                CycleTime::of((self.duration_s() * clock).into())
             }
         }
+    }
+
+    /// How the times of its steps in f64 become cycles, if it starts at `start`, and what judges them where they do not
+    /// tell.
+    fn rounding(&self, start: CycleTime, clock_hz: u32) -> (Rounding, IsDueBefore<'_>) {
+        let cycles = self.duration_s() * f64::from(clock_hz);
+        let is_due_before: IsDueBefore<'_> = match self {
+            Self::Sine(sine) => Box::new(sine.is_due_before(clock_hz)),
+            _ => return (Rounding::new(start, -1.0), Box::new(|_, _| false)),
+        };
+        (Rounding::new(start, MAX_OFF * cycles), is_due_before)
     }
 
     /// The cycle of step `k` (from 1) after the move's start, of a clock of `clock_hz`, without iterating
@@ -115,26 +132,27 @@ impl Profile {
         if k == 0 || k > self.step_count() {
             return None;
         }
-        let (clock, place) = (f64::from(clock_hz), k as f64 - 0.5);
+        let (clock, place, start) = (f64::from(clock_hz), k as f64 - 0.5, CycleTime::default());
         let cycles = match self {
             Self::Trapezoid(curve) => return curve.step_times(clock_hz).nth(usize::try_from(k - 1).ok()?),
-            Self::TrapezoidTable(table) => return Some(table.step_time(k, clock_hz).cycle()),
+            Self::TrapezoidTable(table) => return Some(table.step_time(k, clock_hz).cycle(start)),
             Self::Staircase(staircase) => staircase.step_s(k) * clock,
             Self::Sine(sine) => sine.due_half(k) * (sine.period_s() / 2.0 * clock),
             Self::Points(points) => {
-                return Some(points.step(k)?.cycles(CycleTime::default(), clock_hz).cycle());
+                return Some(points.step(k)?.cycle(start, clock_hz).1);
             }
             Self::Constant(constant) => {
                 let speed = libm::fabs(constant.speed(0.0));
                 match EvenSteps::new(speed, clock_hz, self.step_count()) {
-                    Some(even) => return Some(even.step(k).cycle()),
+                    Some(even) => return Some(even.step(k).cycle(start)),
                     None => place * (clock / speed),
                 }
             }
             Self::SineSegments(_) | Self::Dwell(_) => return None,
             one_way => one_way.time_s(place) * clock,
         };
-        Some(cycle(cycles))
+        let (rounding, is_due_before) = self.rounding(start, clock_hz);
+        Some(rounding.cycle((0, cycles), |since| is_due_before(k, since)))
     }
 }
 
@@ -151,7 +169,7 @@ fn due(profile: &Profile, clock_hz: u32) -> Due<'_> {
         }
         // In whole numbers, and rounded once: `due_from`.
         Profile::TrapezoidTable(table) => {
-            Box::new(steps.map(move |k| (table.step_time(k, clock_hz).cycles(), right)))
+            Box::new(steps.map(move |k| (table.step_time(k, clock_hz).time().cycles(), right)))
         }
         Profile::Staircase(staircase) => Box::new(steps.map(move |k| (staircase.step_s(k) * clock, right))),
         Profile::SineSegments(sine) => {
@@ -164,9 +182,7 @@ fn due(profile: &Profile, clock_hz: u32) -> Due<'_> {
         }
         // Rounded once: `due_from`.
         Profile::Points(points) => Box::new(
-            points
-                .due()
-                .map(move |(due, right)| (due.cycles(CycleTime::default(), clock_hz).cycles(), right)),
+            points.due().map(move |(due, right)| (due.cycle(CycleTime::default(), clock_hz).0, right)),
         ),
         Profile::Constant(constant) => {
             let cycles_per_step = clock / libm::fabs(constant.speed(0.0));

@@ -1,0 +1,38 @@
+//! Where a motion ideally is, from the design's own formulas (DESIGN B2, B4, B6) in [`Fixed`] numbers, and nothing of the
+//! planners' ways to get there.
+
+use crate::fixed::{Fixed, PI, decimal, whole};
+use std::cmp::Ordering;
+
+/// Whether a move has less than the place of step k behind it at a time in s, just that, or more; both from its start.
+type Compare = Box<dyn Fn(u64, &Fixed) -> Ordering>;
+
+pub(crate) struct Ideal {
+    pub(crate) duration: Fixed,
+    pub(crate) compare: Compare,
+}
+
+fn place(k: u64) -> Fixed {
+    whole(2 * k as i64 - 1) / whole(2)
+}
+
+/// Half periods from one extreme to the other, A*(1 - cos(2*pi*t/T)).
+pub(crate) fn sine(amplitude: i64, period_s: f64, periods: u32) -> Ideal {
+    let (amplitude, period) = (amplitude.abs(), decimal(period_s));
+    let half = period.clone() / whole(2);
+    let travel = 2 * amplitude as u64;
+    let duration = period.clone() * whole(periods.into());
+    let compare = move |k: u64, t: &Fixed| {
+        let since = t.clone() - half.clone() * whole(((k - 1) / travel) as i64);
+        if !since.is_positive() {
+            return Ordering::Less;
+        }
+        if (since.clone() - half.clone()).is_positive() {
+            return Ordering::Greater;
+        }
+        let phase = whole(2) * PI.clone() * since / period.clone();
+        let travelled = whole(amplitude) * (whole(1) - phase.cosine());
+        travelled.order(&place((k - 1) % travel + 1))
+    };
+    Ideal { duration, compare: Box::new(compare) }
+}

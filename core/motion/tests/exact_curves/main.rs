@@ -1,0 +1,199 @@
+//! Every step has the cycle that B1 gives it: floor(t*clock_hz + 1/2), t being where the curve crosses its place, and every
+//! number the decimal that is printed for it. Held against numbers of 320 bits.
+//!
+//! ```text
+//! cycle c of step k    s((c - 1/2)/clock) <= k - 1/2 < s((c + 1/2)/clock)      s: `ideal`, in `fixed` numbers
+//! ```
+//!
+//! Of each motion all steps are looked at whose time in f64 is next to the middle of two cycles, and some others.
+//! `PROPTEST_CASES` sets how many motions of each kind are drawn:
+//!
+//! ```text
+//! PROPTEST_CASES=20000 cargo test --release -p stepscope-motion --test exact_curves -- --nocapture
+//! ```
+#![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
+
+mod fixed;
+mod ideal;
+
+use fixed::{decimal, whole};
+use ideal::Ideal;
+use rand_xoshiro::{
+    Xoshiro256PlusPlus,
+    rand_core::{Rng, SeedableRng},
+};
+use std::cmp::Ordering;
+use std::env;
+use stepscope_motion::{
+    AxisPlan,
+    mechanics::Distance,
+    moves::{Axis, Dwell, Move, Sine},
+    plan_axis,
+};
+
+const CLOCKS: [u32; 6] = [1000, 999_983, 16_000_000, 16_000_000, 72_000_000, 1_000_000_000];
+/// Motions of each kind, unless `PROPTEST_CASES` says otherwise.
+const MOTIONS: u64 = 60;
+/// Steps of a motion at most.
+const MOST_STEPS: f64 = 60_000.0;
+/// How near an edge a step's time is looked at, in cycles and in parts of the time.
+const NEAR: (f64, f64) = (1e-6, 1e-14);
+/// Of a motion whose times in f64 are all near an edge no more are looked at.
+const MOST_NEAR: u64 = 300;
+
+fn motions() -> u64 {
+    env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(MOTIONS)
+}
+
+/// Draws numbers, the same each time.
+struct Draw(Xoshiro256PlusPlus);
+
+impl Draw {
+    fn below(&mut self, end: u64) -> u64 {
+        self.0.next_u64() % end
+    }
+
+    fn of<T: Copy>(&mut self, choices: &[T]) -> T {
+        choices[self.below(choices.len() as u64) as usize]
+    }
+
+    /// Each power of ten is as likely; with few digits, as people give it, or with all.
+    fn magnitude(&mut self, from: f64, to: f64) -> f64 {
+        let part = self.below(1 << 53) as f64 / (1_u64 << 53) as f64;
+        let number = libm::exp(libm::log(from) + (libm::log(to) - libm::log(from)) * part);
+        let digits = self.of(&[1, 2, 4, 16]);
+        let number: f64 = format!("{number:.*e}", digits).parse().expect("it is a number");
+        number.clamp(from, to)
+    }
+
+    fn steps(&mut self, most: f64) -> i64 {
+        let steps = self.magnitude(1.0, most).round() as i64;
+        if self.below(2) == 0 { -steps } else { steps }
+    }
+}
+
+/// What was looked at.
+#[derive(Default)]
+struct Tally {
+    steps: u64,
+    near: u64,
+    others: u64,
+    ties: u64,
+}
+
+impl Tally {
+    /// Holds the steps of an axis to the ideals of its moves; those that make none have none.
+    fn hold(&mut self, draw: &mut Draw, plan: &AxisPlan, ideals: &[Ideal], clock_hz: u32, what: &str) {
+        let clock = whole(clock_hz.into());
+        let mut due = plan.due_instants(clock_hz);
+        let (mut start, mut near) = (whole(0), 0);
+        for (planned, ideal) in plan.moves().iter().zip(ideals) {
+            let count = planned.profile.step_count();
+            for k in 1..=count {
+                let (instant, step) = due.next().expect("the axis has the steps of its moves");
+                let from_edge = (instant - instant.floor() - 0.5).abs();
+                let is_near = from_edge < NEAR.0 + NEAR.1 * instant && near < MOST_NEAR;
+                self.steps += 1;
+                if !is_near && draw.below(1 + count / 8) > 0 {
+                    continue;
+                }
+                near += u64::from(is_near);
+                *(if is_near { &mut self.near } else { &mut self.others }) += 1;
+                // Half cycles from the move's start, in s.
+                let at = |halves: i64| {
+                    let cycles = whole(2 * step.cycle as i64 + halves) / whole(2);
+                    (ideal.compare)(k, &(cycles / clock.clone() - start.clone()))
+                };
+                let (before, after) = (at(-1), at(1));
+                self.ties += u64::from(before == Ordering::Equal);
+                assert!(
+                    before != Ordering::Greater && after == Ordering::Greater,
+                    "step {k} at {instant} is not in {step:?} at {clock_hz} Hz: {before:?} {after:?} of {what}"
+                );
+            }
+            start = start + ideal.duration.clone();
+        }
+        assert!(due.next().is_none(), "more steps than expected");
+    }
+
+    fn tell(&self, what: &str) {
+        let Self { steps, near, others, ties } = self;
+        println!("{what}: {steps} steps, {near} near an edge and {others} others held, {ties} ties");
+    }
+}
+
+fn plan_of(moves: Vec<Move>) -> Option<AxisPlan> {
+    plan_axis(&Axis { moves, ..Axis::default() }, "x").ok()
+}
+
+/// Holds motions of one kind, of which some wait before they move a second time.
+fn hold(seed: u64, what: &str, each: impl Fn(&mut Draw) -> (Move, Ideal)) {
+    let (mut draw, mut tally) = (Draw(Xoshiro256PlusPlus::seed_from_u64(seed)), Tally::default());
+    let mut planned = 0;
+    for _ in 0..motions() {
+        let clock_hz = draw.of(&CLOCKS);
+        let (first, ideal) = each(&mut draw);
+        let (mut moves, mut ideals) = (vec![first], vec![ideal]);
+        if draw.below(3) == 0 {
+            if draw.below(2) == 0 {
+                let duration_s = draw.magnitude(1e-6, 10.0);
+                let ideal = Ideal { duration: decimal(duration_s), compare: Box::new(|_, _| Ordering::Less) };
+                moves.push(Move::Dwell(Dwell { duration_s }));
+                ideals.push(ideal);
+            }
+            let (second, ideal) = each(&mut draw);
+            moves.push(second);
+            ideals.push(ideal);
+        }
+        let told = format!("{moves:?}");
+        let Some(plan) = plan_of(moves) else { continue };
+        planned += 1;
+        tally.hold(&mut draw, &plan, &ideals, clock_hz, &told);
+    }
+    assert!(planned > motions() / 4, "only {planned} could be planned");
+    tally.tell(what);
+}
+
+fn sine(draw: &mut Draw) -> (Move, Ideal) {
+    let periods = draw.of(&[1, 1, 2, 5]);
+    let amplitude = draw.steps(MOST_STEPS / 4.0 / f64::from(periods));
+    let period_s = draw.magnitude(1e-3, 86_400.0);
+    let given = Sine { amplitude: Distance::Steps(amplitude as f64), period_s, periods };
+    (Move::Sine(given), ideal::sine(amplitude, period_s, periods))
+}
+
+#[test]
+fn sines_have_every_step_in_its_cycle() {
+    hold(1, "sine", sine);
+}
+
+#[test]
+fn a_step_next_to_an_edge_is_on_its_side_of_it() {
+    let given = Sine { amplitude: Distance::Steps(-745.0), period_s: 76.239_882_183_001_03, periods: 5 };
+    let plan = plan_of(vec![Move::Sine(given)]).expect("it can be planned");
+    let due: Vec<u64> = plan.due_steps(16_000_000).map(|due| due.cycle).collect();
+    // 4559393802.49999989 cycles, in f64 4559393802.5.
+    assert_eq!(due[11_117], 4_559_393_802);
+    assert_eq!(plan.moves()[0].profile.step_cycle(11_118, 16_000_000), Some(due[11_117]));
+}
+
+/// cos = 1/2 after a sixth of a period: of an odd amplitude A = 2*k - 1 that is the place of step k.
+#[test]
+fn a_sines_step_in_the_middle_of_two_cycles_goes_up() {
+    let mut draw = Draw(Xoshiro256PlusPlus::seed_from_u64(2));
+    for _ in 0..500 {
+        // T/6 = 2*m + 1 half cycles, and an odd number of half periods later the same.
+        let halves = 2 * draw.below(50_000_000) + 1;
+        let (clock_hz, period_s) = (1_000_000, format!("{}e-6", 3 * halves).parse().expect("it is a number"));
+        let k = draw.below(400) + 1;
+        let amplitude = 2 * k - 1;
+        let given = Sine { amplitude: Distance::Steps(amplitude as f64), period_s, periods: 3 };
+        let Some(plan) = plan_of(vec![Move::Sine(given)]) else { continue };
+        for half in 0..6 {
+            let step = half * 2 * amplitude + k;
+            let twice = halves + 3 * half * halves;
+            let found = plan.moves()[0].profile.step_cycle(step, clock_hz);
+            assert_eq!(found, Some(twice.div_ceil(2)), "step {step} of {amplitude} in {period_s} s");
+        }
+    }
+}
