@@ -119,6 +119,7 @@ impl Profile {
     fn rounding(&self, start: CycleTime, clock_hz: u32) -> (Rounding, IsDueBefore<'_>) {
         let cycles = self.duration_s() * f64::from(clock_hz);
         let is_due_before: IsDueBefore<'_> = match self {
+            Self::Cosine(cosine) => Box::new(cosine.is_due_before(clock_hz)),
             Self::Sine(sine) => Box::new(sine.is_due_before(clock_hz)),
             _ => return (Rounding::new(start, -1.0), Box::new(|_, _| false)),
         };

@@ -36,3 +36,34 @@ pub(crate) fn sine(amplitude: i64, period_s: f64, periods: u32) -> Ideal {
     };
     Ideal { duration, compare: Box::new(compare) }
 }
+
+/// A move whose second half mirrors its first, of the way of that at a time.
+fn mirrored(steps: i64, duration: Fixed, first: impl Fn(Fixed) -> Fixed + 'static) -> Ideal {
+    let (steps, own) = (whole(steps.abs()), duration.clone());
+    let compare = move |k: u64, t: &Fixed| {
+        let way = if !t.is_positive() {
+            whole(0)
+        } else if (own.clone() - t.clone() - t.clone()).is_positive() {
+            first(t.clone())
+        } else if (own.clone() - t.clone()).is_positive() {
+            steps.clone() - first(own.clone() - t.clone())
+        } else {
+            steps.clone()
+        };
+        way.order(&place(k))
+    };
+    Ideal { duration, compare: Box::new(compare) }
+}
+
+pub(crate) fn cosine(steps: i64, duration_s: f64, ramp_s: f64) -> Ideal {
+    let (duration, ramp) = (decimal(duration_s), decimal(ramp_s));
+    let top = whole(steps.abs()) / (duration.clone() - ramp.clone());
+    mirrored(steps, duration, move |t| {
+        if (ramp.clone() - t.clone()).is_positive() {
+            let sine = (PI.clone() * t.clone() / ramp.clone()).sine();
+            top.clone() / whole(2) * (t - ramp.clone() / PI.clone() * sine)
+        } else {
+            top.clone() * (t - ramp.clone() / whole(2))
+        }
+    })
+}

@@ -27,7 +27,7 @@ use std::env;
 use stepscope_motion::{
     AxisPlan,
     mechanics::Distance,
-    moves::{Axis, Dwell, Move, Sine},
+    moves::{Axis, Cosine, Dwell, Move, Sine},
     plan_axis,
 };
 
@@ -165,6 +165,49 @@ fn sine(draw: &mut Draw) -> (Move, Ideal) {
 #[test]
 fn sines_have_every_step_in_its_cycle() {
     hold(1, "sine", sine);
+}
+
+/// A duration, and a ramp that is up to half of it.
+fn times_s(draw: &mut Draw) -> (f64, f64) {
+    let duration_s = draw.magnitude(1e-3, 86_400.0);
+    let ramp_s = match draw.below(5) {
+        0 => 0.0,
+        1 => duration_s / 2.0,
+        2 => draw.magnitude(1e-9 * duration_s, duration_s / 2.0),
+        _ => draw.magnitude(0.01 * duration_s, duration_s / 2.0),
+    };
+    (duration_s, ramp_s)
+}
+
+fn cosine(draw: &mut Draw) -> (Move, Ideal) {
+    let (steps, (duration_s, ramp_s)) = (draw.steps(MOST_STEPS), times_s(draw));
+    let given = Cosine { distance: Distance::Steps(steps as f64), duration_s, ramp_s, ..Cosine::default() };
+    // Ramps under the shortest cycle of a clock are none.
+    (Move::Cosine(given), ideal::cosine(steps, duration_s, if ramp_s < 1e-9 { 0.0 } else { ramp_s }))
+}
+
+#[test]
+fn cosines_have_every_step_in_its_cycle() {
+    hold(3, "cosine", cosine);
+}
+
+/// Of an odd count the middle step is due after half of the time; in the plateau every step is a quotient.
+#[test]
+fn a_cosines_step_in_the_middle_of_two_cycles_goes_up() {
+    for halves in (0..300).map(|index: u64| 2 * (7919 * index + 5000) + 1) {
+        let seconds = |halves: u64| format!("{halves}e-6").parse().expect("it is a number");
+        for (count, ramp) in [(1, halves / 3), (3, halves), (1001, 5), (41, 0)] {
+            let given = Cosine {
+                distance: Distance::Steps(count as f64),
+                duration_s: seconds(halves),
+                ramp_s: seconds(ramp) / 2.0,
+                ..Cosine::default()
+            };
+            let plan = plan_of(vec![Move::Cosine(given)]).expect("it can be planned");
+            let found = plan.moves()[0].profile.step_cycle(count / 2 + 1, 1_000_000);
+            assert_eq!(found, Some(halves.div_ceil(2)), "{count} steps in {halves} us");
+        }
+    }
 }
 
 #[test]
