@@ -15,8 +15,7 @@
 //! with `libm`'s functions taken to be within two, and those that made a number of a scenario of its decimal. The shapes
 //! of this crate pass on to the time no more of an error in a place or a parameter than its own part of it: of a curve
 //! that speeds up from rest s <= v*t, so a time's part of an error ds/v is at most that of the way, ds/s. Every planner
-//! comes to less than 64 u of the longest of its times; [`MAX_OFF`] is twice that. What is off by more is told beside
-//! its formula.
+//! comes to less than 64 u of the longest of its times ([`MAX_OFF`]). What is off by more is told beside its formula.
 //!
 //! 106 bits have an end, too. E counts as earlier by [`TIE`] of it, which is 2^10 times what they lose: so a step that is
 //! due exactly at E, a tie, goes up as B1 has it, however its formula has rounded. A step that is due that little before
@@ -25,13 +24,15 @@
 
 use crate::{cycle_time::CycleTime, double::Double};
 
-/// How far a time in f64 may be off, in parts of the longest time of its move: 128 roundings.
-pub(super) const MAX_OFF: f64 = 128.0 * ROUNDING;
+/// How far a time in f64 may be off, in parts of the longest time of its move: 64 roundings.
+pub(super) const MAX_OFF: f64 = 64.0 * ROUNDING;
 /// The greatest error of one rounding in parts of what is rounded, u.
 pub(super) const ROUNDING: f64 = f64::EPSILON / 2.0;
 /// The same in cycles, for a move that lasts no longer than one: the part of a cycle in which it starts.
 const MAX_OFF_CYCLES: f64 = 4.0 * f64::EPSILON;
 
+/// 2^52: numbers from here on are whole. A move that lasts as long has no [`Rounding::room`].
+const WHOLE: f64 = 4_503_599_627_370_496.0;
 /// How much earlier an edge counts, in parts of it: 2^-94.
 const TIE: f64 = f64::EPSILON * f64::EPSILON * 1024.0;
 /// Edges that are judged: many more than one is only off what no scenario may ask for.
@@ -55,18 +56,27 @@ impl Rounding {
     /// for a time from there on.
     #[inline]
     pub(super) fn cycle(&self, (whole, cycles): (u64, f64), is_due_before: impl Fn(Double) -> bool) -> u64 {
-        let (past, is_sure) = self.nearest(self.start.part.high + cycles);
-        let cycle = self.start.whole.saturating_add(whole).saturating_add(past);
-        if is_sure { cycle } else { judged(self.start, cycle, &is_due_before) }
+        let (past, before) = (self.start.part.high + cycles, self.start.whole.wrapping_add(whole));
+        match self.certain(past) {
+            _ if self.room > 1.0 => before.wrapping_add(guess(past)),
+            Some(cycle) => before.wrapping_add(cycle),
+            None => judged(self.start, before.wrapping_add(guess(past)), &is_due_before),
+        }
     }
 
-    /// floor(cycles + 1/2), for times from 0 on, where truncation is the floor; and whether no edge is too near.
+    /// floor(cycles + 1/2), for times from 0 on, where no edge is too near.
     #[inline]
-    pub(super) fn nearest(&self, cycles: f64) -> (u64, bool) {
-        let moved = cycles + 0.5;
-        let whole = moved as i64;
-        (whole as u64, libm::fabs(moved - whole as f64 - 0.5) < self.room)
+    pub(super) fn certain(&self, cycles: f64) -> Option<u64> {
+        // The sum has no digit after the point: it is the nearest whole number, and no conversion is needed.
+        let moved = cycles + WHOLE;
+        let is_certain = libm::fabs(cycles - (moved - WHOLE)) < self.room;
+        is_certain.then(|| moved.to_bits().wrapping_sub(WHOLE.to_bits()))
     }
+}
+
+/// floor(cycles + 1/2), but for the last digits.
+pub(super) fn guess(cycles: f64) -> u64 {
+    (cycles + 0.5) as u64
 }
 
 /// The cycle of a step of a move that begins at `start`, near `guess`.

@@ -67,10 +67,15 @@ impl Quotient {
         CycleTime { whole: self.whole, part: Double::from(self.rest) / Double::from(self.under) }
     }
 
-    /// B1's cycle of a step that is due so long after `start`.
-    pub(super) fn cycle(self, start: CycleTime) -> u64 {
+    /// When a step is due that is so long after `start`, as a number, and B1's cycle of it.
+    #[inline]
+    pub(super) fn after(self, start: CycleTime) -> (f64, u64) {
+        let own = self.part();
+        let (whole, part) = (start.whole.wrapping_add(self.whole), start.part.high + own);
+        let instant =
+            if part < 1.0 { whole as f64 + part } else { whole.wrapping_add(1) as f64 + (part - 1.0) };
         let is_before = |since: Double| (since - Double::from(self.whole)).exceeds(self.time().part);
-        Rounding::new(start, 0.0).cycle((self.whole, self.part()), is_before)
+        (instant, Rounding::new(start, 0.0).cycle((self.whole, own), is_before))
     }
 }
 

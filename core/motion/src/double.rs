@@ -6,10 +6,10 @@
 //! low            |53 bits|            at most half of high's last digit
 //! ```
 //!
-//! Each operation is off by at most a few 2^-104 of its result, each series by at most 2^-100 of it. All of it is + - * /,
-//! so it has the same bits on every target. It is seldom called, so none of it is copied into its callers.
+//! Each operation is off by at most a few 2^-104 of its result, each series by at most 2^-100 of it. All of it is + - * /
+//! and the square root, which has one result, so it has the same bits on every target. It is seldom called, so none of it is copied into its callers.
 
-use crate::exact::Exact;
+use crate::{exact::Exact, square_root};
 use core::ops::{Add, Div, Mul, Sub};
 
 /// A number of 106 bits.
@@ -84,6 +84,18 @@ impl Double {
     /// Whether it is more than another.
     pub(super) fn exceeds(self, other: Self) -> bool {
         (self - other).is_positive()
+    }
+
+    /// The square root, of a number from 0 on.
+    #[inline(never)]
+    pub(super) fn square_root(self) -> Self {
+        let root = square_root(self.high);
+        if root <= 0.0 {
+            return Self::default();
+        }
+        // One of Newton's steps doubles the digits.
+        let rest = self - Self::product(root, root);
+        Self::sum(root, rest.high / (2.0 * root))
     }
 
     /// x - sin(x), for x from 0 to a little over pi: x^3/3! - x^5/5! + …, whose terms are together at most three times
@@ -189,8 +201,10 @@ mod tests {
         for i in 1..2000 {
             let (a, b) = (number(f64::from(i) / 7.0), number(1e9 / f64::from(i * i)));
             check(a * b / b, a);
+            check(a.square_root() * a.square_root(), a);
             check(Double::from(1.0) / (Double::from(1.0) / a), a);
         }
+        assert_eq!(Double::default().square_root(), Double::default());
         assert!(number(0.3).exceeds(number(0.1) + number(0.1)) && !number(0.1).exceeds(number(0.1)));
     }
 

@@ -27,9 +27,6 @@ pub struct ScheduledStep {
     pub right: bool,
 }
 
-/// Cycles from the start of a move, not rounded, and whether the step goes to the right.
-type Due<'p> = Box<dyn Iterator<Item = (f64, bool)> + 'p>;
-
 impl AxisPlan {
     /// Steps of all moves, whichever way they go.
     #[must_use]
@@ -53,39 +50,79 @@ impl AxisPlan {
     }
 }
 
-/// The steps of a move that starts at `start`.
-fn due_from(
-    profile: &Profile,
-    start: CycleTime,
-    clock_hz: u32,
-) -> Box<dyn Iterator<Item = (f64, ScheduledStep)> + '_> {
+/// The steps of a move, each with its instant.
+type Steps<'p> = Box<dyn Iterator<Item = (f64, ScheduledStep)> + 'p>;
+
+/// The steps of a move that starts at `start`: of a timer's table and of one rate the quotients that whole numbers make,
+/// of the others those of their times in f64.
+fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Steps<'_> {
+    let clock = f64::from(clock_hz);
     let (right, count) = (profile.steps() >= 0, profile.steps().unsigned_abs());
+    let steps = 1..=count;
     let exactly = move |since: Quotient| {
-        let time = start.plus(CycleTime { whole: since.whole, part: since.part().into() });
-        (time.cycles(), ScheduledStep { cycle: since.cycle(start), right })
+        let (instant, cycle) = since.after(start);
+        (instant, ScheduledStep { cycle, right })
     };
-    let even = match profile {
-        Profile::Constant(constant) => EvenSteps::new(libm::fabs(constant.speed(0.0)), clock_hz, count),
-        _ => None,
-    };
-    match (profile, even) {
-        (Profile::TrapezoidTable(table), _) => {
-            Box::new((1..=count).map(move |k| exactly(table.step_time(k, clock_hz))))
+    // Where the curve crosses the half-integer of each step.
+    let places = steps.clone().map(|k| k as f64 - 0.5);
+    match profile {
+        Profile::Trapezoid(curve) => {
+            let mut times = curve.step_times(clock_hz);
+            let times = core::iter::from_fn(move || times.next_unrounded());
+            scheduled(profile, start, clock_hz, times.map(move |cycles| (cycles, right)))
         }
-        (Profile::Points(points), _) => Box::new(points.due().map(move |(due, right)| {
+        Profile::TrapezoidTable(table) => Box::new(steps.map(move |k| exactly(table.step_time(k, clock_hz)))),
+        Profile::Staircase(staircase) => {
+            let times = steps.map(move |k| (staircase.step_s(k) * clock, right));
+            scheduled(profile, start, clock_hz, times)
+        }
+        Profile::SineSegments(sine) => {
+            let cycles_per_point = sine.point_s() * clock;
+            let times = sine.due_points().map(move |(point, right)| (point * cycles_per_point, right));
+            scheduled(profile, start, clock_hz, times)
+        }
+        Profile::Sine(sine) => {
+            let cycles_per_half = sine.period_s() / 2.0 * clock;
+            let times = sine.due_halves().map(move |(half, right)| (half * cycles_per_half, right));
+            scheduled(profile, start, clock_hz, times)
+        }
+        Profile::Points(points) => Box::new(points.due().map(move |(due, right)| {
             let (instant, cycle) = due.cycle(start, clock_hz);
             (instant, ScheduledStep { cycle, right })
         })),
-        (_, Some(even)) => Box::new((1..=count).zip(even.steps()).map(move |(_, since)| exactly(since))),
-        (profile, None) => {
-            let (rounding, is_due_before) = profile.rounding(start, clock_hz);
-            let start = start.cycles();
-            Box::new((1..).zip(due(profile, clock_hz)).map(move |(k, (cycles, right))| {
-                let cycle = rounding.cycle((0, cycles), |since| is_due_before(k, since));
-                (start + cycles, ScheduledStep { cycle, right })
-            }))
+        Profile::Constant(constant) => {
+            let speed = libm::fabs(constant.speed(0.0));
+            match EvenSteps::new(speed, clock_hz, count) {
+                Some(even) => Box::new(steps.zip(even.steps()).map(move |(_, since)| exactly(since))),
+                None => {
+                    let cycles_per_step = clock / speed;
+                    let times = places.map(move |place| (place * cycles_per_step, right));
+                    scheduled(profile, start, clock_hz, times)
+                }
+            }
         }
+        Profile::Dwell(_) => Box::new(core::iter::empty()),
+        one_way => each!(one_way, curve => {
+            let times = places.map(move |place| (curve.time_s(place) * clock, right));
+            scheduled(profile, start, clock_hz, times)
+        }),
     }
+}
+
+/// The steps of a move that starts at `start`, of their times in cycles from there on and their directions.
+fn scheduled<'p>(
+    profile: &'p Profile,
+    start: CycleTime,
+    clock_hz: u32,
+    times: impl Iterator<Item = (f64, bool)> + 'p,
+) -> Steps<'p> {
+    let (rounding, is_due_before) = profile.rounding(start, clock_hz);
+    let (start, mut k) = (start.cycles(), 0);
+    Box::new(times.map(move |(cycles, right)| {
+        k += 1;
+        let cycle = rounding.cycle((0, cycles), |since| is_due_before(k, since));
+        (start + cycles, ScheduledStep { cycle, right })
+    }))
 }
 
 /// Whether a step (from 1) is due before a time in cycles from its move's start.
@@ -108,7 +145,8 @@ impl Profile {
             Self::Cosine(_) | Self::Ramps(_) | Self::Points(_) | Self::Dwell(_) => {
                 told(self.duration_s(), 1.0)
             }
-            Self::Trapezoid(_) | Self::Staircase(_) | Self::Sliced(_) | Self::JerkLimited(_) => {
+            Self::Trapezoid(curve) => CycleTime::of(curve.exact_duration() * clock.into()),
+            Self::Staircase(_) | Self::Sliced(_) | Self::JerkLimited(_) => {
                 CycleTime::of((self.duration_s() * clock).into())
             }
         }
@@ -117,13 +155,18 @@ impl Profile {
     /// How the times of its steps in f64 become cycles, if it starts at `start`, and what judges them where they do not
     /// tell.
     fn rounding(&self, start: CycleTime, clock_hz: u32) -> (Rounding, IsDueBefore<'_>) {
-        let cycles = self.duration_s() * f64::from(clock_hz);
+        let clock = f64::from(clock_hz);
+        let mut off = MAX_OFF * self.duration_s() * clock;
         let is_due_before: IsDueBefore<'_> = match self {
+            Self::Trapezoid(curve) => {
+                off = curve.off(clock);
+                Box::new(curve.is_due_before(clock_hz))
+            }
             Self::Cosine(cosine) => Box::new(cosine.is_due_before(clock_hz)),
             Self::Sine(sine) => Box::new(sine.is_due_before(clock_hz)),
             _ => return (Rounding::new(start, -1.0), Box::new(|_, _| false)),
         };
-        (Rounding::new(start, MAX_OFF * cycles), is_due_before)
+        (Rounding::new(start, off), is_due_before)
     }
 
     /// The cycle of step `k` (from 1) after the move's start, of a clock of `clock_hz`, without iterating
@@ -136,7 +179,7 @@ impl Profile {
         let (clock, place, start) = (f64::from(clock_hz), k as f64 - 0.5, CycleTime::default());
         let cycles = match self {
             Self::Trapezoid(curve) => return curve.step_times(clock_hz).nth(usize::try_from(k - 1).ok()?),
-            Self::TrapezoidTable(table) => return Some(table.step_time(k, clock_hz).cycle(start)),
+            Self::TrapezoidTable(table) => return Some(table.step_time(k, clock_hz).after(start).1),
             Self::Staircase(staircase) => staircase.step_s(k) * clock,
             Self::Sine(sine) => sine.due_half(k) * (sine.period_s() / 2.0 * clock),
             Self::Points(points) => {
@@ -145,7 +188,7 @@ impl Profile {
             Self::Constant(constant) => {
                 let speed = libm::fabs(constant.speed(0.0));
                 match EvenSteps::new(speed, clock_hz, self.step_count()) {
-                    Some(even) => return Some(even.step(k).cycle(start)),
+                    Some(even) => return Some(even.step(k).after(start).1),
                     None => place * (clock / speed),
                 }
             }
@@ -154,44 +197,5 @@ impl Profile {
         };
         let (rounding, is_due_before) = self.rounding(start, clock_hz);
         Some(rounding.cycle((0, cycles), |since| is_due_before(k, since)))
-    }
-}
-
-/// A kind that does not stand here by itself goes one way, and its curve is asked for each step's time.
-fn due(profile: &Profile, clock_hz: u32) -> Due<'_> {
-    let clock = f64::from(clock_hz);
-    let (right, steps) = (profile.steps() >= 0, 1..=profile.steps().unsigned_abs());
-    // Where the curve crosses the half-integer of each step.
-    let places = steps.clone().map(|k| k as f64 - 0.5);
-    match profile {
-        Profile::Trapezoid(curve) => {
-            let mut times = curve.step_times(clock_hz);
-            Box::new(core::iter::from_fn(move || times.next_unrounded().map(|cycles| (cycles, right))))
-        }
-        // In whole numbers, and rounded once: `due_from`.
-        Profile::TrapezoidTable(table) => {
-            Box::new(steps.map(move |k| (table.step_time(k, clock_hz).time().cycles(), right)))
-        }
-        Profile::Staircase(staircase) => Box::new(steps.map(move |k| (staircase.step_s(k) * clock, right))),
-        Profile::SineSegments(sine) => {
-            let cycles_per_point = sine.point_s() * clock;
-            Box::new(sine.due_points().map(move |(point, right)| (point * cycles_per_point, right)))
-        }
-        Profile::Sine(sine) => {
-            let cycles_per_half = sine.period_s() / 2.0 * clock;
-            Box::new(sine.due_halves().map(move |(half, right)| (half * cycles_per_half, right)))
-        }
-        // Rounded once: `due_from`.
-        Profile::Points(points) => Box::new(
-            points.due().map(move |(due, right)| (due.cycle(CycleTime::default(), clock_hz).0, right)),
-        ),
-        Profile::Constant(constant) => {
-            let cycles_per_step = clock / libm::fabs(constant.speed(0.0));
-            Box::new(places.map(move |place| (place * cycles_per_step, right)))
-        }
-        Profile::Dwell(_) => Box::new(core::iter::empty()),
-        one_way => each!(one_way, curve => {
-            Box::new(places.map(move |place| (curve.time_s(place) * clock, right)))
-        }),
     }
 }

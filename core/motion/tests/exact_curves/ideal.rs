@@ -67,3 +67,20 @@ pub(crate) fn cosine(steps: i64, duration_s: f64, ramp_s: f64) -> Ideal {
         }
     })
 }
+
+pub(crate) fn trapezoid(steps: i64, start: f64, top: f64, acceleration: f64) -> Ideal {
+    let [n, v0, v1, a] = [whole(steps.abs()), decimal(start), decimal(top), decimal(acceleration)];
+    // The tip of a triangle, v^2 = v0^2 + 2*a*s.
+    let tip = (v0.clone() * v0.clone() + a.clone() * n.clone()).square_root();
+    let peak = if tip < v1 { tip } else { v1 };
+    let ramp = (peak.clone() - v0.clone()) / a.clone();
+    let ramp_steps = (v0.clone() + peak.clone()) * ramp.clone() / whole(2);
+    let duration = whole(2) * ramp.clone() + (n - whole(2) * ramp_steps.clone()) / peak.clone();
+    mirrored(steps, duration, move |t| {
+        if (ramp.clone() - t.clone()).is_positive() {
+            (v0.clone() + a.clone() * t.clone() / whole(2)) * t
+        } else {
+            ramp_steps.clone() + peak.clone() * (t - ramp.clone())
+        }
+    })
+}

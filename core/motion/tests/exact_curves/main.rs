@@ -26,8 +26,8 @@ use std::cmp::Ordering;
 use std::env;
 use stepscope_motion::{
     AxisPlan,
-    mechanics::Distance,
-    moves::{Axis, Cosine, Dwell, Move, Sine},
+    mechanics::{Acceleration, Distance, Speed},
+    moves::{Axis, Cosine, Dwell, Move, Sine, Trapezoid, TrapezoidMethod},
     plan_axis,
 };
 
@@ -206,6 +206,59 @@ fn a_cosines_step_in_the_middle_of_two_cycles_goes_up() {
             let plan = plan_of(vec![Move::Cosine(given)]).expect("it can be planned");
             let found = plan.moves()[0].profile.step_cycle(count / 2 + 1, 1_000_000);
             assert_eq!(found, Some(halves.div_ceil(2)), "{count} steps in {halves} us");
+        }
+    }
+}
+
+fn trapezoid(draw: &mut Draw) -> (Move, Ideal) {
+    let steps = draw.steps(MOST_STEPS);
+    let top = draw.magnitude(1.0, 1e6);
+    let start = match draw.below(4) {
+        0 => 0.0,
+        1 => top,
+        _ => draw.magnitude(1e-3 * top, top),
+    };
+    // From ramps of a step to ones that are never at their end.
+    let acceleration = draw.magnitude(top * top / 1e6, top * top * 10.0);
+    let given = Trapezoid {
+        distance: Distance::Steps(steps as f64),
+        start_speed: Speed::StepsPerSecond(start),
+        top_speed: Speed::StepsPerSecond(top),
+        acceleration: Acceleration::StepsPerSecond2(acceleration),
+        method: TrapezoidMethod::Exact,
+        timer_hz: 1,
+    };
+    (Move::Trapezoid(given), ideal::trapezoid(steps, start, top, acceleration))
+}
+
+#[test]
+fn trapezoids_have_every_step_in_its_cycle() {
+    hold(4, "trapezoid", trapezoid);
+}
+
+/// The same steps as a list of cycles alone, and of a slow acceleration to a high speed, whose digits are few.
+#[test]
+fn the_list_of_a_trapezoids_cycles_is_that_of_its_steps() {
+    for (start, top, acceleration) in [(250.0, 4000.0, 9000.0), (0.1, 1e7, 0.3), (1e6, 1.1e6, 7e4)] {
+        let given = Trapezoid {
+            distance: Distance::Steps(20_001.0),
+            start_speed: Speed::StepsPerSecond(start),
+            top_speed: Speed::StepsPerSecond(top),
+            acceleration: Acceleration::StepsPerSecond2(acceleration),
+            method: TrapezoidMethod::Exact,
+            timer_hz: 1,
+        };
+        let plan = plan_of(vec![Move::Trapezoid(given)]).expect("it can be planned");
+        let ideals = [ideal::trapezoid(20_001, start, top, acceleration)];
+        let mut draw = Draw(Xoshiro256PlusPlus::seed_from_u64(0));
+        for clock_hz in [16_000_000, 1_000_000_000] {
+            Tally::default().hold(&mut draw, &plan, &ideals, clock_hz, "a trapezoid");
+            let curve = stepscope_motion::trapezoid::Trapezoid::new(20_001, start, top, acceleration);
+            assert!(curve.step_times(clock_hz).eq(plan.due_steps(clock_hz).map(|due| due.cycle)));
+            let profile = &plan.moves()[0].profile;
+            for (k, cycle) in (1..).zip(curve.step_times(clock_hz)).step_by(500) {
+                assert_eq!(profile.step_cycle(k, clock_hz), Some(cycle));
+            }
         }
     }
 }
