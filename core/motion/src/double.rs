@@ -28,7 +28,7 @@ const SPLITTER: f64 = 134_217_729.0;
 
 /// Terms of a series smaller than this in parts of its sum are none.
 const NO_TERM: f64 = 1e-33;
-/// Terms after which a series is taken as it is; of pi it has all its digits after 20.
+/// Terms after which a series is taken as it is; e^41 has all its digits after 200.
 const MAX_TERMS: u32 = 400;
 
 impl From<f64> for Double {
@@ -104,6 +104,18 @@ impl Double {
     pub(super) fn less_its_sine(self) -> Self {
         let square = self * self;
         self.series(square * self, 3, square.negated(), 2)
+    }
+
+    /// e^x - 1 - x, for x from -20 to a little over 40, with all digits also where it is small.
+    #[inline(never)]
+    pub(super) fn exponential_rest(self) -> Self {
+        if self.high < -1.0 {
+            // By e^-x, whose terms do not cancel.
+            let opposite = self.negated();
+            let one = Self::from(1.0);
+            return opposite - one + one / (one + opposite + opposite.exponential_rest());
+        }
+        self.series(self * self, 2, self, 1)
     }
 
     /// The sum of `power`/from! and of the terms after it, each `ratio` times the one before, with a factorial of so many
@@ -224,5 +236,24 @@ mod tests {
             small.less_its_sine(),
             small * small * small / 6.0.into() * (Double::from(1.0) - number(5e-20)),
         );
+    }
+
+    #[test]
+    fn an_exponential_has_its_digits() {
+        let exponential = |x: Double| x.exponential_rest() + x + 1.0.into();
+        // ln(2), whose power it is.
+        let logarithm = Double { high: core::f64::consts::LN_2, low: 2.319_046_813_846_299_6e-17 };
+        for i in [-28.0, -3.0, 1.0, 2.0, 10.0, 59.0] {
+            check(exponential(logarithm * i.into()), libm::exp2(i).into());
+        }
+        // e^x - 1 - x from both sides of 0, and where its formula changes.
+        for x in [1e-9, 0.3, 0.999, 1.001] {
+            let (above, below) = (number(x).exponential_rest(), number(-x).exponential_rest());
+            let one = Double::from(1.0);
+            check((one + number(x) + above) * (one - number(x) + below), one);
+        }
+        // x^2/2*(1 + x/3 + x^2/12 + x^3/60 + …).
+        let terms = number(1e-9) / 3.0.into() + number(1e-18) / 12.0.into() + number(1e-27) / 60.0.into();
+        check(number(1e-9).exponential_rest(), number(5e-19) * (terms + 1.0.into()));
     }
 }

@@ -163,6 +163,7 @@ impl Profile {
                 Box::new(curve.is_due_before(clock_hz))
             }
             Self::Cosine(cosine) => Box::new(cosine.is_due_before(clock_hz)),
+            Self::Ramps(ramps) => Box::new(ramps.is_due_before(clock_hz)),
             Self::Sine(sine) => Box::new(sine.is_due_before(clock_hz)),
             _ => return (Rounding::new(start, -1.0), Box::new(|_, _| false)),
         };

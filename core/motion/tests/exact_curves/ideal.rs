@@ -3,6 +3,7 @@
 
 use crate::fixed::{Fixed, PI, decimal, whole};
 use std::cmp::Ordering;
+use stepscope_motion::moves::RampShape;
 
 /// Whether a move has less than the place of step k behind it at a time in s, just that, or more; both from its start.
 type Compare = Box<dyn Fn(u64, &Fixed) -> Ordering>;
@@ -81,6 +82,49 @@ pub(crate) fn trapezoid(steps: i64, start: f64, top: f64, acceleration: f64) -> 
             (v0.clone() + a.clone() * t.clone() / whole(2)) * t
         } else {
             ramp_steps.clone() + peak.clone() * (t - ramp.clone())
+        }
+    })
+}
+
+/// Speed and way of a shape in parts of the whole ramp's at top speed, of its logarithms and exponentials as they stand.
+pub(crate) fn shape(shape: RampShape, parameter: f64) -> impl Fn(Fixed) -> Fixed {
+    let (one, parameter) = (whole(1), decimal(parameter));
+    // Of a sigmoid: S(u) = 1/(1 + e^-u), whose integral is ln(1 + e^u), from -r to u = r*(2x - 1).
+    let logistic = |u: Fixed| whole(1) / (whole(1) + (-u).exponential());
+    let (low, high) = (logistic(-parameter.clone()), logistic(parameter.clone()));
+    let integral = |u: Fixed| (whole(1) + u.exponential()).logarithm();
+    move |x| match shape {
+        RampShape::Sigmoid => {
+            let r = parameter.clone();
+            let u = r.clone() * (whole(2) * x.clone() - one.clone());
+            let area = (integral(u) - integral(-r.clone())) / (whole(2) * r) - low.clone() * x;
+            area / (high.clone() - low.clone())
+        }
+        RampShape::Bezier => {
+            x.clone() * x.clone() * x.clone() - x.clone() * x.clone() * x.clone() * x / whole(2)
+        }
+        RampShape::Straight => x.clone() * x / whole(2),
+        RampShape::Exponential => {
+            let k = parameter.clone();
+            let way = x.clone() - (one.clone() - (-(k.clone() * x)).exponential()) / k.clone();
+            way / (one.clone() - (-k).exponential())
+        }
+    }
+}
+
+pub(crate) fn ramps(
+    (steps, duration_s, ramp_s): (i64, f64, f64),
+    way: impl Fn(Fixed) -> Fixed + 'static,
+) -> Ideal {
+    let (duration, ramp) = (decimal(duration_s), decimal(ramp_s));
+    // Of a ramp's time this is lost against a start at top speed.
+    let lost = ramp.clone() * (whole(1) - way(whole(1)));
+    let top = whole(steps.abs()) / (duration.clone() - whole(2) * lost.clone());
+    mirrored(steps, duration, move |t| {
+        if (ramp.clone() - t.clone()).is_positive() {
+            top.clone() * ramp.clone() * way(t / ramp.clone())
+        } else {
+            top.clone() * (t - lost.clone())
         }
     })
 }

@@ -27,7 +27,7 @@ use std::env;
 use stepscope_motion::{
     AxisPlan,
     mechanics::{Acceleration, Distance, Speed},
-    moves::{Axis, Cosine, Dwell, Move, Sine, Trapezoid, TrapezoidMethod},
+    moves::{Axis, Cosine, Dwell, Move, RampShape, Ramps, Sine, Trapezoid, TrapezoidMethod},
     plan_axis,
 };
 
@@ -207,6 +207,29 @@ fn a_cosines_step_in_the_middle_of_two_cycles_goes_up() {
             let found = plan.moves()[0].profile.step_cycle(count / 2 + 1, 1_000_000);
             assert_eq!(found, Some(halves.div_ceil(2)), "{count} steps in {halves} us");
         }
+    }
+}
+
+fn ramps(shape: RampShape, draw: &mut Draw) -> (Move, Ideal) {
+    let (steps, (duration_s, ramp_s)) = (draw.steps(MOST_STEPS), times_s(draw));
+    let parameter = draw.magnitude(0.1, 20.0);
+    let given = Ramps {
+        distance: Distance::Steps(steps as f64),
+        duration_s,
+        ramp_s,
+        shape,
+        sigmoid_range: parameter,
+        time_constants: parameter,
+    };
+    let ramp_s = if ramp_s < 1e-9 { 0.0 } else { ramp_s };
+    (Move::Ramps(given), ideal::ramps((steps, duration_s, ramp_s), ideal::shape(shape, parameter)))
+}
+
+#[test]
+fn ramps_of_every_shape_have_every_step_in_its_cycle() {
+    let shapes = [RampShape::Bezier, RampShape::Straight, RampShape::Exponential, RampShape::Sigmoid];
+    for (seed, shape) in (5..).zip(shapes) {
+        hold(seed, &format!("{shape:?}"), |draw| ramps(shape, draw));
     }
 }
 
