@@ -7,7 +7,8 @@
 //! ```
 //!
 //! Each operation is off by at most a few 2^-104 of its result, each series by at most 2^-100 of it. All of it is + - * /
-//! and the square root, which has one result, so it has the same bits on every target. It is seldom called, so none of it is copied into its callers.
+//! and the square root, which has one result, so it has the same bits on every target; a
+//! cube root starts from `libm`'s. It is seldom called, so none of it is copied into its callers.
 
 use crate::{exact::Exact, square_root};
 use core::ops::{Add, Div, Mul, Sub};
@@ -96,6 +97,14 @@ impl Double {
         // One of Newton's steps doubles the digits.
         let rest = self - Self::product(root, root);
         Self::sum(root, rest.high / (2.0 * root))
+    }
+
+    /// The cube root, of a number above 0.
+    #[inline(never)]
+    pub(super) fn cube_root(self) -> Self {
+        let root = libm::cbrt(self.high);
+        let rest = self - Self::product(root, root) * root.into();
+        Self::sum(root, rest.high / (3.0 * root * root))
     }
 
     /// x - sin(x), for x from 0 to a little over pi: x^3/3! - x^5/5! + …, whose terms are together at most three times
@@ -214,6 +223,7 @@ mod tests {
             let (a, b) = (number(f64::from(i) / 7.0), number(1e9 / f64::from(i * i)));
             check(a * b / b, a);
             check(a.square_root() * a.square_root(), a);
+            check(b.cube_root() * b.cube_root() * b.cube_root(), b);
             check(Double::from(1.0) / (Double::from(1.0) / a), a);
         }
         assert_eq!(Double::default().square_root(), Double::default());

@@ -146,9 +146,8 @@ impl Profile {
                 told(self.duration_s(), 1.0)
             }
             Self::Trapezoid(curve) => CycleTime::of(curve.exact_duration() * clock.into()),
-            Self::Staircase(_) | Self::Sliced(_) | Self::JerkLimited(_) => {
-                CycleTime::of((self.duration_s() * clock).into())
-            }
+            Self::JerkLimited(curve) => CycleTime::of(curve.exact_duration() * clock.into()),
+            Self::Staircase(_) | Self::Sliced(_) => CycleTime::of((self.duration_s() * clock).into()),
         }
     }
 
@@ -164,6 +163,7 @@ impl Profile {
             }
             Self::Cosine(cosine) => Box::new(cosine.is_due_before(clock_hz)),
             Self::Ramps(ramps) => Box::new(ramps.is_due_before(clock_hz)),
+            Self::JerkLimited(curve) => Box::new(curve.is_due_before(clock_hz)),
             Self::Sine(sine) => Box::new(sine.is_due_before(clock_hz)),
             _ => return (Rounding::new(start, -1.0), Box::new(|_, _| false)),
         };

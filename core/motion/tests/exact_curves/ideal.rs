@@ -128,3 +128,39 @@ pub(crate) fn ramps(
         }
     })
 }
+
+/// The seven phases, from the limits alone.
+pub(crate) fn jerk_limited(steps: i64, speed: f64, acceleration: f64, jerk: f64) -> Ideal {
+    let [n, v, a, j] = [whole(steps.abs()), decimal(speed), decimal(acceleration), decimal(jerk)];
+    let least = |a: Fixed, b: Fixed| if b < a { b } else { a };
+    // Time of a jerk phase that each limit allows; the least of them is the one that holds.
+    let by_speed = least(a / j.clone(), (v.clone() / j.clone()).square_root());
+    let jerk_s = least(by_speed, (n.clone() / (whole(2) * j.clone())).cube_root());
+    // Of the acceleration: to the top speed, or until the way is used up.
+    let acceleration = j.clone() * jerk_s.clone();
+    let to_speed = v / acceleration.clone() - jerk_s.clone();
+    let square = jerk_s.clone() * jerk_s.clone() + whole(4) * n.clone() / acceleration.clone();
+    let to_way = (square.square_root() - whole(3) * jerk_s.clone()) / whole(2);
+    let steady_s = least(to_speed, to_way);
+    let steady_s = if steady_s.is_positive() { steady_s } else { whole(0) };
+    let peak = acceleration.clone() * (jerk_s.clone() + steady_s.clone());
+    let ramp_s = whole(2) * jerk_s.clone() + steady_s.clone();
+    let ramp = peak.clone() * ramp_s.clone() / whole(2);
+    let duration = whole(2) * ramp_s.clone() + (n - whole(2) * ramp.clone()) / peak.clone();
+    mirrored(steps, duration, move |t| {
+        let cubed = |x: Fixed| x.clone() * x.clone() * x;
+        if t <= jerk_s {
+            j.clone() * cubed(t) / whole(6)
+        } else if t <= jerk_s.clone() + steady_s.clone() {
+            let (x, t_j) = (t - jerk_s.clone(), jerk_s.clone());
+            j.clone() * cubed(t_j.clone()) / whole(6)
+                + acceleration.clone() * t_j / whole(2) * x.clone()
+                + acceleration.clone() * x.clone() * x / whole(2)
+        } else if t <= ramp_s {
+            let left = ramp_s.clone() - t;
+            ramp.clone() - (peak.clone() * left.clone() - j.clone() * cubed(left) / whole(6))
+        } else {
+            ramp.clone() + peak.clone() * (t - ramp_s.clone())
+        }
+    })
+}

@@ -26,8 +26,8 @@ use std::cmp::Ordering;
 use std::env;
 use stepscope_motion::{
     AxisPlan,
-    mechanics::{Acceleration, Distance, Speed},
-    moves::{Axis, Cosine, Dwell, Move, RampShape, Ramps, Sine, Trapezoid, TrapezoidMethod},
+    mechanics::{Acceleration, Distance, Jerk, Speed},
+    moves::{Axis, Cosine, Dwell, JerkLimited, Move, RampShape, Ramps, Sine, Trapezoid, TrapezoidMethod},
     plan_axis,
 };
 
@@ -257,6 +257,32 @@ fn trapezoid(draw: &mut Draw) -> (Move, Ideal) {
 #[test]
 fn trapezoids_have_every_step_in_its_cycle() {
     hold(4, "trapezoid", trapezoid);
+}
+
+fn jerk_limited(draw: &mut Draw) -> (Move, Ideal) {
+    let (steps, speed) = (draw.steps(MOST_STEPS), draw.magnitude(1.0, 1e6));
+    // Ramps from a step to far more than there are; of jerk alone, and next to none of it.
+    let acceleration = draw.magnitude(speed * speed / 1e5, speed * speed * 10.0);
+    let jerk = match draw.below(4) {
+        // The border between two rows of the planner's table.
+        0 => acceleration * acceleration / speed,
+        _ => draw.magnitude(
+            acceleration * acceleration / speed / 100.0,
+            acceleration * acceleration / speed * 100.0,
+        ),
+    };
+    let given = JerkLimited {
+        distance: Distance::Steps(steps as f64),
+        max_speed: Speed::StepsPerSecond(speed),
+        max_acceleration: Acceleration::StepsPerSecond2(acceleration),
+        max_jerk: Jerk::StepsPerSecond3(jerk),
+    };
+    (Move::JerkLimited(given), ideal::jerk_limited(steps, speed, acceleration, jerk))
+}
+
+#[test]
+fn jerk_limited_moves_have_every_step_in_its_cycle() {
+    hold(9, "jerk-limited", jerk_limited);
 }
 
 /// The same steps as a list of cycles alone, and of a slow acceleration to a high speed, whose digits are few.
