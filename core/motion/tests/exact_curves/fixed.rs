@@ -54,6 +54,17 @@ impl Fixed {
         self.0 > BigInt::ZERO
     }
 
+    /// Whether it is half way between two whole numbers.
+    pub(crate) fn is_half(&self) -> bool {
+        (self.clone() * whole(2)).order(&whole(2 * self.rounded() - 1)) == Ordering::Equal
+    }
+
+    /// floor(x + 1/2).
+    pub(crate) fn rounded(&self) -> i64 {
+        let half = BigInt::from(1) << (BITS - 1);
+        i64::try_from((&self.0 + half) >> BITS).expect("it is a count of steps")
+    }
+
     pub(crate) fn square_root(&self) -> Self {
         Self((&self.0 << BITS).sqrt())
     }

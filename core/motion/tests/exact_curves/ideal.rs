@@ -3,7 +3,7 @@
 
 use crate::fixed::{Fixed, PI, decimal, whole};
 use std::cmp::Ordering;
-use stepscope_motion::moves::RampShape;
+use stepscope_motion::moves::{Interpolation, RampShape};
 
 /// Whether a move has less than the place of step k behind it at a time in s, just that, or more; both from its start.
 type Compare = Box<dyn Fn(u64, &Fixed) -> Ordering>;
@@ -163,4 +163,69 @@ pub(crate) fn jerk_limited(steps: i64, speed: f64, acceleration: f64, jerk: f64)
             ramp.clone() + peak.clone() * (t - ramp_s.clone())
         }
     })
+}
+
+/// Straight or by Steffen's cubics in Hermite's form; no point stands at a half step, but for the first of all.
+pub(crate) fn points(points: &[(f64, f64)], interpolation: Interpolation) -> Ideal {
+    let zero = whole(0);
+    let at: Vec<(Fixed, Fixed)> = points
+        .iter()
+        .map(|&(t, y)| (decimal(t) - decimal(points[0].0), decimal(y) - decimal(points[0].1)))
+        .collect();
+    let length = |index: usize| at[index + 1].0.clone() - at[index].0.clone();
+    let mean = |index: usize| (at[index + 1].1.clone() - at[index].1.clone()) / length(index);
+    let slope = |index: usize| {
+        if index == 0 || index + 1 == at.len() {
+            return whole(0);
+        }
+        let (d0, d1, h0, h1) = (mean(index - 1), mean(index), length(index - 1), length(index));
+        let parabola = (d0.clone() * h1.clone() + d1.clone() * h0.clone()) / (h0 + h1);
+        let least = |a: Fixed, b: Fixed| if b < a { b } else { a };
+        let greatest = |a: Fixed, b: Fixed| if b > a { b } else { a };
+        let two = whole(2);
+        match (d0.is_positive(), d1.is_positive()) {
+            (true, true) => least(least(two.clone() * d0, two * d1), parabola),
+            (false, false) => greatest(greatest(two.clone() * d0, two * d1), parabola),
+            _ => whole(0),
+        }
+    };
+    let (mut pieces, mut before) = (Vec::new(), 0);
+    for index in 0..at.len() - 1 {
+        let (own, mean) = (length(index), mean(index));
+        let (m0, m1) = match interpolation {
+            Interpolation::Straight => (mean.clone(), mean.clone()),
+            Interpolation::Smooth => (slope(index), slope(index + 1)),
+        };
+        let (from, to) = (at[index].1.rounded(), at[index + 1].1.rounded());
+        let (since_s, since) = at[index].clone();
+        let right = to > from;
+        let way = move |t: &Fixed| {
+            let x = (t.clone() - since_s.clone()) / own.clone();
+            if x < whole(0) || x > whole(1) {
+                return None;
+            }
+            let rest = whole(1) - x.clone();
+            let bent = mean.clone() * x.clone() * x.clone() * (whole(3) - whole(2) * x.clone())
+                + m0.clone() * x.clone() * rest.clone() * rest.clone()
+                - m1.clone() * x.clone() * x * rest;
+            Some(since.clone() + own.clone() * bent)
+        };
+        let start = at[index].0.clone();
+        pieces.push((before..before + from.abs_diff(to), from, right, start, way));
+        before += from.abs_diff(to);
+    }
+    let duration = at[at.len() - 1].0.clone();
+    let compare = move |k: u64, t: &Fixed| {
+        let own = pieces.iter().find(|(steps, ..)| steps.contains(&(k - 1)));
+        let (steps, from, right, start, way) = own.expect("a piece has the step");
+        let past = whole(2 * (k - 1 - steps.start) as i64 + 1) / whole(2);
+        let place = whole(*from) + if *right { past } else { zero.clone() - past };
+        match way(t) {
+            None if t < start => Ordering::Less,
+            None => Ordering::Greater,
+            Some(way) if *right => way.order(&place),
+            Some(way) => place.order(&way),
+        }
+    };
+    Ideal { duration, compare: Box::new(compare) }
 }

@@ -27,7 +27,10 @@ use std::env;
 use stepscope_motion::{
     AxisPlan,
     mechanics::{Acceleration, Distance, Jerk, Speed},
-    moves::{Axis, Cosine, Dwell, JerkLimited, Move, RampShape, Ramps, Sine, Trapezoid, TrapezoidMethod},
+    moves::{
+        Axis, Cosine, Dwell, Interpolation, JerkLimited, Move, Point, PointUnit, Points, RampShape, Ramps,
+        Sine, Trapezoid, TrapezoidMethod,
+    },
     plan_axis,
 };
 
@@ -283,6 +286,40 @@ fn jerk_limited(draw: &mut Draw) -> (Move, Ideal) {
 #[test]
 fn jerk_limited_moves_have_every_step_in_its_cycle() {
     hold(9, "jerk-limited", jerk_limited);
+}
+
+fn points(interpolation: Interpolation, draw: &mut Draw) -> (Move, Ideal) {
+    let far = draw.of(&[0.0, 0.0, 12.25, 123_456_789.1]);
+    let (mut time_s, mut position) = (draw.of(&[0.0, 0.0, 1.5, 40_000.1]), far);
+    let mut points = vec![(time_s, position)];
+    for _ in 0..=draw.below(6) {
+        let (later_s, way) = (draw.magnitude(1e-3, 3000.0), draw.magnitude(0.1, MOST_STEPS / 6.0));
+        time_s += later_s;
+        position = match draw.below(6) {
+            0 => position,
+            1 => position - way,
+            _ => position + way,
+        };
+        // A few digits, as people give them, or all.
+        if draw.below(2) == 0 {
+            (time_s, position) =
+                (libm::round(time_s * 1e3).max(1.0) / 1e3, libm::round(position * 10.0) / 10.0);
+        }
+        // No point at a half step, which a turn may touch.
+        if (decimal(position) - decimal(far)).is_half() {
+            position += 0.2;
+        }
+        points.push((time_s, position));
+    }
+    let ideal = ideal::points(&points, interpolation);
+    let points = points.into_iter().map(|(time_s, position)| Point { time_s, position }).collect();
+    (Move::Points(Points { unit: PointUnit::Steps, interpolation, points }), ideal)
+}
+
+#[test]
+fn curves_through_points_have_every_step_in_its_cycle() {
+    hold(10, "smooth points", |draw| points(Interpolation::Smooth, draw));
+    hold(11, "straight points", |draw| points(Interpolation::Straight, draw));
 }
 
 /// The same steps as a list of cycles alone, and of a slow acceleration to a high speed, whose digits are few.
