@@ -58,7 +58,6 @@ impl Rounding {
     pub(super) fn cycle(&self, (whole, cycles): (u64, f64), is_due_before: impl Fn(Double) -> bool) -> u64 {
         let (past, before) = (self.start.part.high + cycles, self.start.whole.wrapping_add(whole));
         match self.certain(past) {
-            _ if self.room > 1.0 => before.wrapping_add(guess(past)),
             Some(cycle) => before.wrapping_add(cycle),
             None => judged(self.start, before.wrapping_add(guess(past)), &is_due_before),
         }

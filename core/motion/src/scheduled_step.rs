@@ -147,7 +147,8 @@ impl Profile {
             }
             Self::Trapezoid(curve) => CycleTime::of(curve.exact_duration() * clock.into()),
             Self::JerkLimited(curve) => CycleTime::of(curve.exact_duration() * clock.into()),
-            Self::Staircase(_) | Self::Sliced(_) => CycleTime::of((self.duration_s() * clock).into()),
+            Self::Staircase(curve) => CycleTime::of(curve.exact_duration() * clock.into()),
+            Self::Sliced(curve) => CycleTime::of(curve.exact_duration() * clock.into()),
         }
     }
 
@@ -161,11 +162,25 @@ impl Profile {
                 off = curve.off(clock);
                 Box::new(curve.is_due_before(clock_hz))
             }
-            Self::Cosine(cosine) => Box::new(cosine.is_due_before(clock_hz)),
-            Self::Ramps(ramps) => Box::new(ramps.is_due_before(clock_hz)),
+            Self::Staircase(curve) => {
+                off = curve.off_s() * clock;
+                Box::new(curve.is_due_before(clock_hz))
+            }
+            Self::Sliced(curve) => {
+                off = curve.off_s() * clock;
+                Box::new(curve.is_due_before(clock_hz))
+            }
+            Self::Cosine(curve) => Box::new(curve.is_due_before(clock_hz)),
+            Self::Ramps(curve) => Box::new(curve.is_due_before(clock_hz)),
             Self::JerkLimited(curve) => Box::new(curve.is_due_before(clock_hz)),
             Self::Sine(sine) => Box::new(sine.is_due_before(clock_hz)),
-            _ => return (Rounding::new(start, -1.0), Box::new(|_, _| false)),
+            Self::SineSegments(sine) => Box::new(sine.is_due_before(clock_hz)),
+            Self::Constant(constant) => {
+                let interval = Exact::of(clock).divided_by(libm::fabs(constant.speed(0.0))).double();
+                Box::new(move |k, since| since.exceeds(interval * (k as f64 - 0.5).into()))
+            }
+            // They know their steps' cycles themselves, or have none.
+            Self::TrapezoidTable(_) | Self::Points(_) | Self::Dwell(_) => Box::new(|_, _| false),
         };
         (Rounding::new(start, off), is_due_before)
     }

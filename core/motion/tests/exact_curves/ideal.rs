@@ -229,3 +229,30 @@ pub(crate) fn points(points: &[(f64, f64)], interpolation: Interpolation) -> Ide
     };
     Ideal { duration, compare: Box::new(compare) }
 }
+
+/// Steps whose times a table gives, each in s; of a move that lasts so long.
+pub(crate) fn of_times(times: Vec<Fixed>, duration: Fixed) -> Ideal {
+    let compare = move |k: u64, t: &Fixed| t.order(&times[k as usize - 1]);
+    Ideal { duration, compare: Box::new(compare) }
+}
+
+/// The rows of a staircase, up and down again: so many steps at a rate each.
+pub(crate) fn staircase(rows: &[(u64, u64)]) -> Ideal {
+    let (mut start, mut times) = (whole(0), Vec::new());
+    for &(steps, rate) in rows {
+        let after = |k: u64| start.clone() + whole(k as i64) / whole(rate as i64);
+        times.extend((1..=steps).map(after));
+        start = after(steps);
+    }
+    of_times(times, start)
+}
+
+/// Steps in the middles of equal parts of each interval: from, to and count.
+pub(crate) fn intervals(intervals: impl Iterator<Item = (Fixed, Fixed, u64)>, duration: Fixed) -> Ideal {
+    let times = intervals.flat_map(|(from, to, count)| {
+        let length = to - from.clone();
+        let after = move |k: u64| length.clone() * whole(2 * k as i64 + 1) / whole(2 * count as i64);
+        (0..count).map(move |k| from.clone() + after(k))
+    });
+    of_times(times.collect(), duration)
+}

@@ -25,13 +25,14 @@ use rand_xoshiro::{
 use std::cmp::Ordering;
 use std::env;
 use stepscope_motion::{
-    AxisPlan,
+    AxisPlan, Curve, Profile,
     mechanics::{Acceleration, Distance, Jerk, Speed},
     moves::{
-        Axis, Cosine, Dwell, Interpolation, JerkLimited, Move, Point, PointUnit, Points, RampShape, Ramps,
-        Sine, Trapezoid, TrapezoidMethod,
+        Axis, Cosine, CosineMethod, Dwell, Interpolation, JerkLimited, Move, Point, PointUnit, Points,
+        RampShape, Ramps, ShortMove, Sine, SineSegments, Staircase, Trapezoid, TrapezoidMethod,
     },
     plan_axis,
+    staircase_table::StaircaseTable,
 };
 
 const CLOCKS: [u32; 6] = [1000, 999_983, 16_000_000, 16_000_000, 72_000_000, 1_000_000_000];
@@ -320,6 +321,120 @@ fn points(interpolation: Interpolation, draw: &mut Draw) -> (Move, Ideal) {
 fn curves_through_points_have_every_step_in_its_cycle() {
     hold(10, "smooth points", |draw| points(Interpolation::Smooth, draw));
     hold(11, "straight points", |draw| points(Interpolation::Straight, draw));
+}
+
+/// Plans a move of its own, and holds its steps to what is made of its plan: the rows or slices are the planner's, their
+/// times are not.
+fn hold_planned(
+    seed: u64,
+    what: &str,
+    mut each: impl FnMut(&mut Draw) -> Move,
+    ideal: impl Fn(&Move, &Profile) -> Option<Ideal>,
+) {
+    let (mut draw, mut tally) = (Draw(Xoshiro256PlusPlus::seed_from_u64(seed)), Tally::default());
+    let mut planned = 0;
+    for _ in 0..motions() {
+        let (clock_hz, given) = (draw.of(&CLOCKS), each(&mut draw));
+        // Twice, so that the second begins where the first ends.
+        let Some(plan) = plan_of(vec![given.clone(), given.clone()]) else { continue };
+        let ideals: Option<Vec<Ideal>> =
+            plan.moves().iter().map(|planned| ideal(&given, &planned.profile)).collect();
+        let Some(ideals) = ideals else { continue };
+        planned += 1;
+        tally.hold(&mut draw, &plan, &ideals, clock_hz, &format!("{given:?}"));
+    }
+    assert!(planned > motions() / 4, "only {planned} could be planned");
+    tally.tell(what);
+}
+
+#[test]
+fn staircases_have_every_step_in_its_cycle() {
+    let given = |draw: &mut Draw| {
+        Move::Staircase(Staircase {
+            distance: Distance::Steps(draw.steps(MOST_STEPS / 6.0) as f64),
+            top_speed: Speed::StepsPerSecond(libm::round(draw.magnitude(900.0, 20_000.0))),
+            level: 1 + draw.below(5) as u8,
+            short_move: draw.of(&[ShortMove::Document, ShortMove::Reverse]),
+            ..Staircase::default()
+        })
+    };
+    hold_planned(12, "staircase", given, |_, profile| {
+        let Profile::Staircase(curve) = profile else { panic!("it is a staircase") };
+        let row = |n| (StaircaseTable::steps_in(n), curve.table().rate(n));
+        let up: Vec<(u64, u64)> = (1..=curve.ramp_rows()).map(row).collect();
+        let plateau = curve.plateau_rate().map(|rate| (curve.plateau_steps(), rate));
+        let rows: Vec<(u64, u64)> =
+            up.iter().copied().chain(plateau).chain(up.iter().rev().copied()).collect();
+        Some(ideal::staircase(&rows))
+    });
+}
+
+#[test]
+fn sines_by_segments_have_every_step_in_its_cycle() {
+    let given = |draw: &mut Draw| {
+        let periods = draw.of(&[1, 2]);
+        Move::SineSegments(SineSegments {
+            amplitude: Distance::Steps(draw.steps(MOST_STEPS / 24.0) as f64),
+            // Of round numbers many steps stand in the middle of two cycles.
+            period_s: if draw.below(2) == 0 {
+                draw.of(&[0.5, 1.0, 0.128])
+            } else {
+                draw.magnitude(1e-3, 86_400.0)
+            },
+            periods,
+            max_deviation: draw.of(&[0.006, 0.0, 0.05, 0.001]),
+        })
+    };
+    hold_planned(13, "sine by segments", given, |given, profile| {
+        let (Move::SineSegments(given), Profile::SineSegments(curve)) = (given, profile) else {
+            panic!("it is a sine by segments")
+        };
+        let quarter: Vec<(i64, i64, u64)> =
+            curve.segments().iter().map(|each| (each.from.into(), each.to.into(), each.steps)).collect();
+        let mirrored: Vec<(i64, i64, u64)> =
+            quarter.iter().rev().map(|&(from, to, steps)| (1024 - to, 1024 - from, steps)).collect();
+        let half = [quarter, mirrored].concat();
+        let (period, periods) = (decimal(given.period_s), i64::from(given.periods));
+        let point = |point: i64| period.clone() * whole(point) / whole(2048);
+        let all = (0..2 * periods).flat_map(|index| half.iter().map(move |each| (1024 * index, *each)));
+        let intervals = all.map(|(start, (from, to, steps))| (point(start + from), point(start + to), steps));
+        Some(ideal::intervals(intervals, period.clone() * whole(periods)))
+    });
+}
+
+#[test]
+fn sliced_moves_have_every_step_in_its_cycle() {
+    let given = |draw: &mut Draw| {
+        let slice_s = draw.of(&[0.001, 0.005, 0.0003]);
+        let (ramp, plateau) = (1 + draw.below(100), draw.below(200));
+        Move::Cosine(Cosine {
+            distance: Distance::Steps(draw.steps(MOST_STEPS / 6.0) as f64),
+            duration_s: format!("{:.4}", slice_s * (2 * ramp + plateau) as f64).parse().expect("a number"),
+            ramp_s: format!("{:.4}", slice_s * ramp as f64).parse().expect("a number"),
+            method: CosineMethod::Sliced,
+            slice_s,
+        })
+    };
+    hold_planned(14, "sliced", given, |given, profile| {
+        let (Move::Cosine(given), Profile::Sliced(curve)) = (given, profile) else { panic!("it is sliced") };
+        // Those that are shorter have some of the steps that the plateau's have, at its rate.
+        let slices: Vec<(f64, f64, u32)> = curve.slices().collect();
+        let is_whole = |&(from, to, _): &(f64, f64, u32)| ((to - from) / given.slice_s - 1.0).abs() < 1e-6;
+        let held =
+            slices.iter().filter(|slice| is_whole(slice)).map(|(.., steps)| i64::from(*steps)).max()?;
+        let slice = decimal(given.slice_s);
+        let (mut made, mut intervals) = (0, Vec::new());
+        for each in &slices {
+            let parts = if is_whole(each) { held } else { i64::from(each.2) };
+            let at = |made: i64| slice.clone() * whole(made) / whole(held);
+            intervals.push((at(made), at(made + parts), each.2.into()));
+            made += parts;
+        }
+        let duration = intervals.last().expect("there are slices").1.clone();
+        // What is not reconstructed is left out.
+        ((duration.to_f64() / profile.duration_s() - 1.0).abs() < 1e-9)
+            .then(|| ideal::intervals(intervals.into_iter(), duration))
+    });
 }
 
 /// The same steps as a list of cycles alone, and of a slow acceleration to a high speed, whose digits are few.
