@@ -74,8 +74,13 @@ impl Quotient {
         let (whole, part) = (start.whole.wrapping_add(self.whole), start.part.high + own);
         let instant =
             if part < 1.0 { whole as f64 + part } else { whole.wrapping_add(1) as f64 + (part - 1.0) };
-        let is_before = |since: Double| (since - Double::from(self.whole)).exceeds(self.time().part);
-        (instant, Rounding::new(start, 0.0).cycle((self.whole, own), is_before))
+        let cycle = if start.part == Double::default() {
+            whole.wrapping_add(u64::from(self.rest >= self.under - self.rest))
+        } else {
+            let is_before = |since: Double| (since - Double::from(self.whole)).exceeds(self.time().part);
+            Rounding::new(start, 0.0).cycle((self.whole, own), is_before)
+        };
+        (instant, cycle)
     }
 }
 
