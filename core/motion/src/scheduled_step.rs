@@ -14,7 +14,6 @@ use crate::{
     cycle_time::{CycleTime, EvenSteps, Quotient},
     double::Double,
     exact::Exact,
-    profile::each,
 };
 use alloc::boxed::Box;
 
@@ -46,32 +45,33 @@ impl AxisPlan {
             *next = start.plus(planned.profile.length(clock_hz));
             Some((start, &planned.profile))
         });
-        starts.flat_map(move |(start, profile)| due_from(profile, start, clock_hz))
+        starts.flat_map(move |(start, profile)| core::iter::from_fn(due_from(profile, start, clock_hz)))
     }
 }
 
-/// The steps of a move, each with its instant.
-type Steps<'p> = Box<dyn Iterator<Item = (f64, ScheduledStep)> + 'p>;
+/// Gives the steps of a move, each with its instant, one after another. No iterator, of which every kind would have every
+/// method.
+type Steps<'p> = Box<dyn FnMut() -> Option<(f64, ScheduledStep)> + 'p>;
 
 /// The steps of a move that starts at `start`: of a timer's table and of one rate the quotients that whole numbers make,
 /// of the others those of their times in f64.
 fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Steps<'_> {
     let clock = f64::from(clock_hz);
     let (right, count) = (profile.steps() >= 0, profile.steps().unsigned_abs());
-    let steps = 1..=count;
+    let mut steps = 1..=count;
     let exactly = move |since: Quotient| {
         let (instant, cycle) = since.after(start);
         (instant, ScheduledStep { cycle, right })
     };
-    // Where the curve crosses the half-integer of each step.
-    let places = steps.clone().map(|k| k as f64 - 0.5);
     match profile {
         Profile::Trapezoid(curve) => {
             let mut times = curve.step_times(clock_hz);
             let times = core::iter::from_fn(move || times.next_unrounded());
             scheduled(profile, start, clock_hz, times.map(move |cycles| (cycles, right)))
         }
-        Profile::TrapezoidTable(table) => Box::new(steps.map(move |k| exactly(table.step_time(k, clock_hz)))),
+        Profile::TrapezoidTable(table) => {
+            Box::new(move || Some(exactly(table.step_time(steps.next()?, clock_hz))))
+        }
         Profile::Staircase(staircase) => {
             let times = steps.map(move |k| (staircase.step_s(k) * clock, right));
             scheduled(profile, start, clock_hz, times)
@@ -86,27 +86,40 @@ fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Steps<'_> {
             let times = sine.due_halves().map(move |(half, right)| (half * cycles_per_half, right));
             scheduled(profile, start, clock_hz, times)
         }
-        Profile::Points(points) => Box::new(points.due().map(move |(due, right)| {
-            let (instant, cycle) = due.cycle(start, clock_hz);
-            (instant, ScheduledStep { cycle, right })
-        })),
+        Profile::Points(points) => {
+            let mut all = points.due();
+            Box::new(move || {
+                let (due, right) = all.next()?;
+                let (instant, cycle) = due.cycle(start, clock_hz);
+                Some((instant, ScheduledStep { cycle, right }))
+            })
+        }
         Profile::Constant(constant) => {
             let speed = libm::fabs(constant.speed(0.0));
             match EvenSteps::new(speed, clock_hz, count) {
-                Some(even) => Box::new(steps.zip(even.steps()).map(move |(_, since)| exactly(since))),
+                Some(even) => {
+                    let mut times = steps.zip(even.steps());
+                    Box::new(move || times.next().map(|(_, since)| exactly(since)))
+                }
                 None => {
                     let cycles_per_step = clock / speed;
-                    let times = places.map(move |place| (place * cycles_per_step, right));
+                    let times = steps.map(move |k| ((k as f64 - 0.5) * cycles_per_step, right));
                     scheduled(profile, start, clock_hz, times)
                 }
             }
         }
-        Profile::Dwell(_) => Box::new(core::iter::empty()),
-        one_way => each!(one_way, curve => {
-            let times = places.map(move |place| (curve.time_s(place) * clock, right));
-            scheduled(profile, start, clock_hz, times)
-        }),
+        Profile::Dwell(_) => Box::new(|| None),
+        Profile::Cosine(curve) => scheduled(profile, start, clock_hz, crossings(curve, clock)),
+        Profile::Sliced(curve) => scheduled(profile, start, clock_hz, crossings(curve, clock)),
+        Profile::Ramps(curve) => scheduled(profile, start, clock_hz, crossings(curve, clock)),
+        Profile::JerkLimited(curve) => scheduled(profile, start, clock_hz, crossings(curve, clock)),
     }
+}
+
+/// When a curve that goes one way crosses the half-integer of each step, in cycles, and which way that is.
+fn crossings(curve: &impl Curve, clock: f64) -> impl Iterator<Item = (f64, bool)> {
+    let right = curve.steps() >= 0;
+    (1..=curve.steps().unsigned_abs()).map(move |k| (curve.time_s(k as f64 - 0.5) * clock, right))
 }
 
 /// The steps of a move that starts at `start`, of their times in cycles from there on and their directions.
@@ -114,15 +127,16 @@ fn scheduled<'p>(
     profile: &'p Profile,
     start: CycleTime,
     clock_hz: u32,
-    times: impl Iterator<Item = (f64, bool)> + 'p,
+    mut times: impl Iterator<Item = (f64, bool)> + 'p,
 ) -> Steps<'p> {
     let (rounding, is_due_before) = profile.rounding(start, clock_hz);
     let (start, mut k) = (start.cycles(), 0);
-    Box::new(times.map(move |(cycles, right)| {
+    Box::new(move || {
+        let (cycles, right) = times.next()?;
         k += 1;
         let cycle = rounding.cycle((0, cycles), |since| is_due_before(k, since));
-        (start + cycles, ScheduledStep { cycle, right })
-    }))
+        Some((start + cycles, ScheduledStep { cycle, right }))
+    })
 }
 
 /// Whether a step (from 1) is due before a time in cycles from its move's start.
