@@ -1,23 +1,27 @@
 //! Times in cycles, with the digits that decide a rounding however late they are (DESIGN B1): whole cycles, and a part of
-//! one.
+//! one in 106 bits.
 //!
 //! A number alone loses a bit of the part each time the whole doubles; at 10^12 cycles the part has 14 bits left.
-
-use crate::{exact::Exact, trapezoid_table::TrapezoidTable};
+use crate::{crossing::Rounding, double::Double, exact::Exact, trapezoid_table::TrapezoidTable};
 
 /// Whole cycles and a part of one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct CycleTime {
     pub(super) whole: u64,
     /// 0 to below 1.
-    pub(super) part: f64,
+    pub(super) part: Double,
 }
 
 impl CycleTime {
     /// A time from 0 on.
-    pub(super) fn of(cycles: f64) -> Self {
-        let whole = cycles as u64;
-        Self { whole, part: cycles - whole as f64 }
+    pub(super) fn of(cycles: Double) -> Self {
+        // Two numbers whose sum it is, each with its own whole cycles; the second may be negative.
+        let mut whole = cycles.high as u64;
+        let mut part = Double::sum(cycles.high - whole as f64, cycles.low);
+        if part.high < 0.0 && whole > 0 {
+            (whole, part) = (whole - 1, part + 1.0.into());
+        }
+        Self { whole, part }
     }
 
     /// A quotient, from 0 on, in cycles.
@@ -28,21 +32,55 @@ impl CycleTime {
 
     pub(super) fn plus(self, other: Self) -> Self {
         let (whole, part) = (self.whole.saturating_add(other.whole), self.part + other.part);
-        if part < 1.0 {
+        let past = part - 1.0.into();
+        if past.high < 0.0 {
             Self { whole, part }
         } else {
-            Self { whole: whole.saturating_add(1), part: part - 1.0 }
+            Self { whole: whole.saturating_add(1), part: past }
         }
-    }
-
-    /// B1's cycle: floor(time + 1/2).
-    pub(super) fn cycle(self) -> u64 {
-        self.whole.saturating_add(u64::from(self.part >= 0.5))
     }
 
     /// As a number.
     pub(super) fn cycles(self) -> f64 {
-        self.whole as f64 + self.part
+        self.whole as f64 + self.part.high
+    }
+}
+
+/// A time in cycles that is a quotient of whole numbers: whole cycles, and the rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Quotient {
+    pub(super) whole: u64,
+    /// Invariant: below `under`.
+    pub(super) rest: u64,
+    pub(super) under: u64,
+}
+
+impl Quotient {
+    /// The part of a cycle.
+    #[inline]
+    pub(super) fn part(self) -> f64 {
+        self.rest as f64 / self.under as f64
+    }
+
+    /// With all its digits.
+    pub(super) fn time(self) -> CycleTime {
+        CycleTime { whole: self.whole, part: Double::from(self.rest) / Double::from(self.under) }
+    }
+
+    /// When a step is due that is so long after `start`, as a number, and B1's cycle of it.
+    #[inline]
+    pub(super) fn after(self, start: CycleTime) -> (f64, u64) {
+        let own = self.part();
+        let (whole, part) = (start.whole.wrapping_add(self.whole), start.part.high + own);
+        let instant =
+            if part < 1.0 { whole as f64 + part } else { whole.wrapping_add(1) as f64 + (part - 1.0) };
+        let cycle = if start.part == Double::default() {
+            whole.wrapping_add(u64::from(self.rest >= self.under - self.rest))
+        } else {
+            let is_before = |since: Double| (since - Double::from(self.whole)).exceeds(self.time().part);
+            Rounding::new(start, 0.0).cycle((self.whole, own), is_before)
+        };
+        (instant, cycle)
     }
 }
 
@@ -76,9 +114,9 @@ impl EvenSteps {
     }
 
     /// When step `k` (from 1) is due.
-    pub(super) fn step(self, k: u64) -> CycleTime {
+    pub(super) fn step(self, k: u64) -> Quotient {
         let (whole, rest) = self.divided(self.over * (2 * u128::from(k) - 1));
-        self.time(whole, rest)
+        Quotient { whole, rest, under: self.under }
     }
 
     fn divided(self, over: u128) -> (u64, u64) {
@@ -86,15 +124,11 @@ impl EvenSteps {
         ((over / under) as u64, (over % under) as u64)
     }
 
-    fn time(self, whole: u64, rest: u64) -> CycleTime {
-        CycleTime { whole, part: rest as f64 / self.under as f64 }
-    }
-
     /// When each step is due, without a division for each.
-    pub(super) fn steps(self) -> impl Iterator<Item = CycleTime> {
+    pub(super) fn steps(self) -> impl Iterator<Item = Quotient> {
         let ((add, add_rest), (mut whole, mut rest)) = (self.divided(2 * self.over), self.divided(self.over));
         core::iter::from_fn(move || {
-            let time = self.time(whole, rest);
+            let time = Quotient { whole, rest, under: self.under };
             (whole, rest) = (whole.wrapping_add(add), rest + add_rest);
             if rest >= self.under {
                 (whole, rest) = (whole.wrapping_add(1), rest - self.under);
@@ -113,10 +147,11 @@ fn common_divisor(mut a: u128, mut b: u128) -> u128 {
 
 impl TrapezoidTable {
     /// Time of step `k` (from 1; 0 is the start, from the last step on the end) in cycles of a clock of `clock_hz`.
-    pub(super) fn step_time(&self, k: u64, clock_hz: u32) -> CycleTime {
-        let timer_hz = u128::from(self.table().timer_hz().max(1));
+    pub(super) fn step_time(&self, k: u64, clock_hz: u32) -> Quotient {
+        let timer_hz = self.table().timer_hz().max(1);
         let product = u128::from(self.step_ticks(k)) * u128::from(clock_hz);
-        CycleTime { whole: (product / timer_hz) as u64, part: (product % timer_hz) as f64 / timer_hz as f64 }
+        let (whole, rest) = (product / u128::from(timer_hz), product % u128::from(timer_hz));
+        Quotient { whole: whole as u64, rest: rest as u64, under: timer_hz.into() }
     }
 }
 
@@ -131,26 +166,28 @@ mod tests {
         for (k, time) in (1..=100).zip(even.steps()) {
             assert_eq!(time, even.step(k));
             let halves = 5 * (2 * k - 1);
-            assert_eq!((time.whole, time.part), (halves / 3, (halves % 3) as f64 / 3.0), "step {k}");
+            assert_eq!((time.whole, time.part()), (halves / 3, (halves % 3) as f64 / 3.0), "step {k}");
         }
         // Ties: of 0.8 steps/s every step stands at a half.
         let even = EvenSteps::new(0.8, 2, 10).expect("they are short");
         assert!(
-            even.steps().take(10).all(|time| time.part == 0.25 || time.part == 0.75),
+            even.steps().take(10).all(|time| time.part() == 0.25 || time.part() == 0.75),
             "1.25 cycles, and 2.5 further"
         );
         let even = EvenSteps::new(1e7 / 3.0, 1_000_000_000, 1_000_000_000).expect("they are short");
         // The number that is printed, 3333333.3333333335, is a little more than the third.
         let last = even.step(1_000_000_000);
-        assert!(last.whole == 299_999_999_849 && last.part > 0.999, "{last:?}");
+        assert!(last.whole == 299_999_999_849 && last.part() > 0.999, "{last:?}");
     }
 
     #[test]
     fn parts_add_up_to_whole_cycles() {
-        let time = CycleTime::of(3.75).plus(CycleTime { whole: 1 << 60, part: 0.5 });
-        assert_eq!((time.whole, time.part, time.cycle()), ((1 << 60) + 4, 0.25, (1 << 60) + 4));
-        assert_eq!(CycleTime::of(0.499_999_999_999_999_94).cycle(), 0);
-        assert_eq!(CycleTime::of(0.5).cycle(), 1);
-        assert_eq!(CycleTime::exact(&Exact::of(7.0).divided_by(2.0)), CycleTime { whole: 3, part: 0.5 });
+        let half = Double::from(0.5);
+        let time = CycleTime::of(3.75.into()).plus(CycleTime { whole: 1 << 60, part: half });
+        assert_eq!(time, CycleTime { whole: (1 << 60) + 4, part: 0.25.into() });
+        // The nearest f64 is 4, and the sum below it.
+        let below = CycleTime::of(Double { high: 4.0, low: -1e-20 });
+        assert!(below.whole == 3 && below.part == Double { high: 1.0, low: -1e-20 }, "{below:?}");
+        assert_eq!(CycleTime::exact(&Exact::of(7.0).divided_by(2.0)), CycleTime { whole: 3, part: half });
     }
 }

@@ -9,7 +9,7 @@
 //! quotient of 64 bits. A library for all operations would make the page 13 kB heavier; the tests hold these against one. None
 //! of them is called often, so none is copied into its callers.
 
-use crate::round_half_up;
+use crate::{double::Double, round_half_up};
 use alloc::{format, vec, vec::Vec};
 use core::cmp::Ordering;
 
@@ -18,6 +18,9 @@ const LIMB_BITS: u32 = 32;
 /// Bits of a quotient from which the nearest f64 is rounded: more than it has, so that the rest only has to be told from
 /// nothing.
 const QUOTIENT_BITS: u32 = 64;
+/// Bits of a quotient that become a [`Double`], of which the first may be 0, and of either half of it.
+const DOUBLE_BITS: u32 = 2 * HALF_BITS as u32;
+const HALF_BITS: i32 = 53;
 
 /// A quotient of whole numbers.
 #[derive(Clone, Debug)]
@@ -113,32 +116,48 @@ impl Exact {
     /// The nearest f64, of two as near the one that ends in an even digit.
     #[inline(never)]
     pub(super) fn nearest(&self) -> f64 {
+        let (quotient, scale, is_more) = self.digits(QUOTIENT_BITS);
+        // Whatever is left counts as a little more than the last bit.
+        let nearest = libm::scalbn((quotient as u64 | u64::from(is_more)) as f64, scale);
+        if self.negative { -nearest } else { nearest }
+    }
+
+    /// The quotient in 106 bits.
+    #[inline(never)]
+    pub(super) fn double(&self) -> Double {
+        let (quotient, scale, _) = self.digits(DOUBLE_BITS);
+        let half = |digits: u128, scale: i32| libm::scalbn(digits as u64 as f64, scale);
+        let (upper, lower) = (quotient >> HALF_BITS, quotient & ((1 << HALF_BITS) - 1));
+        let Double { high, low } = Double::sum(half(upper, scale + HALF_BITS), half(lower, scale));
+        if self.negative { Double { high: -high, low: -low } } else { Double { high, low } }
+    }
+
+    /// The first bits of the magnitude, so many or one less, as a whole number; the power of two that it is times; and
+    /// whether there is more than that.
+    fn digits(&self, bits: u32) -> (u128, i32, bool) {
         let (mut over, mut under) = (self.over.clone(), self.under.clone());
         if over.is_zero() {
-            return 0.0;
+            return (0, 0, false);
         }
         // Both as long, so that their quotient is 1/2 to 2.
         let ahead = over.bits() as i32 - under.bits() as i32;
         over.shift_left((-ahead).max(0).unsigned_abs());
         under.shift_left(ahead.max(0).unsigned_abs());
-        let mut quotient: u64 = 0;
-        for _ in 0..QUOTIENT_BITS {
+        let mut quotient = 0;
+        for _ in 0..bits {
             let fits = over.cmp(&under) != Ordering::Less;
             if fits {
                 over = over.less(&under);
             }
-            quotient = quotient << 1 | u64::from(fits);
+            quotient = quotient << 1 | u128::from(fits);
             over.shift_left(1);
         }
-        // Whatever is left counts as a little more than the last bit.
-        quotient |= u64::from(!over.is_zero());
-        let nearest = libm::scalbn(quotient as f64, ahead - (QUOTIENT_BITS as i32 - 1));
-        if self.negative { -nearest } else { nearest }
+        (quotient, ahead - (bits as i32 - 1), !over.is_zero())
     }
 
-    /// The greatest whole number that is no more, and the rest, as near as an f64 is; of a quotient from 0 to below 2^64.
+    /// The greatest whole number that is no more, and the rest in 106 bits; of a quotient from 0 to below 2^64.
     #[inline(never)]
-    pub(super) fn whole_and_part(&self) -> (u64, f64) {
+    pub(super) fn whole_and_part(&self) -> (u64, Double) {
         debug_assert!(!self.negative || self.over.is_zero(), "{self:?} is negative");
         let (mut rest, mut whole) = (self.over.clone(), 0);
         for bit in (0..=self.over.bits().saturating_sub(self.under.bits()).min(u64::BITS - 1)).rev() {
@@ -149,7 +168,7 @@ impl Exact {
                 whole |= 1 << bit;
             }
         }
-        (whole, Self { negative: false, over: rest, under: self.under.clone() }.nearest())
+        (whole, Self { negative: false, over: rest, under: self.under.clone() }.double())
     }
 
     /// The shortest decimal that reads back as a number: its digits as a whole number, times 10 to a power.

@@ -143,8 +143,9 @@ impl Cubic {
         (turn_s > self.from_s && turn_s < self.to_s).then_some(turn_s)
     }
 
-    /// When it is at `place`, which lies within it, in s.
-    pub(super) fn time_s(&self, place: f64) -> f64 {
+    /// When it is at `place`, which lies within it.
+    #[inline]
+    pub(super) fn crossing(&self, place: f64) -> Crossing {
         let travel = self.to - self.from;
         let (behind, ahead) = (place - self.from, self.to - place);
         // Mirrored so that the travel is to the right.
@@ -153,11 +154,24 @@ impl Cubic {
             Seen { near_speed: sign * seen.near_speed, square: sign * seen.square, cube: sign * seen.cube }
         };
         if libm::fabs(behind) <= libm::fabs(ahead) {
-            self.from_s + right(self.seen_from_start()).time(libm::fabs(behind), self.length_s())
+            let travel = libm::fabs(behind);
+            let x = right(self.seen_from_start()).time(travel, self.length_s());
+            Crossing { time_s: self.from_s + x, s_per_step: x / travel }
         } else {
-            self.to_s - right(self.seen_from_end()).time(libm::fabs(ahead), self.length_s())
+            let travel = libm::fabs(ahead);
+            let x = right(self.seen_from_end()).time(travel, self.length_s());
+            Crossing { time_s: self.to_s - x, s_per_step: x / travel }
         }
     }
+}
+
+/// When a cubic is at a place.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Crossing {
+    /// In s.
+    pub(super) time_s: f64,
+    /// Time since the nearer end or until it, in parts of the travel; no number at the end itself.
+    pub(super) s_per_step: f64,
 }
 
 #[cfg(test)]
@@ -174,11 +188,11 @@ mod tests {
                 let (from_s, to_s) = (86_000.0, 86_000.5);
                 let (from_speed, to_speed) = (first * mean, last * mean);
                 let cubic = Cubic { from_s, to_s, from, to, from_speed, to_speed };
-                assert_eq!((cubic.time_s(from), cubic.time_s(to)), (from_s, to_s));
+                assert_eq!((cubic.crossing(from).time_s, cubic.crossing(to).time_s), (from_s, to_s));
                 let mut before = from_s;
                 for part in [1e-15, 1e-9, 1e-3, 0.2, 0.49, 0.5, 0.51, 0.9, 0.999, 1.0 - 1e-9] {
                     let place = from + (to - from) * part;
-                    let t = cubic.time_s(place);
+                    let t = cubic.crossing(place).time_s;
                     assert!(t >= before && t <= to_s, "{from} {to} {first} {last} {part}: {t}");
                     // The time has 1.5e-11 s as its last digit there.
                     let off = libm::fabs(cubic.position(t) - place);
@@ -196,11 +210,11 @@ mod tests {
         let cubic = Cubic { from_s: 0.0, to_s: 1.0, from: 0.0, to: 1e9, from_speed: 0.0, to_speed: 0.0 };
         let root = libm::sqrt(0.5 / 3e9);
         let expected = root * (1.0 + root / 3.0 + 5.0 / 18.0 * root * root);
-        let found = cubic.time_s(0.5);
+        let found = cubic.crossing(0.5).time_s;
         assert!((found / expected - 1.0).abs() < 1e-14, "{found} {expected}");
         // And from its top down.
         let falls = Cubic { from: 1e9, to: 0.0, ..cubic };
-        assert!((1.0 - falls.time_s(0.5) - expected).abs() < 1e-15);
+        assert!((1.0 - falls.crossing(0.5).time_s - expected).abs() < 1e-15);
     }
 
     #[test]

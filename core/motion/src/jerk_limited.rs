@@ -36,9 +36,11 @@
 //! assert_eq!((go.position(go.duration_s()), go.speed(0.0)), (3200.0, 0.0));
 //! ```
 
+mod exactly;
+
 use crate::{
-    Curve, Peaks, curve::greater, format::grouped, mirrored::Mirrored, moves, quantities::Quantities,
-    square_root,
+    Curve, Peaks, curve::greater, double::Double, format::grouped, mirrored::Mirrored, moves,
+    quantities::Quantities, square_root,
 };
 use alloc::{format, string::String, vec::Vec};
 
@@ -73,14 +75,23 @@ pub struct JerkLimited {
     ramp_s: f64,
     /// s_r, at most half of all steps.
     ramp_steps: f64,
+    limits: exactly::Limits,
 }
 
 impl JerkLimited {
     /// `steps` (left negative, not 0) from rest to rest.
     #[must_use]
     pub fn new(steps: i64, limits: Limits) -> Self {
+        let [speed, acceleration, jerk] =
+            [limits.speed, limits.acceleration, limits.jerk].map(Double::decimal);
+        Self::within(steps, exactly::Limits { speed, acceleration, jerk })
+    }
+
+    /// [`Self::new`], of numbers with all their digits.
+    fn within(steps: i64, limits: exactly::Limits) -> Self {
         let all = steps.unsigned_abs() as f64;
-        let Limits { speed, acceleration, jerk } = limits;
+        let [speed, acceleration, jerk] =
+            [limits.speed, limits.acceleration, limits.jerk].map(|number| number.high);
         // To the top speed: with a phase of constant acceleration, where that is reached before.
         let full_jerk_s = acceleration / jerk;
         let (jerk_s, steady_s) = if speed > acceleration * full_jerk_s {
@@ -92,7 +103,7 @@ impl JerkLimited {
         let ramp_steps = speed * ramp_s / 2.0;
         if 2.0 * ramp_steps <= all {
             let halves = Mirrored { steps, duration_s: all / speed + ramp_s };
-            return Self { halves, jerk, jerk_s, steady_s, peak_speed: speed, ramp_s, ramp_steps };
+            return Self { halves, jerk, jerk_s, steady_s, peak_speed: speed, ramp_s, ramp_steps, limits };
         }
         // No plateau: the two ramps are the whole travel.
         let (jerk_s, steady_s, peak_speed) = if all > 2.0 * acceleration * full_jerk_s * full_jerk_s {
@@ -106,7 +117,7 @@ impl JerkLimited {
         };
         let ramp_s = 2.0 * jerk_s + steady_s;
         let halves = Mirrored { steps, duration_s: 2.0 * ramp_s };
-        Self { halves, jerk, jerk_s, steady_s, peak_speed, ramp_s, ramp_steps: all / 2.0 }
+        Self { halves, jerk, jerk_s, steady_s, peak_speed, ramp_s, ramp_steps: all / 2.0, limits }
     }
 
     /// From what is asked.

@@ -14,7 +14,7 @@
 //! assert_eq!((refused.unit, refused.mechanics), ("mm", "rotary"));
 //! ```
 
-use crate::{exact::Exact, parameters::parameters, round_half_up};
+use crate::{double::Double, exact::Exact, parameters::parameters, round_half_up};
 use core::f64::consts::PI;
 
 /// What one step is.
@@ -257,9 +257,14 @@ impl Distance {
     /// # Errors
     /// [`NoSuchUnit`] where the mechanics have no millimetres or no degrees.
     pub fn steps_from(&self, first: f64, mechanics: &Mechanics) -> Result<f64, NoSuchUnit> {
+        self.exact_steps_from(first, mechanics).map(|steps| steps.high)
+    }
+
+    /// [`Self::steps_from`] with all its digits.
+    pub(super) fn exact_steps_from(&self, first: f64, mechanics: &Mechanics) -> Result<Double, NoSuchUnit> {
         let quotient = (self.value() - first) / self.step(mechanics)?;
         if !mechanics.can_tell(self.value() - first) {
-            return Ok(quotient);
+            return Ok(quotient.into());
         }
         let way = Exact::difference(self.value(), first);
         let exact = match self {
@@ -267,7 +272,7 @@ impl Distance {
             Self::Millimetres(_) => mechanics.millimetres(way),
             Self::Degrees(_) => mechanics.degrees(way),
         };
-        Ok(exact.map_or(quotient, |exact| exact.nearest()))
+        Ok(exact.map_or(quotient.into(), |exact| exact.double()))
     }
 }
 

@@ -26,11 +26,21 @@
 //! assert_eq!(Points::new(&[(0.0, 0.0), (0.0, 1.0)], Between::Straight), None);
 //! ```
 
+mod exactly;
+
 use crate::{
-    Curve, Peaks, curve::greater, cycle_time::CycleTime, exact::Exact, format::grouped, hermite::Cubic,
+    Curve, Peaks,
+    crossing::Rounding,
+    curve::greater,
+    cycle_time::CycleTime,
+    exact::Exact,
+    format::grouped,
+    hermite::{Crossing, Cubic},
     round_half_up,
 };
 use alloc::{format, string::String, vec::Vec};
+pub(crate) use exactly::Point;
+use exactly::{Off, off};
 
 /// Parts that a smooth curve is cut into, about: its pieces in 4 to 64 each.
 const CURVE_PARTS: u32 = 256;
@@ -47,6 +57,12 @@ pub enum Between {
 /// A curve through points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Points {
+    /// The points with all their digits.
+    ///
+    /// Invariant: one more than there are pieces, the first at 0.
+    exact: Vec<Point>,
+    /// How far the times of each piece may be off.
+    off: Vec<Off>,
     /// Invariant: at least one; each starts when and where the one before ends, the first at 0.
     pieces: Vec<Cubic>,
     /// Steps that are made by the end of each piece, right positive.
@@ -59,7 +75,19 @@ impl Points {
     #[must_use]
     pub fn new(points: &[(f64, f64)], between: Between) -> Option<Self> {
         let &(zero_s, zero) = points.first()?;
-        let points: Vec<(f64, f64)> = points.iter().map(|(t, y)| (t - zero_s, y - zero)).collect();
+        if !points.iter().all(|(t, y)| t.is_finite() && y.is_finite()) {
+            return None;
+        }
+        let from_first = |a: f64, b: f64| Exact::difference(a, b).double();
+        Self::through(
+            points.iter().map(|(t, y)| (from_first(*t, zero_s), from_first(*y, zero))).collect(),
+            between,
+        )
+    }
+
+    /// [`Self::new`], of points that count from the first already.
+    pub(super) fn through(exact: Vec<Point>, between: Between) -> Option<Self> {
+        let points: Vec<(f64, f64)> = exact.iter().map(|(t, y)| (t.high, y.high)).collect();
         let mut pieces: Vec<Cubic> = points
             .windows(2)
             .filter_map(|pair| {
@@ -78,7 +106,8 @@ impl Points {
         let made = made(&pieces);
         debug_assert!(made.len() == pieces.len() && pieces.first().is_some_and(|first| first.from_s == 0.0));
         debug_assert!(pieces.is_sorted_by(|piece, next| piece.to_s == next.from_s && piece.to == next.from));
-        Some(Self { pieces, made, between })
+        let off = off(&pieces, between);
+        Some(Self { exact, off, pieces, made, between })
     }
 
     /// Steps of all pieces, whichever way they go.
@@ -108,22 +137,22 @@ impl Points {
 
     /// Where each step falls due, and whether it goes to the right.
     pub(super) fn due(&self) -> impl Iterator<Item = (Due<'_>, bool)> + '_ {
-        self.counted().flat_map(move |(piece, from, to)| {
+        self.counted().enumerate().flat_map(move |(index, (_, from, to))| {
             let right = to > from;
-            let due = move |index| Due { piece, place: place(from, to, index), between: self.between };
-            (0..from.abs_diff(to)).map(move |index| (due(index), right))
+            let due = move |step| Due { points: self, index, place: place(from, to, step) };
+            (0..from.abs_diff(to)).map(move |step| (due(step), right))
         })
     }
 
     /// Where step `k` (from 1) of all falls due.
     pub(super) fn step(&self, k: u64) -> Option<Due<'_>> {
         let mut before = 0;
-        let (piece, from, to) = self.counted().find(|(_, from, to)| {
+        let (index, (_, from, to)) = self.counted().enumerate().find(|(_, (_, from, to))| {
             let among = k <= before + from.abs_diff(*to);
             before += if among { 0 } else { from.abs_diff(*to) };
             among
         })?;
-        Some(Due { piece, place: place(from, to, k - before - 1), between: self.between })
+        Some(Due { points: self, index, place: place(from, to, k - before - 1) })
     }
 
     fn piece(&self, t: f64) -> Option<&Cubic> {
@@ -134,28 +163,26 @@ impl Points {
 /// A place in which a step falls due.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Due<'p> {
-    piece: &'p Cubic,
+    points: &'p Points,
+    /// Of the piece.
+    index: usize,
     place: f64,
-    between: Between,
 }
 
 impl Due<'_> {
-    /// When, in cycles of a clock of `clock_hz` after `start`.
-    ///
-    /// On a straight piece that is a quotient of decimals. A time in f64 is off by some last digits; where these could
-    /// decide the rounding, the quotient does.
-    pub(super) fn cycles(&self, start: CycleTime, clock_hz: u32) -> CycleTime {
-        let clock = f64::from(clock_hz);
-        let time = CycleTime::of(start.cycles() + self.piece.time_s(self.place) * clock);
-        let digits = 1e-12 + 1e-14 * time.cycles();
-        if self.between == Between::Smooth || libm::fabs(time.part - 0.5) > digits {
-            return time;
-        }
-        let Cubic { from_s, to_s, from, to, .. } = *self.piece;
-        let way = |a: f64, b: f64| if a < b { Exact::difference(b, a) } else { Exact::difference(a, b) };
-        let since = way(from, self.place).times(way(from_s, to_s).nearest()).times(clock);
-        let since = since.divided_by(way(from, to).nearest());
-        start.plus(CycleTime::exact(&Exact::of(from_s).times(clock))).plus(CycleTime::exact(&since))
+    /// When, in cycles of a clock of `clock_hz`, and its cycle, of a move that begins at `start`.
+    #[inline]
+    pub(super) fn cycle(&self, start: CycleTime, clock_hz: u32) -> (f64, u64) {
+        let (points, clock) = (self.points, f64::from(clock_hz));
+        let (Some(piece), Some(off)) = (points.pieces.get(self.index), points.off.get(self.index)) else {
+            return (0.0, 0);
+        };
+        let Crossing { time_s, s_per_step } = piece.crossing(self.place);
+        let cycles = time_s * clock;
+        let rounding = Rounding::new(start, (off.time_s + off.way * s_per_step) * clock);
+        let cycle =
+            rounding.cycle((0, cycles), |since| points.is_past(self.index, self.place, since / clock.into()));
+        (start.cycles() + cycles, cycle)
     }
 }
 
@@ -300,8 +327,10 @@ mod tests {
 
     fn due(points: &[(f64, f64)], between: Between) -> Vec<(f64, bool)> {
         let curve = Points::new(points, between).unwrap();
-        let due: Vec<(f64, bool)> =
-            curve.due().map(|(due, right)| (due.piece.time_s(due.place), right)).collect();
+        let due: Vec<(f64, bool)> = curve
+            .due()
+            .map(|(due, right)| (curve.pieces[due.index].crossing(due.place).time_s, right))
+            .collect();
         assert_eq!(due.len() as u64, curve.step_count());
         let made: i64 = due.iter().map(|(_, right)| if *right { 1 } else { -1 }).sum();
         assert_eq!(made, curve.steps(), "{points:?}");

@@ -76,8 +76,6 @@ macro_rules! each {
     };
 }
 
-pub(crate) use each;
-
 impl Profile {
     /// From what is asked of a move to its curve, or to its problems, each with its path from the move on.
     pub(super) fn plan(quantities: &mut Quantities<'_>, given: &Move, budget: &mut Budget) -> Option<Self> {

@@ -2,6 +2,7 @@
 //! in a unit that the axis has, and every problem kept with its path.
 
 use crate::{
+    double::Double,
     limits,
     mechanics::{Acceleration, Distance, Jerk, Mechanics, NoSuchUnit, Speed},
     problem::{Cause, Validator},
@@ -137,9 +138,9 @@ impl<'s> Quantities<'s> {
     }
 
     /// The way from a first position to another in the same unit, in steps, not rounded; `size` is one step in that unit.
-    pub(super) fn way(&mut self, first: f64, given: &Distance, size: f64) -> Option<f64> {
+    pub(super) fn way(&mut self, first: f64, given: &Distance, size: f64) -> Option<Double> {
         self.in_own_unit("", given.value(), size, limits::STEPS, given.unit())?;
-        given.steps_from(first, self.mechanics).ok()
+        given.exact_steps_from(first, self.mechanics).ok()
     }
 
     /// The size of a step in the quantity's unit.

@@ -31,6 +31,8 @@
 //! assert!(Ramp::exponential(4.0).area() > 0.7);
 //! ```
 
+mod exactly;
+
 use crate::{bisection::Bracket, square_root};
 
 /// Newton's steps after which a place is taken as it is; from the guesses here seven do.

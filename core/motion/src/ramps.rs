@@ -25,6 +25,9 @@
 
 use crate::{
     Curve, Peaks,
+    crossing::is_due_before,
+    double::Double,
+    exact::Exact,
     format::{grouped, ramp_up_to},
     mirrored::{Mirrored, RAMP_PARTS, parts_s},
     ramp::{Ramp, longest_ramp_s},
@@ -75,6 +78,31 @@ impl Ramps {
     /// x of the ramp at `t` after the start or before the end, 0 to 1; `None` in the plateau.
     fn part(&self, t: f64) -> Option<f64> {
         (t < self.ramp_s).then(|| t / self.ramp_s)
+    }
+
+    /// Whether step `k` (from 1) falls due before a time in cycles of a clock of `clock_hz`, for certain.
+    ///
+    /// Of a time in f64 the place in parts of the ramp's travel has 9 u, and a shape's travel at most 25 for what cancels
+    /// in the sigmoid's logarithm: the time has half of these, as its way begins with its square. A sigmoid's range r that
+    /// is off by u shifts its steep start by r/2 of them, at most 10. With those of Newton's end, of the products by the
+    /// ramp's time and the clock, and of the difference from the end, it is off by less than 48 u.
+    pub(super) fn is_due_before(&self, clock_hz: u32) -> impl Fn(u64, Double) -> bool + use<> {
+        let cycles = |time_s: f64| Exact::of(time_s).times(clock_hz.into()).double();
+        let (duration, ramp, shape) =
+            (cycles(self.halves.duration_s), cycles(self.ramp_s), self.ramp.exactly());
+        let count = self.halves.steps.unsigned_abs();
+        // Both ramps lose as much time against a start at top speed.
+        let lost = ramp * (Double::from(1.0) - shape.area());
+        let top_speed = Double::from(count) / (duration - lost * 2.0.into());
+        move |k, since| {
+            is_due_before((k, count), since, duration, |time, place| {
+                if ramp.exceeds(time) {
+                    shape.is_past(time / ramp, Double::from(place) / (top_speed * ramp))
+                } else {
+                    (top_speed * (time - lost)).exceeds(place.into())
+                }
+            })
+        }
     }
 
     /// When the first half is at `place`.

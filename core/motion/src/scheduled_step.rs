@@ -5,14 +5,15 @@
 //! ```
 //!
 //! A move's own times are formed in cycles from its start, those of a timer's table and of one rate in whole
-//! numbers; to them comes the start of the move, which the decimals of those before it make, and the sum is rounded once.
+//! numbers, those of a curve in f64; to them comes the start of the move, which the decimals of those before it make, and
+//! the sum is rounded once. Where the digits of an f64 do not decide that, `crossing` does.
 
 use crate::{
     AxisPlan, Curve, Profile,
-    cycle_time::{CycleTime, EvenSteps},
+    crossing::{MAX_OFF, Rounding},
+    cycle_time::{CycleTime, EvenSteps, Quotient},
+    double::Double,
     exact::Exact,
-    profile::each,
-    step_times::cycle,
 };
 use alloc::boxed::Box;
 
@@ -24,9 +25,6 @@ pub struct ScheduledStep {
     /// Whether it goes to the right.
     pub right: bool,
 }
-
-/// Cycles from the start of a move, not rounded, and whether the step goes to the right.
-type Due<'p> = Box<dyn Iterator<Item = (f64, bool)> + 'p>;
 
 impl AxisPlan {
     /// Steps of all moves, whichever way they go.
@@ -47,43 +45,102 @@ impl AxisPlan {
             *next = start.plus(planned.profile.length(clock_hz));
             Some((start, &planned.profile))
         });
-        starts.flat_map(move |(start, profile)| due_from(profile, start, clock_hz))
+        starts.flat_map(move |(start, profile)| core::iter::from_fn(due_from(profile, start, clock_hz)))
     }
 }
 
-/// The steps of a move that starts at `start`.
-fn due_from(
-    profile: &Profile,
-    start: CycleTime,
-    clock_hz: u32,
-) -> Box<dyn Iterator<Item = (f64, ScheduledStep)> + '_> {
+/// Gives the steps of a move, each with its instant, one after another. No iterator, of which every kind would have every
+/// method.
+type Steps<'p> = Box<dyn FnMut() -> Option<(f64, ScheduledStep)> + 'p>;
+
+/// The steps of a move that starts at `start`: of a timer's table and of one rate the quotients that whole numbers make,
+/// of the others those of their times in f64.
+fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Steps<'_> {
+    let clock = f64::from(clock_hz);
     let (right, count) = (profile.steps() >= 0, profile.steps().unsigned_abs());
-    let exactly = move |since: CycleTime| {
-        let time = start.plus(since);
-        (time.cycles(), ScheduledStep { cycle: time.cycle(), right })
+    let mut steps = 1..=count;
+    let exactly = move |since: Quotient| {
+        let (instant, cycle) = since.after(start);
+        (instant, ScheduledStep { cycle, right })
     };
-    let even = match profile {
-        Profile::Constant(constant) => EvenSteps::new(libm::fabs(constant.speed(0.0)), clock_hz, count),
-        _ => None,
-    };
-    match (profile, even) {
-        (Profile::TrapezoidTable(table), _) => {
-            Box::new((1..=count).map(move |k| exactly(table.step_time(k, clock_hz))))
+    match profile {
+        Profile::Trapezoid(curve) => {
+            let mut times = curve.step_times(clock_hz);
+            let times = core::iter::from_fn(move || times.next_unrounded());
+            scheduled(profile, start, clock_hz, times.map(move |cycles| (cycles, right)))
         }
-        (Profile::Points(points), _) => Box::new(points.due().map(move |(due, right)| {
-            let time = due.cycles(start, clock_hz);
-            (time.cycles(), ScheduledStep { cycle: time.cycle(), right })
-        })),
-        (_, Some(even)) => Box::new((1..=count).zip(even.steps()).map(move |(_, since)| exactly(since))),
-        (profile, None) => {
-            let start = start.cycles();
-            Box::new(due(profile, clock_hz).map(move |(cycles, right)| {
-                let instant = start + cycles;
-                (instant, ScheduledStep { cycle: cycle(instant), right })
-            }))
+        Profile::TrapezoidTable(table) => {
+            Box::new(move || Some(exactly(table.step_time(steps.next()?, clock_hz))))
         }
+        Profile::Staircase(staircase) => {
+            let times = steps.map(move |k| (staircase.step_s(k) * clock, right));
+            scheduled(profile, start, clock_hz, times)
+        }
+        Profile::SineSegments(sine) => {
+            let cycles_per_point = sine.point_s() * clock;
+            let times = sine.due_points().map(move |(point, right)| (point * cycles_per_point, right));
+            scheduled(profile, start, clock_hz, times)
+        }
+        Profile::Sine(sine) => {
+            let cycles_per_half = sine.period_s() / 2.0 * clock;
+            let times = sine.due_halves().map(move |(half, right)| (half * cycles_per_half, right));
+            scheduled(profile, start, clock_hz, times)
+        }
+        Profile::Points(points) => {
+            let mut all = points.due();
+            Box::new(move || {
+                let (due, right) = all.next()?;
+                let (instant, cycle) = due.cycle(start, clock_hz);
+                Some((instant, ScheduledStep { cycle, right }))
+            })
+        }
+        Profile::Constant(constant) => {
+            let speed = libm::fabs(constant.speed(0.0));
+            match EvenSteps::new(speed, clock_hz, count) {
+                Some(even) => {
+                    let mut times = steps.zip(even.steps());
+                    Box::new(move || times.next().map(|(_, since)| exactly(since)))
+                }
+                None => {
+                    let cycles_per_step = clock / speed;
+                    let times = steps.map(move |k| ((k as f64 - 0.5) * cycles_per_step, right));
+                    scheduled(profile, start, clock_hz, times)
+                }
+            }
+        }
+        Profile::Dwell(_) => Box::new(|| None),
+        Profile::Cosine(curve) => scheduled(profile, start, clock_hz, crossings(curve, clock)),
+        Profile::Sliced(curve) => scheduled(profile, start, clock_hz, crossings(curve, clock)),
+        Profile::Ramps(curve) => scheduled(profile, start, clock_hz, crossings(curve, clock)),
+        Profile::JerkLimited(curve) => scheduled(profile, start, clock_hz, crossings(curve, clock)),
     }
 }
+
+/// When a curve that goes one way crosses the half-integer of each step, in cycles, and which way that is.
+fn crossings(curve: &impl Curve, clock: f64) -> impl Iterator<Item = (f64, bool)> {
+    let right = curve.steps() >= 0;
+    (1..=curve.steps().unsigned_abs()).map(move |k| (curve.time_s(k as f64 - 0.5) * clock, right))
+}
+
+/// The steps of a move that starts at `start`, of their times in cycles from there on and their directions.
+fn scheduled<'p>(
+    profile: &'p Profile,
+    start: CycleTime,
+    clock_hz: u32,
+    mut times: impl Iterator<Item = (f64, bool)> + 'p,
+) -> Steps<'p> {
+    let (rounding, is_due_before) = profile.rounding(start, clock_hz);
+    let (start, mut k) = (start.cycles(), 0);
+    Box::new(move || {
+        let (cycles, right) = times.next()?;
+        k += 1;
+        let cycle = rounding.cycle((0, cycles), |since| is_due_before(k, since));
+        Some((start + cycles, ScheduledStep { cycle, right }))
+    })
+}
+
+/// Whether a step (from 1) is due before a time in cycles from its move's start.
+type IsDueBefore<'p> = Box<dyn Fn(u64, Double) -> bool + 'p>;
 
 impl Profile {
     /// How long the move lasts: what its decimals make, where it is told by them.
@@ -92,7 +149,7 @@ impl Profile {
         let told =
             |duration_s: f64, times: f64| CycleTime::exact(&Exact::of(duration_s).times(times).times(clock));
         match self {
-            Self::TrapezoidTable(table) => table.step_time(self.steps().unsigned_abs(), clock_hz),
+            Self::TrapezoidTable(table) => table.step_time(self.steps().unsigned_abs(), clock_hz).time(),
             Self::Constant(constant) => {
                 let steps = Exact::of(self.steps().unsigned_abs() as f64).times(clock);
                 CycleTime::exact(&steps.divided_by(libm::fabs(constant.speed(0.0))))
@@ -102,10 +159,44 @@ impl Profile {
             Self::Cosine(_) | Self::Ramps(_) | Self::Points(_) | Self::Dwell(_) => {
                 told(self.duration_s(), 1.0)
             }
-            Self::Trapezoid(_) | Self::Staircase(_) | Self::Sliced(_) | Self::JerkLimited(_) => {
-                CycleTime::of(self.duration_s() * clock)
-            }
+            Self::Trapezoid(curve) => CycleTime::of(curve.exact_duration() * clock.into()),
+            Self::JerkLimited(curve) => CycleTime::of(curve.exact_duration() * clock.into()),
+            Self::Staircase(curve) => CycleTime::of(curve.exact_duration() * clock.into()),
+            Self::Sliced(curve) => CycleTime::of(curve.exact_duration() * clock.into()),
         }
+    }
+
+    /// How the times of its steps in f64 become cycles, if it starts at `start`, and what judges them where they do not
+    /// tell.
+    fn rounding(&self, start: CycleTime, clock_hz: u32) -> (Rounding, IsDueBefore<'_>) {
+        let clock = f64::from(clock_hz);
+        let mut off = MAX_OFF * self.duration_s() * clock;
+        let is_due_before: IsDueBefore<'_> = match self {
+            Self::Trapezoid(curve) => {
+                off = curve.off(clock);
+                Box::new(curve.is_due_before(clock_hz))
+            }
+            Self::Staircase(curve) => {
+                off = curve.off_s() * clock;
+                Box::new(curve.is_due_before(clock_hz))
+            }
+            Self::Sliced(curve) => {
+                off = curve.off_s() * clock;
+                Box::new(curve.is_due_before(clock_hz))
+            }
+            Self::Cosine(curve) => Box::new(curve.is_due_before(clock_hz)),
+            Self::Ramps(curve) => Box::new(curve.is_due_before(clock_hz)),
+            Self::JerkLimited(curve) => Box::new(curve.is_due_before(clock_hz)),
+            Self::Sine(sine) => Box::new(sine.is_due_before(clock_hz)),
+            Self::SineSegments(sine) => Box::new(sine.is_due_before(clock_hz)),
+            Self::Constant(constant) => {
+                let interval = Exact::of(clock).divided_by(libm::fabs(constant.speed(0.0))).double();
+                Box::new(move |k, since| since.exceeds(interval * (k as f64 - 0.5).into()))
+            }
+            // They know their steps' cycles themselves, or have none.
+            Self::TrapezoidTable(_) | Self::Points(_) | Self::Dwell(_) => Box::new(|_, _| false),
+        };
+        (Rounding::new(start, off), is_due_before)
     }
 
     /// The cycle of step `k` (from 1) after the move's start, of a clock of `clock_hz`, without iterating
@@ -115,66 +206,26 @@ impl Profile {
         if k == 0 || k > self.step_count() {
             return None;
         }
-        let (clock, place) = (f64::from(clock_hz), k as f64 - 0.5);
+        let (clock, place, start) = (f64::from(clock_hz), k as f64 - 0.5, CycleTime::default());
         let cycles = match self {
             Self::Trapezoid(curve) => return curve.step_times(clock_hz).nth(usize::try_from(k - 1).ok()?),
-            Self::TrapezoidTable(table) => return Some(table.step_time(k, clock_hz).cycle()),
+            Self::TrapezoidTable(table) => return Some(table.step_time(k, clock_hz).after(start).1),
             Self::Staircase(staircase) => staircase.step_s(k) * clock,
             Self::Sine(sine) => sine.due_half(k) * (sine.period_s() / 2.0 * clock),
             Self::Points(points) => {
-                return Some(points.step(k)?.cycles(CycleTime::default(), clock_hz).cycle());
+                return Some(points.step(k)?.cycle(start, clock_hz).1);
             }
             Self::Constant(constant) => {
                 let speed = libm::fabs(constant.speed(0.0));
                 match EvenSteps::new(speed, clock_hz, self.step_count()) {
-                    Some(even) => return Some(even.step(k).cycle()),
+                    Some(even) => return Some(even.step(k).after(start).1),
                     None => place * (clock / speed),
                 }
             }
             Self::SineSegments(_) | Self::Dwell(_) => return None,
             one_way => one_way.time_s(place) * clock,
         };
-        Some(cycle(cycles))
-    }
-}
-
-/// A kind that does not stand here by itself goes one way, and its curve is asked for each step's time.
-fn due(profile: &Profile, clock_hz: u32) -> Due<'_> {
-    let clock = f64::from(clock_hz);
-    let (right, steps) = (profile.steps() >= 0, 1..=profile.steps().unsigned_abs());
-    // Where the curve crosses the half-integer of each step.
-    let places = steps.clone().map(|k| k as f64 - 0.5);
-    match profile {
-        Profile::Trapezoid(curve) => {
-            let mut times = curve.step_times(clock_hz);
-            Box::new(core::iter::from_fn(move || times.next_unrounded().map(|cycles| (cycles, right))))
-        }
-        // In whole numbers, and rounded once: `due_from`.
-        Profile::TrapezoidTable(table) => {
-            Box::new(steps.map(move |k| (table.step_time(k, clock_hz).cycles(), right)))
-        }
-        Profile::Staircase(staircase) => Box::new(steps.map(move |k| (staircase.step_s(k) * clock, right))),
-        Profile::SineSegments(sine) => {
-            let cycles_per_point = sine.point_s() * clock;
-            Box::new(sine.due_points().map(move |(point, right)| (point * cycles_per_point, right)))
-        }
-        Profile::Sine(sine) => {
-            let cycles_per_half = sine.period_s() / 2.0 * clock;
-            Box::new(sine.due_halves().map(move |(half, right)| (half * cycles_per_half, right)))
-        }
-        // Rounded once: `due_from`.
-        Profile::Points(points) => Box::new(
-            points
-                .due()
-                .map(move |(due, right)| (due.cycles(CycleTime::default(), clock_hz).cycles(), right)),
-        ),
-        Profile::Constant(constant) => {
-            let cycles_per_step = clock / libm::fabs(constant.speed(0.0));
-            Box::new(places.map(move |place| (place * cycles_per_step, right)))
-        }
-        Profile::Dwell(_) => Box::new(core::iter::empty()),
-        one_way => each!(one_way, curve => {
-            Box::new(places.map(move |place| (curve.time_s(place) * clock, right)))
-        }),
+        let (rounding, is_due_before) = self.rounding(start, clock_hz);
+        Some(rounding.cycle((0, cycles), |since| is_due_before(k, since)))
     }
 }

@@ -23,7 +23,14 @@
 //! ```
 
 use crate::{
-    Curve, Peaks, budget::hold_speed, limits, moves, oscillation::Oscillation, quantities::Quantities,
+    Curve, Peaks,
+    budget::hold_speed,
+    crossing::is_due_before,
+    double::{self, Double},
+    exact::Exact,
+    limits, moves,
+    oscillation::Oscillation,
+    quantities::Quantities,
     square_root,
 };
 use alloc::{format, string::String, vec::Vec};
@@ -87,6 +94,26 @@ impl Sine {
     pub(super) fn due_half(&self, k: u64) -> f64 {
         let of_half = 2 * self.oscillation.amplitude;
         ((k - 1) / of_half) as f64 + part_of_half((k - 1) % of_half + 1, self.oscillation.amplitude)
+    }
+
+    /// Whether step `k` (from 1) of all falls due before a time in cycles of a clock of `clock_hz`, for certain: in its
+    /// half period the travel from the nearer extreme is 2*A*sin^2(pi*t/T).
+    ///
+    /// Of a time in f64 ([`Self::due_halves`]) the quotient has one rounding u, its root one and a half, which the arc
+    /// sine up to 45 degrees makes at most 4/pi times as much; with its own two, the product with 2/pi, the sum of the
+    /// half periods and the product with their cycles, which are three, it is off by at most 10 u.
+    pub(super) fn is_due_before(&self, clock_hz: u32) -> impl Fn(u64, Double) -> bool + use<> {
+        let travel = 2 * self.oscillation.amplitude;
+        let period = Exact::of(self.oscillation.period_s).times(clock_hz.into()).double();
+        let half = period * 0.5.into();
+        move |k, since| {
+            let since = since - half * Double::from((k - 1) / travel);
+            is_due_before(((k - 1) % travel + 1, travel), since, half, |time, place| {
+                let phase = double::PI * time / period;
+                let sine = phase - phase.less_its_sine();
+                (Double::from(travel) * sine * sine).exceeds(place.into())
+            })
+        }
     }
 
     fn amplitude(&self) -> f64 {

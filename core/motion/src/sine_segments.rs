@@ -27,6 +27,8 @@ use crate::{
     Curve, Peaks,
     budget::{Budget, MAX_SEGMENTS, hold_speed},
     curve::greater,
+    double::Double,
+    exact::Exact,
     format::grouped,
     limits, moves,
     oscillation::Oscillation,
@@ -212,6 +214,25 @@ impl SineSegments {
             let each = (to - from) / steps as f64;
             (0..steps).map(move |step| (from + (step as f64 + 0.5) * each, right))
         })
+    }
+
+    /// Whether step `k` (from 1) of all falls due before a time in cycles of a clock of `clock_hz`, for certain: its time
+    /// is a quotient of the period's decimal. In f64 it is off by at most 6 u.
+    pub(super) fn is_due_before(&self, clock_hz: u32) -> impl Fn(u64, Double) -> bool + '_ {
+        let period = Exact::of(self.oscillation.period_s).times(clock_hz.into()).double();
+        move |k, since| {
+            let of_period = 4 * self.oscillation.amplitude;
+            let (periods, mut step) = ((k - 1) / of_period, (k - 1) % of_period);
+            let interval = self.pieces().find(|interval| {
+                let is_within = step < interval.steps;
+                step -= if is_within { 0 } else { interval.steps };
+                is_within
+            });
+            let Some(Interval { from, to, steps, .. }) = interval else { return false };
+            let along = Double::from(2 * step + 1) * (to - from).into() / Double::from(2 * steps);
+            let turns = Double::from(periods) + (along + from.into()) / f64::from(POINTS).into();
+            since.exceeds(period * turns)
+        }
     }
 
     /// Time of a point of the angle in s.

@@ -36,6 +36,8 @@ mod compensation;
 use crate::{
     Curve, Peaks,
     cosine::Cosine,
+    crossing::{MAX_OFF, ROUNDING},
+    double::Double,
     format::{grouped, ramp_up_to},
 };
 use alloc::{format, string::String, vec::Vec};
@@ -50,6 +52,8 @@ pub struct Sliced {
     ///
     /// Invariant: one entry more than there are slices, of which there is at least one.
     starts_s: Vec<f64>,
+    /// The same with all their digits.
+    exact_starts: Vec<Double>,
     /// Steps before each slice, without sign, and all of them.
     ///
     /// Invariant: as long as `starts_s`, from 0 to the move's steps, not falling.
@@ -114,14 +118,14 @@ impl Sliced {
         let slices = Slices::of(&exact, needed, slice_s);
         let (compensated, top_speed) =
             slices.coarse(&exact, ramp_s).ok_or(NotSliced::TooFew { slices: needed })?;
-        let (starts_s, sums, top_rate) = slices.fine(top_speed, &exact);
+        let (exact_starts, starts_s, sums, top_rate) = slices.fine(top_speed, &exact);
         debug_assert!(starts_s.len() >= 2 && starts_s.is_sorted_by(|a, b| a < b), "a slice without a length");
         debug_assert!(sums.len() == starts_s.len() && sums.first() == Some(&0) && sums.is_sorted());
         debug_assert!(
             sums.last().copied().map(u64::from) == Some(steps.unsigned_abs()),
             "the slices do not have all steps"
         );
-        Ok(Self { exact, compensated, starts_s, sums, top_rate })
+        Ok(Self { exact, compensated, starts_s, exact_starts, sums, top_rate })
     }
 
     /// The exact curve of the same steps in the same time.
@@ -164,6 +168,37 @@ impl Sliced {
         let last = self.exact.steps().unsigned_abs() as f64 - 0.5;
         let last_step_s = self.time_s(last) - self.exact.time_s(last);
         TimeError { end_s, relative: end_s / requested_s, last_step_s }
+    }
+
+    /// How long it lasts in s.
+    pub(super) fn exact_duration(&self) -> Double {
+        self.exact_starts.last().copied().unwrap_or_default()
+    }
+
+    /// Whether step `k` (from 1) falls due before a time in cycles of a clock of `clock_hz`, for certain: its time is a
+    /// quotient of decimals.
+    pub(super) fn is_due_before(&self, clock_hz: u32) -> impl Fn(u64, Double) -> bool + '_ {
+        move |k, since| {
+            let index = self.slice_of(k as f64 - 0.5);
+            let (Some(&[from, to]), Some((_, _, before, count))) =
+                (self.exact_starts.get(index..index + 2), self.slice(index))
+            else {
+                return false;
+            };
+            let halves = Double::from(2 * (k - u64::from(before)) - 1);
+            let step_s = from + (to - from) * halves / f64::from(2 * count.max(1)).into();
+            since.exceeds(step_s * Double::from(u64::from(clock_hz)))
+        }
+    }
+
+    /// How far a time in s may be off in f64: each slice that is cut adds its own roundings to those before.
+    pub(super) fn off_s(&self) -> f64 {
+        (MAX_OFF + 4.0 * ROUNDING * self.starts_s.len() as f64) * self.duration_s()
+    }
+
+    /// The slice that `place` lies in.
+    fn slice_of(&self, place: f64) -> usize {
+        self.sums.partition_point(|sum| f64::from(*sum) <= place).saturating_sub(1)
     }
 
     /// Slice `index`; past the last none.
@@ -230,8 +265,7 @@ impl Curve for Sliced {
     }
 
     fn time_s(&self, place: f64) -> f64 {
-        let after = self.sums.partition_point(|sum| f64::from(*sum) <= place);
-        let (from, to, before, count) = self.slice(after.saturating_sub(1)).unwrap_or_default();
+        let (from, to, before, count) = self.slice(self.slice_of(place)).unwrap_or_default();
         from + (place - f64::from(before)) * (to - from) / f64::from(count.max(1))
     }
 

@@ -25,7 +25,9 @@ use crate::moves::ShortMove;
 use crate::{
     Curve, Peaks,
     bisection::least,
+    crossing::{MAX_OFF, ROUNDING},
     curve::greater,
+    double::Double,
     format::{count, grouped},
     mirrored::Mirrored,
     staircase_table::StaircaseTable,
@@ -154,6 +156,53 @@ impl Staircase {
         } else {
             self.duration_s - self.ramp_time(left)
         }
+    }
+
+    /// How long it lasts in s.
+    pub(super) fn exact_duration(&self) -> Double {
+        let plateau = Double::from(self.plateau_steps()) / Double::from(self.plateau_rate);
+        self.exact_starts().last().copied().unwrap_or_default() * 2.0.into() + plateau
+    }
+
+    /// Start of each row of the ramp, and its end, in s.
+    fn exact_starts(&self) -> Vec<Double> {
+        let row_s = |n| Double::from(StaircaseTable::steps_in(n)) / Double::from(self.table.rate(n));
+        let ends = (1..=self.ramp_rows()).scan(Double::default(), |end, n| {
+            *end = *end + row_s(n);
+            Some(*end)
+        });
+        core::iter::once(Double::default()).chain(ends).collect()
+    }
+
+    /// Whether step `k` (from 1) falls due before a time in cycles of a clock of `clock_hz`, for certain: its time is a sum
+    /// of quotients of whole numbers.
+    pub(super) fn is_due_before(&self, clock_hz: u32) -> impl Fn(u64, Double) -> bool + '_ {
+        let (starts, duration) = (self.exact_starts(), self.exact_duration());
+        let ramp_s = starts.last().copied().unwrap_or_default();
+        let climbed = move |k: u64| {
+            let before = self.row(k) - 1;
+            let since = Double::from(k - StaircaseTable::steps_after(before));
+            let start = starts.get(before as usize).copied().unwrap_or_default();
+            start + since / Double::from(self.table.rate(before + 1))
+        };
+        move |k, since| {
+            let left = self.count().saturating_sub(k);
+            let step_s = if k <= self.ramp_steps {
+                climbed(k)
+            } else if left >= self.ramp_steps {
+                ramp_s + Double::from(k - self.ramp_steps) / Double::from(self.plateau_rate)
+            } else if left > 0 {
+                duration - climbed(left)
+            } else {
+                duration
+            };
+            since.exceeds(step_s * Double::from(u64::from(clock_hz)))
+        }
+    }
+
+    /// How far a time in s may be off in f64: each row adds its own roundings to those before.
+    pub(super) fn off_s(&self) -> f64 {
+        (MAX_OFF + 2.0 * ROUNDING * self.starts_s.len() as f64) * self.duration_s
     }
 
     /// Steps of the ramp that fit into `t`, as good as a division tells.

@@ -10,15 +10,23 @@
 //!
 //! The inner loop is dumb by design: in a ramp one square root and no division, because
 //! clock_hz/a is multiplied with; x = v0^2 + 2*a*s is formed anew for each step, so nothing adds
-//! up. The error of a ramp's time is then at most v*clock_hz/a * 2^-52 cycles. Where that could
-//! reach an eighth of a cycle (a slow acceleration to a high speed) t = 2*s/(v + v0) takes its
-//! place, which divides but keeps the digits that v - v0 loses. Either way a time is within one
-//! cycle of the ideal one.
+//! up. Of x four roundings u = 2^-53 are half as much of v, and with those of the root, of v0, of the
+//! difference and of the product a ramp's time is off by at most 8*u*v*clock_hz/a. Where that is too
+//! much of a cycle (a slow acceleration to a high speed) t = 2*s/(v + v0) takes its place, which
+//! divides but keeps the digits that v - v0 loses. All others, T among them, are off by at most 32 u
+//! of T: a time is the sum of ds/v over the way, so v0, v1 and a, each off by u, make no more of it.
+//! Where that does not tell the cycle, `crossing` does.
 
-use crate::{Curve, round_half_up, square_root, trapezoid::Trapezoid};
+use crate::{
+    Curve,
+    crossing::{MAX_OFF, ROUNDING, Rounding, guess, judged},
+    cycle_time::CycleTime,
+    round_half_up, square_root,
+    trapezoid::Trapezoid,
+};
 
-/// Error of a step's time, in cycles, from which on a ramp divides.
-const MAX_ERROR: f64 = 0.125;
+/// How far a ramp's time may be off, in cycles, before it divides: of so few steps the cycle is judged.
+const MAX_ERROR: f64 = 1.0 / 4096.0;
 
 /// Times of a trapezoid's steps in cycles from its start, rising.
 #[derive(Clone, Debug)]
@@ -36,6 +44,9 @@ pub struct StepTimes {
     cycles_per_step: f64,
     /// Cycles of the whole move.
     end: f64,
+    curve: Trapezoid,
+    clock_hz: u32,
+    rounding: Rounding,
 }
 
 /// The ramp from rest or the start speed: cycles over place.
@@ -63,12 +74,6 @@ impl Ramp {
     }
 }
 
-/// floor(cycles + 1/2), for times from 0 on, where truncation is the floor.
-#[inline]
-pub(super) fn cycle(cycles: f64) -> u64 {
-    (cycles + 0.5) as i64 as u64
-}
-
 impl Trapezoid {
     /// The cycle of each step, of a clock of `clock_hz`, from the start of the move.
     #[must_use]
@@ -80,7 +85,7 @@ impl Trapezoid {
         // Of a triangle with an odd number of steps the middle one is both; the climb has it.
         let slowing = if in_ramp > half { half } else { in_ramp };
         let cycles_per_speed = clock / self.acceleration;
-        let error = self.peak_speed * cycles_per_speed * f64::EPSILON;
+        let error = self.ramp_error(clock);
         let cycles_per_step = clock / self.peak_speed;
         StepTimes {
             place: 0.5,
@@ -98,7 +103,21 @@ impl Trapezoid {
             plateau_zero: self.ramp_s * clock - self.ramp_steps * cycles_per_step,
             cycles_per_step,
             end: self.duration_s() * clock,
+            curve: *self,
+            clock_hz,
+            rounding: Rounding::new(CycleTime::default(), self.off(clock)),
         }
+    }
+
+    /// How far a ramp's time is off at most in cycles if it does not divide.
+    fn ramp_error(&self, clock: f64) -> f64 {
+        8.0 * ROUNDING * self.peak_speed * clock / self.acceleration
+    }
+
+    /// How far a time is off at most, in cycles.
+    pub(super) fn off(&self, clock: f64) -> f64 {
+        let (error, rest) = (self.ramp_error(clock), MAX_OFF * self.duration_s() * clock);
+        if error > MAX_ERROR { rest } else { error + rest }
     }
 }
 
@@ -136,12 +155,25 @@ impl StepTimes {
     }
 }
 
+/// The cycle, at about `cycles`, of the step before `next_place`.
+#[cold]
+#[inline(never)]
+fn judge(curve: Trapezoid, clock_hz: u32, next_place: f64, cycles: f64) -> u64 {
+    let is_due_before = curve.is_due_before(clock_hz);
+    judged(CycleTime::default(), guess(cycles), &|since| is_due_before((next_place - 0.5) as u64, since))
+}
+
 impl Iterator for StepTimes {
     type Item = u64;
 
     #[inline]
     fn next(&mut self) -> Option<u64> {
-        self.next_unrounded().map(cycle)
+        let cycles = self.next_unrounded()?;
+        // Copies are judged, so that all of this stays in registers.
+        Some(match self.rounding.certain(cycles) {
+            Some(cycle) => cycle,
+            None => judge(self.curve, self.clock_hz, self.place, cycles),
+        })
     }
 
     /// Passes by `n` steps without forming their times.

@@ -21,7 +21,7 @@
 //! assert!(Trapezoid::new(200, 250.0, 4000.0, 9000.0).peak_speed() < 4000.0);
 //! ```
 
-use crate::{Curve, Peaks, mirrored::Mirrored, square_root};
+use crate::{Curve, Peaks, crossing::is_due_before, double::Double, mirrored::Mirrored, square_root};
 use alloc::vec::Vec;
 
 /// A trapezoid or triangle of uniform acceleration.
@@ -35,6 +35,43 @@ pub struct Trapezoid {
     /// Steps of a ramp, at most half of all.
     pub(super) ramp_steps: f64,
     pub(super) ramp_s: f64,
+    limits: Limits,
+}
+
+/// What a trapezoid is made of, in 106 bits: in f64 neither a decimal nor a quotient by mechanics is what it means.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Limits {
+    pub(super) start_speed: Double,
+    pub(super) top_speed: Double,
+    pub(super) acceleration: Double,
+}
+
+/// The curve in 106 bits, of times in s.
+#[derive(Clone, Copy)]
+struct Exactly {
+    count: Double,
+    start_speed: Double,
+    acceleration: Double,
+    peak_speed: Double,
+    ramp_steps: Double,
+    ramp: Double,
+}
+
+impl Exactly {
+    fn duration(&self) -> Double {
+        let two = Double::from(2.0);
+        self.ramp * two + (self.count - self.ramp_steps * two) / self.peak_speed
+    }
+
+    /// Whether the first half is past `place` at `t`.
+    fn is_past(&self, t: Double, place: f64) -> bool {
+        let travelled = if self.ramp.exceeds(t) {
+            (self.start_speed + self.acceleration * t * 0.5.into()) * t
+        } else {
+            self.ramp_steps + self.peak_speed * (t - self.ramp)
+        };
+        travelled.exceeds(place.into())
+    }
 }
 
 impl Trapezoid {
@@ -42,6 +79,15 @@ impl Trapezoid {
     /// with `acceleration` > 0, in steps, s. The top speed is above 0.
     #[must_use]
     pub fn new(steps: i64, start_speed: f64, top_speed: f64, acceleration: f64) -> Self {
+        let [start_speed, top_speed, acceleration] =
+            [start_speed, top_speed, acceleration].map(Double::decimal);
+        Self::within(steps, Limits { start_speed, top_speed, acceleration })
+    }
+
+    /// [`Self::new`], of numbers with all their digits.
+    pub(super) fn within(steps: i64, limits: Limits) -> Self {
+        let [start_speed, top_speed, acceleration] =
+            [limits.start_speed, limits.top_speed, limits.acceleration].map(|number| number.high);
         let all = steps.unsigned_abs() as f64;
         let (v0, v1, a) = (start_speed, top_speed, acceleration);
         // (v1 - v0)*(v1 + v0) keeps the digits that v1^2 - v0^2 would lose.
@@ -56,7 +102,7 @@ impl Trapezoid {
         let plateau_s = (all - 2.0 * ramp_steps) / peak_speed;
         let duration_s = 2.0 * ramp_s + plateau_s;
         let halves = Mirrored { steps, duration_s };
-        Self { halves, start_speed, acceleration, peak_speed, ramp_steps, ramp_s }
+        Self { halves, start_speed, acceleration, peak_speed, ramp_steps, ramp_s, limits }
     }
 
     /// Highest speed that is reached, in steps/s.
@@ -75,6 +121,31 @@ impl Trapezoid {
     #[must_use]
     pub fn ramp_steps(&self) -> f64 {
         self.ramp_steps
+    }
+
+    fn exactly(&self) -> Exactly {
+        let Limits { start_speed: v0, top_speed: v1, acceleration } = self.limits;
+        let (count, two) = (Double::from(self.halves.steps.unsigned_abs()), Double::from(2.0));
+        let whole_ramp = (v1 - v0) * (v1 + v0) / (acceleration * two);
+        let (peak_speed, ramp_steps) = if (whole_ramp * two).exceeds(count) {
+            ((v0 * v0 + acceleration * count).square_root(), count / two)
+        } else {
+            (v1, whole_ramp)
+        };
+        let ramp = ramp_steps * two / (v0 + peak_speed);
+        Exactly { count, start_speed: v0, acceleration, peak_speed, ramp_steps, ramp }
+    }
+
+    /// How long it lasts in s.
+    pub(super) fn exact_duration(&self) -> Double {
+        self.exactly().duration()
+    }
+
+    /// Whether step `k` (from 1) falls due before a time in cycles of a clock of `clock_hz`, for certain.
+    pub(super) fn is_due_before(&self, clock_hz: u32) -> impl Fn(u64, Double) -> bool + use<> {
+        let (curve, count) = (self.exactly(), self.halves.steps.unsigned_abs());
+        let (duration, clock) = (curve.duration(), Double::from(u64::from(clock_hz)));
+        move |k, since| is_due_before((k, count), since / clock, duration, |t, place| curve.is_past(t, place))
     }
 
     /// s(t) of the first half, in steps without sign.

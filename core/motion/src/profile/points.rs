@@ -5,7 +5,7 @@ use crate::{
     exact::Exact,
     limits,
     moves::{self, Interpolation},
-    points::{Between, Points},
+    points::{Between, Point, Points},
     problem::Cause,
     quantities::Quantities,
 };
@@ -25,12 +25,12 @@ pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::Points) -> Op
     let size = quantities.step_of("unit", &given.unit.of(0.0))?;
     let points = quantities.at("points", |here| judge(here, given, size))?;
     // Before the curve is made: times that differ by less than the digits of so long a one would be no curve.
-    quantities.duration("points", points.last().map_or(0.0, |(since_s, _)| *since_s))?;
+    quantities.duration("points", points.last().map_or(0.0, |(since_s, _)| since_s.high))?;
     let between = match given.interpolation {
         Interpolation::Straight => Between::Straight,
         Interpolation::Smooth => Between::Smooth,
     };
-    let curve = Points::new(&points, between)?;
+    let curve = Points::through(points, between)?;
     if curve.step_count() == 0 {
         quantities.refuse("points", Cause::NoSteps { steps: curve.reach() });
         return None;
@@ -42,7 +42,7 @@ pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::Points) -> Op
 }
 
 /// Times and positions in steps of points that hold, both counted from the first as their decimals have it (DESIGN B1).
-fn judge(quantities: &mut Quantities<'_>, given: &moves::Points, size: f64) -> Option<Vec<(f64, f64)>> {
+fn judge(quantities: &mut Quantities<'_>, given: &moves::Points, size: f64) -> Option<Vec<Point>> {
     let earlier = quantities.validator.count();
     let mut points = Vec::with_capacity(given.points.len());
     let mut before = None;
@@ -50,8 +50,10 @@ fn judge(quantities: &mut Quantities<'_>, given: &moves::Points, size: f64) -> O
         given.points.first().map(|first| first.position).filter(|first| first.is_finite()).unwrap_or(0.0);
     let first_s =
         given.points.first().map(|first| first.time_s).filter(|first_s| first_s.is_finite()).unwrap_or(0.0);
-    let since =
-        |time_s: f64| if time_s.is_finite() { Exact::difference(time_s, first_s).nearest() } else { time_s };
+    let since = |time_s: f64| match time_s.is_finite() {
+        true => Exact::difference(time_s, first_s).double(),
+        false => time_s.into(),
+    };
     for (index, point) in given.points.iter().enumerate() {
         quantities.at_entry(index, |here| {
             if let Some(before) = before.filter(|before| !is_after(point.time_s, *before)) {

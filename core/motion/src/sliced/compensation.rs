@@ -2,7 +2,7 @@
 //! have too few steps: so its top speed is raised until they have enough (coarse), and then what is too much is taken
 //! from the plateau, the last slice first, and from the tail (fine).
 
-use crate::{Curve, MAX_SPEED, cosine::Cosine, curve::greater, round_half_up};
+use crate::{Curve, MAX_SPEED, cosine::Cosine, curve::greater, double::Double, round_half_up};
 use alloc::vec::Vec;
 use core::ops::Range;
 
@@ -84,8 +84,9 @@ impl Slices {
         }
     }
 
-    /// The fine compensation: the starts of the slices that are left, the steps before each, and the highest rate.
-    pub(super) fn fine(&self, top_speed: f64, exact: &Cosine) -> (Vec<f64>, Vec<u32>, f64) {
+    /// The fine compensation: the starts of the slices that are left, with all their digits and as numbers, the steps
+    /// before each, and the highest rate.
+    pub(super) fn fine(&self, top_speed: f64, exact: &Cosine) -> (Vec<Double>, Vec<f64>, Vec<u32>, f64) {
         let all = self.weights.len();
         let mut counts: Vec<u64> = (0..all).map(|index| self.steps(index, top_speed)).collect();
         let held = whole_steps(top_speed * self.slice_s);
@@ -99,14 +100,18 @@ impl Slices {
         }
         let (mut starts_s, mut sums) = (Vec::with_capacity(all + 1), Vec::with_capacity(all + 1));
         let (mut shorter_s, mut sum, mut top_rate) = (0.0, 0, 0.0);
+        let (mut exact_starts, mut lost) = (Vec::with_capacity(all + 1), 0);
+        let (slice, held_steps) = (Double::decimal(self.slice_s), Double::from(held.max(1)));
         for (index, count) in counts.iter().enumerate() {
             let shortened = self.plateau.contains(&index) && *count < held;
             if !(shortened && *count == 0) {
                 starts_s.push(index as f64 * self.slice_s - shorter_s);
+                exact_starts.push(slice * Double::from(index as u64 * held - lost) / held_steps);
                 sums.push(sum as u32);
             }
             if shortened {
                 shorter_s += self.slice_s * ((held - count) as f64 / held as f64);
+                lost += held - count;
             }
             if *count > 0 {
                 // Rounded down, no slice has more than the top speed; a shortened one has the plateau's rate.
@@ -118,7 +123,8 @@ impl Slices {
             sum += count;
         }
         starts_s.push(exact.duration_s() - shorter_s);
+        exact_starts.push(Double::decimal(exact.duration_s()) - slice * Double::from(lost) / held_steps);
         sums.push(sum as u32);
-        (starts_s, sums, top_rate)
+        (exact_starts, starts_s, sums, top_rate)
     }
 }

@@ -1,0 +1,119 @@
+//! The cycle of a step, for certain (DESIGN B1): floor(t*clock_hz + 1/2), t being where the curve crosses its place.
+//!
+//! ```text
+//!        cycle c - 1          cycle c
+//! ---------+----------|----------+----------|----     | edges: whole + 1/2
+//!                   [-x-]                             a time in f64, and how far it may be off
+//! ```
+//!
+//! A time in f64 decides where no edge is as near to it as it may be off. Where one is, the edge E is judged instead of
+//! the time: if the curve is past the step's place at E, the step is due before E. A curve that goes one way has no other
+//! answer, so this is a proof, whatever the first time was; and it needs the curve's own formulas alone, in 106 bits
+//! ([`Double`]), no roots of them.
+//!
+//! How far a time in f64 may be off is counted in the roundings that it is made of, u = 2^-53 each: those of its formula,
+//! with `libm`'s functions taken to be within two, and those that made a number of a scenario of its decimal. The shapes
+//! of this crate pass on to the time no more of an error in a place or a parameter than its own part of it: of a curve
+//! that speeds up from rest s <= v*t, so a time's part of an error ds/v is at most that of the way, ds/s. Every planner
+//! comes to less than 64 u of the longest of its times ([`MAX_OFF`]). What is off by more is told beside its formula.
+//!
+//! 106 bits have an end, too. E counts as earlier by [`TIE`] of it, which is 2^10 times what they lose: so a step that is
+//! due exactly at E, a tie, goes up as B1 has it, however its formula has rounded. A step that is due that little before
+//! E, and is no tie, would go up as well; nothing proves that there is none. Were times spread evenly, it would be one in
+//! 2^62 of a motion of 2^32 cycles.
+
+use crate::{cycle_time::CycleTime, double::Double};
+
+/// How far a time in f64 may be off, in parts of the longest time of its move: 64 roundings.
+pub(super) const MAX_OFF: f64 = 64.0 * ROUNDING;
+/// The greatest error of one rounding in parts of what is rounded, u.
+pub(super) const ROUNDING: f64 = f64::EPSILON / 2.0;
+/// The same in cycles, for a move that lasts no longer than one: the part of a cycle in which it starts.
+const MAX_OFF_CYCLES: f64 = 4.0 * f64::EPSILON;
+
+/// 2^52: numbers from here on are whole. A move that lasts as long has no [`Rounding::room`].
+const WHOLE: f64 = 4_503_599_627_370_496.0;
+/// How much earlier an edge counts, in parts of it: 2^-94.
+const TIE: f64 = f64::EPSILON * f64::EPSILON * 1024.0;
+/// Edges that are judged: many more than one is only off what no scenario may ask for.
+const MAX_EDGES: u32 = 64;
+
+/// Which cycles the steps of a move fall in.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rounding {
+    start: CycleTime,
+    /// How far a time may be from the middle between two edges.
+    room: f64,
+}
+
+impl Rounding {
+    /// Of a move that begins at `start`, whose own times in cycles may be off by `off`.
+    pub(super) fn new(start: CycleTime, off: f64) -> Self {
+        Self { start, room: 0.5 - MAX_OFF_CYCLES - off }
+    }
+
+    /// The cycle of a step that is due `whole` and `cycles` more cycles from the move's start; `is_due_before` judges that
+    /// for a time from there on.
+    #[inline]
+    pub(super) fn cycle(&self, (whole, cycles): (u64, f64), is_due_before: impl Fn(Double) -> bool) -> u64 {
+        let (past, before) = (self.start.part.high + cycles, self.start.whole.wrapping_add(whole));
+        match self.certain(past) {
+            Some(cycle) => before.wrapping_add(cycle),
+            None => judged(self.start, before.wrapping_add(guess(past)), &is_due_before),
+        }
+    }
+
+    /// floor(cycles + 1/2), for times from 0 on, where no edge is too near.
+    #[inline]
+    pub(super) fn certain(&self, cycles: f64) -> Option<u64> {
+        // The sum has no digit after the point: it is the nearest whole number, and no conversion is needed.
+        let moved = cycles + WHOLE;
+        let is_certain = libm::fabs(cycles - (moved - WHOLE)) < self.room;
+        is_certain.then(|| moved.to_bits().wrapping_sub(WHOLE.to_bits()))
+    }
+}
+
+/// floor(cycles + 1/2), but for the last digits.
+pub(super) fn guess(cycles: f64) -> u64 {
+    (cycles + 0.5) as u64
+}
+
+/// The cycle of a step of a move that begins at `start`, near `guess`.
+#[cold]
+#[inline(never)]
+pub(super) fn judged(start: CycleTime, guess: u64, is_due_before: &dyn Fn(Double) -> bool) -> u64 {
+    // Whether it is due before the end of a cycle, half a cycle after it.
+    let is_due_by = |cycle: u64| {
+        let since = Double::from(cycle.wrapping_sub(start.whole) as i64 as f64) - start.part + 0.5.into();
+        is_due_before(since - ((cycle as f64 + 1.0) * TIE).into())
+    };
+    let mut cycle = guess;
+    for _ in 0..MAX_EDGES {
+        if !is_due_by(cycle) {
+            cycle = cycle.saturating_add(1);
+        } else if cycle > 0 && is_due_by(cycle - 1) {
+            cycle -= 1;
+        } else {
+            break;
+        }
+    }
+    cycle
+}
+
+/// Whether step `k` (from 1) of `count` is due before a time, of a move that takes `duration` and whose second half
+/// mirrors its first; `is_past` tells whether the first is past a place at a time.
+pub(super) fn is_due_before(
+    (k, count): (u64, u64),
+    time: Double,
+    duration: Double,
+    is_past: impl Fn(Double, f64) -> bool,
+) -> bool {
+    let place = k as f64 - 0.5;
+    let left = count as f64 - place;
+    if place <= left {
+        time.is_positive() && is_past(time, place)
+    } else {
+        let still = duration - time;
+        !(still.is_positive() && is_past(still, left))
+    }
+}

@@ -1,0 +1,496 @@
+//! Every step has the cycle that B1 gives it: floor(t*clock_hz + 1/2), t being where the curve crosses its place, and every
+//! number the decimal that is printed for it. Held against numbers of 320 bits.
+//!
+//! ```text
+//! cycle c of step k    s((c - 1/2)/clock) <= k - 1/2 < s((c + 1/2)/clock)      s: `ideal`, in `fixed` numbers
+//! ```
+//!
+//! Of each motion all steps are looked at whose time in f64 is next to the middle of two cycles, and some others.
+//! `PROPTEST_CASES` sets how many motions of each kind are drawn:
+//!
+//! ```text
+//! PROPTEST_CASES=20000 cargo test --release -p stepscope-motion --test exact_curves -- --nocapture
+//! ```
+#![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
+
+mod fixed;
+mod ideal;
+
+use fixed::{decimal, whole};
+use ideal::Ideal;
+use rand_xoshiro::{
+    Xoshiro256PlusPlus,
+    rand_core::{Rng, SeedableRng},
+};
+use std::cmp::Ordering;
+use std::env;
+use stepscope_motion::{
+    AxisPlan, Curve, Profile,
+    mechanics::{Acceleration, Distance, Jerk, Speed},
+    moves::{
+        Axis, Cosine, CosineMethod, Dwell, Interpolation, JerkLimited, Move, Point, PointUnit, Points,
+        RampShape, Ramps, ShortMove, Sine, SineSegments, Staircase, Trapezoid, TrapezoidMethod,
+    },
+    plan_axis,
+    staircase_table::StaircaseTable,
+};
+
+const CLOCKS: [u32; 6] = [1000, 999_983, 16_000_000, 16_000_000, 72_000_000, 1_000_000_000];
+/// Motions of each kind, unless `PROPTEST_CASES` says otherwise.
+const MOTIONS: u64 = 60;
+/// Steps of a motion at most.
+const MOST_STEPS: f64 = 60_000.0;
+/// How near an edge a step's time is looked at, in cycles and in parts of the time.
+const NEAR: (f64, f64) = (1e-6, 1e-14);
+/// Of a motion whose times in f64 are all near an edge no more are looked at.
+const MOST_NEAR: u64 = 300;
+
+fn motions() -> u64 {
+    env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(MOTIONS)
+}
+
+/// Draws numbers, the same each time.
+struct Draw(Xoshiro256PlusPlus);
+
+impl Draw {
+    fn below(&mut self, end: u64) -> u64 {
+        self.0.next_u64() % end
+    }
+
+    fn of<T: Copy>(&mut self, choices: &[T]) -> T {
+        choices[self.below(choices.len() as u64) as usize]
+    }
+
+    /// Each power of ten is as likely; with few digits, as people give it, or with all.
+    fn magnitude(&mut self, from: f64, to: f64) -> f64 {
+        let part = self.below(1 << 53) as f64 / (1_u64 << 53) as f64;
+        let number = libm::exp(libm::log(from) + (libm::log(to) - libm::log(from)) * part);
+        let digits = self.of(&[1, 2, 4, 16]);
+        let number: f64 = format!("{number:.*e}", digits).parse().expect("it is a number");
+        number.clamp(from, to)
+    }
+
+    fn steps(&mut self, most: f64) -> i64 {
+        let steps = self.magnitude(1.0, most).round() as i64;
+        if self.below(2) == 0 { -steps } else { steps }
+    }
+}
+
+/// What was looked at.
+#[derive(Default)]
+struct Tally {
+    steps: u64,
+    near: u64,
+    others: u64,
+    ties: u64,
+}
+
+impl Tally {
+    /// Holds the steps of an axis to the ideals of its moves; those that make none have none.
+    fn hold(&mut self, draw: &mut Draw, plan: &AxisPlan, ideals: &[Ideal], clock_hz: u32, what: &str) {
+        let clock = whole(clock_hz.into());
+        let mut due = plan.due_instants(clock_hz);
+        let (mut start, mut near) = (whole(0), 0);
+        for (planned, ideal) in plan.moves().iter().zip(ideals) {
+            let count = planned.profile.step_count();
+            for k in 1..=count {
+                let (instant, step) = due.next().expect("the axis has the steps of its moves");
+                let from_edge = (instant - instant.floor() - 0.5).abs();
+                let is_near = from_edge < NEAR.0 + NEAR.1 * instant && near < MOST_NEAR;
+                self.steps += 1;
+                if !is_near && draw.below(1 + count / 8) > 0 {
+                    continue;
+                }
+                near += u64::from(is_near);
+                *(if is_near { &mut self.near } else { &mut self.others }) += 1;
+                // Half cycles from the move's start, in s.
+                let at = |halves: i64| {
+                    let cycles = whole(2 * step.cycle as i64 + halves) / whole(2);
+                    (ideal.compare)(k, &(cycles / clock.clone() - start.clone()))
+                };
+                let (before, after) = (at(-1), at(1));
+                self.ties += u64::from(before == Ordering::Equal);
+                assert!(
+                    before != Ordering::Greater && after == Ordering::Greater,
+                    "step {k} at {instant} is not in {step:?} at {clock_hz} Hz: {before:?} {after:?} of {what}"
+                );
+            }
+            start = start + ideal.duration.clone();
+        }
+        assert!(due.next().is_none(), "more steps than expected");
+    }
+
+    fn tell(&self, what: &str) {
+        let Self { steps, near, others, ties } = self;
+        println!("{what}: {steps} steps, {near} near an edge and {others} others held, {ties} ties");
+    }
+}
+
+fn plan_of(moves: Vec<Move>) -> Option<AxisPlan> {
+    plan_axis(&Axis { moves, ..Axis::default() }, "x").ok()
+}
+
+/// Holds motions of one kind, of which some wait before they move a second time.
+fn hold(seed: u64, what: &str, each: impl Fn(&mut Draw) -> (Move, Ideal)) {
+    let (mut draw, mut tally) = (Draw(Xoshiro256PlusPlus::seed_from_u64(seed)), Tally::default());
+    let mut planned = 0;
+    for _ in 0..motions() {
+        let clock_hz = draw.of(&CLOCKS);
+        let (first, ideal) = each(&mut draw);
+        let (mut moves, mut ideals) = (vec![first], vec![ideal]);
+        if draw.below(3) == 0 {
+            if draw.below(2) == 0 {
+                let duration_s = draw.magnitude(1e-6, 10.0);
+                let ideal = Ideal { duration: decimal(duration_s), compare: Box::new(|_, _| Ordering::Less) };
+                moves.push(Move::Dwell(Dwell { duration_s }));
+                ideals.push(ideal);
+            }
+            let (second, ideal) = each(&mut draw);
+            moves.push(second);
+            ideals.push(ideal);
+        }
+        let told = format!("{moves:?}");
+        let Some(plan) = plan_of(moves) else { continue };
+        planned += 1;
+        tally.hold(&mut draw, &plan, &ideals, clock_hz, &told);
+    }
+    assert!(planned > motions() / 4, "only {planned} could be planned");
+    tally.tell(what);
+}
+
+fn sine(draw: &mut Draw) -> (Move, Ideal) {
+    let periods = draw.of(&[1, 1, 2, 5]);
+    let amplitude = draw.steps(MOST_STEPS / 4.0 / f64::from(periods));
+    let period_s = draw.magnitude(1e-3, 86_400.0);
+    let given = Sine { amplitude: Distance::Steps(amplitude as f64), period_s, periods };
+    (Move::Sine(given), ideal::sine(amplitude, period_s, periods))
+}
+
+#[test]
+fn sines_have_every_step_in_its_cycle() {
+    hold(1, "sine", sine);
+}
+
+/// A duration, and a ramp that is up to half of it.
+fn times_s(draw: &mut Draw) -> (f64, f64) {
+    let duration_s = draw.magnitude(1e-3, 86_400.0);
+    let ramp_s = match draw.below(5) {
+        0 => 0.0,
+        1 => duration_s / 2.0,
+        2 => draw.magnitude(1e-9 * duration_s, duration_s / 2.0),
+        _ => draw.magnitude(0.01 * duration_s, duration_s / 2.0),
+    };
+    (duration_s, ramp_s)
+}
+
+fn cosine(draw: &mut Draw) -> (Move, Ideal) {
+    let (steps, (duration_s, ramp_s)) = (draw.steps(MOST_STEPS), times_s(draw));
+    let given = Cosine { distance: Distance::Steps(steps as f64), duration_s, ramp_s, ..Cosine::default() };
+    // Ramps under the shortest cycle of a clock are none.
+    (Move::Cosine(given), ideal::cosine(steps, duration_s, if ramp_s < 1e-9 { 0.0 } else { ramp_s }))
+}
+
+#[test]
+fn cosines_have_every_step_in_its_cycle() {
+    hold(3, "cosine", cosine);
+}
+
+/// Of an odd count the middle step is due after half of the time; in the plateau every step is a quotient.
+#[test]
+fn a_cosines_step_in_the_middle_of_two_cycles_goes_up() {
+    for halves in (0..300).map(|index: u64| 2 * (7919 * index + 5000) + 1) {
+        let seconds = |halves: u64| format!("{halves}e-6").parse().expect("it is a number");
+        for (count, ramp) in [(1, halves / 3), (3, halves), (1001, 5), (41, 0)] {
+            let given = Cosine {
+                distance: Distance::Steps(count as f64),
+                duration_s: seconds(halves),
+                ramp_s: seconds(ramp) / 2.0,
+                ..Cosine::default()
+            };
+            let plan = plan_of(vec![Move::Cosine(given)]).expect("it can be planned");
+            let found = plan.moves()[0].profile.step_cycle(count / 2 + 1, 1_000_000);
+            assert_eq!(found, Some(halves.div_ceil(2)), "{count} steps in {halves} us");
+        }
+    }
+}
+
+fn ramps(shape: RampShape, draw: &mut Draw) -> (Move, Ideal) {
+    let (steps, (duration_s, ramp_s)) = (draw.steps(MOST_STEPS), times_s(draw));
+    let parameter = draw.magnitude(0.1, 20.0);
+    let given = Ramps {
+        distance: Distance::Steps(steps as f64),
+        duration_s,
+        ramp_s,
+        shape,
+        sigmoid_range: parameter,
+        time_constants: parameter,
+    };
+    let ramp_s = if ramp_s < 1e-9 { 0.0 } else { ramp_s };
+    (Move::Ramps(given), ideal::ramps((steps, duration_s, ramp_s), ideal::shape(shape, parameter)))
+}
+
+#[test]
+fn ramps_of_every_shape_have_every_step_in_its_cycle() {
+    let shapes = [RampShape::Bezier, RampShape::Straight, RampShape::Exponential, RampShape::Sigmoid];
+    for (seed, shape) in (5..).zip(shapes) {
+        hold(seed, &format!("{shape:?}"), |draw| ramps(shape, draw));
+    }
+}
+
+fn trapezoid(draw: &mut Draw) -> (Move, Ideal) {
+    let steps = draw.steps(MOST_STEPS);
+    let top = draw.magnitude(1.0, 1e6);
+    let start = match draw.below(4) {
+        0 => 0.0,
+        1 => top,
+        _ => draw.magnitude(1e-3 * top, top),
+    };
+    // From ramps of a step to ones that are never at their end.
+    let acceleration = draw.magnitude(top * top / 1e6, top * top * 10.0);
+    let given = Trapezoid {
+        distance: Distance::Steps(steps as f64),
+        start_speed: Speed::StepsPerSecond(start),
+        top_speed: Speed::StepsPerSecond(top),
+        acceleration: Acceleration::StepsPerSecond2(acceleration),
+        method: TrapezoidMethod::Exact,
+        timer_hz: 1,
+    };
+    (Move::Trapezoid(given), ideal::trapezoid(steps, start, top, acceleration))
+}
+
+#[test]
+fn trapezoids_have_every_step_in_its_cycle() {
+    hold(4, "trapezoid", trapezoid);
+}
+
+fn jerk_limited(draw: &mut Draw) -> (Move, Ideal) {
+    let (steps, speed) = (draw.steps(MOST_STEPS), draw.magnitude(1.0, 1e6));
+    // Ramps from a step to far more than there are; of jerk alone, and next to none of it.
+    let acceleration = draw.magnitude(speed * speed / 1e5, speed * speed * 10.0);
+    let jerk = match draw.below(4) {
+        // The border between two rows of the planner's table.
+        0 => acceleration * acceleration / speed,
+        _ => draw.magnitude(
+            acceleration * acceleration / speed / 100.0,
+            acceleration * acceleration / speed * 100.0,
+        ),
+    };
+    let given = JerkLimited {
+        distance: Distance::Steps(steps as f64),
+        max_speed: Speed::StepsPerSecond(speed),
+        max_acceleration: Acceleration::StepsPerSecond2(acceleration),
+        max_jerk: Jerk::StepsPerSecond3(jerk),
+    };
+    (Move::JerkLimited(given), ideal::jerk_limited(steps, speed, acceleration, jerk))
+}
+
+#[test]
+fn jerk_limited_moves_have_every_step_in_its_cycle() {
+    hold(9, "jerk-limited", jerk_limited);
+}
+
+fn points(interpolation: Interpolation, draw: &mut Draw) -> (Move, Ideal) {
+    let far = draw.of(&[0.0, 0.0, 12.25, 123_456_789.1]);
+    let (mut time_s, mut position) = (draw.of(&[0.0, 0.0, 1.5, 40_000.1]), far);
+    let mut points = vec![(time_s, position)];
+    for _ in 0..=draw.below(6) {
+        let (later_s, way) = (draw.magnitude(1e-3, 3000.0), draw.magnitude(0.1, MOST_STEPS / 6.0));
+        time_s += later_s;
+        position = match draw.below(6) {
+            0 => position,
+            1 => position - way,
+            _ => position + way,
+        };
+        // A few digits, as people give them, or all.
+        if draw.below(2) == 0 {
+            (time_s, position) =
+                (libm::round(time_s * 1e3).max(1.0) / 1e3, libm::round(position * 10.0) / 10.0);
+        }
+        // No point at a half step, which a turn may touch.
+        if (decimal(position) - decimal(far)).is_half() {
+            position += 0.2;
+        }
+        points.push((time_s, position));
+    }
+    let ideal = ideal::points(&points, interpolation);
+    let points = points.into_iter().map(|(time_s, position)| Point { time_s, position }).collect();
+    (Move::Points(Points { unit: PointUnit::Steps, interpolation, points }), ideal)
+}
+
+#[test]
+fn curves_through_points_have_every_step_in_its_cycle() {
+    hold(10, "smooth points", |draw| points(Interpolation::Smooth, draw));
+    hold(11, "straight points", |draw| points(Interpolation::Straight, draw));
+}
+
+/// Plans a move of its own, and holds its steps to what is made of its plan: the rows or slices are the planner's, their
+/// times are not.
+fn hold_planned(
+    seed: u64,
+    what: &str,
+    mut each: impl FnMut(&mut Draw) -> Move,
+    ideal: impl Fn(&Move, &Profile) -> Option<Ideal>,
+) {
+    let (mut draw, mut tally) = (Draw(Xoshiro256PlusPlus::seed_from_u64(seed)), Tally::default());
+    let mut planned = 0;
+    for _ in 0..motions() {
+        let (clock_hz, given) = (draw.of(&CLOCKS), each(&mut draw));
+        // Twice, so that the second begins where the first ends.
+        let Some(plan) = plan_of(vec![given.clone(), given.clone()]) else { continue };
+        let ideals: Option<Vec<Ideal>> =
+            plan.moves().iter().map(|planned| ideal(&given, &planned.profile)).collect();
+        let Some(ideals) = ideals else { continue };
+        planned += 1;
+        tally.hold(&mut draw, &plan, &ideals, clock_hz, &format!("{given:?}"));
+    }
+    assert!(planned > motions() / 4, "only {planned} could be planned");
+    tally.tell(what);
+}
+
+#[test]
+fn staircases_have_every_step_in_its_cycle() {
+    let given = |draw: &mut Draw| {
+        Move::Staircase(Staircase {
+            distance: Distance::Steps(draw.steps(MOST_STEPS / 6.0) as f64),
+            top_speed: Speed::StepsPerSecond(libm::round(draw.magnitude(900.0, 20_000.0))),
+            level: 1 + draw.below(5) as u8,
+            short_move: draw.of(&[ShortMove::Document, ShortMove::Reverse]),
+            ..Staircase::default()
+        })
+    };
+    hold_planned(12, "staircase", given, |_, profile| {
+        let Profile::Staircase(curve) = profile else { panic!("it is a staircase") };
+        let row = |n| (StaircaseTable::steps_in(n), curve.table().rate(n));
+        let up: Vec<(u64, u64)> = (1..=curve.ramp_rows()).map(row).collect();
+        let plateau = curve.plateau_rate().map(|rate| (curve.plateau_steps(), rate));
+        let rows: Vec<(u64, u64)> =
+            up.iter().copied().chain(plateau).chain(up.iter().rev().copied()).collect();
+        Some(ideal::staircase(&rows))
+    });
+}
+
+#[test]
+fn sines_by_segments_have_every_step_in_its_cycle() {
+    let given = |draw: &mut Draw| {
+        let periods = draw.of(&[1, 2]);
+        Move::SineSegments(SineSegments {
+            amplitude: Distance::Steps(draw.steps(MOST_STEPS / 24.0) as f64),
+            // Of round numbers many steps stand in the middle of two cycles.
+            period_s: if draw.below(2) == 0 {
+                draw.of(&[0.5, 1.0, 0.128])
+            } else {
+                draw.magnitude(1e-3, 86_400.0)
+            },
+            periods,
+            max_deviation: draw.of(&[0.006, 0.0, 0.05, 0.001]),
+        })
+    };
+    hold_planned(13, "sine by segments", given, |given, profile| {
+        let (Move::SineSegments(given), Profile::SineSegments(curve)) = (given, profile) else {
+            panic!("it is a sine by segments")
+        };
+        let quarter: Vec<(i64, i64, u64)> =
+            curve.segments().iter().map(|each| (each.from.into(), each.to.into(), each.steps)).collect();
+        let mirrored: Vec<(i64, i64, u64)> =
+            quarter.iter().rev().map(|&(from, to, steps)| (1024 - to, 1024 - from, steps)).collect();
+        let half = [quarter, mirrored].concat();
+        let (period, periods) = (decimal(given.period_s), i64::from(given.periods));
+        let point = |point: i64| period.clone() * whole(point) / whole(2048);
+        let all = (0..2 * periods).flat_map(|index| half.iter().map(move |each| (1024 * index, *each)));
+        let intervals = all.map(|(start, (from, to, steps))| (point(start + from), point(start + to), steps));
+        Some(ideal::intervals(intervals, period.clone() * whole(periods)))
+    });
+}
+
+#[test]
+fn sliced_moves_have_every_step_in_its_cycle() {
+    let given = |draw: &mut Draw| {
+        let slice_s = draw.of(&[0.001, 0.005, 0.0003]);
+        let (ramp, plateau) = (1 + draw.below(100), draw.below(200));
+        Move::Cosine(Cosine {
+            distance: Distance::Steps(draw.steps(MOST_STEPS / 6.0) as f64),
+            duration_s: format!("{:.4}", slice_s * (2 * ramp + plateau) as f64).parse().expect("a number"),
+            ramp_s: format!("{:.4}", slice_s * ramp as f64).parse().expect("a number"),
+            method: CosineMethod::Sliced,
+            slice_s,
+        })
+    };
+    hold_planned(14, "sliced", given, |given, profile| {
+        let (Move::Cosine(given), Profile::Sliced(curve)) = (given, profile) else { panic!("it is sliced") };
+        // Those that are shorter have some of the steps that the plateau's have, at its rate.
+        let slices: Vec<(f64, f64, u32)> = curve.slices().collect();
+        let is_whole = |&(from, to, _): &(f64, f64, u32)| ((to - from) / given.slice_s - 1.0).abs() < 1e-6;
+        let held =
+            slices.iter().filter(|slice| is_whole(slice)).map(|(.., steps)| i64::from(*steps)).max()?;
+        let slice = decimal(given.slice_s);
+        let (mut made, mut intervals) = (0, Vec::new());
+        for each in &slices {
+            let parts = if is_whole(each) { held } else { i64::from(each.2) };
+            let at = |made: i64| slice.clone() * whole(made) / whole(held);
+            intervals.push((at(made), at(made + parts), each.2.into()));
+            made += parts;
+        }
+        let duration = intervals.last().expect("there are slices").1.clone();
+        // What is not reconstructed is left out.
+        ((duration.to_f64() / profile.duration_s() - 1.0).abs() < 1e-9)
+            .then(|| ideal::intervals(intervals.into_iter(), duration))
+    });
+}
+
+/// The same steps as a list of cycles alone, and of a slow acceleration to a high speed, whose digits are few.
+#[test]
+fn the_list_of_a_trapezoids_cycles_is_that_of_its_steps() {
+    for (start, top, acceleration) in [(250.0, 4000.0, 9000.0), (0.1, 1e7, 0.3), (1e6, 1.1e6, 7e4)] {
+        let given = Trapezoid {
+            distance: Distance::Steps(20_001.0),
+            start_speed: Speed::StepsPerSecond(start),
+            top_speed: Speed::StepsPerSecond(top),
+            acceleration: Acceleration::StepsPerSecond2(acceleration),
+            method: TrapezoidMethod::Exact,
+            timer_hz: 1,
+        };
+        let plan = plan_of(vec![Move::Trapezoid(given)]).expect("it can be planned");
+        let ideals = [ideal::trapezoid(20_001, start, top, acceleration)];
+        let mut draw = Draw(Xoshiro256PlusPlus::seed_from_u64(0));
+        for clock_hz in [16_000_000, 1_000_000_000] {
+            Tally::default().hold(&mut draw, &plan, &ideals, clock_hz, "a trapezoid");
+            let curve = stepscope_motion::trapezoid::Trapezoid::new(20_001, start, top, acceleration);
+            assert!(curve.step_times(clock_hz).eq(plan.due_steps(clock_hz).map(|due| due.cycle)));
+            let profile = &plan.moves()[0].profile;
+            for (k, cycle) in (1..).zip(curve.step_times(clock_hz)).step_by(500) {
+                assert_eq!(profile.step_cycle(k, clock_hz), Some(cycle));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_step_next_to_an_edge_is_on_its_side_of_it() {
+    let given = Sine { amplitude: Distance::Steps(-745.0), period_s: 76.239_882_183_001_03, periods: 5 };
+    let plan = plan_of(vec![Move::Sine(given)]).expect("it can be planned");
+    let due: Vec<u64> = plan.due_steps(16_000_000).map(|due| due.cycle).collect();
+    // 4559393802.49999989 cycles, in f64 4559393802.5.
+    assert_eq!(due[11_117], 4_559_393_802);
+    assert_eq!(plan.moves()[0].profile.step_cycle(11_118, 16_000_000), Some(due[11_117]));
+}
+
+/// cos = 1/2 after a sixth of a period: of an odd amplitude A = 2*k - 1 that is the place of step k.
+#[test]
+fn a_sines_step_in_the_middle_of_two_cycles_goes_up() {
+    let mut draw = Draw(Xoshiro256PlusPlus::seed_from_u64(2));
+    for _ in 0..500 {
+        // T/6 = 2*m + 1 half cycles, and an odd number of half periods later the same.
+        let halves = 2 * draw.below(50_000_000) + 1;
+        let (clock_hz, period_s) = (1_000_000, format!("{}e-6", 3 * halves).parse().expect("it is a number"));
+        let k = draw.below(400) + 1;
+        let amplitude = 2 * k - 1;
+        let given = Sine { amplitude: Distance::Steps(amplitude as f64), period_s, periods: 3 };
+        let Some(plan) = plan_of(vec![Move::Sine(given)]) else { continue };
+        for half in 0..6 {
+            let step = half * 2 * amplitude + k;
+            let twice = halves + 3 * half * halves;
+            let found = plan.moves()[0].profile.step_cycle(step, clock_hz);
+            assert_eq!(found, Some(twice.div_ceil(2)), "step {step} of {amplitude} in {period_s} s");
+        }
+    }
+}
