@@ -7,12 +7,14 @@
 //! only ever adds time, so the best call of a kernel in the block is the one that counts. The table
 //! gives the median of the blocks' ratios and, as the measure of what noise is left, their median
 //! absolute deviation.
+//!
+//! With `--against` the blocks of an earlier commit stand between those of the tree, in a clone of its own.
 
 mod page;
 mod table;
 
 use std::fs::File;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use tokio::process::Command;
@@ -35,6 +37,12 @@ struct Effort {
     criterion: [&'static str; 6],
 }
 
+impl Effort {
+    fn announce(&self) {
+        println!("measuring {} blocks of {} rounds, native and in the browser", self.blocks, self.rounds);
+    }
+}
+
 const FULL: Effort = Effort {
     blocks: 10,
     rounds: 12,
@@ -51,29 +59,150 @@ pub(crate) async fn run(quick: bool) -> Result<()> {
     let effort = if quick { QUICK } else { FULL };
     let browser = Browser::ready().await?;
     let tools = WasmTools::ready(Optimise::Yes).await?;
-    let home = root().join("target").join("bench");
-    let package = home.join("pkg");
-    std::fs::create_dir_all(&home).with_context(|| format!("{} can't be made", home.display()))?;
+    let tree = Tree::here();
+    tree.build(&tools).await?;
+    criterion(&tree.home.join("criterion"), effort.criterion).await?;
 
-    crate::page::wasm(&tools, FOLDER, &package).await?;
-    criterion(&home.join("criterion"), effort.criterion).await?;
-
-    println!("measuring {} blocks of {} rounds, native and in the browser", effort.blocks, effort.rounds);
-    let mut page = Page::open(&browser, &root().join(FOLDER).join("page"), &package, &home).await?;
+    effort.announce();
+    let mut page = tree.page(&browser).await?;
     let mut blocks = Vec::new();
     for _ in 0..effort.blocks {
-        blocks.push(Block {
-            native: native(&home, effort.rounds).await?,
-            browser: page.rounds(effort.rounds).await?,
-        });
+        blocks.push(tree.block(&mut page, effort.rounds).await?);
     }
-    print!("\n{}", table::tables(&blocks, |kernel| estimate(&home.join("criterion"), kernel))?);
+    print!("\n{}", table::tables(&blocks, |kernel| estimate(&tree.home.join("criterion"), kernel))?);
     println!(
         "\nTimes are criterion's medians ± their median absolute deviation. Ratios are of speeds, a unit each: of the \
          best calls in a block of {} rounds,\nthe median of {} blocks ± its median absolute deviation.",
         effort.rounds, effort.blocks
     );
+    keep(&tree.home, &table::json(&blocks, None)?)
+}
+
+/// Measures the kernels of an earlier commit and those of the tree as it stands in turn, and prints how fast these are in
+/// parts of the speed of those.
+pub(crate) async fn against(quick: bool, rev: &str) -> Result<()> {
+    let effort = if quick { QUICK } else { FULL };
+    let browser = Browser::ready().await?;
+    let tools = WasmTools::ready(Optimise::Yes).await?;
+    let (now, then) = (Tree::here(), Tree::of(rev).await?);
+    for tree in [&now, &then] {
+        tree.build(&tools).await?;
+    }
+    effort.announce();
+    let (mut page_now, mut page_then) = (now.page(&browser).await?, then.page(&browser).await?);
+    let (mut blocks, mut before) = (Vec::new(), Vec::new());
+    for _ in 0..effort.blocks {
+        blocks.push(now.block(&mut page_now, effort.rounds).await?);
+        before.push(then.block(&mut page_then, effort.rounds).await?);
+    }
+    print!("\n{}", table::against(&blocks, &before)?);
+    println!(
+        "\nRatios are of speeds, now by {rev}: of the best calls in a block of {} rounds, the median of {} blocks ± its \
+         median absolute deviation.",
+        effort.rounds, effort.blocks
+    );
+    keep(&now.home, &table::json(&blocks, Some(&before))?)
+}
+
+/// Keeps what was measured, for whoever goes on with it.
+fn keep(home: &Path, json: &str) -> Result<()> {
+    let path = home.join("results.json");
+    std::fs::write(&path, json).with_context(|| format!("{} can't be written", path.display()))?;
+    println!("As JSON: {}", path.strip_prefix(root()).unwrap_or(&path).display());
     Ok(())
+}
+
+/// Sources whose kernels are measured.
+struct Tree {
+    root: PathBuf,
+    /// What is made of them.
+    home: PathBuf,
+    /// Of another commit: its builds have a folder of their own.
+    target: Option<PathBuf>,
+}
+
+impl Tree {
+    /// The workspace as it stands.
+    fn here() -> Self {
+        Self { root: root().to_path_buf(), home: root().join("target").join("bench"), target: None }
+    }
+
+    /// The workspace of a commit, in a clone that stays until another commit is asked for.
+    async fn of(rev: &str) -> Result<Self> {
+        let git = |folder: &Path, words: &[&str]| {
+            let mut command = Command::new("git");
+            command.current_dir(folder).args(words);
+            command
+        };
+        let commit = format!("{rev}^{{commit}}");
+        let asked = git(root(), &["rev-parse", "--quiet", "--verify", &commit]);
+        let commit = run::output(asked).await.with_context(|| {
+            format!("{rev:?} is no commit of this repository; give a name, a tag or the beginning of a hash")
+        })?;
+        let commit = commit.trim();
+        let home = root().join("target").join("bench").join("against");
+        let tree = home.join("tree");
+        let standing = match tree.exists() {
+            true => run::output(git(&tree, &["rev-parse", "HEAD"])).await.unwrap_or_default(),
+            false => String::new(),
+        };
+        if standing.trim() != commit {
+            if tree.exists() {
+                std::fs::remove_dir_all(&tree)
+                    .with_context(|| format!("{} can't be removed", tree.display()))?;
+            }
+            std::fs::create_dir_all(&home).with_context(|| format!("{} can't be made", home.display()))?;
+            let mut clone = git(&home, &["clone", "--quiet", "--shared", "--no-checkout"]);
+            clone.arg(root()).arg(&tree);
+            run::to_end(clone, run::LIMIT).await?;
+            run::to_end(git(&tree, &["checkout", "--quiet", "--detach", commit]), run::LIMIT).await?;
+        }
+        Ok(Self { root: tree, target: Some(home.join("target")), home })
+    }
+
+    /// This command, in the tree.
+    fn at_home(&self, mut command: Command) -> Command {
+        command.current_dir(&self.root);
+        if let Some(target) = &self.target {
+            command.env("CARGO_TARGET_DIR", target);
+        }
+        command
+    }
+
+    fn package(&self) -> PathBuf {
+        self.home.join("pkg")
+    }
+
+    /// Both builds of the kernels.
+    async fn build(&self, tools: &WasmTools) -> Result<()> {
+        std::fs::create_dir_all(&self.home)
+            .with_context(|| format!("{} can't be made", self.home.display()))?;
+        let call = self.at_home(tools.wasm_pack()?);
+        crate::page::wasm_by(tools, call, FOLDER, &self.package()).await?;
+        run::to_end(self.at_home(kernels(&["--no-run"])), run::LIMIT).await
+    }
+
+    /// The kernels in a browser.
+    async fn page(&self, browser: &Browser) -> Result<Page> {
+        Page::open(browser, &self.root.join(FOLDER).join("page"), &self.package(), &self.home).await
+    }
+
+    /// A native process, and right after it the browser.
+    async fn block(&self, page: &mut Page, rounds: u32) -> Result<Block> {
+        Ok(Block { native: self.native(rounds).await?, browser: page.rounds(rounds).await? })
+    }
+
+    /// One native process of so many rounds.
+    async fn native(&self, rounds: u32) -> Result<Vec<Report>> {
+        let path = self.home.join("native.json");
+        let file = File::create(&path).with_context(|| format!("{} can't be written", path.display()))?;
+        let mut command = self.at_home(kernels(&["--quiet"]));
+        command.args(["--rounds", &rounds.to_string()]).stdout(file);
+        run::to_end(command, run::LIMIT).await?;
+        let text =
+            std::fs::read_to_string(&path).with_context(|| format!("{} can't be read", path.display()))?;
+        Report::all_from_json(&text)
+    }
 }
 
 /// Measures the page as it is shipped, in Chromium. Its times are of this machine and this moment.
@@ -98,17 +227,6 @@ fn estimate(home: &Path, kernel: &str) -> Result<Estimate> {
     let file = home.join("kernels").join(kernel).join("new").join("estimates.json");
     let text = std::fs::read_to_string(&file).with_context(|| format!("{} can't be read", file.display()))?;
     Estimate::from_json(&text).with_context(|| format!("{} is not what it should be", file.display()))
-}
-
-/// One native process of so many rounds.
-async fn native(home: &Path, rounds: u32) -> Result<Vec<Report>> {
-    let path = home.join("native.json");
-    let file = File::create(&path).with_context(|| format!("{} can't be written", path.display()))?;
-    let mut command = kernels(&["--quiet"]);
-    command.args(["--rounds", &rounds.to_string()]).stdout(file);
-    run::to_end(command, run::LIMIT).await?;
-    let text = std::fs::read_to_string(&path).with_context(|| format!("{} can't be read", path.display()))?;
-    Report::all_from_json(&text)
 }
 
 /// A call of the kernels as native code with cargo's `options`, to which their own can be added.

@@ -106,8 +106,11 @@ enum Task {
         #[arg(long)]
         quick: bool,
         /// Measure the page in Chromium instead: its frames, its loading, its answers to keys
-        #[arg(long, conflicts_with = "quick")]
+        #[arg(long, conflicts_with_all = ["quick", "against"])]
         page: bool,
+        /// Measure the kernels of this commit in the same blocks, and print what they have become
+        #[arg(long, value_name = "REV")]
+        against: Option<String>,
     },
     /// Run a program until standard input ends, and then end it with all that it started
     #[command(hide = true)]
@@ -193,8 +196,9 @@ async fn perform(task: Task) -> Result<()> {
             Ok(())
         }
         Task::Test { only, list: false } => steps::run(&only).await,
-        Task::Bench { page: true, quick: _ } => bench::page().await,
-        Task::Bench { page: false, quick } => bench::run(quick).await,
+        Task::Bench { page: true, .. } => bench::page().await,
+        Task::Bench { quick, against: Some(rev), .. } => bench::against(quick, &rev).await,
+        Task::Bench { quick, .. } => bench::run(quick).await,
         Task::Attend { words } => attend::attend(&words).await,
         Task::Fuzz { targets, seconds, seed } => {
             let seed = seed.unwrap_or_else(fuzz::new_seed);

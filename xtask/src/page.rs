@@ -41,7 +41,16 @@ pub(crate) async fn build(optimise: Optimise) -> Result<()> {
 
 /// Builds the crate in `folder` of the workspace for the browser into `package`.
 pub(crate) async fn wasm(tools: &WasmTools, folder: &str, package: &Path) -> Result<()> {
-    let mut command = tools.wasm_pack()?;
+    wasm_by(tools, tools.wasm_pack()?, folder, package).await
+}
+
+/// The same by a call of wasm-pack in another workspace.
+pub(crate) async fn wasm_by(
+    tools: &WasmTools,
+    mut command: tokio::process::Command,
+    folder: &str,
+    package: &Path,
+) -> Result<()> {
     command.args(["build", "--profile", "page", "--target", "web"]).args(tools.build_options());
     command.args([folder, "--out-dir"]).arg(package).args(["--", "--locked"]);
     tools.judge(run::to_end(command, run::LIMIT).await)

@@ -1,10 +1,10 @@
 //! What was measured, and the tables of it.
 
 use anyhow::{Context, Result};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// One kernel's times in the rounds of one process, as it reports them.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub(super) struct Report {
     name: String,
     /// What a call makes, and how many.
@@ -32,6 +32,7 @@ impl Report {
 }
 
 /// Rounds as native code, and right after them in the browser.
+#[derive(Serialize)]
 pub(super) struct Block {
     pub(super) native: Vec<Report>,
     pub(super) browser: Vec<Report>,
@@ -62,7 +63,7 @@ impl Estimate {
 }
 
 /// A ratio of speeds over all blocks.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 struct Ratio {
     median: f64,
     /// Median absolute deviation.
@@ -110,6 +111,81 @@ pub(super) fn tables(blocks: &[Block], estimate: impl Fn(&str) -> Result<Estimat
         browser.push(browser_row(kernel, blocks)?);
     }
     Ok(format!("native code\n{}\nbrowser\n{}", align(&native), align(&browser)))
+}
+
+/// Slower than this part of before is told.
+const LEAST_OF_BEFORE: f64 = 0.95;
+
+/// What each kernel does now in parts of what it did before, as native code and in the browser.
+pub(super) fn against(now: &[Block], before: &[Block]) -> Result<String> {
+    let first = now.first().context("nothing was measured")?;
+    let mut rows = vec![["kernel", "native", "", "browser", ""].map(str::to_owned)];
+    for kernel in &first.native {
+        let [native, browser] = both(now, before, &kernel.name);
+        let cells = |ratio: Option<Ratio>| match ratio {
+            Some(ratio) => [ratio.print(), ratio.judge(Some(LEAST_OF_BEFORE))],
+            None => ["new".to_owned(), String::new()],
+        };
+        let ([native, native_aim], [browser, browser_aim]) = (cells(native), cells(browser));
+        rows.push([kernel.name.clone(), native, native_aim, browser, browser_aim]);
+    }
+    Ok(align(&rows))
+}
+
+/// A kernel's speed now by that before, as native code and in the browser; none where it was not measured before.
+fn both(now: &[Block], before: &[Block], kernel: &str) -> [Option<Ratio>; 2] {
+    let of = |side: fn(&Block) -> &[Report]| -> Option<Ratio> {
+        let pairs = now.iter().zip(before);
+        let ratios = pairs.map(|(now, before)| {
+            let speed = |block| find(side(block), kernel).map(Report::best).ok();
+            Some(speed(now)? / speed(before)?)
+        });
+        Some(Ratio::of(&ratios.collect::<Option<Vec<f64>>>()?))
+    };
+    [of(|block| &block.native), of(|block| &block.browser)]
+}
+
+/// All that was measured, and the ratios of each kernel, as JSON.
+pub(super) fn json(blocks: &[Block], before: Option<&[Block]>) -> Result<String> {
+    #[derive(Serialize)]
+    struct Kernel<'b> {
+        name: &'b str,
+        unit: &'b str,
+        /// Native speed in parts of its yardstick's.
+        of_yardstick: Option<Ratio>,
+        yardstick: Option<&'b str>,
+        /// Speed in the browser in parts of the native one.
+        of_native: Ratio,
+        /// Speeds in parts of those before.
+        native_of_before: Option<Ratio>,
+        browser_of_before: Option<Ratio>,
+    }
+    #[derive(Serialize)]
+    struct Results<'b> {
+        kernels: Vec<Kernel<'b>>,
+        blocks: &'b [Block],
+        before: Option<&'b [Block]>,
+    }
+    let first = blocks.first().context("nothing was measured")?;
+    let kernels = first.native.iter().map(|report| {
+        let Report { name, unit, yardstick, .. } = report;
+        let of_yardstick = yardstick.as_ref().map(|yardstick| {
+            ratio(blocks, |block| Ok((find(&block.native, name)?, find(&block.native, yardstick)?)))
+        });
+        let [native_of_before, browser_of_before] =
+            before.map_or([None; 2], |before| both(blocks, before, name));
+        Ok(Kernel {
+            name,
+            unit,
+            of_yardstick: of_yardstick.transpose()?,
+            yardstick: yardstick.as_deref(),
+            of_native: ratio(blocks, |block| Ok((find(&block.browser, name)?, find(&block.native, name)?)))?,
+            native_of_before,
+            browser_of_before,
+        })
+    });
+    let results = Results { kernels: kernels.collect::<Result<_>>()?, blocks, before };
+    Ok(serde_json::to_string_pretty(&results)? + "\n")
 }
 
 fn native_row(kernel: &Report, blocks: &[Block], estimate: &Estimate) -> Result<[String; 6]> {
@@ -234,6 +310,24 @@ mod tests {
             lines[7],
             ["trace", "250 krecords/s", "100 krecords/s", "0.400 ± 0.100 of native", "at least 0.60: missed"]
         );
+    }
+
+    #[test]
+    fn what_has_become_of_a_kernel_is_a_ratio_of_blocks_that_stand_beside_each_other() {
+        let block = |names: &[&str], seconds: f64| {
+            let all: Vec<Report> = names.iter().map(|name| report(name, None, &[seconds])).collect();
+            Block { native: all.clone(), browser: all }
+        };
+        let now = [block(&["trace", "added"], 0.002), block(&["trace", "added"], 0.004)];
+        let before = [block(&["trace"], 0.001), block(&["trace"], 0.004)];
+        let table = against(&now, &before).unwrap();
+        let cells: Vec<Vec<&str>> = table.lines().map(|line| line.split_whitespace().collect()).collect();
+        assert_eq!(cells[1][..4], ["trace", "0.750", "±", "0.250"], "halved, and as before");
+        assert_eq!(cells[2], ["added", "new", "new"]);
+        let json: serde_json::Value = serde_json::from_str(&json(&now, Some(&before)).unwrap()).unwrap();
+        assert_eq!(json["kernels"][0]["native_of_before"]["median"], 0.75);
+        assert_eq!(json["kernels"][1]["browser_of_before"], serde_json::Value::Null);
+        assert_eq!(json["before"][0]["native"][0]["seconds"][0], 0.001);
     }
 
     #[test]
