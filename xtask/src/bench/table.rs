@@ -124,7 +124,7 @@ pub(super) fn against(now: &[Block], before: &[Block]) -> Result<String> {
         let [native, browser] = both(now, before, &kernel.name);
         let cells = |ratio: Option<Ratio>| match ratio {
             Some(ratio) => [ratio.print(), ratio.judge(Some(LEAST_OF_BEFORE))],
-            None => ["new".to_owned(), String::new()],
+            None => ["–".to_owned(), String::new()],
         };
         let ([native, native_aim], [browser, browser_aim]) = (cells(native), cells(browser));
         rows.push([kernel.name.clone(), native, native_aim, browser, browser_aim]);
@@ -154,8 +154,8 @@ pub(super) fn json(blocks: &[Block], before: Option<&[Block]>) -> Result<String>
         /// Native speed in parts of its yardstick's.
         of_yardstick: Option<Ratio>,
         yardstick: Option<&'b str>,
-        /// Speed in the browser in parts of the native one.
-        of_native: Ratio,
+        /// Speed in the browser in parts of the native one, if it is measured there.
+        of_native: Option<Ratio>,
         /// Speeds in parts of those before.
         native_of_before: Option<Ratio>,
         browser_of_before: Option<Ratio>,
@@ -179,7 +179,8 @@ pub(super) fn json(blocks: &[Block], before: Option<&[Block]>) -> Result<String>
             unit,
             of_yardstick: of_yardstick.transpose()?,
             yardstick: yardstick.as_deref(),
-            of_native: ratio(blocks, |block| Ok((find(&block.browser, name)?, find(&block.native, name)?)))?,
+            of_native: ratio(blocks, |block| Ok((find(&block.browser, name)?, find(&block.native, name)?)))
+                .ok(),
             native_of_before,
             browser_of_before,
         })
@@ -318,12 +319,14 @@ mod tests {
             let all: Vec<Report> = names.iter().map(|name| report(name, None, &[seconds])).collect();
             Block { native: all.clone(), browser: all }
         };
-        let now = [block(&["trace", "added"], 0.002), block(&["trace", "added"], 0.004)];
+        let mut now = [block(&["trace", "added"], 0.002), block(&["trace", "added"], 0.004)];
+        // Not every kernel is measured in the browser.
+        now[0].browser.truncate(1);
         let before = [block(&["trace"], 0.001), block(&["trace"], 0.004)];
         let table = against(&now, &before).unwrap();
         let cells: Vec<Vec<&str>> = table.lines().map(|line| line.split_whitespace().collect()).collect();
         assert_eq!(cells[1][..4], ["trace", "0.750", "±", "0.250"], "halved, and as before");
-        assert_eq!(cells[2], ["added", "new", "new"]);
+        assert_eq!(cells[2], ["added", "–", "–"]);
         let json: serde_json::Value = serde_json::from_str(&json(&now, Some(&before)).unwrap()).unwrap();
         assert_eq!(json["kernels"][0]["native_of_before"]["median"], 0.75);
         assert_eq!(json["kernels"][1]["browser_of_before"], serde_json::Value::Null);
