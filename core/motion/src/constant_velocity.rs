@@ -13,7 +13,7 @@
 //! assert_eq!(Dwell::new(0.1).position(0.05), 0.0);
 //! ```
 
-use crate::{Curve, Peaks, moves, quantities::Quantities};
+use crate::{Curve, Peaks, cycle_time::EvenSteps, double::Double, moves, quantities::Quantities};
 use alloc::{string::String, vec::Vec};
 
 /// One rate from end to end.
@@ -22,6 +22,8 @@ pub struct Constant {
     steps: i64,
     /// Magnitude in steps/s, above 0.
     speed: f64,
+    /// The same with all its digits: of a quotient by mechanics more than are printed.
+    exact_speed: Double,
     duration_s: f64,
 }
 
@@ -29,14 +31,33 @@ impl Constant {
     /// `steps` (left negative) at `speed` steps/s, which is above 0.
     #[must_use]
     pub fn new(steps: i64, speed: f64) -> Self {
-        Self { steps, speed, duration_s: steps.unsigned_abs() as f64 / speed }
+        Self::within(steps, Double::decimal(speed))
+    }
+
+    /// [`Self::new`], of a number with all its digits.
+    fn within(steps: i64, exact_speed: Double) -> Self {
+        let speed = exact_speed.high;
+        Self { steps, speed, exact_speed, duration_s: steps.unsigned_abs() as f64 / speed }
+    }
+
+    /// Magnitude in steps/s with all its digits.
+    pub(super) fn exact_speed(&self) -> Double {
+        self.exact_speed
+    }
+
+    /// The steps as whole numbers have them, of a clock of `clock_hz`; `None` where these are too long, or the speed is no
+    /// decimal.
+    pub(super) fn even_steps(&self, clock_hz: u32) -> Option<EvenSteps> {
+        let is_decimal = self.exact_speed == Double::decimal(self.speed);
+        is_decimal.then(|| EvenSteps::new(self.speed, clock_hz, self.steps.unsigned_abs())).flatten()
     }
 
     /// From what is asked.
     pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::Constant) -> Option<Self> {
         let steps = quantities.distance("distance", &given.distance);
         let speed = quantities.speed("speed", &given.speed);
-        Some(Self::new(steps?, speed?))
+        let (steps, _) = (steps?, speed?);
+        Some(Self::within(steps, given.speed.exact_in_steps(quantities.mechanics()).ok()?))
     }
 
     fn signed_speed(&self) -> f64 {

@@ -126,8 +126,14 @@ impl JerkLimited {
         let speed = quantities.speed("max_speed", &given.max_speed);
         let acceleration = quantities.acceleration("max_acceleration", &given.max_acceleration);
         let jerk = quantities.jerk("max_jerk", &given.max_jerk);
-        let limits = Limits { speed: speed?, acceleration: acceleration?, jerk: jerk? };
-        Some(Self::new(steps?, limits))
+        let (steps, _, _, _) = (steps?, speed?, acceleration?, jerk?);
+        let mechanics = quantities.mechanics();
+        let limits = exactly::Limits {
+            speed: given.max_speed.exact_in_steps(mechanics).ok()?,
+            acceleration: given.max_acceleration.exact_in_steps(mechanics).ok()?,
+            jerk: given.max_jerk.exact_in_steps(mechanics).ok()?,
+        };
+        Some(Self::within(steps, limits))
     }
 
     /// Highest speed that is reached, in steps/s.

@@ -214,6 +214,13 @@ macro_rules! quantity {
                 Ok(self.exact(mechanics).map_or(quotient, |exact| exact.nearest()))
             }
 
+            /// [`Self::in_steps`] with all its digits; a quotient with pi has those that are printed.
+            #[allow(dead_code, reason = "of a distance whole steps are asked for")]
+            pub(super) fn exact_in_steps(&self, mechanics: &Mechanics) -> Result<Double, NoSuchUnit> {
+                let quotient = self.step(mechanics).map(|step| self.value() / step)?;
+                Ok(self.exact(mechanics).map_or_else(|| Double::decimal(quotient), |exact| exact.double()))
+            }
+
             /// The quantity in steps as its decimal makes it; `None` where it is in steps already, has pi, or is no number
             /// that a plan would take.
             fn exact(&self, mechanics: &Mechanics) -> Option<Exact> {

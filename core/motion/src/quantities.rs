@@ -48,6 +48,11 @@ impl<'s> Quantities<'s> {
         });
     }
 
+    /// The axis' mechanics.
+    pub(super) fn mechanics(&self) -> &'s Mechanics {
+        self.mechanics
+    }
+
     /// Judges what stands one step further in.
     pub(super) fn at<T>(&mut self, step: &str, what: impl FnOnce(&mut Self) -> T) -> T {
         let outside = self.validator.enter(step);

@@ -11,7 +11,7 @@
 use crate::{
     AxisPlan, Curve, Profile,
     crossing::{MAX_OFF, Rounding},
-    cycle_time::{CycleTime, EvenSteps, Quotient},
+    cycle_time::{CycleTime, Quotient},
     double::Double,
     exact::Exact,
 };
@@ -94,20 +94,17 @@ fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Steps<'_> {
                 Some((instant, ScheduledStep { cycle, right }))
             })
         }
-        Profile::Constant(constant) => {
-            let speed = libm::fabs(constant.speed(0.0));
-            match EvenSteps::new(speed, clock_hz, count) {
-                Some(even) => {
-                    let mut times = steps.zip(even.steps());
-                    Box::new(move || times.next().map(|(_, since)| exactly(since)))
-                }
-                None => {
-                    let cycles_per_step = clock / speed;
-                    let times = steps.map(move |k| ((k as f64 - 0.5) * cycles_per_step, right));
-                    scheduled(profile, start, clock_hz, times)
-                }
+        Profile::Constant(constant) => match constant.even_steps(clock_hz) {
+            Some(even) => {
+                let mut times = steps.zip(even.steps());
+                Box::new(move || times.next().map(|(_, since)| exactly(since)))
             }
-        }
+            None => {
+                let cycles_per_step = clock / constant.exact_speed().high;
+                let times = steps.map(move |k| ((k as f64 - 0.5) * cycles_per_step, right));
+                scheduled(profile, start, clock_hz, times)
+            }
+        },
         Profile::Dwell(_) => Box::new(|| None),
         Profile::Cosine(curve) => scheduled(profile, start, clock_hz, crossings(curve, clock)),
         Profile::Sliced(curve) => scheduled(profile, start, clock_hz, crossings(curve, clock)),
@@ -151,8 +148,8 @@ impl Profile {
         match self {
             Self::TrapezoidTable(table) => table.step_time(self.steps().unsigned_abs(), clock_hz).time(),
             Self::Constant(constant) => {
-                let steps = Exact::of(self.steps().unsigned_abs() as f64).times(clock);
-                CycleTime::exact(&steps.divided_by(libm::fabs(constant.speed(0.0))))
+                let steps = Double::from(self.steps().unsigned_abs());
+                CycleTime::of(steps / constant.exact_speed() * clock.into())
             }
             Self::Sine(sine) => told(sine.period_s(), sine.periods().into()),
             Self::SineSegments(sine) => told(sine.period_s(), sine.periods().into()),
@@ -190,7 +187,7 @@ impl Profile {
             Self::Sine(sine) => Box::new(sine.is_due_before(clock_hz)),
             Self::SineSegments(sine) => Box::new(sine.is_due_before(clock_hz)),
             Self::Constant(constant) => {
-                let interval = Exact::of(clock).divided_by(libm::fabs(constant.speed(0.0))).double();
+                let interval = Double::from(clock) / constant.exact_speed();
                 Box::new(move |k, since| since.exceeds(interval * (k as f64 - 0.5).into()))
             }
             // They know their steps' cycles themselves, or have none.
@@ -215,13 +212,10 @@ impl Profile {
             Self::Points(points) => {
                 return Some(points.step(k)?.cycle(start, clock_hz).1);
             }
-            Self::Constant(constant) => {
-                let speed = libm::fabs(constant.speed(0.0));
-                match EvenSteps::new(speed, clock_hz, self.step_count()) {
-                    Some(even) => return Some(even.step(k).after(start).1),
-                    None => place * (clock / speed),
-                }
-            }
+            Self::Constant(constant) => match constant.even_steps(clock_hz) {
+                Some(even) => return Some(even.step(k).after(start).1),
+                None => place * (clock / constant.exact_speed().high),
+            },
             Self::SineSegments(_) | Self::Dwell(_) => return None,
             one_way => one_way.time_s(place) * clock,
         };

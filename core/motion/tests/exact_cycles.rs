@@ -8,7 +8,7 @@ use rand_xoshiro::{
 };
 use stepscope_motion::{
     AxisPlan,
-    mechanics::{Acceleration, Distance, Speed},
+    mechanics::{Acceleration, Distance, Mechanics, Screw, Speed},
     moves::{
         Axis, Constant, Dwell, Interpolation, Move, Point, PointUnit, Points, Trapezoid, TrapezoidMethod,
     },
@@ -111,4 +111,23 @@ fn constant_rates_and_what_waits_before_them_are_quotients_of_decimals() {
         }
     }
     assert!(ties > 1000, "only {ties} steps stood at a half");
+}
+
+/// Of a screw of 3 mm a turn and such a shaft a step is 0.03 mm: 10 mm/s are 1000/3 steps/s, which no f64 is.
+#[test]
+fn a_rate_in_millimetres_is_the_quotient_of_its_decimals() {
+    let screw = || Screw { full_step_deg: 3.6, microsteps: 1, lead_mm: 3.0 };
+    for (digits, clock) in [(10, 1000), (7, 1000), (1, 999_983), (70, 16_000_000)] {
+        let given =
+            Constant { distance: Distance::Steps(5000.0), speed: Speed::MillimetresPerSecond(digits as f64) };
+        // Twice, so that the second begins with a part of a cycle.
+        let moves = vec![Move::Constant(given.clone()), Move::Constant(given)];
+        let axis = Axis { mechanics: Mechanics::Screw(screw()), moves, ..Axis::default() };
+        let plan = plan_axis(&axis, "x").unwrap_or_else(|problems| panic!("{problems:?}"));
+        for (k, due) in (1..).zip(plan.due_steps(clock as u32)) {
+            // (k - 1/2)*3/(100*digits) s.
+            let expected = rounded(3 * clock * (2 * k - 1), 200 * digits);
+            assert_eq!(i128::from(due.cycle), expected, "step {k} of {digits} mm/s at {clock} Hz");
+        }
+    }
 }

@@ -8,7 +8,7 @@ use crate::{
     moves::{self, TrapezoidMethod},
     problem::{Cause, ValueError},
     quantities::Quantities,
-    trapezoid::Trapezoid,
+    trapezoid::{Limits, Trapezoid},
     trapezoid_table::{NoTable, TrapezoidTable},
 };
 
@@ -17,8 +17,14 @@ type Front = (i64, f64, f64, f64);
 
 /// Every step where the curve has it.
 pub(super) fn exact(quantities: &mut Quantities<'_>, given: &moves::Trapezoid) -> Option<Trapezoid> {
-    let (steps, start, top, acceleration) = front(quantities, given)?;
-    Some(Trapezoid::new(steps, start, top, acceleration))
+    let (steps, ..) = front(quantities, given)?;
+    let mechanics = quantities.mechanics();
+    let limits = Limits {
+        start_speed: given.start_speed.exact_in_steps(mechanics).ok()?,
+        top_speed: given.top_speed.exact_in_steps(mechanics).ok()?,
+        acceleration: given.acceleration.exact_in_steps(mechanics).ok()?,
+    };
+    Some(Trapezoid::within(steps, limits))
 }
 
 /// By the document's table.
