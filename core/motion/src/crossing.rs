@@ -22,7 +22,10 @@
 //! E, and is no tie, would go up as well; nothing proves that there is none. Were times spread evenly, it would be one in
 //! 2^62 of a motion of 2^32 cycles.
 
-use crate::{cycle_time::CycleTime, double::Double};
+use crate::{
+    cycle_time::{CycleTime, Quotient},
+    double::Double,
+};
 
 /// How far a time in f64 may be off, in parts of the longest time of its move: 64 roundings.
 pub(super) const MAX_OFF: f64 = 64.0 * ROUNDING;
@@ -98,6 +101,24 @@ pub(super) fn judged(start: CycleTime, guess: u64, is_due_before: &dyn Fn(Double
         }
     }
     cycle
+}
+
+impl Quotient {
+    /// When a step is due that is so long after `start`, as a number, and B1's cycle of it.
+    #[inline]
+    pub(super) fn after(self, start: CycleTime) -> (f64, u64) {
+        let own = self.part();
+        let (whole, part) = (start.whole.wrapping_add(self.whole), start.part.high + own);
+        let instant =
+            if part < 1.0 { whole as f64 + part } else { whole.wrapping_add(1) as f64 + (part - 1.0) };
+        let cycle = if start.part == Double::default() {
+            whole.wrapping_add(u64::from(self.rest >= self.under - self.rest))
+        } else {
+            let is_before = |since: Double| (since - Double::from(self.whole)).exceeds(self.time().part);
+            Rounding::new(start, 0.0).cycle((self.whole, own), is_before)
+        };
+        (instant, cycle)
+    }
 }
 
 /// Whether step `k` (from 1) of `count` is due before a time, of a move that takes `duration` and whose second half

@@ -2,7 +2,7 @@
 //! one in 106 bits.
 //!
 //! A number alone loses a bit of the part each time the whole doubles; at 10^12 cycles the part has 14 bits left.
-use crate::{crossing::Rounding, double::Double, exact::Exact, trapezoid_table::TrapezoidTable};
+use crate::{double::Double, exact::Exact, trapezoid_table::TrapezoidTable};
 
 /// Whole cycles and a part of one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -65,22 +65,6 @@ impl Quotient {
     /// With all its digits.
     pub(super) fn time(self) -> CycleTime {
         CycleTime { whole: self.whole, part: Double::from(self.rest) / Double::from(self.under) }
-    }
-
-    /// When a step is due that is so long after `start`, as a number, and B1's cycle of it.
-    #[inline]
-    pub(super) fn after(self, start: CycleTime) -> (f64, u64) {
-        let own = self.part();
-        let (whole, part) = (start.whole.wrapping_add(self.whole), start.part.high + own);
-        let instant =
-            if part < 1.0 { whole as f64 + part } else { whole.wrapping_add(1) as f64 + (part - 1.0) };
-        let cycle = if start.part == Double::default() {
-            whole.wrapping_add(u64::from(self.rest >= self.under - self.rest))
-        } else {
-            let is_before = |since: Double| (since - Double::from(self.whole)).exceeds(self.time().part);
-            Rounding::new(start, 0.0).cycle((self.whole, own), is_before)
-        };
-        (instant, cycle)
     }
 }
 

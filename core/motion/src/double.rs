@@ -10,7 +10,7 @@
 //! and the square root, which has one result, so it has the same bits on every target; a
 //! cube root starts from `libm`'s. It is seldom called, so none of it is copied into its callers.
 
-use crate::{exact::Exact, square_root};
+use crate::square_root;
 use core::ops::{Add, Div, Mul, Sub};
 
 /// A number of 106 bits.
@@ -46,11 +46,6 @@ impl From<u64> for Double {
 }
 
 impl Double {
-    /// The decimal that is printed for a number, which is finite (DESIGN B1).
-    pub(super) fn decimal(number: f64) -> Self {
-        Exact::of(number).double()
-    }
-
     /// a + b, exactly.
     #[inline]
     pub(super) fn sum(a: f64, b: f64) -> Self {

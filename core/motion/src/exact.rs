@@ -183,6 +183,13 @@ impl Exact {
     }
 }
 
+impl Double {
+    /// The decimal that is printed for a number, which is finite (DESIGN B1).
+    pub(super) fn decimal(number: f64) -> Self {
+        Exact::of(number).double()
+    }
+}
+
 /// A whole number from 0 on, of any length.
 ///
 /// Invariant: the least limb first, the last one not 0; 0 has none.

@@ -60,6 +60,14 @@ pub struct Limits {
     pub jerk: f64,
 }
 
+/// Limits of a move with all their digits: in f64 neither a decimal nor a quotient by mechanics is what it means.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct ExactLimits {
+    speed: Double,
+    acceleration: Double,
+    jerk: Double,
+}
+
 /// A jerk-limited move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JerkLimited {
@@ -75,7 +83,7 @@ pub struct JerkLimited {
     ramp_s: f64,
     /// s_r, at most half of all steps.
     ramp_steps: f64,
-    limits: exactly::Limits,
+    limits: ExactLimits,
 }
 
 impl JerkLimited {
@@ -84,11 +92,11 @@ impl JerkLimited {
     pub fn new(steps: i64, limits: Limits) -> Self {
         let [speed, acceleration, jerk] =
             [limits.speed, limits.acceleration, limits.jerk].map(Double::decimal);
-        Self::within(steps, exactly::Limits { speed, acceleration, jerk })
+        Self::within(steps, ExactLimits { speed, acceleration, jerk })
     }
 
     /// [`Self::new`], of numbers with all their digits.
-    fn within(steps: i64, limits: exactly::Limits) -> Self {
+    fn within(steps: i64, limits: ExactLimits) -> Self {
         let all = steps.unsigned_abs() as f64;
         let [speed, acceleration, jerk] =
             [limits.speed, limits.acceleration, limits.jerk].map(|number| number.high);
@@ -128,7 +136,7 @@ impl JerkLimited {
         let jerk = quantities.jerk("max_jerk", &given.max_jerk);
         let (steps, _, _, _) = (steps?, speed?, acceleration?, jerk?);
         let mechanics = quantities.mechanics();
-        let limits = exactly::Limits {
+        let limits = ExactLimits {
             speed: given.max_speed.exact_in_steps(mechanics).ok()?,
             acceleration: given.max_acceleration.exact_in_steps(mechanics).ok()?,
             jerk: given.max_jerk.exact_in_steps(mechanics).ok()?,

@@ -27,23 +27,27 @@
 //! ```
 
 mod exactly;
+mod off;
 
 use crate::{
     Curve, Peaks,
     crossing::Rounding,
     curve::greater,
     cycle_time::CycleTime,
+    double::Double,
     exact::Exact,
     format::grouped,
     hermite::{Crossing, Cubic},
     round_half_up,
 };
 use alloc::{format, string::String, vec::Vec};
-pub(crate) use exactly::Point;
-use exactly::{Off, off};
+use off::{Off, off};
 
 /// Parts that a smooth curve is cut into, about: its pieces in 4 to 64 each.
 const CURVE_PARTS: u32 = 256;
+
+/// A point: its time in s and its position in steps, both from the first.
+pub(super) type Point = (Double, Double);
 
 /// How a curve goes from point to point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -106,7 +110,7 @@ impl Points {
         let made = made(&pieces);
         debug_assert!(made.len() == pieces.len() && pieces.first().is_some_and(|first| first.from_s == 0.0));
         debug_assert!(pieces.is_sorted_by(|piece, next| piece.to_s == next.from_s && piece.to == next.from));
-        let off = off(&pieces, between);
+        let off = off(&pieces, between == Between::Smooth);
         Some(Self { exact, off, pieces, made, between })
     }
 

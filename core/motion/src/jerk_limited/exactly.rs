@@ -1,16 +1,8 @@
 //! The jerk-limited move in 106 bits (DESIGN B1, B6): its phases as the table of [`super`] has them, and where it is at a
 //! time.
 
-use super::JerkLimited;
+use super::{ExactLimits, JerkLimited};
 use crate::{crossing::is_due_before, double::Double};
-
-/// Limits of a move with all their digits: in f64 neither a decimal nor a quotient by mechanics is what it means.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Limits {
-    pub(crate) speed: Double,
-    pub(crate) acceleration: Double,
-    pub(crate) jerk: Double,
-}
 
 /// The first half, of times in s.
 #[derive(Clone, Copy)]
@@ -50,7 +42,7 @@ impl Exactly {
 
 impl JerkLimited {
     fn exactly(&self) -> Exactly {
-        let Limits { speed, acceleration, jerk } = self.limits;
+        let ExactLimits { speed, acceleration, jerk } = self.limits;
         let (count, two) = (Double::from(self.halves.steps.unsigned_abs()), Double::from(2.0));
         let at_rest = Double::default();
         let full_jerk_s = acceleration / jerk;
