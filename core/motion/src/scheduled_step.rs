@@ -9,13 +9,14 @@
 //! the sum is rounded once. Where the digits of an f64 do not decide that, `crossing` does.
 
 use crate::{
-    AxisPlan, Curve, Profile,
+    AxisPlan, Curve, PlannedMove, Profile,
     crossing::{MAX_OFF, Rounding},
     cycle_time::{CycleTime, Quotient},
     double::Double,
     exact::Exact,
 };
 use alloc::boxed::Box;
+use core::ops::ControlFlow;
 
 /// A step that is due.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,25 +41,111 @@ impl AxisPlan {
 
     /// All steps, each with its instant before B1 rounds it, in cycles of a clock of `clock_hz`.
     pub fn due_instants(&self, clock_hz: u32) -> impl Iterator<Item = (f64, ScheduledStep)> + '_ {
-        let starts = self.moves().iter().scan(CycleTime::default(), move |next, planned| {
-            let start = *next;
-            *next = start.plus(planned.profile.length(clock_hz));
-            Some((start, &planned.profile))
-        });
-        starts.flat_map(move |(start, profile)| core::iter::from_fn(due_from(profile, start, clock_hz)))
+        let none = (0.0, ScheduledStep { cycle: 0, right: false });
+        let start = CycleTime::default();
+        DueSteps {
+            moves: self.moves().iter(),
+            start,
+            clock_hz,
+            form: None,
+            block: [none; BLOCK],
+            at: 0,
+            len: 0,
+        }
     }
 }
 
-/// Gives the steps of a move, each with its instant, one after another. No iterator, of which every kind would have every
-/// method.
-type Steps<'p> = Box<dyn FnMut() -> Option<(f64, ScheduledStep)> + 'p>;
+/// A step with its instant before it is rounded.
+type Due = (f64, ScheduledStep);
+
+/// Steps that are formed at a time: what forms them is known only when it runs, and is called once for so many.
+const BLOCK: usize = 64;
+
+/// What forms a move's steps.
+trait Form {
+    /// Writes the next ones from the block's beginning on, and says how many: none at the end.
+    fn next_block(&mut self, block: &mut [Due; BLOCK]) -> usize;
+}
+
+impl<S: Iterator<Item = Due>> Form for S {
+    fn next_block(&mut self, block: &mut [Due; BLOCK]) -> usize {
+        let mut len = 0;
+        // From within: an iterator of iterators keeps its place in registers so.
+        let _ = self.try_for_each(|due| {
+            block[len % BLOCK] = due;
+            len += 1;
+            if len < BLOCK { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        });
+        len
+    }
+}
+
+/// The steps of a move, each with its instant, one after another.
+type Steps<'p> = Box<dyn Form + 'p>;
+
+/// The steps of an axis, move after move.
+struct DueSteps<'p> {
+    moves: core::slice::Iter<'p, PlannedMove>,
+    /// Of the next move.
+    start: CycleTime,
+    clock_hz: u32,
+    /// Of this move.
+    form: Option<Steps<'p>>,
+    block: [Due; BLOCK],
+    /// Of the block the next one, and how many there are.
+    at: usize,
+    len: usize,
+}
+
+impl DueSteps<'_> {
+    /// Forms the next steps; whether there are any.
+    #[inline(never)]
+    fn next_block(&mut self) -> bool {
+        loop {
+            self.at = 0;
+            self.len = self.form.as_mut().map_or(0, |form| form.next_block(&mut self.block));
+            if self.len > 0 {
+                return true;
+            }
+            let Some(PlannedMove { profile, .. }) = self.moves.next() else { return false };
+            self.form = Some(due_from(profile, self.start, self.clock_hz));
+            self.start = self.start.plus(profile.length(self.clock_hz));
+        }
+    }
+}
+
+impl Iterator for DueSteps<'_> {
+    type Item = Due;
+
+    #[inline]
+    fn next(&mut self) -> Option<Due> {
+        if self.at >= self.len && !self.next_block() {
+            return None;
+        }
+        let due = self.block[self.at % BLOCK];
+        self.at += 1;
+        Some(due)
+    }
+
+    /// Block by block.
+    #[inline]
+    fn fold<T, F: FnMut(T, Due) -> T>(mut self, first: T, mut f: F) -> T {
+        let mut folded = first;
+        while self.at < self.len || self.next_block() {
+            let block = self.block.get(self.at..self.len).unwrap_or_default();
+            folded = block.iter().fold(folded, |folded, due| f(folded, *due));
+            self.at = self.len;
+        }
+        folded
+    }
+}
 
 /// The steps of a move that starts at `start`: of a timer's table and of one rate the quotients that whole numbers make,
 /// of the others those of their times in f64.
 fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Steps<'_> {
     let clock = f64::from(clock_hz);
     let (right, count) = (profile.steps() >= 0, profile.steps().unsigned_abs());
-    let mut steps = 1..=count;
+    let steps = 1..count + 1;
     let exactly = move |since: Quotient| {
         let (instant, cycle) = since.after(start);
         (instant, ScheduledStep { cycle, right })
@@ -69,9 +156,7 @@ fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Steps<'_> {
             let times = core::iter::from_fn(move || times.next_unrounded());
             scheduled(profile, start, clock_hz, times.map(move |cycles| (cycles, right)))
         }
-        Profile::TrapezoidTable(table) => {
-            Box::new(move || Some(exactly(table.step_time(steps.next()?, clock_hz))))
-        }
+        Profile::TrapezoidTable(table) => Box::new(steps.map(move |k| exactly(table.step_time(k, clock_hz)))),
         Profile::Staircase(staircase) => {
             let times = steps.map(move |k| (staircase.step_s(k) * clock, right));
             scheduled(profile, start, clock_hz, times)
@@ -86,26 +171,19 @@ fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Steps<'_> {
             let times = sine.due_halves().map(move |(half, right)| (half * cycles_per_half, right));
             scheduled(profile, start, clock_hz, times)
         }
-        Profile::Points(points) => {
-            let mut all = points.due();
-            Box::new(move || {
-                let (due, right) = all.next()?;
-                let (instant, cycle) = due.cycle(start, clock_hz);
-                Some((instant, ScheduledStep { cycle, right }))
-            })
-        }
+        Profile::Points(points) => Box::new(points.due().map(move |(due, right)| {
+            let (instant, cycle) = due.cycle(start, clock_hz);
+            (instant, ScheduledStep { cycle, right })
+        })),
         Profile::Constant(constant) => match constant.even_steps(clock_hz) {
-            Some(even) => {
-                let mut times = steps.zip(even.steps());
-                Box::new(move || times.next().map(|(_, since)| exactly(since)))
-            }
+            Some(even) => Box::new(steps.zip(even.steps()).map(move |(_, since)| exactly(since))),
             None => {
                 let cycles_per_step = clock / constant.exact_speed().high;
                 let times = steps.map(move |k| ((k as f64 - 0.5) * cycles_per_step, right));
                 scheduled(profile, start, clock_hz, times)
             }
         },
-        Profile::Dwell(_) => Box::new(|| None),
+        Profile::Dwell(_) => Box::new(core::iter::empty()),
         Profile::Cosine(curve) => scheduled(profile, start, clock_hz, crossings(curve, clock)),
         Profile::Sliced(curve) => scheduled(profile, start, clock_hz, crossings(curve, clock)),
         Profile::Ramps(curve) => scheduled(profile, start, clock_hz, crossings(curve, clock)),
@@ -114,9 +192,9 @@ fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Steps<'_> {
 }
 
 /// When a curve that goes one way crosses the half-integer of each step, in cycles, and which way that is.
-fn crossings(curve: &impl Curve, clock: f64) -> impl Iterator<Item = (f64, bool)> {
+fn crossings(curve: &impl Curve, clock: f64) -> impl Iterator<Item = (f64, bool)> + Clone {
     let right = curve.steps() >= 0;
-    (1..=curve.steps().unsigned_abs()).map(move |k| (curve.time_s(k as f64 - 0.5) * clock, right))
+    (1..curve.steps().unsigned_abs() + 1).map(move |k| (curve.time_s(k as f64 - 0.5) * clock, right))
 }
 
 /// The steps of a move that starts at `start`, of their times in cycles from there on and their directions.
@@ -124,16 +202,14 @@ fn scheduled<'p>(
     profile: &'p Profile,
     start: CycleTime,
     clock_hz: u32,
-    mut times: impl Iterator<Item = (f64, bool)> + 'p,
+    times: impl Iterator<Item = (f64, bool)> + Clone + 'p,
 ) -> Steps<'p> {
     let (rounding, is_due_before) = profile.rounding(start, clock_hz);
-    let (start, mut k) = (start.cycles(), 0);
-    Box::new(move || {
-        let (cycles, right) = times.next()?;
-        k += 1;
+    let start = start.cycles();
+    Box::new((1..).zip(times).map(move |(k, (cycles, right))| {
         let cycle = rounding.cycle((0, cycles), |since| is_due_before(k, since));
-        Some((start + cycles, ScheduledStep { cycle, right }))
-    })
+        (start + cycles, ScheduledStep { cycle, right })
+    }))
 }
 
 /// Whether a step (from 1) is due before a time in cycles from its move's start.
