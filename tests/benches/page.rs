@@ -25,15 +25,15 @@ use serde_json::{Value, json};
 use stepscope_core::scenario::presets::PRESETS;
 
 use crate::{
-    bench::in_browser_shipped,
+    bench::in_browser,
     native::Known,
     session::{CONTROL, Session},
 };
 
 fn main() -> Result<()> {
-    in_browser_shipped(|page| async move { frames(&page).await })?;
-    in_browser_shipped(|page| async move { loading(&page).await })?;
-    in_browser_shipped(|page| async move { answers(&page).await })
+    in_browser(|page| async move { frames(&page).await })?;
+    in_browser(|page| async move { loading(&page).await })?;
+    in_browser(|page| async move { answers(&page).await })
 }
 
 /// Sixteen motors at their fastest, for seconds.
