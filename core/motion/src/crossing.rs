@@ -38,8 +38,6 @@ const MAX_OFF_CYCLES: f64 = 4.0 * f64::EPSILON;
 const WHOLE: f64 = 4_503_599_627_370_496.0;
 /// How much earlier an edge counts, in parts of it: 2^-94.
 const TIE: f64 = f64::EPSILON * f64::EPSILON * 1024.0;
-/// Edges that are judged: many more than one is only off what no scenario may ask for.
-const MAX_EDGES: u32 = 64;
 
 /// Which cycles the steps of a move fall in.
 #[derive(Clone, Copy, Debug)]
@@ -90,17 +88,32 @@ pub(super) fn judged(start: CycleTime, guess: u64, is_due_before: &dyn Fn(Double
         let since = Double::from(cycle.wrapping_sub(start.whole) as i64 as f64) - start.part + 0.5.into();
         is_due_before(since - ((cycle as f64 + 1.0) * TIE).into())
     };
-    let mut cycle = guess;
-    for _ in 0..MAX_EDGES {
-        if !is_due_by(cycle) {
-            cycle = cycle.saturating_add(1);
-        } else if cycle > 0 && is_due_by(cycle - 1) {
-            cycle -= 1;
+    // From the guess on in strides that double until the step is between two edges, and then halved: how far off the guess
+    // was decides nothing.
+    let (mut not_by, mut by) = (None, None);
+    let (mut cycle, mut stride) = (guess, 1);
+    loop {
+        if is_due_by(cycle) {
+            by = Some(cycle);
+            if cycle == 0 || not_by.is_some() {
+                break;
+            }
+            cycle = cycle.saturating_sub(stride);
         } else {
-            break;
+            not_by = Some(cycle);
+            if cycle == u64::MAX || by.is_some() {
+                break;
+            }
+            cycle = cycle.saturating_add(stride);
         }
+        stride = stride.saturating_mul(2);
     }
-    cycle
+    let (mut below, mut above) = (not_by.map_or(0, |cycle| cycle.saturating_add(1)), by.unwrap_or(u64::MAX));
+    while below < above {
+        let middle = below + (above - below) / 2;
+        if is_due_by(middle) { above = middle } else { below = middle.saturating_add(1) }
+    }
+    above
 }
 
 impl Quotient {
@@ -132,7 +145,8 @@ pub(super) fn is_due_before(
     let place = k as f64 - 0.5;
     let left = count as f64 - place;
     if place <= left {
-        time.is_positive() && is_past(time, place)
+        // The first half's own formula ends with it.
+        time.exceeds(duration * 0.5.into()) || (time.is_positive() && is_past(time, place))
     } else {
         let still = duration - time;
         !(still.is_positive() && is_past(still, left))

@@ -107,7 +107,7 @@ impl Points {
         if between == Between::Smooth {
             smoothen(&mut pieces);
         }
-        let made = made(&pieces);
+        let made = made(&pieces, &exact);
         debug_assert!(made.len() == pieces.len() && pieces.first().is_some_and(|first| first.from_s == 0.0));
         debug_assert!(pieces.is_sorted_by(|piece, next| piece.to_s == next.from_s && piece.to == next.from));
         let off = off(&pieces, between == Between::Smooth);
@@ -118,6 +118,11 @@ impl Points {
     #[must_use]
     pub fn step_count(&self) -> u64 {
         self.counted().map(|(_, from, to)| from.abs_diff(to)).sum()
+    }
+
+    /// How long it takes in s, with all its digits.
+    pub(super) fn exact_duration(&self) -> Double {
+        self.exact.last().map_or_else(Double::default, |(end_s, _)| *end_s)
     }
 
     /// The greatest distance from the start, in steps.
@@ -197,7 +202,7 @@ fn place(from: i64, to: i64, index: u64) -> f64 {
 }
 
 /// Steps that are made by the end of each piece.
-fn made(pieces: &[Cubic]) -> Vec<i64> {
+fn made(pieces: &[Cubic], exact: &[Point]) -> Vec<i64> {
     // Whether the curve goes left from the end of each piece, at once or after it has stood there.
     let mut falls_next = false;
     let mut falls: Vec<bool> = Vec::with_capacity(pieces.len());
@@ -206,12 +211,13 @@ fn made(pieces: &[Cubic]) -> Vec<i64> {
         falls_next = piece.to < piece.from || (piece.to == piece.from && falls_next);
     }
     let mut rose = false;
-    let ends = pieces.iter().zip(falls.into_iter().rev());
-    let made = ends.map(|(piece, falls)| {
+    let ends = pieces.iter().zip(exact.iter().skip(1)).zip(falls.into_iter().rev());
+    let made = ends.map(|((piece, (_, to)), falls)| {
         rose = piece.to > piece.from || (piece.to == piece.from && rose);
-        let due = round_half_up(piece.to);
-        // A half that is touched from below alone is not crossed.
-        if rose && falls && due as f64 - 0.5 == piece.to { due - 1 } else { due }
+        let due = round_half_up(to.high);
+        let half = Double::from(due as f64 - 0.5);
+        // The nearest f64 may be the half where the point is less. A half that is touched from below alone is not crossed.
+        if half.exceeds(*to) || (rose && falls && !to.exceeds(half)) { due - 1 } else { due }
     });
     made.collect()
 }

@@ -229,9 +229,8 @@ impl Profile {
             }
             Self::Sine(sine) => told(sine.period_s(), sine.periods().into()),
             Self::SineSegments(sine) => told(sine.period_s(), sine.periods().into()),
-            Self::Cosine(_) | Self::Ramps(_) | Self::Points(_) | Self::Dwell(_) => {
-                told(self.duration_s(), 1.0)
-            }
+            Self::Cosine(_) | Self::Ramps(_) | Self::Dwell(_) => told(self.duration_s(), 1.0),
+            Self::Points(points) => CycleTime::of(points.exact_duration() * clock.into()),
             Self::Trapezoid(curve) => CycleTime::of(curve.exact_duration() * clock.into()),
             Self::JerkLimited(curve) => CycleTime::of(curve.exact_duration() * clock.into()),
             Self::Staircase(curve) => CycleTime::of(curve.exact_duration() * clock.into()),

@@ -4,6 +4,9 @@
 use super::{Between, Points};
 use crate::double::Double;
 
+/// What 106 bits lose of a position, and what is formed of it, in parts of it: 2^-98.
+const UNTOLD: f64 = f64::EPSILON * f64::EPSILON * 64.0;
+
 fn less(a: Double, b: Double) -> bool {
     b.exceeds(a)
 }
@@ -22,6 +25,9 @@ impl Points {
             Between::Smooth => [self.slope(index), self.slope(index + 1)],
         };
         let (behind, ahead) = (magnitude(Double::from(place) - from), magnitude(to - place.into()));
+        // The digits of a position end with those of the way from the first point, however short a step's own way is: what
+        // they do not tell apart is not past.
+        let untold = Double::from((libm::fabs(from.high) + libm::fabs(to.high)) * UNTOLD);
         // Whether it has made more than a travel in a time from one end, of the slopes there and at the other.
         let has_made = |x: Double, travel: Double, [near, far]: [Double; 2]| {
             let (near_less, far_less) = (mean - near, mean - far);
@@ -31,9 +37,9 @@ impl Points {
             x.is_positive() && (!less(x, length) || magnitude(made).exceeds(travel))
         };
         if less(behind, ahead) {
-            has_made(t - from_s, behind, [first, last])
+            has_made(t - from_s, behind + untold, [first, last])
         } else {
-            !has_made(to_s - t, ahead, [last, first])
+            !has_made(to_s - t, ahead - untold, [last, first])
         }
     }
 

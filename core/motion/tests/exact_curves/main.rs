@@ -28,8 +28,8 @@ use stepscope_motion::{
     AxisPlan, Curve, Profile,
     mechanics::{Acceleration, Distance, Jerk, Speed},
     moves::{
-        Axis, Cosine, CosineMethod, Dwell, Interpolation, JerkLimited, Move, Point, PointUnit, Points,
-        RampShape, Ramps, ShortMove, Sine, SineSegments, Staircase, Trapezoid, TrapezoidMethod,
+        Axis, Constant, Cosine, CosineMethod, Dwell, Interpolation, JerkLimited, Move, Point, PointUnit,
+        Points, RampShape, Ramps, ShortMove, Sine, SineSegments, Staircase, Trapezoid, TrapezoidMethod,
     },
     plan_axis,
     staircase_table::StaircaseTable,
@@ -504,4 +504,63 @@ fn a_sines_step_in_the_middle_of_two_cycles_goes_up() {
             assert_eq!(found, Some(twice.div_ceil(2)), "step {step} of {amplitude} in {period_s} s");
         }
     }
+}
+
+/// The cycles of all steps of a curve through points (s, steps), and of a constant rate after it.
+fn cycles_through(points: &[(f64, f64)], interpolation: Interpolation, clock_hz: u32) -> Vec<u64> {
+    let points = points.iter().map(|&(time_s, position)| Point { time_s, position }).collect();
+    let curve = Move::Points(Points { unit: PointUnit::Steps, interpolation, points });
+    let plan = plan_of(vec![curve]).expect("it holds");
+    plan.due_steps(clock_hz).map(|due| due.cycle).collect()
+}
+
+#[test]
+fn a_slow_creep_after_a_long_way_has_the_cycle_that_f64_cannot_tell() {
+    const GHZ: u32 = 1_000_000_000;
+    for (way, last) in [
+        (20_000.3, 17_360_000_000_000),
+        (40_000.3, 17_360_000_000_000),
+        (99_999.7, 69_140_000_000_000),
+        (300_000.3, 17_360_000_000_000),
+    ] {
+        let found =
+            cycles_through(&[(0.0, 0.0), (100.0, way), (86_400.0, way + 1.0)], Interpolation::Straight, GHZ);
+        assert_eq!(found.last(), Some(&last), "after {way} steps");
+    }
+    // A short piece between long ones: its slope is that of two late times.
+    let short = [(0.0, 0.0), (43_200.0, 1000.0), (43_200.001, 1000.00002), (86_400.0, 2000.0)];
+    let found = cycles_through(&short, Interpolation::Smooth, GHZ);
+    assert_eq!((found.len(), found[0]), (2000, 663_666_033_433));
+}
+
+#[test]
+fn a_tie_goes_up_far_from_the_first_point_also_where_the_curve_falls() {
+    for (points, tie) in [
+        ([(0.0, 0.0), (47.0, 50_809.8), (21_914.202_325, 50_808.8)], 6_607_160_698),
+        ([(0.0, 0.0), (43.0, 44_285.6), (61_527.296_755, 44_284.6)], 6_191_429_676),
+    ] {
+        let found = cycles_through(&points, Interpolation::Straight, 1_000_000);
+        assert_eq!(found.last(), Some(&tie), "{points:?}");
+    }
+}
+
+#[test]
+fn a_step_less_than_a_half_is_none_however_little_less() {
+    let found = cycles_through(&[(0.0, 1e-17), (1.0, 10.5)], Interpolation::Straight, 16_000_000);
+    assert_eq!(found.len(), 10);
+}
+
+#[test]
+fn a_move_after_points_begins_when_their_decimals_end() {
+    let points = vec![
+        Point { time_s: 0.123_456_789_012_34, position: 0.0 },
+        Point { time_s: 86_400.1, position: 1.0 },
+    ];
+    let curve =
+        Move::Points(Points { unit: PointUnit::Steps, interpolation: Interpolation::Straight, points });
+    let rate =
+        Move::Constant(Constant { distance: Distance::Steps(3000.0), speed: Speed::StepsPerSecond(977.3) });
+    let plan = plan_of(vec![curve, rate]).expect("it holds");
+    let found: Vec<u64> = plan.due_steps(1_000_000_000).map(|due| due.cycle).collect();
+    assert_eq!((found.len(), found[16]), (3001, 86_399_992_403_233));
 }
