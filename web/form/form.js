@@ -184,11 +184,18 @@ function showHints(root) {
   root.addEventListener("focusout", () => say(place, ""));
 }
 
-/** The field that has the focus stays in sight when what is said under the form takes room. @param {HTMLElement} scroller */
+/** The field that has the focus stays in sight when what is said under the form takes room from it. @param {HTMLElement} scroller */
 function keepFocusInSight(scroller) {
+  let height = scroller.clientHeight;
   new ResizeObserver(() => {
+    const before = height;
+    height = scroller.clientHeight;
     const active = document.activeElement;
-    if (active && scroller.contains(active)) active.scrollIntoView({ block: "nearest" });
+    const becameLower = height < before && scroller.scrollHeight > height;
+    if (!becameLower || !active || !scroller.contains(active)) return;
+    const [field, sight] = [active.getBoundingClientRect(), scroller.getBoundingClientRect()];
+    // What the visitor had scrolled away from stays away.
+    if (field.top >= sight.top && field.bottom <= sight.top + before) active.scrollIntoView({ block: "nearest" });
   }).observe(scroller);
 }
 

@@ -49,9 +49,7 @@ export function showProblems(state, controls, groups) {
     const text = `${nameOf(control)}: ${message}`;
     return button(text, text, () => control.focus());
   });
-  const parts = [...atGroup].map(([path, message]) =>
-    button(message, message, () => groups.get(path)?.scrollIntoView({ block: "center" })),
-  );
+  const parts = [...atGroup].map(([path, message]) => button(message, message, () => show(groups.get(path))));
   const ways = [...fields, ...parts];
   const more = ways.length - MAX_TOLD;
   const items = [
@@ -60,6 +58,12 @@ export function showProblems(state, controls, groups) {
     ...others.map(({ path, message }) => (path ? `${path}: ${message}` : message)),
   ].map((item) => element("li", {}, item));
   fill(/** @type {Element} */ (list.querySelector("ul")), ...items);
+}
+
+/** Shows a part of the form, also where it is folded. @param {HTMLElement | undefined} part */
+function show(part) {
+  for (let at = part?.parentElement; at; at = at.parentElement) if (at instanceof HTMLDetailsElement) at.open = true;
+  part?.scrollIntoView({ block: "center" });
 }
 
 /** A field with the part of the form that it is in. @param {Control} control */

@@ -37,7 +37,8 @@ export function createNotices(page) {
     }
     const close = button("", "Close this message", () => {
       line.hidden = true;
-      dispatch({ type: "notice", notice: null });
+      if (id === "link-message") dispatch({ type: "notice", notice: null });
+      byId("views").focus({ preventScroll: true });
     });
     close.classList.add("close");
     line.append(close);

@@ -155,8 +155,9 @@ impl Tree {
             let mut clone = git(&home, &["clone", "--quiet", "--shared", "--no-checkout"]);
             clone.arg(root()).arg(&tree);
             run::to_end(clone, run::LIMIT).await?;
-            run::to_end(git(&tree, &["checkout", "--quiet", "--detach", commit]), run::LIMIT).await?;
         }
+        // Also where it stands: an earlier run may have been ended before its files were there.
+        run::to_end(git(&tree, &["checkout", "--quiet", "--detach", "--force", commit]), run::LIMIT).await?;
         Ok(Self { root: tree, target: Some(home.join("target")), home })
     }
 

@@ -44,7 +44,7 @@ where
     T: FnOnce(Session) -> F,
     F: Future<Output = Result<()>> + 'static,
 {
-    in_engine(Browser::Chromium, test)
+    in_engine_at(pool::served(&dist()?)?, Browser::Chromium, test)
 }
 
 /// The folder of the page as it is shipped.
@@ -64,7 +64,7 @@ where
     T: FnOnce(Session) -> F,
     F: Future<Output = Result<()>> + 'static,
 {
-    in_engine_at(pool::served(&web()?)?, Browser::Chromium, test)
+    in_engine(Browser::Chromium, test)
 }
 
 /// As [`in_browser`], with the page at the address of a server of the test's own.
@@ -76,13 +76,13 @@ where
     in_engine_at(address.to_owned(), Browser::Chromium, test)
 }
 
-/// As [`in_browser`], in this engine; browsers of other engines than Chromium are started for the test.
+/// As [`in_sources`], in this engine; browsers of other engines than Chromium are started for the test.
 pub(crate) fn in_engine<T, F>(browser: Browser, test: T) -> Result<()>
 where
     T: FnOnce(Session) -> F,
     F: Future<Output = Result<()>> + 'static,
 {
-    in_engine_at(pool::served(&dist()?)?, browser, test)
+    in_engine_at(pool::served(&web()?)?, browser, test)
 }
 
 fn in_engine_at<T, F>(page: String, browser: Browser, test: T) -> Result<()>

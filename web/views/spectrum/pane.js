@@ -34,7 +34,14 @@ export function createSpectrum({ engine, dispatch, now }) {
         return;
       }
       spectra = answer;
-      const bare = !(answer.ideal ?? answer.pulses)?.periodic;
+      const some = answer.ideal ?? answer.pulses;
+      const bare = !some?.periodic;
+      split.hidden = !some;
+      // What a sensor lets through is there where there is one.
+      const select = /** @type {HTMLSelectElement} */ (byId("spectrum-quantity"));
+      const filtered = select.options[select.options.length - 1];
+      filtered.hidden = !some?.acceleration_filtered;
+      if (filtered.hidden && filtered.selected) select.value = "acceleration";
       dispatch({ type: "bare", view: "spectrum", bare });
       // Until the view has drawn it, and where there is no room to, the figure before is not this run's.
       if (bare) say(byId("thd"), "");

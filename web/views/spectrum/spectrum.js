@@ -145,11 +145,6 @@ export function createSpectrumView({ dispatch, now }) {
   /** Draws other spectra, once the curves and pulses are on the screen: a key that is pressed meanwhile waits for one of them, not for all. @param {Spectra} found */
   async function take(found) {
     spectra = found;
-    // What a sensor lets through is there where there is one.
-    const select = /** @type {HTMLSelectElement} */ (byId("spectrum-quantity"));
-    const filtered = select.options[select.options.length - 1];
-    filtered.hidden = !(found.ideal ?? found.pulses)?.acceleration_filtered;
-    if (filtered.hidden && filtered.selected) select.value = "acceleration";
     await new Promise((shown) => requestAnimationFrame(() => setTimeout(shown)));
     paint();
   }

@@ -55,6 +55,7 @@ export function createStudy(page) {
   const isOpen = () => now().view === "study";
   /** Opens or closes it; what has the focus must not go out of sight with it. @param {boolean} [open] */
   function toggle(open = !isOpen()) {
+    if (open && begins(now())) dispatch({ type: "study", study: "sine" });
     dispatch({ type: "view", view: open ? "study" : "motion" });
     const focus = open ? all.find(({ name }) => name === now().study)?.tab : byId("study");
     focus?.focus();
@@ -101,10 +102,9 @@ export function createStudy(page) {
   }
 
   let wasOpened = false;
-  /** A sine makes no n steps in a time that could be compared: the study of one begins with its own tab. @param {State} state */
+  /** A sine makes no n steps in a time that could be compared: the study of one that the visitor opens begins with its own tab. @param {State} state */
   function begins(state) {
     const first = !wasOpened;
-    wasOpened = true;
     return (
       first &&
       state.study === STUDIES[0] &&
@@ -115,7 +115,7 @@ export function createStudy(page) {
   /** @param {State} state @returns {any} */
   function render(state) {
     const open = state.view === "study";
-    if (open && begins(state)) return dispatch({ type: "study", study: "sine" });
+    wasOpened ||= open;
     byId("study").setAttribute("aria-pressed", String(open));
     for (const { name, tab, panel } of all) {
       choose(tab, name === state.study);
