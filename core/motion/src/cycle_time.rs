@@ -109,7 +109,7 @@ impl EvenSteps {
     }
 
     /// When each step is due, without a division for each.
-    pub(super) fn steps(self) -> impl Iterator<Item = Quotient> + Clone {
+    pub(super) fn steps(self) -> impl Iterator<Item = Quotient> {
         let ((add, add_rest), (mut whole, mut rest)) = (self.divided(2 * self.over), self.divided(self.over));
         core::iter::from_fn(move || {
             let time = Quotient { whole, rest, under: self.under };

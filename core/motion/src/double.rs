@@ -130,10 +130,10 @@ impl Double {
         let mut term = power / first.into();
         let (mut sum, mut factor) = (term, from);
         for _ in 0..MAX_TERMS {
-            for _ in 0..more {
-                factor += 1;
-                term = term / f64::from(factor).into();
-            }
+            // One division by whole numbers that an f64 holds.
+            let divisor: f64 = (factor + 1..=factor + more).map(f64::from).product();
+            factor += more;
+            term = term / divisor.into();
             term = term * ratio;
             sum = sum + term;
             if libm::fabs(term.high) <= NO_TERM * libm::fabs(sum.high) {

@@ -139,13 +139,13 @@ impl Points {
     }
 
     /// Each piece with the steps made before and after it.
-    fn counted(&self) -> impl Iterator<Item = (&Cubic, i64, i64)> + Clone + '_ {
+    fn counted(&self) -> impl Iterator<Item = (&Cubic, i64, i64)> + '_ {
         let before = core::iter::once(&0).chain(&self.made);
         self.pieces.iter().zip(before.zip(&self.made)).map(|(piece, (from, to))| (piece, *from, *to))
     }
 
     /// Where each step falls due, and whether it goes to the right.
-    pub(super) fn due(&self) -> impl Iterator<Item = (Due<'_>, bool)> + Clone + '_ {
+    pub(super) fn due(&self) -> impl Iterator<Item = (Due<'_>, bool)> + '_ {
         self.counted().enumerate().flat_map(move |(index, (_, from, to))| {
             let right = to > from;
             let due = move |step| Due { points: self, index, place: place(from, to, step) };

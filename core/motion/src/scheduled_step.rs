@@ -192,7 +192,7 @@ fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Steps<'_> {
 }
 
 /// When a curve that goes one way crosses the half-integer of each step, in cycles, and which way that is.
-fn crossings(curve: &impl Curve, clock: f64) -> impl Iterator<Item = (f64, bool)> + Clone {
+fn crossings(curve: &impl Curve, clock: f64) -> impl Iterator<Item = (f64, bool)> {
     let right = curve.steps() >= 0;
     (1..curve.steps().unsigned_abs() + 1).map(move |k| (curve.time_s(k as f64 - 0.5) * clock, right))
 }
@@ -202,7 +202,7 @@ fn scheduled<'p>(
     profile: &'p Profile,
     start: CycleTime,
     clock_hz: u32,
-    times: impl Iterator<Item = (f64, bool)> + Clone + 'p,
+    times: impl Iterator<Item = (f64, bool)> + 'p,
 ) -> Steps<'p> {
     let (rounding, is_due_before) = profile.rounding(start, clock_hz);
     let start = start.cycles();

@@ -82,7 +82,7 @@ impl Sine {
     }
 
     /// Where each step falls due, in half periods from the start, and whether it goes to the right.
-    pub(super) fn due_halves(&self) -> impl Iterator<Item = (f64, bool)> + Clone + use<> {
+    pub(super) fn due_halves(&self) -> impl Iterator<Item = (f64, bool)> + use<> {
         let Oscillation { amplitude, starts_right, periods, .. } = self.oscillation;
         (0..2 * u64::from(periods)).flat_map(move |half| {
             let right = starts_right == (half % 2 == 1);

@@ -184,7 +184,7 @@ impl SineSegments {
     }
 
     /// The segments of all quarters, one after another.
-    pub(crate) fn pieces(&self) -> impl Iterator<Item = Interval> + Clone + '_ {
+    pub(crate) fn pieces(&self) -> impl Iterator<Item = Interval> + '_ {
         let quarters =
             (0..self.oscillation.periods).flat_map(|period| (0..4_u16).map(move |quarter| (period, quarter)));
         quarters.flat_map(move |(period, quarter)| {
@@ -209,7 +209,7 @@ impl SineSegments {
 
     /// Where each step falls due, in points of the angle from the start, and whether it goes to
     /// the right.
-    pub(super) fn due_points(&self) -> impl Iterator<Item = (f64, bool)> + Clone + '_ {
+    pub(super) fn due_points(&self) -> impl Iterator<Item = (f64, bool)> + '_ {
         self.pieces().flat_map(|Interval { from, to, steps, right }| {
             let each = (to - from) / steps as f64;
             (0..steps).map(move |step| (from + (step as f64 + 0.5) * each, right))
