@@ -106,7 +106,7 @@ impl AnalysisWindow {
         let end_s = self.start_s + self.length_s();
         let (first, last) = (ticks.ticks_until(self.start_s) - 1, ticks.ticks_until(end_s) - 1);
         let (begin, end) = (plan.steps_due(self.start_s), plan.steps_due(end_s));
-        let due_by_end = |tick: u64| plan.steps_due(ticks.end_s(tick));
+        let due_by_end = |tick: u64| ticks.due_by_end(plan, tick);
         let place = |tick: u64| pulses.partition_point(|(cycle, _)| cycle / ticks.tick_cycles() < tick);
         let within = |from: u64, to: u64| pulses.get(place(from)..place(to)).unwrap_or_default();
         let going = |way: i64| move |pulse: &&(u64, i8)| i64::from(pulse.1) == way.signum();

@@ -82,17 +82,11 @@ impl AxisPlan {
     }
 
     /// Steps due by `t` s: B1's rounding of the position, and of a table's steps those to the right at `t` itself, those to
-    /// the left before it (B7).
+    /// the left before it (B7). As the digits of a time in f64 have it; by a cycle [`Self::due_by`] tells for certain.
     ///
     /// A move starts at a whole step, so only its own part is rounded.
     #[must_use]
     pub fn steps_due(&self, t: f64) -> i64 {
-        self.steps_due_after(t, 0)
-    }
-
-    /// [`Self::steps_due`], quick where `before` were due a short time before: then a table's row is
-    /// looked for from there on.
-    pub(crate) fn steps_due_after(&self, t: f64, before: i64) -> i64 {
         // In the instant in which a move ends its last step may still wait.
         let ended = self.moves.partition_point(|planned| planned.start_s + planned.profile.duration_s() < t);
         if let Some(PlannedMove { profile, start_s, start_steps }) = self.moves.get(ended)
@@ -106,7 +100,7 @@ impl AxisPlan {
         }
         let Some((PlannedMove { profile, start_steps, .. }, since)) = self.at(t) else { return 0 };
         start_steps.saturating_add(match profile {
-            Profile::TrapezoidTable(table) => table.steps_due(since, before.saturating_sub(*start_steps)),
+            Profile::TrapezoidTable(table) => table.steps_due(since, 0),
             profile => round_half_up(profile.position(since)),
         })
     }

@@ -17,13 +17,13 @@
 //! that speeds up from rest s <= v*t, so a time's part of an error ds/v is at most that of the way, ds/s. Every planner
 //! comes to less than 64 u of the longest of its times ([`MAX_OFF`]). What is off by more is told beside its formula.
 //!
-//! 106 bits have an end, too. E counts as earlier by [`TIE`] of it, which is 2^10 times what they lose: so a step that is
+//! 106 bits have an end, too. E counts as earlier by a [`tie`], which is 2^10 times what they lose: so a step that is
 //! due exactly at E, a tie, goes up as B1 has it, however its formula has rounded. A step that is due that little before
 //! E, and is no tie, would go up as well; nothing proves that there is none. Were times spread evenly, it would be one in
 //! 2^62 of a motion of 2^32 cycles.
 
 use crate::{
-    cycle_time::{CycleTime, Quotient},
+    cycle_time::{CycleTime, Quotient, tie},
     double::Double,
 };
 
@@ -36,8 +36,6 @@ const MAX_OFF_CYCLES: f64 = 4.0 * f64::EPSILON;
 
 /// 2^52: numbers from here on are whole. A move that lasts as long has no [`Rounding::room`].
 const WHOLE: f64 = 4_503_599_627_370_496.0;
-/// How much earlier an edge counts, in parts of it: 2^-94.
-const TIE: f64 = f64::EPSILON * f64::EPSILON * 1024.0;
 
 /// Which cycles the steps of a move fall in.
 #[derive(Clone, Copy, Debug)]
@@ -86,7 +84,7 @@ pub(super) fn judged(start: CycleTime, guess: u64, is_due_before: &dyn Fn(Double
     // Whether it is due before the end of a cycle, half a cycle after it.
     let is_due_by = |cycle: u64| {
         let since = Double::from(cycle.wrapping_sub(start.whole) as i64 as f64) - start.part + 0.5.into();
-        is_due_before(since - ((cycle as f64 + 1.0) * TIE).into())
+        is_due_before(since - tie(cycle))
     };
     // From the guess on in strides that double until the step is between two edges, and then halved: how far off the guess
     // was decides nothing.

@@ -4,6 +4,14 @@
 //! A number alone loses a bit of the part each time the whole doubles; at 10^12 cycles the part has 14 bits left.
 use crate::{double::Double, exact::Exact, trapezoid_table::TrapezoidTable};
 
+/// What 106 bits do not tell from a tie, in parts of a time: 2^-94.
+const TIE: f64 = f64::EPSILON * f64::EPSILON * 1024.0;
+
+/// What 106 bits do not tell from a tie, of a time in cycles.
+pub(super) fn tie(cycle: u64) -> Double {
+    ((cycle as f64 + 1.0) * TIE).into()
+}
+
 /// Whole cycles and a part of one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct CycleTime {
@@ -38,6 +46,22 @@ impl CycleTime {
         } else {
             Self { whole: whole.saturating_add(1), part: past }
         }
+    }
+
+    /// Whether it is not after a cycle; what is later by no more than a tie is not.
+    pub(super) fn is_by(self, cycle: u64) -> bool {
+        self.whole < cycle || (self.whole == cycle && !self.part.exceeds(tie(cycle)))
+    }
+
+    /// Whether it is that cycle, but for a tie.
+    pub(super) fn is_at(self, cycle: u64) -> bool {
+        let short = Double::from(1.0) - self.part;
+        self.is_by(cycle) && (self.whole == cycle || (self.whole + 1 == cycle && !short.exceeds(tie(cycle))))
+    }
+
+    /// All of it in 106 bits.
+    pub(super) fn double(self) -> Double {
+        Double::from(self.whole) + self.part
     }
 
     /// As a number.
@@ -145,6 +169,9 @@ mod tests {
 
     #[test]
     fn even_steps_are_quotients_of_whole_numbers() {
+        // Digits that both sides share are none of theirs.
+        let even = EvenSteps::new(3e22, 1_000_000_000, 3).expect("they are short");
+        assert_eq!((even.over, even.under), (1, 60_000_000_000_000));
         // 3 steps/s of a clock of 10 Hz: half an interval is 5/3 cycles.
         let even = EvenSteps::new(3.0, 10, 100).expect("they are short");
         for (k, time) in (1..=100).zip(even.steps()) {

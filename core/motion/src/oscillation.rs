@@ -35,6 +35,11 @@ impl Oscillation {
         4 * self.amplitude * u64::from(self.periods)
     }
 
+    /// Whether half period `half` (from 0) goes to the right.
+    pub(super) fn goes_right(&self, half: u64) -> bool {
+        self.starts_right == (half % 2 == 1)
+    }
+
     /// Part of a period that has passed at `t`, 0 to 1.
     pub(super) fn part(&self, t: f64) -> f64 {
         let turns = t / self.period_s;

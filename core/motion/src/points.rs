@@ -31,7 +31,7 @@ mod off;
 
 use crate::{
     Curve, Peaks,
-    crossing::Rounding,
+    crossing::{MAX_OFF, Rounding},
     curve::greater,
     cycle_time::CycleTime,
     double::Double,
@@ -129,6 +129,12 @@ impl Points {
     #[must_use]
     pub fn reach(&self) -> f64 {
         self.pieces.iter().fold(0.0, |most, piece| greater(most, libm::fabs(piece.to)))
+    }
+
+    /// How often the error of a time or of a position counts at most in a piece (`off`).
+    pub(super) fn most_times(&self) -> f64 {
+        let most_s = self.off.iter().fold(0.0, |most, off| greater(most, off.time_s));
+        most_s / (MAX_OFF * self.duration_s())
     }
 
     /// The piece (from 0) in which the speed is greatest, and that speed in steps/s.

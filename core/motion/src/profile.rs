@@ -132,9 +132,14 @@ impl Profile {
 }
 
 impl Profile {
-    /// Whether its last step falls in the very instant of its end, and is not due in it yet: of a table to the left (B7).
+    /// Whether its last step falls in the very instant of its end: of a table.
+    pub(crate) fn ends_with_a_step(&self) -> bool {
+        matches!(self, Self::TrapezoidTable(_) | Self::Staircase(_))
+    }
+
+    /// Whether that step is not due yet in that instant: of one to the left (B7).
     pub(crate) fn last_step_waits(&self) -> bool {
-        matches!(self, Self::TrapezoidTable(_) | Self::Staircase(_)) && self.steps() < 0
+        self.ends_with_a_step() && self.steps() < 0
     }
 }
 

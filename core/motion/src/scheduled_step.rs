@@ -213,11 +213,11 @@ fn scheduled<'p>(
 }
 
 /// Whether a step (from 1) is due before a time in cycles from its move's start.
-type IsDueBefore<'p> = Box<dyn Fn(u64, Double) -> bool + 'p>;
+pub(super) type IsDueBefore<'p> = Box<dyn Fn(u64, Double) -> bool + 'p>;
 
 impl Profile {
     /// How long the move lasts: what its decimals make, where it is told by them.
-    fn length(&self, clock_hz: u32) -> CycleTime {
+    pub(super) fn length(&self, clock_hz: u32) -> CycleTime {
         let clock = f64::from(clock_hz);
         let told =
             |duration_s: f64, times: f64| CycleTime::exact(&Exact::of(duration_s).times(times).times(clock));
@@ -238,37 +238,43 @@ impl Profile {
         }
     }
 
-    /// How the times of its steps in f64 become cycles, if it starts at `start`, and what judges them where they do not
-    /// tell.
-    fn rounding(&self, start: CycleTime, clock_hz: u32) -> (Rounding, IsDueBefore<'_>) {
-        let clock = f64::from(clock_hz);
-        let mut off = MAX_OFF * self.duration_s() * clock;
-        let is_due_before: IsDueBefore<'_> = match self {
-            Self::Trapezoid(curve) => {
-                off = curve.off(clock);
-                Box::new(curve.is_due_before(clock_hz))
-            }
-            Self::Staircase(curve) => {
-                off = curve.off_s() * clock;
-                Box::new(curve.is_due_before(clock_hz))
-            }
-            Self::Sliced(curve) => {
-                off = curve.off_s() * clock;
-                Box::new(curve.is_due_before(clock_hz))
-            }
+    /// How far the times of its steps in f64 may be off, in cycles of a clock.
+    pub(super) fn off(&self, clock: f64) -> f64 {
+        match self {
+            Self::Trapezoid(curve) => curve.off(clock),
+            Self::Staircase(curve) => curve.off_s() * clock,
+            Self::Sliced(curve) => curve.off_s() * clock,
+            _ => MAX_OFF * self.duration_s() * clock,
+        }
+    }
+
+    /// Whether a step is due before a time, for certain.
+    pub(super) fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
+        match self {
+            Self::Trapezoid(curve) => Box::new(curve.is_due_before(clock_hz)),
+            Self::Staircase(curve) => Box::new(curve.is_due_before(clock_hz)),
+            Self::Sliced(curve) => Box::new(curve.is_due_before(clock_hz)),
             Self::Cosine(curve) => Box::new(curve.is_due_before(clock_hz)),
             Self::Ramps(curve) => Box::new(curve.is_due_before(clock_hz)),
             Self::JerkLimited(curve) => Box::new(curve.is_due_before(clock_hz)),
             Self::Sine(sine) => Box::new(sine.is_due_before(clock_hz)),
             Self::SineSegments(sine) => Box::new(sine.is_due_before(clock_hz)),
             Self::Constant(constant) => {
-                let interval = Double::from(clock) / constant.exact_speed();
+                let interval = Double::from(f64::from(clock_hz)) / constant.exact_speed();
                 Box::new(move |k, since| since.exceeds(interval * (k as f64 - 0.5).into()))
             }
-            // They know their steps' cycles themselves, or have none.
-            Self::TrapezoidTable(_) | Self::Points(_) | Self::Dwell(_) => Box::new(|_, _| false),
-        };
-        (Rounding::new(start, off), is_due_before)
+            Self::TrapezoidTable(table) => {
+                Box::new(move |k, since| since.exceeds(table.step_time(k, clock_hz).time().double()))
+            }
+            // They are asked by their pieces, or have none.
+            Self::Points(_) | Self::Dwell(_) => Box::new(|_, _| false),
+        }
+    }
+
+    /// How the times of its steps in f64 become cycles, if it starts at `start`, and what judges them where they do not
+    /// tell.
+    fn rounding(&self, start: CycleTime, clock_hz: u32) -> (Rounding, IsDueBefore<'_>) {
+        (Rounding::new(start, self.off(clock_hz.into())), self.is_due_before(clock_hz))
     }
 
     /// The cycle of step `k` (from 1) after the move's start, of a clock of `clock_hz`, without iterating

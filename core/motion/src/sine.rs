@@ -42,7 +42,7 @@ const PERIOD_PARTS: u32 = 128;
 /// A sine, each step in its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sine {
-    oscillation: Oscillation,
+    pub(super) oscillation: Oscillation,
 }
 
 impl Sine {
@@ -83,9 +83,10 @@ impl Sine {
 
     /// Where each step falls due, in half periods from the start, and whether it goes to the right.
     pub(super) fn due_halves(&self) -> impl Iterator<Item = (f64, bool)> + use<> {
-        let Oscillation { amplitude, starts_right, periods, .. } = self.oscillation;
+        let oscillation = self.oscillation;
+        let Oscillation { amplitude, periods, .. } = oscillation;
         (0..2 * u64::from(periods)).flat_map(move |half| {
-            let right = starts_right == (half % 2 == 1);
+            let right = oscillation.goes_right(half);
             (1..=2 * amplitude).map(move |k| (half as f64 + part_of_half(k, amplitude), right))
         })
     }

@@ -89,7 +89,7 @@ pub struct Memory {
 /// A sine by segments.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SineSegments {
-    oscillation: Oscillation,
+    pub(super) oscillation: Oscillation,
     /// The first quarter.
     ///
     /// Invariant: begins at point 0, ends at [`QUARTER`], without gaps.

@@ -11,7 +11,7 @@
 
 /// How far from a step's place the curve keeps before and after the step, in steps: so R of it counts as many steps as
 /// have fallen, whatever the last digit of the place between two of them.
-const PAST_THE_STEP: f64 = 1.0 / 1_048_576.0;
+pub(super) const PAST_THE_STEP: f64 = 1.0 / 1_048_576.0;
 
 /// Position at `t` in steps, without sign, of a move of `count` steps, of which `fallen` have
 /// fallen by then; step k (from 1) falls at `step_s(k)`, and `step_s(0)` is the start.

@@ -18,6 +18,16 @@ fn magnitude(a: Double) -> Double {
 impl Points {
     /// Whether piece `index` is past `place`, which lies in it, before `t` in s.
     pub(super) fn is_past(&self, index: usize, place: f64, t: Double) -> bool {
+        self.is_beyond(index, place, t, 1.0)
+    }
+
+    /// Whether piece `index` is past `place` or at it, by `t` in s.
+    fn is_at(&self, index: usize, place: f64, t: Double) -> bool {
+        self.is_beyond(index, place, t, -1.0)
+    }
+
+    /// Whether it is past `place` by more than its digits tell, or less than that short of it.
+    fn is_beyond(&self, index: usize, place: f64, t: Double, untold: f64) -> bool {
         let Some(&[(from_s, from), (to_s, to)]) = self.exact.get(index..index + 2) else { return false };
         let (mean, length) = ((to - from) / (to_s - from_s), to_s - from_s);
         let [first, last] = match self.between {
@@ -25,9 +35,8 @@ impl Points {
             Between::Smooth => [self.slope(index), self.slope(index + 1)],
         };
         let (behind, ahead) = (magnitude(Double::from(place) - from), magnitude(to - place.into()));
-        // The digits of a position end with those of the way from the first point, however short a step's own way is: what
-        // they do not tell apart is not past.
-        let untold = Double::from((libm::fabs(from.high) + libm::fabs(to.high)) * UNTOLD);
+        // The digits of a position end with those of the way from the first point, however short a step's own way is.
+        let untold = Double::from((libm::fabs(from.high) + libm::fabs(to.high)) * UNTOLD * untold);
         // Whether it has made more than a travel in a time from one end, of the slopes there and at the other.
         let has_made = |x: Double, travel: Double, [near, far]: [Double; 2]| {
             let (near_less, far_less) = (mean - near, mean - far);
@@ -41,6 +50,39 @@ impl Points {
         } else {
             !has_made(to_s - t, ahead - untold, [last, first])
         }
+    }
+
+    /// B1's rounding of the position at a time, near `t`, no nearer to its place in f64 than `off`; `since` is the time in s,
+    /// a tie later or earlier: a half that is met in it is reached from below, and not yet left from above.
+    pub(crate) fn due_by(&self, t: f64, off: f64, since: impl Fn(bool) -> Double) -> i64 {
+        let past = self.piece(t).map_or(0.0, |piece| piece.position(t)) + 0.5;
+        let near = libm::floor(past + 0.5);
+        if libm::fabs(past - near) > off {
+            return libm::floor(past) as i64;
+        }
+        let (later, earlier) = (since(true), since(false));
+        let index = self.exact.partition_point(|(from_s, _)| !from_s.exceeds(later)).saturating_sub(1);
+        let Some(index) = index.checked_sub(usize::from(index + 1 == self.exact.len())) else { return 0 };
+        let Some(&[(_, from), (_, to)]) = self.exact.get(index..index + 2) else { return 0 };
+        // Whether the position is no less than the half below a whole one.
+        let has = |whole: i64| {
+            let half = whole as f64 - 0.5;
+            let is_under = |end: Double| !Double::from(half).exceeds(end);
+            match (is_under(from), is_under(to)) {
+                (true, true) => true,
+                (false, false) => false,
+                (false, true) => self.is_at(index, half, later),
+                (true, false) => !self.is_past(index, half, earlier),
+            }
+        };
+        let mut due = near as i64;
+        while !has(due) {
+            due -= 1;
+        }
+        while has(due + 1) {
+            due += 1;
+        }
+        due
     }
 
     /// Steffen's slope at a point.

@@ -6,8 +6,8 @@
 //! ```
 //!
 //! What has been ordered by the end of tick j is the rounded position there, so the error never
-//! adds up, is never above half a step, and the end is exact. The time of that end is one
-//! division of two integers, (j + 1)*tick_cycles/clock_hz.
+//! adds up, is never above half a step, and the end is exact. That end is a whole cycle, (j + 1)*tick_cycles,
+//! and which steps are due by a cycle is decided for certain (`due_by`).
 
 use super::AxesPath;
 use crate::{
@@ -75,19 +75,12 @@ pub fn ticks(
     tick_cycles: u64,
     clock_hz: u32,
 ) -> Result<Ticks, Vec<Problem>> {
-    let clock = TickClock::new(tick_cycles, clock_hz);
-    let channels = channels.max(1);
+    let (channels, tick_cycles) = (channels.max(1), tick_cycles.max(1));
     if plans.len() > channels.into() {
         let cause = ValueError::Length { given: plans.len(), least: 1, most: channels.into(), of: "axes" };
         return Err(vec![Problem::new(at.axes, cause)]);
     }
-    // One more where the last step is due in the instant in which a tick ends, and goes into the next.
-    let until = |plan: &AxisPlan| {
-        let ticks = clock.ticks_until(plan.duration_s());
-        let all_due = ticks > 0 && plan.steps_due(clock.end_s(ticks - 1)) == plan.steps();
-        if all_due { ticks } else { ticks.saturating_add(1) }
-    };
-    let needed = plans.iter().map(until).max().unwrap_or(1);
+    let needed = plans.iter().map(|plan| plan.spans(tick_cycles, clock_hz)).max().unwrap_or(1);
     let all = needed.saturating_mul(channels.into());
     for (given, most, of) in [(needed, MAX_TICKS, "ticks"), (all, MAX_BYTES, "ticks of all channels")] {
         if given > most {
@@ -100,7 +93,7 @@ pub fn ticks(
     let mut problems = Vec::new();
     for (channel, plan) in plans.iter().enumerate() {
         let column = bytes.iter_mut().skip(channel).step_by(width);
-        if let Err(cause) = fill(plan, column, &clock, slots.min(MAX_STEPS)) {
+        if let Err(cause) = fill(plan, column, (tick_cycles, clock_hz), slots.min(MAX_STEPS)) {
             problems.push(Problem::new(at.axis(channel), cause));
         }
     }
@@ -112,19 +105,19 @@ pub fn ticks(
 fn fill<'b>(
     plan: &AxisPlan,
     column: impl Iterator<Item = &'b mut u8>,
-    clock: &TickClock,
+    (tick_cycles, clock_hz): (u64, u32),
     slots: u8,
 ) -> Result<(), Cause> {
-    let mut due = 0;
-    let mut direction = 0;
-    for (tick, byte) in column.enumerate() {
-        let tick = tick as u64;
-        let next = plan.steps_due_after(clock.end_s(tick), due);
+    let mut due_by = plan.due_by(clock_hz);
+    let (mut due, mut direction, mut end) = (0, 0, 0_u64);
+    for (tick, byte) in (0..).zip(column) {
+        end = end.saturating_add(tick_cycles);
+        let next = due_by.steps(end);
         let steps = next.abs_diff(due);
         let count = match u8::try_from(steps) {
             Ok(count) if count <= slots => count,
             _ => {
-                let tick_s = clock.end_s(0);
+                let tick_s = tick_cycles as f64 / f64::from(clock_hz.max(1));
                 let (rate, limit) = (steps as f64 / tick_s, f64::from(slots) / tick_s);
                 return Err(Cause::TooManySteps { tick, steps, slots, rate, limit });
             }
@@ -142,14 +135,14 @@ fn fill<'b>(
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TickClock {
     tick_cycles: u64,
-    clock_hz: f64,
+    clock_hz: u32,
 }
 
 impl TickClock {
     /// Ticks of `tick_cycles` of a clock of `clock_hz`; 0 of either is taken as 1.
     #[must_use]
     pub fn new(tick_cycles: u64, clock_hz: u32) -> Self {
-        Self { tick_cycles: tick_cycles.max(1), clock_hz: f64::from(clock_hz.max(1)) }
+        Self { tick_cycles: tick_cycles.max(1), clock_hz: clock_hz.max(1) }
     }
 
     /// Cycles of a tick.
@@ -161,13 +154,24 @@ impl TickClock {
     /// A cycle, counted from the motion's start, in s.
     #[must_use]
     pub fn seconds(&self, cycle: u64) -> f64 {
-        cycle as f64 / self.clock_hz
+        cycle as f64 / f64::from(self.clock_hz)
+    }
+
+    /// End of tick `tick` (from 0) in cycles.
+    fn end(&self, tick: u64) -> u64 {
+        tick.saturating_add(1).saturating_mul(self.tick_cycles)
     }
 
     /// End of tick `tick` (from 0) in s.
     #[must_use]
     pub fn end_s(&self, tick: u64) -> f64 {
-        self.seconds(tick.saturating_add(1).saturating_mul(self.tick_cycles))
+        self.seconds(self.end(tick))
+    }
+
+    /// Steps due by the end of tick `tick` (from 0).
+    #[must_use]
+    pub fn due_by_end(&self, plan: &AxisPlan, tick: u64) -> i64 {
+        plan.due_by(self.clock_hz).steps(self.end(tick))
     }
 
     /// The fewest ticks, at least one, whose end is not before `duration_s`.

@@ -76,6 +76,10 @@ impl Draw {
     }
 }
 
+fn way(right: bool) -> i64 {
+    if right { 1 } else { -1 }
+}
+
 /// What was looked at.
 #[derive(Default)]
 struct Tally {
@@ -83,6 +87,8 @@ struct Tally {
     near: u64,
     others: u64,
     ties: u64,
+    /// Cycles by which the steps that are due were counted.
+    due: u64,
     /// How far times in f64 may be off, in parts of the motion's; not looked at where it is 0.
     most_off: f64,
 }
@@ -128,11 +134,53 @@ impl Tally {
             start = start + ideal.duration.clone();
         }
         assert!(due.next().is_none(), "more steps than expected");
+        self.hold_due(draw, plan, ideals, clock_hz, what);
+    }
+
+    /// Holds how many steps are due by a cycle (B7) to the ideals, where the cycle is one in which steps are due.
+    fn hold_due(&mut self, draw: &mut Draw, plan: &AxisPlan, ideals: &[Ideal], clock_hz: u32, what: &str) {
+        let clock = whole(clock_hz.into());
+        let mut starts = vec![whole(0)];
+        for ideal in ideals {
+            starts.push(starts[starts.len() - 1].clone() + ideal.duration.clone());
+        }
+        let of_moves = plan.moves().iter().enumerate();
+        let mut steps =
+            of_moves.flat_map(|(index, planned)| (1..=planned.profile.step_count()).map(move |k| (index, k)));
+        let (mut due_by, mut due, mut looked) = (plan.due_by(clock_hz), 0, 0);
+        let mut instants = plan.due_instants(clock_hz).peekable();
+        while let Some((instant, step)) = instants.next() {
+            let cycle = step.cycle;
+            let mut together = vec![(steps.next().expect("a step is one of a move"), step.right)];
+            while let Some((_, next)) = instants.next_if(|(_, next)| next.cycle == cycle) {
+                together.push((steps.next().expect("a step is one of a move"), next.right));
+            }
+            let from_cycle = (instant - cycle as f64).abs();
+            let is_near = from_cycle < NEAR.0 + NEAR.1 * instant && looked < MOST_NEAR;
+            if is_near || draw.below(64) == 0 {
+                looked += u64::from(is_near);
+                let time = whole(cycle as i64) / clock.clone();
+                let is_due = |&&((index, k), right): &&((usize, u64), bool)| match (ideals[index].compare)(
+                    k,
+                    &(time.clone() - starts[index].clone()),
+                ) {
+                    Ordering::Less => false,
+                    Ordering::Equal => right,
+                    Ordering::Greater => true,
+                };
+                let now: i64 = together.iter().filter(is_due).map(|(_, right)| way(*right)).sum();
+                assert_eq!(due_by.steps(cycle), due + now, "by cycle {cycle} at {clock_hz} Hz of {what}");
+                self.due += 1;
+            }
+            due += together.iter().map(|(_, right)| way(*right)).sum::<i64>();
+        }
     }
 
     fn tell(&self, what: &str) {
-        let Self { steps, near, others, ties, .. } = self;
-        println!("{what}: {steps} steps, {near} near an edge and {others} others held, {ties} ties");
+        let Self { steps, near, others, ties, due, .. } = self;
+        println!(
+            "{what}: {steps} steps, {near} near an edge and {others} others held, {ties} ties, counted by {due} cycles"
+        );
     }
 }
 
