@@ -29,6 +29,7 @@ use crate::{
     format::ramp_up_to,
     mirrored::{Mirrored, RAMP_PARTS, parts_s},
     ramp::longest_ramp_s,
+    series::{Expansion, Series, TERMS},
 };
 use alloc::{string::String, vec::Vec};
 use core::f64::consts::PI;
@@ -117,6 +118,50 @@ impl Cosine {
             Some(phase) => self.top_speed * self.ramp_s / (2.0 * PI) * minus_sine(phase),
             None => self.top_speed * (t - self.ramp_s / 2.0),
         }
+    }
+}
+
+impl Series for Cosine {
+    fn stretch(&self, place: f64) -> (f64, f64) {
+        let ramp_steps = self.top_speed * self.ramp_s / 2.0;
+        self.halves.stretch(place, |place| {
+            if place < ramp_steps { (0.0, ramp_steps) } else { (ramp_steps, f64::INFINITY) }
+        })
+    }
+
+    /// In the ramp the speed's derivatives are f_max/2*(pi/t_s)^m of a sine or a cosine, at an imaginary time of t_s/pi no
+    /// more than cosh(1) of 1.
+    fn expansion(&self, place: f64) -> Expansion {
+        self.halves.expansion(place, |place| {
+            let time_s = self.climb_s(place);
+            let Some(phase) = self.phase(time_s) else { return Expansion::straight(time_s, self.top_speed) };
+            let turning = PI / self.ramp_s;
+            let half = libm::sin(phase / 2.0);
+            let (sine, cosine) = libm::sincos(phase);
+            let mut terms = [0.0; TERMS];
+            terms[0] = self.top_speed * half * half;
+            let mut scale = self.top_speed / 2.0;
+            for (m, term) in (1_u8..).zip(terms.iter_mut().skip(1)) {
+                scale *= turning / f64::from(m + 1);
+                *term = scale
+                    * match m % 4 {
+                        1 => sine,
+                        2 => cosine,
+                        3 => -sine,
+                        _ => -cosine,
+                    };
+            }
+            Expansion {
+                time_s,
+                terms,
+                rest: 1.6 * scale * turning / (TERMS + 1) as f64,
+                reach_s: 1.0 / turning,
+            }
+        })
+    }
+
+    fn search_s(&self, place: f64) -> f64 {
+        self.time_s(place)
     }
 }
 

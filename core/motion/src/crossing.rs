@@ -34,8 +34,8 @@ pub(super) const ROUNDING: f64 = f64::EPSILON / 2.0;
 /// The same in cycles, for a move that lasts no longer than one: the part of a cycle in which it starts.
 const MAX_OFF_CYCLES: f64 = 4.0 * f64::EPSILON;
 
-/// 2^52: numbers from here on are whole. A move that lasts as long has no [`Rounding::room`].
-const WHOLE: f64 = 4_503_599_627_370_496.0;
+/// 2^52 + 2^51: numbers from 2^51 below to 2^51 above are whole. A move that lasts as long has no [`Rounding::room`].
+const WHOLE: f64 = 6_755_399_441_055_744.0;
 
 /// Which cycles the steps of a move fall in.
 #[derive(Clone, Copy, Debug)]
@@ -51,6 +51,25 @@ impl Rounding {
         Self { start, room: 0.5 - MAX_OFF_CYCLES - off }
     }
 
+    /// Of times that may be off by so many cycles more.
+    pub(super) fn less(self, off: f64) -> Self {
+        Self { room: self.room - off, ..self }
+    }
+
+    /// The cycle of a step that is due `whole` and `cycles` more cycles after the move's start, be these before that whole one
+    /// or after it; and how far from the cycle's own instant that is, which [`Self::is_certain`] judges.
+    #[inline]
+    pub(super) fn after_start(&self, whole: u64, cycles: f64) -> (u64, f64) {
+        let (cycle, from_middle) = nearest(self.start.part.high + cycles);
+        (self.start.whole.wrapping_add(whole).wrapping_add(cycle), from_middle)
+    }
+
+    /// Whether no edge is too near to a time that is so far from the middle between two edges.
+    #[inline]
+    pub(super) fn is_certain(&self, from_middle: f64) -> bool {
+        from_middle < self.room
+    }
+
     /// The cycle of a step that is due `whole` and `cycles` more cycles from the move's start; `is_due_before` judges that
     /// for a time from there on.
     #[inline]
@@ -62,14 +81,20 @@ impl Rounding {
         }
     }
 
-    /// floor(cycles + 1/2), for times from 0 on, where no edge is too near.
+    /// floor(cycles + 1/2), where no edge is too near.
     #[inline]
     pub(super) fn certain(&self, cycles: f64) -> Option<u64> {
-        // The sum has no digit after the point: it is the nearest whole number, and no conversion is needed.
-        let moved = cycles + WHOLE;
-        let is_certain = libm::fabs(cycles - (moved - WHOLE)) < self.room;
-        is_certain.then(|| moved.to_bits().wrapping_sub(WHOLE.to_bits()))
+        let (cycle, from_middle) = nearest(cycles);
+        self.is_certain(from_middle).then_some(cycle)
     }
+}
+
+/// The nearest whole number, of a negative one what a sum that wraps makes right; and how far it is away.
+#[inline]
+fn nearest(cycles: f64) -> (u64, f64) {
+    // The sum has no digit after the point: it is the nearest whole number, and no conversion is needed.
+    let moved = cycles + WHOLE;
+    (moved.to_bits().wrapping_sub(WHOLE.to_bits()), libm::fabs(cycles - (moved - WHOLE)))
 }
 
 /// floor(cycles + 1/2), but for the last digits.

@@ -14,7 +14,7 @@
 //! keeps its digits. Within the bound of 2*d the slope is 0 at an end alone, if anywhere: nowhere else
 //! does a place have an uncertain time.
 
-use crate::{bisection::Bracket, curve::greater, square_root};
+use crate::{bisection::Bracket, curve::greater, series::Expansion, square_root};
 
 /// Newton's steps after which a root has all its digits; at most eight do.
 const MAX_NEWTON_STEPS: u32 = 64;
@@ -161,6 +161,28 @@ impl Cubic {
             let travel = libm::fabs(ahead);
             let x = right(self.seen_from_end()).time(travel, self.length_s());
             Crossing { time_s: self.to_s - x, s_per_step: x / travel }
+        }
+    }
+
+    /// When it has made so much of its way.
+    pub(super) fn at_travel(&self, travel: f64) -> Crossing {
+        self.crossing(if self.to < self.from { self.from - travel } else { self.from + travel })
+    }
+
+    /// The way from its start on, to the right, around where it has made so much of it; of the nearer end's formula.
+    pub(super) fn expansion(&self, travel: f64) -> Expansion {
+        let time_s = self.at_travel(travel).time_s;
+        let (since, until) = (time_s - self.from_s, self.to_s - time_s);
+        let around = |seen: Seen, x: f64| {
+            let sign = if self.to < self.from { -1.0 } else { 1.0 };
+            let (square, cube) = (sign * seen.square, sign * seen.cube);
+            let speed = sign * seen.near_speed + (2.0 * square + 3.0 * cube * x) * x;
+            Expansion::polynomial(x, [speed, square + 3.0 * cube * x, cube, 0.0])
+        };
+        if since <= until {
+            Expansion { time_s, ..around(self.seen_from_start(), since) }
+        } else {
+            Expansion { time_s, ..around(self.seen_from_end(), until).mirrored(0.0) }
         }
     }
 }

@@ -39,8 +39,15 @@
 mod exactly;
 
 use crate::{
-    Curve, Peaks, curve::greater, double::Double, format::grouped, mirrored::Mirrored, moves,
-    quantities::Quantities, square_root,
+    Curve, Peaks,
+    curve::greater,
+    double::Double,
+    format::grouped,
+    mirrored::Mirrored,
+    moves,
+    quantities::Quantities,
+    series::{Expansion, Series},
+    square_root,
 };
 use alloc::{format, string::String, vec::Vec};
 
@@ -226,6 +233,50 @@ impl JerkLimited {
             }
         }
         self.ramp_s - u
+    }
+}
+
+impl Series for JerkLimited {
+    fn stretch(&self, place: f64) -> (f64, f64) {
+        let (first, last) = (self.first_steps(), self.ramp_steps - self.travel_left(self.jerk_s));
+        self.halves.stretch(place, |place| {
+            if place <= first {
+                (0.0, first)
+            } else if place >= self.ramp_steps {
+                (self.ramp_steps, f64::INFINITY)
+            } else if place < last {
+                (first, last)
+            } else {
+                (last, self.ramp_steps)
+            }
+        })
+    }
+
+    fn expansion(&self, place: f64) -> Expansion {
+        self.halves.expansion(place, |place| {
+            let time_s = self.climb_s(place);
+            let [rising, steady, ramp] = self.joints_s();
+            let (jerk, left_s) = (self.jerk, ramp - time_s);
+            if time_s < rising {
+                Expansion::polynomial(
+                    time_s,
+                    [jerk * time_s * time_s / 2.0, jerk * time_s / 2.0, jerk / 6.0, 0.0],
+                )
+            } else if time_s < steady {
+                let acceleration = self.peak_acceleration();
+                let speed = self.first_speed() + acceleration * (time_s - rising);
+                Expansion::polynomial(time_s, [speed, acceleration / 2.0, 0.0, 0.0])
+            } else if left_s > 0.0 {
+                let speed = self.peak_speed - jerk * left_s * left_s / 2.0;
+                Expansion::polynomial(time_s, [speed, jerk * left_s / 2.0, -jerk / 6.0, 0.0])
+            } else {
+                Expansion::straight(time_s, self.peak_speed)
+            }
+        })
+    }
+
+    fn search_s(&self, place: f64) -> f64 {
+        self.time_s(place)
     }
 }
 

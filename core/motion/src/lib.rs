@@ -78,6 +78,7 @@ mod quantities;
 pub mod ramp;
 pub mod ramps;
 mod scheduled_step;
+mod series;
 pub mod sine;
 pub mod sine_segments;
 pub mod sliced;

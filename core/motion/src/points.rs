@@ -39,6 +39,7 @@ use crate::{
     format::grouped,
     hermite::{Crossing, Cubic},
     round_half_up,
+    series::{BySeries, Expansion, Series},
 };
 use alloc::{format, string::String, vec::Vec};
 use off::{Off, off};
@@ -150,13 +151,10 @@ impl Points {
         self.pieces.iter().zip(before.zip(&self.made)).map(|(piece, (from, to))| (piece, *from, *to))
     }
 
-    /// Where each step falls due, and whether it goes to the right.
-    pub(super) fn due(&self) -> impl Iterator<Item = (Due<'_>, bool)> + '_ {
-        self.counted().enumerate().flat_map(move |(index, (_, from, to))| {
-            let right = to > from;
-            let due = move |step| Due { points: self, index, place: place(from, to, step) };
-            (0..from.abs_diff(to)).map(move |step| (due(step), right))
-        })
+    /// The steps of each piece, in their order.
+    pub(super) fn due(&self) -> impl Iterator<Item = PieceSteps<'_>> + '_ {
+        let steps = |(index, (_, from, to))| PieceSteps { points: self, index, from, to };
+        self.counted().enumerate().map(steps)
     }
 
     /// Where step `k` (from 1) of all falls due.
@@ -198,6 +196,59 @@ impl Due<'_> {
         let cycle =
             rounding.cycle((0, cycles), |since| points.is_past(self.index, self.place, since / clock.into()));
         (start.cycles() + cycles, cycle)
+    }
+}
+
+/// The steps of a piece.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PieceSteps<'p> {
+    points: &'p Points,
+    index: usize,
+    /// Steps due before it and after it, from the start.
+    from: i64,
+    to: i64,
+}
+
+impl<'p> PieceSteps<'p> {
+    /// Whether they go to the right.
+    pub(super) fn right(self) -> bool {
+        self.to > self.from
+    }
+
+    /// A step (from 0).
+    pub(super) fn due(self, step: u64) -> Due<'p> {
+        Due { points: self.points, index: self.index, place: place(self.from, self.to, step) }
+    }
+
+    /// Their times, many at once.
+    pub(super) fn by_series(self, clock_hz: u32) -> BySeries<Piece<'p>> {
+        let cubic = self.points.pieces.get(self.index);
+        let first = cubic.map_or(0.0, |cubic| libm::fabs(place(self.from, self.to, 0) - cubic.from));
+        BySeries::new(Piece(cubic), clock_hz.into(), first, self.from.abs_diff(self.to))
+    }
+
+    /// How far a time in f64 may be off, in s, where the speed is no less than this.
+    pub(super) fn off_s(self, least_speed: f64) -> f64 {
+        // A way's error is counted twice for those times that only x/y tells.
+        self.points.off.get(self.index).map_or(0.0, |off| off.time_s + off.way / 2.0 / least_speed)
+    }
+}
+
+/// A piece, as the way from its start on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Piece<'p>(Option<&'p Cubic>);
+
+impl Series for Piece<'_> {
+    fn stretch(&self, _: f64) -> (f64, f64) {
+        (0.0, self.0.map_or(0.0, |cubic| libm::fabs(cubic.to - cubic.from)))
+    }
+
+    fn expansion(&self, place: f64) -> Expansion {
+        self.0.map_or(Expansion::straight(0.0, 0.0), |cubic| cubic.expansion(place))
+    }
+
+    fn search_s(&self, place: f64) -> f64 {
+        self.0.map_or(0.0, |cubic| cubic.at_travel(place).time_s)
     }
 }
 
@@ -345,6 +396,9 @@ mod tests {
         let curve = Points::new(points, between).unwrap();
         let due: Vec<(f64, bool)> = curve
             .due()
+            .flat_map(|steps| {
+                (0..steps.from.abs_diff(steps.to)).map(move |step| (steps.due(step), steps.right()))
+            })
             .map(|(due, right)| (curve.pieces[due.index].crossing(due.place).time_s, right))
             .collect();
         assert_eq!(due.len() as u64, curve.step_count());

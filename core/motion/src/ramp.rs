@@ -32,6 +32,7 @@
 //! ```
 
 mod exactly;
+mod series;
 
 use crate::{bisection::Bracket, square_root};
 

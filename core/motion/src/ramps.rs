@@ -31,6 +31,7 @@ use crate::{
     format::{grouped, ramp_up_to},
     mirrored::{Mirrored, RAMP_PARTS, parts_s},
     ramp::{Ramp, longest_ramp_s},
+    series::{Expansion, Series, TERMS},
 };
 use alloc::{format, string::String, vec::Vec};
 
@@ -126,6 +127,33 @@ impl Ramps {
             Some(x) => self.top_speed * self.ramp_s * self.ramp.travel(x),
             None => self.top_speed * (t - self.lost_s()),
         }
+    }
+}
+
+impl Series for Ramps {
+    fn stretch(&self, place: f64) -> (f64, f64) {
+        let ramp_steps = self.top_speed * self.ramp_s * self.area;
+        self.halves.stretch(place, |place| {
+            if place < ramp_steps { (0.0, ramp_steps) } else { (ramp_steps, f64::INFINITY) }
+        })
+    }
+
+    fn expansion(&self, place: f64) -> Expansion {
+        self.halves.expansion(place, |place| {
+            let time_s = self.climb_s(place);
+            let Some(x) = self.part(time_s) else { return Expansion::straight(time_s, self.top_speed) };
+            let shape = self.ramp.series(x);
+            let (mut terms, mut scale) = ([0.0; TERMS], self.top_speed);
+            for ((n, term), own) in (1_u8..).zip(&mut terms).zip(shape.speed) {
+                *term = own * scale / f64::from(n);
+                scale /= self.ramp_s;
+            }
+            Expansion { time_s, terms, rest: shape.rest * scale, reach_s: shape.reach * self.ramp_s }
+        })
+    }
+
+    fn search_s(&self, place: f64) -> f64 {
+        self.time_s(place)
     }
 }
 

@@ -11,9 +11,12 @@
 use crate::{
     AxisPlan, Curve, PlannedMove, Profile,
     crossing::{MAX_OFF, Rounding},
+    curve::greater,
     cycle_time::{CycleTime, Quotient},
     double::Double,
     exact::Exact,
+    points::{Piece, PieceSteps},
+    series::{BLOCK, BySeries, MAX_REST, MiddleTime, OfBlock, Series, Times},
 };
 use alloc::boxed::Box;
 use core::ops::ControlFlow;
@@ -57,9 +60,6 @@ impl AxisPlan {
 
 /// A step with its instant before it is rounded.
 type Due = (f64, ScheduledStep);
-
-/// Steps that are formed at a time: what forms them is known only when it runs, and is called once for so many.
-const BLOCK: usize = 64;
 
 /// What forms a move's steps.
 trait Form {
@@ -158,7 +158,7 @@ fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Steps<'_> {
         }
         Profile::TrapezoidTable(table) => Box::new(steps.map(move |k| exactly(table.step_time(k, clock_hz)))),
         Profile::Staircase(staircase) => {
-            let times = steps.map(move |k| (staircase.step_s(k) * clock, right));
+            let times = staircase.due_s().map(move |due_s| (due_s * clock, right));
             scheduled(profile, start, clock_hz, times)
         }
         Profile::SineSegments(sine) => {
@@ -171,10 +171,7 @@ fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Steps<'_> {
             let times = sine.due_halves().map(move |(half, right)| (half * cycles_per_half, right));
             scheduled(profile, start, clock_hz, times)
         }
-        Profile::Points(points) => Box::new(points.due().map(move |(due, right)| {
-            let (instant, cycle) = due.cycle(start, clock_hz);
-            (instant, ScheduledStep { cycle, right })
-        })),
+        Profile::Points(points) => Box::new(OfPoints { pieces: points.due(), piece: None, start, clock_hz }),
         Profile::Constant(constant) => match constant.even_steps(clock_hz) {
             Some(even) => Box::new(steps.zip(even.steps()).map(move |(_, since)| exactly(since))),
             None => {
@@ -184,17 +181,13 @@ fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Steps<'_> {
             }
         },
         Profile::Dwell(_) => Box::new(core::iter::empty()),
-        Profile::Cosine(curve) => scheduled(profile, start, clock_hz, crossings(curve, clock)),
-        Profile::Sliced(curve) => scheduled(profile, start, clock_hz, crossings(curve, clock)),
-        Profile::Ramps(curve) => scheduled(profile, start, clock_hz, crossings(curve, clock)),
-        Profile::JerkLimited(curve) => scheduled(profile, start, clock_hz, crossings(curve, clock)),
+        Profile::Sliced(curve) => {
+            scheduled(profile, start, clock_hz, curve.due_s().map(move |due_s| (due_s * clock, right)))
+        }
+        Profile::Cosine(curve) => by_series(profile, curve, start, clock_hz),
+        Profile::Ramps(curve) => by_series(profile, curve, start, clock_hz),
+        Profile::JerkLimited(curve) => by_series(profile, curve, start, clock_hz),
     }
-}
-
-/// When a curve that goes one way crosses the half-integer of each step, in cycles, and which way that is.
-fn crossings(curve: &impl Curve, clock: f64) -> impl Iterator<Item = (f64, bool)> {
-    let right = curve.steps() >= 0;
-    (1..curve.steps().unsigned_abs() + 1).map(move |k| (curve.time_s(k as f64 - 0.5) * clock, right))
 }
 
 /// The steps of a move that starts at `start`, of their times in cycles from there on and their directions.
@@ -210,6 +203,150 @@ fn scheduled<'p>(
         let cycle = rounding.cycle((0, cycles), |since| is_due_before(k, since));
         (start + cycles, ScheduledStep { cycle, right })
     }))
+}
+
+/// The steps of a move that goes one way along a curve with power series.
+fn by_series<'p, C: Curve + Series>(
+    profile: &'p Profile,
+    curve: &'p C,
+    start: CycleTime,
+    clock_hz: u32,
+) -> Steps<'p> {
+    let clock = f64::from(clock_hz);
+    let times = BySeries::new(curve, clock, 0.5, curve.steps().unsigned_abs());
+    let judge = Judge { off: profile.off(clock), is_due_before: profile.is_due_before(clock_hz) };
+    Box::new(OfSeries { times, judge, right: curve.steps() >= 0, start })
+}
+
+/// Steps whose times come many at once.
+struct OfSeries<'p, C> {
+    times: BySeries<&'p C>,
+    judge: Judge<'p>,
+    right: bool,
+    start: CycleTime,
+}
+
+/// What tells when a step is due where f64 does not.
+struct Judge<'p> {
+    /// How far a time that is searched for may be off, in cycles.
+    off: f64,
+    is_due_before: IsDueBefore<'p>,
+}
+
+/// How far off a time in f64 may be, in cycles, for the middle of a block not to be told anew: one step in 500 is judged
+/// then, and a block has as many.
+const MAX_OFF_IN_BLOCK: f64 = 1.0 / 1024.0;
+
+impl Judge<'_> {
+    /// When a step (from 0) is due near a time that f64 does not tell well.
+    fn exactly(&self, step: u64, near: MiddleTime) -> Option<MiddleTime> {
+        if self.off <= MAX_OFF_IN_BLOCK {
+            return None;
+        }
+        let whole = Double::from(near.whole);
+        let is_due_by = |part: f64| (self.is_due_before)(step + 1, whole + part.into());
+        let (mut low, mut high) = (near.part - self.off, near.part + self.off);
+        if is_due_by(low) || !is_due_by(high) {
+            return None;
+        }
+        while high - low > MAX_REST {
+            let middle = low + (high - low) / 2.0;
+            if is_due_by(middle) { high = middle } else { low = middle }
+        }
+        Some(MiddleTime { part: high, is_exact: true, ..near })
+    }
+}
+
+impl<C: Series> Form for OfSeries<'_, C> {
+    fn next_block(&mut self, block: &mut [Due; BLOCK]) -> usize {
+        let Self { times, judge, right, start } = self;
+        let mut cycles = [0.0; BLOCK];
+        let Some(found) = times.times(&mut cycles, |step, near| judge.exactly(step, near)) else { return 0 };
+        let by_search = Rounding::new(*start, judge.off);
+        let rounding = |of_block: OfBlock| match of_block.time.is_exact {
+            true => Rounding::new(*start, of_block.off + MAX_REST),
+            false => by_search.less(of_block.off),
+        };
+        rounded(block, (&cycles, found), (*start, *right), rounding, |step| {
+            let cycles = times.searched(step);
+            let cycle = by_search.cycle((0, cycles), |since| (judge.is_due_before)(step + 1, since));
+            (start.cycles() + cycles, cycle)
+        })
+    }
+}
+
+/// The steps of a curve through points, piece after piece.
+struct OfPoints<'p, I> {
+    pieces: I,
+    piece: Option<(PieceSteps<'p>, BySeries<Piece<'p>>)>,
+    start: CycleTime,
+    clock_hz: u32,
+}
+
+impl<'p, I: Iterator<Item = PieceSteps<'p>>> OfPoints<'p, I> {
+    /// The next steps of a piece that has some.
+    fn next_times(&mut self, cycles: &mut [f64; BLOCK]) -> Option<(PieceSteps<'p>, Times)> {
+        loop {
+            if let Some((steps, by_series)) = &mut self.piece
+                && let Some(found) = by_series.times(cycles, |_, _| None)
+            {
+                return Some((*steps, found));
+            }
+            let steps = self.pieces.next()?;
+            self.piece = Some((steps, steps.by_series(self.clock_hz)));
+        }
+    }
+}
+
+impl<'p, I: Iterator<Item = PieceSteps<'p>>> Form for OfPoints<'p, I> {
+    fn next_block(&mut self, block: &mut [Due; BLOCK]) -> usize {
+        let mut cycles = [0.0; BLOCK];
+        let Some((steps, found)) = self.next_times(&mut cycles) else { return 0 };
+        let (start, clock_hz) = (self.start, self.clock_hz);
+        let rounding = |OfBlock { off, least_speed, .. }| {
+            Rounding::new(start, off + steps.off_s(least_speed) * f64::from(clock_hz))
+        };
+        rounded(block, (&cycles, found), (start, steps.right()), rounding, |step| {
+            steps.due(step).cycle(start, clock_hz)
+        })
+    }
+}
+
+/// Writes the steps whose times a block tells, in cycles after the start of their move, and where it does not tell them
+/// what is found by a search: the instant and the cycle of a step (from 0). Says how many.
+#[inline]
+fn rounded(
+    block: &mut [Due; BLOCK],
+    (cycles, Times { first, len, of_block }): (&[f64; BLOCK], Times),
+    (start, right): (CycleTime, bool),
+    rounding: impl FnOnce(OfBlock) -> Rounding,
+    searched: impl Fn(u64) -> (f64, u64),
+) -> usize {
+    let search = |step: u64, due: &mut Due| {
+        let (instant, cycle) = searched(step);
+        *due = (instant, ScheduledStep { cycle, right });
+    };
+    let Some(of_block) = of_block else {
+        (first..).zip(block.iter_mut().take(len)).for_each(|(step, due)| search(step, due));
+        return len;
+    };
+    let (whole, rounding) = (of_block.time.whole, rounding(of_block));
+    let from = start.cycles() + whole as f64;
+    // All of them without a question, which is seldom of use.
+    let mut nearest = 0.0;
+    for (due, cycles) in block.iter_mut().zip(cycles) {
+        let (cycle, from_middle) = rounding.after_start(whole, *cycles);
+        nearest = greater(nearest, from_middle);
+        *due = (from + cycles, ScheduledStep { cycle, right });
+    }
+    if !rounding.is_certain(nearest) {
+        for ((step, due), cycles) in (first..).zip(block.iter_mut().take(len)).zip(cycles) {
+            if !rounding.is_certain(rounding.after_start(whole, *cycles).1) {
+                search(step, due);
+            }
+        }
+    }
+    len
 }
 
 /// Whether a step (from 1) is due before a time in cycles from its move's start.

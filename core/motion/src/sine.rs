@@ -38,6 +38,8 @@ use core::f64::consts::{PI, TAU};
 
 /// Parts that a period is cut into; its extremes and its middle are breakpoints.
 const PERIOD_PARTS: u32 = 128;
+/// Steps of a half period whose places in it are kept for the next ones, at most.
+const MAX_KEPT_PARTS: u64 = 65_536;
 
 /// A sine, each step in its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,9 +87,22 @@ impl Sine {
     pub(super) fn due_halves(&self) -> impl Iterator<Item = (f64, bool)> + use<> {
         let oscillation = self.oscillation;
         let Oscillation { amplitude, periods, .. } = oscillation;
-        (0..2 * u64::from(periods)).flat_map(move |half| {
-            let right = oscillation.goes_right(half);
-            (1..=2 * amplitude).map(move |k| (half as f64 + part_of_half(k, amplitude), right))
+        let (travel, halves) = (2 * amplitude, if amplitude > 0 { 2 * u64::from(periods) } else { 0 });
+        // Every half period has the same.
+        let parts: Vec<f64> = if travel <= MAX_KEPT_PARTS {
+            (1..=travel).map(|k| part_of_half(k, amplitude)).collect()
+        } else {
+            Vec::new()
+        };
+        let (mut half, mut k) = (0, 0);
+        core::iter::from_fn(move || {
+            if k == travel {
+                (half, k) = (half + 1, 0);
+            }
+            k += 1;
+            let part = parts.get(k as usize - 1).copied();
+            let due = || half as f64 + part.unwrap_or_else(|| part_of_half(k, amplitude));
+            (half < halves).then(|| (due(), oscillation.goes_right(half)))
         })
     }
 

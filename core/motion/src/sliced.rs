@@ -160,6 +160,13 @@ impl Sliced {
         starts.zip(ends).map(|((from, before), (to, after))| (*from, *to, after - before))
     }
 
+    /// Time of each step in s, one after another.
+    pub(super) fn due_s(&self) -> impl Iterator<Item = f64> + '_ {
+        self.slices().flat_map(|(from, to, count)| {
+            (0..count).map(move |step| from + (f64::from(step) + 0.5) * (to - from) / f64::from(count))
+        })
+    }
+
     /// How much earlier it is than requested, and than the exact curve.
     #[must_use]
     pub fn time_error(&self) -> TimeError {

@@ -158,6 +158,30 @@ impl Staircase {
         }
     }
 
+    /// Time of each step in s, one after another: as [`Self::step_s`] has it, without a search for each one's row.
+    pub(super) fn due_s(&self) -> impl Iterator<Item = f64> + '_ {
+        // Rate, start and steps of row `n` (from 1).
+        let row = |n: u64| {
+            let start_s = self.starts_s.get(n as usize - 1).copied().unwrap_or(0.0);
+            (self.table.rate(n) as f64, start_s, StaircaseTable::steps_in(n))
+        };
+        let rows = self.ramp_rows();
+        let up = (1..=rows).flat_map(move |n| {
+            let (rate, start_s, steps) = row(n);
+            (1..=steps).map(move |k| start_s + k as f64 / rate)
+        });
+        let (rate, start_s) = (self.plateau_rate as f64, self.ramp_s());
+        let plateau = (1..=self.plateau_steps()).map(move |k| start_s + k as f64 / rate);
+        let down = (1..=rows).rev().flat_map(move |n| {
+            let (rate, start_s, steps) = row(n);
+            // The last step of the ramp up is the first from which it goes down.
+            (1..=steps - u64::from(n == rows))
+                .rev()
+                .map(move |k| self.duration_s - (start_s + k as f64 / rate))
+        });
+        up.chain(plateau).chain(down).chain((rows > 0).then_some(self.duration_s))
+    }
+
     /// How long it lasts in s.
     pub(super) fn exact_duration(&self) -> Double {
         let plateau = Double::from(self.plateau_steps()) / Double::from(self.plateau_rate);
