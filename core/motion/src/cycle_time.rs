@@ -2,7 +2,7 @@
 //! one in 106 bits.
 //!
 //! A number alone loses a bit of the part each time the whole doubles; at 10^12 cycles the part has 14 bits left.
-use crate::{double::Double, exact::Exact, trapezoid_table::TrapezoidTable};
+use crate::{Curve, double::Double, exact::Exact, trapezoid_table::TrapezoidTable};
 
 /// What 106 bits do not tell from a tie, in parts of a time: 2^-94.
 const TIE: f64 = f64::EPSILON * f64::EPSILON * 1024.0;
@@ -161,11 +161,44 @@ impl TrapezoidTable {
         let (whole, rest) = (product / u128::from(timer_hz), product % u128::from(timer_hz));
         Quotient { whole: whole as u64, rest: rest as u64, under: timer_hz.into() }
     }
+
+    /// When each step is due in cycles of a clock of `clock_hz`, without a division of long numbers for each: rows of one
+    /// reload add the same.
+    pub(super) fn step_quotients(&self, clock_hz: u32) -> impl Iterator<Item = Quotient> + '_ {
+        let under = u64::from(self.table().timer_hz().max(1));
+        let (mut ticks_before, mut ticks_added) = (0, 0);
+        let (mut whole, mut rest, mut add, mut add_rest) = (0_u64, 0, 0, 0);
+        (1..=self.steps().unsigned_abs()).map(move |k| {
+            let ticks = self.step_ticks(k);
+            let more = ticks - ticks_before;
+            if more != ticks_added {
+                let product = u128::from(more) * u128::from(clock_hz);
+                (add, add_rest) = match u64::try_from(product) {
+                    Ok(product) => (product / under, product % under),
+                    Err(_) => ((product / u128::from(under)) as u64, (product % u128::from(under)) as u64),
+                };
+                ticks_added = more;
+            }
+            ticks_before = ticks;
+            (whole, rest) = (whole.wrapping_add(add), rest + add_rest);
+            if rest >= under {
+                (whole, rest) = (whole.wrapping_add(1), rest - under);
+            }
+            Quotient { whole, rest, under }
+        })
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{
+        Profile,
+        mechanics::{Acceleration, Distance, Speed},
+        moves::{Axis, Move, Trapezoid, TrapezoidMethod},
+        plan_axis,
+    };
+    use alloc::vec;
 
     #[test]
     fn even_steps_are_quotients_of_whole_numbers() {
@@ -200,5 +233,33 @@ mod tests {
         let below = CycleTime::of(Double { high: 4.0, low: -1e-20 });
         assert!(below.whole == 3 && below.part == Double { high: 1.0, low: -1e-20 }, "{below:?}");
         assert_eq!(CycleTime::exact(&Exact::of(7.0).divided_by(2.0)), CycleTime { whole: 3, part: half });
+    }
+
+    #[test]
+    fn a_tables_steps_one_after_another_are_those_that_are_asked_for_each() {
+        for (steps, timer_hz, clock_hz) in [
+            (1_i32, 1, 1),
+            (37, 1_000_000, 16_000_000),
+            (-500, 4_294_967_295, 999_999_937),
+            (300, 7, 1_000_000_000),
+        ] {
+            let moved = Trapezoid {
+                distance: Distance::Steps(f64::from(steps)),
+                start_speed: Speed::StepsPerSecond(0.5),
+                top_speed: Speed::StepsPerSecond(3.0),
+                acceleration: Acceleration::StepsPerSecond2(0.25),
+                method: TrapezoidMethod::Table,
+                timer_hz,
+            };
+            let axis = Axis { moves: vec![Move::Trapezoid(moved)], ..Axis::default() };
+            let plan = plan_axis(&axis, "x").expect("it can be planned");
+            let Profile::TrapezoidTable(table) = &plan.moves()[0].profile else { panic!("no table") };
+            let mut count = 0;
+            for (k, quotient) in (1..).zip(table.step_quotients(clock_hz)) {
+                assert_eq!(quotient, table.step_time(k, clock_hz), "step {k} of {steps}");
+                count = k;
+            }
+            assert_eq!(count, u64::from(steps.unsigned_abs()));
+        }
     }
 }

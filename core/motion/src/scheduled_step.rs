@@ -156,7 +156,7 @@ fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Steps<'_> {
             let times = core::iter::from_fn(move || times.next_unrounded());
             scheduled(profile, start, clock_hz, times.map(move |cycles| (cycles, right)))
         }
-        Profile::TrapezoidTable(table) => Box::new(steps.map(move |k| exactly(table.step_time(k, clock_hz)))),
+        Profile::TrapezoidTable(table) => Box::new(table.step_quotients(clock_hz).map(exactly)),
         Profile::Staircase(staircase) => {
             let times = staircase.due_s().map(move |due_s| (due_s * clock, right));
             scheduled(profile, start, clock_hz, times)

@@ -448,10 +448,18 @@ fn digest(experiment: &Experiment) -> u64 {
     digest.value()
 }
 
-/// The least that a planner of this ramp could do, with the square root of `libm`: on wasm a slow one,
-/// because it does not use the instruction there.
+/// The least that a planner of this ramp could do.
 fn roots(v0: f64, a: f64) -> f64 {
-    (0..STEPS).map(|k| libm::sqrt(v0 * v0 + 2.0 * a * f64::from(k))).sum()
+    (0..STEPS).map(|k| square_root(v0 * v0 + 2.0 * a * f64::from(k))).sum()
+}
+
+/// One at a time, by the instruction that both kinds of machine have: `libm` has it for x86, and not for wasm.
+fn square_root(x: f64) -> f64 {
+    #[cfg(target_arch = "wasm32")]
+    let root = x.sqrt();
+    #[cfg(not(target_arch = "wasm32"))]
+    let root = libm::sqrt(x);
+    root
 }
 
 /// Single-signal edges of a trace after its first record, which is the state at reset.
