@@ -50,6 +50,11 @@ impl Failure {
         Self::File(PathBuf::from("standard output"), error)
     }
 
+    /// The system has no threads to give.
+    pub(crate) fn threads(error: io::Error) -> Self {
+        Self::File(PathBuf::from("threads"), error)
+    }
+
     /// Whether what failed is only that nobody reads any more, as behind `| head`.
     pub(crate) fn is_closed_pipe(&self) -> bool {
         matches!(self, Self::File(_, error) if error.kind() == io::ErrorKind::BrokenPipe)

@@ -1,6 +1,6 @@
 //! `stepscope faults`: the same orders over a line that goes wrong in thousands of ways.
 
-use crate::{failure::Failure, json::Tables, progress::Progress, scenarios};
+use crate::{failure::Failure, json::Tables, parallel, progress::Progress, scenarios};
 use clap::{Args, ValueEnum};
 use serde_json::json;
 use std::{
@@ -8,11 +8,6 @@ use std::{
     num::NonZero,
     ops::Range,
     path::PathBuf,
-    sync::{
-        atomic::{AtomicU64, Ordering},
-        mpsc,
-    },
-    thread,
 };
 use stepscope_core::{
     peripheral::config::Protocol,
@@ -133,7 +128,7 @@ pub(crate) fn faults(arguments: &Arguments) -> Result<(), Failure> {
     for &protocol in protocols {
         let (name, sweep) = (if protocol == Protocol::Framed { FRAMED } else { "raw" }, sweep(protocol)?);
         let progress = Progress::new(name, arguments.progress);
-        let report = run(&sweep, &seeds, arguments.threads, progress);
+        let report = run(&sweep, &seeds, arguments.threads, progress).map_err(Failure::threads)?;
         reports.push((name, report.map_err(|problems| Failure::Scenario(path.clone(), problems))?));
     }
     if arguments.json {
@@ -153,32 +148,21 @@ fn run(
     sweep: &FaultSweep,
     seeds: &Range<u64>,
     threads: Option<NonZero<usize>>,
-    mut progress: Progress,
-) -> Result<Report, Vec<Problem>> {
-    let threads = threads.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZero::get);
-    let next = AtomicU64::new(seeds.start);
-    let (sender, receiver) = mpsc::channel();
-    thread::scope(|scope| {
-        for _ in 0..threads {
-            let (sender, next) = (sender.clone(), &next);
-            scope.spawn(move || {
-                let batches = std::iter::repeat_with(|| next.fetch_add(BATCH, Ordering::Relaxed));
-                for from in batches.take_while(|&from| from < seeds.end) {
-                    let batch = batch(sweep, from..seeds.end.min(from + BATCH));
-                    if sender.send(batch).is_err() {
-                        return;
-                    }
-                }
-            });
+    progress: Progress,
+) -> io::Result<Result<Report, Vec<Problem>>> {
+    let batches = (seeds.end - seeds.start).div_ceil(BATCH);
+    let reports = parallel::each(batches, threads, progress, |index| {
+        let from = seeds.start + index * BATCH;
+        batch(sweep, from..seeds.end.min(from + BATCH))
+    })?;
+    let mut whole = Report::default();
+    for report in reports {
+        match report {
+            Ok(report) => whole.join(report),
+            Err(problems) => return Ok(Err(problems)),
         }
-        drop(sender);
-        let mut whole = Report::default();
-        for report in receiver {
-            whole.join(report?);
-            progress.tell(whole.tally.seeds, seeds.end - seeds.start);
-        }
-        Ok(whole)
-    })
+    }
+    Ok(Ok(whole))
 }
 
 fn batch(sweep: &FaultSweep, seeds: Range<u64>) -> Result<Report, Vec<Problem>> {

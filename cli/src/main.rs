@@ -11,6 +11,7 @@ mod line;
 mod manual;
 mod measures;
 mod output;
+mod parallel;
 mod points;
 mod progress;
 mod run;

@@ -4,6 +4,7 @@ use crate::{
     failure::Failure,
     json::Tables,
     output::{self, Outputs},
+    parallel,
     progress::Progress,
     scenarios,
 };
@@ -16,7 +17,7 @@ use std::{
 use stepscope_core::{
     inspect::{
         sine_optimum::{Freedom, MAX_SEGMENTS, optimum},
-        sine_polyline::{self, Bounds, Distinct, Row},
+        sine_polyline::{self, Bounds, Distinct, Row, swept},
     },
     motion::{
         Profile,
@@ -240,21 +241,15 @@ fn json_of(command: &'static str, table: &str, rows: impl IntoIterator<Item = Va
 }
 
 fn sweep(range: &Range, points: u32, out: &mut impl Write) -> io::Result<()> {
-    let mut progress = Progress::new("sweep", false);
-    let rows = sine_polyline::sweep(range.from, range.to, points, range.bounds());
+    let (progress, bounds) = (Progress::new("sweep", false), range.bounds());
+    let rows = parallel::each(points.into(), None, progress, |index| {
+        Row::of(swept(range.from, range.to, points, index as u32), bounds)
+    })?;
     if range.common.written.json {
-        let rows = (1..).zip(rows).map(|(done, found)| {
-            progress.tell(done, points.into());
-            cells(&found)
-        });
-        return json_of("sine sweep", "polylines", rows).write(out);
+        return json_of("sine sweep", "polylines", rows.iter().map(cells)).write(out);
     }
     head(range, out)?;
-    for (done, found) in (1..).zip(rows) {
-        row(&found, out)?;
-        progress.tell(done, points.into());
-    }
-    Ok(())
+    rows.iter().try_for_each(|found| row(found, out))
 }
 
 fn head(range: &Range, out: &mut impl Write) -> io::Result<()> {
