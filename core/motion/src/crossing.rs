@@ -142,11 +142,12 @@ pub(super) fn is_due_before(
 ) -> bool {
     let place = k as f64 - 0.5;
     let left = count as f64 - place;
+    // Either half's own formula ends with it.
+    let is_second_half = time.exceeds(duration * 0.5.into());
     if place <= left {
-        // The first half's own formula ends with it.
-        time.exceeds(duration * 0.5.into()) || (time.is_positive() && is_past(time, place))
+        is_second_half || (time.is_positive() && is_past(time, place))
     } else {
         let still = duration - time;
-        !(still.is_positive() && is_past(still, left))
+        is_second_half && !(still.is_positive() && is_past(still, left))
     }
 }

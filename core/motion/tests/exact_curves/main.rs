@@ -554,6 +554,18 @@ fn a_sines_step_in_the_middle_of_two_cycles_goes_up() {
     }
 }
 
+/// Of a sine whose half periods are far shorter than a cycle a step just before an edge has the cycle before it, though
+/// thousands of half periods lie between that edge and the next.
+#[test]
+fn a_step_of_a_sine_of_many_half_periods_a_cycle_is_on_its_side_of_an_edge() {
+    // Step 2 of an amplitude of 1 is due after a third of a period: 2500 us are 1666 half periods of 1.5 us and that.
+    for (period_s, cycle) in [(2.999_999_999_999_999e-6, 2), (3e-6, 3), (3.000_000_000_000_001e-6, 3)] {
+        let given = Sine { amplitude: Distance::Steps(1.0), period_s, periods: 1000 };
+        let plan = plan_of(vec![Move::Sine(given)]).expect("it can be planned");
+        assert_eq!(plan.moves()[0].profile.step_cycle(1666 * 2 + 2, 1000), Some(cycle), "{period_s}");
+    }
+}
+
 /// The cycles of all steps of a curve through points (s, steps), and of a constant rate after it.
 fn cycles_through(points: &[(f64, f64)], interpolation: Interpolation, clock_hz: u32) -> Vec<u64> {
     let points = points.iter().map(|&(time_s, position)| Point { time_s, position }).collect();
