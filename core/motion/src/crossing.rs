@@ -167,11 +167,104 @@ pub(super) fn is_due_before(
 ) -> bool {
     let place = k as f64 - 0.5;
     let left = count as f64 - place;
+    // Either half's own formula ends with it.
+    let is_second_half = time.exceeds(duration * 0.5.into());
     if place <= left {
-        // The first half's own formula ends with it.
-        time.exceeds(duration * 0.5.into()) || (time.is_positive() && is_past(time, place))
+        is_second_half || (time.is_positive() && is_past(time, place))
     } else {
         let still = duration - time;
-        !(still.is_positive() && is_past(still, left))
+        is_second_half && !(still.is_positive() && is_past(still, left))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(whole: u64, part: Double) -> CycleTime {
+        CycleTime { whole, part }
+    }
+
+    #[test]
+    fn the_judged_cycle_is_the_same_wherever_the_search_begins() {
+        // When a step is due from cycle 1000 1/4 on, and its cycle.
+        let rows = [
+            (0.0, 1000),
+            (0.2499, 1000),
+            (0.25, 1001),
+            (0.25 - 1e-15, 1000),
+            (1.0, 1001),
+            (7.25, 1008),
+            (7.25 - 1e-14, 1007),
+            (7.2501, 1008),
+            (123_456.0, 124_456),
+        ];
+        let start = at(1000, 0.25.into());
+        for (due, cycle) in rows {
+            for guess in [cycle, 0, 1, 999, 1000, 1001, 1007, 1008, 1009, 5000, 124_455, 124_457, 1 << 40] {
+                let found = judged(start, guess, &|since| since.exceeds(due.into()));
+                assert_eq!(found, cycle, "{due} from {guess} on");
+            }
+        }
+        let found = [0, 1, 1000].map(|guess| judged(at(0, 0.0.into()), guess, &|since| since.is_positive()));
+        assert_eq!(found, [0; 3], "a step at the start is in its cycle");
+    }
+
+    #[test]
+    fn a_time_decides_where_no_edge_is_as_near_as_it_may_be_off() {
+        let rounding = Rounding::new(CycleTime::default(), 0.125);
+        let rows = [
+            (0.0, Some(0)),
+            (0.374, Some(0)),
+            (0.376, None),
+            (0.5, None),
+            (0.624, None),
+            (0.626, Some(1)),
+            (1.0, Some(1)),
+            (1.374, Some(1)),
+            (1_000_000.376, None),
+            (1_000_000.626, Some(1_000_001)),
+        ];
+        for (cycles, expected) in rows {
+            assert_eq!(rounding.certain(cycles), expected, "{cycles}");
+            // Where it does not, whoever is asked says when the step is due.
+            for (due, judged) in [(1_000_000.0, 2_000_000), (1_000_000.5, 2_000_001)] {
+                let rounding = Rounding::new(at(1_000_000, 0.0.into()), 0.125);
+                let found = rounding.cycle((1_000_000, cycles), |since| since.exceeds(due.into()));
+                assert_eq!(found, expected.map_or(judged, |cycle| 2_000_000 + cycle), "{cycles}");
+            }
+        }
+        // No digit of a time of no length is off, but for that of the part of a cycle in which the move begins.
+        let rounding = Rounding::new(CycleTime::default(), 0.0);
+        assert_eq!(
+            [0.5, 0.5 - 1e-16, 0.5 - 2e-15].map(|cycles| rounding.certain(cycles)),
+            [None, None, Some(0)]
+        );
+    }
+
+    #[test]
+    fn a_quotient_after_a_part_of_a_cycle_goes_up_where_both_make_a_half() {
+        let quotient = |rest, under| Quotient { whole: 5, rest, under };
+        let (sixth, less) = (Double::from(1.0) / 6.0.into(), Double::from(1e-20));
+        // Quotient, the part of the cycle in which it begins; the instant and the cycle.
+        let rows = [
+            (quotient(1, 3), sixth, (15.5, 16)),
+            (quotient(1, 3), sixth - less, (15.5, 15)),
+            (quotient(1, 3), sixth + less, (15.5, 16)),
+            (quotient(1, 4), 0.0.into(), (15.25, 15)),
+            (quotient(2, 4), 0.0.into(), (15.5, 16)),
+            (quotient(3, 4), 0.0.into(), (15.75, 16)),
+            (quotient(3, 4), 0.5.into(), (16.25, 16)),
+            (quotient(3, 4), 0.75.into(), (16.5, 17)),
+            (quotient(3, 4), Double::from(0.75) - less, (16.5, 16)),
+        ];
+        for (since, part, expected) in rows {
+            assert_eq!(since.after(at(10, part)), expected, "{since:?} after {part:?}");
+        }
+        // No digit is lost next to the start, nor of cycles that an f64 has not all.
+        let small = Quotient { whole: 0, rest: 1, under: 1 << 61 };
+        assert_eq!(small.after(at(0, 0.0.into())), (1.0 / (1_u64 << 61) as f64, 0));
+        let late = at((1 << 53) - 4, 0.5.into());
+        assert_eq!(quotient(1, 2).after(late), (9_007_199_254_740_994.0, (1 << 53) + 2));
     }
 }

@@ -441,3 +441,6 @@ impl Profile {
         Some(rounding.cycle((0, cycles), |since| is_due_before(k, since)))
     }
 }
+
+#[cfg(test)]
+mod tests;

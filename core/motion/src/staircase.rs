@@ -215,10 +215,8 @@ impl Staircase {
                 climbed(k)
             } else if left >= self.ramp_steps {
                 ramp_s + Double::from(k - self.ramp_steps) / Double::from(self.plateau_rate)
-            } else if left > 0 {
-                duration - climbed(left)
             } else {
-                duration
+                duration - climbed(left)
             };
             since.exceeds(step_s * Double::from(u64::from(clock_hz)))
         }

@@ -232,6 +232,21 @@ mod tests {
     }
 
     #[test]
+    fn times_are_off_by_their_roundings_and_by_those_of_a_ramp_that_does_not_divide() {
+        // Steps, top speed, acceleration, clock; roundings: 8*v1/a and 64 of the whole time.
+        let rows = [
+            ((2000, 1000.0, 1000.0, 1e6), (8.0 + 64.0 * 3.0) * 1e6),
+            ((-750, 500.0, 1000.0, 1e6), (8.0 * 0.5 + 64.0 * 2.0) * 1e6),
+            // So slow that it divides.
+            ((1_000_000, 1000.0, 1.0, 1e9), 64.0 * 2000.0 * 1e9),
+        ];
+        for ((steps, top, acceleration, clock), roundings) in rows {
+            let parts = Trapezoid::new(steps, 0.0, top, acceleration).off(clock) / ROUNDING / roundings;
+            assert!((parts - 1.0).abs() < 1e-12, "{steps} steps are off by {parts} times as much");
+        }
+    }
+
+    #[test]
     fn plateau_and_deceleration_are_in_their_places() {
         // Ramps of 0.5 s and 1500 steps, plateau at 5000 steps/s, 200.4 s in all.
         let (steps, clock) = (1_000_000_u64, CLOCK as u64);

@@ -18,15 +18,15 @@ fn magnitude(a: Double) -> Double {
 impl Points {
     /// Whether piece `index` is past `place`, which lies in it, before `t` in s.
     pub(super) fn is_past(&self, index: usize, place: f64, t: Double) -> bool {
-        self.is_beyond(index, place, t, 1.0)
+        self.is_beyond(index, place, t, UNTOLD)
     }
 
     /// Whether piece `index` is past `place` or at it, by `t` in s.
     fn is_at(&self, index: usize, place: f64, t: Double) -> bool {
-        self.is_beyond(index, place, t, -1.0)
+        self.is_beyond(index, place, t, -UNTOLD)
     }
 
-    /// Whether it is past `place` by more than its digits tell, or less than that short of it.
+    /// Whether it is past `place` by more than `untold` in parts of a position, or less than that short of it.
     fn is_beyond(&self, index: usize, place: f64, t: Double, untold: f64) -> bool {
         let Some(&[(from_s, from), (to_s, to)]) = self.exact.get(index..index + 2) else { return false };
         let (mean, length) = ((to - from) / (to_s - from_s), to_s - from_s);
@@ -36,7 +36,7 @@ impl Points {
         };
         let (behind, ahead) = (magnitude(Double::from(place) - from), magnitude(to - place.into()));
         // The digits of a position end with those of the way from the first point, however short a step's own way is.
-        let untold = Double::from((libm::fabs(from.high) + libm::fabs(to.high)) * UNTOLD * untold);
+        let untold = Double::from((libm::fabs(from.high) + libm::fabs(to.high)) * untold);
         // Whether it has made more than a travel in a time from one end, of the slopes there and at the other.
         let has_made = |x: Double, travel: Double, [near, far]: [Double; 2]| {
             let (near_less, far_less) = (mean - near, mean - far);
@@ -102,3 +102,6 @@ impl Points {
         least(least(d0, d1) * 2.0.into(), (d0 * h1 + d1 * h0) / (h0 + h1))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -43,3 +43,39 @@ pub(super) fn off(pieces: &[Cubic], is_smooth: bool) -> Vec<Off> {
         |times: f64| Off { time_s: MAX_OFF * last_s * times, way: 2.0 * 16.0 * ROUNDING * reach * times };
     pieces.iter().enumerate().map(|piece| off(times(piece))).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Holds how far pieces (length in s, end in steps) may be off: how often each counts, of a curve of `last_s`
+    /// that is as far as `reach` from its start.
+    fn check(pieces: &[(f64, f64)], is_smooth: bool, (last_s, reach): (f64, f64), expected: &[f64]) {
+        let ((mut from_s, mut from), mut cubics) = ((0.0, 0.0), Vec::new());
+        for &(length_s, to) in pieces {
+            let (to_s, speed) = (from_s + length_s, (to - from) / length_s);
+            cubics.push(Cubic { from_s, to_s, from, to, from_speed: speed, to_speed: speed });
+            (from_s, from) = (to_s, to);
+        }
+        let rounding = |times: f64| Off {
+            time_s: 64.0 * last_s * times / 9_007_199_254_740_992.0,
+            way: 32.0 * reach * times / 9_007_199_254_740_992.0,
+        };
+        let expected: Vec<Off> = expected.iter().map(|times| rounding(*times)).collect();
+        assert_eq!(off(&cubics, is_smooth), expected, "{pieces:?}, smooth: {is_smooth}");
+    }
+
+    #[test]
+    fn straight_pieces_count_once_and_smooth_ones_as_often_as_they_have_the_lengths_beside_them() {
+        let one = [(4.0, 1000.0)];
+        check(&one, false, (4.0, 1000.0), &[1.0]);
+        check(&one, true, (4.0, 1000.0), &[1.0]);
+        // The farthest point is in the middle, to the left.
+        let three = [(1.0, 3.0), (2.0, -7.5), (4.0, 6.0)];
+        check(&three, false, (7.0, 7.5), &[1.0, 1.0, 1.0]);
+        check(&three, true, (7.0, 7.5), &[1.0 + 0.5, 1.0 + 2.0 + 0.5, 1.0 + 2.0]);
+        let uneven = [(0.25, 1.0), (8.0, 2.0), (0.5, 2.0), (0.5, 1.0)];
+        check(&uneven, true, (9.25, 2.0), &[1.0 + 0.03125, 1.0 + 32.0 + 16.0, 1.0 + 0.0625 + 1.0, 2.0]);
+        check(&[], true, (0.0, 0.0), &[]);
+    }
+}

@@ -156,3 +156,56 @@ fn the_highest_rate_is_that_of_the_fastest_slice_whole_or_not() {
     }
     assert!(made > 1000 && in_last > 0, "{made}, {in_last}");
 }
+
+/// Slices of hand-worked moves: their starts and end in s, the steps before each and all, and the highest rate.
+#[test]
+fn what_is_too_much_is_taken_from_the_plateaus_end_and_then_from_the_tail() {
+    // Steps, duration, ramp and slice in s, top speed: the steps of each slice before the compensation are told.
+    type Given = (i64, f64, f64, f64, f64);
+    let rows: [(Given, &[f64], &[u32], f64); 8] = [
+        // 0, 5, 10, 10, 10, 10, 10, 5 steps, of which the four in the middle are the plateau.
+        (
+            (60, 1.0, 0.25, 0.125, 80.0),
+            &[0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0],
+            &[0, 0, 5, 15, 25, 35, 45, 55, 60],
+            80.0,
+        ),
+        // 13 too many: its last slice goes, of the one before it 7 of 10 stay.
+        (
+            (-47, 1.0, 0.25, 0.125, 80.0),
+            &[0.0, 0.125, 0.25, 0.375, 0.5, 0.5875, 0.7125, 0.8375],
+            &[0, 0, 5, 15, 25, 32, 42, 47],
+            80.0,
+        ),
+        // 45: all of it, and the tail's last slice stands still.
+        ((15, 1.0, 0.25, 0.125, 80.0), &[0.0, 0.125, 0.25, 0.375, 0.5], &[0, 0, 5, 15, 15], 80.0),
+        // 58: all of the tail, too, and of the first ramp what is left.
+        ((2, 1.0, 0.25, 0.125, 80.0), &[0.0, 0.125, 0.25, 0.375, 0.5], &[0, 0, 2, 2, 2], 16.0),
+        // 0, 50, 100, 100, 100, 100, 85, 7: three in the plateau, and the last slice has half the length.
+        (
+            (500, 0.9375, 0.25, 0.125, 800.0),
+            &[0.0, 0.125, 0.25, 0.375, 0.5, 0.5725, 0.6975, 0.8225, 0.885],
+            &[0, 0, 50, 150, 250, 308, 408, 493, 500],
+            800.0,
+        ),
+        // 0, 3, 3, 0 without a plateau: the last step of the tail is left out, and no time.
+        ((5, 0.5, 0.25, 0.125, 50.0), &[0.0, 0.125, 0.25, 0.375, 0.5], &[0, 0, 3, 5, 5], 24.0),
+        // 11 and 7 in a whole slice and in a short one, which is faster.
+        ((18, 0.2, 0.0, 0.125, 93.4), &[0.0, 0.125, 0.2], &[0, 11, 18], 7.0 / 0.075),
+        // No slice is faster than the top speed, whose digits 10 steps in a slice go beyond.
+        ((20, 0.25, 0.0, 0.125, 80.0 - 1e-9), &[0.0, 0.125, 0.25], &[0, 10, 20], 80.0 - 1e-9),
+    ];
+    for ((steps, duration_s, ramp_s, slice_s, top_speed), starts, expected, rate) in rows {
+        let exact = Cosine::new(steps, duration_s, ramp_s);
+        let slices = Slices::of(&exact, slices_in(duration_s / slice_s), slice_s);
+        let (exact_starts, starts_s, sums, top_rate) = slices.fine(top_speed, &exact);
+        assert_eq!(sums, expected, "{steps} steps in {duration_s} s");
+        assert!((top_rate - rate).abs() < 1e-12 * rate, "{steps} steps in {duration_s} s: {top_rate}");
+        assert_eq!((exact_starts.len(), starts_s.len()), (starts.len(), starts.len()));
+        for ((found, found_s), start_s) in exact_starts.iter().zip(&starts_s).zip(starts) {
+            let off = (*found - Double::decimal(*start_s)).high;
+            assert!(off.abs() < 1e-30, "{found:?} is not {start_s}: {steps} steps in {duration_s} s");
+            assert!((found_s - start_s).abs() < 1e-15, "{found_s} is not {start_s}");
+        }
+    }
+}

@@ -238,13 +238,18 @@ pub(crate) fn of_times(times: Vec<Fixed>, duration: Fixed) -> Ideal {
 
 /// The rows of a staircase, up and down again: so many steps at a rate each.
 pub(crate) fn staircase(rows: &[(u64, u64)]) -> Ideal {
-    let (mut start, mut times) = (whole(0), Vec::new());
+    let (mut start, mut before, mut after) = (whole(0), 0, Vec::new());
     for &(steps, rate) in rows {
-        let after = |k: u64| start.clone() + whole(k as i64) / whole(rate as i64);
-        times.extend((1..=steps).map(after));
-        start = after(steps);
+        after.push((before, rate, start.clone()));
+        start = start + whole(steps as i64) / whole(rate as i64);
+        before += steps;
     }
-    of_times(times, start)
+    let compare = move |k: u64, t: &Fixed| {
+        let (before, rate, start) =
+            after.iter().rfind(|(before, ..)| *before < k).expect("a row has the step");
+        t.order(&(start.clone() + whole((k - before) as i64) / whole(*rate as i64)))
+    };
+    Ideal { duration: start, compare: Box::new(compare) }
 }
 
 /// Steps in the middles of equal parts of each interval: from, to and count.

@@ -15,6 +15,7 @@
 
 mod fixed;
 mod ideal;
+mod judged;
 
 use fixed::{decimal, whole};
 use ideal::Ideal;
@@ -427,15 +428,17 @@ fn staircases_have_every_step_in_its_cycle() {
             ..Staircase::default()
         })
     };
-    hold_planned(12, "staircase", given, |_, profile| {
-        let Profile::Staircase(curve) = profile else { panic!("it is a staircase") };
-        let row = |n| (StaircaseTable::steps_in(n), curve.table().rate(n));
-        let up: Vec<(u64, u64)> = (1..=curve.ramp_rows()).map(row).collect();
-        let plateau = curve.plateau_rate().map(|rate| (curve.plateau_steps(), rate));
-        let rows: Vec<(u64, u64)> =
-            up.iter().copied().chain(plateau).chain(up.iter().rev().copied()).collect();
-        Some(ideal::staircase(&rows))
-    });
+    hold_planned(12, "staircase", given, |_, profile| Some(by_rows(profile)));
+}
+
+/// The rows of a staircase's plan, up and down.
+fn by_rows(profile: &Profile) -> Ideal {
+    let Profile::Staircase(curve) = profile else { panic!("it is a staircase") };
+    let row = |n| (StaircaseTable::steps_in(n), curve.table().rate(n));
+    let up: Vec<(u64, u64)> = (1..=curve.ramp_rows()).map(row).collect();
+    let plateau = curve.plateau_rate().map(|rate| (curve.plateau_steps(), rate));
+    let rows: Vec<(u64, u64)> = up.iter().copied().chain(plateau).chain(up.iter().rev().copied()).collect();
+    ideal::staircase(&rows)
 }
 
 #[test]
@@ -455,20 +458,24 @@ fn sines_by_segments_have_every_step_in_its_cycle() {
         })
     };
     hold_planned(13, "sine by segments", given, |given, profile| {
-        let (Move::SineSegments(given), Profile::SineSegments(curve)) = (given, profile) else {
-            panic!("it is a sine by segments")
-        };
-        let quarter: Vec<(i64, i64, u64)> =
-            curve.segments().iter().map(|each| (each.from.into(), each.to.into(), each.steps)).collect();
-        let mirrored: Vec<(i64, i64, u64)> =
-            quarter.iter().rev().map(|&(from, to, steps)| (1024 - to, 1024 - from, steps)).collect();
-        let half = [quarter, mirrored].concat();
-        let (period, periods) = (decimal(given.period_s), i64::from(given.periods));
-        let point = |point: i64| period.clone() * whole(point) / whole(2048);
-        let all = (0..2 * periods).flat_map(|index| half.iter().map(move |each| (1024 * index, *each)));
-        let intervals = all.map(|(start, (from, to, steps))| (point(start + from), point(start + to), steps));
-        Some(ideal::intervals(intervals, period.clone() * whole(periods)))
+        let Move::SineSegments(given) = given else { panic!("it is a sine by segments") };
+        Some(by_segments(given, profile))
     });
+}
+
+/// The segments of a plan's quarter, of all quarters.
+fn by_segments(given: &SineSegments, profile: &Profile) -> Ideal {
+    let Profile::SineSegments(curve) = profile else { panic!("it is a sine by segments") };
+    let quarter: Vec<(i64, i64, u64)> =
+        curve.segments().iter().map(|each| (each.from.into(), each.to.into(), each.steps)).collect();
+    let mirrored: Vec<(i64, i64, u64)> =
+        quarter.iter().rev().map(|&(from, to, steps)| (1024 - to, 1024 - from, steps)).collect();
+    let half = [quarter, mirrored].concat();
+    let (period, periods) = (decimal(given.period_s), i64::from(given.periods));
+    let point = |point: i64| period.clone() * whole(point) / whole(2048);
+    let all = (0..2 * periods).flat_map(|index| half.iter().map(move |each| (1024 * index, *each)));
+    let intervals = all.map(|(start, (from, to, steps))| (point(start + from), point(start + to), steps));
+    ideal::intervals(intervals, period.clone() * whole(periods))
 }
 
 #[test]
@@ -485,25 +492,30 @@ fn sliced_moves_have_every_step_in_its_cycle() {
         })
     };
     hold_planned(14, "sliced", given, |given, profile| {
-        let (Move::Cosine(given), Profile::Sliced(curve)) = (given, profile) else { panic!("it is sliced") };
-        // Those that are shorter have some of the steps that the plateau's have, at its rate.
-        let slices: Vec<(f64, f64, u32)> = curve.slices().collect();
-        let is_whole = |&(from, to, _): &(f64, f64, u32)| ((to - from) / given.slice_s - 1.0).abs() < 1e-6;
-        let held =
-            slices.iter().filter(|slice| is_whole(slice)).map(|(.., steps)| i64::from(*steps)).max()?;
-        let slice = decimal(given.slice_s);
-        let (mut made, mut intervals) = (0, Vec::new());
-        for each in &slices {
-            let parts = if is_whole(each) { held } else { i64::from(each.2) };
-            let at = |made: i64| slice.clone() * whole(made) / whole(held);
-            intervals.push((at(made), at(made + parts), each.2.into()));
-            made += parts;
-        }
-        let duration = intervals.last().expect("there are slices").1.clone();
-        // What is not reconstructed is left out.
-        ((duration.to_f64() / profile.duration_s() - 1.0).abs() < 1e-9)
-            .then(|| ideal::intervals(intervals.into_iter(), duration))
+        let Move::Cosine(given) = given else { panic!("it is sliced") };
+        by_slices(given, profile)
     });
+}
+
+/// The slices of a plan, from their counts of steps alone; none where these do not tell how long it lasts.
+fn by_slices(given: &Cosine, profile: &Profile) -> Option<Ideal> {
+    let Profile::Sliced(curve) = profile else { panic!("it is sliced") };
+    // Those that are shorter have some of the steps that the plateau's have, at its rate.
+    let slices: Vec<(f64, f64, u32)> = curve.slices().collect();
+    let is_whole = |&(from, to, _): &(f64, f64, u32)| ((to - from) / given.slice_s - 1.0).abs() < 1e-6;
+    let held = slices.iter().filter(|slice| is_whole(slice)).map(|(.., steps)| i64::from(*steps)).max()?;
+    let slice = decimal(given.slice_s);
+    let (mut made, mut intervals) = (0, Vec::new());
+    for each in &slices {
+        let parts = if is_whole(each) { held } else { i64::from(each.2) };
+        let at = |made: i64| slice.clone() * whole(made) / whole(held);
+        intervals.push((at(made), at(made + parts), each.2.into()));
+        made += parts;
+    }
+    let duration = intervals.last().expect("there are slices").1.clone();
+    // What is not reconstructed is left out.
+    ((duration.to_f64() / profile.duration_s() - 1.0).abs() < 1e-9)
+        .then(|| ideal::intervals(intervals.into_iter(), duration))
 }
 
 /// The same steps as a list of cycles alone, and of a slow acceleration to a high speed, whose digits are few.
@@ -561,6 +573,18 @@ fn a_sines_step_in_the_middle_of_two_cycles_goes_up() {
             let found = plan.moves()[0].profile.step_cycle(step, clock_hz);
             assert_eq!(found, Some(twice.div_ceil(2)), "step {step} of {amplitude} in {period_s} s");
         }
+    }
+}
+
+/// Of a sine whose half periods are far shorter than a cycle a step just before an edge has the cycle before it, though
+/// thousands of half periods lie between that edge and the next.
+#[test]
+fn a_step_of_a_sine_of_many_half_periods_a_cycle_is_on_its_side_of_an_edge() {
+    // Step 2 of an amplitude of 1 is due after a third of a period: 2500 us are 1666 half periods of 1.5 us and that.
+    for (period_s, cycle) in [(2.999_999_999_999_999e-6, 2), (3e-6, 3), (3.000_000_000_000_001e-6, 3)] {
+        let given = Sine { amplitude: Distance::Steps(1.0), period_s, periods: 1000 };
+        let plan = plan_of(vec![Move::Sine(given)]).expect("it can be planned");
+        assert_eq!(plan.moves()[0].profile.step_cycle(1666 * 2 + 2, 1000), Some(cycle), "{period_s}");
     }
 }
 

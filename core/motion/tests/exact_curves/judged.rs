@@ -1,0 +1,239 @@
+//! Moves of which every step is judged in 106 bits. On a clock of 4 GHz a time of hours has no digit left that tells one
+//! cycle from the next, so none is decided in f64: the formulas that judge are held to the ideals over their whole length.
+
+use crate::{
+    by_rows, by_segments, by_slices,
+    fixed::whole,
+    ideal::{self, Ideal},
+    plan_of,
+};
+use std::cmp::Ordering;
+use stepscope_motion::{
+    Curve, Profile,
+    mechanics::{Acceleration, Distance, Jerk, Speed},
+    moves::{
+        Cosine, CosineMethod, Interpolation, JerkLimited, Move, Point, PointUnit, Points, RampShape, Ramps,
+        ShortMove, Sine, SineSegments, Staircase, Trapezoid, TrapezoidMethod,
+    },
+};
+
+const CLOCK_HZ: u32 = 4_000_000_000;
+const DAY_S: f64 = 86_400.0;
+/// Of a move with more steps so many are held at its beginning and its end, and so many between.
+const MOST: u64 = 100;
+
+/// Holds the steps of a move to an ideal that may be made of its plan; times may be off by so many roundings.
+fn check_planned(given: &Move, roundings: f64, ideal: impl FnOnce(&Profile) -> Ideal) {
+    let plan = plan_of(vec![given.clone()]).unwrap_or_else(|| panic!("{given:?} cannot be planned"));
+    let profile = &plan.moves()[0].profile;
+    let off = roundings * f64::EPSILON / 2.0 * profile.duration_s() * f64::from(CLOCK_HZ);
+    assert!(off > 0.5, "some steps are decided in f64: off by {off} of {given:?}");
+    let (ideal, clock, count) = (ideal(profile), whole(CLOCK_HZ.into()), profile.step_count());
+    // A step of segments has its cycle after all before it alone.
+    let listed: Vec<u64> = match given {
+        Move::SineSegments(_) => plan.due_steps(CLOCK_HZ).map(|due| due.cycle).collect(),
+        _ => Vec::new(),
+    };
+    let first = MOST.min(count);
+    let last = (count - first + 1).max(first + 1);
+    let between = (first + 1..last).step_by((count / MOST) as usize + 1);
+    for k in (1..=first).chain(between).chain(last..=count) {
+        let own = profile.step_cycle(k, CLOCK_HZ);
+        let cycle = own.or(listed.get(k as usize - 1).copied()).expect("a step has a cycle");
+        let at = |halves: i64| {
+            (ideal.compare)(k, &(whole(2 * cycle as i64 + halves) / (whole(2) * clock.clone())))
+        };
+        let (before, after) = (at(-1), at(1));
+        assert!(
+            before != Ordering::Greater && after == Ordering::Greater,
+            "step {k} is not in {cycle}: {before:?} {after:?} of {given:?}"
+        );
+    }
+}
+
+fn check(given: Move, ideal: Ideal) {
+    check_planned(&given, 64.0, |_| ideal);
+}
+
+fn steps(count: i64) -> Distance {
+    Distance::Steps(count as f64)
+}
+
+#[test]
+fn every_step_of_a_sine_is_where_it_is_judged() {
+    for (amplitude, period_s, periods) in [(1, DAY_S, 1), (-2, 20_000.3, 3), (51, 12_345.678_9, 5)] {
+        let given = Sine { amplitude: steps(amplitude), period_s, periods };
+        check(Move::Sine(given), ideal::sine(amplitude, period_s, periods));
+    }
+}
+
+/// Ramps in parts of the time: none, half, and short ones.
+const MOVES: [(i64, f64, f64); 6] = [
+    (1, DAY_S, 43_200.0),
+    (-2, 80_000.1, 20_000.3),
+    (77, DAY_S, 0.0),
+    (78, 60_000.3, 1.7),
+    (-111, DAY_S, 40_000.0),
+    (1001, 85_000.7, 42_500.35),
+];
+
+#[test]
+fn every_step_of_a_cosine_is_where_it_is_judged() {
+    for (count, duration_s, ramp_s) in MOVES {
+        let given = Cosine { distance: steps(count), duration_s, ramp_s, ..Cosine::default() };
+        check(Move::Cosine(given), ideal::cosine(count, duration_s, ramp_s));
+    }
+}
+
+#[test]
+fn every_step_of_ramps_is_where_it_is_judged() {
+    let with = |shape, parameters: &'static [f64]| parameters.iter().map(move |each| (shape, *each));
+    let shapes = with(RampShape::Bezier, &[1.0])
+        .chain(with(RampShape::Straight, &[1.0]))
+        .chain(with(RampShape::Exponential, &[0.1, 1.3, 4.0, 20.0]))
+        .chain(with(RampShape::Sigmoid, &[0.1, 1.3, 6.0, 20.0]));
+    for (shape, parameter) in shapes {
+        // Logarithms of so many digits take their time.
+        let slow = shape == RampShape::Sigmoid;
+        let moves = MOVES.into_iter().filter(|(count, ..)| count.abs() < if slow { 100 } else { 1000 });
+        for (count, duration_s, ramp_s) in moves {
+            let count = if slow { count.clamp(-9, 9) } else { count };
+            let given = Ramps {
+                distance: steps(count),
+                duration_s,
+                ramp_s,
+                shape,
+                sigmoid_range: parameter,
+                time_constants: parameter,
+            };
+            let ideal = ideal::ramps((count, duration_s, ramp_s), ideal::shape(shape, parameter));
+            check(Move::Ramps(given), ideal);
+        }
+    }
+}
+
+#[test]
+fn every_step_of_a_trapezoid_is_where_it_is_judged() {
+    let rows = [
+        // A plateau, from a start speed and from rest; one speed; and triangles.
+        (200, 0.000_7, 0.003_3, 1e-6),
+        (-201, 0.0, 0.003, 1e-6),
+        (-60, 0.001, 0.001, 1e-3),
+        (1001, 0.003, 10.0, 1.7e-6),
+        (300, 0.0, 10.0, 1e-6),
+        (401, 0.000_001, 0.014, 1e-6),
+    ];
+    for (count, start, top, acceleration) in rows {
+        let given = Trapezoid {
+            distance: steps(count),
+            start_speed: Speed::StepsPerSecond(start),
+            top_speed: Speed::StepsPerSecond(top),
+            acceleration: Acceleration::StepsPerSecond2(acceleration),
+            method: TrapezoidMethod::Exact,
+            timer_hz: 1,
+        };
+        check(Move::Trapezoid(given), ideal::trapezoid(count, start, top, acceleration));
+    }
+}
+
+#[test]
+fn every_step_of_a_jerk_limited_move_is_where_it_is_judged() {
+    let rows = [
+        // The four rows of the planner's table, and two with next to nothing of the jerk.
+        (500_000, 32.0, 0.004, 1e-6),
+        (-200_001, 16.0, 0.1, 1e-6),
+        (300_000, 32.0, 0.004, 1e-6),
+        (200_000, 32.0, 0.1, 1e-6),
+        (-301, 10.0, 1e-6, 1e-3),
+        (1, 2e-5, 1e-6, 1e-6),
+    ];
+    for (count, speed, acceleration, jerk) in rows {
+        let given = JerkLimited {
+            distance: steps(count),
+            max_speed: Speed::StepsPerSecond(speed),
+            max_acceleration: Acceleration::StepsPerSecond2(acceleration),
+            max_jerk: Jerk::StepsPerSecond3(jerk),
+        };
+        check(Move::JerkLimited(given), ideal::jerk_limited(count, speed, acceleration, jerk));
+    }
+}
+
+#[test]
+fn every_step_of_a_curve_through_points_is_where_it_is_judged() {
+    let rows: [&[(f64, f64)]; 5] = [
+        &[(0.0, 0.0), (DAY_S, 140.0)],
+        &[(0.0, 0.0), (40_000.1, -77.3), (80_000.3, 0.2)],
+        &[
+            (0.0, 3.0),
+            (10_000.0, 10.0),
+            (15_000.0, 30.0),
+            (16_000.7, 30.0),
+            (50_000.0, 70.2),
+            (60_000.0, 19.0),
+        ],
+        &[
+            (7.5, 0.0),
+            (10_000.0, -30.2),
+            (15_000.0, -33.0),
+            (40_000.0, -70.1),
+            (45_000.3, -10.9),
+            (70_000.0, -8.0),
+        ],
+        &[(100.1, 123_456_789.1), (20_000.0, 123_456_800.3), (80_000.0, 123_456_849.9)],
+    ];
+    for points in rows {
+        for interpolation in [Interpolation::Straight, Interpolation::Smooth] {
+            let ideal = ideal::points(points, interpolation);
+            let points = points.iter().map(|&(time_s, position)| Point { time_s, position }).collect();
+            check(Move::Points(Points { unit: PointUnit::Steps, interpolation, points }), ideal);
+        }
+    }
+}
+
+#[test]
+fn every_step_of_a_staircase_is_where_it_is_judged() {
+    // All at one rate, one row up and down, and several.
+    let rows = [
+        (20_000, 1.0, 1.0, ShortMove::Document),
+        (-40_000, 1.0, 2.0, ShortMove::Document),
+        (7_000_007, 10.0, 350.0, ShortMove::Reverse),
+    ];
+    for (count, start, top, short_move) in rows {
+        let given = Staircase {
+            distance: steps(count),
+            top_speed: Speed::StepsPerSecond(top),
+            level: 1,
+            short_move,
+            start_speed: Speed::StepsPerSecond(start),
+            max_speed: Speed::StepsPerSecond(1000.0),
+        };
+        check_planned(&Move::Staircase(given), 64.0, by_rows);
+    }
+}
+
+#[test]
+fn every_step_of_a_sine_by_segments_is_where_it_is_judged() {
+    for (amplitude, period_s, periods) in [(1, DAY_S, 1), (-40, 20_000.3, 2), (100, 30_000.0, 1)] {
+        for max_deviation in [0.0, 0.006, 0.05] {
+            let given = SineSegments { amplitude: steps(amplitude), period_s, periods, max_deviation };
+            let ideal = |profile: &Profile| by_segments(&given, profile);
+            check_planned(&Move::SineSegments(given.clone()), 64.0, ideal);
+        }
+    }
+}
+
+#[test]
+fn every_step_of_a_sliced_move_is_where_it_is_judged() {
+    // Slices that are shortened add their roundings: of 2000 they are enough.
+    for (count, ramp_s) in [(5000, 40.0), (-7001, 60.0), (4400, 10.0)] {
+        let given = Cosine {
+            distance: steps(count),
+            duration_s: 200.0,
+            ramp_s,
+            method: CosineMethod::Sliced,
+            slice_s: 0.1,
+        };
+        let ideal = |profile: &Profile| by_slices(&given, profile).expect("its slices are told");
+        check_planned(&Move::Cosine(given.clone()), 64.0 + 4.0 * 1800.0, ideal);
+    }
+}
