@@ -22,8 +22,11 @@ const PACKAGES: [&str; 2] = ["stepscope-peripheral", "stepscope-motion"];
 /// Packages whose tests run.
 const TESTED: [&str; 4] = ["stepscope-peripheral", "stepscope-motion", "stepscope-core", "stepscope-tests"];
 /// Their unit tests, and these: the ones that are about the two, and quick.
-const TESTS: [&str; 10] = [
+const TESTS: [&str; 13] = [
     "as_before",
+    "exact_curves",
+    "exact_cycles",
+    "tick_ends",
     "motion",
     "plans",
     "tables",

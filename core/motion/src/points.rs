@@ -389,16 +389,23 @@ impl Curve for Points {
 }
 
 #[cfg(test)]
+impl Points {
+    /// Every step, and whether it goes to the right.
+    fn all_due(&self) -> impl Iterator<Item = (Due<'_>, bool)> + '_ {
+        self.due().flat_map(|steps| {
+            (0..steps.from.abs_diff(steps.to)).map(move |step| (steps.due(step), steps.right()))
+        })
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
 
     fn due(points: &[(f64, f64)], between: Between) -> Vec<(f64, bool)> {
         let curve = Points::new(points, between).unwrap();
         let due: Vec<(f64, bool)> = curve
-            .due()
-            .flat_map(|steps| {
-                (0..steps.from.abs_diff(steps.to)).map(move |step| (steps.due(step), steps.right()))
-            })
+            .all_due()
             .map(|(due, right)| (curve.pieces[due.index].crossing(due.place).time_s, right))
             .collect();
         assert_eq!(due.len() as u64, curve.step_count());

@@ -25,8 +25,12 @@ const CLOCK_HZ: u32 = 16_000_000;
 /// Of a move with more steps so many are asked of its beginning, its end and both sides of its middle, and so many between.
 const MOST: u64 = 120;
 
-/// The times of a move's steps in f64, in cycles.
+/// The times of a move's steps in f64, in cycles: those that a search finds, where blocks tell them less well.
 fn times(profile: &Profile) -> Vec<f64> {
+    if matches!(profile, Profile::Cosine(_) | Profile::Ramps(_) | Profile::JerkLimited(_)) {
+        let time = |k: u64| profile.time_s(k as f64 - 0.5) * f64::from(CLOCK_HZ);
+        return (1..=profile.step_count()).map(time).collect();
+    }
     let (mut form, mut times) = (due_from(profile, CycleTime::default(), CLOCK_HZ), Vec::new());
     let mut block = [(0.0, ScheduledStep { cycle: 0, right: false }); BLOCK];
     loop {

@@ -20,7 +20,7 @@ fn a_step_is_due_after_its_time_and_not_before() {
         for between in [Between::Straight, Between::Smooth] {
             let curve = Points::new(points, between).unwrap();
             assert!(curve.step_count() > 15, "{points:?}");
-            for (due, right) in curve.due() {
+            for (due, right) in curve.all_due() {
                 let (piece, off) = (curve.pieces[due.index], curve.off[due.index]);
                 let crossing = piece.crossing(due.place);
                 let off_s = off.time_s + off.way * crossing.s_per_step;
@@ -82,7 +82,7 @@ fn a_half_of_a_cycle_far_from_the_first_point_is_the_next_ones() {
     ];
     for (points, expected) in rows {
         let curve = Points::new(&points, Between::Straight).unwrap();
-        let (due, right) = curve.due().last().unwrap();
+        let (due, right) = curve.all_due().last().unwrap();
         assert_eq!((due.cycle(CycleTime::default(), 1_000_000).1, right), (expected, false), "{points:?}");
     }
 }
