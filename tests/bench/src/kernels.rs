@@ -64,6 +64,8 @@ pub enum Kernel {
     Framed,
     /// The steady motion by lists of segments.
     Segments,
+    /// Lists of segments whose edges are each alone in a record.
+    SegmentsApart,
     /// A controller of 16 motors, alone on a line with the packets for 512, into a digest.
     Motors16,
     /// 32 such controllers on one line, each into a digest of its own.
@@ -121,7 +123,7 @@ pub struct Facts {
 
 impl Kernel {
     /// All kernels, each yardstick right before what is compared with it.
-    pub const ALL: [Self; 44] = [
+    pub const ALL: [Self; 45] = [
         Self::Write,
         Self::Copy,
         Self::Stored,
@@ -132,6 +134,7 @@ impl Kernel {
         Self::Staggered,
         Self::Framed,
         Self::Segments,
+        Self::SegmentsApart,
         Self::Motors16,
         Self::Motors512,
         Self::Clock16,
@@ -199,6 +202,7 @@ impl Kernel {
             Self::Staggered => Facts { name: "staggered", ..run },
             Self::Framed => Facts { name: "framed", ..run },
             Self::Segments => Facts { name: "segments", ..run },
+            Self::SegmentsApart => Facts { name: "segments_apart", aim: Some(0.1), ..run },
             Self::Motors16 => Facts { name: "motors_16", ..run },
             Self::Motors512 => {
                 Facts { name: "motors_512", yardstick: Some(Self::Motors16), aim: Some(0.8), ..plain }
@@ -254,6 +258,7 @@ pub struct Kernels {
     staggered: Experiment,
     framed: Experiment,
     segments: Experiment,
+    segments_apart: Experiment,
     motors_16: Experiment,
     motors_512: Experiment,
     clock_1: Experiment,
@@ -300,6 +305,7 @@ impl Kernels {
             staggered: motions::staggered()?,
             framed: motions::framed()?,
             segments: motions::segments()?,
+            segments_apart: motions::segments_apart()?,
             motors_16: motions::motors_16()?,
             motors_512: motions::motors_512()?,
             clock_1: motions::at_clock(1_000_000)?,
@@ -355,6 +361,7 @@ impl Kernels {
             Kernel::Staggered => store(&self.staggered, &mut self.target),
             Kernel::Framed => store(&self.framed, &mut self.target),
             Kernel::Segments => store(&self.segments, &mut self.target),
+            Kernel::SegmentsApart => store(&self.segments_apart, &mut self.target),
             Kernel::Motors16 => digest_each(&self.motors_16),
             Kernel::Motors512 => digest_each(&self.motors_512),
             Kernel::Clock1 => store(&self.clock_1, &mut self.target),
@@ -497,8 +504,10 @@ mod tests {
     #[test]
     fn every_mode_makes_the_steps_that_it_was_asked_for() {
         let mut kernels = Kernels::new().unwrap();
-        let modes = [Kernel::CommonDir, Kernel::Staggered, Kernel::Framed, Kernel::Segments];
-        for (kernel, steps) in modes.into_iter().zip([100_000, 100_000, 1_000_000, 1_000_000]) {
+        let modes =
+            [Kernel::CommonDir, Kernel::Staggered, Kernel::Framed, Kernel::Segments, Kernel::SegmentsApart];
+        let steps = [100_000, 100_000, 1_000_000, 1_000_000, 62_500];
+        for (kernel, steps) in modes.into_iter().zip(steps) {
             kernels.call(kernel);
             for channel in 0..16 {
                 let high = kernels.target.windows(2).filter(|pair| {

@@ -158,6 +158,24 @@ pub fn segments() -> Result<Experiment, Vec<Problem>> {
     Experiment::new(&scenario)
 }
 
+/// As many records by lists of segments that start one after another: every edge is alone in its record.
+///
+/// # Errors
+/// None, as long as the scenario's rules stay as they are.
+pub fn segments_apart() -> Result<Experiment, Vec<Problem>> {
+    let steps = StepSegment { count: 62_500, interval_q16: 160 << 16, ..StepSegment::default() };
+    let list = |channel: u64| ChannelSegments {
+        start_cycle: 1 + 10 * channel,
+        segments: vec![Segment::Steps(steps.clone())],
+        ..ChannelSegments::default()
+    };
+    let mut scenario = sixteen(Vec::new());
+    // Not a whole number of starts.
+    scenario.bus.pulse_width_cycles = 45;
+    scenario.source = Source::Segments(SegmentLists { channels: (0..16).map(list).collect() });
+    Experiment::new(&scenario)
+}
+
 /// 32 controllers of 16 motors on one addressed line, each motor at 10 kHz for 0.5 s.
 fn motors() -> Scenario {
     let mut scenario = sixteen(vec![constant(5000.0, 1e4); 16]);
