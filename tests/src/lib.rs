@@ -10,6 +10,10 @@ pub mod golden;
 #[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 pub mod oracle;
 
+/// The slow model of the plant that the core's is compared with.
+#[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
+pub mod plant_oracle;
+
 /// Random configurations and line activity for the property tests.
 #[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 pub mod cases;
