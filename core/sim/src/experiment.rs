@@ -48,7 +48,11 @@ impl Experiment {
     pub fn new(scenario: &Scenario) -> Result<Self, Vec<Problem>> {
         let mut problems = Vec::new();
         let checked = scenario.check().map_err(|found| problems.extend(found)).ok();
-        let plans = controller_plan::plans(scenario).map_err(|found| problems.extend(found)).ok();
+        let plans = controller_plan::plans(scenario);
+        // A motor's number that no plant can have was told by the plant already.
+        let is_new = |problem: &Problem| problems.iter().all(|told: &Problem| told.path != problem.path);
+        let plans = plans.map_err(|found| found.into_iter().filter(is_new).collect::<Vec<_>>());
+        let plans = plans.map_err(|found| problems.extend(found)).ok();
         let Some(mut checked) = checked else { return Err(problems) };
         let line_load = controller_plan::line_load(&checked).map_err(|problem| problems.push(problem)).ok();
         let Some(plans) = plans else { return Err(problems) };
