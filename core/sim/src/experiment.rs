@@ -1,5 +1,7 @@
 //! From a scenario to its trace: the whole line in one call.
 
+#[cfg(feature = "plant")]
+use crate::plants::{Behind, PlantsBehind};
 use crate::{
     Cost,
     bus::Bus,
@@ -7,6 +9,8 @@ use crate::{
     framed_host::{FramedHost, Progress},
     ignored::Ignored,
 };
+#[cfg(feature = "plant")]
+use alloc::boxed::Box;
 use alloc::{rc::Rc, vec::Vec};
 use core::slice;
 use stepscope_motion::AxisPlan;
@@ -18,11 +22,16 @@ use stepscope_peripheral::{
     units::{Cycles, Instant},
     wire::{ForcedLevel, Line, Schedule},
 };
+#[cfg(feature = "plant")]
+use stepscope_plant::Observer;
 use stepscope_scenario::{Checked, END_OF_TIME, Problem, Scenario, ValueError};
 
 /// Most bytes that a host may have to send: as many as the most ticks of 16 channels take on an addressed
 /// raw line.
 const MAX_LINE_BYTES: u64 = 2_000_000 * 17;
+
+/// Most steps of the grid, of all motors together, that a run may take (PLANT F1).
+const MAX_MOTOR_STEPS: u64 = 10_000_000_000;
 
 /// A scenario that has been judged in every respect, with its motions planned and its packets made.
 #[derive(Clone, Debug)]
@@ -48,7 +57,11 @@ impl Experiment {
     pub fn new(scenario: &Scenario) -> Result<Self, Vec<Problem>> {
         let mut problems = Vec::new();
         let checked = scenario.check().map_err(|found| problems.extend(found)).ok();
-        let plans = controller_plan::plans(scenario).map_err(|found| problems.extend(found)).ok();
+        let plans = controller_plan::plans(scenario);
+        // A motor's number that no plant can have was told by the plant already.
+        let is_new = |problem: &Problem| problems.iter().all(|told: &Problem| told.path != problem.path);
+        let plans = plans.map_err(|found| found.into_iter().filter(is_new).collect::<Vec<_>>());
+        let plans = plans.map_err(|found| problems.extend(found)).ok();
         let Some(mut checked) = checked else { return Err(problems) };
         let line_load = controller_plan::line_load(&checked).map_err(|problem| problems.push(problem)).ok();
         let Some(plans) = plans else { return Err(problems) };
@@ -71,6 +84,13 @@ impl Experiment {
             let (given, most) = (cost.bytes as f64, MAX_LINE_BYTES as f64);
             let cause = ValueError::TooMuch { given, most, of: "bytes of all frames and their repetitions" };
             return Err(alloc::vec![Problem::new("source", cause)]);
+        }
+        #[cfg(feature = "plant")]
+        let cost = cost.with_plants(&checked);
+        if cost.motor_steps > MAX_MOTOR_STEPS {
+            let (given, most) = (cost.motor_steps as f64, MAX_MOTOR_STEPS as f64);
+            let cause = ValueError::TooMuch { given, most, of: "motor-steps of the plant" };
+            return Err(alloc::vec![Problem::new("plant.step_cycles", cause)]);
         }
         if cost.end_cycle > END_OF_TIME {
             let cause =
@@ -208,10 +228,30 @@ impl Experiment {
         let line = Line::new(Rc::clone(&self.schedule), forced, clock_hz, *baud);
         let host = self.host();
         Run {
-            bus: Bus::new(line, host, self.configs().map(Device::new).collect()),
+            bus: Bus::new(line, host, self.configs().map(|config| self.device(config)).collect()),
             engine: self.segments.clone().map(SegmentEngine::new),
             end: run.map(|cycles| Instant(cycles.0)),
+            #[cfg(feature = "plant")]
+            plants: self.plants().map(|plants| Box::new(PlantsBehind::new(plants, self.configs()))),
         }
+    }
+
+    #[cfg(not(feature = "plant"))]
+    fn device(&self, config: &Config) -> Device {
+        Device::new(config)
+    }
+
+    #[cfg(feature = "plant")]
+    fn device(&self, config: &Config) -> Device {
+        let tests = self.checked.plants.as_ref().is_some_and(|plants| plants.self_test);
+        if tests { Device::with_self_test(config) } else { Device::new(config) }
+    }
+
+    /// The plants behind the controllers, where the scenario has them.
+    #[cfg(feature = "plant")]
+    #[must_use]
+    pub const fn plants(&self) -> Option<&stepscope_scenario::Plants> {
+        self.checked.plants.as_ref()
     }
 
     /// The host of a framed line, where it has ticks to send.
@@ -257,6 +297,9 @@ pub struct Run {
     engine: Option<SegmentEngine>,
     /// First cycle that is not run; without it the run ends when nothing can change any more.
     end: Option<Instant>,
+    /// What the edges drive. They are taken out while they run.
+    #[cfg(feature = "plant")]
+    plants: Option<Box<PlantsBehind>>,
 }
 
 impl Run {
@@ -297,10 +340,10 @@ impl Run {
         self.engine.as_ref().map_or_else(|| self.device().positions(), SegmentEngine::positions)
     }
 
-    /// Faults of the first controller so far; segments have none.
+    /// Faults of the first controller so far, or of the segment engine.
     #[must_use]
     pub fn faults(&self) -> Faults {
-        self.device().faults()
+        self.engine.as_ref().map_or_else(|| self.device().faults(), SegmentEngine::faults)
     }
 
     /// Ticks of the first controller that have ended; segments have none.
@@ -312,12 +355,25 @@ impl Run {
     /// Cycles that have been run.
     #[must_use]
     pub fn cycles(&self) -> Cycles {
-        Cycles(self.engine.as_ref().map_or_else(|| self.bus.now(), SegmentEngine::now).0)
+        #[cfg(feature = "plant")]
+        if let Some(ended) = self.plants.as_ref().and_then(|plants| plants.ended) {
+            return Cycles(ended.0);
+        }
+        Cycles(self.reached().0)
+    }
+
+    /// The first cycle that nobody has run.
+    pub(crate) fn reached(&self) -> Instant {
+        self.engine.as_ref().map_or_else(|| self.bus.now(), SegmentEngine::now)
     }
 
     /// Whether the run is over.
     #[must_use]
     pub fn is_done(&self) -> bool {
+        #[cfg(feature = "plant")]
+        if let Some(plants) = &self.plants {
+            return plants.ended.is_some();
+        }
         match (&self.engine, self.end) {
             (Some(engine), Some(end)) => engine.now() >= end,
             (Some(engine), None) => engine.at_rest(),
@@ -334,6 +390,10 @@ impl Run {
 
     /// Goes on until one controller has made `records` more, with a sink for each; true at the end.
     pub fn advance_each(&mut self, records: u64, sinks: &mut [impl Sink]) -> bool {
+        #[cfg(feature = "plant")]
+        if self.plants.is_some() {
+            return self.advance_observed::<_, ()>((Instant::NEVER, records), sinks, &mut []);
+        }
         let mut slices: Vec<_> = sinks.iter_mut().map(|sink| Slice { sink, left: records }).collect();
         let end = self.end.unwrap_or(Instant::NEVER);
         match (&mut self.engine, slices.first_mut()) {
@@ -344,8 +404,91 @@ impl Run {
         self.is_done()
     }
 
+    /// Goes on to cycle `end`, whatever the run's own end is.
+    #[cfg(feature = "plant")]
+    pub(crate) fn run_to(&mut self, end: Instant, sinks: &mut [impl Sink]) {
+        match (&mut self.engine, sinks.first_mut()) {
+            (Some(engine), Some(sink)) => engine.run(end, sink),
+            (Some(engine), None) => engine.run(end, &mut Ignored),
+            (None, _) => self.bus.run(end, sinks),
+        }
+    }
+
+    /// Where nothing can change any more, the cycle after the last change. The segment engine does not know that one: it is
+    /// `last`.
+    #[cfg(feature = "plant")]
+    pub(crate) fn rests_from(&self, last: Instant) -> Option<Instant> {
+        match &self.engine {
+            Some(engine) => engine.at_rest().then(|| last.next()),
+            None => self.bus.is_over().then(|| self.bus.rests_from()),
+        }
+    }
+
+    /// The end that was given.
+    #[cfg(feature = "plant")]
+    pub(crate) const fn given_end(&self) -> Option<Instant> {
+        self.end
+    }
+
+    /// The plant of a controller reports an overload, last in the cycle that was run last.
+    #[cfg(feature = "plant")]
+    pub(crate) fn overload(&mut self, controller: usize, sink: &mut impl Sink) {
+        match (&mut self.engine, self.bus.device_mut(controller)) {
+            (Some(engine), _) => engine.overload(),
+            (None, Some(device)) => device.overload(sink),
+            (None, None) => {}
+        }
+    }
+
+    /// What a controller's self-test found.
+    #[cfg(feature = "plant")]
+    pub(crate) fn settles_in(&mut self, controller: usize, found: Option<Cycles>) {
+        if let Some(device) = self.bus.device_mut(controller) {
+            device.settles_in(found);
+        }
+    }
+
+    /// Goes on to a cycle, or until a controller has made so many records more, with a sink and an observer for each; true
+    /// at the end.
+    #[cfg(feature = "plant")]
+    pub(crate) fn advance_observed<S: Sink, O: Observer>(
+        &mut self,
+        until: (Instant, u64),
+        sinks: &mut [S],
+        observers: &mut [O],
+    ) -> bool {
+        let Some(mut plants) = self.plants.take() else { return true };
+        let done = plants.advance(self, until, sinks, observers);
+        self.plants = Some(plants);
+        done
+    }
+
+    /// One cycle, with a sink and an observer for each controller.
+    #[cfg(feature = "plant")]
+    pub(crate) fn clock_observed<S: Sink, O: Observer>(&mut self, sinks: &mut [S], observers: &mut [O]) {
+        if let Some(mut plants) = self.plants.take() {
+            plants.clock(self, sinks, observers);
+            self.plants = Some(plants);
+        }
+    }
+
+    /// The plant behind a controller.
+    #[cfg(feature = "plant")]
+    pub(crate) fn behind(&self, controller: usize) -> Option<&Behind> {
+        self.plants.as_ref()?.behind.get(controller)
+    }
+
     /// One cycle, with a sink for each controller.
     pub fn clock(&mut self, sinks: &mut [impl Sink]) {
+        #[cfg(feature = "plant")]
+        if self.plants.is_some() {
+            return self.clock_observed::<_, ()>(sinks, &mut []);
+        }
+        self.clock_wired(sinks);
+    }
+
+    /// One cycle of the controllers alone.
+    pub(crate) fn clock_wired(&mut self, sinks: &mut [impl Sink]) {
         match (&mut self.engine, sinks.first_mut()) {
             (Some(engine), Some(sink)) => {
                 engine.clock(sink);
