@@ -21,7 +21,7 @@ pub const COUPLING_N_M_RAD: RangeInclusive<f64> = 0.001..=1e6;
 /// The share of an off-time that decays fast.
 pub const SHARE: RangeInclusive<f64> = 0.0..=1.0;
 /// Off-time and blanking of a chopper in us.
-pub const CHOPPER_US: RangeInclusive<f64> = 0.0..=1000.0;
+pub const CHOPPER_US: RangeInclusive<f64> = 0.0..=1e6;
 /// Steps of the converter of a driver.
 pub const DAC_LEVELS: RangeInclusive<u64> = 1..=1023;
 /// Resistance of a bridge in ohm.
@@ -35,7 +35,7 @@ pub const SOURCE_OHM: RangeInclusive<f64> = 0.001..=100.0;
 /// Capacitance of the buffer in uF.
 pub const BUFFER_UF: RangeInclusive<f64> = 10.0..=1e6;
 /// Current of a driver for itself in mA.
-pub const IDLE_MA: RangeInclusive<f64> = 0.0..=1e4;
+pub const IDLE_MA: RangeInclusive<f64> = 0.0..=1e6;
 /// Time that a run goes on after its last step, in s.
 pub const TAIL_S: RangeInclusive<f64> = 0.0..=10.0;
 /// Bandwidth of a sensor in Hz.
@@ -49,9 +49,9 @@ pub const LSB: RangeInclusive<f64> = 1e-6..=1000.0;
 /// Greatest code of a converter.
 pub const ADC_MAX: RangeInclusive<u64> = 1..=8_388_607;
 /// Offset of an encoder in codes.
-pub const OFFSET_LSB: RangeInclusive<f64> = -4096.0..=4096.0;
+pub const OFFSET_LSB: RangeInclusive<f64> = -1e6..=1e6;
 /// Noise and play of an encoder in codes.
-pub const NOISE_LSB: RangeInclusive<f64> = 0.0..=100.0;
+pub const NOISE_LSB: RangeInclusive<f64> = 0.0..=1e6;
 /// Seed of the noise: what a JSON number holds exactly.
 pub const SEED: RangeInclusive<u64> = 0..=9_007_199_254_740_991;
 /// Current of an overload in A.

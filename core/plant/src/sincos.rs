@@ -24,13 +24,16 @@ const C: [f64; 7] = [
     -6.386_603_083_791_852e-9,
 ];
 
+/// From here on, 2^51, the sum with [`ROUND`] has other last bits than the whole number.
+const FAR: f64 = 2_251_799_813_685_248.0;
+
 /// The nearest whole number, of two the even one; |q| below 2^51.
 #[inline(always)]
 pub(crate) fn nearest(q: f64) -> f64 {
     (q + ROUND) - ROUND
 }
 
-/// Sine and cosine of `q` quarter turns; |q| below 2^51.
+/// Sine and cosine of `q` quarter turns.
 ///
 /// ```
 /// assert_eq!(stepscope_plant::sincos(1.0), (1.0, 0.0));
@@ -40,18 +43,26 @@ pub(crate) fn nearest(q: f64) -> f64 {
 #[must_use]
 pub fn sincos(q: f64) -> (f64, f64) {
     let t = q + ROUND;
-    let r = q - (t - ROUND);
+    let n = t - ROUND;
+    let r = q - n;
     let z = r * r;
     let s = r * (S[0] + z * (S[1] + z * (S[2] + z * (S[3] + z * (S[4] + z * (S[5] + z * S[6]))))));
     let c = 1.0 + z * (C[0] + z * (C[1] + z * (C[2] + z * (C[3] + z * (C[4] + z * (C[5] + z * C[6]))))));
     // The last bits of t's significand are those of the whole number: 3*2^51 has none there.
-    let quarter = t.to_bits() & 3;
+    let quarter = if n > -FAR && n < FAR { t.to_bits() & 3 } else { far_quarter(n) };
     let (sine, cosine) = if quarter & 1 == 0 { (s, c) } else { (c, s) };
     let negative = |is| (is as u64) << 63;
     (
         f64::from_bits(sine.to_bits() ^ negative(quarter & 2 != 0)),
         f64::from_bits(cosine.to_bits() ^ negative((quarter + 1) & 2 != 0)),
     )
+}
+
+/// A whole number mod 4, however great.
+#[cold]
+fn far_quarter(n: f64) -> u64 {
+    // The remainder of two numbers is exact.
+    (n % 4.0) as i64 as u64 & 3
 }
 
 /// (phi1, phi2) of `z`: (1 - e^-z)/z and (e^-z - 1 + z)/z^2, exact to the last digits for 0 <= z <= 0.25.
