@@ -18,6 +18,7 @@ mod run;
 mod scenarios;
 mod sine;
 mod status;
+mod steps;
 mod tables;
 mod timing;
 mod torque;

@@ -5,6 +5,7 @@ use crate::{
     json::Tables,
     output::{self, Outputs},
     scenarios,
+    steps::steps_of_table,
 };
 use clap::{Args, ValueEnum};
 use serde_json::json;
@@ -19,8 +20,8 @@ use stepscope_core::{
         step_tables::tolerance_cycles,
     },
     motion::{
-        AxisPlan, Cause, plan_lists,
-        quantise::{EntryFormat, Form, Stored, Tolerance, stored},
+        AxisPlan, Cause, ScheduledStep, plan_lists,
+        quantise::{EntryFormat, Form, Stored, Tolerance, stored, stored_steps},
         round_half_up,
     },
     peripheral::{config::Config, segment::PulseTimes},
@@ -30,8 +31,14 @@ use stepscope_core::{
 /// What `stepscope tables` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// The scenario, whose source is a motion: a JSON file, or a preset's name; `-` reads standard input.
-    scenario: PathBuf,
+    /// The scenario, whose source is a motion: a JSON file, or a preset's name; `-` reads standard input. With --steps it
+    /// gives clock and pulses, and may be left out: 16 MHz and the default bus.
+    #[arg(required_unless_present = "steps")]
+    scenario: Option<PathBuf>,
+    /// Tables of these steps instead, as axis 0: CSV with a row for each step, its time from the start in a column cycle,
+    /// time_s, time_ms or time_us, and, if steps go both ways, dir: 1 or right, 0 or left.
+    #[arg(long, value_name = "FILE")]
+    steps: Option<PathBuf>,
     /// How the step times are kept; a summary without it shows all three.
     #[arg(long, value_enum)]
     form: Option<FormName>,
@@ -138,40 +145,60 @@ struct Axes {
     title: String,
     clock_hz: u32,
     pulse: PulseTimes,
-    plans: Vec<AxisPlan>,
+    axes: Vec<Steps>,
     tolerance: Tolerance,
+}
+
+/// The steps of an axis.
+enum Steps {
+    Planned(AxisPlan),
+    Listed(Vec<ScheduledStep>),
 }
 
 impl Axes {
     fn new(arguments: &Arguments) -> Result<Self, Failure> {
-        let path = arguments.scenario.clone();
-        let Scenario { title, clock_hz, bus, line, source, .. } = scenarios::read(&path)?;
+        let scenario = arguments.scenario.as_deref().map(scenarios::read).transpose()?.unwrap_or_default();
+        let path = arguments.scenario.clone().unwrap_or_else(|| PathBuf::from("the default scenario"));
+        let Scenario { title, clock_hz, bus, line, source, .. } = scenario;
         let wrong = |problems| Failure::Scenario(path.clone(), problems);
+        let config = Config::of_segments(clock_hz, &bus, &line.serial()).map_err(of_config).map_err(wrong)?;
+        let cycles = tolerance_cycles(arguments.error_us, clock_hz);
+        let tolerance = Tolerance { cycles, interval_part: arguments.interval_part };
+        let pulse = PulseTimes::from(&config);
+        if let Some(list) = &arguments.steps {
+            let steps = steps_of_table(&scenarios::text(list)?, clock_hz)
+                .map_err(|what| Failure::Table(list.clone(), what))?;
+            let title = list.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+            let axes = vec![Steps::Listed(steps)];
+            return Ok(Self { path: list.clone(), title, clock_hz, pulse, axes, tolerance });
+        }
         let ScenarioSource::Motion(Motion { axes, .. }) = &source else {
-            let detail =
-                "no motion, so there is nothing to make tables of; give a scenario with source.motion";
+            let detail = "no motion, so there is nothing to make tables of; give a scenario with source.motion, or --steps";
             return Err(wrong(vec![Problem::new("source", ValueError::Conflict { detail })]));
         };
-        let config = Config::of_segments(clock_hz, &bus, &line.serial()).map_err(of_config).map_err(wrong)?;
         let plans = plan_lists([("source.motion.axes".to_owned(), axes.as_slice())])
             .map_err(of_motion)
             .map_err(wrong)?;
-        let cycles = tolerance_cycles(arguments.error_us, clock_hz);
-        let tolerance = Tolerance { cycles, interval_part: arguments.interval_part };
-        let plans = plans.into_iter().flatten().collect();
-        Ok(Self { pulse: PulseTimes::from(&config), path, title, clock_hz, plans, tolerance })
+        let axes = plans.into_iter().flatten().map(Steps::Planned).collect();
+        Ok(Self { path, title, clock_hz, pulse, axes, tolerance })
     }
 
-    fn kept(&self, plan: &AxisPlan, form: FormName, format: EntryFormat) -> Result<Stored, Cause> {
+    fn kept(&self, steps: &Steps, form: FormName, format: EntryFormat) -> Result<Stored, Cause> {
         let form = match form {
             FormName::Exact => Form::Exact,
             FormName::Document => Form::Document,
             FormName::Compressed => Form::Compressed(self.tolerance),
         };
-        stored(plan, form, format, self.pulse, self.clock_hz)
+        match steps {
+            Steps::Planned(plan) => stored(plan, form, format, self.pulse, self.clock_hz),
+            Steps::Listed(steps) => stored_steps(steps, form, format, self.pulse),
+        }
     }
 
     fn refused(&self, axis: usize, cause: Cause) -> Failure {
+        if let Some(Steps::Listed(_)) = self.axes.get(axis) {
+            return Failure::Table(self.path.clone(), cause.to_string());
+        }
         let problem = Problem::new(format!("source.motion.axes[{axis}]"), cause);
         Failure::Scenario(self.path.clone(), vec![problem])
     }
@@ -179,7 +206,8 @@ impl Axes {
 
 /// Writes the table, or the summary.
 pub(crate) fn tables(arguments: &Arguments) -> Result<(), Failure> {
-    let outputs = Outputs::judge(Some(&arguments.scenario), [arguments.out.as_path()])?;
+    let input = arguments.steps.as_deref().or(arguments.scenario.as_deref());
+    let outputs = Outputs::judge(input, [arguments.out.as_path()])?;
     let axes = Axes::new(arguments)?;
     let Some(language) = arguments.format.language() else {
         return output::write_whole(outputs, &arguments.out, |out| {
@@ -187,11 +215,11 @@ pub(crate) fn tables(arguments: &Arguments) -> Result<(), Failure> {
         });
     };
     let axis = arguments.axis;
-    let plan = axes.plans.get(axis);
-    let plan = plan.ok_or_else(|| Failure::Axis(axes.path.clone(), axis, axes.plans.len()))?;
+    let steps = axes.axes.get(axis);
+    let steps = steps.ok_or_else(|| Failure::Axis(axes.path.clone(), axis, axes.axes.len()))?;
     let form = arguments.form.unwrap_or(FormName::Compressed);
     let format = arguments.entries.unwrap_or(EntryFormat::Q16);
-    let table = axes.kept(plan, form, format).map_err(|cause| axes.refused(axis, cause))?;
+    let table = axes.kept(steps, form, format).map_err(|cause| axes.refused(axis, cause))?;
     let name = arguments.name.clone().unwrap_or_else(|| format!("axis_{axis}"));
     let title = headline(&axes.title, axis, form.name());
     let source = Source { name: &name, title: &title, clock_hz: axes.clock_hz, table: &table };
@@ -216,10 +244,10 @@ fn each<'a>(
     let forms = forms.into_iter().filter(|form| arguments.form.is_none_or(|only| only == *form));
     let formats = EntryFormat::ALL.into_iter();
     let formats = formats.filter(|format| arguments.entries.is_none_or(|only| only == *format));
-    axes.plans.iter().enumerate().flat_map(move |(axis, plan)| {
+    axes.axes.iter().enumerate().flat_map(move |(axis, steps)| {
         let formats = formats.clone();
         forms.clone().flat_map(move |form| {
-            formats.clone().map(move |format| (axis, form, format, axes.kept(plan, form, format)))
+            formats.clone().map(move |format| (axis, form, format, axes.kept(steps, form, format)))
         })
     })
 }

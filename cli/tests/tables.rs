@@ -32,6 +32,30 @@ fn a_summary_has_a_row_for_each_axis_form_and_width() {
 }
 
 #[test]
+fn steps_of_any_origin_are_compressed() {
+    // 1000 steps 100 us apart, every seventh 3 us late, and 500 back.
+    let way = |k: u64| if k < 1000 { "right" } else { "left" };
+    let row = |k: u64| format!("{},{}\n", 100 * (k + 1) + 3 * u64::from(k.is_multiple_of(7)), way(k));
+    let list: String = std::iter::once("time_us,dir\n".to_owned()).chain((0..1500).map(row)).collect();
+    let (code, out, err) = stepscope(&["tables", "--steps", "-", "--entries", "q16"], &list);
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    let rows: Vec<Vec<&str>> = out.lines().map(|line| line.split_whitespace().collect()).collect();
+    let count = |row: usize| rows[row][3].parse::<u32>().expect("a count");
+    assert_eq!((&rows[1][..3], rows[1][6], rows[1][7]), (["0", "exact", "q16"].as_slice(), "1500", "0.000"));
+    assert!(out.contains("a list of steps has no table of its own"), "{out}");
+    // There and back an entry and a turn each.
+    assert!(count(1) > 200 && count(3) == 4, "{out}");
+    let (code, out, _) = stepscope(&["tables", "--steps", "-", "--format", "c", "--name", "captured_1"], &list);
+    assert!(code == Some(0) && out.contains("static const uint64_t captured_1_interval[4]"), "{out}");
+    // A pulse that comes too soon, and a row that is none.
+    for (list, told) in [("cycle\n100\n110\n", "step 2"), ("cycle\n1\nlater\n", "line 3: cycle is \"later\"")]
+    {
+        let (code, _, err) = stepscope(&["tables", "--steps", "-", "--format", "csv"], list);
+        assert!(code == Some(2) && err.contains(told), "{err}");
+    }
+}
+
+#[test]
 fn a_table_of_too_many_steps_is_refused_before_one_is_looked_at() {
     let motion = r#"{"source":{"motion":{"axes":[{"moves":[{"sine_segments":{"amplitude":{"steps":1e9},"period_s":86400,"periods":1}}]}]}}}"#;
     let (code, out, err) = stepscope(&["tables", "-"], motion);

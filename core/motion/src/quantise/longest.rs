@@ -153,7 +153,8 @@ impl Ahead {
                 continue;
             }
             if sampled == taken.count {
-                let limited = sampled == most || self.ends_with(sampled);
+                // Of whole cycles without a tolerance every entry begins in a due cycle itself.
+                let limited = sampled == most || self.ends_with(sampled) || self.format.fraction_bits == 0;
                 let count = if limited || !self.is_tight(sampled) { sampled } else { sampled - sampled / 8 };
                 return Ok(Some(Longest { count, ..taken }));
             }

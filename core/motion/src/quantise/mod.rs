@@ -36,7 +36,7 @@ mod timing_error;
 pub use compressed::{Compressed, MAX_TOLERANCE, Tolerance, compressed};
 pub use entry_format::{Entry, EntryFormat};
 pub use segments::exact_segments;
-pub use stored::{Form, MAX_TABLE_STEPS, Stored, stored};
+pub use stored::{Form, MAX_TABLE_STEPS, Stored, stored, stored_steps};
 pub use ticks::{TickClock, Ticks, ticks};
 pub use timing_error::TimingError;
 

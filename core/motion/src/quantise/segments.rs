@@ -11,7 +11,7 @@
 
 use super::AxesPath;
 use crate::{
-    AxisPlan,
+    AxisPlan, ScheduledStep,
     problem::{Cause, Problem, ValueError},
 };
 use alloc::{vec, vec::Vec};
@@ -48,7 +48,7 @@ pub fn exact_segments(
     }
     let (mut lists, mut problems) = (Vec::new(), Vec::new());
     for (axis, plan) in plans.iter().enumerate() {
-        match exact(plan, pulse, clock_hz) {
+        match exact(plan.due_steps(clock_hz), pulse) {
             Ok(list) => lists.push(list),
             Err(cause) => problems.push(Problem::new(at.axis(axis), cause)),
         }
@@ -61,16 +61,19 @@ pub fn exact_segments(
     })
 }
 
-/// The exact list of one axis.
+/// The exact list of one axis' steps.
 ///
 /// # Errors
 /// The first step that comes too soon for a pulse, or too late for 48.16 fixed point.
-pub(super) fn exact(plan: &AxisPlan, pulse: PulseTimes, clock_hz: u32) -> Result<SegmentList, Cause> {
+pub(super) fn exact(
+    steps: impl Iterator<Item = ScheduledStep>,
+    pulse: PulseTimes,
+) -> Result<SegmentList, Cause> {
     let least = pulse.min_interval().0;
     let last = LAST_CYCLE.0 - START.0;
     let mut merge = Merge::default();
     let mut before = 0;
-    for (step, due) in (1..).zip(plan.due_steps(clock_hz)) {
+    for (step, due) in (1..).zip(steps) {
         let interval = due.cycle.saturating_sub(before);
         if interval < least {
             return Err(Cause::StepTooSoon { step, interval, pulse });
@@ -233,7 +236,7 @@ mod tests {
     #[test]
     fn a_step_that_comes_too_soon_is_named_with_its_numbers() {
         let too_soon = |step, interval| Cause::StepTooSoon { step, interval, pulse: PULSE };
-        let quick = |least: &[Move]| exact(&plan(least.to_vec()), PULSE, 1_000_000).err();
+        let quick = |least: &[Move]| exact(plan(least.to_vec()).due_steps(1_000_000), PULSE).err();
         // 40 cycles a step; the first has half of it.
         assert_eq!(quick(&[constant(5.0, 12_500.0)]), None);
         assert_eq!(quick(&[constant(5.0, 12_700.0)]), Some(too_soon(1, 39)));

@@ -1,7 +1,7 @@
 //! How a controller can keep a motion's step times, and what each form costs (DESIGN B8).
 //!
 //! ```text
-//! exact        every step in its cycle; steps whose intervals differ by a constant share a segment
+//! exact        every step in its cycle, in few entries
 //! document     the motion's own table, where it has one
 //! compressed   few entries, no step further from its due cycle than allowed
 //! ```
@@ -14,11 +14,14 @@ use crate::quantise::{
     timing_error::TimingError,
 };
 use crate::{
-    AxisPlan,
+    AxisPlan, ScheduledStep,
     problem::{Cause, ValueError},
 };
 use alloc::{vec, vec::Vec};
-use stepscope_peripheral::segment::{CheckedSegments, PulseTimes, Refusal, SegmentList};
+use stepscope_peripheral::{
+    segment::{CheckedSegments, PulseTimes, Refusal, SegmentList},
+    units::Cycles,
+};
 
 /// Most steps of one axis' compressed list or of its document's table: each step is looked at.
 pub const MAX_TABLE_STEPS: u64 = 100_000_000;
@@ -80,27 +83,91 @@ pub fn stored(
     pulse: PulseTimes,
     clock_hz: u32,
 ) -> Result<Stored, Cause> {
-    let (steps, most) = (plan.step_count(), form.most_steps());
+    judge_count(plan.step_count(), form)?;
+    let own = || document(plan, format, clock_hz);
+    kept(|| plan.due_steps(clock_hz), own, form, format, pulse, document_bytes(plan))
+}
+
+/// Keeps step times of any origin in a form; they count from the start on and do not fall.
+///
+/// ```
+/// use stepscope_motion::{ScheduledStep, quantise::{EntryFormat, Form, stored_steps}};
+/// use stepscope_peripheral::{segment::PulseTimes, units::Cycles};
+///
+/// let pulse = PulseTimes { width: Cycles(30), setup: Cycles(10), hold: Cycles(0) };
+/// let steps: Vec<_> = (1..=10).map(|k| ScheduledStep { cycle: 1000 * k, right: true }).collect();
+/// let table = stored_steps(&steps, Form::Exact, EntryFormat::TICKS, pulse).expect("there is time for each pulse");
+/// assert_eq!((table.entries.len(), table.error.greatest), (1, 0));
+/// ```
+///
+/// # Errors
+/// As [`stored`]; [`Form::Document`], because a list has no document.
+pub fn stored_steps(
+    steps: &[ScheduledStep],
+    form: Form,
+    format: EntryFormat,
+    pulse: PulseTimes,
+) -> Result<Stored, Cause> {
+    judge_count(steps.len() as u64, form)?;
+    let none = || {
+        let detail = "a list of steps has no table of its own; give the form exact or compressed";
+        Err(ValueError::Conflict { detail }.into())
+    };
+    kept(|| steps.iter().copied(), none, form, format, pulse, None)
+}
+
+fn judge_count(steps: u64, form: Form) -> Result<(), Cause> {
+    let most = form.most_steps();
     if steps > most {
         return Err(
             ValueError::TooMuch { given: steps as f64, most: most as f64, of: "steps of a table" }.into()
         );
     }
+    Ok(())
+}
+
+fn kept<I: Iterator<Item = ScheduledStep>>(
+    due: impl Fn() -> I,
+    document: impl Fn() -> Result<SegmentList, Cause>,
+    form: Form,
+    format: EntryFormat,
+    pulse: PulseTimes,
+    document_bytes: Option<u64>,
+) -> Result<Stored, Cause> {
     let (list, error) = match form {
-        Form::Exact => (exact(plan, pulse, clock_hz)?, None),
-        Form::Document => (document(plan, format, clock_hz)?, None),
+        Form::Exact => (smallest_exact(&due, format, pulse)?, None),
+        Form::Document => (document()?, None),
         Form::Compressed(tolerance) => {
-            let made = compressed(plan.due_steps(clock_hz), tolerance, format, pulse)?;
+            let made = compressed(due(), tolerance, format, pulse)?;
             (made.list, Some(made.error))
         }
     };
     let list = judged(list, pulse)?;
     let error = match error {
         Some(error) => error,
-        None => TimingError::of(&list, plan.due_steps(clock_hz)).ok_or(Cause::NoSegmentSteps)?,
+        None => TimingError::of(&list, due()).ok_or(Cause::NoSegmentSteps)?,
     };
     let entries = format.pack(&list)?;
-    Ok(Stored { list, format, entries, document_bytes: document_bytes(plan), error })
+    Ok(Stored { list, format, entries, document_bytes, error })
+}
+
+/// Every step in its cycle, in as few entries as whole intervals allow, or, where that is fewer, as fractions of a cycle
+/// do.
+///
+/// Of whole cycles no list is shorter: a step stands in its cycle or not, so whichever entry comes before, each that
+/// begins there may have the same length, and the longest leaves the fewest steps for those after it. (That is so as long as
+/// each interval fits into an entry's field.)
+fn smallest_exact<I: Iterator<Item = ScheduledStep>>(
+    due: impl Fn() -> I,
+    format: EntryFormat,
+    pulse: PulseTimes,
+) -> Result<SegmentList, Cause> {
+    let whole = exact(due(), pulse)?;
+    if format.fraction_bits == 0 {
+        return Ok(whole);
+    }
+    let parts = compressed(due(), Tolerance::of(Cycles(0)), format, pulse)?.list;
+    Ok(if format.entries(&parts)? < format.entries(&whole)? { parts } else { whole })
 }
 
 /// The list, if the segment engine runs it.

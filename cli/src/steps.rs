@@ -1,0 +1,118 @@
+//! Step times of any origin, from a table: what `stepscope tables --steps` compresses.
+
+use std::iter;
+use stepscope_core::motion::ScheduledStep;
+
+/// Columns that a time may stand in, with those of its units in a second; `cycle` has the clock's.
+const TIMES: [(&str, Option<u32>); 4] =
+    [("cycle", None), ("time_s", Some(1)), ("time_ms", Some(1000)), ("time_us", Some(1_000_000))];
+/// The column of the direction.
+const WAY: &str = "dir";
+/// Digits after the point that a time may have.
+const MAX_DIGITS: usize = 12;
+/// Greatest cycle.
+const MAX_CYCLE: u128 = 1 << 48;
+
+/// The steps of a table: a row each, with its time in cycle, `time_s`, `time_ms` or `time_us`, and its direction, if there is
+/// a column dir: 1 or right, 0 or left. A time is rounded to the nearest cycle, half up, by its decimals.
+///
+/// # Errors
+/// What is wrong with the first line that cannot be used.
+pub(crate) fn steps_of_table(text: &str, clock_hz: u32) -> Result<Vec<ScheduledStep>, String> {
+    let mut reader =
+        csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
+    let head = reader.headers().map_err(|error| error.to_string())?.clone();
+    let column = |name: &str| head.iter().position(|found| found.eq_ignore_ascii_case(name));
+    let found = TIMES.iter().find_map(|(name, a_second)| Some((*name, column(name)?, *a_second)));
+    let Some((name, time_at, a_second)) = found else {
+        let given = head.iter().collect::<Vec<_>>().join(", ");
+        return Err(format!(
+            "the first line has the columns \"{given}\"; give one of cycle, time_s, time_ms and time_us, and dir if steps go both ways"
+        ));
+    };
+    let way_at = column(WAY);
+    let mut steps = Vec::new();
+    let mut before = 0;
+    for (line, row) in iter::zip(2_u64.., reader.records()) {
+        let row = row.map_err(|error| error.to_string())?;
+        let line = row.position().map_or(line, csv::Position::line);
+        let given = row.get(time_at).unwrap_or_default();
+        let cycle = cycle(given, a_second, clock_hz)
+            .ok_or_else(|| format!("line {line}: {name} is \"{given}\"; give a number from 0 to 2^48 cycles, with up to {MAX_DIGITS} digits after the point"))?;
+        if cycle < before {
+            return Err(format!(
+                "line {line}: {name} is {given}, before that of the line above; give times that rise"
+            ));
+        }
+        let right = match way_at.map(|at| row.get(at).unwrap_or_default()) {
+            None | Some("1" | "right" | "+1") => true,
+            Some("0" | "left" | "-1") => false,
+            Some(other) => {
+                return Err(format!("line {line}: {WAY} is \"{other}\"; give 1 or right, 0 or left"));
+            }
+        };
+        steps.push(ScheduledStep { cycle, right });
+        before = cycle;
+    }
+    if steps.is_empty() { Err("no step; give a row for each".to_owned()) } else { Ok(steps) }
+}
+
+/// The cycle of a time as it is printed: floor(time*clock + 1/2).
+fn cycle(text: &str, a_second: Option<u32>, clock_hz: u32) -> Option<u64> {
+    let (whole, fraction) = text.split_once('.').unwrap_or((text, ""));
+    let is_number = |digits: &str| digits.bytes().all(|digit| digit.is_ascii_digit());
+    let fits = whole.len() + fraction.len() > 0 && whole.len() <= 18 && fraction.len() <= MAX_DIGITS;
+    if !fits || !is_number(whole) || !is_number(fraction) {
+        return None;
+    }
+    let digits: u128 = format!("{whole}{fraction}").parse().ok()?;
+    let (over, under) = match a_second {
+        Some(a_second) => (digits * u128::from(clock_hz), u128::from(a_second)),
+        None => (digits, 1),
+    };
+    let under = under * 10_u128.pow(fraction.len() as u32);
+    let cycle = (2 * over + under) / (2 * under);
+    u64::try_from(cycle).ok().filter(|cycle| u128::from(*cycle) <= MAX_CYCLE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_rounded_by_their_decimals_half_up() {
+        let rows: [(&str, Option<u32>, Option<u64>); 9] = [
+            ("17", None, Some(17)),
+            ("16.5", None, Some(17)),
+            ("16.499999999999", None, Some(16)),
+            // 0.5 us of 1 MHz.
+            ("0.0000005", Some(1), Some(1)),
+            ("0.4999", Some(1_000_000), Some(0)),
+            (".25", Some(1000), Some(250)),
+            ("-1", Some(1), None),
+            ("1e-3", Some(1), None),
+            ("999999999999", Some(1), None),
+        ];
+        for (text, a_second, expected) in rows {
+            assert_eq!(cycle(text, a_second, 1_000_000), expected, "{text} of {a_second:?}");
+        }
+    }
+
+    #[test]
+    fn a_table_has_a_step_a_row_and_says_what_is_wrong_with_it() {
+        let step = |cycle, right| ScheduledStep { cycle, right };
+        let found = steps_of_table("# a capture\ntime_us, dir\n10,1\n20.5, left\n", 1_000_000);
+        assert_eq!(found, Ok(vec![step(10, true), step(21, false)]));
+        let rows = [
+            ("1\n2\n", "the first line has the columns \"1\""),
+            ("cycle\n", "no step"),
+            ("cycle\n5\n4\n", "line 3: cycle is 4, before that of the line above"),
+            ("cycle,dir\n5,up\n", "line 2: dir is \"up\"; give 1 or right, 0 or left"),
+            ("time_s\nsoon\n", "line 2: time_s is \"soon\"; give a number"),
+        ];
+        for (text, expected) in rows {
+            let found = steps_of_table(text, 1_000_000).expect_err("it is wrong");
+            assert!(found.starts_with(expected), "{found}");
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! An exact table is the smallest (DESIGN B8): of whole cycles as small as trying every way to part the steps makes it, and
+//! with parts of a cycle no larger than that.
+
+#![allow(clippy::expect_used, clippy::panic, reason = "what cannot be kept fails the test")]
+
+use rand_xoshiro::{
+    Xoshiro256PlusPlus,
+    rand_core::{Rng, SeedableRng},
+};
+use std::num::NonZeroU32;
+use stepscope_motion::{
+    ScheduledStep,
+    quantise::{EntryFormat, Form, Tolerance, stored_steps},
+};
+use stepscope_peripheral::{segment::PulseTimes, units::Cycles};
+
+const PULSE: PulseTimes = PulseTimes { width: Cycles(3), setup: Cycles(1), hold: Cycles(0) };
+
+/// Whether one entry holds these steps, the last of those before them having come in `before`.
+fn is_entry(before: u64, steps: &[ScheduledStep]) -> bool {
+    let cycles: Vec<i64> = std::iter::once(before)
+        .chain(steps.iter().map(|step| step.cycle))
+        .map(|cycle| cycle as i64)
+        .collect();
+    let intervals: Vec<i64> = cycles.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let adds: Vec<i64> = intervals.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    steps.iter().all(|step| step.right == steps[0].right) && adds.iter().all(|add| *add == adds[0])
+}
+
+/// The fewest entries, of all ways.
+fn fewest(steps: &[ScheduledStep]) -> usize {
+    let mut least = vec![0];
+    for end in 1..=steps.len() {
+        let of = |start: usize| {
+            let before = if start == 0 { 0 } else { steps[start - 1].cycle };
+            is_entry(before, &steps[start..end]).then(|| least[start] + 1)
+        };
+        let found = (0..end).filter_map(of).min().expect("a step alone is an entry");
+        least.push(found);
+    }
+    least[steps.len()]
+}
+
+#[test]
+fn an_exact_table_is_the_smallest() {
+    let mut noise = Xoshiro256PlusPlus::seed_from_u64(1);
+    let mut smaller = 0;
+    for round in 0..3000 {
+        let below = |noise: &mut Xoshiro256PlusPlus, end: u64| noise.next_u64() % end;
+        let count = 1 + below(&mut noise, 24);
+        let (mut cycle, mut interval, mut right) = (0, 40, true);
+        let steps: Vec<ScheduledStep> = (0..count)
+            .map(|_| {
+                // Few different intervals and adds, so that there are many ways.
+                interval = (interval + below(&mut noise, 3)).saturating_sub(1).max(8);
+                right ^= below(&mut noise, 12) == 0;
+                cycle += interval;
+                ScheduledStep { cycle, right }
+            })
+            .collect();
+        let entries = |form, format| {
+            let table = stored_steps(&steps, form, format, PULSE).expect("there is time for each pulse");
+            assert_eq!((table.error.greatest, table.error.steps), (0, count), "{round}");
+            table.entries.len()
+        };
+        // A change of the direction is an entry of its own; before the first step it is to the left.
+        let ways = std::iter::once(false).chain(steps.iter().map(|step| step.right));
+        let turns = ways.zip(&steps).filter(|(before, step)| step.right != *before).count();
+        let least = fewest(&steps) + turns;
+        let none = Tolerance { cycles: Cycles(0), interval_part: NonZeroU32::new(2) };
+        assert_eq!(entries(Form::Exact, EntryFormat::TICKS), least, "{round}: {steps:?}");
+        assert_eq!(entries(Form::Compressed(none), EntryFormat::TICKS), least, "{round}: {steps:?}");
+        let with_parts = entries(Form::Exact, EntryFormat::Q16);
+        assert!(with_parts <= least, "{round}: {with_parts} {least} {steps:?}");
+        smaller += usize::from(with_parts < least);
+    }
+    assert!(smaller > 300, "{smaller}");
+}
