@@ -4,13 +4,18 @@
 #![allow(clippy::expect_used, clippy::panic, reason = "what cannot be run fails the test")]
 
 use stepscope_core::{
+    inspect::plant::verdict,
     peripheral::{
         device::Faults,
         signal::Record,
         trace::{Digest, steps},
         units::Cycles,
     },
-    plant::{Observer, Plant},
+    plant::{
+        Observer, Plant,
+        settling::{Deviation, SensorLog, StepResponse},
+    },
+    scenario::presets::PLANT_PRESETS,
     sim::{Experiment, plant_run::PlantRun},
 };
 
@@ -312,4 +317,82 @@ fn the_cost_of_a_plant_is_judged_before_it_runs() {
         "plant.step_cycles: 256000000000 motor-steps of the plant are more than one run may have; at most 10000000000 are allowed: \
          give a shorter run, fewer channels or a greater step_cycles"
     );
+}
+
+fn preset(id: &str) -> &'static str {
+    PLANT_PRESETS.iter().find(|preset| preset.id == id).expect("it is a preset").json
+}
+
+/// F10's "one step", with what its note says of it.
+#[test]
+fn each_preset_shows_what_its_note_says() {
+    let result = |id: &str| {
+        let run = run(preset(id), SensorLog::default());
+        let (result, overload) = (run.results().remove(0), run.overload(0));
+        let log = run.into_parts().remove(0).1;
+        (result, overload, log)
+    };
+    let (_, _, log) = result("patent-2019-figure-1");
+    let rise = log.steps[0];
+    let found = StepResponse::of(&log.samples, rise - 10 * 32_768, rise, 32_768, 0.2).expect("samples");
+    near(found.reached.expect("it falls") as f64 / 16e3, 0.515, 0.006);
+    near(found.settled.expect("it settles") as f64 / 16e3, 0.512, 0.008);
+
+    let deviation = |json: &str| {
+        let log = run(json, SensorLog::default()).into_parts().remove(0).1;
+        Deviation::of(&log.samples, log.steps[0], log.steps[4]).expect("samples").greatest_a()
+    };
+    let staggered = preset("patent-2019-figure-2");
+    let together = staggered.replace(r#""staggered""#, r#""simultaneous""#);
+    near(deviation(&together) / deviation(staggered), 2.96, 0.05);
+
+    let (_, overload, _) = result("patent-2019-overload");
+    assert!(overload.is_some());
+    let apart = preset("patent-2019-overload").replace(
+        r#""dir_setup_cycles": 16"#,
+        r#""dir_setup_cycles": 16, "pulse_phasing": "staggered", "settle_cycles": 8192"#,
+    );
+    assert_eq!(run(&apart, ()).overload(0), None);
+
+    let motor = |id: &str| result(id).0.motors.remove(0);
+    let turn = motor("song-2021-motor");
+    assert_eq!((turn.lost, verdict(&turn, 16_000_000)), (0, "follows".to_owned()));
+    near(turn.following_error.0.abs(), 0.078, 0.003);
+    let direct = motor("song-2021-direct-start");
+    assert_eq!(direct.lost, 0);
+    near(direct.overshoot.expect("it stepped"), 0.676, 0.02);
+    near(direct.settling.expect("it stepped") as f64 / 16e3, 26.5, 0.6);
+    let stall = motor("song-2021-stall");
+    assert_eq!(stall.lost, 188);
+    assert!(
+        verdict(&stall, 16_000_000).starts_with("loses 188 full steps, first at 2."),
+        "{}",
+        verdict(&stall, 16_000_000)
+    );
+    let resonance = motor("resonance-full-steps");
+    assert!(resonance.slip_count > 0, "{}", verdict(&resonance, 16_000_000));
+    for rate in ["200", "264"] {
+        let json = preset("resonance-full-steps").replace("232 } }", &format!("{rate} }} }}"));
+        assert_ne!(json, preset("resonance-full-steps"));
+        assert_eq!(run(&json, ()).results()[0].motors[0].slip_count, 0, "{rate}");
+    }
+}
+
+#[test]
+fn presets_give_the_same_plant_on_every_machine() {
+    let expected = [
+        ("patent-2019-figure-1", "15dad058bd518a09"),
+        ("patent-2019-figure-2", "03a27bce1dd6070e"),
+        ("patent-2019-overload", "69c099cbc4f0336c"),
+        ("song-2021-motor", "0fe6475a9e3fccbf"),
+        ("song-2021-direct-start", "004aeb28b036d394"),
+        ("song-2021-stall", "0172c242b93b8014"),
+        ("resonance-full-steps", "e6788f170368dfb1"),
+    ];
+    let found: Vec<(&str, String)> = PLANT_PRESETS
+        .iter()
+        .map(|preset| (preset.id, format!("{:016x}", run(preset.json, ()).results()[0].digest)))
+        .collect();
+    let expected: Vec<(&str, String)> = expected.map(|(id, digest)| (id, digest.to_owned())).into();
+    assert_eq!(found, expected);
 }
