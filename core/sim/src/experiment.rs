@@ -6,8 +6,8 @@ use crate::{
     Cost,
     bus::Bus,
     controller_plan::{self, ControllerPlan},
+    controllers::Controllers,
     framed_host::{FramedHost, Progress},
-    ignored::Ignored,
 };
 #[cfg(feature = "plant")]
 use alloc::boxed::Box;
@@ -228,9 +228,11 @@ impl Experiment {
         let line = Line::new(Rc::clone(&self.schedule), forced, clock_hz, *baud);
         let host = self.host();
         Run {
-            bus: Bus::new(line, host, self.configs().map(|config| self.device(config)).collect()),
-            engine: self.segments.clone().map(SegmentEngine::new),
-            end: run.map(|cycles| Instant(cycles.0)),
+            controllers: Controllers {
+                bus: Bus::new(line, host, self.configs().map(|config| self.device(config)).collect()),
+                engine: self.segments.clone().map(SegmentEngine::new),
+                end: run.map(|cycles| Instant(cycles.0)),
+            },
             #[cfg(feature = "plant")]
             plants: self.plants().map(|plants| Box::new(PlantsBehind::new(plants, self.configs()))),
         }
@@ -292,12 +294,8 @@ impl Experiment {
 /// A run under way.
 #[derive(Clone, Debug)]
 pub struct Run {
-    bus: Bus,
-    /// Runs in place of the net, which then stays before cycle 0.
-    engine: Option<SegmentEngine>,
-    /// First cycle that is not run; without it the run ends when nothing can change any more.
-    end: Option<Instant>,
-    /// What the edges drive. They are taken out while they run.
+    controllers: Controllers,
+    /// What the edges drive.
     #[cfg(feature = "plant")]
     plants: Option<Box<PlantsBehind>>,
 }
@@ -306,44 +304,44 @@ impl Run {
     /// The first controller as it is now; where segments run the scenario, one before cycle 0.
     #[must_use]
     pub fn device(&self) -> &Device {
-        self.bus.first()
+        self.controllers.bus.first()
     }
 
     /// All controllers as they are now, in the order of the scenario.
     pub fn devices(&self) -> impl Iterator<Item = &Device> {
-        self.bus.devices()
+        self.controllers.bus.devices()
     }
 
     /// The host of a framed line as it is now; `None` where nobody waits for replies.
     #[must_use]
     pub const fn host(&self) -> Option<&FramedHost> {
-        self.bus.host()
+        self.controllers.bus.host()
     }
 
     /// What the host has sent, and what it will send as far as that is known. Another run can take it
     /// as its source (A9).
     #[must_use]
     pub fn schedule(&self) -> &Schedule {
-        self.bus.line().schedule()
+        self.controllers.bus.line().schedule()
     }
 
     /// The levels that have been forced on the line and will be as far as that is known, those of noise
     /// among them, rising in time. Together with [`Self::schedule`] they are all that is done to the line.
     #[must_use]
     pub fn forced(&self) -> &[ForcedLevel] {
-        self.bus.line().forced()
+        self.controllers.bus.line().forced()
     }
 
     /// Position counters of the first controller, or of the segment engine (DESIGN A3).
     #[must_use]
     pub fn positions(&self) -> [i32; MAX_CHANNELS] {
-        self.engine.as_ref().map_or_else(|| self.device().positions(), SegmentEngine::positions)
+        self.controllers.engine.as_ref().map_or_else(|| self.device().positions(), SegmentEngine::positions)
     }
 
     /// Faults of the first controller so far, or of the segment engine.
     #[must_use]
     pub fn faults(&self) -> Faults {
-        self.engine.as_ref().map_or_else(|| self.device().faults(), SegmentEngine::faults)
+        self.controllers.engine.as_ref().map_or_else(|| self.device().faults(), SegmentEngine::faults)
     }
 
     /// Ticks of the first controller that have ended; segments have none.
@@ -359,12 +357,7 @@ impl Run {
         if let Some(ended) = self.plants.as_ref().and_then(|plants| plants.ended) {
             return Cycles(ended.0);
         }
-        Cycles(self.reached().0)
-    }
-
-    /// The first cycle that nobody has run.
-    pub(crate) fn reached(&self) -> Instant {
-        self.engine.as_ref().map_or_else(|| self.bus.now(), SegmentEngine::now)
+        Cycles(self.controllers.reached().0)
     }
 
     /// Whether the run is over.
@@ -374,12 +367,7 @@ impl Run {
         if let Some(plants) = &self.plants {
             return plants.ended.is_some();
         }
-        match (&self.engine, self.end) {
-            (Some(engine), Some(end)) => engine.now() >= end,
-            (Some(engine), None) => engine.at_rest(),
-            (None, Some(end)) => self.bus.has_reached(end),
-            (None, None) => self.bus.is_over(),
-        }
+        self.controllers.are_done()
     }
 
     /// Goes on until the first controller has made `records` more (a few more may come) or to the
@@ -395,57 +383,9 @@ impl Run {
             return self.advance_observed::<_, ()>((Instant::NEVER, records), sinks, &mut []);
         }
         let mut slices: Vec<_> = sinks.iter_mut().map(|sink| Slice { sink, left: records }).collect();
-        let end = self.end.unwrap_or(Instant::NEVER);
-        match (&mut self.engine, slices.first_mut()) {
-            (Some(engine), Some(slice)) => engine.run(end, slice),
-            (Some(engine), None) => engine.run(end, &mut Ignored),
-            (None, _) => self.bus.run(end, &mut slices),
-        }
+        let end = self.controllers.end.unwrap_or(Instant::NEVER);
+        self.controllers.run_to(end, &mut slices);
         self.is_done()
-    }
-
-    /// Goes on to cycle `end`, whatever the run's own end is.
-    #[cfg(feature = "plant")]
-    pub(crate) fn run_to(&mut self, end: Instant, sinks: &mut [impl Sink]) {
-        match (&mut self.engine, sinks.first_mut()) {
-            (Some(engine), Some(sink)) => engine.run(end, sink),
-            (Some(engine), None) => engine.run(end, &mut Ignored),
-            (None, _) => self.bus.run(end, sinks),
-        }
-    }
-
-    /// Where nothing can change any more, the cycle after the last change. The segment engine does not know that one: it is
-    /// `last`.
-    #[cfg(feature = "plant")]
-    pub(crate) fn rests_from(&self, last: Instant) -> Option<Instant> {
-        match &self.engine {
-            Some(engine) => engine.at_rest().then(|| last.next()),
-            None => self.bus.is_over().then(|| self.bus.rests_from()),
-        }
-    }
-
-    /// The end that was given.
-    #[cfg(feature = "plant")]
-    pub(crate) const fn given_end(&self) -> Option<Instant> {
-        self.end
-    }
-
-    /// The plant of a controller reports an overload, last in the cycle that was run last.
-    #[cfg(feature = "plant")]
-    pub(crate) fn overload(&mut self, controller: usize, sink: &mut impl Sink) {
-        match (&mut self.engine, self.bus.device_mut(controller)) {
-            (Some(engine), _) => engine.overload(),
-            (None, Some(device)) => device.overload(sink),
-            (None, None) => {}
-        }
-    }
-
-    /// What a controller's self-test found.
-    #[cfg(feature = "plant")]
-    pub(crate) fn settles_in(&mut self, controller: usize, found: Option<Cycles>) {
-        if let Some(device) = self.bus.device_mut(controller) {
-            device.settles_in(found);
-        }
     }
 
     /// Goes on to a cycle, or until a controller has made so many records more, with a sink and an observer for each; true
@@ -457,18 +397,15 @@ impl Run {
         sinks: &mut [S],
         observers: &mut [O],
     ) -> bool {
-        let Some(mut plants) = self.plants.take() else { return true };
-        let done = plants.advance(self, until, sinks, observers);
-        self.plants = Some(plants);
-        done
+        let Self { controllers, plants } = self;
+        plants.as_mut().is_none_or(|plants| plants.advance(controllers, until, sinks, observers))
     }
 
     /// One cycle, with a sink and an observer for each controller.
     #[cfg(feature = "plant")]
     pub(crate) fn clock_observed<S: Sink, O: Observer>(&mut self, sinks: &mut [S], observers: &mut [O]) {
-        if let Some(mut plants) = self.plants.take() {
-            plants.clock(self, sinks, observers);
-            self.plants = Some(plants);
+        if let Some(plants) = &mut self.plants {
+            plants.clock(&mut self.controllers, sinks, observers);
         }
     }
 
@@ -484,20 +421,7 @@ impl Run {
         if self.plants.is_some() {
             return self.clock_observed::<_, ()>(sinks, &mut []);
         }
-        self.clock_wired(sinks);
-    }
-
-    /// One cycle of the controllers alone.
-    pub(crate) fn clock_wired(&mut self, sinks: &mut [impl Sink]) {
-        match (&mut self.engine, sinks.first_mut()) {
-            (Some(engine), Some(sink)) => {
-                engine.clock(sink);
-            }
-            (Some(engine), None) => {
-                engine.clock(&mut Ignored);
-            }
-            (None, _) => self.bus.clock(sinks),
-        }
+        self.controllers.clock(sinks);
     }
 }
 

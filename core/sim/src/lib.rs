@@ -38,6 +38,8 @@ mod bus;
 
 mod controller_plan;
 
+mod controllers;
+
 mod cost;
 
 mod experiment;

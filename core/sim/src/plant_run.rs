@@ -39,6 +39,15 @@ impl<S: Sink, O: Observer> PlantRun<S, O> {
         Some(Self { run: experiment.start(), sinks, observers })
     }
 
+    /// Puts another sink and another observer in the place of a controller's.
+    pub fn attach(&mut self, controller: usize, sink: S, observer: O) {
+        if let (Some(sinks), Some(observers)) =
+            (self.sinks.get_mut(controller), self.observers.get_mut(controller))
+        {
+            (*sinks, *observers) = (sink, observer);
+        }
+    }
+
     /// The first cycle that has not been run.
     #[must_use]
     pub fn now(&self) -> Instant {

@@ -3,7 +3,7 @@
 //! A plant follows its controller's edges. Where a protection watches the supply current the run stops after each cycle of a
 //! conversion, so that an overload acts last in that very cycle; a self-test's result is in force at the end of the boot.
 
-use crate::Run;
+use crate::controllers::Controllers;
 use alloc::vec::Vec;
 use stepscope_peripheral::{
     config::Config,
@@ -197,7 +197,7 @@ impl PlantsBehind {
     /// Runs to `target`, to the end, or until a controller has made `records` more. True at the end.
     pub(crate) fn advance(
         &mut self,
-        run: &mut Run,
+        run: &mut Controllers,
         (target, records): (Instant, u64),
         sinks: &mut [impl Sink],
         observers: &mut [impl Observer],
@@ -208,7 +208,7 @@ impl PlantsBehind {
             // Without an end in sight it is looked for every now and then.
             let portion = target.min(Instant(now.0.saturating_add(PORTION)));
             let stops = self.behind.iter().map(|behind| behind.next_stop(now));
-            let stop = stops.chain(run.given_end()).fold(portion, Instant::min);
+            let stop = stops.chain(run.end).fold(portion, Instant::min);
             let mut wired = self.wired(sinks, observers);
             run.run_to(stop, &mut wired);
             made += wired.iter().map(|wired| wired.records).max().unwrap_or(0);
@@ -218,9 +218,14 @@ impl PlantsBehind {
     }
 
     /// One cycle.
-    pub(crate) fn clock(&mut self, run: &mut Run, sinks: &mut [impl Sink], observers: &mut [impl Observer]) {
+    pub(crate) fn clock(
+        &mut self,
+        run: &mut Controllers,
+        sinks: &mut [impl Sink],
+        observers: &mut [impl Observer],
+    ) {
         let mut wired = self.wired(sinks, observers);
-        run.clock_wired(&mut wired);
+        run.clock(&mut wired);
         // It rests from the first cycle in which that could be told.
         let rests_from = self.rests_from.unwrap_or_else(|| run.reached());
         self.after(run, Some(rests_from), sinks, observers);
@@ -230,13 +235,13 @@ impl PlantsBehind {
     /// looked at, so where it rests from is told: `seen`.
     fn after(
         &mut self,
-        run: &mut Run,
+        run: &mut Controllers,
         seen: Option<Instant>,
         sinks: &mut [impl Sink],
         observers: &mut [impl Observer],
     ) {
         let now = run.reached();
-        let rests = |this: &Self, run: &Run| {
+        let rests = |this: &Self, run: &Controllers| {
             let last = this.behind.iter().map(|behind| behind.last).max().unwrap_or(Instant::RESET);
             let rests_from = run.rests_from(last);
             if seen.is_some() { rests_from.and(seen) } else { rests_from }
@@ -250,7 +255,7 @@ impl PlantsBehind {
                 wired.act(run, index, Instant(now.0 - 1));
             }
         }
-        let is_end = end == Some(now) && (run.given_end().is_some() || rests(self, run).is_some());
+        let is_end = end == Some(now) && (run.end.is_some() || rests(self, run).is_some());
         if let Some(end) = end.filter(|_| is_past || is_end) {
             self.wired(sinks, observers).iter_mut().for_each(|wired| wired.advance(end.0));
             self.ended = Some(end);
@@ -259,8 +264,8 @@ impl PlantsBehind {
 
     /// Where the run ends, as far as that is known: the given end; else where nothing can change any more, at least the end
     /// of a boot that measures, and the tail after the last fall of a STEP.
-    fn end(&self, run: &Run) -> Option<Instant> {
-        if let Some(end) = run.given_end() {
+    fn end(&self, run: &Controllers) -> Option<Instant> {
+        if let Some(end) = run.end {
             return Some(end);
         }
         let boot = self.behind.iter().filter_map(|behind| behind.boot).max();
@@ -275,7 +280,7 @@ const PORTION: u64 = 1 << 24;
 
 impl<S: Sink, O: Observer> Wired<'_, S, O> {
     /// What acts last in cycle `cycle`, which has just been run.
-    fn act(&mut self, run: &mut Run, index: usize, cycle: Instant) {
+    fn act(&mut self, run: &mut Controllers, index: usize, cycle: Instant) {
         self.advance(cycle.0);
         if self.behind.watch.overload.take() == Some(cycle.0) {
             self.behind.overload_at = Some(cycle.0);
