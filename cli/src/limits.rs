@@ -4,6 +4,7 @@ use crate::{
     failure::Failure,
     json::Tables,
     output::{self, Outputs},
+    parallel,
     plant::no_plant,
     progress::Progress,
     scenarios,
@@ -14,11 +15,6 @@ use std::{
     io::{self, Write},
     num::NonZero,
     path::{Path, PathBuf},
-    sync::{
-        atomic::{AtomicUsize, Ordering},
-        mpsc,
-    },
-    thread,
 };
 use stepscope_core::{
     inspect::plant::settling as settling_of,
@@ -138,34 +134,10 @@ fn on_threads<T: Send>(
     what: &'static str,
     count: usize,
     job: impl Fn(usize) -> T + Sync,
-) -> Vec<T> {
-    let available = || thread::available_parallelism().map_or(1, NonZero::get);
-    let threads = common.threads.map_or_else(available, NonZero::get).min(count.max(1));
-    let mut progress = Progress::new(what, common.progress);
-    let next = AtomicUsize::new(0);
-    let (sender, receiver) = mpsc::channel();
-    let mut results: Vec<Option<T>> = (0..count).map(|_| None).collect();
-    thread::scope(|scope| {
-        for _ in 0..threads {
-            let (sender, next, job) = (sender.clone(), &next, &job);
-            scope.spawn(move || {
-                let jobs = std::iter::repeat_with(|| next.fetch_add(1, Ordering::Relaxed));
-                for index in jobs.take_while(|&index| index < count) {
-                    if sender.send((index, job(index))).is_err() {
-                        return;
-                    }
-                }
-            });
-        }
-        drop(sender);
-        for (done, (index, result)) in receiver.into_iter().enumerate() {
-            if let Some(place) = results.get_mut(index) {
-                *place = Some(result);
-            }
-            progress.tell(done as u64 + 1, count as u64);
-        }
-    });
-    results.into_iter().flatten().collect()
+) -> Result<Vec<T>, Failure> {
+    let progress = Progress::new(what, common.progress);
+    parallel::each(count as u64, common.threads, progress, |index| job(index as usize))
+        .map_err(Failure::threads)
 }
 
 fn refused(path: &Path, refused: Vec<Refused>) -> Failure {
@@ -198,7 +170,7 @@ pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
         motors
             .get(index)
             .map_or(Err(Vec::new()), |alone| settling_of(&alone.setup, 0, t_step, arguments.share))
-    });
+    })?;
     let all: Vec<StepResponse> =
         all.into_iter().collect::<Result<_, _>>().map_err(|found| refused(path, found))?;
     if let Some(file) = &arguments.write {
@@ -276,7 +248,7 @@ pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
         } else {
             search(&|rate| starts(setup, rate, steps))
         }
-    });
+    })?;
     let all: Vec<Option<f64>> =
         all.into_iter().collect::<Result<_, _>>().map_err(|found| refused(path, found))?;
     let rows: Vec<(&Alone, Option<f64>, Option<f64>)> = motors
@@ -325,7 +297,7 @@ pub(crate) fn resonance(arguments: &ResonanceArguments) -> Result<(), Failure> {
         let (Some(alone), Some(rate)) = (alone, rate) else { return Err(Vec::new()) };
         let microsteps = alone.setup.motors.first().map_or(1.0, |motor| f64::from(motor.microsteps));
         resonance_of(&alone.setup, rate * microsteps)
-    });
+    })?;
     let all: Vec<Resonance> =
         all.into_iter().collect::<Result<_, _>>().map_err(|found| refused(path, found))?;
     let rows = motors.iter().zip(all.chunks(rates.len())).flat_map(|(alone, found)| {
