@@ -7,11 +7,13 @@ mod failure;
 mod faults;
 mod files;
 mod json;
+mod limits;
 mod line;
 mod manual;
 mod measures;
 mod output;
 mod parallel;
+mod plant;
 mod points;
 mod progress;
 mod run;
@@ -65,6 +67,15 @@ enum Command {
     /// Says whether the motors have the torque that a scenario's plans ask for, and which ramps they can
     /// follow; or writes a motor's torque-speed curve.
     Torque(torque::Arguments),
+    /// Runs a scenario that has a plant and tells what its pulses do to the motors, their supply and the sensors.
+    Plant(plant::Arguments),
+    /// Measures how long the supply current of each motor takes to settle after a step (the patent's delta t_p), and
+    /// can write it into a scenario.
+    Settling(limits::SettlingArguments),
+    /// Searches the rate at which each motor of a plant starts and stops, and the one to which a ramp brings it.
+    Limits(limits::LimitsArguments),
+    /// Maps how far each motor of a plant swings at each rate, and where it loses steps (CSV).
+    Resonance(limits::ResonanceArguments),
     /// Steps a millimetre by least squares, from measured lengths and the steps that made them.
     Calibrate(calibrate::Arguments),
     /// Looks for the segments that make a sine with least distortion.
@@ -124,6 +135,10 @@ fn main() -> ExitCode {
         Command::Tables(arguments) => tables::tables(&arguments),
         Command::Measures(arguments) => measures::measures(&arguments),
         Command::Torque(arguments) => torque::torque(&arguments),
+        Command::Plant(arguments) => plant::plant(&arguments),
+        Command::Settling(arguments) => limits::settling(&arguments),
+        Command::Limits(arguments) => limits::limits(&arguments),
+        Command::Resonance(arguments) => limits::resonance(&arguments),
         Command::Calibrate(arguments) => calibrate::calibrate(&arguments),
         Command::Sine(command) => sine::sine(&command),
         Command::Points(arguments) => points::points(&arguments),

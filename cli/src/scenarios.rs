@@ -11,7 +11,7 @@ use std::{
 use stepscope_core::{
     scenario::{
         MAX_TEXT_BYTES, Problem, Scenario, link,
-        presets::{PRESETS, Preset},
+        presets::{PLANT_PRESETS, PRESETS, Preset},
     },
     sim::{Experiment, Judged},
 };
@@ -59,8 +59,13 @@ pub(crate) fn text(path: &Path) -> Result<String, Failure> {
     String::from_utf8(bytes).map_err(|_| Failure::NotText(path.to_owned()))
 }
 
+/// Those of the page, and those with a plant.
+fn all_presets() -> impl Iterator<Item = &'static Preset> {
+    PRESETS.iter().chain(PLANT_PRESETS)
+}
+
 fn preset(id: &str) -> Option<&'static Preset> {
-    PRESETS.iter().find(|preset| preset.id == id)
+    all_presets().find(|preset| preset.id == id)
 }
 
 /// Writes the scenario of a link, or of an address that ends with one, as JSON; with `verify` it is also
@@ -80,10 +85,10 @@ pub(crate) fn presets(id: Option<&str>, as_json: bool) -> Result<(), Failure> {
     }
     if as_json {
         let row = |preset: &Preset| json!({ "id": preset.id, "title": preset.scenario().title });
-        return json::Tables::of("presets").with("presets", PRESETS.iter().map(row)).print();
+        return json::Tables::of("presets").with("presets", all_presets().map(row)).print();
     }
     let line = |preset: &Preset| format!("{:28} {}", preset.id, preset.scenario().title);
-    print(&PRESETS.iter().map(line).collect::<Vec<_>>().join("\n"))
+    print(&all_presets().map(line).collect::<Vec<_>>().join("\n"))
 }
 
 /// Writes a text to standard output.

@@ -45,7 +45,8 @@ fn steps_of_any_origin_are_compressed() {
     assert!(out.contains("a list of steps has no table of its own"), "{out}");
     // There and back an entry and a turn each.
     assert!(count(1) > 200 && count(3) == 4, "{out}");
-    let (code, out, _) = stepscope(&["tables", "--steps", "-", "--format", "c", "--name", "captured_1"], &list);
+    let (code, out, _) =
+        stepscope(&["tables", "--steps", "-", "--format", "c", "--name", "captured_1"], &list);
     assert!(code == Some(0) && out.contains("static const uint64_t captured_1_interval[4]"), "{out}");
     // A pulse that comes too soon, and a row that is none.
     for (list, told) in [("cycle\n100\n110\n", "step 2"), ("cycle\n1\nlater\n", "line 3: cycle is \"later\"")]

@@ -69,7 +69,7 @@
 //! left, never what stands to its right:
 //!
 //! ```text
-//! registers -> peripheral -> motion -> scenario -> sim -> inspect
+//! registers -> peripheral -> motion, plant -> scenario -> sim -> inspect
 //! ```
 //!
 //! | room | what it holds | feature |
@@ -79,6 +79,10 @@
 #![cfg_attr(
     feature = "motion",
     doc = "| [`motion`] | profiles, planners, their steps as ticks, segments and tables | `motion` |"
+)]
+#![cfg_attr(
+    feature = "plant",
+    doc = "| [`plant`] | drivers, motors, supply and sensors behind the bus | `plant` |"
 )]
 #![cfg_attr(
     feature = "scenario",
@@ -122,6 +126,9 @@ pub use stepscope_registers as registers;
 
 #[cfg(feature = "motion")]
 pub use stepscope_motion as motion;
+
+#[cfg(feature = "plant")]
+pub use stepscope_plant as plant;
 
 #[cfg(feature = "scenario")]
 pub use stepscope_scenario as scenario;

@@ -18,7 +18,7 @@ use syn::{
 };
 
 /// The core's rooms in the way of the data: each may use those before it.
-const ROOMS: &[&str] = &["registers", "peripheral", "motion", "scenario", "sim", "inspect"];
+const ROOMS: &[&str] = &["registers", "peripheral", "motion", "plant", "scenario", "sim", "inspect"];
 
 /// Functions whose bits depend on the platform's mathematics library; `mul_add` is DESIGN A1's fused multiply-add.
 const INEXACT: &[&str] = &[
@@ -43,7 +43,12 @@ const EXCEPTIONS: &[(&str, &str, &str)] = &[
 ];
 
 /// What a room may use of one that stands before it, where that is not all of it (DESIGN Part C): the modules.
-const NARROW: &[(&str, &str, &[&str])] = &[("motion", "peripheral", &["segment", "units", "signal"])];
+const NARROW: &[(&str, &str, &[&str])] = &[
+    ("motion", "peripheral", &["segment", "units", "signal"]),
+    ("plant", "peripheral", &["signal", "units"]),
+    // Neither knows the other: they meet in the scenario.
+    ("plant", "motion", &[]),
+];
 
 /// What a file says, as far as it is looked at here.
 #[derive(Default)]

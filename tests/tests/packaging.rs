@@ -13,10 +13,11 @@ use std::{
 use syn::{Attribute, Expr, Item, Lit, Meta, Visibility};
 
 /// The library crates and their folders.
-const LIBRARIES: [(&str, &str); 7] = [
+const LIBRARIES: [(&str, &str); 8] = [
     ("stepscope-registers", "core/registers"),
     ("stepscope-peripheral", "core/peripheral"),
     ("stepscope-motion", "core/motion"),
+    ("stepscope-plant", "core/plant"),
     ("stepscope-scenario", "core/scenario"),
     ("stepscope-sim", "core/sim"),
     ("stepscope-inspect", "core/inspect"),
@@ -77,6 +78,9 @@ fn who_takes_the_peripheral_gets_a_handful_of_crates() {
     let motion: Vec<String> =
         tree("stepscope-motion").difference(&tree("stepscope-peripheral")).cloned().collect();
     assert_eq!(motion, ["libm", "stepscope-motion"]);
+    let plant: Vec<String> =
+        tree("stepscope-plant").difference(&tree("stepscope-peripheral")).cloned().collect();
+    assert_eq!(plant, ["stepscope-plant"], "not even libm");
 }
 
 #[test]

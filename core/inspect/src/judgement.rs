@@ -22,7 +22,7 @@ use serde::Serialize;
 use stepscope_motion::{AxisPlan, Curve, PlannedMove, grouped, moves::Axis};
 use stepscope_peripheral::config::Config;
 use stepscope_scenario::{Problem, Scenario};
-use stepscope_sim::{BUDGET_RECORDS, Cost, Experiment, Judged, axes_of};
+use stepscope_sim::{BUDGET_MOTOR_STEPS, BUDGET_RECORDS, Cost, Experiment, Judged, axes_of};
 
 /// All that is said of a scenario.
 #[derive(Clone, Debug, Serialize)]
@@ -145,7 +145,13 @@ impl RunCost {
     /// In words.
     #[must_use]
     pub fn of(cost: Cost) -> Self {
-        let message = if cost.is_over_budget() {
+        let message = if cost.motor_steps > BUDGET_MOTOR_STEPS {
+            format!(
+                "{} motor-steps of the plant: more than the {} that run unasked",
+                grouped(cost.motor_steps as f64),
+                grouped(BUDGET_MOTOR_STEPS as f64)
+            )
+        } else if cost.is_over_budget() {
             format!(
                 "up to {} edges and {} packets: more than the {} edges that run unasked",
                 grouped(cost.records as f64),

@@ -43,6 +43,8 @@ pub mod judgement;
 pub mod line_decoder;
 pub mod measures;
 pub mod packet_table;
+#[cfg(feature = "plant")]
+pub mod plant;
 pub mod position_error;
 pub mod remedies;
 pub mod run_fingerprint;

@@ -25,7 +25,7 @@
 use std::{fmt, io, str::FromStr};
 use stepscope_peripheral::signal::{Levels, Record, Sink, name};
 use stepscope_peripheral::trace::shown_signals;
-use vcd::{IdCode, TimescaleUnit, Value, Writer};
+use vcd::{IdCode, TimescaleUnit, Value, VarType, Writer};
 
 /// Femtoseconds of a second.
 const FEMTOS: u64 = 1_000_000_000_000_000;
@@ -134,6 +134,10 @@ pub struct VcdWriter<W: io::Write> {
     /// Bit of the levels and the signal's code.
     signals: Vec<(u32, IdCode)>,
     levels: Option<Levels>,
+    /// Analogue values: their codes, and what was written last.
+    reals: Vec<(IdCode, Option<u64>)>,
+    /// The last time that was written.
+    stamped: Option<u64>,
     result: io::Result<()>,
 }
 
@@ -151,6 +155,20 @@ impl<W: io::Write> VcdWriter<W> {
     /// # Errors
     /// Those of the writer, and [`TooCoarse`] as an error of the input.
     pub fn with_timescale(out: W, timescale: Timescale, clock_hz: u32, channels: u8) -> io::Result<Self> {
+        Self::with_analogue(out, timescale, clock_hz, channels, &[])
+    }
+
+    /// The same with analogue values of these names, as real variables, beside the signals.
+    ///
+    /// # Errors
+    /// As [`Self::with_timescale`].
+    pub fn with_analogue(
+        out: W,
+        timescale: Timescale,
+        clock_hz: u32,
+        channels: u8,
+        names: &[String],
+    ) -> io::Result<Self> {
         let clock_hz = clock_hz.max(1);
         let timescale = timescale
             .of_clock(clock_hz)
@@ -163,9 +181,13 @@ impl<W: io::Write> VcdWriter<W> {
         for bit in shown_signals(channels) {
             signals.push((bit, out.add_wire(1, &name(bit).unwrap_or_default())?));
         }
+        let mut reals = Vec::new();
+        for name in names {
+            reals.push((out.add_var(VarType::Real, 64, name, None)?, None));
+        }
         out.upscope()?;
         out.enddefinitions()?;
-        Ok(Self { out, timescale, clock_hz, signals, levels: None, result: Ok(()) })
+        Ok(Self { out, timescale, clock_hz, signals, levels: None, reals, stamped: None, result: Ok(()) })
     }
 
     /// Goes on with a file in ns, of which `levels` have been written last: so it is made in pieces.
@@ -174,7 +196,17 @@ impl<W: io::Write> VcdWriter<W> {
     /// Never: nothing is written yet.
     pub fn resume(out: W, clock_hz: u32, channels: u8, levels: Levels) -> io::Result<Self> {
         let VcdWriter { signals, timescale, clock_hz, .. } = VcdWriter::new(io::sink(), clock_hz, channels)?;
-        Ok(Self { out: Writer::new(out), timescale, clock_hz, signals, levels: Some(levels), result: Ok(()) })
+        let (out, reals) = (Writer::new(out), Vec::new());
+        Ok(Self {
+            out,
+            timescale,
+            clock_hz,
+            signals,
+            levels: Some(levels),
+            reals,
+            stamped: None,
+            result: Ok(()),
+        })
     }
 
     /// Ends a piece, after which the file goes on.
@@ -215,9 +247,34 @@ impl<W: io::Write> VcdWriter<W> {
         })
     }
 
+    /// What follows is of this cycle.
+    fn time(&mut self, cycle: u64) -> io::Result<()> {
+        let stamp = self.stamp(cycle)?;
+        if self.stamped.replace(stamp) != Some(stamp) {
+            self.out.timestamp(stamp)?;
+        }
+        Ok(())
+    }
+
+    /// The analogue values from a cycle on, in the order of their names; cycles rise, those of records among them.
+    pub fn analogue(&mut self, cycle: u64, values: &[f64]) {
+        if self.result.is_ok() {
+            self.result = self.write_analogue(cycle, values);
+        }
+    }
+
+    fn write_analogue(&mut self, cycle: u64, values: &[f64]) -> io::Result<()> {
+        self.time(cycle)?;
+        for (&value, (code, before)) in values.iter().zip(&mut self.reals) {
+            if before.replace(value.to_bits()) != Some(value.to_bits()) {
+                self.out.change_real(*code, value)?;
+            }
+        }
+        Ok(())
+    }
+
     fn write(&mut self, record: Record) -> io::Result<()> {
-        let stamp = self.stamp(record.cycle.0)?;
-        self.out.timestamp(stamp)?;
+        self.time(record.cycle.0)?;
         for &(bit, code) in &self.signals {
             let high = record.levels.has(1 << bit);
             if self.levels.is_none_or(|before| before.has(1 << bit) != high) {

@@ -45,5 +45,71 @@ parameters! {
         /// Highest rate in steps/s at which the motor is known to work with its load, as its maker or a
         /// test gives it (the document's f_s); without it only the torque limits the rate.
         pub working_rate_hz: Option<f64> = None,
+        /// Coulomb friction of the rotor in mN*m.
+        pub friction_mn_m: f64 = 5.0,
+        /// What has to be overcome at rest, in mN*m; without it the friction.
+        pub stiction_mn_m: Option<f64> = None,
+        /// Viscous friction in uN*m*s.
+        pub viscous_un_m_s: f64 = 300.0,
+        /// Amplitude of the detent torque in mN*m.
+        pub detent_torque_mn_m: f64 = 0.0,
+        /// A constant torque to the left in mN*m.
+        pub gravity_torque_mn_m: f64 = 0.0,
+        /// Amplitude of a torque that goes round with the load, in mN*m.
+        pub sine_torque_mn_m: f64 = 0.0,
+        /// Its periods in a turn of the load.
+        pub sine_per_turn: f64 = 1.0,
+        /// Its phase in degrees.
+        pub sine_phase_deg: f64 = 0.0,
+        /// Stiffness of a coupling between rotor and load in N*m/rad; without it they are one mass.
+        pub coupling_n_m_rad: Option<f64> = None,
+        /// Damping of the coupling in uN*m*s.
+        pub coupling_un_m_s: f64 = 0.0,
+        /// How its driver works.
+        pub drive: Drive = Drive::default(),
     }
+
+    /// The driver of a motor, as a plant needs to know it.
+    pub struct Drive {
+        /// How it holds the phase currents.
+        pub regulator: Regulator = Regulator::Averaged,
+        /// How a current decays while its phase is off.
+        pub decay: Decay = Decay::Fast,
+        /// Share of an off-time that decays fast, where the decay is mixed or automatic.
+        pub decay_share: f64 = 0.31,
+        /// Off-time of a chopper in us.
+        pub off_us: f64 = 20.0,
+        /// Least on-time of a chopper in us.
+        pub blank_us: f64 = 1.0,
+        /// Steps of the driver's converter from 0 to the peak current; without it they are as fine as numbers.
+        pub dac_levels: Option<u16> = None,
+        /// Resistance of the bridge in series with a phase, in ohm.
+        pub bridge_ohm: f64 = 0.0,
+        /// Forward voltage of one of its diodes in V.
+        pub diode_v: f64 = 0.7,
+    }
+}
+
+/// How a driver holds the phase currents.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Regulator {
+    /// The mean of an ideal chopper.
+    #[default]
+    Averaged,
+    /// A chopper with a fixed off-time.
+    Chopper,
+}
+
+/// How a current decays while its phase is off.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Decay {
+    /// The phase is short-circuited.
+    Slow,
+    /// The supply works against the current.
+    #[default]
+    Fast,
+    /// Fast for a share of the off-time, then slow.
+    Mixed,
+    /// Mixed while the current's target falls, slow while it rises.
+    Auto,
 }

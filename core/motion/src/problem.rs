@@ -297,6 +297,8 @@ impl fmt::Display for ValueError {
                     "steps to be measured" => "give a shorter motion",
                     "slices" => "give longer slices or less time, or choose the exact method",
                     "sine segments" => "give a greater largest deviation or fewer sines",
+                    "motor-steps of the plant" =>
+                        "give a shorter run, fewer channels or a greater step_cycles",
                     "bytes of all frames and their repetitions" => {
                         "give a shorter motion, longer ticks, more ticks a frame or fewer attempts"
                     }

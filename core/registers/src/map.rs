@@ -130,6 +130,10 @@ registers! {
         BAD_SEQ [6..=6] {}
         /// A tick with steps ended and none was there to follow; only where PROTOCOL is framed.
         UNDERRUN [7..=7] {}
+        /// The supply current was too great for too long, and stopped the controller; only where it is measured.
+        OVERLOAD [8..=8] {}
+        /// The self-test found no settling time on some channel; only where it measures one.
+        SELF_TEST [9..=9] {}
     }
 
     /// Ticks that have ended since reset. A tick that STOP abandoned is not counted.

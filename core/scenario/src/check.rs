@@ -45,6 +45,9 @@ pub struct Checked {
     pub segments: Option<CheckedSegments>,
     /// Length of the run, if it is given.
     pub run: Option<Cycles>,
+    /// What the edges drive.
+    #[cfg(feature = "plant")]
+    pub plants: Option<crate::plant::Plants>,
 }
 
 impl Checked {
@@ -109,8 +112,11 @@ impl Scenario {
         };
         let last = axes.clamp(1, MAX_CHANNELS) as u64 - 1;
         validator.whole("analysis.axis", self.analysis.axis, 0..=last, "");
+        let configs: Vec<Config> = config.into_iter().chain(additional).collect();
+        #[cfg(feature = "plant")]
+        let plants = self.plants(&configs, &mut validator);
         validator.end(()).map(|()| Checked {
-            configs: config.into_iter().chain(additional).collect(),
+            configs,
             additional: self.controllers.clone(),
             // Where nothing is sent it has not been judged.
             baud: self.line.baud.max(1),
@@ -120,6 +126,8 @@ impl Scenario {
             source: self.source.clone(),
             segments,
             run: self.run_cycles.map(Cycles),
+            #[cfg(feature = "plant")]
+            plants,
         })
     }
 

@@ -101,6 +101,8 @@ macro_rules! plain {
     )*};
 }
 plain!(u8, u16, u32, u64, i64, String);
+#[cfg(feature = "plant")]
+plain!(bool);
 
 impl ToParts for f64 {
     fn parts(&self) -> Parts<'_> {

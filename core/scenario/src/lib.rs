@@ -47,6 +47,9 @@ mod table;
 
 pub mod schema;
 
+#[cfg(feature = "plant")]
+mod plant;
+
 mod points;
 
 mod segments;
@@ -68,6 +71,8 @@ pub use compact::{Compact, Kinds};
 pub use hex::Hex;
 pub use json::Json;
 pub use limits::{END_OF_TIME, MAX_CONTROLLERS, MAX_TEXT_BYTES};
+#[cfg(feature = "plant")]
+pub use plant::Plants;
 pub use points::points_of_table;
 pub use problem::{Cause, Problem, Validator, ValueError, of_config, of_motion};
 pub use read::{part_from_json, to_json};
@@ -77,6 +82,8 @@ pub use schema::{
     LineScript, Motion, MotionEngine, Noise, Packets, Scenario, ScriptedSend, Segment, SegmentLists, Source,
     StepSegment, TimingRules,
 };
+#[cfg(feature = "plant")]
+pub use schema::{CurrentSensor, Encoder, PlantMotor, PlantSettings, Protection};
 pub use schema::{Parts, ToParts};
 pub use table::{BadTable, MAX_TABLE_BYTES};
 

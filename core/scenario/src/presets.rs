@@ -38,9 +38,9 @@ const PROFILES: &str = "Further profiles: exact sine, jerk-limited, points";
 const DRIVERS: &str = "Drivers' data sheets: timing";
 
 macro_rules! presets {
-    ($($document:expr => $id:literal;)*) => {
-        /// All presets, in the order of the page's menu.
-        pub const PRESETS: &[Preset] = &[$(Preset {
+    ($(#[$meta:meta])* $list:ident: $($document:expr => $id:literal;)*) => {
+        $(#[$meta])*
+        pub const $list: &[Preset] = &[$(Preset {
             id: $id,
             document: $document,
             json: include_str!(concat!("../presets/", $id, ".json")),
@@ -49,6 +49,8 @@ macro_rules! presets {
 }
 
 presets! {
+    /// All presets of the page, in the order of its menu.
+    PRESETS:
     SONG => "song-2021-one-turn";
     SONG => "song-2021-plateau";
     SONG => "song-2021-sliced";
@@ -76,10 +78,29 @@ presets! {
     DRIVERS => "driver-timing-broken";
 }
 
+#[cfg(feature = "plant")]
+presets! {
+    /// Presets with a plant, which the page does not show yet.
+    PLANT_PRESETS:
+    PATENT => "patent-2019-figure-1";
+    PATENT => "patent-2019-figure-2";
+    PATENT => "patent-2019-overload";
+    SONG => "song-2021-motor";
+    SONG => "song-2021-direct-start";
+    SONG => "song-2021-stall";
+    PROFILES => "resonance-full-steps";
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::Kinds;
+    use alloc::vec::Vec;
+
+    #[cfg(feature = "plant")]
+    const PLANTS: &[Preset] = PLANT_PRESETS;
+    #[cfg(not(feature = "plant"))]
+    const PLANTS: &[Preset] = &[];
 
     #[test]
     fn every_kind_of_move_has_a_preset() {
@@ -91,12 +112,13 @@ mod tests {
 
     #[test]
     fn every_preset_reads_and_holds() {
-        for (index, preset) in PRESETS.iter().enumerate() {
+        let all: Vec<&Preset> = PRESETS.iter().chain(PLANTS).collect();
+        for (index, preset) in all.iter().enumerate() {
             let scenario =
                 Scenario::from_json(preset.json).unwrap_or_else(|p| panic!("{}: {p:?}", preset.id));
             assert!(!scenario.title.is_empty() && !scenario.note.is_empty(), "{}", preset.id);
             scenario.check().unwrap_or_else(|p| panic!("{}: {p:?}", preset.id));
-            assert!(PRESETS[..index].iter().all(|other| other.id != preset.id), "{} twice", preset.id);
+            assert!(all[..index].iter().all(|other| other.id != preset.id), "{} twice", preset.id);
         }
     }
 }

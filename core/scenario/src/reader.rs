@@ -316,6 +316,22 @@ impl Read for f64 {
     }
 }
 
+#[cfg(feature = "plant")]
+impl Read for bool {
+    fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
+        match value.written() {
+            "true" => *self = true,
+            "false" => *self = false,
+            _ => return reader.refuse(value, "true or false"),
+        }
+        true
+    }
+
+    fn blank() -> Self {
+        false
+    }
+}
+
 impl Read for String {
     fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
         match value.text() {

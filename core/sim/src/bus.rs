@@ -72,6 +72,25 @@ impl Bus {
         }
     }
 
+    /// One of the controllers.
+    #[cfg(feature = "plant")]
+    pub(super) fn device_mut(&mut self, index: usize) -> Option<&mut Device> {
+        match self {
+            Self::Raw(receivers) => receivers.get_mut(index).map(RawReceiver::device_mut),
+            Self::Framed(line) => line.device_mut(index),
+        }
+    }
+
+    /// Where a run without an end of its own would end, were nothing to happen any more.
+    #[cfg(feature = "plant")]
+    pub(super) fn rests_from(&self) -> Instant {
+        let last = match self {
+            Self::Raw(receivers) => receivers.iter().map(RawReceiver::last_active).max(),
+            Self::Framed(line) => Some(line.last_active()),
+        };
+        last.unwrap_or(Instant::RESET).next()
+    }
+
     /// First cycle that nobody has run.
     pub(super) fn now(&self) -> Instant {
         self.devices().map(Device::now).max().unwrap_or(Instant::RESET)

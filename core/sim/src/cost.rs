@@ -38,7 +38,12 @@ pub struct Cost {
     pub bytes: u64,
     /// Cycle by which nothing can change any more, or the run's given end.
     pub end_cycle: u64,
+    /// Steps of the grids of all plants, each times its motors (PLANT F1); 0 without a plant.
+    pub motor_steps: u64,
 }
+
+/// Motor-steps up to which a plant runs without asking.
+pub const BUDGET_MOTOR_STEPS: u64 = 40_000_000;
 
 /// Records up to which a scenario runs without asking.
 pub const BUDGET_RECORDS: u64 = 4_000_000;
@@ -47,7 +52,7 @@ impl Cost {
     /// Whether it is more than runs without asking.
     #[must_use]
     pub const fn is_over_budget(&self) -> bool {
-        self.records > BUDGET_RECORDS
+        self.records > BUDGET_RECORDS || self.motor_steps > BUDGET_MOTOR_STEPS
     }
 
     pub(super) fn of(checked: &Checked, controllers: &[ControllerPlan], schedule: &Schedule) -> Self {
@@ -66,7 +71,27 @@ impl Cost {
                 || last_cycle(schedule, checked, controllers).max(sends.end_cycle),
                 |Cycles(run)| run,
             ),
+            motor_steps: 0,
         }
+    }
+
+    /// The same with the plants behind the controllers.
+    #[cfg(feature = "plant")]
+    pub(super) fn with_plants(self, checked: &Checked) -> Self {
+        let Some(plants) = &checked.plants else { return self };
+        let tail = if checked.run.is_some() { 0 } else { plants.tail.0 };
+        let end_cycle = self.end_cycle.saturating_add(tail);
+        let steps = plants.setups.iter().map(|setup| {
+            (end_cycle / u64::from(setup.grid_cycles())).saturating_mul(setup.motors.len() as u64)
+        });
+        let motor_steps = steps.fold(0, u64::saturating_add);
+        // A step there and back, with DIR, on each channel.
+        let tests = if plants.self_test {
+            6 * plants.setups.iter().map(|s| s.motors.len() as u64).sum::<u64>()
+        } else {
+            0
+        };
+        Self { end_cycle, motor_steps, records: self.records + tests, ..self }
     }
 }
 
@@ -74,7 +99,7 @@ impl Cost {
     /// What a run of segments costs: nothing is sent.
     pub(super) fn of_segments(segments: &CheckedSegments, run: Option<Cycles>) -> Self {
         let end_cycle = run.map_or(segments.end().0 + 1, |Cycles(run)| run);
-        Self { records: segments.max_records().min(end_cycle), sends: 0, bytes: 0, end_cycle }
+        Self { records: segments.max_records().min(end_cycle), sends: 0, bytes: 0, end_cycle, motor_steps: 0 }
     }
 }
 

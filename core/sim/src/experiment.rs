@@ -1,12 +1,16 @@
 //! From a scenario to its trace: the whole line in one call.
 
+#[cfg(feature = "plant")]
+use crate::plants::{Behind, PlantsBehind};
 use crate::{
     Cost,
     bus::Bus,
     controller_plan::{self, ControllerPlan},
+    controllers::Controllers,
     framed_host::{FramedHost, Progress},
-    ignored::Ignored,
 };
+#[cfg(feature = "plant")]
+use alloc::boxed::Box;
 use alloc::{rc::Rc, vec::Vec};
 use core::slice;
 use stepscope_motion::AxisPlan;
@@ -18,11 +22,16 @@ use stepscope_peripheral::{
     units::{Cycles, Instant},
     wire::{ForcedLevel, Line, Schedule},
 };
+#[cfg(feature = "plant")]
+use stepscope_plant::Observer;
 use stepscope_scenario::{Checked, END_OF_TIME, Problem, Scenario, ValueError};
 
 /// Most bytes that a host may have to send: as many as the most ticks of 16 channels take on an addressed
 /// raw line.
 const MAX_LINE_BYTES: u64 = 2_000_000 * 17;
+
+/// Most steps of the grid, of all motors together, that a run may take (PLANT F1).
+const MAX_MOTOR_STEPS: u64 = 10_000_000_000;
 
 /// A scenario that has been judged in every respect, with its motions planned and its packets made.
 #[derive(Clone, Debug)]
@@ -48,7 +57,11 @@ impl Experiment {
     pub fn new(scenario: &Scenario) -> Result<Self, Vec<Problem>> {
         let mut problems = Vec::new();
         let checked = scenario.check().map_err(|found| problems.extend(found)).ok();
-        let plans = controller_plan::plans(scenario).map_err(|found| problems.extend(found)).ok();
+        let plans = controller_plan::plans(scenario);
+        // A motor's number that no plant can have was told by the plant already.
+        let is_new = |problem: &Problem| problems.iter().all(|told: &Problem| told.path != problem.path);
+        let plans = plans.map_err(|found| found.into_iter().filter(is_new).collect::<Vec<_>>());
+        let plans = plans.map_err(|found| problems.extend(found)).ok();
         let Some(mut checked) = checked else { return Err(problems) };
         let line_load = controller_plan::line_load(&checked).map_err(|problem| problems.push(problem)).ok();
         let Some(plans) = plans else { return Err(problems) };
@@ -71,6 +84,13 @@ impl Experiment {
             let (given, most) = (cost.bytes as f64, MAX_LINE_BYTES as f64);
             let cause = ValueError::TooMuch { given, most, of: "bytes of all frames and their repetitions" };
             return Err(alloc::vec![Problem::new("source", cause)]);
+        }
+        #[cfg(feature = "plant")]
+        let cost = cost.with_plants(&checked);
+        if cost.motor_steps > MAX_MOTOR_STEPS {
+            let (given, most) = (cost.motor_steps as f64, MAX_MOTOR_STEPS as f64);
+            let cause = ValueError::TooMuch { given, most, of: "motor-steps of the plant" };
+            return Err(alloc::vec![Problem::new("plant.step_cycles", cause)]);
         }
         if cost.end_cycle > END_OF_TIME {
             let cause =
@@ -208,10 +228,32 @@ impl Experiment {
         let line = Line::new(Rc::clone(&self.schedule), forced, clock_hz, *baud);
         let host = self.host();
         Run {
-            bus: Bus::new(line, host, self.configs().map(Device::new).collect()),
-            engine: self.segments.clone().map(SegmentEngine::new),
-            end: run.map(|cycles| Instant(cycles.0)),
+            controllers: Controllers {
+                bus: Bus::new(line, host, self.configs().map(|config| self.device(config)).collect()),
+                engine: self.segments.clone().map(SegmentEngine::new),
+                end: run.map(|cycles| Instant(cycles.0)),
+            },
+            #[cfg(feature = "plant")]
+            plants: self.plants().map(|plants| Box::new(PlantsBehind::new(plants, self.configs()))),
         }
+    }
+
+    #[cfg(not(feature = "plant"))]
+    fn device(&self, config: &Config) -> Device {
+        Device::new(config)
+    }
+
+    #[cfg(feature = "plant")]
+    fn device(&self, config: &Config) -> Device {
+        let tests = self.checked.plants.as_ref().is_some_and(|plants| plants.self_test);
+        if tests { Device::with_self_test(config) } else { Device::new(config) }
+    }
+
+    /// The plants behind the controllers, where the scenario has them.
+    #[cfg(feature = "plant")]
+    #[must_use]
+    pub const fn plants(&self) -> Option<&stepscope_scenario::Plants> {
+        self.checked.plants.as_ref()
     }
 
     /// The host of a framed line, where it has ticks to send.
@@ -252,55 +294,54 @@ impl Experiment {
 /// A run under way.
 #[derive(Clone, Debug)]
 pub struct Run {
-    bus: Bus,
-    /// Runs in place of the net, which then stays before cycle 0.
-    engine: Option<SegmentEngine>,
-    /// First cycle that is not run; without it the run ends when nothing can change any more.
-    end: Option<Instant>,
+    controllers: Controllers,
+    /// What the edges drive.
+    #[cfg(feature = "plant")]
+    plants: Option<Box<PlantsBehind>>,
 }
 
 impl Run {
     /// The first controller as it is now; where segments run the scenario, one before cycle 0.
     #[must_use]
     pub fn device(&self) -> &Device {
-        self.bus.first()
+        self.controllers.bus.first()
     }
 
     /// All controllers as they are now, in the order of the scenario.
     pub fn devices(&self) -> impl Iterator<Item = &Device> {
-        self.bus.devices()
+        self.controllers.bus.devices()
     }
 
     /// The host of a framed line as it is now; `None` where nobody waits for replies.
     #[must_use]
     pub const fn host(&self) -> Option<&FramedHost> {
-        self.bus.host()
+        self.controllers.bus.host()
     }
 
     /// What the host has sent, and what it will send as far as that is known. Another run can take it
     /// as its source (A9).
     #[must_use]
     pub fn schedule(&self) -> &Schedule {
-        self.bus.line().schedule()
+        self.controllers.bus.line().schedule()
     }
 
     /// The levels that have been forced on the line and will be as far as that is known, those of noise
     /// among them, rising in time. Together with [`Self::schedule`] they are all that is done to the line.
     #[must_use]
     pub fn forced(&self) -> &[ForcedLevel] {
-        self.bus.line().forced()
+        self.controllers.bus.line().forced()
     }
 
     /// Position counters of the first controller, or of the segment engine (DESIGN A3).
     #[must_use]
     pub fn positions(&self) -> [i32; MAX_CHANNELS] {
-        self.engine.as_ref().map_or_else(|| self.device().positions(), SegmentEngine::positions)
+        self.controllers.engine.as_ref().map_or_else(|| self.device().positions(), SegmentEngine::positions)
     }
 
-    /// Faults of the first controller so far; segments have none.
+    /// Faults of the first controller so far, or of the segment engine.
     #[must_use]
     pub fn faults(&self) -> Faults {
-        self.device().faults()
+        self.controllers.engine.as_ref().map_or_else(|| self.device().faults(), SegmentEngine::faults)
     }
 
     /// Ticks of the first controller that have ended; segments have none.
@@ -312,18 +353,21 @@ impl Run {
     /// Cycles that have been run.
     #[must_use]
     pub fn cycles(&self) -> Cycles {
-        Cycles(self.engine.as_ref().map_or_else(|| self.bus.now(), SegmentEngine::now).0)
+        #[cfg(feature = "plant")]
+        if let Some(ended) = self.plants.as_ref().and_then(|plants| plants.ended) {
+            return Cycles(ended.0);
+        }
+        Cycles(self.controllers.reached().0)
     }
 
     /// Whether the run is over.
     #[must_use]
     pub fn is_done(&self) -> bool {
-        match (&self.engine, self.end) {
-            (Some(engine), Some(end)) => engine.now() >= end,
-            (Some(engine), None) => engine.at_rest(),
-            (None, Some(end)) => self.bus.has_reached(end),
-            (None, None) => self.bus.is_over(),
+        #[cfg(feature = "plant")]
+        if let Some(plants) = &self.plants {
+            return plants.ended.is_some();
         }
+        self.controllers.are_done()
     }
 
     /// Goes on until the first controller has made `records` more (a few more may come) or to the
@@ -334,27 +378,50 @@ impl Run {
 
     /// Goes on until one controller has made `records` more, with a sink for each; true at the end.
     pub fn advance_each(&mut self, records: u64, sinks: &mut [impl Sink]) -> bool {
-        let mut slices: Vec<_> = sinks.iter_mut().map(|sink| Slice { sink, left: records }).collect();
-        let end = self.end.unwrap_or(Instant::NEVER);
-        match (&mut self.engine, slices.first_mut()) {
-            (Some(engine), Some(slice)) => engine.run(end, slice),
-            (Some(engine), None) => engine.run(end, &mut Ignored),
-            (None, _) => self.bus.run(end, &mut slices),
+        #[cfg(feature = "plant")]
+        if self.plants.is_some() {
+            return self.advance_observed::<_, ()>((Instant::NEVER, records), sinks, &mut []);
         }
+        let mut slices: Vec<_> = sinks.iter_mut().map(|sink| Slice { sink, left: records }).collect();
+        let end = self.controllers.end.unwrap_or(Instant::NEVER);
+        self.controllers.run_to(end, &mut slices);
         self.is_done()
+    }
+
+    /// Goes on to a cycle, or until a controller has made so many records more, with a sink and an observer for each; true
+    /// at the end.
+    #[cfg(feature = "plant")]
+    pub(crate) fn advance_observed<S: Sink, O: Observer>(
+        &mut self,
+        until: (Instant, u64),
+        sinks: &mut [S],
+        observers: &mut [O],
+    ) -> bool {
+        let Self { controllers, plants } = self;
+        plants.as_mut().is_none_or(|plants| plants.advance(controllers, until, sinks, observers))
+    }
+
+    /// One cycle, with a sink and an observer for each controller.
+    #[cfg(feature = "plant")]
+    pub(crate) fn clock_observed<S: Sink, O: Observer>(&mut self, sinks: &mut [S], observers: &mut [O]) {
+        if let Some(plants) = &mut self.plants {
+            plants.clock(&mut self.controllers, sinks, observers);
+        }
+    }
+
+    /// The plant behind a controller.
+    #[cfg(feature = "plant")]
+    pub(crate) fn behind(&self, controller: usize) -> Option<&Behind> {
+        self.plants.as_ref()?.behind.get(controller)
     }
 
     /// One cycle, with a sink for each controller.
     pub fn clock(&mut self, sinks: &mut [impl Sink]) {
-        match (&mut self.engine, sinks.first_mut()) {
-            (Some(engine), Some(sink)) => {
-                engine.clock(sink);
-            }
-            (Some(engine), None) => {
-                engine.clock(&mut Ignored);
-            }
-            (None, _) => self.bus.clock(sinks),
+        #[cfg(feature = "plant")]
+        if self.plants.is_some() {
+            return self.clock_observed::<_, ()>(sinks, &mut []);
         }
+        self.controllers.clock(sinks);
     }
 }
 

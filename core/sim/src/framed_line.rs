@@ -75,6 +75,11 @@ impl FramedLine {
         self.nodes.get(index).map(|node| &node.device)
     }
 
+    #[cfg(feature = "plant")]
+    pub(super) fn device_mut(&mut self, index: usize) -> Option<&mut Device> {
+        self.nodes.get_mut(index).map(|node| &mut node.device)
+    }
+
     /// Whether nothing can change any more.
     pub(super) fn is_over(&self) -> bool {
         self.host.as_ref().is_none_or(FramedHost::is_over)

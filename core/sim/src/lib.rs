@@ -38,11 +38,19 @@ mod bus;
 
 mod controller_plan;
 
+mod controllers;
+
 mod cost;
 
 mod experiment;
 
 mod judged;
+
+#[cfg(feature = "plant")]
+mod plants;
+
+#[cfg(feature = "plant")]
+pub mod plant_run;
 
 mod script;
 
@@ -50,7 +58,7 @@ mod summary;
 
 pub mod fault_sweep;
 
-pub use cost::{BUDGET_RECORDS, Cost};
+pub use cost::{BUDGET_MOTOR_STEPS, BUDGET_RECORDS, Cost};
 pub use experiment::{Experiment, Run};
 pub use judged::{Judged, SelectedAxis, axes_of};
 pub use script::{replayed, scripted};

@@ -27,6 +27,11 @@ impl RawReceiver {
         &self.device
     }
 
+    #[cfg(feature = "plant")]
+    pub(super) const fn device_mut(&mut self) -> &mut Device {
+        &mut self.device
+    }
+
     /// Whether nothing can change any more.
     pub(super) fn is_over(&self) -> bool {
         self.device.at_rest() && self.line.is_over()

@@ -132,7 +132,7 @@ impl ControllerSummary {
             records: digest.records(),
             ticks_done: device.ticks_done(),
             positions: positions.into_iter().take(channels).collect(),
-            faults: device.faults(),
+            faults: if index == 0 { run.faults() } else { device.faults() },
             status: device.status(),
             job,
         }

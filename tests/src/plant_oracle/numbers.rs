@@ -44,11 +44,12 @@ pub fn sincos(q: f64) -> (f64, f64) {
         inner = C[k] + z * inner;
     }
     let c = 1.0 + z * inner;
-    match (n as i64).rem_euclid(4) {
-        0 => (s, c),
-        1 => (c, -s),
-        2 => (-s, -c),
-        _ => (-c, s),
+    // The remainder of two f64 is exact, however great n is.
+    match (n % 4.0) as i64 {
+        1 | -3 => (c, -s),
+        2 | -2 => (-s, -c),
+        3 | -1 => (-c, s),
+        _ => (s, c),
     }
 }
 

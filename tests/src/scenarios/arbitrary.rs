@@ -5,7 +5,7 @@ use stepscope_core::inspect::drivers::DRIVERS;
 use stepscope_core::{
     motion::{
         mechanics::{Acceleration, Direct, Distance, Jerk, Mechanics, Rotary, Screw, Speed, Wheel},
-        motor::Motor,
+        motor::{Decay, Drive, Motor, Regulator},
         moves::{
             Axis, Constant, Cosine, CosineMethod, Dwell, Interpolation, JerkLimited, Move, Point, PointUnit,
             Points, RampShape, Ramps, ShortMove, Sine, SineSegments, Staircase, Trapezoid, TrapezoidMethod,
@@ -13,9 +13,9 @@ use stepscope_core::{
     },
     peripheral::config::{Bus, DirLine, Distribution, Protocol, PulsePhasing},
     scenario::{
-        Analysis, ChannelSegments, Controller, DriverTiming, DwellSegment, Glitch, Hex, Host, Line,
-        LineScript, Motion, MotionEngine, Noise, Packets, Scenario, ScriptedSend, Segment, SegmentLists,
-        Source, StepSegment, TimingRules,
+        Analysis, ChannelSegments, Controller, CurrentSensor, DriverTiming, DwellSegment, Encoder, Glitch,
+        Hex, Host, Line, LineScript, Motion, MotionEngine, Noise, Packets, PlantMotor, PlantSettings,
+        Protection, Scenario, ScriptedSend, Segment, SegmentLists, Source, StepSegment, TimingRules,
     },
 };
 
@@ -53,6 +53,9 @@ pub fn typed() -> BoxedStrategy<Scenario> {
                 }
             },
         )
+        .prop_flat_map(|scenario| {
+            prop::option::weighted(0.2, plant()).prop_map(move |plant| Scenario { plant, ..scenario.clone() })
+        })
         .boxed()
 }
 
@@ -268,9 +271,92 @@ fn motor() -> BoxedStrategy<Motor> {
                 load_inertia_g_cm2,
                 load_torque_mn_m,
                 working_rate_hz,
+                ..Motor::default()
             }
         })
+        .prop_flat_map(|motor| prop_oneof![2 => Just(motor.clone()), 1 => in_plant(motor)])
         .boxed()
+}
+
+/// What a plant asks of a motor beside its curve.
+fn in_plant(motor: Motor) -> impl Strategy<Value = Motor> {
+    let friction = (number(5.0), prop::option::of(number(8.0)), number(300.0), number(20.0), number(-50.0));
+    let load = (number(30.0), number(2.0), number(90.0), prop::option::of(number(20.0)), number(100.0));
+    (friction, load, drive()).prop_map(move |(friction, load, drive)| {
+        let (friction_mn_m, stiction_mn_m, viscous_un_m_s, detent_torque_mn_m, gravity_torque_mn_m) =
+            friction;
+        let (sine_torque_mn_m, sine_per_turn, sine_phase_deg, coupling_n_m_rad, coupling_un_m_s) = load;
+        Motor {
+            friction_mn_m,
+            stiction_mn_m,
+            viscous_un_m_s,
+            detent_torque_mn_m,
+            gravity_torque_mn_m,
+            sine_torque_mn_m,
+            sine_per_turn,
+            sine_phase_deg,
+            coupling_n_m_rad,
+            coupling_un_m_s,
+            drive,
+            ..motor.clone()
+        }
+    })
+}
+
+fn drive() -> impl Strategy<Value = Drive> {
+    let regulator = prop::sample::select(vec![Regulator::Averaged, Regulator::Chopper]);
+    let decay = prop::sample::select(vec![Decay::Slow, Decay::Fast, Decay::Mixed, Decay::Auto]);
+    let times = (number(0.31), number(20.0), number(1.0));
+    (regulator, decay, times, prop::option::of(0_u16..1100), (number(0.5), number(0.7))).prop_map(
+        |(regulator, decay, (decay_share, off_us, blank_us), dac_levels, (bridge_ohm, diode_v))| Drive {
+            regulator,
+            decay,
+            decay_share,
+            off_us,
+            blank_us,
+            dac_levels,
+            bridge_ohm,
+            diode_v,
+        },
+    )
+}
+
+fn plant() -> impl Strategy<Value = PlantSettings> {
+    let supply = (number(0.1), prop::option::of(number(470.0)), any::<bool>(), number(10.0), number(0.1));
+    let sensor = (number(3000.0), 0_u8..5, 0_u32..9, number(0.02), 0_u32..5000);
+    let encoder = (0_u32..2000, number(0.0), number(1.0), number(1.0), 0..1_u64 << 54);
+    let protection = prop::option::of((number(2.0), 0_u32..9));
+    let motors = prop::collection::vec((number(1.8), 0_u16..600, motor()), 0..3);
+    (prop::option::of(0_u32..500), supply, sensor, encoder, (protection, any::<bool>()), motors).prop_map(
+        |(step_cycles, supply, sensor, encoder, (protection, self_test), motors)| PlantSettings {
+            step_cycles,
+            source_ohm: supply.0,
+            buffer_uf: supply.1,
+            source_sinks: supply.2,
+            idle_ma: supply.3,
+            tail_s: supply.4,
+            current_sensor: CurrentSensor {
+                bandwidth_hz: sensor.0,
+                poles: sensor.1,
+                adc_steps: sensor.2,
+                lsb_a: sensor.3,
+                adc_max: sensor.4,
+            },
+            encoder: Encoder {
+                period_steps: encoder.0,
+                offset_lsb: encoder.1,
+                noise_lsb: encoder.2,
+                hysteresis_lsb: encoder.3,
+                seed: encoder.4,
+            },
+            protection: protection.map(|(threshold_a, samples)| Protection { threshold_a, samples }),
+            self_test,
+            motors: motors
+                .into_iter()
+                .map(|(full_step_deg, microsteps, motor)| PlantMotor { full_step_deg, microsteps, motor })
+                .collect(),
+        },
+    )
 }
 
 fn distance(steps: f64) -> impl Strategy<Value = Distance> + Clone {

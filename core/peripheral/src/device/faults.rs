@@ -33,6 +33,10 @@ impl Faults {
     pub const BAD_SEQ: Self = Self(faults::BAD_SEQ.mask() as u16);
     /// A tick with steps ended and none was there to follow (framed protocol).
     pub const UNDERRUN: Self = Self(faults::UNDERRUN.mask() as u16);
+    /// The supply current was too great for too long (PLANT F7).
+    pub const OVERLOAD: Self = Self(faults::OVERLOAD.mask() as u16);
+    /// The self-test found no settling time on some channel (PLANT F7).
+    pub const SELF_TEST: Self = Self(faults::SELF_TEST.mask() as u16);
 
     /// All of them.
     pub const ALL: Self = Self::from_bits(u16::MAX);
@@ -92,13 +96,15 @@ mod tests {
             (Faults::TOO_MANY_STEPS, "TOO_MANY_STEPS"),
             (Faults::BAD_SEQ, "BAD_SEQ"),
             (Faults::UNDERRUN, "UNDERRUN"),
+            (Faults::OVERLOAD, "OVERLOAD"),
+            (Faults::SELF_TEST, "SELF_TEST"),
         ];
         for (bit, (fault, name)) in rows.into_iter().enumerate() {
             assert_eq!((fault.bits(), fault.names().collect::<Vec<_>>()), (1 << bit, vec![name]));
         }
         assert_eq!(Faults::ALL.names().count(), rows.len());
         assert_eq!(
-            Faults::from_bits(0xff00 | Faults::CRC.bits()),
+            Faults::from_bits(0xfc00 | Faults::CRC.bits()),
             Faults::CRC,
             "bits of no fault are left out"
         );

@@ -43,6 +43,7 @@ mod model_bus;
 mod plan;
 mod registers;
 mod segments;
+mod self_test;
 mod sequencer;
 mod transceiver;
 
@@ -52,6 +53,7 @@ mod tests;
 pub use faults::Faults;
 pub use model_bus::ModelBus;
 pub use segments::SegmentEngine;
+pub use self_test::SelfTest;
 
 use crate::{
     config::{Config, Protocol},

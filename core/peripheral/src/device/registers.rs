@@ -70,10 +70,7 @@ impl Device {
         if self.now == Instant::RESET {
             return;
         }
-        // A write is something that happened: time is not settled to before it.
-        self.last = self.present();
-        self.now = self.last.next();
-        self.wake = self.now;
+        self.acts();
         if let Some(index) = index(&map::orders::REGISTER, offset) {
             return self.latches.set_orders(index, value);
         }
@@ -91,6 +88,13 @@ impl Device {
                 }
             }
         }
+    }
+
+    /// Something acts in the last cycle that was run: time is not settled to before it, and the next cycle is looked at.
+    pub(super) fn acts(&mut self) {
+        self.last = self.present();
+        self.now = self.last.next();
+        self.wake = self.now;
     }
 
     /// The last cycle that was run. A run to the end of all change leaves `now` behind it.

@@ -1,7 +1,7 @@
 //! The segment engine: a generator that runs a move by itself (DESIGN A8).
 //!
 //! It stands in the place of the tick path: the same ways through a run, all with the same trace,
-//! but no line, so EN = RX = TX = 1 and DE = 0 throughout.
+//! but no line, so EN = RX = TX = 1 and DE = 0 throughout, but for an overload.
 //!
 //! ```text
 //!          segment begins                  DIR  at max(next >> 16, last fall + H)
@@ -19,6 +19,7 @@ mod earliest;
 mod falls;
 
 use crate::{
+    device::Faults,
     segment::{CheckedSegments, FRACTION_BITS, LAST_CYCLE, Segment},
     signal::{Levels, MAX_CHANNELS, Record, Sink},
     units::{Cycles, Instant},
@@ -63,6 +64,8 @@ pub struct SegmentEngine {
     /// When the pulses that are high fall.
     falls: FallingEdges,
     positions: [i32; MAX_CHANNELS],
+    /// The cycle in which EN and STEP fall, after an overload; [`Instant::NEVER`] without one.
+    halt: Instant,
 }
 
 /// One channel's place in its list.
@@ -142,7 +145,16 @@ impl SegmentEngine {
         let channels = channels.collect();
         let positions = [0; MAX_CHANNELS];
         let (now, levels) = (Instant::RESET, Levels::RESET);
-        Self { lists, now, levels, channels, due, falls: FallingEdges::default(), positions }
+        Self {
+            lists,
+            now,
+            levels,
+            channels,
+            due,
+            falls: FallingEdges::default(),
+            positions,
+            halt: Instant::NEVER,
+        }
     }
 
     /// The cycle that the next call of [`Self::clock`] is; as many have passed.
@@ -172,11 +184,41 @@ impl SegmentEngine {
 
     /// Next cycle in which a signal changes, cycle 0 for the first; [`Instant::NEVER`] at the end.
     fn deadline(&self) -> Instant {
-        if self.now == Instant::RESET { self.now } else { self.due.cycle().min(self.falls.cycle()) }
+        if self.now == Instant::RESET {
+            self.now
+        } else {
+            self.due.cycle().min(self.falls.cycle()).min(self.halt)
+        }
+    }
+
+    /// The supply current was too great for too long (PLANT F7): in the cycle after the one that was run last EN and STEP
+    /// fall, DIR stays, and no step of any list follows. Before cycle 0 nothing.
+    pub fn overload(&mut self) {
+        if self.now == Instant::RESET || !self.levels.has(Levels::EN) {
+            return;
+        }
+        self.due = Earliest::new(self.channels.len());
+        self.falls = FallingEdges::default();
+        self.halt = self.now;
+    }
+
+    /// Faults so far: none but OVERLOAD.
+    #[must_use]
+    pub const fn faults(&self) -> Faults {
+        if self.levels.has(Levels::EN) && self.halt.0 == Instant::NEVER.0 {
+            Faults::from_bits(0)
+        } else {
+            Faults::OVERLOAD
+        }
     }
 
     /// All that falls due in cycle `now`; at least one signal changes.
     fn act(&mut self, now: Instant) {
+        if now == self.halt {
+            self.halt = Instant::NEVER;
+            self.levels.0 &= !(Levels::EN | u64::from(u16::MAX));
+            return;
+        }
         let mut levels = self.levels.0;
         if self.falls.cycle() == now {
             levels &= !u64::from(self.falls.pop());

@@ -14,7 +14,7 @@ use crate::{
     units::{Cycles, Instant},
     wire::packet::{ChannelCommand, Tick},
 };
-use alloc::collections::VecDeque;
+use alloc::{collections::VecDeque, vec::Vec};
 
 #[derive(Clone, Debug)]
 pub(super) struct Sequencer {
@@ -24,6 +24,10 @@ pub(super) struct Sequencer {
     queue: VecDeque<Tick>,
     plan: Plan,
     running: Option<Running>,
+    /// What is left of a self-test, the next change last; empty where there is none.
+    ///
+    /// Invariant: while any is left no tick runs, as all of it is during the boot.
+    self_test: Vec<Change>,
     /// STEP falls in the next cycle, after a stop.
     halt: bool,
     /// Whether a tick with steps that none follows is a fault: the framed protocol's rule.
@@ -59,6 +63,7 @@ impl Sequencer {
             queue: VecDeque::with_capacity(usize::from(config.queue_depth)),
             plan: Plan::new(config),
             running: None,
+            self_test: Vec::new(),
             halt: false,
             framed: config.protocol == Protocol::Framed,
             faults: Faults::default(),
@@ -68,6 +73,13 @@ impl Sequencer {
             ticks_done: 0,
             last_active: Instant::RESET,
         }
+    }
+
+    /// Makes these changes, rising in time from reset on, during the boot (PLANT F7).
+    pub(super) fn test(&mut self, mut changes: Vec<Change>) {
+        changes.reverse();
+        self.deadline = changes.last().map_or(Instant::NEVER, |first| Instant(first.offset));
+        self.self_test = changes;
     }
 
     /// STEP and DIR now.
@@ -140,6 +152,7 @@ impl Sequencer {
         self.positions = self.positions();
         self.running = None;
         self.queue.clear();
+        self.self_test.clear();
         self.halt = true;
         self.deadline = now.next();
     }
@@ -165,6 +178,7 @@ impl Sequencer {
             match self.running {
                 Some(running) => self.follow(running, now, sink),
                 None if self.halt => self.halt(now),
+                None if !self.self_test.is_empty() => self.follow_test(now),
                 None => self.begin(now, sink),
             }
         }
@@ -179,6 +193,22 @@ impl Sequencer {
             }
             _ => self.end(now, sink),
         }
+    }
+
+    /// The self-test's change that falls due in cycle `now`.
+    fn follow_test(&mut self, now: Instant) {
+        if let Some(Change { lines, .. }) = self.self_test.pop() {
+            let rising = lines & !self.lines & STEPS;
+            for (channel, position) in self.positions.iter_mut().enumerate() {
+                if rising >> channel & 1 != 0 {
+                    let right = lines >> Levels::DIR_SHIFT >> channel & 1 != 0;
+                    *position = position.wrapping_add(if right { 1 } else { -1 });
+                }
+            }
+            self.lines = lines;
+        }
+        self.last_active = now;
+        self.deadline = self.self_test.last().map_or(Instant::NEVER, |next| Instant(next.offset));
     }
 
     fn go_on(&mut self, running: Running) {

@@ -3,7 +3,7 @@
 //! ```text
 //! { root: "Scenario", documents: { id: { short, title } },
 //!   groups: { Bus: { doc, choice: false, default: { … }, fields: [ { name, label, text, type, unit, range, … } ] }, … } }
-//! type: "whole" | "number" | "text" | "hex" | "point" | { words: [ { name, label, text } ] } | { group: "Bus" }
+//! type: "whole" | "number" | "bool" | "text" | "hex" | "point" | { words: [ { name, label, text } ] } | { group: "Bus" }
 //!       | { optional: type } | { list: type }
 //! ```
 
@@ -33,6 +33,8 @@ fn type_of(ty: &Type, groups: &mut Map<String, Value>) -> Value {
     match ty {
         Type::Whole { .. } => "whole".into(),
         Type::Number => "number".into(),
+        #[cfg(feature = "plant")]
+        Type::Bool => "bool".into(),
         Type::Text => "text".into(),
         Type::Hex => "hex".into(),
         Type::Point => "point".into(),

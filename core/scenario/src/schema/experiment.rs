@@ -1,5 +1,7 @@
 //! The experiment itself, and what is looked at in it.
 
+#[cfg(feature = "plant")]
+use crate::schema::PlantSettings;
 use crate::{
     END_OF_TIME, MAX_CONTROLLERS, VERSION,
     schema::{Controller, DriverTiming, Line, OWN, PATENT, SINE, Source, label, rows::settings},
@@ -52,6 +54,9 @@ settings! {
             .length(0..=MAX_CONTROLLERS - 1, "additional controllers"),
         /// The driver that the pulses are checked against; it changes nothing in a run.
         pub driver_timing: Option<DriverTiming> = None => label("Driver timing").empty("not checked"),
+        /// What the edges drive: motors with their drivers, a supply, sensors.
+        #[cfg(feature = "plant")]
+        pub plant: Option<PlantSettings> = None => label("Plant").empty("none: a run ends at the bus"),
     }
 }
 

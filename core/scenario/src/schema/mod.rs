@@ -41,6 +41,8 @@ mod markdown;
 mod mechanics;
 mod motor;
 mod moves;
+#[cfg(feature = "plant")]
+mod plant;
 mod segments;
 mod source;
 mod types;
@@ -51,6 +53,8 @@ pub use driver::{DriverModel, DriverTiming, TimingRules};
 pub use experiment::{Analysis, Scenario};
 pub use line::{Glitch, Host, Line, Noise};
 pub use markdown::markdown;
+#[cfg(feature = "plant")]
+pub use plant::{CurrentSensor, Encoder, PlantMotor, PlantSettings, Protection};
 pub use segments::{ChannelSegments, DwellSegment, Segment, SegmentLists, StepSegment};
 pub use source::{LineScript, Motion, MotionEngine, Packets, ScriptedSend, Source};
 pub(crate) use types::label;

@@ -1,7 +1,13 @@
 //! The motor of an axis, its driver's supply and its load, which motion owns.
 
 use crate::schema::{OWN, SONG, label, rows::fields};
+#[cfg(feature = "plant")]
+use crate::schema::{SHEETS, rows::words};
+#[cfg(feature = "plant")]
+use stepscope_motion::motor::{Decay, Drive, Regulator};
 use stepscope_motion::{limits, motor::Motor};
+#[cfg(feature = "plant")]
+use stepscope_plant::limits as plant;
 
 fields! {
     /// The axis' motor with its supply and load. It changes nothing in a run: `stepscope torque` and the page say by it
@@ -74,5 +80,81 @@ fields! {
             .empty("only the torque limits it")
             .term("Working rate", "Highest rate at which the motor is known to work with its load, f_s. The document states 19200 Hz for its motor and does not derive it.")
             .from(SONG),
+        /// Coulomb friction of the rotor.
+        #[cfg(feature = "plant")]
+        friction_mn_m: f64 => label("Friction").unit("mN·m").number(plant::TORQUE_MN_M).from(OWN),
+        /// What has to be overcome at rest.
+        #[cfg(feature = "plant")]
+        stiction_mn_m: Option<f64> => label("Stiction").unit("mN·m").follows("friction to 1000000").empty("the friction").from(OWN),
+        /// Friction that grows with the speed.
+        #[cfg(feature = "plant")]
+        viscous_un_m_s: f64 => label("Viscous friction").unit("µN·m·s").number(plant::VISCOUS_UN_M_S).from(OWN),
+        /// Amplitude of the torque with which the unpowered rotor holds its full steps.
+        #[cfg(feature = "plant")]
+        detent_torque_mn_m: f64 => label("Detent torque").unit("mN·m").follows("0 to half the holding torque").from(OWN),
+        /// A constant torque to the left.
+        #[cfg(feature = "plant")]
+        gravity_torque_mn_m: f64 => label("Gravity").unit("mN·m").number(plant::SIGNED_TORQUE_MN_M).from(OWN),
+        /// Amplitude of a torque that goes round with the load.
+        #[cfg(feature = "plant")]
+        sine_torque_mn_m: f64 => label("Turning torque").unit("mN·m").number(plant::TORQUE_MN_M).from(OWN),
+        /// Its periods in a turn of the load.
+        #[cfg(feature = "plant")]
+        sine_per_turn: f64 => label("Its periods a turn").number(plant::SINE_PER_TURN).from(OWN),
+        /// Its phase.
+        #[cfg(feature = "plant")]
+        sine_phase_deg: f64 => label("Its phase").unit("°").number(plant::SINE_PHASE_DEG).from(OWN),
+        /// Stiffness of a coupling between rotor and load, which then are two masses.
+        #[cfg(feature = "plant")]
+        coupling_n_m_rad: Option<f64> => label("Coupling").unit("N·m/rad").number(plant::COUPLING_N_M_RAD).empty("rigid").from(OWN),
+        /// Damping of the coupling.
+        #[cfg(feature = "plant")]
+        coupling_un_m_s: f64 => label("Its damping").unit("µN·m·s").number(plant::VISCOUS_UN_M_S).from(OWN),
+        /// How its driver holds the currents.
+        #[cfg(feature = "plant")]
+        drive: Drive => label("Driver"),
+    }
+}
+
+#[cfg(feature = "plant")]
+fields! {
+    /// Of effect in a plant only.
+    Drive {
+        /// How it holds the phase currents.
+        regulator: Regulator => label("Regulator").from(SHEETS),
+        /// How a current decays while its phase is off.
+        decay: Decay => label("Decay").from(SHEETS),
+        /// Share of the off-time that decays fast, where the decay is mixed or automatic.
+        decay_share: f64 => label("Fast share").number(plant::SHARE).from(SHEETS),
+        /// Off-time of a chopper.
+        off_us: f64 => label("Off-time").unit("µs").number(plant::CHOPPER_US).from(SHEETS),
+        /// Least on-time of a chopper.
+        blank_us: f64 => label("Blanking").unit("µs").number(plant::CHOPPER_US).from(SHEETS),
+        /// Steps of its converter from 0 to the peak current.
+        dac_levels: Option<u16> => label("Converter's steps").whole(plant::DAC_LEVELS).empty("as fine as numbers").from(SHEETS),
+        /// Resistance of the bridge in series with a phase.
+        bridge_ohm: f64 => label("Bridge").unit("Ω").number(plant::BRIDGE_OHM).from(SHEETS),
+        /// Forward voltage of one of its diodes.
+        diode_v: f64 => label("Diode").unit("V").number(plant::DIODE_V).from(SHEETS),
+    }
+}
+
+#[cfg(feature = "plant")]
+words! {
+    Regulator {
+        /// the mean of an ideal chopper
+        Averaged = "averaged", "averaged";
+        /// fixed off-time, decided at grid points
+        Chopper = "chopper", "chopper";
+    }
+    Decay {
+        /// the phase is short-circuited
+        Slow = "slow", "slow";
+        /// the supply works against the current
+        Fast = "fast", "fast";
+        /// fast for `decay_share` of the off-time, then slow
+        Mixed = "mixed", "mixed";
+        /// mixed where the target fell at the last step, slow where it rose
+        Auto = "auto", "automatic";
     }
 }

@@ -4,22 +4,22 @@
 /// Declares a struct of the scenario: a row a field, with its default.
 macro_rules! settings {
     ($(#[doc = $doc:literal])* pub struct $name:ident {
-        $($(#[doc = $field_doc:literal])* pub $field:ident: $ty:ty = $default:expr => $row:expr,)*
+        $($(#[doc = $field_doc:literal])* $(#[cfg($cfg:meta)])? pub $field:ident: $ty:ty = $default:expr => $row:expr,)*
     }) => {
         $(#[doc = $doc])*
         #[derive(Clone, Debug, PartialEq)]
         pub struct $name {
-            $($(#[doc = $field_doc])* pub $field: $ty,)*
+            $($(#[doc = $field_doc])* $(#[cfg($cfg)])? pub $field: $ty,)*
         }
 
         impl Default for $name {
             fn default() -> Self {
-                Self { $($field: $default,)* }
+                Self { $($(#[cfg($cfg)])? $field: $default,)* }
             }
         }
 
         $crate::schema::rows::rows! { false; $(#[doc = $doc])* $name {
-            $($(#[doc = $field_doc])* $field: $ty => $row,)*
+            $($(#[doc = $field_doc])* $(#[cfg($cfg)])? $field: $ty => $row,)*
         } }
     };
 }
@@ -27,10 +27,10 @@ macro_rules! settings {
 /// Names the fields of a struct that another crate owns; it has its defaults from there.
 macro_rules! fields {
     ($($(#[doc = $doc:literal])* $name:ident {
-        $($(#[doc = $field_doc:literal])* $field:ident: $ty:ty => $row:expr,)*
+        $($(#[doc = $field_doc:literal])* $(#[cfg($cfg:meta)])? $field:ident: $ty:ty => $row:expr,)*
     })*) => {$(
         $crate::schema::rows::rows! { true; $(#[doc = $doc])* $name {
-            $($(#[doc = $field_doc])* $field: $ty => $row,)*
+            $($(#[doc = $field_doc])* $(#[cfg($cfg)])? $field: $ty => $row,)*
         } }
     )*};
 }
@@ -38,11 +38,11 @@ macro_rules! fields {
 /// A struct's rows, its reader and its writer.
 macro_rules! rows {
     ($foreign:literal; $(#[doc = $doc:literal])* $name:ident {
-        $($(#[doc = $field_doc:literal])* $field:ident: $ty:ty => $row:expr,)*
+        $($(#[doc = $field_doc:literal])* $(#[cfg($cfg:meta)])? $field:ident: $ty:ty => $row:expr,)*
     }) => {
         impl $crate::schema::Typed for $name {
             const TYPE: $crate::schema::Type = {
-                const FIELDS: &[$crate::schema::Field] = &[$($crate::schema::Field {
+                const FIELDS: &[$crate::schema::Field] = &[$($(#[cfg($cfg)])? $crate::schema::Field {
                     name: stringify!($field),
                     doc: concat!($($field_doc),*),
                     ty: <$ty as $crate::schema::Typed>::TYPE,
@@ -63,11 +63,16 @@ macro_rules! rows {
         impl $crate::schema::ToParts for $name {
             fn parts(&self) -> $crate::schema::Parts<'_> {
                 let default = Self::default();
-                // All of them: a field without a row does not compile.
+                // All of them: a field without a row does not compile. Without the feature `plant` some have none.
+                #[cfg(feature = "plant")]
                 let Self { $($field,)* } = self;
+                #[cfg(not(feature = "plant"))]
+                let Self { $($(#[cfg($cfg)])? $field,)* .. } = self;
                 $crate::schema::Parts::Fields(
                     $crate::schema::rows::group::<Self>(),
-                    alloc::vec![$(($field as &dyn $crate::schema::ToParts, *$field != default.$field),)*],
+                    <[_]>::into_vec(alloc::boxed::Box::new([
+                        $($(#[cfg($cfg)])? ($field as &dyn $crate::schema::ToParts, *$field != default.$field),)*
+                    ])),
                 )
             }
         }
@@ -77,7 +82,7 @@ macro_rules! rows {
                 reader.fields(
                     value,
                     $crate::schema::rows::group::<Self>(),
-                    &mut [$((stringify!($field), &mut self.$field),)*],
+                    &mut [$($(#[cfg($cfg)])? (stringify!($field), &mut self.$field),)*],
                 )
             }
 

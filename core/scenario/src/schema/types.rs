@@ -65,6 +65,9 @@ pub enum Type {
     },
     /// A number.
     Number,
+    /// Yes or no: true or false.
+    #[cfg(feature = "plant")]
+    Bool,
     /// A text.
     Text,
     /// Bytes in hexadecimal.
@@ -283,6 +286,11 @@ whole!(u8, u16, u32, u64, i64);
 
 impl Typed for f64 {
     const TYPE: Type = Type::Number;
+}
+
+#[cfg(feature = "plant")]
+impl Typed for bool {
+    const TYPE: Type = Type::Bool;
 }
 
 impl Typed for String {

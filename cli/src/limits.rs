@@ -1,0 +1,325 @@
+//! `stepscope settling`, `stepscope limits` and `stepscope resonance`: what the motors of a scenario's plant can do.
+
+use crate::{
+    failure::Failure,
+    json::Tables,
+    output::{self, Outputs},
+    parallel,
+    plant::no_plant,
+    progress::Progress,
+    scenarios,
+};
+use clap::Args;
+use serde_json::json;
+use std::{
+    io::{self, Write},
+    num::NonZero,
+    path::{Path, PathBuf},
+};
+use stepscope_core::{
+    inspect::plant::settling as settling_of,
+    plant::{
+        Refused,
+        parameters::Setup,
+        rates::{RAMP_STEPS_S2, Resonance, Search, pulls, resonance as resonance_of, starts},
+        settling::StepResponse,
+    },
+    scenario::{Cause, Problem, Scenario, to_json},
+    sim::Experiment,
+};
+
+/// What all three take.
+#[derive(Args)]
+pub(crate) struct Common {
+    /// The scenario, which has a plant: a JSON file, or a preset's name; `-` reads standard input.
+    scenario: PathBuf,
+    /// Only the motor of this channel, from 0.
+    #[arg(long, value_name = "K")]
+    channel: Option<usize>,
+    /// Print the results as JSON: one object of tables (docs/command.md).
+    #[arg(long)]
+    json: bool,
+    /// Threads; without it one for each processor. The result is the same.
+    #[arg(long, value_name = "N")]
+    threads: Option<NonZero<usize>>,
+    /// Show the progress also where standard error is no terminal.
+    #[arg(long)]
+    progress: bool,
+}
+
+/// What `stepscope settling` takes.
+#[derive(Args)]
+pub(crate) struct SettlingArguments {
+    #[command(flatten)]
+    common: Common,
+    /// The part of the peak that still counts as settled.
+    #[arg(long, default_value_t = 0.2)]
+    share: f64,
+    /// T_step, how long a step is looked at, in cycles; without it the slot of the bus.
+    #[arg(long, value_name = "CYCLES")]
+    t_step: Option<NonZero<u32>>,
+    /// Write the scenario with the greatest of the settling times as `bus.settle_cycles` (`-`: standard output, and nothing
+    /// else there).
+    #[arg(long, value_name = "FILE")]
+    write: Option<PathBuf>,
+}
+
+/// What `stepscope limits` takes.
+#[derive(Args)]
+pub(crate) struct LimitsArguments {
+    #[command(flatten)]
+    common: Common,
+    /// Steps of a trial of starting and stopping; without it a turn.
+    #[arg(long, value_name = "N")]
+    steps: Option<NonZero<u64>>,
+    /// Acceleration of the ramp to the pull-out rate, in steps/s^2.
+    #[arg(long, value_name = "A", default_value_t = RAMP_STEPS_S2)]
+    ramp: f64,
+}
+
+/// What `stepscope resonance` takes.
+#[derive(Args)]
+pub(crate) struct ResonanceArguments {
+    #[command(flatten)]
+    common: Common,
+    /// The least rate in full steps/s.
+    #[arg(long, value_name = "RATE", default_value_t = 20.0)]
+    from: f64,
+    /// The greatest.
+    #[arg(long, value_name = "RATE", default_value_t = 400.0)]
+    to: f64,
+    /// From one rate to the next.
+    #[arg(long, value_name = "RATE", default_value_t = 4.0)]
+    rung: f64,
+}
+
+/// Most rates of a map.
+const MAX_RATES: f64 = 100_000.0;
+
+/// A motor alone on its supply, and the channels that have one like it.
+struct Alone {
+    channels: Vec<usize>,
+    setup: Setup,
+}
+
+/// The motors of the first controller's plant, each once.
+fn motors(common: &Common) -> Result<(Scenario, Experiment, Vec<Alone>), Failure> {
+    let path = &common.scenario;
+    let (scenario, experiment) = scenarios::judged(path)?;
+    let plants = experiment.plants().ok_or_else(|| no_plant(path))?;
+    let setup = plants.setups.first().cloned().unwrap_or_default();
+    let count = setup.motors.len();
+    if let Some(channel) = common.channel.filter(|&channel| channel >= count) {
+        return Err(Failure::Axis(path.clone(), channel, count));
+    }
+    let mut found: Vec<Alone> = Vec::new();
+    for (channel, motor) in setup.motors.iter().enumerate() {
+        if common.channel.is_some_and(|only| only != channel) {
+            continue;
+        }
+        match found.iter_mut().find(|alone| alone.setup.motors.first() == Some(motor)) {
+            Some(alone) => alone.channels.push(channel),
+            None => found.push(Alone {
+                channels: vec![channel],
+                setup: Setup { motors: vec![motor.clone()], protection: None, ..setup.clone() },
+            }),
+        }
+    }
+    Ok((Scenario::clone(&scenario), Experiment::clone(&experiment), found))
+}
+
+/// The results of `job` for 0 to `count` - 1 in this order, on several threads.
+fn on_threads<T: Send>(
+    common: &Common,
+    what: &'static str,
+    count: usize,
+    job: impl Fn(usize) -> T + Sync,
+) -> Result<Vec<T>, Failure> {
+    let progress = Progress::new(what, common.progress);
+    parallel::each(count as u64, common.threads, progress, |index| job(index as usize))
+        .map_err(Failure::threads)
+}
+
+fn refused(path: &Path, refused: Vec<Refused>) -> Failure {
+    let problem = |refused| Problem::new("plant", Cause::Plant(refused));
+    Failure::Scenario(path.to_owned(), refused.into_iter().map(problem).collect())
+}
+
+fn wrong_option(path: &Path, what: &str) -> Failure {
+    Failure::Table(path.to_owned(), what.to_owned())
+}
+
+fn channels(alone: &Alone) -> String {
+    let all: Vec<String> = alone.channels.iter().map(usize::to_string).collect();
+    all.join(", ")
+}
+
+/// Measures how long each motor's supply current takes to settle after a step.
+pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
+    let (common, path) = (&arguments.common, &arguments.common.scenario);
+    if !(0.0..1.0).contains(&arguments.share) {
+        return Err(wrong_option(path, "--share is a part of the peak; give 0 to below 1, such as 0.2"));
+    }
+    let to_standard = arguments.write.as_deref() == Some(Path::new(output::STANDARD));
+    let json = (common.json && arguments.write.is_some()).then_some(Path::new(output::STANDARD));
+    let outputs = Outputs::judge(Some(path), arguments.write.as_deref().into_iter().chain(json))?;
+    let (mut scenario, experiment, motors) = motors(common)?;
+    let slot = experiment.config().tick().0 / u64::from(experiment.config().slots());
+    let t_step = arguments.t_step.map_or(slot, |cycles| cycles.get().into());
+    let all = on_threads(common, "settling", motors.len(), |index| {
+        motors
+            .get(index)
+            .map_or(Err(Vec::new()), |alone| settling_of(&alone.setup, 0, t_step, arguments.share))
+    })?;
+    let all: Vec<StepResponse> =
+        all.into_iter().collect::<Result<_, _>>().map_err(|found| refused(path, found))?;
+    if let Some(file) = &arguments.write {
+        let greatest = all.iter().map(|response| response.reached).max().flatten();
+        let settled = all.iter().all(|response| response.reached.is_some());
+        // As the self-test: T_step where one does not settle.
+        let cycles = greatest.filter(|_| settled).unwrap_or(t_step);
+        scenario.bus.settle_cycles = u32::try_from(cycles).unwrap_or(u32::MAX);
+        output::write_whole(outputs, file, |out| writeln!(out, "{}", to_json(&scenario)))?;
+    }
+    if to_standard {
+        return Ok(());
+    }
+    let clock_hz = f64::from(experiment.config().clock_hz());
+    if common.json {
+        let rows = motors.iter().zip(&all).flat_map(|(alone, found)| {
+            alone.channels.iter().map(move |channel| {
+                json!({
+                    "channel": channel, "t_step_cycles": t_step, "share": arguments.share, "rest_a": found.rest_a,
+                    "least_a": found.least_a, "greatest_a": found.greatest_a, "reached_cycles": found.reached,
+                    "settled_cycles": found.settled,
+                })
+            })
+        });
+        return Tables::of("settling").with("settling", rows).print();
+    }
+    let mut out = io::stdout().lock();
+    let time = |cycles: Option<u64>| {
+        cycles.map_or_else(
+            || "not within T_step".to_owned(),
+            |cycles| format!("{:.4} ms, {cycles} cycles", cycles as f64 / clock_hz * 1e3),
+        )
+    };
+    for (alone, found) in motors.iter().zip(&all) {
+        writeln!(
+            out,
+            "motor {}: {:.4} A at rest, {:.3} to {:.3} A after a step\n  reached  {}\n  settled  {}",
+            channels(alone),
+            found.rest_a,
+            found.least_a,
+            found.greatest_a,
+            time(found.reached),
+            time(found.settled)
+        )
+        .map_err(Failure::output)?;
+    }
+    Ok(())
+}
+
+/// Searches the start-stop rate and the pull-out rate of each motor.
+pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
+    let (common, path) = (&arguments.common, &arguments.common.scenario);
+    if !(1.0..=1e9).contains(&arguments.ramp) {
+        return Err(wrong_option(path, "--ramp is an acceleration in steps/s^2; give 1 to 1000000000"));
+    }
+    let (_, _, motors) = motors(common)?;
+    let turn = |setup: &Setup| {
+        let motor = setup.motors.first();
+        motor.map_or(1, |motor| (360.0 / motor.full_step_deg * f64::from(motor.microsteps) + 0.5) as u64)
+    };
+    let search = |holds: &dyn Fn(f64) -> Result<bool, Vec<Refused>>| {
+        let mut search = Search::default();
+        while let Some(rate) = search.rate() {
+            search.tell(holds(rate)?);
+        }
+        Ok(search.found())
+    };
+    // The pull-out rates first: they take longer.
+    let all = on_threads(common, "limits", 2 * motors.len(), |index| {
+        let Some(alone) = motors.get(index / 2) else { return Ok(None) };
+        let setup = &alone.setup;
+        let steps = arguments.steps.map_or_else(|| turn(setup), NonZero::get);
+        if index % 2 == 0 {
+            search(&|rate| pulls(setup, rate, arguments.ramp))
+        } else {
+            search(&|rate| starts(setup, rate, steps))
+        }
+    })?;
+    let all: Vec<Option<f64>> =
+        all.into_iter().collect::<Result<_, _>>().map_err(|found| refused(path, found))?;
+    let rows: Vec<(&Alone, Option<f64>, Option<f64>)> = motors
+        .iter()
+        .zip(all.chunks(2))
+        .map(|(alone, pair)| (alone, pair.get(1).copied().flatten(), pair.first().copied().flatten()))
+        .collect();
+    if common.json {
+        let rows = rows.iter().flat_map(|(alone, start_stop, pull_out)| {
+            alone.channels.iter().map(move |channel| {
+                json!({ "channel": channel, "start_stop_steps_s": start_stop, "pull_out_steps_s": pull_out, "ramp_steps_s2": arguments.ramp })
+            })
+        });
+        return Tables::of("limits").with("limits", rows).print();
+    }
+    let rate = |found: Option<f64>| {
+        found.map_or_else(|| "not even 500 steps/s".to_owned(), |rate| format!("{rate:.0} steps/s"))
+    };
+    let mut out = io::stdout().lock();
+    for (alone, start_stop, pull_out) in rows {
+        let text = format!(
+            "motor {}\n  start-stop rate  {}\n  pull-out rate    {}, by a ramp of {} steps/s^2\n",
+            channels(alone),
+            rate(start_stop),
+            rate(pull_out),
+            arguments.ramp
+        );
+        out.write_all(text.as_bytes()).map_err(Failure::output)?;
+    }
+    Ok(())
+}
+
+/// Maps where each motor resonates, as CSV.
+pub(crate) fn resonance(arguments: &ResonanceArguments) -> Result<(), Failure> {
+    let (common, path) = (&arguments.common, &arguments.common.scenario);
+    let &ResonanceArguments { from, to, rung, .. } = arguments;
+    let count = (to - from) / rung + 1e-9;
+    if !(from > 0.0 && rung > 0.0 && to >= from && count < MAX_RATES && to <= 1e6) {
+        let what = "--from, --to and --rung make no map; give rates above 0, at most 1000000, rising, and 100000 at most";
+        return Err(wrong_option(path, what));
+    }
+    let (_, _, motors) = motors(common)?;
+    let rates: Vec<f64> = (0..=count as u64).map(|index| from + index as f64 * rung).collect();
+    let all = on_threads(common, "resonance", rates.len() * motors.len(), |index| {
+        let (alone, rate) = (motors.get(index / rates.len()), rates.get(index % rates.len()));
+        let (Some(alone), Some(rate)) = (alone, rate) else { return Err(Vec::new()) };
+        let microsteps = alone.setup.motors.first().map_or(1.0, |motor| f64::from(motor.microsteps));
+        resonance_of(&alone.setup, rate * microsteps)
+    })?;
+    let all: Vec<Resonance> =
+        all.into_iter().collect::<Result<_, _>>().map_err(|found| refused(path, found))?;
+    let rows = motors.iter().zip(all.chunks(rates.len())).flat_map(|(alone, found)| {
+        let rows = rates.iter().zip(found);
+        alone
+            .channels
+            .iter()
+            .flat_map(move |&channel| rows.clone().map(move |(rate, found)| (channel, rate, found)))
+    });
+    if common.json {
+        let rows = rows.map(|(channel, rate, found)| {
+            json!({ "channel": channel, "rate_full_steps_s": rate, "swing_full_steps": found.swing, "loses_steps": found.loses })
+        });
+        return Tables::of("resonance").with("resonance", rows).print();
+    }
+    let mut out = io::BufWriter::new(io::stdout().lock());
+    let write = || -> io::Result<()> {
+        writeln!(out, "channel,rate_full_steps_s,swing_full_steps,loses_steps")?;
+        for (channel, rate, found) in rows {
+            writeln!(out, "{channel},{rate},{},{}", found.swing, u8::from(found.loses))?;
+        }
+        out.flush()
+    };
+    write().map_err(Failure::output)
+}

@@ -1,0 +1,347 @@
+//! `stepscope plant`: what the pulses of a scenario do to its motors, their supply and its sensors.
+
+use crate::{
+    failure::Failure,
+    json::Tables,
+    output::{Out, Outputs, STANDARD},
+    progress::Progress,
+    scenarios,
+};
+use clap::Args;
+use serde_json::{Value, json};
+use std::{
+    cell::RefCell,
+    io::{self, Write},
+    num::NonZero,
+    path::{Path, PathBuf},
+    rc::Rc,
+};
+use stepscope_core::{
+    inspect::{
+        plant::{names, table_head, table_row, values, verdict},
+        vcd::{Timescale, VcdWriter},
+    },
+    peripheral::{
+        signal::{Record, Sink},
+        units::Cycles,
+    },
+    plant::{
+        Observer, Plant,
+        measures::{MotorResult, PlantResult},
+    },
+    scenario::{Problem, ValueError},
+    sim::{Experiment, plant_run::PlantRun},
+};
+
+/// Cycles between two looks at how far a run is.
+const SLICE: Cycles = Cycles(1 << 22);
+/// More of the energy than this must not be left over.
+const MAX_ENERGY_ERROR: f64 = 1e-3;
+/// Slips that are listed.
+const MAX_SLIPS: usize = 20;
+
+/// What `stepscope plant` takes.
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// The scenario, which has a plant: a JSON file, or a preset's name; `-` reads standard input.
+    scenario: PathBuf,
+    /// Of several controllers take this one.
+    #[arg(long, value_name = "K", default_value_t = 0)]
+    controller: usize,
+    /// Print only the digest of the plant: XXH64, 16 hexadecimal digits.
+    #[arg(long, conflicts_with = "json")]
+    digest: bool,
+    /// Write a table of the grid's points: voltage, currents, angles, lost steps, codes (`-`: standard output).
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Write a value change dump of signals and, as real variables, analogue values.
+    #[arg(long, value_name = "FILE")]
+    vcd: Option<PathBuf>,
+    /// Of the points write every Nth only.
+    #[arg(long, value_name = "N", default_value = "1")]
+    every: NonZero<u64>,
+    /// Print the results as JSON: one object of tables (docs/command.md).
+    #[arg(long)]
+    json: bool,
+    /// Show the progress also where standard error is no terminal.
+    #[arg(long)]
+    progress: bool,
+}
+
+/// A refusal: the scenario has no plant.
+pub(crate) fn no_plant(path: &Path) -> Failure {
+    let detail = "no plant, so nothing is driven; give \"plant\": {}";
+    let problem = Problem::new("plant", ValueError::Conflict { detail });
+    Failure::Scenario(path.to_owned(), vec![problem])
+}
+
+/// Writes points while the plant runs.
+#[derive(Clone, Default)]
+struct Files(Rc<RefCell<Open>>);
+
+#[derive(Default)]
+struct Open {
+    csv: Option<(PathBuf, Out, io::Result<()>)>,
+    vcd: Option<(PathBuf, VcdWriter<Out>)>,
+    every: u64,
+    wait: u64,
+}
+
+impl Sink for Files {
+    fn record(&mut self, record: Record) {
+        if let Some((_, writer)) = &mut self.0.borrow_mut().vcd {
+            writer.record(record);
+        }
+    }
+}
+
+impl Observer for Files {
+    fn point(&mut self, plant: &Plant) {
+        let mut open = self.0.borrow_mut();
+        if open.csv.is_none() && open.vcd.is_none() {
+            return;
+        }
+        open.wait = (open.wait + 1) % open.every.max(1);
+        if open.wait != 0 {
+            return;
+        }
+        if let Some((_, out, result)) = &mut open.csv
+            && result.is_ok()
+        {
+            *result = out.write_all(table_row(plant).as_bytes());
+        }
+        if let Some((_, writer)) = &mut open.vcd {
+            writer.analogue(plant.cycle(), &values(plant));
+        }
+    }
+}
+
+/// Runs the scenario with its plants and tells what they did.
+pub(crate) fn plant(arguments: &Arguments) -> Result<(), Failure> {
+    let path = &arguments.scenario;
+    let table = arguments.json.then_some(Path::new(STANDARD));
+    let files = [&arguments.csv, &arguments.vcd].into_iter().flatten().map(PathBuf::as_path);
+    let mut outputs = Outputs::judge(Some(path), files.chain(table))?;
+    let (_, experiment) = scenarios::judged(path)?;
+    let (controllers, chosen) = (experiment.controllers(), arguments.controller);
+    if chosen >= controllers {
+        return Err(Failure::Controller(path.clone(), chosen, controllers));
+    }
+    let parts: Vec<(Files, Files)> = (0..controllers).map(|_| <(Files, Files)>::default()).collect();
+    let mut run = PlantRun::new(&experiment, parts).ok_or_else(|| no_plant(path))?;
+    let opened = run.plant(chosen).map(|plant| open(arguments, &mut outputs, plant, &experiment));
+    let files = opened.transpose()?.unwrap_or_default();
+    run.attach(chosen, files.clone(), files.clone());
+    let mut progress = Progress::new("plant", arguments.progress);
+    while !run.advance(SLICE) {
+        progress.tell(run.now().0, experiment.cost().end_cycle);
+    }
+    drop(progress);
+    close(&files, run.now().0)?;
+    outputs.commit()?;
+    let results = run.results();
+    let Some(result) = results.get(chosen) else { return Ok(()) };
+    let clock_hz = experiment.config().clock_hz();
+    if arguments.digest {
+        return writeln!(io::stdout(), "{:016x}", result.digest).map_err(Failure::output);
+    }
+    if arguments.json {
+        return tables(&run, result, chosen, clock_hz).print();
+    }
+    if arguments.csv.as_deref() == Some(Path::new(STANDARD))
+        || arguments.vcd.as_deref() == Some(Path::new(STANDARD))
+    {
+        return Ok(());
+    }
+    print(&run, result, chosen, clock_hz).map_err(Failure::output)
+}
+
+fn open(
+    arguments: &Arguments,
+    outputs: &mut Outputs,
+    plant: &Plant,
+    experiment: &Experiment,
+) -> Result<Files, Failure> {
+    let mut opened = Open { every: arguments.every.get(), ..Open::default() };
+    if let Some(path) = &arguments.csv {
+        let mut out = outputs.create(path)?;
+        let result = out.write_all(table_head(plant).as_bytes());
+        opened.csv = Some((path.clone(), out, result));
+    }
+    if let Some(path) = &arguments.vcd {
+        let (clock_hz, channels) = (experiment.config().clock_hz(), plant.motors() as u8);
+        let scale = Timescale::default().of_clock(clock_hz).map_err(Failure::Timescale)?;
+        let writer =
+            VcdWriter::with_analogue(outputs.create(path)?, scale, clock_hz, channels, &names(plant));
+        opened.vcd = Some((path.clone(), writer.map_err(|error| Failure::File(path.clone(), error))?));
+    }
+    Ok(Files(Rc::new(RefCell::new(opened))))
+}
+
+fn close(files: &Files, end: u64) -> Result<(), Failure> {
+    let mut open = files.0.borrow_mut();
+    if let Some((path, mut out, result)) = open.csv.take() {
+        result.and_then(|()| out.flush()).map_err(|error| Failure::File(path, error))?;
+    }
+    if let Some((path, writer)) = open.vcd.take() {
+        writer.finish(end).map_err(|error| Failure::File(path, error))?;
+    }
+    Ok(())
+}
+
+fn ms(cycles: u64, clock_hz: u32) -> f64 {
+    cycles as f64 / f64::from(clock_hz) * 1e3
+}
+
+fn print<S: Sink, O: Observer>(
+    run: &PlantRun<S, O>,
+    result: &PlantResult,
+    controller: usize,
+    clock_hz: u32,
+) -> io::Result<()> {
+    let mut out = io::BufWriter::new(io::stdout().lock());
+    writeln!(out, "plant digest     {:016x}", result.digest)?;
+    writeln!(out, "points to        {:.3} ms, cycle {}", ms(result.cycle, clock_hz), result.cycle)?;
+    let (load, bus) = (&result.load_a, &result.bus_v);
+    writeln!(
+        out,
+        "supply current   {:.3} to {:.3} A, r.m.s. {:.3} A",
+        load.least,
+        load.greatest,
+        load.rms()
+    )?;
+    writeln!(out, "bus              {:.3} to {:.3} V", bus.least, bus.greatest)?;
+    if let Some(at) = result.collapsed {
+        writeln!(
+            out,
+            "  warning: the supply collapses at {:.3} ms; give a stronger source or less load",
+            ms(at, clock_hz)
+        )?;
+    }
+    if let Some(at) = run.overload(controller) {
+        writeln!(
+            out,
+            "overload         in cycle {at}, {:.3} ms: EN and STEP are off from the next cycle on",
+            ms(at, clock_hz)
+        )?;
+    }
+    for (channel, found) in run.self_test(controller).iter().enumerate() {
+        match found {
+            Some(cycles) => writeln!(
+                out,
+                "self-test {channel}      settles in {cycles} cycles, {:.3} ms",
+                ms(*cycles, clock_hz)
+            )?,
+            None => writeln!(out, "self-test {channel}      does not settle (fault SELF_TEST)")?,
+        }
+    }
+    for (channel, motor) in result.motors.iter().enumerate() {
+        print_motor(&mut out, channel, motor, clock_hz)?;
+    }
+    out.flush()
+}
+
+fn print_motor(out: &mut impl Write, channel: usize, motor: &MotorResult, clock_hz: u32) -> io::Result<()> {
+    writeln!(out, "motor {channel}          {}", verdict(motor, clock_hz))?;
+    let (following, at) = motor.following_error;
+    writeln!(out, "  following error {following:+.4} full steps at most, at {:.3} ms", ms(at, clock_hz))?;
+    writeln!(
+        out,
+        "  at the end     {:.4} full steps of {:.4}, off by {:+.4}",
+        motor.state.x,
+        motor.command,
+        motor.state.x - motor.command
+    )?;
+    if let (Some(overshoot), Some(settling)) = (motor.overshoot, motor.settling) {
+        writeln!(
+            out,
+            "  last step      overshoot {overshoot:+.4} full steps; within 0.05 after {:.3} ms",
+            ms(settling, clock_hz)
+        )?;
+    }
+    for slip in motor.slips.iter().take(MAX_SLIPS) {
+        let way = if slip.is_behind { "behind" } else { "ahead" };
+        writeln!(
+            out,
+            "  slip           at {:.3} ms, cycle {}: four full steps {way}",
+            ms(slip.cycle, clock_hz),
+            slip.cycle
+        )?;
+    }
+    if motor.slip_count > MAX_SLIPS as u64 {
+        writeln!(out, "  slips          {} in all", motor.slip_count)?;
+    }
+    writeln!(out, "  phase current  {:.3} A at most, r.m.s. {:.3} A", motor.phase_peak_a, motor.phase_rms_a)?;
+    let energy = &motor.energy;
+    writeln!(
+        out,
+        "  energy         {:.5} J from the bus = copper {:.5} + friction {:.5} + viscous {:.5} + diodes {:.5} + load {:.5} + stored {:.5}",
+        energy.bus, energy.copper, energy.friction, energy.viscous, energy.diodes, energy.load, energy.stored
+    )?;
+    if energy.error() > MAX_ENERGY_ERROR {
+        writeln!(
+            out,
+            "  warning: {:.2} % of the energy is left over; give a smaller step_cycles",
+            100.0 * energy.error()
+        )?;
+    }
+    Ok(())
+}
+
+fn tables<S: Sink, O: Observer>(
+    run: &PlantRun<S, O>,
+    result: &PlantResult,
+    controller: usize,
+    clock_hz: u32,
+) -> Tables {
+    let seconds = |cycles: u64| cycles as f64 / f64::from(clock_hz);
+    let whole = json!({
+        "controller": controller,
+        "digest": format!("{:016x}", result.digest),
+        "cycle": result.cycle,
+        "load_least_a": result.load_a.least,
+        "load_greatest_a": result.load_a.greatest,
+        "load_rms_a": result.load_a.rms(),
+        "bus_least_v": result.bus_v.least,
+        "bus_greatest_v": result.bus_v.greatest,
+        "collapsed_at_s": result.collapsed.map(seconds),
+        "overload_cycle": run.overload(controller),
+    });
+    let motor = |(channel, motor): (usize, &MotorResult)| {
+        json!({
+            "channel": channel,
+            "verdict": verdict(motor, clock_hz),
+            "command_full_steps": motor.command,
+            "rotor_full_steps": motor.state.x,
+            "lost_full_steps": motor.lost,
+            "slips": motor.slip_count,
+            "following_error_full_steps": motor.following_error.0,
+            "following_error_at_s": seconds(motor.following_error.1),
+            "overshoot_full_steps": motor.overshoot,
+            "settling_s": motor.settling.map(seconds),
+            "phase_peak_a": motor.phase_peak_a,
+            "phase_rms_a": motor.phase_rms_a,
+            "bus_j": motor.energy.bus,
+            "copper_j": motor.energy.copper,
+            "friction_j": motor.energy.friction,
+            "viscous_j": motor.energy.viscous,
+            "diodes_j": motor.energy.diodes,
+            "load_j": motor.energy.load,
+            "stored_j": motor.energy.stored,
+            "energy_error": motor.energy.error(),
+        })
+    };
+    let slips = result.motors.iter().enumerate().flat_map(|(channel, motor)| {
+        let row = move |slip: &stepscope_core::plant::Slip| json!({ "channel": channel, "cycle": slip.cycle, "behind": slip.is_behind });
+        motor.slips.iter().map(row)
+    });
+    let found = run.self_test(controller).iter().enumerate();
+    let tests = found.map(|(channel, cycles)| json!({ "channel": channel, "settling_cycles": cycles }));
+    let motors: Vec<Value> = result.motors.iter().enumerate().map(motor).collect();
+    let slips: Vec<Value> = slips.collect();
+    Tables::of("plant")
+        .with("plant", [whole])
+        .with("motors", motors)
+        .with("slips", slips)
+        .with("self_test", tests)
+}

@@ -1,0 +1,58 @@
+//! What the edges of a bus do to drivers, motors, their supply and the sensors (the design's Part F).
+//!
+//! A plant knows channels, levels and cycles; packets, motions and files it never learns of. All of it is + - * / on f64
+//! in the order that the contract writes, so every target gives the same bits; a digest tells.
+//!
+//! ```text
+//! parameters, limits -> machine (constants) -> driver, supply, sensors -> rotor (one sub-step) -> plant (the grid)
+//! ```
+//!
+//! ```
+//! use stepscope_peripheral::{signal::{Levels, Record}, units::Instant};
+//! use stepscope_plant::{Plant, parameters::{Motor, Setup}};
+//!
+//! let motor = Motor { microsteps: 1, ..Motor::default() };
+//! let mut plant = Plant::new(&Setup { motors: vec![motor], ..Setup::default() }).expect("it holds");
+//! // One full step to the right in cycle 1600, and 100 ms to come to rest.
+//! let levels = Levels(Levels::RESET.0 | 1 << Levels::DIR_SHIFT | 1);
+//! plant.record(Record { cycle: Instant(1600), levels }, &mut ());
+//! plant.advance(1_600_000, &mut ());
+//! assert!((plant.state(0).expect("a motor").x - 1.0).abs() < 0.05);
+//! ```
+#![cfg_attr(not(test), no_std)]
+
+extern crate alloc;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
+pub mod limits;
+pub mod measures;
+pub mod parameters;
+pub mod rates;
+pub mod settling;
+pub mod stability;
+
+mod digest;
+mod driver;
+mod energy;
+mod lost_steps;
+mod machine;
+mod plant;
+mod refusal;
+mod root;
+mod rotor;
+mod sensors;
+mod sincos;
+mod state;
+mod supply;
+
+pub use energy::EnergyBalance;
+pub use lost_steps::Slip;
+pub use plant::{Observer, Plant, PointEvents};
+pub use refusal::{Refusal, Refused};
+pub use sensors::Chain;
+pub use sincos::sincos;
+pub use stability::Measure;
+pub use state::State;

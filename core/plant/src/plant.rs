@@ -1,0 +1,410 @@
+//! The plant in time: edges in, a grid of points out (F1).
+//!
+//! ```text
+//! point n            n*N: the state, EN and the commands as before a change in that very cycle
+//! grid step          each motor alone, in sub-steps that end where its STEP rises or EN changes
+//! point n + 1        current of the supply, voltage, sensors, lost steps, digest; then choppers decide
+//! ```
+
+use crate::{
+    digest::Digest,
+    energy::EnergyBalance,
+    lost_steps::{LostSteps, Slip},
+    parameters::Setup,
+    refusal::{Refusal, Refused, judge},
+    rotor::Rotor,
+    sensors::{Chain, Encoder},
+    state::State,
+    supply::Supply,
+};
+use alloc::vec::Vec;
+use stepscope_peripheral::signal::{Levels, Record};
+
+/// Drivers, motors, supply and sensors behind the bus of one controller.
+///
+/// [`Plant::record`] gives it the bus' edges, [`Plant::advance`] tells it that there are no more before a cycle. In which
+/// portions that happens cannot be seen.
+#[derive(Clone, Debug)]
+pub struct Plant {
+    clock_hz: f64,
+    step_cycles: u64,
+    h: f64,
+    /// Cycle of the point before the grid step that is under way.
+    point: u64,
+    levels: Levels,
+    motors: Vec<Rotor>,
+    supply: Supply,
+    current: Chain,
+    encoders: Vec<Encoder>,
+    encoder_period: u32,
+    encoder_wait: u32,
+    accelerometers: Vec<Accelerometer>,
+    lost: Vec<LostSteps>,
+    overload: Option<Overload>,
+    digest: Digest,
+    events: PointEvents,
+}
+
+/// What happened at a point beside what can be asked of the [`Plant`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PointEvents {
+    /// The current sensor converted.
+    pub converted: bool,
+    /// The encoders were read.
+    pub encoded: bool,
+    /// The protection reports an overload (F7).
+    pub overload: bool,
+}
+
+/// Looks at a plant while it runs.
+pub trait Observer {
+    /// A grid point has been reached; [`Plant::cycle`] tells its cycle.
+    fn point(&mut self, plant: &Plant);
+
+    /// A motor lost four full steps.
+    fn slip(&mut self, _channel: usize, _slip: Slip) {}
+
+    /// STEP of these channels rises in a cycle.
+    fn steps(&mut self, _cycle: u64, _rises: u16, _right: u16) {}
+}
+
+/// Nobody looks.
+impl Observer for () {
+    #[inline(always)]
+    fn point(&mut self, _: &Plant) {}
+}
+
+impl<A: Observer, B: Observer> Observer for (A, B) {
+    #[inline(always)]
+    fn point(&mut self, plant: &Plant) {
+        self.0.point(plant);
+        self.1.point(plant);
+    }
+
+    fn slip(&mut self, channel: usize, slip: Slip) {
+        self.0.slip(channel, slip);
+        self.1.slip(channel, slip);
+    }
+
+    fn steps(&mut self, cycle: u64, rises: u16, right: u16) {
+        self.0.steps(cycle, rises, right);
+        self.1.steps(cycle, rises, right);
+    }
+}
+
+impl<O: Observer> Observer for &mut O {
+    #[inline(always)]
+    fn point(&mut self, plant: &Plant) {
+        (**self).point(plant);
+    }
+
+    fn slip(&mut self, channel: usize, slip: Slip) {
+        (**self).slip(channel, slip);
+    }
+
+    fn steps(&mut self, cycle: u64, rises: u16, right: u16) {
+        (**self).steps(cycle, rises, right);
+    }
+}
+
+impl<O: Observer> Observer for Option<O> {
+    #[inline(always)]
+    fn point(&mut self, plant: &Plant) {
+        if let Some(observer) = self {
+            observer.point(plant);
+        }
+    }
+
+    fn slip(&mut self, channel: usize, slip: Slip) {
+        if let Some(observer) = self {
+            observer.slip(channel, slip);
+        }
+    }
+
+    fn steps(&mut self, cycle: u64, rises: u16, right: u16) {
+        if let Some(observer) = self {
+            observer.steps(cycle, rises, right);
+        }
+    }
+}
+
+/// The count of conversions at or above the threshold.
+#[derive(Clone, Copy, Debug)]
+struct Overload {
+    threshold_a: f64,
+    samples: u32,
+    in_a_row: u32,
+}
+
+#[derive(Clone, Debug)]
+struct Accelerometer {
+    chain: Chain,
+    before: f64,
+}
+
+impl Plant {
+    /// A plant at point 0: currents at their targets, rotors at rest (F4).
+    ///
+    /// # Errors
+    /// Every number that is out of its range; where all are in it, every one of F3's limits, or a supply that is too weak.
+    pub fn new(setup: &Setup) -> Result<Self, Vec<Refused>> {
+        let refused = judge(setup);
+        if !refused.is_empty() {
+            return Err(refused);
+        }
+        let (clock_hz, step_cycles) = (f64::from(setup.clock_hz), setup.grid_cycles());
+        let h = f64::from(step_cycles) / clock_hz;
+        let rotor = |motor| Rotor::new(motor, clock_hz, step_cycles);
+        let mut motors: Vec<Rotor> = setup.motors.iter().map(rotor).collect();
+        let power_w = motors.iter().map(Rotor::first_power).fold(0.0, |sum, power| sum + power);
+        let source_ohm = setup.supply.source_ohm;
+        let supply = Supply::new(&setup.supply, h, motors.len(), power_w).ok_or_else(|| {
+            alloc::vec![Refused { channel: None, refusal: Refusal::TooWeak { source_ohm, power_w } }]
+        })?;
+        for motor in &mut motors {
+            motor.driver.decide(motor.state.i_a, motor.state.i_b);
+        }
+        let encoder = |(channel, motor): (usize, &crate::parameters::Motor)| {
+            Encoder::new(&setup.encoder, channel as u64, motor.full_step_deg)
+        };
+        let accelerometers = setup.accelerometer.iter().flat_map(|chain| {
+            let one = Accelerometer { chain: Chain::new(chain, h, 0.0), before: 0.0 };
+            core::iter::repeat_n(one, motors.len())
+        });
+        Ok(Self {
+            clock_hz,
+            step_cycles: step_cycles.into(),
+            h,
+            point: 0,
+            levels: Levels::RESET,
+            current: Chain::new(&setup.current_sensor, h, supply.i_load),
+            encoders: setup.motors.iter().enumerate().map(encoder).collect(),
+            encoder_period: setup.encoder.period_steps,
+            encoder_wait: setup.encoder.period_steps,
+            accelerometers: accelerometers.collect(),
+            lost: alloc::vec![LostSteps::default(); motors.len()],
+            overload: setup.protection.as_ref().map(|p| Overload {
+                threshold_a: p.threshold_a,
+                samples: p.samples,
+                in_a_row: 0,
+            }),
+            digest: Digest::default(),
+            events: PointEvents::default(),
+            motors,
+            supply,
+        })
+    }
+
+    /// Tells the levels from a cycle on; all records before it have been told.
+    pub fn record(&mut self, record: Record, observer: &mut impl Observer) {
+        let cycle = record.cycle.0;
+        self.advance(cycle, observer);
+        let before = core::mem::replace(&mut self.levels, record.levels);
+        let offset = cycle.saturating_sub(self.point);
+        let (was_powered, is_powered) = (before.has(Levels::EN), record.levels.has(Levels::EN));
+        if was_powered != is_powered {
+            for (motor, lost) in self.motors.iter_mut().zip(&mut self.lost) {
+                motor.advance(offset, self.supply.v, was_powered);
+                if is_powered {
+                    motor.driver.power_up();
+                    lost.power_up(motor.driver.command() - motor.state.x);
+                }
+            }
+            if let Some(overload) = self.overload.as_mut().filter(|_| is_powered) {
+                overload.in_a_row = 0;
+            }
+        }
+        let rises = record.levels.step() & !before.step();
+        if rises == 0 {
+            return;
+        }
+        observer.steps(cycle, rises, record.levels.dir());
+        for (channel, motor) in self.motors.iter_mut().enumerate() {
+            if rises >> channel & 1 != 0 {
+                motor.advance(offset, self.supply.v, is_powered);
+                motor.driver.step(record.levels.dir() >> channel & 1 != 0);
+            }
+        }
+    }
+
+    /// Goes on through every point that is known when no level changes before `cycle`: those in cycles up to `cycle`.
+    pub fn advance(&mut self, cycle: u64, observer: &mut impl Observer) {
+        while self.next_point() <= cycle {
+            self.grid_step(observer);
+        }
+    }
+
+    #[inline(always)]
+    fn grid_step(&mut self, observer: &mut impl Observer) {
+        let (powered, bus) = (self.levels.has(Levels::EN), self.supply.v);
+        let mut energy = 0.0;
+        for motor in &mut self.motors {
+            energy += motor.finish(bus, powered);
+        }
+        self.supply.advance(energy);
+        self.point += self.step_cycles;
+        self.events =
+            PointEvents { converted: self.current.advance(self.supply.i_load), ..PointEvents::default() };
+        self.encoder_wait -= 1;
+        if self.encoder_wait == 0 {
+            self.encoder_wait = self.encoder_period;
+            self.events.encoded = true;
+            for (encoder, motor) in self.encoders.iter_mut().zip(&self.motors) {
+                encoder.read(motor.state.x);
+            }
+        }
+        for (accelerometer, motor) in self.accelerometers.iter_mut().zip(&self.motors) {
+            let (w, before) = (motor.state.w_load, accelerometer.before);
+            accelerometer.before = w;
+            accelerometer.chain.advance((w - before) / self.h * motor.machine.g);
+        }
+        if powered {
+            for (channel, (motor, lost)) in self.motors.iter_mut().zip(&mut self.lost).enumerate() {
+                let error = motor.driver.command() - motor.state.x;
+                if let Some(slip) = lost.look(error, self.point) {
+                    observer.slip(channel, slip);
+                }
+            }
+        }
+        if let Some(overload) = self.overload.as_mut().filter(|_| self.events.converted) {
+            let is_over = self.current.reading() >= overload.threshold_a;
+            overload.in_a_row = if is_over { overload.in_a_row.saturating_add(1) } else { 0 };
+            self.events.overload = overload.in_a_row == overload.samples;
+        }
+        if self.digest.is_due() {
+            self.digest_point();
+        }
+        observer.point(self);
+        if powered {
+            for motor in &mut self.motors {
+                motor.driver.decide(motor.state.i_a, motor.state.i_b);
+            }
+        }
+    }
+
+    fn digest_point(&mut self) {
+        self.digest.cycle(self.point);
+        self.digest.numbers(&[self.supply.v, self.supply.i_load]);
+        for motor in &self.motors {
+            let State { x, w, i_a, i_b, .. } = motor.state;
+            self.digest.numbers(&[x, w, i_a, i_b]);
+        }
+    }
+
+    fn next_point(&self) -> u64 {
+        self.point.saturating_add(self.step_cycles)
+    }
+
+    /// Cycle of the point that has been reached.
+    #[must_use]
+    pub const fn cycle(&self) -> u64 {
+        self.point
+    }
+
+    /// Cycles of a grid step, N.
+    #[must_use]
+    pub const fn step_cycles(&self) -> u64 {
+        self.step_cycles
+    }
+
+    /// Cycles a second.
+    #[must_use]
+    pub const fn clock_hz(&self) -> f64 {
+        self.clock_hz
+    }
+
+    /// How many motors there are.
+    #[must_use]
+    pub fn motors(&self) -> usize {
+        self.motors.len()
+    }
+
+    /// A motor's state at the point; between points, while a step is under way, what of it is known. `None` where there is
+    /// no such channel.
+    #[must_use]
+    #[inline]
+    pub fn state(&self, channel: usize) -> Option<&State> {
+        self.motors.get(channel).map(|motor| &motor.state)
+    }
+
+    /// The commanded position in full steps, u/microsteps; 0 where there is no such channel.
+    #[must_use]
+    #[inline]
+    pub fn command(&self, channel: usize) -> f64 {
+        self.motors.get(channel).map_or(0.0, |motor| motor.driver.command())
+    }
+
+    /// Lost full steps of a motor so far, four at a time; positive where it lost steps to the right.
+    #[must_use]
+    pub fn lost(&self, channel: usize) -> i64 {
+        self.lost.get(channel).map_or(0, |lost| 4 * lost.lost)
+    }
+
+    /// Whether EN is high.
+    #[must_use]
+    pub const fn is_powered(&self) -> bool {
+        self.levels.has(Levels::EN)
+    }
+
+    /// Voltage of the bus in V.
+    #[must_use]
+    pub const fn bus_v(&self) -> f64 {
+        self.supply.v
+    }
+
+    /// Current of the drivers in the last grid step in A.
+    #[must_use]
+    pub const fn load_a(&self) -> f64 {
+        self.supply.i_load
+    }
+
+    /// Whether the bus has fallen to a sixteenth of the source's voltage.
+    #[must_use]
+    pub const fn has_collapsed(&self) -> bool {
+        self.supply.has_collapsed
+    }
+
+    /// The sensor of the supply current.
+    #[must_use]
+    pub const fn current_sensor(&self) -> &Chain {
+        &self.current
+    }
+
+    /// The latest code of a motor's encoder, 0..=4095.
+    #[must_use]
+    pub fn encoder(&self, channel: usize) -> u16 {
+        self.encoders.get(channel).map_or(0, |encoder| encoder.code)
+    }
+
+    /// The accelerometer on a motor's load, in rad/s^2; `None` where there is none.
+    #[must_use]
+    pub fn accelerometer(&self, channel: usize) -> Option<&Chain> {
+        self.accelerometers.get(channel).map(|accelerometer| &accelerometer.chain)
+    }
+
+    /// What happened at the point.
+    #[must_use]
+    pub const fn events(&self) -> PointEvents {
+        self.events
+    }
+
+    /// Where a motor's energy went; `None` where there is no such channel.
+    #[must_use]
+    pub fn energy(&self, channel: usize) -> Option<EnergyBalance> {
+        self.motors.get(channel).map(|motor| motor.energy.balance(&motor.machine, &motor.state))
+    }
+
+    /// The digest so far (F8).
+    #[must_use]
+    pub fn digest(&self) -> u64 {
+        self.digest.value()
+    }
+
+    /// Puts a motor where a test of the equations wants it.
+    pub fn set_state(&mut self, channel: usize, state: State) {
+        if let Some(motor) = self.motors.get_mut(channel) {
+            motor.state = state;
+            motor.energy = crate::energy::EnergyAccount::new(&motor.machine, &motor.state);
+        }
+    }
+}

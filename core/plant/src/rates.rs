@@ -1,0 +1,237 @@
+//! What a motor can do: the highest rate at which it starts and stops, the highest to which a ramp brings it, and where it
+//! resonates (F8). Each trial is a plant of one motor and edges of its own.
+//!
+//! ```text
+//! start-stop   | | | | | |            so many steps at one rate, then 0.2 s to come to rest
+//! pull-out     |   |  | ||||||||||    s(t) = a*t^2/2 up to the rate, then 0.1 s of it
+//! resonance    | | | | | | | | |      0.6 s of one rate; looked at in the second half
+//! ```
+//!
+//! ```
+//! use stepscope_plant::{parameters::{Motor, Setup}, rates::{Search, starts}};
+//!
+//! let setup = Setup { motors: vec![Motor::default()], ..Setup::default() };
+//! let mut search = Search::default();
+//! while let Some(rate) = search.rate() {
+//!     search.tell(starts(&setup, rate, 3200).expect("a plant"));
+//! }
+//! assert!((search.found().expect("it starts") - 34_700.0).abs() < 400.0);
+//! ```
+
+use crate::{
+    parameters::Setup,
+    plant::{Observer, Plant},
+    refusal::Refused,
+    root::square_root,
+};
+use alloc::vec::Vec;
+use stepscope_peripheral::{
+    signal::{Levels, Record},
+    units::Instant,
+};
+
+/// Cycle of the first step of a trial.
+pub const FIRST_STEP: u64 = 1600;
+/// Time to come to rest after a trial of starting and stopping, in s.
+pub const REST_S: f64 = 0.2;
+/// Time that a ramp's end rate is held, in s.
+pub const HOLD_S: f64 = 0.1;
+/// Acceleration of a ramp, in steps/s^2, where none is given.
+pub const RAMP_STEPS_S2: f64 = 200_000.0;
+/// Time of a rate of the resonance map, in s.
+pub const MAP_S: f64 = 0.6;
+
+/// The rate to start with, in steps/s.
+const FIRST_RATE: f64 = 4000.0;
+/// It must work at this one.
+const LEAST_RATE: f64 = 500.0;
+/// No rate is looked at above this one.
+const GREATEST_RATE: f64 = 5e6;
+/// How near two rates are that are one.
+const NEAR: f64 = 1.002;
+
+/// A search for the highest rate that holds: doubled while it does, then halved geometrically.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Search {
+    holds: Option<f64>,
+    fails: Option<f64>,
+}
+
+impl Search {
+    /// The next rate to try, in steps/s; `None` when the search is over.
+    #[must_use]
+    pub fn rate(&self) -> Option<f64> {
+        match (self.holds, self.fails) {
+            (None, None) => Some(FIRST_RATE),
+            (None, Some(fails)) => (fails > LEAST_RATE).then_some(LEAST_RATE),
+            (Some(holds), None) => (holds < GREATEST_RATE).then_some(2.0 * holds),
+            (Some(holds), Some(fails)) => (fails > NEAR * holds).then(|| square_root(holds * fails)),
+        }
+    }
+
+    /// Tells whether that rate holds.
+    pub fn tell(&mut self, holds: bool) {
+        let Some(rate) = self.rate() else { return };
+        if holds {
+            self.holds = Some(rate);
+        } else {
+            self.fails = Some(rate);
+        }
+    }
+
+    /// The highest rate that held, in steps/s; `None` where not even 500 did.
+    #[must_use]
+    pub const fn found(&self) -> Option<f64> {
+        self.holds
+    }
+
+    /// How far the search has come, 0..=1.
+    #[must_use]
+    pub fn progress(&self) -> f64 {
+        match (self.holds, self.fails) {
+            // From a factor of two to the end there are nine to ten halvings.
+            (Some(holds), Some(fails)) => (0.3 + 0.7 * (1.0 - (fails / holds - 1.0) / 7.0)).clamp(0.3, 1.0),
+            _ => 0.1,
+        }
+    }
+}
+
+/// Rises of STEP at one rate, the first in [`FIRST_STEP`]: step k floor(k*clock_hz/rate + 1/2) later.
+pub fn even(clock_hz: u32, rate: f64, steps: u64) -> impl Iterator<Item = u64> {
+    let cycles = f64::from(clock_hz);
+    (0..steps).map(move |k| FIRST_STEP + (k as f64 * cycles / rate + 0.5) as u64)
+}
+
+/// Rises of STEP on a ramp of `a` steps/s^2 to a rate, and that held for `hold_s`: step k where s(t) = k - 1/2.
+pub fn ramp(clock_hz: u32, rate: f64, a: f64, hold_s: f64) -> impl Iterator<Item = u64> {
+    let (cycles, ramp_s) = (f64::from(clock_hz), rate / a);
+    let ramp_steps = 0.5 * a * ramp_s * ramp_s;
+    (0_u64..)
+        .map(move |k| {
+            let s = k as f64 + 0.5;
+            if s <= ramp_steps { square_root(2.0 * s / a) } else { ramp_s + (s - ramp_steps) / rate }
+        })
+        .take_while(move |&t| t <= ramp_s + hold_s)
+        .map(move |t| FIRST_STEP + (t * cycles + 0.5) as u64)
+}
+
+/// Runs a plant of one motor with these rises of STEP to the right, then to `end` cycles after the last.
+fn trial<O: Observer>(
+    setup: &Setup,
+    rises: impl Iterator<Item = u64>,
+    after: u64,
+    observer: &mut O,
+) -> Result<Plant, Vec<Refused>> {
+    let mut plant = Plant::new(setup)?;
+    let right = Levels(Levels::RESET.0 | 1 << Levels::DIR_SHIFT);
+    let high = Levels(right.0 | 1);
+    let mut last = 0;
+    for rise in rises {
+        if rise > last + 1 {
+            // The pulse before has fallen by then; where exactly means nothing to the plant.
+            plant.record(Record { cycle: Instant(last + 1), levels: right }, observer);
+        }
+        plant.record(Record { cycle: Instant(rise), levels: high }, observer);
+        plant.record(Record { cycle: Instant(rise), levels: right }, observer);
+        last = rise;
+    }
+    plant.advance(last + after, observer);
+    Ok(plant)
+}
+
+fn span(setup: &Setup, seconds: f64) -> u64 {
+    (f64::from(setup.clock_hz) * seconds + 0.5) as u64
+}
+
+/// Whether the motor of channel 0 makes `steps` at an even rate from rest and stops at its place.
+///
+/// # Errors
+/// Those of the plant.
+pub fn starts(setup: &Setup, rate: f64, steps: u64) -> Result<bool, Vec<Refused>> {
+    let mut slipped = Slipped::default();
+    let after = span(setup, REST_S);
+    let plant = trial(setup, even(setup.clock_hz, rate, steps), after, &mut slipped)?;
+    let error = plant.command(0) - plant.state(0).map_or(0.0, |state| state.x);
+    Ok(!slipped.has && error.abs() < 1.0)
+}
+
+/// Whether a ramp of `a` steps/s^2 brings the motor of channel 0 to a rate and keeps it there.
+///
+/// # Errors
+/// Those of the plant.
+pub fn pulls(setup: &Setup, rate: f64, a: f64) -> Result<bool, Vec<Refused>> {
+    let mut slipped = Slipped::default();
+    trial(setup, ramp(setup.clock_hz, rate, a, HOLD_S), 0, &mut slipped)?;
+    Ok(!slipped.has)
+}
+
+/// What the motor does at one even rate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resonance {
+    /// Peak to peak of rate*t - x in the second half, in full steps.
+    pub swing: f64,
+    /// Whether steps are lost.
+    pub loses: bool,
+}
+
+/// The motor of channel 0 at an even rate in steps/s, for 0.6 s.
+///
+/// # Errors
+/// Those of the plant.
+pub fn resonance(setup: &Setup, rate: f64) -> Result<Resonance, Vec<Refused>> {
+    let microsteps = setup.motors.first().map_or(1.0, |motor| f64::from(motor.microsteps));
+    // Steps go on to the end of the time, so that the last part of it is no standing still.
+    let steps = (rate * MAP_S) as u64 + 1;
+    let from = FIRST_STEP + span(setup, 0.5 * MAP_S);
+    let to = FIRST_STEP + span(setup, MAP_S);
+    let mut swing =
+        Swing { per_cycle: rate / microsteps / f64::from(setup.clock_hz), from, to, ..Swing::default() };
+    let rises = || even(setup.clock_hz, rate, steps).take_while(|&rise| rise < to);
+    let last = rises().last().unwrap_or(FIRST_STEP);
+    trial(setup, rises(), to.saturating_sub(last), &mut swing)?;
+    Ok(Resonance { swing: (swing.greatest - swing.least).max(0.0), loses: swing.slipped.has })
+}
+
+#[derive(Default)]
+struct Slipped {
+    has: bool,
+}
+
+impl Observer for Slipped {
+    fn point(&mut self, _: &Plant) {}
+
+    fn slip(&mut self, _: usize, _: crate::Slip) {
+        self.has = true;
+    }
+}
+
+struct Swing {
+    per_cycle: f64,
+    from: u64,
+    to: u64,
+    least: f64,
+    greatest: f64,
+    slipped: Slipped,
+}
+
+impl Default for Swing {
+    fn default() -> Self {
+        let (least, greatest) = (f64::INFINITY, f64::NEG_INFINITY);
+        Self { per_cycle: 0.0, from: 0, to: 0, least, greatest, slipped: Slipped::default() }
+    }
+}
+
+impl Observer for Swing {
+    fn point(&mut self, plant: &Plant) {
+        let cycle = plant.cycle();
+        if let Some(state) = plant.state(0).filter(|_| cycle > self.from && cycle <= self.to) {
+            let error = (cycle - FIRST_STEP) as f64 * self.per_cycle - state.x;
+            self.least = self.least.min(error);
+            self.greatest = self.greatest.max(error);
+        }
+    }
+
+    fn slip(&mut self, channel: usize, slip: crate::Slip) {
+        self.slipped.slip(channel, slip);
+    }
+}

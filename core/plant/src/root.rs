@@ -1,0 +1,82 @@
+//! The square root without a mathematics library: IEEE 754 leaves its bits no choice, so whole numbers can find them.
+
+/// The square root of `x`, correctly rounded; not-a-number below 0.
+///
+/// x = m*2^e with e even and m a whole number of 109 or 110 bits has the root r*2^(e/2), r the whole root of m; r has 55
+/// bits, two more than an f64 keeps, and what is left over tells whether the cut-off bits are exactly a half.
+pub(crate) fn square_root(x: f64) -> f64 {
+    if x.is_nan() || x < 0.0 {
+        return f64::NAN;
+    }
+    if x == 0.0 || x == f64::INFINITY {
+        return x;
+    }
+    let bits = x.to_bits();
+    let (fraction, exponent) = (bits & ((1 << 52) - 1), (bits >> 52) as i32);
+    // x = significand * 2^exponent.
+    let (significand, exponent) =
+        if exponent == 0 { (fraction, -1074) } else { (fraction | 1 << 52, exponent - 1075) };
+    let up = significand.leading_zeros() as i32 - 11;
+    let (significand, exponent) = (significand << up, exponent - up);
+    let odd = exponent & 1;
+    let m = u128::from(significand) << (56 + odd);
+    let half_exponent = (exponent - odd - 56) / 2;
+    let root = whole_root(m);
+    // The sticky bit: something is left over.
+    let sticky = u64::from(u128::from(root) * u128::from(root) != m);
+    // Between 2^54 and 2^55: two bits more than the significand's 53, of which conversion rounds to even.
+    let rounded = ((root << 1) | sticky) as f64;
+    rounded * power_of_two(half_exponent - 1)
+}
+
+/// The whole part of the square root.
+fn whole_root(m: u128) -> u64 {
+    let (mut rest, mut root, mut bit) = (m, 0_u128, 1_u128 << 126);
+    while bit > m {
+        bit >>= 2;
+    }
+    while bit != 0 {
+        if rest >= root + bit {
+            rest -= root + bit;
+            root = (root >> 1) + bit;
+        } else {
+            root >>= 1;
+        }
+        bit >>= 2;
+    }
+    root as u64
+}
+
+/// 2^n where it is a normal number, as it is for roots.
+const fn power_of_two(n: i32) -> f64 {
+    f64::from_bits(((1023 + n) as u64) << 52)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_root_has_the_bits_of_the_platforms() {
+        let grid = (0..200_000_u64).map(|i| f64::from_bits(i.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 1));
+        let near_one = (0..2000).map(|i| 1.0 + f64::from(i) * f64::EPSILON);
+        let special = [
+            0.0,
+            -0.0,
+            5e-324,
+            1e-320,
+            2.0,
+            3.0,
+            4.0,
+            0.25,
+            -1.0,
+            f64::MAX,
+            f64::MIN_POSITIVE,
+            f64::INFINITY,
+        ];
+        for x in grid.chain(near_one).chain(special) {
+            let (found, expected) = (square_root(x), x.sqrt());
+            assert!(found.to_bits() == expected.to_bits() || (found.is_nan() && expected.is_nan()), "{x:e}");
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! One motor in time: the state of its currents and masses, and a (sub-)step of it (F3).
+//!
+//! ```text
+//! half a step of x; the currents' mean with constant voltage and back-EMF, exactly; the speed by the implicit
+//! midpoint; friction; the currents; the other half of x
+//! ```
+
+use crate::{
+    driver::{Ask, Driver},
+    energy::EnergyAccount,
+    machine::{Machine, Span},
+    parameters::Motor,
+    sincos::sincos,
+    state::State,
+};
+
+/// A motor with its load and driver.
+#[derive(Clone, Debug)]
+pub(crate) struct Rotor {
+    pub(crate) machine: Machine,
+    pub(crate) driver: Driver,
+    pub(crate) state: State,
+    pub(crate) energy: EnergyAccount,
+    /// The constants of a whole grid step.
+    whole: Span,
+    step_cycles: u64,
+    clock_hz: f64,
+    /// Cycles of the grid step that have passed.
+    passed: u64,
+    /// Energy that it took from the bus in this grid step, in J.
+    from_bus: f64,
+}
+
+/// `value` moved towards 0 by `by`, at most to 0.
+#[inline(always)]
+fn towards_zero(value: f64, by: f64) -> f64 {
+    if value.abs() <= by {
+        0.0
+    } else if value > 0.0 {
+        value - by
+    } else {
+        value + by
+    }
+}
+
+impl Rotor {
+    pub(crate) fn new(motor: &Motor, clock_hz: f64, step_cycles: u32) -> Self {
+        let (machine, driver) = (Machine::new(motor), Driver::new(motor, clock_hz, step_cycles));
+        let [i_a, i_b] = [driver.phases[0].target, driver.phases[1].target];
+        let x = machine.rest(i_a, i_b);
+        let x_load = machine.coupling.as_ref().map_or(x, |c| x + machine.load.at(x) / c.stiffness);
+        let state = State { x, w: 0.0, i_a, i_b, x_load, w_load: 0.0 };
+        let whole = Span::new(&machine, step_cycles.into(), clock_hz);
+        let energy = EnergyAccount::new(&machine, &state);
+        let step_cycles = step_cycles.into();
+        Self { machine, driver, state, energy, whole, step_cycles, clock_hz, passed: 0, from_bus: 0.0 }
+    }
+
+    /// What the windings take from the bus at the start, in W.
+    pub(crate) fn first_power(&self) -> f64 {
+        let State { i_a, i_b, .. } = self.state;
+        self.machine.r * (i_a * i_a + i_b * i_b)
+    }
+
+    /// Goes on to `to` cycles after the grid point.
+    pub(crate) fn advance(&mut self, to: u64, bus: f64, powered: bool) {
+        if to > self.passed {
+            let span = Span::new(&self.machine, to - self.passed, self.clock_hz);
+            self.step(&span, bus, powered);
+            self.passed = to;
+        }
+    }
+
+    /// Goes on to the next grid point; gives the energy that it took from the bus since the one before, in J.
+    #[inline(always)]
+    pub(crate) fn finish(&mut self, bus: f64, powered: bool) -> f64 {
+        if self.passed == 0 {
+            let whole = self.whole;
+            self.step(&whole, bus, powered);
+        } else {
+            self.advance(self.step_cycles, bus, powered);
+        }
+        self.passed = 0;
+        core::mem::take(&mut self.from_bus)
+    }
+
+    #[inline(always)]
+    fn step(&mut self, span: &Span, bus: f64, powered: bool) {
+        let Self { machine, driver, state, .. } = self;
+        let State { x, w, i_a, i_b, .. } = *state;
+        let Span { h, hh, ra, .. } = *span;
+        let (k, r, m) = (machine.k, machine.r, machine.m);
+
+        let y = x + w * hh;
+        let (sn, cs) = sincos(y + 0.5);
+        let (k_a, k_b) = (-(k * sn), k * cs);
+        let a = driver.voltage(0, &Ask { e: k_a * w, i: i_a, r, ra, bus }, powered);
+        let b = driver.voltage(1, &Ask { e: k_b * w, i: i_b, r, ra, bus }, powered);
+        let (u_a, u_b) = (a.v - r * i_a, b.v - r * i_b);
+        let (a_a, b_a) = if a.is_open { (0.0, 0.0) } else { (span.a, span.b) };
+        let (a_b, b_b) = if b.is_open { (0.0, 0.0) } else { (span.a, span.b) };
+
+        let mut f = 0.0;
+        if machine.detent != 0.0 {
+            f -= machine.detent(sn, cs);
+        }
+        let mut spring = 0.0;
+        let mut y_load = y;
+        let load;
+        if let Some(c) = &machine.coupling {
+            y_load = state.x_load + state.w_load * hh;
+            spring = c.stiffness * (y_load - y) + c.damping * (state.w_load - w);
+            f += spring;
+            load = machine.load.at(y_load);
+        } else {
+            load = machine.load.at(y);
+            f += load;
+        }
+
+        let torque = k_a * (i_a + b_a * u_a) + k_b * (i_b + b_b * u_b) + f;
+        let den = m + hh * (machine.b + (b_a * k_a * k_a + b_b * k_b * k_b));
+        let w_m = (m * w + hh * torque) / den;
+        let free = 2.0 * w_m - w;
+        let slide = h * machine.friction / den;
+        let hold = if w == 0.0 { h * machine.stiction / den } else { slide };
+        let w_1 = if free.abs() <= hold {
+            0.0
+        } else if free > 0.0 {
+            free - slide
+        } else {
+            free + slide
+        };
+
+        let w_m = 0.5 * (w + w_1);
+        let (t_a, t_b) = (u_a - k_a * w_m, u_b - k_b * w_m);
+        let (mean_a, mean_b) = (i_a + b_a * t_a, i_b + b_b * t_b);
+        let next_a = if a.ends { 0.0 } else { i_a + a_a * t_a };
+        let next_b = if b.ends { 0.0 } else { i_b + a_b * t_b };
+        state.i_a = next_a;
+        state.i_b = next_b;
+        state.x = y + w_1 * hh;
+        state.w = w_1;
+        let energy = &mut self.energy;
+        if let Some(c) = &machine.coupling {
+            let pushed = state.w_load + h * (load - spring) / c.mass;
+            let w_l = towards_zero(pushed, h * c.friction / c.mass);
+            energy.coupled(c, [state.w_load, w_l, pushed], (w, w_m), load, h);
+            state.w_load = w_l;
+            state.x_load = y_load + w_l * hh;
+        } else {
+            state.x_load = state.x;
+            state.w_load = w_1;
+            energy.load -= h * load * w_m;
+        }
+
+        let taken = if powered {
+            (a.v * mean_a + b.v * mean_b) * h
+        } else {
+            let whole = bus + driver.diodes;
+            let taken = (a.v * mean_a * bus / whole + b.v * mean_b * bus / whole) * h;
+            energy.diodes += taken - (a.v * mean_a + b.v * mean_b) * h;
+            taken
+        };
+        self.from_bus += taken;
+        energy.bus += taken;
+        energy.friction += (free - w_1) * den * w_m;
+        energy.viscous += h * machine.b * w_m * w_m;
+        energy.copper +=
+            h * (i_a * i_a + i_a * next_a + next_a * next_a + i_b * i_b + i_b * next_b + next_b * next_b);
+    }
+}

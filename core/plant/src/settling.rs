@@ -1,0 +1,133 @@
+//! How long the supply current needs to settle after a step, the patent's delta t_p, and how far motors that step together
+//! pull it from its rest (F8).
+//!
+//! ```
+//! use stepscope_plant::settling::{SHARE, Sample, StepResponse};
+//!
+//! let samples = [(0, 1.0), (10, 1.0), (20, 3.0), (30, 1.5), (40, 1.1), (50, 1.0)];
+//! let samples = samples.map(|(cycle, current_a)| Sample { cycle, current_a });
+//! let found = StepResponse::of(&samples, 0, 15, 100, SHARE).expect("there are samples");
+//! assert_eq!((found.reached, found.settled), (Some(25), Some(15)));
+//! ```
+
+use crate::plant::{Observer, Plant};
+use alloc::vec::Vec;
+
+/// What still counts as settled, in parts of the peak.
+pub const SHARE: f64 = 0.2;
+/// Rests of this many T_step give the current before the step.
+pub const REST_STEPS: u64 = 10;
+
+/// A reading of the current sensor at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// The point's cycle.
+    pub cycle: u64,
+    /// The current in A.
+    pub current_a: f64,
+}
+
+/// The supply current around one step of a motor that rested.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepResponse {
+    /// Its mean before, i_q.
+    pub rest_a: f64,
+    /// The least after the step.
+    pub least_a: f64,
+    /// The greatest.
+    pub greatest_a: f64,
+    /// Cycles from STEP's rise to the first sample, from the greatest on, that is at most a share above i_q: the patent's
+    /// word, the default. `None` if not within T_step.
+    pub reached: Option<u64>,
+    /// Cycles to the last sample that is off by more than that share. `None` if it is the last one there is.
+    pub settled: Option<u64>,
+}
+
+impl StepResponse {
+    /// Of samples around a rise of STEP in cycle `rise`: before it they count from `from` on, after it for `t_step` cycles.
+    /// `None` where there are none on one side.
+    #[must_use]
+    pub fn of(samples: &[Sample], from: u64, rise: u64, t_step: u64, share: f64) -> Option<Self> {
+        let within = |after: u64, to: u64| {
+            samples.iter().filter(move |sample| sample.cycle > after && sample.cycle <= to)
+        };
+        let rest_a = mean(within(from, rise))?;
+        let after: Vec<Sample> = within(rise, rise.saturating_add(t_step)).copied().collect();
+        let first = after.first()?;
+        let (mut least_a, mut greatest_a, mut t_max) = (first.current_a, first.current_a, 0);
+        for (index, sample) in after.iter().enumerate() {
+            least_a = least_a.min(sample.current_a);
+            if sample.current_a > greatest_a {
+                (greatest_a, t_max) = (sample.current_a, index);
+            }
+        }
+        let peak = (greatest_a - rest_a).abs().max((least_a - rest_a).abs());
+        let since = |sample: &Sample| sample.cycle - rise;
+        let reached =
+            after.iter().skip(t_max).find(|sample| sample.current_a - rest_a <= share * peak).map(since);
+        let last_off = after.iter().rposition(|sample| (sample.current_a - rest_a).abs() > share * peak);
+        let settled = match last_off {
+            None => Some(0),
+            Some(index) if index + 1 == after.len() => None,
+            Some(index) => after.get(index).map(since),
+        };
+        Some(Self { rest_a, least_a, greatest_a, reached, settled })
+    }
+}
+
+/// The mean of samples; `None` of none.
+#[must_use]
+pub fn mean<'a>(samples: impl Iterator<Item = &'a Sample>) -> Option<f64> {
+    let (sum, count) = samples.fold((0.0, 0_u32), |(sum, count), s| (sum + s.current_a, count + 1));
+    (count > 0).then(|| sum / f64::from(count))
+}
+
+/// How far the supply current is pulled from its rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deviation {
+    /// Its mean at rest, i_q, in A.
+    pub rest_a: f64,
+    /// The greatest above it, at least 0.
+    pub above_a: f64,
+    /// The greatest below it, at least 0.
+    pub below_a: f64,
+}
+
+impl Deviation {
+    /// Of samples, those up to `first_step` at rest; those after `from` count.
+    #[must_use]
+    pub fn of(samples: &[Sample], first_step: u64, from: u64) -> Option<Self> {
+        let rest_a = mean(samples.iter().filter(|sample| sample.cycle <= first_step))?;
+        let off = samples.iter().filter(|sample| sample.cycle > from).map(|sample| sample.current_a - rest_a);
+        let (below, above_a) = off.fold((0.0_f64, 0.0_f64), |(low, high), d| (low.min(d), high.max(d)));
+        Some(Self { rest_a, above_a, below_a: -below })
+    }
+
+    /// The greater of both.
+    #[must_use]
+    pub const fn greatest_a(&self) -> f64 {
+        self.above_a.max(self.below_a)
+    }
+}
+
+/// Keeps what the current sensor says at each point.
+#[derive(Clone, Debug, Default)]
+pub struct SensorLog {
+    /// The readings, rising in time.
+    pub samples: Vec<Sample>,
+    /// Rises of STEP of channel 0.
+    pub steps: Vec<u64>,
+}
+
+impl Observer for SensorLog {
+    fn point(&mut self, plant: &Plant) {
+        let current_a = plant.current_sensor().filtered();
+        self.samples.push(Sample { cycle: plant.cycle(), current_a });
+    }
+
+    fn steps(&mut self, cycle: u64, rises: u16, _: u16) {
+        if rises & 1 != 0 {
+            self.steps.push(cycle);
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Whether the grid is fine enough for the equations (F3): four numbers a motor, each at most 0.25, and the natural
+//! frequency of a rotor that is held by its currents.
+//!
+//! ```
+//! use stepscope_plant::{parameters::Motor, stability::Natural};
+//!
+//! let natural = Natural::of(&Motor::default());
+//! assert!((natural.frequency_hz - 282.14).abs() < 0.05);
+//! ```
+
+use crate::{
+    machine::{Machine, TURN},
+    parameters::Motor,
+    root::square_root,
+};
+
+/// A rotor that is held by its currents swings like a pendulum, while it is little off its place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Natural {
+    /// f_n = sqrt(p*k*I/J)/(2*pi) in Hz; J is the rotor's and the load's inertia, with a coupling the rotor's alone.
+    pub frequency_hz: f64,
+    /// viscous/(4*pi*f_n*J): how fast it comes to rest without any other friction.
+    pub damping_ratio: f64,
+}
+
+impl Natural {
+    /// Of a motor at its peak current.
+    #[must_use]
+    pub fn of(motor: &Motor) -> Self {
+        let machine = Machine::new(motor);
+        let inertia = machine.m / (machine.g * machine.g);
+        let k = machine.k / machine.g;
+        let frequency_hz =
+            square_root(90.0 / motor.full_step_deg * k * motor.peak_current_a / inertia) / TURN;
+        let damping_ratio = motor.viscous_un_m_s / 1e6 / (2.0 * TURN * frequency_hz * inertia);
+        Self { frequency_hz, damping_ratio }
+    }
+}
+
+/// Which number is too great for the grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// R*h/L: the currents.
+    Electrical,
+    /// 2*pi*f_n*h: the rotor in the field of its currents.
+    Rotor,
+    /// h*sqrt(C*(1/M + 1/M_l)): the two masses.
+    Spring,
+    /// h*Cd*(1/M + 1/M_l): the coupling's damper.
+    Damper,
+}
+
+impl Measure {
+    /// As the contract writes it.
+    #[must_use]
+    pub const fn formula(self) -> &'static str {
+        match self {
+            Self::Electrical => "R*h/L",
+            Self::Rotor => "2*pi*f_n*h",
+            Self::Spring => "h*sqrt(C*(1/M + 1/M_l))",
+            Self::Damper => "h*Cd*(1/M + 1/M_l)",
+        }
+    }
+}
+
+/// The numbers of a motor on a grid of `h` seconds.
+pub(crate) fn measures(motor: &Motor, h: f64) -> impl Iterator<Item = (Measure, f64)> {
+    let machine = Machine::new(motor);
+    let natural = Natural::of(motor).frequency_hz;
+    let (spring, damper) = machine.coupling.as_ref().map_or((0.0, 0.0), |c| {
+        let masses = 1.0 / machine.m + 1.0 / c.mass;
+        (h * square_root(c.stiffness * masses), h * c.damping * masses)
+    });
+    [
+        (Measure::Electrical, machine.r * h / machine.l),
+        (Measure::Rotor, TURN * natural * h),
+        (Measure::Spring, spring),
+        (Measure::Damper, damper),
+    ]
+    .into_iter()
+}

@@ -1,0 +1,61 @@
+//! The bus that feeds all drivers of a plant: its voltage and the current that is drawn from it (F5).
+
+use crate::{parameters, root::square_root};
+
+/// The supply in time.
+#[derive(Clone, Debug)]
+pub(crate) struct Supply {
+    /// Voltage of the bus at the point, in V.
+    pub(crate) v: f64,
+    /// Current of the drivers in the grid step before the point, in A.
+    pub(crate) i_load: f64,
+    idle: f64,
+    h: f64,
+    supply_v: f64,
+    source_ohm: f64,
+    source_sinks: bool,
+    /// hc = h/Cb and gg.
+    buffer: Option<(f64, f64)>,
+    /// Whether the bus is at its floor.
+    pub(crate) has_collapsed: bool,
+}
+
+impl Supply {
+    /// `None` where the source cannot give what the motors draw at the start.
+    pub(crate) fn new(supply: &parameters::Supply, h: f64, motors: usize, first_power: f64) -> Option<Self> {
+        let &parameters::Supply { supply_v, source_ohm, source_sinks, idle_ma, buffer_uf } = supply;
+        let idle = idle_ma / 1000.0 * motors as f64;
+        let buffer = buffer_uf.map(|uf| {
+            let hc = h / (uf / 1e6);
+            (hc, 0.5 * hc / source_ohm)
+        });
+        let v = if buffer.is_some() {
+            let v_i = supply_v - source_ohm * idle;
+            0.5 * (v_i + square_root(v_i * v_i - 4.0 * source_ohm * first_power))
+        } else {
+            supply_v
+        };
+        let i_load = first_power / v + idle;
+        let new =
+            Self { v, i_load, idle, h, supply_v, source_ohm, source_sinks, buffer, has_collapsed: false };
+        (!v.is_nan()).then_some(new)
+    }
+
+    /// The next point, after a grid step in which the motors took so much energy.
+    #[inline(always)]
+    pub(crate) fn advance(&mut self, energy: f64) {
+        self.i_load = energy / (self.v * self.h) + self.idle;
+        let Some((hc, gg)) = self.buffer else { return };
+        let v_m = (self.v + gg * self.supply_v - 0.5 * hc * self.i_load) / (1.0 + gg);
+        let mut i_source = (self.supply_v - v_m) / self.source_ohm;
+        if i_source < 0.0 && !self.source_sinks {
+            i_source = 0.0;
+        }
+        self.v += hc * (i_source - self.i_load);
+        let floor = self.supply_v / 16.0;
+        self.has_collapsed = self.v <= floor;
+        if self.v < floor {
+            self.v = floor;
+        }
+    }
+}

@@ -1,0 +1,331 @@
+//! The rows of F10 that edges alone tell; those of motions and scenarios are in `tests/tests/plant.rs`.
+#![allow(clippy::expect_used, clippy::panic, reason = "what cannot be run fails the test")]
+
+mod common;
+
+use common::{
+    Each, T_STEP, frictionless, full_steps, near, near_part, one, patent_plant, records, run, with_sensor,
+};
+use stepscope_plant::{
+    Observer, Plant, Slip,
+    measures::{Measures, MotorResult},
+    parameters::{Decay, Drive, Motor, Protection, Regulator, Setup, Supply},
+    rates::{self, RAMP_STEPS_S2, Search},
+    settling::{Deviation, Sample, SensorLog, StepResponse},
+    stability::Natural,
+};
+
+/// 16 MHz.
+const HZ: f64 = 16e6;
+
+#[test]
+fn natural_frequency_of_the_default_motor() {
+    near_part(Natural::of(&Motor::default()).frequency_hz, 282.14, 0.0002);
+}
+
+#[test]
+fn a_rotor_rests_where_its_currents_hold_the_gravity() {
+    for (gravity, expected) in [(50.0, -0.113_134), (150.0, -0.355_864), (250.0, -0.690_160)] {
+        let motor = Motor { friction_mn_m: 0.0, gravity_torque_mn_m: gravity, ..Motor::default() };
+        let mut plant = Plant::new(&one(motor)).expect("it holds");
+        near(plant.state(0).expect("a motor").x, expected, 1e-6);
+        plant.advance(1_600_000, &mut ());
+        near(plant.state(0).expect("a motor").x, expected, 1e-6);
+    }
+}
+
+/// A default motor in full steps whose rotor nothing moves, on a grid of 4 cycles.
+fn locked() -> Setup {
+    let motor = Motor { rotor_inertia_g_cm2: 1e9, ..full_steps() };
+    Setup { step_cycles: Some(4), ..one(motor) }
+}
+
+#[test]
+fn a_phase_of_a_locked_rotor_turns_its_current_round_in_the_time_of_its_inductance() {
+    let mut arrived = None;
+    let mut look = Each(|plant: &Plant| {
+        if plant.cycle() > 1600 && plant.state(0).expect("a motor").i_a < -1.0606 {
+            arrived.get_or_insert(plant.cycle() - 1600);
+        }
+    });
+    run(&locked(), &records(&[vec![1600]], 16), 32_000, &mut look);
+    near_part(arrived.expect("it arrives") as f64 / HZ * 1e3, 0.3807, 0.003);
+}
+
+#[test]
+fn the_supply_current_dips_and_peaks_while_a_phase_turns_round() {
+    let mut currents = vec![];
+    run(
+        &locked(),
+        &records(&[vec![1600]], 16),
+        32_000,
+        &mut Each(|plant: &Plant| currents.push(plant.load_a())),
+    );
+    near_part(currents[100], 0.150, 0.01);
+    let after = currents.iter().copied();
+    near_part(after.clone().fold(f64::INFINITY, f64::min), -0.986, 0.01);
+    near_part(after.fold(f64::NEG_INFINITY, f64::max), 1.136, 0.01);
+    near_part(currents[399 + 1], -0.986, 0.01);
+}
+
+fn search(mut holds: impl FnMut(f64) -> bool) -> f64 {
+    let mut search = Search::default();
+    while let Some(rate) = search.rate() {
+        search.tell(holds(rate));
+    }
+    search.found().expect("a rate holds")
+}
+
+#[derive(Default)]
+struct Slips(Vec<Slip>);
+
+impl Observer for Slips {
+    fn point(&mut self, _: &Plant) {}
+    fn slip(&mut self, _: usize, slip: Slip) {
+        self.0.push(slip);
+    }
+}
+
+#[test]
+fn without_friction_a_motor_starts_at_eight_natural_frequencies() {
+    for (supply_v, expected) in [(24.0, 35_943.0), (240.0, 36_089.0)] {
+        let setup = Setup { supply: Supply { supply_v, ..Supply::default() }, ..one(frictionless()) };
+        let found = search(|rate| {
+            let rises: Vec<u64> = rates::even(16_000_000, rate, 3200).collect();
+            let end = rises[3199];
+            let mut slips = Slips::default();
+            run(&setup, &records(&[rises], 16), end, &mut slips);
+            slips.0.is_empty()
+        });
+        near_part(found, expected, 0.01);
+    }
+}
+
+/// 3200 steps at one rate from rest, and 0.2 s.
+fn direct_start(motor: Motor, rate: f64) -> MotorResult {
+    let rises: Vec<u64> = rates::even(16_000_000, rate, 3200).collect();
+    let end = rises[3199] + 3_200_000;
+    let setup = one(motor);
+    let mut measures = Measures::new(&Plant::new(&setup).expect("it holds"));
+    let plant = run(&setup, &records(&[rises], 16), end, &mut measures);
+    measures.result(&plant).motors.remove(0)
+}
+
+#[test]
+fn a_direct_start_overshoots_and_rings() {
+    for (rate, overshoot, settling_ms) in [(8000.0, 0.265, 12.1), (19_200.0, 0.676, 26.5)] {
+        let result = direct_start(Motor::default(), rate);
+        assert_eq!((result.lost, result.slips.len()), (0, 0));
+        near_part(result.overshoot.expect("it stepped"), overshoot, 0.02);
+        near_part(result.settling.expect("it stepped") as f64 / HZ * 1e3, settling_ms, 0.02);
+        near(result.energy.error(), 0.0, 1e-3);
+    }
+}
+
+#[test]
+fn a_direct_start_with_a_load_stalls() {
+    let result = direct_start(Motor { load_inertia_g_cm2: 200.0, ..Motor::default() }, 19_200.0);
+    assert_eq!(result.lost, 188);
+    near(result.slips[0].cycle as f64 / HZ * 1e3, 2.81, 0.02);
+    assert!(result.slips[0].is_behind);
+    near(result.energy.error(), 0.0, 1e-3);
+}
+
+#[test]
+fn start_stop_rates() {
+    let load = |load_torque_mn_m| Motor { load_torque_mn_m, ..Motor::default() };
+    let heavy = Motor { load_inertia_g_cm2: 200.0, ..Motor::default() };
+    for (motor, expected) in
+        [(Motor::default(), 34_700.0), (load(100.0), 24_500.0), (load(200.0), 12_970.0), (heavy, 14_220.0)]
+    {
+        let setup = one(motor);
+        near_part(search(|rate| rates::starts(&setup, rate, 3200).expect("it holds")), expected, 0.015);
+    }
+}
+
+#[test]
+fn pull_out_rates() {
+    for (load_torque_mn_m, expected, part) in
+        [(200.0, 46_900.0, 0.01), (250.0, 34_600.0, 0.01), (100.0, 53_200.0, 0.02), (0.0, 121_000.0, 0.02)]
+    {
+        let setup = one(Motor { load_torque_mn_m, ..Motor::default() });
+        near_part(
+            search(|rate| rates::pulls(&setup, rate, RAMP_STEPS_S2).expect("it holds")),
+            expected,
+            part,
+        );
+    }
+}
+
+#[test]
+fn resonance_of_full_half_and_sixteenth_steps() {
+    let at = |microsteps: u16, full_steps_s: f64| {
+        let setup = one(Motor { friction_mn_m: 20.0, microsteps, ..Motor::default() });
+        rates::resonance(&setup, full_steps_s * f64::from(microsteps)).expect("it holds")
+    };
+    let rungs = || (5..=100).map(|rung| 4.0 * f64::from(rung));
+    let loses: Vec<f64> = rungs().filter(|&rate| at(1, rate).loses).collect();
+    println!("{loses:?}");
+    near(loses[0], 208.0, 4.0);
+    near(loses[loses.len() - 1], 252.0, 4.0);
+    assert!(loses.windows(2).all(|pair| pair[1] - pair[0] == 4.0), "{loses:?}");
+    let (peak, swing) = rungs()
+        .map(|rate| (rate, at(2, rate).swing))
+        .fold((0.0, 0.0), |most, rung| if rung.1 > most.1 { rung } else { most });
+    near(peak, 120.0, 4.0);
+    near(swing, 1.96, 0.05);
+    for rate in rungs() {
+        let found = at(16, rate);
+        assert!(found.swing < 0.05 && !found.loses, "{rate}: {found:?}");
+    }
+}
+
+fn sensor_log(setup: &Setup, rises: &[Vec<u64>], cycles: u64) -> SensorLog {
+    let mut log = SensorLog::default();
+    run(setup, &records(rises, 16), cycles, &mut log);
+    log
+}
+
+/// One step of one motor that rested for ten T_step, `place` cycles after a grid point.
+fn one_step(setup: &Setup, place: u64) -> StepResponse {
+    let rise = 12 * T_STEP / 80 * 80 + place;
+    let log = sensor_log(setup, &[vec![rise]], rise + 2 * T_STEP);
+    StepResponse::of(&log.samples, rise - 10 * T_STEP, rise, T_STEP, 0.2).expect("there are samples")
+}
+
+#[test]
+fn the_patents_figure_1_one_step_of_the_patent_set() {
+    for place in [0, 1, 20, 40, 79] {
+        let found = one_step(&patent_plant(1), place);
+        near_part(found.rest_a, 0.2167, 0.01);
+        near_part(found.least_a, -0.481, 0.01);
+        near(found.greatest_a, 0.922, 0.017);
+        near(found.reached.expect("it falls") as f64 / HZ * 1e3, 0.515, 0.006);
+        near(found.settled.expect("it settles") as f64 / HZ * 1e3, 0.512, 0.008);
+    }
+}
+
+/// Four motors, ten steps each, together and one after another.
+fn deviations(setup: &Setup) -> [Deviation; 2] {
+    [0, 8192].map(|apart| {
+        let first = 12 * T_STEP;
+        let rises = |channel: u64| (0..10).map(|k| first + k * T_STEP + channel * apart).collect();
+        let rises: Vec<Vec<u64>> = (0..4).map(rises).collect();
+        let log = sensor_log(setup, &rises, first + 11 * T_STEP);
+        Deviation::of(&log.samples, first, log.steps[4]).expect("there are samples")
+    })
+}
+
+#[test]
+fn the_patents_figure_2_four_motors_together_and_staggered() {
+    let [together, staggered] = deviations(&patent_plant(4));
+    println!("{together:?} {staggered:?}");
+    near(together.above_a, 3.16, 0.03);
+    near(together.below_a, 2.96, 0.03);
+    near(staggered.above_a, 1.07, 0.02);
+    near(staggered.below_a, 0.81, 0.02);
+    near(together.greatest_a() / staggered.greatest_a(), 2.96, 0.05);
+}
+
+#[test]
+fn the_default_motor_in_full_steps_has_nearly_the_same_ratio_but_a_hump_of_its_own() {
+    let setup = Setup { motors: vec![full_steps(); 4], ..Setup::default() };
+    let [together, staggered] = deviations(&setup);
+    near(together.greatest_a() / staggered.greatest_a(), 2.92, 0.04);
+    let step = one_step(&one(full_steps()), 0);
+    near_part(step.reached.expect("it falls") as f64 / HZ * 1e3, 1.19, 0.01);
+    assert_eq!(step.settled, None);
+}
+
+/// The cycle of the first overload with motors `apart` cycles after each other.
+fn overload(apart: u64) -> Option<u64> {
+    let setup =
+        Setup { motors: vec![full_steps(); 4], protection: Some(Protection::default()), ..Setup::default() };
+    let rises = |channel: u64| (1..=4).map(|k| 1600 + k * T_STEP + channel * apart).collect();
+    let rises: Vec<Vec<u64>> = (0..4).map(rises).collect();
+    let mut found = None;
+    let mut look = Each(|plant: &Plant| {
+        if plant.events().overload {
+            found.get_or_insert(plant.cycle());
+        }
+    });
+    run(&with_sensor(setup, 5000.0), &records(&rises, 16), 400_000, &mut look);
+    found
+}
+
+#[test]
+fn four_motors_that_step_together_are_an_overload_and_staggered_ones_are_none() {
+    near(overload(0).expect("an overload") as f64, 39_280.0, 160.0);
+    assert_eq!(overload(8192), None);
+}
+
+fn chopped(decay: Decay) -> Drive {
+    Drive { regulator: Regulator::Chopper, decay, ..Drive::default() }
+}
+
+#[test]
+fn a_chopper_at_rest() {
+    for (decay, mean, khz, swing) in
+        [(Decay::Slow, 1.058, 46.5, None), (Decay::Mixed(0.31), 1.033, 35.8, Some(0.046))]
+    {
+        let setup = one(Motor { drive: chopped(decay), ..Motor::default() });
+        let mut currents = vec![];
+        run(
+            &setup,
+            &[],
+            1_600_000,
+            &mut Each(|plant: &Plant| currents.push(plant.state(0).expect("a motor").i_a)),
+        );
+        let late = &currents[20_000..];
+        near_part(late.iter().sum::<f64>() / late.len() as f64, mean, 0.005);
+        let (least, most) = late.iter().fold((9.0_f64, 0.0_f64), |(l, m), &i| (l.min(i), m.max(i)));
+        // Each period has one turn from rising to falling.
+        let turns = late.windows(3).filter(|w| w[1] > w[0] && w[1] >= w[2]).count();
+        near_part(turns as f64 / (late.len() as f64 / 1e6) / 1e3, khz, 0.01);
+        if let Some(swing) = swing {
+            near_part(most - least, swing, 0.03);
+        }
+    }
+}
+
+#[test]
+fn small_currents_do_not_decay_slowly() {
+    let rows = [
+        (Drive::default(), -0.0004, -0.0004),
+        (chopped(Decay::Mixed(0.31)), -0.0093, 0.0084),
+        (chopped(Decay::Slow), -0.284, 0.158),
+    ];
+    for (drive, least, most) in rows {
+        let motor = Motor { friction_mn_m: 0.0, viscous_un_m_s: 30_000.0, drive, ..Motor::default() };
+        let rises: Vec<u64> = (1..=129).map(|k| k * 160_000).collect();
+        let mut plant = Plant::new(&one(motor)).expect("it holds");
+        let mut errors = vec![];
+        for (index, &record) in records(&[rises], 16).iter().enumerate() {
+            plant.advance(record.cycle.0, &mut ());
+            // Each pulse has two records.
+            if index % 2 == 0 && index / 2 + 1 >= 64 {
+                errors.push(plant.state(0).expect("a motor").x - plant.command(0));
+            }
+            plant.record(record, &mut ());
+        }
+        assert_eq!(errors.len(), 66);
+        let (found_least, found_most) =
+            errors.iter().fold((9.0_f64, -9.0_f64), |(l, m), &e| (l.min(e), m.max(e)));
+        near_part(found_least, least, 0.2);
+        near_part(found_most, most, 0.2);
+    }
+}
+
+#[test]
+fn samples_of_a_known_shape_have_the_settling_time_that_they_were_made_with() {
+    let sample = |cycle: u64, current_a| Sample { cycle, current_a };
+    let rest = (0..10).map(|k| sample(k * 10, 1.0));
+    let after = [(100, 0.5), (110, 3.0), (120, 1.5), (130, 1.3), (140, 0.5), (150, 1.1)];
+    let samples: Vec<Sample> = rest.chain(after.map(|(c, i)| sample(c, i))).collect();
+    let found = StepResponse::of(&samples, 0, 95, 60, 0.2).expect("samples");
+    assert_eq!((found.rest_a, found.least_a, found.greatest_a), (1.0, 0.5, 3.0));
+    assert_eq!((found.reached, found.settled), (Some(35), Some(45)));
+    let cut = StepResponse::of(&samples, 0, 95, 45, 0.2).expect("samples");
+    assert_eq!((cut.reached, cut.settled), (Some(35), None), "the last one is still off");
+    assert_eq!(StepResponse::of(&samples, 0, 95, 4, 0.2), None, "no sample after the rise");
+}

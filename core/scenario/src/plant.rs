@@ -1,0 +1,393 @@
+//! The plants of a scenario, one behind the bus of each controller (F9), as `stepscope_plant` takes them.
+//!
+//! Each problem is told at the field of the scenario that a plant's number came from: of an axis' motor, of an entry of
+//! `plant.motors`, or of the plant itself.
+
+use crate::{Cause, PlantSettings, Scenario, Source, Validator, ValueError};
+use alloc::{
+    format,
+    string::{String, ToString},
+    vec::Vec,
+};
+use stepscope_motion::{
+    mechanics::{Mechanics, Rotary},
+    motor::{Decay, Drive, Motor, Regulator},
+    moves::Axis,
+    plan_axis,
+};
+use stepscope_peripheral::{config::Config, signal::MAX_CHANNELS, units::Cycles};
+use stepscope_plant::{Plant, Refusal, Refused, limits, parameters};
+
+/// The plants of a checked scenario.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plants {
+    /// One a controller, in the order of the scenario.
+    pub setups: Vec<parameters::Setup>,
+    /// Whether a boot measures the settling time (F7).
+    pub self_test: bool,
+    /// How long a run without a length of its own goes on after its last step.
+    pub tail: Cycles,
+}
+
+/// A motor and where it stands: the path of its own numbers, and that of its mechanics'.
+struct Placed<'a> {
+    motor: Option<&'a Motor>,
+    full_step_deg: f64,
+    microsteps: u16,
+    path: String,
+    mechanics_path: String,
+}
+
+impl Scenario {
+    /// The plants behind the buses of these controllers, where the scenario has one. Every problem goes to `validator`;
+    /// what joins several numbers is judged where nothing else is wrong.
+    pub(crate) fn plants(&self, configs: &[Config], validator: &mut Validator) -> Option<Plants> {
+        self.judge_motors(validator);
+        let settings = self.plant.as_ref()?;
+        if !validator.is_ok() {
+            return None;
+        }
+        let setups = configs.iter().enumerate().map(|(index, config)| {
+            let placed = self.motors(settings, index, config.channels());
+            one_supply(&placed, validator);
+            let setup = setup(self.clock_hz, settings, &placed);
+            for refused in Plant::new(&setup).err().unwrap_or_default() {
+                tell(refused, &placed, validator);
+            }
+            setup
+        });
+        let setups = setups.collect();
+        let tail = Cycles((settings.tail_s * f64::from(self.clock_hz) + 0.5) as u64);
+        if settings.self_test {
+            self.judge_self_test(configs, validator);
+        }
+        Some(Plants { setups, self_test: settings.self_test, tail })
+    }
+
+    /// F7: a boot has room for a step there and back on each channel.
+    fn judge_self_test(&self, configs: &[Config], validator: &mut Validator) {
+        for (index, config) in configs.iter().enumerate() {
+            if self.source.runs_segments() {
+                let detail =
+                    "segments have no boot in which a self-test could run; choose ticks, or leave it out";
+                validator.add("plant.self_test", ValueError::Conflict { detail });
+                return;
+            }
+            let needed =
+                1 + u64::from(config.channels()) * 24 * (config.tick().0 / u64::from(config.slots()));
+            if config.boot().0 < needed {
+                let path = match index {
+                    0 => "bus.boot_cycles".to_string(),
+                    _ => format!("controllers[{}].bus.boot_cycles", index - 1),
+                };
+                let given = config.boot().0;
+                validator.add(&path, Cause::SelfTest { given, needed });
+            }
+        }
+    }
+
+    /// Judges the numbers of motors that only a plant asks for, and all of those that no axis has.
+    fn judge_motors(&self, validator: &mut Validator) {
+        if let Source::Motion(motion) = &self.source {
+            judge_axes(&motion.axes, "source.motion.axes", validator);
+        }
+        for (index, controller) in self.controllers.iter().enumerate() {
+            judge_axes(&controller.axes, &format!("controllers[{index}].axes"), validator);
+        }
+        for (index, entry) in self.plant.iter().flat_map(|plant| &plant.motors).enumerate().take(MAX_CHANNELS)
+        {
+            let path = format!("plant.motors[{index}]");
+            let axis = Axis { motor: Some(entry.motor.clone()), ..Axis::default() };
+            validator.extend(plan_axis(&axis, &path).err().unwrap_or_default());
+            validator.at(&format!("{path}.motor"), |here| judge_motor(&entry.motor, here));
+        }
+    }
+
+    /// The motor of each channel of a controller.
+    fn motors<'a>(&'a self, settings: &'a PlantSettings, controller: usize, channels: u8) -> Vec<Placed<'a>> {
+        let (axes, axes_path): (&[Axis], _) = match (&self.source, controller.checked_sub(1)) {
+            (Source::Motion(motion), None) => (&motion.axes, "source.motion.axes".to_string()),
+            (_, None) => (&[], String::new()),
+            (_, Some(index)) => {
+                let axes = self.controllers.get(index).map_or(&[][..], |one| &one.axes);
+                (axes, format!("controllers[{index}].axes"))
+            }
+        };
+        (0..usize::from(channels))
+            .map(|channel| {
+                let axis = axes.get(channel);
+                let path = format!("{axes_path}[{channel}]");
+                let mechanics = axis.map(|axis| (axis, mechanics(&axis.mechanics)));
+                if let Some((axis, Some((name, full_step_deg, microsteps)))) = mechanics
+                    && (axis.motor.is_some() || settings.motors.is_empty())
+                {
+                    let mechanics_path = format!("{path}.mechanics.{name}");
+                    let motor = axis.motor.as_ref();
+                    return Placed {
+                        motor,
+                        full_step_deg,
+                        microsteps,
+                        path: format!("{path}.motor"),
+                        mechanics_path,
+                    };
+                }
+                let last = settings.motors.len().saturating_sub(1);
+                let entry = settings.motors.get(channel.min(last));
+                let Rotary { full_step_deg, microsteps } = Rotary::default();
+                let path = format!("plant.motors[{}]", channel.min(last));
+                Placed {
+                    motor: entry.map(|entry| &entry.motor),
+                    full_step_deg: entry.map_or(full_step_deg, |entry| entry.full_step_deg),
+                    microsteps: entry.map_or(microsteps, |entry| entry.microsteps),
+                    mechanics_path: path.clone(),
+                    path: format!("{path}.motor"),
+                }
+            })
+            .collect()
+    }
+}
+
+/// Name, full step and microsteps of mechanics that have them.
+fn mechanics(mechanics: &Mechanics) -> Option<(&'static str, f64, u16)> {
+    match mechanics {
+        Mechanics::Rotary(m) => Some(("rotary", m.full_step_deg, m.microsteps)),
+        Mechanics::Wheel(m) => Some(("wheel", m.full_step_deg, m.microsteps)),
+        Mechanics::Screw(m) => Some(("screw", m.full_step_deg, m.microsteps)),
+        Mechanics::Direct(_) => None,
+    }
+}
+
+fn judge_axes(axes: &[Axis], path: &str, validator: &mut Validator) {
+    for (index, axis) in axes.iter().enumerate().take(MAX_CHANNELS) {
+        if let Some(motor) = &axis.motor {
+            validator.at(&format!("{path}[{index}].motor"), |here| judge_motor(motor, here));
+        }
+    }
+}
+
+/// The numbers that motion does not judge.
+fn judge_motor(motor: &Motor, here: &mut Validator) {
+    let most = *limits::TORQUE_MN_M.end();
+    here.range("friction_mn_m", motor.friction_mn_m, limits::TORQUE_MN_M, "mN*m");
+    if let Some(stiction) = motor.stiction_mn_m {
+        here.range("stiction_mn_m", stiction, motor.friction_mn_m..=most, "mN*m");
+    }
+    here.range("viscous_un_m_s", motor.viscous_un_m_s, limits::VISCOUS_UN_M_S, "uN*m*s");
+    here.range("detent_torque_mn_m", motor.detent_torque_mn_m, 0.0..=0.5 * motor.holding_torque_mn_m, "mN*m");
+    here.range("gravity_torque_mn_m", motor.gravity_torque_mn_m, limits::SIGNED_TORQUE_MN_M, "mN*m");
+    here.range("sine_torque_mn_m", motor.sine_torque_mn_m, limits::TORQUE_MN_M, "mN*m");
+    here.range("sine_per_turn", motor.sine_per_turn, limits::SINE_PER_TURN, "");
+    here.range("sine_phase_deg", motor.sine_phase_deg, limits::SINE_PHASE_DEG, "deg");
+    if let Some(coupling) = motor.coupling_n_m_rad {
+        here.range("coupling_n_m_rad", coupling, limits::COUPLING_N_M_RAD, "N*m/rad");
+    }
+    here.range("coupling_un_m_s", motor.coupling_un_m_s, limits::VISCOUS_UN_M_S, "uN*m*s");
+    let Drive { decay_share, off_us, blank_us, dac_levels, bridge_ohm, diode_v, .. } = motor.drive;
+    here.range("drive.decay_share", decay_share, limits::SHARE, "");
+    here.range("drive.off_us", off_us, limits::CHOPPER_US, "us");
+    here.range("drive.blank_us", blank_us, limits::CHOPPER_US, "us");
+    here.whole("drive.dac_levels", dac_levels.unwrap_or(1), limits::DAC_LEVELS, "");
+    here.range("drive.bridge_ohm", bridge_ohm, limits::BRIDGE_OHM, "ohm");
+    here.range("drive.diode_v", diode_v, limits::DIODE_V, "V");
+}
+
+/// All motors of a plant hang on one supply.
+fn one_supply(placed: &[Placed<'_>], validator: &mut Validator) {
+    let supply = |placed: &Placed<'_>| placed.motor.map_or(Motor::default().supply_v, |motor| motor.supply_v);
+    let Some(first) = placed.first().map(supply) else { return };
+    for other in placed {
+        let path = format!("{}.supply_v", other.path);
+        if supply(other).to_bits() != first.to_bits() && !validator.has(&path) {
+            validator.add(&path, Cause::OtherSupply { supply_v: supply(other), first_v: first });
+        }
+    }
+}
+
+/// What the plant is made of.
+fn setup(clock_hz: u32, settings: &PlantSettings, placed: &[Placed<'_>]) -> parameters::Setup {
+    let default = Motor::default();
+    let supply_v =
+        placed.first().and_then(|first| first.motor).map_or(default.supply_v, |motor| motor.supply_v);
+    let (sensor, encoder) = (&settings.current_sensor, &settings.encoder);
+    parameters::Setup {
+        clock_hz,
+        step_cycles: settings.step_cycles,
+        supply: parameters::Supply {
+            supply_v,
+            source_ohm: settings.source_ohm,
+            buffer_uf: settings.buffer_uf,
+            source_sinks: settings.source_sinks,
+            idle_ma: settings.idle_ma,
+        },
+        current_sensor: parameters::SensorChain {
+            bandwidth_hz: sensor.bandwidth_hz,
+            poles: sensor.poles,
+            adc_steps: sensor.adc_steps,
+            lsb: sensor.lsb_a,
+            adc_max: sensor.adc_max,
+        },
+        encoder: parameters::Encoder {
+            period_steps: encoder.period_steps,
+            offset_lsb: encoder.offset_lsb,
+            noise_lsb: encoder.noise_lsb,
+            hysteresis_lsb: encoder.hysteresis_lsb,
+            seed: encoder.seed,
+        },
+        accelerometer: None,
+        protection: settings.protection.as_ref().map(|protection| parameters::Protection {
+            threshold_a: protection.threshold_a,
+            samples: protection.samples,
+        }),
+        motors: placed.iter().map(|placed| motor(placed, placed.motor.unwrap_or(&default))).collect(),
+    }
+}
+
+fn motor(placed: &Placed<'_>, motor: &Motor) -> parameters::Motor {
+    let drive = &motor.drive;
+    parameters::Motor {
+        full_step_deg: placed.full_step_deg,
+        microsteps: placed.microsteps,
+        rated_current_a: motor.rated_current_a,
+        peak_current_a: motor.peak_current_a.unwrap_or(motor.rated_current_a),
+        resistance_ohm: motor.resistance_ohm,
+        inductance_mh: motor.inductance_mh,
+        holding_torque_mn_m: motor.holding_torque_mn_m,
+        rotor_inertia_g_cm2: motor.rotor_inertia_g_cm2,
+        load_inertia_g_cm2: motor.load_inertia_g_cm2,
+        load_torque_mn_m: motor.load_torque_mn_m,
+        friction_mn_m: motor.friction_mn_m,
+        stiction_mn_m: motor.stiction_mn_m,
+        viscous_un_m_s: motor.viscous_un_m_s,
+        detent_torque_mn_m: motor.detent_torque_mn_m,
+        gravity_torque_mn_m: motor.gravity_torque_mn_m,
+        sine_torque_mn_m: motor.sine_torque_mn_m,
+        sine_per_turn: motor.sine_per_turn,
+        sine_phase_deg: motor.sine_phase_deg,
+        coupling_n_m_rad: motor.coupling_n_m_rad,
+        coupling_un_m_s: motor.coupling_un_m_s,
+        drive: parameters::Drive {
+            regulator: match drive.regulator {
+                Regulator::Averaged => parameters::Regulator::Averaged,
+                Regulator::Chopper => parameters::Regulator::Chopper,
+            },
+            decay: match drive.decay {
+                Decay::Slow => parameters::Decay::Slow,
+                Decay::Fast => parameters::Decay::Fast,
+                Decay::Mixed => parameters::Decay::Mixed(drive.decay_share),
+                Decay::Auto => parameters::Decay::Auto(drive.decay_share),
+            },
+            off_us: drive.off_us,
+            blank_us: drive.blank_us,
+            dac_levels: drive.dac_levels,
+            bridge_ohm: drive.bridge_ohm,
+            diode_v: drive.diode_v,
+        },
+    }
+}
+
+/// Tells a refusal at its field.
+fn tell(refused: Refused, placed: &[Placed<'_>], validator: &mut Validator) {
+    let of_motor = refused.channel.and_then(|channel| placed.get(channel));
+    let path = match (refused.refusal, of_motor) {
+        (Refusal::Unstable { .. }, _) => "plant.step_cycles".into(),
+        (Refusal::TooWeak { .. }, _) => "plant.source_ohm".into(),
+        (Refusal::Range { field: field @ ("full_step_deg" | "microsteps"), .. }, Some(placed)) => {
+            format!("{}.{field}", placed.mechanics_path)
+        }
+        (Refusal::Range { field: "drive.decay.share", .. }, Some(placed)) => {
+            format!("{}.drive.decay_share", placed.path)
+        }
+        (Refusal::Range { field, .. }, Some(placed)) => format!("{}.{field}", placed.path),
+        (Refusal::Range { field: "supply_v", .. }, None) => {
+            placed.first().map_or_else(String::new, |first| format!("{}.supply_v", first.path))
+        }
+        (Refusal::Range { field, .. }, None) => format!("plant.{field}"),
+    };
+    if !validator.has(&path) {
+        match refused.refusal {
+            Refusal::Range { given, least, greatest, .. } => {
+                validator.add(&path, ValueError::Range { given, least, most: greatest, unit: "" });
+            }
+            _ => validator.add(&path, Cause::Plant(refused)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn problems(json: &str) -> Vec<String> {
+        let scenario = Scenario::from_json(json).expect("reads");
+        scenario.check().err().unwrap_or_default().iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn each_problem_of_a_plant_stands_at_its_field_with_the_remedy() {
+        let motor = |motor: &str| {
+            format!(r#"{{"plant":{{}},"source":{{"motion":{{"axes":[{{"motor":{{{motor}}}}}]}}}}}}"#)
+        };
+        let rows: &[(String, &[&str])] = &[
+            (r#"{"plant":{}}"#.into(), &[]),
+            (r#"{"plant":null}"#.into(), &[]),
+            (
+                r#"{"plant":{"source_ohm":0,"current_sensor":{"poles":4},"tail_s":11}}"#.into(),
+                &[
+                    "plant.source_ohm: 0 Ω is out of range; give 0.001 to 100 Ω",
+                    "plant.tail_s: 11 s is out of range; give 0 to 10 s",
+                    "plant.current_sensor.poles: 4 is out of range; give 1 to 3",
+                ],
+            ),
+            (
+                motor(r#""friction_mn_m":-1,"drive":{"off_us":-2}"#),
+                &[
+                    "source.motion.axes[0].motor.friction_mn_m: -1 mN*m is out of range; give 0 to 1000000 mN*m",
+                    "source.motion.axes[0].motor.drive.off_us: -2 us is out of range; give 0 to 1000 us",
+                ],
+            ),
+            (
+                motor(r#""rotor_inertia_g_cm2":0"#),
+                &["source.motion.axes[0].motor.rotor_inertia_g_cm2: 0 is out of range"],
+            ),
+            (
+                motor(r#""inductance_mh":0.02"#),
+                &["plant.step_cycles: motor 0: R*h/L is 0.400 at grid steps of 80 cycles; at most 0.25"],
+            ),
+            (
+                r#"{"plant":{"buffer_uf":100,"source_ohm":50}}"#.into(),
+                &["plant.source_ohm: source_ohm: through 50 ohm the supply cannot give the 3.6 W"],
+            ),
+            (
+                r#"{"bus":{"channels":2},"plant":{"motors":[{},{"motor":{"supply_v":36,"inductance_mh":0.0001}}]},"source":{"packets":{}}}"#.into(),
+                &["plant.motors[1].motor.inductance_mh: 1e-4 mH is out of range; give 0.001 to 10000 mH"],
+            ),
+            (
+                r#"{"bus":{"channels":3},"plant":{"motors":[{},{"motor":{"supply_v":36}}]},"source":{"packets":{}}}"#.into(),
+                &["plant.motors[1].motor.supply_v: 36 V beside 24 V of the first motor"],
+            ),
+            (
+                r#"{"bus":{"boot_cycles":100},"plant":{"self_test":true}}"#.into(),
+                &["bus.boot_cycles: a self-test takes 7681 cycles and the boot has 100; give at least 7681"],
+            ),
+        ];
+        for (given, expected) in rows {
+            let found = problems(given);
+            assert_eq!(found.len(), expected.len(), "{given}: {found:?}");
+            for (found, expected) in found.iter().zip(*expected) {
+                assert!(found.starts_with(expected), "{found}\n{expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_channel_has_its_axis_motor_or_the_entry_of_the_list_or_the_last_of_them() {
+        let json = r#"{"bus":{"channels":4},"plant":{"motors":[
+                {"motor":{"inductance_mh":1}},{"microsteps":2,"motor":{"inductance_mh":2}}]},
+            "source":{"motion":{"axes":[{},{"mechanics":{"rotary":{"microsteps":8}},"motor":{"inductance_mh":3}}]}}}"#;
+        let checked = Scenario::from_json(json).expect("reads").check().expect("holds");
+        let setups = checked.plants.expect("a plant").setups;
+        let told: Vec<(f64, u16)> =
+            setups[0].motors.iter().map(|m| (m.inductance_mh, m.microsteps)).collect();
+        assert_eq!(told, [(1.0, 16), (3.0, 8), (2.0, 2), (2.0, 2)]);
+    }
+}

@@ -1,0 +1,84 @@
+//! The controllers of a run: those of a line with all that is on it, or one that runs segments by itself.
+
+use crate::{bus::Bus, ignored::Ignored};
+#[cfg(feature = "plant")]
+use stepscope_peripheral::units::Cycles;
+use stepscope_peripheral::{device::SegmentEngine, signal::Sink, units::Instant};
+
+/// Controllers under way.
+#[derive(Clone, Debug)]
+pub(crate) struct Controllers {
+    pub(crate) bus: Bus,
+    /// Runs in place of the net, which then stays before cycle 0.
+    pub(crate) engine: Option<SegmentEngine>,
+    /// First cycle that is not run; without it the run ends when nothing can change any more.
+    pub(crate) end: Option<Instant>,
+}
+
+impl Controllers {
+    /// The first cycle that nobody has run.
+    pub(crate) fn reached(&self) -> Instant {
+        self.engine.as_ref().map_or_else(|| self.bus.now(), SegmentEngine::now)
+    }
+
+    /// Whether all that was to be run is run.
+    pub(crate) fn are_done(&self) -> bool {
+        match (&self.engine, self.end) {
+            (Some(engine), Some(end)) => engine.now() >= end,
+            (Some(engine), None) => engine.at_rest(),
+            (None, Some(end)) => self.bus.has_reached(end),
+            (None, None) => self.bus.is_over(),
+        }
+    }
+
+    /// Goes on to cycle `end`, with a sink for each, until a sink asks for a pause; with [`Instant::NEVER`] until nothing
+    /// can change any more.
+    pub(crate) fn run_to(&mut self, end: Instant, sinks: &mut [impl Sink]) {
+        match (&mut self.engine, sinks.first_mut()) {
+            (Some(engine), Some(sink)) => engine.run(end, sink),
+            (Some(engine), None) => engine.run(end, &mut Ignored),
+            (None, _) => self.bus.run(end, sinks),
+        }
+    }
+
+    /// One cycle, with a sink for each.
+    pub(crate) fn clock(&mut self, sinks: &mut [impl Sink]) {
+        match (&mut self.engine, sinks.first_mut()) {
+            (Some(engine), Some(sink)) => {
+                engine.clock(sink);
+            }
+            (Some(engine), None) => {
+                engine.clock(&mut Ignored);
+            }
+            (None, _) => self.bus.clock(sinks),
+        }
+    }
+}
+
+#[cfg(feature = "plant")]
+impl Controllers {
+    /// Where nothing can change any more, the cycle after the last change. The segment engine does not know that one: it is
+    /// `last`.
+    pub(crate) fn rests_from(&self, last: Instant) -> Option<Instant> {
+        match &self.engine {
+            Some(engine) => engine.at_rest().then(|| last.next()),
+            None => self.bus.is_over().then(|| self.bus.rests_from()),
+        }
+    }
+
+    /// The plant of a controller reports an overload, last in the cycle that was run last.
+    pub(crate) fn overload(&mut self, controller: usize, sink: &mut impl Sink) {
+        match (&mut self.engine, self.bus.device_mut(controller)) {
+            (Some(engine), _) => engine.overload(),
+            (None, Some(device)) => device.overload(sink),
+            (None, None) => {}
+        }
+    }
+
+    /// What a controller's self-test found.
+    pub(crate) fn settles_in(&mut self, controller: usize, found: Option<Cycles>) {
+        if let Some(device) = self.bus.device_mut(controller) {
+            device.settles_in(found);
+        }
+    }
+}

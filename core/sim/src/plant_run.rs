@@ -1,0 +1,117 @@
+//! A run whose plants are looked at: what they measure, point by point where somebody wants to see it.
+//!
+//! Every run of a scenario with plants drives them; this one also hands out what they do.
+//!
+//! ```
+//! use stepscope_sim::{Experiment, plant_run::PlantRun};
+//!
+//! // One full turn by the default motion, with the default motor behind the bus.
+//! let experiment = Experiment::from_json(r#"{ "plant": {} }"#).expect("no problem");
+//! let mut run = PlantRun::new(&experiment, vec![(Vec::new(), ())]).expect("it has a plant");
+//! run.finish();
+//! let result = &run.results()[0];
+//! assert_eq!(result.motors[0].lost, 0);
+//! assert!((result.motors[0].state.x - 200.0).abs() < 0.1);
+//! ```
+
+use crate::{Experiment, Run};
+use alloc::vec::Vec;
+use stepscope_peripheral::{
+    signal::Sink,
+    units::{Cycles, Instant},
+};
+use stepscope_plant::{Observer, Plant, measures::PlantResult};
+
+/// A run under way. Each controller may have a sink for its records and an observer of its plant.
+pub struct PlantRun<S, O> {
+    run: Run,
+    sinks: Vec<S>,
+    observers: Vec<O>,
+}
+
+impl<S: Sink, O: Observer> PlantRun<S, O> {
+    /// A run before cycle 0 with a sink and an observer for each controller, in the order of the scenario; `None` where the
+    /// scenario has no plant. Controllers without run all the same.
+    #[must_use]
+    pub fn new(experiment: &Experiment, parts: Vec<(S, O)>) -> Option<Self> {
+        experiment.plants()?;
+        let (sinks, observers) = parts.into_iter().unzip();
+        Some(Self { run: experiment.start(), sinks, observers })
+    }
+
+    /// Puts another sink and another observer in the place of a controller's.
+    pub fn attach(&mut self, controller: usize, sink: S, observer: O) {
+        if let (Some(sinks), Some(observers)) =
+            (self.sinks.get_mut(controller), self.observers.get_mut(controller))
+        {
+            (*sinks, *observers) = (sink, observer);
+        }
+    }
+
+    /// The first cycle that has not been run.
+    #[must_use]
+    pub fn now(&self) -> Instant {
+        Instant(self.run.cycles().0)
+    }
+
+    /// Whether the run is over.
+    #[must_use]
+    pub fn is_done(&self) -> bool {
+        self.run.is_done()
+    }
+
+    /// The run of the controllers.
+    #[must_use]
+    pub const fn run(&self) -> &Run {
+        &self.run
+    }
+
+    /// The plant behind a controller.
+    #[must_use]
+    pub fn plant(&self, controller: usize) -> Option<&Plant> {
+        self.run.behind(controller).map(|behind| &behind.plant)
+    }
+
+    /// What the self-test found on each channel of a controller, in cycles; empty before the end of its boot.
+    #[must_use]
+    pub fn self_test(&self, controller: usize) -> &[Option<u64>] {
+        self.run.behind(controller).map_or(&[], |behind| &behind.found)
+    }
+
+    /// Cycle of the last overload of a controller.
+    #[must_use]
+    pub fn overload(&self, controller: usize) -> Option<u64> {
+        self.run.behind(controller)?.overload_at
+    }
+
+    /// What each plant has done so far.
+    #[must_use]
+    pub fn results(&self) -> Vec<PlantResult> {
+        let all = (0..).map_while(|index| self.run.behind(index));
+        all.map(|behind| behind.measures.result(&behind.plant)).collect()
+    }
+
+    /// The sinks and observers, in the order of the scenario.
+    #[must_use]
+    pub fn into_parts(self) -> Vec<(S, O)> {
+        self.sinks.into_iter().zip(self.observers).collect()
+    }
+
+    /// The whole run.
+    pub fn finish(&mut self) {
+        while !self.advance(Cycles(1 << 32)) {}
+    }
+
+    /// The whole run clock by clock: slow, and the measure of the fast speed.
+    pub fn finish_clock_by_clock(&mut self) {
+        while !self.run.is_done() {
+            self.run.clock_observed(&mut self.sinks, &mut self.observers);
+        }
+    }
+
+    /// Goes on for so many cycles, at least one, or to the end; true at the end.
+    pub fn advance(&mut self, cycles: Cycles) -> bool {
+        let target = Instant(self.now().0.saturating_add(cycles.0.max(1)));
+        self.run.advance_observed((target, u64::MAX), &mut self.sinks, &mut self.observers)
+    }
+}
