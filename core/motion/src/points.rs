@@ -41,7 +41,7 @@ use crate::{
     round_half_up,
     series::{BySeries, Expansion, Series},
 };
-use alloc::{format, string::String, vec::Vec};
+use alloc::{boxed::Box, format, string::String, vec::Vec};
 use off::{Off, off};
 
 /// Parts that a smooth curve is cut into, about: its pieces in 4 to 64 each.
@@ -221,10 +221,10 @@ impl<'p> PieceSteps<'p> {
     }
 
     /// Their times, many at once.
-    pub(super) fn by_series(self, clock_hz: u32) -> BySeries<Piece<'p>> {
+    pub(super) fn by_series(self, clock_hz: u32) -> BySeries<'p> {
         let cubic = self.points.pieces.get(self.index);
         let first = cubic.map_or(0.0, |cubic| libm::fabs(place(self.from, self.to, 0) - cubic.from));
-        BySeries::new(Piece(cubic), clock_hz.into(), first, self.from.abs_diff(self.to))
+        BySeries::new(Box::new(Piece(cubic)), clock_hz.into(), first, self.from.abs_diff(self.to))
     }
 
     /// How far a time in f64 may be off, in s, where the speed is no less than this.
@@ -236,7 +236,7 @@ impl<'p> PieceSteps<'p> {
 
 /// A piece, as the way from its start on.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Piece<'p>(Option<&'p Cubic>);
+struct Piece<'p>(Option<&'p Cubic>);
 
 impl Series for Piece<'_> {
     fn stretch(&self, _: f64) -> (f64, f64) {

@@ -15,7 +15,7 @@ use crate::{
     cycle_time::{CycleTime, Quotient},
     double::Double,
     exact::Exact,
-    points::{Piece, PieceSteps},
+    points::PieceSteps,
     series::{BLOCK, BySeries, MAX_REST, MiddleTime, OfBlock, Series, Times},
 };
 use alloc::boxed::Box;
@@ -184,9 +184,9 @@ fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Steps<'_> {
         Profile::Sliced(curve) => {
             scheduled(profile, start, clock_hz, curve.due_s().map(move |due_s| (due_s * clock, right)))
         }
-        Profile::Cosine(curve) => by_series(profile, curve, start, clock_hz),
-        Profile::Ramps(curve) => by_series(profile, curve, start, clock_hz),
-        Profile::JerkLimited(curve) => by_series(profile, curve, start, clock_hz),
+        Profile::Cosine(curve) => by_series(profile, Box::new(*curve), start, clock_hz),
+        Profile::Ramps(curve) => by_series(profile, Box::new(*curve), start, clock_hz),
+        Profile::JerkLimited(curve) => by_series(profile, Box::new(*curve), start, clock_hz),
     }
 }
 
@@ -206,21 +206,21 @@ fn scheduled<'p>(
 }
 
 /// The steps of a move that goes one way along a curve with power series.
-fn by_series<'p, C: Curve + Series>(
+fn by_series<'p>(
     profile: &'p Profile,
-    curve: &'p C,
+    curve: Box<dyn Series + 'p>,
     start: CycleTime,
     clock_hz: u32,
 ) -> Steps<'p> {
     let clock = f64::from(clock_hz);
-    let times = BySeries::new(curve, clock, 0.5, curve.steps().unsigned_abs());
+    let times = BySeries::new(curve, clock, 0.5, profile.steps().unsigned_abs());
     let judge = Judge { off: profile.off(clock), is_due_before: profile.is_due_before(clock_hz) };
-    Box::new(OfSeries { times, judge, right: curve.steps() >= 0, start })
+    Box::new(OfSeries { times, judge, right: profile.steps() >= 0, start })
 }
 
 /// Steps whose times come many at once.
-struct OfSeries<'p, C> {
-    times: BySeries<&'p C>,
+struct OfSeries<'p> {
+    times: BySeries<'p>,
     judge: Judge<'p>,
     right: bool,
     start: CycleTime,
@@ -257,17 +257,17 @@ impl Judge<'_> {
     }
 }
 
-impl<C: Series> Form for OfSeries<'_, C> {
+impl Form for OfSeries<'_> {
     fn next_block(&mut self, block: &mut [Due; BLOCK]) -> usize {
         let Self { times, judge, right, start } = self;
         let mut cycles = [0.0; BLOCK];
-        let Some(found) = times.times(&mut cycles, |step, near| judge.exactly(step, near)) else { return 0 };
+        let Some(found) = times.times(&mut cycles, &|step, near| judge.exactly(step, near)) else { return 0 };
         let by_search = Rounding::new(*start, judge.off);
         let rounding = |of_block: OfBlock| match of_block.time.is_exact {
             true => Rounding::new(*start, of_block.off + MAX_REST),
             false => by_search.less(of_block.off),
         };
-        rounded(block, (&cycles, found), (*start, *right), rounding, |step| {
+        rounded(block, (&cycles, found), (*start, *right), &rounding, &|step| {
             let cycles = times.searched(step);
             let cycle = by_search.cycle((0, cycles), |since| (judge.is_due_before)(step + 1, since));
             (start.cycles() + cycles, cycle)
@@ -278,7 +278,7 @@ impl<C: Series> Form for OfSeries<'_, C> {
 /// The steps of a curve through points, piece after piece.
 struct OfPoints<'p, I> {
     pieces: I,
-    piece: Option<(PieceSteps<'p>, BySeries<Piece<'p>>)>,
+    piece: Option<(PieceSteps<'p>, BySeries<'p>)>,
     start: CycleTime,
     clock_hz: u32,
 }
@@ -288,7 +288,7 @@ impl<'p, I: Iterator<Item = PieceSteps<'p>>> OfPoints<'p, I> {
     fn next_times(&mut self, cycles: &mut [f64; BLOCK]) -> Option<(PieceSteps<'p>, Times)> {
         loop {
             if let Some((steps, by_series)) = &mut self.piece
-                && let Some(found) = by_series.times(cycles, |_, _| None)
+                && let Some(found) = by_series.times(cycles, &|_, _| None)
             {
                 return Some((*steps, found));
             }
@@ -306,7 +306,7 @@ impl<'p, I: Iterator<Item = PieceSteps<'p>>> Form for OfPoints<'p, I> {
         let rounding = |OfBlock { off, least_speed, .. }| {
             Rounding::new(start, off + steps.off_s(least_speed) * f64::from(clock_hz))
         };
-        rounded(block, (&cycles, found), (start, steps.right()), rounding, |step| {
+        rounded(block, (&cycles, found), (start, steps.right()), &rounding, &|step| {
             steps.due(step).cycle(start, clock_hz)
         })
     }
@@ -319,8 +319,8 @@ fn rounded(
     block: &mut [Due; BLOCK],
     (cycles, Times { first, len, of_block }): (&[f64; BLOCK], Times),
     (start, right): (CycleTime, bool),
-    rounding: impl FnOnce(OfBlock) -> Rounding,
-    searched: impl Fn(u64) -> (f64, u64),
+    rounding: &dyn Fn(OfBlock) -> Rounding,
+    searched: &dyn Fn(u64) -> (f64, u64),
 ) -> usize {
     let search = |step: u64, due: &mut Due| {
         let (instant, cycle) = searched(step);

@@ -18,6 +18,7 @@
 //! Where the curve has no series that is wide enough, as at rest, steps are searched for one by one.
 
 use crate::{crossing::ROUNDING, curve::greater};
+use alloc::boxed::Box;
 
 /// Terms of a series.
 pub(super) const TERMS: usize = 10;
@@ -81,20 +82,6 @@ pub(super) trait Series {
     fn search_s(&self, place: f64) -> f64;
 }
 
-impl<C: Series> Series for &C {
-    fn stretch(&self, place: f64) -> (f64, f64) {
-        (*self).stretch(place)
-    }
-
-    fn expansion(&self, place: f64) -> Expansion {
-        (*self).expansion(place)
-    }
-
-    fn search_s(&self, place: f64) -> f64 {
-        (*self).search_s(place)
-    }
-}
-
 /// Some steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Times {
@@ -131,8 +118,8 @@ pub(super) struct MiddleTime {
 pub(super) const BLOCK: usize = 64;
 
 /// The times of steps at `first`, `first + 1`, … of a curve, in cycles.
-pub(super) struct BySeries<C> {
-    curve: C,
+pub(super) struct BySeries<'c> {
+    curve: Box<dyn Series + 'c>,
     clock: f64,
     first: f64,
     count: u64,
@@ -144,8 +131,8 @@ pub(super) struct BySeries<C> {
     block: Option<Block>,
 }
 
-impl<C: Series> BySeries<C> {
-    pub(super) fn new(curve: C, clock: f64, first: f64, count: u64) -> Self {
+impl<'c> BySeries<'c> {
+    pub(super) fn new(curve: Box<dyn Series + 'c>, clock: f64, first: f64, count: u64) -> Self {
         Self { curve, clock, first, count, next: 0, width: LEAST as f64, until: 0, block: None }
     }
 
@@ -165,7 +152,7 @@ impl<C: Series> BySeries<C> {
     pub(super) fn times(
         &mut self,
         times: &mut [f64; BLOCK],
-        exactly: impl Fn(u64, MiddleTime) -> Option<MiddleTime>,
+        exactly: &dyn Fn(u64, MiddleTime) -> Option<MiddleTime>,
     ) -> Option<Times> {
         if self.next >= self.until {
             if self.next >= self.count {
@@ -385,11 +372,11 @@ mod tests {
     }
 
     /// Holds the times of all steps to those that are searched for, and tells how many of them a block told.
-    fn check(curve: &(impl Series + Curve), what: &str) -> u64 {
+    fn check(curve: &(impl Series + Curve + Copy), what: &str) -> u64 {
         let (count, clock) = (curve.steps().unsigned_abs(), 16e6);
-        let mut by_series = BySeries::new(curve, clock, 0.5, count);
+        let mut by_series = BySeries::new(Box::new(*curve), clock, 0.5, count);
         let (mut times, mut told, mut next) = ([0.0; BLOCK], 0, 0);
-        while let Some(Times { first, len, of_block }) = by_series.times(&mut times, |_, _| None) {
+        while let Some(Times { first, len, of_block }) = by_series.times(&mut times, &|_, _| None) {
             assert_eq!(first, next, "{what}");
             next += len as u64;
             let Some(OfBlock { time, off, least_speed }) = of_block else { continue };
