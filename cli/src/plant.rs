@@ -28,6 +28,7 @@ use stepscope_core::{
     plant::{
         Observer, Plant,
         measures::{MotorResult, PlantResult},
+        settling::Deviation,
     },
     scenario::{Problem, ValueError},
     sim::{Experiment, plant_run::PlantRun},
@@ -211,6 +212,13 @@ fn print<S: Sink, O: Observer>(
         load.rms()
     )?;
     writeln!(out, "bus              {:.3} to {:.3} V", bus.least, bus.greatest)?;
+    if let Some(found) = &result.deviation {
+        let Deviation { rest_a, above_a, below_a } = found;
+        writeln!(
+            out,
+            "  deviation      +{above_a:.3} A, -{below_a:.3} A from {rest_a:.3} A at rest, behind the sensor"
+        )?;
+    }
     if let Some(at) = result.collapsed {
         writeln!(
             out,
@@ -302,6 +310,8 @@ fn tables<S: Sink, O: Observer>(
         "load_least_a": result.load_a.least,
         "load_greatest_a": result.load_a.greatest,
         "load_rms_a": result.load_a.rms(),
+        "deviation_above_a": result.deviation.map(|found| found.above_a),
+        "deviation_below_a": result.deviation.map(|found| found.below_a),
         "bus_least_v": result.bus_v.least,
         "bus_greatest_v": result.bus_v.greatest,
         "collapsed_at_s": result.collapsed.map(seconds),

@@ -38,11 +38,12 @@ const FAR: f64 = 2.0;
 pub fn verdict(motor: &MotorResult, clock_hz: u32) -> String {
     let lost = motor.lost.unsigned_abs();
     let ms = |cycle: u64| cycle as f64 / f64::from(clock_hz) * 1e3;
+    let step = motor.first_slip_step.unwrap_or(0);
     match motor.slips.first() {
         Some(slip) if lost == 0 => {
-            format!("slips and comes back; first at {:.2} ms", ms(slip.cycle))
+            format!("slips and comes back; first at {:.2} ms in step {step}", ms(slip.cycle))
         }
-        Some(slip) => format!("loses {lost} full steps, first at {:.2} ms", ms(slip.cycle)),
+        Some(slip) => format!("loses {lost} full steps, first at {:.2} ms in step {step}", ms(slip.cycle)),
         None if motor.following_error.0.abs() >= FAR => {
             format!("follows, but by {:.2} full steps behind", motor.following_error.0.abs())
         }

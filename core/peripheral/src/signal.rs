@@ -153,7 +153,7 @@ pub enum Event {
     Underrun,
     /// Firmware queued a tick.
     Pushed,
-    /// Firmware stopped the controller: the ticks that waited are gone.
+    /// Firmware, or an overload, stopped the controller: the ticks that waited are gone.
     Stopped,
     /// A tick began.
     TickStart {

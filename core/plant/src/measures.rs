@@ -20,6 +20,7 @@ use crate::{
     lost_steps::Slip,
     plant::{Observer, Plant},
     root::square_root,
+    settling::Deviation,
     state::State,
 };
 use alloc::vec::Vec;
@@ -123,6 +124,7 @@ struct Motor {
     currents: [Extremes; 2],
     slips: Vec<Slip>,
     slip_count: u64,
+    first_slip_step: Option<u64>,
     last: Option<AfterStep>,
     tail: Tail,
 }
@@ -134,7 +136,17 @@ pub struct Measures {
     load: Extremes,
     bus: Extremes,
     collapsed: Option<u64>,
+    /// Sum and count of the sensor's readings before the first step.
+    rest: (f64, u64),
+    has_stepped: bool,
+    /// Steps of each motor, and the sensor's readings from the first motor's fifth on.
+    steps: Vec<u64>,
+    sensor: Extremes,
 }
+
+/// Steps of the first motor before the supply current's deviation counts, and steps of each that there must be (F8).
+const FIRST_STEPS: u64 = 5;
+const LEAST_STEPS: u64 = 8;
 
 /// What one motor did.
 #[derive(Clone, Debug, PartialEq)]
@@ -149,6 +161,8 @@ pub struct MotorResult {
     pub slips: Vec<Slip>,
     /// All slips.
     pub slip_count: u64,
+    /// How many STEPs had come by the first slip.
+    pub first_slip_step: Option<u64>,
     /// The greatest amount by which it was off its command, in full steps, with its sign (positive: behind to the left), and
     /// the point's cycle.
     pub following_error: (f64, u64),
@@ -181,13 +195,17 @@ pub struct PlantResult {
     pub bus_v: Extremes,
     /// The first point at which the bus had fallen to a sixteenth of the source's voltage.
     pub collapsed: Option<u64>,
+    /// How far the sensor of the supply current went from its rest before the first step, from the first motor's fifth step
+    /// on; `None` where a motor makes fewer than eight.
+    pub deviation: Option<Deviation>,
 }
 
 impl Measures {
     /// Measures that begin at the plant's first point.
     #[must_use]
     pub fn new(plant: &Plant) -> Self {
-        let mut new = Self { motors: alloc::vec![Motor::default(); plant.motors()], ..Self::default() };
+        let motors = alloc::vec![Motor::default(); plant.motors()];
+        let mut new = Self { motors, steps: alloc::vec![0; plant.motors()], ..Self::default() };
         new.bus.add(plant.bus_v());
         new
     }
@@ -207,7 +225,18 @@ impl Measures {
             load_a: self.load,
             bus_v: self.bus,
             collapsed: self.collapsed,
+            deviation: self.deviation(),
         }
+    }
+
+    fn deviation(&self) -> Option<Deviation> {
+        let enough = self.steps.iter().all(|&steps| steps >= LEAST_STEPS);
+        if !enough || self.rest.1 == 0 || self.sensor.points == 0 {
+            return None;
+        }
+        let rest_a = self.rest.0 / self.rest.1 as f64;
+        let (above_a, below_a) = (self.sensor.greatest - rest_a, rest_a - self.sensor.least);
+        Some(Deviation { rest_a, above_a: above_a.max(0.0), below_a: below_a.max(0.0) })
     }
 
     /// The slips so far of a motor, the first [`MAX_SLIPS`] of them.
@@ -230,6 +259,7 @@ impl Motor {
             lost: plant.lost(channel),
             slips: self.slips.clone(),
             slip_count: self.slip_count,
+            first_slip_step: self.first_slip_step,
             following_error: self.worst,
             overshoot: last
                 .map(|last| if last.right { last.greatest - command } else { command - last.least }),
@@ -273,6 +303,12 @@ impl Observer for Measures {
             }
         }
         self.load.add(plant.load_a());
+        let reading = plant.current_sensor().filtered();
+        if !self.has_stepped {
+            self.rest = (self.rest.0 + reading, self.rest.1 + 1);
+        } else if self.steps.first().is_some_and(|&steps| steps >= FIRST_STEPS) {
+            self.sensor.add(reading);
+        }
         self.bus.add(plant.bus_v());
         if plant.has_collapsed() && self.collapsed.is_none() {
             self.collapsed = Some(cycle);
@@ -282,6 +318,7 @@ impl Observer for Measures {
     fn slip(&mut self, channel: usize, slip: Slip) {
         if let Some(motor) = self.motors.get_mut(channel) {
             motor.slip_count += 1;
+            motor.first_slip_step = motor.first_slip_step.or_else(|| self.steps.get(channel).copied());
             if motor.slips.len() < MAX_SLIPS {
                 motor.slips.push(slip);
             }
@@ -289,6 +326,10 @@ impl Observer for Measures {
     }
 
     fn steps(&mut self, cycle: u64, rises: u16, right: u16) {
+        self.has_stepped = true;
+        for (channel, steps) in self.steps.iter_mut().enumerate() {
+            *steps += u64::from(rises >> channel & 1);
+        }
         for (channel, motor) in self.motors.iter_mut().enumerate() {
             if rises >> channel & 1 != 0 {
                 let right = right >> channel & 1 != 0;
