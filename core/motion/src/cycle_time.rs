@@ -162,24 +162,23 @@ impl TrapezoidTable {
         Quotient { whole: whole as u64, rest: rest as u64, under: timer_hz.into() }
     }
 
-    /// When each step is due in cycles of a clock of `clock_hz`, without a division of long numbers for each: rows of one
-    /// reload add the same.
+    /// When each step is due in cycles of a clock of `clock_hz`, without a division for each: rows of one reload add the same.
     pub(super) fn step_quotients(&self, clock_hz: u32) -> impl Iterator<Item = Quotient> + '_ {
         let under = u64::from(self.table().timer_hz().max(1));
-        let (mut ticks_before, mut ticks_added) = (0, 0);
-        let (mut whole, mut rest, mut add, mut add_rest) = (0_u64, 0, 0, 0);
-        (1..=self.steps().unsigned_abs()).map(move |k| {
-            let ticks = self.step_ticks(k);
-            let more = ticks - ticks_before;
-            if more != ticks_added {
-                let product = u128::from(more) * u128::from(clock_hz);
-                (add, add_rest) = match u64::try_from(product) {
-                    Ok(product) => (product / under, product % under),
-                    Err(_) => ((product / u128::from(under)) as u64, (product % u128::from(under)) as u64),
-                };
-                ticks_added = more;
+        let quotient = move |ticks: u64| {
+            let product = u128::from(ticks) * u128::from(clock_hz);
+            match u64::try_from(product) {
+                Ok(product) => (product / under, product % under),
+                Err(_) => ((product / u128::from(under)) as u64, (product % u128::from(under)) as u64),
             }
-            ticks_before = ticks;
+        };
+        let (mut whole, mut rest) = (0_u64, 0);
+        let mut last = (0, (0, 0));
+        self.reloads().map(move |reload| {
+            if reload != last.0 {
+                last = (reload, quotient(reload));
+            }
+            let (_, (add, add_rest)) = last;
             (whole, rest) = (whole.wrapping_add(add), rest + add_rest);
             if rest >= under {
                 (whole, rest) = (whole.wrapping_add(1), rest - under);

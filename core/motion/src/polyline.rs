@@ -126,6 +126,17 @@ mod tests {
     }
 
     #[test]
+    fn the_next_deviation_is_the_least_that_gives_other_breakpoints() {
+        for d1 in [0.002, 0.0054, 0.006, 0.015, 0.1] {
+            let points = breakpoints(d1);
+            let next = next_deviation(&points).expect("a chord can be longer");
+            assert_eq!(breakpoints(next * (1.0 - 1e-12)), points, "{d1}");
+            assert_ne!(breakpoints(next), points, "{d1}");
+        }
+        assert_eq!(next_deviation(&[0, 512]), None);
+    }
+
+    #[test]
     fn the_summits_neighbours_stand_for_all_101_points_of_every_chord() {
         for from in 0..QUARTER {
             for to in from + 1..=QUARTER {

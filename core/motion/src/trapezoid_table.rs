@@ -147,6 +147,19 @@ impl TrapezoidTable {
         }
     }
 
+    /// Timer ticks of each step's interval, one after another.
+    pub(super) fn reloads(&self) -> impl Iterator<Item = u64> + '_ {
+        let ramp = self.ramp as usize;
+        let row = |row: &[u64]| match row {
+            [before, after] => after - before,
+            _ => 0,
+        };
+        let sums = self.sums.get(..=ramp).unwrap_or_default();
+        let plateau = (self.count() - 2 * self.ramp) as usize;
+        let up = sums.windows(2).map(row);
+        up.chain(core::iter::repeat_n(self.plateau_reload(), plateau)).chain(sums.windows(2).rev().map(row))
+    }
+
     /// Time of step `k` in s, rounded once.
     pub(super) fn step_s(&self, k: u64) -> f64 {
         self.step_ticks(k) as f64 / f64::from(self.table.timer_hz())
