@@ -6,6 +6,8 @@ extern crate alloc;
 
 pub mod golden;
 
+pub mod plant_digests;
+
 /// The slow model of the contract that the core is compared with.
 #[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 pub mod oracle;

@@ -19,6 +19,8 @@ use stepscope_core::{
     sim::{Experiment, plant_run::PlantRun},
 };
 
+use stepscope_tests::plant_digests::plant_cases;
+
 /// F10's patent set, on axes of full steps.
 const PATENT_MOTOR: &str = r#"{"full_step_deg":1.8,"microsteps":1,"motor":{"inductance_mh":5.3,"holding_torque_mn_m":300,
     "load_inertia_g_cm2":100,"friction_mn_m":15,"viscous_un_m_s":1000,"supply_v":27,"drive":{"bridge_ohm":1}}}"#;
@@ -397,4 +399,13 @@ fn presets_give_the_same_plant_on_every_machine() {
         .collect();
     let expected: Vec<(&str, String)> = expected.map(|(id, digest)| (id, digest.to_owned())).into();
     assert_eq!(found, expected);
+}
+
+#[test]
+fn the_contracts_plant_digests_come_out_whole_and_short() {
+    for case in plant_cases() {
+        for whole in [true, false] {
+            assert_eq!(case.check(whole), Ok(()));
+        }
+    }
 }

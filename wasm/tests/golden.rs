@@ -4,7 +4,10 @@
 mod js;
 
 use js::{get, list, number, text};
-use stepscope_tests::golden::{CASES, Case};
+use stepscope_tests::{
+    golden::{CASES, Case},
+    plant_digests::plant_cases,
+};
 use stepscope_wasm::Judged;
 use wasm_bindgen_test::{wasm_bindgen_test, wasm_bindgen_test_configure};
 
@@ -19,6 +22,12 @@ fn every_case(check: impl Fn(&Case) -> Result<(), String>) {
 #[wasm_bindgen_test]
 fn every_case_gives_its_trace_at_both_speeds() {
     every_case(Case::check);
+}
+
+#[wasm_bindgen_test]
+fn the_contracts_plant_digests_come_out() {
+    let failures: Vec<String> = plant_cases().iter().filter_map(|case| case.check(true).err()).collect();
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
 /// As the page's worker runs it, and with slices so small that many of them end amid a tick.

@@ -18,7 +18,7 @@ use stepscope_core::peripheral::{
     units::Cycles,
 };
 use stepscope_firmware::{ChannelCommand, Driver, Error};
-use stepscope_tests::golden::CASES;
+use stepscope_tests::{golden::CASES, plant_digests::plant_cases};
 
 /// Bytes; what the heap and the constants leave of memory.x's RAM is the stack's.
 const HEAP_BYTES: usize = 3 << 20;
@@ -39,6 +39,15 @@ fn main() -> ! {
             Err(message) => {
                 failed += 1;
                 hprintln!("failed: {}", message.trim_end());
+            }
+        }
+    }
+    for case in plant_cases() {
+        match case.check(false) {
+            Ok(()) => hprintln!("plant {}: as everywhere", case.name),
+            Err(message) => {
+                failed += 1;
+                hprintln!("failed: {message}");
             }
         }
     }

@@ -1,0 +1,100 @@
+//! The contract's three plant digests (F10: K1 to K3) on every target: whole, and as far as a microcontroller comes in a
+//! moment.
+
+use alloc::{format, rc::Rc, string::String, vec, vec::Vec};
+use stepscope_core::{
+    peripheral::{
+        device::SegmentEngine,
+        segment::{CheckedSegments, PulseTimes, Segment, SegmentList},
+        signal::Record,
+        units::{Cycles, Instant},
+    },
+    plant::{
+        Plant,
+        parameters::{Decay, Drive, Motor, Regulator, Setup},
+    },
+};
+
+/// One of them.
+#[derive(Debug)]
+pub struct PlantCase {
+    /// As the contract calls it.
+    pub name: &'static str,
+    motor: Motor,
+    start: u64,
+    /// Steps, the first interval, and what each next one is longer, in cycles.
+    segments: Vec<(u32, u64, i64)>,
+    /// Cycles and digest, as the contract has them.
+    whole: (u64, u64),
+    /// Fewer cycles, and the digest by then.
+    short: (u64, u64),
+}
+
+/// All three.
+#[must_use]
+pub fn plant_cases() -> [PlantCase; 3] {
+    let full_steps = Motor { microsteps: 1, ..Motor::default() };
+    let drive = Drive { regulator: Regulator::Chopper, decay: Decay::Mixed(0.31), ..Drive::default() };
+    let case =
+        |name, motor, start, segments, whole, short| PlantCase { name, motor, start, segments, whole, short };
+    let (forty, ramps) = (vec![(40, 32_768, 0)], vec![(600, 6000, -8), (600, 1200, 8)]);
+    [
+        case(
+            "K1",
+            full_steps.clone(),
+            1600,
+            forty.clone(),
+            (1_600_000, 0x35f2_6c33_1139_1d20),
+            (80_000, 0x9c1e_9918_b82d_e238),
+        ),
+        case(
+            "K2",
+            Motor::default(),
+            1,
+            ramps,
+            (6_000_000, 0xa699_812c_01ef_3b7e),
+            (80_000, 0xa39e_8d35_dce3_267f),
+        ),
+        case(
+            "K3",
+            Motor { drive, ..full_steps },
+            1600,
+            forty,
+            (1_600_000, 0xbf86_f4b1_cc5e_03fc),
+            (40_000, 0x3d31_2ac3_4b52_8994),
+        ),
+    ]
+}
+
+impl PlantCase {
+    /// Whether the whole run, or the short one, has its digest.
+    ///
+    /// # Errors
+    /// The digest that it has instead.
+    pub fn check(&self, whole: bool) -> Result<(), String> {
+        let (cycles, expected) = if whole { self.whole } else { self.short };
+        match self.digest(cycles) {
+            Some(found) if found == expected => Ok(()),
+            found => Err(format!("{}: {found:016x?} is not {expected:016x}", self.name)),
+        }
+    }
+
+    /// The plant's digest after so many cycles.
+    fn digest(&self, cycles: u64) -> Option<u64> {
+        let pulse = PulseTimes { width: Cycles(16), setup: Cycles(0), hold: Cycles(0) };
+        let segments = self.segments.iter().map(|&(count, interval, add)| Segment::Steps {
+            count,
+            interval: interval << 16,
+            add: add << 16,
+            right: true,
+        });
+        let lists = vec![SegmentList { start: Instant(self.start), segments: segments.collect() }];
+        let mut engine = SegmentEngine::new(Rc::new(CheckedSegments::new(pulse, lists, 1).ok()?));
+        let mut records: Vec<Record> = Vec::new();
+        engine.run(Instant(cycles), &mut records);
+        let mut plant = Plant::new(&Setup { motors: vec![self.motor.clone()], ..Setup::default() }).ok()?;
+        records.into_iter().for_each(|record| plant.record(record, &mut ()));
+        plant.advance(cycles, &mut ());
+        Some(plant.digest())
+    }
+}
