@@ -2,7 +2,7 @@
 //! one in 106 bits.
 //!
 //! A number alone loses a bit of the part each time the whole doubles; at 10^12 cycles the part has 14 bits left.
-use crate::{Curve, double::Double, exact::Exact, trapezoid_table::TrapezoidTable};
+use crate::{double::Double, exact::Exact, trapezoid_table::TrapezoidTable};
 
 /// What 106 bits do not tell from a tie, in parts of a time: 2^-94.
 const TIE: f64 = f64::EPSILON * f64::EPSILON * 1024.0;

@@ -342,7 +342,7 @@ mod tests {
                 motor(r#""friction_mn_m":-1,"drive":{"off_us":-2}"#),
                 &[
                     "source.motion.axes[0].motor.friction_mn_m: -1 mN*m is out of range; give 0 to 1000000 mN*m",
-                    "source.motion.axes[0].motor.drive.off_us: -2 us is out of range; give 0 to 1000 us",
+                    "source.motion.axes[0].motor.drive.off_us: -2 us is out of range; give 0 to 1000000 us",
                 ],
             ),
             (

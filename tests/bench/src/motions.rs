@@ -167,7 +167,6 @@ pub fn segments_apart() -> Result<Experiment, Vec<Problem>> {
     let list = |channel: u64| ChannelSegments {
         start_cycle: 1 + 10 * channel,
         segments: vec![Segment::Steps(steps.clone())],
-        ..ChannelSegments::default()
     };
     let mut scenario = sixteen(Vec::new());
     // Not a whole number of starts.
