@@ -189,7 +189,13 @@ impl Reader {
 
     fn unknown(&mut self, name: &str, fields: &[(&'static str, &mut dyn Read)]) {
         let names: Vec<&str> = fields.iter().map(|(field, _)| *field).collect();
-        let detail = format!("there is no such field; give one of {}", names.join(", "));
+        let detail = if cfg!(not(feature = "plant")) && name == "plant" {
+            // As the page is built.
+            "what the edges drive is not shown here; leave it out to see the bus, or give the file to the command: stepscope plant"
+                .to_owned()
+        } else {
+            format!("there is no such field; give one of {}", names.join(", "))
+        };
         self.validator.add(name, Cause::Type { detail });
     }
 
