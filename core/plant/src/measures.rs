@@ -1,6 +1,6 @@
 //! Running measures of a plant (F8): following error, slips, overshoot and settling after the last step, currents, voltage.
 //!
-//! Where a rotor comes to rest is known at the end alone. Until then [`Tail`] keeps of its positions since the last STEP
+//! Where a rotor comes to rest is known at the end alone. Until then `Tail` keeps of its positions since the last STEP
 //! those above (and below) all that came later: among them is the last one that was too far off, whatever the end is.
 //!
 //! ```
