@@ -8,7 +8,7 @@
 //! let tables = StepTables::new(judged.axis(0, 0).expect("one axis")).expect("its pulses fit");
 //! let (exact, compressed) = (tables.cost("exact", "q16", 0.0), tables.cost("compressed", "q16", 25.0));
 //! assert_eq!((exact.steps, compressed.steps), (3200, 3200));
-//! assert!(compressed.bytes < exact.bytes / 10);
+//! assert!(compressed.bytes < exact.bytes / 4);
 //! ```
 
 use crate::source_code::{Language, Source, headline};

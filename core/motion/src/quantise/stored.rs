@@ -97,7 +97,8 @@ pub fn stored(
 /// let pulse = PulseTimes { width: Cycles(30), setup: Cycles(10), hold: Cycles(0) };
 /// let steps: Vec<_> = (1..=10).map(|k| ScheduledStep { cycle: 1000 * k, right: true }).collect();
 /// let table = stored_steps(&steps, Form::Exact, EntryFormat::TICKS, pulse).expect("there is time for each pulse");
-/// assert_eq!((table.entries.len(), table.error.greatest), (1, 0));
+/// // The turn to the right, and all steps.
+/// assert_eq!((table.entries.len(), table.error.greatest), (2, 0));
 /// ```
 ///
 /// # Errors
