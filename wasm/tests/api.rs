@@ -58,17 +58,6 @@ fn numbers(object: &JsValue, name: &str) -> Vec<f64> {
 }
 
 #[wasm_bindgen_test]
-fn a_scenario_with_a_plant_says_that_the_command_runs_it() {
-    let judgement = sure(check(r#"{"plant":{}}"#));
-    let problems = list(&judgement, "problems");
-    let messages: Vec<String> = problems.iter().map(|problem| text(problem, "message")).collect();
-    assert!(
-        messages.len() == 1 && messages[0].ends_with("give the file to the command: stepscope plant"),
-        "{messages:?}"
-    );
-}
-
-#[wasm_bindgen_test]
 fn a_good_scenario_is_judged_with_what_follows_from_it() {
     let judgement = sure(check(&default_scenario()));
     assert_eq!(paths(&judgement), [""; 0]);
