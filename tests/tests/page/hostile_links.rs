@@ -58,6 +58,17 @@ fn a_link_that_does_not_open_says_why_and_the_default_motion_is_drawn() -> Resul
 }
 
 #[test]
+fn a_link_with_a_plant_says_who_runs_it_and_the_default_motion_is_drawn() -> Result<()> {
+    in_browser(|page| async move {
+        page.open(&format!("#{}", forged('j', br#"{"plant":{}}"#))).await?;
+        page.until_digest(&Known::of("{}")?.digest).await?;
+        let message = page.text("#link-message").await?;
+        ensure!(message.contains("give the file to the command: stepscope plant"), "{message}");
+        Ok(())
+    })
+}
+
+#[test]
 fn markup_in_a_link_is_only_text() -> Result<()> {
     in_browser(|page| async move {
         let json = r#"{"title":"<img src=x onerror=\"window.hit=1\">","note":"</textarea><script>window.hit=1</script>"}"#;
