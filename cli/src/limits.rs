@@ -166,6 +166,17 @@ pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
     let (mut scenario, experiment, motors) = motors(common)?;
     let slot = experiment.config().tick().0 / u64::from(experiment.config().slots());
     let t_step = arguments.t_step.map_or(slot, |cycles| cycles.get().into());
+    // A step is looked at for eleven of them, in samples that are kept.
+    for Alone { setup, .. } in &motors {
+        let grid = u64::from(setup.grid_cycles());
+        if t_step < grid || 11 * t_step / grid > MAX_SAMPLES {
+            let most = MAX_SAMPLES * grid / 11;
+            let what = format!(
+                "T_step is {t_step} cycles; give --t-step {grid} to {most}, at least a step of the plant's grid"
+            );
+            return Err(wrong_option(path, &what));
+        }
+    }
     let all = on_threads(common, "settling", motors.len(), |index| {
         motors
             .get(index)
@@ -223,8 +234,11 @@ pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
 /// Searches the start-stop rate and the pull-out rate of each motor.
 pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
     let (common, path) = (&arguments.common, &arguments.common.scenario);
-    if !(1.0..=1e9).contains(&arguments.ramp) {
-        return Err(wrong_option(path, "--ramp is an acceleration in steps/s^2; give 1 to 1000000000"));
+    if !(MIN_RAMP..=1e9).contains(&arguments.ramp) {
+        return Err(wrong_option(path, "--ramp is an acceleration in steps/s^2; give 1000 to 1000000000"));
+    }
+    if arguments.steps.is_some_and(|steps| steps.get() > MAX_STEPS) {
+        return Err(wrong_option(path, "--steps are those of each try; give 1 to 10000000"));
     }
     let (_, _, motors) = motors(common)?;
     let turn = |setup: &Setup| {
@@ -281,6 +295,16 @@ pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Samples of the supply current that a measurement of a settling time keeps, at most.
+const MAX_SAMPLES: u64 = 10_000_000;
+/// Steps of a search at one rate, at most.
+const MAX_STEPS: u64 = 10_000_000;
+/// Least ramp of a search in steps/s^2.
+const MIN_RAMP: f64 = 1000.0;
+/// Motor-steps of a map, at most (PLANT F1), and how long each rate runs, in s.
+const MAX_MOTOR_STEPS: f64 = 1e10;
+const RATE_S: f64 = 0.6;
+
 /// Maps where each motor resonates, as CSV.
 pub(crate) fn resonance(arguments: &ResonanceArguments) -> Result<(), Failure> {
     let (common, path) = (&arguments.common, &arguments.common.scenario);
@@ -292,6 +316,15 @@ pub(crate) fn resonance(arguments: &ResonanceArguments) -> Result<(), Failure> {
     }
     let (_, _, motors) = motors(common)?;
     let rates: Vec<f64> = (0..=count as u64).map(|index| from + index as f64 * rung).collect();
+    let points =
+        |alone: &Alone| RATE_S * f64::from(alone.setup.clock_hz) / f64::from(alone.setup.grid_cycles());
+    let motor_steps = rates.len() as f64 * motors.iter().map(points).sum::<f64>();
+    if motor_steps > MAX_MOTOR_STEPS {
+        let what = format!(
+            "the map takes {motor_steps:.2e} motor-steps, at most {MAX_MOTOR_STEPS:e} are allowed; give fewer rates (--rung), or one motor (--channel)"
+        );
+        return Err(wrong_option(path, &what));
+    }
     let all = on_threads(common, "resonance", rates.len() * motors.len(), |index| {
         let (alone, rate) = (motors.get(index / rates.len()), rates.get(index % rates.len()));
         let (Some(alone), Some(rate)) = (alone, rate) else { return Err(Vec::new()) };

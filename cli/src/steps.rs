@@ -67,11 +67,11 @@ fn cycle(text: &str, a_second: Option<u32>, clock_hz: u32) -> Option<u64> {
     }
     let digits: u128 = format!("{whole}{fraction}").parse().ok()?;
     let (over, under) = match a_second {
-        Some(a_second) => (digits * u128::from(clock_hz), u128::from(a_second)),
+        Some(a_second) => (digits.checked_mul(clock_hz.into())?, u128::from(a_second)),
         None => (digits, 1),
     };
     let under = under * 10_u128.pow(fraction.len() as u32);
-    let cycle = (2 * over + under) / (2 * under);
+    let cycle = over.checked_mul(2)?.checked_add(under)? / (2 * under);
     u64::try_from(cycle).ok().filter(|cycle| u128::from(*cycle) <= MAX_CYCLE)
 }
 
@@ -96,6 +96,7 @@ mod tests {
         for (text, a_second, expected) in rows {
             assert_eq!(cycle(text, a_second, 1_000_000), expected, "{text} of {a_second:?}");
         }
+        assert_eq!(cycle("170141183460469231.731687303716", Some(1), 1_000_000_000), None);
     }
 
     #[test]

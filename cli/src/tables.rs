@@ -206,8 +206,10 @@ impl Axes {
 
 /// Writes the table, or the summary.
 pub(crate) fn tables(arguments: &Arguments) -> Result<(), Failure> {
-    let input = arguments.steps.as_deref().or(arguments.scenario.as_deref());
-    let outputs = Outputs::judge(input, [arguments.out.as_path()])?;
+    for input in [&arguments.scenario, &arguments.steps].into_iter().flatten() {
+        Outputs::judge(Some(input), [arguments.out.as_path()])?;
+    }
+    let outputs = Outputs::judge(None, [arguments.out.as_path()])?;
     let axes = Axes::new(arguments)?;
     let Some(language) = arguments.format.language() else {
         return output::write_whole(outputs, &arguments.out, |out| {

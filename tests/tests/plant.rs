@@ -251,7 +251,18 @@ fn both_speeds_and_all_slices_give_the_same_edges_and_the_same_plant() {
     let turn = r#""source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":16},"duration_s":0.04,"ramp_s":0.02}}]}]}}"#;
     let bus = r#""bus":{"slots":10,"step_period_cycles":1000,"pulse_width_cycles":10,"dir_setup_cycles":10}"#;
     let weak = r#""protection":{"threshold_a":0.16,"samples":2},"tail_s":0.005"#;
+    // An overload in the last cycle, which makes one more.
+    let late = |samples: u32, tail_s: f64| {
+        format!(
+            r#"{{"clock_hz":1000000,"bus":{{"pulse_width_cycles":10,"dir_setup_cycles":10}},"source":{{"segments":{{"channels":[
+                {{"segments":[{{"steps":{{"interval_q16":172294144}}}}]}}]}}}},
+                "plant":{{"idle_ma":5000,"protection":{{"threshold_a":1,"samples":{samples}}},"tail_s":{tail_s}}}}}"#
+        )
+    };
     let rows = [
+        (late(529, 6e-6), 1),
+        (late(530, 11e-6), 1),
+        (late(549, 106e-6), 1),
         (small(&format!(r#"}},{bus},{turn},"plant":{{"tail_s":0.01}}}}"#)), 1),
         (small(&format!(r#"}},{bus},{turn},"plant":{{{weak}}}}}"#)), 1),
         (small(&format!(r#","protocol":"framed"}},{bus},{turn},"plant":{{{weak}}}}}"#)), 1),

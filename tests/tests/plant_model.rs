@@ -225,6 +225,33 @@ fn every_point_is_that_of_an_independent_model() {
     assert!(flown * 50 <= cases(), "{flown} of {} cases flew away", cases());
 }
 
+/// F7: ENABLE in cycle p begins the count anew, and a conversion in p, which is looked at last, counts already; EN rises in
+/// p + 1.
+#[test]
+fn enable_begins_the_count_of_an_overload_anew() {
+    let en = 1 << 32;
+    for step_cycles in [1, 2, 80] {
+        for rise in (395..410).chain(478..484) {
+            let case = Case {
+                clock_hz: 16_000_000,
+                plant: oracle::Plant {
+                    step_cycles: Some(step_cycles),
+                    idle_ma: 5000.0,
+                    protection: Some(oracle::Protection { threshold_a: 1.0, samples: 10 }),
+                    ..oracle::Plant::default()
+                },
+                motors: vec![Some(oracle::Motor::default())],
+                records: vec![(0, en), (100, 0), (rise, en)],
+                cycles: 4000,
+            };
+            let run = oracle::run(&case);
+            assert!(run.overload.is_some_and(|cycle| cycle > 100 || step_cycles < 10), "{:?}", run.overload);
+            check(&case, &run, 0, &format!("EN rises in {rise}, grid of {step_cycles}"));
+            check(&case, &run, 1, &format!("EN rises in {rise}, grid of {step_cycles}, cycle by cycle"));
+        }
+    }
+}
+
 #[test]
 fn what_the_model_refuses_is_refused_and_nothing_else() {
     let (mut refused, mut taken) = (0, 0);

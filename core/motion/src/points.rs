@@ -229,8 +229,8 @@ impl<'p> PieceSteps<'p> {
 
     /// How far a time in f64 may be off, in s, where the speed is no less than this.
     pub(super) fn off_s(self, least_speed: f64) -> f64 {
-        // A way's error is counted twice for those times that only x/y tells.
-        self.points.off.get(self.index).map_or(0.0, |off| off.time_s + off.way / 2.0 / least_speed)
+        // A way's error, twice: that of the middle's place and those of the series.
+        self.points.off.get(self.index).map_or(0.0, |off| off.time_s + off.way / least_speed)
     }
 }
 

@@ -339,7 +339,7 @@ fn rest(own: &[f64; TERMS], beyond: f64, turned: &[f64; TERMS], reach: f64) -> (
     }
     let rest = (least + beyond * power(farthest)) / slope;
     // No further than what was added.
-    (if rest <= 0.01 * farthest { rest } else { f64::INFINITY }, slope)
+    (if rest <= 0.009 * farthest { rest } else { f64::INFINITY }, slope)
 }
 
 #[cfg(test)]

@@ -134,6 +134,23 @@ struct Overload {
     threshold_a: f64,
     samples: u32,
     in_a_row: u32,
+    /// The cycles of the latest two conversions, and whether they were at or above it.
+    latest: [(u64, bool); 2],
+}
+
+impl Overload {
+    /// A conversion.
+    fn convert(&mut self, cycle: u64, is_over: bool) {
+        self.in_a_row = if is_over { self.in_a_row.saturating_add(1) } else { 0 };
+        self.latest = [self.latest[1], (cycle, is_over)];
+    }
+
+    /// ENABLE in the cycle before `rise`, in which EN is high again: a conversion in that very cycle, which is looked at
+    /// last, counts already (F7).
+    fn begin_anew(&mut self, rise: u64) {
+        let counts = |(cycle, is_over): &&(u64, bool)| *is_over && cycle + 1 >= rise;
+        self.in_a_row = self.latest.iter().rev().take_while(counts).count() as u32;
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -187,6 +204,7 @@ impl Plant {
                 threshold_a: p.threshold_a,
                 samples: p.samples,
                 in_a_row: 0,
+                latest: [(0, false); 2],
             }),
             digest: Digest::default(),
             events: PointEvents::default(),
@@ -211,7 +229,7 @@ impl Plant {
                 }
             }
             if let Some(overload) = self.overload.as_mut().filter(|_| is_powered) {
-                overload.in_a_row = 0;
+                overload.begin_anew(cycle);
             }
         }
         let rises = record.levels.step() & !before.step();
@@ -268,7 +286,7 @@ impl Plant {
         }
         if let Some(overload) = self.overload.as_mut().filter(|_| self.events.converted) {
             let is_over = self.current.reading() >= overload.threshold_a;
-            overload.in_a_row = if is_over { overload.in_a_row.saturating_add(1) } else { 0 };
+            overload.convert(self.point, is_over);
             self.events.overload = overload.in_a_row == overload.samples;
         }
         if self.digest.is_due() {

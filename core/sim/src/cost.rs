@@ -80,18 +80,27 @@ impl Cost {
     pub(super) fn with_plants(self, checked: &Checked) -> Self {
         let Some(plants) = &checked.plants else { return self };
         let tail = if checked.run.is_some() { 0 } else { plants.tail.0 };
-        let end_cycle = self.end_cycle.saturating_add(tail);
+        // A boot that measures is waited for, too.
+        let boot = if plants.self_test && checked.run.is_none() {
+            checked.configs.iter().map(|config| config.boot().0).max().unwrap_or(0)
+        } else {
+            0
+        };
+        let end_cycle = self.end_cycle.saturating_add(tail).max(boot);
         let steps = plants.setups.iter().map(|setup| {
             (end_cycle / u64::from(setup.grid_cycles())).saturating_mul(setup.motors.len() as u64)
         });
         let motor_steps = steps.fold(0, u64::saturating_add);
+        // EN and STEP fall at an overload, which ends all but what a host enables again.
+        let overloads: u64 =
+            plants.setups.iter().map(|setup| u64::from(setup.protection.is_some()) * (1 + self.sends)).sum();
         // A step there and back, with DIR, on each channel.
         let tests = if plants.self_test {
             6 * plants.setups.iter().map(|s| s.motors.len() as u64).sum::<u64>()
         } else {
             0
         };
-        Self { end_cycle, motor_steps, records: self.records + tests, ..self }
+        Self { end_cycle, motor_steps, records: self.records + tests + overloads, ..self }
     }
 }
 

@@ -254,6 +254,8 @@ impl PlantsBehind {
             for (index, mut wired) in self.wired(sinks, observers).into_iter().enumerate() {
                 wired.act(run, index, Instant(now.0 - 1));
             }
+            // What acted may have woken it.
+            self.rests_from = rests(self, run);
         }
         let is_end = end == Some(now) && (run.end.is_some() || rests(self, run).is_some());
         if let Some(end) = end.filter(|_| is_past || is_end) {
@@ -283,7 +285,10 @@ impl<S: Sink, O: Observer> Wired<'_, S, O> {
     fn act(&mut self, run: &mut Controllers, index: usize, cycle: Instant) {
         self.advance(cycle.0);
         if self.behind.watch.overload.take() == Some(cycle.0) {
-            self.behind.overload_at = Some(cycle.0);
+            // Where the drivers are off already it changes nothing but the fault.
+            if self.behind.levels.has(Levels::EN) {
+                self.behind.overload_at = Some(cycle.0);
+            }
             run.overload(index, self);
         }
         if self.behind.boot == Some(cycle.next()) {

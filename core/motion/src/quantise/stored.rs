@@ -152,8 +152,8 @@ fn kept<I: Iterator<Item = ScheduledStep>>(
     Ok(Stored { list, format, entries, document_bytes, error })
 }
 
-/// Every step in its cycle, in as few entries as whole intervals allow, or, where that is fewer, as fractions of a cycle
-/// do.
+/// Every step in its cycle, in as few entries as whole intervals allow, or, where these are fewer, in those that a search
+/// finds with fractions of a cycle.
 ///
 /// Of whole cycles no list is shorter: a step stands in its cycle or not, so whichever entry comes before, each that
 /// begins there may have the same length, and the longest leaves the fewest steps for those after it. (That is so as long as
@@ -167,8 +167,12 @@ fn smallest_exact<I: Iterator<Item = ScheduledStep>>(
     if format.fraction_bits == 0 {
         return Ok(whole);
     }
-    let parts = compressed(due(), Tolerance::of(Cycles(0)), format, pulse)?.list;
-    Ok(if format.entries(&parts)? < format.entries(&whole)? { parts } else { whole })
+    let parts = compressed(due(), Tolerance::of(Cycles(0)), format, pulse).map(|made| made.list);
+    match parts {
+        Ok(parts) if format.entries(&parts)? < format.entries(&whole)? => Ok(parts),
+        // Also where there would be too many of them.
+        _ => Ok(whole),
+    }
 }
 
 /// The list, if the segment engine runs it.
