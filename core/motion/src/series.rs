@@ -256,7 +256,7 @@ impl Block {
         let terms = turned.map(|term| term * cycles);
         let count = terms.iter().rposition(|term| libm::fabs(*term) > NO_TERM).map_or(0, |last| last + 1);
         let off =
-            MAX_REST + NO_TERM * (TERMS - count) as f64 + 64.0 * ROUNDING * sum_of_magnitudes(&terms, 1.0);
+            MAX_REST + NO_TERM * (TERMS - count) as f64 + 256.0 * ROUNDING * sum_of_magnitudes(&terms, 1.0);
         let (per_step, cycles) = (1.0 / half, curve.time_s * clock);
         let time = MiddleTime { whole: cycles as u64, part: cycles - libm::floor(cycles), is_exact: false };
         (Self { middle, per_step, time, terms, count, off, least_speed }, rest)
