@@ -33,7 +33,7 @@ pub(super) fn value_of(parts: Parts<'_>, whole: bool) -> Value {
         Parts::Fields(group, values) => {
             let mut map = Map::new();
             for (field, (value, differs)) in group.fields.iter().zip(values) {
-                if whole || differs {
+                if differs || (whole && !field.only_if_set) {
                     map.insert(field.name.to_string(), value_of(value.parts(), whole));
                 }
             }
@@ -73,7 +73,9 @@ pub(super) fn write_whole(out: &mut String, value: &dyn ToParts, indent: usize) 
         }
         Parts::Fields(group, values) => {
             out.push('{');
-            for (index, (field, (value, _))) in group.fields.iter().zip(values).enumerate() {
+            let written = group.fields.iter().zip(values);
+            let written = written.filter(|(field, (_, differs))| *differs || !field.only_if_set);
+            for (index, (field, (value, _))) in written.enumerate() {
                 begin_line(out, index == 0);
                 named(out, field.name, value);
             }

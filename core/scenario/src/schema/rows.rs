@@ -46,6 +46,7 @@ macro_rules! rows {
                     name: stringify!($field),
                     doc: concat!($($field_doc),*),
                     ty: <$ty as $crate::schema::Typed>::TYPE,
+                    only_if_set: !concat!("", $(stringify!($cfg))?).is_empty(),
                     ..$row
                 }),*];
                 const GROUP: &$crate::schema::Group = &$crate::schema::Group {

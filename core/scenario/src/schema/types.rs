@@ -51,6 +51,9 @@ pub struct Field {
     pub document: Option<&'static Document>,
     /// When it matters; without it always.
     pub when: Option<When>,
+    /// Whether it is written only where it differs from its default: a field that not every program knows, as the page, which
+    /// has no plant.
+    pub only_if_set: bool,
 }
 
 /// What JSON holds for a field.
@@ -208,6 +211,7 @@ pub(crate) const fn label(label: &'static str) -> Field {
         explained: "",
         document: None,
         when: None,
+        only_if_set: false,
     }
 }
 
