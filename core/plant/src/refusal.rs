@@ -74,8 +74,8 @@ impl fmt::Display for Refused {
             ),
             Refusal::TooWeak { source_ohm, power_w } => write!(
                 f,
-                "source_ohm: through {source_ohm} ohm the supply cannot give the {power_w:.1} W that the motors take \
-                 at rest; give less"
+                "through {source_ohm} ohm the supply cannot give the {power_w:.1} W that the motors take \
+                 at rest; give a smaller source_ohm"
             ),
         }
     }

@@ -63,7 +63,7 @@ fn each_refusal_names_the_field_the_number_and_what_to_give() {
                 supply: Supply { source_ohm: 50.0, buffer_uf: Some(100.0), ..Supply::default() },
                 ..one(Motor::default())
             },
-            "source_ohm: through 50 ohm the supply cannot give the 3.6 W that the motors take at rest; give less",
+            "through 50 ohm the supply cannot give the 3.6 W that the motors take at rest; give a smaller source_ohm",
         ),
     ];
     for (setup, expected) in rows {

@@ -355,7 +355,7 @@ mod tests {
             ),
             (
                 r#"{"plant":{"buffer_uf":100,"source_ohm":50}}"#.into(),
-                &["plant.source_ohm: source_ohm: through 50 ohm the supply cannot give the 3.6 W"],
+                &["plant.source_ohm: through 50 ohm the supply cannot give the 3.6 W"],
             ),
             (
                 r#"{"bus":{"channels":2},"plant":{"motors":[{},{"motor":{"supply_v":36,"inductance_mh":0.0001}}]},"source":{"packets":{}}}"#.into(),
