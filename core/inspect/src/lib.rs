@@ -42,6 +42,8 @@ mod fourier;
 pub mod judgement;
 pub mod line_decoder;
 pub mod measures;
+#[cfg(feature = "plant")]
+pub mod motors;
 pub mod packet_table;
 #[cfg(feature = "plant")]
 pub mod plant;
