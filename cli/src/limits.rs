@@ -3,11 +3,11 @@
 use crate::{
     failure::Failure,
     json::Tables,
+    motors::Replacing,
     output::{self, Outputs},
     parallel,
     plant::no_plant,
     progress::Progress,
-    scenarios,
 };
 use clap::Args;
 use serde_json::json;
@@ -36,6 +36,8 @@ pub(crate) struct Common {
     /// Only the motor of this channel, from 0.
     #[arg(long, value_name = "K")]
     channel: Option<usize>,
+    #[command(flatten)]
+    replacing: Replacing,
     /// Print the results as JSON: one object of tables (docs/command.md).
     #[arg(long)]
     json: bool,
@@ -105,7 +107,7 @@ struct Alone {
 /// The motors of the first controller's plant, each once.
 fn motors(common: &Common) -> Result<(Scenario, Experiment, Vec<Alone>), Failure> {
     let path = &common.scenario;
-    let (scenario, experiment) = scenarios::judged(path)?;
+    let (scenario, experiment) = common.replacing.judged(path)?;
     let plants = experiment.plants().ok_or_else(|| no_plant(path))?;
     let setup = plants.setups.first().cloned().unwrap_or_default();
     let count = setup.motors.len();

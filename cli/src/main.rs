@@ -11,6 +11,7 @@ mod limits;
 mod line;
 mod manual;
 mod measures;
+mod motors;
 mod output;
 mod parallel;
 mod plant;

@@ -3,9 +3,9 @@
 use crate::{
     failure::Failure,
     json::Tables,
+    motors::{self, Replacing},
     output::{Out, Outputs, STANDARD},
     progress::Progress,
-    scenarios,
 };
 use clap::Args;
 use serde_json::{Value, json};
@@ -45,7 +45,13 @@ const MAX_SLIPS: usize = 20;
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// The scenario, which has a plant: a JSON file, or a preset's name; `-` reads standard input.
-    scenario: PathBuf,
+    #[arg(required_unless_present = "motors")]
+    scenario: Option<PathBuf>,
+    #[command(flatten)]
+    replacing: Replacing,
+    /// List the motors and drivers that --motor and --drive take, with their sources, and run nothing.
+    #[arg(long, conflicts_with_all = ["scenario", "motor", "drive", "controller", "digest", "csv", "vcd"])]
+    motors: bool,
     /// Of several controllers take this one.
     #[arg(long, value_name = "K", default_value_t = 0)]
     controller: usize,
@@ -119,11 +125,11 @@ impl Observer for Files {
 
 /// Runs the scenario with its plants and tells what they did.
 pub(crate) fn plant(arguments: &Arguments) -> Result<(), Failure> {
-    let path = &arguments.scenario;
+    let Some(path) = &arguments.scenario else { return motors::list(arguments.json) };
     let table = arguments.json.then_some(Path::new(STANDARD));
     let files = [&arguments.csv, &arguments.vcd].into_iter().flatten().map(PathBuf::as_path);
     let mut outputs = Outputs::judge(Some(path), files.chain(table))?;
-    let (_, experiment) = scenarios::judged(path)?;
+    let (_, experiment) = arguments.replacing.judged(path)?;
     let (controllers, chosen) = (experiment.controllers(), arguments.controller);
     if chosen >= controllers {
         return Err(Failure::Controller(path.clone(), chosen, controllers));

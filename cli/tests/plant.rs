@@ -44,6 +44,38 @@ fn a_scenario_without_a_plant_is_refused_with_the_remedy() {
 }
 
 #[test]
+fn motors_and_drivers_are_taken_from_the_list() {
+    let (code, out, err) = stepscope(&["plant", "--motors"], "");
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    for word in ["17hs4401       NEMA 17, MotionKing", "\ndrivers\n", "\ntmc2209 "] {
+        assert!(out.contains(word), "{word}\n{out}");
+    }
+    let (_, out, _) = stepscope(&["plant", "--motors", "--json"], "");
+    let tables = serde_json::from_str::<Value>(&out).expect("JSON")["tables"].clone();
+    assert_eq!(tables["motors"][0]["id"], "song-2021");
+    assert_eq!(tables["drives"][1]["decay"], "auto");
+    // The default motor is that of the list, and the driver is another's.
+    let digest =
+        |options: &[&str]| stepscope(&[&["plant", "song-2021-motor", "--digest"], options].concat(), "").1;
+    assert_eq!(digest(&["--motor", "song-2021", "--drive", "ideal"]), digest(&[]));
+    assert_ne!(digest(&["--motor", "17hs4401"]), digest(&[]));
+    assert_ne!(digest(&["--drive", "a4988"]), digest(&[]));
+    // The larger rotor cannot start so fast.
+    let limits = |motor: &str| -> f64 {
+        let (code, out, err) = stepscope(&["limits", "-", "--json", "--motor", motor], r#"{"plant":{}}"#);
+        assert_eq!((code, err.as_str()), (Some(0), ""));
+        let json: Value = serde_json::from_str(&out).expect("JSON");
+        json["tables"]["limits"][0]["start_stop_steps_s"].as_f64().expect("a rate")
+    };
+    assert!(limits("as1060") < 0.6 * limits("song-2021"));
+    for (option, told) in [("--motor", "no such motor"), ("--drive", "no such driver")] {
+        let (code, _, err) = stepscope(&["resonance", "-", option, "none"], r#"{"plant":{}}"#);
+        assert!(code == Some(2) && err.contains(told), "{err}");
+    }
+    assert_eq!(stepscope(&["plant", "-", "--motors"], r#"{"plant":{}}"#).0, Some(2));
+}
+
+#[test]
 fn points_are_a_table_and_real_variables_of_a_dump() {
     let folder = tempfile::tempdir().expect("a folder");
     let (csv, dump) = (folder.path().join("points.csv"), folder.path().join("points.vcd"));

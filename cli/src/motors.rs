@@ -1,0 +1,131 @@
+//! `--motor` and `--drive`, and `stepscope plant --motors`: motors and drivers out of the list.
+
+use crate::{failure::Failure, json::Tables, scenarios};
+use clap::Args;
+use serde_json::json;
+use std::{
+    io::{self, Write},
+    path::Path,
+    rc::Rc,
+};
+use stepscope_core::{
+    inspect::motors::{self, DRIVES, DriveSheet, MOTORS, MotorSheet},
+    scenario::{Compact, Scenario},
+    sim::Experiment,
+};
+
+/// Motor and driver in the place of the scenario's.
+#[derive(Args)]
+pub(crate) struct Replacing {
+    /// Give every motor these figures, at its rated current; `stepscope plant --motors` lists them. Supply and load stay.
+    #[arg(long, value_name = "MOTOR", value_parser = motor)]
+    motor: Option<&'static MotorSheet>,
+    /// Give every motor this driver; `stepscope plant --motors` lists them.
+    #[arg(long, value_name = "DRIVER", value_parser = drive)]
+    drive: Option<&'static DriveSheet>,
+}
+
+fn motor(id: &str) -> Result<&'static MotorSheet, String> {
+    motors::motor(id).ok_or_else(|| "no such motor; `stepscope plant --motors` lists them".to_owned())
+}
+
+fn drive(id: &str) -> Result<&'static DriveSheet, String> {
+    motors::drive(id).ok_or_else(|| "no such driver; `stepscope plant --motors` lists them".to_owned())
+}
+
+impl Replacing {
+    /// The scenario with these, judged; `-` is standard input.
+    pub(crate) fn judged(&self, path: &Path) -> Result<(Rc<Scenario>, Rc<Experiment>), Failure> {
+        if self.motor.is_none() && self.drive.is_none() {
+            return scenarios::judged(path);
+        }
+        let mut scenario = scenarios::read(path)?;
+        if let Some(motor) = self.motor {
+            motor.put_into(&mut scenario);
+        }
+        if let Some(drive) = self.drive {
+            drive.put_into(&mut scenario);
+        }
+        let experiment =
+            Experiment::new(&scenario).map_err(|problems| Failure::Scenario(path.to_owned(), problems))?;
+        Ok((Rc::new(scenario), Rc::new(experiment)))
+    }
+}
+
+/// Lists motors and drivers with their figures.
+pub(crate) fn list(as_json: bool) -> Result<(), Failure> {
+    if as_json {
+        let motor = |sheet: &MotorSheet| {
+            json!({
+                "id": sheet.id, "name": sheet.name, "full_step_deg": sheet.full_step_deg,
+                "rated_current_a": sheet.rated_current_a, "resistance_ohm": sheet.resistance_ohm,
+                "inductance_mh": sheet.inductance_mh, "holding_torque_mn_m": sheet.holding_torque_mn_m,
+                "rotor_inertia_g_cm2": sheet.rotor_inertia_g_cm2,
+                "detent_torque_mn_m": sheet.detent_torque_mn_m, "friction_mn_m": sheet.friction_mn_m,
+                "viscous_un_m_s": sheet.viscous_un_m_s, "source": sheet.source,
+                "typical": sheet.typical.join(" "),
+            })
+        };
+        let drive = |sheet: &DriveSheet| {
+            let drive = &sheet.drive;
+            json!({
+                "id": sheet.id, "name": sheet.name, "regulator": drive.regulator.compact(),
+                "decay": drive.decay.compact(), "decay_share": drive.decay_share, "off_us": drive.off_us,
+                "blank_us": drive.blank_us, "dac_levels": drive.dac_levels, "bridge_ohm": drive.bridge_ohm,
+                "diode_v": drive.diode_v, "source": sheet.source, "typical": sheet.typical.join(" "),
+            })
+        };
+        let tables = Tables::of("plant").with("motors", MOTORS.iter().map(motor));
+        return tables.with("drives", DRIVES.iter().map(drive)).print();
+    }
+    write(&mut io::stdout().lock()).map_err(Failure::output)
+}
+
+fn write(out: &mut impl Write) -> io::Result<()> {
+    for sheet in MOTORS {
+        writeln!(out, "{:14} {}", sheet.id, sheet.name)?;
+        writeln!(
+            out,
+            "{:14} {} deg, {} ohm, {} mH, rotor {} g*cm^2, detent {} mN*m, friction {} mN*m, viscous {} uN*m*s",
+            "",
+            sheet.full_step_deg,
+            sheet.resistance_ohm,
+            sheet.inductance_mh,
+            sheet.rotor_inertia_g_cm2,
+            sheet.detent_torque_mn_m,
+            sheet.friction_mn_m,
+            sheet.viscous_un_m_s
+        )?;
+        sources(out, sheet.source, sheet.typical)?;
+    }
+    writeln!(out, "\ndrivers")?;
+    for sheet in DRIVES {
+        let drive = &sheet.drive;
+        writeln!(out, "{:14} {}", sheet.id, sheet.name)?;
+        writeln!(
+            out,
+            "{:14} {}, {} decay, fast share {}, off {} us, blank {} us, bridge {} ohm, diode {} V{}",
+            "",
+            word(&drive.regulator),
+            word(&drive.decay),
+            drive.decay_share,
+            drive.off_us,
+            drive.blank_us,
+            drive.bridge_ohm,
+            drive.diode_v,
+            drive.dac_levels.map(|levels| format!(", converter of {levels} steps")).unwrap_or_default()
+        )?;
+        sources(out, sheet.source, sheet.typical)?;
+    }
+    Ok(())
+}
+
+/// How a scenario's file has it.
+fn word(value: &impl Compact) -> String {
+    value.compact().as_str().unwrap_or_default().to_owned()
+}
+
+fn sources(out: &mut impl Write, source: &str, typical: &[&str]) -> io::Result<()> {
+    writeln!(out, "{:14} {source}", "")?;
+    writeln!(out, "{:14} of the usual size only: {}", "", typical.join(", "))
+}
