@@ -4,6 +4,7 @@ use crate::{
     failure::Failure,
     json::Tables,
     output::{self, Outputs},
+    progress::Progress,
     scenarios,
 };
 use clap::{Args, ValueEnum};
@@ -13,15 +14,22 @@ use std::{
     path::PathBuf,
 };
 use stepscope_core::{
-    inspect::torque::{Demand, Machine, Moment, Ramps},
+    inspect::{
+        model_agreement::{Agreement, FirstSlips, agreement},
+        torque::{Demand, Machine, Moment, Ramps},
+    },
     motion::{AxisPlan, Curve, PlannedMove, plan_lists},
+    peripheral::{trace::Digest, units::Cycles},
     scenario::{Motion, Problem, Scenario, Source, ValueError, of_motion},
+    sim::{BUDGET_MOTOR_STEPS, Experiment, plant_run::PlantRun},
 };
 
 /// Shortages that the screen shows of an axis.
 const MAX_SHOWN: usize = 20;
 /// The most time in s that a move may have (docs/scenario.md).
 const MAX_DURATION_S: f64 = 86_400.0;
+/// Cycles between two looks at how far the plant's run is.
+const SLICE: Cycles = Cycles(1 << 22);
 /// Rates of the curve.
 const POINTS: u32 = 201;
 
@@ -39,6 +47,9 @@ pub(crate) struct Arguments {
     /// Where it goes (`-`: standard output).
     #[arg(long, value_name = "FILE", default_value = "-")]
     out: PathBuf,
+    /// Run the plant, too, also where the scenario has none or the run is long, and say whether both models agree.
+    #[arg(long, conflicts_with = "format")]
+    plant: bool,
     /// Write it as JSON: one object of tables (docs/command.md).
     #[arg(long, conflicts_with = "format")]
     json: bool,
@@ -58,12 +69,19 @@ struct Driven {
     axis: usize,
     machine: Machine,
     plan: AxisPlan,
+    demand: Demand,
+    /// What the plant says, where it was run.
+    agreement: Option<Agreement>,
 }
 
 /// Writes what the motors have and what is asked of them.
 pub(crate) fn torque(arguments: &Arguments) -> Result<(), Failure> {
     let outputs = Outputs::judge(Some(&arguments.scenario), [arguments.out.as_path()])?;
-    let driven = driven(arguments)?;
+    let scenario = scenarios::read(&arguments.scenario)?;
+    let mut driven = driven(arguments, &scenario)?;
+    if arguments.format == Written::Text {
+        hold_against_plant(arguments, scenario, &mut driven)?;
+    }
     output::write_whole(outputs, &arguments.out, |out| match arguments.format {
         _ if arguments.json => tables(&driven).write(out),
         Written::Text => driven.iter().try_for_each(|driven| report(driven, out)),
@@ -73,9 +91,7 @@ pub(crate) fn torque(arguments: &Arguments) -> Result<(), Failure> {
 
 /// What the text says, as tables.
 fn tables(driven: &[Driven]) -> Tables {
-    let demands: Vec<(&Driven, Demand)> =
-        driven.iter().map(|driven| (driven, Demand::of(&driven.machine, &driven.plan))).collect();
-    let axis = |(Driven { axis, machine, .. }, demand): &(&Driven, Demand)| {
+    let axis = |Driven { axis, machine, demand, agreement, .. }: &Driven| {
         let least = demand.least.as_ref();
         json!({
             "axis": axis,
@@ -90,10 +106,13 @@ fn tables(driven: &[Driven]) -> Tables {
             "over_working_rate_steps_s": demand.over_working_rate,
             "shortages": demand.total,
             "enough": demand.is_met(),
+            "plant": agreement.as_ref().map(|found| &found.plant),
+            "models_agree": agreement.as_ref().and_then(|found| found.agrees),
+            "models_differ_because": agreement.as_ref().and_then(|found| found.why.as_ref()),
         })
     };
-    let shortages = demands.iter().flat_map(|(driven, demand)| {
-        demand.shortages.iter().map(|found| {
+    let shortages = driven.iter().flat_map(|driven| {
+        driven.demand.shortages.iter().map(|found| {
             json!({
                 "axis": driven.axis,
                 "from_s": found.from_s,
@@ -107,7 +126,7 @@ fn tables(driven: &[Driven]) -> Tables {
             })
         })
     });
-    let ramps = driven.iter().flat_map(|Driven { axis, machine, plan }| {
+    let ramps = driven.iter().flat_map(|Driven { axis, machine, plan, .. }| {
         plan.moves().iter().enumerate().filter_map(move |(index, planned)| {
             let found = Ramps::of(machine, &planned.profile)?;
             Some(json!({
@@ -124,16 +143,15 @@ fn tables(driven: &[Driven]) -> Tables {
             }))
         })
     });
-    let axes: Vec<Value> = demands.iter().map(axis).collect();
+    let axes: Vec<Value> = driven.iter().map(axis).collect();
     Tables::of("torque").with("axes", axes).with("shortages", shortages).with("ramps", ramps)
 }
 
 /// The axes that are asked for and have a motor: at least one.
-fn driven(arguments: &Arguments) -> Result<Vec<Driven>, Failure> {
+fn driven(arguments: &Arguments, scenario: &Scenario) -> Result<Vec<Driven>, Failure> {
     let path = &arguments.scenario;
     let wrong = |problems| Failure::Scenario(path.clone(), problems);
     let refused = |path: String, detail| wrong(vec![Problem::new(path, ValueError::Conflict { detail })]);
-    let scenario: Scenario = scenarios::read(path)?;
     let Source::Motion(Motion { axes, .. }) = &scenario.source else {
         let detail = "no motion, so no motor is asked for anything; give a scenario with source.motion";
         return Err(refused("source".to_owned(), detail));
@@ -152,13 +170,63 @@ fn driven(arguments: &Arguments) -> Result<Vec<Driven>, Failure> {
     let all = axes.iter().zip(plans.into_iter().flatten()).enumerate();
     let asked = all.filter(|(axis, _)| only.is_none_or(|only| only == *axis));
     let found: Vec<Driven> = asked
-        .filter_map(|(axis, (given, plan))| Some(Driven { axis, machine: Machine::of(given)?, plan }))
+        .filter_map(|(axis, (given, plan))| {
+            let machine = Machine::of(given)?;
+            let demand = Demand::of(&machine, &plan);
+            Some(Driven { axis, machine, plan, demand, agreement: None })
+        })
         .collect();
     if found.is_empty() {
         let detail = "no motor; give one, such as \"motor\": {} for that of Song, Han and Lu 2021";
         return Err(refused(format!("source.motion.axes[{}].motor", only.unwrap_or(0)), detail));
     }
     Ok(found)
+}
+
+/// Runs the plant, where there is one or one is asked for, and holds it against the curve.
+fn hold_against_plant(
+    arguments: &Arguments,
+    mut scenario: Scenario,
+    driven: &mut [Driven],
+) -> Result<(), Failure> {
+    if scenario.plant.is_none() && !arguments.plant {
+        return Ok(());
+    }
+    scenario.plant.get_or_insert_default();
+    let mut not_run = |why: String| {
+        for driven in &mut *driven {
+            let plant = format!("not run: {why}");
+            driven.agreement = Some(Agreement { plant, agrees: None, why: None });
+        }
+        Ok(())
+    };
+    let experiment = match Experiment::new(&scenario) {
+        Ok(experiment) => experiment,
+        Err(problems) if arguments.plant => {
+            return Err(Failure::Scenario(arguments.scenario.clone(), problems));
+        }
+        Err(_) => return not_run("the scenario has problems, which --plant tells".to_owned()),
+    };
+    let motor_steps = experiment.cost().motor_steps;
+    if motor_steps > BUDGET_MOTOR_STEPS && !arguments.plant {
+        return not_run(format!("it takes {motor_steps} motor-steps; --plant runs it all the same"));
+    }
+    let parts = (0..experiment.controllers()).map(|_| <(Digest, FirstSlips)>::default()).collect();
+    let Some(mut run) = PlantRun::new(&experiment, parts) else { return Ok(()) };
+    let mut progress = Progress::new("torque", false);
+    while !run.advance(SLICE) {
+        progress.tell(run.now().0, experiment.cost().end_cycle);
+    }
+    drop(progress);
+    let (results, overload) = (run.results(), run.overload(0));
+    let parts = run.into_parts();
+    let setup = experiment.plants().and_then(|plants| plants.setups.first());
+    if let (Some(setup), Some(result), Some((_, slips))) = (setup, results.first(), parts.first()) {
+        for Driven { axis, machine, demand, agreement: found, .. } in driven {
+            *found = Some(agreement(machine, demand, setup, *axis, result, overload, slips));
+        }
+    }
+    Ok(())
 }
 
 fn curve(driven: &Driven, out: &mut impl Write) -> io::Result<()> {
@@ -171,7 +239,7 @@ fn curve(driven: &Driven, out: &mut impl Write) -> io::Result<()> {
 }
 
 fn report(driven: &Driven, out: &mut impl Write) -> io::Result<()> {
-    let Driven { axis, machine, plan } = driven;
+    let Driven { axis, machine, plan, demand, agreement } = driven;
     writeln!(out, "axis {axis}")?;
     let standing = machine.available_mn_m(0.0);
     match machine.corner_rate() {
@@ -190,7 +258,6 @@ fn report(driven: &Driven, out: &mut impl Write) -> io::Result<()> {
     if let Some(stated) = machine.working_rate() {
         writeln!(out, "  working rate     {stated:.0} steps/s, as stated")?;
     }
-    let demand = Demand::of(machine, plan);
     if let Some(least) = &demand.least {
         let margin = least.margin_mn_m();
         writeln!(out, "  least margin     {margin:.1} mN*m: {}", moment(least))?;
@@ -202,7 +269,18 @@ fn report(driven: &Driven, out: &mut impl Write) -> io::Result<()> {
             "  jump of speed    {jump:.0} steps/s at once; the motor's start-stop rate has to be higher"
         )?;
     }
-    shortages(&demand, machine, out)?;
+    shortages(demand, machine, out)?;
+    if let Some(Agreement { plant, agrees, why }) = agreement {
+        let agrees = match agrees {
+            Some(true) => "; both models agree",
+            Some(false) => "; the models differ",
+            None => "",
+        };
+        writeln!(out, "  plant            {plant}{agrees}")?;
+        if let Some(why) = why {
+            writeln!(out, "    {why}")?;
+        }
+    }
     for (index, planned) in plan.moves().iter().enumerate() {
         if let Some(found) = Ramps::of(machine, &planned.profile) {
             ramps(index, planned, &found, out)?;

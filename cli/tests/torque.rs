@@ -55,6 +55,37 @@ fn a_shortage_is_a_warning_with_numbers_and_a_remedy() {
 }
 
 #[test]
+fn where_there_is_a_plant_it_says_whether_both_models_agree_and_why_not() {
+    let (code, out, err) = stepscope(&["torque", "song-2021-motor"], "");
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    assert!(out.contains("\n  plant            follows; both models agree\n"), "{out}");
+    let (_, out, _) = stepscope(&["torque", "song-2021-stall"], "");
+    let line = "  plant            loses 188 full steps, first at 2.73 ms in step 53; the models differ\n    the speed jumps by ";
+    assert!(out.contains(line), "{out}");
+    let (_, out, _) = stepscope(&["torque", "song-2021-stall", "--json"], "");
+    let json: serde_json::Value = serde_json::from_str(&out).expect("JSON");
+    assert_eq!(json["tables"]["axes"][0]["models_agree"], false);
+    // Without a plant it is run where it is asked for, and what then is wrong is told.
+    let scenario = axes(r#"{"motor":{}},{"motor":{"supply_v":36}}"#);
+    let (_, out, _) = stepscope(&["torque", "-"], &scenario);
+    assert!(!out.contains("plant"), "{out}");
+    let (code, _, err) = stepscope(&["torque", "-", "--plant"], &scenario);
+    assert!(code == Some(2) && err.contains("36 V beside 24 V of the first motor"), "{err}");
+    let (_, out, _) = stepscope(&["torque", "-", "--plant"], &axes(r#"{"motor":{}},{"motor":{}}"#));
+    assert_eq!(out.matches("follows; both models agree").count(), 2, "{out}");
+    // What is wrong, or long, is not run unasked.
+    let scenario = r#"{"plant":{"source_ohm":0},"source":{"motion":{"axes":[{"motor":{}}]}}}"#;
+    let (code, out, _) = stepscope(&["torque", "-"], scenario);
+    assert!(
+        code == Some(0) && out.contains("  plant            not run: the scenario has problems"),
+        "{out}"
+    );
+    let scenario = r#"{"run_cycles":10000000000,"plant":{},"source":{"motion":{"axes":[{"motor":{}}]}}}"#;
+    let (code, out, _) = stepscope(&["torque", "-"], scenario);
+    assert!(code == Some(0) && out.contains("motor-steps; --plant runs it all the same"), "{out}");
+}
+
+#[test]
 fn what_limits_a_moves_ramps_is_named() {
     let of = |moved: &str, motor: &str| {
         let (code, out, err) =

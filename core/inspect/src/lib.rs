@@ -43,6 +43,8 @@ pub mod judgement;
 pub mod line_decoder;
 pub mod measures;
 #[cfg(feature = "plant")]
+pub mod model_agreement;
+#[cfg(feature = "plant")]
 pub mod motors;
 pub mod packet_table;
 #[cfg(feature = "plant")]
