@@ -18,7 +18,7 @@ use std::{
 };
 use stepscope_core::{
     inspect::{
-        plant::{names, table_head, table_row, values, verdict},
+        plant::{names, table_head, table_row, too_coarse, values, verdict},
         vcd::{Timescale, VcdWriter},
     },
     peripheral::{
@@ -28,6 +28,7 @@ use stepscope_core::{
     plant::{
         Observer, Plant,
         measures::{MotorResult, PlantResult},
+        parameters::Setup,
         settling::Deviation,
     },
     scenario::{Problem, ValueError},
@@ -148,19 +149,20 @@ pub(crate) fn plant(arguments: &Arguments) -> Result<(), Failure> {
     outputs.commit()?;
     let results = run.results();
     let Some(result) = results.get(chosen) else { return Ok(()) };
-    let clock_hz = experiment.config().clock_hz();
+    let setups = experiment.plants().map(|plants| plants.setups.as_slice());
+    let Some(setup) = setups.and_then(|setups| setups.get(chosen)) else { return Ok(()) };
     if arguments.digest {
         return writeln!(io::stdout(), "{:016x}", result.digest).map_err(Failure::output);
     }
     if arguments.json {
-        return tables(&run, result, chosen, clock_hz).print();
+        return tables(&run, result, chosen, setup).print();
     }
     if arguments.csv.as_deref() == Some(Path::new(STANDARD))
         || arguments.vcd.as_deref() == Some(Path::new(STANDARD))
     {
         return Ok(());
     }
-    print(&run, result, chosen, clock_hz).map_err(Failure::output)
+    print(&run, result, chosen, setup).map_err(Failure::output)
 }
 
 fn open(
@@ -204,8 +206,9 @@ fn print<S: Sink, O: Observer>(
     run: &PlantRun<S, O>,
     result: &PlantResult,
     controller: usize,
-    clock_hz: u32,
+    setup: &Setup,
 ) -> io::Result<()> {
+    let clock_hz = setup.clock_hz;
     let mut out = io::BufWriter::new(io::stdout().lock());
     writeln!(out, "plant digest     {:016x}", result.digest)?;
     writeln!(out, "points to        {:.3} ms, cycle {}", ms(result.cycle, clock_hz), result.cycle)?;
@@ -251,6 +254,9 @@ fn print<S: Sink, O: Observer>(
     }
     for (channel, motor) in result.motors.iter().enumerate() {
         print_motor(&mut out, channel, motor, clock_hz)?;
+        if let Some(warning) = too_coarse(setup, channel, motor) {
+            writeln!(out, "  warning: {warning}")?;
+        }
     }
     out.flush()
 }
@@ -306,8 +312,9 @@ fn tables<S: Sink, O: Observer>(
     run: &PlantRun<S, O>,
     result: &PlantResult,
     controller: usize,
-    clock_hz: u32,
+    setup: &Setup,
 ) -> Tables {
+    let clock_hz = setup.clock_hz;
     let seconds = |cycles: u64| cycles as f64 / f64::from(clock_hz);
     let whole = json!({
         "controller": controller,
@@ -345,6 +352,8 @@ fn tables<S: Sink, O: Observer>(
             "load_j": motor.energy.load,
             "stored_j": motor.energy.stored,
             "energy_error": motor.energy.error(),
+            "fastest_full_steps_s": motor.fastest.0,
+            "grid_too_coarse": too_coarse(setup, channel, motor),
         })
     };
     let slips = result.motors.iter().enumerate().flat_map(|(channel, motor)| {

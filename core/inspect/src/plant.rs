@@ -33,6 +33,39 @@ use stepscope_plant::{
 /// Following errors from here on, in full steps, are more than a motor's own: the field hardly holds it.
 const FAR: f64 = 2.0;
 
+/// Half an electrical period, in full steps: a rotor that goes further in a grid step is thrown rather than turned.
+const HALF_PERIOD: f64 = 2.0;
+/// Degrees of a turn.
+const TURN_DEG: f64 = 360.0;
+
+/// What is to be said where the grid was too coarse for what the motor of `channel` did: at its greatest speed the rotor goes
+/// over half an electrical period, or the load over half a period of its turning torque, in one grid step. Then the result says
+/// nothing of a real motor. F3's limits look at the start alone.
+#[must_use]
+pub fn too_coarse(setup: &Setup, channel: usize, found: &MotorResult) -> Option<String> {
+    let motor = setup.motors.get(channel)?;
+    let step_s = f64::from(setup.grid_cycles()) / f64::from(setup.clock_hz);
+    let (fastest, cycle) = found.fastest;
+    let (of_rotor, of_load) = (fastest * step_s, found.fastest_load * step_s);
+    let half_turning = 0.5 * TURN_DEG / motor.full_step_deg / motor.sine_per_turn;
+    let what = if of_rotor > HALF_PERIOD {
+        format!(
+            "the rotor goes {of_rotor:.1} full steps in one grid step, over half an electrical period (2)"
+        )
+    } else if motor.sine_torque_mn_m != 0.0 && of_load > half_turning {
+        format!(
+            "the load goes {of_load:.3} full steps in one grid step, over half a period of its turning torque ({half_turning:.3})"
+        )
+    } else {
+        return None;
+    };
+    let ms = cycle as f64 / f64::from(setup.clock_hz) * 1e3;
+    Some(format!(
+        "{what}, at {ms:.2} ms, so the result says nothing; give a smaller step_cycles than {}",
+        setup.grid_cycles()
+    ))
+}
+
 /// Whether a motor follows its pulses, in words.
 #[must_use]
 pub fn verdict(motor: &MotorResult, clock_hz: u32) -> String {
@@ -113,4 +146,38 @@ pub fn settling(
     plant.record(Record { cycle: Instant(rise), levels }, &mut log);
     plant.advance(rise + t_step, &mut log);
     StepResponse::of(&log.samples, from, rise, t_step, share).ok_or_else(Vec::new)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::expect_used, reason = "what is missing fails the test")]
+
+    use super::*;
+    use stepscope_sim::{Experiment, plant_run::PlantRun};
+
+    /// What is said of the grid in a run with this plant and this motor.
+    fn warned(plant: &str, motor: &str) -> Option<String> {
+        let json = format!(
+            r#"{{"plant":{plant},"source":{{"motion":{{"engine":"segments","axes":[{{"motor":{motor}}}]}}}}}}"#
+        );
+        let experiment = Experiment::from_json(&json).expect("no problem");
+        let mut run = PlantRun::new(&experiment, vec![(Vec::new(), ())]).expect("a plant");
+        run.finish();
+        too_coarse(&experiment.plants().expect("a plant").setups[0], 0, &run.results()[0].motors[0])
+    }
+
+    #[test]
+    fn a_rotor_that_is_thrown_is_told_with_the_remedy_and_a_finer_grid_holds_it() {
+        let thrown = r#"{"sine_torque_mn_m":1000000,"sine_per_turn":1000}"#;
+        let told = warned("{}", thrown).expect("it is thrown");
+        assert!(told.starts_with("the rotor goes 15.3 full steps in one grid step, over half an"), "{told}");
+        assert!(told.ends_with("so the result says nothing; give a smaller step_cycles than 80"), "{told}");
+        assert_eq!(warned(r#"{"step_cycles":8}"#, thrown), None);
+        // At about 1000 full steps/s half a period, 0.1 full steps, takes 0.1 ms; a grid step is 0.15 ms.
+        let fine = r#"{"sine_torque_mn_m":0.001,"sine_per_turn":1000}"#;
+        assert_eq!(warned("{}", fine), None);
+        let told = warned(r#"{"step_cycles":2000}"#, fine);
+        assert!(told.expect("too coarse").starts_with("the load goes 0.1"));
+        assert_eq!(warned("{}", "{}"), None);
+    }
 }

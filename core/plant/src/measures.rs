@@ -121,6 +121,8 @@ struct AfterStep {
 #[derive(Clone, Debug, Default)]
 struct Motor {
     worst: (f64, u64),
+    fastest: (f64, u64),
+    fastest_load: f64,
     currents: [Extremes; 2],
     slips: Vec<Slip>,
     slip_count: u64,
@@ -166,6 +168,10 @@ pub struct MotorResult {
     /// The greatest amount by which it was off its command, in full steps, with its sign (positive: behind to the left), and
     /// the point's cycle.
     pub following_error: (f64, u64),
+    /// The rotor's greatest speed in full steps/s, without sign, and the point's cycle.
+    pub fastest: (f64, u64),
+    /// The load's greatest speed; the rotor's where no coupling is between them.
+    pub fastest_load: f64,
     /// Its last STEP, and by how much it went past its last command, in full steps in that direction; `None` without a step.
     pub overshoot: Option<f64>,
     /// Cycles from the last STEP until it stays within 0.05 full steps of where it ends; `None` without a step.
@@ -261,6 +267,8 @@ impl Motor {
             slip_count: self.slip_count,
             first_slip_step: self.first_slip_step,
             following_error: self.worst,
+            fastest: self.fastest,
+            fastest_load: self.fastest_load,
             overshoot: last
                 .map(|last| if last.right { last.greatest - command } else { command - last.least }),
             settling: last.map(|last| {
@@ -279,6 +287,10 @@ impl Motor {
         if error.abs() > self.worst.0.abs() {
             self.worst = (error, cycle);
         }
+        if state.w.abs() > self.fastest.0 {
+            self.fastest = (state.w.abs(), cycle);
+        }
+        self.fastest_load = self.fastest_load.max(state.w_load.abs());
         self.currents[0].add(state.i_a);
         self.currents[1].add(state.i_b);
         if let Some(last) = &mut self.last {
