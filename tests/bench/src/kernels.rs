@@ -18,8 +18,9 @@ use stepscope_core::{
         trace::Digest,
         units::{Cycles, Instant},
     },
+    plant::{Plant, parameters::Regulator, sincos},
     scenario::{Problem, of_motion},
-    sim::Experiment,
+    sim::{Experiment, plant_run::PlantRun},
 };
 
 use crate::{motions, planners::Planner};
@@ -40,6 +41,13 @@ const ORDER: u16 = 399;
 /// The range of d1 that the page offers, and the rows of the sine document's figure 4.
 const SWEEP: (f64, f64) = (0.002, 0.06);
 const SWEEP_ROWS: u32 = 500;
+
+/// Motors of the plant, and motor-steps of a call: a second at 5 us has ten times as many.
+const MOTORS: u64 = 16;
+const MOTOR_STEPS: u64 = 320_000;
+/// Cycles from STEP to STEP of each motor, all at once, and of a pulse.
+const STEP_CYCLES: u64 = 4000;
+const PULSE_CYCLES: u64 = 160;
 
 /// Something that is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,6 +110,14 @@ pub enum Kernel {
     Optimum(u8),
     /// The sweep of the sine document's figure 4.
     Sweep,
+    /// Sine and cosine by the plant's polynomials, one a motor-step: what the plant is compared with.
+    SineCosine,
+    /// A tenth of a second of sixteen motors at steps of 5 us, edges in and nobody looking.
+    PlantAveraged,
+    /// As many motor-steps where the drivers chop, at steps of 1 us.
+    PlantChopper,
+    /// The first with the run before it and all measures behind it.
+    PlantRun,
 }
 
 /// What there is to say of a kernel.
@@ -123,7 +139,7 @@ pub struct Facts {
 
 impl Kernel {
     /// All kernels, each yardstick right before what is compared with it.
-    pub const ALL: [Self; 45] = [
+    pub const ALL: [Self; 49] = [
         Self::Write,
         Self::Copy,
         Self::Stored,
@@ -169,6 +185,10 @@ impl Kernel {
         Self::Optimum(5),
         Self::Optimum(6),
         Self::Sweep,
+        Self::SineCosine,
+        Self::PlantAveraged,
+        Self::PlantChopper,
+        Self::PlantRun,
     ];
 
     /// What there is to say of it.
@@ -185,6 +205,8 @@ impl Kernel {
         let run = Facts { yardstick: Some(Self::Copy), ..plain };
         let clock = Facts { yardstick: Some(Self::Clock16), aim: Some(0.9), ..plain };
         let steps = Facts { unit: "steps", in_browser: true, ..plain };
+        let motor_steps = Facts { unit: "motor_steps", in_browser: true, ..plain };
+        let plant = Facts { yardstick: Some(Self::SineCosine), aim: Some(0.125), ..motor_steps };
         match self {
             Self::Write => Facts { name: "plain_write", in_browser: true, ..plain },
             Self::Copy => Facts { name: "plain_copy", in_browser: true, ..plain },
@@ -246,6 +268,10 @@ impl Kernel {
                 ..plain
             },
             Self::Sweep => Facts { name: "sweep_500_rows", unit: "rows", in_browser: true, ..plain },
+            Self::SineCosine => Facts { name: "sine_cosine", ..motor_steps },
+            Self::PlantAveraged => Facts { name: "plant_averaged", ..plant },
+            Self::PlantChopper => Facts { name: "plant_chopper", ..plant },
+            Self::PlantRun => Facts { name: "plant_run", aim: None, ..plant },
         }
     }
 }
@@ -265,6 +291,7 @@ pub struct Kernels {
     clock_16: Experiment,
     clock_200: Experiment,
     short: Experiment,
+    plant_run: Experiment,
     ramp: Trapezoid,
     /// The move whose tables are made, and its steps.
     move_of_tables: AxisPlan,
@@ -312,6 +339,7 @@ impl Kernels {
             clock_16: motions::at_clock(16_000_000)?,
             clock_200: motions::at_clock(200_000_000)?,
             short: motions::short()?,
+            plant_run: motions::plant_run()?,
             ramp: Trapezoid::new(i64::from(STEPS), START_SPEED, TOP_SPEED, ACCELERATION),
             move_of_tables,
             due,
@@ -353,6 +381,16 @@ impl Kernels {
                 .map_or(0, |found| found.distortion.position.to_bits()),
             Kernel::Sweep => sweep(black_box(SWEEP.0), SWEEP.1, SWEEP_ROWS, ORDER)
                 .fold(0, |sum, row| sum ^ row.distortion.position.to_bits()),
+            Kernel::SineCosine => sine_cosine(black_box(0.37)).to_bits(),
+            Kernel::PlantAveraged => plant(Regulator::Averaged),
+            Kernel::PlantChopper => plant(Regulator::Chopper),
+            Kernel::PlantRun => {
+                let parts = vec![(Digest::default(), ())];
+                PlantRun::new(black_box(&self.plant_run), parts).map_or(0, |mut run| {
+                    run.finish();
+                    run.results().first().map_or(0, |result| result.digest)
+                })
+            }
             Kernel::Digest => digest(&self.steady),
             Kernel::VariedDigest => digest(&self.varied),
             Kernel::Stored => store(&self.steady, &mut self.target),
@@ -392,6 +430,8 @@ impl Kernels {
             | Kernel::Plan(_) => (u64::from(STEPS), None),
             Kernel::Optimum(_) => (1, None),
             Kernel::Sweep => (u64::from(SWEEP_ROWS), None),
+            Kernel::SineCosine | Kernel::PlantAveraged | Kernel::PlantChopper => (MOTOR_STEPS, None),
+            Kernel::PlantRun => (self.plant_run.cost().motor_steps, None),
             Kernel::Write | Kernel::Copy => (result, None),
             Kernel::Motors16 | Kernel::Motors512 => (result, None),
             Kernel::Digest => return self.work(Kernel::Stored),
@@ -425,6 +465,32 @@ impl Kernels {
         self.target.extend(made);
         self.target.len() as u64
     }
+}
+
+/// One angle after another: nothing waits for the one before.
+fn sine_cosine(quarters: f64) -> f64 {
+    (0..MOTOR_STEPS)
+        .map(|step| {
+            let (sine, cosine) = sincos(quarters * step as f64);
+            sine + cosine
+        })
+        .sum()
+}
+
+/// Motors that step all at once, 4000 times a second.
+fn plant(regulator: Regulator) -> u64 {
+    let Ok(mut plant) = Plant::new(black_box(&motions::plant(regulator))) else { return 0 };
+    let end = MOTOR_STEPS / MOTORS * plant.step_cycles();
+    let [low, high] = [Levels(Levels::EN), Levels(Levels::EN | 0xffff_ffff)];
+    let mut rise = STEP_CYCLES;
+    while rise < end {
+        for (cycle, levels) in [(rise, high), (rise + PULSE_CYCLES, low)] {
+            plant.record(Record { cycle: Instant(cycle), levels }, &mut ());
+        }
+        rise += STEP_CYCLES;
+    }
+    plant.advance(end, &mut ());
+    plant.digest()
 }
 
 /// Entries of a table; none where there is no table, which the tests would see.
@@ -537,6 +603,18 @@ mod tests {
         assert_eq!(before, planned);
         // Klipper's step compression makes about 1289 entries of this move.
         assert!(planned > 0 && planned < ticks && ticks < 1289 && ticks < exact, "{exact} {planned} {ticks}");
+    }
+
+    #[test]
+    fn the_plants_motors_turn_and_every_call_is_the_same() {
+        let mut kernels = Kernels::new().unwrap();
+        for kernel in [Kernel::PlantAveraged, Kernel::PlantChopper, Kernel::PlantRun] {
+            let first = kernels.call(kernel);
+            assert!(first != 0 && first == kernels.call(kernel), "{kernel:?}");
+        }
+        assert_ne!(kernels.call(Kernel::PlantAveraged), kernels.call(Kernel::PlantChopper));
+        let steps = kernels.work(Kernel::PlantRun).units;
+        assert!(steps.abs_diff(MOTOR_STEPS) < MOTOR_STEPS / 100, "{steps}");
     }
 
     #[test]

@@ -9,9 +9,10 @@ use stepscope_core::{
         config::{Bus, DirLine, Protocol, PulsePhasing},
         wire::schedule::Sent,
     },
+    plant::parameters::{self, Regulator, Setup},
     scenario::{
-        ChannelSegments, Controller, Hex, Line, LineScript, Motion, Problem, Scenario, ScriptedSend, Segment,
-        SegmentLists, Source, StepSegment,
+        ChannelSegments, Controller, Hex, Line, LineScript, Motion, PlantSettings, Problem, Scenario,
+        ScriptedSend, Segment, SegmentLists, Source, StepSegment,
     },
     sim::Experiment,
 };
@@ -156,6 +157,29 @@ pub fn segments() -> Result<Experiment, Vec<Problem>> {
     let mut scenario = sixteen(Vec::new());
     scenario.source = Source::Segments(SegmentLists { channels: vec![list; 16] });
     Experiment::new(&scenario)
+}
+
+/// Sixteen motors behind such lists, 4000 steps/s each for a tenth of a second: a run with all that a plant measures.
+///
+/// # Errors
+/// None, as long as the scenario's rules stay as they are.
+pub fn plant_run() -> Result<Experiment, Vec<Problem>> {
+    let steps = StepSegment { count: 400, interval_q16: 4000 << 16, ..StepSegment::default() };
+    let list = ChannelSegments { segments: vec![Segment::Steps(steps)], ..ChannelSegments::default() };
+    let mut scenario = sixteen(Vec::new());
+    scenario.source = Source::Segments(SegmentLists { channels: vec![list; 16] });
+    scenario.plant = Some(PlantSettings { tail_s: 0.0, ..PlantSettings::default() });
+    Experiment::new(&scenario)
+}
+
+/// The plant of sixteen motors, which chop or do not.
+#[must_use]
+pub fn plant(regulator: Regulator) -> Setup {
+    let motor = parameters::Motor {
+        drive: parameters::Drive { regulator, decay: parameters::Decay::Mixed(0.31), ..Default::default() },
+        ..Default::default()
+    };
+    Setup { motors: vec![motor; 16], ..Setup::default() }
 }
 
 /// As many records by lists of segments that start one after another: every edge is alone in its record.
