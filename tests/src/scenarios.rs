@@ -6,7 +6,7 @@ mod segments;
 mod shared;
 mod small;
 
-pub use arbitrary::typed;
+pub use arbitrary::{driven, typed};
 pub use segments::segmented;
 pub use shared::shared;
 pub use small::small;

@@ -16,9 +16,9 @@ use stepscope_tests::{
     effort,
     fuzzing::{
         link::{around, open},
-        scenario::judge,
+        scenario::{drive, judge},
     },
-    scenarios::{segmented, small, typed},
+    scenarios::{driven, segmented, small, typed},
 };
 
 /// Any JSON, with the names that scenarios use.
@@ -162,6 +162,17 @@ proptest! {
         changes in prop::collection::vec(change(), 1..6),
     ) {
         let _ = judge(&changed(&scenario, &changes));
+    }
+
+    /// Where it holds it is over soon: so many cycles, and so many motor-steps, were known before.
+    #[test]
+    fn no_plant_of_any_numbers_fails_and_every_run_of_one_has_the_same_bits(scenario in driven()) {
+        if let Ok(experiment) = judge(&scenario.to_json())
+            && experiment.cost().motor_steps <= 100_000
+        {
+            let made = drive(&experiment);
+            prop_assert!(made <= experiment.cost().motor_steps, "{made}");
+        }
     }
 
     #[test]

@@ -3,8 +3,14 @@
 
 use crate::equivalence::{self, Ways};
 use stepscope_core::{
+    inspect::{
+        model_agreement::FirstSlips,
+        plant::{table_head, table_row, too_coarse, verdict},
+    },
+    peripheral::{trace::Digest, units::Cycles},
+    plant::State,
     scenario::{Compact, END_OF_TIME, Problem, Scenario},
-    sim::Experiment,
+    sim::{Experiment, plant_run::PlantRun},
 };
 
 /// Most wrong fields that one reading lists.
@@ -19,6 +25,25 @@ const MAX_SEGMENT_RECORDS: u64 = 16 << 48;
 /// Runs that cost no more records and cycles than these are made, and made again clock by clock.
 const RUN_RECORDS: u64 = 5_000;
 const RUN_CYCLES: u64 = 5_000;
+/// So are runs whose plants cost no more motor-steps.
+const RUN_MOTOR_STEPS: u64 = 20_000;
+
+/// Short runs with a plant: two motors that chop on a weak supply, one of them on a spring, all sensors, and a threshold that
+/// is reached; a self-test; a torque that throws the rotor.
+const PLANTS: [&str; 3] = [
+    r#"{"run_cycles":20000,"bus":{"channels":2},"plant":{"step_cycles":40,"buffer_uf":100,"source_ohm":1,"idle_ma":5,
+        "current_sensor":{"poles":3,"adc_steps":2},"encoder":{"period_steps":7,"noise_lsb":2,"hysteresis_lsb":1,"seed":5},
+        "protection":{"threshold_a":0.01,"samples":3},"motors":[{"motor":{"drive":{"regulator":"chopper","decay":"auto"}}},
+        {"microsteps":4,"motor":{"load_inertia_g_cm2":50,"coupling_n_m_rad":10,"detent_torque_mn_m":20,"gravity_torque_mn_m":30,
+        "drive":{"regulator":"chopper","decay":"mixed","dac_levels":31}}}]},
+        "source":{"segments":{"channels":[{"start_cycle":100,"segments":[{"steps":{"count":9,"interval_q16":104857600}}]},
+        {"start_cycle":100,"segments":[{"steps":{"count":9,"interval_q16":104857600,"dir":0}}]}]}}}"#,
+    r#"{"bus":{"step_period_cycles":200,"slots":2,"boot_cycles":5000,"pulse_width_cycles":10,"dir_setup_cycles":2},
+        "line":{"baud":1000000},"run_cycles":7000,"plant":{"self_test":true,"step_cycles":8},
+        "source":{"packets":{"packets":["81","81"]}}}"#,
+    r#"{"run_cycles":20000,"plant":{"motors":[{"motor":{"sine_torque_mn_m":1000000,"sine_per_turn":1000}}]},
+        "source":{"segments":{"channels":[{"segments":[{"steps":{"count":9,"interval_q16":104857600}}]}]}}}"#,
+];
 
 /// Reads, judges and, if it is cheap, runs a text; what is no UTF-8 is no text.
 ///
@@ -27,17 +52,59 @@ const RUN_CYCLES: u64 = 5_000;
 pub fn check(data: &[u8]) {
     let Ok(text) = str::from_utf8(data) else { return };
     let Ok(experiment) = judge(text) else { return };
-    if experiment.cost().records <= RUN_RECORDS {
+    let cost = experiment.cost();
+    if cost.records <= RUN_RECORDS && cost.motor_steps <= RUN_MOTOR_STEPS {
         let (scenario, _) = Scenario::from_json_lenient(text);
-        let ways = Ways { slices: &[1, 7, 100], hurry: 100, most_clocked: RUN_CYCLES };
-        equivalence::check(&scenario, &experiment, ways);
+        // An overload and a self-test change what a device would do by itself.
+        let plant = scenario.plant.as_ref();
+        if plant.is_none_or(|plant| plant.protection.is_none() && !plant.self_test) {
+            let ways = Ways { slices: &[1, 7, 100], hurry: 100, most_clocked: RUN_CYCLES };
+            equivalence::check(&scenario, &experiment, ways);
+        }
+        drive(&experiment);
     }
 }
 
-/// The presets and the golden cases.
+/// Runs the plants of an experiment that has some, and again in slices: every number is one, both runs have the same bits, and
+/// what the plants did can be told. Their motor-steps, for whom it matters that runs were made.
+///
+/// # Panics
+/// Where a property is broken.
+pub fn drive(experiment: &Experiment) -> u64 {
+    let Some(plants) = experiment.plants() else { return 0 };
+    let parts = || plants.setups.iter().map(|_| (Digest::default(), FirstSlips::default())).collect();
+    let (Some(mut whole), Some(mut sliced)) =
+        (PlantRun::new(experiment, parts()), PlantRun::new(experiment, parts()))
+    else {
+        return 0;
+    };
+    whole.finish();
+    while !sliced.advance(Cycles(997)) {}
+    let mut motor_steps = 0;
+    let both = whole.results().into_iter().zip(sliced.results()).zip(&plants.setups);
+    for (index, ((result, again), setup)) in both.enumerate() {
+        assert_eq!((result.cycle, result.digest), (again.cycle, again.digest), "in slices");
+        assert_eq!(whole.overload(index), sliced.overload(index), "in slices");
+        for (channel, (motor, again)) in result.motors.iter().zip(&again.motors).enumerate() {
+            let (State { x, w, i_a, i_b, .. }, other) = (motor.state, again.state);
+            let bits = |numbers: [f64; 4]| numbers.map(f64::to_bits);
+            assert_eq!(bits([x, w, i_a, i_b]), bits([other.x, other.w, other.i_a, other.i_b]), "in slices");
+            assert!([x, w, i_a, i_b].into_iter().all(f64::is_finite), "{:?}", motor.state);
+            assert!(!verdict(motor, setup.clock_hz).is_empty());
+            let _ = too_coarse(setup, channel, motor);
+        }
+        motor_steps += result.cycle / u64::from(setup.grid_cycles()) * setup.motors.len() as u64;
+        if let Some(plant) = whole.plant(index) {
+            assert_eq!(table_head(plant).split(',').count(), table_row(plant).split(',').count());
+        }
+    }
+    motor_steps
+}
+
+/// The presets, the golden cases and some plants.
 #[must_use]
 pub fn seeds() -> Vec<Vec<u8>> {
-    super::scenarios().map(|json| json.as_bytes().to_vec()).collect()
+    super::scenarios().chain(PLANTS).map(|json| json.as_bytes().to_vec()).collect()
 }
 
 /// Reads and judges a text: its problems can be printed, and what it accepts is bounded.
@@ -80,5 +147,27 @@ fn told(problems: &[Problem], given: &str) {
         let text = problem.to_string();
         assert!(text.len() > problem.path.len(), "{text}");
         assert!(!text.contains("NaN") || given.contains("NaN"), "{text}");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_plants_among_the_seeds_are_run() {
+        for text in PLANTS {
+            let experiment = judge(text).unwrap_or_else(|problems| panic!("{text}: {problems:?}"));
+            let cost = experiment.cost();
+            assert!(cost.records <= RUN_RECORDS && cost.motor_steps <= RUN_MOTOR_STEPS, "{cost:?}");
+            assert!(drive(&experiment) > 100);
+            check(text.as_bytes());
+        }
+        let overload = judge(PLANTS[0]).ok().and_then(|experiment| {
+            let mut run = PlantRun::new(&experiment, vec![(Digest::default(), ())])?;
+            run.finish();
+            run.overload(0)
+        });
+        assert!(overload.is_some(), "the threshold is reached");
     }
 }

@@ -1,5 +1,6 @@
 //! Scenarios of the right types with any numbers in them: most are refused, some are huge.
 
+use super::segmented;
 use proptest::prelude::*;
 use stepscope_core::inspect::drivers::DRIVERS;
 use stepscope_core::{
@@ -55,6 +56,34 @@ pub fn typed() -> BoxedStrategy<Scenario> {
         )
         .prop_flat_map(|scenario| {
             prop::option::weighted(0.2, plant()).prop_map(move |plant| Scenario { plant, ..scenario.clone() })
+        })
+        .boxed()
+}
+
+/// Lists of segments before a plant of any numbers, over within 40 000 cycles. Numbers that are mostly refused are put right,
+/// so that about a quarter of them hold.
+pub fn driven() -> BoxedStrategy<Scenario> {
+    let factors =
+        prop::array::uniform6(prop::sample::select(vec![0.01, 0.1, 0.5, 1.0, 1.0, 2.0, 10.0, 100.0]));
+    (segmented(), plant(), factors, (1..40_000_u64, number(24.0)))
+        .prop_map(|(mut scenario, mut plant, factors, (run_cycles, supply_v))| {
+            plant.current_sensor.poles = plant.current_sensor.poles.clamp(1, 3);
+            plant.current_sensor.adc_steps = plant.current_sensor.adc_steps.max(1);
+            plant.encoder.seed &= (1 << 53) - 1;
+            plant.self_test = false;
+            for entry in &mut plant.motors {
+                entry.microsteps = entry.microsteps.clamp(1, 512);
+                let motor = &mut entry.motor;
+                motor.supply_v = supply_v;
+                motor.resistance_ohm *= factors[0];
+                motor.inductance_mh *= factors[1];
+                motor.holding_torque_mn_m *= factors[2];
+                motor.rotor_inertia_g_cm2 *= factors[3];
+                motor.sine_torque_mn_m *= factors[4];
+                motor.friction_mn_m *= factors[5];
+            }
+            scenario.clock_hz = Scenario::default().clock_hz;
+            Scenario { plant: Some(plant), run_cycles: Some(run_cycles), ..scenario }
         })
         .boxed()
 }
