@@ -1,8 +1,8 @@
 //! Do the torque-speed curve and the plant say the same of a motor, and if not, why?
 //!
-//! The curve ([`torque`](crate::torque)) asks whether there is enough torque at each moment of a plan; the plant
-//! runs the rotor. They leave out different things: the curve knows no friction, ringing or jumps of speed, and gives the driver a sine, of
-//! which a driver out of voltage makes a square wave. docs/plant.md, "How sure the figures are", has the sizes.
+//! The curve ([`torque`](crate::torque)) asks whether there is enough torque at each moment of a plan; the plant runs the
+//! rotor. They leave out different things: the curve knows no friction, ringing or jumps of speed, and gives the driver a
+//! sine, of which a driver out of voltage makes a square wave. docs/plant.md, "How sure the figures are", has the sizes.
 //!
 //! ```
 //! use stepscope_inspect::{model_agreement::{FirstSlips, agreement}, torque::{Demand, Machine}};

@@ -2,8 +2,8 @@
 //! from.
 //!
 //! No sheet tells friction. Every motor has the default motor's in parts of its holding torque, 1/80 of it, and
-//! 0.75 uN*m*s for each mN*m; these are guesses of the size, so [`MotorSheet::typical`] names them. So it does with every other figure
-//! that its document does not give, or that no text at hand confirmed. Supply and load are the scenario's.
+//! 0.75 uN*m*s for each mN*m; these are guesses of the size, so [`MotorSheet::typical`] names them. So it does with every
+//! other figure that its document does not give, or that no text at hand confirmed. Supply and load are the scenario's.
 //!
 //! ```
 //! use stepscope_inspect::motors::{drive, motor};
