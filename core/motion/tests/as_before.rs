@@ -25,7 +25,7 @@ use stepscope_motion::{
         Points, RampShape, Ramps, ShortMove, Sine, SineSegments, Staircase, Trapezoid, TrapezoidMethod,
     },
     plan_axis,
-    quantise::{AxesPath, EntryFormat, Form, Tolerance, exact_segments, stored, ticks},
+    quantise::{AxesPath, EntryFormat, Form, Tolerance, exact_segments, stored_quickly, ticks},
 };
 use stepscope_peripheral::{segment::PulseTimes, units::Cycles};
 
@@ -312,20 +312,29 @@ fn tables(plan: &AxisPlan, text: &mut String) {
         Ok(list) => tell!(text, "{list:?}"),
         Err(problems) => tell!(text, "{problems:?}"),
     }
-    let parts = |cycles, parts| Tolerance { cycles: Cycles(cycles), interval_part: NonZeroU32::new(parts) };
+    let parts = |cycles, parts| Tolerance {
+        interval_part: NonZeroU32::new(parts),
+        ..Tolerance::of(Cycles(cycles))
+    };
     let tolerances = [parts(0, 0), parts(400, 2), parts(16_000, 0)];
     let compressed = tolerances.map(Form::Compressed);
     for form in [Form::Exact, Form::Document].into_iter().chain(compressed) {
+        let form_text = match form {
+            Form::Compressed(Tolerance { cycles, interval_part, .. }) => {
+                format!("Compressed(Tolerance {{ cycles: {cycles:?}, interval_part: {interval_part:?} }})")
+            }
+            form => format!("{form:?}"),
+        };
         for format in EntryFormat::ALL {
-            match stored(plan, form, format, PULSE, CLOCK_HZ) {
+            match stored_quickly(plan, form, format, PULSE, CLOCK_HZ) {
                 Ok(table) => {
                     let (error, kept) = (table.error, table.document_bytes);
-                    tell!(text, "{form:?} {} {kept:?} {error:?} {:?}", table.bytes(), error.rms());
+                    tell!(text, "{form_text} {} {kept:?} {error:?} {:?}", table.bytes(), error.rms());
                     for entry in &table.entries {
                         tell!(text, "{} {} {}", entry.interval, entry.count, entry.add);
                     }
                 }
-                Err(cause) => tell!(text, "{form:?} {cause}"),
+                Err(cause) => tell!(text, "{form_text} {cause}"),
             }
         }
     }

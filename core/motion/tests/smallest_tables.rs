@@ -67,7 +67,7 @@ fn an_exact_table_is_the_smallest() {
         let ways = std::iter::once(false).chain(steps.iter().map(|step| step.right));
         let turns = ways.zip(&steps).filter(|(before, step)| step.right != *before).count();
         let least = fewest(&steps) + turns;
-        let none = Tolerance { cycles: Cycles(0), interval_part: NonZeroU32::new(2) };
+        let none = Tolerance { interval_part: NonZeroU32::new(2), ..Tolerance::of(Cycles(0)) };
         assert_eq!(entries(Form::Exact, EntryFormat::TICKS), least, "{round}: {steps:?}");
         assert_eq!(entries(Form::Compressed(none), EntryFormat::TICKS), least, "{round}: {steps:?}");
         let with_parts = entries(Form::Exact, EntryFormat::Q16);

@@ -20,6 +20,7 @@
 
 use crate::quantise::{
     entry_format::EntryFormat,
+    fewest::{self, Piece, Stretch},
     longest::{Ahead, Window},
     segments::START,
     timing_error::TimingError,
@@ -28,7 +29,7 @@ use crate::{
     ScheduledStep,
     problem::{Cause, ValueError},
 };
-use alloc::vec::Vec;
+use alloc::{collections::VecDeque, vec::Vec};
 use core::num::NonZeroU32;
 use stepscope_peripheral::{
     segment::{FRACTION_BITS, LAST_CYCLE, PulseTimes, Segment, SegmentList},
@@ -39,27 +40,56 @@ use stepscope_peripheral::{
 pub const MAX_TOLERANCE: Cycles = Cycles(1 << 24);
 /// Most entries of a list: 64 MB.
 pub(super) const MAX_ENTRIES: usize = 2_000_000;
-/// How far a step may be from its due cycle, either way.
+/// What the search for the fewest entries may look at, in steps of an interval and an add: some seconds.
+const MAX_WORK: u64 = 1 << 30;
+
+/// On which side of its due cycle a step may be.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Side {
+    /// Early or late.
+    #[default]
+    Both,
+    /// Early, never late: the window of Klipper's step compression.
+    Early,
+}
+
+/// How far a step may be from its due cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tolerance {
     /// In cycles, at most [`MAX_TOLERANCE`].
     pub cycles: Cycles,
-    /// Nor more than this part of the shorter of the intervals before and after it: 2 for a half.
+    /// Nor more than this part of the shorter of the intervals before and after it, or, of a step that is never late, of
+    /// the interval before it: 2 for a half.
     pub interval_part: Option<NonZeroU32>,
+    /// Which way.
+    pub side: Side,
 }
 
 impl Tolerance {
-    /// So many cycles, whatever the intervals are.
+    /// So many cycles either way, whatever the intervals are.
     #[must_use]
     pub const fn of(cycles: Cycles) -> Self {
-        Self { cycles, interval_part: None }
+        Self { cycles, interval_part: None, side: Side::Both }
     }
 
     /// That of a step between these intervals.
     fn between(self, before: u64, after: Option<u64>) -> u64 {
-        let shorter = after.map_or(before, |after| after.min(before));
+        let shorter = match (self.side, after) {
+            (Side::Both, Some(after)) => after.min(before),
+            (Side::Early, _) | (Side::Both, None) => before,
+        };
         let part = self.interval_part.map_or(u64::MAX, |part| shorter / u64::from(part.get()));
         self.cycles.0.min(part)
+    }
+
+    /// The earliest and the latest cycle of a step.
+    fn window(self, due: u64, before: u64, after: Option<u64>) -> (u64, u64) {
+        let off = self.between(before, after);
+        let late = match self.side {
+            Side::Both => off,
+            Side::Early => 0,
+        };
+        (due.saturating_sub(off), due.saturating_add(late))
     }
 }
 
@@ -70,9 +100,13 @@ pub struct Compressed {
     pub list: SegmentList,
     /// How far its steps are from their due cycles.
     pub error: TimingError,
+    /// How many entries it may have more than the fewest: 0 where it is proven to have the fewest, more where it was cut
+    /// into stretches, None where the fewest were not searched for, or not to the end.
+    pub surplus: Option<u64>,
 }
 
-/// Compresses the steps of one axis, whose cycles count from the motion's start, into entries of `format`.
+/// Compresses the steps of one axis, whose cycles count from the motion's start, into the fewest entries of `format`, or,
+/// where its windows are too many units wide for that search, into those of [`compressed_quickly`].
 ///
 /// # Errors
 /// A tolerance that is too great; a step that comes too soon for `pulse`, or too late for 48.16 fixed point; too many
@@ -83,28 +117,101 @@ pub fn compressed(
     format: EntryFormat,
     pulse: PulseTimes,
 ) -> Result<Compressed, Cause> {
-    if tolerance.cycles > MAX_TOLERANCE {
-        let (given, most) = (tolerance.cycles.0 as f64, MAX_TOLERANCE.0 as f64);
-        return Err(ValueError::TooMuch { given, most, of: "cycles of tolerance" }.into());
+    let mut compression = Compression::new(steps.into_iter(), tolerance, format, pulse)?;
+    let surplus = compression.fewest()?;
+    compression.quick()?;
+    Ok(Compressed { surplus, ..compression.end() })
+}
+
+/// The same in few entries, each the longest that ends near the middle of a window: in a part of the time.
+///
+/// # Errors
+/// As [`compressed`].
+pub fn compressed_quickly(
+    steps: impl IntoIterator<Item = ScheduledStep>,
+    tolerance: Tolerance,
+    format: EntryFormat,
+    pulse: PulseTimes,
+) -> Result<Compressed, Cause> {
+    let mut compression = Compression::new(steps.into_iter(), tolerance, format, pulse)?;
+    compression.quick()?;
+    Ok(compression.end())
+}
+
+/// Steps on their way into entries.
+struct Compression<I> {
+    windows: Windows<I>,
+    writer: Writer,
+}
+
+impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
+    fn new(steps: I, tolerance: Tolerance, format: EntryFormat, pulse: PulseTimes) -> Result<Self, Cause> {
+        if tolerance.cycles > MAX_TOLERANCE {
+            let (given, most) = (tolerance.cycles.0 as f64, MAX_TOLERANCE.0 as f64);
+            return Err(ValueError::TooMuch { given, most, of: "cycles of tolerance" }.into());
+        }
+        Ok(Self { windows: Windows::new(steps, tolerance, format, pulse), writer: Writer::new(format) })
     }
-    let mut windows = Windows::new(steps.into_iter(), tolerance, format, pulse);
-    let mut writer = Writer::new(format);
-    let mut ahead = Ahead::new(format, pulse.min_interval().0);
-    let mut length = 64;
-    while windows.begin(&mut ahead)? {
-        while let Some(longest) = ahead.longest(writer.time, length, |ahead| windows.fill(ahead))? {
-            writer.wait(longest.wait);
-            writer.steps(ahead.taken(longest.count), longest.interval, longest.add, windows.right);
-            ahead.take(longest.count);
-            length = longest.count;
-            if writer.segments.len() > MAX_ENTRIES {
-                let (given, most) = (writer.segments.len() as f64, MAX_ENTRIES as f64);
-                return Err(ValueError::TooMuch { given, most, of: "entries" }.into());
+
+    /// Stretch after stretch in the fewest entries. What is left then goes the quick way: none, and how many entries the
+    /// list may have more than the fewest, or None.
+    fn fewest(&mut self) -> Result<Option<u64>, Cause> {
+        let (format, pulse) = (self.windows.format, self.windows.pulse);
+        let least = pulse.min_interval().0 << format.fraction_bits;
+        let (mut cuts, mut work) = (0, MAX_WORK);
+        loop {
+            self.windows.read(fewest::MAX_STEPS)?;
+            let more = self.windows.next.is_some();
+            let ready = self.windows.ready.make_contiguous();
+            let Some((first, _)) = ready.first() else { return Ok(Some(cuts)) };
+            if ready.iter().any(|(window, _)| window.high - window.low >= fewest::MAX_WIDTH) {
+                return Ok(None);
             }
+            let near = |before: u64, window: &Window| window.high - before <= format.most_interval();
+            if !near(self.writer.time, first) {
+                self.writer.wait(first.first(self.writer.time, least, format).wait);
+            }
+            // Up to a rest that no interval holds.
+            let pairs = ready.iter().zip(ready.iter().skip(1));
+            let there = 1 + pairs.take_while(|((before, _), (window, _))| near(before.low, window)).count();
+            let is_cut = more && there == ready.len();
+            let stretch = Stretch::new(format, least, self.writer.time, ready.get(..there).unwrap_or_default());
+            let Some(pieces) = stretch.pieces(is_cut, &mut work) else { return Ok(None) };
+            let mut done = 0;
+            for Piece { count, interval, add } in pieces {
+                let steps = ready.get(done..done + count).unwrap_or_default();
+                let right = steps.first().is_some_and(|(_, right)| *right);
+                self.writer.steps(steps.iter().map(|(window, _)| *window), interval as u64, add, right);
+                done += count;
+            }
+            self.windows.ready.drain(..done);
+            cuts += u64::from(is_cut || done < there);
+            self.writer.judge()?;
         }
     }
-    let list = SegmentList { start: START, segments: writer.segments };
-    Ok(Compressed { list, error: writer.error })
+
+    /// The rest, one entry after another.
+    fn quick(&mut self) -> Result<(), Cause> {
+        let Self { windows, writer } = self;
+        let mut ahead = Ahead::new(windows.format, windows.pulse.min_interval().0);
+        let mut length = 64;
+        while windows.begin(&mut ahead)? {
+            while let Some(longest) = ahead.longest(writer.time, length, |ahead| windows.fill(ahead))? {
+                writer.wait(longest.wait);
+                let taken = ahead.taken(longest.count).iter().copied();
+                writer.steps(taken, longest.interval, longest.add, windows.right);
+                ahead.take(longest.count);
+                length = longest.count;
+                writer.judge()?;
+            }
+        }
+        Ok(())
+    }
+
+    fn end(self) -> Compressed {
+        let list = SegmentList { start: START, segments: self.writer.segments };
+        Compressed { list, error: self.writer.error, surplus: None }
+    }
 }
 
 /// The windows of the steps, run after run: a run goes one way.
@@ -113,31 +220,51 @@ struct Windows<I> {
     tolerance: Tolerance,
     format: EntryFormat,
     pulse: PulseTimes,
-    /// The next step, and the cycle of the one before it.
+    /// The next step to be read, and the cycle of the one before it.
     next: Option<ScheduledStep>,
     before: u64,
     /// Steps that were read.
     count: u64,
     /// Which way the run goes.
     right: bool,
+    /// Windows that were read and not used, with the ways of their steps.
+    ready: VecDeque<(Window, bool)>,
 }
 
 impl<I: Iterator<Item = ScheduledStep>> Windows<I> {
     fn new(mut steps: I, tolerance: Tolerance, format: EntryFormat, pulse: PulseTimes) -> Self {
         let next = steps.next();
-        Self { steps, tolerance, format, pulse, next, before: 0, count: 0, right: false }
+        let ready = VecDeque::new();
+        Self { steps, tolerance, format, pulse, next, before: 0, count: 0, right: false, ready }
+    }
+
+    /// Reads on until so many are ready, or no step is left.
+    fn read(&mut self, most: usize) -> Result<(), Cause> {
+        while let Some(step) = self.next.filter(|_| self.ready.len() < most) {
+            let window = self.window(step)?;
+            self.ready.push_back((window, step.right));
+        }
+        Ok(())
     }
 
     /// Begins the next run; false where no step is left.
     fn begin(&mut self, ahead: &mut Ahead) -> Result<bool, Cause> {
-        let Some(next) = self.next else { return Ok(false) };
-        self.right = next.right;
+        let next = self.ready.front().map(|(_, right)| *right);
+        let Some(right) = next.or(self.next.map(|next| next.right)) else { return Ok(false) };
+        self.right = right;
         self.fill(ahead)?;
         Ok(true)
     }
 
     /// Reads on, some steps of the run; false at its end.
     fn fill(&mut self, ahead: &mut Ahead) -> Result<bool, Cause> {
+        while let Some(&(window, right)) = self.ready.front() {
+            if right != self.right {
+                return Ok(false);
+            }
+            ahead.push(window);
+            self.ready.pop_front();
+        }
         for _ in 0..256 {
             let Some(step) = self.next.filter(|step| step.right == self.right) else { return Ok(false) };
             ahead.push(self.window(step)?);
@@ -155,8 +282,7 @@ impl<I: Iterator<Item = ScheduledStep>> Windows<I> {
             return Err(Cause::StepTooSoon { step: self.count, interval: before, pulse: self.pulse });
         }
         self.before = step.cycle;
-        let off = self.tolerance.between(before, after);
-        let (earliest, latest) = (step.cycle.saturating_sub(off), step.cycle.saturating_add(off));
+        let (earliest, latest) = self.tolerance.window(step.cycle, before, after);
         let last = LAST_CYCLE.0 - START.0;
         if latest > last {
             return Err(ValueError::TooMuch { given: latest as f64, most: last as f64, of: "cycles" }.into());
@@ -192,8 +318,24 @@ impl Writer {
         }
     }
 
-    fn steps(&mut self, windows: &[Window], interval: u64, add: i64, right: bool) {
+    /// Refuses a list that is too long.
+    fn judge(&self) -> Result<(), Cause> {
+        if self.segments.len() > MAX_ENTRIES {
+            let (given, most) = (self.segments.len() as f64, MAX_ENTRIES as f64);
+            return Err(ValueError::TooMuch { given, most, of: "entries" }.into());
+        }
+        Ok(())
+    }
+
+    fn steps(
+        &mut self,
+        windows: impl ExactSizeIterator<Item = Window>,
+        interval: u64,
+        add: i64,
+        right: bool,
+    ) {
         let bits = self.format.fraction_bits;
+        let count = windows.len() as u32;
         let mut next = interval;
         for window in windows {
             self.time = self.time.wrapping_add(next);
@@ -207,7 +349,6 @@ impl Writer {
         }
         let shift = self.shift();
         let (interval, add) = (interval << shift, add << shift);
-        let count = windows.len() as u32;
         if !self.goes_on(count, interval, add, right) {
             self.segments.push(Segment::Steps { count, interval, add, right });
         }
@@ -236,11 +377,7 @@ impl Writer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use alloc::{collections::BTreeSet, vec};
-    use rand_xoshiro::{
-        Xoshiro256StarStar,
-        rand_core::{Rng, SeedableRng},
-    };
+    use alloc::vec;
 
     const PULSE: PulseTimes = PulseTimes { width: Cycles(1), setup: Cycles(0), hold: Cycles(0) };
 
@@ -252,59 +389,8 @@ mod tests {
         let tolerance = Tolerance::of(Cycles(tolerance));
         let made = compressed(right(due), tolerance, EntryFormat::TICKS, PULSE).unwrap();
         assert!(made.error.greatest <= tolerance.cycles.0 && made.error.steps == due.len() as u64);
+        assert_eq!(made.surplus, Some(0));
         made.list.segments.len()
-    }
-
-    /// The fewest entries of whole cycles, all intervals and adds tried from every time that a step can have.
-    fn fewest(due: &[u64], tolerance: u64) -> usize {
-        // reached[n]: times that step n can have, n from 0.
-        let mut reached: Vec<BTreeSet<u64>> = vec![BTreeSet::new(); due.len() + 1];
-        reached[0].insert(0);
-        for entries in 1.. {
-            let before = reached.clone();
-            for (step, times) in before.iter().enumerate() {
-                for &time in times {
-                    for interval in 2..=40_i64 {
-                        for add in -20..=20_i64 {
-                            let (mut time, mut next) = (time as i64, interval);
-                            for (n, &due) in (step + 1..).zip(&due[step..]) {
-                                time += next;
-                                if next < 2 || time.abs_diff(due as i64) > tolerance {
-                                    break;
-                                }
-                                reached[n].insert(time as u64);
-                                next += add;
-                            }
-                        }
-                    }
-                }
-            }
-            if !reached[due.len()].is_empty() {
-                return entries;
-            }
-        }
-        unreachable!("each step can have an entry of its own")
-    }
-
-    #[test]
-    fn small_lists_have_the_fewest_entries_or_hardly_more() {
-        let mut noise = Xoshiro256StarStar::seed_from_u64(7);
-        let (mut made, mut least, mut same) = (0, 0, 0);
-        let all = 150;
-        for _ in 0..all {
-            let (mut gap, mut due, mut steps) = (4 + noise.next_u64() % 12, 0, Vec::new());
-            for _ in 0..10 {
-                gap = (gap + noise.next_u64() % 5).saturating_sub(2).max(2);
-                due += gap;
-                steps.push(due);
-            }
-            let tolerance = noise.next_u64() % 3;
-            let (found, optimum) = (entries(&steps, tolerance), fewest(&steps, tolerance));
-            assert!((optimum..=optimum + 2).contains(&found), "{steps:?} {tolerance}: {found} {optimum}");
-            (made, least) = (made + found, least + optimum);
-            same += usize::from(found == optimum);
-        }
-        assert!(same * 10 >= all * 9 && made * 100 <= least * 103, "{made} {least} {same}");
     }
 
     #[test]

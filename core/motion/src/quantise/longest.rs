@@ -29,6 +29,19 @@ pub(super) struct Window {
     pub(super) high: u64,
 }
 
+impl Window {
+    /// An entry of this step alone from a time on, in the middle of its window or as near as the least interval lets it be.
+    pub(super) fn first(&self, from: u64, least: u64, format: EntryFormat) -> Longest {
+        let middle = self.low + (self.high - self.low) / 2;
+        let time = middle.max(from + least);
+        let interval = time - from;
+        let most = format.most_interval();
+        // A longer wait than an entry holds stands before it.
+        let wait = if self.high - from > most { interval.saturating_sub(most / 2) } else { 0 };
+        Longest { wait, interval: interval - wait, add: 0, count: 1 }
+    }
+}
+
 /// An entry, after a wait.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Longest {
@@ -170,16 +183,9 @@ impl Ahead {
         }
     }
 
-    /// An entry of the next step alone, in the middle of its window or as near as the step before lets it be.
+    /// An entry of the next step alone.
     fn first(&self) -> Option<Longest> {
-        let window = self.window(1)?;
-        let middle = window.low + (window.high - window.low) / 2;
-        let time = middle.max(self.from + self.least);
-        let interval = time - self.from;
-        let most = self.format.most_interval();
-        // A longer wait than an entry holds stands before it.
-        let wait = if window.high - self.from > most { interval.saturating_sub(most / 2) } else { 0 };
-        Some(Longest { wait, interval: interval - wait, add: 0, count: 1 })
+        Some(self.window(1)?.first(self.from, self.least, self.format))
     }
 
     /// An entry of `n` steps that misses none; None with proof that there is none.

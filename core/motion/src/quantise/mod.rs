@@ -27,16 +27,19 @@ mod compressed;
 mod document;
 mod entry_format;
 mod feasible_window;
+mod fewest;
 mod longest;
 mod segments;
 mod stored;
 mod ticks;
 mod timing_error;
 
-pub use compressed::{Compressed, MAX_TOLERANCE, Tolerance, compressed};
+pub use compressed::{Compressed, MAX_TOLERANCE, Side, Tolerance, compressed, compressed_quickly};
 pub use entry_format::{Entry, EntryFormat};
 pub use segments::exact_segments;
-pub use stored::{Form, MAX_TABLE_STEPS, Stored, stored, stored_steps};
+pub use stored::{
+    Form, MAX_TABLE_STEPS, Stored, stored, stored_quickly, stored_steps, stored_steps_quickly,
+};
 pub use ticks::{TickClock, Ticks, ticks};
 pub use timing_error::TimingError;
 

@@ -3,11 +3,11 @@
 //! ```text
 //! exact        every step in its cycle, in few entries
 //! document     the motion's own table, where it has one
-//! compressed   few entries, no step further from its due cycle than allowed
+//! compressed   the fewest entries, no step further from its due cycle than allowed
 //! ```
 
 use crate::quantise::{
-    compressed::{Tolerance, compressed},
+    compressed::{Compressed, Tolerance, compressed, compressed_quickly},
     document::{document, document_bytes},
     entry_format::{Entry, EntryFormat},
     segments::{MAX_STEPS, exact},
@@ -33,7 +33,7 @@ pub enum Form {
     Exact,
     /// The motion's own table.
     Document,
-    /// With few entries.
+    /// With the fewest entries, or few.
     Compressed(Tolerance),
 }
 
@@ -60,6 +60,8 @@ pub struct Stored {
     pub document_bytes: Option<u64>,
     /// How far the steps are from their due cycles.
     pub error: TimingError,
+    /// Of a compressed list how many entries it may have more than the fewest ([`Compressed::surplus`]).
+    pub surplus: Option<u64>,
 }
 
 impl Stored {
@@ -85,7 +87,23 @@ pub fn stored(
 ) -> Result<Stored, Cause> {
     judge_count(plan.step_count(), form)?;
     let own = || document(plan, format, clock_hz);
-    kept(|| plan.due_steps(clock_hz), own, form, format, pulse, document_bytes(plan))
+    kept(|| plan.due_steps(clock_hz), own, compressed, form, format, pulse, document_bytes(plan))
+}
+
+/// The same, with a compressed list by [`compressed_quickly`].
+///
+/// # Errors
+/// As [`stored`].
+pub fn stored_quickly(
+    plan: &AxisPlan,
+    form: Form,
+    format: EntryFormat,
+    pulse: PulseTimes,
+    clock_hz: u32,
+) -> Result<Stored, Cause> {
+    judge_count(plan.step_count(), form)?;
+    let own = || document(plan, format, clock_hz);
+    kept(|| plan.due_steps(clock_hz), own, compressed_quickly, form, format, pulse, document_bytes(plan))
 }
 
 /// Keeps step times of any origin in a form; they count from the start on and do not fall.
@@ -110,11 +128,26 @@ pub fn stored_steps(
     pulse: PulseTimes,
 ) -> Result<Stored, Cause> {
     judge_count(steps.len() as u64, form)?;
-    let none = || {
-        let detail = "a list of steps has no table of its own; give the form exact or compressed";
-        Err(ValueError::Conflict { detail }.into())
-    };
-    kept(|| steps.iter().copied(), none, form, format, pulse, None)
+    kept(|| steps.iter().copied(), no_document, compressed, form, format, pulse, None)
+}
+
+/// The same, with a compressed list by [`compressed_quickly`].
+///
+/// # Errors
+/// As [`stored_steps`].
+pub fn stored_steps_quickly(
+    steps: &[ScheduledStep],
+    form: Form,
+    format: EntryFormat,
+    pulse: PulseTimes,
+) -> Result<Stored, Cause> {
+    judge_count(steps.len() as u64, form)?;
+    kept(|| steps.iter().copied(), no_document, compressed_quickly, form, format, pulse, None)
+}
+
+fn no_document() -> Result<SegmentList, Cause> {
+    let detail = "a list of steps has no table of its own; give the form exact or compressed";
+    Err(ValueError::Conflict { detail }.into())
 }
 
 fn judge_count(steps: u64, form: Form) -> Result<(), Cause> {
@@ -130,17 +163,18 @@ fn judge_count(steps: u64, form: Form) -> Result<(), Cause> {
 fn kept<I: Iterator<Item = ScheduledStep>>(
     due: impl Fn() -> I,
     document: impl Fn() -> Result<SegmentList, Cause>,
+    compressed: impl Fn(I, Tolerance, EntryFormat, PulseTimes) -> Result<Compressed, Cause>,
     form: Form,
     format: EntryFormat,
     pulse: PulseTimes,
     document_bytes: Option<u64>,
 ) -> Result<Stored, Cause> {
-    let (list, error) = match form {
-        Form::Exact => (smallest_exact(&due, format, pulse)?, None),
-        Form::Document => (document()?, None),
+    let (list, error, surplus) = match form {
+        Form::Exact => (smallest_exact(&due, format, pulse)?, None, None),
+        Form::Document => (document()?, None, None),
         Form::Compressed(tolerance) => {
             let made = compressed(due(), tolerance, format, pulse)?;
-            (made.list, Some(made.error))
+            (made.list, Some(made.error), made.surplus)
         }
     };
     let list = judged(list, pulse)?;
@@ -149,7 +183,7 @@ fn kept<I: Iterator<Item = ScheduledStep>>(
         None => TimingError::of(&list, due()).ok_or(Cause::NoSegmentSteps)?,
     };
     let entries = format.pack(&list)?;
-    Ok(Stored { list, format, entries, document_bytes, error })
+    Ok(Stored { list, format, entries, document_bytes, error, surplus })
 }
 
 /// Every step in its cycle, in as few entries as whole intervals allow, or, where these are fewer, in those that a search
@@ -167,7 +201,7 @@ fn smallest_exact<I: Iterator<Item = ScheduledStep>>(
     if format.fraction_bits == 0 {
         return Ok(whole);
     }
-    let parts = compressed(due(), Tolerance::of(Cycles(0)), format, pulse).map(|made| made.list);
+    let parts = compressed_quickly(due(), Tolerance::of(Cycles(0)), format, pulse).map(|made| made.list);
     match parts {
         Ok(parts) if format.entries(&parts)? < format.entries(&whole)? => Ok(parts),
         // Also where there would be too many of them.

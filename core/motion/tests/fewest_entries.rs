@@ -1,0 +1,127 @@
+//! A compressed table has the fewest entries that the widths of its entries allow (DESIGN B8): as few as trying every entry
+//! from every time gives.
+
+#![allow(clippy::expect_used, clippy::panic, reason = "what cannot be kept fails the test")]
+
+use proptest::prelude::*;
+use std::{collections::BTreeSet, num::NonZeroU32};
+use stepscope_motion::{
+    ScheduledStep,
+    quantise::{EntryFormat, Side, Tolerance, compressed, compressed_quickly},
+};
+use stepscope_peripheral::{
+    segment::{PulseTimes, Segment},
+    units::Cycles,
+};
+
+const PULSE: PulseTimes = PulseTimes { width: Cycles(1), setup: Cycles(0), hold: Cycles(0) };
+/// Narrow entries, so that each of their limits is met.
+const NARROW: EntryFormat =
+    EntryFormat { name: "narrow", fraction_bits: 0, interval_bits: 8, count_bits: 8, add_bits: 8 };
+const HALVES: EntryFormat = EntryFormat { name: "halves", fraction_bits: 1, ..NARROW };
+
+/// The window of each step in units, and its direction.
+fn windows(steps: &[ScheduledStep], tolerance: Tolerance, format: EntryFormat) -> Vec<(i64, i64, bool)> {
+    let cycle = |index: usize| steps[index].cycle as i64;
+    (0..steps.len())
+        .map(|index| {
+            let before = if index == 0 { cycle(0) } else { cycle(index) - cycle(index - 1) };
+            let after = if index + 1 < steps.len() { cycle(index + 1) - cycle(index) } else { i64::MAX };
+            let early = tolerance.side == Side::Early;
+            let shorter = if early { before } else { before.min(after) };
+            let part = tolerance.interval_part.map_or(i64::MAX, |part| shorter / i64::from(part.get()));
+            let off = part.min(tolerance.cycles.0 as i64);
+            let unit = 1 << format.fraction_bits;
+            let low = (cycle(index) - off).max(0) * unit;
+            let high = (cycle(index) + if early { 0 } else { off }) * unit + unit - 1;
+            (low, high, steps[index].right)
+        })
+        .collect()
+}
+
+/// The fewest entries, turns and waits apart: every interval and add tried from every time that a step can have.
+fn fewest(windows: &[(i64, i64, bool)], format: EntryFormat) -> u64 {
+    let (least, most) = (2 << format.fraction_bits, format.most_interval() as i64);
+    let mut reached: Vec<BTreeSet<i64>> = vec![BTreeSet::new(); windows.len() + 1];
+    reached[0].insert(0);
+    for entries in 0.. {
+        if !reached[windows.len()].is_empty() {
+            return entries;
+        }
+        for (step, times) in reached.clone().iter().enumerate() {
+            let Some(&(low, high, way)) = windows.get(step) else { continue };
+            for &from in times {
+                // Intervals that lead through the first window, adds that may lead through the second.
+                for interval in least.max(low - from)..=most.min(high - from) {
+                    let adds = windows.get(step + 1).map_or(0..=0, |&(low, high, _)| {
+                        (low - from - 2 * interval).max(format.least_add())
+                            ..=(high - from - 2 * interval).min(format.most_add())
+                    });
+                    // Where there is none the entry has one step.
+                    for add in adds.chain([0]) {
+                        let (mut time, mut next) = (from, interval);
+                        for (n, &(low, high, right)) in (step + 1..).zip(&windows[step..]) {
+                            time += next;
+                            let passes = (least..=most).contains(&next) && (low..=high).contains(&time);
+                            if !passes || right != way {
+                                break;
+                            }
+                            reached[n].insert(time);
+                            next += add;
+                        }
+                    }
+                }
+            }
+        }
+    }
+    unreachable!("each step can have an entry of its own")
+}
+
+fn tolerance() -> impl Strategy<Value = Tolerance> {
+    let side = prop_oneof![Just(Side::Both), Just(Side::Early)];
+    (0..4_u64, prop::option::of(1..5_u32), side).prop_map(|(cycles, part, side)| Tolerance {
+        cycles: Cycles(cycles),
+        interval_part: part.and_then(NonZeroU32::new),
+        side,
+    })
+}
+
+/// Steps with intervals that change little, and now and then much.
+fn steps() -> impl Strategy<Value = Vec<ScheduledStep>> {
+    let gap = prop_oneof![12 => -2..3_i64, 1 => -20..21_i64];
+    (2..40_i64, prop::collection::vec((gap, prop::bool::weighted(0.05)), 1..13)).prop_map(|(first, changes)| {
+        let (mut interval, mut cycle, mut right) = (first, 0, true);
+        changes
+            .into_iter()
+            .map(|(change, turns)| {
+                interval = (interval + change).clamp(2, 110);
+                cycle += interval as u64;
+                right ^= turns;
+                ScheduledStep { cycle, right }
+            })
+            .collect()
+    })
+}
+
+fn entries_of_steps(segments: &[Segment]) -> u64 {
+    segments.iter().filter(|segment| matches!(segment, Segment::Steps { .. })).count() as u64
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 1500, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_compressed_table_has_the_fewest_entries(
+        steps in steps(), tolerance in tolerance(),
+        format in prop::sample::select(vec![EntryFormat::TICKS, NARROW, HALVES]),
+    ) {
+        let made = compressed(steps.iter().copied(), tolerance, format, PULSE).expect("there is time for each pulse");
+        prop_assert_eq!(made.surplus, Some(0));
+        prop_assert_eq!(made.error.steps, steps.len() as u64);
+        let found = entries_of_steps(&made.list.segments);
+        prop_assert_eq!(found, fewest(&windows(&steps, tolerance, format), format));
+        let quick = compressed_quickly(steps.iter().copied(), tolerance, format, PULSE);
+        let quick = quick.expect("there is time for each pulse");
+        prop_assert!(found <= entries_of_steps(&quick.list.segments));
+    }
+}
