@@ -79,7 +79,8 @@ fn fewest(windows: &[(i64, i64, bool)], format: EntryFormat) -> u64 {
 
 fn tolerance() -> impl Strategy<Value = Tolerance> {
     let side = prop_oneof![Just(Side::Both), Just(Side::Early)];
-    (0..4_u64, prop::option::of(1..5_u32), side).prop_map(|(cycles, part, side)| Tolerance {
+    let cycles = prop_oneof![30 => 0..4_u64, 5 => 4..12_u64, 1 => 30..45_u64];
+    (cycles, prop::option::of(1..5_u32), side).prop_map(|(cycles, part, side)| Tolerance {
         cycles: Cycles(cycles),
         interval_part: part.and_then(NonZeroU32::new),
         side,
@@ -108,7 +109,7 @@ fn entries_of_steps(segments: &[Segment]) -> u64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 1500, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 100000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn a_compressed_table_has_the_fewest_entries(
@@ -116,12 +117,14 @@ proptest! {
         format in prop::sample::select(vec![EntryFormat::TICKS, NARROW, HALVES]),
     ) {
         let made = compressed(steps.iter().copied(), tolerance, format, PULSE).expect("there is time for each pulse");
-        prop_assert_eq!(made.surplus, Some(0));
         prop_assert_eq!(made.error.steps, steps.len() as u64);
         let found = entries_of_steps(&made.list.segments);
-        prop_assert_eq!(found, fewest(&windows(&steps, tolerance, format), format));
+        let least = fewest(&windows(&steps, tolerance, format), format);
+        let surplus = made.surplus.expect("the windows are narrow");
+        prop_assert!(found >= least && found <= least + surplus, "{} {} {}", found, least, surplus);
+        prop_assert!(surplus == 0 || format != EntryFormat::TICKS);
         let quick = compressed_quickly(steps.iter().copied(), tolerance, format, PULSE);
         let quick = quick.expect("there is time for each pulse");
-        prop_assert!(found <= entries_of_steps(&quick.list.segments));
+        prop_assert!(found <= entries_of_steps(&quick.list.segments) + surplus);
     }
 }

@@ -41,7 +41,7 @@ pub const MAX_TOLERANCE: Cycles = Cycles(1 << 24);
 /// Most entries of a list: 64 MB.
 pub(super) const MAX_ENTRIES: usize = 2_000_000;
 /// What the search for the fewest entries may look at, in steps of an interval and an add: some seconds.
-const MAX_WORK: u64 = 1 << 30;
+const MAX_WORK: u64 = 1 << 31;
 
 /// On which side of its due cycle a step may be.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -175,6 +175,10 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
             let pairs = ready.iter().zip(ready.iter().skip(1));
             let there = 1 + pairs.take_while(|((before, _), (window, _))| near(before.low, window)).count();
             let is_cut = more && there == ready.len();
+            // Where some times are near enough the wait may be one that another list does without.
+            let waits = ready.get(there - 1).zip(ready.get(there)).is_some_and(|((before, _), (window, _))| {
+                window.low.saturating_sub(before.high) <= format.most_interval()
+            });
             let stretch = Stretch::new(format, least, self.writer.time, ready.get(..there).unwrap_or_default());
             let Some(pieces) = stretch.pieces(is_cut, &mut work) else { return Ok(None) };
             let mut done = 0;
@@ -185,7 +189,7 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
                 done += count;
             }
             self.windows.ready.drain(..done);
-            cuts += u64::from(is_cut || done < there);
+            cuts += u64::from(is_cut || done < there) + 2 * u64::from(waits);
             self.writer.judge()?;
         }
     }

@@ -30,6 +30,8 @@ use alloc::{vec, vec::Vec};
 pub(super) const MAX_WIDTH: u64 = 1 << 12;
 /// Most steps of a stretch.
 pub(super) const MAX_STEPS: usize = 1 << 17;
+/// Most steps of the entries whose ends are told one by one.
+const SHORT: usize = 4;
 /// Words of a stretch's layers together, 32 MB: where there are more it is cut.
 const MAX_WORDS: usize = 1 << 22;
 
@@ -63,6 +65,8 @@ pub(super) struct Stretch {
     format: EntryFormat,
     /// Least interval in units.
     least: i64,
+    /// Greatest interval in units.
+    most: i64,
     places: Vec<Place>,
     /// Words of a step's bits.
     stride: usize,
@@ -107,7 +111,8 @@ impl Stretch {
             }
         }
         let stride = places.iter().map(|place| place.width().div_ceil(64)).max().unwrap_or(1);
-        Self { format, least: least as i64, places, stride }
+        let most = i64::try_from(format.most_interval()).unwrap_or(i64::MAX);
+        Self { format, least: least as i64, most, places, stride }
     }
 
     /// The fewest entries to the last step, or, with `more` after it, to a step before it from which to go on; None if
@@ -147,7 +152,11 @@ impl Stretch {
             }
             if let Some(begin) = self.begin(layer, step) {
                 let least = open.saturating_sub(step).max(3);
-                let spent = self.three_and_more(begin, layer, least, &mut next);
+                let mut spent = 0;
+                for count in least..=SHORT {
+                    spent += self.short(begin, count, &mut next);
+                }
+                spent += self.longer(begin, layer, least.max(SHORT + 1), &mut next);
                 *work = work.checked_sub(spent)?;
             }
         }
@@ -162,11 +171,6 @@ impl Stretch {
         Some(Begin { step, bits, first: low + first, last: low + last })
     }
 
-    /// Greatest interval in units.
-    fn most(&self) -> i64 {
-        i64::try_from(self.format.most_interval()).unwrap_or(i64::MAX)
-    }
-
     /// Where entries of one and of two steps lead.
     fn one_and_two(&self, begin: Begin<'_>, next: &mut Layer) {
         let Some(&one) = self.places.get(begin.step + 1) else { return };
@@ -178,10 +182,10 @@ impl Stretch {
         let (least_add, most_add) = (self.format.least_add(), self.format.most_add());
         // Of the intervals that lead through the first window the shortest and the longest tell the range.
         let range = |from: i64| {
-            let (soon, late) = (one.low.max(from + self.least), one.high.min(from + self.most()));
+            let (soon, late) = (one.low.max(from + self.least), one.high.min(from + self.most));
             (soon <= late).then(|| {
                 let low = (soon + self.least).max((2 * soon - from).saturating_add(least_add));
-                let high = (late + self.most()).min((2 * late - from).saturating_add(most_add));
+                let high = (late + self.most).min((2 * late - from).saturating_add(most_add));
                 (low, high)
             })
         };
@@ -196,8 +200,54 @@ impl Stretch {
         }
     }
 
-    /// Where entries of `least` steps or more lead, at least 3; says how many steps were looked at.
-    fn three_and_more(&self, begin: Begin<'_>, layer: &Layer, least: usize, next: &mut Layer) -> u64 {
+    /// Where entries of `count` steps lead, at least 3; says how many steps were looked at.
+    ///
+    /// With time 0 at the begin and `time` at the end step m comes at m*time/count - add*m*(count - m)/2: so the windows
+    /// leave a range of adds, and the interval is a whole one for every add, or for every second.
+    fn short(&self, begin: Begin<'_>, count: usize, next: &mut Layer) -> u64 {
+        let end = begin.step + count;
+        let Some(&place) = self.places.get(end).filter(|_| end <= self.places[begin.step].end) else { return 1 };
+        let inner = &self.places[begin.step + 1..end];
+        let (n, low, mut spent) = (count as i64, self.places[begin.step].low, 1);
+        for time in place.low..=place.high {
+            if next.bits(end).is_some_and(|bits| is_set(bits, time - place.low)) {
+                continue;
+            }
+            let passes = times(begin.bits).any(|bit| {
+                let from = low + bit;
+                let lasts = time - from;
+                let odd = match lasts.rem_euclid(n) {
+                    0 => 0,
+                    part if 2 * part == n => 1,
+                    _ => return false,
+                };
+                spent += 1;
+                let (mut least, mut most) = self.adds_of(lasts, n);
+                for (m, place) in (1..).zip(inner) {
+                    let (bend, far) = (n * m * (n - m), 2 * m * lasts);
+                    least = least.max(ceiling(far - 2 * n * (place.high - from), bend));
+                    most = most.min((far - 2 * n * (place.low - from)).div_euclid(bend));
+                }
+                // Of an even count every second add has a whole interval.
+                if n % 2 == 0 && (least - odd).rem_euclid(2) == 1 { least < most } else { least <= most }
+            });
+            if passes {
+                next.set(end, place, (time, time));
+            }
+        }
+        spent
+    }
+
+    /// The adds that leave the first and the last of n intervals, `lasts` together, within their limits.
+    fn adds_of(&self, lasts: i64, n: i64) -> (i64, i64) {
+        // Their middle is lasts/n, and the outer ones are half of n - 1 adds beside it.
+        let room = (lasts - n * self.least).min(n * self.most - lasts);
+        let most = (2 * room).div_euclid(n * (n - 1));
+        ((-most).max(self.format.least_add()), most.min(self.format.most_add()))
+    }
+
+    /// Where entries of `least` steps or more lead, more than [`SHORT`]; says how many steps were looked at.
+    fn longer(&self, begin: Begin<'_>, layer: &Layer, least: usize, next: &mut Layer) -> u64 {
         let (step, mut spent) = (begin.step, 8);
         let last = self.places[step].end.min(step + self.format.most_count() as usize);
         let Some(&target) = self.places.get(step + least).filter(|_| step + least <= last) else { return spent };
@@ -225,7 +275,7 @@ impl Stretch {
     fn narrowed(&self, (first, last): (i64, i64), step: usize, time: i64, now: i64) -> Option<(i64, i64)> {
         let place = self.places.get(step)?;
         let range = (first.max(place.low - time), last.min(place.high - time));
-        (range.0 <= range.1 && (self.least..=self.most()).contains(&now)).then_some(range)
+        (range.0 <= range.1 && (self.least..=self.most).contains(&now)).then_some(range)
     }
 
     /// Of the times to begin at those from which the entry's first step leaves the layer.
@@ -238,11 +288,16 @@ impl Stretch {
     ) -> Option<Begin<'a>> {
         let Some(after) = layer.bits(begin.step + 1) else { return Some(begin) };
         let (here, there) = (self.places[begin.step].low, self.places[begin.step + 1].low);
-        for (index, (exit, bits)) in exits.iter_mut().zip(begin.bits).enumerate() {
-            *exit = *bits & !word_at(after, index as i64 * 64 + here + interval - there);
+        let (mut first, mut last) = (None, 0);
+        for index in (begin.first - here) / 64..=(begin.last - here) / 64 {
+            let exit = begin.bits[index as usize] & !word_at(after, index * 64 + here + interval - there);
+            exits[index as usize] = exit;
+            if exit != 0 {
+                first = first.or(Some(index * 64 + i64::from(exit.trailing_zeros())));
+                last = index * 64 + 63 - i64::from(exit.leading_zeros());
+            }
         }
-        let (first, last) = ends(exits)?;
-        Some(Begin { step: begin.step, bits: exits, first: here + first, last: here + last })
+        Some(Begin { step: begin.step, bits: exits, first: here + first?, last: here + last })
     }
 
     /// The adds of entries of `count` steps, at least 2, that may end in `target`.
@@ -274,7 +329,7 @@ impl Stretch {
     ) -> core::ops::RangeInclusive<i64> {
         let grows = add * (count as i64 - 1);
         let mut least = self.least.max(self.least - grows);
-        let mut most = self.most().min(self.most() - grows);
+        let mut most = self.most.min(self.most - grows);
         let mut n = 1;
         while n <= count && least <= most {
             let place = if n == count { target } else { self.places[begin.step + n] };
@@ -307,13 +362,13 @@ impl Stretch {
     fn piece(&self, layer: &Layer, step: usize, time: i64) -> Option<(usize, i64, Piece)> {
         let exactly = Place { low: time, high: time, ..self.places[step] };
         let furthest = step.saturating_sub(self.format.most_count() as usize);
-        for from in layer.first.max(furthest)..=layer.last().min(step - 1) {
+        for from in layer.first.max(furthest)..=layer.last().min(step.checked_sub(1)?) {
             let Some(begin) = self.begin(layer, from) else { continue };
             let (low, count) = (self.places[from].low, step - from);
             if count == 1 {
                 let start = times(begin.bits)
                     .map(|bit| low + bit)
-                    .find(|start| (self.least..=self.most()).contains(&(time - start)));
+                    .find(|start| (self.least..=self.most).contains(&(time - start)));
                 let Some(start) = start else { continue };
                 return Some((from, start, Piece { count, interval: time - start, add: 0 }));
             }
