@@ -21,7 +21,10 @@ use stepscope_core::{
     },
     motion::{
         AxisPlan, Cause, ScheduledStep, plan_lists,
-        quantise::{EntryFormat, Form, Stored, Tolerance, stored, stored_steps},
+        quantise::{
+            EntryFormat, Form, Side, Stored, Tolerance, stored, stored_quickly, stored_steps,
+            stored_steps_quickly,
+        },
         round_half_up,
     },
     peripheral::{config::Config, segment::PulseTimes},
@@ -45,11 +48,19 @@ pub(crate) struct Arguments {
     /// Greatest error of a step in a compressed table, in us.
     #[arg(long, value_name = "US", default_value = "25", value_parser = micros)]
     error_us: f64,
-    /// In a compressed table no step is off by more than this part of the shorter interval beside it: 2 for a half.
+    /// In a compressed table no step is off by more than this part of the shorter interval beside it, or, of one that is
+    /// never late, of the interval before it: 2 for a half, as in Klipper.
     #[arg(long, value_name = "N")]
     interval_part: Option<NonZeroU32>,
+    /// On which side of its due time a step of a compressed table may be.
+    #[arg(long, value_enum, default_value = "both")]
+    window: WindowName,
+    /// How a compressed table is searched for. The fewest entries are looked for in tables of whole cycles, and of others
+    /// where the error is so small that a window has up to 4096 units; else both are the same.
+    #[arg(long, value_enum, default_value = "fewest")]
+    search: Search,
     /// Widths of an entry: q16 (20 bytes, 1/65536 cycle), q8 (8 bytes, 1/256 cycle), ticks (8 bytes, whole
-    /// cycles). A summary without it shows all of them.
+    /// cycles) or klipper, another name of ticks: the numbers that its queue_step takes. A summary without it shows all of them.
     #[arg(long, value_name = "WIDTHS", value_parser = widths)]
     entries: Option<EntryFormat>,
     /// What is written: source code or CSV of one axis, or a summary of all.
@@ -70,6 +81,33 @@ pub(crate) struct Arguments {
     /// Write the summary as JSON: one object of tables (docs/command.md).
     #[arg(long, conflicts_with_all = ["format", "name"])]
     json: bool,
+}
+
+/// Where a step may be.
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum WindowName {
+    /// Early or late.
+    Both,
+    /// Early, never late, as Klipper has it.
+    Early,
+}
+
+impl WindowName {
+    const fn side(self) -> Side {
+        match self {
+            Self::Both => Side::Both,
+            Self::Early => Side::Early,
+        }
+    }
+}
+
+/// How a compressed table is made.
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Search {
+    /// No table has fewer entries, as far as the summary's column surplus says.
+    Fewest,
+    /// Few entries, each the longest that ends near the middle of a window: hundreds of times as fast.
+    Quick,
 }
 
 /// How step times are kept.
@@ -126,8 +164,9 @@ fn micros(text: &str) -> Result<f64, String> {
 }
 
 fn widths(text: &str) -> Result<EntryFormat, String> {
-    let found = EntryFormat::ALL.into_iter().find(|format| format.name == text);
-    found.ok_or_else(|| "give q16, q8 or ticks".to_owned())
+    let name = if text == "klipper" { EntryFormat::TICKS.name } else { text };
+    let found = EntryFormat::ALL.into_iter().find(|format| format.name == name);
+    found.ok_or_else(|| "give q16, q8, ticks or klipper".to_owned())
 }
 
 fn name(text: &str) -> Result<String, String> {
@@ -147,6 +186,7 @@ struct Axes {
     pulse: PulseTimes,
     axes: Vec<Steps>,
     tolerance: Tolerance,
+    search: Search,
 }
 
 /// The steps of an axis.
@@ -163,14 +203,15 @@ impl Axes {
         let wrong = |problems| Failure::Scenario(path.clone(), problems);
         let config = Config::of_segments(clock_hz, &bus, &line.serial()).map_err(of_config).map_err(wrong)?;
         let cycles = tolerance_cycles(arguments.error_us, clock_hz);
-        let tolerance = Tolerance { cycles, interval_part: arguments.interval_part };
+        let (interval_part, search) = (arguments.interval_part, arguments.search);
+        let tolerance = Tolerance { cycles, interval_part, side: arguments.window.side() };
         let pulse = PulseTimes::from(&config);
         if let Some(list) = &arguments.steps {
             let steps = steps_of_table(&scenarios::text(list)?, clock_hz)
                 .map_err(|what| Failure::Table(list.clone(), what))?;
             let title = list.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
             let axes = vec![Steps::Listed(steps)];
-            return Ok(Self { path: list.clone(), title, clock_hz, pulse, axes, tolerance });
+            return Ok(Self { path: list.clone(), title, clock_hz, pulse, axes, tolerance, search });
         }
         let ScenarioSource::Motion(Motion { axes, .. }) = &source else {
             let detail = "no motion, so there is nothing to make tables of; give a scenario with source.motion, or --steps";
@@ -180,7 +221,7 @@ impl Axes {
             .map_err(of_motion)
             .map_err(wrong)?;
         let axes = plans.into_iter().flatten().map(Steps::Planned).collect();
-        Ok(Self { path, title, clock_hz, pulse, axes, tolerance })
+        Ok(Self { path, title, clock_hz, pulse, axes, tolerance, search })
     }
 
     fn kept(&self, steps: &Steps, form: FormName, format: EntryFormat) -> Result<Stored, Cause> {
@@ -189,9 +230,12 @@ impl Axes {
             FormName::Document => Form::Document,
             FormName::Compressed => Form::Compressed(self.tolerance),
         };
-        match steps {
-            Steps::Planned(plan) => stored(plan, form, format, self.pulse, self.clock_hz),
-            Steps::Listed(steps) => stored_steps(steps, form, format, self.pulse),
+        let (pulse, clock_hz) = (self.pulse, self.clock_hz);
+        match (steps, self.search) {
+            (Steps::Planned(plan), Search::Fewest) => stored(plan, form, format, pulse, clock_hz),
+            (Steps::Planned(plan), Search::Quick) => stored_quickly(plan, form, format, pulse, clock_hz),
+            (Steps::Listed(steps), Search::Fewest) => stored_steps(steps, form, format, pulse),
+            (Steps::Listed(steps), Search::Quick) => stored_steps_quickly(steps, form, format, pulse),
         }
     }
 
@@ -258,7 +302,7 @@ fn each<'a>(
 fn summary(axes: &Axes, arguments: &Arguments, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
-        "axis form       entries    count        bytes  document_bytes      steps  largest_error_us  rms_error_us"
+        "axis form       entries    count        bytes  document_bytes      steps  largest_error_us  rms_error_us    turns  wire_bytes  surplus"
     )?;
     for (axis, form, format, table) in each(axes, arguments) {
         write!(out, "{axis:4} {:10} {:7}", form.name(), format.name)?;
@@ -286,6 +330,9 @@ fn json_of(axes: &Axes, arguments: &Arguments) -> Tables {
             "steps": table.map(|table| table.error.steps),
             "largest_error_us": table.map(|table| micros(table.error.greatest as f64)),
             "rms_error_us": table.map(|table| micros(table.error.rms())),
+            "turns": table.map(Stored::turns),
+            "wire_bytes": table.and_then(Stored::wire_bytes),
+            "surplus": table.and_then(|table| table.surplus),
             "why_not": why,
         })
     });
@@ -293,15 +340,19 @@ fn json_of(axes: &Axes, arguments: &Arguments) -> Tables {
 }
 
 fn row(table: &Stored, clock_hz: u32, out: &mut impl Write) -> io::Result<()> {
-    let document = table.document_bytes.map_or_else(|| "-".to_owned(), |bytes| bytes.to_string());
+    let told = |number: Option<u64>| number.map_or_else(|| "-".to_owned(), |number| number.to_string());
     let micros = |cycles: f64| round_half_up(cycles * 1e9 / f64::from(clock_hz)) as f64 / 1e3;
     writeln!(
         out,
-        " {:8} {:12} {document:>15} {:10} {:17.3} {:13.3}",
+        " {:8} {:12} {:>15} {:10} {:17.3} {:13.3} {:8} {:>11} {:>8}",
         table.entries.len(),
         table.bytes(),
+        told(table.document_bytes),
         table.error.steps,
         micros(table.error.greatest as f64),
-        micros(table.error.rms())
+        micros(table.error.rms()),
+        table.turns(),
+        told(table.wire_bytes()),
+        told(table.surplus)
     )
 }

@@ -31,6 +31,31 @@ fn a_summary_has_a_row_for_each_axis_form_and_width() {
     assert!(tight.1.lines().nth(2).is_some_and(|line| line.contains(" 0.063 ")), "{}", tight.1);
 }
 
+/// Where Klipper's own program makes 52 entries of the default motion.
+#[test]
+fn klippers_window_and_widths_can_be_asked_for() {
+    let options = ["tables", "-", "--form", "compressed", "--entries", "klipper", "--interval-part", "2"];
+    let row = |more: &[&str]| -> Vec<String> {
+        let (code, out, err) = stepscope(&[&options, more].concat(), "{}");
+        assert_eq!((code, err.as_str()), (Some(0), ""));
+        out.lines().nth(1).expect("a row").split_whitespace().map(str::to_owned).collect()
+    };
+    let early = row(&["--window", "early"]);
+    // Entries with the turn to the right, bytes, and from the end what may be too many, bytes on the line, turns.
+    assert_eq!(early[2..5], ["ticks", "49", "392"]);
+    assert_eq!(early[9..], ["1", "358", "0"], "{early:?}");
+    assert!(row(&[])[3].parse::<u32>().expect("a count") <= 49);
+    let quick = row(&["--window", "early", "--search", "quick"]);
+    assert!(quick[3].parse::<u32>().expect("a count") > 49 && quick[11] == "-", "{quick:?}");
+    let (_, json, _) = stepscope(&[&options[..], &["--json"]].concat(), "{}");
+    assert!(
+        ["\"turns\":1", "\"wire_bytes\":", "\"surplus\":0"]
+            .iter()
+            .all(|cell| { json.split_whitespace().collect::<String>().contains(cell) }),
+        "{json}"
+    );
+}
+
 #[test]
 fn steps_of_any_origin_are_compressed() {
     // 1000 steps 100 us apart, every seventh 3 us late, and 500 back.

@@ -12,7 +12,10 @@ use stepscope_core::{
         Cause, ScheduledStep, ValueError,
         mechanics::{Acceleration, Distance, Speed},
         moves::{Constant, Cosine, Dwell, Move, SineSegments, Staircase, Trapezoid, TrapezoidMethod},
-        quantise::{EntryFormat, Form, MAX_TOLERANCE, Stored, TimingError, Tolerance, compressed, stored},
+        quantise::{
+            EntryFormat, Form, MAX_TOLERANCE, Side, Stored, TimingError, Tolerance, compressed,
+            compressed_quickly, stored, stored_quickly,
+        },
     },
     peripheral::{
         device::SegmentEngine,
@@ -41,7 +44,7 @@ fn trapezoid(steps: f64, start: f64, top: f64, acceleration: f64, method: Trapez
 }
 
 fn kept(moves: Vec<Move>, form: Form, format: EntryFormat) -> Stored {
-    stored(&plan(moves), form, format, PULSE, CLOCK_HZ).unwrap_or_else(|cause| panic!("{cause}"))
+    stored_quickly(&plan(moves), form, format, PULSE, CLOCK_HZ).unwrap_or_else(|cause| panic!("{cause}"))
 }
 
 /// Cycles and ways of the steps that the segment engine makes of a list, from its start.
@@ -66,10 +69,12 @@ fn format() -> impl Strategy<Value = EntryFormat> {
 }
 
 fn tolerance() -> impl Strategy<Value = Tolerance> {
-    let cycles = prop_oneof![0..4_u64, 0..500_u64, 0..=MAX_TOLERANCE.0];
-    (cycles, prop::option::of(2..9_u32)).prop_map(|(cycles, part)| Tolerance {
+    let cycles = prop_oneof![0..4_u64, 0..40_u64, 0..500_u64, 0..=MAX_TOLERANCE.0];
+    let side = prop_oneof![Just(Side::Both), Just(Side::Early)];
+    (cycles, prop::option::of(2..9_u32), side).prop_map(|(cycles, part, side)| Tolerance {
         cycles: Cycles(cycles),
         interval_part: part.and_then(NonZeroU32::new),
+        side,
     })
 }
 
@@ -82,7 +87,10 @@ proptest! {
     ) {
         let plan = plan(moves);
         let due: Vec<ScheduledStep> = plan.due_steps(CLOCK_HZ).collect();
-        let made = stored(&plan, Form::Compressed(tolerance), format, PULSE, CLOCK_HZ);
+        // The search for the fewest takes the longer the wider the windows are.
+        let narrow = tolerance.cycles.0 << format.fraction_bits < 40;
+        let store = if narrow { stored } else { stored_quickly };
+        let made = store(&plan, Form::Compressed(tolerance), format, PULSE, CLOCK_HZ);
         let made = made.unwrap_or_else(|cause| panic!("{cause}"));
         let found = run(&made.list);
         prop_assert_eq!(found.len(), due.len());
@@ -91,10 +99,12 @@ proptest! {
             prop_assert_eq!(right, due_step.right, "step {}", index);
             let before = index.checked_sub(1).map_or(0, |before| due[before].cycle);
             let after = due.get(index + 1).map_or(u64::MAX, |after| after.cycle - due_step.cycle);
-            let shorter = after.min(due_step.cycle - before);
+            let shorter = due_step.cycle - before;
+            let shorter = if tolerance.side == Side::Both { after.min(shorter) } else { shorter };
             let part = tolerance.interval_part.map_or(u64::MAX, |part| shorter / u64::from(part.get()));
             let off = cycle.abs_diff(due_step.cycle);
             prop_assert!(off <= tolerance.cycles.0.min(part), "step {} is off by {}", index, off);
+            prop_assert!(tolerance.side == Side::Both || cycle <= due_step.cycle, "step {} is late", index);
             greatest = greatest.max(off);
         }
         prop_assert_eq!(made.error.greatest, greatest);
@@ -138,8 +148,11 @@ proptest! {
             cycle = cycle.saturating_add(gap);
             ScheduledStep { cycle, right }
         }).collect();
+        let quick = compressed_quickly(due.iter().copied(), tolerance, format, PULSE);
         match compressed(due.iter().copied(), tolerance, format, PULSE) {
             Ok(made) => {
+                let made_quickly = quick.map_or(usize::MAX, |quick| quick.list.segments.len());
+                prop_assert!(made.surplus != Some(0) || made.list.segments.len() <= made_quickly);
                 let found = TimingError::of(&made.list, due);
                 prop_assert_eq!(Some(made.error), found);
                 prop_assert!(made.error.greatest <= tolerance.cycles.0);
@@ -186,7 +199,7 @@ fn a_long_trapezoid_takes_fewer_entries_than_klippers_compression() {
         (EntryFormat::TICKS, half, 800),
     ];
     for (format, interval_part, most) in rows {
-        let tolerance = Tolerance { cycles: micros_25, interval_part };
+        let tolerance = Tolerance { interval_part, ..Tolerance::of(micros_25) };
         let made = kept(ramp.clone(), Form::Compressed(tolerance), format);
         assert_eq!(made.error.steps, 1_000_000);
         assert!(made.entries.len() <= most, "{}: {}", format.name, made.entries.len());

@@ -393,7 +393,7 @@ mod tests {
 
     fn table(entries: Vec<Entry>, format: EntryFormat) -> Stored {
         let list = SegmentList { start: Instant(1), segments: Vec::new() };
-        Stored { list, format, entries, document_bytes: None, error: TimingError::default() }
+        Stored { list, format, entries, document_bytes: None, error: TimingError::default(), surplus: None }
     }
 
     fn source<'s>(table: &'s Stored, title: &'s str) -> Source<'s> {

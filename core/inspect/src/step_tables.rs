@@ -18,7 +18,7 @@ use alloc::{
     vec::Vec,
 };
 use serde::Serialize;
-use stepscope_motion::quantise::{EntryFormat, Form, Stored, Tolerance, stored};
+use stepscope_motion::quantise::{EntryFormat, Form, Stored, Tolerance, stored_quickly};
 use stepscope_peripheral::{config::Config, segment::PulseTimes, units::Cycles};
 use stepscope_scenario::{Problem, of_config};
 use stepscope_sim::SelectedAxis;
@@ -68,7 +68,8 @@ impl<'a> StepTables<'a> {
     }
 
     /// A table; `form` is `exact`, `document` or `compressed` with no step off by more than `error_us`, `widths` the
-    /// name of an [`EntryFormat`].
+    /// name of an [`EntryFormat`]. A compressed one is made quickly, since it is made while one types; the command
+    /// searches for the fewest entries.
     ///
     /// # Errors
     /// Why there is no such table.
@@ -81,7 +82,8 @@ impl<'a> StepTables<'a> {
         };
         let format = EntryFormat::ALL.into_iter().find(|format| format.name == widths);
         let format = format.unwrap_or(EntryFormat::Q16);
-        stored(self.selected.plan, form, format, self.pulse, clock_hz).map_err(|cause| cause.to_string())
+        stored_quickly(self.selected.plan, form, format, self.pulse, clock_hz)
+            .map_err(|cause| cause.to_string())
     }
 
     /// What a table costs, or why there is none.

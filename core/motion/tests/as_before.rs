@@ -312,10 +312,8 @@ fn tables(plan: &AxisPlan, text: &mut String) {
         Ok(list) => tell!(text, "{list:?}"),
         Err(problems) => tell!(text, "{problems:?}"),
     }
-    let parts = |cycles, parts| Tolerance {
-        interval_part: NonZeroU32::new(parts),
-        ..Tolerance::of(Cycles(cycles))
-    };
+    let parts =
+        |cycles, parts| Tolerance { interval_part: NonZeroU32::new(parts), ..Tolerance::of(Cycles(cycles)) };
     let tolerances = [parts(0, 0), parts(400, 2), parts(16_000, 0)];
     let compressed = tolerances.map(Form::Compressed);
     for form in [Form::Exact, Form::Document].into_iter().chain(compressed) {

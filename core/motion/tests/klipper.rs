@@ -13,7 +13,7 @@ use stepscope_motion::{
     mechanics::{Acceleration, Distance, Speed},
     moves::{Axis, JerkLimited, Move, Sine, SineSegments, Trapezoid},
     plan_axis,
-    quantise::{EntryFormat, Side, Tolerance, compressed, compressed_quickly},
+    quantise::{EntryFormat, Side, Tolerance, compressed},
 };
 use stepscope_peripheral::{
     segment::{PulseTimes, Segment},
@@ -23,6 +23,8 @@ use stepscope_peripheral::{
 const CLOCK_HZ: u32 = 16_000_000;
 /// 25 us.
 const EARLY: u64 = 400;
+const KLIPPERS: Tolerance =
+    Tolerance { cycles: Cycles(EARLY), interval_part: NonZeroU32::new(2), side: Side::Early };
 const PULSE: PulseTimes = PulseTimes { width: Cycles(16), setup: Cycles(0), hold: Cycles(0) };
 
 /// Entries of the greedy way.
@@ -89,24 +91,16 @@ fn steps_of(segments: &[Segment]) -> u64 {
     segments.iter().filter(|segment| matches!(segment, Segment::Steps { .. })).count() as u64
 }
 
-/// Entries of steps: ours of its window, ours of half as much either way, and those of the greedy way.
+/// Entries of steps: ours in its window, ours in one of the same width around the due time, and those of the greedy way.
 fn counts(given: Move) -> [u64; 3] {
     let steps = due(given);
-    let early = Tolerance {
-        cycles: Cycles(EARLY),
-        interval_part: NonZeroU32::new(2),
-        side: Side::Early,
-    };
     let ours = |tolerance| {
-        let t = std::time::Instant::now();
         let made = compressed(steps.iter().copied(), tolerance, EntryFormat::TICKS, PULSE);
-        println!("  ours {:?}", t.elapsed());
         let made = made.expect("there is time for each pulse");
-        assert_eq!(made.error.steps, steps.len() as u64);
-        assert!(made.surplus.is_some(), "{made:?}");
+        assert_eq!((made.error.steps, made.surplus), (steps.len() as u64, Some(0)));
         steps_of(&made.list.segments)
     };
-    [ours(early), ours(Tolerance::of(Cycles(EARLY / 2))), greedy(&steps)]
+    [ours(KLIPPERS), ours(Tolerance::of(Cycles(EARLY / 2))), greedy(&steps)]
 }
 
 #[test]
@@ -115,33 +109,31 @@ fn no_move_takes_more_entries_than_klippers_way() {
     let segments = SineSegments { amplitude: Distance::Steps(1000.0), periods: 2, ..SineSegments::default() };
     // Steps, move, counts, and what Klipper's program makes of it.
     let rows = [
-        (3200, Move::default(), [47, 47, 0], Some(52)),
-        (2000, trapezoid(2000.0), [0; 3], None),
-        (100_000, trapezoid(100_000.0), [0; 3], None),
-        (8000, Move::SineSegments(segments), [61, 61, 0], Some(61)),
-        (3200, Move::JerkLimited(jerk), [34, 34, 0], Some(36)),
-        (25_600, sine(2), [0; 3], None),
+        (3200, Move::default(), [48, 48, 52], Some(52)),
+        (2000, trapezoid(2000.0), [40, 40, 45], None),
+        (100_000, trapezoid(100_000.0), [229, 229, 244], None),
+        (8000, Move::SineSegments(segments), [61, 61, 65], Some(61)),
+        (3200, Move::JerkLimited(jerk), [34, 34, 36], Some(36)),
+        (25_600, sine(2), [231, 199, 256], None),
     ];
     for (steps, given, expected, klippers) in rows {
         assert_eq!(due(given.clone()).len(), steps);
-        let t = std::time::Instant::now();
         let found = counts(given.clone());
-        println!("{steps} {found:?} {:?}", t.elapsed());
-        let _ = (expected, klippers);
+        assert_eq!(found, expected, "{given:?}");
+        let [early, both, greedy] = found;
+        let most = klippers.unwrap_or(greedy).min(greedy);
+        assert!(early <= most && both <= most, "{given:?}: {found:?}");
     }
 }
 
+/// 312 turns: the list is cut into stretches, each cut of which may cost an entry.
 #[test]
 #[ignore = "it takes half a minute"]
-fn two_million_steps_do_not_either() {
+fn two_million_steps_take_no_more_either() {
     let steps = due(sine(156));
-    for tol in [Tolerance{cycles: Cycles(EARLY), interval_part: NonZeroU32::new(2), side: Side::Early}, Tolerance::of(Cycles(200))] {
-    let t = std::time::Instant::now();
-    let made = compressed(steps.iter().copied(), tol, EntryFormat::TICKS, PULSE).unwrap();
-    println!("{} {:?} {:?}", steps_of(&made.list.segments), made.surplus, t.elapsed());
-    let t = std::time::Instant::now();
-    let made = compressed_quickly(steps.iter().copied(), tol, EntryFormat::TICKS, PULSE).unwrap();
-    println!("quick {} {:?} {:?}", steps_of(&made.list.segments), made.surplus, t.elapsed());
-    }
-    println!("greedy {}", greedy(&steps));
+    assert_eq!(steps.len(), 1_996_800);
+    let made = compressed(steps.iter().copied(), KLIPPERS, EntryFormat::TICKS, PULSE);
+    let made = made.expect("there is time for each pulse");
+    assert_eq!((steps_of(&made.list.segments), made.surplus), (18_097, Some(15)));
+    assert_eq!(greedy(&steps), 19_968);
 }

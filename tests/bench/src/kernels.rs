@@ -1,6 +1,6 @@
 //! The kernels, what each is compared with, and the aim.
 
-use core::hint::black_box;
+use core::{hint::black_box, num::NonZeroU32};
 
 use stepscope_core::{
     inspect::{
@@ -9,7 +9,7 @@ use stepscope_core::{
     },
     motion::{
         AxisPlan, Cause, ScheduledStep, plan_axis,
-        quantise::{Compressed, EntryFormat, Form, Stored, Tolerance, compressed, stored},
+        quantise::{Compressed, EntryFormat, Form, Side, Stored, Tolerance, compressed_quickly, stored},
         trapezoid::Trapezoid,
     },
     peripheral::{
@@ -33,6 +33,8 @@ const ACCELERATION: f64 = 9000.0;
 const CLOCK_HZ: u32 = 16_000_000;
 /// Largest error of a compressed table: 25 us.
 const TOLERANCE: Tolerance = Tolerance::of(Cycles(400));
+/// Klipper's: never late, nor early by more than half an interval.
+const KLIPPERS: Tolerance = Tolerance { interval_part: NonZeroU32::new(2), side: Side::Early, ..TOLERANCE };
 const PULSE: PulseTimes = PulseTimes { width: Cycles(16), setup: Cycles(0), hold: Cycles(0) };
 /// How often the short motion is run at the fast speed, so that it takes a time that can be told.
 const SHORT_RUNS: u64 = 200;
@@ -96,6 +98,8 @@ pub enum Kernel {
     Exact,
     /// The same steps, planned before, compressed to 25 us.
     Compressed,
+    /// The same, in Klipper's window and widths.
+    CompressedKlipper,
     /// Planned and compressed.
     PlannedCompressed,
     /// Planned and compressed into entries of whole cycles.
@@ -139,7 +143,7 @@ pub struct Facts {
 
 impl Kernel {
     /// All kernels, each yardstick right before what is compared with it.
-    pub const ALL: [Self; 49] = [
+    pub const ALL: [Self; 50] = [
         Self::Write,
         Self::Copy,
         Self::Stored,
@@ -162,6 +166,7 @@ impl Kernel {
         Self::StepTimes,
         Self::Exact,
         Self::Compressed,
+        Self::CompressedKlipper,
         Self::PlannedCompressed,
         Self::PlannedTicks,
         Self::PlannedQ8,
@@ -245,6 +250,9 @@ impl Kernel {
             Self::Exact => Facts { name: "exact_list", yardstick: Some(Self::Roots), ..steps },
             Self::Compressed => Facts { name: "compressed", yardstick: Some(Self::Roots), ..steps },
             // Klipper's step compression has 0.075 of such a loop.
+            Self::CompressedKlipper => {
+                Facts { name: "compressed_klipper", yardstick: Some(Self::Roots), aim: Some(0.075), ..steps }
+            }
             Self::PlannedCompressed => {
                 Facts { name: "planned_compressed", yardstick: Some(Self::Roots), aim: Some(0.075), ..steps }
             }
@@ -361,7 +369,11 @@ impl Kernels {
             }
             Kernel::Compressed => {
                 let due = black_box(&self.due).iter().copied();
-                segments_of(compressed(due, TOLERANCE, EntryFormat::Q16, PULSE))
+                segments_of(compressed_quickly(due, TOLERANCE, EntryFormat::Q16, PULSE))
+            }
+            Kernel::CompressedKlipper => {
+                let due = black_box(&self.due).iter().copied();
+                segments_of(compressed_quickly(due, KLIPPERS, EntryFormat::TICKS, PULSE))
             }
             Kernel::PlannedCompressed => self.planned(EntryFormat::Q16),
             Kernel::PlannedTicks => self.planned(EntryFormat::TICKS),
@@ -423,6 +435,7 @@ impl Kernels {
             | Kernel::StepTimes
             | Kernel::Exact
             | Kernel::Compressed
+            | Kernel::CompressedKlipper
             | Kernel::PlannedCompressed
             | Kernel::PlannedTicks
             | Kernel::PlannedQ8
@@ -449,7 +462,8 @@ impl Kernels {
 
     /// Segments of the move, planned and compressed.
     fn planned(&self, format: EntryFormat) -> u64 {
-        segments_of(compressed(black_box(&self.move_of_tables).due_steps(CLOCK_HZ), TOLERANCE, format, PULSE))
+        let due = black_box(&self.move_of_tables).due_steps(CLOCK_HZ);
+        segments_of(compressed_quickly(due, TOLERANCE, format, PULSE))
     }
 
     fn copy(&mut self) -> u64 {
@@ -593,15 +607,18 @@ mod tests {
         let tables = [
             Kernel::Exact,
             Kernel::Compressed,
+            Kernel::CompressedKlipper,
             Kernel::PlannedCompressed,
             Kernel::PlannedTicks,
             Kernel::PlannedQ8,
             Kernel::Document,
         ];
-        let [exact, before, planned, ticks, q8, document] = tables.map(|kernel| kernels.call(kernel));
+        let [exact, before, klipper, planned, ticks, q8, document] =
+            tables.map(|kernel| kernels.call(kernel));
         assert!(q8 > 0 && q8 < exact && document > 0, "{q8} {document}");
         assert_eq!(before, planned);
         // Klipper's step compression makes about 1289 entries of this move.
+        assert!(klipper > ticks && klipper < 1289, "{klipper}");
         assert!(planned > 0 && planned < ticks && ticks < 1289 && ticks < exact, "{exact} {planned} {ticks}");
     }
 

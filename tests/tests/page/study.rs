@@ -11,7 +11,7 @@ use stepscope_core::{
     },
     motion::{
         motor::Motor,
-        quantise::{EntryFormat, Form, Stored, Tolerance, stored},
+        quantise::{EntryFormat, Form, Stored, Tolerance, stored_quickly},
     },
     peripheral::{segment::PulseTimes, units::Cycles},
     scenario::{Scenario, link::decode},
@@ -300,7 +300,7 @@ fn native(known: &Known, form: &str, format: EntryFormat, error_us: u64) -> Resu
         _ => Form::Compressed(Tolerance::of(Cycles(error_us * u64::from(config.clock_hz()) / 1_000_000))),
     };
     let plan = known.experiment.plans().first().context("no axis")?;
-    stored(plan, form, format, PulseTimes::from(config), config.clock_hz())
+    stored_quickly(plan, form, format, PulseTimes::from(config), config.clock_hz())
         .map_err(|cause| anyhow!("{cause}"))
 }
 

@@ -10,13 +10,14 @@
 //! comes out at the STEP line: the number of steps is exact, no step leaves its window, and no error is carried from one
 //! entry to the next but the one that the entry's last step has, which is in its window too.
 //!
-//! How few entries? Each entry is the longest that there is from the time at which the one before it ended, of those
-//! whose last step comes close to the middle of its window: an eighth of it and a cycle. (Where the windows are the due
-//! cycles alone their middles say nothing, so there it is the longest of all, less an eighth.) Without that condition the
-//! entries would be longer one by one and yet more in number, for an entry of greatest length ends at the edge of a
-//! window, the worst place for the next one to begin. Where the third derivative of time over steps hardly changes, let
-//! an entry that may begin and end anywhere in its windows have the length 1; then entries from middle to middle have
-//! 0.87, and those that are as long as they can be, one after another, have 0.75. The fewest of all are not searched for.
+//! How few entries? The fewest that there are ([`super::fewest`]), where the windows are narrow enough for that search. For
+//! all other lists, and where they are to be made quickly, each entry is the longest that there is from the time at which
+//! the one before it ended, of those whose last step comes close to the middle of its window: an eighth of it and a cycle.
+//! (Where the windows are the due cycles alone their middles say nothing, so there it is the longest of all, less an eighth.)
+//! Without that condition the entries would be longer one by one and yet more in number, for an entry of greatest length
+//! ends at the edge of a window, the worst place for the next one to begin. Where the third derivative of time over steps
+//! hardly changes, let an entry that may begin and end anywhere in its windows have the length 1; then entries from middle
+//! to middle have 0.87, and those that are as long as they can be, one after another, have 0.75.
 
 use crate::quantise::{
     entry_format::EntryFormat,
@@ -40,8 +41,10 @@ use stepscope_peripheral::{
 pub const MAX_TOLERANCE: Cycles = Cycles(1 << 24);
 /// Most entries of a list: 64 MB.
 pub(super) const MAX_ENTRIES: usize = 2_000_000;
-/// What the search for the fewest entries may look at, in steps of an interval and an add: some seconds.
-const MAX_WORK: u64 = 1 << 31;
+/// What the search for the fewest entries may look at, in steps of an interval and an add: two seconds or so, and for each
+/// step of the list ten microseconds more.
+const WORK: u64 = 1 << 28;
+const WORK_A_STEP: u64 = 1 << 10;
 
 /// On which side of its due cycle a step may be.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -158,7 +161,7 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
     fn fewest(&mut self) -> Result<Option<u64>, Cause> {
         let (format, pulse) = (self.windows.format, self.windows.pulse);
         let least = pulse.min_interval().0 << format.fraction_bits;
-        let (mut cuts, mut work) = (0, MAX_WORK);
+        let (mut cuts, mut work) = (0, WORK);
         loop {
             self.windows.read(fewest::MAX_STEPS)?;
             let more = self.windows.next.is_some();
@@ -176,10 +179,13 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
             let there = 1 + pairs.take_while(|((before, _), (window, _))| near(before.low, window)).count();
             let is_cut = more && there == ready.len();
             // Where some times are near enough the wait may be one that another list does without.
-            let waits = ready.get(there - 1).zip(ready.get(there)).is_some_and(|((before, _), (window, _))| {
-                window.low.saturating_sub(before.high) <= format.most_interval()
-            });
-            let stretch = Stretch::new(format, least, self.writer.time, ready.get(..there).unwrap_or_default());
+            let waits =
+                ready.get(there - 1).zip(ready.get(there)).is_some_and(|((before, _), (window, _))| {
+                    window.low.saturating_sub(before.high) <= format.most_interval()
+                });
+            let stretch =
+                Stretch::new(format, least, self.writer.time, ready.get(..there).unwrap_or_default());
+            work += WORK_A_STEP * there as u64;
             let Some(pieces) = stretch.pieces(is_cut, &mut work) else { return Ok(None) };
             let mut done = 0;
             for Piece { count, interval, add } in pieces {

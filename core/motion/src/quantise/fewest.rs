@@ -16,8 +16,9 @@
 //!    begin at are a range that each further window narrows ([`Stretch::narrowed`]), so all of them go together, as a
 //!    shifted copy of the step's bits; and only where the parabola leaves the layer: one that stands in it at the next step,
 //!    too, is found from there.
-//! 3. Entries of one and of two steps are told in closed form, and entries to steps that can have any time already are not
-//!    looked at: so few intervals and adds are left, about the square of a window's width over the cube of the count.
+//! 3. Where entries of one and of two steps end is told in closed form ([`Stretch::one_and_two`]), of some more steps time
+//!    by time ([`Stretch::short`]), and entries to steps that can have any time already are not looked at: so few intervals
+//!    and adds are left, about the square of a window's width over the cube of the count.
 //!
 //! A list that is long is cut into stretches, each with the fewest entries to its last step. A cut costs an entry at most
 //! (where the windows of neighbours do not overlap): instead of the best entry across it one leads from the stretch's last
@@ -175,7 +176,8 @@ impl Stretch {
     fn one_and_two(&self, begin: Begin<'_>, next: &mut Layer) {
         let Some(&one) = self.places.get(begin.step + 1) else { return };
         next.set(begin.step + 1, one, (begin.first + self.least, one.high));
-        let Some(&two) = self.places.get(begin.step + 2).filter(|_| begin.step + 2 <= self.places[begin.step].end)
+        let Some(&two) =
+            self.places.get(begin.step + 2).filter(|_| begin.step + 2 <= self.places[begin.step].end)
         else {
             return;
         };
@@ -206,7 +208,9 @@ impl Stretch {
     /// leave a range of adds, and the interval is a whole one for every add, or for every second.
     fn short(&self, begin: Begin<'_>, count: usize, next: &mut Layer) -> u64 {
         let end = begin.step + count;
-        let Some(&place) = self.places.get(end).filter(|_| end <= self.places[begin.step].end) else { return 1 };
+        let Some(&place) = self.places.get(end).filter(|_| end <= self.places[begin.step].end) else {
+            return 1;
+        };
         let inner = &self.places[begin.step + 1..end];
         let (n, low, mut spent) = (count as i64, self.places[begin.step].low, 1);
         for time in place.low..=place.high {
@@ -250,7 +254,9 @@ impl Stretch {
     fn longer(&self, begin: Begin<'_>, layer: &Layer, least: usize, next: &mut Layer) -> u64 {
         let (step, mut spent) = (begin.step, 8);
         let last = self.places[step].end.min(step + self.format.most_count() as usize);
-        let Some(&target) = self.places.get(step + least).filter(|_| step + least <= last) else { return spent };
+        let Some(&target) = self.places.get(step + least).filter(|_| step + least <= last) else {
+            return spent;
+        };
         let mut exits = vec![0; self.stride];
         for add in self.adds(begin, least, target) {
             spent += 8;
@@ -310,13 +316,11 @@ impl Stretch {
         let over = n * h * (n - h);
         let least = through(target.low - begin.last, middle.high - begin.first);
         let most = through(target.high - begin.first, middle.low - begin.last);
-        let within = |add: i128| add.clamp(self.format.least_add().into(), self.format.most_add().into()) as i64;
         let least = least.div_euclid(over) + i128::from(least.rem_euclid(over) > 0);
-        let most = most.div_euclid(over);
-        if least > self.format.most_add().into() || most < self.format.least_add().into() {
-            return 1..=0;
-        }
-        within(least)..=within(most)
+        let least = least.max(self.format.least_add().into());
+        let most = most.div_euclid(over).min(self.format.most_add().into());
+        let narrow = |add: i128| i64::try_from(add).unwrap_or(if add < 0 { i64::MIN } else { i64::MAX });
+        narrow(least)..=narrow(most)
     }
 
     /// The intervals of entries of `count` steps and this add that may end in `target`.
@@ -378,7 +382,8 @@ impl Stretch {
             for add in self.adds(begin, count, exactly) {
                 for interval in self.intervals(begin, count, exactly, add) {
                     let start = time - interval * count as i64 - add * triangle(count);
-                    let there = (begin.first..=begin.last).contains(&start) && is_set(begin.bits, start - low);
+                    let there =
+                        (begin.first..=begin.last).contains(&start) && is_set(begin.bits, start - low);
                     if there && self.passes(from, start, Piece { count, interval, add }) {
                         return Some((from, start, Piece { count, interval, add }));
                     }
@@ -499,7 +504,8 @@ const fn ones(first: i64, last: i64) -> u64 {
 /// The 64 bits from this one on.
 fn word_at(bits: &[u64], at: i64) -> u64 {
     let (index, shift) = (at.div_euclid(64), at.rem_euclid(64));
-    let word = |index: i64| usize::try_from(index).ok().and_then(|index| bits.get(index)).copied().unwrap_or(0);
+    let word =
+        |index: i64| usize::try_from(index).ok().and_then(|index| bits.get(index)).copied().unwrap_or(0);
     if shift == 0 { word(index) } else { word(index) >> shift | word(index + 1) << (64 - shift) }
 }
 

@@ -33,13 +33,12 @@ mod segments;
 mod stored;
 mod ticks;
 mod timing_error;
+mod wire_bytes;
 
 pub use compressed::{Compressed, MAX_TOLERANCE, Side, Tolerance, compressed, compressed_quickly};
 pub use entry_format::{Entry, EntryFormat};
 pub use segments::exact_segments;
-pub use stored::{
-    Form, MAX_TABLE_STEPS, Stored, stored, stored_quickly, stored_steps, stored_steps_quickly,
-};
+pub use stored::{Form, MAX_TABLE_STEPS, Stored, stored, stored_quickly, stored_steps, stored_steps_quickly};
 pub use ticks::{TickClock, Ticks, ticks};
 pub use timing_error::TimingError;
 

@@ -12,6 +12,7 @@ use crate::quantise::{
     entry_format::{Entry, EntryFormat},
     segments::{MAX_STEPS, exact},
     timing_error::TimingError,
+    wire_bytes::wire_bytes,
 };
 use crate::{
     AxisPlan, ScheduledStep,
@@ -69,6 +70,19 @@ impl Stored {
     #[must_use]
     pub fn bytes(&self) -> u64 {
         self.entries.len() as u64 * self.format.bytes()
+    }
+
+    /// Entries without steps: turns and waits. Klipper counts its `queue_step` without them.
+    #[must_use]
+    pub fn turns(&self) -> usize {
+        self.entries.iter().filter(|entry| entry.count == 0).count()
+    }
+
+    /// Bytes on the line to a controller that speaks Klipper's protocol: commands as it packs them, in blocks of up to 64
+    /// bytes. None of a format whose numbers its `queue_step` does not take: it takes those of [`EntryFormat::TICKS`].
+    #[must_use]
+    pub fn wire_bytes(&self) -> Option<u64> {
+        wire_bytes(self.format, &self.entries)
     }
 }
 
