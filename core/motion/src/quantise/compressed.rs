@@ -121,9 +121,11 @@ pub fn compressed(
     pulse: PulseTimes,
 ) -> Result<Compressed, Cause> {
     let mut compression = Compression::new(steps.into_iter(), tolerance, format, pulse)?;
-    let surplus = compression.fewest()?;
-    compression.quick()?;
-    Ok(Compressed { surplus, ..compression.end() })
+    let mut ready = VecDeque::new();
+    let (before, surplus) = compression.fewest(&mut ready)?;
+    let mut rest = compression.go_on(before, ready);
+    rest.quick()?;
+    Ok(Compressed { surplus, ..rest.end() })
 }
 
 /// The same in few entries, each the longest that ends near the middle of a window: in a part of the time.
@@ -156,48 +158,64 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
         Ok(Self { windows: Windows::new(steps, tolerance, format, pulse), writer: Writer::new(format) })
     }
 
-    /// Stretch after stretch in the fewest entries. What is left then goes the quick way: none, and how many entries the
-    /// list may have more than the fewest, or None.
-    fn fewest(&mut self) -> Result<Option<u64>, Cause> {
+    /// Stretch after stretch in the fewest entries: the cycle of the last step that was kept, and how many entries there
+    /// may be more than the fewest, or None where steps are left, `ready` those of them that were read.
+    fn fewest(&mut self, ready: &mut VecDeque<(Window, bool)>) -> Result<(u64, Option<u64>), Cause> {
         let (format, pulse) = (self.windows.format, self.windows.pulse);
         let least = pulse.min_interval().0 << format.fraction_bits;
-        let (mut cuts, mut work) = (0, WORK);
+        let (mut last, mut cuts, mut work) = (0, 0, WORK);
         loop {
-            self.windows.read(fewest::MAX_STEPS)?;
-            let more = self.windows.next.is_some();
-            let ready = self.windows.ready.make_contiguous();
-            let Some((first, _)) = ready.first() else { return Ok(Some(cuts)) };
-            if ready.iter().any(|(window, _)| window.high - window.low >= fewest::MAX_WIDTH) {
-                return Ok(None);
+            while let Some(step) = self.windows.next.filter(|_| ready.len() < fewest::MAX_STEPS) {
+                ready.push_back((self.windows.window(step)?, step.right));
             }
-            let near = |before: u64, window: &Window| window.high - before <= format.most_interval();
+            let more = self.windows.next.is_some();
+            let steps = ready.make_contiguous();
+            let Some((first, _)) = steps.first() else { return Ok((last, Some(cuts))) };
+            if steps.iter().any(|(window, _)| window.high - window.low >= fewest::MAX_WIDTH) {
+                return Ok((last, None));
+            }
+            let near =
+                |before: u64, window: &Window| window.high.saturating_sub(before) <= format.most_interval();
             if !near(self.writer.time, first) {
                 self.writer.wait(first.first(self.writer.time, least, format).wait);
             }
             // Up to a rest that no interval holds.
-            let pairs = ready.iter().zip(ready.iter().skip(1));
+            let pairs = steps.iter().zip(steps.iter().skip(1));
             let there = 1 + pairs.take_while(|((before, _), (window, _))| near(before.low, window)).count();
-            let is_cut = more && there == ready.len();
+            let is_cut = more && there == steps.len();
             // Where some times are near enough the wait may be one that another list does without.
             let waits =
-                ready.get(there - 1).zip(ready.get(there)).is_some_and(|((before, _), (window, _))| {
+                steps.get(there - 1).zip(steps.get(there)).is_some_and(|((before, _), (window, _))| {
                     window.low.saturating_sub(before.high) <= format.most_interval()
                 });
             let stretch =
-                Stretch::new(format, least, self.writer.time, ready.get(..there).unwrap_or_default());
+                Stretch::new(format, least, self.writer.time, steps.get(..there).unwrap_or_default());
             work += WORK_A_STEP * there as u64;
-            let Some(pieces) = stretch.pieces(is_cut, &mut work) else { return Ok(None) };
+            let Some(pieces) = stretch.pieces(is_cut, &mut work) else { return Ok((last, None)) };
             let mut done = 0;
             for Piece { count, interval, add } in pieces {
-                let steps = ready.get(done..done + count).unwrap_or_default();
-                let right = steps.first().is_some_and(|(_, right)| *right);
-                self.writer.steps(steps.iter().map(|(window, _)| *window), interval as u64, add, right);
-                done += count;
+                let kept = steps.get(done..done + count).unwrap_or_default();
+                let right = kept.first().is_some_and(|(_, right)| *right);
+                self.writer.steps(kept.iter().map(|(window, _)| *window), interval as u64, add, right);
+                (done, last) = (done + count, kept.last().map_or(last, |(window, _)| window.due));
             }
-            self.windows.ready.drain(..done);
             cuts += u64::from(is_cut || done < there) + 2 * u64::from(waits);
+            ready.drain(..done);
             self.writer.judge()?;
         }
+    }
+
+    /// The steps that are left, behind one that is due in the cycle `before`.
+    fn go_on(
+        self,
+        before: u64,
+        ready: VecDeque<(Window, bool)>,
+    ) -> Compression<impl Iterator<Item = ScheduledStep>> {
+        let Windows { steps, tolerance, format, pulse, next, count, .. } = self.windows;
+        let count = count - ready.len() as u64;
+        let ready = ready.into_iter().map(|(window, right)| ScheduledStep { cycle: window.due, right });
+        let windows = Windows::new(ready.chain(next).chain(steps), tolerance, format, pulse);
+        Compression { windows: Windows { before, count, ..windows }, writer: self.writer }
     }
 
     /// The rest, one entry after another.
@@ -230,51 +248,31 @@ struct Windows<I> {
     tolerance: Tolerance,
     format: EntryFormat,
     pulse: PulseTimes,
-    /// The next step to be read, and the cycle of the one before it.
+    /// The next step, and the cycle of the one before it.
     next: Option<ScheduledStep>,
     before: u64,
     /// Steps that were read.
     count: u64,
     /// Which way the run goes.
     right: bool,
-    /// Windows that were read and not used, with the ways of their steps.
-    ready: VecDeque<(Window, bool)>,
 }
 
 impl<I: Iterator<Item = ScheduledStep>> Windows<I> {
     fn new(mut steps: I, tolerance: Tolerance, format: EntryFormat, pulse: PulseTimes) -> Self {
         let next = steps.next();
-        let ready = VecDeque::new();
-        Self { steps, tolerance, format, pulse, next, before: 0, count: 0, right: false, ready }
-    }
-
-    /// Reads on until so many are ready, or no step is left.
-    fn read(&mut self, most: usize) -> Result<(), Cause> {
-        while let Some(step) = self.next.filter(|_| self.ready.len() < most) {
-            let window = self.window(step)?;
-            self.ready.push_back((window, step.right));
-        }
-        Ok(())
+        Self { steps, tolerance, format, pulse, next, before: 0, count: 0, right: false }
     }
 
     /// Begins the next run; false where no step is left.
     fn begin(&mut self, ahead: &mut Ahead) -> Result<bool, Cause> {
-        let next = self.ready.front().map(|(_, right)| *right);
-        let Some(right) = next.or(self.next.map(|next| next.right)) else { return Ok(false) };
-        self.right = right;
+        let Some(next) = self.next else { return Ok(false) };
+        self.right = next.right;
         self.fill(ahead)?;
         Ok(true)
     }
 
     /// Reads on, some steps of the run; false at its end.
     fn fill(&mut self, ahead: &mut Ahead) -> Result<bool, Cause> {
-        while let Some(&(window, right)) = self.ready.front() {
-            if right != self.right {
-                return Ok(false);
-            }
-            ahead.push(window);
-            self.ready.pop_front();
-        }
         for _ in 0..256 {
             let Some(step) = self.next.filter(|step| step.right == self.right) else { return Ok(false) };
             ahead.push(self.window(step)?);
