@@ -20,8 +20,8 @@ use stepscope_core::{
     inspect::plant::settling as settling_of,
     plant::{
         Refused,
-        parameters::Setup,
-        rates::{RAMP_STEPS_S2, Resonance, Search, pulls, resonance as resonance_of, starts},
+        parameters::{Motor, Setup},
+        rates::{RAMP_STEPS_S2, Resonance, pulls, resonance as resonance_of, search, starts},
         settling::StepResponse,
     },
     scenario::{Cause, Problem, Scenario, to_json},
@@ -121,10 +121,9 @@ fn motors(common: &Common) -> Result<(Scenario, Experiment, Vec<Alone>), Failure
         }
         match found.iter_mut().find(|alone| alone.setup.motors.first() == Some(motor)) {
             Some(alone) => alone.channels.push(channel),
-            None => found.push(Alone {
-                channels: vec![channel],
-                setup: Setup { motors: vec![motor.clone()], protection: None, ..setup.clone() },
-            }),
+            None => {
+                found.extend(setup.alone(channel).map(|setup| Alone { channels: vec![channel], setup }));
+            }
         }
     }
     Ok((Scenario::clone(&scenario), Experiment::clone(&experiment), found))
@@ -243,26 +242,16 @@ pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
         return Err(wrong_option(path, "--steps are those of each try; give 1 to 10000000"));
     }
     let (_, _, motors) = motors(common)?;
-    let turn = |setup: &Setup| {
-        let motor = setup.motors.first();
-        motor.map_or(1, |motor| (360.0 / motor.full_step_deg * f64::from(motor.microsteps) + 0.5) as u64)
-    };
-    let search = |holds: &dyn Fn(f64) -> Result<bool, Vec<Refused>>| {
-        let mut search = Search::default();
-        while let Some(rate) = search.rate() {
-            search.tell(holds(rate)?);
-        }
-        Ok(search.found())
-    };
+    let turn = |setup: &Setup| setup.motors.first().map_or(1, Motor::steps_a_turn);
     // The pull-out rates first: they take longer.
     let all = on_threads(common, "limits", 2 * motors.len(), |index| {
         let Some(alone) = motors.get(index / 2) else { return Ok(None) };
         let setup = &alone.setup;
         let steps = arguments.steps.map_or_else(|| turn(setup), NonZero::get);
         if index % 2 == 0 {
-            search(&|rate| pulls(setup, rate, arguments.ramp))
+            search(|rate| pulls(setup, rate, arguments.ramp))
         } else {
-            search(&|rate| starts(setup, rate, steps))
+            search(|rate| starts(setup, rate, steps))
         }
     })?;
     let all: Vec<Option<f64>> =

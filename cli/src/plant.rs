@@ -8,17 +8,20 @@ use crate::{
     progress::Progress,
 };
 use clap::Args;
-use serde_json::{Value, json};
+use serde::Serialize;
+use serde_json::Value;
 use std::{
     cell::RefCell,
     io::{self, Write},
     num::NonZero,
     path::{Path, PathBuf},
     rc::Rc,
+    slice,
 };
 use stepscope_core::{
     inspect::{
-        plant::{names, table_head, table_row, too_coarse, values, verdict},
+        plant::{energy_left_over, names, table_head, table_row, too_coarse, values, verdict},
+        plant_report::PlantReport,
         vcd::{Timescale, VcdWriter},
     },
     peripheral::{
@@ -37,8 +40,6 @@ use stepscope_core::{
 
 /// Cycles between two looks at how far a run is.
 const SLICE: Cycles = Cycles(1 << 22);
-/// More of the energy than this must not be left over.
-const MAX_ENERGY_ERROR: f64 = 1e-3;
 /// Slips that are listed.
 const MAX_SLIPS: usize = 20;
 
@@ -155,7 +156,7 @@ pub(crate) fn plant(arguments: &Arguments) -> Result<(), Failure> {
         return writeln!(io::stdout(), "{:016x}", result.digest).map_err(Failure::output);
     }
     if arguments.json {
-        return tables(&run, result, chosen, setup).print();
+        return PlantReport::of(&experiment, &run, chosen).map_or(Ok(()), |report| tables(&report).print());
     }
     if arguments.csv.as_deref() == Some(Path::new(STANDARD))
         || arguments.vcd.as_deref() == Some(Path::new(STANDARD))
@@ -298,75 +299,20 @@ fn print_motor(out: &mut impl Write, channel: usize, motor: &MotorResult, clock_
         "  energy         {:.5} J from the bus = copper {:.5} + friction {:.5} + viscous {:.5} + diodes {:.5} + load {:.5} + stored {:.5}",
         energy.bus, energy.copper, energy.friction, energy.viscous, energy.diodes, energy.load, energy.stored
     )?;
-    if energy.error() > MAX_ENERGY_ERROR {
-        writeln!(
-            out,
-            "  warning: {:.2} % of the energy is left over; give a smaller step_cycles",
-            100.0 * energy.error()
-        )?;
+    if let Some(told) = energy_left_over(motor) {
+        writeln!(out, "  warning: {told}")?;
     }
     Ok(())
 }
 
-fn tables<S: Sink, O: Observer>(
-    run: &PlantRun<S, O>,
-    result: &PlantResult,
-    controller: usize,
-    setup: &Setup,
-) -> Tables {
-    let clock_hz = setup.clock_hz;
-    let seconds = |cycles: u64| cycles as f64 / f64::from(clock_hz);
-    let whole = json!({
-        "controller": controller,
-        "digest": format!("{:016x}", result.digest),
-        "cycle": result.cycle,
-        "load_least_a": result.load_a.least,
-        "load_greatest_a": result.load_a.greatest,
-        "load_rms_a": result.load_a.rms(),
-        "deviation_above_a": result.deviation.map(|found| found.above_a),
-        "deviation_below_a": result.deviation.map(|found| found.below_a),
-        "bus_least_v": result.bus_v.least,
-        "bus_greatest_v": result.bus_v.greatest,
-        "collapsed_at_s": result.collapsed.map(seconds),
-        "overload_cycle": run.overload(controller),
-    });
-    let motor = |(channel, motor): (usize, &MotorResult)| {
-        json!({
-            "channel": channel,
-            "verdict": verdict(motor, clock_hz),
-            "command_full_steps": motor.command,
-            "rotor_full_steps": motor.state.x,
-            "lost_full_steps": motor.lost,
-            "slips": motor.slip_count,
-            "following_error_full_steps": motor.following_error.0,
-            "following_error_at_s": seconds(motor.following_error.1),
-            "overshoot_full_steps": motor.overshoot,
-            "settling_s": motor.settling.map(seconds),
-            "phase_peak_a": motor.phase_peak_a,
-            "phase_rms_a": motor.phase_rms_a,
-            "bus_j": motor.energy.bus,
-            "copper_j": motor.energy.copper,
-            "friction_j": motor.energy.friction,
-            "viscous_j": motor.energy.viscous,
-            "diodes_j": motor.energy.diodes,
-            "load_j": motor.energy.load,
-            "stored_j": motor.energy.stored,
-            "energy_error": motor.energy.error(),
-            "fastest_full_steps_s": motor.fastest.0,
-            "grid_too_coarse": too_coarse(setup, channel, motor),
-        })
-    };
-    let slips = result.motors.iter().enumerate().flat_map(|(channel, motor)| {
-        let row = move |slip: &stepscope_core::plant::Slip| json!({ "channel": channel, "cycle": slip.cycle, "behind": slip.is_behind });
-        motor.slips.iter().map(row)
-    });
-    let found = run.self_test(controller).iter().enumerate();
-    let tests = found.map(|(channel, cycles)| json!({ "channel": channel, "settling_cycles": cycles }));
-    let motors: Vec<Value> = result.motors.iter().enumerate().map(motor).collect();
-    let slips: Vec<Value> = slips.collect();
+fn tables(report: &PlantReport) -> Tables {
+    /// Rows of numbers, texts and truth values are always JSON.
+    fn rows<T: Serialize>(rows: &[T]) -> Vec<Value> {
+        rows.iter().map(|row| serde_json::to_value(row).unwrap_or_default()).collect()
+    }
     Tables::of("plant")
-        .with("plant", [whole])
-        .with("motors", motors)
-        .with("slips", slips)
-        .with("self_test", tests)
+        .with("plant", rows(slice::from_ref(&report.plant)))
+        .with("motors", rows(&report.motors))
+        .with("slips", rows(&report.slips))
+        .with("self_test", rows(&report.self_test))
 }

@@ -116,9 +116,9 @@ fn a_self_test_measures_the_settling_time_of_each_channel_and_staggers_by_it() {
         near(*found as f64, expected, 0.03 * expected);
     }
     assert_eq!(found, [8479, 8207, 8255, 8223]);
-    assert_eq!(run.run().faults(), Faults::default());
+    assert_eq!(run.faults(), Faults::default());
     // Seen by firmware, and by the pulses: min(8479, 32768/4) apart.
-    let device = run.run().device();
+    let device = run.device();
     assert_eq!(device.read(stepscope_registers::settle::OFFSET), 8479);
     let trace = &run.into_parts()[0].0;
     let rises = |channel| steps(trace, channel).iter().map(|step| step.cycle).collect::<Vec<_>>();
@@ -146,9 +146,9 @@ fn a_self_test_that_finds_nothing_takes_t_step_and_says_so() {
     let json = self_test(r#","current_sensor":{"bandwidth_hz":20}"#, "");
     let run = run(&json, ());
     assert!(run.self_test(0).contains(&None), "{:?}", run.self_test(0));
-    assert_eq!(run.run().faults(), Faults::SELF_TEST);
-    assert_eq!(run.run().device().read(stepscope_registers::settle::OFFSET), 32_768);
-    assert_eq!(run.run().device().read(stepscope_registers::faults::OFFSET), 1 << 9);
+    assert_eq!(run.faults(), Faults::SELF_TEST);
+    assert_eq!(run.device().read(stepscope_registers::settle::OFFSET), 32_768);
+    assert_eq!(run.device().read(stepscope_registers::faults::OFFSET), 1 << 9);
 }
 
 #[test]
@@ -156,10 +156,10 @@ fn stopped_in_its_boot_a_self_test_finds_nothing() {
     let json = self_test(r#","protection":{"threshold_a":1.2,"samples":1}"#, "");
     let run = run(&json, ());
     assert_eq!(run.self_test(0), [None; 4]);
-    assert_eq!(run.run().faults().bits(), 1 << 8 | 1 << 9);
+    assert_eq!(run.faults().bits(), 1 << 8 | 1 << 9);
     let at = run.overload(0).expect("an overload");
     assert!(at > 10 * 32_768 && at < 12 * 32_768, "{at}");
-    assert_eq!(run.run().positions()[0], 1, "the step that rose counts");
+    assert_eq!(run.positions()[0], 1, "the step that rose counts");
 }
 
 /// Four default motors in full steps, segments of four steps from 1600, channels `apart` cycles after each other.
@@ -184,14 +184,14 @@ fn an_overload_ends_the_segments_and_staggered_steps_are_none() {
     let at = run_together.overload(0).expect("an overload");
     near(at as f64, 39_280.0, 160.0);
     assert_eq!(at, 39_280);
-    assert_eq!(run_together.run().faults(), Faults::OVERLOAD);
-    assert_eq!(run_together.run().positions()[..4], [1; 4]);
+    assert_eq!(run_together.faults(), Faults::OVERLOAD);
+    assert_eq!(run_together.positions()[..4], [1; 4]);
     let trace = &run_together.into_parts()[0].0;
     let last = trace[trace.len() - 1];
     assert_eq!(last.cycle.0, 39_281, "EN falls in the cycle after, and nothing follows");
     assert_eq!((last.levels.0 >> 32, last.levels.step()), (0b110, 0), "EN and STEP are 0, RX and TX 1");
     let staggered = run(&overload(8192), ());
-    assert_eq!((staggered.overload(0), staggered.run().positions()[0]), (None, 4));
+    assert_eq!((staggered.overload(0), staggered.positions()[0]), (None, 4));
 }
 
 /// As [`overload`], by ticks of packets.
@@ -209,7 +209,7 @@ fn an_overload_stops_a_controller_as_stop_does() {
     for line in ["", r#""protocol":"framed""#] {
         let run = run(&overload_by_ticks(line, 4), ());
         let at = run.overload(0).expect("an overload");
-        let device = run.run().device();
+        let device = run.device();
         assert_eq!(device.faults(), Faults::OVERLOAD, "{line}");
         assert_eq!(device.read(stepscope_registers::faults::OFFSET), 1 << 8);
         let status = device.read(stepscope_registers::status::OFFSET);

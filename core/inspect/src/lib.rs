@@ -49,6 +49,10 @@ pub mod motors;
 pub mod packet_table;
 #[cfg(feature = "plant")]
 pub mod plant;
+#[cfg(feature = "plant")]
+pub mod plant_log;
+#[cfg(feature = "plant")]
+pub mod plant_report;
 pub mod position_error;
 pub mod remedies;
 pub mod run_fingerprint;

@@ -66,6 +66,17 @@ pub fn too_coarse(setup: &Setup, channel: usize, found: &MotorResult) -> Option<
     ))
 }
 
+/// More of the energy than this must not be left over (F8).
+const MAX_ENERGY_ERROR: f64 = 1e-3;
+
+/// What is to be said where too much of the energy that went through a motor is left over: the grid is too coarse.
+#[must_use]
+pub fn energy_left_over(found: &MotorResult) -> Option<String> {
+    let error = found.energy.error();
+    (error > MAX_ENERGY_ERROR)
+        .then(|| format!("{:.2} % of the energy is left over; give a smaller step_cycles", 100.0 * error))
+}
+
 /// Whether a motor follows its pulses, in words.
 #[must_use]
 pub fn verdict(motor: &MotorResult, clock_hz: u32) -> String {
@@ -137,15 +148,29 @@ pub fn settling(
     t_step: u64,
     share: f64,
 ) -> Result<StepResponse, Vec<Refused>> {
-    let motors = setup.motors.get(channel).cloned().into_iter().collect();
-    let mut plant = Plant::new(&Setup { motors, protection: None, ..setup.clone() })?;
+    settling_with(setup, channel, t_step, share).map(|(response, _)| response)
+}
+
+/// The same, and what the sensor said from `t_step` cycles before the step on, with cycles after STEP's rise.
+///
+/// # Errors
+/// As [`settling`].
+pub fn settling_with(
+    setup: &Setup,
+    channel: usize,
+    t_step: u64,
+    share: f64,
+) -> Result<(StepResponse, Vec<(f64, f64)>), Vec<Refused>> {
+    let mut plant = Plant::new(&setup.alone(channel).ok_or_else(Vec::new)?)?;
     let mut log = SensorLog::default();
     // As the self-test has it: S = 1.
     let (from, rise) = (1, 1 + REST_STEPS * t_step);
     let levels = Levels(Levels::RESET.0 | 1 << Levels::DIR_SHIFT | 1);
     plant.record(Record { cycle: Instant(rise), levels }, &mut log);
     plant.advance(rise + t_step, &mut log);
-    StepResponse::of(&log.samples, from, rise, t_step, share).ok_or_else(Vec::new)
+    let response = StepResponse::of(&log.samples, from, rise, t_step, share).ok_or_else(Vec::new)?;
+    let shown = log.samples.iter().skip_while(|sample| sample.cycle + t_step < rise);
+    Ok((response, shown.map(|sample| (sample.cycle as f64 - rise as f64, sample.current_a)).collect()))
 }
 
 #[cfg(test)]

@@ -213,4 +213,19 @@ impl Setup {
         let a_second = if chops { 1_000_000 } else { 200_000 };
         self.step_cycles.unwrap_or((self.clock_hz / a_second).max(1))
     }
+
+    /// The motor of one channel alone on this supply, with nothing that stops it: what searches look at.
+    #[must_use]
+    pub fn alone(&self, channel: usize) -> Option<Self> {
+        let motor = self.motors.get(channel)?.clone();
+        Some(Self { motors: alloc::vec![motor], protection: None, ..self.clone() })
+    }
+}
+
+impl Motor {
+    /// Steps of a turn, rounded.
+    #[must_use]
+    pub fn steps_a_turn(&self) -> u64 {
+        (360.0 / self.full_step_deg * f64::from(self.microsteps) + 0.5) as u64
+    }
 }

@@ -214,7 +214,7 @@ impl Plant {
     }
 
     /// Tells the levels from a cycle on; all records before it have been told.
-    pub fn record(&mut self, record: Record, observer: &mut impl Observer) {
+    pub fn record(&mut self, record: Record, observer: &mut dyn Observer) {
         let cycle = record.cycle.0;
         self.advance(cycle, observer);
         let before = core::mem::replace(&mut self.levels, record.levels);
@@ -246,14 +246,14 @@ impl Plant {
     }
 
     /// Goes on through every point that is known when no level changes before `cycle`: those in cycles up to `cycle`.
-    pub fn advance(&mut self, cycle: u64, observer: &mut impl Observer) {
+    pub fn advance(&mut self, cycle: u64, observer: &mut dyn Observer) {
         while self.next_point() <= cycle {
             self.grid_step(observer);
         }
     }
 
     #[inline(always)]
-    fn grid_step(&mut self, observer: &mut impl Observer) {
+    fn grid_step(&mut self, observer: &mut dyn Observer) {
         let (powered, bus) = (self.levels.has(Levels::EN), self.supply.v);
         let mut energy = 0.0;
         for motor in &mut self.motors {

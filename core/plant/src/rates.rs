@@ -8,14 +8,11 @@
 //! ```
 //!
 //! ```
-//! use stepscope_plant::{parameters::{Motor, Setup}, rates::{Search, starts}};
+//! use stepscope_plant::{parameters::{Motor, Setup}, rates::{search, starts}};
 //!
 //! let setup = Setup { motors: vec![Motor::default()], ..Setup::default() };
-//! let mut search = Search::default();
-//! while let Some(rate) = search.rate() {
-//!     search.tell(starts(&setup, rate, 3200).expect("a plant"));
-//! }
-//! assert!((search.found().expect("it starts") - 34_700.0).abs() < 400.0);
+//! let found = search(|rate| starts(&setup, rate, 3200)).expect("a plant");
+//! assert!((found.expect("it starts") - 34_700.0).abs() < 400.0);
 //! ```
 
 use crate::{
@@ -94,6 +91,18 @@ impl Search {
             _ => 0.1,
         }
     }
+}
+
+/// The highest rate that holds, in steps/s; `None` where not even 500 does.
+///
+/// # Errors
+/// The first of a trial.
+pub fn search<E>(mut holds: impl FnMut(f64) -> Result<bool, E>) -> Result<Option<f64>, E> {
+    let mut search = Search::default();
+    while let Some(rate) = search.rate() {
+        search.tell(holds(rate)?);
+    }
+    Ok(search.found())
 }
 
 /// Rises of STEP at one rate, the first in [`FIRST_STEP`]: step k floor(k*clock_hz/rate + 1/2) later.

@@ -17,31 +17,40 @@ pub trait Compact: ToParts {
     where
         Self: Sized,
     {
-        value_of(self.parts(), false)
+        value_of(self.parts(), Fields::Differing)
     }
 }
 
 impl<T: ToParts> Compact for T {}
 
-/// A value as JSON, with what equals its default left out, or `whole`, with every field.
-pub(super) fn value_of(parts: Parts<'_>, whole: bool) -> Value {
+/// Which fields are written.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Fields {
+    /// Those that differ from their defaults.
+    Differing,
+    /// Every one.
+    All,
+}
+
+/// A value as JSON.
+pub(super) fn value_of(parts: Parts<'_>, which: Fields) -> Value {
     match parts {
         Parts::Whole(value) => value,
         // -0.0 equals 0.0, so it is written like it.
         Parts::Number(number) => Value::from(number + 0.0),
-        Parts::List(entries) => entries.into_iter().map(|entry| value_of(entry.parts(), whole)).collect(),
+        Parts::List(entries) => entries.into_iter().map(|entry| value_of(entry.parts(), which)).collect(),
         Parts::Fields(group, values) => {
             let mut map = Map::new();
             for (field, (value, differs)) in group.fields.iter().zip(values) {
-                if differs || (whole && !field.only_if_set) {
-                    map.insert(field.name.to_string(), value_of(value.parts(), whole));
+                if differs || which == Fields::All {
+                    map.insert(field.name.to_string(), value_of(value.parts(), which));
                 }
             }
             Value::Object(map)
         }
         Parts::Kind(name, value) => {
             let mut map = Map::new();
-            map.insert(name.to_string(), value_of(value.parts(), whole));
+            map.insert(name.to_string(), value_of(value.parts(), which));
             Value::Object(map)
         }
     }

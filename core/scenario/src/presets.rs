@@ -80,7 +80,7 @@ presets! {
 
 #[cfg(feature = "plant")]
 presets! {
-    /// Presets with a plant, which the page does not show yet.
+    /// Presets with a plant.
     PLANT_PRESETS:
     PATENT => "patent-2019-figure-1";
     PATENT => "patent-2019-figure-2";

@@ -23,7 +23,7 @@ use stepscope_peripheral::{
     wire::{ForcedLevel, Line, Schedule},
 };
 #[cfg(feature = "plant")]
-use stepscope_plant::Observer;
+use stepscope_plant::{Observer, Plant, measures::PlantResult};
 use stepscope_scenario::{Checked, END_OF_TIME, Problem, Scenario, ValueError};
 
 /// Most bytes that a host may have to send: as many as the most ticks of 16 channels take on an addressed
@@ -388,10 +388,10 @@ impl Run {
         self.is_done()
     }
 
-    /// Goes on to a cycle, or until a controller has made so many records more, with a sink and an observer for each; true
-    /// at the end.
+    /// Goes on to a cycle, or until a controller has made so many records more, with a sink and an observer of its plant for
+    /// each; true at the end. A run without plants stands still.
     #[cfg(feature = "plant")]
-    pub(crate) fn advance_observed<S: Sink, O: Observer>(
+    pub fn advance_observed<S: Sink, O: Observer>(
         &mut self,
         until: (Instant, u64),
         sinks: &mut [S],
@@ -409,10 +409,38 @@ impl Run {
         }
     }
 
+    #[cfg(feature = "plant")]
+    fn behind(&self, controller: usize) -> Option<&Behind> {
+        self.plants.as_ref()?.behind.get(controller)
+    }
+
     /// The plant behind a controller.
     #[cfg(feature = "plant")]
-    pub(crate) fn behind(&self, controller: usize) -> Option<&Behind> {
-        self.plants.as_ref()?.behind.get(controller)
+    #[must_use]
+    pub fn plant(&self, controller: usize) -> Option<&Plant> {
+        self.behind(controller).map(|behind| &behind.plant)
+    }
+
+    /// What the self-test found on each channel of a controller, in cycles; empty before the end of its boot.
+    #[cfg(feature = "plant")]
+    #[must_use]
+    pub fn self_test(&self, controller: usize) -> &[Option<u64>] {
+        self.behind(controller).map_or(&[], |behind| &behind.found)
+    }
+
+    /// Cycle of the last overload of a controller.
+    #[cfg(feature = "plant")]
+    #[must_use]
+    pub fn overload(&self, controller: usize) -> Option<u64> {
+        self.behind(controller)?.overload_at
+    }
+
+    /// What each plant has done so far.
+    #[cfg(feature = "plant")]
+    #[must_use]
+    pub fn results(&self) -> Vec<PlantResult> {
+        let all = (0..).map_while(|index| self.behind(index));
+        all.map(|behind| behind.measures.result(&behind.plant)).collect()
     }
 
     /// One cycle, with a sink for each controller.

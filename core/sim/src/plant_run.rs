@@ -16,13 +16,15 @@
 
 use crate::{Experiment, Run};
 use alloc::vec::Vec;
+use core::ops::Deref;
 use stepscope_peripheral::{
     signal::Sink,
     units::{Cycles, Instant},
 };
-use stepscope_plant::{Observer, Plant, measures::PlantResult};
+use stepscope_plant::Observer;
 
-/// A run under way. Each controller may have a sink for its records and an observer of its plant.
+/// A run under way, which dereferences to its [`Run`]. Each controller may have a sink for its records and an observer of
+/// its plant.
 pub struct PlantRun<S, O> {
     run: Run,
     sinks: Vec<S>,
@@ -54,43 +56,6 @@ impl<S: Sink, O: Observer> PlantRun<S, O> {
         Instant(self.run.cycles().0)
     }
 
-    /// Whether the run is over.
-    #[must_use]
-    pub fn is_done(&self) -> bool {
-        self.run.is_done()
-    }
-
-    /// The run of the controllers.
-    #[must_use]
-    pub const fn run(&self) -> &Run {
-        &self.run
-    }
-
-    /// The plant behind a controller.
-    #[must_use]
-    pub fn plant(&self, controller: usize) -> Option<&Plant> {
-        self.run.behind(controller).map(|behind| &behind.plant)
-    }
-
-    /// What the self-test found on each channel of a controller, in cycles; empty before the end of its boot.
-    #[must_use]
-    pub fn self_test(&self, controller: usize) -> &[Option<u64>] {
-        self.run.behind(controller).map_or(&[], |behind| &behind.found)
-    }
-
-    /// Cycle of the last overload of a controller.
-    #[must_use]
-    pub fn overload(&self, controller: usize) -> Option<u64> {
-        self.run.behind(controller)?.overload_at
-    }
-
-    /// What each plant has done so far.
-    #[must_use]
-    pub fn results(&self) -> Vec<PlantResult> {
-        let all = (0..).map_while(|index| self.run.behind(index));
-        all.map(|behind| behind.measures.result(&behind.plant)).collect()
-    }
-
     /// The sinks and observers, in the order of the scenario.
     #[must_use]
     pub fn into_parts(self) -> Vec<(S, O)> {
@@ -113,5 +78,13 @@ impl<S: Sink, O: Observer> PlantRun<S, O> {
     pub fn advance(&mut self, cycles: Cycles) -> bool {
         let target = Instant(self.now().0.saturating_add(cycles.0.max(1)));
         self.run.advance_observed((target, u64::MAX), &mut self.sinks, &mut self.observers)
+    }
+}
+
+impl<S, O> Deref for PlantRun<S, O> {
+    type Target = Run;
+
+    fn deref(&self) -> &Run {
+        &self.run
     }
 }

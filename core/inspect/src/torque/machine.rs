@@ -47,6 +47,24 @@ impl Machine {
         })
     }
 
+    /// Of a motor of a plant on its supply.
+    #[cfg(feature = "plant")]
+    #[must_use]
+    pub fn of_plant(motor: &stepscope_plant::parameters::Motor, supply_v: f64) -> Self {
+        Self {
+            constant: motor.holding_torque_mn_m / MILLI / (SQRT_2 * motor.rated_current_a),
+            current_a: motor.peak_current_a,
+            supply_v,
+            resistance_ohm: motor.resistance_ohm,
+            inductance_h: motor.inductance_mh / 1000.0,
+            pole_pairs: 90.0 / motor.full_step_deg,
+            step_rad: motor.full_step_deg / f64::from(motor.microsteps) * PI / 180.0,
+            inertia_kg_m2: (motor.rotor_inertia_g_cm2 + motor.load_inertia_g_cm2) * GRAM_CM2,
+            load_n_m: motor.load_torque_mn_m / MILLI,
+            working_rate: None,
+        }
+    }
+
     /// The stated highest rate in steps/s, if there is one.
     #[must_use]
     pub fn working_rate(&self) -> Option<f64> {

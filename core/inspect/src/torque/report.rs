@@ -92,11 +92,18 @@ impl TorqueReport {
 
 impl TorqueCurve {
     fn of(machine: &Machine, plan: &AxisPlan) -> Self {
-        let most = machine.shown_rate(plan.peaks().speed);
+        Self::up_to(machine, Some(plan), machine.shown_rate(plan.peaks().speed))
+    }
+
+    /// Up to a rate in steps/s, above 0; what a plan needs of it where there is one.
+    #[must_use]
+    pub fn up_to(machine: &Machine, plan: Option<&AxisPlan>, most: f64) -> Self {
         let (rate, available) = machine.curve(most, POINTS).unzip();
         // A bin around each rate of the curve.
         let width = most / f64::from(POINTS - 1);
-        let needed = needed_over_rate(machine, plan, width * f64::from(POINTS), POINTS as usize);
+        let needed = plan.map_or_else(Vec::new, |plan| {
+            needed_over_rate(machine, plan, width * f64::from(POINTS), POINTS as usize)
+        });
         Self { rate, available, needed }
     }
 }

@@ -57,7 +57,7 @@ fn type_of(ty: &Type, groups: &mut Map<String, Value>) -> Value {
 
 fn of_group(group: &Group, groups: &mut Map<String, Value>) -> Value {
     let fields: Vec<Value> = group.fields.iter().map(|field| of_field(field, groups)).collect();
-    let default = compact::value_of((group.blank)().parts(), true);
+    let default = compact::value_of((group.blank)().parts(), compact::Fields::All);
     json!({ "doc": group.doc.trim(), "choice": group.is_choice, "default": default, "fields": fields })
 }
 

@@ -56,7 +56,7 @@ settings! {
         pub driver_timing: Option<DriverTiming> = None => label("Driver timing").empty("not checked"),
         /// What the edges drive: motors with their drivers, a supply, sensors.
         #[cfg(feature = "plant")]
-        pub plant: Option<PlantSettings> = None => label("Plant").empty("none: a run ends at the bus"),
+        pub plant: Option<PlantSettings> = None => label("Motors and supply").empty("none: a run ends at the bus"),
     }
 }
 

@@ -1,0 +1,115 @@
+//! What is kept of a plant's run against every one of its points: least and greatest of a stretch, and values at a cycle.
+#![cfg(feature = "plant")]
+#![allow(clippy::expect_used, reason = "what is missing fails the test")]
+
+use stepscope_inspect::plant_log::{MOTOR, PlantLog, SUPPLY, Stretch};
+use stepscope_peripheral::{trace::Recording, units::Instant};
+use stepscope_plant::{Observer, Plant};
+use stepscope_sim::Experiment;
+
+/// Every point of a plant: its cycle and all values.
+#[derive(Default)]
+struct Points(Vec<(u64, Vec<f64>)>);
+
+impl Observer for Points {
+    fn point(&mut self, plant: &Plant) {
+        let mut values = vec![plant.bus_v(), plant.load_a(), plant.current_sensor().filtered()];
+        for channel in 0..plant.motors() {
+            let state = plant.state(channel).expect("a motor");
+            let command = plant.command(channel);
+            let code = f64::from(plant.encoder(channel));
+            values.extend([command, state.x, command - state.x, state.w, state.i_a, state.i_b, code]);
+        }
+        self.0.push((plant.cycle(), values));
+    }
+}
+
+/// A run in slices of so many cycles: its log, records, points and length.
+fn logged(json: &str, slice: u64) -> (PlantLog, Recording, Vec<(u64, Vec<f64>)>, u64) {
+    let experiment = Experiment::from_json(json).expect("no problem");
+    let mut run = experiment.start();
+    let (mut recording, mut points) = (Recording::default(), Points::default());
+    let mut log = PlantLog::new(run.plant(0).expect("a plant"));
+    loop {
+        let target = Instant(run.cycles().0.saturating_add(slice));
+        let done = run.advance_observed(
+            (target, u64::MAX),
+            std::slice::from_mut(&mut recording),
+            &mut [(&mut log, &mut points)],
+        );
+        log.keep(run.plant(0).expect("a plant"), recording.trace.len());
+        if done {
+            return (log, recording, points.0, run.cycles().0);
+        }
+    }
+}
+
+/// Two motors, one on a driver that chops: points every 16 cycles, more than there are bins.
+const CHOPPING: &str = r#"{"bus":{"channels":2},"plant":{"tail_s":0.02,"buffer_uf":200},"source":{"motion":{"engine":"segments","axes":[
+    {"moves":[{"cosine":{"distance":{"steps":200},"duration_s":0.02,"ramp_s":0.005}}],"motor":{"drive":{"regulator":"chopper","decay":"mixed"}}},{}]}}}"#;
+
+/// Least and greatest of some values.
+fn extremes(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+}
+
+#[test]
+fn a_stretch_has_the_least_and_greatest_of_its_points() {
+    let mut has_bins = false;
+    for (json, slice) in [(CHOPPING, 7_001), (CHOPPING, 1 << 40), (r#"{"plant":{}}"#, 50_000)] {
+        let (log, recording, points, end) = logged(json, slice);
+        let step = points[0].0;
+        let wanted = [2, PlantLog::of_motor(0) + 1, PlantLog::of_motor(0) + 4];
+        for (from, to) in
+            [(0, end), (end / 3, end / 2), (end / 2, end / 2 + 3000), (end - 500, end), (40, 41)]
+        {
+            let bands = log.curves(&recording.trace, Stretch { from, to, columns: 300 }, &wanted);
+            for (band, &value) in bands.iter().zip(&wanted) {
+                assert!(!band.cycle.is_empty() && band.cycle.len() <= 604, "{} places", band.cycle.len());
+                assert!(band.cycle.windows(2).all(|pair| pair[0] < pair[1]));
+                // All of the stretch is within what is told, and that within some points more at each end.
+                let around = |slack: u64| {
+                    let range = from.saturating_sub(slack)..=to + slack;
+                    let some = points.iter().filter(move |(cycle, _)| range.contains(cycle));
+                    extremes(some.map(|(_, values)| values[value]))
+                };
+                let told =
+                    (extremes(band.least.iter().copied()).0, extremes(band.greatest.iter().copied()).1);
+                let (inner, outer) = (around(0), around(64 * step));
+                assert!(told.0 <= inner.0 && told.1 >= inner.1, "{told:?} leaves out some of {inner:?}");
+                assert!(told.0 >= outer.0 && told.1 <= outer.1, "{told:?} is more than {outer:?}");
+                has_bins |= band.least != band.greatest;
+            }
+        }
+    }
+    assert!(has_bins, "every stretch was told point by point");
+}
+
+#[test]
+fn the_values_at_a_cycle_are_those_of_the_last_point_to_the_bit() {
+    let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+    for slice in [3_333, 1 << 40] {
+        let (log, recording, points, end) = logged(CHOPPING, slice);
+        for part in 1..200 {
+            let cycle = end * part / 199;
+            let (_, expected) = points.iter().rev().find(|(point, _)| *point <= cycle).expect("a point");
+            let found = log.at(&recording.trace, cycle);
+            assert_eq!(found.len(), SUPPLY.len() + 2 * MOTOR.len());
+            assert_eq!(bits(&found), bits(expected), "cycle {cycle}, slices of {slice}");
+        }
+    }
+}
+
+#[test]
+fn a_short_stretch_is_told_point_by_point() {
+    let (log, recording, points, _) = logged(r#"{"plant":{}}"#, 20_000);
+    let step = points[0].0;
+    let (from, to) = (100 * step + 3, 120 * step + 3);
+    let rotor = PlantLog::of_motor(0) + 1;
+    let bands = log.curves(&recording.trace, Stretch { from, to, columns: 100 }, &[rotor]);
+    // One more at each end.
+    let expected: Vec<f64> = (100..=121).map(|point| (point * step) as f64).collect();
+    assert_eq!(bands[0].cycle, expected);
+    assert_eq!(bands[0].least, bands[0].greatest);
+    assert_eq!(bands[0].least[0].to_bits(), points[99].1[rotor].to_bits());
+}
