@@ -1,6 +1,6 @@
 //! `cargo xtask bench --page`: how long the page as it is shipped takes in Chromium. Its frames over ten million edges,
 //! its loading, its answers to keys. The times are of this machine and this moment: they are printed, and no test judges
-//! them.
+//! them. Where `STEPSCOPE_RESULTS` names a file they go there, too, as JSON: `frames`, `loading`, `answers`, a list each.
 #![cfg(not(target_arch = "wasm32"))]
 #![allow(dead_code, reason = "what the tests have is shared whole, and little of it is needed here")]
 
@@ -19,10 +19,12 @@ mod programs;
 #[path = "../tests/page/session.rs"]
 mod session;
 
+use std::{cell::RefCell, env, fs, rc::Rc};
+
 use anyhow::Result;
 use serde::Deserialize;
 use serde_json::{Value, json};
-use stepscope_core::scenario::presets::PRESETS;
+use stepscope_core::scenario::presets::{PLANT_PRESETS, PRESETS};
 
 use crate::{
     bench::in_browser,
@@ -31,9 +33,29 @@ use crate::{
 };
 
 fn main() -> Result<()> {
-    in_browser(|page| async move { frames(&page).await })?;
-    in_browser(|page| async move { loading(&page).await })?;
-    in_browser(|page| async move { answers(&page).await })
+    let results = json!({
+        "frames": measured(|page| async move { frames(&page).await })?,
+        "loading": measured(|page| async move { loading(&page).await })?,
+        "answers": measured(|page| async move { answers(&page).await })?,
+    });
+    if let Some(file) = env::var_os("STEPSCOPE_RESULTS") {
+        fs::write(file, results.to_string())?;
+    }
+    Ok(())
+}
+
+/// What a measurement in a browser gives.
+fn measured<F>(measure: fn(Session) -> F) -> Result<Vec<Value>>
+where
+    F: Future<Output = Result<Vec<Value>>> + 'static,
+{
+    let found = Rc::new(RefCell::new(Vec::new()));
+    let place = Rc::clone(&found);
+    in_browser(|page| async move {
+        place.replace(measure(page).await?);
+        Ok(())
+    })?;
+    Ok(found.take())
 }
 
 /// Sixteen motors at their fastest, for seconds.
@@ -77,7 +99,8 @@ const FRAMES: &str = "
     return null;";
 
 /// The pulses' frames while they are zoomed and dragged about.
-async fn frames(page: &Session) -> Result<()> {
+async fn frames(page: &Session) -> Result<Vec<Value>> {
+    let mut rows = Vec::new();
     let known = Known::of(&ten_million_edges())?;
     page.open(&format!("#{}", known.link)).await?;
     page.click("#run-anyway").await?;
@@ -105,9 +128,12 @@ async fn frames(page: &Session) -> Result<()> {
                 at(0.95),
                 at(1.0)
             );
+            rows.push(json!({
+                "view": view, "what": what, "zoom": zoom, "p50_ms": at(0.5), "p95_ms": at(0.95), "longest_ms": at(1.0),
+            }));
         }
     }
-    Ok(())
+    Ok(rows)
 }
 
 /// Notes, from the document's beginning on, what the browser measures of the visit.
@@ -141,7 +167,8 @@ struct Seen {
 }
 
 /// Several visits, the later ones with the files on the device.
-async fn loading(page: &Session) -> Result<()> {
+async fn loading(page: &Session) -> Result<Vec<Value>> {
+    let mut rows = Vec::new();
     page.before_scripts(OBSERVE).await?;
     for (width, height) in [(1440, 900), (390, 844)] {
         page.screen(width, height).await?;
@@ -153,15 +180,19 @@ async fn loading(page: &Session) -> Result<()> {
                 "{width} x {height}, {visit} visit: LCP {:.0} ms ({}), first result {stands:.0} ms, CLS {}",
                 seen.lcp, seen.lcp_of, seen.cls
             );
+            rows.push(json!({
+                "width": width, "height": height, "visit": visit, "lcp_ms": seen.lcp, "first_result_ms": stands, "cls": seen.cls,
+            }));
         }
     }
-    Ok(())
+    Ok(rows)
 }
 
 /// How long the page is silent after a key, with each preset.
-async fn answers(page: &Session) -> Result<()> {
+async fn answers(page: &Session) -> Result<Vec<Value>> {
+    let mut rows = Vec::new();
     page.before_scripts(OBSERVE).await?;
-    for preset in PRESETS {
+    for preset in PRESETS.iter().chain(PLANT_PRESETS) {
         page.open("").await?;
         page.choose("#preset", preset.id).await?;
         page.ready().await?;
@@ -181,6 +212,7 @@ async fn answers(page: &Session) -> Result<()> {
         let seen: Seen = page.js(LOOK, vec![]).await?;
         let status = page.text("#status").await?;
         println!("{}: INP {:.0} ms ({}); {status}", preset.id, seen.inp, seen.inp_of);
+        rows.push(json!({ "preset": preset.id, "inp_ms": seen.inp, "of": seen.inp_of }));
     }
-    Ok(())
+    Ok(rows)
 }

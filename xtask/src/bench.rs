@@ -75,7 +75,12 @@ pub(crate) async fn run(quick: bool) -> Result<()> {
          best calls in a block of {} rounds,\nthe median of {} blocks ± its median absolute deviation.",
         effort.rounds, effort.blocks
     );
-    keep(&tree.home, &table::json(&blocks, None)?)
+    println!("\nThe page in Chromium:");
+    let path = tree.home.join("page.json");
+    self::page(Some(&path)).await?;
+    let text = std::fs::read_to_string(&path).with_context(|| format!("{} can't be read", path.display()))?;
+    let figures = serde_json::from_str(&text).with_context(|| format!("{} is no JSON", path.display()))?;
+    keep(&tree.home, &table::json(&blocks, None, Some(figures))?)
 }
 
 /// Measures the kernels of an earlier commit and those of the tree as it stands in turn, and prints how fast these are in
@@ -101,7 +106,7 @@ pub(crate) async fn against(quick: bool, rev: &str) -> Result<()> {
          median absolute deviation.",
         effort.rounds, effort.blocks
     );
-    keep(&now.home, &table::json(&blocks, Some(&before))?)
+    keep(&now.home, &table::json(&blocks, Some(&before), None)?)
 }
 
 /// Keeps what was measured, for whoever goes on with it.
@@ -179,7 +184,7 @@ impl Tree {
         std::fs::create_dir_all(&self.home)
             .with_context(|| format!("{} can't be made", self.home.display()))?;
         let call = self.at_home(tools.wasm_pack()?);
-        crate::page::wasm_by(tools, call, FOLDER, &self.package()).await?;
+        crate::page::wasm_by(tools, call, FOLDER, &self.package(), &[]).await?;
         run::to_end(self.at_home(kernels(&["--no-run"])), run::LIMIT).await
     }
 
@@ -206,10 +211,15 @@ impl Tree {
     }
 }
 
-/// Measures the page as it is shipped, in Chromium. Its times are of this machine and this moment.
-pub(crate) async fn page() -> Result<()> {
+/// Measures the page as it is shipped, in Chromium, and leaves what it found in a file. Its times are of this machine and
+/// this moment.
+pub(crate) async fn page(results: Option<&Path>) -> Result<()> {
     let command = "bench --package stepscope-tests --features browser --bench page --locked";
-    run::to_end(steps::with_page(command).await?, run::LIMIT).await
+    let mut command = steps::with_page(command).await?;
+    if let Some(results) = results {
+        command.env("STEPSCOPE_RESULTS", results);
+    }
+    run::to_end(command, run::LIMIT).await
 }
 
 /// Criterion's benchmarks, each kernel by itself; their results lie under `home` then.

@@ -2,6 +2,7 @@
 
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 /// One kernel's times in the rounds of one process, as it reports them.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -145,8 +146,8 @@ fn both(now: &[Block], before: &[Block], kernel: &str) -> [Option<Ratio>; 2] {
     [of(|block| &block.native), of(|block| &block.browser)]
 }
 
-/// All that was measured, and the ratios of each kernel, as JSON.
-pub(super) fn json(blocks: &[Block], before: Option<&[Block]>) -> Result<String> {
+/// All that was measured, and the ratios of each kernel, as JSON, with the page's own figures as `page` where there are some.
+pub(super) fn json(blocks: &[Block], before: Option<&[Block]>, page: Option<Value>) -> Result<String> {
     #[derive(Serialize)]
     struct Kernel<'b> {
         name: &'b str,
@@ -165,6 +166,7 @@ pub(super) fn json(blocks: &[Block], before: Option<&[Block]>) -> Result<String>
         kernels: Vec<Kernel<'b>>,
         blocks: &'b [Block],
         before: Option<&'b [Block]>,
+        page: Option<Value>,
     }
     let first = blocks.first().context("nothing was measured")?;
     let kernels = first.native.iter().map(|report| {
@@ -185,7 +187,7 @@ pub(super) fn json(blocks: &[Block], before: Option<&[Block]>) -> Result<String>
             browser_of_before,
         })
     });
-    let results = Results { kernels: kernels.collect::<Result<_>>()?, blocks, before };
+    let results = Results { kernels: kernels.collect::<Result<_>>()?, blocks, before, page };
     Ok(serde_json::to_string_pretty(&results)? + "\n")
 }
 
@@ -327,9 +329,11 @@ mod tests {
         let cells: Vec<Vec<&str>> = table.lines().map(|line| line.split_whitespace().collect()).collect();
         assert_eq!(cells[1][..4], ["trace", "0.750", "±", "0.250"], "halved, and as before");
         assert_eq!(cells[2], ["added", "–", "–"]);
-        let json: serde_json::Value = serde_json::from_str(&json(&now, Some(&before)).unwrap()).unwrap();
+        let page = serde_json::json!({ "frames": [1] });
+        let json: Value = serde_json::from_str(&json(&now, Some(&before), Some(page)).unwrap()).unwrap();
+        assert_eq!(json["page"]["frames"][0], 1);
         assert_eq!(json["kernels"][0]["native_of_before"]["median"], 0.75);
-        assert_eq!(json["kernels"][1]["browser_of_before"], serde_json::Value::Null);
+        assert_eq!(json["kernels"][1]["browser_of_before"], Value::Null);
         assert_eq!(json["before"][0]["native"][0]["seconds"][0], 0.001);
     }
 
