@@ -1,6 +1,6 @@
 //! Results as JavaScript values.
 
-use js_sys::{Float64Array, Object, Reflect, Uint32Array};
+use js_sys::{Float64Array, Object, Reflect};
 use serde::Serialize;
 use wasm_bindgen::{JsError, JsValue};
 
@@ -21,7 +21,8 @@ pub(crate) fn numbers(object: &Object, name: &str, values: &[f64]) {
 }
 
 /// Adds an array of 64-bit words to an object, each as its low and its high half.
+#[cfg(feature = "run")]
 pub(crate) fn words(object: &Object, name: &str, values: &[u64]) {
     let halves: Vec<u32> = values.iter().flat_map(|word| [*word as u32, (*word >> 32) as u32]).collect();
-    field(object, name, &Uint32Array::from(halves.as_slice()));
+    field(object, name, &js_sys::Uint32Array::from(halves.as_slice()));
 }

@@ -3,7 +3,8 @@
 
 use crate::{
     convert::{field, numbers, object},
-    simulation::{Simulation, config},
+    judged::config,
+    simulation::Simulation,
 };
 use js_sys::Object;
 use serde::Serialize;

@@ -4,11 +4,8 @@ use crate::convert::object;
 use serde::Serialize;
 use stepscope_core::{
     inspect::judgement::RunCost,
-    scenario::{
-        LineScript, Scenario,
-        link::{LinkError, decode, part, with_part},
-    },
-    sim::{Experiment, replayed},
+    scenario::link::{LinkError, decode, part, with_part},
+    sim::Experiment,
 };
 use wasm_bindgen::prelude::*;
 
@@ -32,21 +29,6 @@ pub fn link_part(fragment: &str, name: &str) -> Option<String> {
 #[must_use]
 pub fn link_with(link: String, name: &str, text: &str) -> String {
     with_part(link, name, text)
-}
-
-/// The scenario that sends the packets of a table, as a run exports it, to the controllers of the scenario
-/// `json`.
-///
-/// # Errors
-/// With the first line of the table that cannot be used.
-#[wasm_bindgen]
-pub fn replay(table: &str, json: &str) -> Result<String, JsError> {
-    let (scenario, _) = Scenario::from_json_lenient(json);
-    let script = LineScript::recorded(table, scenario.clock_hz)?;
-    let mut again = replayed(scenario, script);
-    // The bytes are those that were heard: what struck them faults only once.
-    again.line.glitches.clear();
-    Ok(again.to_json())
 }
 
 /// The scenario of a fragment: `{scenario, over_budget, message}`, or `{error}` with what is wrong

@@ -6,12 +6,13 @@ use serde::Serialize;
 use std::{mem::take, rc::Rc};
 use stepscope_core::{
     inspect::{
-        changes::Changes, drivers, packet_table::Filter, run_sink::RunSink, timing::TimingCheck,
-        trace_diff::TraceDiff,
+        changes::Changes, drivers, packet_table::Filter, plant_log::PlantLog, run_sink::RunSink,
+        timing::TimingCheck,
     },
     peripheral::{
         config::Config,
         trace::{Recording, Step, steps},
+        units::Instant,
     },
     scenario::Scenario,
     sim::{Experiment, Run},
@@ -36,8 +37,6 @@ pub struct Simulation {
     pub(crate) selected: usize,
     /// Which rows of its packets the table shows.
     pub(crate) filter: Filter,
-    /// A controller's index, and how its trace stands to a file that is being read.
-    pub(crate) trace_diff: Option<(usize, TraceDiff)>,
 }
 
 /// What is kept of one controller.
@@ -48,6 +47,8 @@ pub(crate) struct ControllerRecording {
     pub(crate) changes: Changes,
     /// The pulses against the scenario's driver, if it names one.
     pub(crate) timing: Option<TimingCheck>,
+    /// What its motors did, if the scenario has a plant.
+    pub(crate) plant: Option<PlantLog>,
     /// Steps of each channel, as far as they were asked for after the end.
     steps: Vec<Option<Vec<Step>>>,
 }
@@ -67,11 +68,6 @@ impl ControllerRecording {
     }
 }
 
-/// The configuration of controller `index`.
-pub(crate) fn config(experiment: &Experiment, index: usize) -> &Config {
-    experiment.configs().nth(index).unwrap_or_else(|| experiment.config())
-}
-
 #[derive(Serialize)]
 struct Progress {
     done: bool,
@@ -82,8 +78,8 @@ struct Progress {
 
 #[wasm_bindgen]
 impl Simulation {
-    /// Runs on until one controller has made about `max_records` more records: `{done, cycle, end_cycle,
-    /// records}`, the records those of all controllers.
+    /// Runs on until one controller has made about `max_records` more records, or its plant as many steps of its grid:
+    /// `{done, cycle, end_cycle, records}`, the records those of all controllers.
     ///
     /// # Errors
     /// If the run makes more records than a page can keep.
@@ -93,10 +89,25 @@ impl Simulation {
             timing: one.timing.take(),
         };
         let mut watched: Vec<RunSink> = self.recordings.iter_mut().map(watched).collect();
-        let done = self.run.advance_each(u64::from(max_records.max(1)), &mut watched);
+        let records = u64::from(max_records.max(1));
+        let done = match self.experiment.plants() {
+            None => self.run.advance_each(records, &mut watched),
+            Some(plants) => {
+                let step =
+                    plants.setups.iter().map(|setup| u64::from(setup.grid_cycles())).min().unwrap_or(1);
+                let target = Instant(self.run.cycles().0.saturating_add(records * step));
+                let mut logs: Vec<_> = self.recordings.iter_mut().map(|one| one.plant.as_mut()).collect();
+                self.run.advance_observed((target, records), &mut watched, &mut logs)
+            }
+        };
         for (one, RunSink { recording, timing }) in self.recordings.iter_mut().zip(watched) {
             one.changes.extend(&recording.trace);
             (one.recording, one.timing) = (recording, timing);
+        }
+        for (index, one) in self.recordings.iter_mut().enumerate() {
+            if let (Some(log), Some(plant)) = (&mut one.plant, self.run.plant(index)) {
+                log.keep(plant, one.recording.trace.len());
+            }
         }
         let records: u64 = self.recordings.iter().map(|one| one.recording.digest.records()).sum();
         if records > MAX_RECORDS {
@@ -129,20 +140,22 @@ impl Simulation {
 impl Simulation {
     /// A run of what was judged, before its first cycle.
     pub(crate) fn of(scenario: &Rc<Scenario>, experiment: &Rc<Experiment>) -> Self {
-        let recording = |config: &Config| ControllerRecording {
+        let run = experiment.start();
+        let recording = |(index, config): (usize, &Config)| ControllerRecording {
             recording: Recording::default(),
             changes: Changes::default(),
             timing: drivers::check(scenario, MAX_KEPT),
+            plant: run.plant(index).map(PlantLog::new),
             steps: vec![None; usize::from(config.channels())],
         };
+        let recordings = experiment.configs().enumerate().map(recording).collect();
         Self {
             scenario: Rc::clone(scenario),
-            run: experiment.start(),
-            recordings: experiment.configs().map(recording).collect(),
+            run,
+            recordings,
             experiment: Rc::clone(experiment),
             selected: 0,
             filter: Filter::default(),
-            trace_diff: None,
         }
     }
 

@@ -1,19 +1,12 @@
-//! A run held against another one: what a link's sender saw, and a trace that was saved.
+//! A run held against another one: what a link's sender saw.
 
-use crate::{
-    convert::object,
-    simulation::{Simulation, config},
-};
+use crate::{convert::object, simulation::Simulation};
 use serde::Serialize;
-use stepscope_core::peripheral::signal::Sink;
-use stepscope_core::{
-    inspect::{
-        fingerprint::{Fingerprint, Mark, Shorter},
-        run_fingerprint::{RunFingerprint, VERSION, Verification},
-        trace_diff::TraceDiff,
-    },
-    peripheral::signal,
+use stepscope_core::inspect::{
+    fingerprint::{Fingerprint, Mark, Shorter},
+    run_fingerprint::{RunFingerprint, VERSION, Verification},
 };
+use stepscope_core::peripheral::signal::Sink;
 use wasm_bindgen::prelude::*;
 
 /// A place in a run.
@@ -48,25 +41,6 @@ struct Judged {
     shorter: Option<&'static str>,
 }
 
-/// How the run stands to a file.
-#[derive(Serialize)]
-struct Held {
-    /// Rows that are the run's own.
-    same: u64,
-    start_cycle: u64,
-    end_cycle: u64,
-    goes_on: bool,
-    difference: Option<Differs>,
-}
-
-#[derive(Serialize)]
-struct Differs {
-    line: u64,
-    cycle: u64,
-    /// Of each signal that differs its name, and its level in the file and in the run.
-    signals: Vec<(String, u8, u8)>,
-}
-
 #[wasm_bindgen]
 impl Simulation {
     /// The part `d` of a link: the digests of all controllers.
@@ -86,49 +60,6 @@ impl Simulation {
     /// Never for any text.
     pub fn verify(&self, text: &str) -> Result<JsValue, JsError> {
         object(&self.judged(text))
-    }
-
-    /// Begins to hold the trace of a controller against a file.
-    pub fn diff_begin(&mut self, controller: u32) {
-        let index = (controller as usize).min(self.recordings.len() - 1);
-        self.trace_diff = Some((index, TraceDiff::new(config(&self.experiment, index).channels())));
-    }
-
-    /// Takes a piece of the file; true if the rest is not needed.
-    ///
-    /// # Errors
-    /// With the first line that cannot be read.
-    pub fn diff_feed(&mut self, piece: &[u8]) -> Result<bool, JsError> {
-        let Some((index, diff)) = &mut self.trace_diff else { return Ok(true) };
-        Ok(diff.feed(&self.recordings[*index].recording.trace, piece)?)
-    }
-
-    /// The file is over: `{same, start_cycle, end_cycle, goes_on, difference: {line, cycle, signals: [[name,
-    /// level in the file, level in the run]]} | null}`; null if none was begun.
-    ///
-    /// # Errors
-    /// If there was nothing in it, or its last line cannot be read.
-    pub fn diff_end(&mut self) -> Result<JsValue, JsError> {
-        let Some((index, diff)) = self.trace_diff.take() else { return Ok(JsValue::NULL) };
-        let outcome = diff.finish(&self.recordings[index].recording.trace)?;
-        object(&Held {
-            same: outcome.same,
-            start_cycle: outcome.range.0.0,
-            end_cycle: outcome.range.1.0,
-            goes_on: outcome.goes_on,
-            difference: outcome.difference.map(|difference| Differs {
-                line: difference.line,
-                cycle: difference.cycle.0,
-                signals: (0..36)
-                    .filter(|bit| difference.signals() >> bit & 1 == 1)
-                    .map(|bit| {
-                        let level = |levels: signal::Levels| u8::from(levels.has(1 << bit));
-                        let name = signal::name(bit).unwrap_or_default();
-                        (name, level(difference.file), level(difference.run))
-                    })
-                    .collect(),
-            }),
-        })
     }
 }
 

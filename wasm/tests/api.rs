@@ -5,7 +5,9 @@ mod js;
 
 use js::{get, list, number, text};
 use js_sys::{Float64Array, Uint32Array};
-use stepscope_wasm::{Judged, Simulation, decode_link, default_scenario, drivers, presets, version};
+use stepscope_wasm::{
+    Judged, Simulation, decode_link, default_scenario, drivers, presets, sheets, version, with_motor,
+};
 use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_test::{wasm_bindgen_test, wasm_bindgen_test_configure};
 
@@ -423,13 +425,46 @@ fn a_host_that_gives_up_says_why() {
 
 #[wasm_bindgen_test]
 fn measures_are_those_of_the_axis_that_is_asked_for() {
-    let mut simulation = finished(
+    let judged = Judged::new(
         r#"{"bus":{"channels":2},"source":{"motion":{"axes":[{},{"moves":[{"constant":{"distance":{"steps":100}}}]}]}}}"#,
     );
     let counts = |measures: &JsValue| number(&get(measures, "counts"), "due");
-    assert_eq!([0, 1].map(|axis| counts(&sure(simulation.measures(axis)))), [3200.0, 100.0]);
-    let measures = sure(simulation.measures(1));
+    assert_eq!([0, 1].map(|axis| counts(&sure(judged.measures(0, axis)))), [3200.0, 100.0]);
+    let measures = sure(judged.measures(0, 1));
     assert!((number(&get(&measures, "steps"), "rms_steps") - 0.288_675).abs() < 1e-5);
     assert!(get(&measures, "sine").is_null() && get(&get(&measures, "duration"), "requested_s").is_null());
-    assert!(sure(simulation.measures(2)).is_null(), "there is no third axis");
+    assert!(sure(judged.measures(0, 2)).is_null(), "there is no third axis");
+}
+
+#[wasm_bindgen_test]
+fn a_plant_is_told_of_the_motor_that_is_asked_for() {
+    let simulation = finished(r#"{"bus":{"channels":2},"plant":{},"source":{"motion":{"axes":[{},{}]}}}"#);
+    let report = sure(simulation.plant());
+    let motors = list(&report, "motors");
+    assert_eq!((motors.len(), text(&motors[1], "verdict").as_str()), (2, "follows"));
+    let end = number(&sure(simulation.summary()), "end_cycle");
+    let curves = simulation.plant_curves(1, 0.0, end, 300).expect("a motor");
+    let greatest = numbers(&get(&curves, "rotor"), "max");
+    assert!(greatest.len() > 300 && greatest.len() <= 602, "{}", greatest.len());
+    let at_end = simulation.plant_at(1, end).expect("a motor");
+    assert_eq!(number(&at_end, "rotor"), number(&motors[1], "rotor_full_steps"));
+    assert!(simulation.plant_curves(2, 0.0, end, 300).is_none(), "there is no third motor");
+    assert!(sure(finished("{}").plant()).is_null());
+}
+
+#[wasm_bindgen_test]
+fn a_motor_of_the_list_takes_the_place_of_the_scenarios() {
+    let sheets = sure(sheets());
+    assert!(list(&sheets, "motors").len() >= 8 && list(&sheets, "drives").len() >= 4);
+    let made = with_motor("{}", "17hs4401", "a4988");
+    assert!(made.contains("\"plant\"") && made.contains("\"resistance_ohm\": 1.5"), "{made}");
+    let judged = Judged::new(&made);
+    assert!(list(&sure(judged.check()), "problems").is_empty());
+    // As `stepscope limits` has it for the default motor.
+    let usual = Judged::new(r#"{"plant":{}}"#);
+    let rate = sure(usual.start_stop(0, 0)).expect("it starts");
+    assert!((rate - 34_700.0).abs() < 400.0, "{rate}");
+    assert!(usual.start_stop(0, 1).is_err() && Judged::new("{}").start_stop(0, 0).is_err());
+    let map = sure(usual.resonance(0, 0, 100.0, 50.0, 3));
+    assert_eq!(numbers(&map, "swing").len(), 3);
 }

@@ -1,8 +1,8 @@
 /**
  * The only module that talks to the worker: questions with answers, one run at a time, and a new
  * worker after a crash, or where a cancel is not heard in time. A new worker makes the last good run
- * once more, so that the views that show it can still ask. Long questions that need no run are distributed
- * to further workers, as many as the machine has room for.
+ * once more, so that the views that show it can still ask. Long questions, those of the study, go to further workers, as many
+ * as the machine has room for, and keep neither runs nor views waiting; they and their code load with the first of them.
  */
 import { byId } from "../dom.js";
 import { compiled } from "./wasm.js";
@@ -23,12 +23,15 @@ import { compiled } from "./wasm.js";
 /** How long a cancel may go unanswered, in ms: one long call hears nothing. */
 const PATIENCE_MS = 1000;
 
-/** Most further workers. */
+/** Most further workers of one question. */
 const MAX_FURTHER = 4;
 /** A further worker that is not needed ends after this time, in ms: it holds memory. */
 const IDLE_MS = 20_000;
 /** And one whose piece was left off, if it does not come to the piece's end in this time. */
 const LEFT_MS = 300;
+
+/** What is told where the study's code could not be fetched. */
+const MISSING = "this part of the page could not be loaded; try again when the network is there";
 
 /** Thrown into questions that no longer matter: a newer one took their place, or the worker is gone. */
 export class Dropped extends Error {}
@@ -49,6 +52,8 @@ export class Engine {
   /** Further workers with nothing to do. @type {Worker[]} */
   #idle = [];
   #resting = 0;
+  /** The newest question of each slot that further workers answer. @type {Map<string, AbortController>} */
+  #considered = new Map();
   /** Crashes since the worker last answered; one that cannot even start is not started for ever. */
   #crashes = 0;
   /** @type {Map<number, {resolve: (value: any) => void, reject: (error: Error) => void}>} */
@@ -128,7 +133,7 @@ export class Engine {
   }
 
   #start() {
-    const worker = another();
+    const worker = another("core");
     worker.onmessage = ({ data }) => this.#heard(data);
     worker.onerror = (event) => this.#restart(event.message || "the engine could not be loaded");
     return worker;
@@ -147,7 +152,7 @@ export class Engine {
     const answers = Array(pieces.length);
     let next = 0;
     const help = async () => {
-      const worker = this.#idle.pop() ?? another();
+      const worker = this.#idle.pop() ?? another("study");
       try {
         while (next < pieces.length) {
           const at = next++;
@@ -158,9 +163,10 @@ export class Engine {
       } catch (error) {
         next = pieces.length;
         const timer = setTimeout(() => worker.terminate(), error instanceof Dropped ? LEFT_MS : 0);
-        worker.onmessage = () => {
+        worker.onmessage = ({ data }) => {
           clearTimeout(timer);
-          this.#rest(worker);
+          if ("value" in data || "error" in data) this.#rest(worker);
+          else worker.terminate();
         };
         throw error;
       }
@@ -169,6 +175,51 @@ export class Engine {
       Array.from({ length: Math.min(MAX_FURTHER, navigator.hardwareConcurrency || 1, pieces.length) }, help),
     );
     return answers;
+  }
+
+  /**
+   * One question to a further worker; a newer one in its slot ends it, in `Dropped`.
+   * @param {string} slot @param {string} method @param {...any} args
+   * @returns {Promise<any>}
+   */
+  async consider(slot, method, ...args) {
+    this.#considered.get(slot)?.abort();
+    const own = new AbortController();
+    this.#considered.set(slot, own);
+    const [answer] = await this.distribute(method, [args], own.signal);
+    return answer;
+  }
+
+  /**
+   * The same about the last good run, which the further worker makes again.
+   * @param {string} slot @param {string} method @param {...any} args
+   * @returns {Promise<any>}  undefined where there is no run to ask about.
+   */
+  async considerRun(slot, method, ...args) {
+    const good = this.#good ?? this.#restoring;
+    return good === null ? undefined : this.consider(slot, method, good.json, ...args);
+  }
+
+  /**
+   * Several questions to one further worker, which keeps what it opened: `open` makes an object of a scenario, `of` asks
+   * it. The last good run's scenario is at hand.
+   * @template T
+   * @param {(ask: (method: "open" | "of", ...args: any[]) => Promise<any>, json: string) => Promise<T>} work
+   * @returns {Promise<T | null>}  null where there is no run.
+   */
+  async session(work) {
+    const good = this.#good ?? this.#restoring;
+    if (good === null) return null;
+    const worker = this.#idle.pop() ?? another("study");
+    const { signal } = new AbortController();
+    try {
+      const result = await work((method, ...args) => call(worker, method, args, signal), good.json);
+      this.#rest(worker);
+      return result;
+    } catch (error) {
+      worker.terminate();
+      throw error;
+    }
   }
 
   /** Keeps a further worker for the next question that comes soon. @param {Worker} worker */
@@ -238,15 +289,16 @@ export class Engine {
   }
 }
 
-/** A worker that has the core; the page says which script it begins with. */
-function another() {
-  const worker = new Worker(/** @type {string} */ (byId("main").dataset.worker), { type: "module" });
-  // What goes wrong with it is told by who waits for the charts.
-  compiled().then(
-    (module) => worker.postMessage({ module }),
-    () => {},
+/** A worker that has the core, or the study's part of it; the page says which script it begins with. @param {"core" | "study"} which */
+function another(which) {
+  const { worker, laterWorker } = byId("main").dataset;
+  const made = new Worker(/** @type {string} */ (which === "core" ? worker : laterWorker), { type: "module" });
+  compiled(which).then(
+    (module) => made.postMessage({ module }),
+    // What goes wrong with the core is told by who waits for the charts.
+    () => which === "study" && made.dispatchEvent(new ErrorEvent("error", { message: MISSING })),
   );
-  return worker;
+  return made;
 }
 
 /** One question to a further worker. @param {Worker} worker @param {string} method @param {any[]} args @param {AbortSignal} signal @returns {Promise<any>} */

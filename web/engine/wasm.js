@@ -1,22 +1,29 @@
 /**
- * The core's code: fetched and compiled once, for the charts on the page and for every worker. The page says where it
- * lies, because what is built has other names.
+ * The core's code: fetched and compiled once, for the charts on the page and for every worker; and that of the study, once
+ * something is asked of it. The page says where they lie, because what is built has other names.
  */
 import { byId } from "../dom.js";
 
-/** @type {Promise<WebAssembly.Module> | null} */
-let module = null;
+/** @type {{core?: Promise<WebAssembly.Module>, study?: Promise<WebAssembly.Module>}} */
+const modules = {};
 
-/** @returns {Promise<WebAssembly.Module>} */
-export function compiled() {
-  module ??= compile();
-  return module;
+/** @param {"core" | "study"} which @returns {Promise<WebAssembly.Module>} */
+export function compiled(which = "core") {
+  const address = () =>
+    which === "core" ? /** @type {HTMLLinkElement} */ (byId("core")).href : (byId("main").dataset.laterCore ?? "");
+  const made = modules[which] ?? compile(address());
+  modules[which] = made;
+  // What could not be fetched is asked for again.
+  made.catch(() => {
+    modules[which] = undefined;
+  });
+  return made;
 }
 
-async function compile() {
-  const { href } = /** @type {HTMLLinkElement} */ (byId("core"));
-  const response = await fetch(href);
-  if (!response.ok) throw new Error(`${new URL(href).pathname}: ${response.status}`);
+/** @param {string} address */
+async function compile(address) {
+  const response = await fetch(address);
+  if (!response.ok) throw new Error(`${new URL(response.url).pathname}: ${response.status}`);
   // Compiled while it comes in, if the host names its type.
   const streams = response.headers.get("Content-Type")?.startsWith("application/wasm");
   return streams ? WebAssembly.compileStreaming(response) : WebAssembly.compile(await response.arrayBuffer());

@@ -7,6 +7,7 @@
  * {cancel} for {event: "cancelled"} once that run is no longer under way.
  */
 import init, * as core from "../pkg/stepscope_wasm.js";
+import { createJudging, fatal, text } from "./judging.js";
 
 /** How long a slice should take, in ms: short enough to be cancelled within a tenth of a second. */
 const SLICE_MS = 15;
@@ -19,10 +20,9 @@ let finished = null;
 let baseline = null;
 /** Controller that the views look at. */
 let selected = 0;
-/** The scenario that was judged last, and the texts that it goes by: as it came, and as the core writes it. @type {{texts: string[], judged: any} | null} */
-let held = null;
-/** How often a scenario was read and planned, and how often one was run; a test reads it. */
-const counts = { judged: 0, runs: 0 };
+const judging = createJudging((json) => new core.Judged(json));
+/** How often a scenario was run; a test reads it. */
+let runs = 0;
 /** No run has this number. */
 const NONE = -2;
 /** Number of the newest run that was asked for. */
@@ -47,32 +47,19 @@ function yieldToMessages() {
   });
 }
 
-/**
- * A scenario read, judged and planned: once for all that is asked of it until another one comes.
- * @param {string} json
- */
-function judge(json) {
-  if (held?.texts.includes(json)) return held.judged;
-  counts.judged += 1;
-  const judged = new core.Judged(json);
-  held?.judged.free();
-  held = { texts: [json], judged };
-  return judged;
-}
-
 /** Asks of a scenario. @param {string} method @param {any[]} args  Its text first. */
 function ofScenario(method, [json, ...args]) {
-  const value = judge(String(json))[method](...args);
+  const value = /** @type {any} */ (judging.judge(String(json)))[method](...args);
   // What could not be read stands at its default in the text that comes back: that is another scenario.
-  if (method === "check" && value.problems.length === 0 && held?.texts.length === 1) held.texts.push(value.scenario);
+  if (method === "check" && value.problems.length === 0) judging.alias(value.scenario);
   return value;
 }
 
 /** @param {{run: number, json: string, quiet?: boolean, select?: number}} order */
 async function simulate({ run, json, quiet = false, select = 0 }) {
   const begin = performance.now();
-  const simulation = judge(json).run();
-  counts.runs += 1;
+  const simulation = judging.judge(json).run();
+  runs += 1;
   let records = 4096;
   let reported = begin;
   for (;;) {
@@ -148,23 +135,13 @@ async function search(args) {
 function answer(method, args) {
   if (method === "baseline") return setBaseline(args[0]);
   if (method.startsWith("baseline_")) return ofBaseline(method.slice(9), args);
-  if (method === "counts") return { ...counts };
+  if (method === "counts") return { judged: judging.count(), runs };
   if (method in core.Judged.prototype) return ofScenario(method, args);
   if (method === "select") selected = args[0];
   if (method === "filter") return search(args);
   const calls = /** @type {any} */ (core);
   if (typeof calls[method] === "function") return calls[method](...args);
   return finished ? finished[method](...args) : null;
-}
-
-/** A panic leaves the wasm memory in no known state: the page has to start another worker. @param {unknown} error */
-function fatal(error) {
-  return error instanceof WebAssembly.RuntimeError || error instanceof RangeError;
-}
-
-/** @param {unknown} error */
-function text(error) {
-  return error instanceof Error ? error.message : String(error);
 }
 
 self.onmessage = async ({ data }) => {

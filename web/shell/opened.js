@@ -81,7 +81,12 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
 
   /** @param {File} file */
   async function packets(file) {
-    const text = await engine.ask("replay", await whole(file, MAX_TABLE), JSON.stringify(now().scenario));
+    const text = await engine.consider(
+      "replay",
+      "replay",
+      await whole(file, MAX_TABLE),
+      JSON.stringify(now().scenario),
+    );
     await take(
       text,
       file,
@@ -119,13 +124,15 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
     if (isStale(now()))
       throw new Error("the experiment has not been run as it stands; fix the form, or run it, then compare");
     const { controller, summary } = result;
-    await engine.ask("diff_begin", controller);
-    for (let at = 0; at < file.size; at += PIECE) {
-      const piece = new Uint8Array(await file.slice(at, at + PIECE).arrayBuffer());
-      if (await engine.ask("diff_feed", piece)) break;
-      if (at > 0) tell("info", `Comparing ${file.name}: ${Math.round((100 * at) / file.size)} %`);
-    }
-    const held = await engine.ask("diff_end");
+    const held = await engine.session(async (ask, json) => {
+      await ask("open", "trace_file", json, controller);
+      for (let at = 0; at < file.size; at += PIECE) {
+        const piece = new Uint8Array(await file.slice(at, at + PIECE).arrayBuffer());
+        if (await ask("of", "feed", piece)) break;
+        if (at > 0) tell("info", `Comparing ${file.name}: ${Math.round((100 * at) / file.size)} %`);
+      }
+      return ask("of", "end");
+    });
     if (!held || now().result?.summary !== summary)
       throw new Error("the experiment was run anew meanwhile; compare again");
     const seconds = (/** @type {number} */ cycle) => `${time(cycle / summary.clock_hz)}`;

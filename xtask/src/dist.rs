@@ -90,10 +90,19 @@ fn names_others(file: &str) -> bool {
     file.ends_with(".html") || file.ends_with(".webmanifest")
 }
 
-/// Every file of this site that a page or the manifest names, in its order; the page's own address, `./`, is none.
+/// Where a page or the manifest names a file that loads with it.
+const AT_ONCE: [&str; 4] = ["href=\"", "src=\"", "data-worker=\"", "\"src\": \""];
+/// Where a page names a file that its scripts ask for later; all of these load together.
+const LATER: [&str; 2] = ["data-later-worker=\"", "data-later-core=\""];
+
+/// Every file of this site that a page or the manifest names, in its order.
 fn named(text: &str) -> impl Iterator<Item = &str> {
-    let places = ["href=\"", "src=\"", "data-worker=\"", "\"src\": \""];
-    let values = places.into_iter().flat_map(|place| text.split(place).skip(1));
+    files_at(text, &AT_ONCE).chain(files_at(text, &LATER))
+}
+
+/// Those that stand behind one of these; the page's own address, `./`, is none.
+fn files_at<'a>(text: &'a str, places: &'a [&str]) -> impl Iterator<Item = &'a str> {
+    let values = places.iter().flat_map(|place| text.split(place).skip(1));
     let addresses = values.filter_map(|rest| rest.split('"').next()).filter(|address| !address.contains(':'));
     addresses.filter_map(|address| address.split(['#', '?']).next()).filter(|file| !["", "./"].contains(file))
 }
@@ -127,10 +136,10 @@ impl Site {
         self.naming().flat_map(|(_, text)| named(text)).filter(|file| !names_others(file)).collect()
     }
 
-    /// The files of bundles that this page or manifest names.
-    fn wanted<'a>(&self, name: &str, bundles: &'a Bundles) -> BTreeSet<&'a str> {
+    /// The files of bundles that this page or manifest names at these places.
+    fn wanted<'a>(&self, name: &str, places: &[&str], bundles: &'a Bundles) -> BTreeSet<&'a str> {
         let text = self.texts.get(name).map_or("", String::as_str);
-        named(text).filter_map(|source| bundles.of(source)).collect()
+        files_at(text, places).filter_map(|source| bundles.of(source)).collect()
     }
 
     /// Every file of the result beside the bundles, by its name.
@@ -174,7 +183,7 @@ impl Site {
                 renamed = renamed.replace(&format!("\"{file}\""), &format!("\"{made}\""));
             }
         }
-        let modules: BTreeSet<&str> = named(text)
+        let modules: BTreeSet<&str> = files_at(text, &AT_ONCE)
             .filter(|file| file.ends_with(".js"))
             .filter_map(|source| bundles.of(source))
             .flat_map(|file| bundles.at_once(file))
@@ -190,11 +199,15 @@ impl Site {
         let with = |files: BTreeSet<&str>| -> BTreeSet<String> {
             files.into_iter().flat_map(|file| bundles.at_once(file)).map(str::to_owned).collect()
         };
-        let mut opening = with(self.wanted(PAGE, bundles));
+        let mut opening = with(self.wanted(PAGE, &AT_ONCE, bundles));
         opening.extend([PAGE.to_owned(), SERVICE_WORKER.to_owned()]);
         let mut later = BTreeMap::new();
+        let page = self.texts.get(PAGE).map_or("", String::as_str);
+        if let Some(first) = files_at(page, &LATER).next() {
+            later.insert(first.to_owned(), with(self.wanted(PAGE, &LATER, bundles)));
+        }
         for page in self.texts.keys().filter(|name| name.ends_with(".html") && *name != PAGE) {
-            let mut files = with(self.wanted(page, bundles));
+            let mut files = with(self.wanted(page, &AT_ONCE, bundles));
             files.insert(page.clone());
             later.insert(page.clone(), files);
         }

@@ -67,14 +67,14 @@ enum Task {
         #[command(flatten)]
         optimising: Optimising,
     },
-    /// Build the page's wasm into web/pkg, for `serve`
+    /// Build the page's wasm into web/pkg and web/pkg-study, for `serve`
     Build {
         #[command(flatten)]
         optimising: Optimising,
     },
     /// Build the page into dist/, as any static host can serve it, and print what each of its files weighs
     Dist {
-        /// Take web/pkg as it is
+        /// Take the built wasm as it is
         #[arg(long)]
         no_build: bool,
         #[command(flatten)]
@@ -105,7 +105,7 @@ enum Task {
         /// In a minute or two after the builds, and noisier
         #[arg(long)]
         quick: bool,
-        /// Measure the page in Chromium instead: its frames, its loading, its answers to keys
+        /// Measure the page in Chromium alone: its frames, its loading, its answers to keys
         #[arg(long, conflicts_with_all = ["quick", "against"])]
         page: bool,
         /// Measure the kernels of this commit in the same blocks, and print what they have become
@@ -196,7 +196,7 @@ async fn perform(task: Task) -> Result<()> {
             Ok(())
         }
         Task::Test { only, list: false } => steps::run(&only).await,
-        Task::Bench { page: true, .. } => bench::page().await,
+        Task::Bench { page: true, .. } => bench::page(None).await,
         Task::Bench { quick, against: Some(rev), .. } => bench::against(quick, &rev).await,
         Task::Bench { quick, .. } => bench::run(quick).await,
         Task::Attend { words } => attend::attend(&words).await,

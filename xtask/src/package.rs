@@ -71,15 +71,16 @@ fn clear(folder: &Path) -> Result<()> {
 
 /// Packs the npm package, installs it where nothing else is, and runs a program that uses it.
 async fn npm() -> Result<()> {
-    page::built().await?;
     let npm = program("npm").await?;
     let folder = root().join("target").join("npm");
     clear(&folder)?;
+    let made = folder.join("pkg");
+    page::npm(&made).await?;
     let user = folder.join("user");
     fs::create_dir_all(&user).with_context(|| format!("{} can't be made", user.display()))?;
 
     let mut pack = Command::new(&npm);
-    pack.current_dir(root().join("web").join("pkg")).args(["pack", "--pack-destination"]).arg(&folder);
+    pack.current_dir(&made).args(["pack", "--pack-destination"]).arg(&folder);
     run::to_end(pack, run::LIMIT).await?;
     let package = packed(&folder)?;
 

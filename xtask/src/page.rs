@@ -31,28 +31,41 @@ pub(crate) async fn shipped(optimise: Optimise) -> Result<Parts> {
     dist::make(&root().join("web"), &dist::folder()).await
 }
 
-/// Builds the wasm crate into `web/pkg`, a whole npm package, installing the tools first if they are missing.
+/// The wasm modules of the page: the folder of each in `web`, and the features of the crate that it has. What opening the
+/// page loads runs scenarios and draws; the study's questions go to workers with a module of their own.
+const MODULES: [(&str, &str); 2] = [("pkg", "run,charts"), ("pkg-study", "study")];
+
+/// Builds the wasm crate into the packages that the page loads, installing the tools first if they are missing.
 pub(crate) async fn build(optimise: Optimise) -> Result<()> {
     let tools = WasmTools::ready(optimise).await?;
-    let folder = root().join("web").join("pkg");
-    wasm(&tools, "wasm", &folder).await?;
-    package::complete(&folder)
+    for (folder, features) in MODULES {
+        let package = root().join("web").join(folder);
+        wasm(&tools, "wasm", &package, &["--no-default-features", "--features", features]).await?;
+    }
+    Ok(())
 }
 
-/// Builds the crate in `folder` of the workspace for the browser into `package`.
-pub(crate) async fn wasm(tools: &WasmTools, folder: &str, package: &Path) -> Result<()> {
-    wasm_by(tools, tools.wasm_pack()?, folder, package).await
+/// Builds the wasm crate with all that it has into `package`, a whole npm package.
+pub(crate) async fn npm(package: &Path) -> Result<()> {
+    wasm(&WasmTools::ready(Optimise::Yes).await?, "wasm", package, &[]).await?;
+    package::complete(package)
 }
 
-/// The same by a call of wasm-pack in another workspace.
+/// Builds the crate in `folder` of the workspace for the browser into `package`, with these options of cargo.
+async fn wasm(tools: &WasmTools, folder: &str, package: &Path, options: &[&str]) -> Result<()> {
+    wasm_by(tools, tools.wasm_pack()?, folder, package, options).await
+}
+
+/// The same by a call of wasm-pack, which may be in another workspace.
 pub(crate) async fn wasm_by(
     tools: &WasmTools,
     mut command: tokio::process::Command,
     folder: &str,
     package: &Path,
+    options: &[&str],
 ) -> Result<()> {
     command.args(["build", "--profile", "page", "--target", "web"]).args(tools.build_options());
-    command.args([folder, "--out-dir"]).arg(package).args(["--", "--locked"]);
+    command.args([folder, "--out-dir"]).arg(package).args(["--", "--locked"]).args(options);
     tools.judge(run::to_end(command, run::LIMIT).await)
 }
 

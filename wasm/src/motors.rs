@@ -1,0 +1,218 @@
+//! What the motors of a scenario's plant can do: searches of seconds, each a piece of a longer question, which workers share;
+//! and the motors and drivers that one may choose from.
+
+use crate::{
+    convert::{field, numbers, object},
+    judged::{Judged, listed},
+};
+use js_sys::Object;
+use serde::Serialize;
+use stepscope_core::{
+    inspect::{
+        motors::{DRIVES, MOTORS},
+        plant::settling_with,
+        plant_log::{PlantLog, Stretch},
+        plant_report::PlantReport,
+        torque::{Machine, TorqueCurve},
+    },
+    peripheral::{trace::Recording, units::Instant},
+    plant::{
+        Refused,
+        parameters::Setup,
+        rates::{pulls, resonance, search, starts},
+        settling::SHARE,
+    },
+    scenario::{Scenario, to_json},
+};
+use wasm_bindgen::prelude::*;
+
+/// A motor or a driver, without its figures.
+#[derive(Serialize)]
+struct Sheet {
+    id: &'static str,
+    name: &'static str,
+    source: &'static str,
+    typical: &'static [&'static str],
+}
+
+#[derive(Serialize)]
+struct Sheets {
+    motors: Vec<Sheet>,
+    drives: Vec<Sheet>,
+}
+
+/// Motors and drivers to choose from: `{motors, drives}`, each `{id, name, source, typical}`.
+///
+/// # Errors
+/// Never in practice.
+#[wasm_bindgen]
+pub fn sheets() -> Result<JsValue, JsError> {
+    let motors =
+        MOTORS.iter().map(|&m| Sheet { id: m.id, name: m.name, source: m.source, typical: m.typical });
+    let drives =
+        DRIVES.iter().map(|d| Sheet { id: d.id, name: d.name, source: d.source, typical: d.typical });
+    object(&Sheets { motors: motors.collect(), drives: drives.collect() })
+}
+
+/// The scenario with a motor and a driver of the lists in the place of each of its own, and with a plant; what is not listed
+/// changes nothing.
+#[wasm_bindgen]
+#[must_use]
+pub fn with_motor(json: &str, motor: &str, drive: &str) -> String {
+    let (mut scenario, _) = Scenario::from_json_lenient(json);
+    scenario.plant.get_or_insert_default();
+    if let Some(sheet) = stepscope_core::inspect::motors::motor(motor) {
+        sheet.put_into(&mut scenario);
+    }
+    if let Some(sheet) = stepscope_core::inspect::motors::drive(drive) {
+        sheet.put_into(&mut scenario);
+    }
+    to_json(&scenario)
+}
+
+#[wasm_bindgen]
+impl Judged {
+    /// The highest rate in steps/s at which a motor starts, turns once and stops; undefined where not even 500 is one.
+    ///
+    /// # Errors
+    /// If the scenario has problems, or no such motor.
+    pub fn start_stop(&self, controller: usize, channel: usize) -> Result<Option<f64>, JsError> {
+        let setup = self.motor(controller, channel)?;
+        let steps = setup.motors[0].steps_a_turn();
+        search(|rate| starts(&setup, rate, steps)).map_err(refused)
+    }
+
+    /// The highest rate in steps/s to which a ramp of so many steps/s^2 brings a motor.
+    ///
+    /// # Errors
+    /// If the scenario has problems, or no such motor.
+    pub fn pull_out(&self, controller: usize, channel: usize, ramp: f64) -> Result<Option<f64>, JsError> {
+        let setup = self.motor(controller, channel)?;
+        search(|rate| pulls(&setup, rate, ramp)).map_err(refused)
+    }
+
+    /// What a motor of the plant has at each rate up to `most` steps/s, and what the plan of its axis asks: `{rate, available,
+    /// needed}`, torques in mN*m; needed is empty where the channel has no plan.
+    ///
+    /// # Errors
+    /// If the scenario has problems, or no such motor.
+    pub fn torque_of_motor(&self, controller: usize, channel: usize, most: f64) -> Result<Object, JsError> {
+        let setup = self.motor(controller, channel)?;
+        let experiment = self.0.experiment().map_err(listed)?;
+        let plan = experiment.plans_of(controller).get(channel);
+        let machine = Machine::of_plant(&setup.motors[0], setup.supply.supply_v);
+        let curve = TorqueCurve::up_to(&machine, plan, most.max(1.0));
+        let result = Object::new();
+        numbers(&result, "rate", &curve.rate);
+        numbers(&result, "available", &curve.available);
+        numbers(&result, "needed", &curve.needed);
+        Ok(result)
+    }
+
+    /// How far a motor swings at so many rates in full steps/s: `{swing, loses}`, 1 where it loses steps.
+    ///
+    /// # Errors
+    /// If the scenario has problems, or no such motor.
+    pub fn resonance(
+        &self,
+        controller: usize,
+        channel: usize,
+        from: f64,
+        rung: f64,
+        count: u32,
+    ) -> Result<Object, JsError> {
+        let setup = self.motor(controller, channel)?;
+        let microsteps = f64::from(setup.motors[0].microsteps);
+        let rates = (0..count).map(|index| (from + f64::from(index) * rung) * microsteps);
+        let found: Vec<_> =
+            rates.map(|rate| resonance(&setup, rate)).collect::<Result<_, _>>().map_err(refused)?;
+        let result = Object::new();
+        numbers(&result, "swing", &found.iter().map(|one| one.swing).collect::<Vec<_>>());
+        numbers(
+            &result,
+            "loses",
+            &found.iter().map(|one| f64::from(u8::from(one.loses))).collect::<Vec<_>>(),
+        );
+        Ok(result)
+    }
+
+    /// The supply current around one step of a motor that rested (the patent's figure 1), looked at for a slot of the bus, at least 2 ms:
+    /// `{rest_a, least_a, greatest_a, reached_cycles, settled_cycles, slot_cycles, x, y}`, x in s after the step.
+    ///
+    /// # Errors
+    /// If the scenario has problems, or no such motor.
+    pub fn settling(&self, controller: usize, channel: usize) -> Result<Object, JsError> {
+        let setup = self.motor(controller, channel)?;
+        let experiment = self.0.experiment().map_err(listed)?;
+        let config = crate::judged::config(experiment, controller);
+        // Where steps are denser it is looked at for 2 ms.
+        let slot = (config.tick().0 / u64::from(config.slots())).max(u64::from(config.clock_hz()) / 500);
+        let (found, samples) = settling_with(&setup, 0, slot, SHARE).map_err(refused)?;
+        let hz = f64::from(config.clock_hz());
+        let result = Object::new();
+        let cycles = |cycles: Option<u64>| cycles.map(|cycles| cycles as f64);
+        for (name, value) in [
+            ("rest_a", Some(found.rest_a)),
+            ("least_a", Some(found.least_a)),
+            ("greatest_a", Some(found.greatest_a)),
+            ("reached_cycles", cycles(found.reached)),
+            ("settled_cycles", cycles(found.settled)),
+            ("slot_cycles", Some(slot as f64)),
+        ] {
+            field(&result, name, &value.map_or(JsValue::NULL, JsValue::from));
+        }
+        numbers(&result, "x", &samples.iter().map(|(cycle, _)| cycle / hz).collect::<Vec<_>>());
+        numbers(&result, "y", &samples.iter().map(|(_, current)| *current).collect::<Vec<_>>());
+        Ok(result)
+    }
+
+    /// What the sensor of the supply current says over a whole run (the patent's figure 2): `{x, min, max, above_a, below_a}`,
+    /// x in s; the deviations null where too few steps are made.
+    ///
+    /// # Errors
+    /// If the scenario has problems, or no plant.
+    pub fn supply_current(&self, controller: usize, columns: usize) -> Result<Object, JsError> {
+        let experiment = self.0.experiment().map_err(listed)?;
+        let mut run = experiment.start();
+        let mut logs = Vec::new();
+        while let Some(plant) = run.plant(logs.len()) {
+            logs.push(PlantLog::new(plant));
+        }
+        let mut recordings: Vec<Recording> = logs.iter().map(|_| Recording::default()).collect();
+        while !run.advance_observed((Instant::NEVER, u64::MAX), &mut recordings, &mut logs) {}
+        let (Some(log), Some(report), Some(recording)) =
+            (logs.get(controller), PlantReport::of(experiment, &run, controller), recordings.get(controller))
+        else {
+            return Err(JsError::new("the scenario has no plant"));
+        };
+        let hz = f64::from(experiment.config().clock_hz());
+        let stretch = Stretch { from: 0, to: run.cycles().0, columns };
+        let result = Object::new();
+        // The sensor is the last value of the supply.
+        for band in log.curves(&recording.trace, stretch, &[2]) {
+            numbers(&result, "x", &band.cycle.iter().map(|cycle| cycle / hz).collect::<Vec<_>>());
+            numbers(&result, "min", &band.least);
+            numbers(&result, "max", &band.greatest);
+        }
+        for (name, value) in
+            [("above_a", report.plant.deviation_above_a), ("below_a", report.plant.deviation_below_a)]
+        {
+            field(&result, name, &value.map_or(JsValue::NULL, JsValue::from));
+        }
+        Ok(result)
+    }
+}
+
+impl Judged {
+    /// A motor alone on its supply.
+    fn motor(&self, controller: usize, channel: usize) -> Result<Setup, JsError> {
+        let experiment = self.0.experiment().map_err(listed)?;
+        let setup = experiment.plants().and_then(|plants| plants.setups.get(controller)?.alone(channel));
+        setup.ok_or_else(|| JsError::new("the scenario's plant has no such motor"))
+    }
+}
+
+/// All refusals, a line each.
+fn refused(all: Vec<Refused>) -> JsError {
+    JsError::new(&all.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
+}

@@ -1,0 +1,92 @@
+//! A run held against a trace that was saved.
+
+use crate::{
+    convert::object,
+    judged::{Judged, config, listed},
+};
+use serde::Serialize;
+use stepscope_core::{
+    inspect::trace_diff::TraceDiff,
+    peripheral::{signal, trace::Recording},
+};
+use wasm_bindgen::prelude::*;
+
+/// How the run stands to a file.
+#[derive(Serialize)]
+struct Held {
+    /// Rows that are the run's own.
+    same: u64,
+    start_cycle: u64,
+    end_cycle: u64,
+    goes_on: bool,
+    difference: Option<Differs>,
+}
+
+#[derive(Serialize)]
+struct Differs {
+    line: u64,
+    cycle: u64,
+    /// Of each signal that differs its name, and its level in the file and in the run.
+    signals: Vec<(String, u8, u8)>,
+}
+
+/// A controller's trace, and a file that is held against it piece by piece.
+#[wasm_bindgen]
+pub struct TraceFile {
+    recording: Recording,
+    diff: TraceDiff,
+}
+
+#[wasm_bindgen]
+impl Judged {
+    /// Runs the scenario, and begins to hold the trace of a controller against a file.
+    ///
+    /// # Errors
+    /// If the scenario has problems.
+    pub fn trace_file(&self, controller: usize) -> Result<TraceFile, JsError> {
+        let experiment = self.0.experiment().map_err(listed)?;
+        let mut recordings = vec![Recording::default(); experiment.controllers()];
+        experiment.run_each(&mut recordings);
+        let index = controller.min(recordings.len() - 1);
+        let diff = TraceDiff::new(config(experiment, index).channels());
+        Ok(TraceFile { recording: recordings.swap_remove(index), diff })
+    }
+}
+
+#[wasm_bindgen]
+impl TraceFile {
+    /// Takes a piece of the file; true if the rest is not needed.
+    ///
+    /// # Errors
+    /// With the first line that cannot be read.
+    pub fn feed(&mut self, piece: &[u8]) -> Result<bool, JsError> {
+        Ok(self.diff.feed(&self.recording.trace, piece)?)
+    }
+
+    /// The file is over: `{same, start_cycle, end_cycle, goes_on, difference: {line, cycle, signals: [[name,
+    /// level in the file, level in the run]]} | null}`.
+    ///
+    /// # Errors
+    /// If there was nothing in it, or its last line cannot be read.
+    pub fn end(self) -> Result<JsValue, JsError> {
+        let outcome = self.diff.finish(&self.recording.trace)?;
+        object(&Held {
+            same: outcome.same,
+            start_cycle: outcome.range.0.0,
+            end_cycle: outcome.range.1.0,
+            goes_on: outcome.goes_on,
+            difference: outcome.difference.map(|difference| Differs {
+                line: difference.line,
+                cycle: difference.cycle.0,
+                signals: (0..36)
+                    .filter(|bit| difference.signals() >> bit & 1 == 1)
+                    .map(|bit| {
+                        let level = |levels: signal::Levels| u8::from(levels.has(1 << bit));
+                        let name = signal::name(bit).unwrap_or_default();
+                        (name, level(difference.file), level(difference.run))
+                    })
+                    .collect(),
+            }),
+        })
+    }
+}

@@ -1,0 +1,52 @@
+/**
+ * A further worker: answers long questions beside the run that the views ask about, those of the study and of what a form
+ * could be changed to. It has a wasm module of its own, which loads when the first such question is asked.
+ *
+ * In: first of all {module}, the compiled code; {id, method, args} for an answer {id, value} or {id, error}. The methods
+ * `open` and `of` make an object of a scenario and ask it.
+ */
+import init, * as core from "../pkg-study/stepscope_wasm.js";
+import { createJudging, fatal, text } from "./judging.js";
+
+const { judge } = createJudging((json) => new core.Judged(json));
+
+/** @type {(module: WebAssembly.Module) => void} */
+let provide = () => {};
+const ready = new Promise((resolve) => {
+  provide = (module) => resolve(init({ module_or_path: module }));
+});
+
+/** What was opened last. @type {any} */
+let opened = null;
+
+/** @param {string} method @param {any[]} args  Of a question about a scenario its text first. */
+function answer(method, args) {
+  if (method === "open") {
+    const [make, json, ...rest] = args;
+    opened?.free();
+    opened = null;
+    opened = /** @type {any} */ (judge(json))[make](...rest);
+    return true;
+  }
+  if (method === "of") {
+    const [ask, ...rest] = args;
+    const held = opened;
+    // Its end frees it.
+    if (ask === "end") opened = null;
+    return held[ask](...rest);
+  }
+  const calls = /** @type {any} */ (core);
+  if (!(method in core.Judged.prototype)) return calls[method](...args);
+  const [json, ...rest] = args;
+  return /** @type {any} */ (judge(String(json)))[method](...rest);
+}
+
+self.onmessage = async ({ data }) => {
+  if ("module" in data) return provide(data.module);
+  try {
+    await ready;
+    postMessage({ id: data.id, value: answer(data.method, data.args) });
+  } catch (error) {
+    postMessage(fatal(error) ? { event: "crashed", message: text(error) } : { id: data.id, error: text(error) });
+  }
+};
