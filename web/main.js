@@ -5,7 +5,7 @@
  * The folders stand in one line, too. Each imports, and names types of, what stands to its left alone; a test holds
  * this:
  *
- *     pkg -> state -> dom.js -> engine -> shell -> time -> form -> help -> views -> main.js
+ *     pkg -> pkg-study -> state -> dom.js -> engine -> shell -> time -> form -> help -> views -> main.js
  */
 import { byId } from "./dom.js";
 import { Dropped, Engine, unlessDropped } from "./engine/engine.js";
@@ -39,6 +39,7 @@ import { EARLIER, held, initial, isStale, OWN_TEXTS, update } from "./state/stat
 import { NAMES } from "./state/views.js";
 import { load as loadCharts } from "./time/plot.js";
 import { createMotion } from "./views/motion/motion.js";
+import { createMotorPane } from "./views/motor/pane.js";
 import { createPackets } from "./views/packets/packets.js";
 import { createPulses } from "./views/pulses/pulses.js";
 import { createSpectrum } from "./views/spectrum/pane.js";
@@ -283,6 +284,7 @@ async function start() {
   /** @type {{[view in import("./state/views.js").ViewName]: View}} */
   const all = {
     motion: createMotion(page),
+    motor: createMotorPane(page),
     pulses,
     packets: createPackets(page),
     spectrum,

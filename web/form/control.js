@@ -129,7 +129,8 @@ export function control(path, field, { dispatch, now }) {
   return {
     root,
     label: field.label,
-    show(next, state) {
+    show(given, state) {
+      const next = given === undefined ? field.initial : given;
       place(state);
       const was = value;
       value = next;
@@ -218,6 +219,7 @@ function read(text, field, state, before) {
   const unit = field.unit ?? "";
   switch (field.kind) {
     case "choice":
+      if (text === "true" || text === "false") return { value: text === "true" };
       return { value: /^\d+$/.test(text) ? Number(text) : text };
     case "text":
       return { value: text };

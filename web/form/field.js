@@ -13,6 +13,7 @@
  * @property {{[value: string]: string}} [choices]
  * @property {{[unit: string]: string}} [units]  Of a quantity: JSON's name to the printed one.
  * @property {number} [rows]
+ * @property {any} [initial]  What it is where the scenario does not say it.
  * @property {{key?: string, path?: string, is: string}} [when]  Only of use while a field beside it, or one at a path, has this value.
  *
  * @typedef {{name?: string, text: string, from?: string}} Term  What is meant, and which of the schema's documents it comes from.

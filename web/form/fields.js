@@ -45,7 +45,7 @@ const ABOUT = ["title", "note"];
  * The sections beside the source. Keys are paths below the section's own; a group is folded away.
  * `onLine` is of use only where something is sent.
  * @typedef {{path: string, fields: Field[]}} Block
- * @returns {{title: string, open: boolean, onLine?: boolean, blocks: Block[], group?: {title: string} & Block, list?: "glitches" | "controllers" | "driver_timing"}[]}
+ * @returns {{title: string, open: boolean, onLine?: boolean, blocks: Block[], group?: {title: string} & Block, list?: "glitches" | "controllers" | "driver_timing" | "plant"}[]}
  */
 export const sections = () => [
   {
@@ -62,6 +62,7 @@ export const sections = () => [
   { title: labelOf("Scenario", "bus"), open: true, blocks: [{ path: "bus", fields: fields("Bus") }] },
   { title: labelOf("Scenario", "controllers"), open: true, onLine: true, blocks: [], list: "controllers" },
   { title: labelOf("Scenario", "driver_timing"), open: true, blocks: [], list: "driver_timing" },
+  { title: labelOf("Scenario", "plant"), open: true, blocks: [], list: "plant" },
   {
     title: labelOf("Scenario", "analysis"),
     open: false,

@@ -10,6 +10,7 @@ import { driverItems } from "./driver.js";
 import { glitchFields, OF_SEGMENTS, sections } from "./fields.js";
 import { showAbout, showDerived, showProblems } from "./judgement.js";
 import { createKit } from "./kit.js";
+import { plantItems } from "./plant.js";
 import { labelOf, labels, termOf } from "./schema.js";
 import { replacedBySource, runsAlone, SOURCES, withSource } from "./sources.js";
 
@@ -61,6 +62,7 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
       ),
     controllers: (scenario) => controllerItems(kit, scenario),
     driver_timing: (scenario) => driverItems(kit, scenario, drivers),
+    plant: (scenario) => plantItems(kit, scenario),
   };
 
   /** Where the focus is, to find it again in the form built anew: a field by its path, a button by what it does. @param {HTMLElement} active */
@@ -232,7 +234,7 @@ function used(group) {
 }
 
 /** What decides which fields there are; values do not. @param {Scenario} scenario */
-function shapeOf({ source, controllers, driver_timing: driver, line }) {
+function shapeOf({ source, controllers, driver_timing: driver, line, plant }) {
   const kinds = (/** @type {any[]} */ axes) =>
     axes.map((axis) => [
       Object.keys(axis.mechanics)[0],
@@ -248,5 +250,6 @@ function shapeOf({ source, controllers, driver_timing: driver, line }) {
     line.glitches.length,
     controllers.map((/** @type {any} */ { axes }) => kinds(axes)),
     driver && (driver.preset ?? "rules"),
+    plant && [Boolean(plant.protection), plant.motors?.length],
   ]);
 }

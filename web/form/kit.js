@@ -10,7 +10,8 @@ import { termButton } from "./term_button.js";
 /** @typedef {import("./control.js").Control} Control */
 /**
  * @typedef {{moves: {[kind: string]: any}, mechanics: {[kind: string]: any}, sources: {[kind: string]: any},
- *   glitch: any, send: any, controller: any, rules: any, motor: any}} Samples  One of everything, with the core's defaults.
+ *   glitch: any, send: any, controller: any, rules: any, motor: any,
+ *   plant: any, protection: any, plant_motor: any}} Samples  One of everything, with the core's defaults.
  */
 /** @typedef {ReturnType<typeof createKit>} Kit */
 

@@ -7,7 +7,7 @@
 /** @typedef {import("./field.js").Field} Field */
 /** @typedef {import("./field.js").Term} Term */
 /** @typedef {import("./kit.js").Samples} Samples */
-/** @typedef {"whole" | "number" | "text" | "hex" | "point" | {words: Word[]} | {group: string} | {optional: Type} | {list: Type}} Type */
+/** @typedef {"whole" | "number" | "bool" | "text" | "hex" | "point" | {words: Word[]} | {group: string} | {optional: Type} | {list: Type}} Type */
 /** @typedef {{name: string, label: string, text: string}} Word */
 /**
  * @typedef {{name: string, label: string, text: string, type: Type, range: string, most?: number, unit?: string, empty?: string,
@@ -43,7 +43,7 @@ export const mostOf = (group, name) => row(group, name).most ?? Number.POSITIVE_
 /** A field of a group as the form takes it. @param {string} group @param {string} name @returns {Field} */
 export function field(group, name) {
   const { label, type, unit, when, ...given } = row(group, name);
-  const words = typeof type === "object" && "words" in type ? type.words : [];
+  const words = wordsOf(type);
   const units = quantity(type);
   return {
     key: name,
@@ -55,6 +55,7 @@ export function field(group, name) {
     ...(words.length > 0 ? { choices: Object.fromEntries(words.map(({ name, label }) => [name, label])) } : {}),
     ...(units ? { units } : {}),
     ...(when ? { when } : {}),
+    initial: schema.groups[group].default?.[name],
   };
 }
 
@@ -109,6 +110,9 @@ export function samples() {
     controller: one("Controller"),
     rules: one("TimingRules"),
     motor: one("Motor"),
+    plant: one("PlantSettings"),
+    protection: one("Protection"),
+    plant_motor: one("PlantMotor"),
   };
 }
 
@@ -129,9 +133,20 @@ function quantity(type) {
   return numbers ? Object.fromEntries(group.fields.map(({ name, label }) => [name, label])) : null;
 }
 
+/** What may be chosen. @param {Type} type @returns {Word[]} */
+function wordsOf(type) {
+  if (type === "bool")
+    return [
+      ["false", "no"],
+      ["true", "yes"],
+    ].map(([name, label]) => ({ name, label, text: label }));
+  return typeof type === "object" && "words" in type ? type.words : [];
+}
+
 /** How a value is typed; null where it is no single one. @param {Type} type @param {string} [unit] @returns {any} */
 function kindOf(type, unit) {
   if (type === "whole") return unit === "cycles" ? "cycles" : "integer";
+  if (type === "bool") return "choice";
   if (typeof type === "string") return type === "point" ? null : type;
   if ("words" in type) return "choice";
   if ("group" in type) return quantity(type) ? "quantity" : null;

@@ -85,6 +85,33 @@ const TERMS = {
       from: "own",
     },
   },
+  motor: {
+    following_error: {
+      name: "Following error",
+      text: "How far the rotor is behind what it is told, in full steps. Beyond two of them the field pulls it to another place.",
+      from: "own",
+    },
+    slip: {
+      name: "Slip",
+      text: "The rotor falls out of step and catches again four full steps away: those are lost, and nothing tells the controller.",
+      from: "own",
+    },
+    start_stop: {
+      name: "Start-stop rate",
+      text: "The highest rate at which the motor starts and stops at once, with its load, without losing a step.",
+      from: "own",
+    },
+    pull_out: {
+      name: "Pull-out rate",
+      text: "The highest rate to which a ramp brings the motor before it falls out of step.",
+      from: "own",
+    },
+    settling_current: {
+      name: "Δt_p",
+      text: "How long the supply current takes after a step until it has fallen to a fifth of its peak: motors that step so far apart do not add up.",
+      from: "patent",
+    },
+  },
   packets: {
     framing: {
       name: "Framing error",

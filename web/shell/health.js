@@ -40,7 +40,7 @@ export function createHealth({ engine, dispatch, now }) {
   }
 
   function violations() {
-    dispatch({ type: "side", side: "timing" });
+    dispatch({ type: "side", area: "spectrum", side: "timing" });
     open("timing");
   }
 

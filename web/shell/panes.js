@@ -43,13 +43,18 @@ const EDGES = [
     least: MIN_FORM_PX,
     rest: MIN_VIEWS_PX,
   },
-  ...BANDS.slice(1).map(([after], at) => between(BANDS[at][BANDS[at].length - 1], after, false)),
+  ...BANDS.slice(1).map(([after], at) => between(firstOf(BANDS[at][BANDS[at].length - 1]), after, false)),
   ...BANDS.flatMap((band) =>
     band
       .slice(1)
       .flatMap((after, at) => (after.place.area === band[at].place.area ? [] : [between(band[at], after, true)])),
   ),
 ];
+
+/** The first of the views in the place of one: it stands for all of them. @param {import("../state/views.js").Placed} view */
+function firstOf({ place }) {
+  return /** @type {import("../state/views.js").Placed} */ (PLACED.find((each) => each.place.area === place.area));
+}
 
 /** @param {import("../state/views.js").Placed} before @param {import("../state/views.js").Placed} after @param {boolean} upright @returns {Edge} */
 function between(before, after, upright) {
@@ -182,7 +187,7 @@ export function createPanes({ dispatch, now }) {
         .filter((other) => other.name !== name)
         .map((view) => {
           const made = element("button", { type: "button", class: "side", "data-side": view.name }, view.title);
-          made.addEventListener("click", () => dispatch({ type: "side", side: view.name }));
+          made.addEventListener("click", () => dispatch({ type: "side", area: view.place.area, side: view.name }));
           byId(`view-${name}`).querySelector(".head")?.append(made);
           return { made, view };
         }),
@@ -301,7 +306,8 @@ export function createPanes({ dispatch, now }) {
       before?.panes !== state.panes ||
       before?.bare !== state.bare ||
       before?.result !== state.result ||
-      before?.side !== state.side ||
+      before?.sides !== state.sides ||
+      before?.scenario.plant !== state.scenario.plant ||
       before?.view !== state.view;
     if (!changed) return;
     apply(state);

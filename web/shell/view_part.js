@@ -7,10 +7,11 @@
  * | --- | --- |
  * | `120-4500` | shown time, first and last cycle |
  * | `k1` | selected controller, 0 the first |
- * | `x2` | axis of the motion view |
+ * | `x2` | axis of motion, motor and study |
  * | `a300`, `b900` | cursors, in cycles |
  * | `tpackets` | tab on a narrow screen |
  * | `stiming` | which of spectrum and driver timing is open |
+ * | `omotor` | which of motion and motor is open |
  * | `umm` | unit of the motion view |
  * | `ysine` | tab of the study |
  *
@@ -24,22 +25,42 @@ import { NAMES, SHARED } from "../state/views.js";
 /** @typedef {import("../state/types.js").ViewPart} ViewPart */
 
 /** Tabs of the study, in their order. @type {import("../state/types.js").StudyName[]} */
-export const STUDIES = ["compare", "measures", "tables", "sine", "torque"];
-const SIDES = [...SHARED.values()].flat().map(({ name }) => name);
+export const STUDIES = ["compare", "measures", "tables", "sine", "torque", "motor"];
 const UNITS = ["steps", "mm", "deg"];
 /** No part is longer, and there are not more kinds of them. */
 const MOST = 200;
 
-/** @type {{[letter: string]: [keyof ViewPart, (text: string) => any]}} */
+/** What stands behind a letter: how it is put into a view, and what a view has of it. @typedef {{put: (view: ViewPart, text: string) => void, of: (view: ViewPart) => any}} Part */
+
+/** A field of the view; of two parts the first counts. @param {Exclude<keyof ViewPart, "sides" | "window">} name @param {(text: string) => any} read @returns {Part} */
+const field = (name, read) => ({
+  put: (view, text) => {
+    const value = read(text);
+    if (value !== undefined && view[name] === undefined) Object.assign(view, { [name]: value });
+  },
+  of: (view) => view[name],
+});
+
+/** Which of the views that share a place is open. @param {string} area @returns {Part} */
+const side = (area) => ({
+  put: (view, text) => {
+    const name = known(text, SHARED.get(area)?.map(({ name }) => name) ?? []);
+    if (name && !view.sides?.[area]) view.sides = { ...view.sides, [area]: name };
+  },
+  of: (view) => view.sides?.[area],
+});
+
+/** @type {{[letter: string]: Part}} */
 const PARTS = {
-  k: ["controller", (text) => number(text, 31)],
-  x: ["axis", (text) => number(text, 15)],
-  a: ["a", (text) => number(text)],
-  b: ["b", (text) => number(text)],
-  t: ["view", (text) => known(text, NAMES)],
-  s: ["side", (text) => known(text, SIDES)],
-  u: ["unit", (text) => known(text, UNITS)],
-  y: ["study", (text) => known(text, STUDIES)],
+  k: field("controller", (text) => number(text, 31)),
+  x: field("axis", (text) => number(text, 15)),
+  a: field("a", (text) => number(text)),
+  b: field("b", (text) => number(text)),
+  t: field("view", (text) => known(text, NAMES)),
+  s: side("spectrum"),
+  u: field("unit", (text) => known(text, UNITS)),
+  y: field("study", (text) => known(text, STUDIES)),
+  o: side("motion"),
 };
 
 /** @param {string} text @param {number} [most] */
@@ -60,10 +81,7 @@ export function parseView(text) {
     const [start, end] = part.split("-").map((cycle) => number(cycle));
     if (start !== undefined && end !== undefined && start < end && part === `${start}-${end}`)
       view.window ??= { start, end };
-    if (!Object.hasOwn(PARTS, part[0] ?? "")) continue;
-    const [name, read] = PARTS[part[0]];
-    const value = read(part.slice(1));
-    if (value !== undefined && view[name] === undefined) view[name] = value;
+    if (Object.hasOwn(PARTS, part[0] ?? "")) PARTS[part[0]].put(view, part.slice(1));
   }
   return view;
 }
@@ -71,8 +89,10 @@ export function parseView(text) {
 /** @param {ViewPart} view */
 export function writeView(view) {
   const parts = view.window ? [`${view.window.start}-${view.window.end}`] : [];
-  for (const [letter, [name]] of Object.entries(PARTS))
-    if (view[name] !== undefined) parts.push(`${letter}${view[name]}`);
+  for (const [letter, { of }] of Object.entries(PARTS)) {
+    const value = of(view);
+    if (value !== undefined) parts.push(`${letter}${value}`);
+  }
   return parts.join(".");
 }
 
@@ -80,7 +100,7 @@ export function writeView(view) {
 export function viewOf(state) {
   if (!state) return "";
   if (state.awaited) return writeView(state.awaited);
-  const { window, controller, axis, cursors, view, side, unit, study } = state;
+  const { window, controller, axis, cursors, view, sides, unit, study } = state;
   return writeView({
     window: window ?? undefined,
     controller: controller || undefined,
@@ -88,7 +108,7 @@ export function viewOf(state) {
     a: cursors.a ?? undefined,
     b: cursors.b ?? undefined,
     view: view === "motion" ? undefined : view,
-    side: side ?? undefined,
+    sides,
     unit: unit === "steps" ? undefined : unit,
     study: study === "compare" ? undefined : study,
   });

@@ -37,7 +37,7 @@ import { AS_THEY_ARE } from "./row_choices.js";
  *   | {type: "filter", filter: Partial<State["filter"]>}
  *   | {type: "fold", channel: number, folded: boolean} | {type: "fold-all", folded: boolean}
  *   | {type: "all-signals", on: boolean}
- *   | {type: "controller", controller: number} | {type: "side", side: string}
+ *   | {type: "controller", controller: number} | {type: "side", area: string, side: string}
  *   | {type: "axis", axis: number} | {type: "unit", unit: State["unit"]}
  *   | {type: "pane", panes: Partial<import("./types.js").Panes>} | {type: "bare", view: string, bare: boolean}
  *   | {type: "rows", rows: Partial<import("./row_choices.js").RowChoices>}
@@ -107,7 +107,7 @@ export function initial(scenario) {
     filter: NO_FILTER,
     view: "motion",
     study: "compare",
-    side: null,
+    sides: {},
     notice: null,
     panes: { form: null, rows: null, columns: null, folded: [], open: [], largest: null, pulses: AS_THEY_ARE },
     bare: [],
@@ -209,7 +209,7 @@ export function update(state, message) {
     case "controller":
       return lookAt(state, message.controller);
     case "side":
-      return { ...state, side: message.side };
+      return { ...state, sides: { ...state.sides, [message.area]: message.side } };
     case "axis":
       return { ...state, axis: message.axis };
     case "unit":
@@ -242,7 +242,7 @@ const fresh = {
   harmonic: null,
   packet: null,
   filter: NO_FILTER,
-  side: null,
+  sides: {},
   hover: null,
   highlighted: null,
   cursors: { a: null, b: null },
@@ -403,7 +403,7 @@ function opened(state, view) {
     cursors: { a: inside(view.a), b: inside(view.b) },
     axis: Math.min(view.axis ?? 0, (selected(shown)?.channels ?? 1) - 1),
     view: view.view ?? state.view,
-    side: view.side ?? null,
+    sides: view.sides ?? {},
     study: view.study ?? state.study,
     unit: view.unit ?? "steps",
   };

@@ -76,10 +76,10 @@
  * @typedef {{edge: number, cycle: number}} Mark
  * @typedef {{error: string | null, same: boolean, edges: number, version: string | null, own_version: string, controller: number,
  *   after: Mark | null, until: Mark | null, shorter: "this" | "other" | null}} Verdict  How a run stands to a link's sender's.
- * @typedef {{window?: Span, controller?: number, axis?: number, a?: number, b?: number, view?: string, side?: string,
+ * @typedef {{window?: Span, controller?: number, axis?: number, a?: number, b?: number, view?: string, sides?: {[area: string]: string},
  *   unit?: "steps" | "mm" | "deg", study?: StudyName}} ViewPart  What a link says of the view; what it leaves out is as on a fresh page.
  *
- * @typedef {"compare" | "measures" | "tables" | "sine" | "torque"} StudyName  Tabs of the study.
+ * @typedef {"compare" | "measures" | "tables" | "sine" | "torque" | "motor"} StudyName  Tabs of the study.
  *
  * @typedef {object} State
  * @property {Scenario} scenario
@@ -122,7 +122,7 @@
  * @property {StudyName} study      Open tab of the study.
  * @property {Panes} panes          What this device keeps of how the views stand.
  * @property {string[]} bare        Views that have nothing to show of this run but a line.
- * @property {string | null} side   Which of the views that share a place on a wide screen is on show; null: the one that is not always there, if it is.
+ * @property {{[area: string]: string}} sides  Which of the views that share a place on a wide screen is on show, where one was chosen.
  * @property {{text: string, kind: "info" | "error", place?: Place | null, offer?: {label: string, scenario: Scenario}} | null} notice  About links, files and the engine.
  *
  * @typedef {{dispatch: (message: import("./state.js").Message) => void, now: () => State}} Page  What each part of the page is given.

@@ -17,6 +17,7 @@ import { selected } from "./state.js";
  * @property {string} about  What the card behind its heading says first; what its words mean stands in `help/texts.js`.
  * @property {Place | null} place  On a wide screen; null stands alone.
  * @property {(state: State) => boolean} [offered]  Whether there is such a view now; always without it.
+ * @property {(state: State) => boolean} [leads]  Whether it has its place where none was chosen; else the first has it.
  *
  * @typedef {object} Place
  * @property {string} area  Name of the place; views of one name share it.
@@ -32,6 +33,13 @@ const ROWS = /** @type {const} */ ([
     title: "Motion",
     about: "Position, speed and acceleration of one axis.",
     place: { area: "motion", band: 0, height: "1fr", part: 0.47, least_px: 120 },
+  },
+  {
+    name: "motor",
+    title: "Motor",
+    about: "What the pulses do to a motor: where its rotor is, what it draws, whether it loses steps.",
+    place: { area: "motion", band: 0, part: 0.47, least_px: 120 },
+    leads: (/** @type {State} */ state) => Boolean(state.scenario.plant),
   },
   {
     name: "pulses",
@@ -58,6 +66,7 @@ const ROWS = /** @type {const} */ ([
     about: "Could the driver have followed? Each rule of its data sheet against the pulses.",
     place: { area: "spectrum", band: 2, part: 5 / 11, least_px: 110 },
     offered: (/** @type {State} */ state) => typeof selected(state)?.violations === "number",
+    leads: () => true,
   },
   {
     name: "study",
@@ -87,12 +96,13 @@ export function isOffered({ offered }, state) {
 }
 
 /**
- * The view on show in the place of one: that which was chosen, else that which is not always there, else the first.
+ * The view on show in the place of one: that which was chosen, else that which leads there, else the first.
  * @param {State} state @param {string} area
  */
 export function inPlace(state, area) {
   const here = PLACED.filter((view) => view.place.area === area && isOffered(view, state));
-  const found = here.find(({ name }) => name === state.side) ?? here.find(({ offered }) => offered) ?? here[0];
+  const chosen = here.find(({ name }) => name === state.sides[area]);
+  const found = chosen ?? here.find(({ leads }) => leads?.(state)) ?? here[0];
   return found.name;
 }
 

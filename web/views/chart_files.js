@@ -9,6 +9,7 @@ import { shown } from "../state/state.js";
 import { color, drawing, font, picture } from "../time/plot.js";
 import { ask } from "./motion/ask.js";
 import { bandsOf, chartOf, QUANTITIES } from "./motion/bands.js";
+import { motorPanels, motorValues as motorTable } from "./motor/sheet.js";
 import { chosenSpectrum, spectrumChart } from "./spectrum/chart.js";
 import { distortion, given, nameOf, overFrequency, UNITS } from "./spectrum/harmonics.js";
 
@@ -70,6 +71,18 @@ export async function motionSheet(state, engine) {
       height: PANEL + chart.x.label_px,
     })),
   };
+}
+
+/** @param {State} state @param {Engine} engine @returns {Promise<Sheet>} */
+export async function motorSheet(state, engine) {
+  const { about, legend, panels } = await motorPanels(state, engine, COLUMNS);
+  const { title, note } = titleOf(state);
+  return { title, note: `${about} · ${note}`, legend, panels };
+}
+
+/** The curves of the view Motor as they are shown, as a table. @param {State} state @param {Engine} engine */
+export function motorValues(state, engine) {
+  return motorTable(state, engine, COLUMNS);
 }
 
 /** @param {State} state @param {Engine} engine @returns {Promise<Sheet>} */

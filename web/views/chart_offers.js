@@ -1,4 +1,4 @@
-/** What can be saved of the motion and the spectrum as they are; how that is made loads with the first of them. */
+/** What can be saved of the motion, the motor and the spectrum as they are; how that is made loads with the first of them. */
 import { baseName } from "../shell/offers.js";
 
 /** @typedef {import("../state/types.js").State} State */
@@ -13,7 +13,29 @@ export function chartFiles(state, engine) {
   const base = baseName(state);
   const motion = async () => (await files()).motionSheet(state, engine);
   const spectrum = async () => (await files()).spectrumSheet(state, engine);
+  const motor = async () => (await files()).motorSheet(state, engine);
+  const driven = [
+    {
+      name: `${base}-motor.png`,
+      type: png,
+      label: "Motor, picture (PNG)",
+      make: async () => [await (await files()).bitmap(await motor())],
+    },
+    {
+      name: `${base}-motor.svg`,
+      type: svg,
+      label: "Motor, picture (SVG)",
+      make: async () => [(await files()).vector(await motor())],
+    },
+    {
+      name: `${base}-motor.csv`,
+      type: csv,
+      label: "Motor, values (CSV)",
+      make: async () => [await (await files()).motorValues(state, engine)],
+    },
+  ];
   return [
+    ...(state.scenario.plant ? driven : []),
     {
       name: `${base}-motion.png`,
       type: png,

@@ -617,8 +617,9 @@ mod tests {
             tables.map(|kernel| kernels.call(kernel));
         assert!(q8 > 0 && q8 < exact && document > 0, "{q8} {document}");
         assert_eq!(before, planned);
-        // Klipper's step compression makes about 1289 entries of this move.
-        assert!(klipper > ticks && klipper < 1289, "{klipper}");
+        // Klipper's step compression makes about 1289 entries of this move; the quick search in its window, which is half as
+        // wide as ours, a few more.
+        assert!(klipper > ticks && klipper < 1320, "{klipper}");
         assert!(planned > 0 && planned < ticks && ticks < 1289 && ticks < exact, "{exact} {planned} {ticks}");
     }
 

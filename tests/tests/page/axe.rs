@@ -63,7 +63,12 @@ fn axe_finds_nothing_in_any_kind_of_experiment() -> Result<()> {
     in_browser(|page| async move {
         let mut wrong = Vec::new();
         page.open("").await?;
-        for preset in ["driver-timing-broken", "four-controllers-framed", "sonobe-2011-segments"] {
+        for preset in [
+            "driver-timing-broken",
+            "four-controllers-framed",
+            "sonobe-2011-segments",
+            "patent-2019-figure-2",
+        ] {
             page.choose("#preset", preset).await?;
             page.ready().await?;
             look(&page, preset, &mut wrong).await?;
@@ -88,6 +93,10 @@ fn axe_finds_nothing_in_any_tab_of_the_study() -> Result<()> {
             .await?;
             look(&page, tab, &mut wrong).await?;
         }
+        page.choose("#preset", "patent-2019-figure-2").await?;
+        page.click("#study-tab-motor").await?;
+        page.until("document.querySelectorAll('#study-motor tbody tr').length > 4").await?;
+        look(&page, "motor", &mut wrong).await?;
         none(&wrong)
     })
 }

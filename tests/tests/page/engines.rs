@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, ensure};
 use serde_json::json;
-use stepscope_core::scenario::presets::PRESETS;
+use stepscope_core::scenario::presets::{PLANT_PRESETS, PRESETS};
 use stepscope_tests::golden::CASES;
 
 use crate::{
@@ -59,7 +59,7 @@ async fn main_job(page: Session) -> Result<Session> {
     stranger.until_digest(&typed.digest).await?;
     assert_eq!(stranger.form().await?, form);
 
-    for preset in PRESETS {
+    for preset in PRESETS.iter().chain(PLANT_PRESETS) {
         let known = Known::preset(preset)?;
         stranger.choose("#preset", preset.id).await?;
         stranger.until_digest(&known.digest).await.with_context(|| preset.id)?;

@@ -129,7 +129,7 @@ fn the_view_of_a_link_is_shown_and_bad_parts_of_it_are_not() -> Result<()> {
 /// Every cut and every changed character of a view, as the page's own module reads it.
 const CUTS: &str = "
     const { parseView, writeView } = await import('./shell/view_part.js');
-    const whole = '120-4500.k1.x2.a300.b900.tpackets.stiming.umm';
+    const whole = '120-4500.k1.x2.a300.b900.tpackets.stiming.umm.omotor';
     const given = [whole];
     for (let at = 0; at < whole.length; at++) {
         given.push(whole.slice(0, at));
@@ -139,7 +139,8 @@ const CUTS: &str = "
     for (const text of given) {
         const view = parseView(text);
         const ok = Object.entries(view).every(([name, value]) => name === 'window' ? value.start < value.end && Number.isSafeInteger(value.end)
-            : ['view', 'side', 'unit'].includes(name) ? /^[a-z]+$/.test(value) : Number.isSafeInteger(value) && value >= 0);
+            : name === 'sides' ? Object.values(value).every((side) => /^[a-z]+$/.test(side))
+            : ['view', 'unit'].includes(name) ? /^[a-z]+$/.test(value) : Number.isSafeInteger(value) && value >= 0);
         if (!ok || writeView(parseView(writeView(view))) !== writeView(view)) bad.push(text);
     }
     const empty = [undefined, '', 'broken', '5-4', '1-2-3', '__proto__', 'constructor', '.'.repeat(9999), '99999999999999999999-1'].filter((text) => JSON.stringify(parseView(text)) !== '{}');

@@ -16,8 +16,7 @@ async fn refused(page: &Session, what: &str, fragment: &str, says: &str) -> Resu
     page.canvas("chart-position").await?.has_curve("--ideal").with_context(|| what.to_owned())?;
     ensure!(page.visible("#link-message").await?, "{what}: no message");
     let message = page.text("#link-message").await?;
-    // The page has no plant.
-    let core = refusal(fragment)?.replace(", plant", "");
+    let core = refusal(fragment)?;
     ensure!(message.contains(&core), "{what}: `{message}`, wanted `{core}`");
     ensure!(message.contains(says), "{what}: `{message}` does not say `{says}`");
     Ok(())
@@ -54,17 +53,6 @@ fn a_link_that_does_not_open_says_why_and_the_default_motion_is_drawn() -> Resul
             refused(&page, what, &fragment, says).await?;
         }
         ensure!(page.eval::<bool>("({}).polluted === undefined").await?, "the prototype is polluted");
-        Ok(())
-    })
-}
-
-#[test]
-fn a_link_with_a_plant_says_who_runs_it_and_the_default_motion_is_drawn() -> Result<()> {
-    in_browser(|page| async move {
-        page.open(&format!("#{}", forged('j', br#"{"plant":{}}"#))).await?;
-        page.until_digest(&Known::of("{}")?.digest).await?;
-        let message = page.text("#link-message").await?;
-        ensure!(message.contains("give the file to the command: stepscope plant"), "{message}");
         Ok(())
     })
 }

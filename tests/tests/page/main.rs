@@ -50,6 +50,7 @@ mod links;
 mod loading;
 mod logic;
 mod measures;
+mod motor;
 mod native;
 mod offline;
 mod packets;

@@ -94,7 +94,7 @@ async fn everywhere(page: &Session, what: &str, wrong: &mut Vec<String>) -> Resu
         look(page, what, wrong).await?;
         page.click("#study").await?;
     }
-    for tab in ["compare", "measures", "tables", "sine", "torque"] {
+    for tab in ["compare", "measures", "tables", "sine", "torque", "motor"] {
         page.click(&format!("#study-tab-{tab}")).await?;
         page.until("[...document.querySelectorAll('.study-job')].every((job) => job.hidden)").await?;
         look(page, &format!("{what}, study, {tab}"), wrong).await?;
@@ -109,7 +109,7 @@ async fn everywhere(page: &Session, what: &str, wrong: &mut Vec<String>) -> Resu
 /// Looks at the page in windows of these sizes: with the quiet default, which is loaded in each of them, and with the
 /// fullest presets, which are there while the window changes.
 async fn at_sizes(page: &Session, what: &str, sizes: &[Value], wrong: &mut Vec<String>) -> Result<()> {
-    for preset in ["", "driver-timing-broken", "four-controllers-framed"] {
+    for preset in ["", "driver-timing-broken", "four-controllers-framed", "patent-2019-figure-2"] {
         for (index, size) in sizes.iter().enumerate() {
             page.devtools("Emulation.setDeviceMetricsOverride", size.clone()).await?;
             if preset.is_empty() || index == 0 {

@@ -114,8 +114,8 @@ return import(new URL("state/state.js", document.baseURI)).then(({ DEPTH, MIN_SP
     ["a window is whole cycles", [done(0), window(10.4, 99.6)], (s) => s.window, { start: 10, end: 99 }],
     ["a link's window waits for the result", [open(10, 50), done(0)], (s) => [s.window, s.awaited], [{ start: 10, end: 50 }, null]],
     ["a link's window beyond the run is left", [open(10, 5000), done(0)], (s) => s.window, null],
-    ["a link's cursors, axis and unit are taken as far as the run has them", [view({ a: 5, b: 5000, axis: 9, unit: "mm", side: "timing" }), done(0)],
-      (s) => [s.cursors, s.axis, s.unit, s.side, s.awaited], [{ a: 5, b: null }, 3, "mm", "timing", null]],
+    ["a link's cursors, axis and unit are taken as far as the run has them", [view({ a: 5, b: 5000, axis: 9, unit: "mm", sides: { spectrum: "timing" } }), done(0)],
+      (s) => [s.cursors, s.axis, s.unit, s.sides, s.awaited], [{ a: 5, b: null }, 3, "mm", { spectrum: "timing" }, null]],
     ["a link to the run on show is taken at once", [done(0), view({ a: 7, controller: 4 })], (s) => [s.cursors.a, s.result.controller], [7, 0]],
     ["what a sender saw is kept until the run is compared", [seen, done(0), compared()], (s) => s.seen, { text: "x", verdict: { same: true } }],
     ["another comparison is not this link's", [seen, done(0), compared("y")], (s) => s.seen.verdict, null],
@@ -133,7 +133,7 @@ return import(new URL("state/state.js", document.baseURI)).then(({ DEPTH, MIN_SP
       (s) => s.panes.pulses, { px: 30, order: ["RX", "EN"], hidden: ["ticks"], names: { 0: "X" } }],
     ["which outlive the scenario", [rows({ px: 30 }), replace({ a: { b: 7 } })], (s) => s.panes.pulses.px, 30],
     ["and what is done to the panes", [rows({ px: 30 }), { type: "pane", panes: { folded: ["motion"] } }], (s) => [s.panes.pulses.px, s.panes.folded], [30, ["motion"]]],
-    ["a side is any of the views of a place", [{ type: "side", side: "spectrum" }], (s) => s.side, "spectrum"],
+    ["each place has its own side", [{ type: "side", area: "spectrum", side: "timing" }, { type: "side", area: "motion", side: "motor" }], (s) => s.sides, { spectrum: "timing", motion: "motor" }],
   ];
 
   const failures = [];

@@ -87,12 +87,14 @@ fn the_study_opens_and_closes_by_button_key_and_link() -> Result<()> {
         ensure!(page.visible("#view-study").await? && !page.visible("#view-motion").await?);
         ensure!(page.visible("#fields").await?, "the form stays beside it");
         page.press("#study-tab-compare", &LEFT.to_string()).await?;
+        page.until_equal("document.activeElement.id", &json!("study-tab-motor")).await?;
+        page.press("#study-tab-motor", &format!("{LEFT}")).await?;
         page.until_equal("document.activeElement.id", &json!("study-tab-torque")).await?;
-        page.press("#study-tab-torque", &format!("{LEFT}")).await?;
-        page.until_equal("document.activeElement.id", &json!("study-tab-sine")).await?;
-        page.press("#study-tab-sine", &HOME.to_string()).await?;
+        page.press("#study-tab-torque", &HOME.to_string()).await?;
         page.until_equal("document.activeElement.id", &json!("study-tab-compare")).await?;
         page.press("#study-tab-compare", &END.to_string()).await?;
+        page.until_equal("document.activeElement.id", &json!("study-tab-motor")).await?;
+        page.press("#study-tab-motor", &LEFT.to_string()).await?;
         page.until_equal("document.activeElement.id", &json!("study-tab-torque")).await?;
         page.press("#study-tab-torque", &LEFT.to_string()).await?;
         page.until_equal("document.activeElement.id", &json!("study-tab-sine")).await?;

@@ -168,7 +168,7 @@ export function createCompare({ engine, dispatch, now, panel }) {
       `Axis ${of.axis}, move ${move + 1}: ${count(steps)} steps in ${si(duration, "s")}${ramp_s === undefined ? "; it has no ramp of its own, so give one" : ""}.`,
     );
     const question = [of.json, of.controller, of.axis, move, ramp.value(), POINTS];
-    const answer = await engine.latest("compare", "compare", ...question).catch(unlessDropped);
+    const answer = await engine.consider("compare", "compare", ...question).catch(unlessDropped);
     if (!answer || turn !== asking) return undefined;
     rows = answer;
     key = kindOf(asked);

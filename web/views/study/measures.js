@@ -204,7 +204,7 @@ export function createMeasures({ engine, panel }) {
   async function refresh({ result, axis }) {
     if (!result) return;
     const [found, spectra] = await Promise.all([
-      engine.latest("measures", "measures", axis),
+      engine.considerRun("measures", "measures", result.controller, axis),
       engine.latest("measures-thd", "spectrum"),
     ]).catch((error) => {
       if (!(error instanceof Dropped)) {

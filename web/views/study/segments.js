@@ -20,7 +20,9 @@ export function createSegments({ engine }) {
     if (key === asked) return;
     asked = key;
     /** @type {Segments | null | undefined} */
-    const made = of ? await engine.ask("sine_segments", of.json, of.controller, of.axis).catch(unlessDropped) : null;
+    const made = of
+      ? await engine.consider("segments", "sine_segments", of.json, of.controller, of.axis).catch(unlessDropped)
+      : null;
     if (key !== asked) return;
     root.hidden = !made;
     if (!made) return;

@@ -448,7 +448,10 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     const found =
       d1 === null
         ? null
-        : rowOf(await engine.ask("sine_rows", d1, d1, 1, order.value(), sensor, 0, 1).catch(unlessDropped), 0);
+        : rowOf(
+            await engine.consider("sine row", "sine_rows", d1, d1, 1, order.value(), sensor, 0, 1).catch(unlessDropped),
+            0,
+          );
     if (next !== ownKey) return;
     own = found;
     mark();

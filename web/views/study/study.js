@@ -19,7 +19,14 @@ import { place } from "./selected_axis.js";
 /** @typedef {{render: (state: State, before: State | undefined) => any}} StudyTab */
 
 /** @type {{[name in import("../../state/types.js").StudyName]: string}} */
-const TITLES = { compare: "Compare", measures: "Measures", tables: "Tables", sine: "Sine", torque: "Torque" };
+const TITLES = {
+  compare: "Compare",
+  measures: "Measures",
+  tables: "Tables",
+  sine: "Sine",
+  torque: "Torque",
+  motor: "Motor",
+};
 
 /** @param {Given} page */
 export function createStudy(page) {

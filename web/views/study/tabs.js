@@ -1,6 +1,7 @@
 /** The tabs of the study, which load when it is first opened. */
 import { createCompare } from "./compare.js";
 import { createMeasures } from "./measures.js";
+import { createMotorTab } from "./motor.js";
 import { createSine } from "./sine.js";
 import { createTables } from "./tables.js";
 import { createTorque } from "./torque.js";
@@ -12,4 +13,5 @@ export const TABS = {
   tables: createTables,
   sine: createSine,
   torque: createTorque,
+  motor: createMotorTab,
 };

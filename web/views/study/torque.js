@@ -208,7 +208,7 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
     if (next === asked) return;
     asked = next;
     job.run(
-      () => engine.ask("torque", of.json, of.controller, of.axis),
+      () => engine.consider("torque", "torque", of.json, of.controller, of.axis),
       (/** @type {Torque | undefined} */ answer) => {
         torque = answer ?? null;
         body.hidden = torque === null;

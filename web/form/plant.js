@@ -1,0 +1,61 @@
+/** What the edges drive, in the form: supply, sensors, protection, and the motors of channels that no axis gives one. */
+import { button, element } from "../dom.js";
+import { motorFields } from "./motor.js";
+import { fields, labelOf, mostOf } from "./schema.js";
+
+/** @typedef {import("./kit.js").Kit} Kit */
+
+/** @param {Kit} kit @param {import("../state/types.js").Scenario} scenario @returns {Node[]} */
+export function plantItems(kit, { plant }) {
+  const on = toggle(kit, "plant", "Drive motors with the pulses", Boolean(plant), kit.samples.plant);
+  const head = [kit.errorOf("plant"), on];
+  if (!plant) return head;
+  const group = (/** @type {string} */ name, /** @type {string} */ of) =>
+    kit.part(labelOf("PlantSettings", name), false, kit.block(`plant.${name}`, fields(of)));
+  const guard = plant.protection ?? null;
+  return [
+    ...head,
+    ...kit.block("plant", fields("PlantSettings")),
+    toggle(kit, "plant.protection", "Protection: stop at an overload", guard !== null, kit.samples.protection),
+    ...(guard ? kit.block("plant.protection", fields("Protection")) : []),
+    group("current_sensor", "CurrentSensor"),
+    group("encoder", "Encoder"),
+    kit.part("Motors of channels without an axis", (plant.motors ?? []).length > 0, motors(kit, plant.motors ?? [])),
+  ];
+}
+
+/** @param {Kit} kit @param {any[]} list @returns {Node[]} */
+function motors(kit, list) {
+  const at = "plant.motors";
+  return [
+    kit.errorOf(at),
+    ...list.map((_, index) =>
+      kit.item(
+        `Motor ${index}`,
+        `${at}[${index}]`,
+        [
+          ...kit.block(`${at}[${index}]`, fields("PlantMotor")),
+          ...motorFields(kit, `${at}[${index}].motor`, true, `motor ${index}`),
+          button("Remove", `Remove motor ${index}`, () => kit.remove(at, index)),
+        ],
+        "PlantSettings.motors",
+      ),
+    ),
+    button(
+      "Add motor",
+      "Add motor",
+      () => kit.append(at, (last) => structuredClone(last ?? kit.samples.plant_motor)),
+      list.length >= mostOf("PlantSettings", "motors"),
+    ),
+  ];
+}
+
+/** A part of the scenario that there may be or not. @param {Kit} kit @param {string} path @param {string} label @param {boolean} on @param {any} sample */
+function toggle(kit, path, label, on, sample) {
+  const check = element("input", { type: "checkbox", "data-path": `${path}#kind` });
+  check.checked = on;
+  check.addEventListener("change", () =>
+    kit.change(path, () => (check.checked ? structuredClone(sample) : null), [[path, null]]),
+  );
+  return element("label", { class: "check" }, check, label);
+}

@@ -1,0 +1,200 @@
+/**
+ * The view Motor: what the pulses do to a motor, over the time axis that all views share; a verdict in words, and the
+ * numbers behind it. It loads when it is first opened.
+ */
+import { byId, element, fill, options, say } from "../../dom.js";
+import { unlessDropped } from "../../engine/engine.js";
+import { short, si } from "../../state/number.js";
+import { selected, shown } from "../../state/state.js";
+import { drawCursors, overlaid } from "../../time/cursors.js";
+import { createHandles } from "../../time/handles.js";
+import { cleared, draw, fit, GUTTER, MARGIN, watch } from "../../time/plot.js";
+import { onTimeAxis } from "../../time/timeline.js";
+import { createChoice } from "./choice.js";
+import { showNumbers } from "./numbers.js";
+import { channelOf, chartOf, marksOf, QUANTITIES, wanted } from "./quantities.js";
+import { createVerdict } from "./verdict.js";
+
+/** @typedef {import("../../state/types.js").State} State */
+/** @typedef {import("./numbers.js").Report} Report */
+
+/** Height that a chart has at least, in CSS pixels. */
+const CHART_PX = 78;
+/** Height of the time's labels under the last chart, in CSS pixels. */
+const TIME_PX = 20;
+
+/** @param {import("./pane.js").Page} page */
+export function createMotor({ engine, dispatch, now }) {
+  const channels = /** @type {HTMLSelectElement} */ (byId("motor-channel"));
+  const stack = byId("motor-charts");
+  const overlay = element("canvas", { class: "overlay", "aria-hidden": "true" });
+  const strip = element("div", { class: "handles" });
+  const note = byId("motor-note");
+  const verdict = createVerdict({ engine, now, node: byId("motor-verdict") });
+  const choice = createChoice({ engine, dispatch, now }, /** @type {HTMLDetailsElement} */ (byId("motor-choice")));
+  let plot = { left: GUTTER, right: GUTTER + 1 };
+  const charts = QUANTITIES.map((quantity) => {
+    const canvas = element("canvas", { role: "img", "aria-label": `${quantity.title} over time` });
+    const reading = element("output", { class: "reading", "aria-live": "off" });
+    const keys = quantity.lines.map(({ label, ink, dash }) =>
+      element("span", {}, swatch(ink, dash !== undefined), ` ${label}`),
+    );
+    const caption = element(
+      "div",
+      { class: "caption" },
+      element("span", {}, `${quantity.title.toLowerCase()}, ${quantity.unit}`),
+      ...keys,
+      reading,
+    );
+    const root = element("div", { class: "chart" }, caption, canvas);
+    const press = element("button", { type: "button", "aria-pressed": "false" }, quantity.title);
+    press.addEventListener("click", () => {
+      if (wanted.has(quantity.name) && wanted.size > 1) wanted.delete(quantity.name);
+      else wanted.add(quantity.name);
+      arrange();
+      paint();
+    });
+    return { quantity, canvas, reading, root, press };
+  });
+  fill(byId("motor-quantities"), ...charts.map(({ press }) => press));
+  fill(stack, ...charts.map(({ root }) => root), overlay, strip);
+  const handles = createHandles(strip, () => plot, { dispatch, now });
+  onTimeAxis(stack, () => plot, { dispatch, now });
+  channels.addEventListener("change", () => dispatch({ type: "axis", axis: Number(channels.value) }));
+  watch(stack, () => void curvesOf(now()));
+
+  /** @type {Report | null} */
+  let report = null;
+  /** @type {import("./quantities.js").Curves | null} */
+  let curves = null;
+  /** The time that the curves are of. */
+  let stretch = { start: 0, end: 1 };
+  /** The result that all are of. @type {State["result"]} */
+  let about = null;
+  arrange();
+  byId("motor-limits").addEventListener("click", () => {
+    dispatch({ type: "study", study: "motor" });
+    dispatch({ type: "view", view: "study" });
+  });
+
+  /** The charts on show share the room; the last one has the time's labels. */
+  function arrange() {
+    const on = charts.filter(({ quantity }) => wanted.has(quantity.name));
+    for (const { quantity, root, press } of charts) {
+      root.hidden = !wanted.has(quantity.name);
+      press.setAttribute("aria-pressed", String(!root.hidden));
+    }
+    stack.style.gridTemplateRows = `repeat(${on.length}, minmax(${CHART_PX}px, 1fr))`;
+    stack.style.minHeight = `${on.length * CHART_PX + TIME_PX}px`;
+  }
+
+  /** @param {State} state */
+  async function resultOf(state) {
+    const of = state.result;
+    const answer = /** @type {Report | null | undefined} */ (
+      await engine.latest("plant", "plant").catch(unlessDropped)
+    );
+    if (answer === undefined || now().result !== of) return;
+    [about, report] = [of, answer];
+    const has = report !== null;
+    for (const part of ["motor-body", "motor-quantities", "motor-limits"]) byId(part).hidden = !has;
+    say(note, "");
+    choice.show(state, has);
+    verdict.show(state, report, channelOf(state));
+    if (!report) return;
+    showNumbers(byId("motor-numbers"), report, of?.summary.clock_hz ?? 1);
+    await curvesOf(state);
+  }
+
+  /** @param {State} state */
+  async function curvesOf(state) {
+    plot = { left: GUTTER, right: Math.max(GUTTER + 1, stack.clientWidth - MARGIN) };
+    if (!report || about !== state.result || stack.clientWidth < 60) return;
+    const { start, end } = shown(state);
+    const columns = Math.max(16, Math.round(plot.right - plot.left));
+    const channel = channelOf(state);
+    const answer = await engine
+      .latest("plant curves", "plant_curves", channel, start, end, columns)
+      .catch(unlessDropped);
+    if (!answer || about !== now().result || channel !== channelOf(now())) return;
+    [curves, stretch] = [answer, { start, end }];
+    paint();
+  }
+
+  function paint() {
+    const state = now();
+    if (!curves || !report || !state.result) return;
+    const clock = state.result.summary.clock_hz;
+    const { start, end } = stretch;
+    const marks = marksOf(report, channelOf(state), stretch, clock);
+    const time = { from: start / clock, to: end / clock, marks };
+    const on = charts.filter(({ quantity }) => wanted.has(quantity.name));
+    for (const { quantity, canvas } of on) {
+      const last = quantity === on[on.length - 1].quantity;
+      const { range, chart } = chartOf(quantity, curves, time, last);
+      draw(canvas, chart);
+      canvas.setAttribute(
+        "aria-label",
+        `${quantity.title} over time: from ${short(range.low)} to ${short(range.high)} ${quantity.unit}`,
+      );
+    }
+    fit(overlay);
+    paintCursor(state);
+  }
+
+  /** @param {State} state */
+  function paintCursor(state) {
+    const layer = cleared(overlay);
+    if (!layer || !report) return;
+    drawCursors(layer.context, state, plot, layer.height - TIME_PX);
+    handles.render(state);
+    void read(state);
+  }
+
+  /** The exact values at the pointer or a cursor. @param {State} state */
+  async function read(state) {
+    const { start, end } = shown(state);
+    const { a, b } = state.cursors;
+    const cycle = [state.hover, a, b].find((at) => at !== null && at >= start && at <= end) ?? null;
+    const values =
+      cycle === null
+        ? null
+        : await engine.latest("plant reading", "plant_at", channelOf(state), cycle).catch(unlessDropped);
+    if (values === undefined) return;
+    const at = cycle === null ? "" : `${cycle === a ? "A " : cycle === b ? "B " : ""}${clockTime(cycle, state)}: `;
+    for (const { quantity, reading } of charts) {
+      const text = quantity.lines.map(({ of }) => short(values?.[of] ?? Number.NaN, 6)).join(" · ");
+      say(reading, values ? `${at}${text}` : "");
+    }
+  }
+
+  /** @param {State} state @param {State | undefined} before */
+  function render(state, before) {
+    const count = selected(state)?.channels ?? 1;
+    /** @type {HTMLElement} */ (channels.parentElement).hidden = count < 2;
+    options(
+      channels,
+      Array.from({ length: count }, (_, i) => [String(i), String(i)]),
+      String(channelOf(state)),
+    );
+    if (before?.scenario !== state.scenario) choice.show(state, report !== null);
+    if (about !== state.result || before?.result !== state.result) return resultOf(state);
+    if (before?.axis !== state.axis) verdict.show(state, report, channelOf(state));
+    if (before?.axis !== state.axis || before?.window !== state.window) return curvesOf(state);
+    if (overlaid(before, state)) paintCursor(state);
+    return undefined;
+  }
+  return { render };
+}
+
+/** @param {number} cycle @param {State} state */
+function clockTime(cycle, state) {
+  return si(cycle / (state.result?.summary.clock_hz ?? 1), "s", 6);
+}
+
+/** A piece of a line. @param {string} ink @param {boolean} dashed */
+function swatch(ink, dashed) {
+  const made = element("span", { class: "key" });
+  made.style.borderTop = `2px ${dashed ? "dashed" : "solid"} var(${ink})`;
+  return made;
+}

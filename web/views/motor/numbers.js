@@ -1,0 +1,80 @@
+/** The numbers of a run's motors, and where the energy went, as a table with a column for each motor. */
+import { element, fill } from "../../dom.js";
+import { short, si } from "../../state/number.js";
+
+/** The core's names (`PlantReport`). @typedef {{channel: number, verdict: string, slips: number, [number: string]: any}} Motor */
+/**
+ * @typedef {{plant: {digest: string, load_least_a: number, load_greatest_a: number, load_rms_a: number, deviation_above_a: number | null,
+ *   deviation_below_a: number | null, bus_least_v: number, bus_greatest_v: number, collapsed_at_s: number | null, overload_cycle: number | null},
+ *   motors: Motor[], slips: {channel: number, cycle: number, behind: boolean}[], self_test: {channel: number, settling_cycles: number | null}[]}} Report
+ */
+
+const steps = (/** @type {number | null} */ value) => (value === null ? "–" : `${short(value, 5)} full steps`);
+const joules = (/** @type {number} */ value) => si(value, "J", 4);
+const amperes = (/** @type {number} */ value) => si(value, "A", 4);
+const seconds = (/** @type {number | null} */ value) => (value === null ? "–" : si(value, "s", 4));
+
+/** @type {[string, string, (value: any) => string][]} */
+const ROWS = [
+  ["Commanded at the end", "command_full_steps", steps],
+  ["Rotor at the end", "rotor_full_steps", steps],
+  ["Lost", "lost_full_steps", steps],
+  ["Slips of four full steps", "slips", String],
+  ["Largest following error", "following_error_full_steps", steps],
+  ["at", "following_error_at_s", seconds],
+  ["Greatest speed", "fastest_full_steps_s", (value) => `${short(value, 5)} full steps/s`],
+  ["Overshoot after the last step", "overshoot_full_steps", steps],
+  ["Settled within 0.05 full steps after", "settling_s", seconds],
+  ["Phase current, peak", "phase_peak_a", amperes],
+  ["Phase current, r.m.s.", "phase_rms_a", amperes],
+  ["Energy from the bus", "bus_j", joules],
+  ["to copper", "copper_j", joules],
+  ["to friction", "friction_j", joules],
+  ["to viscous friction", "viscous_j", joules],
+  ["to diodes", "diodes_j", joules],
+  ["to the load", "load_j", joules],
+  ["stored", "stored_j", joules],
+  ["left over", "energy_error", (value) => `${short(100 * value, 3)} %`],
+];
+
+/** @param {HTMLElement} place @param {Report} report @param {number} clock */
+export function showNumbers(place, { plant, motors, self_test }, clock) {
+  const cell = (/** @type {string} */ text) => element("td", { class: "number" }, text);
+  const row = (/** @type {string} */ name, /** @type {string[]} */ cells) =>
+    element("tr", {}, element("th", { scope: "row" }, name), ...cells.map(cell));
+  const tested = self_test.map(({ settling_cycles: cycles }) =>
+    cycles === null ? "does not settle" : si(cycles / clock, "s"),
+  );
+  const table = element(
+    "table",
+    { "aria-label": "Numbers of the motors" },
+    element(
+      "thead",
+      {},
+      element(
+        "tr",
+        {},
+        element("th", { scope: "col" }, `plant digest ${plant.digest}`),
+        ...motors.map(({ channel }) => element("th", { scope: "col", class: "number" }, `motor ${channel}`)),
+      ),
+    ),
+    element(
+      "tbody",
+      {},
+      ...ROWS.map(([name, key, print]) =>
+        row(
+          name,
+          motors.map((motor) => print(motor[key])),
+        ),
+      ),
+      ...(tested.length > 0 ? [row("Settling time of the self-test", tested)] : []),
+      ...(plant.deviation_above_a === null
+        ? []
+        : [
+            row("Supply current above its rest, behind the sensor", [amperes(plant.deviation_above_a)]),
+            row("below it", [amperes(plant.deviation_below_a ?? 0)]),
+          ]),
+    ),
+  );
+  fill(place, table);
+}

@@ -1,0 +1,117 @@
+/** What the view Motor can show over time, and how each chart is drawn. */
+import { selected } from "../../state/state.js";
+import { color, GUTTER } from "../../time/plot.js";
+
+/** @typedef {import("../../state/types.js").State} State */
+
+/** @typedef {{x: Float64Array, min: Float64Array, max: Float64Array}} Band */
+/** @typedef {{[name: string]: Band}} Curves  By the core's names. */
+/** @typedef {{name: string, title: string, unit: string, lines: {of: string, label: string, ink: string, dash?: number, width?: number}[]}} Quantity */
+
+/** @type {Quantity[]} */
+export const QUANTITIES = [
+  {
+    name: "angle",
+    title: "Angle",
+    unit: "full steps",
+    lines: [
+      { of: "command", label: "commanded", ink: "--ideal", dash: 5 },
+      { of: "rotor", label: "rotor", ink: "--actual", width: 1.8 },
+    ],
+  },
+  {
+    name: "error",
+    title: "Following error",
+    unit: "full steps",
+    lines: [{ of: "error", label: "commanded less rotor; red: four full steps are lost", ink: "--actual" }],
+  },
+  { name: "speed", title: "Speed", unit: "full steps/s", lines: [{ of: "speed", label: "rotor", ink: "--actual" }] },
+  {
+    name: "phases",
+    title: "Phase currents",
+    unit: "A",
+    lines: [
+      { of: "phase_a_a", label: "A", ink: "--actual" },
+      { of: "phase_b_a", label: "B", ink: "--ideal", dash: 5 },
+    ],
+  },
+  {
+    name: "supply",
+    title: "Supply current",
+    unit: "A",
+    lines: [
+      { of: "load_a", label: "of all motors", ink: "--ideal", dash: 3, width: 1 },
+      { of: "sensor_a", label: "behind the sensor", ink: "--actual", width: 1.8 },
+    ],
+  },
+  { name: "bus", title: "Bus voltage", unit: "V", lines: [{ of: "bus_v", label: "at the drivers", ink: "--actual" }] },
+  {
+    name: "encoder",
+    title: "Encoder",
+    unit: "codes",
+    lines: [{ of: "encoder", label: "4096 a turn", ink: "--actual" }],
+  },
+];
+
+/** Those on show, by their names. */
+export const wanted = new Set(["angle", "error", "phases", "supply"]);
+
+/** Those on show, in their order. */
+export const chosen = () => QUANTITIES.filter(({ name }) => wanted.has(name));
+
+/** The motor on show: the last one where there are fewer. @param {State} state */
+export const channelOf = (state) => Math.min(state.axis, (selected(state)?.channels ?? 1) - 1);
+
+/** Least distance of two marks, in parts of the stretch. */
+const APART = 1 / 400;
+
+/** Where a motor loses steps in a stretch of time, in s: of slips that no eye tells apart the first. @param {import("./numbers.js").Report} report @param {number} channel @param {import("../../state/types.js").Span} span @param {number} clock */
+export function marksOf({ slips }, channel, { start, end }, clock) {
+  let next = start;
+  return slips.flatMap(({ channel: of, cycle }) => {
+    if (of !== channel || cycle < next || cycle > end) return [];
+    next = cycle + (end - start) * APART;
+    return [cycle / clock];
+  });
+}
+
+/** Least and greatest of a quantity's lines, and a range with air around them. @param {Quantity} quantity @param {Curves} curves */
+export function rangeOf({ lines }, curves) {
+  let [low, high] = [Infinity, -Infinity];
+  for (const { of } of lines) {
+    for (const value of curves[of].min) if (value < low) low = value;
+    for (const value of curves[of].max) if (value > high) high = value;
+  }
+  if (low > high) [low, high] = [0, 1];
+  const air = (high - low) * 0.08 || Math.abs(high) * 1e-3 || 1;
+  return { low, high, min: low - air, max: high + air };
+}
+
+/**
+ * One chart over a stretch of time.
+ * @param {Quantity} quantity @param {Curves} curves @param {{from: number, to: number, marks: number[]}} time  In s; marks where steps are lost, which the error shows.
+ * @param {boolean} last  Whether the time's labels stand under it.
+ */
+export function chartOf(quantity, curves, { from, to, marks }, last) {
+  const range = rangeOf(quantity, curves);
+  const series = quantity.lines.map(({ of, ink, dash, width }) => {
+    const { x, min, max } = curves[of];
+    const shape = min.every((value, at) => value === max[at]) ? { line: { y: min } } : { band: { min, max } };
+    return { color: color(ink), opacity: 1, width: width ?? 1.6, dash: dash ?? 0, x, shape };
+  });
+  const lost = (quantity.name === "error" ? marks : []).map((at) => ({
+    color: color("--error"),
+    opacity: 0.6,
+    width: 1,
+    x: [at, at],
+    shape: { line: { y: [range.min, range.max] } },
+  }));
+  return {
+    range,
+    chart: {
+      x: { min: from, max: to, unit: "s", prefix: true, label_px: last ? 20 : 0 },
+      y: { min: range.min, max: range.max, unit: "", prefix: true, label_px: GUTTER },
+      series: [...lost, ...series],
+    },
+  };
+}
