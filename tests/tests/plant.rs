@@ -98,6 +98,56 @@ fn the_encoder_reads_the_move_every_five_milliseconds() {
     }
 }
 
+/// Song's table 5, as its encoder reads it every 5 ms: how far the turn's time is off 0.4 s, its distance in codes, and by
+/// how many codes it goes past its place.
+fn read_back(moves: &str) -> (f64, i32, i32) {
+    struct Codes(Vec<i32>);
+    impl Observer for Codes {
+        fn point(&mut self, plant: &Plant) {
+            if plant.events().encoded {
+                self.0.push(plant.encoder(0).into());
+            }
+        }
+    }
+    let json = format!(
+        r#"{{"plant":{{}},"source":{{"motion":{{"engine":"segments","axes":[{{"moves":[{moves}],"motor":{{}}}}]}}}}}}"#
+    );
+    let codes = run(&json, Codes(vec![])).into_parts().remove(0).1.0;
+    // Added up, as the document does it: no step between two readings is half a turn.
+    let mut place = 0;
+    let mut before = 0;
+    let places: Vec<i32> = codes
+        .iter()
+        .map(|code| {
+            place += (code - before + 2048).rem_euclid(4096) - 2048;
+            before = *code;
+            place
+        })
+        .collect();
+    let end = *places.last().expect("readings");
+    // It moves from the last reading at rest to the first of those that stay within a code of the end.
+    let first = places.iter().position(|place| place.abs() > 1).expect("it moves");
+    let last = places.iter().rposition(|place| (place - end).abs() > 1).expect("it stops") + 1;
+    let seconds = (last + 1 - first) as f64 * 0.005;
+    (seconds - 0.4, end, places.iter().max().expect("readings") - end)
+}
+
+#[test]
+fn the_documents_table_5_comes_out_as_its_encoder_reads_it() {
+    let cosine = r#"{"cosine":{"distance":{"deg":360},"duration_s":0.4,"ramp_s":0.2}}"#;
+    let (off, distance, past) = read_back(cosine);
+    // Its first and its last 15 ms are within a code, so the encoder sees 30 ms less; the pulses take 0.4 s to a step.
+    near(off, -0.03, 0.0051);
+    assert!((distance - 4096).abs() <= 1 && past <= 1, "{distance}, past it by {past}");
+    // The direct start shakes and swings past its place: by two thirds of a full step, 14 codes.
+    let direct = r#"{"constant":{"distance":{"deg":360},"speed":{"steps_s":8000}}}"#;
+    let (off, distance, past) = read_back(&direct.replace("8000", "19200"));
+    assert!((distance - 4096).abs() <= 1, "{distance}");
+    assert!(past > 3, "it goes past its place by {past} codes only");
+    let rest = off + 0.4 - 3200.0 / 19_200.0;
+    assert!(rest > 0.01, "it rings for {rest} s after its last step");
+}
+
 /// Four patent-set motors with a self-test of Ts = 32768.
 fn self_test(plant: &str, bus: &str) -> String {
     format!(

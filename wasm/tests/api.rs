@@ -18,6 +18,11 @@ fn sure<T, E>(result: Result<T, E>) -> T {
     result.unwrap_or_else(|_| unreachable!("the call failed"))
 }
 
+/// What the tests' scenarios have.
+fn there<T>(found: Option<T>) -> T {
+    found.unwrap_or_else(|| unreachable!("it is missing"))
+}
+
 /// What is said of a text before it runs.
 fn check(json: &str) -> Result<JsValue, wasm_bindgen::JsError> {
     Judged::new(json).check()
@@ -443,10 +448,10 @@ fn a_plant_is_told_of_the_motor_that_is_asked_for() {
     let motors = list(&report, "motors");
     assert_eq!((motors.len(), text(&motors[1], "verdict").as_str()), (2, "follows"));
     let end = number(&sure(simulation.summary()), "end_cycle");
-    let curves = simulation.plant_curves(1, 0.0, end, 300).expect("a motor");
+    let curves = there(simulation.plant_curves(1, 0.0, end, 300));
     let greatest = numbers(&get(&curves, "rotor"), "max");
     assert!(greatest.len() > 300 && greatest.len() <= 602, "{}", greatest.len());
-    let at_end = simulation.plant_at(1, end).expect("a motor");
+    let at_end = there(simulation.plant_at(1, end));
     assert_eq!(number(&at_end, "rotor"), number(&motors[1], "rotor_full_steps"));
     assert!(simulation.plant_curves(2, 0.0, end, 300).is_none(), "there is no third motor");
     assert!(sure(finished("{}").plant()).is_null());
@@ -462,7 +467,7 @@ fn a_motor_of_the_list_takes_the_place_of_the_scenarios() {
     assert!(list(&sure(judged.check()), "problems").is_empty());
     // As `stepscope limits` has it for the default motor.
     let usual = Judged::new(r#"{"plant":{}}"#);
-    let rate = sure(usual.start_stop(0, 0)).expect("it starts");
+    let rate = there(sure(usual.start_stop(0, 0)));
     assert!((rate - 34_700.0).abs() < 400.0, "{rate}");
     assert!(usual.start_stop(0, 1).is_err() && Judged::new("{}").start_stop(0, 0).is_err());
     let map = sure(usual.resonance(0, 0, 100.0, 50.0, 3));

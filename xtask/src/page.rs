@@ -33,7 +33,7 @@ pub(crate) async fn shipped(optimise: Optimise) -> Result<Parts> {
 
 /// The wasm modules of the page: the folder of each in `web`, and the features of the crate that it has. What opening the
 /// page loads runs scenarios and draws; the study's questions go to workers with a module of their own.
-const MODULES: [(&str, &str); 2] = [("pkg", "run,charts"), ("pkg-study", "study")];
+pub(crate) const MODULES: [(&str, &str); 2] = [("pkg", "run,charts"), ("pkg-study", "study")];
 
 /// Builds the wasm crate into the packages that the page loads, installing the tools first if they are missing.
 pub(crate) async fn build(optimise: Optimise) -> Result<()> {

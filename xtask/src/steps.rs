@@ -64,6 +64,10 @@ impl Step {
                 toolchain::target(BARE_METAL).await?;
                 clippy("--workspace --all-targets --all-features").await?;
                 clippy(&format!("--package stepscope-wasm --all-targets --target {WASM}")).await?;
+                for (_, features) in page::MODULES {
+                    let module = format!("--no-default-features --features {features}");
+                    clippy(&format!("--package stepscope-wasm {module} --target {WASM}")).await?;
+                }
                 clippy(&format!("--package stepscope-bench --lib --target {WASM}")).await?;
                 let packages = format!(
                     "--package stepscope-core --package stepscope-firmware --package {}",

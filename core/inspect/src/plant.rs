@@ -151,7 +151,10 @@ pub fn settling(
     settling_with(setup, channel, t_step, share).map(|(response, _)| response)
 }
 
-/// The same, and what the sensor said from `t_step` cycles before the step on, with cycles after STEP's rise.
+/// A reading of the current sensor: cycles after STEP's rise, and A.
+pub type CurrentAt = (f64, f64);
+
+/// The same, and what the sensor said from `t_step` cycles before the step on.
 ///
 /// # Errors
 /// As [`settling`].
@@ -160,7 +163,7 @@ pub fn settling_with(
     channel: usize,
     t_step: u64,
     share: f64,
-) -> Result<(StepResponse, Vec<(f64, f64)>), Vec<Refused>> {
+) -> Result<(StepResponse, Vec<CurrentAt>), Vec<Refused>> {
     let mut plant = Plant::new(&setup.alone(channel).ok_or_else(Vec::new)?)?;
     let mut log = SensorLog::default();
     // As the self-test has it: S = 1.
