@@ -10,6 +10,7 @@ import { drawCursors, overlaid } from "../../time/cursors.js";
 import { createHandles } from "../../time/handles.js";
 import { cleared, draw, fit, GUTTER, MARGIN, watch } from "../../time/plot.js";
 import { onTimeAxis } from "../../time/timeline.js";
+import { swatch } from "../lines.js";
 import { createChoice } from "./choice.js";
 import { showNumbers } from "./numbers.js";
 import { channelOf, chartOf, marksOf, QUANTITIES, wanted } from "./quantities.js";
@@ -20,6 +21,8 @@ import { createVerdict } from "./verdict.js";
 
 /** Height that a chart has at least, in CSS pixels. */
 const CHART_PX = 78;
+/** Rest after a cursor moved before its values are spoken, in ms. */
+const SPEAK_MS = 500;
 /** Height of the time's labels under the last chart, in CSS pixels. */
 const TIME_PX = 20;
 
@@ -30,6 +33,9 @@ export function createMotor({ engine, dispatch, now }) {
   const overlay = element("canvas", { class: "overlay", "aria-hidden": "true" });
   const strip = element("div", { class: "handles" });
   const note = byId("motor-note");
+  const spoken = element("p", { class: "unseen", "aria-live": "polite" });
+  byId("motor-body").append(spoken);
+  let speaking = 0;
   const verdict = createVerdict({ engine, now, node: byId("motor-verdict") });
   const choice = createChoice({ engine, dispatch, now }, /** @type {HTMLDetailsElement} */ (byId("motor-choice")));
   let plot = { left: GUTTER, right: GUTTER + 1 };
@@ -162,10 +168,26 @@ export function createMotor({ engine, dispatch, now }) {
         : await engine.latest("plant reading", "plant_at", channelOf(state), cycle).catch(unlessDropped);
     if (values === undefined) return;
     const at = cycle === null ? "" : `${cycle === a ? "A " : cycle === b ? "B " : ""}${clockTime(cycle, state)}: `;
-    for (const { quantity, reading } of charts) {
-      const text = quantity.lines.map(({ of }) => short(values?.[of] ?? Number.NaN, 6)).join(" · ");
-      say(reading, values ? `${at}${text}` : "");
-    }
+    const told = (/** @type {{of: string}} */ { of }) => short(visible(values?.[of] ?? Number.NaN), 6);
+    for (const { quantity, reading } of charts)
+      say(reading, values ? `${at}${quantity.lines.map(told).join(" · ")}` : "");
+    speak(values && state.hover === null ? `${at}${sentence(told)}` : "");
+  }
+
+  /** The values on show in words. @param {(line: {of: string}) => string} told */
+  function sentence(told) {
+    const on = QUANTITIES.filter(({ name }) => wanted.has(name));
+    return on
+      .map(
+        ({ title, unit, lines }) => `${title} ${lines.map((each) => `${each.label} ${told(each)}`).join(", ")} ${unit}`,
+      )
+      .join("; ");
+  }
+
+  /** Says it once a cursor has come to rest. @param {string} text */
+  function speak(text) {
+    clearTimeout(speaking);
+    if (text) speaking = window.setTimeout(() => say(spoken, text), SPEAK_MS);
   }
 
   /** @param {State} state @param {State | undefined} before */
@@ -187,14 +209,12 @@ export function createMotor({ engine, dispatch, now }) {
   return { render };
 }
 
+/** What is smaller than any digit counts for nothing. @param {number} value */
+function visible(value) {
+  return Math.abs(value) < 1e-12 ? 0 : value;
+}
+
 /** @param {number} cycle @param {State} state */
 function clockTime(cycle, state) {
   return si(cycle / (state.result?.summary.clock_hz ?? 1), "s", 6);
-}
-
-/** A piece of a line. @param {string} ink @param {boolean} dashed */
-function swatch(ink, dashed) {
-  const made = element("span", { class: "key" });
-  made.style.borderTop = `2px ${dashed ? "dashed" : "solid"} var(${ink})`;
-  return made;
 }

@@ -64,7 +64,8 @@ export function showNumbers(place, { plant, motors, self_test }, clock) {
       ...ROWS.map(([name, key, print]) =>
         row(
           name,
-          motors.map((motor) => print(motor[key])),
+          // Who has lost steps does not go past its place.
+          motors.map((motor) => (key === "overshoot_full_steps" && motor.slips > 0 ? "–" : print(motor[key]))),
         ),
       ),
       ...(tested.length > 0 ? [row("Settling time of the self-test", tested)] : []),

@@ -1,6 +1,7 @@
 /** What the view Motor can show over time, and how each chart is drawn. */
 import { selected } from "../../state/state.js";
 import { color, GUTTER } from "../../time/plot.js";
+import { shapeOf } from "../lines.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 
@@ -23,7 +24,7 @@ export const QUANTITIES = [
     name: "error",
     title: "Following error",
     unit: "full steps",
-    lines: [{ of: "error", label: "commanded less rotor; red: four full steps are lost", ink: "--actual" }],
+    lines: [{ of: "error", label: "behind; red: 4 full steps lost", ink: "--actual" }],
   },
   { name: "speed", title: "Speed", unit: "full steps/s", lines: [{ of: "speed", label: "rotor", ink: "--actual" }] },
   {
@@ -95,8 +96,8 @@ export function rangeOf({ lines }, curves) {
 export function chartOf(quantity, curves, { from, to, marks }, last) {
   const range = rangeOf(quantity, curves);
   const series = quantity.lines.map(({ of, ink, dash, width }) => {
-    const { x, min, max } = curves[of];
-    const shape = min.every((value, at) => value === max[at]) ? { line: { y: min } } : { band: { min, max } };
+    const { x } = curves[of];
+    const shape = shapeOf(curves[of]);
     return { color: color(ink), opacity: 1, width: width ?? 1.6, dash: dash ?? 0, x, shape };
   });
   const lost = (quantity.name === "error" ? marks : []).map((at) => ({

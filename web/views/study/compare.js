@@ -7,7 +7,7 @@ import { unlessDropped } from "../../engine/engine.js";
 import { count, plain, pretty, short, si } from "../../state/number.js";
 import { cleared, color, draw, watch } from "../../time/plot.js";
 import { field, focusRow, table } from "./parts.js";
-import { place, selectedAxis } from "./selected_axis.js";
+import { isAnother, place, selectedAxis } from "./selected_axis.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{is_met: boolean, least: {needed_mn_m: number, available_mn_m: number, at_s: number} | null}} Torque */
@@ -307,13 +307,7 @@ export function createCompare({ engine, dispatch, now, panel }) {
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    if (
-      before?.judgement !== state.judgement ||
-      before?.revision !== state.revision ||
-      before?.axis !== state.axis ||
-      before?.result !== state.result
-    )
-      return refresh(state);
+    if (isAnother(state, before)) return refresh(state);
     return undefined;
   }
   return { render };

@@ -7,7 +7,9 @@ import { readJson } from "../../state/json.js";
 import { plain, short, si } from "../../state/number.js";
 import { get, set } from "../../state/state.js";
 import { color, draw, GUTTER, watch } from "../../time/plot.js";
+import { shapeOf, swatch } from "../lines.js";
 import { createJob, field, table } from "./parts.js";
+import { isAnother } from "./selected_axis.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{rate: Float64Array, available: Float64Array, needed: Float64Array}} Torque */
@@ -22,6 +24,17 @@ const SHARE = 0.2;
 const COLUMNS = 1200;
 
 const AXIS = { unit: "", prefix: true, label_px: GUTTER };
+
+/** What is found of a motor, before it is. @returns {{torque: Torque | null, start: number | undefined, pull: number | undefined, swing: Float64Array, loses: Float64Array, step: Settling | null, pair: [Supply, Supply] | null}} */
+const nothing = () => ({
+  torque: null,
+  start: undefined,
+  pull: undefined,
+  swing: new Float64Array(),
+  loses: new Float64Array(),
+  step: null,
+  pair: null,
+});
 
 /** @param {string} text @param {string} label */
 function chart(text, label) {
@@ -58,11 +71,7 @@ function around(all) {
 }
 
 /** @param {string} ink @param {string} text @param {boolean} [dashed] */
-function key(ink, text, dashed = false) {
-  const sign = element("span", { class: "key" });
-  sign.style.borderTop = `2px ${dashed ? "dashed" : "solid"} var(${ink})`;
-  return element("span", {}, sign, ` ${text} `);
-}
+const key = (ink, text, dashed = false) => element("span", {}, swatch(ink, dashed), ` ${text} `);
 
 /** @param {import("./study.js").StudyPage} page @returns {import("./study.js").StudyTab} */
 export function createMotorTab({ engine, dispatch, now, panel }) {
@@ -103,16 +112,7 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
   fill(panel, element("div", { class: "study-bar" }, about, ramp.root), body);
   body.hidden = ramp.root.hidden = true;
 
-  /** What was found. @type {{torque: Torque | null, start: number | undefined, pull: number | undefined, swing: Float64Array, loses: Float64Array, step: Settling | null, pair: [Supply, Supply] | null}} */
-  const found = {
-    torque: null,
-    start: undefined,
-    pull: undefined,
-    swing: new Float64Array(),
-    loses: new Float64Array(),
-    step: null,
-    pair: null,
-  };
+  const found = nothing();
   let asked = "";
   let json = "";
   /** The controller that all is about. */
@@ -212,9 +212,9 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
           label_px: 20,
         },
         y: { ...AXIS, ...around([together.min, together.max, apart.min, apart.max]) },
-        series: two.map(({ x, min, max }, at) => ({
-          ...line(["--ideal", "--actual"][at], x, min, { width: 1.4, dash: 0 }),
-          shape: min.every((value, place) => value === max[place]) ? { line: { y: min } } : { band: { min, max } },
+        series: two.map((curve, at) => ({
+          ...line(["--ideal", "--actual"][at], curve.x, curve.min, { width: 1.4, dash: 0 }),
+          shape: shapeOf(curve),
         })),
       });
       fill(pairChart.keys, key("--ideal", "all at once"), key("--actual", "one after another"));
@@ -289,15 +289,7 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
 
   /** What was found is of another motor. */
   function empty() {
-    Object.assign(found, {
-      torque: null,
-      start: undefined,
-      pull: undefined,
-      swing: new Float64Array(),
-      loses: new Float64Array(),
-      step: null,
-      pair: null,
-    });
+    Object.assign(found, nothing());
     facts.show([]);
     for (const text of [settled, pair]) say(text, "");
     press.disabled = true;
@@ -422,13 +414,7 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    if (
-      before?.judgement !== state.judgement ||
-      before?.revision !== state.revision ||
-      before?.axis !== state.axis ||
-      before?.result !== state.result
-    )
-      refresh(state);
+    if (isAnother(state, before)) refresh(state);
     if (before?.view !== state.view || before?.study !== state.study) paint();
   }
   return { render };

@@ -25,3 +25,13 @@ export function selectedAxis(state) {
   if (!found.path) return "There is no axis with moves here: choose a motion of axes as the source in the form.";
   return { json: judgement.scenario, ...found };
 }
+
+/** Whether what a tab asks about the selected axis may have another answer than before. @param {State} state @param {State | undefined} before */
+export function isAnother(state, before) {
+  return (
+    before?.judgement !== state.judgement ||
+    before?.revision !== state.revision ||
+    before?.axis !== state.axis ||
+    before?.result !== state.result
+  );
+}

@@ -6,7 +6,7 @@ import { element, fill, say } from "../../dom.js";
 import { save } from "../../shell/save.js";
 import { count, counted, plain, pretty, short, si } from "../../state/number.js";
 import { createJob, field, table } from "./parts.js";
-import { selectedAxis } from "./selected_axis.js";
+import { isAnother, selectedAxis } from "./selected_axis.js";
 import { chosen, FORMS, files, LANGUAGES } from "./table_files.js";
 
 /** @typedef {import("../../state/types.js").State} State */
@@ -182,13 +182,7 @@ export function createTables({ engine, now, panel }) {
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    if (
-      before?.judgement !== state.judgement ||
-      before?.revision !== state.revision ||
-      before?.axis !== state.axis ||
-      before?.result !== state.result
-    )
-      refresh(state);
+    if (isAnother(state, before)) refresh(state);
   }
   return { render };
 }

@@ -7,7 +7,7 @@ import { count, plain, short, si } from "../../state/number.js";
 import { get } from "../../state/state.js";
 import { color, draw, watch } from "../../time/plot.js";
 import { createJob, table } from "./parts.js";
-import { selectedAxis } from "./selected_axis.js";
+import { isAnother, selectedAxis } from "./selected_axis.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{at_s: number, rate: number, needed_mn_m: number, available_mn_m: number}} Moment */
@@ -227,13 +227,7 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
-    if (
-      before?.judgement !== state.judgement ||
-      before?.revision !== state.revision ||
-      before?.axis !== state.axis ||
-      before?.result !== state.result
-    )
-      refresh(state);
+    if (isAnother(state, before)) refresh(state);
     if (before?.view !== state.view || before?.study !== state.study) paint();
   }
   return { render };

@@ -1,0 +1,14 @@
+/** What the charts of several views have in common: the sign of a line in a legend, and the shape of what is one or a band. */
+import { element } from "../dom.js";
+
+/** A piece of a line in its colour. @param {string} ink @param {boolean} dashed */
+export function swatch(ink, dashed) {
+  const made = element("span", { class: "key" });
+  made.style.borderTop = `2px ${dashed ? "dashed" : "solid"} var(${ink})`;
+  return made;
+}
+
+/** A line where least and greatest are the same everywhere, else a band. @param {{min: Float64Array, max: Float64Array}} values */
+export function shapeOf({ min, max }) {
+  return min.every((value, at) => value === max[at]) ? { line: { y: min } } : { band: { min, max } };
+}
