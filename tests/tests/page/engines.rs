@@ -76,11 +76,12 @@ const ENGINE: &str = "
             failed: (_, message) => end(message), crashed: (message) => end(message),
         });
         let number = 0;
+        window.plant = () => engine.ask('plant').then(({ plant }) => plant.digest);
         window.digests = (json) => new Promise((resolve) => { end = resolve; engine.run(number++, json); });
         return true;
     });";
 
-/// Every golden case gives its digests in the page's own engine.
+/// Every golden case gives its digests in the page's own engine, and every preset with a plant the plant's.
 async fn golden(page: &Session) -> Result<()> {
     page.open("").await?;
     page.js::<bool>(ENGINE, vec![]).await?;
@@ -91,6 +92,17 @@ async fn golden(page: &Session) -> Result<()> {
         let wanted = case.file("digest").context(case.name)?.trim();
         if found != wanted {
             wrong.push(format!("{}: {found}, wanted {wanted}", case.name));
+        }
+    }
+    for preset in PLANT_PRESETS {
+        let known = Known::preset(preset)?;
+        let mut run = known.experiment.start();
+        while !run.advance_each(u64::MAX, &mut [Vec::new()]) {}
+        let wanted = run.results().first().map(|result| format!("{:016x}", result.digest));
+        page.js::<String>("return digests(arguments[0]);", vec![json!(preset.json)]).await?;
+        let found: String = page.js("return plant();", vec![]).await?;
+        if wanted.as_ref() != Some(&found) {
+            wrong.push(format!("plant of {}: {found}, wanted {wanted:?}", preset.id));
         }
     }
     ensure!(wrong.is_empty(), "{}", wrong.join("\n"));
