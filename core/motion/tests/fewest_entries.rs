@@ -130,3 +130,17 @@ proptest! {
         prop_assert!(found <= entries_of_steps(&quick.list.segments) + surplus);
     }
 }
+
+#[test]
+fn a_list_that_asks_for_too_much_work_is_left_to_the_quick_search() {
+    // Wide windows, and a turn after every third step: many short entries, each with thousands of times to begin at.
+    let steps: Vec<ScheduledStep> = (0..30_000_u64)
+        .map(|index| ScheduledStep { cycle: 1000 + 300 * index, right: index / 3 % 2 == 0 })
+        .collect();
+    let tolerance = Tolerance { cycles: Cycles(1600), interval_part: NonZeroU32::new(1), side: Side::Both };
+    let found = compressed(steps.iter().copied(), tolerance, EntryFormat::TICKS, PULSE).expect("it fits");
+    let quick =
+        compressed_quickly(steps.iter().copied(), tolerance, EntryFormat::TICKS, PULSE).expect("it fits");
+    assert!(found.surplus.is_none_or(|surplus| surplus > 0), "{:?}", found.surplus);
+    assert!(found.list.segments.len() <= quick.list.segments.len());
+}

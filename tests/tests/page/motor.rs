@@ -193,10 +193,16 @@ fn what_is_unfolded_covers_nothing_and_closes_where_a_motor_comes() -> Result<()
             page.choose("#preset", "patent-2019-figure-2").await?;
             page.until(&format!("{VERDICT}.includes('follows')")).await?;
             page.until("!document.getElementById('motor-choice').open").await?;
-            // Both can be closed again by a press on what opened them.
+            // Both show what they hold, and can be closed again by a press on what opened them.
             for fold in ["#motor-choice", "#motor-choice + details"] {
                 page.click(&format!("{fold} > summary")).await?;
                 page.until(&format!("document.querySelector('{fold}').open")).await?;
+                let room =
+                    format!("document.querySelector('{fold} > .record-pane > :first-child').clientHeight");
+                ensure!(
+                    page.eval::<f64>(&room).await? > 20.0,
+                    "{fold} holds nothing to be seen at {width} px"
+                );
                 page.click(&format!("{fold} > summary")).await?;
                 page.until(&format!("!document.querySelector('{fold}').open")).await?;
             }

@@ -190,7 +190,8 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
                 });
             let stretch =
                 Stretch::new(format, least, self.writer.time, steps.get(..there).unwrap_or_default());
-            work += WORK_A_STEP * there as u64;
+            let Some(left) = work.checked_sub(there as u64) else { return Ok((last, None)) };
+            work = left;
             let Some(pieces) = stretch.pieces(is_cut, &mut work) else { return Ok((last, None)) };
             let mut done = 0;
             for Piece { count, interval, add } in pieces {
@@ -199,6 +200,8 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
                 self.writer.steps(kept.iter().map(|(window, _)| *window), interval as u64, add, right);
                 (done, last) = (done + count, kept.last().map_or(last, |(window, _)| window.due));
             }
+            // Of steps that are kept, so that many short pieces of a stretch cannot ask for it again and again.
+            work += WORK_A_STEP * done as u64;
             cuts += u64::from(is_cut || done < there) + 2 * u64::from(waits);
             ready.drain(..done);
             self.writer.judge()?;

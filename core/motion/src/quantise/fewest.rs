@@ -141,11 +141,14 @@ impl Stretch {
     /// What an entry more reaches.
     fn next(&self, layer: &Layer, work: &mut u64) -> Option<Layer> {
         let mut next = Layer { first: layer.first, stride: self.stride, words: layer.words.clone() };
+        // What is copied, and where entries of one and two steps are looked for.
+        let mut spent = layer.words.len() as u64;
         for step in layer.first..=layer.last() {
             if let Some(begin) = self.begin(layer, step) {
-                self.one_and_two(begin, &mut next);
+                spent += self.one_and_two(begin, &mut next);
             }
         }
+        *work = work.checked_sub(spent)?;
         let mut open = layer.first;
         for step in layer.first..=layer.last() {
             while next.is_full(open, self.places.get(open).map_or(0, |place| place.width())) {
@@ -172,14 +175,14 @@ impl Stretch {
         Some(Begin { step, bits, first: low + first, last: low + last })
     }
 
-    /// Where entries of one and of two steps lead.
-    fn one_and_two(&self, begin: Begin<'_>, next: &mut Layer) {
-        let Some(&one) = self.places.get(begin.step + 1) else { return };
+    /// Where entries of one and of two steps lead; says how many times were looked at.
+    fn one_and_two(&self, begin: Begin<'_>, next: &mut Layer) -> u64 {
+        let Some(&one) = self.places.get(begin.step + 1) else { return 1 };
         next.set(begin.step + 1, one, (begin.first + self.least, one.high));
         let Some(&two) =
             self.places.get(begin.step + 2).filter(|_| begin.step + 2 <= self.places[begin.step].end)
         else {
-            return;
+            return 1;
         };
         let (least_add, most_add) = (self.format.least_add(), self.format.most_add());
         // Of the intervals that lead through the first window the shortest and the longest tell the range.
@@ -192,14 +195,17 @@ impl Stretch {
             })
         };
         let low = self.places[begin.step].low;
+        let mut spent = 1;
         for from in times(begin.bits).map(|bit| low + bit) {
+            spent += 1;
             let Some((low, high)) = range(from) else { continue };
             next.set(begin.step + 2, two, (low, high));
             if high >= two.high && low <= two.low.max(one.low.max(from + self.least) + self.least) {
                 // No later one leads to other times.
-                return;
+                return spent;
             }
         }
+        spent
     }
 
     /// Where entries of `count` steps lead, at least 3; says how many steps were looked at.
@@ -218,6 +224,7 @@ impl Stretch {
                 continue;
             }
             let passes = times(begin.bits).any(|bit| {
+                spent += 1;
                 let from = low + bit;
                 let lasts = time - from;
                 let odd = match lasts.rem_euclid(n) {
@@ -225,7 +232,6 @@ impl Stretch {
                     part if 2 * part == n => 1,
                     _ => return false,
                 };
-                spent += 1;
                 let (mut least, mut most) = self.adds_of(lasts, n);
                 for (m, place) in (1..).zip(inner) {
                     let (bend, far) = (n * m * (n - m), 2 * m * lasts);
@@ -261,6 +267,7 @@ impl Stretch {
         for add in self.adds(begin, least, target) {
             spent += 8;
             for interval in self.intervals(begin, least, target, add) {
+                spent += 1 + self.stride as u64 / 4;
                 let Some(exit) = self.exits(begin, layer, interval, &mut exits) else { continue };
                 let (mut range, mut time, mut now) = ((exit.first, exit.last), 0, interval);
                 for count in 1..=last - step {
