@@ -258,6 +258,8 @@ export class Engine {
 
   /** @param {string} message */
   #restart(message) {
+    // What ended the worker is not run again by itself.
+    this.#running = null;
     if (++this.#crashes <= 2) this.#renew(message);
     else this.#drop(message);
     this.#listener.crashed(message);
@@ -277,6 +279,8 @@ export class Engine {
     // Should it end this worker, too, it is not made again.
     [this.#restoring, this.#good] = [this.#good, null];
     if (this.#restoring) this.#worker.postMessage({ ...this.#restoring, quiet: true, select: this.#selected });
+    // Asked for after the cancel that was not heard.
+    if (this.#running) this.#worker.postMessage(this.#running);
   }
 
   /** @param {string} why */

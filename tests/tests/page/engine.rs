@@ -164,6 +164,19 @@ fn an_engine_that_hears_no_cancel_is_replaced_and_makes_the_last_result_again() 
     })
 }
 
+#[test]
+fn what_is_asked_for_while_a_cancel_is_not_heard_is_run() -> Result<()> {
+    in_browser(|page| async move {
+        page.before_scripts(REACH).await?;
+        begin_long_run(&page).await?;
+        page.js::<()>("window.deaf = true;", vec![]).await?;
+        page.click("#cancel").await?;
+        page.fill(DISTANCE, "2400").await?;
+        page.until_digest(&Known::of(&LONG.replace("22000000", "2400"))?.digest).await?;
+        page.until("window.workers === 2").await
+    })
+}
+
 /// Lets the engine run out of stack, by a call with more arguments than fit on it.
 async fn crash(page: &Session) -> Result<()> {
     page.eval::<bool>(

@@ -3,7 +3,11 @@
 use anyhow::{Result, ensure};
 use serde::Deserialize;
 
-use crate::{bench::in_browser, session::Session};
+use crate::{
+    bench::in_browser,
+    native::{link_of, with_distance},
+    session::Session,
+};
 
 /// Notes, from the document's beginning on, what the browser measures of the visit.
 const OBSERVE: &str = "{
@@ -42,6 +46,22 @@ fn all_that_loads_is_of_this_site_and_the_core_is_fetched_once() -> Result<()> {
         assert_eq!(seen.fetched.len(), 1, "{:?}", seen.fetched);
         ensure!(seen.fetched[0].ends_with(".wasm"), "{:?}", seen.fetched);
         assert_eq!(names.iter().filter(|name| name.ends_with(".wasm")).count(), 1, "{names:?}");
+        Ok(())
+    })
+}
+
+#[test]
+fn a_link_loads_no_view_that_is_not_on_show() -> Result<()> {
+    in_browser(|page| async move {
+        page.open(&format!("#{}", link_of(&with_distance(1200.0))?)).await?;
+        let names: Vec<String> =
+            page.eval("performance.getEntriesByType('resource').map(({ name }) => name)").await?;
+        for name in &names {
+            ensure!(
+                !name.contains("/views/motor/motor.js") && !name.contains("pkg-study"),
+                "{name} is loaded"
+            );
+        }
         Ok(())
     })
 }

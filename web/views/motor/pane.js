@@ -12,7 +12,8 @@ export function createMotorPane(page) {
   let made = null;
   /** What it has drawn. @type {State | undefined} */
   let drawn;
-  new ResizeObserver(() => void refresh()).observe(view);
+  let placed = false;
+  const observer = new ResizeObserver(() => void refresh());
 
   async function refresh() {
     if (!view.checkVisibility()) return;
@@ -28,5 +29,12 @@ export function createMotorPane(page) {
     await made.render(drawn, before);
   }
 
-  return { render: refresh };
+  return {
+    render() {
+      // Before the first state has given each view its place, all of them may stand there for a moment.
+      if (!placed) observer.observe(view);
+      placed = true;
+      return refresh();
+    },
+  };
 }
