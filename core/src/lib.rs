@@ -69,7 +69,7 @@
 //! left, never what stands to its right:
 //!
 //! ```text
-//! registers -> peripheral -> motion, plant -> scenario -> sim -> inspect
+//! registers -> peripheral -> motion, plant, capture -> scenario -> sim -> inspect
 //! ```
 //!
 //! | room | what it holds | feature |
@@ -87,6 +87,10 @@
 #![cfg_attr(
     feature = "scenario",
     doc = "| [`scenario`] | what a file, a link and the form hold | `scenario` |"
+)]
+#![cfg_attr(
+    feature = "capture",
+    doc = "| [`capture`] | files of logic analysers, put into cycles | `capture` |"
 )]
 #![cfg_attr(feature = "sim", doc = "| [`sim`] | a scenario judged, planned and run | `sim` |")]
 #![cfg_attr(
@@ -129,6 +133,9 @@ pub use stepscope_motion as motion;
 
 #[cfg(feature = "plant")]
 pub use stepscope_plant as plant;
+
+#[cfg(feature = "capture")]
+pub use stepscope_capture as capture;
 
 #[cfg(feature = "scenario")]
 pub use stepscope_scenario as scenario;

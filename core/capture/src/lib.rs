@@ -1,0 +1,36 @@
+//! What was recorded of a firmware or a host, as files have it: levels of channels, bytes of a line, or positions, each
+//! with its time in whole ticks of the file's own time base.
+//!
+//! ```text
+//! file -> read -> Capture: channels, ticks -> channel map -> records in clock cycles
+//! ```
+//!
+//! ```
+//! use stepscope_capture::read::{Limits, read};
+//!
+//! let dump = "$timescale 1 us $end $var wire 1 ! STEP $end $enddefinitions $end #0 0! #10 1! #12 0!";
+//! let reading = read(std::io::Cursor::new(dump), &Limits::default(), &mut |_| true);
+//! assert_eq!(reading.capture.changes[1].tick, 10);
+//! ```
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
+pub mod timebase;
+
+pub mod capture;
+
+pub mod read;
+
+mod proposal;
+
+pub mod channel_map;
+
+pub mod recorded;
+
+pub mod samples;
+
+pub use capture::Capture;
+pub use channel_map::ChannelMap;
+pub use recorded::Recorded;

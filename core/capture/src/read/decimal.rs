@@ -1,0 +1,154 @@
+//! Decimal numbers, exactly: a whole number and how many of its digits stand behind the point.
+//!
+//! ```text
+//! 0.00125   125 and 5 places        1e-05   1 and 5 places        -2.5E3   -2500 and 0 places
+//! ```
+
+/// `mantissa / 10^places`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Decimal {
+    pub(super) mantissa: i128,
+    pub(super) places: u32,
+}
+
+/// Most digits of a number, its leading zeros not counted: more do not fit.
+const MAX_DIGITS: u32 = 30;
+
+impl Decimal {
+    /// Reads a number with an optional sign, point and exponent; `None` where it is none, or does not fit.
+    pub(super) fn parse(text: &[u8]) -> Option<Self> {
+        let (negative, text) = match text {
+            [b'-', rest @ ..] => (true, rest),
+            [b'+', rest @ ..] => (false, rest),
+            _ => (false, text),
+        };
+        // 18 digits fit into 64 bits, which is all that most files need.
+        let (mut mantissa, mut wide) = (0_u64, None::<u128>);
+        let (mut digits, mut places, mut point) = (0_u32, 0_u32, false);
+        let mut any = false;
+        let mut rest = text;
+        while let [byte, after @ ..] = rest {
+            match byte {
+                b'0'..=b'9' => {
+                    any = true;
+                    let digit = byte - b'0';
+                    digits += u32::from(digits > 0 || digit > 0);
+                    places += u32::from(point);
+                    if digits <= 18 {
+                        mantissa = mantissa * 10 + u64::from(digit);
+                    } else if digits <= MAX_DIGITS {
+                        wide = Some(wide.unwrap_or_else(|| mantissa.into()) * 10 + u128::from(digit));
+                    } else {
+                        return None;
+                    }
+                }
+                b'.' if !point => point = true,
+                _ => break,
+            }
+            rest = after;
+        }
+        let exponent = match rest {
+            [] => 0,
+            [b'e' | b'E', power @ ..] => exponent(power)?,
+            _ => return None,
+        };
+        let mantissa = i128::try_from(wide.unwrap_or_else(|| mantissa.into())).ok()?;
+        let number = Self { mantissa: if negative { -mantissa } else { mantissa }, places };
+        if any { number.shifted(exponent) } else { None }
+    }
+
+    /// The number times ten to the power of `exponent`.
+    pub(super) fn shifted(self, exponent: i32) -> Option<Self> {
+        let places = i64::from(self.places) - i64::from(exponent);
+        if let Ok(places) = u32::try_from(places) {
+            return (places <= 60).then_some(Self { places, ..self });
+        }
+        let mantissa = self.mantissa.checked_mul(power_of_ten(u32::try_from(-places).ok()?)?)?;
+        Some(Self { mantissa, places: 0 })
+    }
+
+    /// The number with at least `places` places, and more only where it needs them; `None` where it does not fit.
+    pub(super) fn with_places(self, places: u32) -> Option<Self> {
+        if self.places <= places {
+            let mantissa = self.mantissa.checked_mul(power_of_ten(places - self.places)?)?;
+            return Some(Self { mantissa, places });
+        }
+        let mut number = self;
+        while number.places > places && number.mantissa % 10 == 0 {
+            number.mantissa /= 10;
+            number.places -= 1;
+        }
+        Some(number)
+    }
+
+    /// The number where it is whole.
+    pub(super) fn whole(self) -> Option<i128> {
+        self.with_places(0).filter(|number| number.places == 0).map(|number| number.mantissa)
+    }
+}
+
+/// A power of ten that fits.
+pub(super) const fn power_of_ten(power: u32) -> Option<i128> {
+    10_i128.checked_pow(power)
+}
+
+fn exponent(text: &[u8]) -> Option<i32> {
+    let digits = text.strip_prefix(b"-").or_else(|| text.strip_prefix(b"+")).unwrap_or(text);
+    if !(1..=4).contains(&digits.len()) || !digits.iter().all(u8::is_ascii_digit) {
+        return None;
+    }
+    let value = digits.iter().fold(0, |value, digit| value * 10 + i32::from(digit - b'0'));
+    Some(if text.starts_with(b"-") { -value } else { value })
+}
+
+/// A whole number from 0 to 2^64 - 1.
+pub(super) fn whole(text: &[u8]) -> Option<u64> {
+    if text.is_empty() {
+        return None;
+    }
+    text.iter().try_fold(0_u64, |value, byte| {
+        let digit = byte.wrapping_sub(b'0');
+        if digit > 9 { None } else { value.checked_mul(10)?.checked_add(digit.into()) }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decimals_are_exact_and_what_is_none_is_refused() {
+        for (text, expected) in [
+            ("0", Some((0, 0))),
+            ("0.00125", Some((125, 5))),
+            ("-0.5", Some((-5, 1))),
+            ("+7.", Some((7, 0))),
+            (".25", Some((25, 2))),
+            ("1e-05", Some((1, 5))),
+            ("2.5e-05", Some((25, 6))),
+            ("1.25E3", Some((1250, 0))),
+            ("0.000000000000123456789012345", Some((123_456_789_012_345, 27))),
+            ("12345678901234567890.5", Some((123_456_789_012_345_678_905, 1))),
+            ("1e-60", Some((1, 60))),
+            ("1e-61", None),
+            ("1e99999", None),
+            ("1e400", None),
+            ("1234567890123456789012345678901", None),
+            ("", None),
+            (".", None),
+            ("-", None),
+            ("1e", None),
+            ("e5", None),
+            ("1.2.3", None),
+            ("0x10", None),
+            ("1 ", None),
+        ] {
+            let parsed = Decimal::parse(text.as_bytes()).map(|number| (number.mantissa, number.places));
+            assert_eq!(parsed, expected, "{text}");
+        }
+        assert_eq!(Decimal::parse(b"12.00").and_then(Decimal::whole), Some(12));
+        assert_eq!(Decimal::parse(b"12.50").and_then(Decimal::whole), None);
+        assert_eq!(whole(b"18446744073709551615"), Some(u64::MAX));
+        assert_eq!(whole(b"18446744073709551616"), None);
+    }
+}

@@ -1,0 +1,82 @@
+//! A line of a table as its fields: quotation marks as in RFC 4180, blanks around a field taken off.
+
+use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
+
+/// Most fields of a line.
+const MAX_FIELDS: usize = 1024;
+/// What stands between the fields of tables; the first of them that a line holds is its own.
+const SEPARATORS: [u8; 4] = *b",;\t|";
+
+/// The fields of the line that was split last.
+pub(super) struct Fields {
+    /// The reader for a separator: building it takes longer than a line.
+    reader: Option<(u8, Box<Reader>)>,
+    text: Vec<u8>,
+    ends: Vec<usize>,
+    count: usize,
+}
+
+impl Fields {
+    pub(super) const fn new() -> Self {
+        Self { reader: None, text: Vec::new(), ends: Vec::new(), count: 0 }
+    }
+
+    /// Splits a line.
+    pub(super) fn split(&mut self, line: &[u8], separator: u8) -> Result<(), String> {
+        self.count = 0;
+        self.text.resize(line.len() + 2, 0);
+        self.ends.resize(MAX_FIELDS, 0);
+        if self.reader.as_ref().is_none_or(|(built, _)| *built != separator) {
+            self.reader = Some((separator, Box::new(ReaderBuilder::new().delimiter(separator).build())));
+        }
+        let Some((_, reader)) = &mut self.reader else { return Ok(()) };
+        reader.reset();
+        let (result, _, written, ends) = reader.read_record(line, &mut self.text, &mut self.ends);
+        let (mut result, mut count) = (result, ends);
+        if matches!(result, ReadRecordResult::InputEmpty) {
+            let text = self.text.get_mut(written..).unwrap_or_default();
+            let ends = self.ends.get_mut(count..).unwrap_or_default();
+            let (last, _, _, more) = reader.read_record(b"\n", text, ends);
+            (result, count) = (last, count + more);
+        }
+        match result {
+            ReadRecordResult::Record => {
+                self.count = count;
+                Ok(())
+            }
+            ReadRecordResult::OutputEndsFull => Err(format!("more than {MAX_FIELDS} columns")),
+            ReadRecordResult::InputEmpty if !line.is_empty() => {
+                Err("a quotation mark is opened and not closed in this line".into())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    pub(super) const fn len(&self) -> usize {
+        self.count
+    }
+
+    /// A field; nothing where the line has no such field.
+    pub(super) fn get(&self, at: usize) -> &[u8] {
+        if at >= self.count {
+            return &[];
+        }
+        let start = at.checked_sub(1).map_or(Some(&0), |before| self.ends.get(before));
+        let range = start.zip(self.ends.get(at)).map(|(start, end)| *start..*end);
+        range.and_then(|range| self.text.get(range)).unwrap_or_default().trim_ascii()
+    }
+
+    pub(super) fn iter(&self) -> impl Iterator<Item = &[u8]> {
+        (0..self.count).map(|at| self.get(at))
+    }
+
+    /// The fields as names.
+    pub(super) fn names(&self) -> Vec<String> {
+        self.iter().map(|name| String::from_utf8_lossy(name).into_owned()).collect()
+    }
+}
+
+/// What separates the fields of a line.
+pub(super) fn separator(line: &[u8]) -> u8 {
+    SEPARATORS.into_iter().find(|separator| line.contains(separator)).unwrap_or(b',')
+}

@@ -1,0 +1,98 @@
+//! Reading: which kind of file it is, and what it holds.
+//!
+//! ```text
+//! file -> Source: lines or words of a bounded buffer -> the kind's own reader -> Recorder -> Capture
+//! ```
+//!
+//! A file is read once, from front to back (a session of sigrok by its directory, which stands at the end), and nothing
+//! of it is kept but what it tells: a file of any size needs the memory of its changes and less than 4 MB.
+//!
+//! ```
+//! use stepscope_capture::read::{Limits, ReadError, read};
+//!
+//! // What is not all has what could be read, and why; whoever watches may end it.
+//! let bytes = "55 AA\n01 xx\n";
+//! let reading = read(std::io::Cursor::new(bytes), &Limits::default(), &mut |_| true);
+//! assert_eq!((reading.capture.bytes.len(), reading.error.map(|error| error.line)), (2, Some(2)));
+//! let cancelled = read(std::io::Cursor::new("55 AA\n"), &Limits { most: 1000 }, &mut |_| false);
+//! assert_eq!(cancelled.error.map(|error| error.what).as_deref(), Some(ReadError::CANCELLED));
+//! ```
+
+mod decimal;
+mod detect;
+mod fields;
+mod reading;
+mod recorder;
+mod source;
+mod times;
+
+mod hex;
+mod levels;
+mod positions;
+mod saleae;
+mod session;
+mod sigrok;
+mod stepscope;
+mod vcd;
+
+use crate::capture::{Capture, Format};
+use reading::Reader;
+use recorder::Recorder;
+use source::Source;
+use std::io::{BufRead, Seek};
+
+pub use reading::{Limits, ReadError, Reading};
+
+/// Reads a file of any of the kinds. `watch` hears now and then how many bytes of it have been read, and ends the reading
+/// by `false`.
+///
+/// ```
+/// use stepscope_capture::{capture::Format, read::{Limits, read}};
+///
+/// let table = "Time [s],STEP\n-0.5,0\n0.000001,1\n0.000003,\n";
+/// let reading = read(std::io::Cursor::new(table), &Limits::default(), &mut |_| true);
+/// assert_eq!((reading.capture.format, reading.capture.changes.len()), (Format::SaleaeCsv, 2));
+/// assert!(reading.error.expect("a level is missing").to_string().starts_with("line 4: STEP is “”; "));
+/// ```
+pub fn read<R: BufRead + Seek>(input: R, limits: &Limits, watch: &mut dyn FnMut(u64) -> bool) -> Reading {
+    let mut source = match Source::open(input, watch) {
+        Ok(source) => source,
+        Err(what) => return refusal(ReadError::whole(what)),
+    };
+    let format = match detect::detect(source.head()) {
+        Ok(format) => format,
+        Err(what) => return refusal(ReadError::whole(what)),
+    };
+    let recorder = Recorder::new(format, limits.most);
+    match format {
+        Format::Vcd => {
+            let mut reader = vcd::Vcd::new(recorder);
+            let error = source.words(|word| reader.take(word));
+            ended(reader, error, source.line())
+        }
+        Format::SigrokSession => session::read(source, recorder),
+        Format::SigrokCsv => by_line(source, sigrok::Samples::new(recorder)),
+        Format::SaleaeCsv | Format::EdgesCsv => by_line(source, levels::LevelsTable::new(recorder)),
+        Format::SaleaeBytes => by_line(source, saleae::DecodedBytes::new(recorder)),
+        Format::Trace => by_line(source, stepscope::TraceText::new(recorder)),
+        Format::HexBytes => by_line(source, hex::HexText::new(recorder)),
+        Format::PositionsCsv => by_line(source, positions::Positions::new(recorder)),
+        Format::Unknown => refusal(ReadError::whole(detect::UNKNOWN.into())),
+    }
+}
+
+fn by_line<R: BufRead>(mut source: Source<'_, R>, mut reader: impl Reader) -> Reading {
+    let error = source.lines(|line| reader.take(line));
+    ended(reader, error, source.line())
+}
+
+/// What is missing at the end counts only where nothing went wrong before.
+fn ended(reader: impl Reader, error: Option<ReadError>, line: u64) -> Reading {
+    let (capture, missing) = reader.finish();
+    let error = error.or_else(|| missing.err().map(|what| ReadError { line, what }));
+    Reading { capture, error }
+}
+
+const fn refusal(error: ReadError) -> Reading {
+    Reading { capture: Capture::new(Format::Unknown), error: Some(error) }
+}

@@ -1,0 +1,211 @@
+//! What every reader writes into: rows of levels in the order of time, without those that change nothing.
+
+use crate::capture::{Capture, Change, Channel, Format, MAX_CHANNELS, TimedByte, TimedPosition};
+
+/// Most sentences of [`Capture::left_out`].
+const MAX_LEFT_OUT: usize = 20;
+/// Longest name of a channel, in bytes.
+const MAX_NAME: usize = 400;
+/// Names that a sentence tells.
+const MAX_TOLD: usize = 6;
+
+/// A capture that is being read.
+pub(super) struct Recorder {
+    /// What is read so far, without the row that others of the same tick may still change.
+    pub(super) capture: Capture,
+    most: usize,
+    /// The latest row of levels.
+    latest: Option<Change>,
+    /// Channels for which there is no bit.
+    beyond: Names,
+}
+
+impl Recorder {
+    pub(super) const fn new(format: Format, most: usize) -> Self {
+        Self { capture: Capture::new(format), most, latest: None, beyond: Names::new() }
+    }
+
+    /// How many changes, bytes or positions are read at most.
+    pub(super) const fn most(&self) -> usize {
+        self.most
+    }
+
+    /// Another channel, and its bit; `None` where all bits are taken, which the capture then says.
+    pub(super) fn channel(&mut self, name: &str) -> Option<u8> {
+        let bit = self.capture.channels.len();
+        if bit >= MAX_CHANNELS {
+            self.beyond.add(name);
+            return None;
+        }
+        self.capture.channels.push(Channel { name: cut(name).into() });
+        u8::try_from(bit).ok()
+    }
+
+    /// As many more channels have no bit.
+    pub(super) const fn more_beyond(&mut self, count: u64) {
+        self.beyond.count = self.beyond.count.saturating_add(count);
+    }
+
+    /// The levels from `tick` on, which is not before the tick of the row before.
+    pub(super) fn levels(&mut self, tick: u64, levels: u64) -> Result<(), String> {
+        self.capture.end = tick;
+        match &mut self.latest {
+            Some(latest) if latest.levels == levels => Ok(()),
+            Some(latest) if latest.tick == tick => {
+                latest.levels = levels;
+                Ok(())
+            }
+            _ => {
+                self.settle();
+                room(&mut self.capture.changes, self.most, "changes")?;
+                self.latest = Some(Change { tick, levels });
+                Ok(())
+            }
+        }
+    }
+
+    /// Nothing more comes for the tick of the latest row. Room for it was made when it came.
+    fn settle(&mut self) {
+        if let Some(latest) = self.latest.take()
+            && self.capture.changes.last().is_none_or(|before| before.levels != latest.levels)
+        {
+            self.capture.changes.push(latest);
+        }
+    }
+
+    /// A byte, not before the one before.
+    pub(super) fn byte(&mut self, byte: TimedByte) -> Result<(), String> {
+        room(&mut self.capture.bytes, self.most, "bytes")?;
+        self.capture.end = byte.tick;
+        self.capture.bytes.push(byte);
+        Ok(())
+    }
+
+    /// A position, not before the one before.
+    pub(super) fn position(&mut self, position: TimedPosition) -> Result<(), String> {
+        room(&mut self.capture.positions, self.most, "positions")?;
+        self.capture.end = position.tick;
+        self.capture.positions.push(position);
+        Ok(())
+    }
+
+    /// Puts `map(tick)` in the place of every tick; `None` where one of them does not fit, and nothing is changed.
+    /// `map` must rise.
+    pub(super) fn retime(&mut self, map: impl Fn(u64) -> Option<u64>) -> Option<()> {
+        map(self.capture.end)?;
+        let set = |tick: &mut u64| *tick = map(*tick).unwrap_or(*tick);
+        let capture = &mut self.capture;
+        capture.changes.iter_mut().chain(&mut self.latest).for_each(|change| set(&mut change.tick));
+        capture.bytes.iter_mut().for_each(|byte| set(&mut byte.tick));
+        capture.positions.iter_mut().for_each(|position| set(&mut position.tick));
+        set(&mut capture.end);
+        Some(())
+    }
+
+    /// Says what of the file was not read.
+    pub(super) fn leave_out(&mut self, sentence: String) {
+        if self.capture.left_out.len() < MAX_LEFT_OUT {
+            self.capture.left_out.push(sentence);
+        }
+    }
+
+    /// Says how many levels were neither high nor low.
+    pub(super) fn leave_out_unknown(&mut self, count: u64, which: &str) {
+        if count > 0 {
+            let levels = if count == 1 { "level is" } else { "levels are" };
+            self.leave_out(format!(
+                "{} {levels} neither high nor low ({which}), taken as low",
+                grouped(count)
+            ));
+        }
+    }
+
+    /// What was read.
+    pub(super) fn finish(mut self) -> Capture {
+        self.settle();
+        if !self.beyond.is_empty() {
+            let sentence = format!("more than {MAX_CHANNELS} channels: {} left out", self.beyond.told());
+            self.leave_out(sentence);
+        }
+        self.capture
+    }
+}
+
+/// Makes room for one more, where one more is allowed.
+fn room<T>(rows: &mut Vec<T>, most: usize, what: &str) -> Result<(), String> {
+    if rows.len() >= most {
+        let most = grouped(most as u64);
+        return Err(format!("more than {most} {what}; record a shorter time, or fewer channels"));
+    }
+    if rows.len() == rows.capacity() {
+        // By half, since a doubled vector may not fit beside the old one.
+        let more = (rows.len() / 2).max(1024);
+        let count = rows.len() as u64;
+        rows.try_reserve_exact(more).map_err(|_| {
+            format!("no memory for more than {} {what}; record a shorter time", grouped(count))
+        })?;
+    }
+    Ok(())
+}
+
+/// Names of what is left out: the first few, and how many there are.
+pub(super) struct Names {
+    first: Vec<String>,
+    count: u64,
+}
+
+impl Names {
+    pub(super) const fn new() -> Self {
+        Self { first: Vec::new(), count: 0 }
+    }
+
+    pub(super) fn add(&mut self, name: &str) {
+        self.count += 1;
+        if self.first.len() < MAX_TOLD {
+            self.first.push(cut(name).into());
+        }
+    }
+
+    pub(super) const fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// The names, and how many more there are.
+    pub(super) fn told(&self) -> String {
+        let more = self.count - self.first.len() as u64;
+        let names = self.first.join(", ");
+        if more == 0 { names } else { format!("{names} and {} more", grouped(more)) }
+    }
+}
+
+/// A number with a gap before each three digits: `100 000 000`.
+pub(super) fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (at, digit) in digits.chars().enumerate() {
+        if at > 0 && (digits.len() - at).is_multiple_of(3) {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// What stands in a file, for a message: short, and in quotation marks.
+pub(super) fn quoted(text: &[u8]) -> String {
+    let text = String::from_utf8_lossy(text.get(..160).unwrap_or(text));
+    let mut shown: String =
+        text.chars().map(|letter| if letter.is_control() { '·' } else { letter }).take(40).collect();
+    if shown.len() < text.len() {
+        shown.push('…');
+    }
+    format!("“{shown}”")
+}
+
+fn cut(name: &str) -> &str {
+    let mut end = name.len().min(MAX_NAME);
+    while !name.is_char_boundary(end) {
+        end -= 1;
+    }
+    name.get(..end).unwrap_or_default()
+}

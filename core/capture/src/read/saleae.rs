@@ -1,0 +1,154 @@
+//! Saleae Logic's tables of decoded bytes: Logic 2's table of data, and the export of one analyser.
+//!
+//! ```text
+//! name,type,start_time,duration,data                      Time [s],Value,Parity Error,Framing Error
+//! "Async Serial","data",0.00125,8.68e-05,0x55             0.001250000000000,0x55,,
+//! ```
+//!
+//! A channel is an analyser. The table of levels is read by [`super::levels`].
+
+use super::{
+    fields::{Fields, separator},
+    reading::Reader,
+    recorder::{Names, Recorder, quoted},
+    times::{TimeUnit, Times},
+};
+use crate::capture::{Capture, TimedByte};
+
+/// The name of an analyser that has none.
+const UNNAMED: &str = "serial";
+
+/// Decoded bytes that are being read.
+pub(super) struct DecodedBytes {
+    recorder: Recorder,
+    columns: Option<(u8, Columns)>,
+    fields: Fields,
+    times: Times,
+    /// What the rows are that are no bytes.
+    others: Names,
+}
+
+/// Where what a row tells stands in it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Columns {
+    name: Option<usize>,
+    kind: Option<usize>,
+    time: usize,
+    unit: TimeUnit,
+    value: usize,
+    error: Option<usize>,
+}
+
+impl Columns {
+    /// The columns of a head; `None` where it is none of such a table.
+    fn find(names: &[String]) -> Option<Self> {
+        let names: Vec<String> = names.iter().map(|name| name.to_lowercase()).collect();
+        let at = |wanted: &[&str]| names.iter().position(|name| wanted.contains(&name.as_str()));
+        let time =
+            names.iter().position(|name| name == "start_time" || TimeUnit::of_column(name).is_some())?;
+        let value = at(&["data", "value", "decoded protocol result"])?;
+        let error = at(&["framing error", "error", "framing_error"]);
+        let (name, kind) = (at(&["name", "analyzer name"]), at(&["type", "frame type"]));
+        // `t,data` without anything else is a table of hexadecimal bytes.
+        if error.is_none() && name.is_none() {
+            return None;
+        }
+        let unit = names.get(time).and_then(|name| TimeUnit::of_column(name)).unwrap_or(TimeUnit::Seconds(0));
+        Some(Self { name, kind, time, unit, value, error })
+    }
+}
+
+/// Whether these are the columns of a table of decoded bytes.
+pub(super) fn is_head(names: &[String]) -> bool {
+    Columns::find(names).is_some()
+}
+
+impl DecodedBytes {
+    pub(super) const fn new(recorder: Recorder) -> Self {
+        let times = Times::new(TimeUnit::Seconds(0));
+        Self { recorder, columns: None, fields: Fields::new(), times, others: Names::new() }
+    }
+
+    fn head(&mut self, line: &[u8]) -> Result<(), String> {
+        let separator = separator(line);
+        self.fields.split(line, separator)?;
+        let columns = Columns::find(&self.fields.names())
+            .ok_or("the head does not name a time and a value, such as name,type,start_time,duration,data")?;
+        self.times = Times::new(columns.unit);
+        self.columns = Some((separator, columns));
+        Ok(())
+    }
+
+    /// The channel of an analyser; `None` where there are too many of them.
+    fn channel(&mut self, name: &str) -> Option<u8> {
+        let known = self.recorder.capture.channels.iter().position(|channel| channel.name == name);
+        known.and_then(|at| u8::try_from(at).ok()).or_else(|| self.recorder.channel(name))
+    }
+}
+
+impl Reader for DecodedBytes {
+    fn take(&mut self, line: &[u8]) -> Result<(), String> {
+        if line.trim_ascii().is_empty() {
+            return Ok(());
+        }
+        let Some((separator, columns)) = self.columns.clone() else { return self.head(line) };
+        self.fields.split(line, separator)?;
+        if self.fields.len() <= columns.time.max(columns.value) {
+            return Err(format!(
+                "{} has {} fields; the head names more: is the row whole?",
+                quoted(line),
+                self.fields.len()
+            ));
+        }
+        let tick = self.times.tick(self.fields.get(columns.time), &mut self.recorder)?;
+        self.recorder.capture.end = tick;
+        let kind = columns.kind.map_or(&b"data"[..], |at| self.fields.get(at));
+        if kind != b"data" && kind != b"result" {
+            self.others.add(&String::from_utf8_lossy(kind));
+            return Ok(());
+        }
+        let field = self.fields.get(columns.value);
+        let byte = value(field).ok_or_else(|| {
+            format!(
+                "{} is not a byte; export the data in hexadecimal, as 0x55, or decimal, from 0 to 255",
+                quoted(field)
+            )
+        })?;
+        let error = columns.error.map_or(&b""[..], |at| self.fields.get(at)).to_ascii_lowercase();
+        let framing_error =
+            !matches!(&error[..], b"" | b"0" | b"false" | b"none") && !error.starts_with(b"parity");
+        let name = columns
+            .name
+            .map_or_else(|| UNNAMED.into(), |at| String::from_utf8_lossy(self.fields.get(at)).into_owned());
+        match self.channel(if name.is_empty() { UNNAMED } else { &name }) {
+            Some(channel) => self.recorder.byte(TimedByte { tick, channel, byte, framing_error }),
+            None => Ok(()),
+        }
+    }
+
+    fn finish(mut self) -> (Capture, Result<(), String>) {
+        self.times.finish(&mut self.recorder);
+        if !self.others.is_empty() {
+            self.recorder.leave_out(format!("rows that are no bytes: {}", self.others.told()));
+        }
+        let capture = self.recorder.finish();
+        let missing = if capture.is_empty() { Err("the table has no bytes".into()) } else { Ok(()) };
+        (capture, missing)
+    }
+}
+
+/// `0x55`, `85`, `U (0x55)`.
+fn value(field: &[u8]) -> Option<u8> {
+    let field = match field.iter().rposition(|byte| *byte == b'(') {
+        Some(open) if field.ends_with(b")") => field.get(open + 1..field.len() - 1)?,
+        _ => field,
+    };
+    let text = core::str::from_utf8(field).ok()?;
+    match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
+        Some(digits) if digits.bytes().all(|byte| byte.is_ascii_hexdigit()) => {
+            u8::from_str_radix(digits, 16).ok()
+        }
+        Some(_) => None,
+        None => super::decimal::whole(field).and_then(|value| u8::try_from(value).ok()),
+    }
+}

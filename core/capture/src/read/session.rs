@@ -1,0 +1,170 @@
+//! Sessions of sigrok and PulseView (`.sr`): a zip with the names of the channels and the samples in pieces.
+//!
+//! ```text
+//! version      2
+//! metadata     [device 1]  samplerate=24 MHz  capturefile=logic-1  unitsize=1  probe1=STEP  probe2=DIR
+//! logic-1-1    samples of `unitsize` bytes, the lowest first; probe n is bit n - 1
+//! logic-1-2    …
+//! ```
+//!
+//! The samples are unpacked piece by piece and never kept: a session may unpack to a thousand times its size.
+
+mod metadata;
+mod samples;
+
+use super::{
+    reading::{ReadError, Reading},
+    recorder::{Names, Recorder},
+    source::Source,
+};
+use flate2::read::DeflateDecoder;
+use metadata::Metadata;
+use rawzip::{CompressionMethod, ZipArchive, ZipArchiveEntryWayfinder};
+use samples::SampleStream;
+use std::io::{BufRead, Read, Seek};
+
+/// Longest metadata, in bytes: 64 channels have less than 10 kB.
+const MAX_METADATA: u64 = 1 << 20;
+/// Most pieces of samples.
+const MAX_PIECES: usize = 500_000;
+/// Bytes that are unpacked at once.
+const BUFFER: usize = 1 << 16;
+
+/// A file of the zip.
+struct Packed {
+    at: ZipArchiveEntryWayfinder,
+    method: CompressionMethod,
+}
+
+/// What a session's zip holds.
+#[derive(Default)]
+struct Directory {
+    metadata: Option<Packed>,
+    /// Samples by the names of their files.
+    pieces: Vec<(String, Packed)>,
+    /// Whether it is a capture of Saleae Logic 2.
+    saleae: bool,
+}
+
+/// Reads a session.
+pub(super) fn read<R: BufRead + Seek>(source: Source<'_, R>, mut recorder: Recorder) -> Reading {
+    let (input, watch) = source.into_parts();
+    let error = whole(input, watch, &mut recorder).err().map(ReadError::whole);
+    Reading { capture: recorder.finish(), error }
+}
+
+fn whole<R: BufRead + Seek>(
+    input: R,
+    watch: &mut dyn FnMut(u64) -> bool,
+    recorder: &mut Recorder,
+) -> Result<(), String> {
+    let mut buffer = vec![0; rawzip::RECOMMENDED_BUFFER_SIZE];
+    let archive = ZipArchive::from_seekable(input, &mut buffer).map_err(|error| {
+        format!("the zip's directory cannot be read ({error}); the file is not whole: copy it again")
+    })?;
+    let directory = directory(&archive)?;
+    let packed = directory.metadata.as_ref().ok_or(if directory.saleae {
+        "a capture of Saleae Logic 2; export it as CSV (File, Export Data)"
+    } else {
+        "a zip without “metadata”; a session of sigrok (.sr) has it"
+    })?;
+    let mut text = Vec::new();
+    open(&archive, packed)?
+        .take(MAX_METADATA)
+        .read_to_end(&mut text)
+        .map_err(|error| format!("“metadata” cannot be read: {error}"))?;
+    let metadata = Metadata::parse(&String::from_utf8_lossy(&text));
+    if !metadata.analogue.is_empty() {
+        recorder.leave_out(format!("analogue channels: {}", names(&metadata.analogue).told()));
+    }
+    if metadata.devices > 1 {
+        recorder.leave_out("all devices but the first".into());
+    }
+    recorder.capture.timebase = metadata.timebase();
+    let mut stream = SampleStream::new(&metadata, recorder, watch)?;
+    let mut buffer = vec![0; BUFFER];
+    for (name, packed) in in_order(directory.pieces, &metadata.capturefile)? {
+        let mut piece = open(&archive, &packed)?;
+        loop {
+            let count =
+                piece.read(&mut buffer).map_err(|error| format!("“{name}” cannot be unpacked: {error}"))?;
+            if count == 0 {
+                break;
+            }
+            stream.take(buffer.get(..count).unwrap_or_default())?;
+        }
+        stream.unpacked(packed.at.compressed_size_hint());
+    }
+    stream.finish()
+}
+
+fn names(list: &[String]) -> Names {
+    let mut names = Names::new();
+    list.iter().for_each(|name| names.add(name));
+    names
+}
+
+/// Looks for the files of a session.
+fn directory<R: rawzip::ReaderAt>(archive: &ZipArchive<R>) -> Result<Directory, String> {
+    let mut directory = Directory::default();
+    let mut buffer = vec![0; rawzip::MAX_CENTRAL_DIRECTORY_RECORD_SIZE];
+    let mut entries = archive.entries(&mut buffer);
+    loop {
+        let entry =
+            entries.next_entry().map_err(|error| format!("the zip's directory cannot be read: {error}"))?;
+        let Some(entry) = entry else { return Ok(directory) };
+        let name = String::from_utf8_lossy(entry.file_path().as_ref()).into_owned();
+        let packed = Packed { at: entry.wayfinder(), method: entry.compression_method() };
+        match name.as_str() {
+            "metadata" => directory.metadata = Some(packed),
+            "meta.json" => directory.saleae = true,
+            name if name.starts_with("analog-") || name.len() > 64 => {}
+            _ if directory.pieces.len() >= MAX_PIECES => {
+                return Err(format!("more than {MAX_PIECES} files in the session"));
+            }
+            _ => directory.pieces.push((name, packed)),
+        }
+    }
+}
+
+/// The pieces of `capturefile`, by their numbers: `logic-1-1`, `logic-1-2`, …, or `logic-1` alone.
+fn in_order(pieces: Vec<(String, Packed)>, capturefile: &str) -> Result<Vec<(String, Packed)>, String> {
+    let number = |name: &str| match name.strip_prefix(capturefile)? {
+        "" => Some(0),
+        rest => rest.strip_prefix('-').and_then(|digits| super::decimal::whole(digits.as_bytes())),
+    };
+    let numbered = pieces.into_iter().filter_map(|(name, packed)| number(&name).map(|at| (at, name, packed)));
+    let mut numbered: Vec<(u64, String, Packed)> = numbered.collect();
+    numbered.sort_by_key(|(at, ..)| *at);
+    if let Some(pair) =
+        numbered.windows(2).find(|pair| !matches!(pair, [(one, ..), (next, ..)] if one + 1 == *next))
+        && let [(_, one, _), (_, next, _)] = pair
+    {
+        return Err(format!(
+            "after “{one}” comes “{next}”; a piece of the samples is missing or there twice"
+        ));
+    }
+    if numbered.is_empty() {
+        return Err(format!("the session has no samples (“{capturefile}-1”); record again"));
+    }
+    Ok(numbered.into_iter().map(|(_, name, packed)| (name, packed)).collect())
+}
+
+/// Unpacks a file of the zip, and looks at its end whether its bytes are the ones that were packed.
+fn open<'a, R: rawzip::ReaderAt>(
+    archive: &'a ZipArchive<R>,
+    packed: &Packed,
+) -> Result<Box<dyn Read + 'a>, String> {
+    let entry = archive
+        .get_entry(packed.at)
+        .map_err(|error| format!("a file of the zip cannot be found: {error}"))?;
+    Ok(match packed.method {
+        CompressionMethod::STORE => Box::new(entry.verifying_reader(entry.reader())),
+        CompressionMethod::DEFLATE => Box::new(entry.verifying_reader(DeflateDecoder::new(entry.reader()))),
+        other => {
+            return Err(format!(
+                "a file of the zip is packed as {other}; sigrok packs by deflate: save it again"
+            ));
+        }
+    })
+}

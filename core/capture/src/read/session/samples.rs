@@ -1,0 +1,144 @@
+//! Samples as they come out of the zip, in pieces of any size: those that differ from the one before become rows.
+
+use super::metadata::Metadata;
+use crate::read::{
+    reading::ReadError,
+    recorder::{Recorder, grouped},
+    source::WATCH_EVERY,
+};
+
+/// Most bytes of a sample: sigrok has no device with more than 512 channels.
+const MAX_UNIT: usize = 64;
+/// Samples that may be unpacked for each change that may be read: what does nothing is bounded, too.
+const MAX_IDLE: u64 = 10_000;
+
+/// A stream of samples.
+pub(super) struct SampleStream<'a> {
+    recorder: &'a mut Recorder,
+    watch: &'a mut dyn FnMut(u64) -> bool,
+    unit: usize,
+    /// Bit of a sample, and its channel.
+    bits: Vec<(usize, u8)>,
+    /// The latest sample; empty before the first.
+    last: Vec<u8>,
+    /// A sample that has come in part.
+    partial: Vec<u8>,
+    /// Samples so far.
+    samples: u64,
+    max_samples: u64,
+    /// Bytes of the file that are unpacked, and what came out of them since `watch` was told.
+    packed: u64,
+    untold: u64,
+}
+
+impl<'a> SampleStream<'a> {
+    pub(super) fn new(
+        metadata: &Metadata,
+        recorder: &'a mut Recorder,
+        watch: &'a mut dyn FnMut(u64) -> bool,
+    ) -> Result<Self, String> {
+        let unit = metadata.unitsize;
+        if !(1..=MAX_UNIT).contains(&unit) {
+            return Err(format!("a sample of {unit} bytes (unitsize); it has 1 to {MAX_UNIT}"));
+        }
+        let mut bits = Vec::new();
+        for (bit, name) in &metadata.probes {
+            if *bit >= 8 * unit {
+                return Err(format!("{name} is bit {bit} of samples of {unit} bytes (unitsize)"));
+            }
+            if let Some(channel) = recorder.channel(name) {
+                bits.push((*bit, channel));
+            }
+        }
+        if bits.is_empty() {
+            return Err("the session has no logic channels; record STEP and DIR as logic channels".into());
+        }
+        let max_samples = (recorder.most() as u64).saturating_mul(MAX_IDLE);
+        let (last, partial) = (Vec::new(), Vec::new());
+        Ok(Self { recorder, watch, unit, bits, last, partial, samples: 0, max_samples, packed: 0, untold: 0 })
+    }
+
+    /// Takes the next bytes.
+    pub(super) fn take(&mut self, bytes: &[u8]) -> Result<(), String> {
+        let mut rest = bytes;
+        if !self.partial.is_empty() {
+            let (missing, after) = rest.split_at(rest.len().min(self.unit - self.partial.len()));
+            self.partial.extend_from_slice(missing);
+            rest = after;
+            if self.partial.len() == self.unit {
+                let sample = core::mem::take(&mut self.partial);
+                self.run(&sample)?;
+            }
+        }
+        let whole = rest.len() - rest.len() % self.unit;
+        let (samples, partial) = rest.split_at(whole);
+        self.run(samples)?;
+        self.partial.extend_from_slice(partial);
+        self.tell(bytes.len() as u64)
+    }
+
+    /// Takes whole samples.
+    fn run(&mut self, samples: &[u8]) -> Result<(), String> {
+        let unit = self.unit;
+        let mut rest = samples;
+        while !rest.is_empty() {
+            let same = match (self.last.as_slice(), unit) {
+                ([], _) => 0,
+                (&[last], 1) => rest.iter().position(|sample| *sample != last).unwrap_or(rest.len()),
+                (last, _) => {
+                    let units = rest.chunks_exact(unit);
+                    let count = units.len();
+                    units.enumerate().find(|(_, sample)| *sample != last).map_or(count, |(at, _)| at)
+                }
+            };
+            self.samples += same as u64;
+            rest = rest.get(same * unit..).unwrap_or_default();
+            let Some((sample, after)) = rest.split_at_checked(unit) else { break };
+            self.last.clear();
+            self.last.extend_from_slice(sample);
+            self.recorder.levels(self.samples, self.levels())?;
+            self.samples += 1;
+            rest = after;
+        }
+        self.recorder.capture.end = self.samples.saturating_sub(1);
+        if self.samples > self.max_samples {
+            return Err(format!("more than {} samples; record a shorter time", grouped(self.max_samples)));
+        }
+        Ok(())
+    }
+
+    fn levels(&self) -> u64 {
+        let high = |bit: usize| self.last.get(bit / 8).is_some_and(|byte| byte >> (bit % 8) & 1 == 1);
+        self.bits.iter().fold(0, |levels, (bit, channel)| levels | u64::from(high(*bit)) << channel)
+    }
+
+    /// A piece of `packed` bytes is over.
+    pub(super) const fn unpacked(&mut self, packed: u64) {
+        self.packed += packed;
+    }
+
+    /// Says now and then how far it is.
+    fn tell(&mut self, bytes: u64) -> Result<(), String> {
+        self.untold += bytes;
+        if self.untold < WATCH_EVERY {
+            return Ok(());
+        }
+        self.untold = 0;
+        if (self.watch)(self.packed) { Ok(()) } else { Err(ReadError::CANCELLED.into()) }
+    }
+
+    /// All pieces are over.
+    pub(super) fn finish(self) -> Result<(), String> {
+        if self.samples == 0 {
+            return Err("the session has no samples; record again".into());
+        }
+        if self.partial.is_empty() {
+            return Ok(());
+        }
+        Err(format!(
+            "the last sample has {} bytes of {}; the session is not whole",
+            self.partial.len(),
+            self.unit
+        ))
+    }
+}

@@ -1,0 +1,242 @@
+//! Value change dumps (IEEE 1364-2005, 18.2) of any simulator or analyser.
+//!
+//! ```text
+//! $timescale 1 us $end
+//! $scope module top $end $var wire 1 ! STEP $end $var wire 8 " speed [7:0] $end $upscope $end
+//! $enddefinitions $end
+//! #0 0! b1010 "
+//! #10 1!
+//! ```
+//!
+//! Its words are taken one by one, so that neither a comment without end nor scopes in scopes need memory.
+
+mod header;
+mod variables;
+
+use super::{
+    decimal::whole,
+    reading::Reader,
+    recorder::{Names, Recorder, grouped, quoted},
+};
+use crate::capture::Capture;
+use header::{Header, Keyword};
+use variables::{Value, Variables};
+
+/// A dump that is being read.
+pub(super) struct Vcd {
+    recorder: Recorder,
+    header: Header,
+    variables: Variables,
+    expected: Expected,
+    /// Whether the definitions are over.
+    body: bool,
+    /// The time of what comes, and the levels up to here.
+    now: u64,
+    levels: u64,
+    /// Whether something is known of this time.
+    touched: bool,
+    /// Between `$dumpoff` and its end: x for everything, which says nothing of the lines.
+    off: bool,
+    offs: u64,
+    unknown: u64,
+}
+
+/// What the next word is.
+enum Expected {
+    /// The first keyword; what a program says of itself may stand before it.
+    Start,
+    Any,
+    /// Words of a command, up to `$end`.
+    Command(Keyword),
+    /// The variable of this value of one bit, or of the value in [`Variables::value`].
+    Scalar(Value),
+    Vector,
+    /// The variable of a real or a string.
+    Other,
+}
+
+impl Vcd {
+    pub(super) fn new(recorder: Recorder) -> Self {
+        Self {
+            recorder,
+            header: Header::default(),
+            variables: Variables::new(),
+            expected: Expected::Start,
+            body: false,
+            now: 0,
+            levels: 0,
+            touched: false,
+            off: false,
+            offs: 0,
+            unknown: 0,
+        }
+    }
+
+    /// A word of which nothing is expected.
+    fn any(&mut self, word: &[u8]) -> Result<(), String> {
+        let (&kind, rest) = word.split_first().unwrap_or((&b' ', &[]));
+        if kind == b'$' {
+            return self.keyword(word);
+        }
+        self.body = true;
+        if let Some(value) = Value::parse(kind) {
+            if rest.is_empty() {
+                self.expected = Expected::Scalar(value);
+            } else {
+                self.scalar(value, rest);
+            }
+            return Ok(());
+        }
+        match kind {
+            b'#' => self.time(rest),
+            b'b' | b'B' => {
+                self.variables.set_value(rest).map_err(|letter| {
+                    format!("{} is no value of a vector: “{letter}” is neither 0, 1, x nor z", quoted(word))
+                })?;
+                self.expected = Expected::Vector;
+                Ok(())
+            }
+            b'r' | b'R' | b's' | b'S' => {
+                self.expected = Expected::Other;
+                Ok(())
+            }
+            b'p' => Err(format!(
+                "{} is of an extended dump ($dumpports); write a plain one ($dumpvars)",
+                quoted(word)
+            )),
+            _ => Err(format!(
+                "{} is neither a time (#), a value (0, 1, x, z, b, r, s) nor a keyword ($)",
+                quoted(word)
+            )),
+        }
+    }
+
+    fn keyword(&mut self, word: &[u8]) -> Result<(), String> {
+        self.expected = Expected::Any;
+        match word {
+            b"$dumpvars" | b"$dumpall" | b"$dumpon" => self.body = true,
+            b"$dumpoff" => {
+                (self.body, self.off) = (true, true);
+                self.offs += 1;
+            }
+            b"$end" => self.off = false,
+            _ => {
+                self.header.begin();
+                self.expected = Expected::Command(Keyword::parse(word));
+            }
+        }
+        Ok(())
+    }
+
+    /// A word of a command.
+    fn argument(&mut self, keyword: Keyword, word: &[u8]) -> Result<(), String> {
+        // Some write `$comment like this$end`.
+        let (argument, last) = match word.strip_suffix(b"$end") {
+            Some(argument) => (argument, true),
+            None => (word, false),
+        };
+        if keyword != Keyword::Skipped && !argument.is_empty() {
+            self.header.argument(argument)?;
+        }
+        if !last {
+            return Ok(());
+        }
+        self.expected = Expected::Any;
+        match keyword {
+            Keyword::EndDefinitions => self.body = true,
+            Keyword::Timescale => self.recorder.capture.timebase = Some(self.header.timescale()?),
+            Keyword::Scope => self.header.enter()?,
+            Keyword::Upscope => self.header.leave(),
+            Keyword::Var => self.header.variable(&mut self.variables, &mut self.recorder)?,
+            Keyword::Skipped => {}
+        }
+        Ok(())
+    }
+
+    fn time(&mut self, digits: &[u8]) -> Result<(), String> {
+        let time = whole(digits).ok_or_else(|| {
+            format!("#{} is not a time; it is a whole number of less than 2^64", quoted(digits))
+        })?;
+        if time < self.now {
+            return Err(format!(
+                "time {time} comes after time {}; times must rise: dump again, or delete what comes twice",
+                self.now
+            ));
+        }
+        // Values without a time are those of the first.
+        if time > self.now && self.touched {
+            self.recorder.levels(self.now, self.levels)?;
+        }
+        (self.now, self.touched) = (time, true);
+        Ok(())
+    }
+
+    fn scalar(&mut self, value: Value, code: &[u8]) {
+        if self.off {
+            return;
+        }
+        if let Some(variable) = self.variables.find(code) {
+            let high = if value == Value::High { variable.first_bit } else { 0 };
+            self.levels = self.levels & !variable.all_bits | high;
+            self.unknown += u64::from(value == Value::Unknown);
+            self.touched = true;
+        }
+    }
+
+    fn vector(&mut self, code: &[u8]) {
+        if self.off {
+            return;
+        }
+        if let Some((levels, changed, unknown)) = self.variables.vector(code) {
+            self.levels = self.levels & !changed | levels;
+            self.unknown += unknown;
+            self.touched = true;
+        }
+    }
+}
+
+impl Reader for Vcd {
+    fn take(&mut self, word: &[u8]) -> Result<(), String> {
+        match self.expected {
+            Expected::Any => return self.any(word),
+            Expected::Command(keyword) => return self.argument(keyword, word),
+            Expected::Start if word.starts_with(b"$") => return self.keyword(word),
+            Expected::Start => return Ok(()),
+            Expected::Scalar(value) => self.scalar(value, word),
+            Expected::Vector => self.vector(word),
+            Expected::Other => {}
+        }
+        self.expected = Expected::Any;
+        Ok(())
+    }
+
+    fn finish(mut self) -> (Capture, Result<(), String>) {
+        let mut missing = match self.expected {
+            Expected::Command(keyword) => Err(format!("the file ends within {keyword}; it is not whole")),
+            Expected::Scalar(_) | Expected::Vector | Expected::Other => {
+                Err("the file ends within a value change; it is not whole".into())
+            }
+            _ if !self.body => Err("the file ends before $enddefinitions; it is not whole".into()),
+            _ if self.recorder.capture.channels.is_empty() => {
+                Err("the dump has no wire and no register; dump the lines of the motor, such as STEP and DIR"
+                    .into())
+            }
+            _ => Ok(()),
+        };
+        if self.touched && !self.recorder.capture.channels.is_empty() {
+            missing = missing.and(self.recorder.levels(self.now, self.levels));
+        }
+        let others: Names = self.header.into_others();
+        if !others.is_empty() {
+            self.recorder.leave_out(format!("variables that are no lines: {}", others.told()));
+        }
+        self.recorder.leave_out_unknown(self.unknown, "x or z");
+        if self.offs > 0 {
+            let times = if self.offs == 1 { "once".into() } else { format!("{} times", grouped(self.offs)) };
+            self.recorder.leave_out(format!(
+                "the dump was switched off {times} ($dumpoff); the levels are taken to stay"
+            ));
+        }
+        (self.recorder.finish(), missing)
+    }
+}

@@ -1,0 +1,217 @@
+//! The definitions of a dump: time scale, scopes, variables.
+//!
+//! ```text
+//! $timescale 100 ps $end     $scope module top $end     $var wire 8 " speed [7:0] $end     $upscope $end
+//! ```
+
+use super::variables::Variables;
+use crate::{
+    read::{
+        decimal::{power_of_ten, whole},
+        recorder::{Names, Recorder, quoted},
+    },
+    timebase::Timebase,
+};
+use core::fmt;
+
+/// Most scopes in scopes.
+const MAX_DEPTH: usize = 200;
+/// Longest command that is read, in bytes.
+const MAX_COMMAND: usize = 4096;
+
+/// A command of the definitions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Keyword {
+    Timescale,
+    Scope,
+    Upscope,
+    Var,
+    EndDefinitions,
+    /// Comments, dates, and what programs have added.
+    Skipped,
+}
+
+impl Keyword {
+    pub(super) fn parse(word: &[u8]) -> Self {
+        match word {
+            b"$timescale" => Self::Timescale,
+            b"$scope" => Self::Scope,
+            b"$upscope" => Self::Upscope,
+            b"$var" => Self::Var,
+            b"$enddefinitions" => Self::EndDefinitions,
+            _ => Self::Skipped,
+        }
+    }
+}
+
+impl fmt::Display for Keyword {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Timescale => "$timescale",
+            Self::Scope => "$scope",
+            Self::Upscope => "$upscope",
+            Self::Var => "$var",
+            Self::EndDefinitions => "$enddefinitions",
+            Self::Skipped => "a command",
+        })
+    }
+}
+
+/// The definitions so far.
+pub(super) struct Header {
+    /// The words of the command that is being read, a blank behind each.
+    command: Vec<u8>,
+    /// The names of the scopes that are open, a point behind each, and the length before each of them.
+    path: String,
+    scopes: Vec<usize>,
+    /// Variables that are no lines.
+    others: Names,
+}
+
+impl Default for Header {
+    fn default() -> Self {
+        Self { command: Vec::new(), path: String::new(), scopes: Vec::new(), others: Names::new() }
+    }
+}
+
+impl Header {
+    pub(super) fn begin(&mut self) {
+        self.command.clear();
+    }
+
+    pub(super) fn argument(&mut self, word: &[u8]) -> Result<(), String> {
+        if self.command.len() + word.len() > MAX_COMMAND {
+            return Err(format!("a command of more than {MAX_COMMAND} bytes; is its $end missing?"));
+        }
+        self.command.extend_from_slice(word);
+        self.command.push(b' ');
+        Ok(())
+    }
+
+    fn words(&self) -> impl Iterator<Item = &[u8]> {
+        self.command.split(|byte| *byte == b' ').filter(|word| !word.is_empty())
+    }
+
+    /// `1 us`, `100ps`.
+    pub(super) fn timescale(&self) -> Result<Timebase, String> {
+        let text: Vec<u8> = self.words().flatten().copied().collect();
+        let digits = text.iter().take_while(|byte| byte.is_ascii_digit()).count();
+        let (number, unit) = text.split_at(digits);
+        let power = match unit {
+            b"s" => Some(0),
+            b"ms" => Some(3),
+            b"us" => Some(6),
+            b"ns" => Some(9),
+            b"ps" => Some(12),
+            b"fs" => Some(15),
+            _ => None,
+        };
+        let denominator = power.and_then(power_of_ten).and_then(|power| u64::try_from(power).ok());
+        let base = whole(number).zip(denominator).and_then(|(number, unit)| Timebase::new(number, unit));
+        base.ok_or_else(|| {
+            format!(
+                "$timescale {} is not a time scale; it is a whole number and s, ms, us, ns, ps or fs",
+                quoted(&text)
+            )
+        })
+    }
+
+    /// `module top`.
+    pub(super) fn enter(&mut self) -> Result<(), String> {
+        if self.scopes.len() >= MAX_DEPTH {
+            return Err(format!("more than {MAX_DEPTH} scopes in scopes"));
+        }
+        let name = self.words().nth(1).map(|name| String::from_utf8_lossy(name).into_owned());
+        self.scopes.push(self.path.len());
+        if let Some(name) = name {
+            self.path.push_str(&name);
+            self.path.push('.');
+        }
+        Ok(())
+    }
+
+    pub(super) fn leave(&mut self) {
+        self.path.truncate(self.scopes.pop().unwrap_or(0));
+    }
+
+    /// `wire 8 " speed [7:0]`: a channel for each bit.
+    pub(super) fn variable(
+        &mut self,
+        variables: &mut Variables,
+        recorder: &mut Recorder,
+    ) -> Result<(), String> {
+        let text = || quoted(&self.command);
+        let mut words = self.words();
+        let (Some(kind), Some(size), Some(code), Some(name)) =
+            (words.next(), words.next(), words.next(), words.next())
+        else {
+            return Err(format!("$var {} is not whole: type, size, code and name are its words", text()));
+        };
+        let size = whole(size)
+            .and_then(|size| u32::try_from(size).ok())
+            .ok_or_else(|| format!("$var {} has no size: a whole number of bits comes second", text()))?;
+        let mut name = String::from_utf8_lossy(name).into_owned();
+        words.for_each(|word| name.push_str(&String::from_utf8_lossy(word)));
+        let name = format!("{}{name}", self.path);
+        if !is_line(kind) || size == 0 {
+            let kind = String::from_utf8_lossy(kind);
+            self.others.add(&format!("{name} ({kind})"));
+            return Ok(());
+        }
+        if size == 1 {
+            if let Some(channel) = recorder.channel(&name) {
+                variables.add(code, 0, channel);
+            }
+            return Ok(());
+        }
+        let (base, first, step) = bits(&name, size);
+        for bit in 0..size {
+            let index = first + step * i64::from(bit);
+            let Some(channel) = recorder.channel(&format!("{base}[{index}]")) else {
+                // The rest of a vector of any size, in one go.
+                recorder.more_beyond(u64::from(size - bit - 1));
+                break;
+            };
+            variables.add(code, bit, channel);
+        }
+        Ok(())
+    }
+
+    /// The variables that are no lines.
+    pub(super) fn into_others(self) -> Names {
+        self.others
+    }
+}
+
+/// Whether variables of this type stand for lines.
+fn is_line(kind: &[u8]) -> bool {
+    !matches!(
+        kind,
+        b"real"
+            | b"realtime"
+            | b"real_parameter"
+            | b"shortreal"
+            | b"string"
+            | b"event"
+            | b"parameter"
+            | b"integer"
+            | b"time"
+            | b"int"
+            | b"shortint"
+            | b"longint"
+            | b"sparray"
+    )
+}
+
+/// The name of a vector without its range, the index of its lowest bit, and what the next has more.
+fn bits(name: &str, size: u32) -> (&str, i64, i64) {
+    let range = name.strip_suffix(']').and_then(|name| name.rsplit_once('['));
+    if let Some((base, range)) = range
+        && let Some((high, low)) = range.split_once(':')
+        && let (Ok(high), Ok(low)) = (high.parse::<i64>(), low.parse::<i64>())
+        && high.checked_sub(low).is_some_and(|last| last.unsigned_abs() == u64::from(size - 1))
+    {
+        return (base, low, if low <= high { 1 } else { -1 });
+    }
+    (name, 0, 1)
+}

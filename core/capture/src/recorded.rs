@@ -1,0 +1,230 @@
+//! A capture on the bus: its levels as records of the 36 signals, in cycles of a clock.
+//!
+//! A time becomes the nearest cycle, halves up; by the file's own clock none is rounded. Where the clock is slower than the
+//! file, edges can meet in a cycle, and a pulse within one is lost: both are counted.
+//!
+//! ```
+//! use stepscope_capture::{ChannelMap, Recorded, read::{Limits, read}};
+//!
+//! let table = "Time [s],STEP,DIR\n0,0,1\n0.00001,1,1\n0.0000125,0,1\n";
+//! let capture = read(std::io::Cursor::new(table), &Limits::default(), &mut |_| true).capture;
+//! let (map, base) = (ChannelMap::proposed(&capture), capture.timebase.expect("times in s"));
+//! let recorded = Recorded::new(capture, &map, base, 16_000_000).expect("it is short");
+//! assert_eq!(recorded.records.iter().map(|record| record.cycle.0).collect::<Vec<_>>(), [0, 160, 200]);
+//! assert!(recorded.records[1].levels.step() & 1 == 1 && recorded.rounding.lost == 0);
+//! ```
+
+use crate::{
+    capture::{Capture, Change},
+    channel_map::{ChannelMap, Entry},
+    timebase::Timebase,
+};
+use core::fmt;
+use stepscope_peripheral::{
+    signal::{Levels, Record},
+    units::Instant,
+};
+
+/// Last cycle that a run may have (DESIGN A9).
+const LAST_CYCLE: u64 = 9_000_000_000_000_000;
+
+/// A capture's signals in cycles.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Recorded {
+    /// Cycles a second.
+    pub clock_hz: u32,
+    /// Channels of the bus that are looked at, from 0.
+    pub channels: u8,
+    /// The first at cycle 0, each later, and other, than the one before. Signals without a channel stand at their level of
+    /// reset, DIR at right.
+    pub records: Vec<Record>,
+    /// The last cycle that is known.
+    pub end: Instant,
+    /// What the clock does to the times.
+    pub rounding: Rounding,
+}
+
+/// What putting times into cycles has cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rounding {
+    /// No time was rounded.
+    pub exact: bool,
+    /// Records of the file that share a cycle with the one before.
+    pub met: u64,
+    /// Of those, single signals that changed there and back.
+    pub lost: u64,
+}
+
+impl fmt::Display for Rounding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.exact {
+            "every time of the file is a whole cycle: nothing is rounded"
+        } else {
+            "times are rounded to the nearest cycle, half a cycle at most"
+        })?;
+        if self.met > 0 {
+            write!(f, "; {} times two changes meet in a cycle", self.met)?;
+        }
+        if self.lost > 0 {
+            write!(f, ", and {} pulses within one are lost: take a faster clock", self.lost)?;
+        }
+        Ok(())
+    }
+}
+
+/// A time that is beyond the last cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TooLate {
+    /// In ticks of the file.
+    pub tick: u64,
+}
+
+impl fmt::Display for TooLate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "tick {} of the file is after cycle {LAST_CYCLE}, the last that there can be: take a slower clock",
+            self.tick
+        )
+    }
+}
+
+impl core::error::Error for TooLate {}
+
+impl Recorded {
+    /// The levels of a capture by a map, in cycles of `clock_hz`; a tick is as long as `timebase` says. Takes the capture's
+    /// memory over.
+    ///
+    /// # Errors
+    /// [`TooLate`] if a time has no cycle.
+    pub fn new(
+        capture: Capture,
+        map: &ChannelMap,
+        timebase: Timebase,
+        clock_hz: u32,
+    ) -> Result<Self, TooLate> {
+        let cycle = |tick: u64| {
+            timebase.cycle(tick, clock_hz).filter(|cycle| *cycle <= LAST_CYCLE).ok_or(TooLate { tick })
+        };
+        let end = Instant(cycle(capture.end)?);
+        if let Some(last) = capture.changes.last() {
+            cycle(last.tick)?;
+        }
+        let signals = Signals::new(map);
+        let mut rounding = Rounding { exact: timebase.is_exact(clock_hz), ..Rounding::default() };
+        let (mut before, mut last) = (None::<Record>, None::<Levels>);
+        // A record takes the place of its change. The first is that of cycle 0, whenever the file begins.
+        let record = |Change { tick, levels }| {
+            let at = if before.is_some() { cycle(tick).unwrap_or(LAST_CYCLE) } else { 0 };
+            let now = Record { cycle: Instant(at), levels: signals.levels(levels) };
+            let shown = before.replace(now)?;
+            if shown.cycle == now.cycle {
+                let since = last.unwrap_or(Levels::RESET).0;
+                rounding.met += u64::from(shown.levels != now.levels);
+                rounding.lost += u64::from(((since ^ shown.levels.0) & !(since ^ now.levels.0)).count_ones());
+                return None;
+            }
+            (last.replace(shown.levels) != Some(shown.levels)).then_some(shown)
+        };
+        let mut records: Vec<Record> = capture.changes.into_iter().filter_map(record).collect();
+        records.extend(before.filter(|shown| last != Some(shown.levels)));
+        if records.is_empty() {
+            records.push(Record { cycle: Instant(0), levels: signals.levels(0) });
+        }
+        let end = end.max(records.last().map_or(Instant(0), |record| record.cycle));
+        Ok(Self { clock_hz, channels: map.bus_channels(), records, end, rounding })
+    }
+}
+
+/// A map as masks.
+struct Signals<'m> {
+    entries: &'m [Entry],
+    /// Levels of the signals that have no channel.
+    rest: u64,
+}
+
+impl<'m> Signals<'m> {
+    fn new(map: &'m ChannelMap) -> Self {
+        let right = 0xffff << Levels::DIR_SHIFT;
+        let mapped = map.entries().iter().fold(0, |mask, entry| mask | 1 << entry.bit);
+        // Of channels that are not in use DIR is low, as on any bus.
+        let used = (1_u64 << map.bus_channels()) - 1;
+        let rest = (Levels::RESET.0 | right & used << Levels::DIR_SHIFT) & !mapped;
+        Self { entries: map.entries(), rest }
+    }
+
+    fn levels(&self, channels: u64) -> Levels {
+        let level =
+            |entry: &Entry| u64::from((channels >> entry.channel & 1 == 1) != entry.inverted) << entry.bit;
+        Levels(self.entries.iter().fold(self.rest, |levels, entry| levels | level(entry)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::capture::{Channel, Format};
+
+    fn capture(changes: &[(u64, u64)]) -> Capture {
+        let channels = ["STEP", "DIR", "nEN"].map(|name| Channel { name: name.into() }).into();
+        let changes: Vec<Change> = changes.iter().map(|&(tick, levels)| Change { tick, levels }).collect();
+        let end = changes.last().map_or(0, |change| change.tick) + 10;
+        Capture { channels, changes, end, ..Capture::new(Format::Vcd) }
+    }
+
+    fn recorded(changes: &[(u64, u64)], clock_hz: u32) -> (Vec<(u64, u64)>, Rounding, u64) {
+        let capture = capture(changes);
+        let map = ChannelMap::proposed(&capture);
+        let base = Timebase::new(1, 1_000_000).expect("it has a length");
+        let found = Recorded::new(capture, &map, base, clock_hz).expect("it fits");
+        let records = found.records.iter().map(|record| (record.cycle.0, record.levels.0)).collect();
+        (records, found.rounding, found.end.0)
+    }
+
+    const IDLE: u64 = Levels::RX | Levels::TX;
+    const RIGHT: u64 = 1 << Levels::DIR_SHIFT;
+
+    #[test]
+    fn changes_become_records_and_what_is_on_no_signal_is_left_out() {
+        // A fourth channel changes, too.
+        let (records, rounding, end) =
+            recorded(&[(5, 0b110), (20, 0b1110), (30, 0b1010), (40, 0b1011), (42, 0b1010)], 2_000_000);
+        let en = Levels::EN;
+        assert_eq!(
+            records,
+            [
+                (0, IDLE | RIGHT),
+                (60, IDLE | RIGHT | en),
+                (80, IDLE | RIGHT | en | 1),
+                (84, IDLE | RIGHT | en)
+            ]
+        );
+        assert_eq!((rounding, end), (Rounding { exact: true, met: 0, lost: 0 }, 104));
+    }
+
+    #[test]
+    fn what_meets_in_a_cycle_is_counted_and_so_is_what_it_loses() {
+        // At 100 kHz a cycle is 10 us: the pulse from 21 to 23 is within one, DIR and STEP meet at 50.
+        let (records, rounding, _) =
+            recorded(&[(0, 0), (21, 1), (23, 0), (51, 2), (53, 3), (70, 2)], 100_000);
+        let cycles: Vec<u64> = records.iter().map(|(cycle, _)| *cycle).collect();
+        assert_eq!(cycles, [0, 5, 7]);
+        assert_eq!(rounding, Rounding { exact: false, met: 2, lost: 1 });
+        assert!(rounding.to_string().contains("1 pulses within one are lost"), "{rounding}");
+        // A channel that is no signal changes in the same cycle, first.
+        let (records, rounding, _) = recorded(&[(0, 0), (20, 1), (21, 0b1001), (22, 0b1000)], 100_000);
+        assert_eq!(records.iter().map(|(cycle, _)| *cycle).collect::<Vec<_>>(), [0]);
+        assert_eq!((rounding.met, rounding.lost), (1, 1));
+    }
+
+    #[test]
+    fn a_time_beyond_the_last_cycle_is_refused_and_nothing_gives_one_record() {
+        let base = Timebase::new(1, 1).expect("it has a length");
+        let late = capture(&[(0, 0), (u64::MAX / 2, 1)]);
+        let map = ChannelMap::proposed(&late);
+        assert!(Recorded::new(late, &map, base, 1_000_000_000).is_err());
+        let none =
+            Recorded::new(Capture::new(Format::Vcd), &ChannelMap::default(), base, 1).expect("it fits");
+        assert_eq!(none.records.len(), 1);
+    }
+}

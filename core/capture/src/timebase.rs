@@ -1,0 +1,89 @@
+//! A file's time base: how long one of its ticks is, exactly, and in which clock cycle a tick falls.
+//!
+//! ```
+//! use stepscope_capture::timebase::Timebase;
+//!
+//! // Samples at 24 MHz, seen by a clock of 16 MHz: the third comes at 2 cycles, the second is rounded.
+//! let base = Timebase::new(1, 24_000_000).expect("it has a length");
+//! assert_eq!([0, 1, 2, 3].map(|tick| base.cycle(tick, 16_000_000)), [Some(0), Some(1), Some(1), Some(2)]);
+//! assert!(!base.is_exact(16_000_000) && base.is_exact(48_000_000));
+//! ```
+
+/// How long a tick is: `numerator / denominator` seconds, in lowest terms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Timebase {
+    numerator: u64,
+    denominator: u64,
+}
+
+impl Timebase {
+    /// Ticks of `numerator / denominator` seconds; `None` where one of them is 0.
+    #[must_use]
+    pub const fn new(numerator: u64, denominator: u64) -> Option<Self> {
+        if numerator == 0 || denominator == 0 {
+            return None;
+        }
+        let (mut a, mut b) = (numerator, denominator);
+        while b != 0 {
+            (a, b) = (b, a % b);
+        }
+        Some(Self { numerator: numerator / a, denominator: denominator / a })
+    }
+
+    /// A tick in s.
+    #[must_use]
+    pub const fn seconds(self) -> f64 {
+        self.numerator as f64 / self.denominator as f64
+    }
+
+    /// Numerator and denominator of a tick in s.
+    #[must_use]
+    pub const fn parts(self) -> (u64, u64) {
+        (self.numerator, self.denominator)
+    }
+
+    /// The clock with one cycle a tick, in Hz; `None` where that is no whole number.
+    #[must_use]
+    pub fn clock_hz(self) -> Option<u32> {
+        if self.numerator == 1 { u32::try_from(self.denominator).ok() } else { None }
+    }
+
+    /// The cycle of a tick by a clock of `clock_hz`: rounded to the nearest, halves up, as DESIGN B1 rounds times; `None`
+    /// where it does not fit.
+    #[must_use]
+    pub fn cycle(self, tick: u64, clock_hz: u32) -> Option<u64> {
+        let scaled = u128::from(self.numerator) * u128::from(clock_hz);
+        let (whole, denominator) = (u128::from(tick).checked_mul(scaled)?, u128::from(self.denominator));
+        u64::try_from((whole.checked_mul(2)?.checked_add(denominator)?) / (2 * denominator)).ok()
+    }
+
+    /// Whether every tick falls on a cycle of that clock, so that nothing is rounded.
+    #[must_use]
+    pub fn is_exact(self, clock_hz: u32) -> bool {
+        (u128::from(self.numerator) * u128::from(clock_hz)).is_multiple_of(u128::from(self.denominator))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tick_falls_in_the_nearest_cycle_and_halves_go_up() {
+        // (ticks of, clock, tick) -> cycle
+        for ((numerator, denominator), clock_hz, tick, cycle) in [
+            ((1, 1_000_000_000), 16_000_000, 31, Some(0)),
+            ((1, 1_000_000_000), 16_000_000, 32, Some(1)),
+            ((1, 2), 1, 1, Some(1)),
+            ((1, 2), 1, 3, Some(2)),
+            ((10, 1), 1_000_000_000, u64::MAX, None),
+            ((1, 1_000_000_000_000_000), 1_000_000_000, u64::MAX, Some(18_446_744_073_710)),
+        ] {
+            let base = Timebase::new(numerator, denominator).expect("it has a length");
+            assert_eq!(base.cycle(tick, clock_hz), cycle, "{base:?} {clock_hz} {tick}");
+        }
+        assert_eq!(Timebase::new(0, 1), None);
+        assert_eq!(Timebase::new(1, 0), None);
+        assert_eq!(Timebase::new(10, 1_000_000_000), Timebase::new(1, 100_000_000));
+    }
+}

@@ -1,0 +1,467 @@
+//! Small files of each kind, and what is read of them.
+#![allow(clippy::expect_used, clippy::panic, reason = "these are tests")]
+
+mod common;
+
+use common::{check, read_bytes, told};
+use stepscope_capture::read::{Limits, read};
+
+#[test]
+fn dumps_of_any_program_are_read() {
+    check(&[
+        // What the crate's first page shows.
+        (
+            "$timescale 1 us $end $var wire 1 ! STEP $end $enddefinitions $end #0 0! #10 1! #12 0!",
+            "Vcd 1/1000000 [STEP] 0:0 10:1 12:0 end 12",
+        ),
+        // Scopes in scopes, aliases, changes at one time, changes that change nothing, any blanks.
+        (
+            "$date today $end\r\n$version x $end\r\n$timescale\r\n\t100ns\r\n$end\r\n$scope module top $end\r\n\
+             $scope begin a $end $var reg 1 ! STEP $end $upscope $end\r\n$var wire 1 !! DIR $end\r\n\
+             $var wire 1 ! alias $end $upscope $end\r\n$enddefinitions $end\r\n\
+             $dumpvars 0! 0!! $end\r\n#0\r\n#5\r\n1!\r\n0!\r\n#6 1!! 1! #7 1! #9\r\n\r\n",
+            "Vcd 1/10000000 [top.a.STEP top.DIR top.alias] 0:0 6:7 end 9",
+        ),
+        // Vectors, short values, a range that falls, one that rises, one beside its name, a single bit of one.
+        (
+            "$timescale 10 ps $end $var wire 4 a bus [3:0] $end $var wire 2 b up[4:5] $end $var wire 3 c plain $end\n\
+             $var wire 1 d one [7] $end $enddefinitions $end #0 b0 a b01 b b111 c 1d #3 bx1 a b1z0 c b0 d #4 1a",
+            "Vcd 1/100000000000 [bus[0] bus[1] bus[2] bus[3] up[5] up[4] plain[0] plain[1] plain[2] one[7]] \
+             0:3d0 3:111 end 4\n- 4 levels are neither high nor low (x or z), taken as low",
+        ),
+        // Unknown levels are low; while a dump is off nothing is known.
+        (
+            "$timescale 1 s $end $var wire 1 a A $end $var tri 1 b B $end $enddefinitions $end\n\
+             #0 $dumpvars xa zb $end #1 1a 1b #2 $dumpoff xa xb $end #8 $dumpon 1a 0b $end #9",
+            "Vcd 1/1 [A B] 0:0 1:3 8:1 end 9\n- 2 levels are neither high nor low (x or z), taken as low\n\
+             - the dump was switched off once ($dumpoff); the levels are taken to stay",
+        ),
+        // What is no line is left out, its values too; what a program says of itself stands before.
+        (
+            "META samplerate: 1000\n$var real 64 r speed $end $var string 1 s text $end $var wire 1 w W $end\n\
+             $var integer 32 i n $end $enddefinitions $end #0 r1.5 r sHello s b101 i #1 1w",
+            "Vcd [W] 0:0 1:1 end 1\n- variables that are no lines: speed (real), text (string), n (integer)",
+        ),
+        // Long time scales and short ones.
+        ("$timescale 100 s $end $var wire 1 a A $end $enddefinitions $end #1 1a", "Vcd 100/1 [A] 1:1 end 1"),
+        (
+            "$timescale 1 fs $end $var wire 1 a A $end $enddefinitions $end #18446744073709551615 1a",
+            "Vcd 1/1000000000000000 [A] 18446744073709551615:1 end 18446744073709551615",
+        ),
+        // Codes of more than two characters.
+        (
+            "$var wire 1 n12 A $end $var wire 1 n1 B $end $enddefinitions $end #0 1n12 #1 1n1 #2 0n12 1n13",
+            "Vcd [A B] 0:1 1:3 2:2 end 2",
+        ),
+    ]);
+}
+
+#[test]
+fn dumps_that_go_wrong_say_where_and_keep_what_was_read() {
+    check(&[
+        (
+            "$var wire 1 a A $end $enddefinitions $end\n#5 1a\n#7 0a\n#6 1a",
+            "Vcd [A] 5:1 7:0 end 7\n! line 4: time 6 comes after time 7; times must rise: dump again, or delete what comes twice",
+        ),
+        (
+            "$timescale 1 hour $end",
+            "Vcd [] end 0\n! line 1: $timescale “1hour” is not a time scale; it is a whole number and s, ms, us, ns, ps or fs",
+        ),
+        (
+            "$var wire 1 a A $end",
+            "Vcd [A] end 0\n! line 1: the file ends before $enddefinitions; it is not whole",
+        ),
+        ("$comment never\nended", "Vcd [] end 0\n! line 2: the file ends within a command; it is not whole"),
+        (
+            "$var wire 1 a A $end $enddefinitions $end #0 1a #1 b0",
+            "Vcd [A] 0:1 end 1\n! line 1: the file ends within a value change; it is not whole",
+        ),
+        (
+            "$enddefinitions $end #0",
+            "Vcd [] end 0\n! line 1: the dump has no wire and no register; dump the lines of the motor, such as STEP and DIR",
+        ),
+        (
+            "$var wire 1 a A $end $enddefinitions $end #0 q",
+            "Vcd [A] 0:0 end 0\n! line 1: “q” is neither a time (#), a value (0, 1, x, z, b, r, s) nor a keyword ($)",
+        ),
+        (
+            "$var wire 1 a A $end $enddefinitions $end #1x",
+            "Vcd [A] end 0\n! line 1: #“1x” is not a time; it is a whole number of less than 2^64",
+        ),
+        (
+            "$var wire a A $end",
+            "Vcd [] end 0\n! line 1: $var “wire a A ” is not whole: type, size, code and name are its words",
+        ),
+    ]);
+}
+
+#[test]
+fn tables_of_levels_are_read() {
+    check(&[
+        (
+            "Time [s],Channel 0,Channel 1\n0.000000000,0,1\n0.000012500,1,1\n0.000015000,1,1\n0.000020000,0,0\n",
+            "SaleaeCsv 1/1000000000 [Channel 0 Channel 1] 0:2 12500:3 20000:0 end 20000",
+        ),
+        // A mark before UTF-8, returns, blanks, names in quotation marks, empty lines at the end; the older export.
+        (
+            "\u{feff}Time[s], X STEP, DIR\r\n0.0, 0, 1\r\n0.5, 1, 0\r\n\r\n\r\n",
+            "SaleaeCsv 1/10 [X STEP DIR] 0:2 5:1 end 5",
+        ),
+        // A trigger at 0, a longer time later on, exponents; a level without data.
+        (
+            "Time [s],A\n-0.5,1\n-1e-05,0\n0,X\n0.000000001,1\n",
+            "SaleaeCsv 1/1000000000 [A] 0:1 499990000:0 500000001:1 end 500000001\n\
+             - the first time is “-0.5”: it is taken as 0, and all others count from it\n\
+             - 1 level is neither high nor low (X: no data), taken as low",
+        ),
+        // Fifteen places of which three are zeros.
+        (
+            "Time [s],A\n0.000000000000000,0\n0.000012250000000,1\n",
+            "SaleaeCsv 1/1000000000000 [A] 0:0 12250000:1 end 12250000",
+        ),
+        // Days, and other units.
+        (
+            "Time [s],A\n2026-01-31T23:59:59.999999999+00:00,0\n2026-02-01T00:00:00.000000001+00:00,1\n",
+            "SaleaeCsv 1/1000000000 [A] 0:0 2:1 end 2\n\
+             - the first time is “2026-01-31T23:59:59.999999999+00:00”: it is taken as 0, and all others count from it",
+        ),
+        ("t_us;A;B\n0;0;0\n2.5;1;0\n", "SaleaeCsv 1/10000000 [A B] 0:0 25:1 end 25"),
+        // Ours.
+        (
+            "cycle,time_s,STEP0,DIR0,EN,RX,TX,DE\n0,0,0,0,1,1,1,0\n24,0.0000015,1,0,1,1,1,0\n",
+            "EdgesCsv [STEP0 DIR0 EN RX TX DE] 0:1c 24:1d end 24",
+        ),
+        // What goes wrong.
+        (
+            "Time [s],A\n0.1,0\n0.05,1\n",
+            "SaleaeCsv 1/100 [A] 10:0 end 10\n! line 3: the time “0.05” is before the one of the row before; times must rise: sort the rows by time",
+        ),
+        (
+            "Time [s],A,B\n0.1,0,1\n0.2,0\n",
+            "SaleaeCsv 1/10 [A B] 1:2 end 1\n! line 3: B is “”; a level is 0 or 1: export digital channels only",
+        ),
+        (
+            "Time [s],A\n0.1,0\n0.2,3.29\n",
+            "SaleaeCsv 1/10 [A] 1:0 end 1\n! line 3: A is “3.29”; a level is 0 or 1: export digital channels only",
+        ),
+        (
+            "Time [s],A\n0.1,0,0\n",
+            "SaleaeCsv 1/10 [A] end 0\n! line 2: more fields than the head of the table names, which are 1",
+        ),
+        (
+            "Time [s],A\nnow,0\n",
+            "SaleaeCsv [A] end 0\n! line 2: “now” is not a time; give a number, such as 0.00125 or 1.25e-3",
+        ),
+        (
+            "Time [s],A\n1e30,0\n",
+            "SaleaeCsv 1/1 [A] end 0\n! line 2: the time “1e30” has more digits than fit: at most 19 are kept",
+        ),
+        (
+            "Time [s],A\n",
+            "SaleaeCsv [A] end 0\n! line 1: the table has a head and no rows; record again, or export the whole of the recording",
+        ),
+    ]);
+}
+
+#[test]
+fn traces_of_stepscope_are_read() {
+    let names = "STEP0 STEP1 STEP2 STEP3 STEP4 STEP5 STEP6 STEP7 STEP8 STEP9 STEP10 STEP11 STEP12 STEP13 STEP14 STEP15 \
+        DIR0 DIR1 DIR2 DIR3 DIR4 DIR5 DIR6 DIR7 DIR8 DIR9 DIR10 DIR11 DIR12 DIR13 DIR14 DIR15 EN RX TX DE";
+    let rows = [
+        (
+            "0 700000000\n1f4a 700000001\n1f54 700000000\n",
+            "0:700000000 8010:700000001 8020:700000000 end 8020",
+        ),
+        (
+            "0 700000000\n5 700000001\n5 700000000\n",
+            "0:700000000 5:700000001 end 5\n! line 3: cycle 5 comes after cycle 5; cycles must rise: sort the records",
+        ),
+        (
+            "0 700000000\n5 1700000001\n",
+            "0:700000000 end 0\n! line 2: “5 1700000001” has more than 36 signals; is it a trace of Stepscope?",
+        ),
+        (
+            "0 700000000\n5\n",
+            "0:700000000 end 0\n! line 2: “5” is not a record; it is a cycle and the levels, both in hexadecimal, such as 1f4a 700000001",
+        ),
+    ];
+    for (text, expected) in rows {
+        assert_eq!(told(&read_bytes(text)), format!("Trace [{names}] {expected}"), "{text:?}");
+    }
+}
+
+#[test]
+fn tables_of_samples_are_read() {
+    check(&[
+        // sigrok-cli -I vcd -O csv: the rate stands beside the table.
+        (
+            "; CSV generated by libsigrok 0.5.2\n; from unknown on Mon Nov 23 00:22:35 2026\n; Channels (2/2): STEP, DIR\n\
+             META samplerate: 1000000\nlogic,logic\n0,0\n1,0\n1,0\n0,1\n",
+            "SigrokCsv 1/1000000 [STEP DIR] 0:0 1:1 3:2 end 3",
+        ),
+        // Without labels, without comments, without a rate, with other separators.
+        (
+            "; CSV generated by libsigrok 0.5.2\n; Channels (2/13): STEP, DIR\n; Samplerate: 24 MHz\n0;0\n1;0\n",
+            "SigrokCsv 1/24000000 [STEP DIR] 0:0 1:1 end 1",
+        ),
+        ("logic,logic\n0,0\n0,1\n", "SigrokCsv [D0 D1] 0:0 1:2 end 1"),
+        ("STEP,DIR\n0,0\n0,1\n", "SigrokCsv [STEP DIR] 0:0 1:2 end 1"),
+        ("0\t0\n0\t1\n1\t1", "SigrokCsv [D0 D1] 0:0 1:2 2:3 end 2"),
+        ("1\n0\n", "SigrokCsv [D0] 0:1 1:0 end 1"),
+        (
+            "# CSV generated by libsigrok 0.5.2\n# Channels (2/2): A, B\n# Samplerate: 1.5 kHz\nlogic|logic\n0|1\n",
+            "SigrokCsv 1/1500 [A B] 0:2 end 0",
+        ),
+        // Times are sums of cut off periods; rows that change nothing are left out; the trigger is no channel.
+        (
+            "; CSV generated by libsigrok 0.5.2\n; Channels (3/13): D0, D1, D2\n; Samplerate: 24 MHz\n\
+             nanoseconds,logic,logic,logic\n41,1,0,0\n123,0,1,1\n410,0,0,0\n",
+            "SigrokCsv 1/24000000 [D0 D1 D2] 0:1 2:6 9:0 end 9",
+        ),
+        (
+            "; CSV generated by libsigrok 0.5.2\n; Channels (2/2): STEP, DIR\n; Samplerate: 1 MHz\nTime,STEP,DIR,Trigger\n\
+             1,0,0,0\n11,1,0,0\n13,0,0,0\n30,0,1,0\n",
+            "SigrokCsv 1/1000000 [STEP DIR] 0:0 10:1 12:0 29:2 end 29",
+        ),
+        // Times that are cut off one by one.
+        (
+            "; CSV generated by libsigrok\n; Channels (1/1): A\n; Samplerate: 24 MHz\nnanoseconds,logic\n0,0\n41,1\n125,0\n166,1\n",
+            "SigrokCsv 1/24000000 [A] 0:0 1:1 3:0 4:1 end 4",
+        ),
+        // Times alone tell the time base; times that tell nothing are passed over.
+        ("microseconds,logic\n1,0\n5,1\n", "SigrokCsv 1/1000000 [D0] 0:0 4:1 end 4"),
+        (
+            "; Channels (1/1): A\nMETA samplerate: 1000000\nsamples,logic\n0,0\n0,1\n0,0\n",
+            "SigrokCsv 1/1000000 [A] 0:0 1:1 2:0 end 2\n- the column of times, which has no unit: each row is taken as the next sample",
+        ),
+        // Analogue channels.
+        (
+            "; CSV generated by libsigrok 0.5.2\n; Channels (3/13): D0, D1, A0\n; Samplerate: 2 kHz\n\
+             microseconds,logic,logic,V DC\n500,1,0,-10\n1000,0,1,2.7e-43\n",
+            "SigrokCsv 1/2000 [D0 D1] 0:1 1:2 end 1\n- analogue channels: A0",
+        ),
+        // sigrok-cli prints analogue values into the same file.
+        (
+            "; CSV generated by libsigrok 0.5.2\n; Channels (2/13): A, B\nA0: -10.00 V DC\nlogic,logic\n0,0\nA0: 2.7 V DC\n0,1\n",
+            "SigrokCsv [A B] 0:0 1:2 end 1",
+        ),
+        // What goes wrong.
+        (
+            "; Channels (2/2): A, B\n0,0\n0,2\n",
+            "SigrokCsv [A B] 0:0 end 0\n! line 3: B is “2”; a level is 0 or 1: export digital channels only",
+        ),
+        (
+            "; Channels (2/2): A, B\n; Samplerate: 1 MHz\n",
+            "SigrokCsv [] end 0\n! line 2: the table has no samples; record again",
+        ),
+        (
+            "; Channels (1/1): A\n; Samplerate: 1 MHz\nmicroseconds,logic\n5,0\n4,1\n",
+            "SigrokCsv 1/1000000 [A] 0:0 end 0\n! line 5: the time 4 is before the one of the row before; times must rise: export again",
+        ),
+        (
+            "; Channels (2/2): A, B\n0,0\n0,1,1\n",
+            "SigrokCsv [A B] 0:0 end 0\n! line 3: “0,1,1” has more fields than the rows before, which have 2",
+        ),
+    ]);
+}
+
+#[test]
+fn decoded_bytes_are_read() {
+    check(&[
+        (
+            "name,type,start_time,duration,data\n\"Async Serial\",\"data\",0.00125,8.68e-05,0x55\n\
+             \"Async, 2\",\"data\",0.0013,8.68e-05,0xAA\n\"Async Serial\",\"data\",0.0014,8.68e-05,7\n",
+            "SaleaeBytes 1/100000 [Async Serial Async, 2] 125:0:55 130:1:aa 140:0:07 end 140",
+        ),
+        (
+            "name,type,start_time,duration,\"data\",\"error\"\nS,\"data\",-1e-3,1e-4,0x01,\nS,data,0,1e-4,0x02,\"framing\"\n\
+             S,error,1e-3,1e-4,,x\n",
+            "SaleaeBytes 1/1000 [S] 0:0:01 1:0:02! end 2\n- the first time is “-1e-3”: it is taken as 0, and all others count from it\n\
+             - rows that are no bytes: error",
+        ),
+        (
+            "Time [s],Value,Parity Error,Framing Error\n0.001250000000000,0x55,,\n0.001350000000000,U (0x55),,Error\n",
+            "SaleaeBytes 1/1000000000000 [serial] 1250000000:0:55 1350000000:0:55! end 1350000000",
+        ),
+        (
+            "name,type,start_time,duration,data\nS,data,0.1,1,0x100\n",
+            "SaleaeBytes 1/10 [] end 1\n! line 2: “0x100” is not a byte; export the data in hexadecimal, as 0x55, or decimal, from 0 to 255",
+        ),
+        (
+            "name,type,start_time,duration,data\n\"S,data,0.1,1,0x10\n",
+            "SaleaeBytes [] end 0\n! line 2: a quotation mark is opened and not closed in this line",
+        ),
+        (
+            "name,type,start_time,duration,data\nS,data,0.1\n",
+            "SaleaeBytes [] end 0\n! line 2: “S,data,0.1” has 3 fields; the head names more: is the row whole?",
+        ),
+    ]);
+}
+
+#[test]
+fn bytes_in_hexadecimal_are_read() {
+    check(&[
+        (
+            "55 AA 0x01,02 # a comment\n\n[0xff;7]\\x10\n// another\n0A0b0C\n",
+            "HexBytes [bytes] 0:0:55 1:0:aa 2:0:01 3:0:02 4:0:ff 5:0:07 6:0:10 7:0:0a 8:0:0b 9:0:0c end 9",
+        ),
+        (
+            "0.00125: 55 AA\n12.5ms: 01\n13 ms 02\n0.0130001: 03",
+            "HexBytes 1/10000000 [bytes] 12500:0:55 12500:0:aa 125000:0:01 130000:0:02 130001:0:03 end 130001",
+        ),
+        ("12.5us 55\n13µs AA,BB\n", "HexBytes 1/10000000 [bytes] 125:0:55 130:0:aa 130:0:bb end 130"),
+        (
+            "t_s,bytes\n0.00125,55 AA\n0.002,01\n",
+            "HexBytes 1/100000 [bytes] 125:0:55 125:0:aa 200:0:01 end 200",
+        ),
+        ("t_us;hex\n12.5;55AA\n", "HexBytes 1/10000000 [bytes] 125:0:55 125:0:aa end 125"),
+        (
+            "0000: 55 aa\n0010: 01\n",
+            "HexBytes [bytes] 0:0:55 1:0:aa 2:0:01 end 2\n- addresses before “:” at the beginning of lines",
+        ),
+        (
+            "55 AA\n12.5us 55\n",
+            "HexBytes [bytes] 0:0:55 1:0:aa end 1\n! line 2: “12.5us 55” has a time, and the lines before have not one; give each line a time, or none",
+        ),
+        (
+            "55 AA\n5G\n",
+            "HexBytes [bytes] 0:0:55 1:0:aa end 1\n! line 2: “5G” is not a byte; give each as two hexadecimal digits, with or without 0x, such as 55 AA 0x01",
+        ),
+        (
+            "55 AA\n555\n",
+            "HexBytes [bytes] 0:0:55 1:0:aa end 1\n! line 2: “555” is not a byte; give each as two hexadecimal digits, with or without 0x, such as 55 AA 0x01",
+        ),
+    ]);
+}
+
+#[test]
+fn tables_of_positions_are_read() {
+    check(&[
+        (
+            "time_s,position\n0,0\n0.00125,-3\n0.002,12.0\n",
+            "PositionsCsv 1/100000 [] 0@0 125@-3 200@12 end 200",
+        ),
+        ("t,pos\n0,0\n1,5\n", "PositionsCsv 1/1 [] 0@0 1@5 end 1"),
+        ("Time [ms];Position [steps]\n0;0\n1.25;5\n", "PositionsCsv 1/100000 [] 0@0 125@5 end 125"),
+        ("cycle,position\n0,0\n1600,1\n", "PositionsCsv [] 0@0 1600@1 end 1600"),
+        (
+            "t_us,speed,pos\n0,1.5,0\n10,1.5,2\n",
+            "PositionsCsv 1/1000000 [] 0@0 10@2 end 10\n- columns besides time and position: speed",
+        ),
+        ("t,steps\n0,0\n1,5\n", "PositionsCsv 1/1 [] 0@0 1@5 end 1"),
+        ("t,Encoder A,Encoder B\n0,0,1\n1,1,1\n", "SaleaeCsv 1/1 [Encoder A Encoder B] 0:2 1:3 end 1"),
+        ("0.000 0\n0.001 1\n0.002 2\n", "PositionsCsv 1/1000 [] 0@0 1@1 2@2 end 2"),
+        ("0,100\n1,250\n", "PositionsCsv 1/1 [] 0@100 1@250 end 1"),
+        (
+            "t,pos\n0,0\n1,5.5\n",
+            "PositionsCsv 1/1 [] 0@0 end 0\n! line 3: the position “5.5” is not a whole number of steps; multiply it by the steps of a unit (of a mm, of a turn) and round it",
+        ),
+        (
+            "t,pos\n0,0\n1,\n",
+            "PositionsCsv 1/1 [] 0@0 end 0\n! line 3: “” is not a position; give a whole number of steps",
+        ),
+        (
+            "cycle,position\n0,0\n1.5,1\n",
+            "PositionsCsv [] 0@0 end 0\n! line 3: “1.5” is not a cycle; give a whole number from 0",
+        ),
+    ]);
+}
+
+#[test]
+fn what_is_no_such_file_is_told_what_is_allowed() {
+    let unknown = "no kind of file that can be read here; give a value change dump (.vcd), ";
+    for (bytes, expected) in [
+        (&b""[..], "the file is empty; record or export again"),
+        (b" \r\n\n", "the file is empty; record or export again"),
+        (b"\xef\xbb\xbf\n", "the file is empty; record or export again"),
+        (b"Dear all,\nhere are the numbers", &format!("“Dear all,”: {unknown}")),
+        (b"\x7fELF\x02\x01\0\0", unknown),
+        (b"\xff\xfet\0i\0m\0e\0", "the text is UTF-16; save it as UTF-8"),
+        (b"\x1f\x8b\x08\0", "the file is compressed (gzip); uncompress it: gunzip"),
+        (
+            b"\0\0\0\0\0\0\0\x01\x49\0\0",
+            "a waveform of GTKWave (FST); make a value change dump of it: fst2vcd ",
+        ),
+        (b"<SALEAE>\0\0\0\0", "a binary export of Saleae Logic; export as CSV"),
+        (b"PK\x03\x04 and nothing else", "the zip's directory cannot be read"),
+    ] {
+        let reading = read_bytes(bytes);
+        let error = reading.error.expect("it is refused");
+        assert!(error.line == 0 && error.what.starts_with(expected), "{bytes:?}: {error}");
+        assert!(reading.capture.is_empty());
+    }
+}
+
+#[test]
+fn more_than_is_allowed_ends_the_reading_and_what_was_read_stays() {
+    let dump = |times: u64| {
+        let mut text = String::from("$var wire 1 ! A $end $enddefinitions $end\n");
+        (0..times).for_each(|time| text.push_str(&format!("#{time} {}!\n", time % 2)));
+        text
+    };
+    let bytes = |count: usize| "55 ".repeat(count);
+    for (text, found, expected) in [
+        (dump(3), 3, None),
+        (dump(9), 3, Some("line 6: more than 3 changes; record a shorter time, or fewer channels")),
+        (bytes(3), 3, None),
+        (bytes(4), 3, Some("line 1: more than 3 bytes; record a shorter time, or fewer channels")),
+    ] {
+        let reading = read(std::io::Cursor::new(text), &Limits { most: 3 }, &mut |_| true);
+        assert_eq!(reading.capture.len(), found);
+        assert_eq!(reading.error.map(|error| error.to_string()).as_deref(), expected);
+    }
+}
+
+#[test]
+fn channels_beyond_the_first_64_are_named_and_counted() {
+    let mut dump = String::from("$var wire 60 v bus $end ");
+    (0..10).for_each(|at| dump.push_str(&format!("$var wire 1 w{at} W{at} $end ")));
+    dump.push_str("$var wire 100000 x wide $end $enddefinitions $end #0 1w3 1w4 b1 x #1 1v");
+    let reading = read_bytes(dump);
+    assert_eq!(reading.error, None);
+    assert_eq!(reading.capture.channels.len(), 64);
+    assert_eq!(reading.capture.channels[63].name, "W3");
+    assert_eq!(reading.capture.changes[0].levels, 1 << 63);
+    assert_eq!(
+        reading.capture.left_out,
+        ["more than 64 channels: W4, W5, W6, W7, W8, W9 and 100 000 more left out"]
+    );
+    let table = format!("Time [s]{}\n0{}\n", ",A".repeat(70), ",1".repeat(70));
+    let reading = read_bytes(table);
+    assert_eq!(reading.error, None);
+    assert_eq!(reading.capture.changes[0].levels, u64::MAX);
+    assert_eq!(reading.capture.left_out, ["more than 64 channels: A, A, A, A, A, A left out"]);
+}
+
+#[test]
+fn who_watches_hears_of_the_bytes_and_can_end_the_reading() {
+    let rows: String = (0..100_000).map(|at| format!("{at},{}\n", at % 2)).collect();
+    let table = format!("Time [s],A\n{rows}");
+    let mut heard = Vec::new();
+    let reading = read(std::io::Cursor::new(&table), &Limits::default(), &mut |bytes| {
+        heard.push(bytes);
+        true
+    });
+    assert_eq!((reading.capture.changes.len(), reading.error), (100_000, None));
+    assert_eq!(heard, [1 << 18, 2 << 18, 3 << 18, table.len() as u64]);
+    let reading = read(std::io::Cursor::new(&table), &Limits::default(), &mut |bytes| bytes < 1 << 19);
+    let error = reading.error.expect("it was cancelled");
+    assert_eq!((error.line, error.what.as_str()), (0, "cancelled"));
+    assert!((40_000..70_000).contains(&reading.capture.changes.len()));
+    assert_eq!(reading.capture.end, reading.capture.changes.last().expect("a row").tick);
+}
+
+#[test]
+fn a_line_without_end_is_refused() {
+    for text in ["Time [s],A\n0,".to_string(), "$var wire 1 a A $end $enddefinitions $end #0 1a b".into()] {
+        let reading = read_bytes(text + &"1".repeat(1_200_000));
+        let error = reading.error.expect("it is refused");
+        assert!(error.what.starts_with("longer than 1048576 bytes; "), "{error}");
+    }
+}
+
+#[test]
+fn bytes_may_all_stand_in_one_line() {
+    let reading = read_bytes("0x55, ".repeat(100_000));
+    assert_eq!((reading.capture.bytes.len(), reading.error), (100_000, None));
+}

@@ -1,0 +1,165 @@
+//! Files that are cut off, changed or made up: an error at most, and what was read is in order.
+#![cfg(not(target_arch = "wasm32"))]
+#![allow(clippy::expect_used, reason = "these are tests")]
+
+mod common;
+mod writers;
+
+use common::read_bytes;
+use proptest::prelude::*;
+use std::io::{BufReader, Cursor};
+use stepscope_capture::{
+    capture::{Capture, Change, MAX_CHANNELS},
+    read::{Limits, read},
+};
+use writers::Levels;
+
+/// A small file of each kind.
+fn files() -> Vec<Vec<u8>> {
+    let changes = (0..30).map(|at| Change { tick: at * 3, levels: at % 8 });
+    let recording = Levels {
+        names: ["STEP", "DIR", "EN"].map(String::from).to_vec(),
+        changes: changes.collect(),
+        end: 90,
+    };
+    let mut files = vec![
+        recording.vcd(),
+        recording.saleae("\r\n"),
+        recording.edges(),
+        recording.session(40, true),
+        recording.session(7, false),
+        b"$timescale 10 ns $end $scope module m $end $var wire 4 ab bus [3:0] $end $var real 64 r r $end $upscope $end\n\
+          $enddefinitions $end $dumpvars bx ab r0 r $end #0 b1010 ab #5 b1 ab $dumpoff bx ab $end #8 b11 ab #9"
+            .to_vec(),
+        b"0 700000000\n5 700000001\nff 700000000\n".to_vec(),
+        b"Time [s],A\n-0.5,0\n-1e-3,1\n0.000000001,0\n".to_vec(),
+        b"name,type,start_time,duration,data\n\"A, \"\"B\",\"data\",0.1,1e-4,0x55\n\"C\",\"data\",0.2,1e-4,0xAA\n".to_vec(),
+        b"Time [s],Value,Parity Error,Framing Error\n0.1,0x55,,\n0.2,'x' (0x78),,Error\n".to_vec(),
+        b"55 AA 0x01 # x\n\\x10\\x20\n".to_vec(),
+        "12.5us 55 AA\n13 µs: 01\n".into(),
+        b"t_ms,hex\n0.5,55AA\n".to_vec(),
+        b"time_s;position;speed\n0;0;1\n0.5;-7;2\n".to_vec(),
+        b"2026-01-31T23:59:59.5Z,0\n".to_vec(),
+    ];
+    files.extend(writers::SAMPLES.map(|options| recording.samples(24_000_000, options)));
+    files
+}
+
+/// What a [`Capture`] promises.
+fn in_order(capture: &Capture) {
+    assert!(capture.channels.len() <= MAX_CHANNELS);
+    assert!(
+        capture
+            .changes
+            .windows(2)
+            .all(|pair| pair[0].tick < pair[1].tick && pair[0].levels != pair[1].levels)
+    );
+    assert!(capture.bytes.windows(2).all(|pair| pair[0].tick <= pair[1].tick));
+    assert!(capture.positions.windows(2).all(|pair| pair[0].tick <= pair[1].tick));
+    let bits = u64::MAX.checked_shr(64 - capture.channels.len() as u32).unwrap_or(0);
+    assert!(capture.changes.iter().all(|change| change.levels & !bits == 0));
+    assert!(capture.bytes.iter().all(|byte| usize::from(byte.channel) < capture.channels.len()));
+    let last = capture.changes.last().map(|change| change.tick).into_iter();
+    let last = last
+        .chain(capture.bytes.last().map(|byte| byte.tick))
+        .chain(capture.positions.last().map(|row| row.tick));
+    assert!(last.max().unwrap_or(0) <= capture.end);
+    assert!(capture.left_out.len() <= 20);
+}
+
+fn survives(bytes: &[u8]) {
+    let reading = read_bytes(bytes);
+    in_order(&reading.capture);
+    let few = read(BufReader::with_capacity(3, Cursor::new(bytes)), &Limits { most: 5 }, &mut |_| true);
+    in_order(&few.capture);
+    assert!(few.capture.len() <= 5);
+}
+
+#[test]
+fn every_file_is_read() {
+    for (at, file) in files().iter().enumerate() {
+        let reading = read_bytes(file);
+        assert!(reading.error.is_none() || at == 14, "{at}: {:?}", reading.error);
+    }
+}
+
+#[test]
+fn every_beginning_of_a_file_is_read_up_to_its_end() {
+    for file in files() {
+        let whole = read_bytes(&file).capture;
+        for length in 0..file.len() {
+            survives(&file[..length]);
+            let part = read_bytes(&file[..length]).capture;
+            // All but the last row, in which a number may be cut off.
+            if part.format == whole.format && part.timebase == whole.timebase {
+                let rows = part.changes.len().saturating_sub(1);
+                assert_eq!(part.changes.get(..rows), whole.changes.get(..rows));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_session_that_unpacks_to_more_than_it_should_is_ended() {
+    let zeros = vec![0; 3_000_000];
+    let metadata = b"[device 1]\ncapturefile=logic-1\nsamplerate=1 MHz\nprobe1=A\nunitsize=1\n".to_vec();
+    let files = [("metadata".to_string(), metadata), ("logic-1-1".into(), zeros)];
+    let session = writers::zip(&files, true);
+    assert!(session.len() < 20_000);
+    let mut heard = 0;
+    let reading = read(Cursor::new(&session), &Limits { most: 100 }, &mut |_| {
+        heard += 1;
+        true
+    });
+    let error = reading.error.expect("it is ended");
+    assert_eq!(error.what, "more than 1 000 000 samples; record a shorter time");
+    assert!(heard >= 3);
+    assert_eq!(read(Cursor::new(&session), &Limits { most: 1000 }, &mut |_| true).error, None);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn bytes_by_chance_never_end_the_program(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+        survives(&bytes);
+    }
+
+    #[test]
+    fn letters_by_chance_never_end_the_program(text in "[ -~\n\t]{0,300}") {
+        survives(text.as_bytes());
+    }
+
+    #[test]
+    fn words_of_dumps_in_any_order_never_end_the_program(
+        words in prop::collection::vec(prop::sample::select(vec![
+            "$var", "wire", "1", "64", "real", "!", "a", "$end", "$scope", "module", "m", "$upscope", "$enddefinitions",
+            "#0", "#5", "#9", "1!", "x!", "b10", "b", "r1", "s", "[3:0]", "[0:3]", "$dumpoff", "$dumpvars", "$timescale",
+            "1us", "$comment", "bzx", "-", "#18446744073709551615", "[9223372036854775807:-9223372036854775808]",
+        ]), 0..80),
+    ) {
+        survives(format!("$var wire 4 a n $end {}", words.join(" ")).as_bytes());
+    }
+
+    #[test]
+    fn changed_files_never_end_the_program(
+        at in any::<prop::sample::Index>(),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..4_u8), 1..8),
+    ) {
+        let files = files();
+        let mut file = at.get(&files).clone();
+        for (at, byte, kind) in changes {
+            let at = at.index(file.len());
+            match kind {
+                0 => file[at] = byte,
+                1 => file.insert(at, b"0123456789,;-.e\n\"$#"[usize::from(byte) % 19]),
+                2 if file.len() > 1 => drop(file.remove(at)),
+                _ => {
+                    let part: Vec<u8> = file.iter().skip(at).take(usize::from(byte)).copied().collect();
+                    file.extend(part);
+                }
+            }
+        }
+        survives(&file);
+    }
+}
