@@ -71,7 +71,7 @@ fn with_segments_every_step_of_the_sine_counts_whatever_the_ticks_are() {
                 let steps = steps(&recording.trace, 0);
                 let segments = experiment.segments().and_then(|lists| lists.lists().first());
                 let (config, log) = (experiment.config(), &recording.packets);
-                let run = Pulses { channel: 0, steps: &steps, log, segments, config };
+                let run = Pulses::of_run(0, &steps, log, segments, config);
                 let plan = &experiment.plans()[0];
                 let window = AnalysisWindow::of(plan).unwrap();
                 let own = window.pulses_of(plan, &run);

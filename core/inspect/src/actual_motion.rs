@@ -1,5 +1,5 @@
-//! The motion that the pulses of one channel make: its position from edge to edge, its speed from
-//! tick to tick or, where segments run the channel, from interval to interval.
+//! The motion that the pulses of one channel make: its position from edge to edge, its speed from tick to tick or, where
+//! segments run the channel, from interval to interval; of recorded pulses from step to step.
 //!
 //! ```text
 //!            _______                     ______
@@ -22,13 +22,7 @@
 //! # let mut recording = Recording::default();
 //! # let run = experiment.run(&mut recording);
 //! # let made = steps(&recording.trace, 0);
-//! let pulses = Pulses {
-//!     channel: 0,
-//!     steps: &made,
-//!     log: &recording.packets,
-//!     segments: None,
-//!     config: experiment.config(),
-//! };
+//! let pulses = Pulses::of_run(0, &made, &recording.packets, None, experiment.config());
 //! let start_s = pulses.zero() as f64 / pulses.hz();
 //! assert!((pulses.speed_at(start_s + 0.2) - 16_000.0).abs() < 500.0); // half-way, as fast as it gets
 //! assert_eq!(pulses.position_at(start_s + 0.5), 3200);
@@ -38,22 +32,30 @@ use stepscope_peripheral::{
     config::Config,
     segment::{FRACTION_BITS, Segment, SegmentList},
     trace::{LoggedTick, PacketLog, Step},
+    units::Cycles,
     wire::packet::ChannelCommand,
 };
 
-/// What a run made of one channel.
+/// What orders the steps of a channel, and with them its speed.
+#[derive(Clone, Copy, Debug)]
+enum Order<'a> {
+    /// The ticks of a controller, of so many cycles.
+    Ticks(&'a PacketLog, Cycles),
+    /// A list of segments.
+    Segments(&'a SegmentList),
+    /// Nothing that is known: the steps were recorded.
+    Recorded,
+}
+
+/// What one channel made: in a run, or as it was recorded.
 #[derive(Clone, Copy, Debug)]
 pub struct Pulses<'a> {
     /// The channel, 0 to 15.
     pub channel: u8,
     /// All of its steps.
     pub steps: &'a [Step],
-    /// With the ticks of its controller.
-    pub log: &'a PacketLog,
-    /// What it runs by itself, where segments run it; then there are no ticks.
-    pub segments: Option<&'a SegmentList>,
-    /// Of its controller.
-    pub config: &'a Config,
+    order: Order<'a>,
+    clock_hz: u32,
 }
 
 /// A stretch of time at one speed.
@@ -67,19 +69,60 @@ pub struct Rate {
     pub speed: f64,
 }
 
-impl Pulses<'_> {
+impl<'a> Pulses<'a> {
+    /// Of a run: the steps of a channel, the log of its controller, the list that the channel runs by itself where segments
+    /// run it, and the controller's configuration.
+    #[must_use]
+    pub const fn of_run(
+        channel: u8,
+        steps: &'a [Step],
+        log: &'a PacketLog,
+        segments: Option<&'a SegmentList>,
+        config: &Config,
+    ) -> Self {
+        let order = match segments {
+            Some(list) => Order::Segments(list),
+            None => Order::Ticks(log, config.tick()),
+        };
+        Self { channel, steps, order, clock_hz: config.clock_hz() }
+    }
+
+    /// Steps that were recorded, in cycles of `clock_hz`. The speed is that from each step to the next.
+    #[must_use]
+    pub const fn recorded(channel: u8, steps: &'a [Step], clock_hz: u32) -> Self {
+        Self { channel, steps, order: Order::Recorded, clock_hz }
+    }
+
     /// Cycles a second.
     #[must_use]
+    pub const fn clock_hz(&self) -> u32 {
+        self.clock_hz
+    }
+
+    /// Cycles a second, to compute with.
+    #[must_use]
     pub fn hz(&self) -> f64 {
-        f64::from(self.config.clock_hz())
+        f64::from(self.clock_hz)
+    }
+
+    /// How long a tick is; `None` where none orders the steps, but each is known by itself.
+    #[cfg(feature = "std")]
+    pub(super) const fn tick(&self) -> Option<Cycles> {
+        match self.order {
+            Order::Ticks(_, length) => Some(length),
+            Order::Segments(_) | Order::Recorded => None,
+        }
     }
 
     /// Cycle in which the motion's time 0 is: the start of the list of segments, or of the first tick; 0
-    /// where none began.
+    /// where none began, and of what was recorded.
     #[must_use]
     pub fn zero(&self) -> u64 {
-        let first_tick = || self.log.ticks().first().map_or(0, |tick| tick.start.0);
-        self.segments.map_or_else(first_tick, |list| list.start.0)
+        match self.order {
+            Order::Ticks(log, _) => log.ticks().first().map_or(0, |tick| tick.start.0),
+            Order::Segments(list) => list.start.0,
+            Order::Recorded => 0,
+        }
     }
 
     /// Position after all steps up to a time, that time included.
@@ -110,20 +153,47 @@ impl Pulses<'_> {
 
     /// Every stretch of one speed that touches `from_s..=to_s`, in order; between them nothing moves.
     pub fn rates(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Rate)) {
-        match self.segments {
-            Some(list) => self.intervals(list, from_s, to_s, each),
-            None => self.orders(from_s, to_s, each),
+        match self.order {
+            Order::Ticks(log, length) => self.orders((log, length), from_s, to_s, each),
+            Order::Segments(list) => self.intervals(list, from_s, to_s, each),
+            Order::Recorded => self.step_to_step(from_s, to_s, each),
+        }
+    }
+
+    /// Of the steps themselves.
+    fn step_to_step(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Rate)) {
+        let hz = self.hz();
+        let first = self.steps.partition_point(|step| (step.cycle as f64 / hz) < from_s).max(1);
+        for index in first..self.steps.len() {
+            let (Some(before), Some(step)) = (self.steps.get(index - 1), self.steps.get(index)) else {
+                return;
+            };
+            let rate = Rate {
+                from_s: before.cycle as f64 / hz,
+                to_s: step.cycle as f64 / hz,
+                speed: hz / (step.cycle - before.cycle) as f64
+                    * f64::from(Step::direction(self.steps, index)),
+            };
+            if rate.from_s > to_s {
+                return;
+            }
+            each(rate);
         }
     }
 
     /// Of the ticks.
-    fn orders(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Rate)) {
+    fn orders(
+        &self,
+        (log, length): (&PacketLog, Cycles),
+        from_s: f64,
+        to_s: f64,
+        each: &mut dyn FnMut(Rate),
+    ) {
         let hz = self.hz();
-        let length = self.config.tick();
         let start = |tick: &LoggedTick| tick.start.0 as f64 / hz;
         // STOP ends a tick before its time.
-        let end = |tick: &LoggedTick| self.log.tick_end(tick, length).0 as f64 / hz;
-        let ticks = self.log.ticks();
+        let end = |tick: &LoggedTick| log.tick_end(tick, length).0 as f64 / hz;
+        let ticks = log.ticks();
         let first = ticks.partition_point(|tick| end(tick) < from_s);
         for tick in ticks.iter().skip(first).take_while(|tick| start(tick) <= to_s) {
             let order =
@@ -229,7 +299,7 @@ mod tests {
         ];
         let list = SegmentList { start: Instant(16_000), segments };
         let log = PacketLog::default();
-        let pulses = Pulses { channel: 0, steps: &[], log: &log, segments: Some(&list), config: &config };
+        let pulses = Pulses::of_run(0, &[], &log, Some(&list), &config);
         let mut found = Vec::new();
         pulses.rates(0.0, 1.0, &mut |rate| found.push((rate.from_s, rate.to_s, rate.speed)));
         let expected = [
@@ -244,6 +314,15 @@ mod tests {
     }
 
     #[test]
+    fn recorded_steps_have_the_speed_from_each_to_the_next_and_back() {
+        let steps = [(100, 1), (150, 2), (250, 1)].map(|(cycle, position)| Step { cycle, position });
+        let pulses = Pulses::recorded(0, &steps, 1000);
+        let at = [0.05, 0.1, 0.12, 0.15, 0.249, 0.25].map(|time_s| pulses.speed_at(time_s));
+        assert_eq!(at, [0.0, 20.0, 20.0, -10.0, -10.0, 0.0]);
+        assert_eq!((pulses.zero(), pulses.position_at(0.2)), (0, 2));
+    }
+
+    #[test]
     fn a_tick_that_stop_ends_has_no_speed_afterwards() {
         let config =
             Config::new(16_000_000, &Bus::default(), &SerialLine::default()).expect("the defaults hold");
@@ -252,7 +331,7 @@ mod tests {
         orders[0] = 0x80 | 10;
         log.event(Instant(16_000), Event::TickStart { orders });
         log.event(Instant(24_000), Event::Stopped);
-        let pulses = Pulses { channel: 0, steps: &[], log: &log, segments: None, config: &config };
+        let pulses = Pulses::of_run(0, &[], &log, None, &config);
         let speed = 10.0 * 16e6 / config.tick().0 as f64;
         assert_eq!(
             [0.000_9, 0.001, 0.001_4, 0.001_5, 0.002].map(|at| pulses.speed_at(at)),

@@ -23,6 +23,8 @@ use stepscope_peripheral::trace::Step;
 
 /// Longest transform.
 const MAX_POINTS: usize = 1 << 20;
+/// By what part of a period recorded ones may differ.
+const UNEVEN: f64 = 0.01;
 
 /// The window of time that a spectrum is taken of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,6 +55,51 @@ impl AnalysisWindow {
         (window.period_s > 0.0).then_some(window)
     }
 
+    /// Of steps of which no plan is known: whole periods, where they go to and fro evenly, from the first turn on; else
+    /// from the first step to the last. `None` where that takes no time.
+    #[must_use]
+    pub fn of_steps(steps: &[Step], hz: f64) -> Option<Self> {
+        let seconds = |cycles: u64| cycles as f64 / hz;
+        let (first, last) = (steps.first()?.cycle, steps.last()?.cycle);
+        let whole =
+            Self { start_s: seconds(first), period_s: seconds(last - first), periods: 1, periodic: false };
+        let turns: Vec<u64> = (1..steps.len())
+            .filter(|index| Step::direction(steps, *index) != Step::direction(steps, index - 1))
+            .filter_map(|index| steps.get(index).map(|step| step.cycle))
+            .collect();
+        let periods = turns.len().saturating_sub(1) / 2;
+        let repeating =
+            turns.first().zip(turns.get(2 * periods)).filter(|_| periods > 0).map(|(from, to)| {
+                let start_s = seconds(*from);
+                Self {
+                    start_s,
+                    period_s: seconds(to - from) / periods as f64,
+                    periods: periods as u32,
+                    periodic: true,
+                }
+            });
+        // Every turn is a period after the one before the last.
+        let even = |window: &Self| {
+            let pairs = turns.iter().zip(turns.iter().skip(2));
+            pairs
+                .map(|(from, to)| seconds(to - from))
+                .all(|period_s| libm::fabs(period_s - window.period_s) <= UNEVEN * window.period_s)
+        };
+        Some(repeating.filter(even).unwrap_or(whole)).filter(|window| window.period_s > 0.0)
+    }
+
+    /// Of such steps those within the window, as (time in s, +1 right or -1 left).
+    #[must_use]
+    pub fn steps_within(&self, steps: &[Step], hz: f64) -> Vec<(f64, i8)> {
+        // To half a cycle: sums of rounded periods do not take a step more, or less.
+        let end_s = self.start_s + self.length_s() - if self.periodic { 0.5 / hz } else { -0.5 / hz };
+        let pulse = |(index, step): (usize, &Step)| {
+            (step.cycle as f64 / hz, Step::direction(steps, index).signum() as i8)
+        };
+        let own = |(time_s, _): &(f64, i8)| (self.start_s - 0.5 / hz..end_s).contains(time_s);
+        steps.iter().enumerate().map(pulse).filter(own).collect()
+    }
+
     /// Its length in s.
     #[must_use]
     pub fn length_s(&self) -> f64 {
@@ -66,7 +113,7 @@ impl AnalysisWindow {
     }
 
     /// The pulses of a run that belong to the window, as (time in s, +1 right or -1 left): of a run by
-    /// ticks as [`Self::own_pulses`] tells them, of one by segments those of the steps of its moves.
+    /// ticks as [`Self::own_pulses`] tells them, of others those of the steps of its moves, one by one.
     #[must_use]
     pub fn pulses_of(&self, plan: &AxisPlan, run: &Pulses<'_>) -> Vec<(f64, i8)> {
         let zero = run.zero();
@@ -75,12 +122,12 @@ impl AnalysisWindow {
             Some((step.cycle.checked_sub(zero)?, way))
         };
         let pulses: Vec<(u64, i8)> = run.steps.iter().enumerate().filter_map(pulse).collect();
-        if run.segments.is_some() {
+        let Some(tick) = run.tick() else {
             let hz = run.hz();
             let own = self.own_steps(plan, &pulses).iter();
             return own.map(|&(cycle, way)| (cycle as f64 / hz, way)).collect();
-        }
-        self.own_pulses(plan, TickClock::new(run.config.tick().0, run.config.clock_hz()), &pulses)
+        };
+        self.own_pulses(plan, TickClock::new(tick.0, run.clock_hz()), &pulses)
     }
 
     /// Of pulses that are the steps of `plan`, one by one, those of the moves within the window.

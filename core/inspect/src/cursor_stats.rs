@@ -159,13 +159,7 @@ mod tests {
             let plan = &ran.experiment.plans()[0];
             let zero_s =
                 ran.recording.first_tick().expect("ticks").seconds(ran.experiment.config().clock_hz());
-            let pulses = Pulses {
-                channel: 0,
-                steps: &ran.steps,
-                log: &ran.recording.packets,
-                segments: None,
-                config: ran.experiment.config(),
-            };
+            let pulses = Pulses::of_run(0, &ran.steps, &ran.recording.packets, None, ran.experiment.config());
             let length = plan.duration_s();
             for (from, to) in [(-0.01, length + 0.03), (0.1 * length, 0.37 * length), (0.3, 0.300_1)] {
                 let (from, to) = (zero_s + from, zero_s + to);
@@ -206,13 +200,13 @@ mod tests {
     fn segments_have_the_speed_of_their_intervals_and_none_in_a_dwell() {
         let ran = run(r#"{"segments":{"channels":[{"segments":[{"steps":{"count":10}},
             {"dwell":{"length_q16":5242880000}},{"steps":{"count":10,"interval_q16":524288000,"dir":0}}]}]}}"#);
-        let pulses = Pulses {
-            channel: 0,
-            steps: &ran.steps,
-            log: &ran.recording.packets,
-            segments: ran.experiment.segments().and_then(|lists| lists.lists().first()),
-            config: ran.experiment.config(),
-        };
+        let pulses = Pulses::of_run(
+            0,
+            &ran.steps,
+            &ran.recording.packets,
+            ran.experiment.segments().and_then(|lists| lists.lists().first()),
+            ran.experiment.config(),
+        );
         // From cycle 1 on 10 steps of 1 ms, 5 ms of rest, 10 steps back of 0.5 ms.
         let found = actual(&pulses, 0.0, 0.02);
         assert!(found.speed.mean.abs() < 0.01, "{found:?}");

@@ -12,7 +12,7 @@
 //! experiment.run(&mut recording);
 //! let made = steps(&recording.trace, 0);
 //! let pulses =
-//!     Pulses { channel: 0, steps: &made, log: &recording.packets, segments: None, config: experiment.config() };
+//!     Pulses::of_run(0, &made, &recording.packets, None, experiment.config());
 //! let measures = Measures::of(&experiment.plans()[0], &pulses, None);
 //! assert!(measures.pulses.largest_steps.abs() < 200.0);
 //! ```
@@ -54,6 +54,7 @@ pub mod plant_log;
 #[cfg(feature = "plant")]
 pub mod plant_report;
 pub mod position_error;
+pub mod recording;
 pub mod remedies;
 pub mod run_fingerprint;
 pub mod run_sink;

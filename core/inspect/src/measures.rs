@@ -22,13 +22,7 @@
 //! # let mut recording = Recording::default();
 //! # let run = experiment.run(&mut recording);
 //! # let made = steps(&recording.trace, 0);
-//! let pulses = Pulses {
-//!     channel: 0,
-//!     steps: &made,
-//!     log: &recording.packets,
-//!     segments: None,
-//!     config: experiment.config(),
-//! };
+//! let pulses = Pulses::of_run(0, &made, &recording.packets, None, experiment.config());
 //! let measures = Measures::of(&experiment.plans()[0], &pulses, None);
 //! assert_eq!((measures.counts.due, measures.counts.actual, measures.counts.stray), (3200, 3200, 0));
 //! assert_eq!(measures.peaks.speed_steps_s, 16_000.0);
@@ -160,7 +154,7 @@ impl Measures {
         let (zero, hz) = (pulses.zero(), pulses.hz());
         let shifted = |step: &Step| Step { cycle: step.cycle.saturating_sub(zero), ..*step };
         let made: Vec<Step> = pulses.steps.iter().map(shifted).collect();
-        let (due, step_errors) = due_steps(plan, pulses.config.clock_hz());
+        let (due, step_errors) = due_steps(plan, pulses.clock_hz());
         let (tick_errors, stray) = placed(plan, &due, &made, hz);
         let last = |steps: &[Step]| steps.last().map(|step| step.cycle as f64 / hz);
         let (last_due_s, last_pulse_s) = (last(&due), last(&made));

@@ -10,13 +10,7 @@
 //! # let mut recording = Recording::default();
 //! # experiment.run(&mut recording);
 //! # let made = steps(&recording.trace, 0);
-//! let pulses = Pulses {
-//!     channel: 0,
-//!     steps: &made,
-//!     log: &recording.packets,
-//!     segments: None,
-//!     config: experiment.config(),
-//! };
+//! let pulses = Pulses::of_run(0, &made, &recording.packets, None, experiment.config());
 //! let spectra = Spectra::of(&Scenario::default(), experiment.plans().first(), &pulses);
 //! let lines = |spectrum: Option<stepscope_inspect::spectrum::Spectrum>| spectrum.map(|spectrum| spectrum.order);
 //! assert_eq!((lines(spectra.ideal), lines(spectra.actual)), (Some(40), Some(40)));
@@ -45,18 +39,18 @@ pub struct Spectra {
 }
 
 impl Spectra {
-    /// Of the axis that a scenario's analysis names, with its plan, if it has one, and its pulses.
+    /// Of the axis that a scenario's analysis names, with its plan, if it has one, and its pulses. Without a plan only what
+    /// the pulses make is known.
     #[must_use]
     pub fn of(scenario: &Scenario, plan: Option<&AxisPlan>, run: &Pulses<'_>) -> Self {
         let analysis = &scenario.analysis;
         let window = plan.and_then(AnalysisWindow::of);
         let (Some(plan), Some(window)) = (plan, window) else {
-            let note = match &scenario.source {
-                Source::Motion(_) => format!("This controller has no axis {}.", analysis.axis),
-                _ => "A spectrum needs a motion; packets, line scripts and lists of segments have none."
-                    .to_owned(),
-            };
-            return Self { note, ..Self::default() };
+            if let Source::Motion(_) = &scenario.source {
+                let note = format!("This controller has no axis {}.", analysis.axis);
+                return Self { note, ..Self::default() };
+            }
+            return Self::of_steps(scenario, run);
         };
         let ideal = Spectrum::ideal(plan, analysis.order, analysis.fft_length);
         let actual = Spectrum::of_pulses(&window.pulses_of(plan, run), window, analysis.order);
@@ -75,5 +69,54 @@ impl Spectra {
             actual: Some(actual.filtered_by(analysis.sensor_hz)),
             note,
         }
+    }
+
+    /// Of steps of which no plan is known: those of packets, line scripts, lists of segments, recordings.
+    fn of_steps(scenario: &Scenario, run: &Pulses<'_>) -> Self {
+        let analysis = &scenario.analysis;
+        let Some(window) = AnalysisWindow::of_steps(run.steps, run.hz()) else {
+            let note = format!("Channel {} makes less than two steps.", run.channel);
+            return Self { note, ..Self::default() };
+        };
+        let actual = Spectrum::of_pulses(&window.steps_within(run.steps, run.hz()), window, analysis.order);
+        let note = if window.periodic {
+            format!("Taken over {} periods, from turn to turn: no plan is known.", window.periods)
+        } else {
+            "The steps do not go to and fro evenly: no harmonics, no THD.".to_owned()
+        };
+        Self { ideal: None, actual: Some(actual.filtered_by(analysis.sensor_hz)), note }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stepscope_peripheral::trace::{Recording, steps};
+    use stepscope_sim::Experiment;
+
+    #[test]
+    fn a_recorded_sine_has_the_distortion_of_the_planned_one() {
+        let json = r#"{"source":{"motion":{"engine":"segments","axes":[{"moves":[
+            {"sine":{"amplitude":{"steps":800},"period_s":0.5,"periods":6}}]}]}}}"#;
+        let scenario = Scenario::from_json(json).expect("reads");
+        let experiment = Experiment::new(&scenario).expect("no problems");
+        let mut recording = Recording::default();
+        experiment.run(&mut recording);
+        let made = steps(&recording.trace, 0);
+        let list = experiment.segments().and_then(|all| all.lists().first());
+        let planned = Pulses::of_run(0, &made, &recording.packets, list, experiment.config());
+        let known = Spectra::of(&scenario, experiment.plans().first(), &planned).actual.expect("pulses");
+        let recorded = Pulses::recorded(0, &made, 16_000_000);
+        let other = Scenario { source: Source::Segments(Default::default()), ..scenario };
+        let Spectra { ideal, actual, note } = Spectra::of(&other, None, &recorded);
+        let found = actual.expect("pulses");
+        assert!(ideal.is_none() && note.contains("5 periods"), "{note}");
+        assert!((found.window.period_s - 0.5).abs() < 1e-6, "{:?}", found.window);
+        let thd = |spectrum: &Spectrum| spectrum.speed.distortion.expect("a sine");
+        assert!((thd(&found) / thd(&known) - 1.0).abs() < 0.01, "{} {}", thd(&found), thd(&known));
+        let amplitude = found.position.amplitudes[0];
+        assert!((amplitude / known.position.amplitudes[0] - 1.0).abs() < 1e-3, "{amplitude}");
+        let still = Spectra::of(&other, None, &Pulses::recorded(0, &made[..1], 16_000_000));
+        assert!(still.actual.is_none() && still.note.contains("less than two steps"));
     }
 }

@@ -295,6 +295,10 @@ impl TimingCheck {
 
 impl Sink for TimingCheck {
     fn record(&mut self, record: Record) {
+        // What a recording begins with is no edge; a run begins with the levels of reset.
+        if record.cycle == Instant::RESET {
+            self.levels = record.levels;
+        }
         let changed = (record.levels.0 ^ self.levels.0) & WATCHED;
         self.levels = record.levels;
         if changed != 0 {

@@ -24,13 +24,13 @@ impl Ran {
     }
 
     fn pulses(&self) -> Pulses<'_> {
-        Pulses {
-            channel: 0,
-            steps: &self.steps,
-            log: &self.recording.packets,
-            segments: self.experiment.segments().and_then(|lists| lists.lists().first()),
-            config: self.experiment.config(),
-        }
+        Pulses::of_run(
+            0,
+            &self.steps,
+            &self.recording.packets,
+            self.experiment.segments().and_then(|lists| lists.lists().first()),
+            self.experiment.config(),
+        )
     }
 }
 

@@ -28,7 +28,7 @@ mod text;
 pub use digest::Digest;
 pub use log::{LoggedPacket, LoggedTick, PacketLog, RowOutcome};
 pub use recording::{Recording, levels_at};
-pub use steps::{Step, steps};
+pub use steps::{Step, steps, steps_in};
 pub use text::{ParseError, parse_line, write_record};
 
 /// Bits of the signals that exports show: STEP and DIR of the channels in use, then EN, RX, TX, DE.

@@ -24,24 +24,37 @@ impl Step {
 /// All steps of `channel` in a trace (DESIGN A3's position counter, edge by edge).
 #[must_use]
 pub fn steps(trace: &[Record], channel: u8) -> Vec<Step> {
+    steps_in(trace, channel).collect()
+}
+
+/// The same, one after the other.
+pub fn steps_in(trace: &[Record], channel: u8) -> impl Iterator<Item = Step> {
     let mask = 1_u16 << (channel & 15);
-    let (mut before, mut position) = (0, 0_i32);
-    let mut steps = Vec::new();
-    for record in trace {
+    // A level that is there from the first record on has not risen.
+    let (mut before, mut position) = (trace.first().map_or(0, |record| record.levels.step()), 0_i32);
+    trace.iter().filter_map(move |record| {
         let step = record.levels.step();
-        if step & !before & mask != 0 {
-            position = position.wrapping_add(if record.levels.dir() & mask != 0 { 1 } else { -1 });
-            steps.push(Step { cycle: record.cycle.0, position });
-        }
+        let rises = step & !before & mask != 0;
         before = step;
-    }
-    steps
+        if !rises {
+            return None;
+        }
+        position = position.wrapping_add(if record.levels.dir() & mask != 0 { 1 } else { -1 });
+        Some(Step { cycle: record.cycle.0, position })
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::{signal::Levels, units::Instant};
+
+    #[test]
+    fn a_recording_that_begins_in_a_pulse_has_no_step_there() {
+        let trace = [(0, 1), (5, 0), (9, 1)];
+        let trace = trace.map(|(cycle, levels)| Record { cycle: Instant(cycle), levels: Levels(levels) });
+        assert_eq!(steps(&trace, 0), [Step { cycle: 9, position: -1 }]);
+    }
 
     #[test]
     fn a_step_counts_by_the_direction_in_its_own_cycle() {

@@ -1,0 +1,37 @@
+//! A recording looked at like a run: what its steps come to, its bytes, itself beside the model, and the scenario that
+//! gives the same again.
+//!
+//! ```text
+//! records in cycles  ->  figures     steps, rates, turns, pulse widths of each channel
+//!                        serial      bytes of RX and TX, their rate and what they seem to be
+//!                        alignment   each step beside the model's
+//!                        scenario    a list of segments, or a line script
+//! ```
+//!
+//! ```
+//! use stepscope_inspect::recording::{alignment::{Comparison, Side}, report::Report};
+//! use stepscope_peripheral::trace::{Recording, steps};
+//! use stepscope_sim::Experiment;
+//!
+//! let recorded = |json: &str| {
+//!     let mut recording = Recording::default();
+//!     Experiment::from_json(json).expect("no problems").run(&mut recording);
+//!     recording.trace
+//! };
+//! // The same move by a controller whose start-up takes longer.
+//! let (own, model) = (recorded(r#"{"bus":{"boot_cycles":4000}}"#), recorded("{}"));
+//! assert_eq!(Report::of(&own, 16_000_000, 1, None).channels[0].figures.steps, 3200);
+//! let (own, model) = (steps(&own, 0), steps(&model, 0));
+//! let side = |steps| Side { steps, clock_hz: 16_000_000 };
+//! let found = Comparison::of(side(&own), side(&model), 0, 0.0).expect("both have steps");
+//! assert!(found.is_same(), "{found:?}");
+//! ```
+
+pub mod alignment;
+pub mod events;
+pub mod figures;
+#[cfg(feature = "capture")]
+pub mod opened;
+pub mod report;
+pub mod scenario;
+pub mod serial;

@@ -1,0 +1,157 @@
+//! What two recordings, or a recording and a run, are compared by: the steps of a channel, or, where none steps, the bytes
+//! of RX, each with its time.
+//!
+//! ```
+//! use stepscope_inspect::recording::events::{Events, Kind};
+//! use stepscope_peripheral::trace::Recording;
+//! use stepscope_sim::Experiment;
+//!
+//! // The bytes of a run beside themselves.
+//! let mut recording = Recording::default();
+//! Experiment::from_json("{}").expect("the default motion").run(&mut recording);
+//! let bytes = Events::of_records(&recording.trace, 16_000_000, Kind::Bytes, 0, 115_200);
+//! let found = bytes.beside(&bytes, 0, 0.0).expect("there are bytes");
+//! assert_eq!((found.comparison.compared, found.other_values), (200, 0));
+//! assert!(found.is_same());
+//! ```
+
+use super::{
+    alignment::{Comparison, Late, Side},
+    serial::{Heard, hear},
+};
+use alloc::vec::Vec;
+use serde::Serialize;
+use stepscope_peripheral::{
+    signal::{Levels, Record},
+    trace::{Step, steps},
+};
+
+/// What is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// The steps of a channel.
+    Steps,
+    /// The bytes of RX.
+    Bytes,
+}
+
+impl Kind {
+    /// In words, several of them.
+    #[must_use]
+    pub const fn plural(self) -> &'static str {
+        match self {
+            Self::Steps => "steps",
+            Self::Bytes => "bytes",
+        }
+    }
+
+    /// In words, one of them.
+    #[must_use]
+    pub const fn singular(self) -> &'static str {
+        match self {
+            Self::Steps => "step",
+            Self::Bytes => "byte",
+        }
+    }
+}
+
+/// Steps or bytes with their times.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Events {
+    /// What they are.
+    pub kind: Kind,
+    /// Cycles a second.
+    pub clock_hz: u32,
+    /// Each with its cycle; of bytes the position is how many came.
+    steps: Vec<Step>,
+    /// Of bytes.
+    values: Vec<u8>,
+}
+
+/// How two lists of them stand to each other.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Beside {
+    /// What was compared.
+    pub kind: Kind,
+    /// When each comes.
+    #[serde(flatten)]
+    pub comparison: Comparison,
+    /// Bytes that have another value.
+    pub other_values: usize,
+}
+
+impl Beside {
+    /// Whether all of them are there, at their times, with their values.
+    #[must_use]
+    pub const fn is_same(&self) -> bool {
+        self.comparison.is_same() && self.other_values == 0
+    }
+}
+
+impl Events {
+    /// Steps in cycles of `clock_hz`.
+    #[must_use]
+    pub const fn of_steps(steps: Vec<Step>, clock_hz: u32) -> Self {
+        Self { kind: Kind::Steps, clock_hz, steps, values: Vec::new() }
+    }
+
+    /// Bytes in cycles of `clock_hz`.
+    #[must_use]
+    pub fn of_bytes(heard: &Heard, clock_hz: u32) -> Self {
+        let step =
+            |(position, byte): (i32, &super::serial::HeardByte)| Step { cycle: byte.start.0, position };
+        Self {
+            kind: Kind::Bytes,
+            clock_hz,
+            steps: (1..).zip(&heard.bytes).map(step).collect(),
+            values: heard.bytes.iter().map(|byte| byte.byte).collect(),
+        }
+    }
+
+    /// Those of a trace: the steps of a channel, or the bytes of RX at `baud`.
+    #[must_use]
+    pub fn of_records(records: &[Record], clock_hz: u32, kind: Kind, channel: u8, baud: u32) -> Self {
+        match kind {
+            Kind::Steps => Self::of_steps(steps(records, channel), clock_hz),
+            Kind::Bytes => Self::of_bytes(&hear(records, Levels::RX, clock_hz, baud), clock_hz),
+        }
+    }
+
+    /// When the first comes, in s.
+    #[must_use]
+    pub fn first_s(&self) -> Option<f64> {
+        self.steps.first().map(|step| step.cycle as f64 / f64::from(self.clock_hz))
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.steps.is_empty()
+    }
+
+    /// Beside a model's, number `aligned` of both, from 0, taken for the same instant; up to `allowed_s` one is not
+    /// different. `None` where one of both has none of this number.
+    #[must_use]
+    pub fn beside(&self, model: &Self, aligned: usize, allowed_s: f64) -> Option<Beside> {
+        let comparison = Comparison::of(self.side(), model.side(), aligned, allowed_s)?;
+        let other_values = self.values.iter().zip(&model.values).filter(|(own, other)| own != other).count();
+        Some(Beside { kind: self.kind, comparison, other_values })
+    }
+
+    /// How late each is.
+    #[must_use]
+    pub fn late<'a>(&'a self, model: &'a Self, aligned: usize) -> Late<'a> {
+        Late { recorded: self.side(), model: model.side(), aligned }
+    }
+
+    fn side(&self) -> Side<'_> {
+        Side { steps: &self.steps, clock_hz: self.clock_hz }
+    }
+}

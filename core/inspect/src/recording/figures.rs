@@ -1,0 +1,175 @@
+//! What the steps of a channel come to, where no plan is known: of a recording, or of a list of segments.
+//!
+//! ```
+//! use stepscope_inspect::recording::figures::StepFigures;
+//! use stepscope_peripheral::trace::Step;
+//!
+//! // Four steps right at 100 steps/s, and one back.
+//! let steps = [(10, 1), (20, 2), (30, 3), (40, 4), (60, 3)].map(|(cycle, position)| Step { cycle, position });
+//! let figures = StepFigures::of(steps, 1000).expect("there are steps");
+//! assert_eq!((figures.right, figures.left, figures.turns, figures.position), (4, 1, 1, 3));
+//! assert_eq!(figures.greatest_rate_steps_s, Some(100.0));
+//! ```
+
+use alloc::collections::VecDeque;
+use serde::Serialize;
+use stepscope_peripheral::trace::Step;
+
+/// Steps that an acceleration is taken over: from step to step the rounding to cycles alone would make it.
+const BLOCK: usize = 8;
+
+/// The steps of a channel in numbers. Rates are 1 by the interval from step to step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct StepFigures {
+    /// Steps.
+    pub steps: u64,
+    /// Of them, to the right.
+    pub right: u64,
+    /// Of them, to the left.
+    pub left: u64,
+    /// How often the direction changes.
+    pub turns: u64,
+    /// Position after the last, from 0 before the first.
+    pub position: i32,
+    /// Least position.
+    pub least_position: i32,
+    /// Greatest position.
+    pub greatest_position: i32,
+    /// When the first step comes, in s.
+    pub first_s: f64,
+    /// When the last step comes, in s.
+    pub last_s: f64,
+    /// Shortest interval in s; `None` of a single step.
+    pub shortest_interval_s: Option<f64>,
+    /// When it ends, in s.
+    pub shortest_at_s: Option<f64>,
+    /// Longest interval in s.
+    pub longest_interval_s: Option<f64>,
+    /// Greatest rate in steps/s; `None` where two steps share a cycle.
+    pub greatest_rate_steps_s: Option<f64>,
+    /// Steps by the time from the first to the last, in steps/s.
+    pub mean_rate_steps_s: Option<f64>,
+    /// Greatest magnitude of the acceleration, from each eight steps in one direction to the next eight, in steps/s^2.
+    pub greatest_acceleration_steps_s2: Option<f64>,
+    /// Greatest part by which an interval differs from the one before it, in one direction: 0.1 for a tenth.
+    pub greatest_interval_change: Option<f64>,
+}
+
+impl StepFigures {
+    /// Of steps in cycles of `clock_hz`, one after the other: none of them is kept. `None` where there is none.
+    #[must_use]
+    pub fn of(steps: impl IntoIterator<Item = Step>, clock_hz: u32) -> Option<Self> {
+        let mut steps = steps.into_iter();
+        let first = steps.next()?;
+        let hz = f64::from(clock_hz);
+        let seconds = |cycle: u64| cycle as f64 / hz;
+        let mut found = Self {
+            steps: 0,
+            right: 0,
+            left: 0,
+            turns: 0,
+            position: 0,
+            least_position: 0,
+            greatest_position: 0,
+            first_s: seconds(first.cycle),
+            last_s: 0.0,
+            shortest_interval_s: None,
+            shortest_at_s: None,
+            longest_interval_s: None,
+            greatest_rate_steps_s: None,
+            mean_rate_steps_s: None,
+            greatest_acceleration_steps_s2: None,
+            greatest_interval_change: None,
+        };
+        let (mut shortest, mut longest) = (None::<(u64, u64)>, None::<u64>);
+        let mut acceleration =
+            Acceleration { hz, steps: VecDeque::with_capacity(2 * BLOCK + 1), greatest: None };
+        // The step before, its direction, and the interval before it where that was in this direction.
+        let (mut last, mut way, mut length) = (first, 0, None::<u64>);
+        for step in core::iter::once(first).chain(steps) {
+            let now =
+                if found.steps == 0 { step.position } else { step.position.wrapping_sub(last.position) };
+            *(if now > 0 { &mut found.right } else { &mut found.left }) += 1;
+            found.least_position = found.least_position.min(step.position);
+            found.greatest_position = found.greatest_position.max(step.position);
+            acceleration.take(step);
+            if found.steps > 0 {
+                let turned = now != way;
+                found.turns += u64::from(turned);
+                let interval = step.cycle - last.cycle;
+                if shortest.is_none_or(|(least, _)| interval < least) {
+                    shortest = Some((interval, step.cycle));
+                }
+                longest = longest.max(Some(interval));
+                if let Some(length) = length.filter(|length| !turned && *length > 0) {
+                    let part = interval.abs_diff(length) as f64 / length as f64;
+                    let most = found.greatest_interval_change;
+                    found.greatest_interval_change = Some(most.map_or(part, |most| libm::fmax(most, part)));
+                }
+                length = if turned { None } else { Some(interval) };
+            }
+            found.steps += 1;
+            (last, way) = (step, now);
+        }
+        (found.position, found.last_s) = (last.position, seconds(last.cycle));
+        found.shortest_interval_s = shortest.map(|(interval, _)| seconds(interval));
+        found.shortest_at_s = shortest.map(|(_, at)| seconds(at));
+        found.longest_interval_s = longest.map(seconds);
+        found.greatest_rate_steps_s =
+            shortest.filter(|(interval, _)| *interval > 0).map(|(interval, _)| hz / interval as f64);
+        let span = last.cycle - first.cycle;
+        found.mean_rate_steps_s = (span > 0).then(|| (found.steps - 1) as f64 / seconds(span));
+        found.greatest_acceleration_steps_s2 = acceleration.greatest;
+        Some(found)
+    }
+}
+
+/// The greatest change of rate, from each block of steps to the next, by the time between their middles.
+struct Acceleration {
+    hz: f64,
+    /// The last ones: two blocks, and the step that the first begins at.
+    steps: VecDeque<Step>,
+    greatest: Option<f64>,
+}
+
+impl Acceleration {
+    fn take(&mut self, to: Step) {
+        self.steps.push_back(to);
+        if self.steps.len() <= 2 * BLOCK {
+            return;
+        }
+        let middle = self.steps.get(BLOCK).copied();
+        let Some((from, middle)) = self.steps.pop_front().zip(middle) else { return };
+        // In one direction all the way.
+        let way = to.position.wrapping_sub(from.position).unsigned_abs() as usize;
+        if way != 2 * BLOCK || from.cycle == middle.cycle || middle.cycle == to.cycle {
+            return;
+        }
+        let [first, second] =
+            [(from, middle), (middle, to)].map(|(a, b)| (b.cycle - a.cycle) as f64 / self.hz);
+        let change = BLOCK as f64 / second - BLOCK as f64 / first;
+        let found = libm::fabs(change) / ((first + second) / 2.0);
+        self.greatest = Some(self.greatest.map_or(found, |most| libm::fmax(most, found)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec::Vec;
+
+    #[test]
+    fn an_even_ramp_has_its_acceleration_and_a_single_step_no_rate() {
+        // t = sqrt(2*s/a) for 2000 steps/s^2.
+        let steps: Vec<Step> = (1..400)
+            .map(|k| Step { cycle: (libm::sqrt(f64::from(k) / 1000.0) * 16e6) as u64, position: k })
+            .collect();
+        let found = StepFigures::of(steps.iter().copied(), 16_000_000).expect("steps");
+        let acceleration = found.greatest_acceleration_steps_s2.expect("enough steps");
+        assert!((acceleration - 2000.0).abs() < 20.0, "{acceleration}");
+        assert_eq!((found.position, found.turns, found.steps), (399, 0, 399));
+        let one = StepFigures::of(steps.first().copied(), 16_000_000).expect("a step");
+        assert_eq!((one.greatest_rate_steps_s, one.mean_rate_steps_s), (None, None));
+        assert_eq!(StepFigures::of([], 1), None);
+    }
+}

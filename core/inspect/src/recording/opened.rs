@@ -1,0 +1,444 @@
+//! A capture that is opened: what its file leaves open is said, its times are cycles, and it can be looked at.
+//!
+//! ```
+//! use stepscope_capture::read::{Limits, read};
+//! use stepscope_inspect::recording::opened::{Ask, Opened};
+//!
+//! let dump = "$timescale 1 us $end $var wire 1 ! STEP $end $enddefinitions $end #0 0! #10 1! #12 0! #20 1! #22 0!";
+//! let capture = read(std::io::Cursor::new(dump), &Limits::default(), &mut |_| true).capture;
+//! let opened = Opened::new(capture, &Ask::default()).expect("a map is proposed");
+//! assert_eq!((opened.map.as_str(), opened.clock_hz), ("STEP0=STEP", 1_000_000));
+//! assert_eq!(opened.report.channels[0].figures.steps, 2);
+//! assert_eq!(opened.report.channels[0].figures.greatest_rate_steps_s, Some(100_000.0));
+//! ```
+
+use super::{
+    events::Events,
+    figures::StepFigures,
+    report::{ChannelReport, LineReport, Report},
+    scenario::{self, Bytes, Made, Refused, Steps},
+    serial::{Heard, HeardByte},
+};
+use alloc::{
+    borrow::ToOwned,
+    format,
+    string::{String, ToString},
+    vec::Vec,
+};
+use core::{fmt, mem};
+use stepscope_capture::{
+    Capture, ChannelMap, Recorded, capture::TimedByte, channel_map::MapError, recorded::TooLate,
+    timebase::Timebase,
+};
+use stepscope_peripheral::{
+    config::limits::CLOCK_HZ,
+    signal::Record,
+    trace::{self, Step},
+    units::Instant,
+    wire::BitTimes,
+};
+use stepscope_scenario::{Scenario, SegmentLists, Source};
+
+/// Clock of bytes without times, and of steps that only rows of positions tell.
+const USUAL_CLOCK_HZ: u32 = 16_000_000;
+/// Bit rate of bytes with times, where there is but one.
+const USUAL_BAUD: u32 = 115_200;
+/// Most segments of a scenario that is shown in a form.
+const MAX_SHOWN: usize = 20_000;
+/// Most steps that positions may stand for: two rows can ask for any number.
+const MAX_MADE_STEPS: u64 = 10_000_000;
+/// Longest name that a scenario may have, in characters.
+const MAX_TITLE: usize = 120;
+
+/// What whoever opens a capture says of it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Ask {
+    /// The channel map; proposed without it.
+    pub map: Option<String>,
+    /// Clock that times become cycles of, in Hz; the file's own without it.
+    pub clock_hz: Option<u32>,
+    /// Samples a second, where the file does not tell.
+    pub sample_rate_hz: Option<u64>,
+    /// Bit rate of RX and TX; measured without it.
+    pub baud: Option<u32>,
+}
+
+/// Why a capture cannot be looked at as yet.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum OpenError {
+    /// The map is wrong.
+    Map(MapError),
+    /// Nothing says which channel is which signal; the names of its channels.
+    NoMap(Vec<String>),
+    /// A clock that there cannot be.
+    Clock(u32),
+    /// A rate of samples that there cannot be.
+    SampleRate,
+    /// Its samples have no length.
+    NoSampleRate,
+    /// Its bytes have no times, and no bit rate is given.
+    NoBaud,
+    /// A bit rate that there cannot be.
+    Baud,
+    /// A time has no cycle.
+    TooLate(TooLate),
+    /// Its positions stand for too many steps, or lead too far.
+    TooManySteps(u64),
+}
+
+impl fmt::Display for OpenError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Map(error) => write!(f, "the channel map: {error}"),
+            Self::NoMap(names) => {
+                let name = |index: usize| names.get(index).map_or("CH0", String::as_str);
+                write!(
+                    f,
+                    "nothing says which channel is which signal; give a map, such as STEP0={},DIR0={}; the channels are {}",
+                    name(0),
+                    name(1.min(names.len().saturating_sub(1))),
+                    names.join(", ")
+                )
+            }
+            Self::Clock(given) => {
+                write!(f, "the clock: {given} Hz; give {} to {} Hz", CLOCK_HZ.start(), CLOCK_HZ.end())
+            }
+            Self::SampleRate => f.write_str("the sample rate is 0; give the samples a second, in Hz"),
+            Self::NoSampleRate => f.write_str(
+                "the file does not say how long a sample, or a cycle, lasts; give the sample rate, in Hz",
+            ),
+            Self::NoBaud => f.write_str(
+                "the bytes have no times; give the bit rate, and they are taken for sent back to back",
+            ),
+            Self::Baud => f.write_str("the bit rate is 0; give the bits a second"),
+            Self::TooLate(error) => error.fmt(f),
+            Self::TooManySteps(most) => write!(
+                f,
+                "the positions stand for more than {most} steps, or lead further than 2^31 away; give a shorter table"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for OpenError {}
+
+/// A capture in cycles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Opened {
+    /// What the file is, in words.
+    pub format: String,
+    /// What it holds: changes, bytes or positions.
+    pub what: &'static str,
+    /// How many of them.
+    pub count: usize,
+    /// Names of its channels.
+    pub names: Vec<String>,
+    /// What was not read, and what has to be known of it, a sentence each.
+    pub notes: Vec<String>,
+    /// The map as text; empty where there are no levels.
+    pub map: String,
+    /// Clock of the cycles, in Hz.
+    pub clock_hz: u32,
+    /// What the clock does to times.
+    pub rounding: String,
+    /// Channels of the bus.
+    pub channels: u8,
+    /// Its levels; of positions and bytes that of reset alone.
+    pub records: Vec<Record>,
+    /// The last time of the file, in s.
+    pub end_s: f64,
+    /// What it comes to.
+    pub report: Report,
+    /// Steps that positions stand for.
+    made_steps: Option<Vec<Step>>,
+}
+
+impl Opened {
+    /// Opens a capture. Takes its memory over.
+    ///
+    /// # Errors
+    /// [`OpenError`].
+    pub fn new(mut capture: Capture, ask: &Ask) -> Result<Self, OpenError> {
+        if ask.baud == Some(0) {
+            return Err(OpenError::Baud);
+        }
+        let map = match &ask.map {
+            Some(text) => ChannelMap::parse(text, &capture).map_err(OpenError::Map)?,
+            None => ChannelMap::proposed(&capture),
+        };
+        let names: Vec<String> = capture.channels.iter().map(|channel| channel.name.clone()).collect();
+        if !capture.changes.is_empty() && map.entries().is_empty() {
+            return Err(OpenError::NoMap(names));
+        }
+        let what = match () {
+            () if !capture.bytes.is_empty() => "bytes",
+            () if !capture.positions.is_empty() => "positions",
+            () => "changes",
+        };
+        let mut opened = Self {
+            format: capture.format.to_string(),
+            what,
+            count: capture.len(),
+            names,
+            notes: mem::take(&mut capture.left_out),
+            map: map.to_text(&capture),
+            clock_hz: USUAL_CLOCK_HZ,
+            rounding: String::new(),
+            channels: map.bus_channels(),
+            records: Vec::new(),
+            end_s: 0.0,
+            report: Report { channels: Vec::new(), lines: Vec::new() },
+            made_steps: None,
+        };
+        let told =
+            ask.sample_rate_hz.map(|rate| Timebase::new(1, rate).ok_or(OpenError::SampleRate)).transpose()?;
+        let Some(base) = capture.timebase.or(told) else {
+            opened.back_to_back(&capture, ask)?;
+            return Ok(opened);
+        };
+        opened.clock_hz = clock(ask, base, !capture.positions.is_empty())?;
+        let (numerator, denominator) = base.parts();
+        opened.end_s = capture.end as f64 * numerator as f64 / denominator as f64;
+        opened.in_cycles(capture, &map, base, ask)?;
+        Ok(opened)
+    }
+
+    /// Puts the times into cycles, and looks at what comes of it.
+    fn in_cycles(
+        &mut self,
+        capture: Capture,
+        map: &ChannelMap,
+        base: Timebase,
+        ask: &Ask,
+    ) -> Result<(), OpenError> {
+        let clock_hz = self.clock_hz;
+        let cycle = |tick: u64| base.cycle(tick, clock_hz).unwrap_or(u64::MAX);
+        let mut report = None;
+        if !capture.bytes.is_empty() {
+            let heard = heard(&capture.bytes, cycle);
+            let baud = ask.baud.unwrap_or_else(|| likely_baud(&heard, clock_hz));
+            if ask.baud.is_none() {
+                self.notes.push(format!(
+                    "the file does not say the bit rate; by the times of its bytes {baud} baud is taken: give it"
+                ));
+            }
+            let line = LineReport::of_heard(heard, clock_hz, baud);
+            report = Some(Report { channels: Vec::new(), lines: Vec::from([line]) });
+        } else if !capture.positions.is_empty() {
+            let steps =
+                capture.steps(cycle, MAX_MADE_STEPS).ok_or(OpenError::TooManySteps(MAX_MADE_STEPS))?;
+            report = Some(Report::of_steps(&steps, clock_hz));
+            self.made_steps = Some(steps);
+        }
+        let recorded = Recorded::new(capture, map, base, clock_hz).map_err(OpenError::TooLate)?;
+        self.rounding = recorded.rounding.to_string();
+        self.records = recorded.records;
+        self.report = report.unwrap_or_else(|| Report::of(&self.records, clock_hz, self.channels, ask.baud));
+        for channel in &self.report.channels {
+            if self.has_levels() && !map.has(16 + u32::from(channel.channel)) {
+                let number = channel.channel;
+                self.notes.push(format!(
+                    "no channel is DIR{number}: all steps of channel {number} count to the right"
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// Bytes without times are taken for sent back to back; levels without times cannot be used.
+    fn back_to_back(&mut self, capture: &Capture, ask: &Ask) -> Result<(), OpenError> {
+        if capture.bytes.is_empty() {
+            return Err(OpenError::NoSampleRate);
+        }
+        let baud = ask.baud.ok_or(OpenError::NoBaud)?;
+        self.clock_hz = judged(ask.clock_hz.unwrap_or(USUAL_CLOCK_HZ))?;
+        let times = BitTimes::new(self.clock_hz, baud);
+        let bytes = (0..).zip(&capture.bytes);
+        let bytes = bytes
+            .map(|(index, timed)| HeardByte { start: Instant(1 + times.byte(index).0), byte: timed.byte });
+        let heard = Heard { bytes: bytes.collect(), framing_errors: Vec::new() };
+        self.end_s = times.byte(heard.bytes.len() as u64).0 as f64 / f64::from(self.clock_hz);
+        self.rounding = "the bytes have no times: taken for sent back to back".to_owned();
+        self.report.lines.push(LineReport::of_heard(heard, self.clock_hz, baud));
+        Ok(())
+    }
+
+    /// Puts all of it so much later, or earlier, that the first step of a channel, or, where nothing steps, the first byte,
+    /// comes at a time, in s. What would come before cycle 0 is what stands at it.
+    pub fn begin_at(&mut self, channel: u8, at_s: f64) {
+        let hz = f64::from(self.clock_hz);
+        let Some(first_s) = self.events(channel).first_s() else { return };
+        let by = libm::round((at_s - first_s) * hz) as i64;
+        let moved = |cycle: u64| cycle.saturating_add_signed(by);
+        for record in &mut self.records {
+            record.cycle = Instant(moved(record.cycle.0));
+        }
+        // Of those that are at cycle 0 now the last one stands there; the first is always there.
+        let before = self.records.partition_point(|record| record.cycle.0 == 0).saturating_sub(1);
+        self.records.drain(..before);
+        if let Some(record) = self.records.first_mut() {
+            record.cycle = Instant(0);
+        }
+        for step in self.made_steps.iter_mut().flatten() {
+            step.cycle = moved(step.cycle);
+        }
+        for line in &mut self.report.lines {
+            line.heard.bytes.iter_mut().for_each(|byte| byte.start = Instant(moved(byte.start.0)));
+        }
+        self.end_s += by as f64 / hz;
+        let channels = self.report.channels.iter().map(|channel| channel.channel);
+        let figures = |channel| {
+            let figures = StepFigures::of(self.steps_of(channel), self.clock_hz)?;
+            Some(ChannelReport { channel, figures })
+        };
+        self.report.channels = channels.filter_map(figures).collect();
+    }
+
+    /// The scenario that it is shown with: [`Self::scenario`], or, where there is none, one that has its clock and its
+    /// channels and does nothing. Its run is as long as the recording.
+    #[must_use]
+    pub fn shown_scenario(&self, file: &str, steps: bool) -> Scenario {
+        let made = self.scenario(file, steps, 0.0, None).ok();
+        let made = made.filter(|made| made.clock_hz == self.clock_hz && entries(made) <= MAX_SHOWN);
+        let mut scenario = made.unwrap_or_else(|| {
+            let mut scenario = Scenario { clock_hz: self.clock_hz, ..Scenario::default() };
+            scenario.bus.channels = self.channels;
+            scenario.source = Source::Segments(SegmentLists::default());
+            scenario.title = title(file);
+            scenario.note = format!(
+                "Recorded in {file}. A scenario that gives it again would be too long to be edited here; the command makes one (stepscope capture --scenario)."
+            );
+            scenario
+        });
+        let last = self.records.last().map_or(0, |record| record.cycle.0);
+        let end = libm::ceil(self.end_s * f64::from(self.clock_hz)) as u64;
+        // The last byte of a line is not over where the line changes last.
+        let heard = self.report.rx().and_then(|line| {
+            let bit_cycles = BitTimes::new(self.clock_hz, line.baud).bit(1).0;
+            Some(scenario::end_of(&line.heard, bit_cycles)?.0 + bit_cycles)
+        });
+        scenario.run_cycles = Some(end.max(last).max(heard.unwrap_or(0)) + 1);
+        scenario
+    }
+
+    /// The steps of a channel.
+    #[must_use]
+    pub fn steps_of(&self, channel: u8) -> Vec<Step> {
+        match &self.made_steps {
+            Some(steps) if channel == 0 => steps.clone(),
+            Some(_) => Vec::new(),
+            None => trace::steps(&self.records, channel),
+        }
+    }
+
+    /// What it is compared by: the steps of a channel, or, where no channel steps, the bytes of RX.
+    #[must_use]
+    pub fn events(&self, channel: u8) -> Events {
+        match self.report.rx().filter(|_| self.report.channels.is_empty()) {
+            Some(line) => Events::of_bytes(&line.heard, self.clock_hz),
+            None => Events::of_steps(self.steps_of(channel), self.clock_hz),
+        }
+    }
+
+    /// Whether levels were recorded: else there are no pulses to look at, only what they stand for.
+    #[must_use]
+    pub fn has_levels(&self) -> bool {
+        self.what == "changes"
+    }
+
+    /// The scenario that gives it again: its bytes, where RX has some and not `steps` are asked for, else its steps, none
+    /// further than `error_us` from where it was recorded. Bytes go to the controllers of `base`. `file` is the file's name.
+    ///
+    /// # Errors
+    /// [`Refused`].
+    pub fn scenario(
+        &self,
+        file: &str,
+        steps: bool,
+        error_us: f64,
+        base: Option<&Scenario>,
+    ) -> Result<Scenario, Refused> {
+        let (clock_hz, channels) = (self.clock_hz, self.channels);
+        let within_cycles = (error_us * 1e-6 * f64::from(clock_hz)) as u64;
+        let asked = Steps { clock_hz, channels, within_cycles };
+        let rx = self.report.rx().filter(|line| !line.heard.bytes.is_empty() && !steps);
+        let made: Made = match (rx, &self.made_steps) {
+            (Some(line), _) => {
+                let asked = Bytes { clock_hz, baud: line.baud, guess: line.guess, channels };
+                scenario::of_bytes(&line.heard, &asked, base)
+            }
+            (None, Some(steps)) => scenario::of_step_times(core::slice::from_ref(steps), &asked),
+            (None, None) => scenario::of_steps(&self.records, &asked),
+        }?;
+        let mut scenario = Scenario { note: scenario::note(file, &made), ..made.scenario };
+        scenario.title = title(file);
+        Ok(scenario)
+    }
+}
+
+/// Segments of a scenario, or bytes that it sends one after the other.
+fn entries(scenario: &Scenario) -> usize {
+    match &scenario.source {
+        Source::Segments(lists) => lists.channels.iter().map(|list| list.segments.len()).sum(),
+        // A form has some fields for each.
+        Source::Line(script) => script.sends.len() * 8,
+        Source::Motion(_) | Source::Packets(_) => 0,
+    }
+}
+
+fn title(file: &str) -> String {
+    format!("recorded: {file}").chars().take(MAX_TITLE).collect()
+}
+
+/// The clock that was asked for, or the file's own; of positions a finer one of which its times are whole cycles, too, since
+/// their steps stand between the rows.
+fn clock(ask: &Ask, base: Timebase, positions: bool) -> Result<u32, OpenError> {
+    let most = *CLOCK_HZ.end() as u32;
+    // Of a file that counts in more than a cycle of the fastest clock, the fastest; in no whole part of a second, a
+    // millionth.
+    let own = || {
+        let (numerator, denominator) = base.parts();
+        let fine = denominator / numerator >= u64::from(most);
+        if positions && base.is_exact(USUAL_CLOCK_HZ) {
+            return USUAL_CLOCK_HZ;
+        }
+        base.clock_hz().unwrap_or(if fine { most } else { 1_000_000 }).clamp(*CLOCK_HZ.start() as u32, most)
+    };
+    judged(ask.clock_hz.unwrap_or_else(own))
+}
+
+fn judged(clock_hz: u32) -> Result<u32, OpenError> {
+    if CLOCK_HZ.contains(&clock_hz.into()) { Ok(clock_hz) } else { Err(OpenError::Clock(clock_hz)) }
+}
+
+fn heard(bytes: &[TimedByte], cycle: impl Fn(u64) -> u64) -> Heard {
+    let mut heard = Heard::default();
+    for byte in bytes {
+        let start = Instant(cycle(byte.tick));
+        if byte.framing_error {
+            heard.framing_errors.push(start);
+        } else {
+            heard.bytes.push(HeardByte { start, byte: byte.byte });
+        }
+    }
+    heard
+}
+
+/// The rate of bytes whose times are known: the closest two are back to back at most. Bytes that share a time have that of
+/// their line of text; then it is the usual rate, or as much as they need.
+fn likely_baud(heard: &Heard, clock_hz: u32) -> u32 {
+    let (mut needed, mut shared, mut count) = (0.0_f64, false, 1_u32);
+    for (before, byte) in heard.bytes.iter().zip(heard.bytes.iter().skip(1)) {
+        match byte.start.0.saturating_sub(before.start.0) {
+            0 => (count, shared) = (count.saturating_add(1), true),
+            cycles => {
+                let bits = 10.0 * f64::from(count);
+                needed = libm::fmax(needed, bits * f64::from(clock_hz) / cycles as f64);
+                count = 1;
+            }
+        }
+    }
+    let needed = libm::round(needed) as u32;
+    if shared || needed == 0 { needed.max(USUAL_BAUD) } else { needed }
+}

@@ -1,0 +1,358 @@
+//! The scenario that gives a recording again: its steps as lists of segments, or its bytes as a line script.
+//!
+//! Steps come in their very cycles, or no further from them than is asked for; how wide a pulse is and when DIR changes are
+//! the bus' own, so those are taken from the recording as far as they are the same for all pulses. Bytes begin within half a
+//! bit of where they were heard: those that follow each other at the line's rate are one send.
+//!
+//! ```
+//! use stepscope_inspect::recording::scenario::{Steps, of_steps};
+//! use stepscope_peripheral::trace::{Recording, steps};
+//! use stepscope_sim::Experiment;
+//!
+//! // What a run made, made again by segments: each step in its cycle.
+//! let mut recording = Recording::default();
+//! Experiment::from_json("{}").expect("the default motion").run(&mut recording);
+//! let made = of_steps(&recording.trace, &Steps { clock_hz: 16_000_000, channels: 1, within_cycles: 0 }).expect("steps");
+//! let mut again = Recording::default();
+//! Experiment::new(&made.scenario).expect("no problems").run(&mut again);
+//! let cycles = |recording: &Recording| steps(&recording.trace, 0).iter().map(|step| step.cycle).collect::<Vec<_>>();
+//! assert_eq!(cycles(&again), cycles(&recording));
+//! ```
+
+use super::serial::{Guess, Heard};
+use crate::timing::{Rule, TimingCheck};
+use alloc::{format, string::String, vec::Vec};
+use core::fmt;
+use stepscope_motion::{
+    Cause, ScheduledStep,
+    quantise::{EntryFormat, Form, MAX_TOLERANCE, Tolerance, stored_steps_quickly},
+};
+use stepscope_peripheral::{
+    config::{Bus, Protocol, SerialLine, limits::PULSE_WIDTH_CYCLES},
+    segment::{PulseTimes, Segment, SegmentList},
+    signal::Record,
+    signal::Sink,
+    trace::{Step, steps},
+    units::{Cycles, Instant},
+    wire::bit_times::{BYTE_BITS, BitTimes},
+};
+use stepscope_scenario::{
+    ChannelSegments, Hex, LineScript, Scenario, ScriptedSend, SegmentLists, Source, TimingRules,
+};
+use stepscope_sim::replayed;
+
+/// The start of every list: nothing begins before (DESIGN A3).
+const START: u64 = 1;
+/// Cycles between a list's start and its first step beyond what the first pulse needs.
+const MARGIN: u64 = 1;
+/// Widest pulse that is taken over, in cycles: one that stands for most of an interval would leave no room for DIR.
+const WIDEST_PART: u64 = 2;
+
+/// What is made of steps.
+#[derive(Clone, Copy, Debug)]
+pub struct Steps {
+    /// Cycles a second.
+    pub clock_hz: u32,
+    /// Channels of the bus.
+    pub channels: u8,
+    /// How far a step may be from its cycle: 0 for not at all; more makes fewer segments.
+    pub within_cycles: u64,
+}
+
+/// A scenario of a recording.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Made {
+    /// The scenario.
+    pub scenario: Scenario,
+    /// How many cycles later than recorded everything comes: a first step that has no time for its pulse is put off.
+    pub later_cycles: u64,
+    /// The furthest that a step, or a byte, is from its cycle beside that.
+    pub greatest_error_cycles: u64,
+    /// Segments, or sends.
+    pub entries: usize,
+}
+
+/// Why there is no scenario.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Refused {
+    /// No channel steps.
+    NoSteps,
+    /// Nothing was heard on the line.
+    NoBytes,
+    /// The steps of a channel cannot be kept.
+    Channel(u8, Cause),
+    /// A clock of which a bit has too few cycles: the clock, the rate.
+    FewCycles(u32, u32),
+}
+
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoSteps => f.write_str("no channel steps; map a channel to STEP0"),
+            Self::NoBytes => f.write_str("no byte was heard; map a channel to RX, or give another bit rate"),
+            Self::Channel(channel, cause) => write!(f, "channel {channel}: {cause}"),
+            Self::FewCycles(clock_hz, baud) => write!(
+                f,
+                "a bit of {baud} baud has less than 11 cycles of {clock_hz} Hz; take a clock of at least {} Hz",
+                11 * u64::from(*baud)
+            ),
+        }
+    }
+}
+
+impl core::error::Error for Refused {}
+
+/// The steps of all channels as lists of segments.
+///
+/// # Errors
+/// [`Refused`].
+pub fn of_steps(records: &[Record], asked: &Steps) -> Result<Made, Refused> {
+    let all: Vec<Vec<Step>> = (0..asked.channels).map(|channel| steps(records, channel)).collect();
+    of_list(&all, asked, Some(records))
+}
+
+/// Steps that are known by their times alone, those of channel 0 first; pulses are half of the shortest interval wide, and
+/// at most as wide as a scenario's are by default.
+///
+/// # Errors
+/// [`Refused`].
+pub fn of_step_times(all: &[Vec<Step>], asked: &Steps) -> Result<Made, Refused> {
+    of_list(all, asked, None)
+}
+
+fn of_list(all: &[Vec<Step>], asked: &Steps, records: Option<&[Record]>) -> Result<Made, Refused> {
+    let first =
+        all.iter().filter_map(|steps| steps.first()).map(|step| step.cycle).min().ok_or(Refused::NoSteps)?;
+    let pulse = pulse_times(records, all, asked.clock_hz);
+    let least = pulse.width.0 + (pulse.hold.0 + pulse.setup.0).max(1) + MARGIN;
+    let later_cycles = (START + least).saturating_sub(first);
+    let form = match asked.within_cycles {
+        0 => Form::Exact,
+        within => Form::Compressed(Tolerance::of(Cycles(within.min(MAX_TOLERANCE.0)))),
+    };
+    let (mut channels, mut greatest, mut entries) = (Vec::new(), 0, 0);
+    for (channel, steps) in (0..).zip(all) {
+        let mut list = ChannelSegments { start_cycle: START, segments: Vec::new() };
+        if !steps.is_empty() {
+            let scheduled: Vec<ScheduledStep> = steps
+                .iter()
+                .enumerate()
+                .map(|(index, step)| ScheduledStep {
+                    cycle: step.cycle + later_cycles - START,
+                    right: Step::direction(steps, index) > 0,
+                })
+                .collect();
+            let stored = stored_steps_quickly(&scheduled, form, EntryFormat::Q16, pulse)
+                .map_err(|cause| Refused::Channel(channel, cause))?;
+            greatest = greatest.max(stored.error.greatest);
+            list = channel_list(&stored.list);
+        }
+        entries += list.segments.len();
+        channels.push(list);
+    }
+    let mut scenario = Scenario { clock_hz: asked.clock_hz, ..Scenario::default() };
+    scenario.bus.channels = asked.channels;
+    let narrow = |cycles: Cycles| u32::try_from(cycles.0).unwrap_or(u32::MAX);
+    scenario.bus.pulse_width_cycles = narrow(pulse.width);
+    scenario.bus.dir_setup_cycles = narrow(pulse.setup);
+    scenario.bus.dir_hold_cycles = narrow(pulse.hold);
+    scenario.source = Source::Segments(SegmentLists { channels });
+    scenario.analysis.axis = 0;
+    Ok(Made { scenario, later_cycles, greatest_error_cycles: greatest, entries })
+}
+
+fn channel_list(list: &SegmentList) -> ChannelSegments {
+    use stepscope_scenario::{DwellSegment, Segment as Written, StepSegment};
+    let segment = |each: &Segment| match *each {
+        Segment::Steps { count, interval, add, right } => {
+            Written::Steps(StepSegment { count, interval_q16: interval, add_q16: add, dir: right.into() })
+        }
+        Segment::Dwell(length_q16) => Written::Dwell(DwellSegment { length_q16 }),
+    };
+    ChannelSegments { start_cycle: list.start.0, segments: list.segments.iter().map(segment).collect() }
+}
+
+/// Width and set-up of the pulses that all of them have room for: the shortest that were recorded.
+fn pulse_times(records: Option<&[Record]>, all: &[Vec<Step>], clock_hz: u32) -> PulseTimes {
+    let mut check = TimingCheck::new(&TimingRules::default(), clock_hz, 0);
+    records.into_iter().flatten().for_each(|record| check.record(*record));
+    let least = |rule: Rule| {
+        let found = check.results().iter().find(|result| result.rule == rule)?.least?;
+        Some(found.measured.0)
+    };
+    let interval = all
+        .iter()
+        .flat_map(|steps| steps.iter().zip(steps.iter().skip(1)))
+        .map(|(before, step)| step.cycle - before.cycle)
+        .min()
+        .unwrap_or(u64::MAX);
+    let width = least(Rule::StepHigh)
+        .unwrap_or_else(|| Bus::default().pulse_width_cycles.into())
+        .min(interval / WIDEST_PART)
+        .clamp(*PULSE_WIDTH_CYCLES.start(), *PULSE_WIDTH_CYCLES.end());
+    // DIR changes where a segment begins, long before most of its steps: asking for more would only refuse some.
+    let setup =
+        least(Rule::DirSetup).unwrap_or(0).min(width).min(interval.saturating_sub(width) / WIDEST_PART);
+    PulseTimes { width: Cycles(width), setup: Cycles(setup), hold: Cycles(0) }
+}
+
+/// How the bytes of a line are sent again.
+#[derive(Clone, Copy, Debug)]
+pub struct Bytes {
+    /// Cycles a second.
+    pub clock_hz: u32,
+    /// Bits a second.
+    pub baud: u32,
+    /// What the bytes are.
+    pub guess: Guess,
+    /// Channels of the bus, where the bytes do not say.
+    pub channels: u8,
+}
+
+/// The bytes of a line as a line script: sent to the controllers of `base`, by its clock, or, without it, to one that the
+/// bytes themselves speak of.
+///
+/// # Errors
+/// [`Refused`].
+pub fn of_bytes(heard: &Heard, asked: &Bytes, base: Option<&Scenario>) -> Result<Made, Refused> {
+    let Bytes { clock_hz, baud, .. } = *asked;
+    let first = heard.bytes.first().ok_or(Refused::NoBytes)?;
+    let mut scenario = base.map_or_else(|| spoken_of(asked), Scenario::clone);
+    let own_hz = scenario.clock_hz;
+    if u64::from(own_hz) < 11 * u64::from(baud) {
+        return Err(Refused::FewCycles(own_hz, baud));
+    }
+    let times = BitTimes::new(own_hz, baud);
+    let half_bit = times.bit(1).0 / 2;
+    let cycle = |at: Instant| {
+        let (clock_hz, own_hz) = (u128::from(clock_hz.max(1)), u128::from(own_hz));
+        u64::try_from((2 * u128::from(at.0) * own_hz + clock_hz) / (2 * clock_hz)).unwrap_or(u64::MAX)
+    };
+    let later_cycles = START.saturating_sub(cycle(first.start));
+    let mut sends: Vec<ScriptedSend> = Vec::new();
+    let mut greatest = 0;
+    for byte in &heard.bytes {
+        let at = cycle(byte.start) + later_cycles;
+        let next = sends.last().map(|send| send.start_cycle + times.byte(send.bytes.0.len() as u64).0);
+        // What comes before the byte before it is over, because a clock is fast, comes right after it.
+        match (sends.last_mut(), next) {
+            (Some(send), Some(next)) if at <= next + half_bit => {
+                greatest = greatest.max(at.abs_diff(next));
+                send.bytes.0.push(byte.byte);
+            }
+            _ => {
+                sends.push(ScriptedSend { start_cycle: at, bytes: Hex(Vec::from([byte.byte])), frame: None });
+            }
+        }
+    }
+    scenario.line.baud = baud;
+    let entries = sends.len();
+    let scenario = replayed(scenario, LineScript { sends });
+    Ok(Made { scenario, later_cycles, greatest_error_cycles: greatest, entries })
+}
+
+/// The scenario that bytes speak of, with the clock that all else of it is made for, where that is fast enough.
+fn spoken_of(asked: &Bytes) -> Scenario {
+    let mut scenario = Scenario::default();
+    if u64::from(scenario.clock_hz) < 11 * u64::from(asked.baud) {
+        scenario.clock_hz = asked.clock_hz;
+    }
+    let defaults = SerialLine::default();
+    let (protocol, address, own) = match asked.guess {
+        Guess::Framed { address, channels, .. } => (Protocol::Framed, Some(address), channels),
+        Guess::Raw { length, .. } => (Protocol::Raw, None, Some(length)),
+        Guess::Other => (defaults.protocol, None, None),
+    };
+    scenario.bus.channels = own.unwrap_or(asked.channels).clamp(1, 16);
+    scenario.line.protocol = protocol;
+    scenario.line.address = address;
+    scenario
+}
+
+/// The sentence that says where a scenario comes from.
+#[must_use]
+pub fn note(file: &str, made: &Made) -> String {
+    let error = match made.greatest_error_cycles {
+        0 => "each in its very cycle".into(),
+        cycles => format!("none more than {cycles} cycles off"),
+    };
+    let later = match made.later_cycles {
+        0 => String::new(),
+        cycles => format!(", all {cycles} cycles later than recorded"),
+    };
+    match made.scenario.source {
+        Source::Line(_) => format!("Bytes recorded in {file}: {} sends, {error}{later}.", made.entries),
+        _ => format!("Steps recorded in {file}: {} segments, {error}{later}.", made.entries),
+    }
+}
+
+/// When a line's last byte is over.
+#[must_use]
+pub fn end_of(heard: &Heard, bit_cycles: u64) -> Option<Instant> {
+    heard.bytes.last().map(|byte| Instant(byte.start.0 + BYTE_BITS * bit_cycles))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recording::serial::{guess, hear};
+    use stepscope_peripheral::{signal::Levels, trace::Recording};
+    use stepscope_sim::Experiment;
+
+    fn recorded(json: &str) -> Recording {
+        let mut recording = Recording::default();
+        Experiment::from_json(json).expect("no problems").run(&mut recording);
+        recording
+    }
+
+    #[test]
+    fn two_axes_that_turn_come_again_in_their_cycles_also_where_the_first_step_is_early() {
+        let motion = r#"{"bus":{"channels":2},"source":{"motion":{"engine":"segments","axes":[
+            {"moves":[{"cosine":{"distance":{"steps":400}}},{"dwell":{}},{"cosine":{"distance":{"steps":-100}}}]},
+            {"moves":[{"constant":{"distance":{"steps":-300},"speed":{"steps_s":5000}}}]}]}}}"#;
+        let mut trace = recorded(motion).trace;
+        for early in [0, 1700] {
+            let first = steps(&trace, 1)[0].cycle;
+            let by = first.saturating_sub(2) * u64::from(early > 0);
+            for record in trace.iter_mut().skip(1) {
+                record.cycle = Instant(record.cycle.0.saturating_sub(by).max(1));
+            }
+            let asked = Steps { clock_hz: 16_000_000, channels: 2, within_cycles: 0 };
+            let made = of_steps(&trace, &asked).expect("steps");
+            assert_eq!(made.greatest_error_cycles, 0);
+            let mut again = Recording::default();
+            Experiment::new(&made.scenario).expect("no problems").run(&mut again);
+            for channel in 0..2 {
+                let shifted = |step: &Step| Step { cycle: step.cycle + made.later_cycles, ..*step };
+                let wanted: Vec<Step> = steps(&trace, channel).iter().map(shifted).collect();
+                assert_eq!(steps(&again.trace, channel), wanted, "channel {channel}, {by} earlier");
+            }
+            assert_eq!(made.later_cycles > 0, early > 0);
+        }
+    }
+
+    #[test]
+    fn bytes_that_were_heard_make_the_same_run_again() {
+        for json in [
+            r#"{"line":{"protocol":"framed","address":3}}"#,
+            r#"{"bus":{"channels":2},"source":{"motion":{"axes":[{},{}]}}}"#,
+        ] {
+            let recording = recorded(json);
+            let clock_hz = 16_000_000;
+            let heard = hear(&recording.trace, Levels::RX, clock_hz, 115_200);
+            let asked = Bytes { clock_hz, baud: 115_200, guess: guess(&heard.bytes, 139), channels: 1 };
+            let made = of_bytes(&heard, &asked, None).expect("bytes");
+            let mut again = Recording::default();
+            Experiment::new(&made.scenario).expect("no problems").run(&mut again);
+            assert_eq!(steps(&again.trace, 0), steps(&recording.trace, 0), "{json}");
+            assert!(made.greatest_error_cycles <= 1, "{made:?}");
+        }
+        let error = of_bytes(
+            &Heard::default(),
+            &Bytes { clock_hz: 1, baud: 1, guess: Guess::Other, channels: 1 },
+            None,
+        );
+        assert_eq!(error, Err(Refused::NoBytes));
+    }
+}
