@@ -38,6 +38,12 @@ pub(crate) enum Failure {
     Axis(PathBuf, usize, usize),
     /// A table cannot be used, and why.
     Table(PathBuf, String),
+    /// A recording cannot be used, and why.
+    Recording(PathBuf, String),
+    /// A recording could be read in part only, and why.
+    PartOnly(PathBuf, String),
+    /// A recording is not what the model makes.
+    NotTheModel(String),
     /// The timing check found this many violations, and none was to be.
     Violations(u64),
     /// So many seeds of a fault sweep with the framed protocol went wrong, and none was to.
@@ -65,7 +71,7 @@ impl Failure {
         match self {
             // What a shell says of a command that its closed pipe has ended.
             _ if self.is_closed_pipe() => ExitCode::from(141),
-            Self::File(..) => ExitCode::from(1),
+            Self::File(..) | Self::PartOnly(..) => ExitCode::from(1),
             Self::Output(..)
             | Self::Timescale(_)
             | Self::TooLong(..)
@@ -78,8 +84,11 @@ impl Failure {
             | Self::NoDriver(_)
             | Self::Controller(..)
             | Self::Axis(..)
-            | Self::Table(..) => ExitCode::from(2),
-            Self::OtherRun(_) | Self::Violations(_) | Self::WrongSteps(_) => ExitCode::from(3),
+            | Self::Table(..)
+            | Self::Recording(..) => ExitCode::from(2),
+            Self::OtherRun(_) | Self::NotTheModel(_) | Self::Violations(_) | Self::WrongSteps(_) => {
+                ExitCode::from(3)
+            }
         }
     }
 }
@@ -133,7 +142,11 @@ impl fmt::Display for Failure {
                     path.display()
                 )
             }
-            Self::Table(path, what) => write!(f, "{}: {what}", path.display()),
+            Self::Table(path, what) | Self::Recording(path, what) => write!(f, "{}: {what}", path.display()),
+            Self::PartOnly(path, why) => {
+                write!(f, "{}: not read to its end: {why}; what stands above is of what could be read", path.display())
+            }
+            Self::NotTheModel(how) => f.write_str(how),
             Self::Violations(count) => {
                 let s = if *count == 1 { "" } else { "s" };
                 write!(f, "{count} violation{s} of the driver's timing")

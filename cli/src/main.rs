@@ -3,6 +3,7 @@
 //! Results go to standard output, errors to standard error; [`EXIT_CODES`] says how a command ends.
 
 mod calibrate;
+mod capture;
 mod failure;
 mod faults;
 mod files;
@@ -37,10 +38,10 @@ use std::{
 const EXIT_CODES: &str = "\
 Exit codes:
   0    done
-  1    a file could not be read or written
-  2    the scenario, the link or the command line is wrong
+  1    a file could not be read or written, or a recording not to its end
+  2    the scenario, the link, the recording or the command line is wrong
   3    something was to hold and does not: --strict found violations, faults found wrong steps on a framed line,
-       open --verify found another run than the link's
+       open --verify found another run than the link's, capture --against another than the model's
   130  ended by Ctrl-C; no file was changed
   141  standard output was closed, as behind | head";
 
@@ -77,6 +78,9 @@ enum Command {
     Limits(limits::LimitsArguments),
     /// Maps how far each motor of a plant swings at each rate, and where it loses steps (CSV).
     Resonance(limits::ResonanceArguments),
+    /// Opens a recording (a dump, a logic analyser's file, bytes, positions) and tells what its steps and bytes come to,
+    /// whether a driver could follow, how it stands to a scenario's run; or makes a scenario of it.
+    Capture(capture::Arguments),
     /// Steps a millimetre by least squares, from measured lengths and the steps that made them.
     Calibrate(calibrate::Arguments),
     /// Looks for the segments that make a sine with least distortion.
@@ -140,6 +144,7 @@ fn main() -> ExitCode {
         Command::Settling(arguments) => limits::settling(&arguments),
         Command::Limits(arguments) => limits::limits(&arguments),
         Command::Resonance(arguments) => limits::resonance(&arguments),
+        Command::Capture(arguments) => capture::capture(&arguments),
         Command::Calibrate(arguments) => calibrate::calibrate(&arguments),
         Command::Sine(command) => sine::sine(&command),
         Command::Points(arguments) => points::points(&arguments),

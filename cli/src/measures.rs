@@ -1,46 +1,23 @@
 //! `stepscope measures`: how good an axis of a run is, in numbers.
 
+mod arguments;
 mod distortion;
 mod table;
+mod unplanned;
 
 use crate::{failure::Failure, scenarios};
-use clap::{Args, ValueEnum};
+pub(crate) use arguments::Arguments;
+use arguments::Written;
 use distortion::Distortion;
-use std::{
-    io::{self, Write},
-    path::PathBuf,
-};
+use std::io::{self, Write};
 use stepscope_core::{
     inspect::{
         actual_motion::Pulses,
         measures::{Measures, within_bounds},
     },
     peripheral::trace::{Recording, steps},
-    scenario::{Problem, Source, ValueError},
+    scenario::{Problem, Source},
 };
-
-/// What `stepscope measures` takes.
-#[derive(Args)]
-pub(crate) struct Arguments {
-    /// The scenario, whose source is a motion: a JSON file, or a preset's name; `-` reads standard input.
-    scenario: PathBuf,
-    /// The axis, from 0; that of the scenario's `analysis` without it.
-    #[arg(long, value_name = "K")]
-    axis: Option<usize>,
-    /// How it is written: for the eye, as one JSON object, or as a table of one figure a row.
-    #[arg(long, value_enum, default_value = "text")]
-    format: Written,
-    /// Write all figures as JSON: one object of tables, a figure a row (docs/command.md).
-    #[arg(long, conflicts_with = "format")]
-    json: bool,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Written {
-    Text,
-    Json,
-    Csv,
-}
 
 /// Runs the scenario and writes the measures.
 pub(crate) fn measures(arguments: &Arguments) -> Result<(), Failure> {
@@ -48,9 +25,7 @@ pub(crate) fn measures(arguments: &Arguments) -> Result<(), Failure> {
     let wrong = |problems| Failure::Scenario(path.clone(), problems);
     let (scenario, experiment) = scenarios::judged(path)?;
     let Source::Motion(motion) = &scenario.source else {
-        let detail =
-            "no motion, so there is no curve to measure the pulses by; give a scenario with source.motion";
-        return Err(wrong(vec![Problem::new("source", ValueError::Conflict { detail })]));
+        return unplanned::measures(arguments, &scenario, &experiment);
     };
     let axis = arguments.axis.unwrap_or(scenario.analysis.axis.into());
     let plan = experiment.plans().get(axis);
@@ -63,13 +38,13 @@ pub(crate) fn measures(arguments: &Arguments) -> Result<(), Failure> {
     // There are at most 16 axes.
     let channel = axis as u8;
     let steps = steps(&recording.trace, channel);
-    let run = Pulses {
+    let run = Pulses::of_run(
         channel,
-        steps: &steps,
-        log: &recording.packets,
-        segments: experiment.segments().and_then(|lists| lists.lists().get(axis)),
-        config: experiment.config(),
-    };
+        &steps,
+        &recording.packets,
+        experiment.segments().and_then(|lists| lists.lists().get(axis)),
+        experiment.config(),
+    );
     let found = Measures::of(plan, &run, motion.axes.get(axis));
     let distortion = Distortion::of(plan, &run, &scenario.analysis);
     let mut out = io::stdout().lock();

@@ -9,6 +9,7 @@ use std::{
     rc::Rc,
 };
 use stepscope_core::{
+    capture::samples::sample,
     scenario::{
         MAX_TEXT_BYTES, Problem, Scenario, link,
         presets::{PLANT_PRESETS, PRESETS, Preset},
@@ -36,8 +37,11 @@ pub(crate) fn judged(path: &Path) -> Result<(Rc<Scenario>, Rc<Experiment>), Fail
 fn scenario_text(path: &Path) -> Result<String, Failure> {
     match text(path) {
         Err(Failure::File(path, error)) if error.kind() == io::ErrorKind::NotFound => {
-            let preset = path.to_str().and_then(preset);
-            preset.map(|preset| preset.json.to_owned()).ok_or(Failure::File(path, error))
+            let named = path.to_str().and_then(|id| {
+                let recorded = || sample(id).map(|sample| sample.scenario);
+                preset(id).map(|preset| preset.json).or_else(recorded)
+            });
+            named.map(str::to_owned).ok_or(Failure::File(path, error))
         }
         read => read,
     }

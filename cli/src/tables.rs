@@ -27,15 +27,20 @@ use stepscope_core::{
         },
         round_half_up,
     },
-    peripheral::{config::Config, segment::PulseTimes},
+    peripheral::{
+        config::Config,
+        segment::PulseTimes,
+        trace::{Recording, Step, steps},
+    },
     scenario::{Motion, Problem, Scenario, Source as ScenarioSource, ValueError, of_config, of_motion},
+    sim::Experiment,
 };
 
 /// What `stepscope tables` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// The scenario, whose source is a motion: a JSON file, or a preset's name; `-` reads standard input. With --steps it
-    /// gives clock and pulses, and may be left out: 16 MHz and the default bus.
+    /// The scenario: a JSON file, or a preset's name; `-` reads standard input. Where its source is no motion, the steps
+    /// that its run makes are taken. With --steps it gives clock and pulses, and may be left out: 16 MHz and the default bus.
     #[arg(required_unless_present = "steps")]
     scenario: Option<PathBuf>,
     /// Tables of these steps instead, as axis 0: CSV with a row for each step, its time from the start in a column cycle,
@@ -199,8 +204,13 @@ impl Axes {
     fn new(arguments: &Arguments) -> Result<Self, Failure> {
         let scenario = arguments.scenario.as_deref().map(scenarios::read).transpose()?.unwrap_or_default();
         let path = arguments.scenario.clone().unwrap_or_else(|| PathBuf::from("the default scenario"));
-        let Scenario { title, clock_hz, bus, line, source, .. } = scenario;
         let wrong = |problems| Failure::Scenario(path.clone(), problems);
+        // Without a motion the steps are those of its run.
+        let made = match (&scenario.source, &arguments.steps) {
+            (ScenarioSource::Motion(_), _) | (_, Some(_)) => None,
+            _ => Some(made(&scenario).map_err(wrong)?),
+        };
+        let Scenario { title, clock_hz, bus, line, source, .. } = scenario;
         let config = Config::of_segments(clock_hz, &bus, &line.serial()).map_err(of_config).map_err(wrong)?;
         let cycles = tolerance_cycles(arguments.error_us, clock_hz);
         let (interval_part, search) = (arguments.interval_part, arguments.search);
@@ -213,13 +223,16 @@ impl Axes {
             let axes = vec![Steps::Listed(steps)];
             return Ok(Self { path: list.clone(), title, clock_hz, pulse, axes, tolerance, search });
         }
-        let ScenarioSource::Motion(Motion { axes, .. }) = &source else {
-            let detail = "no motion, so there is nothing to make tables of; give a scenario with source.motion, or --steps";
-            return Err(wrong(vec![Problem::new("source", ValueError::Conflict { detail })]));
+        if let Some(made) = made {
+            let axes = made.into_iter().map(Steps::Listed).collect();
+            return Ok(Self { path, title, clock_hz, pulse, axes, tolerance, search });
+        }
+        let axes = match &source {
+            ScenarioSource::Motion(Motion { axes, .. }) => axes.as_slice(),
+            _ => &[],
         };
-        let plans = plan_lists([("source.motion.axes".to_owned(), axes.as_slice())])
-            .map_err(of_motion)
-            .map_err(wrong)?;
+        let plans =
+            plan_lists([("source.motion.axes".to_owned(), axes)]).map_err(of_motion).map_err(wrong)?;
         let axes = plans.into_iter().flatten().map(Steps::Planned).collect();
         Ok(Self { path, title, clock_hz, pulse, axes, tolerance, search })
     }
@@ -246,6 +259,31 @@ impl Axes {
         let problem = Problem::new(format!("source.motion.axes[{axis}]"), cause);
         Failure::Scenario(self.path.clone(), vec![problem])
     }
+}
+
+/// The steps that a scenario's run makes, of each channel that steps up to the last of them, from cycle 1 on.
+fn made(scenario: &Scenario) -> Result<Vec<Vec<ScheduledStep>>, Vec<Problem>> {
+    let experiment = Experiment::new(scenario)?;
+    let mut recording = Recording::default();
+    experiment.run(&mut recording);
+    let of = |channel| -> Vec<ScheduledStep> {
+        let steps = steps(&recording.trace, channel);
+        let scheduled = |(index, step): (usize, &Step)| ScheduledStep {
+            cycle: step.cycle - 1,
+            right: Step::direction(&steps, index) > 0,
+        };
+        steps.iter().enumerate().map(scheduled).collect()
+    };
+    let mut all: Vec<_> = (0..experiment.config().channels()).map(of).collect();
+    while all.last().is_some_and(Vec::is_empty) {
+        all.pop();
+    }
+    if all.is_empty() {
+        let detail =
+            "nothing steps, so there is nothing to make tables of; give a scenario that moves, or --steps";
+        return Err(vec![Problem::new("source", ValueError::Conflict { detail })]);
+    }
+    Ok(all)
 }
 
 /// Writes the table, or the summary.

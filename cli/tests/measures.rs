@@ -83,7 +83,7 @@ fn a_motion_without_a_period_has_no_distortion_and_its_columns_are_aligned() {
 fn what_cannot_be_measured_ends_with_2_and_says_why() {
     let rows: [(&[&str], &str, &str); 3] = [
         (&["--axis", "2"], MOTION, "there is no axis 2; the scenario has 2 axes, from 0"),
-        (&[], r#"{ "source": { "line": {} } }"#, "source: no motion, so there is no curve"),
+        (&[], r#"{ "source": { "line": {} } }"#, "source: this channel makes no step"),
         (&[], r#"{ "analysis": { "sensor_hz": -1 } }"#, "analysis.sensor_hz: -1 Hz is out of range"),
     ];
     for (options, scenario, part) in rows {

@@ -224,7 +224,7 @@ fn what_cannot_be_a_table_ends_with_2_and_says_why() {
             MOTION,
             "axes[1]: a move of this kind has no table",
         ),
-        (&[], r#"{ "source": { "line": {} } }"#, "source: no motion"),
+        (&[], r#"{ "source": { "line": {} } }"#, "source: nothing steps"),
         (&["--error-us=-1"], MOTION, "give 0 to 1e9"),
         (&["--format", "rust", "--error-us", "1e8"], MOTION, "cycles of tolerance"),
     ];

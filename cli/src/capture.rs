@@ -1,0 +1,117 @@
+//! `stepscope capture`: a recording of one's own firmware or host, looked at like a run.
+//!
+//! ```text
+//! file -> read -> channel map, clock -> records -> report, timing, comparison with a scenario's run, files
+//! ```
+
+mod arguments;
+mod beside;
+mod files;
+mod text;
+
+use crate::{
+    failure::Failure,
+    json::Tables,
+    output::{Outputs, STANDARD},
+    progress::Progress,
+    scenarios, timing,
+};
+pub(crate) use arguments::Arguments;
+use beside::Beside;
+use std::{
+    fs::File,
+    io::{self, BufReader, Cursor, Read},
+    path::Path,
+};
+use stepscope_core::{
+    capture::{
+        read::{self, Limits, Reading},
+        samples::sample,
+    },
+    inspect::recording::opened::Opened,
+    peripheral::signal::Sink,
+    scenario::Scenario,
+};
+
+/// Most bytes that are read of standard input, which cannot be read twice.
+const MAX_STANDARD: u64 = 1 << 30;
+
+/// Reads the recording, tells what it comes to and writes what was asked for.
+pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
+    let table = arguments.json.then_some(Path::new(STANDARD));
+    let mut outputs = Outputs::judge(Some(&arguments.file), arguments.outputs().chain(table))?;
+    let Reading { capture, error } = read(arguments)?;
+    if let Some(error) = error.as_ref().filter(|_| capture.is_empty()) {
+        return Err(arguments.wrong(error));
+    }
+    let recording = Opened::new(capture, &arguments.ask()).map_err(|error| arguments.wrong(error))?;
+    let beside =
+        arguments.against.as_deref().map(|path| Beside::of(arguments, &recording, path)).transpose()?;
+    let base = arguments.against.as_deref().map(scenarios::read).transpose()?;
+    let scenario = Scenario { clock_hz: recording.clock_hz, ..base.clone().unwrap_or_default() };
+    // Pulses that were made up of positions have no width to check.
+    let mut check = arguments.timing.check(&arguments.file, &scenario)?.filter(|_| recording.has_levels());
+    if let Some(check) = &mut check {
+        recording.records.iter().for_each(|record| check.record(*record));
+    }
+    files::write(arguments, &mut outputs, &recording, beside.as_ref(), base.as_ref())?;
+    if let (Some(path), Some(check)) = (&arguments.timing.violations, &check) {
+        let written = timing::write_violations(outputs.create(path)?, check, recording.clock_hz);
+        written.map_err(|error| Failure::File(path.clone(), error))?;
+    }
+    outputs.commit()?;
+
+    if arguments.json {
+        let mut tables =
+            text::tables(Tables::of("capture"), &recording, arguments.map.is_none(), beside.as_ref());
+        if let Some(check) = &check {
+            tables = timing::tables(tables, check, recording.clock_hz);
+        }
+        tables.print()?;
+    } else {
+        // What goes to standard output stands there alone.
+        if arguments.outputs().all(|path| path != Path::new(STANDARD)) {
+            text::print(&recording, arguments.map.is_none(), beside.as_ref()).map_err(Failure::output)?;
+        }
+        if let Some(check) = &check {
+            arguments.timing.report(check, recording.clock_hz)?;
+        }
+    }
+    if let Some(error) = error {
+        return Err(Failure::PartOnly(arguments.file.clone(), error.to_string()));
+    }
+    if let Some(beside) = beside.filter(|beside| !beside.found.is_same()) {
+        return Err(Failure::NotTheModel(text::difference(&beside)));
+    }
+    check.map_or(Ok(()), |check| arguments.timing.verdict(&check))
+}
+
+/// Reads the file, as far as it can be read.
+fn read(arguments: &Arguments) -> Result<Reading, Failure> {
+    let path = &arguments.file;
+    let failed = |error: io::Error| Failure::File(path.clone(), error);
+    let limits = Limits::default();
+    let mut progress = Progress::new("capture", arguments.progress);
+    if path == Path::new(STANDARD) {
+        let mut bytes = Vec::new();
+        io::stdin().take(MAX_STANDARD).read_to_end(&mut bytes).map_err(failed)?;
+        let all = bytes.len() as u64;
+        return Ok(read::read(Cursor::new(bytes), &limits, &mut |read| {
+            progress.tell(read, all);
+            true
+        }));
+    }
+    let file = match File::open(path) {
+        Ok(file) => file,
+        // A sample of that name, where there is no such file.
+        Err(error) => {
+            let sample = path.to_str().and_then(sample).ok_or_else(|| failed(error))?;
+            return Ok(read::read(Cursor::new(sample.bytes), &limits, &mut |_| true));
+        }
+    };
+    let all = file.metadata().map_err(failed)?.len();
+    Ok(read::read(BufReader::with_capacity(1 << 16, file), &limits, &mut |read| {
+        progress.tell(read, all);
+        true
+    }))
+}

@@ -1,0 +1,118 @@
+//! What `stepscope capture` is asked for.
+
+use crate::{failure::Failure, timing};
+use clap::Args;
+use std::path::{Path, PathBuf};
+use stepscope_core::inspect::{recording::opened::Ask, vcd::Timescale};
+
+/// What `stepscope capture` takes.
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// The recording: a value change dump, a sigrok session (.sr) or its CSV, Saleae's CSV (levels or decoded bytes),
+    /// bytes in hexadecimal, a table of times and positions, or our own edges; or recorded-step-table, recorded-late-packet;
+    /// `-` reads standard input.
+    pub(super) file: PathBuf,
+    /// Which channel is which signal: STEP0=CH1,DIR0=CH2,EN=!nEN (`!`: inverted; #0 is the first channel). Without it names
+    /// and behaviour propose a map, which is printed.
+    #[arg(long, value_name = "MAP")]
+    pub(super) map: Option<String>,
+    /// Clock that times become cycles of, in Hz; without it the file's own, of which each time is a whole cycle.
+    #[arg(long, value_name = "HZ")]
+    pub(super) clock: Option<u32>,
+    /// Samples a second, where the file does not tell.
+    #[arg(long, value_name = "HZ")]
+    pub(super) sample_rate: Option<u64>,
+    /// Bit rate of RX and TX; without it that of their pulses.
+    #[arg(long, value_name = "BAUD")]
+    pub(super) baud: Option<u32>,
+    /// Compare with the run of this scenario, step by step, or byte by byte where no channel steps: a JSON file, or a
+    /// preset's name. Ends with 3 if one differs.
+    #[arg(long, value_name = "SCENARIO")]
+    pub(super) against: Option<PathBuf>,
+    /// The channel that is compared.
+    #[arg(long, value_name = "K", default_value_t = 0, requires = "against")]
+    pub(super) channel: u8,
+    /// The step, or byte, that both have at one time, from 0.
+    #[arg(long, value_name = "STEP", default_value_t = 0, requires = "against")]
+    pub(super) align: usize,
+    /// How far a step, or byte, may be from the model's, in us; without it a cycle of the slower clock.
+    #[arg(long, value_name = "US", requires = "against")]
+    pub(super) within_us: Option<f64>,
+    /// Write how late each step, or byte, is: a table.
+    #[arg(long, value_name = "FILE", requires = "against")]
+    pub(super) late: Option<PathBuf>,
+    /// Write the scenario that gives the recording again: its bytes, where RX has some, sent to the controllers of
+    /// --against, else its steps.
+    #[arg(long, value_name = "FILE")]
+    pub(super) scenario: Option<PathBuf>,
+    /// Make the scenario of the steps, also where RX has bytes.
+    #[arg(long, requires = "scenario")]
+    pub(super) of_steps: bool,
+    /// How far the scenario's steps may be from those recorded, in us: fewer segments.
+    #[arg(long, value_name = "US", requires = "scenario")]
+    pub(super) error_us: Option<f64>,
+    /// Write the step times of a channel as a table for `stepscope tables --steps`: cycle, direction.
+    #[arg(long, value_name = "FILE")]
+    pub(super) steps: Option<PathBuf>,
+    /// Write the bytes of RX as a table: time, byte.
+    #[arg(long, value_name = "FILE")]
+    pub(super) bytes: Option<PathBuf>,
+    /// Write the trace: one record a line, cycle and levels in hexadecimal.
+    #[arg(long, value_name = "FILE")]
+    pub(super) trace: Option<PathBuf>,
+    /// Write a value change dump with the signals' names.
+    #[arg(long, value_name = "FILE")]
+    pub(super) vcd: Option<PathBuf>,
+    /// What the dump counts time in.
+    #[arg(long, value_name = "TIME", default_value = "1ns", requires = "vcd", value_parser = timescale)]
+    pub(super) vcd_timescale: Timescale,
+    /// Write a table of the signals: cycle, time in s, and a level each.
+    #[arg(long, value_name = "FILE")]
+    pub(super) csv: Option<PathBuf>,
+    /// Print all of it as JSON: one object of tables (docs/command.md).
+    #[arg(long)]
+    pub(super) json: bool,
+    /// Show the progress also where standard error is no terminal.
+    #[arg(long)]
+    pub(super) progress: bool,
+    #[command(flatten)]
+    pub(super) timing: timing::Options,
+}
+
+fn timescale(text: &str) -> Result<Timescale, String> {
+    text.parse().map_err(str::to_owned)
+}
+
+impl Arguments {
+    /// The files that are asked for.
+    pub(super) fn outputs(&self) -> impl Iterator<Item = &Path> {
+        [
+            &self.late,
+            &self.scenario,
+            &self.steps,
+            &self.bytes,
+            &self.trace,
+            &self.vcd,
+            &self.csv,
+            &self.timing.violations,
+        ]
+        .into_iter()
+        .flatten()
+        .map(PathBuf::as_path)
+    }
+
+    /// What is said of the recording.
+    pub(super) fn ask(&self) -> Ask {
+        Ask { map: self.map.clone(), clock_hz: self.clock, sample_rate_hz: self.sample_rate, baud: self.baud }
+    }
+
+    /// The file's name without its folders.
+    pub(super) fn name(&self) -> String {
+        self.file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+    }
+
+    /// Why the recording cannot be used.
+    pub(super) fn wrong(&self, what: impl ToString) -> Failure {
+        Failure::Recording(self.file.clone(), what.to_string())
+    }
+}

@@ -1,0 +1,48 @@
+//! A recording beside a scenario's run.
+
+use super::arguments::Arguments;
+use crate::{failure::Failure, scenarios};
+use std::path::Path;
+use stepscope_core::{
+    inspect::recording::{
+        events::{self, Events},
+        opened::Opened,
+    },
+    peripheral::trace::Recording,
+};
+
+/// A recording's steps, or bytes, beside a model's.
+pub(super) struct Beside {
+    pub(super) recorded: Events,
+    pub(super) model: Events,
+    pub(super) found: events::Beside,
+    pub(super) allowed_s: f64,
+}
+
+impl Beside {
+    /// The recording beside the run of a scenario.
+    pub(super) fn of(arguments: &Arguments, recording: &Opened, path: &Path) -> Result<Self, Failure> {
+        let (scenario, experiment) = scenarios::judged(path)?;
+        let mut run = Recording::default();
+        experiment.run(&mut run);
+        let recorded = recording.events(arguments.channel);
+        let baud = recording.report.rx().map_or(scenario.line.baud, |line| line.baud);
+        let (kind, clock_hz) = (recorded.kind, experiment.config().clock_hz());
+        let model = Events::of_records(&run.trace, clock_hz, kind, arguments.channel, baud);
+        let slower = recorded.clock_hz.min(clock_hz);
+        let allowed_s = arguments.within_us.map_or(1.0 / f64::from(slower), |us| us * 1e-6);
+        let found = recorded.beside(&model, arguments.align, allowed_s).ok_or_else(|| {
+            arguments.wrong(format!(
+                "channel {} has {} {} recorded and {} in the model: there is no {} {} in both; map a channel to STEP{}, or give another --channel or --align",
+                arguments.channel,
+                recorded.len(),
+                kind.plural(),
+                model.len(),
+                kind.singular(),
+                arguments.align,
+                arguments.channel,
+            ))
+        })?;
+        Ok(Self { recorded, model, found, allowed_s })
+    }
+}

@@ -1,0 +1,111 @@
+//! Files of a recording.
+
+use super::{arguments::Arguments, beside::Beside};
+use crate::{
+    failure::Failure,
+    output::{Out, Outputs},
+};
+use std::{
+    io::{self, Write},
+    path::PathBuf,
+};
+use stepscope_core::{
+    inspect::{
+        recording::opened::Opened,
+        tables::{write_edges_head, write_edges_row},
+        vcd::VcdWriter,
+    },
+    peripheral::{
+        signal::Sink,
+        trace::{Step, write_record},
+    },
+    scenario::Scenario,
+};
+
+/// Writes the files that were asked for.
+pub(super) fn write(
+    arguments: &Arguments,
+    outputs: &mut Outputs,
+    recording: &Opened,
+    beside: Option<&Beside>,
+    base: Option<&Scenario>,
+) -> Result<(), Failure> {
+    if arguments.vcd.is_some() {
+        arguments.vcd_timescale.of_clock(recording.clock_hz).map_err(Failure::Timescale)?;
+    }
+    // Judged before a file is begun.
+    let made = arguments.scenario.as_ref().map(|_| scenario(arguments, recording, base)).transpose()?;
+    let mut file = |path: &Option<PathBuf>, write: &dyn Fn(&mut Out) -> io::Result<()>| {
+        let Some(path) = path else { return Ok(()) };
+        let mut out = outputs.create(path)?;
+        write(&mut out).and_then(|()| out.flush()).map_err(|error| Failure::File(path.clone(), error))
+    };
+    file(&arguments.scenario, &|out| {
+        made.as_ref().map_or(Ok(()), |scenario| writeln!(out, "{}", scenario.to_json()))
+    })?;
+    file(&arguments.late, &|out| beside.map_or(Ok(()), |beside| late(out, arguments.align, beside)))?;
+    file(&arguments.steps, &|out| steps(out, &recording.steps_of(arguments.channel)))?;
+    file(&arguments.bytes, &|out| bytes(out, recording))?;
+    file(&arguments.trace, &|out| {
+        let mut text = String::new();
+        recording.records.iter().try_for_each(|record| {
+            text.clear();
+            write_record(&mut text, *record).map_err(io::Error::other)?;
+            out.write_all(text.as_bytes())
+        })
+    })?;
+    file(&arguments.csv, &|out| {
+        let mut text = String::new();
+        write_edges_head(&mut text, recording.channels).map_err(io::Error::other)?;
+        for record in &recording.records {
+            write_edges_row(&mut text, *record, recording.clock_hz, recording.channels)
+                .map_err(io::Error::other)?;
+            out.write_all(text.as_bytes())?;
+            text.clear();
+        }
+        out.write_all(text.as_bytes())
+    })?;
+    file(&arguments.vcd, &|out| {
+        let (clock_hz, channels) = (recording.clock_hz, recording.channels);
+        let mut writer = VcdWriter::with_timescale(out, arguments.vcd_timescale, clock_hz, channels)?;
+        recording.records.iter().for_each(|record| writer.record(*record));
+        let end = (recording.end_s * f64::from(clock_hz)).ceil() as u64;
+        writer.finish(end.max(recording.records.last().map_or(0, |record| record.cycle.0)))
+    })
+}
+
+/// The scenario that gives the recording again.
+fn scenario(arguments: &Arguments, recording: &Opened, base: Option<&Scenario>) -> Result<Scenario, Failure> {
+    recording
+        .scenario(&arguments.name(), arguments.of_steps, arguments.error_us.unwrap_or(0.0), base)
+        .map_err(|refused| arguments.wrong(format!("no scenario can be made of it: {refused}")))
+}
+
+/// How late each step is.
+fn late(out: &mut Out, aligned: usize, beside: &Beside) -> io::Result<()> {
+    writeln!(out, "{},recorded_s,late_s,other_direction", beside.recorded.kind.singular())?;
+    let late = beside.recorded.late(&beside.model, aligned);
+    (0..beside.found.comparison.compared).filter_map(|index| late.off(index)).try_for_each(|off| {
+        writeln!(out, "{},{},{:e},{}", off.step, off.recorded_s, off.late_s, u8::from(off.other_direction))
+    })
+}
+
+/// As `stepscope tables --steps` reads them.
+fn steps(out: &mut Out, steps: &[Step]) -> io::Result<()> {
+    writeln!(out, "cycle,dir")?;
+    let rows = steps.iter().enumerate();
+    rows.map(|(index, step)| (step.cycle, u8::from(Step::direction(steps, index) > 0)))
+        .try_for_each(|(cycle, dir)| writeln!(out, "{cycle},{dir}"))
+}
+
+fn bytes(out: &mut Out, recording: &Opened) -> io::Result<()> {
+    writeln!(out, "line,start_cycle,start_s,bytes")?;
+    for line in &recording.report.lines {
+        for heard in &line.heard.bytes {
+            let cycle = heard.start.0;
+            let seconds = cycle as f64 / f64::from(recording.clock_hz);
+            writeln!(out, "{},{cycle},{seconds},{:02x}", line.name, heard.byte)?;
+        }
+    }
+    Ok(())
+}

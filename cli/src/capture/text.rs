@@ -1,0 +1,201 @@
+//! What `stepscope capture` prints.
+
+use super::beside::Beside;
+use crate::json::Tables;
+use serde_json::{Value, json};
+use std::io::{self, Write};
+use stepscope_core::inspect::recording::{alignment::Off, opened::Opened, report::ChannelReport};
+
+/// For the eye.
+pub(super) fn print(recording: &Opened, is_proposed: bool, beside: Option<&Beside>) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    let Opened { format, count, what, end_s, .. } = recording;
+    writeln!(out, "file      {format}, {count} {what} in {end_s} s")?;
+    if !recording.names.is_empty() {
+        writeln!(out, "channels  {}", recording.names.join(", "))?;
+    }
+    if recording.has_levels() {
+        let proposed = if is_proposed { "   (proposed; --map sets another)" } else { "" };
+        writeln!(out, "map       {}{proposed}", recording.map)?;
+    }
+    for note in &recording.notes {
+        writeln!(out, "note      {note}")?;
+    }
+    writeln!(out, "clock     {} Hz: {}", recording.clock_hz, recording.rounding)?;
+    for channel in &recording.report.channels {
+        figures(&mut out, channel)?;
+    }
+    for line in &recording.report.lines {
+        writeln!(out, "{}", line.to_text())?;
+    }
+    if recording.report.channels.is_empty() && recording.report.lines.is_empty() {
+        writeln!(out, "no channel steps and nothing is heard on a line")?;
+    }
+    beside.map_or(Ok(()), |beside| comparison(&mut out, beside))
+}
+
+fn figures(out: &mut impl Write, ChannelReport { channel, figures }: &ChannelReport) -> io::Result<()> {
+    let of = figures;
+    writeln!(
+        out,
+        "channel {channel}  {} step{}: {} right, {} left, {} turn{}; position {} ({} to {})",
+        of.steps,
+        plural(of.steps),
+        of.right,
+        of.left,
+        of.turns,
+        plural(of.turns),
+        of.position,
+        of.least_position,
+        of.greatest_position
+    )?;
+    writeln!(out, "  from {} s to {} s", of.first_s, of.last_s)?;
+    if let (Some(greatest), Some(mean), Some(shortest), Some(at), Some(longest)) = (
+        of.greatest_rate_steps_s,
+        of.mean_rate_steps_s,
+        of.shortest_interval_s,
+        of.shortest_at_s,
+        of.longest_interval_s,
+    ) {
+        writeln!(out, "  rate at most {greatest:.1} steps/s, {mean:.1} in the mean")?;
+        writeln!(out, "  intervals {:.3} us (at {at} s) to {:.3} us", shortest * 1e6, longest * 1e6)?;
+    }
+    if let Some(acceleration) = of.greatest_acceleration_steps_s2 {
+        writeln!(out, "  acceleration at most {acceleration:.0} steps/s^2, over 8 steps")?;
+    }
+    Ok(())
+}
+
+const fn plural(count: u64) -> &'static str {
+    if count == 1 { "" } else { "s" }
+}
+
+fn comparison(out: &mut impl Write, beside: &Beside) -> io::Result<()> {
+    let found = &beside.found.comparison;
+    let (what, one) = (beside.found.kind.plural(), beside.found.kind.singular());
+    writeln!(
+        out,
+        "beside the model: {} {what} recorded, {} in the model, {} compared",
+        found.recorded, found.model, found.compared
+    )?;
+    let us = |seconds: f64| seconds * 1e6;
+    writeln!(
+        out,
+        "  late: {:.3} us at most ({one} {}, at {} s), {:.3} us r.m.s., {:.3} us in the mean",
+        us(found.largest.late_s),
+        found.largest.step,
+        found.largest.recorded_s,
+        us(found.rms_s),
+        us(found.mean_s)
+    )?;
+    writeln!(
+        out,
+        "  drift {:.2} ppm; without it {:.3} us at most, {:.3} us r.m.s.",
+        found.drift_ppm,
+        us(found.largest_jitter_s),
+        us(found.rms_jitter_s)
+    )?;
+    if beside.found.other_values > 0 {
+        writeln!(out, "  {} {what} have another value", beside.found.other_values)?;
+    }
+    match found.first_difference {
+        None => writeln!(out, "  no {one} is off by more than {:.3} us", us(beside.allowed_s)),
+        Some(first) => writeln!(
+            out,
+            "  {} {what} are off by more than {:.3} us; first {one} {}",
+            found.differing,
+            us(beside.allowed_s),
+            off(first)
+        ),
+    }
+}
+
+fn off(Off { step, recorded_s, late_s, other_direction }: Off) -> String {
+    let way = if other_direction { ", in the other direction" } else { "" };
+    let late = if late_s < 0.0 { "early" } else { "late" };
+    format!("{step} at {recorded_s} s, {:.3} us {late}{way}", late_s.abs() * 1e6)
+}
+
+/// Why the recording is not what the model makes.
+pub(super) fn difference(beside: &Beside) -> String {
+    let found = &beside.found.comparison;
+    let (what, one) = (beside.found.kind.plural(), beside.found.kind.singular());
+    let missing = match (found.recorded, found.model) {
+        (recorded, model) if recorded < model => {
+            format!("{} {what} fewer than the model; ", model - recorded)
+        }
+        (recorded, model) if recorded > model => format!("{} {what} more than the model; ", recorded - model),
+        _ => String::new(),
+    };
+    match found.first_difference {
+        Some(first) => {
+            format!("not the model's {what}: {missing}{} differ, first {one} {}", found.differing, off(first))
+        }
+        None => format!("not the model's {what}: {missing}those that both have are the same"),
+    }
+}
+
+/// As tables.
+pub(super) fn tables(
+    tables: Tables,
+    recording: &Opened,
+    is_proposed: bool,
+    beside: Option<&Beside>,
+) -> Tables {
+    let file = json!({
+        "format": recording.format,
+        "holds": recording.what,
+        "count": recording.count,
+        "end_s": recording.end_s,
+        "clock_hz": recording.clock_hz,
+        "map": recording.map,
+        "map_proposed": is_proposed,
+        "rounding": recording.rounding,
+    });
+    let channels = recording.names.iter().map(|name| json!({ "channel": name }));
+    let notes = recording.notes.iter().map(|note| json!({ "note": note }));
+    let steps = recording.report.channels.iter().map(|channel| {
+        let mut row = serde_json::to_value(channel.figures).unwrap_or_default();
+        row["channel"] = channel.channel.into();
+        row
+    });
+    let lines = recording.report.lines.iter().map(|line| -> Value {
+        json!({
+            "line": line.name,
+            "baud": line.baud,
+            "measured_baud": line.measured.map(|measured| measured.baud),
+            "bytes": line.heard.bytes.len(),
+            "framing_errors": line.heard.framing_errors.len(),
+            "packets": line.guess_text(),
+        })
+    });
+    let comparison = beside.map(|beside| {
+        let found = &beside.found.comparison;
+        json!({
+            "compares": beside.found.kind.plural(),
+            "other_values": beside.found.other_values,
+            "recorded": found.recorded,
+            "model": found.model,
+            "compared": found.compared,
+            "differing": found.differing,
+            "allowed_s": beside.allowed_s,
+            "offset_s": found.offset_s,
+            "largest_late_s": found.largest.late_s,
+            "largest_index": found.largest.step,
+            "rms_s": found.rms_s,
+            "mean_s": found.mean_s,
+            "drift_ppm": found.drift_ppm,
+            "largest_jitter_s": found.largest_jitter_s,
+            "rms_jitter_s": found.rms_jitter_s,
+            "first_difference_index": found.first_difference.map(|first| first.step),
+            "first_difference_s": found.first_difference.map(|first| first.recorded_s),
+        })
+    });
+    tables
+        .with("recording", [file])
+        .with("channels", channels)
+        .with("notes", notes)
+        .with("steps", steps)
+        .with("lines", lines)
+        .with("comparison", comparison)
+}

@@ -1,0 +1,85 @@
+//! Steps of which no plan is known, measured by themselves: of packets, line scripts, lists of segments.
+
+use super::arguments::{Arguments, Written};
+use crate::{failure::Failure, json::Tables};
+use serde_json::{Map, Value};
+use std::io::{self, Write};
+use stepscope_core::{
+    inspect::{
+        actual_motion::Pulses,
+        recording::figures::StepFigures,
+        spectra::Spectra,
+        spectrum::{Harmonics, Spectrum},
+    },
+    peripheral::trace::{Recording, steps},
+    scenario::{Problem, Scenario, ValueError},
+    sim::Experiment,
+};
+
+/// Runs the scenario and writes what its steps come to, and their distortion where they go to and fro evenly.
+pub(super) fn measures(
+    arguments: &Arguments,
+    scenario: &Scenario,
+    experiment: &Experiment,
+) -> Result<(), Failure> {
+    let channel = arguments.axis.unwrap_or(scenario.analysis.axis.into());
+    let channels = experiment.config().channels();
+    let own = u8::try_from(channel).ok().filter(|channel| *channel < channels);
+    let own = own.ok_or_else(|| Failure::Axis(arguments.scenario.clone(), channel, channels.into()))?;
+    let mut recording = Recording::default();
+    experiment.run(&mut recording);
+    let steps = steps(&recording.trace, own);
+    let clock_hz = experiment.config().clock_hz();
+    let figures = StepFigures::of(steps.iter().copied(), clock_hz).ok_or_else(|| {
+        let detail = "this channel makes no step, so there is nothing to measure; give another --axis";
+        let problem = Problem::new("source", ValueError::Conflict { detail });
+        Failure::Scenario(arguments.scenario.clone(), vec![problem])
+    })?;
+    let spectra = Spectra::of(scenario, None, &Pulses::recorded(own, &steps, clock_hz));
+    let rows = rows(&figures, spectra.actual.as_ref()).map_err(Failure::output)?;
+    let mut out = io::stdout().lock();
+    let written = match arguments.format {
+        _ if arguments.json => {
+            let row =
+                |(name, value): (&String, &Value)| serde_json::json!({ "measure": name, "value": value });
+            Tables::of("measures").with("steps", rows.iter().map(row)).write(&mut out)
+        }
+        Written::Json => writeln!(out, "{:#}", Value::Object(rows)),
+        Written::Csv => writeln!(out, "measure,value").and_then(|()| {
+            rows.iter().try_for_each(|(name, value)| writeln!(out, "{name},{}", shown(value, "")))
+        }),
+        Written::Text => writeln!(
+            out,
+            "channel {own}: no plan is known, so the steps themselves are measured"
+        )
+        .and_then(|()| {
+            rows.iter().try_for_each(|(name, value)| writeln!(out, "  {name:34} {}", shown(value, "-")))
+        }),
+    };
+    written.and_then(|()| out.flush()).map_err(Failure::output)
+}
+
+fn shown(value: &Value, none: &str) -> String {
+    if value.is_null() { none.to_owned() } else { value.to_string() }
+}
+
+/// Every figure by its name.
+fn rows(figures: &StepFigures, spectrum: Option<&Spectrum>) -> io::Result<Map<String, Value>> {
+    let Value::Object(mut rows) = serde_json::to_value(figures).map_err(io::Error::other)? else {
+        return Ok(Map::new());
+    };
+    let Some(spectrum) = spectrum.filter(|spectrum| spectrum.window.periodic) else { return Ok(rows) };
+    rows.insert("fundamental_hz".into(), spectrum.window.fundamental_hz().into());
+    rows.insert("periods".into(), spectrum.window.periods.into());
+    let all = [
+        ("thd_position", Some(&spectrum.position)),
+        ("thd_speed", Some(&spectrum.speed)),
+        ("thd_acceleration", Some(&spectrum.acceleration)),
+        ("thd_acceleration_filtered", spectrum.acceleration_filtered.as_ref()),
+    ];
+    for (name, harmonics) in all {
+        let thd = harmonics.and_then(|Harmonics { distortion, .. }| *distortion);
+        rows.insert(name.into(), thd.into());
+    }
+    Ok(rows)
+}

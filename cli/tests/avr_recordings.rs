@@ -1,0 +1,231 @@
+//! The recordings in `core/capture/recordings` are what the programs in `firmware/avr` do: built by avr-gcc from what the
+//! command exports, run by simavr, and compared edge by edge.
+//!
+//! `cargo xtask test --only avr` runs it, and installs both first; without the feature `avr` there is no such test.
+//! `STEPSCOPE_BLESS=1` writes the recordings; the numbers in their README are then to be measured anew.
+#![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
+
+use serde_json::Value as Json;
+use std::{
+    collections::BTreeMap,
+    env,
+    ffi::OsStr,
+    fmt::Write,
+    fs::{self, File},
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+use vcd::{Command as Entry, IdCode, Parser, ScopeItem, TimescaleUnit, Value};
+
+/// The compiler with which the recordings were made. Another one's programs take some cycles more or less.
+const COMPILER: &str = "5.4.0";
+
+/// How far such an edge may be from the recording's.
+const OTHER_COMPILER_NS: u64 = 20_000;
+
+/// Where simavr's header with the pins to record lies: Debian's place, and that of a build by hand.
+const SIMAVR: [&str; 2] = ["-I/usr/include/simavr/avr", "-I/usr/local/include/simavr/avr"];
+
+/// A recording in a logic analyser's session is sampled: every 10th unit of simavr's 10 ns, at 10 MHz.
+const SAMPLED: &str = "vcd:downsample=10";
+
+/// Longest time that a program may take.
+const LIMIT: Duration = Duration::from_secs(60);
+
+fn in_the_repository(place: &str, name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(place).join(name)
+}
+
+fn recording(name: &str) -> PathBuf {
+    in_the_repository("core/capture/recordings", name)
+}
+
+/// A folder of its own for what is built and recorded.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("avr").join(name);
+    fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+/// Calls a program in a folder; what it says is kept there. One that does not end is ended.
+fn call<S: AsRef<OsStr>>(folder: &Path, program: &str, arguments: &[S]) -> String {
+    let path = if program == "stepscope" {
+        PathBuf::from(env!("CARGO_BIN_EXE_stepscope"))
+    } else {
+        which::which(program)
+            .unwrap_or_else(|_| panic!("{program} is not on PATH; `cargo xtask test --only avr` installs it"))
+    };
+    let log = folder.join(format!("{program}.log"));
+    let said = File::create(&log).expect("a file");
+    let mut child = Command::new(path)
+        .args(arguments)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .stdout(said.try_clone().expect("the same file"))
+        .stderr(said)
+        .spawn()
+        .expect("the program starts");
+    let begun = Instant::now();
+    let status = loop {
+        if let Some(status) = child.try_wait().expect("it is our own") {
+            break status;
+        }
+        if begun.elapsed() > LIMIT {
+            child.kill().expect("it is our own");
+            panic!("{program} has not ended after {LIMIT:?}");
+        }
+        thread::sleep(Duration::from_millis(10));
+    };
+    let said = String::from_utf8_lossy(&fs::read(&log).expect("what it said")).into_owned();
+    assert!(status.success(), "{program}: {status}\n{said}");
+    said
+}
+
+/// Builds a program of `firmware/avr` with the header that lies in the folder, and runs it: what simavr has recorded.
+fn simulated(folder: &Path, program: &str) -> PathBuf {
+    let elf = format!("{program}.elf");
+    let sources = [format!("{program}.c"), format!("{program}_pins.c")];
+    let sources = sources.map(|name| in_the_repository("firmware/avr", &name).into_os_string());
+    // The section with the pins is no part of the chip's memory: it has a place that nothing else has.
+    let options = "-mmcu=atmega328p -DF_CPU=16000000ul -std=gnu99 -Os -Wall -Wextra -Werror -I. \
+        -Wl,--section-start=.mmcu=0x910000 -o";
+    let options = options.split_whitespace().map(OsStr::new);
+    let includes = SIMAVR.map(OsStr::new);
+    let line: Vec<&OsStr> = includes
+        .into_iter()
+        .chain(options)
+        .chain([OsStr::new(&elf)])
+        .chain(sources.iter().map(|s| &**s))
+        .collect();
+    call(folder, "avr-gcc", &line);
+    call(folder, "simavr", &[&elf]);
+    folder.join(format!("{program}.vcd"))
+}
+
+/// The edges of each signal: time in ns, and the level from then on.
+type Edges = BTreeMap<String, Vec<(u64, bool)>>;
+
+fn edges(dump: &Path) -> Edges {
+    let text = fs::read(dump).unwrap_or_else(|error| panic!("{}: {error}", dump.display()));
+    let mut parser = Parser::new(&text[..]);
+    let header = parser.parse_header().expect("a header");
+    let unit_ns = match header.timescale.expect("a timescale") {
+        (count, TimescaleUnit::NS) => u64::from(count),
+        (count, unit) => panic!("a timescale of {count} {unit}"),
+    };
+    let Some(ScopeItem::Scope(scope)) = header.items.iter().find(|item| matches!(item, ScopeItem::Scope(_)))
+    else {
+        panic!("no module");
+    };
+    let vars =
+        scope.items.iter().filter_map(|item| if let ScopeItem::Var(var) = item { Some(var) } else { None });
+    let names: BTreeMap<IdCode, &str> = vars.map(|var| (var.code, var.reference.as_str())).collect();
+    let (mut now, mut edges) = (0, Edges::new());
+    for entry in parser {
+        match entry.expect("an entry") {
+            Entry::Timestamp(at) => now = at * unit_ns,
+            // A pin that no program has set yet.
+            Entry::ChangeScalar(_, Value::X) => {}
+            Entry::ChangeScalar(code, value) => {
+                edges.entry(names[&code].to_owned()).or_default().push((now, value == Value::V1));
+            }
+            _ => {}
+        }
+    }
+    edges
+}
+
+fn compare(found: &Edges, expected: &Edges, folder: &Path) {
+    let compiler = call(folder, "avr-gcc", &["-dumpversion"]);
+    if compiler.trim() == COMPILER {
+        assert!(
+            found == expected,
+            "{} is not what is recorded: after a change, or with another simavr than 1.6, \
+             STEPSCOPE_BLESS=1 writes the recording",
+            folder.display()
+        );
+        return;
+    }
+    assert_eq!(found.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>());
+    for (signal, expected) in expected {
+        assert_eq!(found[signal].len(), expected.len(), "edges of {signal}");
+        for (found, expected) in found[signal].iter().zip(expected) {
+            let near = found.0.abs_diff(expected.0) <= OTHER_COMPILER_NS;
+            assert!(near && found.1 == expected.1, "{signal}: {found:?} and not {expected:?}");
+        }
+    }
+}
+
+/// Writes the recording if that is asked for.
+fn bless(made: &Path, recording: &Path) {
+    if env::var_os("STEPSCOPE_BLESS").is_some() {
+        fs::copy(made, recording).expect("it is written");
+    }
+}
+
+#[test]
+fn the_step_tables_recording_is_what_its_program_does() {
+    let (folder, scenario) = (folder("step_table"), recording("step-table.json"));
+    let export = "--form exact --entries ticks --format avr --name axis_0 --out plan.h";
+    let options = export.split_whitespace().map(OsStr::new);
+    let line: Vec<&OsStr> = [OsStr::new("tables"), scenario.as_os_str()].into_iter().chain(options).collect();
+    call(&folder, "stepscope", &line);
+    let dump = simulated(&folder, "step_table");
+    let recording = recording("step-table.vcd");
+    bless(&dump, &recording);
+    compare(&edges(&dump), &edges(&recording), &folder);
+}
+
+/// The packets of the scenario's own host, and its pace, as `packets.h`.
+fn packets_of(scenario: &str) -> String {
+    let scenario: Json = serde_json::from_str(scenario).expect("a scenario");
+    let number = |value: &Json| value.as_u64().expect("a whole number");
+    let sends = scenario["source"]["line"]["sends"].as_array().expect("sends");
+    let bytes: Vec<&str> = sends.iter().map(|send| send["bytes"].as_str().expect("bytes")).collect();
+    let starts: Vec<u64> = sends.iter().map(|send| number(&send["start_cycle"])).collect();
+    let tick = starts[1] - starts[0];
+    assert!(starts.windows(2).all(|pair| pair[1] - pair[0] == tick), "one pace: {starts:?}");
+    let (clock_hz, baud) = (number(&scenario["clock_hz"]), number(&scenario["line"]["baud"]));
+    assert_eq!(clock_hz % baud, 0, "a bit is a whole number of cycles");
+    let numbers = [
+        ("PACKETS", bytes.len() as u64),
+        ("PACKET_BYTES", bytes[0].len() as u64 / 2),
+        ("TICK_CYCLES", tick),
+        ("BIT_CYCLES", clock_hz / baud),
+    ];
+    let mut text = String::from("#include <stdint.h>\n#include <avr/pgmspace.h>\n\n");
+    for (name, number) in numbers {
+        writeln!(text, "#define {name} {number}").expect("room");
+    }
+    text.push_str("\nstatic const uint8_t packets[PACKETS][PACKET_BYTES] PROGMEM = {\n");
+    for packet in bytes {
+        let row = (0..packet.len()).step_by(2).map(|at| format!("0x{}", &packet[at..at + 2]));
+        writeln!(text, "    {{ {} }},", row.collect::<Vec<_>>().join(", ")).expect("room");
+    }
+    text + "};\n"
+}
+
+#[test]
+fn the_late_packets_recording_is_what_its_program_does() {
+    let (folder, scenario) = (folder("packet_host"), recording("late-packet.json"));
+    let script = "--line sent.json".split_whitespace().map(OsStr::new);
+    let line: Vec<&OsStr> = [OsStr::new("run"), scenario.as_os_str()].into_iter().chain(script).collect();
+    call(&folder, "stepscope", &line);
+    let sent = fs::read_to_string(folder.join("sent.json")).expect("what is sent");
+    fs::write(folder.join("packets.h"), packets_of(&sent)).expect("a file");
+    let dump = simulated(&folder, "packet_host");
+    let sigrok = |arguments: [&OsStr; 6]| call(&folder, "sigrok-cli", &arguments);
+    let [input, i, output, o] = ["-I", "-i", "-O", "-o"].map(OsStr::new);
+    let session = folder.join("late-packet.sr");
+    call(&folder, "sigrok-cli", &[input, OsStr::new(SAMPLED), i, dump.as_os_str(), o, session.as_os_str()]);
+    let recording = recording("late-packet.sr");
+    bless(&session, &recording);
+    let told = |session: &Path, name: &str| {
+        let told = folder.join(name);
+        sigrok([i, session.as_os_str(), output, OsStr::new("vcd"), o, told.as_os_str()]);
+        edges(&told)
+    };
+    compare(&told(&session, "made.vcd"), &told(&recording, "recorded.vcd"), &folder);
+}

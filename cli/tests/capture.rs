@@ -1,0 +1,411 @@
+//! `stepscope capture`, as a script sees it: what a recording is told to be, beside a model and as a scenario, and what is
+//! asked for where a file leaves something open.
+#![cfg(not(target_arch = "wasm32"))]
+#![allow(clippy::expect_used, reason = "what is missing fails the test")]
+
+mod program;
+
+use program::stepscope;
+use serde_json::Value;
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+/// Two axes with a turn; a framed line.
+const MOTION: &str = r#"{ "bus": { "channels": 2 }, "source": { "motion": { "engine": "segments", "axes": [
+    { "moves": [ { "cosine": { "distance": { "steps": 400 } } }, { "cosine": { "distance": { "steps": -100 } } } ] },
+    { "moves": [ { "constant": { "distance": { "steps": -300 }, "speed": { "steps_s": 5000 } } } ] } ] } } }"#;
+const FRAMED: &str = r#"{"line":{"protocol":"framed","address":3}}"#;
+
+/// A folder of a test's own.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("capture").join(name);
+    fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+fn text(path: &Path) -> String {
+    path.display().to_string()
+}
+
+/// Writes a file and tells where it is.
+fn file(folder: &Path, name: &str, held: impl AsRef<[u8]>) -> String {
+    let path = folder.join(name);
+    fs::write(&path, held).expect("a file");
+    text(&path)
+}
+
+/// A recording of `core/capture/recordings`.
+fn recording(name: &str) -> String {
+    text(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../core/capture/recordings").join(name))
+}
+
+/// Runs a scenario and writes files of it.
+fn run(scenario: &str, outputs: &[&str]) -> String {
+    let (code, out, err) = stepscope(&[&["run", scenario], outputs].concat(), "");
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    out
+}
+
+/// The cycles of a channel's steps.
+fn steps(recording: &str, options: &[&str]) -> Vec<u64> {
+    let (code, out, err) = stepscope(&[&["capture", recording, "--steps", "-"], options].concat(), "");
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    let rows = out.lines().skip(1).map(|row| row.split(',').next().and_then(|cycle| cycle.parse().ok()));
+    rows.map(|cycle| cycle.expect("a cycle")).collect()
+}
+
+/// The one row of a table.
+fn row(arguments: &[&str], table: &str) -> Value {
+    let (_, out, err) = stepscope(&[arguments, &["--json"]].concat(), "");
+    let all: Value = serde_json::from_str(&out).expect(&err);
+    let rows = all["tables"][table].as_array().expect("a table");
+    assert_eq!(rows.len(), 1, "{rows:#?}");
+    rows[0].clone()
+}
+
+fn us(row: &Value, column: &str) -> f64 {
+    row[column].as_f64().expect(column) * 1e6
+}
+
+#[test]
+fn a_dump_of_ones_own_run_is_the_models() {
+    let folder = folder("same");
+    let (motion, dump) = (file(&folder, "motion.json", MOTION), text(&folder.join("own.vcd")));
+    run(&motion, &["--vcd", &dump]);
+    for more in [&["--clock", "16000000"][..], &[], &["--channel", "1"]] {
+        let (code, out, err) = stepscope(&[&["capture", &dump, "--against", &motion], more].concat(), "");
+        assert_eq!((code, err.as_str()), (Some(0), ""), "{out}");
+        assert!(
+            out.contains("channel 0  500 steps: 400 right, 100 left, 1 turn; position 300 (0 to 400)\n"),
+            "{out}"
+        );
+        assert!(
+            out.contains("channel 1  300 steps: 0 right, 300 left, 0 turns; position -300 (-300 to 0)\n"),
+            "{out}"
+        );
+        assert!(out.contains("  no step is off by more than 0.06"), "{out}");
+    }
+}
+
+/// The cycle of a trace's line, and the rest of it.
+fn of_trace(line: &str) -> (u64, &str) {
+    let (cycle, levels) = line.split_once(' ').expect("two words");
+    (u64::from_str_radix(cycle, 16).expect("a cycle"), levels)
+}
+
+#[test]
+fn a_step_that_comes_late_is_found_by_its_number() {
+    let folder = folder("late");
+    let (motion, trace) = (file(&folder, "motion.json", MOTION), text(&folder.join("own.trace")));
+    run(&motion, &["--trace", &trace]);
+    // The 124th rise of STEP0, and its fall, come 100 cycles later.
+    let own = fs::read_to_string(&trace).expect("a trace");
+    let (mut rises, mut was_high) = (0, false);
+    let rows = own.lines().map(|line| {
+        let (mut cycle, levels) = of_trace(line);
+        let is_high = u64::from_str_radix(levels, 16).expect("levels") & 1 == 1;
+        rises += u32::from(is_high && !was_high);
+        if rises == 124 && (is_high || was_high) {
+            cycle += 100;
+        }
+        was_high = is_high;
+        (cycle, levels)
+    });
+    let mut rows: Vec<(u64, &str)> = rows.collect();
+    rows.sort_by_key(|(cycle, _)| *cycle);
+    // Signals that change between are the other channel's; one row may hold both, so only STEP0 is looked at.
+    let changed: String = rows.iter().map(|(cycle, levels)| format!("{cycle:x} {levels}\n")).collect();
+    let changed = file(&folder, "late.trace", changed);
+    let table = text(&folder.join("late.csv"));
+    let line = ["capture", &changed, "--sample-rate", "16000000", "--against", &motion];
+    let (code, _, err) = stepscope(&[&line[..], &["--late", &table]].concat(), "");
+    assert_eq!(code, Some(3), "{err}");
+    assert!(
+        err.starts_with("not the model's steps: 1 differ, first step 123 at ")
+            && err.contains(", 6.250 us late"),
+        "{err}"
+    );
+    let late = fs::read_to_string(&table).expect("a table");
+    let off: Vec<&str> = late.lines().skip(1).filter(|row| !row.contains(",0e0,0")).collect();
+    assert!(matches!(off[..], [row] if row.starts_with("123,") && row.contains(",6.25e-6,0")), "{off:?}");
+    // Within 7 us it is not different.
+    let (code, out, _) = stepscope(&[&line[..], &["--within-us", "7"]].concat(), "");
+    assert_eq!(code, Some(0), "{out}");
+    // Aligned on itself it is all the others that differ.
+    let (code, _, err) = stepscope(&[&line[..], &["--align", "123"]].concat(), "");
+    assert!(
+        code == Some(3) && err.contains("499 differ, first step 0 at ") && err.contains("6.250 us early"),
+        "{err}"
+    );
+}
+
+#[test]
+fn a_scenario_of_steps_has_each_in_its_cycle() {
+    let folder = folder("steps");
+    let (motion, dump) = (file(&folder, "motion.json", MOTION), text(&folder.join("own.vcd")));
+    let (made, again) = (text(&folder.join("made.json")), text(&folder.join("again.vcd")));
+    run(&motion, &["--vcd", &dump]);
+    let clock = ["--clock", "16000000"];
+    let (code, _, err) = stepscope(&[&["capture", &dump, "--scenario", &made], &clock[..]].concat(), "");
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    run(&made, &["--vcd", &again]);
+    for channel in ["0", "1"] {
+        let own = |dump: &str| {
+            let of = ["--against", &motion, "--channel", channel];
+            steps(dump, &[&of[..], &clock].concat())
+        };
+        let (recorded, made) = (own(&dump), own(&again));
+        assert_eq!(recorded.len(), if channel == "0" { 500 } else { 300 });
+        assert_eq!(made, recorded, "channel {channel}");
+    }
+    // With an error allowed there are fewer segments, and no step is further off.
+    let rough = text(&folder.join("rough.json"));
+    let line = ["capture", &dump, "--scenario", &rough, "--error-us", "20", "--clock", "16000000"];
+    assert_eq!(stepscope(&line, "").0, Some(0));
+    let segments = |path: &str| fs::read_to_string(path).expect("a scenario").matches("\"count\"").count();
+    assert!(segments(&rough) * 4 < segments(&made), "{} {}", segments(&rough), segments(&made));
+    let compared = row(&["capture", &dump, "--against", &rough, "--within-us", "40"], "comparison");
+    assert_eq!(compared["differing"], 0, "{compared:#}");
+}
+
+#[test]
+fn framed_bytes_of_a_recording_make_the_very_run_again() {
+    let folder = folder("framed");
+    let (framed, dump) = (file(&folder, "framed.json", FRAMED), text(&folder.join("own.vcd")));
+    let (made, based) = (text(&folder.join("made.json")), text(&folder.join("based.json")));
+    run(&framed, &["--vcd", &dump]);
+    let original = run(&framed, &[]);
+    let digest = |out: &str| out.lines().next().map(str::to_owned);
+    let (code, out, err) = stepscope(&["capture", &dump, "--scenario", &made], "");
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    assert!(out.contains("\nRX: 115200 baud (115201 measured), 466 bytes, 27 frames for address 3 of 1 channels, 0 broken\n"), "{out}");
+    assert_eq!(digest(&run(&made, &[])), digest(&original));
+    let (code, _, err) = stepscope(&["capture", &dump, "--scenario", &based, "--against", &framed], "");
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    assert_eq!(digest(&run(&based, &[])), digest(&original));
+}
+
+/// What a command line that leaves something open is told, and its exit code.
+fn asks(rows: &[(&str, &[&str], i32, &str)]) {
+    for (input, options, code, told) in rows {
+        let (found, out, err) = stepscope(&[&["capture", "-"], *options].concat(), input);
+        assert_eq!(found, Some(*code), "{options:?}: {out}{err}");
+        assert!(err.contains(told), "{options:?}: {err}");
+    }
+}
+
+const LEVELS: &str = "STEP,DIR\n0,1\n1,1\n0,1\n0,1\n1,1\n0,1\n";
+const DUMP: &str =
+    "$timescale 1 us $end $scope module a $end $var wire 1 ! STEP $end $var wire 1 # D $end $upscope $end
+$scope module b $end $var wire 1 % D $end $upscope $end $enddefinitions $end
+#0 0! 0# 0% #10 1! #12 0! #20 1! #22 0!";
+
+#[test]
+fn what_a_file_does_not_tell_is_asked_for() {
+    let rate = "the file does not say how long a sample, or a cycle, lasts; give the sample rate, in Hz";
+    asks(&[
+        (LEVELS, &[], 2, rate),
+        (LEVELS, &["--sample-rate", "1000"], 0, ""),
+        (LEVELS, &["--sample-rate", "0"], 2, "the sample rate is 0"),
+        ("0 700000000\n5 700000001\nff 700000000\n", &[], 2, rate),
+        ("81 05\n", &[], 2, "the bytes have no times; give the bit rate"),
+        ("81 05\n", &["--baud", "115200"], 0, ""),
+        ("81 05\n", &["--baud", "0"], 2, "the bit rate is 0"),
+        (
+            "Time [s],A,B\n0,0,0\n1,1,0\n2,0,1\n",
+            &[],
+            2,
+            "nothing says which channel is which signal; give a map, such as STEP0=A,DIR0=B; the channels are A, B",
+        ),
+        (DUMP, &["--clock", "5"], 2, "the clock: 5 Hz; give 11 to 1000000000 Hz"),
+    ]);
+}
+
+#[test]
+fn the_rate_of_bytes_with_times_is_taken_by_them_and_said() {
+    for (bytes, baud) in [
+        // 96 us a byte and more; two bytes a line every 2 ms; ten bytes a line every ms.
+        ("0.001: 81\n0.001096: 05\n0.003: 81\n", "104167"),
+        ("0.010: 81 05\n0.012: 82 05\n0.014: 83 05\n", "115200"),
+        ("0.010: 00 00 00 00 00 00 00 00 00 00 00 00\n0.011: 82 05\n", "120000"),
+    ] {
+        let (code, out, err) = stepscope(&["capture", "-"], bytes);
+        assert_eq!((code, err.as_str()), (Some(0), ""));
+        let told = format!("by the times of its bytes {baud} baud is taken: give it\n");
+        assert!(out.contains(&told) && out.contains(&format!("\nRX: {baud} baud, ")), "{out}");
+        let (_, out, _) = stepscope(&["capture", "-", "--baud", "250000"], bytes);
+        assert!(!out.contains("note") && out.contains("\nRX: 250000 baud, "), "{out}");
+    }
+}
+
+#[test]
+fn a_map_that_cannot_be_is_told() {
+    asks(&[
+        (DUMP, &["--map", "STEP0=STEP,DIR0=#1"], 0, ""),
+        (DUMP, &["--map", "step0=!a.STEP"], 0, ""),
+        (DUMP, &["--map", "STEP0"], 2, "the channel map: \"STEP0\" is no pair; write SIGNAL=CHANNEL"),
+        (DUMP, &["--map", "STEP16=STEP"], 2, "STEP16 is no signal; there are STEP0 to STEP15"),
+        (DUMP, &["--map", "STEP0=PUL"], 2, "there is no channel PUL; the file has a.STEP, a.D, b.D"),
+        (
+            DUMP,
+            &["--map", "STEP0=STEP,DIR0=D"],
+            2,
+            "more than one channel is called D; write its place, #0 for the first",
+        ),
+        (DUMP, &["--map", "STEP0=STEP,DIR0=STEP"], 2, "channel a.STEP is STEP0 already"),
+        (DUMP, &["--map", "STEP0=#0,STEP0=#1"], 2, "STEP0 has two channels"),
+        (DUMP, &["--map", ""], 2, "nothing says which channel is which signal"),
+    ]);
+}
+
+#[test]
+fn a_file_that_is_cut_off_gives_what_could_be_read_and_one_that_is_none_nothing() {
+    let (code, out, err) = stepscope(&["capture", "-"], &format!("{DUMP} #30 1! #32 0"));
+    assert_eq!(code, Some(1), "{err}");
+    assert!(out.contains("channel 0  3 steps: 3 right"), "{out}");
+    assert!(
+        err.starts_with("-: not read to its end: line 3: ")
+            && err.ends_with("; what stands above is of what could be read\n"),
+        "{err}"
+    );
+    let (code, out, err) = stepscope(&["capture", "-"], "a word or two\n");
+    assert_eq!((code, out.as_str()), (Some(2), ""));
+    assert!(
+        err.contains("no kind of file that can be read here; give a value change dump (.vcd), "),
+        "{err}"
+    );
+    let (code, _, err) = stepscope(&["capture", "-"], "");
+    assert!(code == Some(2) && err.contains("the file is empty"), "{err}");
+    let (code, _, err) = stepscope(&["capture", "there-is-no-such-file"], "");
+    assert!(code == Some(1) && err.starts_with("there-is-no-such-file: "), "{err}");
+    // An output that cannot be one is refused before anything is read.
+    let dump = file(&folder("outputs"), "own.vcd", DUMP);
+    let (code, _, err) = stepscope(&["capture", &dump, "--vcd", &dump], "");
+    assert!(code == Some(2) && err.starts_with(&dump), "{err}");
+}
+
+#[test]
+fn files_of_a_recording_are_read_again() {
+    let folder = folder("files");
+    let dump = file(&folder, "own.vcd", DUMP);
+    let outputs = ["own.trace", "again.vcd", "own.csv", "bytes.csv"].map(|name| text(&folder.join(name)));
+    let [trace, again, csv, bytes] = outputs.each_ref().map(String::as_str);
+    let line = ["capture", &dump, "--trace", trace, "--vcd", again, "--csv", csv, "--bytes", bytes];
+    assert_eq!(stepscope(&line, "").0, Some(0));
+    let own = steps(&dump, &[]);
+    assert_eq!(own, [10, 20]);
+    let rate = ["--sample-rate", "1000000"];
+    assert_eq!([steps(trace, &rate), steps(csv, &rate)], [own.clone(), own.clone()]);
+    assert_eq!(steps(again, &["--clock", "1000000"]), own);
+    assert_eq!(fs::read_to_string(bytes).expect("a table"), "line,start_cycle,start_s,bytes\n");
+    // Step times go on to the tables of steps.
+    let (_, list, _) = stepscope(&["capture", &dump, "--steps", "-", "--clock", "16000000"], "");
+    let (code, out, err) = stepscope(&["tables", "--steps", "-", "--entries", "q16"], &list);
+    assert!(code == Some(0) && out.lines().count() > 1, "{out}{err}");
+}
+
+#[test]
+fn pulses_are_held_against_a_driver() {
+    // A DRV8825 asks for 1.9 us of each level; the pulse at 40 us is 1 us long.
+    let short = DUMP.replace("#20 1!", "#20 1! #21 0!");
+    let (code, out, err) = stepscope(&["capture", "-", "--driver", "drv8825", "--strict"], &short);
+    assert!(code == Some(3) && err.contains("violation"), "{out}{err}");
+    let (code, out, err) = stepscope(&["capture", "-", "--driver", "drv8825", "--strict"], DUMP);
+    assert_eq!((code, err.as_str()), (Some(0), ""), "{out}");
+    let (code, _, err) = stepscope(&["capture", "-", "--timing"], DUMP);
+    assert!(code == Some(2) && err.contains("the scenario names no driver"), "{err}");
+}
+
+#[test]
+fn as_json_it_has_the_tables_of_the_document() {
+    let (code, out, err) = stepscope(&["capture", "-", "--json"], DUMP);
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    let all: Value = serde_json::from_str(&out).expect("JSON");
+    assert_eq!(all["command"], "capture");
+    let tables = all["tables"].as_object().expect("tables");
+    let names: Vec<&str> = tables.keys().map(String::as_str).collect();
+    assert_eq!(names, ["channels", "comparison", "lines", "notes", "recording", "steps"]);
+    assert_eq!(tables["recording"][0]["map"], "STEP0=a.STEP");
+    assert_eq!(
+        (&tables["recording"][0]["count"], &tables["recording"][0]["map_proposed"]),
+        (&5.into(), &true.into())
+    );
+    assert_eq!(tables["channels"].as_array().map(Vec::len), Some(3));
+    assert_eq!(
+        (&tables["steps"][0]["steps"], &tables["steps"][0]["greatest_rate_steps_s"]),
+        (&2.into(), &1e5.into())
+    );
+    assert_eq!(tables["comparison"], Value::Array(Vec::new()));
+    let names = |with: &[&str]| {
+        let (_, out, _) = stepscope(&[&["capture", "-", "--json"], with].concat(), DUMP);
+        let all: Value = serde_json::from_str(&out).expect("JSON");
+        all["tables"].as_object().expect("tables").keys().cloned().collect::<Vec<_>>()
+    };
+    assert!(names(&["--driver", "a4988"]).ends_with(&["timing".to_owned(), "violations".to_owned()]));
+}
+
+/// The numbers of core/capture/recordings/README.md.
+#[test]
+fn the_step_tables_recording_has_the_jitter_of_its_readme() {
+    let (dump, plan) = (recording("step-table.vcd"), recording("step-table.json"));
+    let line = ["capture", &dump, "--clock", "16000000", "--against", &plan];
+    let found = row(&line, "comparison");
+    assert_eq!((&found["recorded"], &found["compared"]), (&800.into(), &800.into()));
+    assert_eq!((&found["largest_index"], &found["first_difference_index"]), (&638.into(), &34.into()));
+    let cycles = |column| us(&found, column) * 16.0;
+    assert_eq!(cycles("largest_late_s").round(), 115.0);
+    assert_eq!((cycles("rms_s") * 10.0).round(), 163.0);
+    assert_eq!((cycles("mean_s") * 10.0).round(), 39.0);
+    assert!(found["drift_ppm"].as_f64().is_some_and(|drift| drift.abs() < 0.1), "{found:#}");
+    // 42 steps fell due while interrupts were kept out: 18 cycles late or more.
+    let kept_out = row(&[&line[..], &["--within-us", "1"]].concat(), "comparison");
+    assert_eq!(kept_out["differing"], 42);
+    // The first step comes 505 cycles later than in the scenario's run.
+    assert_eq!(cycles("offset_s").round(), 505.0);
+}
+
+#[test]
+fn the_late_packets_recording_has_the_gap_of_its_readme() {
+    let folder = folder("packet");
+    let (session, plan) = (recording("late-packet.sr"), recording("late-packet.json"));
+    let line = ["capture", &session, "--against", &plan];
+    let (code, out, err) = stepscope(&line, "");
+    assert_eq!(code, Some(3), "{err}");
+    // BUSY is no signal.
+    assert!(out.contains("\nmap       RX=RX   (proposed; --map sets another)\n"), "{out}");
+    assert!(
+        out.contains("\nRX: 250000 baud (250198 measured), 120 bytes, raw packets of 2 bytes\n"),
+        "{out}"
+    );
+    // Both bytes of packet 24 are 1.484 ms late, and they are the scenario's.
+    let found = row(&line, "comparison");
+    assert_eq!((&found["compares"], &found["recorded"]), (&"bytes".into(), &120.into()));
+    assert_eq!((&found["differing"], &found["first_difference_index"]), (&2.into(), &48.into()));
+    assert_eq!((us(&found, "largest_late_s").round(), &found["other_values"]), (1484.0, &0.into()));
+    // The bytes themselves, in samples of 10 MHz.
+    let (_, table, _) = stepscope(&["capture", &session, "--bytes", "-"], "");
+    let starts: Vec<u64> = table
+        .lines()
+        .skip(1)
+        .step_by(2)
+        .map(|row| row.split(',').nth(1).and_then(|cycle| cycle.parse().ok()).expect("a cycle"))
+        .collect();
+    assert_eq!(starts.len(), 60);
+    let late: Vec<u64> =
+        (0..).zip(&starts).map(|(packet, start)| start - starts[0] - 20_000 * packet).collect();
+    assert_eq!(late[24], 14_838);
+    assert!((0..60).filter(|packet| *packet != 24).all(|packet| late[packet] <= 1), "{late:?}");
+    // Its scenario: the controller makes all steps, and ends later.
+    let made = text(&folder.join("made.json"));
+    let line = ["capture", &session, "--scenario", &made, "--against", &plan];
+    assert_eq!(stepscope(&line, "").0, Some(3));
+    let cycles = |out: &str| -> u64 {
+        let line = out.lines().find_map(|line| line.strip_prefix("cycles "));
+        line.and_then(|cycles| cycles.parse().ok()).expect("cycles")
+    };
+    let (planned, replayed) = (run(&plan, &[]), run(&made, &[]));
+    assert!(replayed.contains("positions 1600"), "{replayed}");
+    assert!((23_000..31_000).contains(&(cycles(&replayed) - cycles(&planned))), "{planned}{replayed}");
+}
