@@ -16,6 +16,7 @@ use stepscope_core::{
         position_error::{self, Scaled},
     },
     motion::AxisPlan,
+    peripheral::signal::Levels,
 };
 use wasm_bindgen::prelude::*;
 
@@ -93,6 +94,23 @@ impl Simulation {
             numbers(&result, &format!("{name}_max"), &band.max);
         }
         result
+    }
+
+    /// What a recording of this run would have of an axis and of RX: records as [`Simulation::record`] takes them.
+    #[must_use]
+    pub fn records_of(&self, axis: u8) -> Vec<u8> {
+        let axis = axis % 16;
+        let mask = 1 << axis | 1 << (Levels::DIR_SHIFT + u32::from(axis)) | Levels::RX;
+        let mut bytes = Vec::new();
+        let mut last = None;
+        for record in &self.selected().recording.trace {
+            let levels = record.levels.0 & mask;
+            if last.replace(levels) != Some(levels) {
+                bytes.extend(record.cycle.0.to_le_bytes());
+                bytes.extend(levels.to_le_bytes());
+            }
+        }
+        bytes
     }
 
     /// What is read at two cursors, given in cycles, and the mean and root mean square between them:
@@ -182,13 +200,20 @@ impl Simulation {
     /// What the run made of a channel whose steps are counted.
     pub(crate) fn pulses_of(&self, channel: u8) -> Pulses<'_> {
         let recorded = self.selected();
-        Pulses {
-            channel,
-            steps: recorded.steps_of(channel),
-            log: &recorded.recording.packets,
-            segments: self.experiment.segments().and_then(|all| all.lists().get(usize::from(channel))),
-            config: config(&self.experiment, self.selected),
+        if self.recorded.is_some() && self.selected == 0 {
+            return Pulses::recorded(
+                channel,
+                recorded.steps_of(channel),
+                self.experiment.config().clock_hz(),
+            );
         }
+        Pulses::of_run(
+            channel,
+            recorded.steps_of(channel),
+            &recorded.recording.packets,
+            self.experiment.segments().and_then(|all| all.lists().get(usize::from(channel))),
+            config(&self.experiment, self.selected),
+        )
     }
 
     fn scaled(&mut self, channel: u8, unit: Option<&f64>) -> Scaled<'_> {

@@ -4,8 +4,11 @@
 //! | --- | --- | --- |
 //! | `run` | scenarios judged and run ([`Simulation`]), links read and written | in a worker |
 //! | `charts` | charts as pictures | in the same module, on the main thread |
+//! | `capture` | files of logic analysers, read and mapped | in a module of its own, with the first such file, in a worker |
 //! | `study` | long questions: the study, what a motor can do, a file held against a run | in a module of its own, later, in further workers |
 
+#[cfg(feature = "capture")]
+mod capture;
 #[cfg(feature = "charts")]
 mod charts;
 #[cfg(feature = "study")]
@@ -15,6 +18,7 @@ mod convert;
 mod curves;
 #[cfg(feature = "run")]
 mod files;
+#[cfg(any(feature = "run", feature = "study"))]
 mod judged;
 #[cfg(feature = "run")]
 mod link;
@@ -55,6 +59,9 @@ mod trace_file;
 #[cfg(feature = "run")]
 mod verify;
 
+#[cfg(feature = "capture")]
+pub use capture::{CaptureFile, sample_facts};
+#[cfg(any(feature = "run", feature = "study"))]
 pub use judged::Judged;
 #[cfg(feature = "run")]
 pub use link::{decode_link, link_part, link_with};

@@ -28,13 +28,14 @@ impl Judged {
         experiment.run_each(&mut recordings);
         let Some(recording) = recordings.get_mut(controller) else { return Ok(JsValue::NULL) };
         recording.packets.finish();
-        let pulses = Pulses {
-            channel: axis,
-            steps: &steps(&recording.trace, axis),
-            log: &recording.packets,
-            segments: experiment.segments().and_then(|all| all.lists().get(usize::from(axis))),
-            config: config(experiment, controller),
-        };
+        let made = steps(&recording.trace, axis);
+        let pulses = Pulses::of_run(
+            axis,
+            &made,
+            &recording.packets,
+            experiment.segments().and_then(|all| all.lists().get(usize::from(axis))),
+            config(experiment, controller),
+        );
         let requested = axes_of(self.0.scenario(), controller).get(usize::from(axis));
         object(&plan.map(|plan| Measures::of(plan, &pulses, requested)))
     }

@@ -11,7 +11,8 @@ use stepscope_core::{
     },
     peripheral::{
         config::Config,
-        trace::{Recording, Step, steps},
+        signal::{Levels, Record, Sink},
+        trace::{Digest, Recording, Step, steps},
         units::Instant,
     },
     scenario::Scenario,
@@ -37,6 +38,8 @@ pub struct Simulation {
     pub(crate) selected: usize,
     /// Which rows of its packets the table shows.
     pub(crate) filter: Filter,
+    /// What was recorded, to be looked at in place of what the first controller makes; empty once that is done.
+    pub(crate) recorded: Option<Vec<Record>>,
 }
 
 /// What is kept of one controller.
@@ -60,6 +63,17 @@ impl ControllerRecording {
         {
             *place = Some(steps(&self.recording.trace, channel));
         }
+    }
+
+    /// Shows what was recorded in place of what was made.
+    fn show(&mut self, recorded: Vec<Record>, mut timing: Option<TimingCheck>) {
+        (self.recording.trace, self.recording.digest) = (recorded, Digest::default());
+        for record in &self.recording.trace {
+            self.recording.digest.record(*record);
+            timing.record(*record);
+        }
+        (self.timing, self.changes) = (timing, Changes::default());
+        self.changes.extend(&self.recording.trace);
     }
 
     /// Steps of a channel, once they are counted.
@@ -115,6 +129,9 @@ impl Simulation {
                 "the run makes more than {MAX_RECORDS} edges, which is more than a page can keep; shorten the motion, or run it with the stepscope command"
             )));
         }
+        if done && let (Some(recorded), Some(first)) = (&mut self.recorded, self.recordings.first_mut()) {
+            first.show(take(recorded), drivers::check(&self.scenario, MAX_KEPT));
+        }
         if done {
             self.recordings.iter_mut().for_each(|one| one.recording.packets.finish());
         }
@@ -125,6 +142,16 @@ impl Simulation {
             end_cycle: if done { cycle } else { self.experiment.cost().end_cycle.max(cycle) },
             records,
         })
+    }
+
+    /// Records of a recording, which are looked at in place of what the run makes: 16 bytes each, cycle and levels,
+    /// little-endian; piece after piece, before the run.
+    pub fn record(&mut self, bytes: &[u8]) {
+        let word = |bytes: &[u8]| bytes.try_into().map_or(0, u64::from_le_bytes);
+        let records = bytes
+            .chunks_exact(16)
+            .map(|record| Record { cycle: Instant(word(&record[..8])), levels: Levels(word(&record[8..])) });
+        self.recorded.get_or_insert_default().extend(records);
     }
 
     /// The views look at this controller from now on, 0 the first; one that there is not leaves it as it
@@ -156,6 +183,7 @@ impl Simulation {
             experiment: Rc::clone(experiment),
             selected: 0,
             filter: Filter::default(),
+            recorded: None,
         }
     }
 

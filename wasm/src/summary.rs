@@ -16,6 +16,8 @@ use wasm_bindgen::prelude::*;
 
 #[derive(Serialize)]
 struct Summary {
+    /// What was recorded is on show, not what the run makes.
+    recorded: bool,
     framed: bool,
     end_cycle: u64,
     end_s: f64,
@@ -73,7 +75,7 @@ struct Job {
 
 #[wasm_bindgen]
 impl Simulation {
-    /// What the run came to: `{framed, end_cycle, end_s, clock_hz, line_load, host, controllers}`. The
+    /// What the run came to: `{recorded, framed, end_cycle, end_s, clock_hz, line_load, host, controllers}`. The
     /// controllers are in the order of the scenario, each with its address (or null), digest, records, edges,
     /// channels, positions, faults `{bits, names}`, ticks_done, state (null on a raw line), changing (the
     /// bits of the signals that change at all) and violations (null without a driver). The host is null
@@ -87,6 +89,7 @@ impl Simulation {
         let digests = self.recordings.iter().map(|recorded| &recorded.recording.digest);
         let run = RunSummary::new(&self.experiment, &self.run, digests);
         object(&Summary {
+            recorded: self.recorded.is_some(),
             framed: run.framed,
             end_cycle: run.cycles.0,
             end_s: run.cycles.0 as f64 / f64::from(run.clock_hz),
@@ -111,8 +114,8 @@ fn host(counts: Counts, controllers: &[ControllerSummary]) -> Host {
 fn controller((summary, recorded): (ControllerSummary, &ControllerRecording)) -> Controller {
     Controller {
         address: summary.address,
-        digest: format!("{:016x}", summary.digest),
-        records: summary.records,
+        digest: format!("{:016x}", recorded.recording.digest.value()),
+        records: recorded.recording.digest.records(),
         edges: edges::count(&recorded.recording.trace),
         channels: summary.channels,
         positions: summary.positions,

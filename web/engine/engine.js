@@ -23,6 +23,8 @@ import { compiled } from "./wasm.js";
 /** How long a cancel may go unanswered, in ms: one long call hears nothing. */
 const PATIENCE_MS = 1000;
 
+/** Recordings that undo finds again. */
+const MAX_RECORDINGS = 3;
 /** Most further workers of one question. */
 const MAX_FURTHER = 4;
 /** A further worker that is not needed ends after this time, in ms: it holds memory. */
@@ -46,6 +48,8 @@ export class Engine {
   #good = null;
   /** @type {{run: number, json: string} | null} */
   #restoring = null;
+  /** What is looked at in place of what these scenarios' runs make, the newest last. @type {{scenario: string, pieces: Uint8Array[]}[]} */
+  #recordings = [];
   /** The controller that the worker was told to look at. */
   #selected = 0;
   #cancelling = 0;
@@ -119,6 +123,15 @@ export class Engine {
   run(revision, json) {
     this.#running = { run: revision, json };
     this.#worker.postMessage(this.#running);
+  }
+
+  /**
+   * From now on a run of this scenario shows what was recorded, as long as its source, clock, channels and plant are the same.
+   * @param {string} scenario @param {Uint8Array[]} pieces  Its records.
+   */
+  record(scenario, pieces) {
+    this.#recordings = [...this.#recordings, { scenario, pieces }].slice(-MAX_RECORDINGS);
+    this.#worker.postMessage({ recordings: this.#recordings });
   }
 
   /** Ends a run that is not done yet. @param {number} revision */
@@ -276,6 +289,7 @@ export class Engine {
   #renew(why) {
     this.#drop(why);
     this.#worker = this.#start();
+    this.#worker.postMessage({ recordings: this.#recordings });
     // Should it end this worker, too, it is not made again.
     [this.#restoring, this.#good] = [this.#good, null];
     if (this.#restoring) this.#worker.postMessage({ ...this.#restoring, quiet: true, select: this.#selected });
@@ -295,8 +309,8 @@ export class Engine {
 
 /** A worker that has the core, or the study's part of it; the page says which script it begins with. @param {"core" | "study"} which */
 function another(which) {
-  const { worker, laterWorker } = byId("main").dataset;
-  const made = new Worker(/** @type {string} */ (which === "core" ? worker : laterWorker), { type: "module" });
+  const { worker, studyWorker } = byId("main").dataset;
+  const made = new Worker(/** @type {string} */ (which === "core" ? worker : studyWorker), { type: "module" });
   compiled(which).then(
     (module) => made.postMessage({ module }),
     // What goes wrong with the core is told by who waits for the charts.

@@ -1,16 +1,21 @@
 /**
- * The core's code: fetched and compiled once, for the charts on the page and for every worker; and that of the study, once
- * something is asked of it. The page says where they lie, because what is built has other names.
+ * The core's code: fetched and compiled once, for the charts on the page and for every worker; and that of the study, and
+ * of files of logic analysers, once something is asked of it. The page says where they lie, because what is built has other names.
  */
 import { byId } from "../dom.js";
 
-/** @type {{core?: Promise<WebAssembly.Module>, study?: Promise<WebAssembly.Module>}} */
+/** @typedef {"core" | "study" | "capture"} Part */
+
+/** @type {{[part in Part]?: Promise<WebAssembly.Module>}} */
 const modules = {};
 
-/** @param {"core" | "study"} which @returns {Promise<WebAssembly.Module>} */
+/** @param {Part} which @returns {Promise<WebAssembly.Module>} */
 export function compiled(which = "core") {
+  const { studyCore, captureCore } = byId("main").dataset;
   const address = () =>
-    which === "core" ? /** @type {HTMLLinkElement} */ (byId("core")).href : (byId("main").dataset.laterCore ?? "");
+    which === "core"
+      ? /** @type {HTMLLinkElement} */ (byId("core")).href
+      : ((which === "study" ? studyCore : captureCore) ?? "");
   const made = modules[which] ?? compile(address());
   modules[which] = made;
   // What could not be fetched is asked for again.

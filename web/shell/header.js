@@ -10,6 +10,12 @@ import { loadTheme, saveTheme } from "./storage.js";
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Preset} Preset */
 
+/** Recordings that can be opened as presets are. */
+const RECORDED = [
+  ["recorded-step-table", "A step table on an ATmega328P"],
+  ["recorded-late-packet", "A packet that comes too late"],
+];
+
 /** Progress is shown only for runs longer than this, in ms. */
 const PATIENCE_MS = 90;
 
@@ -24,9 +30,12 @@ export function createHeader({ presets, cancel, retry, ...page }) {
   const progress = /** @type {HTMLProgressElement} */ (byId("progress"));
   let since = 0;
 
-  fill(preset, element("option", { value: "" }, "Presets…"), ...groups(presets));
+  const recorded = RECORDED.map(([id, title]) => element("option", { value: id }, title));
+  const recordings = element("optgroup", { label: "Recordings" }, ...recorded);
+  fill(preset, element("option", { value: "" }, "Presets…"), ...groups(presets), recordings);
   preset.disabled = false;
   preset.addEventListener("change", () => {
+    if (RECORDED.some(([id]) => id === preset.value)) openSample(preset.value);
     const chosen = presets.find(({ id }) => id === preset.value);
     if (chosen) dispatch({ type: "replace", scenario: readJson(chosen.scenario), origin: `preset:${chosen.id}` });
   });
@@ -44,6 +53,17 @@ export function createHeader({ presets, cancel, retry, ...page }) {
       run: (event) => (isElsewhere(event) ? false : dispatch({ type: "redo" })),
     },
   ]);
+
+  /** @param {string} id */
+  async function openSample(id) {
+    preset.value = "";
+    try {
+      await (await import("./recording.js")).openRecording(page, id);
+    } catch (error) {
+      const text = `The recording cannot be opened: ${error instanceof Error ? error.message : error}`;
+      dispatch({ type: "notice", notice: { kind: "error", text, place: null } });
+    }
+  }
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {

@@ -1,4 +1,4 @@
-/** Files that the visitor chooses, or drops on the page; what becomes of them loads with the first (opened.js). */
+/** Files that the visitor chooses, drops on the page, or pastes; what becomes of them loads with the first (opened.js). */
 import { byId } from "../dom.js";
 
 /** @param {import("./opened.js").Given} page */
@@ -45,6 +45,14 @@ export function createImports(page) {
     const files = [...(event.dataTransfer?.files ?? [])];
     const text = event.dataTransfer?.getData("text/plain") ?? "";
     open(files.length > 0 ? files : [new File([text], "the dropped text")]);
+  });
+
+  document.addEventListener("paste", (event) => {
+    const { clipboardData, target } = event;
+    const text = clipboardData?.getData("text/plain") ?? "";
+    if (text === "" || target instanceof HTMLInputElement || target instanceof HTMLTextAreaElement) return;
+    event.preventDefault();
+    open([new File([text], "the pasted text")]);
   });
 
   /** @param {File[]} files */

@@ -1,6 +1,6 @@
 /**
- * What becomes of a file that the visitor opens: a scenario, a link as text, a table of packets, and edges
- * that were saved, which are held against the run. Whatever comes, the own work stays: undo brings it back.
+ * What becomes of a file that the visitor opens: a scenario, a link as text, a table of packets, edges
+ * that were saved, which are held against the run, and recordings (recording.js). Whatever comes, the own work stays: undo brings it back.
  */
 import { Dropped } from "../engine/engine.js";
 import { readJson } from "../state/json.js";
@@ -26,7 +26,7 @@ const MAX_TOLD = 8;
 const LINK = /(?:^|[#&\s])c(?:=|%3D)\d+(?:\.|%2E)/i;
 
 const WHAT =
-  "Stepscope opens: a scenario (JSON), a share link as text, a table of packets (CSV) to send again, and edges (CSV or trace) to compare with this run.";
+  "Stepscope opens: a scenario (JSON), a share link as text, a table of packets (CSV) to send again, edges (CSV or trace) to compare with this run, and recordings (VCD, sigrok, Saleae, bytes in hexadecimal, positions).";
 
 /** @param {Given} page @param {File[]} files */
 export async function openFiles({ engine, openLink, dispatch, now }, files) {
@@ -53,12 +53,7 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
         );
       else if (/(^|,)start_(cycle|s)(,|\s*$)/.test(first) && /(^|,)bytes(,|\s*$)/.test(first)) await packets(file);
       else if (/^cycle,/.test(first) || /^[0-9a-f]+ [0-9a-f]+\s*$/.test(first)) await edges(file);
-      else if (head.startsWith("$"))
-        tell(
-          "error",
-          `${file.name} is a value change dump; these are only written. To compare a run, save its edges as CSV or trace. ${WHAT}`,
-        );
-      else tell("error", `${file.name} is nothing that can be opened here. ${WHAT}`);
+      else await (await import("./recording.js")).openRecording({ engine, dispatch, now }, file);
     } catch (error) {
       if (!(error instanceof Dropped)) tell("error", `${file.name} cannot be opened: ${message(error)}`);
     }

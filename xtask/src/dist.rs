@@ -92,12 +92,13 @@ fn names_others(file: &str) -> bool {
 
 /// Where a page or the manifest names a file that loads with it.
 const AT_ONCE: [&str; 4] = ["href=\"", "src=\"", "data-worker=\"", "\"src\": \""];
-/// Where a page names a file that its scripts ask for later; all of these load together.
-const LATER: [&str; 2] = ["data-later-worker=\"", "data-later-core=\""];
+/// Where a page names a file that its scripts ask for later; those of one row load together.
+const LATER: [[&str; 2]; 2] =
+    [["data-study-worker=\"", "data-study-core=\""], ["data-capture-worker=\"", "data-capture-core=\""]];
 
 /// Every file of this site that a page or the manifest names, in its order.
 fn named(text: &str) -> impl Iterator<Item = &str> {
-    files_at(text, &AT_ONCE).chain(files_at(text, &LATER))
+    files_at(text, &AT_ONCE).chain(files_at(text, LATER.as_flattened()))
 }
 
 /// Those that stand behind one of these; the page's own address, `./`, is none.
@@ -203,8 +204,10 @@ impl Site {
         opening.extend([PAGE.to_owned(), SERVICE_WORKER.to_owned()]);
         let mut later = BTreeMap::new();
         let page = self.texts.get(PAGE).map_or("", String::as_str);
-        if let Some(first) = files_at(page, &LATER).next() {
-            later.insert(first.to_owned(), with(self.wanted(PAGE, &LATER, bundles)));
+        for places in &LATER {
+            if let Some(first) = files_at(page, places).next() {
+                later.insert(first.to_owned(), with(self.wanted(PAGE, places, bundles)));
+            }
         }
         for page in self.texts.keys().filter(|name| name.ends_with(".html") && *name != PAGE) {
             let mut files = with(self.wanted(page, &AT_ONCE, bundles));

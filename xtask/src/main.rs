@@ -7,7 +7,7 @@
 //! | `sources` | form, lints and types of the page's sources |
 //! | `dist` | the page as hosts serve it: names with hashes, lists, licences |
 //! | `headers`, `serve` | the local server, whose headers are `web/_headers`' |
-//! | `steps`, `browser`, `engines`, `bare_metal`, `dump_readers` | `cargo xtask test`, step by step |
+//! | `steps`, `browser`, `engines`, `bare_metal`, `dump_readers`, `avr` | `cargo xtask test`, step by step |
 //! | `bench` | `cargo xtask bench` |
 //! | `fuzz` | `cargo xtask fuzz` |
 //! | `mutants` | `cargo xtask mutants` |
@@ -17,6 +17,7 @@
 
 mod apt;
 mod attend;
+mod avr;
 mod bare_metal;
 mod bench;
 mod browser;
@@ -67,7 +68,7 @@ enum Task {
         #[command(flatten)]
         optimising: Optimising,
     },
-    /// Build the page's wasm into web/pkg and web/pkg-study, for `serve`
+    /// Build the page's wasm into web/pkg, web/pkg-study and web/pkg-capture, for `serve`
     Build {
         #[command(flatten)]
         optimising: Optimising,

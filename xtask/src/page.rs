@@ -32,8 +32,10 @@ pub(crate) async fn shipped(optimise: Optimise) -> Result<Parts> {
 }
 
 /// The wasm modules of the page: the folder of each in `web`, and the features of the crate that it has. What opening the
-/// page loads runs scenarios and draws; the study's questions go to workers with a module of their own.
-pub(crate) const MODULES: [(&str, &str); 2] = [("pkg", "run,charts"), ("pkg-study", "study")];
+/// page loads runs scenarios and draws; the study's questions, and files of logic analysers, go to workers with
+/// modules of their own.
+pub(crate) const MODULES: [(&str, &str); 3] =
+    [("pkg", "run,charts"), ("pkg-study", "study"), ("pkg-capture", "capture")];
 
 /// Builds the wasm crate into the packages that the page loads, installing the tools first if they are missing.
 pub(crate) async fn build(optimise: Optimise) -> Result<()> {

@@ -1,0 +1,246 @@
+//! Files of logic analysers, for a worker of their own: read as a stream, mapped, looked at, and handed on as records.
+
+use crate::convert::object;
+use js_sys::{Function, Uint8Array};
+use serde::{Deserialize, Serialize};
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use stepscope_core::{
+    capture::{
+        Capture, ChannelMap,
+        read::{Limits, Reading, read},
+        samples,
+    },
+    inspect::recording::{
+        events::Events,
+        opened::{Ask, Opened},
+        report::ChannelReport,
+    },
+    peripheral::{
+        signal::{Levels, Record},
+        units::Instant,
+    },
+};
+use wasm_bindgen::prelude::*;
+
+/// Bytes that are asked for at a time.
+const PIECE: usize = 1 << 20;
+
+/// A file that is read by a function of where and how much, as a worker can read it at once.
+struct Pieces {
+    read: Function,
+    at: u64,
+    size: u64,
+}
+
+impl Read for Pieces {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let length = (self.size.saturating_sub(self.at)).min(buffer.len() as u64);
+        if length == 0 {
+            return Ok(0);
+        }
+        let piece = self.read.call2(&JsValue::NULL, &(self.at as f64).into(), &(length as f64).into());
+        let piece = piece.map_err(|_| io::Error::other("the file can no longer be read; open it again"))?;
+        let piece = Uint8Array::new(&piece).to_vec();
+        let taken = piece.len().min(buffer.len());
+        buffer[..taken].copy_from_slice(&piece[..taken]);
+        self.at += taken as u64;
+        Ok(taken)
+    }
+}
+
+impl Seek for Pieces {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        let (base, by) = match to {
+            SeekFrom::Start(at) => (at, 0),
+            SeekFrom::Current(by) => (self.at, by),
+            SeekFrom::End(by) => (self.size, by),
+        };
+        let at = base.checked_add_signed(by);
+        self.at = at.ok_or_else(|| io::Error::other("before the file's beginning"))?;
+        Ok(self.at)
+    }
+}
+
+/// Records of 16 bytes each, cycle and levels, little-endian.
+fn records_of(bytes: &[u8]) -> Vec<Record> {
+    let word = |bytes: &[u8]| bytes.try_into().map_or(0, u64::from_le_bytes);
+    let record =
+        |record: &[u8]| Record { cycle: Instant(word(&record[..8])), levels: Levels(word(&record[8..])) };
+    bytes.chunks_exact(16).map(record).collect()
+}
+
+/// A recording that was read.
+#[wasm_bindgen]
+pub struct CaptureFile {
+    capture: Capture,
+    error: Option<String>,
+    opened: Option<Opened>,
+}
+
+/// The file's name of a sample, and the scenario that it was to follow: `{file, scenario}`.
+///
+/// # Errors
+/// If there is no such sample.
+#[wasm_bindgen]
+pub fn sample_facts(id: &str) -> Result<JsValue, JsError> {
+    #[derive(Serialize)]
+    struct SampleFacts {
+        file: &'static str,
+        scenario: &'static str,
+    }
+    let found = samples::sample(id).ok_or_else(|| JsError::new("there is no such recording"))?;
+    object(&SampleFacts { file: found.file, scenario: found.scenario })
+}
+
+/// What a file holds.
+#[derive(Serialize)]
+struct Facts<'a> {
+    format: String,
+    channels: Vec<&'a str>,
+    count: usize,
+    /// Proposed; empty where there are no levels, or nothing says what a channel is.
+    map: String,
+    has_levels: bool,
+    has_times: bool,
+    notes: &'a [String],
+    /// Why that is not all of it.
+    error: Option<&'a str>,
+}
+
+/// What is said of it.
+#[derive(Deserialize)]
+struct Asked {
+    map: Option<String>,
+    clock_hz: Option<u32>,
+    sample_rate_hz: Option<u64>,
+    baud: Option<u32>,
+    /// When its first step, or byte, is to come, in s.
+    first_s: Option<f64>,
+    /// Of this channel.
+    channel: Option<u8>,
+}
+
+/// What it comes to.
+#[derive(Serialize)]
+struct Looked<'a> {
+    map: &'a str,
+    clock_hz: u32,
+    rounding: &'a str,
+    end_s: f64,
+    records: usize,
+    notes: &'a [String],
+    steps: &'a [ChannelReport],
+    lines: Vec<String>,
+}
+
+#[wasm_bindgen]
+impl CaptureFile {
+    /// Reads a file of `size` bytes. `read(at, length)` gives its bytes; `watch(bytes)` hears how far it is. At most `most`
+    /// changes, bytes or positions are kept.
+    #[wasm_bindgen(constructor)]
+    #[must_use]
+    pub fn new(read_piece: Function, size: f64, watch: &Function, most: u32) -> Self {
+        let pieces = Pieces { read: read_piece, at: 0, size: size.max(0.0) as u64 };
+        let mut tell = |bytes: u64| watch.call1(&JsValue::NULL, &(bytes as f64).into()).is_ok();
+        let limits = Limits { most: most as usize };
+        let Reading { capture, error } = read(BufReader::with_capacity(PIECE, pieces), &limits, &mut tell);
+        Self { capture, error: error.map(|error| error.to_string()), opened: None }
+    }
+
+    /// One of the samples; none of another name.
+    #[must_use]
+    pub fn sample(id: &str) -> Option<Self> {
+        let bytes = samples::sample(id)?.bytes;
+        let Reading { capture, error } = read(io::Cursor::new(bytes), &Limits::default(), &mut |_| true);
+        Some(Self { capture, error: error.map(|error| error.to_string()), opened: None })
+    }
+
+    /// What it holds: `{format, channels, count, map, has_levels, has_times, notes, error}`.
+    ///
+    /// # Errors
+    /// Never in practice.
+    pub fn facts(&self) -> Result<JsValue, JsError> {
+        let capture = &self.capture;
+        object(&Facts {
+            format: capture.format.to_string(),
+            channels: capture.channels.iter().map(|channel| channel.name.as_str()).collect(),
+            count: capture.len(),
+            map: ChannelMap::proposed(capture).to_text(capture),
+            has_levels: !capture.changes.is_empty(),
+            has_times: capture.timebase.is_some(),
+            notes: &capture.left_out,
+            error: self.error.as_deref(),
+        })
+    }
+
+    /// Looks at it by what is said of it, `{map, clock_hz, sample_rate_hz, baud, first_s, channel}`, each of which may be left
+    /// out: `{map, clock_hz, rounding, end_s, records, notes, steps, lines}`.
+    ///
+    /// # Errors
+    /// With what is missing, or wrong.
+    pub fn look(&mut self, asked: JsValue) -> Result<JsValue, JsError> {
+        let Asked { map, clock_hz, sample_rate_hz, baud, first_s, channel } =
+            serde_wasm_bindgen::from_value(asked).map_err(JsError::from)?;
+        self.opened = None;
+        let ask = Ask { map, clock_hz, sample_rate_hz, baud };
+        let mut opened = Opened::new(self.capture.clone(), &ask)?;
+        if let Some(first_s) = first_s {
+            opened.begin_at(channel.unwrap_or(0), first_s);
+        }
+        let opened = self.opened.insert(opened);
+        object(&Looked {
+            map: &opened.map,
+            clock_hz: opened.clock_hz,
+            rounding: &opened.rounding,
+            end_s: opened.end_s,
+            records: opened.records.len(),
+            notes: &opened.notes,
+            steps: &opened.report.channels,
+            lines: opened.report.lines.iter().map(|line| line.to_text()).collect(),
+        })
+    }
+
+    /// The scenario that it is shown with, as JSON: the one that gives it again, or, where that is too long, one that has
+    /// only its clock and its channels.
+    #[must_use]
+    pub fn scenario(&self, file: &str, steps: bool) -> Option<String> {
+        Some(self.opened.as_ref()?.shown_scenario(file, steps).to_json())
+    }
+
+    /// When the first step of a channel, or, where it has none, the first byte of RX comes in a run, in s: its records, as the
+    /// run gives them, in cycles of `clock_hz`. None where there is neither.
+    #[must_use]
+    pub fn first_of(&self, run: &[u8], clock_hz: u32, channel: u8, baud: u32) -> Option<f64> {
+        let kind = self.opened.as_ref()?.events(channel).kind;
+        Events::of_records(&records_of(run), clock_hz, kind, channel, baud).first_s()
+    }
+
+    /// How it stands to such a run, the first steps, or bytes, of both taken for the same instant: the core's `Beside`; null
+    /// where one of both has none.
+    ///
+    /// # Errors
+    /// Never in practice.
+    pub fn beside(&self, run: &[u8], clock_hz: u32, channel: u8, baud: u32) -> Result<JsValue, JsError> {
+        let found = self.opened.as_ref().and_then(|opened| {
+            let own = opened.events(channel);
+            let model = Events::of_records(&records_of(run), clock_hz, own.kind, channel, baud);
+            own.beside(&model, 0, 1.0 / f64::from(own.clock_hz.min(model.clock_hz)))
+        });
+        object(&found)
+    }
+
+    /// Its records from one on, at most so many: 16 bytes each, cycle and levels, little-endian. None where no levels were
+    /// recorded.
+    #[must_use]
+    pub fn records(&self, from: u32, most: u32) -> Vec<u8> {
+        let Some(opened) = self.opened.as_ref().filter(|opened| opened.has_levels()) else {
+            return Vec::new();
+        };
+        let rest = opened.records.get(from as usize..).unwrap_or_default();
+        let bytes = rest.iter().take(most as usize).flat_map(|record| {
+            let [cycle, levels] = [record.cycle.0, record.levels.0].map(u64::to_le_bytes);
+            cycle.into_iter().chain(levels)
+        });
+        bytes.collect()
+    }
+}

@@ -1,0 +1,80 @@
+/** Talks to the worker that reads files of logic analysers (capture_worker.js), one file at a time. */
+import { byId } from "../dom.js";
+import { compiled } from "./wasm.js";
+
+/**
+ * @typedef {{format: string, channels: string[], count: number, map: string, has_levels: boolean, has_times: boolean,
+ *   notes: string[], error: string | null}} Facts
+ * @typedef {{channel: number, figures: {steps: number, right: number, left: number, turns: number, position: number,
+ *   first_s: number, last_s: number, shortest_interval_s: number | null, shortest_at_s: number | null, greatest_rate_steps_s: number | null,
+ *   mean_rate_steps_s: number | null, greatest_acceleration_steps_s2: number | null}}} ChannelSteps
+ * @typedef {{map: string, clock_hz: number, rounding: string, end_s: number, records: number, notes: string[],
+ *   steps: ChannelSteps[], lines: string[]}} Looked
+ * @typedef {{map?: string, clock_hz?: number, sample_rate_hz?: bigint, baud?: number, first_s?: number, channel?: number}} Asked
+ * @typedef {{records: Uint8Array, clock_hz: number, channel: number, baud: number}} Model  What a run has of a channel and of RX.
+ */
+
+/** Most changes that a page keeps; in the worker and in the run they take 48 bytes each. */
+const MOST = 20_000_000;
+/** Records that are handed on at a time. */
+const PIECE = 1 << 19;
+
+/** @param {File | string} file  Or the name of a sample. @param {(part: number) => void} onProgress */
+export function openCapture(file, onProgress) {
+  const worker = new Worker(/** @type {string} */ (byId("main").dataset.captureWorker), { type: "module" });
+  /** @type {Map<number, {resolve: (value: any) => void, reject: (error: Error) => void}>} */
+  const asked = new Map();
+  let next = 0;
+  /** What a sample is: its file's name, and the scenario that it was to follow. @type {{file: string, scenario: string} | null} */
+  let sample = null;
+  /** @type {Promise<Facts>} */
+  const facts = new Promise((resolve, reject) => {
+    worker.onerror = (event) => reject(new Error(event.message || "this part of the page could not be loaded"));
+    worker.onmessage = ({ data }) => {
+      if ("progress" in data) return onProgress(data.progress);
+      if ("facts" in data) {
+        sample = data.sample ?? null;
+        return resolve(data.facts);
+      }
+      if (data.id === undefined) return reject(new Error(data.error));
+      const question = asked.get(data.id);
+      asked.delete(data.id);
+      if ("error" in data) question?.reject(new Error(data.error));
+      else question?.resolve(data.value);
+    };
+    compiled("capture").then((module) => {
+      worker.postMessage({ module });
+      worker.postMessage(typeof file === "string" ? { sample: file } : { file, most: MOST });
+    }, reject);
+  });
+
+  /** @param {string} method @param {...any} args @returns {Promise<any>} */
+  const ask = (method, ...args) =>
+    new Promise((resolve, reject) => {
+      asked.set(next, { resolve, reject });
+      worker.postMessage({ id: next++, method, args });
+    });
+
+  return {
+    facts,
+    sample: () => sample,
+    /** @param {Asked} by @returns {Promise<Looked>} */
+    look: (by) => ask("look", by),
+    /** The scenario that it is shown with. @param {boolean} ofSteps @returns {Promise<string>} */
+    scenario: (ofSteps) => ask("scenario", sample?.file ?? /** @type {File} */ (file).name, ofSteps),
+    /** When the first step, or byte, of a run comes, in s. @param {Model} of @returns {Promise<number | undefined>} */
+    firstOf: ({ records, clock_hz, channel, baud }) => ask("first_of", records, clock_hz, channel, baud),
+    /** How it stands to a run. @param {Model} of @returns {Promise<any>} */
+    beside: ({ records, clock_hz, channel, baud }) => ask("beside", records, clock_hz, channel, baud),
+    /** All of its records, in pieces. @param {number} count @returns {Promise<Uint8Array[]>} */
+    async records(count) {
+      const pieces = [];
+      for (let from = 0; from < count; from += PIECE) {
+        const piece = await ask("records", from, PIECE);
+        if (piece.length > 0) pieces.push(piece);
+      }
+      return pieces;
+    },
+    close: () => worker.terminate(),
+  };
+}

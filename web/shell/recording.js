@@ -1,0 +1,410 @@
+/**
+ * A recording that is opened: what its file holds, which channel is which signal, and what comes of it; then it takes the
+ * place of the experiment, and all views look at it. What the file does not tell is asked, never guessed.
+ */
+import { button, element, fill } from "../dom.js";
+import { openCapture } from "../engine/capture.js";
+import { readJson } from "../state/json.js";
+import { count, counted, parseNumber, plain, si, time } from "../state/number.js";
+import { isStale } from "../state/state.js";
+import { message } from "./link.js";
+import { around } from "./notices.js";
+import { ownIsKept } from "./storage.js";
+
+/** @typedef {import("../engine/capture.js").Facts} Facts */
+/** @typedef {import("../engine/capture.js").Looked} Looked */
+/** @typedef {import("../engine/capture.js").Asked} Asked */
+/** @typedef {{engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} Page */
+
+/** Channels of one bus. */
+const CHANNELS = 16;
+/** Maps that are kept, by the names of a file's channels. */
+const MAPS = "stepscope.maps";
+const MAX_MAPS = 30;
+/** Greatest number that a field takes: what the core has room for. */
+const GREATEST = 2 ** 32 - 1;
+/** Rest after a change before it is looked again, in ms. */
+const REST_MS = 200;
+/** Greatest drift that is told of two clocks. */
+const MAX_DRIFT_PPM = 50_000;
+/** How long the experiment before may run, in ms. */
+const PATIENCE_MS = 60_000;
+
+/** @param {Page} page @param {File | string} source  Or the name of a sample. */
+export async function openRecording(page, source) {
+  const what = typeof source === "string" ? "" : ` ${source.name}, ${si(source.size, "B", 3)}`;
+  const about = element("p", { "aria-live": "polite" }, `Reading${what}…`);
+  const bar = element("progress", { max: "1", value: "0", "aria-label": "Read" });
+  const percent = element("p", { "aria-hidden": "true" });
+  const capture = openCapture(source, (part) => {
+    bar.value = part;
+    percent.textContent = `${Math.floor(100 * part)} %`;
+  });
+  const close = () => {
+    capture.close();
+    dialog.close();
+    dialog.remove();
+  };
+  const body = element("div", {}, about, bar, percent);
+  const foot = element(
+    "p",
+    { class: "named" },
+    button("Cancel", "Cancel: leave the file; the experiment stays", close),
+  );
+  const dialog = element("dialog", { class: "recording", "aria-label": "Recording" }, body, foot);
+  dialog.addEventListener("cancel", close);
+  document.body.append(dialog);
+  dialog.showModal();
+  try {
+    const facts = await capture.facts;
+    if (!dialog.open) return;
+    if (facts.count === 0) throw new Error(facts.error ?? "it holds nothing that was recorded");
+    const sample = capture.sample();
+    if (sample) {
+      const { scenario } = await page.engine.ask("check", sample.scenario);
+      page.dispatch({ type: "replace", scenario: readJson(scenario), origin: "shared" });
+      await resultOf(page);
+    }
+    if (dialog.open)
+      show(page, sample?.file ?? /** @type {File} */ (source).name, capture, facts, { body, foot, close });
+  } catch (error) {
+    close();
+    throw error;
+  }
+}
+
+/** The result of the experiment as it stands, once it has run; null where that does not come. @param {Page} page */
+async function resultOf({ now }) {
+  const { revision } = now();
+  for (let waited = 0; waited < PATIENCE_MS && now().revision === revision; waited += REST_MS) {
+    const { result } = now();
+    if (result?.revision === revision) return result;
+    await new Promise((rested) => setTimeout(rested, REST_MS));
+  }
+  return null;
+}
+
+/**
+ * @param {Page} page @param {string} file  Its name. @param {ReturnType<typeof openCapture>} capture @param {Facts} facts
+ * @param {{body: HTMLElement, foot: HTMLElement, close: () => void}} parts
+ */
+function show(page, file, capture, facts, { body, foot, close }) {
+  const { engine, dispatch, now } = page;
+  const { format, channels } = facts;
+  const rows = channels.map((name) => channelRow(name));
+  const isBytes = !facts.has_levels && /\bbytes\b/.test(format);
+  const clock = numberField("Clock", "Hz", "the file's own");
+  const rate = numberField("Sample rate", "Hz", "not told: give it");
+  const baud = numberField("Bit rate", "baud", facts.has_times || !isBytes ? "as measured" : "not told: give it");
+  // Bytes without times have no samples: how long each lasts, the bit rate says.
+  const fields = facts.has_times ? [clock, baud] : isBytes ? [baud, clock] : [rate, clock, baud];
+  const result = element("div", { class: "recorded", "aria-live": "polite" });
+  const plan = planOf();
+  const besides = element("input", { id: "recording-beside", type: "checkbox", ...(plan ? { checked: "" } : {}) });
+  const beside = element("label", { class: "check" }, besides, ` beside this experiment, from the first step on`);
+  beside.hidden = plan === null;
+  const take = button(
+    "Show it",
+    "Show it: look at the recording with all views",
+    () => void taken().catch((error) => refuse(message(error))),
+  );
+  take.className = "main";
+  foot.prepend(take);
+  /** @type {Looked | null} */
+  let looked = null;
+  let timer = 0;
+  let asking = 0;
+
+  const notes = [...(facts.error ? [`Not read to its end: ${facts.error}.`] : []), ...facts.notes];
+  fill(
+    body,
+    element("h2", {}, file),
+    element("p", {}, `${format}, ${counted(facts.count, facts.has_levels ? "change" : isBytes ? "byte" : "row")}`),
+    ...notes.map((note) => element("p", { class: "note" }, note)),
+    ...(facts.has_levels ? [table(rows)] : []),
+    element("div", { class: "fields" }, ...fields.map(({ label }) => label)),
+    beside,
+    result,
+  );
+  put(facts.has_levels ? (keptMap(channels) ?? facts.map) : "");
+  body.addEventListener("input", () => {
+    clearTimeout(timer);
+    // What was looked at is no longer what is asked.
+    asking += 1;
+    take.disabled = true;
+    timer = window.setTimeout(() => void look(), REST_MS);
+  });
+  void look().then(() => {
+    // Where something is missing, its field is first.
+    const missing = facts.has_levels && map() === "" ? rows[0]?.signal : fields[0].label.querySelector("input");
+    const first = take.disabled ? missing : take;
+    if (foot.contains(document.activeElement)) (first ?? take).focus();
+  });
+
+  /** The model that it can stand beside: when its first step comes. */
+  function planOf() {
+    const { result: last } = now();
+    return last && !isStale(now()) ? last : null;
+  }
+
+  /** Sets the channels by a map's text. @param {string} map */
+  function put(map) {
+    for (const pair of map.split(",")) {
+      const [signal, channel = ""] = pair.split("=");
+      const name = channel.replace(/^!/, "");
+      const at = name.startsWith("#") ? Number(name.slice(1)) : channels.indexOf(name);
+      const row = rows[at];
+      if (!row) continue;
+      row.signal.value = signal;
+      row.inverted.checked = channel.startsWith("!");
+    }
+  }
+
+  /** The map as its text has it; a channel by its place, which no name can spoil. */
+  function map() {
+    const pairs = rows.map(({ signal, inverted }, index) =>
+      signal.value ? `${signal.value}=${inverted.checked ? "!" : ""}#${index}` : "",
+    );
+    return pairs.filter((pair) => pair !== "").join(",");
+  }
+
+  /** @param {Asked} more @returns {Asked} */
+  function asked(more) {
+    const said = { ...more };
+    if (facts.has_levels) said.map = map();
+    if (clock.value()) said.clock_hz = clock.value();
+    if (rate.value()) said.sample_rate_hz = BigInt(rate.value());
+    if (baud.value()) said.baud = baud.value();
+    return said;
+  }
+
+  /** @param {Asked} more */
+  async function look(more = {}) {
+    const own = ++asking;
+    take.disabled = true;
+    if (fields.some((field) => field.isWrong())) return;
+    try {
+      if (facts.has_levels && map() === "") throw new Error("choose which channel is STEP, DIR, RX or TX");
+      const found = await capture.look(asked(more));
+      if (own !== asking) return;
+      looked = found;
+      tell(found);
+      take.disabled = false;
+    } catch (error) {
+      if (own !== asking) return;
+      refuse(message(error));
+    }
+  }
+
+  /** @param {string} why */
+  function refuse(why) {
+    looked = null;
+    fill(result, element("p", { class: "error" }, `${why[0].toUpperCase()}${why.slice(1)}.`));
+  }
+
+  /** @param {Looked} found */
+  function tell({ clock_hz, rounding, end_s, steps, lines, notes }) {
+    const own = notes.filter((note) => !facts.notes.includes(note));
+    const rows = steps.map(({ channel, figures: of }) =>
+      element(
+        "p",
+        {},
+        `Channel ${channel}: ${counted(of.steps, "step")}, ${count(of.right)} right and ${count(of.left)} left, ${time(of.first_s)} to ${time(of.last_s)}` +
+          (of.greatest_rate_steps_s
+            ? `; at most ${plain(of.greatest_rate_steps_s, "steps/s")}, at ${time(of.shortest_at_s ?? 0)}`
+            : "") +
+          (of.greatest_acceleration_steps_s2 ? `, and ${plain(of.greatest_acceleration_steps_s2, "steps/s²")}` : "") +
+          ".",
+      ),
+    );
+    fill(
+      result,
+      element("p", {}, `${time(end_s)} at ${si(clock_hz, "Hz", 6)}: ${rounding}.`),
+      ...rows,
+      ...lines.map((line) => element("p", {}, line)),
+      ...own.map((note) => element("p", { class: "note" }, note)),
+    );
+  }
+
+  async function taken() {
+    clearTimeout(timer);
+    take.disabled = true;
+    const base = now().scenario;
+    // Bytes go to the controllers of the experiment before, by its clock.
+    if (looked && looked.lines.length > 0 && !clock.value()) clock.set(base.clock_hz);
+    const model = besides.checked ? planOf() : null;
+    const channel = now().axis;
+    const beside = model && {
+      records: await engine.ask("records_of", channel),
+      clock_hz: model.summary.clock_hz,
+      channel,
+      baud: base.line.baud,
+    };
+    const first_s = beside && (await capture.firstOf(beside));
+    await look(typeof first_s === "number" ? { first_s, channel } : {});
+    if (!looked) return;
+    const found = beside && (await capture.beside(beside));
+    if (facts.has_levels) keepMap(channels, map());
+    const made = await capture.scenario(false);
+    // Where no channel steps, there is more to see of what the model makes of the bytes.
+    const pieces = looked.steps.length > 0 ? await capture.records(looked.records) : [];
+    const { problems, scenario } = await engine.ask("check", withControllers(made, base));
+    if (problems.length > 0) {
+      fill(
+        result,
+        element(
+          "p",
+          { class: "error" },
+          problems.map((/** @type {any} */ problem) => `${problem.path}: ${problem.message}`).join("; "),
+        ),
+      );
+      return;
+    }
+    // Cancelled meanwhile.
+    if (!body.isConnected) return;
+    if (model) {
+      await engine.ask("baseline", true);
+      const { scenario: plan, derived, revision } = now();
+      const { summary, controller } = model;
+      const own = derived?.controllers[controller] ?? null;
+      dispatch({
+        type: "baseline",
+        baseline: { title: plan.title || "the experiment", revision, summary, controller, derived: own },
+      });
+    }
+    if (pieces.length > 0) engine.record(scenario, pieces);
+    dispatch({ type: "replace", scenario: readJson(scenario), origin: "shared" });
+    const text = told(model !== null, pieces.length > 0);
+    dispatch({ type: "notice", notice: { kind: "info", text, place: null } });
+    close();
+    const shown = found && (await resultOf(page));
+    if (!shown) return;
+    const cycle = Math.round(found.largest.recorded_s * shown.summary.clock_hz);
+    const place = around(cycle, cycle, shown.summary.end_cycle, shown.controller);
+    dispatch({ type: "notice", notice: { kind: "info", text: `${compared(found)} ${text}`, place } });
+  }
+
+  /** @param {boolean} isBeside @param {boolean} isRecorded */
+  function told(isBeside, isRecorded) {
+    const on = isRecorded
+      ? "The views show what was recorded; change the source, the clock, the channels or the plant, and they show what the model makes of it."
+      : "The views show what the model makes of it.";
+    return `Opened ${file}. ${on}${isBeside ? " The experiment before stands beside it as the baseline." : ""}${ownIsKept()}`;
+  }
+}
+
+/** Each step, or byte, beside the baseline's, in one sentence. @param {any} found */
+function compared({ kind, recorded, model, differing, largest, rms_s, drift_ppm, rms_jitter_s, other_values }) {
+  const one = kind.slice(0, -1);
+  const all =
+    recorded === model
+      ? `all ${count(recorded)} ${kind}`
+      : `${count(recorded)} ${kind}, the baseline has ${count(model)};`;
+  const late =
+    largest.late_s === 0 ? "none is off" : `${one} ${count(largest.step)} is off most, by ${time(largest.late_s)}`;
+  const values = other_values > 0 ? `, ${count(other_values)} have another value` : "";
+  // Further apart it is another motion, not another clock.
+  const drift =
+    Math.abs(drift_ppm) > MAX_DRIFT_PPM
+      ? ""
+      : ` Drift ${drift_ppm.toFixed(1)} ppm, jitter without it ${time(rms_jitter_s)} RMS.`;
+  return `Beside the baseline: ${all} compared, ${count(differing)} are off by more than a cycle; ${late}${values}; RMS ${time(rms_s)}.${drift}`;
+}
+
+/** Bytes go to the controllers of the experiment before, where these have the same clock. @param {string} made @param {any} base */
+function withControllers(made, base) {
+  const { source, clock_hz, line, title, note, run_cycles } = readJson(made);
+  if (!source.line || clock_hz !== base.clock_hz) return made;
+  const own = { ...base.line, baud: line.baud, noise: {} };
+  const controllers = base.controllers.map((/** @type {any} */ each) => ({ ...each, axes: [], packets: [] }));
+  return JSON.stringify({ ...base, source, title, note, run_cycles, line: own, controllers });
+}
+
+/** @param {string} name */
+function channelRow(name) {
+  const signal = element("select", { "aria-label": `Signal of ${name}` });
+  const numbered = (/** @type {string} */ word) => Array.from({ length: CHANNELS }, (_, index) => `${word}${index}`);
+  const names = ["", ...numbered("STEP"), ...numbered("DIR"), "EN", "RX", "TX", "DE"];
+  fill(signal, ...names.map((each) => element("option", { value: each }, each || "–")));
+  const inverted = element("input", { type: "checkbox", "aria-label": `${name} is inverted` });
+  return { name, signal, inverted };
+}
+
+/** @param {ReturnType<typeof channelRow>[]} rows */
+function table(rows) {
+  const cell = (/** @type {(Node | string)[]} */ ...what) => element("td", {}, ...what);
+  const head = ["Channel", "is", "inverted"].map((text) => element("th", { scope: "col" }, text));
+  return element(
+    "table",
+    { class: "channels" },
+    element("thead", {}, element("tr", {}, ...head)),
+    element(
+      "tbody",
+      {},
+      ...rows.map(({ name, signal, inverted }) =>
+        element("tr", {}, cell(name), cell(signal), cell(element("label", { class: "check" }, inverted))),
+      ),
+    ),
+  );
+}
+
+/** A whole number that may be left empty; what is wrong with it stands under it. @param {string} name @param {string} unit @param {string} empty */
+function numberField(name, unit, empty) {
+  const id = `recording-${name.toLowerCase().replace(" ", "-")}`;
+  const input = element("input", {
+    id,
+    type: "text",
+    placeholder: empty,
+    size: "16",
+    "aria-describedby": `${id}-error`,
+  });
+  const error = element("span", { class: "error", id: `${id}-error` });
+  const read = () => {
+    if (input.value.trim() === "") return { value: 0 };
+    const read = parseNumber(input.value, unit, { integer: true });
+    const fits = "message" in read || (read.value > 0 && read.value <= GREATEST);
+    return fits ? read : { message: `Give 1 to ${GREATEST} ${unit}.` };
+  };
+  input.addEventListener("input", () => {
+    const found = read();
+    error.textContent = "message" in found ? found.message : "";
+    input.setAttribute("aria-invalid", String("message" in found));
+  });
+  return {
+    label: element("div", {}, element("label", { for: id }, `${name}, ${unit} `), input, error),
+    isWrong: () => "message" in read(),
+    value: () => {
+      const found = read();
+      return "value" in found ? found.value : 0;
+    },
+    set: (/** @type {number} */ value) => {
+      input.value = String(value);
+    },
+  };
+}
+
+/** @returns {[string, string][]} */
+function keptMaps() {
+  try {
+    const kept = JSON.parse(localStorage.getItem(MAPS) ?? "[]");
+    return Array.isArray(kept) ? kept : [];
+  } catch {
+    return [];
+  }
+}
+
+/** The map that channels of these names had last. @param {string[]} channels */
+function keptMap(channels) {
+  return keptMaps().find(([names]) => names === JSON.stringify(channels))?.[1] ?? null;
+}
+
+/** @param {string[]} channels @param {string} map */
+function keepMap(channels, map) {
+  const names = JSON.stringify(channels);
+  const kept = [[names, map], ...keptMaps().filter(([other]) => other !== names)].slice(0, MAX_MAPS);
+  try {
+    localStorage.setItem(MAPS, JSON.stringify(kept));
+  } catch {
+    // Private windows and full disks refuse; the page works without.
+  }
+}
