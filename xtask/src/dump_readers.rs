@@ -1,14 +1,15 @@
-//! A value change dump read by other people's programs: GTKWave's and sigrok's, which a test of `cli` calls.
+//! Files between Stepscope and other people's programs, GTKWave's and sigrok's: a test of `cli` has them read its value
+//! change dumps, a test of `core/capture` reads what they write.
 
 use anyhow::{Context, Result};
 
 use crate::{apt, run, toolchain};
 
-/// The packages in Debian, and the programs of them that the test calls.
+/// The packages in Debian, and the programs of them that the tests call.
 const PACKAGES: [&str; 2] = ["gtkwave", "sigrok-cli"];
 const PROGRAMS: [&str; 3] = ["vcd2fst", "fst2vcd", "sigrok-cli"];
 
-/// Installs the programs if one is missing and runs the test.
+/// Installs the programs if one is missing and runs the tests.
 pub(crate) async fn test() -> Result<()> {
     let found = || PROGRAMS.iter().try_for_each(|program| which::which(program).map(drop));
     if found().is_err() {
@@ -21,9 +22,11 @@ pub(crate) async fn test() -> Result<()> {
         "test",
         "--workspace",
         "--features",
-        "stepscope-cli/dump-readers",
+        "stepscope-cli/dump-readers,stepscope-capture/others-files",
         "--test",
         "second_reader",
+        "--test",
+        "others_files",
         "--locked",
     ];
     command.args(line);
@@ -32,7 +35,7 @@ pub(crate) async fn test() -> Result<()> {
 
 fn remedy() -> String {
     format!(
-        "the dump's test needs {} on PATH: install them (Debian: `apt-get install {}` as root)",
+        "the dumps' tests need {} on PATH: install them (Debian: `apt-get install {}` as root)",
         PROGRAMS.join(", "),
         PACKAGES.join(" ")
     )

@@ -171,7 +171,7 @@ mod tests {
     fn the_targets_are_the_fuzz_packages_binaries() {
         let text = fs::read_to_string(root().join("fuzz").join("Cargo.toml")).unwrap();
         let all = names(&text).unwrap();
-        for target in ["line", "frames", "scenario", "link"] {
+        for target in ["line", "frames", "scenario", "link", "capture"] {
             assert!(all.iter().any(|name| name == target), "{target} in {all:?}");
         }
     }

@@ -1,0 +1,10 @@
+/*
+ * What simavr is to record of packet_host.c: a section of its own in the program's file, which is not in the chip.
+ */
+#include <avr/io.h>
+#include <avr_mcu_section.h>
+
+AVR_MCU(F_CPU, "atmega328p");
+AVR_MCU_VCD_FILE("packet_host.vcd", 1000);
+AVR_MCU_VCD_PORT_PIN('B', 0, "RX");
+AVR_MCU_VCD_PORT_PIN('B', 1, "BUSY");

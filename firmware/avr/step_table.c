@@ -1,0 +1,142 @@
+/*
+ * Walks a step table: a controller that makes a motion by itself, on an ATmega328P at 16 MHz.
+ *
+ * plan.h is the table, as `stepscope tables SCENARIO --form exact --entries ticks --format avr --name axis_0` writes it:
+ *
+ *   for each entry with count > 0, count times: time += interval; make a step at `time`; interval += add
+ *   for each entry with count = 0:              time += interval; DIR = add
+ *
+ * Timer1 counts the processor's cycles and is never set back, so nothing is lost between two steps; the compare register
+ * goes from step to step. It has 16 bits: what is farther off is reached by matches on the way, at which nothing is done.
+ *
+ *   compare match    |             |             |     |
+ *   STEP           __|~~|__________|~~|________________|~~|____
+ *   cycles           |<- interval->|<--0x8000--->|rest>|
+ *
+ * STEP rises as the first thing that the interrupt does, always as many cycles after it was let in. When it is let in is the
+ * jitter: an instruction is finished first, and main() keeps all interrupts out while it makes a report.
+ */
+#include <avr/interrupt.h>
+#include <avr/io.h>
+#include <avr/sleep.h>
+#include <util/atomic.h>
+#include <util/crc16.h>
+
+#include "plan.h"
+
+/* Port B */
+#define STEP _BV(PORTB0)
+#define DIR _BV(PORTB1)
+
+/* A report's bits: 16 MHz / (8 * (UBRR0 + 1)) = 500000 baud, with U2X0 */
+#define REPORT_UBRR 3
+
+#if AXIS_0_CLOCK_HZ != F_CPU || AXIS_0_FRACTION_BITS != 0
+#error "plan.h counts other cycles than Timer1: give --entries ticks and a scenario of clock_hz 16000000"
+#endif
+
+/* Where the table is walked: the next entry, and what is left of the one before. */
+static uint16_t entry;
+static uint16_t count;
+static uint32_t interval;
+static int16_t add;
+
+/* Cycles from the match that the timer waits for to the step. */
+static uint32_t beyond;
+static uint8_t dir;
+
+static volatile int16_t position;
+static volatile uint8_t done;
+
+/* Goes on to the next step: adds the way there to `beyond`, and turns `dir` where the table does. */
+static void next_step(void)
+{
+    while (count == 0) {
+        if (entry == AXIS_0_ENTRIES) {
+            TIMSK1 = 0;
+            done = 1;
+            return;
+        }
+        interval = pgm_read_dword(&axis_0_interval[entry]);
+        count = pgm_read_word(&axis_0_count[entry]);
+        add = pgm_read_word(&axis_0_add[entry]);
+        entry++;
+        if (count == 0) {
+            beyond += interval;
+            dir = add ? DIR : 0;
+        }
+    }
+    beyond += interval;
+    interval += add;
+    count--;
+}
+
+/* Sets the next match: the step, or one on the way, from which there is more than half a turn of the timer to go. */
+static void set_match(void)
+{
+    uint16_t way = beyond > 0xffff ? 0x8000 : beyond;
+    OCR1A += way;
+    beyond -= way;
+}
+
+ISR(TIMER1_COMPA_vect)
+{
+    if (beyond == 0) {
+        PORTB |= STEP;
+        position += dir ? 1 : -1;
+        next_step();
+        PORTB &= ~STEP;
+        /* Where the table turns here, DIR changes after the fall. */
+        PORTB = dir;
+    }
+    set_match();
+}
+
+static void send(uint8_t byte)
+{
+    loop_until_bit_is_set(UCSR0A, UDRE0);
+    UDR0 = byte;
+}
+
+/*
+ * Sends where the motor is: low byte, high byte, and a check of both. The check is made with interrupts off, which it
+ * need not be: that is where the recording's late steps come from.
+ */
+static void report(void)
+{
+    uint8_t low, high, check;
+    ATOMIC_BLOCK(ATOMIC_RESTORESTATE)
+    {
+        low = position;
+        high = position >> 8;
+        check = _crc_ibutton_update(_crc_ibutton_update(0, low), high);
+    }
+    send(low);
+    send(high);
+    send(check);
+}
+
+int main(void)
+{
+    DDRB = STEP | DIR;
+    UBRR0 = REPORT_UBRR;
+    UCSR0A = _BV(U2X0);
+    UCSR0B = _BV(TXEN0);
+    send('S');
+
+    next_step();
+    PORTB = dir;
+    TCCR1B = _BV(CS10);
+    OCR1A = TCNT1;
+    set_match();
+    TIFR1 = _BV(OCF1A);
+    TIMSK1 = _BV(OCIE1A);
+    sei();
+    while (!done)
+        report();
+
+    /* Asleep for good. */
+    cli();
+    sleep_enable();
+    sleep_cpu();
+}
