@@ -4,6 +4,7 @@
 //! A new target is a module here, a line in `TARGETS` and a file in `fuzz/fuzz_targets/`. Its findings lie in
 //! `findings/<target>/`, a file each: see the README there.
 
+pub mod capture;
 pub mod frames;
 pub mod line;
 pub mod link;
@@ -37,6 +38,13 @@ pub const TARGETS: &[Target] = &[
     Target { name: "frames", check: frames::check, told: bytes, seeds: frames::seeds, is_json: false },
     Target { name: "scenario", check: scenario::check, told: text, seeds: scenario::seeds, is_json: true },
     Target { name: "link", check: link::check, told: text, seeds: link::seeds, is_json: true },
+    Target {
+        name: "capture",
+        check: capture::check,
+        told: capture::told,
+        seeds: capture::seeds,
+        is_json: false,
+    },
 ];
 
 impl Target {

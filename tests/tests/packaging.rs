@@ -13,11 +13,12 @@ use std::{
 use syn::{Attribute, Expr, Item, Lit, Meta, Visibility};
 
 /// The library crates and their folders.
-const LIBRARIES: [(&str, &str); 8] = [
+const LIBRARIES: [(&str, &str); 9] = [
     ("stepscope-registers", "core/registers"),
     ("stepscope-peripheral", "core/peripheral"),
     ("stepscope-motion", "core/motion"),
     ("stepscope-plant", "core/plant"),
+    ("stepscope-capture", "core/capture"),
     ("stepscope-scenario", "core/scenario"),
     ("stepscope-sim", "core/sim"),
     ("stepscope-inspect", "core/inspect"),

@@ -25,7 +25,7 @@ struct Answer {
 }
 
 /// Adds to `wrong` what axe finds now.
-async fn look(page: &Session, state: &str, wrong: &mut Vec<String>) -> Result<()> {
+pub(crate) async fn look(page: &Session, state: &str, wrong: &mut Vec<String>) -> Result<()> {
     if !page.eval::<bool>("'axe' in window").await? {
         let script = fs::read_to_string(named("STEPSCOPE_AXE")?).context("axe's script can't be read")?;
         page.js::<bool>(&format!("{script}\nreturn true;"), vec![]).await?;
@@ -36,7 +36,7 @@ async fn look(page: &Session, state: &str, wrong: &mut Vec<String>) -> Result<()
     Ok(())
 }
 
-fn none(wrong: &[String]) -> Result<()> {
+pub(crate) fn none(wrong: &[String]) -> Result<()> {
     ensure!(wrong.is_empty(), "axe finds\n{}", wrong.join("\n"));
     Ok(())
 }

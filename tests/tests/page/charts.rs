@@ -42,13 +42,7 @@ fn between_two_cursors_are_the_means_that_the_core_computes() -> Result<()> {
             known.recording.first_tick().context("a tick")?.seconds(known.experiment.config().clock_hz());
         let (from, to) = (known.seconds(a), known.seconds(b));
         let steps = steps(&known.recording.trace, 0);
-        let pulses = Pulses {
-            channel: 0,
-            steps: &steps,
-            log: &known.recording.packets,
-            segments: None,
-            config: known.experiment.config(),
-        };
+        let pulses = Pulses::of_run(0, &steps, &known.recording.packets, None, known.experiment.config());
         let ideal = cursor_stats::ideal(plan, zero_s, from, to);
         let made = cursor_stats::actual(&pulses, from, to);
         let moments = [ideal.position, ideal.speed, ideal.acceleration.context("a curve has one")?];

@@ -41,7 +41,7 @@ async fn handle(page: &Session, css: &str) -> Result<Handle> {
 }
 
 /// Cycle of a handle's cursor; none where it is not set.
-async fn cycle(page: &Session, css: &str) -> Result<Option<u64>> {
+pub(crate) async fn cycle(page: &Session, css: &str) -> Result<Option<u64>> {
     let said = handle(page, css).await?.said;
     let Some((_, cycle)) = said.split_once("cycle ") else {
         ensure!(said == "not set", "`{said}`");
@@ -142,7 +142,7 @@ fn keys_place_a_cursor_move_it_and_remove_it() -> Result<()> {
 }
 
 /// Numbers in a reading, by what stands before them.
-fn reading(text: &str, name: &str) -> Result<f64> {
+pub(crate) fn reading(text: &str, name: &str) -> Result<f64> {
     let rest = text.split_once(&format!("{name} ")).with_context(|| format!("no {name} in `{text}`"))?.1;
     let number = rest.split([' ', '\u{a0}']).next().unwrap_or_default().replace('\u{2212}', "-");
     number.parse().with_context(|| format!("{name} in `{text}`"))
@@ -156,13 +156,7 @@ fn a_reading_is_the_value_in_the_cursors_very_cycle() -> Result<()> {
         let zero_s =
             known.recording.first_tick().context("a tick")?.seconds(known.experiment.config().clock_hz());
         let steps = steps(&known.recording.trace, 0);
-        let pulses = Pulses {
-            channel: 0,
-            steps: &steps,
-            log: &known.recording.packets,
-            segments: None,
-            config: known.experiment.config(),
-        };
+        let pulses = Pulses::of_run(0, &steps, &known.recording.packets, None, known.experiment.config());
         // With the whole run on show a pixel has some ten thousand cycles, and in them several steps.
         for cycle in [1_600_123, 3_201_462, 4_100_456] {
             page.open(&format!("#{}&v=a{cycle}", known.link)).await?;
@@ -200,12 +194,7 @@ fn a_reading_is_the_value_in_the_cursors_very_cycle() -> Result<()> {
         page.click("#show-difference").await?;
         page.until("document.getElementById('read-position').textContent.includes('difference')").await?;
         let own = stepscope_core::peripheral::trace::steps(&later.recording.trace, 0);
-        let own = Pulses {
-            steps: &own,
-            log: &later.recording.packets,
-            config: later.experiment.config(),
-            ..pulses
-        };
+        let own = Pulses::of_run(0, &own, &later.recording.packets, None, later.experiment.config());
         let t = known.seconds(cycle);
         let wanted = f64::from(own.position_at(t)) - f64::from(pulses.position_at(t));
         assert_eq!(reading(&page.text("#read-position").await?, "difference")?, wanted);

@@ -15,7 +15,7 @@ use crate::{
 const TAB: char = '\u{e004}';
 const ALT: char = '\u{e00a}';
 const RIGHT: char = '\u{e014}';
-const DOWN: char = '\u{e015}';
+pub(crate) const DOWN: char = '\u{e015}';
 /// More presses of Tab than the page has places for the focus.
 const MOST: usize = 400;
 
@@ -65,7 +65,7 @@ async fn focus(page: &Session) -> Result<Focus> {
 }
 
 /// Presses a key, with others held down.
-async fn key(page: &Session, held: &[char], value: char) -> Result<()> {
+pub(crate) async fn key(page: &Session, held: &[char], value: char) -> Result<()> {
     let mut keys = KeyActions::new("keys".into());
     for &value in held {
         keys = keys.then(KeyAction::Down { value });
@@ -85,7 +85,7 @@ async fn type_text(page: &Session, text: &str) -> Result<()> {
 }
 
 /// Goes on by Tab, or back by Shift and Tab, to the place with this name; on every place between the focus can be seen.
-async fn go(page: &Session, held: &[char], name: &str) -> Result<()> {
+pub(crate) async fn go(page: &Session, held: &[char], name: &str) -> Result<()> {
     let mut seen = Vec::new();
     for _ in 0..MOST {
         key(page, held, TAB).await?;

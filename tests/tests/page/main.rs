@@ -58,6 +58,7 @@ mod pixels;
 mod pool;
 mod presets;
 mod programs;
+mod recording;
 mod reflow;
 mod rows;
 mod screens;

@@ -43,13 +43,7 @@ fn close(text: &str, wanted: f64) -> Result<()> {
 
 fn measured(known: &Known) -> (Measures, [Spectrum; 2]) {
     let steps = steps(&known.recording.trace, 0);
-    let run = Pulses {
-        channel: 0,
-        steps: &steps,
-        log: &known.recording.packets,
-        segments: None,
-        config: known.experiment.config(),
-    };
+    let run = Pulses::of_run(0, &steps, &known.recording.packets, None, known.experiment.config());
     let (plan, analysis) = (&known.experiment.plans()[0], &known.scenario.analysis);
     let Source::Motion(motion) = &known.scenario.source else { panic!("a motion") };
     let stretch = AnalysisWindow::of(plan).expect("it takes time");

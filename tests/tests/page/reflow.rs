@@ -7,7 +7,7 @@ use crate::{bench::in_browser, session::Session};
 
 /// Targets smaller than 24 CSS pixels either way (WCAG 2.5.8). Links within a sentence are exempt, and so is what has
 /// a label around it that is large enough.
-const SMALL: &str = "
+pub(crate) const SMALL: &str = "
     const wanted = 'button, input, select, textarea, summary, a[href], [role=tab], [role=button], canvas[tabindex]';
     return [...document.querySelectorAll(wanted)].filter((node) => node.checkVisibility({ visibilityProperty: true }) && !node.closest('.unseen, .skip, p a'))
         .map((node) => [node, (node.closest('label') ?? node).getBoundingClientRect()])
@@ -15,7 +15,7 @@ const SMALL: &str = "
         .map(([node, box]) => `${node.id || node.ariaLabel || node.textContent.trim().slice(0, 30) || node.dataset.path} is ${box.width.toFixed(1)} x ${box.height.toFixed(1)}`);";
 
 /// Texts that a box without a scroll bar cuts off. A table's cell, a choice and what ends in an ellipsis tell the rest otherwise.
-const CUT: &str = "
+pub(crate) const CUT: &str = "
     const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
     const found = new Set();
     for (let text = walker.nextNode(); text; text = walker.nextNode()) {

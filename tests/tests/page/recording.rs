@@ -1,0 +1,421 @@
+//! Recordings that are opened: what the dialog says and asks, what it shows in the experiment's place, and what it leaves.
+//!
+//! What the page shows is held against the same text opened natively.
+
+use std::{f64::consts::PI, fmt::Write as _, io::Cursor};
+
+use anyhow::{Context, Result, ensure};
+use serde_json::{Value, json};
+use stepscope_core::{
+    capture::read::{Limits, read},
+    inspect::{
+        drivers,
+        recording::opened::{Ask, Opened},
+        timing::TimingCheck,
+    },
+    peripheral::{
+        signal::{Levels, Record, Sink as _},
+        trace::{Digest, steps},
+    },
+    scenario::{DriverModel, DriverTiming},
+};
+
+use crate::{
+    axe,
+    bench::in_browser,
+    cursors,
+    exchange::drop_file,
+    keyboard::{DOWN, go, key},
+    native::{Known, with_distance},
+    reflow,
+    session::{CONTROL, ENTER, SHIFT, Session, field},
+};
+
+/// Steps of the recorded motion.
+const STEPS: u32 = 200;
+/// How long it takes, in s.
+const DURATION_S: f64 = 0.2;
+/// A pulse that is too narrow for an A4988 comes as often.
+const NARROW_EVERY: u32 = 10;
+
+const DIALOG: &str = "document.querySelector('dialog.recording')";
+const CLOSED: &str = "document.querySelector('dialog.recording') === null";
+/// What is said of the recording as it is mapped.
+const RESULT: &str = "(document.querySelector('.recorded')?.innerText ?? '').replace(/\\u202f/g, '')";
+const SHOW: &str = "dialog.recording button.main";
+/// It can be shown.
+const READY: &str = "document.querySelector('dialog.recording button.main')?.disabled === false";
+const MESSAGE: &str = "document.getElementById('link-message').innerText";
+const DISTANCE: &str = "source.motion.axes[0].moves[0].cosine.distance";
+
+/// What a firmware made of a cosine of 200 steps, as Saleae Logic saves it: no pulse comes in time.
+fn cosine() -> String {
+    let mut table = "Time [s],X_STEP,X_DIR\n0.000000000,0,0\n0.010000000,0,1\n".to_owned();
+    for step in 0..STEPS {
+        let part = (f64::from(step) + 0.5) / f64::from(STEPS);
+        let jitter_s = 1e-6 * f64::from(step * step % 7);
+        let at = 0.0101 + DURATION_S / PI * libm::acos(1.0 - 2.0 * part) + jitter_s;
+        let width_s = if step % NARROW_EVERY == 0 { 0.6e-6 } else { 2e-6 };
+        let _ = write!(table, "{at:.9},1,1\n{:.9},0,1\n", at + width_s);
+    }
+    table
+}
+
+/// Some signals of a run, as Saleae Logic saves them.
+fn saleae(trace: &[Record], clock_hz: u32, signals: &[(&str, u64)]) -> String {
+    let head: Vec<&str> = signals.iter().map(|(name, _)| *name).collect();
+    let mut table = format!("Time [s],{}\n", head.join(","));
+    for record in trace {
+        let levels: Vec<&str> =
+            signals.iter().map(|(_, mask)| if record.levels.has(*mask) { "1" } else { "0" }).collect();
+        let _ = writeln!(table, "{:.10},{}", record.cycle.0 as f64 / f64::from(clock_hz), levels.join(","));
+    }
+    table
+}
+
+/// A text as the core opens it, beside a model with its first step at a time.
+fn natively(text: &str, ask: &Ask, first_step_s: Option<f64>) -> Result<Opened> {
+    let reading = read(Cursor::new(text.as_bytes()), &Limits::default(), &mut |_| true);
+    let mut opened = Opened::new(reading.capture, ask)?;
+    first_step_s.into_iter().for_each(|at| opened.begin_at(0, at));
+    Ok(opened)
+}
+
+fn digest(opened: &Opened) -> String {
+    let mut digest = Digest::default();
+    opened.records.iter().for_each(|record| digest.record(*record));
+    format!("{:016x}", digest.value())
+}
+
+/// When a model steps first, in s.
+fn first_step_s(known: &Known) -> Result<f64> {
+    let steps = steps(&known.recording.trace, 0);
+    Ok(known.seconds(steps.first().context("it steps")?.cycle))
+}
+
+/// Chooses a file by the page's own input.
+async fn choose_file(page: &Session, name: &str, text: &str) -> Result<()> {
+    let script = "const data = new DataTransfer(); data.items.add(new File([arguments[1]], arguments[0]));
+        const input = document.getElementById('open-file'); input.files = data.files;
+        return input.dispatchEvent(new Event('change'));";
+    page.js::<bool>(script, vec![json!(name), json!(text)]).await.map(drop)
+}
+
+/// Waits until the dialog says so of the recording.
+async fn says(page: &Session, text: &str) -> Result<()> {
+    page.until(&format!("{RESULT}.includes({})", json!(text))).await
+}
+
+/// A control of the dialog by its name.
+fn named(name: &str) -> String {
+    format!("dialog.recording [aria-label=\"{name}\"]")
+}
+
+/// Types into a field of the dialog, in place of what stands there.
+async fn type_into(page: &Session, label: &str, text: &str) -> Result<()> {
+    let script = "const label = [...document.querySelectorAll('dialog.recording label')].find((label) => label.textContent.startsWith(arguments[0]));
+        const input = label.control; input.value = arguments[1];
+        return input.dispatchEvent(new Event('input', { bubbles: true }));";
+    page.js::<bool>(script, vec![json!(label), json!(text)]).await.map(drop)
+}
+
+/// Chooses the signal of a channel; a driver's choice is a change, and no input as a visitor's is.
+async fn choose_signal(page: &Session, channel: &str, signal: &str) -> Result<()> {
+    let css = named(&format!("Signal of {channel}"));
+    page.choose(&css, signal).await?;
+    let script =
+        "return document.querySelector(arguments[0]).dispatchEvent(new Event('input', { bubbles: true }));";
+    page.js::<bool>(script, vec![json!(css)]).await.map(drop)
+}
+
+async fn cancel(page: &Session) -> Result<()> {
+    page.click("dialog.recording .named > button:not(.main)").await?;
+    page.until(CLOSED).await
+}
+
+#[test]
+fn a_recording_is_mapped_and_stands_beside_the_model_until_it_is_undone() -> Result<()> {
+    in_browser(|page| async move {
+        let (own, text) = (Known::of(&with_distance(800.0))?, cosine());
+        page.open("").await?;
+        page.fill(DISTANCE, "800").await?;
+        page.until_digest(&own.digest).await?;
+        choose_file(&page, "mine.csv", &text).await?;
+
+        // The map is proposed, and its change changes the figures.
+        says(&page, "200 steps, 200 right and 0 left").await?;
+        let script = "['X_STEP', 'X_DIR'].map((name) => document.querySelector(`[aria-label='Signal of ${name}']`).value)";
+        assert_eq!(page.eval::<[String; 2]>(script).await?, ["STEP0", "DIR0"]);
+        page.picture("recording-dialog").await?;
+        page.click(&named("X_DIR is inverted")).await?;
+        says(&page, "0 right and 200 left").await?;
+        page.click(&named("X_DIR is inverted")).await?;
+        choose_signal(&page, "X_STEP", "STEP3").await?;
+        says(&page, "Channel 3: 200 steps").await?;
+        choose_signal(&page, "X_STEP", "STEP0").await?;
+        type_into(&page, "Clock", "1000000").await?;
+        says(&page, "at 1 MHz").await?;
+        says(&page, "pulses within one are lost").await?;
+        type_into(&page, "Clock", "fast").await?;
+        page.until("document.getElementById('recording-clock-error').innerText.includes('not a number')")
+            .await?;
+        ensure!(!page.eval::<bool>(READY).await?, "nothing is shown by a clock that is none");
+        type_into(&page, "Clock", "16 MHz").await?;
+        says(&page, "at 16 MHz").await?;
+        says(&page, "200 right").await?;
+
+        let ask = Ask { clock_hz: Some(16_000_000), ..Ask::default() };
+        let opened = natively(&text, &ask, Some(first_step_s(&own)?))?;
+        page.click(SHOW).await?;
+        page.until_digest(&digest(&opened)).await?;
+        page.until(CLOSED).await?;
+        assert_eq!(page.field("title").await?.value, "recorded: mine.csv");
+        let edges = opened.records.len() - 1;
+        page.until(&format!("document.getElementById('status').textContent.replace(/\\u202f/g, '').startsWith('{edges} edges')")).await?;
+        // Each step is held against the model's, and the one that is off most can be shown.
+        page.until(&format!("{MESSAGE}.startsWith('Beside the baseline: 200 steps, the baseline has 800')"))
+            .await?;
+        let said = page.text("#link-message").await?;
+        ensure!(
+            said.contains("mine.csv") && said.contains("Undo") && said.contains("Show the place"),
+            "{said}"
+        );
+        page.until("document.getElementById('chart-position').checkVisibility() && document.body.innerText.includes('Against the baseline: the experiment')").await?;
+        // The position at a cursor is that of the file.
+        page.press("#charts-handles .handle.a", &ENTER.to_string()).await?;
+        let look = async || cursors::cycle(&page, "#charts-handles .handle.a").await;
+        let cycle = page.eventually("cursor A", look).await?;
+        let position = opened.steps_of(0).into_iter().take_while(|step| step.cycle <= cycle).last();
+        let position = position.context("it has moved")?.position;
+        page.until(&format!(
+            "document.getElementById('motion-time').textContent.replace(/\\D/g, '').endsWith('{cycle}')"
+        ))
+        .await?;
+        let read = cursors::reading(&page.text("#read-position").await?, "from pulses")?;
+        ensure!((20.0..180.0).contains(&read), "{read}");
+        assert_eq!(read, f64::from(position), "at cycle {cycle}");
+        page.picture("recording-beside").await?;
+
+        page.click("#undo").await?;
+        page.until_digest(&own.digest).await?;
+        page.click("#redo").await?;
+        page.until_digest(&digest(&opened)).await?;
+
+        // Another source is no recording: the model's run of it is shown.
+        let mut scenario: Value = serde_json::from_str(&opened.shown_scenario("mine.csv", false).to_json())?;
+        let start = &mut scenario["source"]["segments"]["channels"][0]["start_cycle"];
+        ensure!(start.is_u64(), "{start}");
+        *start = json!(801);
+        page.fill("source.segments.channels[0].start_cycle", "801").await?;
+        page.until_digest(&Known::of(&scenario.to_string())?.digest).await
+    })
+}
+
+#[test]
+fn the_recorded_pulses_are_judged_and_a_map_is_kept_for_the_next_file() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        let text = cosine();
+        choose_file(&page, "first.csv", &text).await?;
+        says(&page, "200 right").await?;
+        page.click(&named("X_DIR is inverted")).await?;
+        says(&page, "200 left").await?;
+        // Alone: nothing is moved to the model's first step.
+        page.click("#recording-beside").await?;
+        says(&page, "200 left").await?;
+        page.until(READY).await?;
+        page.click(SHOW).await?;
+        let ask = Ask { map: Some("STEP0=X_STEP,DIR0=!X_DIR".to_owned()), ..Ask::default() };
+        let opened = natively(&text, &ask, None)?;
+        page.until_digest(&digest(&opened)).await?;
+        ensure!(!page.eval::<bool>("document.body.innerText.includes('Against the baseline')").await?);
+
+        let rules = drivers::rules(&DriverTiming::Preset(DriverModel::A4988));
+        let mut check = TimingCheck::new(&rules, opened.clock_hz, 1000);
+        opened.records.iter().for_each(|record| check.record(*record));
+        let total = check.total();
+        ensure!(total >= u64::from(STEPS / NARROW_EVERY), "narrow pulses: {total}");
+        page.choose(&field("driver_timing#kind"), "a4988").await?;
+        page.until_equal(
+            "document.getElementById('health').textContent",
+            &json!(format!("{total} timing violations")),
+        )
+        .await?;
+        page.until_digest(&digest(&opened)).await?;
+
+        // Other channels, another map; the same again, and it is the one that was made.
+        choose_file(&page, "other.csv", &text.replace("X_DIR", "X_DIRECTION")).await?;
+        says(&page, "200 right").await?;
+        cancel(&page).await?;
+        choose_file(&page, "second.csv", &text).await?;
+        says(&page, "200 left").await?;
+        ensure!(
+            page.eval::<bool>("document.querySelector('[aria-label=\"X_DIR is inverted\"]').checked").await?
+        );
+        cancel(&page).await?;
+        page.until_digest(&digest(&opened)).await
+    })
+}
+
+#[test]
+fn what_a_file_does_not_tell_is_asked_and_what_is_wrong_with_it_is_said() -> Result<()> {
+    in_browser(|page| async move {
+        let own = Known::of("{}")?;
+        page.open("").await?;
+        page.until_digest(&own.digest).await?;
+
+        // Samples of no length.
+        let samples: String = (0..400).map(|at| format!("{},1\n", u8::from(at % 20 < 2))).collect();
+        let samples = format!("STEP,DIR\n{samples}");
+        choose_file(&page, "samples.csv", &samples).await?;
+        says(&page, "give the sample rate").await?;
+        ensure!(!page.eval::<bool>(READY).await?, "there is nothing to show yet");
+        page.until("document.activeElement.id === 'recording-sample-rate'").await?;
+        type_into(&page, "Sample rate", "1000000").await?;
+        let ask = Ask { sample_rate_hz: Some(1_000_000), ..Ask::default() };
+        let opened = natively(&samples, &ask, None)?;
+        says(&page, &format!("{} steps", opened.steps_of(0).len())).await?;
+        page.until(READY).await?;
+        page.picture("recording-asked").await?;
+        cancel(&page).await?;
+
+        // Channels whose names say nothing, and that do nothing.
+        choose_file(&page, "quiet.csv", "Time [s],D0,D1\n0.0,0,0\n").await?;
+        says(&page, "Choose which channel is STEP, DIR, RX or TX").await?;
+        let shown =
+            "[...document.querySelectorAll('.channels tbody tr')].map((row) => row.cells[0].textContent)";
+        assert_eq!(page.eval::<Vec<String>>(shown).await?, ["D0", "D1"]);
+        ensure!(!page.eval::<bool>(READY).await?);
+        choose_signal(&page, "D1", "STEP0").await?;
+        page.until(READY).await?;
+        cancel(&page).await?;
+
+        // Cut off, and torn: what could be read is there.
+        let text = cosine();
+        let torn: String =
+            text.lines().take(102).chain(["0.1,maybe,1"]).map(|line| format!("{line}\n")).collect();
+        choose_file(&page, "torn.csv", &torn).await?;
+        says(&page, "steps").await?;
+        let said: String = page.eval(&format!("{DIALOG}.innerText")).await?;
+        ensure!(said.contains("line 103") && said.contains("maybe"), "{said}");
+        let steps = natively(&torn, &Ask::default(), None)?.steps_of(0).len();
+        ensure!(steps > 40 && said.contains(&format!("{steps} steps")), "{said}");
+        page.picture("recording-torn").await?;
+        cancel(&page).await?;
+
+        // Nothing that can be read.
+        choose_file(&page, "photo.bin", "\u{0}\u{1}nothing\u{0}").await?;
+        page.until(&format!("{MESSAGE}.includes('photo.bin cannot be opened') && {CLOSED}")).await?;
+        // All is as it was, and there is nothing to undo.
+        page.until_digest(&own.digest).await?;
+        ensure!(page.eval::<bool>("document.getElementById('undo').disabled").await?);
+        Ok(())
+    })
+}
+
+#[test]
+fn bytes_and_positions_are_dropped_and_pasted_and_come_to_packets_and_steps() -> Result<()> {
+    in_browser(|page| async move {
+        let own = Known::of("{}")?;
+        page.open("").await?;
+        page.until_digest(&own.digest).await?;
+        let clock_hz = own.experiment.config().clock_hz();
+        let signals = [("MCU RX", Levels::RX), ("STEP", 1), ("DIR", 1 << Levels::DIR_SHIFT)];
+        let text = saleae(&own.recording.trace, clock_hz, &signals);
+        drop_file(&page, "line.csv", &text).await?;
+        says(&page, "115200 baud").await?;
+        says(&page, "200 bytes, raw packets of 1 byte").await?;
+        page.until(READY).await?;
+        page.click(SHOW).await?;
+        let ask = Ask { clock_hz: Some(clock_hz), ..Ask::default() };
+        let opened = natively(&text, &ask, Some(first_step_s(&own)?))?;
+        page.until(CLOSED).await?;
+        page.until_digest(&digest(&opened)).await?;
+        let rows = own.recording.packets.rows().len();
+        page.until(&format!(
+            "document.getElementById('packets-count').textContent.startsWith('{rows} on the line')"
+        ))
+        .await?;
+
+        // Positions, pasted: the model steps at their times.
+        let table = (0..=40).fold("time_s,position\n".to_owned(), |mut table, step| {
+            let _ = writeln!(table, "{:.4},{step}", 0.1 + 0.001 * f64::from(step));
+            table
+        });
+        let script = "const clipboardData = new DataTransfer(); clipboardData.setData('text/plain', arguments[0]);
+            return !document.body.dispatchEvent(new ClipboardEvent('paste', { clipboardData, bubbles: true, cancelable: true }));";
+        ensure!(page.js::<bool>(script, vec![json!(table)]).await?, "the page takes it");
+        says(&page, "40 steps").await?;
+        page.until(READY).await?;
+        page.click("#recording-beside").await?;
+        page.until(READY).await?;
+        page.click(SHOW).await?;
+        page.until(CLOSED).await?;
+        let positions = natively(&table, &Ask::default(), None)?;
+        let shown = Known::of(&positions.shown_scenario("the pasted text", false).to_json())?;
+        page.until_digest(&shown.digest).await?;
+        page.click("#undo").await?;
+        page.until_digest(&digest(&opened)).await
+    })
+}
+
+#[test]
+fn the_dialog_is_used_by_keys_alone_fits_a_narrow_screen_and_axe_finds_nothing_in_it() -> Result<()> {
+    in_browser(|page| async move {
+        let own = Known::of("{}")?;
+        page.open("").await?;
+        page.until_digest(&own.digest).await?;
+        page.allow_clipboard().await?;
+        go(&page, &[], "open").await?;
+        let text = cosine();
+        page.js::<()>(
+            "return navigator.clipboard.writeText(arguments[0]).then(() => null);",
+            vec![json!(text)],
+        )
+        .await?;
+        key(&page, &[CONTROL], 'v').await?;
+        says(&page, "200 right").await?;
+        page.until(READY).await?;
+        let mut wrong = Vec::new();
+        for scheme in ["dark", "light"] {
+            page.system_colours(scheme).await?;
+            axe::look(&page, scheme, &mut wrong).await?;
+        }
+        axe::none(&wrong)?;
+        go(&page, &[SHIFT], "X_DIR is inverted").await?;
+        key(&page, &[], ' ').await?;
+        says(&page, "200 left").await?;
+        go(&page, &[SHIFT], "Signal of X_STEP").await?;
+        key(&page, &[], DOWN).await?;
+        says(&page, "Channel 1").await?;
+        key(&page, &[], '\u{e013}').await?;
+        says(&page, "Channel 0").await?;
+
+        page.screen(320, 640).await?;
+        page.picture("recording-narrow").await?;
+        let widths = format!(
+            "[document.documentElement.scrollWidth, innerWidth, {DIALOG}.scrollWidth, {DIALOG}.clientWidth]"
+        );
+        let [content, window, within, dialog]: [u32; 4] = page.eval(&widths).await?;
+        ensure!(content <= window && within <= dialog, "{content} in {window}, {within} in {dialog}");
+        for script in [reflow::SMALL, reflow::CUT] {
+            let found: Vec<String> = page.js(script, vec![]).await?;
+            ensure!(found.is_empty(), "{found:?}");
+        }
+        page.screen(1440, 900).await?;
+        go(&page, &[], "Show it: look at the recording with all views").await?;
+        key(&page, &[], ENTER).await?;
+        page.until(CLOSED).await?;
+        let ask = Ask { map: Some("STEP0=X_STEP,DIR0=!X_DIR".to_owned()), ..Ask::default() };
+        page.until_digest(&digest(&natively(&text, &ask, Some(first_step_s(&own)?))?)).await?;
+
+        page.until("document.activeElement.id === 'open'").await?;
+
+        // Escape leaves, and the page is where it was.
+        choose_file(&page, "again.csv", &text).await?;
+        says(&page, "200 left").await?;
+        key(&page, &[], '\u{e00c}').await?;
+        page.until(CLOSED).await?;
+        page.until("document.activeElement.id === 'open'").await
+    })
+}
