@@ -121,7 +121,11 @@ fn the_help_of_every_command_tells_the_exit_codes() {
     for command in [&[] as &[&str], &["run"], &["faults"], &["open"], &["sine", "best"], &["completions"]] {
         let (code, out, _) = stepscope(&[command, &["--help"]].concat(), "");
         assert_eq!(code, Some(0), "{command:?}");
-        for line in ["Exit codes:", "  2    the scenario, the link or the command line is wrong", "  141  "] {
+        for line in [
+            "Exit codes:",
+            "  2    the scenario, the link, the recording or the command line is wrong",
+            "  141  ",
+        ] {
             assert!(out.contains(line), "{command:?}: {out}");
         }
     }
