@@ -3,6 +3,7 @@
 use anyhow::{Context, Result, ensure};
 use serde_json::json;
 use stepscope_core::{
+    capture::samples::SAMPLES,
     inspect::spectrum::Spectrum,
     scenario::{
         Source,
@@ -31,6 +32,8 @@ fn every_preset_opens_and_its_digest_link_and_distortion_are_the_cores() -> Resu
         for document in documents {
             grouped.extend(all.iter().filter(|preset| preset.document == document).map(|preset| preset.id));
         }
+        // Below them those that were recorded; see `recording`.
+        grouped.extend(SAMPLES.iter().map(|sample| sample.id));
         assert_eq!(offered, grouped);
         let mut periodic = 0;
         for preset in PRESETS {
