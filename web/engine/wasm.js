@@ -11,11 +11,9 @@ const modules = {};
 
 /** @param {Part} which @returns {Promise<WebAssembly.Module>} */
 export function compiled(which = "core") {
-  const { studyCore, captureCore } = byId("main").dataset;
-  const address = () =>
-    which === "core"
-      ? /** @type {HTMLLinkElement} */ (byId("core")).href
-      : ((which === "study" ? studyCore : captureCore) ?? "");
+  // The help page has the core alone, and no scripts to name the others.
+  const named = () => byId("main").dataset[which === "study" ? "studyCore" : "captureCore"] ?? "";
+  const address = () => (which === "core" ? /** @type {HTMLLinkElement} */ (byId("core")).href : named());
   const made = modules[which] ?? compile(address());
   modules[which] = made;
   // What could not be fetched is asked for again.
