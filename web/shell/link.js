@@ -55,7 +55,9 @@ export function createLink({ engine, dispatch, now }) {
 
   /** The link to share, and whether the digests of the run on show are in it. */
   async function shared() {
-    const digests = isStale(now()) ? null : await engine.ask("fingerprint");
+    // A recording's digests are no run's: whoever opens the link sees what the model makes of it.
+    const isRun = !isStale(now()) && !now().result?.summary.recorded;
+    const digests = isRun ? await engine.ask("fingerprint") : null;
     const full = await address(digests ?? undefined);
     return { full, digests: digests !== null && full.endsWith(digests) };
   }

@@ -150,7 +150,8 @@ function show(page, file, capture, facts, { body, foot, close }) {
   /** Sets the channels by a map's text. @param {string} map */
   function put(map) {
     for (const pair of map.split(",")) {
-      const [signal, channel = ""] = pair.split("=");
+      const [signal, ...rest] = pair.split("=");
+      const channel = rest.join("=");
       const name = channel.replace(/^!/, "");
       const at = name.startsWith("#") ? Number(name.slice(1)) : channels.indexOf(name);
       const row = rows[at];

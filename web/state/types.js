@@ -21,7 +21,7 @@
  * @typedef {{controller: number, ticks: number, acknowledged: number, why: string | null,
  *   progress: "opening" | "filling" | "confirming" | "done" | "given_up"}} Job
  * @typedef {{frames: number, repeated: number, replies: number, rejected: number, refused: number, crashes: number, jobs: Job[]}} Host
- * @typedef {{framed: boolean, end_cycle: number, end_s: number, clock_hz: number, line_load: number | null,
+ * @typedef {{recorded: boolean, framed: boolean, end_cycle: number, end_s: number, clock_hz: number, line_load: number | null,
  *   host: Host | null, controllers: ControllerSummary[]}} Summary
  * @typedef {{done: boolean, cycle: number, end_cycle: number, records: number}} Progress
  * @typedef {{x: Float64Array, has_ideal: boolean,

@@ -172,6 +172,11 @@ fn a_recording_is_mapped_and_stands_beside_the_model_until_it_is_undone() -> Res
         assert_eq!(page.field("title").await?.value, "recorded: mine.csv");
         let edges = opened.records.len() - 1;
         page.until(&format!("document.getElementById('status').textContent.replace(/\\u202f/g, '').startsWith('{edges} edges')")).await?;
+        // No run has the recording's digests, so none of them goes with its link.
+        page.click("#share").await?;
+        page.until("document.getElementById('link-text').value.includes('#c=')").await?;
+        ensure!(!page.eval::<bool>("/[&]d=/.test(document.getElementById('link-text').value)").await?);
+        page.click("#share").await?;
         // Each step is held against the model's, and the one that is off most can be shown.
         page.until(&format!("{MESSAGE}.startsWith('Beside the baseline: 200 steps, the baseline has 800')"))
             .await?;

@@ -307,7 +307,7 @@ impl Opened {
             scenario.source = Source::Segments(SegmentLists::default());
             scenario.title = title(file);
             scenario.note = format!(
-                "Recorded in {file}. A scenario that gives it again would be too long to be edited here; the command makes one (stepscope capture --scenario)."
+                "Recorded in {file}. No scenario that could be edited here gives it again: it is too long, too fast for the bus, or of another clock. The command says which, and makes a long one (stepscope capture --scenario)."
             );
             scenario
         });

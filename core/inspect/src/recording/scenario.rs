@@ -233,11 +233,12 @@ pub fn of_bytes(heard: &Heard, asked: &Bytes, base: Option<&Scenario>) -> Result
     let mut sends: Vec<ScriptedSend> = Vec::new();
     let mut greatest = 0;
     for byte in &heard.bytes {
-        let at = cycle(byte.start) + later_cycles;
-        let next = sends.last().map(|send| send.start_cycle + times.byte(send.bytes.0.len() as u64).0);
+        let at = cycle(byte.start).saturating_add(later_cycles);
+        let next =
+            sends.last().map(|send| send.start_cycle.saturating_add(times.byte(send.bytes.0.len() as u64).0));
         // What comes before the byte before it is over, because a clock is fast, comes right after it.
         match (sends.last_mut(), next) {
-            (Some(send), Some(next)) if at <= next + half_bit => {
+            (Some(send), Some(next)) if at <= next.saturating_add(half_bit) => {
                 greatest = greatest.max(at.abs_diff(next));
                 send.bytes.0.push(byte.byte);
             }
