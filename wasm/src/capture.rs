@@ -1,6 +1,6 @@
 //! Files of logic analysers, for a worker of their own: read as a stream, mapped, looked at, and handed on as records.
 
-use crate::convert::object;
+use crate::convert::{object, records};
 use js_sys::{Function, Uint8Array};
 use serde::{Deserialize, Serialize};
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -14,10 +14,6 @@ use stepscope_core::{
         events::Events,
         opened::{Ask, Opened},
         report::ChannelReport,
-    },
-    peripheral::{
-        signal::{Levels, Record},
-        units::Instant,
     },
 };
 use wasm_bindgen::prelude::*;
@@ -59,14 +55,6 @@ impl Seek for Pieces {
         self.at = at.ok_or_else(|| io::Error::other("before the file's beginning"))?;
         Ok(self.at)
     }
-}
-
-/// Records of 16 bytes each, cycle and levels, little-endian.
-fn records_of(bytes: &[u8]) -> Vec<Record> {
-    let word = |bytes: &[u8]| bytes.try_into().map_or(0, u64::from_le_bytes);
-    let record =
-        |record: &[u8]| Record { cycle: Instant(word(&record[..8])), levels: Levels(word(&record[8..])) };
-    bytes.chunks_exact(16).map(record).collect()
 }
 
 /// A recording that was read.
@@ -212,7 +200,7 @@ impl CaptureFile {
     #[must_use]
     pub fn first_of(&self, run: &[u8], clock_hz: u32, channel: u8, baud: u32) -> Option<f64> {
         let kind = self.opened.as_ref()?.events(channel).kind;
-        Events::of_records(&records_of(run), clock_hz, kind, channel, baud).first_s()
+        Events::of_records(&records(run).collect::<Vec<_>>(), clock_hz, kind, channel, baud).first_s()
     }
 
     /// How it stands to such a run, the first steps, or bytes, of both taken for the same instant: the core's `Beside`; null
@@ -223,7 +211,8 @@ impl CaptureFile {
     pub fn beside(&self, run: &[u8], clock_hz: u32, channel: u8, baud: u32) -> Result<JsValue, JsError> {
         let found = self.opened.as_ref().and_then(|opened| {
             let own = opened.events(channel);
-            let model = Events::of_records(&records_of(run), clock_hz, own.kind, channel, baud);
+            let model =
+                Events::of_records(&records(run).collect::<Vec<_>>(), clock_hz, own.kind, channel, baud);
             own.beside(&model, 0, 1.0 / f64::from(own.clock_hz.min(model.clock_hz)))
         });
         object(&found)

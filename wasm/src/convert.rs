@@ -3,6 +3,11 @@
 #[cfg(any(feature = "run", feature = "study"))]
 use js_sys::{Float64Array, Object, Reflect};
 use serde::Serialize;
+#[cfg(any(feature = "run", feature = "capture"))]
+use stepscope_core::peripheral::{
+    signal::{Levels, Record},
+    units::Instant,
+};
 use wasm_bindgen::{JsError, JsValue};
 
 /// A plain object of anything that serde knows; maps become objects.
@@ -28,4 +33,15 @@ pub(crate) fn numbers(object: &Object, name: &str, values: &[f64]) {
 pub(crate) fn words(object: &Object, name: &str, values: &[u64]) {
     let halves: Vec<u32> = values.iter().flat_map(|word| [*word as u32, (*word >> 32) as u32]).collect();
     field(object, name, &js_sys::Uint32Array::from(halves.as_slice()));
+}
+
+/// Records as they go from one worker to another: 16 bytes each, cycle and levels, little-endian.
+#[cfg(any(feature = "run", feature = "capture"))]
+pub(crate) fn records(bytes: &[u8]) -> impl Iterator<Item = Record> {
+    let word = |bytes: &[u8]| bytes.try_into().map_or(0, u64::from_le_bytes);
+    let record = move |record: &[u8]| Record {
+        cycle: Instant(word(&record[..8])),
+        levels: Levels(word(&record[8..])),
+    };
+    bytes.chunks_exact(16).map(record)
 }

@@ -1,7 +1,7 @@
 //! A run in the worker: made in slices, kept for the views' questions. The views look at one
 //! controller at a time.
 
-use crate::convert::object;
+use crate::convert::{object, records};
 use serde::Serialize;
 use std::{mem::take, rc::Rc};
 use stepscope_core::{
@@ -11,7 +11,7 @@ use stepscope_core::{
     },
     peripheral::{
         config::Config,
-        signal::{Levels, Record, Sink},
+        signal::{Record, Sink},
         trace::{Digest, Recording, Step, steps},
         units::Instant,
     },
@@ -147,11 +147,7 @@ impl Simulation {
     /// Records of a recording, which are looked at in place of what the run makes: 16 bytes each, cycle and levels,
     /// little-endian; piece after piece, before the run.
     pub fn record(&mut self, bytes: &[u8]) {
-        let word = |bytes: &[u8]| bytes.try_into().map_or(0, u64::from_le_bytes);
-        let records = bytes
-            .chunks_exact(16)
-            .map(|record| Record { cycle: Instant(word(&record[..8])), levels: Levels(word(&record[8..])) });
-        self.recorded.get_or_insert_default().extend(records);
+        self.recorded.get_or_insert_default().extend(records(bytes));
     }
 
     /// The views look at this controller from now on, 0 the first; one that there is not leaves it as it

@@ -308,7 +308,7 @@ function compared({ kind, recorded, model, differing, largest, rms_s, drift_ppm,
   const drift =
     Math.abs(drift_ppm) > MAX_DRIFT_PPM
       ? ""
-      : ` Drift ${drift_ppm.toFixed(1)} ppm, jitter without it ${time(rms_jitter_s)} RMS.`;
+      : ` Drift ${drift_ppm.toFixed(1).replace(/^-(0\.0)$/, "$1")} ppm, jitter without it ${time(rms_jitter_s)} RMS.`;
   return `Beside the baseline: ${all} compared, ${count(differing)} are off by more than a cycle; ${late}${values}; RMS ${time(rms_s)}.${drift}`;
 }
 

@@ -54,6 +54,14 @@ impl<'w, R: BufRead> Source<'w, R> {
         (self.input, self.watch)
     }
 
+    /// Keeps the last `left` bytes, which have no end yet, and reads on; whether there was more.
+    fn more(&mut self, left: usize) -> Result<bool, String> {
+        let start = self.buffer.len() - left;
+        bounded(self.buffer.get(start..).unwrap_or_default())?;
+        self.start = start;
+        self.fill()
+    }
+
     /// Gives each line, without its end, to `each`.
     pub(super) fn lines(&mut self, mut each: impl FnMut(&[u8]) -> Result<(), String>) -> Option<ReadError> {
         loop {
@@ -67,11 +75,7 @@ impl<'w, R: BufRead> Source<'w, R> {
                 rest = after.get(1..).unwrap_or_default();
             }
             let left = rest.len();
-            let more = bounded(rest).and_then(|()| {
-                self.start = self.buffer.len() - left;
-                self.fill()
-            });
-            match more {
+            match self.more(left) {
                 Ok(true) => {}
                 Ok(false) => break,
                 Err(what) => return Some(self.error(what, self.line + 1)),
@@ -103,11 +107,7 @@ impl<'w, R: BufRead> Source<'w, R> {
                 rest = after;
             }
             let left = rest.len();
-            let more = bounded(rest).and_then(|()| {
-                self.start = self.buffer.len() - left;
-                self.fill()
-            });
-            match more {
+            match self.more(left) {
                 Ok(true) => {}
                 Ok(false) => break,
                 Err(what) => return Some(self.error(what, self.line)),
