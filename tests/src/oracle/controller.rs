@@ -114,7 +114,9 @@ impl<'a> Controller<'a> {
                     Err(fault) => self.device.faults |= fault,
                     Ok(None) => {}
                     Ok(Some(good)) => {
-                        if let Some(bytes) = self.device.take(config, &good, cycle) {
+                        // This cycle's levels are recorded: its rises count.
+                        let positions = &self.recorder.positions;
+                        if let Some(bytes) = self.device.take(config, &good, cycle, positions) {
                             let before = self.reply.as_ref().map_or(0, |r| r.de_rises + r.tx.len() as u64);
                             assert!(before <= cycle, "a second reply falls due: {config:?}, cycle {cycle}");
                             self.reply = Some(reply(config, cycle, &bytes));

@@ -19,6 +19,8 @@ pub mod kinds {
     pub const STOP: u8 = 0x05;
     /// Expected seq = 0, fault flags cleared.
     pub const RESYNC: u8 = 0x06;
+    /// Replies only; the ACK tells the position counters after the status.
+    pub const POSITIONS: u8 = 0x07;
     /// A reply's, where the order was refused; an ACK has the order's kind with bit 7 set.
     pub const NAK: u8 = 0xFF;
 }
@@ -86,8 +88,15 @@ impl Device {
     }
 
     /// Does what a good frame, its 0x00 delivered in cycle `p`, says; returns the reply's bytes on the wire, if there
-    /// is one.
-    pub(super) fn take(&mut self, config: &Config, good: &Frame, p: u64) -> Option<Vec<u8>> {
+    /// is one. `positions` are the counters as they stand in that cycle: "rises of STEP in cycles up to and including
+    /// p count".
+    pub(super) fn take(
+        &mut self,
+        config: &Config,
+        good: &Frame,
+        p: u64,
+        positions: &[i32; 16],
+    ) -> Option<Vec<u8>> {
         let own = config.address.unwrap_or(0);
         if good.address != own && good.address != 255 {
             return None;
@@ -103,6 +112,15 @@ impl Device {
         }
         let status = self.status(config, p);
         Some(match outcome {
+            // "after the 9 bytes of status 4*n bytes, the position counters (A3) of channels 0..n-1 in that order,
+            // n = `channels`, each an i32, two's complement, little-endian".
+            Ok(()) if good.kind == kinds::POSITIONS => {
+                let mut body = status;
+                for counter in &positions[..config.channels] {
+                    body.extend(counter.to_le_bytes());
+                }
+                frame(own, kinds::POSITIONS | 0x80, &body)
+            }
             Ok(()) => frame(own, good.kind | 0x80, &status),
             Err(reason) => {
                 let mut body = vec![reason as u8];
@@ -117,7 +135,7 @@ impl Device {
         // anything else of a kind that has none.
         match good.kind {
             kinds::TICKS => return self.queue_ticks(config, &good.body, p),
-            kinds::ENABLE..=kinds::RESYNC if !good.body.is_empty() => return Err(Reason::BadBody),
+            kinds::ENABLE..=kinds::POSITIONS if !good.body.is_empty() => return Err(Reason::BadBody),
             kinds::ENABLE => {
                 self.enabled = true;
                 self.stopped = false;
@@ -127,7 +145,7 @@ impl Device {
                 self.enabled = false;
                 self.stopped = true;
             }
-            kinds::STATUS => {}
+            kinds::STATUS | kinds::POSITIONS => {}
             kinds::STOP => {
                 self.enabled = false;
                 self.stopped = true;

@@ -13,13 +13,14 @@ fn slow() -> Config {
     Config { step_period: 50_000, queue_depth: 3, ..framed() }
 }
 
-/// One frame after the other, far enough apart for every reply (DE falls at p + 3056 at the latest).
+/// One frame after the other, far enough apart for every reply (DE falls at p + 3056 at the latest, after POSITIONS at
+/// p + 13136: 81 bytes).
 fn conversation(frames: &[Vec<u8>]) -> Input {
     let mut sends = Vec::new();
     let mut start = 1;
     for frame in frames {
         sends.push((start, frame.clone()));
-        start += 160 * frame.len() as u64 + 3_100;
+        start += 160 * frame.len() as u64 + if *frame == order(POSITIONS) { 13_200 } else { 3_100 };
     }
     Input { sends, forced: Vec::new(), cycles: start }
 }
@@ -63,11 +64,13 @@ fn check(config: &Config, turns: &[Turn]) {
 
 #[test]
 fn a_reply_is_address_kind_status_and_check() {
-    // `05 84 01 02 0000000 7A418B54` and `05 FF 01 01 02 00 40 00000 3946DF48`; the checks were worked out apart.
+    // `05 84 01 02 0000000 7A418B54`, `05 FF 01 01 02 00 40 00000 3946DF48`, `05 87 01 02 0000000 00000000 88C001CE`;
+    // the checks were worked out apart.
     let config = Config { queue_depth: 2, ..framed() };
     let rows: &[(Vec<u8>, &[u8])] = &[
         (order(STATUS), &[5, 5, 0x84, 1, 2, 1, 1, 1, 1, 1, 1, 5, 0x7A, 0x41, 0x8B, 0x54, 0]),
         (ticks(9, &[0]), &[6, 5, 0xFF, 1, 1, 2, 2, 0x40, 1, 1, 1, 1, 5, 0x39, 0x46, 0xDF, 0x48, 0]),
+        (order(POSITIONS), &[5, 5, 0x87, 1, 2, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 5, 0x88, 0xC0, 0x01, 0xCE, 0]),
     ];
     for (order, reply) in rows {
         let input = conversation(std::slice::from_ref(order));
@@ -93,6 +96,9 @@ fn a_frame_for_another_address_changes_nothing_and_one_for_255_is_never_answered
             (frame(255, TICKS, &[1, 4, 1, 1, 1, 1]), None),
             (frame(255, 0x77, &[]), None),
             (frame(255, STATUS, &[1]), None),
+            (frame(255, POSITIONS, &[]), None),
+            (frame(255, POSITIONS, &[1]), None),
+            (frame(6, POSITIONS, &[]), None),
             (order(STATUS), ack(STATUS, &status(Moving, 3, 1, BAD_SEQ | TOO_MANY_STEPS | QUEUE_OVERFLOW, 0))),
             (frame(255, STOP, &[]), None),
             (order(STATUS), ack(STATUS, &status(Stopped, 3, 1, 0x70, 0))),
@@ -272,17 +278,43 @@ fn during_boot_all_kinds_but_ticks_work() {
             (order(ENABLE), ack(ENABLE, &busy)),
             (ticks(3, &[1]), nak(1, &status(Busy, 3, 0, BAD_SEQ, 0))),
             (order(RESYNC), ack(RESYNC, &busy)),
+            (order(POSITIONS), ack(POSITIONS, &[busy, vec![0; 4]].concat())),
         ],
     );
 }
 
 #[test]
+fn positions_are_told_a_channel_after_the_other_little_endian_after_the_status() {
+    // 300 ticks of four steps to the left on channel 1, then one with three to the right on channel 0 and one on channel 2.
+    let config = Config { channels: 3, ..framed() };
+    let ticks = |seq: u8, count: u8, orders: [u8; 3]| {
+        (frame(255, TICKS, &[&[seq, count], &orders.repeat(count.into())[..]].concat()), None)
+    };
+    let mut turns: Vec<Turn> = (0..10).map(|seq| ticks(seq, 30, [0, 4, 0x80])).collect();
+    turns.push(ticks(10, 1, [0x83, 0x80, 0x81]));
+    let told = |faults: u8, seq: u8, positions: [i32; 3]| {
+        let mut body = vec![Ready as u8, 40, seq, faults, 0];
+        body.extend(301_u32.to_le_bytes());
+        body.extend(positions.iter().flat_map(|position| position.to_le_bytes()));
+        body
+    };
+    // 3, -1200 = 0xFFFFFB50, 1.
+    let body = told(UNDERRUN as u8, 11, [3, -1200, 1]);
+    assert_eq!(body[9..], [3, 0, 0, 0, 0x50, 0xFB, 0xFF, 0xFF, 1, 0, 0, 0]);
+    turns.push((order(POSITIONS), ack(POSITIONS, &body)));
+    // "only reset sets them to 0".
+    turns.push((order(RESYNC), ack(RESYNC, &told(0, 0, [0; 3])[..9])));
+    turns.push((order(POSITIONS), ack(POSITIONS, &told(0, 0, [3, -1200, 1]))));
+    check(&config, &turns);
+}
+
+#[test]
 fn a_body_where_none_belongs_is_bad_and_what_is_no_kind_is_unknown_with_or_without_one() {
     let idle = status(Ready, 3, 0, 0, 0);
-    for kind in [ENABLE, DISABLE, STATUS, STOP, RESYNC] {
+    for kind in [ENABLE, DISABLE, STATUS, STOP, RESYNC, POSITIONS] {
         check(&slow(), &[(frame(5, kind, &[0]), nak(6, &idle)), (order(STATUS), ack(STATUS, &idle))]);
     }
-    for kind in [0x00, 0x07, 0x08, 0x81, 0x84, 0xFF] {
+    for kind in [0x00, 0x08, 0x09, 0x81, 0x87, 0x84, 0xFF] {
         check(&slow(), &[(order(kind), nak(7, &idle)), (frame(5, kind, &[1, 2]), nak(7, &idle))]);
     }
     // Before BUSY.

@@ -34,6 +34,19 @@ fn de_rises_10_bits_after_the_zero_and_the_first_start_bit_falls_one_bit_later()
 }
 
 #[test]
+fn de_is_high_for_b_cycles_and_ten_bits_a_byte_of_the_positions_at_most_811_bits() {
+    // POSITIONS is as long as STATUS. 17 + 4*n bytes: 160*(17 + 4*n) + 16 cycles.
+    for channels in 1..=16 {
+        let config = Config { channels, step_period: 100, ..framed(5) };
+        let run = run(&config, &input(&[(1, frame(5, POSITIONS, &[]))], &[], 20_000));
+        let fall = 1_449 + 160 * (17 + 4 * channels as u64);
+        assert_eq!(edges(&run, bits::DE), [(1_433, true), (fall, false)], "{channels} channels");
+        assert_eq!(said(&config, &run, 20_000).len(), 17 + 4 * channels);
+    }
+    assert_eq!(16 + 160 * (17 + 4 * 16), 811 * 16);
+}
+
+#[test]
 fn a_reply_is_sent_at_the_receivers_rate_and_not_by_its_bit_time() {
     // Clock/rate = 11.1, B = 11; p = 1 + floor(7*10000/90) + 5 + 99 = 882.
     let uneven = Config { clock_hz: 1_000, baud: 90, receiver_baud: 90, ..framed(5) };

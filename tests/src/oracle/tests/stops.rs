@@ -153,6 +153,31 @@ fn a_status_is_taken_after_the_sequencers_part_of_the_cycle() {
 }
 
 #[test]
+fn positions_count_the_rises_up_to_and_including_the_frames_cycle() {
+    let positions_at = |orders: &[u8], sends: &[(u64, Vec<u8>)], p: u64| {
+        let sends = [&[ticks(P, 0, orders)], sends, &[arriving(p, 5, POSITIONS, &[])]].concat();
+        said(&long(), &run_sent(&long(), &sends, 20_000), 20_000)
+    };
+    let reply = |state, free, faults, done, position: i32| {
+        let status = [state, free, 1, faults as u8, 0, done, 0, 0, 0];
+        frame(5, 0x87, &[&status[..], &position.to_le_bytes()].concat())
+    };
+    // STEP rises in 4764 and falls in 5264; in 8764 the last time.
+    for (p, steps) in [(4_763, 1), (4_764, 2), (4_765, 2), (5_264, 2), (8_763, 3), (8_764, 4), (E - 1, 4)] {
+        assert_eq!(positions_at(&[0x84], &[], p), reply(2, 8, 0, 0, steps), "p = {p}");
+        assert_eq!(positions_at(&[4], &[], p), reply(2, 8, 0, 0, -steps), "p = {p}");
+    }
+    assert_eq!(positions_at(&[0x84], &[], E), reply(1, 8, UNDERRUN, 1, 4));
+    // The second tick goes back, from 10764 on.
+    assert_eq!(positions_at(&[0x84, 4], &[], 10_763), reply(2, 8, 0, 1, 4));
+    assert_eq!(positions_at(&[0x84, 4], &[], 10_764), reply(2, 8, 0, 1, 3));
+    // "a pulse that STOP cuts short counts": STOP in 4764 itself, and one cycle before the rise.
+    for (stop, steps) in [(4_763, 1), (4_764, 2)] {
+        assert_eq!(positions_at(&[0x84], &[order(stop, STOP)], 8_000), reply(3, 8, 0, 0, steps), "{stop}");
+    }
+}
+
+#[test]
 fn a_place_freed_in_the_frames_cycle_is_free() {
     let config = Config { queue_depth: 1, ..long() };
     for (p, faults, done) in [(E - 1, QUEUE_OVERFLOW, 2), (E, 0, 3)] {
