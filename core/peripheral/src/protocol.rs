@@ -66,6 +66,8 @@ meanings! {
         Stop = 5 "STOP",
         /// Expected sequence number 0, fault flags cleared.
         Resync = 6 "RESYNC",
+        /// A reply that tells the position counters, too, and nothing else.
+        Positions = 7 "POSITIONS",
     }
 
     /// Why a frame was refused (DESIGN A6).
@@ -114,7 +116,8 @@ pub struct Status {
     pub ticks_done: u32,
 }
 
-/// A controller's answer to one frame.
+/// A controller's answer to one frame; the counters that the ACK of POSITIONS tells beside it are
+/// [`Positions`](crate::signal::Positions).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reply {
     /// The controller's own address.
@@ -203,7 +206,7 @@ mod tests {
 
     #[test]
     fn a_byte_means_what_the_contracts_table_says() {
-        let kinds = ["TICKS", "ENABLE", "DISABLE", "STATUS", "STOP", "RESYNC"];
+        let kinds = ["TICKS", "ENABLE", "DISABLE", "STATUS", "STOP", "RESYNC", "POSITIONS"];
         let reasons =
             ["BAD_SEQ", "QUEUE_FULL", "TOO_MANY_STEPS", "BUSY", "STOPPED", "BAD_BODY", "UNKNOWN_KIND"];
         let states = ["BUSY", "READY", "MOVING", "STOPPED"];
@@ -215,7 +218,7 @@ mod tests {
             assert_eq!(Reason::parse(byte).map(Reason::name), one(&reasons, 1), "reason {byte}");
             assert_eq!(State::parse(byte).map(State::name), one(&states, 0), "state {byte}");
         }
-        assert_eq!(Kind::ALL.iter().map(|&kind| kind as u8).collect::<Vec<_>>(), [1, 2, 3, 4, 5, 6]);
+        assert_eq!(Kind::ALL.iter().map(|&kind| kind as u8).collect::<Vec<_>>(), [1, 2, 3, 4, 5, 6, 7]);
         assert_eq!(Reason::ALL.len(), 7);
     }
 

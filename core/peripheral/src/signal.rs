@@ -111,6 +111,41 @@ pub struct Record {
     pub levels: Levels,
 }
 
+/// Position counters of a controller's channels (DESIGN A3): rising STEP edges, +1 where DIR is 1, -1 where it is 0,
+/// wrapping.
+///
+/// ```
+/// use stepscope_peripheral::signal::Positions;
+///
+/// let positions = Positions::new(&[3, -1200]).expect("two channels");
+/// assert_eq!(positions.as_slice(), [3, -1200]);
+/// assert!(Positions::new(&[]).is_none() && Positions::new(&[0; 17]).is_none());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Positions {
+    /// Invariant: those of channels that are not there are 0.
+    counters: [i32; MAX_CHANNELS],
+    /// Invariant: 1..=16.
+    channels: u8,
+}
+
+impl Positions {
+    /// Those of 1 to 16 channels, channel 0 first; `None` of none or of more.
+    #[must_use]
+    pub fn new(counters: &[i32]) -> Option<Self> {
+        let mut all = [0; MAX_CHANNELS];
+        let used = all.get_mut(..counters.len()).filter(|used| !used.is_empty())?;
+        used.copy_from_slice(counters);
+        Some(Self { counters: all, channels: counters.len() as u8 })
+    }
+
+    /// A counter a channel, channel 0 first.
+    #[must_use]
+    pub fn as_slice(&self) -> &[i32] {
+        self.counters.get(..usize::from(self.channels)).unwrap_or_default()
+    }
+}
+
 /// Something that happened in a cycle beside the signals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -146,6 +181,8 @@ pub enum Event {
         end: Instant,
         /// What is answered.
         reply: Reply,
+        /// What the ACK of POSITIONS tells beside it; with any other reply `None`.
+        positions: Option<Positions>,
     },
     /// This controller drives the line while the host or another controller does.
     Collision,

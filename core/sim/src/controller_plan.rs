@@ -19,7 +19,7 @@ use stepscope_peripheral::{
     units::Instant,
     wire::{
         ForcedLevel, Schedule,
-        frame::{REPLY_LEN, encode_frame},
+        frame::{ACK_LEN, encode_frame},
         packet::{ChannelCommand, Tick},
     },
 };
@@ -307,7 +307,7 @@ pub(super) fn line_load<'a>(checked: &'a Checked) -> Result<Option<f64>, Problem
 fn frame_bits(checked: &Checked, config: &Config) -> u128 {
     let ticks = job(config, &Rc::from([])).ticks_per_frame(&checked.host);
     let content = vec![0xff; 4 + usize::from(ticks) * usize::from(config.channels())];
-    let bytes = (encode_frame(&content).len() + REPLY_LEN - 1) as u128;
+    let bytes = (encode_frame(&content).len() + ACK_LEN) as u128;
     PART_OF_BIT * (10 * bytes + EXCHANGE_BITS) / u128::from(ticks)
 }
 

@@ -11,7 +11,12 @@ use stepscope_peripheral::{
     config::{Config, DirLine, Protocol, PulsePhasing},
     segment::CheckedSegments,
     units::Cycles,
-    wire::{BitTimes, Schedule, bit_times::BYTE_BITS, frame::REPLY_LEN, schedule::line_time},
+    wire::{
+        BitTimes, Schedule,
+        bit_times::BYTE_BITS,
+        frame::{Kind, NAK_LEN, reply_len},
+        schedule::line_time,
+    },
 };
 use stepscope_scenario::{Checked, Noise, Source};
 
@@ -127,10 +132,11 @@ impl Sends {
         let framed = checked.configs.iter().any(|config| config.protocol() == Protocol::Framed);
         // A frame is seven bytes at least.
         let replies = if framed { bytes / 7 + checked.forced.len() as u64 } else { 0 };
-        Self { count: schedule.len() as u64, bytes, reply_bytes: replies * REPLY_LEN as u64, end_cycle: 0 }
+        let longest = checked.configs.iter().map(longest_reply).max().unwrap_or(0);
+        Self { count: schedule.len() as u64, bytes, reply_bytes: replies * longest, end_cycle: 0 }
     }
 
-    /// Frames of a host that waits for replies. On a line that goes wrong each may be sent as often as
+    /// Frames of a host that waits for replies, and asks for no positions. On a line that goes wrong each may be sent as often as
     /// the host tries, and a host that crashes asks every controller again: no bound, but a fair warning.
     fn framed(checked: &Checked, controllers: &[ControllerPlan]) -> Self {
         let wrong = checked.noise != Noise::default() || !checked.forced.is_empty();
@@ -142,7 +148,7 @@ impl Sends {
             let frames = u64::from(job.ticks()).div_ceil(job.ticks_per_frame(&checked.host).into()) + 2;
             sends.count += repeats * frames;
             sends.bytes += repeats * (plan.ticks().len() as u64 + FRAME_OVERHEAD * frames);
-            sends.reply_bytes += repeats * REPLY_LEN as u64 * frames;
+            sends.reply_bytes += repeats * NAK_LEN as u64 * frames;
             let ticks = u64::from(job.ticks()) * job.tick.0;
             sends.end_cycle = sends.end_cycle.max(plan.config().boot().0 + ticks);
         }
@@ -154,6 +160,11 @@ impl Sends {
             + line_time(sends.bytes / sends.count.max(1) + 200, clock_hz, checked.baud);
         sends
     }
+}
+
+/// Bytes of the longest reply to a frame of a script: of its kinds POSITIONS.
+const fn longest_reply(config: &Config) -> u64 {
+    reply_len(Kind::Positions, config.channels()) as u64
 }
 
 /// Records of all ticks of one controller at most.
@@ -242,7 +253,9 @@ fn last_cycle(schedule: &Schedule, checked: &Checked, controllers: &[ControllerP
             let ticks = most_ticks(checked, config, schedule).min(u64::from(config.queue_depth()) + 1);
             sent + late + ticks * config.tick().0
         };
-        let reply = line_time(REPLY_LEN as u64, clock_hz, config.reply_baud());
+        let is_scripted = config.protocol() == Protocol::Framed && !checked.waits_for_replies();
+        let reply = if is_scripted { longest_reply(config) } else { NAK_LEN as u64 };
+        let reply = line_time(reply, clock_hz, config.reply_baud());
         ticks_end.max(sent + late + LONGEST_REST_BITS * config.bit().0 + reply)
     };
     controllers.iter().map(end).max().unwrap_or(sent) + 1
@@ -315,6 +328,22 @@ mod tests {
         let experiment = Experiment::from_json(json).expect("runs");
         assert_eq!(experiment.run(&mut vec![]).cycles().0, 649_867);
         assert_eq!(experiment.cost().end_cycle, 649_934, "647 106 were announced");
+    }
+
+    #[test]
+    fn a_script_that_asks_for_positions_is_answered_within_its_cost() {
+        for channels in [1, 2, 16] {
+            let json = format!(
+                r#"{{"bus":{{"channels":{channels},"boot_cycles":0}},"line":{{"protocol":"framed"}},
+                "source":{{"line":{{"sends":[{{"start_cycle":1,"frame":"0007"}}]}}}}}}"#
+            );
+            let experiment = Experiment::from_json(&json).expect("runs");
+            let mut trace = vec![];
+            let run = experiment.run(&mut trace);
+            let cost = experiment.cost();
+            assert!(run.cycles().0 <= cost.end_cycle, "{channels}: {} of {cost:?}", run.cycles().0);
+            assert!(trace.len() as u64 <= cost.records, "{channels}: {} of {cost:?}", trace.len());
+        }
     }
 
     #[test]

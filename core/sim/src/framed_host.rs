@@ -43,7 +43,7 @@ use stepscope_peripheral::units::{Cycles, Instant};
 use stepscope_peripheral::wire::schedule::line_time;
 use stepscope_peripheral::wire::{
     Line,
-    frame::{self, Deframed, Deframer, Kind, REPLY_LEN, Reply, Ticks},
+    frame::{self, Deframed, Deframer, Kind, NAK_LEN, Reply, Ticks},
     uart::{Receiver, RxEvent},
 };
 use stepscope_scenario::{END_OF_TIME, Host as Settings};
@@ -52,10 +52,10 @@ use stepscope_scenario::{END_OF_TIME, Host as Settings};
 /// whatever the controller's clock.
 const PAUSE_BITS: u64 = 10;
 /// Bit times from the end of a frame in which its reply has to come, if the scenario does not say: the
-/// longest one takes 191.
+/// longest one to STATUS and TICKS, which are all that it sends, takes 191.
 const TIMEOUT_BITS: u64 = 256;
 // The first start bit comes 11 bit times after the frame, and each byte has ten.
-const _: () = assert!(TIMEOUT_BITS > 11 + 10 * REPLY_LEN as u64);
+const _: () = assert!(TIMEOUT_BITS > 11 + 10 * NAK_LEN as u64);
 
 /// What the host counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

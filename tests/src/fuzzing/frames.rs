@@ -42,8 +42,10 @@ pub fn check(data: &[u8]) {
 pub fn seeds() -> Vec<Vec<u8>> {
     let status = [2, 3, 7, 0x82, 0, 1, 0, 0, 0];
     let ticks = [1_u8, 32].map(|count| emit(7, 1, &Ticks::emit(9, 2, &[0x85, 5].repeat(count.into()))));
-    let others = (2..=7).map(|kind| emit(255, kind, &[]));
+    let others = (2..=8).map(|kind| emit(255, kind, &[]));
     let acks = (1..=6).map(|kind| emit(7, kind | 0x80, &status));
+    let positions = [1, 3, 16, 17]
+        .map(|channels| emit(7, 0x87, &[&status[..], &[0x80, 1, 0, 0xff].repeat(channels)].concat()));
     let naks = (1..=7).map(|reason| emit(7, 0xff, &[&[reason][..], &status].concat()));
     let long = [MAX_BODY - 1, MAX_BODY, MAX_BODY + 1].map(|length| emit(0, 1, &vec![1; length]));
     let zeros = emit(0, 0, &vec![0; MAX_BODY]);
@@ -52,6 +54,7 @@ pub fn seeds() -> Vec<Vec<u8>> {
         .into_iter()
         .chain(others)
         .chain(acks)
+        .chain(positions)
         .chain(naks)
         .chain(long)
         .chain([zeros])
@@ -125,13 +128,14 @@ fn check_of(held: &[u8]) -> [u8; 4] {
 /// What a frame means survives being written and read again.
 fn read_as_written(frame: Frame<'_>) {
     if let Some(reply) = Reply::parse(frame) {
-        let sent = reply.emit();
+        let told = frame.positions();
+        let sent = reply.emit(told.as_ref());
         let mut deframer = Deframer::default();
         let again = sent.iter().find_map(|&byte| match deframer.byte(byte) {
-            Some(Deframed::Frame(frame)) => Some(Reply::parse(frame)),
+            Some(Deframed::Frame(frame)) => Some((Reply::parse(frame), frame.positions())),
             _ => None,
         });
-        assert_eq!(again, Some(Some(reply)));
+        assert_eq!(again, Some((Some(reply), told)));
     }
     for channels in 1..=16 {
         if let Some(ticks) = Ticks::parse(frame.body, channels) {

@@ -67,7 +67,7 @@ fn a_reply_tells_its_status_and_a_refusal_its_reason() {
     let status =
         Status { state: State::Moving, free: 3, expected_seq: 9, faults: 0x82, ticks_done: 0x0100_0000 };
     let acknowledged = Reply { address: 4, answer: Ok(Kind::Status), status };
-    let lines = told(&read(Protocol::Framed, false, &acknowledged.emit(), RowOutcome::Reply(acknowledged)));
+    let lines = told(&read(Protocol::Framed, false, &acknowledged.emit(None), RowOutcome::Reply(acknowledged)));
     assert_eq!(lines[2], "kind 2..3 ACK STATUS");
     assert_eq!(
         lines[3..8],
@@ -80,7 +80,7 @@ fn a_reply_tells_its_status_and_a_refusal_its_reason() {
         ]
     );
     let refused = Reply { answer: Err(Reason::Busy), ..acknowledged };
-    let lines = told(&read(Protocol::Framed, false, &refused.emit(), RowOutcome::Reply(refused)));
+    let lines = told(&read(Protocol::Framed, false, &refused.emit(None), RowOutcome::Reply(refused)));
     assert_eq!(lines[2..5], ["kind 2..3 NAK", "reason 3..4 4, BUSY", "state 4..5 MOVING"]);
 }
 

@@ -5,7 +5,7 @@ use crate::device::{Faults, machine::Machine};
 use crate::{
     config::Config,
     protocol::{FrameOutcome, Kind, Reason, Reply},
-    signal::{Event, Sink},
+    signal::{Event, Positions, Sink},
     units::Instant,
     wire::{
         frame::{Deframed, Deframer, Frame, Ticks},
@@ -71,9 +71,15 @@ impl Controller {
         if let Some(answer) = outcome.answer().filter(|_| answered) {
             let status = machine.status(now, self.expected_seq);
             let reply = Reply { address: self.address, answer, status };
-            let (start, end) = machine.transceiver.reply(now, &reply.emit());
-            sink.event(now, Event::Reply { start, end, reply });
+            let positions = if answer == Ok(Kind::Positions) { self.positions(machine) } else { None };
+            let (start, end) = machine.transceiver.reply(now, &reply.emit(positions.as_ref()));
+            sink.event(now, Event::Reply { start, end, reply, positions });
         }
+    }
+
+    /// The position counters as they stand in this cycle: the sequencer's part of it is over.
+    fn positions(&self, machine: &Machine) -> Option<Positions> {
+        Positions::new(machine.sequencer.positions().get(..self.channels.into())?)
     }
 }
 
@@ -103,7 +109,7 @@ impl Execution<'_> {
                 (*self.expected_seq, *self.taken) = (0, false);
                 self.machine.clear_faults(Faults::ALL);
             }
-            Kind::Ticks | Kind::Disable | Kind::Status => {}
+            Kind::Ticks | Kind::Disable | Kind::Status | Kind::Positions => {}
         }
         FrameOutcome::Taken(kind)
     }

@@ -5,6 +5,7 @@ use super::*;
 use crate::{
     config::{Bus, SerialLine},
     protocol::{FrameOutcome, Kind, State},
+    signal::Positions,
     units::Cycles,
     wire::{Line, Schedule, frame::encode_frame, packet::ALL},
 };
@@ -220,7 +221,7 @@ fn a_reply_tells_what_is_so_at_the_end_of_its_cycle() {
         let sends = [(P, frame(Kind::Ticks, &[0, 2, 1, 1])), (at, status)];
         let (_, left) = run(&bus(1, 2), Protocol::Framed, &sends);
         let reply = left.events.iter().find_map(|(in_cycle, event)| match event {
-            Event::Reply { reply, start, end } => Some((*in_cycle, *reply, start.0, end.0)),
+            Event::Reply { reply, start, end, .. } => Some((*in_cycle, *reply, start.0, end.0)),
             _ => None,
         });
         let (in_cycle, reply, start, end) = reply.expect("it is answered");
@@ -238,6 +239,23 @@ fn a_reply_tells_what_is_so_at_the_end_of_its_cycle() {
             .map(|pair| pair[1].cycle.0)
             .collect();
         assert_eq!(de, [at + 10 * BIT, end]);
+    }
+}
+
+#[test]
+fn positions_count_a_pulse_that_rises_in_the_cycle_of_the_frame() {
+    // The third step of each channel, one to the right and one to the left: 3 cycles after the slot's start.
+    let rise = P + 1 + 2 * 1000 + 3;
+    // POSITIONS in, the counters.
+    for (at, counters) in [(rise - 1, [2, -2]), (rise, [3, -3]), (rise + 1, [3, -3]), (E, [4, -4])] {
+        let positions = encode_frame(&[0, Kind::Positions as u8]);
+        let sends = [(P, frame(Kind::Ticks, &[0, 1, 0x84, 0x04])), (at, positions)];
+        let (_, left) = run(&bus(2, 2), Protocol::Framed, &sends);
+        let told = left.events.iter().find_map(|(_, event)| match event {
+            Event::Reply { positions, start, end, .. } => Some((*positions, end.0 - start.0)),
+            _ => None,
+        });
+        assert_eq!(told, Some((Positions::new(&counters), (17 + 4 * 2) * BYTE)), "POSITIONS in {at}");
     }
 }
 

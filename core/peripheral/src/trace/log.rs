@@ -266,8 +266,8 @@ impl Sink for PacketLog {
             }
             Event::Packet(outcome) => self.close(at, RowOutcome::Packet(outcome)),
             Event::Frame(outcome) => self.close(at, RowOutcome::Frame(outcome)),
-            Event::Reply { start, end, reply } => {
-                self.bytes.extend(reply.emit());
+            Event::Reply { start, end, reply, positions } => {
+                self.bytes.extend(reply.emit(positions.as_ref()));
                 self.seen.resize(self.bytes.len(), start);
                 self.open = Some(start);
                 self.close(end, RowOutcome::Reply(reply));

@@ -25,7 +25,7 @@
 //! ```
 
 pub use crate::protocol::{Kind, MAX_TICKS, Reason, Reply, State, Status};
-use crate::signal::MAX_CHANNELS;
+use crate::signal::{MAX_CHANNELS, Positions};
 use crate::wire::{
     cobs::{CobsByte, CobsDecoder},
     packet::Tick,
@@ -56,8 +56,14 @@ pub const MIN_DECODED: usize = 2 + CRC_LEN;
 pub const MAX_DECODED: usize = 600;
 /// Bytes of a status.
 pub const STATUS_LEN: usize = 9;
-/// Most bytes of a reply on the wire: a NAK in COBS with its delimiter.
-pub const REPLY_LEN: usize = 3 + STATUS_LEN + CRC_LEN + 2;
+/// Bytes of a position counter.
+pub const POSITION_LEN: usize = 4;
+/// Bytes of an ACK on the wire, in COBS with its delimiter; that of POSITIONS has its counters beside.
+pub const ACK_LEN: usize = MIN_DECODED + STATUS_LEN + 2;
+/// Bytes of a NAK on the wire: an ACK's, and the reason.
+pub const NAK_LEN: usize = ACK_LEN + 1;
+/// Most bytes of a reply on the wire: the ACK of POSITIONS with all channels.
+pub const REPLY_LEN: usize = reply_len(Kind::Positions, MAX_CHANNELS as u8);
 /// Most bytes that COBS puts one code before.
 const COBS_RUN: usize = 254;
 /// Set in the kind of a reply that acknowledges.
@@ -67,6 +73,8 @@ pub const NAK: u8 = 0xff;
 
 // Every TICKS frame is taken: sequence number, count, and the most ticks of all channels.
 const _: () = assert!(MIN_DECODED + 2 + MAX_TICKS as usize * MAX_CHANNELS <= MAX_DECODED);
+// A6's lengths.
+const _: () = assert!(ACK_LEN == 17 && NAK_LEN == 18 && REPLY_LEN == 81);
 // Of the two bytes that a reply has beside what is decoded, COBS needs one and the delimiter is the other.
 const _: () = assert!(REPLY_LEN - 2 <= COBS_RUN);
 // A kind and its acknowledgement are told apart, and neither is a refusal.
@@ -77,6 +85,13 @@ const _: () = {
         index += 1;
     }
 };
+
+/// Most bytes on the wire of a controller's reply to a frame of this kind, whether it takes or refuses it.
+#[must_use]
+pub const fn reply_len(kind: Kind, channels: u8) -> usize {
+    let positions = if matches!(kind, Kind::Positions) { POSITION_LEN * channels as usize } else { 0 };
+    if ACK_LEN + positions > NAK_LEN { ACK_LEN + positions } else { NAK_LEN }
+}
 
 fn emit_status(status: &Status) -> [u8; STATUS_LEN] {
     let [f0, f1] = status.faults.to_le_bytes();
@@ -96,31 +111,52 @@ fn parse_status(bytes: &[u8]) -> Option<Status> {
 }
 
 impl Reply {
-    /// The reply as it goes over the line.
+    /// The reply as it goes over the line. `positions` are those that the ACK of POSITIONS tells, and that no other
+    /// reply has.
     #[must_use]
-    pub fn emit(&self) -> Vec<u8> {
-        let status = emit_status(&self.status);
-        match self.answer {
-            Ok(kind) => emit(self.address, kind as u8 | ACK, &status),
-            Err(reason) => {
-                let mut body = alloc::vec![reason as u8];
-                body.extend(status);
-                emit(self.address, NAK, &body)
-            }
-        }
+    pub fn emit(&self, positions: Option<&Positions>) -> Vec<u8> {
+        debug_assert_eq!(positions.is_some(), self.answer == Ok(Kind::Positions), "{self:?}");
+        let (kind, reason) = match self.answer {
+            Ok(kind) => (kind as u8 | ACK, None),
+            Err(reason) => (NAK, Some(reason as u8)),
+        };
+        let mut body: Vec<u8> = reason.into_iter().collect();
+        body.extend(emit_status(&self.status));
+        let counters = positions.into_iter().flat_map(Positions::as_slice);
+        body.extend(counters.flat_map(|counter| counter.to_le_bytes()));
+        emit(self.address, kind, &body)
     }
 
-    /// The reply that a frame is, if it is one.
+    /// The reply that a frame is, if it is one; the counters that it may tell are [`Frame::positions`].
     #[must_use]
     pub fn parse(frame: Frame<'_>) -> Option<Self> {
-        let (answer, status) = if frame.kind == NAK {
-            let (&reason, status) = frame.body.split_first()?;
-            (Err(Reason::parse(reason)?), status)
-        } else {
-            (Ok(Kind::parse(frame.kind & !ACK).filter(|_| frame.kind & ACK != 0)?), frame.body)
-        };
-        Some(Self { address: frame.address, answer, status: parse_status(status)? })
+        parse_reply(frame).map(|(reply, _)| reply)
     }
+}
+
+/// A reply, and what the ACK of POSITIONS tells beside it.
+fn parse_reply(frame: Frame<'_>) -> Option<(Reply, Option<Positions>)> {
+    let (answer, told) = if frame.kind == NAK {
+        let (&reason, told) = frame.body.split_first()?;
+        (Err(Reason::parse(reason)?), told)
+    } else {
+        (Ok(Kind::parse(frame.kind & !ACK).filter(|_| frame.kind & ACK != 0)?), frame.body)
+    };
+    let (status, rest) = told.split_at_checked(STATUS_LEN)?;
+    let positions = match (answer, rest) {
+        (Ok(Kind::Positions), counters) => Some(parse_positions(counters)?),
+        (_, []) => None,
+        _ => return None,
+    };
+    Some((Reply { address: frame.address, answer, status: parse_status(status)? }, positions))
+}
+
+fn parse_positions(bytes: &[u8]) -> Option<Positions> {
+    let (counters, []) = bytes.as_chunks::<POSITION_LEN>() else { return None };
+    let mut all = [0; MAX_CHANNELS];
+    let used = all.get_mut(..counters.len())?;
+    used.iter_mut().zip(counters).for_each(|(counter, bytes)| *counter = i32::from_le_bytes(*bytes));
+    Positions::new(used)
 }
 
 /// A frame whose CRC is right.
@@ -132,6 +168,14 @@ pub struct Frame<'a> {
     pub kind: u8,
     /// The rest.
     pub body: &'a [u8],
+}
+
+impl Frame<'_> {
+    /// The position counters that it tells, if it is the ACK of POSITIONS.
+    #[must_use]
+    pub fn positions(&self) -> Option<Positions> {
+        parse_reply(*self)?.1
+    }
 }
 
 /// A frame as it goes over the line: with its CRC, in COBS, with its delimiter.
@@ -327,10 +371,30 @@ mod tests {
         };
         let bytes = [3, 5, 6, 0x80, 0x01, 4, 3, 2, 1];
         let ack = Reply { address: 9, answer: Ok(Kind::Stop), status };
-        assert_eq!(ack.emit(), stuffed(&[&[9, 0x85], bytes.as_slice()].concat()));
+        assert_eq!(ack.emit(None), stuffed(&[&[9, 0x85], bytes.as_slice()].concat()));
         let nak = Reply { address: 9, answer: Err(Reason::QueueFull), status };
-        assert_eq!(nak.emit(), stuffed(&[&[9, 0xff, 2], bytes.as_slice()].concat()));
-        assert_eq!((ack.emit().len(), nak.emit().len(), REPLY_LEN), (17, 18, 18));
+        assert_eq!(nak.emit(None), stuffed(&[&[9, 0xff, 2], bytes.as_slice()].concat()));
+        assert_eq!((ack.emit(None).len(), nak.emit(None).len()), (17, 18));
+        let told = Positions::new(&[3, -1200, i32::MIN]).expect("three channels");
+        let counters = [3, 0, 0, 0, 0x50, 0xfb, 0xff, 0xff, 0, 0, 0, 0x80];
+        let positions = Reply { address: 9, answer: Ok(Kind::Positions), status };
+        assert_eq!(positions.emit(Some(&told)), stuffed(&[&[9, 0x87], bytes.as_slice(), &counters].concat()));
+    }
+
+    #[test]
+    fn a_reply_is_as_long_as_its_kind_and_channels_make_it() {
+        let status = Status { state: State::Ready, free: 1, expected_seq: 1, faults: 0, ticks_done: 0 };
+        for channels in 1..=16 {
+            for fill in [0, -1, 0x0101_0101] {
+                let told = Positions::new(&[fill; 16][..channels]);
+                let reply = Reply { address: 9, answer: Ok(Kind::Positions), status };
+                let length = 17 + 4 * channels;
+                assert_eq!(reply.emit(told.as_ref()).len(), length, "{channels} x {fill}");
+                assert_eq!(reply_len(Kind::Positions, channels as u8), length);
+            }
+            assert_eq!(reply_len(Kind::Status, channels as u8), 18, "a NAK");
+        }
+        assert_eq!(REPLY_LEN, 81);
     }
 
     #[test]
@@ -364,7 +428,17 @@ mod tests {
     fn what_is_no_reply_is_none() {
         let body = [1; STATUS_LEN];
         // Kind, body, whether it is one.
-        let rows: [(u8, &[u8], bool); 7] = [
+        let and = |more: usize| [&body, [1; 68].get(..more).expect("so many")].concat();
+        let rows: [(u8, &[u8], bool); 16] = [
+            (0x87, &and(4), true),
+            (0x87, &and(64), true),
+            (0x87, &body, false),
+            (0x87, &and(3), false),
+            (0x87, &and(5), false),
+            (0x87, &and(68), false),
+            (0x87, &body[1..], false),
+            (0x07, &and(4), false),
+            (0x84, &and(4), false),
             (0x84, &body, true),
             (0x04, &body, false),
             (0x80, &body, false),
@@ -374,11 +448,9 @@ mod tests {
             (0xff, &[], false),
         ];
         for (kind, body, expected) in rows {
-            assert_eq!(
-                Reply::parse(Frame { address: 1, kind, body }).is_some(),
-                expected,
-                "{kind:#x} {body:?}"
-            );
+            let frame = Frame { address: 1, kind, body };
+            assert_eq!(Reply::parse(frame).is_some(), expected, "{kind:#x} {body:?}");
+            assert_eq!(frame.positions().is_some(), expected && kind == 0x87, "{kind:#x} {body:?}");
         }
     }
 
@@ -387,16 +459,18 @@ mod tests {
         let status =
             Status { state: State::Moving, free: 3, expected_seq: 0, faults: 0x82, ticks_done: 0x0100_0000 };
         let (kinds, reasons) = (Kind::ALL.iter().copied().map(Ok), Reason::ALL.iter().copied().map(Err));
-        for answer in kinds.chain(reasons) {
+        for (answer, channels) in kinds.chain(reasons).flat_map(|answer| [(answer, 1), (answer, 16)]) {
             let reply = Reply { address: 9, answer, status };
-            let wire = reply.emit();
+            let counters = [0, 1, -1, i32::MIN, i32::MAX, 256, -256, 7, 0, 0, 0, 0, 0, 0, 0, 9];
+            let told = Positions::new(&counters[..channels]).filter(|_| answer == Ok(Kind::Positions));
+            let wire = reply.emit(told.as_ref());
             assert!(wire.len() <= REPLY_LEN);
             let mut deframer = Deframer::default();
             let parsed = wire.iter().find_map(|&byte| match deframer.byte(byte) {
-                Some(Deframed::Frame(frame)) => Reply::parse(frame),
+                Some(Deframed::Frame(frame)) => Some((Reply::parse(frame), frame.positions())),
                 _ => None,
             });
-            assert_eq!(parsed, Some(reply));
+            assert_eq!(parsed, Some((Some(reply), told)));
         }
     }
 

@@ -187,7 +187,7 @@ fn a_late_answer_to_the_frame_before_acknowledges_nothing() {
         let mut host = FramedHost::new(alloc::vec![job], &Settings::default(), wire, Instant(1), None);
         (host.peers[0].progress, host.peers[0].seq) = (Progress::Filling, 7);
         let status = Status { state: State::Moving, free: 14, expected_seq, faults: 0, ticks_done: 0 };
-        for byte in (Reply { address: 0, answer: Ok(Kind::Ticks), status }).emit() {
+        for byte in (Reply { address: 0, answer: Ok(Kind::Ticks), status }).emit(None) {
             host.hear(byte, Instant(9), (0, Kind::Ticks, 2));
         }
         assert_eq!(host.acknowledged().next(), Some(acknowledged), "seq {expected_seq}");

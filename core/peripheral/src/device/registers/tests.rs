@@ -2,8 +2,13 @@
 
 use super::*;
 use crate::config::{Bus, Distribution, PulsePhasing, SerialLine};
-use crate::{signal::Record, units::Cycles};
-use alloc::{vec, vec::Vec};
+use crate::{
+    protocol::Kind,
+    signal::{Positions, Record},
+    units::Cycles,
+    wire::{Line, Schedule, frame::emit},
+};
+use alloc::{rc::Rc, vec, vec::Vec};
 use map::{
     RegisterBus,
     control::{COMMIT, DISABLE, ENABLE, STOP},
@@ -218,6 +223,37 @@ fn underrun_is_set_on_a_framed_line_and_can_be_cleared() {
     bench.push(0);
     bench.run_to(500);
     assert_eq!(bench.read(map::faults::OFFSET), 0, "a tick of zero counts was the last");
+}
+
+#[test]
+fn the_reply_to_positions_tells_what_the_registers_read_in_its_cycle() {
+    let serial = SerialLine { baud: 100_000, protocol: Protocol::Framed, ..SerialLine::default() };
+    let bus = Bus { step_period_cycles: 1000, ..BUS };
+    // A tick that is pushed in 100 steps in 104, 1104, 2104, 3104: channel 0 to the right, channel 1 twice to the left.
+    for (p, steps) in [(2103, [2, -2]), (2104, [3, -2]), (2105, [3, -2])] {
+        // Eight bytes, the last one delivered 152 cycles after its start.
+        let mut schedule = Schedule::default();
+        schedule.push(Instant(p - 7 * 160 - 152), &emit(0, Kind::Positions as u8, &[]));
+        let mut line = Line::new(Rc::new(schedule), &[], 1_600_000, serial.baud);
+        let mut bench = Bench::new(&bus, &serial);
+        while bench.device.now() <= Instant(p) {
+            let now = bench.device.now();
+            if line.next_change() == now {
+                line.change();
+            }
+            bench.device.clock(line.heard(true), &mut bench.left);
+            if now == Instant(100) {
+                bench.write(map::orders::OFFSET, 0x0284);
+                bench.write(map::push::OFFSET, 0);
+            }
+        }
+        let read = [0, 4].map(|channel| bench.read(map::position::OFFSET + channel).cast_signed());
+        let told = bench.left.events.iter().find_map(|event| match event {
+            Event::Reply { positions, .. } => *positions,
+            _ => None,
+        });
+        assert_eq!((read, told), (steps, Positions::new(&steps)), "POSITIONS in {p}");
+    }
 }
 
 #[test]
