@@ -34,10 +34,11 @@ use stepscope_peripheral::{
     config::Protocol,
     device::Faults,
     protocol::{FrameOutcome, Kind, Reason, Reply},
+    signal::Positions,
     trace::RowOutcome,
     wire::{
         cobs::{CobsByte, CobsDecoder},
-        frame::{ACK, CHECK, CRC_LEN, DELIMITER, Frame, NAK, Ticks},
+        frame::{ACK, CHECK, CRC_LEN, DELIMITER, Frame, NAK, POSITION_LEN, STATUS_LEN, Ticks},
         packet::{ALL, ChannelCommand},
     },
 };
@@ -253,7 +254,7 @@ impl Content {
             add("kind".into(), 1..2, kind_to_text(*kind));
             let frame = Frame { address: *address, kind: *kind, body };
             match (Reply::parse(frame), Ticks::parse(body, channels(*address))) {
-                (Some(reply), _) => reply_fields(&reply, &mut add),
+                (Some(reply), _) => reply_fields(&reply, frame.positions().as_ref(), &mut add),
                 (None, Some(ticks)) if Kind::parse(*kind) == Some(Kind::Ticks) => {
                     ticks_fields(&ticks, channels(*address), &mut add);
                 }
@@ -286,7 +287,7 @@ fn ticks_fields(ticks: &Ticks<'_>, channels: u8, add: &mut Add<'_>) {
     }
 }
 
-fn reply_fields(reply: &Reply, add: &mut Add<'_>) {
+fn reply_fields(reply: &Reply, positions: Option<&Positions>, add: &mut Add<'_>) {
     let mut at = 2;
     if let Err(reason) = reply.answer {
         add("reason".into(), 2..3, reason_to_text(reason));
@@ -300,6 +301,12 @@ fn reply_fields(reply: &Reply, add: &mut Add<'_>) {
     let faults = if names.is_empty() { "none".into() } else { names.join(", ") };
     add("faults".into(), at + 3..at + 5, faults);
     add("ticks done".into(), at + 5..at + 9, format!("{}", status.ticks_done));
+    let counters = positions.map(Positions::as_slice).unwrap_or_default();
+    for (channel, &counter) in counters.iter().enumerate() {
+        let from = at + STATUS_LEN + channel * POSITION_LEN;
+        let name = if counters.len() == 1 { "position".into() } else { format!("position ch{channel}") };
+        add(name.into(), from..from + POSITION_LEN, position_to_text(counter));
+    }
 }
 
 fn raw(bytes: &[u8], addressed: bool) -> Vec<Field> {
@@ -337,6 +344,15 @@ fn kind_to_text(kind: u8) -> String {
 
 fn reason_to_text(reason: Reason) -> String {
     format!("{}, {}", reason as u8, reason.name())
+}
+
+/// A position counter with its sign; right is plus.
+fn position_to_text(counter: i32) -> String {
+    match counter {
+        0 => "0".into(),
+        1.. => format!("+{counter}"),
+        _ => format!("\u{2212}{}", counter.unsigned_abs()),
+    }
 }
 
 /// Steps with their direction; right is plus.

@@ -1,6 +1,6 @@
 //! A packet, frame or reply in one line, as far as its bytes are known to mean something.
 
-use super::{Check, Content, Head, Reading, last_frame};
+use super::{Check, Content, Head, Reading, last_frame, position_to_text};
 use alloc::string::String;
 use core::fmt::Write as _;
 use stepscope_peripheral::{
@@ -26,6 +26,13 @@ impl Reading<'_> {
             },
             RowOutcome::Reply(reply) => {
                 let _ = write!(text, "from {}: {reply}", reply.address);
+                // Counters are kept as bytes alone.
+                if reply.answer == Ok(Kind::Positions) {
+                    let content = Content::of(bytes, last_frame(bytes));
+                    if let [address, kind, body @ ..] = content.without(content.check()) {
+                        write_positions(Frame { address: *address, kind: *kind, body }, text);
+                    }
+                }
             }
             RowOutcome::Frame(_) => {
                 let content = Content::of(bytes, last_frame(bytes));
@@ -49,6 +56,7 @@ impl Reading<'_> {
                 Some(reply) => write!(text, "{reply}"),
                 None => write!(text, "kind {:#04x}", frame.kind),
             };
+            write_positions(frame, text);
             return;
         }
         to(frame.address, text);
@@ -67,6 +75,14 @@ impl Reading<'_> {
         let many = if ticks.count() == 1 { "tick" } else { "ticks" };
         let _ = write!(text, " seq {}, {} {many}, ", ticks.seq, ticks.count());
         write_totals(totals.into_iter().enumerate(), text);
+    }
+}
+
+/// Adds the position counters that a frame tells, such as `, ch0 at +12, ch1 at 0`.
+fn write_positions(frame: Frame<'_>, text: &mut String) {
+    let Some(positions) = frame.positions() else { return };
+    for (channel, &counter) in positions.as_slice().iter().enumerate() {
+        let _ = write!(text, ", ch{channel} at {}", position_to_text(counter));
     }
 }
 

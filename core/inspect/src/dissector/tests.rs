@@ -67,7 +67,8 @@ fn a_reply_tells_its_status_and_a_refusal_its_reason() {
     let status =
         Status { state: State::Moving, free: 3, expected_seq: 9, faults: 0x82, ticks_done: 0x0100_0000 };
     let acknowledged = Reply { address: 4, answer: Ok(Kind::Status), status };
-    let lines = told(&read(Protocol::Framed, false, &acknowledged.emit(None), RowOutcome::Reply(acknowledged)));
+    let lines =
+        told(&read(Protocol::Framed, false, &acknowledged.emit(None), RowOutcome::Reply(acknowledged)));
     assert_eq!(lines[2], "kind 2..3 ACK STATUS");
     assert_eq!(
         lines[3..8],
@@ -82,6 +83,50 @@ fn a_reply_tells_its_status_and_a_refusal_its_reason() {
     let refused = Reply { answer: Err(Reason::Busy), ..acknowledged };
     let lines = told(&read(Protocol::Framed, false, &refused.emit(None), RowOutcome::Reply(refused)));
     assert_eq!(lines[2..5], ["kind 2..3 NAK", "reason 3..4 4, BUSY", "state 4..5 MOVING"]);
+}
+
+#[test]
+fn the_acknowledgement_of_positions_tells_each_channels_counter_in_its_four_bytes() {
+    let status = Status { state: State::Ready, free: 4, expected_seq: 1, faults: 0, ticks_done: 2 };
+    let reply = Reply { address: 5, answer: Ok(Kind::Positions), status };
+    let of = |counters: &[i32]| {
+        let bytes = reply.emit(Positions::new(counters).as_ref());
+        // As the controller's own, and as what another one hears.
+        let [own, heard] = [RowOutcome::Reply(reply), FRAME].map(|outcome| {
+            let mut summary = String::new();
+            Reading { protocol: Protocol::Framed, addressed: false, channels: &|_| 2 }.summary(
+                &bytes,
+                outcome,
+                &mut summary,
+            );
+            (told(&read(Protocol::Framed, false, &bytes, outcome)), summary)
+        });
+        assert_eq!(own, heard);
+        own
+    };
+    let (lines, summary) = of(&[3, -1200, 0]);
+    assert_eq!(lines[2], "kind 2..3 ACK POSITIONS");
+    assert_eq!(
+        lines[7..11],
+        [
+            "ticks done 8..12 2",
+            "position ch0 12..16 +3",
+            "position ch1 16..20 \u{2212}1200",
+            "position ch2 20..24 0"
+        ]
+    );
+    assert!(lines[11].starts_with("check 24..28 ") && lines[11].ends_with("holds"), "{lines:?}");
+    assert_eq!(
+        summary,
+        "from 5: ACK POSITIONS: READY, 4 free, seq 1, faults 0x00, 2 ticks done, ch0 at +3, ch1 at \u{2212}1200, ch2 at 0"
+    );
+    let (lines, summary) = of(&[i32::MIN]);
+    assert_eq!(lines[8], "position 12..16 \u{2212}2147483648");
+    assert!(summary.ends_with("2 ticks done, ch0 at \u{2212}2147483648"), "{summary}");
+    assert_eq!(of(&[1; 16]).0.len(), 3 + 5 + 16 + 2);
+    // The frame that asks for them.
+    let asks = read(Protocol::Framed, false, &emit(5, 7, &[]), FRAME);
+    assert_eq!(told(&asks)[2], "kind 2..3 POSITIONS");
 }
 
 #[test]
