@@ -114,13 +114,29 @@ fn order() -> impl Strategy<Value = ChannelCommand> {
         3 => Just(kinds::STATUS),
         2 => Just(kinds::STOP),
         1 => Just(kinds::RESYNC),
+        4 => Just(kinds::POSITIONS),
     ];
     let body = prop::collection::vec(prop_oneof![any::<u8>(), 0..3_u8], 0..6);
     prop_oneof![
         14 => ticks,
         6 => plain.prop_map(ChannelCommand::Plain),
-        1 => (prop_oneof![0..8_u8, any::<u8>()], body).prop_map(|(kind, body)| ChannelCommand::Any(kind, body)),
+        1 => (prop_oneof![0..9_u8, Just(kinds::POSITIONS), any::<u8>()], body).prop_map(|(kind, body)| ChannelCommand::Any(kind, body)),
     ]
+}
+
+/// Ticks for all, which nobody answers, with a step in every slot; and POSITIONS, so that they may ask while these run.
+pub(super) fn ticks_and_positions() -> impl Strategy<Value = [Utterance; 2]> {
+    let orders = prop::collection::vec((any::<bool>(), Just(Count::AllSlots)), 1..24);
+    (any::<Index>(), 1..=12_usize, orders).prop_map(|(which, count, orders)| {
+        let ticks =
+            ChannelCommand::Ticks { seq: Seq::Expected, count, orders, last_is_zero: false, too_many: None };
+        let asked = ChannelCommand::Plain(kinds::POSITIONS);
+        [(To::All, ticks), (To::Controller(which), asked)].map(|(to, order)| Utterance::Frame {
+            to,
+            order,
+            damage: Damage::None,
+        })
+    })
 }
 
 /// A good frame that decodes to about the most bytes that are not OVERLONG, its body full of zeros, of other bytes, or

@@ -22,6 +22,8 @@ pub(super) enum Pause {
     TickEnd(i64),
     /// The last byte is delivered while a tick runs, after so many per mille of it.
     InTick(u64),
+    /// The last byte is delivered this many cycles after the first pulse of such a slot may rise, or before.
+    StepRise(Index, i64),
 }
 
 /// Where not `calm`, one in six comes while a reply is sent.
@@ -36,7 +38,13 @@ pub(super) fn pause(calm: bool) -> impl Strategy<Value = Pause> {
         1 => (-3..=3_i64).prop_map(Pause::DeFall),
         polite / 2 => (-2..=2_i64).prop_map(Pause::TickEnd),
         polite / 3 => (0..1_000_u64).prop_map(Pause::InTick),
+        polite / 3 => step_rise(),
     ]
+}
+
+/// Beside the cycle in which STEP may rise.
+pub(super) fn step_rise() -> impl Strategy<Value = Pause> {
+    (any::<Index>(), -1..=1_i64).prop_map(|(slot, offset)| Pause::StepRise(slot, offset))
 }
 
 /// A pause and what is said after it; where it is cut in two, and the pause between.
@@ -127,6 +135,11 @@ impl<'a> Host<'a> {
             Pause::InTick(permille) => {
                 self.delivered_at(to_delivery, |tick| tick.start + (tick.end - tick.start) * permille / 1_000)
             }
+            Pause::StepRise(slot, offset) => {
+                let slot = slot.index(config.slots as usize) as u64;
+                let rise = slot * config.step_period + config.dir_setup;
+                self.delivered_at(to_delivery, |tick| (tick.start + rise).saturating_add_signed(offset))
+            }
         };
         let start = start.max(self.free_from);
         self.sends.push((start, bytes.to_vec()));
@@ -153,11 +166,13 @@ impl<'a> Host<'a> {
             foreseen.take(config, p, good.kind, &good.body);
             if good.address == own {
                 let start = p + 10 * bit_time(config);
-                // A NAK's 18 bytes; an ACK is one shorter.
+                // A NAK's 18 bytes, and an ACK is one shorter; or the positions of all channels.
+                let tells_positions = good.kind == kinds::POSITIONS && good.body.is_empty();
+                let length = if tells_positions { 17 + 4 * config.channels as u64 } else { 18 };
                 let byte =
                     |j: u64| start + bit_time(config) + 10 * j * config.clock_hz / config.receiver_baud;
-                self.byte_starts.extend((0..18).map(byte));
-                self.reply = Some(Span { start, end: byte(18) });
+                self.byte_starts.extend((0..length).map(byte));
+                self.reply = Some(Span { start, end: byte(length) });
             }
         }
     }

@@ -5,8 +5,8 @@ use proptest::sample::Index;
 
 use super::Mode;
 use super::faults::{force, line_fault};
-use super::frames::{overlong, utterance};
-use super::host::{Host, Pause, Turn, pause};
+use super::frames::{overlong, ticks_and_positions, utterance};
+use super::host::{Host, Pause, Turn, pause, step_rise};
 use super::setup::framed_line;
 use crate::oracle::{Config, Input};
 
@@ -26,13 +26,19 @@ where
     let turns = |calm| prop::collection::vec(turn(calm), 0..20);
     let said = prop_oneof![turns(true), turns(false)];
     let long = prop::option::weighted(0.06, (any::<Index>(), overlong()));
+    let asked = prop::option::weighted(0.5, (any::<Index>(), ticks_and_positions(), step_rise()));
     let faults = prop_oneof![
         4 => Just(Vec::new()),
         1 => prop::collection::vec(line_fault(), 1..4),
     ];
     let boot_at = prop::option::weighted(0.2, (any::<Index>(), any::<Index>(), -1..=1_i64));
-    (framed_line(modes), said, long, faults, boot_at, end()).prop_map(
-        |(mut line, mut said, long, faults, boot_at, end)| {
+    (framed_line(modes), said, (long, asked), faults, boot_at, end()).prop_map(
+        |(mut line, mut said, (long, asked), faults, boot_at, end)| {
+            if let Some((at, [ticks, positions], rise)) = asked {
+                let at = at.index(said.len() + 1);
+                said.insert(at, (rise, positions, None));
+                said.insert(at, (Pause::Polite(0), ticks, None));
+            }
             if let Some((at, long)) = long {
                 said.insert(at.index(said.len() + 1), (Pause::Polite(0), long, None));
             }

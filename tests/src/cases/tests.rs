@@ -136,6 +136,15 @@ fn levels(run: &Run, bit: u32, cycles: u64) -> Vec<bool> {
     stretches.flat_map(|((from, levels), to)| vec![levels >> bit & 1 == 1; (to - from) as usize]).collect()
 }
 
+/// The cycles p of the frames whose reply tells positions: ten bit times before DE rises for it.
+fn positions_told(config: &Config, said: &[u8], de: &[bool]) -> Vec<u64> {
+    let rises = (1..de.len()).filter(|at| de[*at] && !de[at - 1]);
+    // Code, address and kind; or, where the address is 0, which COBS takes out, two codes and the kind.
+    let replies = said.split(|byte| *byte == 0);
+    let told = rises.zip(replies).filter(|(_, reply)| reply.get(2) == Some(&(kinds::POSITIONS | 0x80)));
+    told.map(|(rise, _)| rise as u64 - 10 * bit_time(config)).collect()
+}
+
 #[test]
 fn framed_lines_reach_every_fault_reply_and_state() {
     let mut reached = Reached::default();
@@ -171,7 +180,25 @@ fn framed_lines_reach_every_fault_reply_and_state() {
                     reached.count(format!("NAK {reason}"));
                 }
             }
-            for kind in kinds::TICKS..=kinds::RESYNC {
+            for p in positions_told(config, &said, &de) {
+                let step = |cycle: u64| {
+                    let after = run.trace.partition_point(|(from, _)| *from <= cycle);
+                    run.trace[after - 1].1 & 0xFFFF
+                };
+                if config.channels > 4 {
+                    reached.count("positions of more than four channels");
+                }
+                if p < config.boot {
+                    reached.count("positions during boot");
+                }
+                if step(p) & !step(p - 1) != 0 {
+                    reached.count("positions as STEP rises");
+                }
+                if step(p) != 0 {
+                    reached.count("positions while STEP is high");
+                }
+            }
+            for kind in kinds::TICKS..=kinds::POSITIONS {
                 if said.contains(&(kind | 0x80)) {
                     reached.count(format!("ACK {kind}"));
                 }
@@ -179,10 +206,10 @@ fn framed_lines_reach_every_fault_reply_and_state() {
         }
     }
     println!("{cycles} cycles");
-    // Eight faults or none, four states, eight modes, seven reasons, six kinds, one to four controllers, a send in
-    // a reply.
+    // Eight faults or none, four states, eight modes, seven reasons, seven kinds, one to four controllers, a send in
+    // a reply; positions told of many channels, during boot, while STEP is high, and in the cycle in which it rises.
     assert!(reached.0.remove("refused").is_some_and(|times| times < lines / 4), "{reached:#?}");
-    reached.check(8 + 1 + 4 + 8 + 7 + 6 + 4 + 1, lines / 60);
+    reached.check(8 + 1 + 4 + 8 + 7 + 7 + 4 + 1 + 4, lines / 60);
 }
 
 #[test]

@@ -237,7 +237,12 @@ fn source() -> BoxedStrategy<Source> {
         1 => prop::collection::vec(any::<u8>(), 0..40),
     ];
     let hex = hex.prop_map(Hex);
-    let send = (small_or_any(1), hex.clone(), prop::option::weighted(0.2, hex.clone()))
+    // Address, kind and body: every kind there is, and one beside, mostly as it should be.
+    let body = prop_oneof![3 => Just(Vec::new()), 1 => prop::collection::vec(any::<u8>(), 0..4)];
+    let frame = (prop::sample::select(vec![0, 1, 255]), 1..=8_u8, body)
+        .prop_map(|(address, kind, body)| Hex([vec![address, kind], body].concat()));
+    let frame = prop_oneof![1 => hex.clone(), 2 => frame];
+    let send = (small_or_any(1), hex.clone(), prop::option::weighted(0.2, frame))
         .prop_map(|(start_cycle, bytes, frame)| ScriptedSend { start_cycle, bytes, frame });
     let segment = prop_oneof![
         3 => (small_or_any(1), small_or_any(16_000 << 16), small_or_any(0), small_or_any(1)).prop_map(
