@@ -1,0 +1,100 @@
+//! A virtual axis (G6): its place, and the switches that it drives.
+
+use crate::{input::Signal, parameters::Axis};
+
+/// The axis of a controller.
+#[derive(Clone, Debug)]
+pub(crate) struct Place {
+    axis: Axis,
+    /// m, in steps.
+    place: i64,
+    /// m - position when zero was set last; 0 before.
+    zero: i64,
+}
+
+impl Place {
+    pub(crate) fn new(axis: Option<&Axis>) -> Self {
+        let axis = axis.cloned().unwrap_or_default();
+        Self { place: axis.start_steps, axis, zero: 0 }
+    }
+
+    pub(crate) const fn place(&self) -> i64 {
+        self.place
+    }
+
+    /// Moves by `steps`, as far as the ends let it: who stands beyond one may come back, but goes no further.
+    pub(crate) fn shift(&mut self, steps: i64) {
+        let target = self.place.saturating_add(steps);
+        self.place = if steps > 0 {
+            let end = self.axis.hard_max.unwrap_or(i64::MAX);
+            target.min(end).max(self.place)
+        } else {
+            let end = self.axis.hard_min.unwrap_or(i64::MIN);
+            target.max(end).min(self.place)
+        };
+    }
+
+    /// Levels of the switches that the axis drives by its place.
+    pub(crate) fn switches(&self) -> [(Signal, Option<bool>); 3] {
+        let place = self.place;
+        let home = self.axis.home_from.zip(self.axis.home_to);
+        [
+            (Signal::LimitMin, self.axis.min_switch_at.map(|at| place <= at)),
+            (Signal::LimitMax, self.axis.max_switch_at.map(|at| place >= at)),
+            (Signal::HomeSwitch, home.map(|(from, to)| (from..=to).contains(&place))),
+        ]
+    }
+
+    /// Zero is set: what place and position differ by now is no error.
+    pub(crate) fn zero_is_set(&mut self, position: i32) {
+        self.zero = self.place.saturating_sub(position.into());
+    }
+
+    /// m - position, less what it was when zero was set.
+    pub(crate) fn error(&self, position: i32) -> i64 {
+        self.place.saturating_sub(position.into()).saturating_sub(self.zero)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_into_an_end_are_lost() {
+        // Place, hard_min, hard_max, steps, place after.
+        let rows = [
+            (0, None, None, 5, 5),
+            (0, Some(-3), Some(4), 5, 4),
+            (0, Some(-3), Some(4), -5, -3),
+            (4, Some(-3), Some(4), 1, 4),
+            (9, Some(-3), Some(4), 1, 9),
+            (9, Some(-3), Some(4), -1, 8),
+            (0, Some(5), Some(-5), 1, 0),
+            (0, Some(5), Some(-5), -1, 0),
+        ];
+        for (start_steps, hard_min, hard_max, steps, expected) in rows {
+            let axis = Axis { start_steps, hard_min, hard_max, ..Axis::default() };
+            let mut place = Place::new(Some(&axis));
+            place.shift(steps);
+            assert_eq!(place.place(), expected, "{axis:?} {steps}");
+        }
+    }
+
+    #[test]
+    fn switches_close_at_their_places() {
+        let axis = Axis {
+            min_switch_at: Some(-2),
+            max_switch_at: Some(2),
+            home_from: Some(0),
+            home_to: Some(1),
+            ..Axis::default()
+        };
+        for place in -3..=3 {
+            let switches = Place::new(Some(&Axis { start_steps: place, ..axis.clone() })).switches();
+            let expected = [Some(place <= -2), Some(place >= 2), Some(place == 0 || place == 1)];
+            assert_eq!(switches.map(|(_, level)| level), expected, "{place}");
+        }
+        assert!(Place::new(None).switches().iter().all(|(_, level)| level.is_none()));
+    }
+}

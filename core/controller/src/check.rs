@@ -1,0 +1,341 @@
+//! What is wrong with controllers, all of it at once (CONTROLLER.md, "The format" and "Refused").
+
+use crate::{
+    checked::Checked,
+    input::{Change, Input, Signal},
+    limits,
+    parameters::{Axis, Group, Home, Initial, Parameters, Policy, Release, Setup, Until},
+    refusal::{Refusal, Refused, Warned, Warning},
+};
+use alloc::{
+    format,
+    string::{String, ToString},
+    vec::Vec,
+};
+use core::ops::RangeInclusive;
+use stepscope_peripheral::{segment::FRACTION_BITS, units::Cycles};
+
+impl Setup {
+    /// Judges it, and makes what a [`StandAlone`](crate::StandAlone) takes.
+    ///
+    /// # Errors
+    /// Everything that is refused, in the order of the fields.
+    pub fn check(self) -> Result<Checked, Vec<Refused>> {
+        let mut judge = Judgement { refused: Vec::new(), controller: None };
+        judge.bus(&self);
+        for (index, parameters) in self.controllers.iter().enumerate() {
+            judge.controller = Some(index);
+            judge.parameters(&self, parameters);
+        }
+        if !judge.refused.is_empty() {
+            return Err(judge.refused);
+        }
+        let warned = self.warnings();
+        Ok(Checked::new(self, warned))
+    }
+
+    /// What holds, but may not be meant.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<Warned> {
+        let mut warned = Vec::new();
+        for (controller, parameters) in self.controllers.iter().enumerate() {
+            let mut warn = |path, warning| warned.push(Warned { controller, path, warning });
+            if parameters.debounce_cycles == 0 {
+                warn("debounce_cycles", Warning::NoDebounce);
+            }
+            let (given_hz, start_speed_hz) = (parameters.jog.speed_hz, parameters.start_speed_hz);
+            if parameters.jog.release == Release::AtOnce && given_hz > start_speed_hz {
+                warn("jog.speed_hz", Warning::JogCostsTrust { given_hz, start_speed_hz });
+            }
+            let memory = &parameters.memory;
+            let enough = (17 * u64::from(memory.byte_write_cycles)).saturating_sub(1);
+            if memory.policy == Policy::PowerLoss && memory.hold_up_cycles < enough {
+                let given = memory.hold_up_cycles;
+                warn("memory.hold_up_cycles", Warning::ShortHoldUp { given, enough });
+            }
+        }
+        warned
+    }
+}
+
+/// Collects what is refused.
+struct Judgement {
+    refused: Vec<Refused>,
+    controller: Option<usize>,
+}
+
+impl Judgement {
+    fn refuse(&mut self, path: impl Into<String>, refusal: Refusal) {
+        self.refused.push(Refused { controller: self.controller, path: path.into(), refusal });
+    }
+
+    fn range(&mut self, path: impl Into<String>, given: impl Into<i128>, range: &RangeInclusive<i128>) {
+        if let Some(refusal) = out_of_range(given.into(), range) {
+            self.refuse(path, refusal);
+        }
+    }
+
+    fn bus(&mut self, setup: &Setup) {
+        self.range("clock_hz", setup.clock_hz, &limits::CLOCK_HZ);
+        self.range("bus.channels", setup.channels, &limits::CHANNELS);
+        self.range("bus.pulse_width_cycles", setup.pulse.width.0, &limits::PULSE_WIDTH_CYCLES);
+        self.range("bus.dir_setup_cycles", setup.pulse.setup.0, &limits::DIR_CYCLES);
+        self.range("bus.dir_hold_cycles", setup.pulse.hold.0, &limits::DIR_CYCLES);
+        let greatest = i128::from(setup.channels).clamp(1, *limits::CHANNELS.end());
+        self.range("source.standalone", setup.controllers.len() as i128, &(1..=greatest));
+    }
+
+    fn parameters(&mut self, setup: &Setup, parameters: &Parameters) {
+        let fastest = 10..=i128::from(parameters.max_speed_hz);
+        self.range("self_test_cycles", parameters.self_test_cycles, &limits::SELF_TEST_CYCLES);
+        self.range("debounce_cycles", parameters.debounce_cycles, &limits::DEBOUNCE_CYCLES);
+        self.range("sensor_debounce_cycles", parameters.sensor_debounce_cycles, &limits::DEBOUNCE_CYCLES);
+        self.range("pulses_per_unit", parameters.pulses_per_unit, &limits::PULSES_PER_UNIT);
+        self.range("decimals", parameters.decimals, &limits::DECIMALS);
+        self.range("start_speed_hz", parameters.start_speed_hz, &fastest);
+        self.max_speed(setup, parameters.max_speed_hz);
+        self.range("level_hz_s", parameters.level_hz_s, &limits::LEVEL_HZ_S);
+        self.range("least_trust", parameters.least_trust, &limits::TRUST);
+        self.range("loops", parameters.loops, &limits::LOOPS);
+        self.range("groups", parameters.groups.len() as i128, &limits::GROUPS);
+        for (index, group) in parameters.groups.iter().enumerate() {
+            self.group(setup, parameters, index, group);
+        }
+        self.range("jog.speed_hz", parameters.jog.speed_hz, &fastest);
+        self.range("jog.fine_hz", parameters.jog.fine_hz, &fastest);
+        self.range("jog.level", parameters.jog.level, &limits::LEVEL);
+        self.range("return.speed_hz", parameters.return_.speed_hz, &fastest);
+        self.range("return.level", parameters.return_.level, &limits::LEVEL);
+        if let Some(home) = &parameters.home {
+            self.home(parameters, home);
+        }
+        if let Some(soft) = &parameters.soft_limits {
+            self.range("soft_limits.min_steps", soft.min_steps, &limits::STEPS);
+            let least = i128::from(soft.min_steps).clamp(*limits::STEPS.start(), *limits::STEPS.end());
+            self.range("soft_limits.max_steps", soft.max_steps, &(least..=*limits::STEPS.end()));
+        }
+        if let Some(axis) = &parameters.axis {
+            self.axis(axis);
+        }
+        self.memory(parameters);
+        self.inputs(parameters);
+    }
+
+    fn max_speed(&mut self, setup: &Setup, given_hz: u32) {
+        self.range("max_speed_hz", given_hz, &limits::SPEED_HZ);
+        let (clock_hz, pulse) = (u64::from(setup.clock_hz), setup.pulse.min_interval());
+        if limits::SPEED_HZ.contains(&given_hz.into())
+            && u128::from(clock_hz << FRACTION_BITS) / u128::from(given_hz)
+                < u128::from(pulse.0) << FRACTION_BITS
+        {
+            let step = Cycles(clock_hz / u64::from(given_hz));
+            let max_hz = clock_hz.checked_div(pulse.0).unwrap_or(0);
+            self.refuse("max_speed_hz", Refusal::TooFast { given_hz, step, pulse, max_hz });
+        }
+    }
+
+    fn group(&mut self, setup: &Setup, parameters: &Parameters, index: usize, group: &Group) {
+        let path = |field: &str| format!("groups[{index}].{field}");
+        let fastest = 10..=i128::from(parameters.max_speed_hz);
+        match group {
+            Group::Move(group) => {
+                self.range(path("move.length"), group.length, &limits::LENGTH);
+                self.range(path("move.direction"), group.direction, &limits::DIRECTION);
+                self.range(path("move.speed_hz"), group.speed_hz, &fastest);
+                self.range(path("move.level"), group.level, &limits::LEVEL);
+                self.range(path("move.delay_ms"), group.delay_ms, &limits::DELAY_MS);
+                if let Some(until) = &group.until {
+                    self.until(path("move.until.input"), until);
+                }
+            }
+            Group::MoveTo(group) => {
+                self.range(path("move_to.length"), group.length, &limits::PLACE);
+                self.range(path("move_to.speed_hz"), group.speed_hz, &fastest);
+                self.range(path("move_to.level"), group.level, &limits::LEVEL);
+                self.range(path("move_to.delay_ms"), group.delay_ms, &limits::DELAY_MS);
+            }
+            Group::Profile(group) => {
+                self.range(path("profile.intervals_q16"), group.intervals.len() as i128, &limits::INTERVALS);
+                let least = setup.pulse.min_interval().0.saturating_mul(1 << FRACTION_BITS);
+                for (step, &given) in group.intervals.iter().enumerate() {
+                    if given < least {
+                        let refusal = Refusal::ShortInterval { given, least };
+                        self.refuse(path(&format!("profile.intervals_q16[{step}]")), refusal);
+                    }
+                }
+                self.range(path("profile.direction"), group.direction, &limits::DIRECTION);
+                self.range(path("profile.delay_ms"), group.delay_ms, &limits::DELAY_MS);
+            }
+            Group::Home if parameters.home.is_none() => self.refuse(path("home"), Refusal::NoHome),
+            Group::Home => {}
+            Group::Wait(group) => {
+                self.sensor(path("wait.input"), group.input);
+                self.range(path("wait.timeout_ms"), group.timeout_ms, &limits::TIMEOUT_MS);
+                if let Some(then) = group.then {
+                    self.number(path("wait.then"), then, parameters);
+                }
+            }
+            Group::Set(group) => self.range(path("set.output"), group.output, &limits::OUTPUT),
+            Group::Repeat(group) => {
+                let number = index as u32 + 1;
+                if !(1..number).contains(&group.first) {
+                    let refusal = Refusal::NotBefore { given: group.first, group: number };
+                    self.refuse(path("repeat.first"), refusal);
+                }
+                self.range(path("repeat.times"), group.times, &limits::LOOPS);
+            }
+            Group::Jump(group) => {
+                self.number(path("jump.to"), group.to, parameters);
+                if let Some(input) = group.input {
+                    self.sensor(path("jump.input"), input);
+                }
+            }
+        }
+    }
+
+    fn until(&mut self, path: String, until: &Until) {
+        if !until.input.is_sensor() || matches!(until.input, Signal::LimitMin | Signal::LimitMax) {
+            let allowed = "in_0 to in_3 or home_switch";
+            self.refuse(path, Refusal::WrongSignal { given: until.input, allowed });
+        }
+    }
+
+    fn sensor(&mut self, path: String, given: Signal) {
+        if !given.is_sensor() {
+            let allowed = "in_0 to in_3, limit_min, limit_max or home_switch";
+            self.refuse(path, Refusal::WrongSignal { given, allowed });
+        }
+    }
+
+    fn number(&mut self, path: String, given: u32, parameters: &Parameters) {
+        let groups = parameters.groups.len() as u32;
+        if !(1..=groups).contains(&given) {
+            self.refuse(path, Refusal::NoSuchGroup { given, groups });
+        }
+    }
+
+    fn home(&mut self, parameters: &Parameters, home: &Home) {
+        if !home.switch.is_switch() {
+            let allowed = "home_switch, limit_min or limit_max";
+            self.refuse("home.switch", Refusal::WrongSignal { given: home.switch, allowed });
+        }
+        self.range("home.direction", home.direction, &limits::DIRECTION);
+        let start_speed_hz = parameters.start_speed_hz;
+        for (path, given_hz) in [("home.coarse_hz", home.coarse_hz), ("home.fine_hz", home.fine_hz)] {
+            if given_hz > start_speed_hz {
+                self.refuse(path, Refusal::AboveStartSpeed { given_hz, start_speed_hz });
+            } else {
+                self.range(path, given_hz, &(10..=i128::from(start_speed_hz)));
+            }
+        }
+        self.range("home.pull_off_steps", home.pull_off_steps, &limits::PULL_OFF_STEPS);
+        self.range("home.travel_steps", home.travel_steps, &limits::TRAVEL_STEPS);
+        self.range("home.position_steps", home.position_steps, &limits::STEPS);
+    }
+
+    fn axis(&mut self, axis: &Axis) {
+        let places = [
+            ("axis.start_steps", Some(axis.start_steps)),
+            ("axis.min_switch_at", axis.min_switch_at),
+            ("axis.max_switch_at", axis.max_switch_at),
+            ("axis.home_from", axis.home_from),
+            ("axis.home_to", axis.home_to),
+            ("axis.hard_min", axis.hard_min),
+            ("axis.hard_max", axis.hard_max),
+        ];
+        for (path, place) in places {
+            self.range(path, place.unwrap_or(0), &limits::STEPS);
+        }
+        match (axis.home_from, axis.home_to) {
+            (Some(_), None) => self.refuse("axis.home_to", Refusal::HalfSwitch { missing: "home_to" }),
+            (None, Some(_)) => self.refuse("axis.home_from", Refusal::HalfSwitch { missing: "home_from" }),
+            _ => {}
+        }
+    }
+
+    fn memory(&mut self, parameters: &Parameters) {
+        let memory = &parameters.memory;
+        self.range("memory.byte_write_cycles", memory.byte_write_cycles, &limits::BYTE_WRITE_CYCLES);
+        self.range("memory.hold_up_cycles", memory.hold_up_cycles, &limits::HOLD_UP_CYCLES);
+        self.range("memory.slots", memory.slots, &limits::SLOTS);
+        let bytes = parameters.memory_len();
+        if let Initial::Bytes(given) = &memory.initial
+            && given.len() > bytes
+        {
+            self.refuse("memory.initial", Refusal::LongMemory { given: given.len(), bytes });
+        }
+    }
+
+    fn inputs(&mut self, parameters: &Parameters) {
+        let inputs = &parameters.inputs;
+        self.range("inputs", inputs.len() as i128, &limits::INPUTS);
+        for (index, input) in inputs.iter().enumerate() {
+            let path = |field: &str| format!("inputs[{index}]{field}");
+            self.range(path(".cycle"), input.cycle.0, &limits::INPUT_CYCLE);
+            let field = if matches!(input.change, Change::Push(_)) { ".push_steps" } else { "" };
+            if let Some(refusal) = forbidden_change(parameters, self.controller.unwrap_or(0), input.change) {
+                self.refuse(path(field), refusal);
+            }
+        }
+        for (index, input) in twice(inputs) {
+            let refusal = Refusal::Twice { name: input.change.name(), cycle: input.cycle };
+            self.refuse("inputs".to_string() + &format!("[{index}]"), refusal);
+        }
+    }
+}
+
+/// Why this change is nothing for this controller.
+pub(crate) fn forbidden_change(
+    parameters: &Parameters,
+    controller: usize,
+    change: Change,
+) -> Option<Refusal> {
+    match change {
+        Change::Push(steps) => out_of_range(steps.into(), &limits::PUSH_STEPS),
+        Change::Level(signal, _) => forbidden(parameters, controller, signal),
+    }
+}
+
+fn out_of_range(given: i128, range: &RangeInclusive<i128>) -> Option<Refusal> {
+    let (least, greatest) = (*range.start(), *range.end());
+    (!range.contains(&given)).then_some(Refusal::Range { given, least, greatest })
+}
+
+/// Why this signal is nothing for the script of this controller.
+fn forbidden(parameters: &Parameters, controller: usize, signal: Signal) -> Option<Refusal> {
+    let axis = parameters.axis.as_ref();
+    let by = match signal {
+        Signal::Power | Signal::Estop | Signal::Clear if controller != 0 => {
+            return Some(Refusal::FirstControllers { signal });
+        }
+        Signal::LimitMin => axis?.min_switch_at.map(|_| "min_switch_at"),
+        Signal::LimitMax => axis?.max_switch_at.map(|_| "max_switch_at"),
+        Signal::HomeSwitch => axis?.home_from.or(axis?.home_to).map(|_| "home_from"),
+        _ => None,
+    };
+    by.map(|by| Refusal::Driven { signal, by })
+}
+
+/// Entries of an input that has one before it in the same cycle, in the order of the script.
+fn twice(inputs: &[Input]) -> Vec<(usize, Input)> {
+    let key = |&(index, input): &(usize, Input)| {
+        let signal = match input.change {
+            Change::Level(signal, _) => Some(signal),
+            Change::Push(_) => None,
+        };
+        (input.cycle, signal, index)
+    };
+    let mut sorted: Vec<(usize, Input)> = inputs.iter().copied().enumerate().collect();
+    sorted.sort_unstable_by_key(key);
+    let mut found: Vec<(usize, Input)> = sorted
+        .windows(2)
+        .filter_map(|pair| match pair {
+            [first, second] if (key(first).0, key(first).1) == (key(second).0, key(second).1) => {
+                Some(*second)
+            }
+            _ => None,
+        })
+        .collect();
+    found.sort_unstable_by_key(|&(index, _)| index);
+    found
+}

@@ -1,0 +1,65 @@
+//! Controllers that hold every rule.
+
+use crate::{
+    parameters::{Parameters, Setup},
+    refusal::Warned,
+};
+use alloc::{rc::Rc, vec::Vec};
+use stepscope_peripheral::segment::PulseTimes;
+
+/// Controllers that hold every rule of CONTROLLER.md, "The format"; cheap to clone.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Checked {
+    clock_hz: u32,
+    channels: u8,
+    pulse: PulseTimes,
+    controllers: Rc<[Rc<Parameters>]>,
+    warned: Rc<[Warned]>,
+}
+
+impl Checked {
+    /// Takes what was judged.
+    pub(crate) fn new(setup: Setup, warned: Vec<Warned>) -> Self {
+        let Setup { clock_hz, channels, pulse, controllers } = setup;
+        let controllers = controllers.into_iter().map(Rc::new).collect();
+        Self { clock_hz, channels, pulse, controllers, warned: warned.into() }
+    }
+
+    /// What they were made of, to be changed and judged again.
+    #[must_use]
+    pub fn setup(&self) -> Setup {
+        let Self { clock_hz, channels, pulse, .. } = *self;
+        let controllers = self.controllers.iter().map(|one| Parameters::clone(one)).collect();
+        Setup { clock_hz, channels, pulse, controllers }
+    }
+
+    /// f, cycles a second.
+    #[must_use]
+    pub const fn clock_hz(&self) -> u32 {
+        self.clock_hz
+    }
+
+    /// Channels of the bus.
+    #[must_use]
+    pub const fn channels(&self) -> u8 {
+        self.channels
+    }
+
+    /// W, D and H.
+    #[must_use]
+    pub const fn pulse(&self) -> PulseTimes {
+        self.pulse
+    }
+
+    /// Controller i's parameters at i.
+    #[must_use]
+    pub fn controllers(&self) -> &[Rc<Parameters>] {
+        &self.controllers
+    }
+
+    /// What holds, but may not be meant.
+    #[must_use]
+    pub fn warnings(&self) -> &[Warned] {
+        &self.warned
+    }
+}

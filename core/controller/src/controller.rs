@@ -1,0 +1,292 @@
+//! A controller, and one cycle of it (G1).
+//!
+//! ```text
+//! orders of the cycle before, panel -> 1 engine -> 2 memory -> 3 inputs -> 4 reactions -> 5 memory begins
+//! ```
+//!
+//! What it does is in the files that add to it: `pulses` (1, 3), `store` (2, 5), `reactions` (4) with `power`, `buttons`,
+//! `moves`, `program` and `homing`.
+
+use crate::{
+    axis::Place,
+    checked::Checked,
+    debounce::{Inputs, Times},
+    eeprom::Eeprom,
+    input::Signal,
+    journal::{self, Valid},
+    motion::{Motion, interval},
+    numbers::Numbers,
+    panel::{PanelRecord, Word},
+    parameters::Parameters,
+    pins::Pins,
+    script::Script,
+    state::{Alarm, State},
+};
+use alloc::{rc::Rc, vec::Vec};
+use stepscope_peripheral::{segment::PulseTimes, units::Instant};
+
+pub(crate) const NEVER: u64 = u64::MAX;
+/// Groups that a window of the groups begun last takes up.
+const WINDOW: u64 = 1024;
+
+/// A program that runs (G5).
+#[derive(Clone, Debug)]
+pub(crate) struct Program {
+    /// From 1: the group that runs or is next.
+    pub(crate) group: u32,
+    /// From 1.
+    pub(crate) loop_: u32,
+    /// b in steps.
+    pub(crate) base: i128,
+    /// T in digits of the display.
+    pub(crate) sum: i64,
+    /// How often each `repeat` was reached.
+    pub(crate) reached: Vec<u32>,
+}
+
+/// What goes on after a pause.
+#[derive(Clone, Debug)]
+pub(crate) enum Paused {
+    /// The rest of a move.
+    Move(Motion),
+    /// A state without a move, and what was left of its time.
+    Time(State, Option<u64>),
+}
+
+/// The panel while numbers are changed.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Edit {
+    pub(crate) number: usize,
+    /// Nothing is entered where there is none.
+    pub(crate) entry: Option<u32>,
+}
+
+/// A press that did nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Press {
+    /// The cycle of the press.
+    pub cycle: Instant,
+    /// The button.
+    pub button: Signal,
+    /// The state in which it means nothing, or did not do what it means.
+    pub state: State,
+}
+
+/// Groups that began, for the message of a run that does not end.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Begun {
+    pub(crate) count: u64,
+    /// `count` when a step rose or a group waited last.
+    pub(crate) progress: u64,
+    /// Least and greatest number of the groups of the window before, and of this one.
+    before: Option<(u32, u32)>,
+    window: Option<(u32, u32)>,
+}
+
+impl Begun {
+    pub(crate) fn group(&mut self, number: u32) {
+        if self.count.is_multiple_of(WINDOW) {
+            self.before = self.window.take();
+        }
+        self.count += 1;
+        let (first, last) = self.window.unwrap_or((number, number));
+        self.window = Some((first.min(number), last.max(number)));
+    }
+
+    /// Least and greatest number of the groups that began last.
+    pub(crate) fn range(&self) -> (u32, u32) {
+        let (first, last) = self.window.or(self.before).unwrap_or((0, 0));
+        let (before_first, before_last) = self.before.unwrap_or((first, last));
+        (first.min(before_first), last.max(before_last))
+    }
+
+    /// Whether they go round without a step or a wait.
+    pub(crate) const fn is_endless(&self) -> bool {
+        self.count - self.progress > WINDOW
+    }
+}
+
+/// One controller of a scenario.
+#[derive(Clone, Debug)]
+pub(crate) struct Controller {
+    pub(crate) parameters: Rc<Parameters>,
+    pub(crate) clock_hz: u32,
+    pub(crate) pulse: PulseTimes,
+    pub(crate) state: State,
+    pub(crate) alarm: Alarm,
+    /// 0 LOST, 1 HELD, 2 SURE.
+    pub(crate) trust: u8,
+    pub(crate) position: i32,
+    pub(crate) outputs: u8,
+    pub(crate) pins: Pins,
+    /// Rises of STEP, as DESIGN A3 counts them.
+    pub(crate) steps: i32,
+    pub(crate) motion: Option<Motion>,
+    pub(crate) program: Option<Program>,
+    /// When a group begins or a wait ends.
+    pub(crate) timer: u64,
+    pub(crate) paused: Option<Paused>,
+    pub(crate) edit: Edit,
+    pub(crate) numbers: Numbers,
+    /// Whether `ok` has changed a number since they were read or saved.
+    pub(crate) is_changed: bool,
+    pub(crate) inputs: Inputs,
+    pub(crate) script: Script,
+    pub(crate) axis: Place,
+    pub(crate) eeprom: Eeprom,
+    /// The newest complete record of the journal.
+    pub(crate) newest: Option<Valid>,
+    /// Whether the journal is being written.
+    pub(crate) writes_journal: bool,
+    /// Whether the opening record after a read is wanted, or complete.
+    pub(crate) wants_opening: bool,
+    pub(crate) is_opened: bool,
+    pub(crate) wants_save: bool,
+    /// Whether the newest record stays the newest whatever is written: its number is the greatest that there is.
+    pub(crate) is_stuck: bool,
+    /// Whether memory held no valid record when it was read.
+    pub(crate) is_unknown: bool,
+    /// Whether memory has been read since power-up.
+    pub(crate) is_read: bool,
+    /// When memory is read.
+    pub(crate) reads: u64,
+    /// When it dies.
+    pub(crate) dies: u64,
+    /// Whether the E-stop was pressed during this self-test.
+    pub(crate) is_stopped: bool,
+    pub(crate) begun: Begun,
+    pub(crate) ignored: Vec<Press>,
+    pub(crate) panel: Vec<PanelRecord>,
+    shown: Option<(Word, i64)>,
+    /// When the panel changes.
+    shows: u64,
+}
+
+impl Controller {
+    /// A controller before cycle 0.
+    pub(crate) fn new(checked: &Checked, parameters: &Rc<Parameters>, script: Script) -> Self {
+        let memory = &parameters.memory;
+        let len = parameters.memory_len();
+        let factory = journal::factory();
+        let times = Times {
+            buttons: parameters.debounce_cycles.into(),
+            sensors: parameters.sensor_debounce_cycles.into(),
+        };
+        let mut controller = Self {
+            parameters: parameters.clone(),
+            clock_hz: checked.clock_hz(),
+            pulse: checked.pulse(),
+            state: State::SelfTest,
+            alarm: Alarm::None,
+            trust: 0,
+            position: 0,
+            outputs: 0,
+            pins: Pins::new(),
+            steps: 0,
+            motion: None,
+            program: None,
+            timer: NEVER,
+            paused: None,
+            edit: Edit::default(),
+            numbers: Numbers::new(parameters),
+            is_changed: false,
+            inputs: Inputs::new(times),
+            script,
+            axis: Place::new(parameters.axis.as_ref()),
+            eeprom: Eeprom::new(len, memory.byte_write_cycles, &memory.initial, &factory),
+            newest: None,
+            writes_journal: false,
+            wants_opening: false,
+            is_opened: false,
+            wants_save: false,
+            is_stuck: false,
+            is_unknown: false,
+            is_read: false,
+            reads: parameters.self_test_cycles.into(),
+            dies: NEVER,
+            is_stopped: false,
+            begun: Begun::default(),
+            ignored: Vec::new(),
+            panel: Vec::new(),
+            shown: None,
+            shows: 0,
+        };
+        controller.newest = controller.find_newest();
+        // At reset debounced = raw, that of cycle 0: the switches that the axis holds closed.
+        controller.switches(0);
+        controller.inputs.restart();
+        controller
+    }
+
+    /// One cycle.
+    pub(crate) fn cycle(&mut self, now: u64) {
+        self.pins.take_orders(now);
+        self.show(now);
+        self.engine(now);
+        self.complete_byte(now);
+        self.hear(now);
+        self.react(now);
+        self.begin_record(now);
+        self.shows = if self.shown == Some(self.face()) { NEVER } else { now.saturating_add(1) };
+    }
+
+    /// The next cycle in which something can change; what has to be done by `now` is due in `now`.
+    pub(crate) fn due(&self) -> u64 {
+        self.due_without_memory().min(self.eeprom.due())
+    }
+
+    /// As [`Self::due`], but for a memory that writes the same again and again.
+    pub(crate) fn due_before_rest(&self) -> u64 {
+        if self.is_stuck { self.due_without_memory() } else { self.due() }
+    }
+
+    fn due_without_memory(&self) -> u64 {
+        let motion = self.motion.as_ref().map_or(NEVER, Motion::rise);
+        let waits = self.pins.due().min(self.timer).min(self.reads).min(self.dies);
+        motion.min(waits).min(self.shows).min(self.inputs.due()).min(self.script.due())
+    }
+
+    /// The panel's record of this cycle, where there is one.
+    fn show(&mut self, now: u64) {
+        if self.shows > now {
+            return;
+        }
+        let (word, display) = self.face();
+        // In EDIT the display counts, else the word alone: it is the same from record to record.
+        self.shown = Some((word, display));
+        let (cycle, display) = (Instant(now), self.display());
+        self.panel.push(PanelRecord { cycle, word, position: self.position.into(), display });
+    }
+
+    /// What makes a record where it changes.
+    fn face(&self) -> (Word, i64) {
+        (self.word(), if self.state == State::Edit { self.display() } else { 0 })
+    }
+
+    pub(crate) fn word(&self) -> Word {
+        let (group, loop_) = match &self.program {
+            _ if self.state == State::Edit => (self.edit.number as u64, 0),
+            Some(program) => (program.group.into(), program.loop_.into()),
+            None => (0, 0),
+        };
+        Word::new(self.state, self.alarm, self.trust, self.outputs, group, loop_)
+    }
+
+    pub(crate) fn display(&self) -> i64 {
+        match self.edit.entry {
+            _ if self.state != State::Edit => self.numbers.digits(self.position),
+            Some(entry) => entry.into(),
+            None => self.numbers.get(self.edit.number).into(),
+        }
+    }
+
+    /// `ms` in whole cycles, rounded down.
+    pub(crate) fn cycles(&self, ms: u32) -> u64 {
+        u64::from(ms) * u64::from(self.clock_hz) / 1000
+    }
+
+    /// Whether a step at this interval is beyond the start-stop range.
+    pub(crate) fn is_jump(&self, rate_interval: u64) -> bool {
+        rate_interval < interval(self.clock_hz, self.parameters.start_speed_hz.into())
+    }
+}

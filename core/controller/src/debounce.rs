@@ -1,0 +1,189 @@
+//! Levels of the inputs, raw and debounced (G1.3).
+//!
+//! ```text
+//! raw        ___┌─┐_┌────────────   the debounced level takes the raw one in the first c
+//! debounced  _______________┌────   such that the raw one has stood through c - N..c
+//!                   ╎<- N ->╎
+//! ```
+
+use crate::input::{SIGNALS, Signal};
+
+const NEVER: u64 = u64::MAX;
+const _: () = assert!(SIGNALS <= 32);
+
+/// N of each kind of input.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Times {
+    /// Of buttons, and of the fall of the E-stop.
+    pub(crate) buttons: u64,
+    /// Of limits, the home switch and `in_0` to `in_3`.
+    pub(crate) sensors: u64,
+}
+
+impl Times {
+    fn of(self, signal: Signal, level: bool) -> u64 {
+        match signal {
+            Signal::Power => 0,
+            Signal::Estop if level => 0,
+            _ if signal.is_sensor() => self.sensors,
+            _ => self.buttons,
+        }
+    }
+}
+
+/// All inputs of a controller, a bit each.
+#[derive(Clone, Debug)]
+pub(crate) struct Inputs {
+    times: Times,
+    raw: u32,
+    debounced: u32,
+    /// When each debounced level takes the raw one; [`NEVER`] where they agree.
+    due: [u64; SIGNALS],
+    /// The first of these.
+    first_due: u64,
+    /// Debounced levels that rose in this cycle.
+    pressed: u32,
+    /// Debounced levels that fell in this cycle.
+    released: u32,
+}
+
+const fn bit(signal: Signal) -> u32 {
+    1 << signal as u32
+}
+
+impl Inputs {
+    /// Before its first entry an input is 0, power 1.
+    pub(crate) fn new(times: Times) -> Self {
+        let raw = bit(Signal::Power);
+        let due = [NEVER; SIGNALS];
+        Self { times, raw, debounced: raw, due, first_due: NEVER, pressed: 0, released: 0 }
+    }
+
+    /// The raw level from cycle `now` on; without power nothing is debounced.
+    pub(crate) fn set(&mut self, now: u64, signal: Signal, level: bool, debounces: bool) {
+        if self.raw(signal) == level {
+            return;
+        }
+        self.raw ^= bit(signal);
+        if let Some(due) = self.due.get_mut(signal as usize) {
+            *due = if debounces && (self.debounced & bit(signal) != 0) != level {
+                now.saturating_add(self.times.of(signal, level))
+            } else {
+                NEVER
+            };
+        }
+        self.first_due = self.due.iter().copied().min().unwrap_or(NEVER);
+    }
+
+    /// Debounced levels take the raw ones that have stood long enough in cycle `now`.
+    pub(crate) fn debounce(&mut self, now: u64) {
+        (self.pressed, self.released) = (0, 0);
+        if self.first_due > now {
+            return;
+        }
+        let mut taken = 0;
+        for (index, due) in self.due.iter_mut().enumerate() {
+            if *due <= now {
+                *due = NEVER;
+                taken |= 1 << index;
+            }
+        }
+        self.debounced ^= taken;
+        self.pressed = taken & self.debounced;
+        self.released = taken & !self.debounced;
+        self.first_due = self.due.iter().copied().min().unwrap_or(NEVER);
+    }
+
+    /// SELF_TEST begins: debounced = raw, and nothing is pressed.
+    pub(crate) fn restart(&mut self) {
+        self.debounced = self.raw;
+        (self.pressed, self.released) = (0, 0);
+        (self.due, self.first_due) = ([NEVER; SIGNALS], NEVER);
+    }
+
+    /// The power fails for good: from now on nothing is debounced.
+    pub(crate) fn die(&mut self) {
+        (self.due, self.first_due) = ([NEVER; SIGNALS], NEVER);
+    }
+
+    /// All raw levels, a bit each.
+    pub(crate) const fn all_raw(&self) -> u32 {
+        self.raw
+    }
+
+    pub(crate) const fn raw(&self, signal: Signal) -> bool {
+        self.raw & bit(signal) != 0
+    }
+
+    pub(crate) const fn level(&self, signal: Signal) -> bool {
+        self.debounced & bit(signal) != 0
+    }
+
+    pub(crate) const fn is_pressed(&self, signal: Signal) -> bool {
+        self.pressed & bit(signal) != 0
+    }
+
+    pub(crate) const fn is_released(&self, signal: Signal) -> bool {
+        self.released & bit(signal) != 0
+    }
+
+    /// Whether something was pressed or released in this cycle.
+    pub(crate) const fn has_edges(&self) -> bool {
+        self.pressed | self.released != 0
+    }
+
+    /// When the next debounced level changes.
+    pub(crate) const fn due(&self) -> u64 {
+        self.first_due
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_level_has_to_stand_for_n_cycles_after_the_one_in_which_it_came() {
+        let mut inputs = Inputs::new(Times { buttons: 3, sensors: 0 });
+        // Cycle, raw start, whether it is a press.
+        let rows = [
+            (1, true, false),
+            (2, false, false),
+            (3, true, false),
+            (5, true, false),
+            (6, true, true),
+            (7, true, false),
+            (8, false, false),
+            (10, true, false),
+            (13, true, false),
+        ];
+        for (now, level, expected) in rows {
+            inputs.set(now, Signal::Start, level, true);
+            inputs.debounce(now);
+            assert_eq!(inputs.is_pressed(Signal::Start), expected, "cycle {now}");
+        }
+        assert!(inputs.level(Signal::Start));
+    }
+
+    #[test]
+    fn the_e_stop_rises_at_once_and_falls_as_a_button() {
+        let mut inputs = Inputs::new(Times { buttons: 3, sensors: 0 });
+        for (now, level, expected) in
+            [(1, true, true), (2, false, true), (4, false, true), (5, false, false), (6, true, true)]
+        {
+            inputs.set(now, Signal::Estop, level, true);
+            inputs.debounce(now);
+            assert_eq!(inputs.level(Signal::Estop), expected, "cycle {now}");
+        }
+    }
+
+    #[test]
+    fn what_is_held_when_self_test_begins_is_no_press() {
+        let mut inputs = Inputs::new(Times { buttons: 3, sensors: 0 });
+        inputs.set(1, Signal::Start, true, false);
+        inputs.debounce(1);
+        inputs.restart();
+        assert!(inputs.level(Signal::Start) && !inputs.is_pressed(Signal::Start));
+        assert_eq!(inputs.due(), NEVER);
+    }
+}

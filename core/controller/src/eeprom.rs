@@ -1,0 +1,180 @@
+//! The EEPROM (G7): bytes that take their time, one after another, and what a cut leaves of one.
+//!
+//! ```text
+//!  begun b       b + w         b + 2w
+//!     ╎  byte 0    ╎   byte 1    ╎     a byte begun in b is there in b + w, and the next begins
+//!     ╎      ╎dead in b + x            0xFF if 2x < w, else new OR 0x0F; not touched if x = 0
+//! ```
+
+use crate::parameters::Initial;
+use alloc::{vec, vec::Vec};
+
+/// An erased byte.
+const ERASED: u8 = 0xff;
+/// What of a byte that was cut late is still erased.
+const CUT_LATE: u8 = 0x0f;
+
+/// The memory of a controller.
+#[derive(Clone, Debug)]
+pub(crate) struct Eeprom {
+    bytes: Vec<u8>,
+    /// Writes of each byte's cell.
+    writes: Vec<u32>,
+    /// w.
+    byte_write_cycles: u64,
+    writing: Option<Writing>,
+}
+
+/// A record that is being written.
+#[derive(Clone, Debug)]
+struct Writing {
+    /// Address of its next byte, the one that is under way.
+    address: usize,
+    /// That byte and those after it.
+    left: vec::IntoIter<u8>,
+    /// That byte.
+    byte: u8,
+    /// The cycle in which it was begun.
+    begun: u64,
+}
+
+impl Eeprom {
+    pub(crate) fn new(len: usize, byte_write_cycles: u32, initial: &Initial, factory: &[u8]) -> Self {
+        let mut bytes = vec![ERASED; len];
+        let given: &[u8] = match initial {
+            Initial::Blank => &[],
+            Initial::Factory => factory,
+            Initial::Bytes(given) => given,
+        };
+        for (byte, given) in bytes.iter_mut().zip(given) {
+            *byte = *given;
+        }
+        Self {
+            bytes,
+            writes: vec![0; len],
+            byte_write_cycles: u64::from(byte_write_cycles).max(1),
+            writing: None,
+        }
+    }
+
+    pub(crate) fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    pub(crate) fn writes(&self) -> &[u32] {
+        &self.writes
+    }
+
+    pub(crate) const fn is_idle(&self) -> bool {
+        self.writing.is_none()
+    }
+
+    /// When the byte under way was begun; `None` where none is.
+    pub(crate) fn begun(&self) -> Option<u64> {
+        self.writing.as_ref().map(|writing| writing.begun)
+    }
+
+    /// When the byte under way is there.
+    pub(crate) fn due(&self) -> u64 {
+        let due = |writing: &Writing| writing.begun.saturating_add(self.byte_write_cycles);
+        self.writing.as_ref().map_or(u64::MAX, due)
+    }
+
+    /// Begins to write a record; one at a time.
+    pub(crate) fn begin(&mut self, now: u64, address: usize, record: Vec<u8>) {
+        debug_assert!(self.writing.is_none(), "a record is under way");
+        let mut left = record.into_iter();
+        self.writing = left.next().map(|byte| Writing { address, left, byte, begun: now });
+    }
+
+    /// A byte is complete in cycle `now`: whether it was the last of its record.
+    pub(crate) fn complete(&mut self, now: u64) -> bool {
+        if self.due() > now {
+            return false;
+        }
+        let Some(mut writing) = self.writing.take() else { return false };
+        self.write(writing.address, writing.byte);
+        let next = writing.left.next();
+        let is_last = next.is_none();
+        if let Some(byte) = next {
+            (writing.address, writing.byte, writing.begun) = (writing.address + 1, byte, now);
+            self.writing = Some(writing);
+        }
+        is_last
+    }
+
+    /// The power falls in cycle `now`: the byte under way is finished, one begun in `now` is not, and what is left of the
+    /// record is dropped.
+    pub(crate) fn drop_rest(&mut self, now: u64) {
+        match &mut self.writing {
+            Some(writing) if writing.begun < now => writing.left = Vec::new().into_iter(),
+            writing => *writing = None,
+        }
+    }
+
+    /// The power is gone in cycle `now`.
+    pub(crate) fn die(&mut self, now: u64) {
+        let Some(writing) = self.writing.take() else { return };
+        let after = now.saturating_sub(writing.begun);
+        if after > 0 {
+            let is_early = after.saturating_mul(2) < self.byte_write_cycles;
+            self.write(writing.address, if is_early { ERASED } else { writing.byte | CUT_LATE });
+        }
+    }
+
+    fn write(&mut self, address: usize, byte: u8) {
+        if let (Some(cell), Some(writes)) = (self.bytes.get_mut(address), self.writes.get_mut(address)) {
+            *cell = byte;
+            *writes = writes.saturating_add(1);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn eeprom() -> Eeprom {
+        Eeprom::new(4, 10, &Initial::Bytes(vec![0x55; 4]), &[])
+    }
+
+    #[test]
+    fn a_byte_is_there_after_its_time_and_the_next_begins() {
+        let mut eeprom = eeprom();
+        eeprom.begin(100, 1, vec![1, 2]);
+        assert!(!eeprom.complete(109));
+        assert_eq!(eeprom.bytes(), [0x55; 4]);
+        assert!(!eeprom.complete(110));
+        assert_eq!((eeprom.bytes(), eeprom.due()), (&[0x55, 1, 0x55, 0x55][..], 120));
+        assert!(eeprom.complete(120) && eeprom.is_idle());
+        assert_eq!((eeprom.bytes(), eeprom.writes()), (&[0x55, 1, 2, 0x55][..], &[0, 1, 1, 0][..]));
+    }
+
+    #[test]
+    fn what_a_cut_leaves_of_a_byte_depends_on_how_far_it_was() {
+        // Cycle of the death, what is there, writes.
+        for (now, expected, writes) in
+            [(100, 0x55, 0), (101, 0xff, 1), (104, 0xff, 1), (105, 0x2f, 1), (109, 0x2f, 1)]
+        {
+            let mut eeprom = eeprom();
+            eeprom.begin(100, 0, vec![0x20, 0x21]);
+            eeprom.die(now);
+            assert_eq!((eeprom.bytes()[0], eeprom.writes()[0]), (expected, writes), "{now}");
+            assert!(eeprom.is_idle());
+        }
+    }
+
+    #[test]
+    fn a_fall_of_the_power_ends_the_record_with_the_byte_under_way() {
+        // Cycle of the fall, whether a byte goes on.
+        for (now, goes_on) in [(100, false), (101, true)] {
+            let mut eeprom = eeprom();
+            eeprom.begin(100, 0, vec![1, 2, 3]);
+            eeprom.drop_rest(now);
+            assert_eq!(!eeprom.is_idle(), goes_on);
+            assert_eq!(eeprom.complete(110), goes_on);
+            assert!(eeprom.is_idle());
+            assert_eq!(eeprom.bytes()[..2], if goes_on { [1, 0x55] } else { [0x55; 2] });
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! Inputs that come while a run goes on, such as a person's at a page.
+
+use crate::{
+    check,
+    input::{Change, Input},
+    limits,
+    machine::StandAlone,
+    refusal::Refusal,
+    script,
+};
+use core::fmt;
+use stepscope_peripheral::units::Instant;
+
+/// Why an input cannot be entered.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum NotEntered {
+    /// There is no such controller.
+    NoController,
+    /// Its cycle has been run, or is none that an input may have.
+    Past {
+        /// The cycle that was given.
+        cycle: Instant,
+        /// The first that is allowed.
+        least: Instant,
+    },
+    /// As in a script.
+    Refused(Refusal),
+}
+
+impl fmt::Display for NotEntered {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoController => f.write_str("there is no such controller"),
+            Self::Past { cycle, least } => {
+                let greatest = limits::INPUT_CYCLE.end();
+                write!(f, "cycle {} is out of range; give {} to {greatest}", cycle.0, least.0)
+            }
+            Self::Refused(refusal) => refusal.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for NotEntered {}
+
+impl StandAlone {
+    /// Leaves out what the scripts still have: from now on only what is entered is heard.
+    pub fn drop_inputs(&mut self) {
+        for (controller, due) in self.controllers.iter_mut().zip(&mut self.due) {
+            controller.script.clear();
+            *due = controller.due().max(self.now);
+        }
+    }
+
+    /// An input of a cycle that has not been run, such as a person's at a page.
+    ///
+    /// # Errors
+    /// What a script would be refused for, too.
+    pub fn enter(&mut self, at: Instant, controller: usize, change: Change) -> Result<(), NotEntered> {
+        let input = Input { cycle: at, change };
+        let parameters = self.checked.controllers().get(controller).ok_or(NotEntered::NoController)?;
+        if at.0 < self.now || !limits::INPUT_CYCLE.contains(&at.0.into()) {
+            return Err(NotEntered::Past { cycle: at, least: Instant(self.now.max(1)) });
+        }
+        if let Some(refusal) = check::forbidden_change(parameters, controller, change) {
+            return Err(NotEntered::Refused(refusal));
+        }
+        let own = self.controllers.get(controller).ok_or(NotEntered::NoController)?;
+        if own.script.has(input) {
+            return Err(NotEntered::Refused(Refusal::Twice { name: change.name(), cycle: at }));
+        }
+        let hears = |index| index == controller || script::is_shared(change);
+        for (index, (other, due)) in self.controllers.iter_mut().zip(&mut self.due).enumerate() {
+            if hears(index) {
+                other.script.enter(input);
+                *due = (*due).min(at.0);
+            }
+        }
+        Ok(())
+    }
+}

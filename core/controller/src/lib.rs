@@ -1,0 +1,80 @@
+//! The stand-alone controller (CONTROLLER.md, Part G of the design): buttons, programs, jogs, homing, limits, and a
+//! memory that survives power cuts, to the clock cycle. It makes STEP, DIR and EN by itself; nothing is sent.
+//!
+//! It knows no motion, no file and no host: of the peripheral it takes units, signals and times of pulses. Whole numbers
+//! alone, so every target gives the same bits.
+//!
+//! ```text
+//! limits, input, parameters -> refusal, check, checked -> table, motion, pins, debounce, axis, numbers, eeprom, journal,
+//! script, panel -> controller (state, one cycle) -> pulses, store, power, buttons, moves, homing, program (what it does)
+//! -> machine (all of them on a bus), enter, report
+//! ```
+//!
+//! ```
+//! use stepscope_controller::{
+//!     StandAlone, State,
+//!     input::{Change, Signal},
+//!     parameters::{Parameters, Setup},
+//! };
+//! use stepscope_peripheral::{signal::Record, units::Instant};
+//!
+//! let controller = Parameters { self_test_cycles: 100, debounce_cycles: 0, ..Parameters::default() };
+//! let checked = Setup { controllers: vec![controller], ..Setup::default() }.check().expect("it holds");
+//! let (mut machine, mut trace) = (StandAlone::new(&checked), Vec::<Record>::new());
+//! machine.run(Instant::NEVER, &mut trace);
+//! assert_eq!(machine.state(0), Some(State::Ready));
+//!
+//! // A person holds the button for 0.1 s: 1000 Hz, the first step at once.
+//! let now = machine.now().0;
+//! machine.enter(Instant(now), 0, Change::Level(Signal::JogPlus, true)).expect("it is to come");
+//! machine.enter(Instant(now + 1_600_000), 0, Change::Level(Signal::JogPlus, false)).expect("so is this");
+//! machine.run(Instant::NEVER, &mut trace);
+//! assert_eq!(machine.position(0), Some(100));
+//! ```
+#![cfg_attr(not(test), no_std)]
+
+extern crate alloc;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
+pub mod input;
+pub mod limits;
+pub mod panel;
+pub mod parameters;
+
+mod axis;
+mod buttons;
+mod check;
+mod checked;
+mod controller;
+mod debounce;
+mod eeprom;
+mod enter;
+mod homing;
+mod journal;
+mod machine;
+mod motion;
+mod moves;
+mod numbers;
+mod pins;
+mod power;
+mod program;
+mod pulses;
+mod reactions;
+mod refusal;
+mod report;
+mod script;
+mod state;
+mod store;
+mod table;
+mod work;
+
+pub use checked::Checked;
+pub use controller::Press;
+pub use enter::NotEntered;
+pub use machine::StandAlone;
+pub use refusal::{Refusal, Refused, Warned, Warning};
+pub use state::{Alarm, State, TRUST};
+pub use work::Work;

@@ -1,0 +1,258 @@
+//! A move (G4): how many steps are left, how high it has climbed, and when its next step rises.
+//!
+//! ```text
+//! rate   top ┤      ┌────────┐          u climbs by one a step to the top, runs on the plateau, and comes down
+//!            │    ┌─┘        └─┐        while rem <= u; a brake comes down from where it is
+//!          1 ┤  ┌─┘            └─┐
+//! next += interval; STEP rises in next >> 16
+//! ```
+
+use crate::{
+    input::Signal,
+    state::State,
+    table::{Row, Table},
+};
+use stepscope_peripheral::segment::FRACTION_BITS;
+
+/// Steps without end.
+pub(crate) const ENDLESS: u64 = u64::MAX;
+
+/// I(r) = floor(65536*f/r) in 1/65536 cycle.
+pub(crate) const fn interval(clock_hz: u32, rate_hz: u64) -> u64 {
+    ((clock_hz as u64) << FRACTION_BITS) / if rate_hz == 0 { 1 } else { rate_hz }
+}
+
+/// A leg of homing (G6).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Leg {
+    /// Towards the switch, coarse.
+    Seek,
+    /// Away from it, coarse.
+    Off,
+    /// Towards it again, fine.
+    Fine,
+}
+
+/// What a move is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    /// A group of a program.
+    Group,
+    /// The return to zero.
+    Return,
+    /// A jog; the state to which it goes back.
+    Jog(State),
+    /// A leg of homing.
+    Leg(Leg),
+    /// The return at the end of homing.
+    HomeReturn,
+}
+
+/// The height to which a move climbs, and its rate there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Climb {
+    pub(crate) table: Table,
+    /// Ramp steps.
+    pub(crate) top: u64,
+    /// Rate of the plateau in Hz.
+    pub(crate) plateau_hz: u32,
+}
+
+/// A move under way.
+#[derive(Clone, Debug)]
+pub(crate) struct Motion {
+    pub(crate) purpose: Purpose,
+    pub(crate) right: bool,
+    /// Steps not made, the one that is due included.
+    pub(crate) rem: u64,
+    /// u: ramp steps climbed.
+    height: u64,
+    climb: Climb,
+    clock_hz: u32,
+    /// The row that was looked up last.
+    row: Option<(Row, u64)>,
+    /// What the first step waits, if not its rate's interval.
+    pub(crate) first_interval: Option<u64>,
+    /// The group that gives the intervals of a `profile`.
+    pub(crate) profile: Option<u32>,
+    /// Time of the step that is due, in 1/65536 cycle.
+    next: u128,
+    /// Whether a step is due.
+    pub(crate) is_due: bool,
+    /// Whether it waits for an open record.
+    pub(crate) waits: bool,
+    pub(crate) brakes: bool,
+    /// Whether a limit switch stopped it.
+    pub(crate) is_limited: bool,
+    /// The level at which it ends early, and whether that has come.
+    pub(crate) until: Option<(Signal, bool)>,
+    pub(crate) until_met: bool,
+    /// Of a leg of homing: whether the switch has done what the leg looks for.
+    pub(crate) is_found: bool,
+    /// Rate interval of the step that is due, and of the one made last.
+    due_interval: u64,
+    pub(crate) last_interval: Option<u64>,
+}
+
+impl Motion {
+    pub(crate) const fn new(purpose: Purpose, right: bool, rem: u64, climb: Climb, clock_hz: u32) -> Self {
+        Self {
+            purpose,
+            right,
+            rem,
+            height: 0,
+            climb,
+            clock_hz,
+            row: None,
+            first_interval: None,
+            profile: None,
+            next: 0,
+            is_due: false,
+            waits: false,
+            brakes: false,
+            is_limited: false,
+            until: None,
+            until_met: false,
+            is_found: false,
+            due_interval: 0,
+            last_interval: None,
+        }
+    }
+
+    /// It begins in cycle `now`: its time is (now + 1) << 16.
+    pub(crate) fn begin(&mut self, now: u64, profile: &[u64]) {
+        self.waits = false;
+        self.next = (u128::from(now) + 1) << FRACTION_BITS;
+        self.decide(profile);
+    }
+
+    /// Cycle in which the step that is due rises; `u64::MAX` without one, and beyond all cycles.
+    pub(crate) fn rise(&self) -> u64 {
+        if self.is_due { u64::try_from(self.next >> FRACTION_BITS).unwrap_or(u64::MAX) } else { u64::MAX }
+    }
+
+    /// The step that is due rises, and the next one is decided: whether it is the move's first, and its rate interval.
+    pub(crate) fn step(&mut self, profile: &[u64]) -> (bool, u64) {
+        let (is_first, made) = (self.last_interval.is_none(), self.due_interval);
+        self.last_interval = Some(made);
+        self.rem = self.rem.saturating_sub(1);
+        self.decide(profile);
+        (is_first, made)
+    }
+
+    /// Decides the next step, if there is one.
+    fn decide(&mut self, profile: &[u64]) {
+        self.is_due = self.rem > 0 && !(self.brakes && self.height == 0);
+        if !self.is_due {
+            return;
+        }
+        self.due_interval = if self.profile.is_some() {
+            let rem = usize::try_from(self.rem).unwrap_or(usize::MAX);
+            profile.len().checked_sub(rem).and_then(|made| profile.get(made)).copied().unwrap_or(u64::MAX)
+        } else if self.brakes || self.rem <= self.height {
+            let interval = self.ramp(self.height);
+            self.height -= 1;
+            interval
+        } else if self.height < self.climb.top && self.rem >= self.height + 2 {
+            self.height += 1;
+            self.ramp(self.height)
+        } else if self.height == self.climb.top {
+            interval(self.clock_hz, self.climb.plateau_hz.into())
+        } else {
+            self.ramp(self.height + 1)
+        };
+        self.next += u128::from(self.first_interval.take().unwrap_or(self.due_interval));
+    }
+
+    /// I(R(k)) of ramp step `k`; the row is looked up when it changes.
+    fn ramp(&mut self, k: u64) -> u64 {
+        match self.row {
+            Some((row, interval)) if (row.first..=row.last).contains(&k) => interval,
+            _ => {
+                let row = self.climb.table.row(k);
+                let interval = interval(self.clock_hz, row.rate_hz);
+                self.row = Some((row, interval));
+                interval
+            }
+        }
+    }
+
+    /// Stops at once: the step that is due does not rise, and stays in `rem`.
+    pub(crate) const fn stop(&mut self) {
+        (self.is_due, self.waits) = (false, false);
+    }
+
+    /// Brakes, if it does not yet: at once from height 0 or while it waits. A `profile` does not.
+    pub(crate) const fn brake(&mut self) {
+        if self.brakes || self.profile.is_some() {
+            return;
+        }
+        self.brakes = true;
+        if self.height == 0 || self.waits {
+            self.stop();
+        }
+    }
+
+    /// Whether a step is due, or the move waits: then switches and levels are heeded.
+    pub(crate) const fn is_heeding(&self) -> bool {
+        self.is_due || self.waits
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::{vec, vec::Vec};
+
+    const TABLE: Table = Table { start_speed_hz: 1000, acceleration_hz_s: 1000 };
+
+    /// Rates of the steps of a move that begins to brake after some of them.
+    fn rates(rem: u64, top: u64, plateau_hz: u32, brakes_after: usize) -> Vec<u64> {
+        let climb = Climb { table: TABLE, top, plateau_hz };
+        let mut motion = Motion::new(Purpose::Return, true, rem, climb, 1_000_000);
+        let mut rates = vec![];
+        motion.begin(0, &[]);
+        if brakes_after == 0 {
+            motion.brake();
+        }
+        while motion.is_due {
+            let (_, interval) = motion.step(&[]);
+            rates.push((1_000_000 << 16) / interval);
+            if rates.len() == brakes_after {
+                motion.brake();
+            }
+        }
+        rates
+    }
+
+    /// Runs of equal rates.
+    fn runs(rates: &[u64]) -> Vec<(u64, usize)> {
+        rates.chunk_by(|a, b| a == b).map(|run| (run[0], run.len())).collect()
+    }
+
+    #[test]
+    fn a_move_climbs_runs_and_comes_down_by_the_table() {
+        let never = usize::MAX;
+        // Steps, top, plateau, runs of rates.
+        let rows = [
+            (100, 0, 1000, vec![(1000, 100)]),
+            (130, 60, 1050, vec![(1000, 30), (1030, 30), (1050, 10), (1030, 30), (1000, 30)]),
+            (120, 60, 1050, vec![(1000, 30), (1030, 60), (1000, 30)]),
+            (64, 60, 1050, vec![(1000, 30), (1030, 4), (1000, 30)]),
+            (65, 60, 1050, vec![(1000, 30), (1030, 5), (1000, 30)]),
+        ];
+        for (rem, top, plateau_hz, expected) in rows {
+            assert_eq!(runs(&rates(rem, top, plateau_hz, never)), expected, "{rem} {top}");
+        }
+    }
+
+    #[test]
+    fn a_brake_makes_the_step_that_is_due_and_as_many_more_as_it_has_climbed() {
+        // After so many steps, how many are made in all: the due one, and u more.
+        for (after, expected) in [(0, 1 + 1), (1, 1 + 1 + 2), (35, 35 + 1 + 36), (70, 70 + 1 + 60)] {
+            assert_eq!(rates(200, 60, 1050, after).len(), expected, "after {after}");
+        }
+        assert_eq!(rates(200, 0, 1000, 7).len(), 7, "at height 0 at once");
+        assert_eq!(rates(63, 60, 1050, 32).len(), 63, "what it had to make anyway");
+    }
+}

@@ -1,0 +1,166 @@
+//! STEP, DIR and EN of one channel (G1.1, G4).
+//!
+//! ```text
+//! EN    ─────────────┐         what a cause in cycle c does to EN and to a pulse that is cut shows from c + 1 on,
+//! STEP  _┌──┐__┌─────┘____     as does what the death and a restart do to DIR
+//!               c    c + 1
+//! ```
+
+const NEVER: u64 = u64::MAX;
+
+/// The pins of a channel.
+#[derive(Clone, Debug)]
+pub(crate) struct Pins {
+    pub(crate) step: bool,
+    pub(crate) dir: bool,
+    pub(crate) en: bool,
+    /// Fall of the pulse that is high.
+    fall: u64,
+    /// Fall of the last pulse, however it came.
+    last_fall: Option<u64>,
+    /// Change of DIR that is to come.
+    turn: u64,
+    /// EN from the next cycle on.
+    next_en: bool,
+    /// Whether a pulse is cut in the next cycle.
+    is_cut: bool,
+    /// Whether DIR falls in the next cycle.
+    clears_dir: bool,
+    /// That cycle, where something is ordered for it.
+    ordered: u64,
+}
+
+impl Pins {
+    /// At reset the driver is powered.
+    pub(crate) const fn new() -> Self {
+        Self {
+            step: false,
+            dir: false,
+            en: true,
+            fall: NEVER,
+            last_fall: None,
+            turn: NEVER,
+            next_en: true,
+            is_cut: false,
+            clears_dir: false,
+            ordered: NEVER,
+        }
+    }
+
+    /// What the cycle before ordered.
+    pub(crate) fn take_orders(&mut self, now: u64) {
+        if self.ordered > now {
+            return;
+        }
+        self.ordered = NEVER;
+        self.en = self.next_en;
+        if self.is_cut {
+            (self.step, self.fall, self.last_fall) = (false, NEVER, Some(now));
+        }
+        if self.clears_dir {
+            self.dir = false;
+        }
+        (self.is_cut, self.clears_dir) = (false, false);
+    }
+
+    /// The pulse falls and DIR changes, where they are due.
+    pub(crate) const fn fall_and_turn(&mut self, now: u64) {
+        if self.fall <= now {
+            (self.step, self.fall, self.last_fall) = (false, NEVER, Some(now));
+        }
+        if self.turn <= now {
+            self.dir = !self.dir;
+            self.turn = NEVER;
+        }
+    }
+
+    /// STEP rises, for `width` cycles.
+    pub(crate) const fn rise(&mut self, now: u64, width: u64) {
+        self.step = true;
+        self.fall = now.saturating_add(width);
+    }
+
+    /// A move to the right or left begins: DIR changes if it must, `hold` cycles after the last fall at the earliest.
+    pub(crate) fn turn(&mut self, now: u64, right: bool, hold: u64) {
+        self.turn = if right == self.dir {
+            NEVER
+        } else {
+            let held = self.last_fall.map_or(0, |fall| fall.saturating_add(hold));
+            held.max(now.saturating_add(1))
+        };
+    }
+
+    /// A change of DIR still to come does not come.
+    pub(crate) const fn keep_dir(&mut self) {
+        self.turn = NEVER;
+    }
+
+    /// From the next cycle on EN is 0, and a pulse that is high is cut.
+    pub(crate) const fn power_off(&mut self, now: u64) {
+        self.is_cut = self.step;
+        self.turn = NEVER;
+        self.order_en(now, false);
+    }
+
+    /// From the next cycle on EN is 1.
+    pub(crate) const fn power_on(&mut self, now: u64) {
+        self.order_en(now, true);
+    }
+
+    /// From the next cycle on DIR is 0.
+    pub(crate) const fn clear_dir(&mut self, now: u64) {
+        self.clears_dir = true;
+        self.order(now);
+    }
+
+    const fn order_en(&mut self, now: u64, en: bool) {
+        self.next_en = en;
+        if self.is_cut || self.en != en {
+            self.order(now);
+        } else if !self.clears_dir {
+            self.ordered = NEVER;
+        }
+    }
+
+    const fn order(&mut self, now: u64) {
+        self.ordered = now.saturating_add(1);
+    }
+
+    /// The next cycle in which a pin changes by itself.
+    pub(crate) fn due(&self) -> u64 {
+        self.fall.min(self.turn).min(self.ordered)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pulse_that_is_cut_falls_in_the_next_cycle_and_dir_is_held_from_there() {
+        let mut pins = Pins::new();
+        pins.rise(10, 8);
+        pins.power_off(12);
+        assert!(pins.step && pins.en && pins.due() == 13);
+        pins.take_orders(13);
+        assert!(!pins.step && !pins.en && pins.due() == NEVER);
+        // Begin of a move, hold, change of DIR.
+        for (now, hold, expected) in [(13, 0, 14), (13, 4, 17), (20, 4, 21)] {
+            pins.turn(now, true, hold);
+            assert_eq!(pins.due(), expected, "{now} {hold}");
+        }
+        pins.turn(20, false, 4);
+        assert_eq!(pins.due(), NEVER, "it has its level");
+    }
+
+    #[test]
+    fn what_is_taken_back_in_the_same_cycle_does_not_show() {
+        let mut pins = Pins::new();
+        pins.power_off(5);
+        pins.power_on(5);
+        assert_eq!(pins.due(), NEVER);
+        pins.clear_dir(5);
+        pins.power_on(5);
+        assert_eq!(pins.due(), 6);
+    }
+}

@@ -1,0 +1,103 @@
+//! What a controller does about what it heard, in the order of G1.4.
+
+use crate::{
+    controller::{Controller, NEVER, Paused},
+    state::{Alarm, State},
+};
+
+impl Controller {
+    /// Each reaction on what those before it left.
+    pub(crate) fn react(&mut self, now: u64) {
+        if !self.heeds_power(now) {
+            return;
+        }
+        self.estop(now);
+        self.homing_switch();
+        self.limits();
+        self.until();
+        self.waiting(now);
+        self.ended(now);
+        self.time(now);
+        self.buttons(now);
+        self.wait_condition(now);
+        self.self_test(now);
+    }
+
+    /// Limits, while a step is due or the move waits (G4).
+    fn limits(&mut self) {
+        let Some(motion) = &self.motion else { return };
+        if !motion.is_heeding() || !self.is_limited(motion) {
+            return;
+        }
+        if let Some(motion) = &mut self.motion {
+            motion.is_limited = true;
+            motion.stop();
+            self.pins.keep_dir();
+        }
+    }
+
+    /// `until`, while a step is due or the move waits, and it does not brake yet (G5).
+    fn until(&mut self) {
+        let inputs = &self.inputs;
+        let Some(motion) = &mut self.motion else { return };
+        if motion.is_heeding()
+            && !motion.brakes
+            && motion.until.is_some_and(|(input, level)| inputs.level(input) == level)
+        {
+            motion.until_met = true;
+            motion.brake();
+            self.keep_dir_of_stopped();
+        }
+    }
+
+    /// A move that stands: a change of DIR still to come does not come.
+    pub(crate) fn keep_dir_of_stopped(&mut self) {
+        if self.motion.as_ref().is_some_and(|motion| !motion.is_heeding()) {
+            self.pins.keep_dir();
+        }
+    }
+
+    /// A group begins, or a wait has been too long.
+    fn time(&mut self, now: u64) {
+        if self.timer > now {
+            return;
+        }
+        match self.state {
+            State::Running | State::Delay => {
+                self.timer = NEVER;
+                self.begin_group(now);
+            }
+            State::Wait if !self.is_waited() => self.time_out(now),
+            _ => {}
+        }
+    }
+
+    /// An alarm drops the program; EN stays (G2).
+    pub(crate) fn raise(&mut self, alarm: Alarm) {
+        self.state = State::Alarm;
+        self.alarm = alarm;
+        self.drop_program();
+    }
+
+    /// Program, timer and what was paused are gone.
+    pub(crate) fn drop_program(&mut self) {
+        self.program = None;
+        self.paused = None;
+        self.timer = NEVER;
+    }
+
+    /// PAUSED goes on.
+    pub(crate) fn go_on(&mut self, now: u64) {
+        match self.paused.take() {
+            Some(Paused::Move(motion)) => {
+                self.state = self.state_of(motion.purpose);
+                self.begin_rest(now, &motion);
+            }
+            Some(Paused::Time(state, left)) => {
+                self.state = state;
+                self.timer = left.map_or(NEVER, |left| now.saturating_add(left));
+            }
+            None => {}
+        }
+    }
+}
