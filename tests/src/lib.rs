@@ -16,6 +16,10 @@ pub mod oracle;
 #[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 pub mod plant_oracle;
 
+/// The slow model of the stand-alone controller that the core's is compared with.
+#[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
+pub mod controller_oracle;
+
 /// Random configurations and line activity for the property tests.
 #[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 pub mod cases;

@@ -1,0 +1,82 @@
+//! G6's axis: the place m, and the switches that it drives.
+
+use super::parameters::{Axis, Input};
+use super::room::Room;
+
+impl Room {
+    /// Without `axis`: one without switches.
+    fn axis(&self) -> Axis {
+        self.plan.controller.axis.clone().unwrap_or_default()
+    }
+
+    /// m follows a rise.
+    pub(super) fn axis_follows(&mut self) {
+        let axis = self.axis();
+        if !self.s.en {
+            return;
+        }
+        // Reading: a step beyond `hard_min` or `hard_max` is not made; m stays.
+        if self.s.dir {
+            if axis.hard_max.is_none_or(|most| self.s.place < most) {
+                self.s.place += 1;
+            }
+        } else if axis.hard_min.is_none_or(|least| self.s.place > least) {
+            self.s.place -= 1;
+        }
+    }
+
+    /// A hand on the axis while EN = 0, as EN is in this cycle.
+    pub(super) fn push(&mut self, steps: i64) {
+        let axis = self.axis();
+        if self.s.en {
+            return;
+        }
+        // Reading: a push ends at `hard_min` and `hard_max`, too.
+        let mut place = self.s.place + steps;
+        if let Some(most) = axis.hard_max
+            && steps > 0
+        {
+            place = place.min(most.max(self.s.place));
+        }
+        if let Some(least) = axis.hard_min
+            && steps < 0
+        {
+            place = place.max(least.min(self.s.place));
+        }
+        self.s.place = place;
+    }
+
+    /// Raw levels of the switches that m drives.
+    pub(super) fn axis_drives_switches(&mut self) {
+        let axis = self.axis();
+        let m = self.s.place;
+        let home = match (axis.home_from, axis.home_to) {
+            (Some(from), Some(to)) => Some(from <= m && m <= to),
+            // Reading: one of the two alone drives nothing.
+            _ => None,
+        };
+        let driven = [
+            (Input::LimitMin, axis.min_switch_at.map(|at| m <= at)),
+            (Input::LimitMax, axis.max_switch_at.map(|at| m >= at)),
+            (Input::HomeSwitch, home),
+        ];
+        for (input, level) in driven {
+            if let Some(level) = level {
+                self.s.inputs.set(input, level, self.now);
+            }
+        }
+    }
+
+    /// "Reported": m - position less what it was when zero was set.
+    pub(super) fn axis_error(&self) -> i64 {
+        // Reading: before zero has been set, nothing is taken off.
+        self.s.place - i64::from(self.s.position) - self.s.place_of_zero
+    }
+
+    /// Zero is set: by hand, or by homing.
+    pub(super) fn zero_is_set(&mut self, position: i32) {
+        self.s.position = position;
+        self.s.trust = 2;
+        self.s.place_of_zero = self.s.place - i64::from(position);
+    }
+}
