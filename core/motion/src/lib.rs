@@ -94,7 +94,7 @@ pub use breakpoints::{Breakpoints, Interval};
 pub use curve::{Curve, Peaks};
 pub use due_by::DueBy;
 pub use format::grouped;
-pub use plan::{plan_axis, plan_lists};
+pub use plan::{plan_axis, plan_lists, plan_move};
 pub use problem::{Cause, Problem, Validator, ValueError};
 pub use profile::Profile;
 pub use scheduled_step::ScheduledStep;

@@ -9,7 +9,8 @@ use crate::{
     AxisPlan, Profile,
     budget::Budget,
     limits,
-    moves::Axis,
+    mechanics::Mechanics,
+    moves::{Axis, Move},
     problem::{Problem, ValueError},
     quantities::Quantities,
 };
@@ -42,6 +43,18 @@ pub fn plan_lists<'a>(
         plans.push(list);
     }
     if problems.is_empty() { Ok(plans) } else { Err(problems) }
+}
+
+/// Plans one move by itself, of an axis with the default mechanics; `path` is where it stands in the scenario.
+///
+/// # Errors
+/// Every problem of the move, each with its path.
+pub fn plan_move(motion: &Move, path: &str) -> Result<AxisPlan, Vec<Problem>> {
+    let mechanics = Mechanics::default();
+    let mut quantities = Quantities::new(&mechanics, path);
+    let profile = Profile::plan(&mut quantities, motion, &mut Budget::default());
+    let plan = AxisPlan::of(profile.into_iter().collect());
+    quantities.validator.end(plan)
 }
 
 /// Plans an axis; `path` is where it stands in the scenario, such as `source.motion.axes[0]`.

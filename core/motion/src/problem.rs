@@ -125,6 +125,12 @@ impl<C> Validator<C> {
         made
     }
 
+    /// The way to the value that is being judged.
+    #[must_use]
+    pub fn path(&self) -> &str {
+        &self.path
+    }
+
     /// Whether something is wrong a `step` further in already.
     #[must_use]
     pub fn has(&mut self, step: &str) -> bool {

@@ -199,6 +199,26 @@ pub enum Event {
     },
     /// A tick ended.
     TickEnd,
+    /// What the panel of a stand-alone controller shows from this cycle on (CONTROLLER.md G8).
+    Panel {
+        /// Which, 0 the first.
+        controller: u8,
+        /// Its word.
+        word: u64,
+        /// Its position in steps.
+        position: i64,
+        /// What the display shows, in its digits.
+        display: i64,
+    },
+    /// An input of a stand-alone controller took a level, which is not debounced yet.
+    Input {
+        /// Which controller, 0 the first.
+        controller: u8,
+        /// The number of the input, as the controller's room counts them.
+        input: u8,
+        /// The level.
+        level: bool,
+    },
 }
 
 /// What the controller did with a packet (DESIGN A5).

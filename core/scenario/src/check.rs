@@ -43,6 +43,8 @@ pub struct Checked {
     pub source: Source,
     /// What the segment engine runs, where the source is segments.
     pub segments: Option<CheckedSegments>,
+    /// The stand-alone controllers, where the source is such.
+    pub stand_alone: Option<stepscope_controller::Checked>,
     /// Length of the run, if it is given.
     pub run: Option<Cycles>,
     /// What the edges drive.
@@ -73,22 +75,27 @@ impl Scenario {
             validator.whole("version", self.version, 1..=crate::VERSION.into(), "");
         }
         judge(self, &mut validator);
-        let runs_segments = self.source.runs_segments();
-        let configure = if runs_segments { Config::of_segments } else { Config::new };
+        let runs_alone = self.source.runs_alone();
+        let configure = if runs_alone { Config::of_segments } else { Config::new };
         let config = configure(self.clock_hz, &self.bus, &self.line.serial());
         let config = config.map_err(|broken| tell(broken, ToString::to_string, &mut validator)).ok();
         // Without a rate of its own the receiver has the host's, which is judged above.
-        if self.line.receiver_baud.is_some() && !runs_segments {
+        if self.line.receiver_baud.is_some() && !runs_alone {
             validator.whole("line.baud", self.line.baud, 1..=self.clock_hz.max(1).into(), "baud");
         }
-        if runs_segments && !self.controllers.is_empty() {
-            let detail = "segments run one controller by itself; take the others out, or choose ticks";
+        if runs_alone && !self.controllers.is_empty() {
+            let detail = match self.source {
+                Source::Standalone(_) => {
+                    "stand-alone controllers are on no line; give all of them in source.standalone"
+                }
+                _ => "segments run one controller by itself; take the others out, or choose ticks",
+            };
             validator.add("controllers", ValueError::Conflict { detail });
         }
         let additional = self.additional(config.as_ref(), &mut validator);
         self.host(&mut validator);
         let forced = self.glitches(&mut validator);
-        let mut segments = None;
+        let (mut segments, mut stand_alone) = (None, None);
         match &self.source {
             Source::Motion(motion) => {
                 let most = usize::from(self.bus.channels).clamp(1, MAX_CHANNELS);
@@ -105,6 +112,7 @@ impl Scenario {
             }
             Source::Line(script) => self.script(script, &mut validator),
             Source::Segments(lists) => segments = validator.take(lists.check(&self.bus)),
+            Source::Standalone(controllers) => stand_alone = self.stand_alone(controllers, &mut validator),
         }
         let axes = match &self.source {
             Source::Motion(motion) => motion.axes.len(),
@@ -125,6 +133,7 @@ impl Scenario {
             forced,
             source: self.source.clone(),
             segments,
+            stand_alone,
             run: self.run_cycles.map(Cycles),
             #[cfg(feature = "plant")]
             plants,

@@ -31,7 +31,7 @@ impl Read for Hex {
 
 impl Hex {
     /// The bytes of a text, or what is wrong with it.
-    fn of_text(text: &str) -> Result<Self, String> {
+    pub(crate) fn of_text(text: &str) -> Result<Self, String> {
         let digits: String = text.chars().filter(|c| !c.is_ascii_whitespace()).collect();
         mixed::decode_vec(&digits).map(Self).map_err(|_| wrong_in(&digits))
     }

@@ -54,6 +54,8 @@ mod points;
 
 mod segments;
 
+mod standalone;
+
 mod check;
 
 mod upgrade;
@@ -84,6 +86,11 @@ pub use schema::{
 };
 #[cfg(feature = "plant")]
 pub use schema::{CurrentSensor, Encoder, PlantMotor, PlantSettings, Protection};
+pub use schema::{
+    Eeprom, HomeGroup, Homing, Jog, JumpGroup, MoveGroup, MoveToGroup, PanelInput, ProfileGroup,
+    ProgramGroup, RepeatGroup, ReturnToZero, Sensor, SetGroup, SoftLimits, StandAlone, Switch, Until,
+    VirtualAxis, WaitGroup,
+};
 pub use schema::{Parts, ToParts};
 pub use table::{BadTable, MAX_TABLE_BYTES};
 

@@ -58,6 +58,10 @@ impl Scenario {
         });
         let setups = setups.collect();
         let tail = Cycles((settings.tail_s * f64::from(self.clock_hz) + 0.5) as u64);
+        if matches!(self.source, Source::Standalone(_)) && settings.protection.is_some() {
+            let detail = "a stand-alone controller hears no overload; leave the protection out, or choose another source";
+            validator.add("plant.protection", ValueError::Conflict { detail });
+        }
         if settings.self_test {
             self.judge_self_test(configs, validator);
         }
@@ -67,9 +71,8 @@ impl Scenario {
     /// F7: a boot has room for a step there and back on each channel.
     fn judge_self_test(&self, configs: &[Config], validator: &mut Validator) {
         for (index, config) in configs.iter().enumerate() {
-            if self.source.runs_segments() {
-                let detail =
-                    "segments have no boot in which a self-test could run; choose ticks, or leave it out";
+            if self.source.runs_alone() {
+                let detail = "segments and stand-alone controllers have no boot in which a self-test could run; choose ticks, or leave it out";
                 validator.add("plant.self_test", ValueError::Conflict { detail });
                 return;
             }

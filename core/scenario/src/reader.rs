@@ -80,6 +80,7 @@ impl Reader {
         let of_type = || range.map_or_else(String::new, |(least, most)| format!(" from {least} to {most}"));
         let range = match self.row.map(|row| row.limit) {
             Some(Limit::Whole(least, most)) => format!(" from {least} to {most}{unit}"),
+            Some(Limit::Signed(least, most)) => format!(" from {least} to {most}{unit}"),
             Some(Limit::Number(least, most)) => format!(" from {least} to {most}{unit}"),
             Some(Limit::Follows(words)) => format!(": {words}"),
             _ => of_type(),

@@ -291,6 +291,8 @@ impl Sink for PacketLog {
                 }
                 self.ticks.push(LoggedTick { start: at, orders, row });
             }
+            // Stand-alone controllers have no packets.
+            Event::Panel { .. } | Event::Input { .. } => {}
             Event::TickEnd => {
                 let row = self.ticks.last().and_then(|tick| tick.row);
                 if let Some(row) = row.and_then(|index| self.rows.get_mut(index)) {

@@ -38,6 +38,15 @@ fn of_field(field: &Field, value: &dyn ToParts, validator: &mut Validator) {
                 validator.whole("", given, least..=most, field.unit);
             }
         }
+        Limit::Signed(least, most) => {
+            if let Parts::Whole(Value::Number(number)) = value.parts()
+                && let Some(given) = number.as_i64()
+                && !(least..=most).contains(&given)
+            {
+                let (given, least, most) = (given as f64, least as f64, most as f64);
+                validator.add("", ValueError::Range { given, least, most, unit: field.unit });
+            }
+        }
         Limit::Number(least, most) => {
             if let Parts::Number(given) = value.parts()
                 && !(least..=most).contains(&given)

@@ -49,7 +49,7 @@ fn section(
         for kind in group.fields {
             let _ = writeln!(out, "| `{}` | {} | {} |", kind.name, kind.label, line(kind.doc));
         }
-    } else {
+    } else if !group.fields.is_empty() {
         out.push_str("| field | unit, range | default | meaning |\n| --- | --- | --- | --- |\n");
         let blank = (group.blank)();
         if let Parts::Fields(_, values) = blank.parts() {
@@ -121,6 +121,9 @@ fn default_of(ty: &Type, default: &dyn ToParts) -> String {
         (Type::List(_), Parts::List(entries)) => {
             format!("{} of them", entries.len()).replace("1 of them", "one")
         }
+        (Type::Text, Parts::Whole(value)) if value.as_str().is_some_and(|text| !text.is_empty()) => {
+            format!("`{value}`")
+        }
         (Type::Text | Type::Hex, _) => "empty".into(),
         (Type::Word(_) | Type::Optional(_), _) => format!("`{}`", plain(default)),
         _ => plain(default),
@@ -144,6 +147,7 @@ fn plain(value: &dyn ToParts) -> String {
 pub(crate) fn range_of(field: &Field) -> String {
     match field.limit {
         Limit::Whole(least, most) => format!("{} to {}", power(least as f64), power(most as f64)),
+        Limit::Signed(least, most) => format!("{} to {}", signed(least), signed(most)),
         Limit::Number(least, most) => match quantity_of(&field.ty) {
             Some(_) => format!("{} to {} {}", power(least), power(most), field.unit),
             None => format!("{} to {}", power(least), power(most)),
@@ -165,6 +169,15 @@ fn binary(bound: i128) -> String {
         _ if bound < 0 => format!("-2^{}", bound.unsigned_abs().trailing_zeros()),
         _ => format!("2^{} - 1", (bound + 1).trailing_zeros()),
     }
+}
+
+/// A bound that may be below 0: great powers of two as such.
+fn signed(bound: i64) -> String {
+    let size = bound.unsigned_abs();
+    if size > 1 << 20 && size.is_power_of_two() {
+        return format!("{}2^{}", if bound < 0 { "-" } else { "" }, size.trailing_zeros());
+    }
+    power(bound as f64)
 }
 
 /// A number as people write it: great and small ones by a power of ten, or one less than that, or of two.

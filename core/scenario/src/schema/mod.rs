@@ -45,6 +45,7 @@ mod moves;
 mod plant;
 mod segments;
 mod source;
+mod standalone;
 mod types;
 
 pub use controller::Controller;
@@ -57,6 +58,11 @@ pub use markdown::markdown;
 pub use plant::{CurrentSensor, Encoder, PlantMotor, PlantSettings, Protection};
 pub use segments::{ChannelSegments, DwellSegment, Segment, SegmentLists, StepSegment};
 pub use source::{LineScript, Motion, MotionEngine, Packets, ScriptedSend, Source};
+pub use standalone::{
+    Eeprom, HomeGroup, Homing, Jog, JumpGroup, MoveGroup, MoveToGroup, PanelInput, ProfileGroup,
+    ProgramGroup, RepeatGroup, ReturnToZero, Sensor, SetGroup, SoftLimits, StandAlone, Switch, Until,
+    VirtualAxis, WaitGroup,
+};
 pub(crate) use types::label;
 pub use types::{
     DOCUMENTS, Document, Field, Group, Limit, OWN, PATENT, Parts, SHEETS, SINE, SONG, SONOBE, ToParts, Type,

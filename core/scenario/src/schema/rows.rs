@@ -43,7 +43,7 @@ macro_rules! rows {
         impl $crate::schema::Typed for $name {
             const TYPE: $crate::schema::Type = {
                 const FIELDS: &[$crate::schema::Field] = &[$($(#[cfg($cfg)])? $crate::schema::Field {
-                    name: stringify!($field),
+                    name: $crate::schema::rows::plain(stringify!($field)),
                     doc: concat!($($field_doc),*),
                     ty: <$ty as $crate::schema::Typed>::TYPE,
                     only_if_set: !concat!("", $(stringify!($cfg))?).is_empty(),
@@ -64,6 +64,8 @@ macro_rules! rows {
         impl $crate::schema::ToParts for $name {
             fn parts(&self) -> $crate::schema::Parts<'_> {
                 let default = Self::default();
+                // A struct without fields compares nothing.
+                let _ = &default;
                 // All of them: a field without a row does not compile. Without the feature `plant` some have none.
                 #[cfg(feature = "plant")]
                 let Self { $($field,)* } = self;
@@ -83,7 +85,7 @@ macro_rules! rows {
                 reader.fields(
                     value,
                     $crate::schema::rows::group::<Self>(),
-                    &mut [$($(#[cfg($cfg)])? (stringify!($field), &mut self.$field),)*],
+                    &mut [$($(#[cfg($cfg)])? ($crate::schema::rows::plain(stringify!($field)), &mut self.$field),)*],
                 )
             }
 
@@ -220,6 +222,17 @@ macro_rules! words {
 }
 
 use crate::schema::{Group, Type, Typed};
+
+/// A field's name without the mark of a name that is Rust's own word.
+pub(crate) const fn plain(name: &'static str) -> &'static str {
+    match name.as_bytes() {
+        [b'r', b'#', rest @ ..] => match core::str::from_utf8(rest) {
+            Ok(rest) => rest,
+            Err(_) => name,
+        },
+        _ => name,
+    }
+}
 
 /// No fields: what is no group.
 const NONE: &Group = &Group {

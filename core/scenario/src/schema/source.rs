@@ -1,9 +1,9 @@
 //! What the host sends, or what the peripheral runs by itself (DESIGN Part B, A8, A9).
 
 use crate::{
-    END_OF_TIME, Hex, SegmentLists,
+    END_OF_TIME, Hex, SegmentLists, StandAlone,
     schema::{
-        OWN, PATENT, SONOBE, label,
+        OWN, PATENT, SONOBE, ZHANG, label,
         rows::{choices, settings, words},
     },
 };
@@ -15,7 +15,7 @@ use stepscope_peripheral::{
 };
 
 choices! {
-    /// One of four kinds, with what is in it. At most 4 MiB of bytes in packets or sends.
+    /// One of five kinds, with what is in it. At most 4 MiB of bytes in packets or sends.
     pub enum Source {
         /// Moves in steps, mm or degrees, that the host divides into ticks or segments.
         Motion(Motion) = "motion" => label("Motion of axes"),
@@ -25,6 +25,8 @@ choices! {
         Line(LineScript) = "line" => label("Line script").from(OWN),
         /// Tables that a controller runs by itself; nothing is sent.
         Segments(SegmentLists) = "segments" => label("Lists of segments").from(SONOBE),
+        /// Controllers with buttons, a program and a memory; nothing is sent.
+        Standalone(Vec<StandAlone>) = "standalone" => label("Stand-alone controller").from(ZHANG),
     }
 }
 
@@ -116,13 +118,19 @@ impl Source {
     /// Whether the host sends ticks of it.
     #[must_use]
     pub const fn is_ticks(&self) -> bool {
-        !matches!(self, Self::Line(_)) && !self.runs_segments()
+        !matches!(self, Self::Line(_)) && !self.runs_alone()
     }
 
     /// Whether segments run it, and not ticks.
     #[must_use]
     pub const fn runs_segments(&self) -> bool {
         matches!(self, Self::Segments(_) | Self::Motion(Motion { engine: MotionEngine::Segments, .. }))
+    }
+
+    /// Whether nothing is sent: segments run it, or controllers of their own.
+    #[must_use]
+    pub const fn runs_alone(&self) -> bool {
+        self.runs_segments() || matches!(self, Self::Standalone(_))
     }
 }
 

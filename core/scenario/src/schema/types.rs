@@ -122,6 +122,8 @@ pub enum Limit {
     Type,
     /// Whole numbers of a range.
     Whole(u64, u64),
+    /// Whole numbers of a range that may be below 0.
+    Signed(i64, i64),
     /// Numbers of a range.
     Number(f64, f64),
     /// So many of what is counted: characters of a text, entries of a list.
@@ -224,6 +226,11 @@ impl Field {
     /// A whole number of a range.
     pub(crate) const fn whole(self, range: RangeInclusive<u64>) -> Self {
         Self { limit: Limit::Whole(*range.start(), *range.end()), ..self }
+    }
+
+    /// A whole number of a range that may be below 0.
+    pub(crate) const fn signed(self, range: RangeInclusive<i64>) -> Self {
+        Self { limit: Limit::Signed(*range.start(), *range.end()), ..self }
     }
 
     /// A number of a range.

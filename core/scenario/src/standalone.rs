@@ -1,0 +1,329 @@
+//! Stand-alone controllers as `stepscope_controller` takes them, and its refusals at the paths of the scenario.
+
+use crate::{
+    Cause, Hex, Json, Parts, Read, Reader, Scenario, StandAlone, ToParts, Validator, ValueError, of_motion,
+    schema::{
+        Homing, PanelInput, ProfileGroup, ProgramGroup, Sensor, SoftLimits, Switch, Type, Typed, Until,
+        VirtualAxis,
+    },
+};
+use alloc::{format, vec::Vec};
+use serde_json::Value;
+use stepscope_controller::{
+    input::{Change, Input, Signal},
+    limits,
+    parameters::{self, Group, Initial, Parameters, Setup},
+};
+use stepscope_motion::plan_move;
+use stepscope_peripheral::{segment::PulseTimes, signal::MAX_CHANNELS, units::Instant};
+
+/// Most steps of all profiles of a scenario that come from motions.
+const MAX_PROFILE_STEPS: u64 = 4_000_000;
+
+impl Scenario {
+    /// The controllers, judged by CONTROLLER.md. Every problem goes to `validator`.
+    pub(crate) fn stand_alone(
+        &self,
+        controllers: &[StandAlone],
+        validator: &mut Validator,
+    ) -> Option<stepscope_controller::Checked> {
+        let outside = validator.enter("source.standalone");
+        let most = usize::from(self.bus.channels).clamp(1, MAX_CHANNELS);
+        validator.length("", controllers.len(), 1..=most, "controllers");
+        let before = validator.count();
+        let pulse = PulseTimes::from(&self.bus);
+        let mut steps_left = MAX_PROFILE_STEPS;
+        let parameters = controllers.iter().take(MAX_CHANNELS).enumerate().map(|(index, one)| {
+            validator.at_entry(index, |here| one.parameters(self.clock_hz, &mut steps_left, here))
+        });
+        let controllers = parameters.collect();
+        let read = validator.count() == before;
+        let setup = Setup { clock_hz: self.clock_hz, channels: self.bus.channels, pulse, controllers };
+        let checked = match setup.check() {
+            Ok(checked) => read.then_some(checked),
+            Err(refused) => {
+                for one in refused {
+                    // The bus is judged as every source's.
+                    let Some(controller) = one.controller else { continue };
+                    validator.at_entry(controller, |here| {
+                        if !here.has(&one.path) {
+                            here.add(&one.path, Cause::StandAlone(one.refusal));
+                        }
+                    });
+                }
+                None
+            }
+        };
+        validator.leave(outside);
+        checked
+    }
+}
+
+impl StandAlone {
+    fn parameters(&self, clock_hz: u32, steps_left: &mut u64, here: &mut Validator) -> Parameters {
+        let groups = here.at("groups", |groups| {
+            let mut plan = |(index, group): (usize, &ProgramGroup)| {
+                groups.at_entry(index, |here| group.plain(clock_hz, steps_left, here))
+            };
+            // More than these are refused by their number.
+            self.groups.iter().take(*limits::GROUPS.end() as usize + 1).enumerate().map(&mut plan).collect()
+        });
+        let inputs = here.at("inputs", |inputs| {
+            let plain =
+                |(index, input): (usize, &PanelInput)| inputs.at_entry(index, |here| input.plain(here));
+            self.inputs.iter().enumerate().map(plain).collect()
+        });
+        Parameters {
+            self_test_cycles: self.self_test_cycles,
+            debounce_cycles: self.debounce_cycles,
+            sensor_debounce_cycles: self.sensor_debounce_cycles,
+            pulses_per_unit: self.pulses_per_unit,
+            decimals: self.decimals,
+            start_speed_hz: self.start_speed_hz,
+            max_speed_hz: self.max_speed_hz,
+            level_hz_s: self.level_hz_s,
+            short_move: self.short_move,
+            least_trust: self.least_trust,
+            loops: self.loops.into(),
+            groups,
+            jog: parameters::Jog {
+                speed_hz: self.jog.speed_hz,
+                fine_hz: self.jog.fine_hz,
+                level: self.jog.level,
+                release: self.jog.release,
+            },
+            return_: parameters::Return { speed_hz: self.r#return.speed_hz, level: self.r#return.level },
+            home: self.home.as_ref().map(Homing::plain),
+            soft_limits: self.soft_limits.as_ref().map(SoftLimits::plain),
+            axis: self.axis.as_ref().map(VirtualAxis::plain),
+            memory: parameters::Memory {
+                policy: self.memory.policy,
+                byte_write_cycles: self.memory.byte_write_cycles,
+                hold_up_cycles: self.memory.hold_up_cycles,
+                slots: self.memory.slots.into(),
+                initial: self.memory.initial.clone(),
+            },
+            inputs,
+        }
+    }
+}
+
+impl ProgramGroup {
+    fn plain(&self, clock_hz: u32, steps_left: &mut u64, here: &mut Validator) -> Group {
+        match self {
+            Self::Move(group) => Group::Move(parameters::Move {
+                length: group.length,
+                direction: group.direction,
+                speed_hz: group.speed_hz,
+                level: group.level,
+                delay_ms: group.delay_ms,
+                until: group.until.as_ref().map(Until::plain),
+            }),
+            Self::MoveTo(group) => Group::MoveTo(parameters::MoveTo {
+                // Its range was judged by its row.
+                length: group.length.clamp(i32::MIN.into(), i32::MAX.into()) as i32,
+                speed_hz: group.speed_hz,
+                level: group.level,
+                delay_ms: group.delay_ms,
+            }),
+            Self::Profile(group) => {
+                here.at("profile", |here| Group::Profile(group.plain(clock_hz, steps_left, here)))
+            }
+            Self::Home(_) => Group::Home,
+            Self::Wait(group) => Group::Wait(parameters::Wait {
+                input: group.input.signal(),
+                level: group.level != 0,
+                timeout_ms: group.timeout_ms,
+                then: group.then.map(Into::into),
+            }),
+            Self::Set(group) => Group::Set(parameters::Set { output: group.output, level: group.level != 0 }),
+            Self::Repeat(group) => {
+                Group::Repeat(parameters::Repeat { first: group.first.into(), times: group.times.into() })
+            }
+            Self::Jump(group) => Group::Jump(parameters::Jump {
+                to: group.to.into(),
+                input: group.input.map(Sensor::signal),
+                level: group.level != 0,
+            }),
+        }
+    }
+}
+
+impl ProfileGroup {
+    fn plain(&self, clock_hz: u32, steps_left: &mut u64, here: &mut Validator) -> parameters::Profile {
+        let mut profile = parameters::Profile {
+            intervals: self.intervals_q16.clone(),
+            direction: self.direction,
+            delay_ms: self.delay_ms,
+        };
+        if let Some(motion) = &self.motion {
+            if !self.intervals_q16.is_empty() {
+                let detail = "a profile has a motion or intervals, not both; take one out";
+                here.add("intervals_q16", ValueError::Conflict { detail });
+            }
+            if let Some((intervals, right)) =
+                here.at("motion", |here| intervals(motion, clock_hz, steps_left, here))
+            {
+                (profile.intervals, profile.direction) = (intervals, right.into());
+            }
+        }
+        profile
+    }
+}
+
+/// Times between the steps of a motion, which goes one way, and whether that is to the right.
+fn intervals(
+    motion: &stepscope_motion::moves::Move,
+    clock_hz: u32,
+    steps_left: &mut u64,
+    here: &mut Validator,
+) -> Option<(Vec<u64>, bool)> {
+    let plan = here.take(plan_move(motion, here.path()).map_err(of_motion))?;
+    let count = plan.step_count();
+    let Some(left) = steps_left.checked_sub(count) else {
+        let cause =
+            ValueError::TooMuch { given: count as f64, most: *steps_left as f64, of: "steps of profiles" };
+        here.add("", cause);
+        return None;
+    };
+    *steps_left = left;
+    let (mut intervals, mut before, mut way) = (Vec::with_capacity(count as usize), 0, None);
+    for step in plan.due_steps(clock_hz) {
+        if *way.get_or_insert(step.right) != step.right {
+            let detail = "goes both ways; a profile goes one way: give a group to each";
+            here.add("", ValueError::Conflict { detail });
+            return None;
+        }
+        let interval = step.cycle.saturating_sub(before);
+        let Some(interval) = interval.checked_mul(1 << 16) else {
+            let most = (u64::MAX >> 16) as f64;
+            here.add(
+                "",
+                ValueError::TooMuch { given: interval as f64, most, of: "cycles between two steps" },
+            );
+            return None;
+        };
+        intervals.push(interval);
+        before = step.cycle;
+    }
+    Some((intervals, way.unwrap_or(true)))
+}
+
+impl Until {
+    fn plain(&self) -> parameters::Until {
+        parameters::Until { input: self.input.signal(), level: self.level != 0 }
+    }
+}
+
+impl Homing {
+    fn plain(&self) -> parameters::Home {
+        parameters::Home {
+            switch: self.switch.signal(),
+            direction: self.direction,
+            coarse_hz: self.coarse_hz,
+            fine_hz: self.fine_hz,
+            pull_off_steps: self.pull_off_steps,
+            travel_steps: self.travel_steps,
+            position_steps: self.position_steps,
+        }
+    }
+}
+
+impl SoftLimits {
+    fn plain(&self) -> parameters::SoftLimits {
+        parameters::SoftLimits { min_steps: self.min_steps, max_steps: self.max_steps }
+    }
+}
+
+impl VirtualAxis {
+    fn plain(&self) -> parameters::Axis {
+        parameters::Axis {
+            start_steps: self.start_steps,
+            min_switch_at: self.min_switch_at,
+            max_switch_at: self.max_switch_at,
+            home_from: self.home_from,
+            home_to: self.home_to,
+            hard_min: self.hard_min,
+            hard_max: self.hard_max,
+        }
+    }
+}
+
+impl Switch {
+    /// As what comes into a controller.
+    const fn signal(self) -> Signal {
+        match self {
+            Self::LimitMin => Signal::LimitMin,
+            Self::LimitMax => Signal::LimitMax,
+            Self::HomeSwitch => Signal::HomeSwitch,
+        }
+    }
+}
+
+impl Sensor {
+    /// As what comes into a controller.
+    #[must_use]
+    pub const fn signal(self) -> Signal {
+        match self {
+            Self::LimitMin => Signal::LimitMin,
+            Self::LimitMax => Signal::LimitMax,
+            Self::HomeSwitch => Signal::HomeSwitch,
+            Self::In0 => Signal::In0,
+            Self::In1 => Signal::In1,
+            Self::In2 => Signal::In2,
+            Self::In3 => Signal::In3,
+        }
+    }
+}
+
+impl PanelInput {
+    fn plain(&self, here: &mut Validator) -> Input {
+        let change = match (self.input, self.push_steps) {
+            (Some(signal), None) => Change::Level(signal, self.level != 0),
+            // Its range was judged by its row.
+            (None, Some(steps)) => Change::Push(steps.clamp(i32::MIN.into(), i32::MAX.into()) as i32),
+            (given, _) => {
+                let detail = match given {
+                    Some(_) => "an entry is an input with its level or a push, not both; make two of it",
+                    None => "nothing happens here; give an input and its level, or push_steps",
+                };
+                here.add("", ValueError::Conflict { detail });
+                Change::Push(0)
+            }
+        };
+        Input { cycle: Instant(self.cycle), change }
+    }
+}
+
+impl Read for Initial {
+    fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
+        let Some(text) = value.text() else {
+            return reader.refuse(value, "\"blank\", \"factory\" or bytes in hex, such as \"01 00 ff\"");
+        };
+        *self = match (&*text, Hex::of_text(&text)) {
+            ("blank", _) => Self::Blank,
+            ("factory", _) => Self::Factory,
+            (_, Ok(Hex(bytes))) => Self::Bytes(bytes),
+            (_, Err(wrong)) => return reader.wrong(format!("{wrong}; or blank, or factory")),
+        };
+        true
+    }
+
+    fn blank() -> Self {
+        Self::default()
+    }
+}
+
+impl ToParts for Initial {
+    fn parts(&self) -> Parts<'_> {
+        match self {
+            Self::Blank => Parts::Whole(Value::from("blank")),
+            Self::Factory => Parts::Whole(Value::from("factory")),
+            Self::Bytes(bytes) => Parts::Whole(Value::from(base16ct::lower::encode_string(bytes))),
+        }
+    }
+}
+
+impl Typed for Initial {
+    const TYPE: Type = Type::Text;
+}

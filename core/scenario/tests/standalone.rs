@@ -1,0 +1,107 @@
+//! Stand-alone controllers as a scenario has them: every refusal at its path (CONTROLLER.md, "The format").
+#![allow(clippy::expect_used, reason = "what is missing fails the test")]
+
+use stepscope_scenario::{Compact, Scenario};
+
+fn problems(controllers: &str) -> Vec<String> {
+    let json = format!(r#"{{"bus":{{"channels":2}},"source":{{"standalone":{controllers}}}}}"#);
+    let (scenario, mut problems) = Scenario::from_json_lenient(&json);
+    problems.extend(scenario.check().err().unwrap_or_default());
+    problems.iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn every_refusal_names_its_field_and_the_numbers() {
+    let at = "source.standalone[0]";
+    let rows: &[(&str, &[&str])] = &[
+        ("[{}]", &[]),
+        ("[{},{}]", &[]),
+        ("[]", &["source.standalone: 0 controllers; give 1 to 2"]),
+        ("[{},{},{}]", &["source.standalone: 3 controllers; give 1 to 2"]),
+        (
+            r#"[{"max_speed_hz":300000}]"#,
+            &[
+                "{at}.max_speed_hz: 300000 Hz is a step every 53 cycles at this clock; W + max(H + D, 1) is 80 cycles, so at most 200000 Hz",
+            ],
+        ),
+        (
+            r#"[{"home":{"coarse_hz":1500}}]"#,
+            &[
+                "{at}.home.coarse_hz: 1500 Hz is above start_speed_hz 1000: homing stops at once and must stay in the start-stop range",
+            ],
+        ),
+        (
+            r#"[{"groups":[{"home":{}},{"move":{}},{"repeat":{"first":3}},{"jump":{"to":9}}]}]"#,
+            &[
+                "{at}.groups[0].home: there is no `home`; give one or leave the group out",
+                "{at}.groups[2].repeat.first: 3 is not before this group (3); give a group before it",
+                "{at}.groups[3].jump.to: 9, but there are 4 groups; give 1 to 4",
+            ],
+        ),
+        (
+            r#"[{"axis":{"max_switch_at":5},"inputs":[{"cycle":9,"input":"limit_max"},{"cycle":4000,"input":"start"},{"cycle":4000,"input":"start","level":0}]}]"#,
+            &[
+                "{at}.inputs[0]: limit_max is driven by axis.max_switch_at; leave one of them out",
+                "{at}.inputs[2]: start has two levels at cycle 4000; give one",
+            ],
+        ),
+        (
+            r#"[{},{"inputs":[{"cycle":9,"input":"estop"},{"cycle":0,"input":"start"},{"cycle":9},{"cycle":9,"input":"ok","push_steps":3}]}]"#,
+            &[
+                "source.standalone[1].inputs[1].cycle: 0 cycles is out of range; give 1 to 9000000000000000 cycles",
+                "source.standalone[1].inputs[2]: nothing happens here; give an input and its level, or push_steps",
+                "source.standalone[1].inputs[3]: an entry is an input with its level or a push, not both; make two of it",
+                "source.standalone[1].inputs[0]: estop is for all controllers and the first one's; leave it out here",
+            ],
+        ),
+        (
+            r#"[{"groups":[{"profile":{"intervals_q16":[5242880,5242879]}},{"profile":{"motion":{"sine":{"periods":1}}}}]}]"#,
+            &[
+                "{at}.groups[1].profile.motion: goes both ways; a profile goes one way: give a group to each",
+                "{at}.groups[0].profile.intervals_q16[1]: 5242879/65536 cycle is shorter than a pulse allows; W + max(H + D, 1) is 5242880/65536 cycle, so give at least that",
+            ],
+        ),
+        (
+            r#"[{"groups":[{"profile":{"motion":{"cosine":{"duration_s":-1}}}}],"loops":0,"memory":{"initial":"0g"}}]"#,
+            &[
+                "{at}.memory.initial: \u{201c}g\u{201d} in byte 1 is no hexadecimal digit; give 0 to 9 and a to f, two a byte, such as 80 01 7f; or blank, or factory",
+                "{at}.loops: 0 is out of range; give 1 to 9999",
+                "{at}.groups[0].profile.motion.cosine.duration_s: -1 s is out of range; give 1e-6 to 86400 s",
+            ],
+        ),
+        (r#"[{"groups":[]}]"#, &["{at}.groups: 0 groups; give 1 to 50"]),
+        (
+            r#"[{"soft_limits":{"min_steps":5,"max_steps":4}}]"#,
+            &["{at}.soft_limits.max_steps: 4 is out of range; give 5 to 2147483648"],
+        ),
+    ];
+    for (given, expected) in rows {
+        let expected: Vec<String> = expected.iter().map(|text| text.replace("{at}", at)).collect();
+        assert_eq!(problems(given), expected, "{given}");
+    }
+}
+
+#[test]
+fn controllers_survive_their_canonical_form() {
+    let json = r#"{"source":{"standalone":[{"groups":[{"home":{}},{"move_to":{"length":-5}},{"profile":{"direction":0,"intervals_q16":[18446744073709551615]}}],"home":{},"inputs":[{"cycle":7,"input":"key_9"},{"push_steps":-3}],"memory":{"initial":"01ff","policy":"write_ahead"},"return":{"speed_hz":500},"short_move":"turn_round"}]}}"#;
+    let scenario = Scenario::from_json(json).expect("reads");
+    assert_eq!(scenario.compact().to_string(), json);
+    assert_eq!(Scenario::from_json(&scenario.to_json()), Ok(scenario));
+}
+
+#[test]
+fn only_a_pulse_of_the_bus_counts_and_no_line() {
+    let rows = [
+        (r#""line":{"baud":0}"#, None),
+        (r#""bus":{"slots":0}"#, Some("bus.slots")),
+        (r#""bus":{"pulse_width_cycles":0}"#, Some("bus.pulse_width_cycles")),
+        (r#""controllers":[{}]"#, Some("controllers")),
+        (r#""plant":{"protection":{}}"#, Some("plant.protection")),
+        (r#""plant":{"self_test":true}"#, Some("plant.self_test")),
+    ];
+    for (given, expected) in rows {
+        let json = format!(r#"{{{given},"source":{{"standalone":[{{}}]}}}}"#);
+        let found = Scenario::from_json(&json).expect("reads").check().err().unwrap_or_default();
+        assert_eq!(found.first().map(|problem| problem.path.as_str()), expected, "{given}: {found:?}");
+    }
+}
