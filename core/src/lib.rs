@@ -69,7 +69,7 @@
 //! left, never what stands to its right:
 //!
 //! ```text
-//! registers -> peripheral -> motion, plant, capture -> scenario -> sim -> inspect
+//! registers -> peripheral -> motion, plant, controller, capture -> scenario -> sim -> inspect
 //! ```
 //!
 //! | room | what it holds | feature |
@@ -83,6 +83,10 @@
 #![cfg_attr(
     feature = "plant",
     doc = "| [`plant`] | drivers, motors, supply and sensors behind the bus | `plant` |"
+)]
+#![cfg_attr(
+    feature = "controller",
+    doc = "| [`controller`] | the stand-alone controller: buttons, programs, memory | `controller` |"
 )]
 #![cfg_attr(
     feature = "scenario",
@@ -133,6 +137,9 @@ pub use stepscope_motion as motion;
 
 #[cfg(feature = "plant")]
 pub use stepscope_plant as plant;
+
+#[cfg(feature = "controller")]
+pub use stepscope_controller as controller;
 
 #[cfg(feature = "capture")]
 pub use stepscope_capture as capture;

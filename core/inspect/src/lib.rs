@@ -47,6 +47,7 @@ pub mod model_agreement;
 #[cfg(feature = "plant")]
 pub mod motors;
 pub mod packet_table;
+pub mod panel;
 #[cfg(feature = "plant")]
 pub mod plant;
 #[cfg(feature = "plant")]

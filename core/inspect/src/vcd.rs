@@ -136,6 +136,8 @@ pub struct VcdWriter<W: io::Write> {
     levels: Option<Levels>,
     /// Analogue values: their codes, and what was written last.
     reals: Vec<(IdCode, Option<u64>)>,
+    /// Signals of several bits, beside those of the bus: their codes and widths, and what was written last.
+    words: Vec<(IdCode, u32, Option<u64>)>,
     /// The last time that was written.
     stamped: Option<u64>,
     result: io::Result<()>,
@@ -158,6 +160,20 @@ impl<W: io::Write> VcdWriter<W> {
         Self::with_analogue(out, timescale, clock_hz, channels, &[])
     }
 
+    /// The same with further signals of these names and widths in bits, beside those of the bus.
+    ///
+    /// # Errors
+    /// As [`Self::with_timescale`].
+    pub fn with_words<'n>(
+        out: W,
+        timescale: Timescale,
+        clock_hz: u32,
+        channels: u8,
+        words: impl IntoIterator<Item = (&'n str, u32)>,
+    ) -> io::Result<Self> {
+        Self::begin(out, (timescale, clock_hz, channels), &[], words)
+    }
+
     /// The same with analogue values of these names, as real variables, beside the signals.
     ///
     /// # Errors
@@ -169,6 +185,16 @@ impl<W: io::Write> VcdWriter<W> {
         channels: u8,
         names: &[String],
     ) -> io::Result<Self> {
+        Self::begin(out, (timescale, clock_hz, channels), names, [])
+    }
+
+    fn begin<'n>(
+        out: W,
+        (timescale, clock_hz, channels): (Timescale, u32, u8),
+        reals: &[String],
+        words: impl IntoIterator<Item = (&'n str, u32)>,
+    ) -> io::Result<Self> {
+        let names = reals;
         let clock_hz = clock_hz.max(1);
         let timescale = timescale
             .of_clock(clock_hz)
@@ -185,9 +211,21 @@ impl<W: io::Write> VcdWriter<W> {
         for name in names {
             reals.push((out.add_var(VarType::Real, 64, name, None)?, None));
         }
+        let words = words.into_iter().map(|(name, bits)| Ok((out.add_wire(bits, name)?, bits, None)));
+        let words = words.collect::<io::Result<_>>()?;
         out.upscope()?;
         out.enddefinitions()?;
-        Ok(Self { out, timescale, clock_hz, signals, levels: None, reals, stamped: None, result: Ok(()) })
+        Ok(Self {
+            out,
+            timescale,
+            clock_hz,
+            signals,
+            levels: None,
+            reals,
+            words,
+            stamped: None,
+            result: Ok(()),
+        })
     }
 
     /// Goes on with a file in ns, of which `levels` have been written last: so it is made in pieces.
@@ -196,7 +234,7 @@ impl<W: io::Write> VcdWriter<W> {
     /// Never: nothing is written yet.
     pub fn resume(out: W, clock_hz: u32, channels: u8, levels: Levels) -> io::Result<Self> {
         let VcdWriter { signals, timescale, clock_hz, .. } = VcdWriter::new(io::sink(), clock_hz, channels)?;
-        let (out, reals) = (Writer::new(out), Vec::new());
+        let (out, reals, words) = (Writer::new(out), Vec::new(), Vec::new());
         Ok(Self {
             out,
             timescale,
@@ -204,6 +242,7 @@ impl<W: io::Write> VcdWriter<W> {
             signals,
             levels: Some(levels),
             reals,
+            words,
             stamped: None,
             result: Ok(()),
         })
@@ -268,6 +307,29 @@ impl<W: io::Write> VcdWriter<W> {
         for (&value, (code, before)) in values.iter().zip(&mut self.reals) {
             if before.replace(value.to_bits()) != Some(value.to_bits()) {
                 self.out.change_real(*code, value)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The further signals from a cycle on, in the order of their names; cycles rise, those of records among them.
+    pub fn words(&mut self, cycle: u64, values: impl IntoIterator<Item = u64>) {
+        if self.result.is_ok() {
+            self.result = self.write_words(cycle, values);
+        }
+    }
+
+    fn write_words(&mut self, cycle: u64, values: impl IntoIterator<Item = u64>) -> io::Result<()> {
+        self.time(cycle)?;
+        for (value, (code, bits, before)) in values.into_iter().zip(&mut self.words) {
+            if before.replace(value) == Some(value) {
+                continue;
+            }
+            let bit = |shift: u32| if value >> shift & 1 == 1 { Value::V1 } else { Value::V0 };
+            if *bits == 1 {
+                self.out.change_scalar(*code, bit(0))?;
+            } else {
+                self.out.change_vector(*code, (0..*bits).rev().map(bit))?;
             }
         }
         Ok(())

@@ -1,16 +1,16 @@
-//! The controllers of a run: those of a line with all that is on it, or one that runs segments by itself.
+//! The controllers of a run: those of a line with all that is on it, or those that run by themselves.
 
-use crate::{bus::Bus, ignored::Ignored};
+use crate::{alone::Alone, bus::Bus, ignored::Ignored};
 #[cfg(feature = "plant")]
 use stepscope_peripheral::units::Cycles;
-use stepscope_peripheral::{device::SegmentEngine, signal::Sink, units::Instant};
+use stepscope_peripheral::{signal::Sink, units::Instant};
 
 /// Controllers under way.
 #[derive(Clone, Debug)]
 pub(crate) struct Controllers {
     pub(crate) bus: Bus,
     /// Runs in place of the net, which then stays before cycle 0.
-    pub(crate) engine: Option<SegmentEngine>,
+    pub(crate) alone: Option<Alone>,
     /// First cycle that is not run; without it the run ends when nothing can change any more.
     pub(crate) end: Option<Instant>,
 }
@@ -18,14 +18,14 @@ pub(crate) struct Controllers {
 impl Controllers {
     /// The first cycle that nobody has run.
     pub(crate) fn reached(&self) -> Instant {
-        self.engine.as_ref().map_or_else(|| self.bus.now(), SegmentEngine::now)
+        self.alone.as_ref().map_or_else(|| self.bus.now(), Alone::now)
     }
 
     /// Whether all that was to be run is run.
     pub(crate) fn are_done(&self) -> bool {
-        match (&self.engine, self.end) {
-            (Some(engine), Some(end)) => engine.now() >= end,
-            (Some(engine), None) => engine.at_rest(),
+        match (&self.alone, self.end) {
+            (Some(alone), Some(end)) => alone.now() >= end,
+            (Some(alone), None) => alone.at_rest(),
             (None, Some(end)) => self.bus.has_reached(end),
             (None, None) => self.bus.is_over(),
         }
@@ -34,21 +34,21 @@ impl Controllers {
     /// Goes on to cycle `end`, with a sink for each, until a sink asks for a pause; with [`Instant::NEVER`] until nothing
     /// can change any more.
     pub(crate) fn run_to(&mut self, end: Instant, sinks: &mut [impl Sink]) {
-        match (&mut self.engine, sinks.first_mut()) {
-            (Some(engine), Some(sink)) => engine.run(end, sink),
-            (Some(engine), None) => engine.run(end, &mut Ignored),
+        match (&mut self.alone, sinks.first_mut()) {
+            (Some(alone), Some(sink)) => alone.run(end, sink),
+            (Some(alone), None) => alone.run(end, &mut Ignored),
             (None, _) => self.bus.run(end, sinks),
         }
     }
 
     /// One cycle, with a sink for each.
     pub(crate) fn clock(&mut self, sinks: &mut [impl Sink]) {
-        match (&mut self.engine, sinks.first_mut()) {
-            (Some(engine), Some(sink)) => {
-                engine.clock(sink);
+        match (&mut self.alone, sinks.first_mut()) {
+            (Some(alone), Some(sink)) => {
+                alone.clock(sink);
             }
-            (Some(engine), None) => {
-                engine.clock(&mut Ignored);
+            (Some(alone), None) => {
+                alone.clock(&mut Ignored);
             }
             (None, _) => self.bus.clock(sinks),
         }
@@ -60,16 +60,16 @@ impl Controllers {
     /// Where nothing can change any more, the cycle after the last change. The segment engine does not know that one: it is
     /// `last`.
     pub(crate) fn rests_from(&self, last: Instant) -> Option<Instant> {
-        match &self.engine {
-            Some(engine) => engine.at_rest().then(|| last.next()),
+        match &self.alone {
+            Some(alone) => alone.at_rest().then(|| last.next()),
             None => self.bus.is_over().then(|| self.bus.rests_from()),
         }
     }
 
     /// The plant of a controller reports an overload, last in the cycle that was run last.
     pub(crate) fn overload(&mut self, controller: usize, sink: &mut impl Sink) {
-        match (&mut self.engine, self.bus.device_mut(controller)) {
-            (Some(engine), _) => engine.overload(),
+        match (&mut self.alone, self.bus.device_mut(controller)) {
+            (Some(alone), _) => alone.overload(),
             (None, Some(device)) => device.overload(sink),
             (None, None) => {}
         }

@@ -4,15 +4,15 @@
 use crate::plants::{Behind, PlantsBehind};
 use crate::{
     Cost,
+    alone::Alone,
     bus::Bus,
     controller_plan::{self, ControllerPlan},
     controllers::Controllers,
     framed_host::{FramedHost, Progress},
 };
-#[cfg(feature = "plant")]
-use alloc::boxed::Box;
-use alloc::{rc::Rc, vec::Vec};
+use alloc::{boxed::Box, format, rc::Rc, vec::Vec};
 use core::slice;
+use stepscope_controller::StandAlone;
 use stepscope_motion::AxisPlan;
 use stepscope_peripheral::{
     config::Config,
@@ -24,7 +24,7 @@ use stepscope_peripheral::{
 };
 #[cfg(feature = "plant")]
 use stepscope_plant::{Observer, Plant, measures::PlantResult};
-use stepscope_scenario::{Checked, END_OF_TIME, Problem, Scenario, ValueError};
+use stepscope_scenario::{Cause, Checked, END_OF_TIME, Problem, Scenario, ValueError};
 
 /// Most bytes that a host may have to send: as many as the most ticks of 16 channels take on an addressed
 /// raw line.
@@ -45,6 +45,8 @@ pub struct Experiment {
     schedule: Rc<Schedule>,
     /// What the segment engine runs, where segments run the scenario; then nothing is sent.
     segments: Option<Rc<CheckedSegments>>,
+    /// The stand-alone controllers that run the scenario; then nothing is sent, too.
+    stand_alone: Option<stepscope_controller::Checked>,
     line_load: Option<f64>,
     cost: Cost,
 }
@@ -76,9 +78,14 @@ impl Experiment {
         let (schedule, forced) = controller_plan::schedule(&checked, &controllers);
         checked.forced.extend(forced);
         let segments = controller_plan::segments(&checked, &controllers)?.map(Rc::new);
-        let cost = match &segments {
-            Some(segments) => Cost::of_segments(segments, checked.run),
-            None => Cost::of(&checked, &controllers, &schedule),
+        let stand_alone = checked.stand_alone.clone();
+        let cost = match (&segments, &stand_alone) {
+            (Some(segments), _) => Cost::of_segments(segments, checked.run),
+            (None, Some(stand_alone)) => Cost::of_stand_alone(stand_alone, checked.run).map_err(|work| {
+                let path = format!("source.standalone[{}].groups", work.controller);
+                alloc::vec![Problem::new(path, Cause::Work(work))]
+            })?,
+            (None, None) => Cost::of(&checked, &controllers, &schedule),
         };
         if cost.bytes > MAX_LINE_BYTES {
             let (given, most) = (cost.bytes as f64, MAX_LINE_BYTES as f64);
@@ -98,7 +105,7 @@ impl Experiment {
             return Err(alloc::vec![Problem::new("source", cause)]);
         }
         let line_load = line_load.flatten().filter(|_| controllers.iter().any(ControllerPlan::has_ticks));
-        Ok(Self { checked, controllers, schedule: Rc::new(schedule), segments, line_load, cost })
+        Ok(Self { checked, controllers, schedule: Rc::new(schedule), segments, stand_alone, line_load, cost })
     }
 
     /// Reads, judges and prepares a scenario.
@@ -207,6 +214,19 @@ impl Experiment {
         self.segments.as_deref()
     }
 
+    /// The stand-alone controllers; `None` where a line or segments run the scenario.
+    #[must_use]
+    pub const fn stand_alone(&self) -> Option<&stepscope_controller::Checked> {
+        self.stand_alone.as_ref()
+    }
+
+    /// What runs it by itself.
+    fn alone(&self) -> Option<Alone> {
+        let segments =
+            self.segments.clone().map(|lists| Alone::Segments(Box::new(SegmentEngine::new(lists))));
+        segments.or_else(|| Some(Alone::Panels(StandAlone::new(self.stand_alone.as_ref()?))))
+    }
+
     /// What the run will cost.
     #[must_use]
     pub const fn cost(&self) -> Cost {
@@ -230,7 +250,7 @@ impl Experiment {
         Run {
             controllers: Controllers {
                 bus: Bus::new(line, host, self.configs().map(|config| self.device(config)).collect()),
-                engine: self.segments.clone().map(SegmentEngine::new),
+                alone: self.alone(),
                 end: run.map(|cycles| Instant(cycles.0)),
             },
             #[cfg(feature = "plant")]
@@ -335,13 +355,22 @@ impl Run {
     /// Position counters of the first controller, or of the segment engine (DESIGN A3).
     #[must_use]
     pub fn positions(&self) -> [i32; MAX_CHANNELS] {
-        self.controllers.engine.as_ref().map_or_else(|| self.device().positions(), SegmentEngine::positions)
+        self.controllers.alone.as_ref().map_or_else(|| self.device().positions(), Alone::positions)
+    }
+
+    /// The stand-alone controllers as they are now; `None` where a line or segments run the scenario.
+    #[must_use]
+    pub fn stand_alone(&self) -> Option<&StandAlone> {
+        match &self.controllers.alone {
+            Some(Alone::Panels(machine)) => Some(machine),
+            _ => None,
+        }
     }
 
     /// Faults of the first controller so far, or of the segment engine.
     #[must_use]
     pub fn faults(&self) -> Faults {
-        self.controllers.engine.as_ref().map_or_else(|| self.device().faults(), SegmentEngine::faults)
+        self.controllers.alone.as_ref().map_or_else(|| self.device().faults(), Alone::faults)
     }
 
     /// Ticks of the first controller that have ended; segments have none.

@@ -19,6 +19,8 @@ extern crate alloc;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+mod alone;
+
 mod bus_load;
 
 #[cfg(test)]
@@ -51,6 +53,8 @@ mod plants;
 
 #[cfg(feature = "plant")]
 pub mod plant_run;
+
+pub mod power_cut;
 
 mod script;
 

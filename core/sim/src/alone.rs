@@ -1,0 +1,79 @@
+//! What runs a scenario by itself, in place of a line: lists of segments, or stand-alone controllers.
+
+use alloc::boxed::Box;
+use stepscope_controller::StandAlone;
+use stepscope_peripheral::{
+    device::{Faults, SegmentEngine},
+    signal::{MAX_CHANNELS, Sink},
+    units::Instant,
+};
+
+/// A generator of steps that hears no line.
+#[derive(Clone, Debug)]
+pub(crate) enum Alone {
+    /// Lists of segments (DESIGN A8).
+    Segments(Box<SegmentEngine>),
+    /// Controllers with a panel each (CONTROLLER.md).
+    Panels(StandAlone),
+}
+
+impl Alone {
+    /// The first cycle that has not been run.
+    pub(crate) fn now(&self) -> Instant {
+        match self {
+            Self::Segments(engine) => engine.now(),
+            Self::Panels(machine) => machine.now(),
+        }
+    }
+
+    /// Whether nothing can change any more.
+    pub(crate) fn at_rest(&self) -> bool {
+        match self {
+            Self::Segments(engine) => engine.at_rest(),
+            Self::Panels(machine) => machine.at_rest(),
+        }
+    }
+
+    pub(crate) fn positions(&self) -> [i32; MAX_CHANNELS] {
+        match self {
+            Self::Segments(engine) => engine.positions(),
+            Self::Panels(machine) => machine.positions(),
+        }
+    }
+
+    pub(crate) fn faults(&self) -> Faults {
+        match self {
+            Self::Segments(engine) => engine.faults(),
+            Self::Panels(_) => Faults::from_bits(0),
+        }
+    }
+
+    /// Goes on to cycle `until`; see [`SegmentEngine::run`].
+    pub(crate) fn run(&mut self, until: Instant, sink: &mut impl Sink) {
+        match self {
+            Self::Segments(engine) => engine.run(until, sink),
+            Self::Panels(machine) => machine.run(until, sink),
+        }
+    }
+
+    /// One cycle.
+    pub(crate) fn clock(&mut self, sink: &mut impl Sink) {
+        match self {
+            Self::Segments(engine) => {
+                engine.clock(sink);
+            }
+            Self::Panels(machine) => {
+                machine.clock(sink);
+            }
+        }
+    }
+
+    /// The plant reports an overload; stand-alone controllers have no protection.
+    #[cfg(feature = "plant")]
+    pub(crate) fn overload(&mut self) {
+        match self {
+            Self::Segments(engine) => engine.overload(),
+            Self::Panels(_) => {}
+        }
+    }
+}
