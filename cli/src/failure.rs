@@ -30,6 +30,10 @@ pub(crate) enum Failure {
     OtherRun(String),
     /// There is no such preset.
     Preset(String),
+    /// Records of a panel, where there is none.
+    NoPanel(PathBuf),
+    /// Power cuts of a scenario without a stand-alone controller.
+    NoStandAlone(PathBuf),
     /// A timing check without a driver.
     NoDriver(PathBuf),
     /// The scenario has no controller of this number, but so many.
@@ -48,6 +52,8 @@ pub(crate) enum Failure {
     Violations(u64),
     /// So many seeds of a fault sweep with the framed protocol went wrong, and none was to.
     WrongSteps(u64),
+    /// So many power cuts left a position that is trusted and wrong, and none was to.
+    SilentlyWrong(u64),
 }
 
 impl Failure {
@@ -81,14 +87,18 @@ impl Failure {
             | Self::NoProof
             | Self::RunFingerprint(_)
             | Self::Preset(_)
+            | Self::NoPanel(_)
+            | Self::NoStandAlone(_)
             | Self::NoDriver(_)
             | Self::Controller(..)
             | Self::Axis(..)
             | Self::Table(..)
             | Self::Recording(..) => ExitCode::from(2),
-            Self::OtherRun(_) | Self::NotTheModel(_) | Self::Violations(_) | Self::WrongSteps(_) => {
-                ExitCode::from(3)
-            }
+            Self::OtherRun(_)
+            | Self::NotTheModel(_)
+            | Self::Violations(_)
+            | Self::WrongSteps(_)
+            | Self::SilentlyWrong(_) => ExitCode::from(3),
         }
     }
 }
@@ -122,6 +132,20 @@ impl fmt::Display for Failure {
             Self::Preset(id) => {
                 write!(f, "{id}: no such preset; `stepscope presets` lists them")
             }
+            Self::NoPanel(path) => write!(
+                f,
+                "{}: --panel writes what stand-alone controllers show, and there is none; take it out, or give a source standalone",
+                path.display()
+            ),
+            Self::NoStandAlone(path) => write!(
+                f,
+                "{}: powercut cuts the power of stand-alone controllers, and there is none; give a source standalone, or a preset such as zhang-2012-controller",
+                path.display()
+            ),
+            Self::SilentlyWrong(count) => write!(
+                f,
+                "after {count} power cuts a position is trusted and wrong, which must not be; the first is in the table with --json"
+            ),
             Self::NoDriver(path) => write!(
                 f,
                 "{}: the scenario names no driver; give one with --driver, `stepscope drivers` lists them",

@@ -14,9 +14,11 @@ mod manual;
 mod measures;
 mod motors;
 mod output;
+mod panel;
 mod parallel;
 mod plant;
 mod points;
+mod powercut;
 mod progress;
 mod run;
 mod scenarios;
@@ -41,7 +43,7 @@ Exit codes:
   1    a file could not be read or written, or a recording not to its end
   2    the scenario, the link, the recording or the command line is wrong
   3    something was to hold and does not: --strict found violations, faults found wrong steps on a framed line,
-       open --verify found another run than the link's, capture --against another than the model's
+       powercut found a position that is trusted and wrong, open --verify found another run than the link's, capture --against another than the model's
   130  ended by Ctrl-C; no file was changed
   141  standard output was closed, as behind | head";
 
@@ -81,6 +83,9 @@ enum Command {
     /// Opens a recording (a dump, a logic analyser's file, bytes, positions) and tells what its steps and bytes come to,
     /// whether a driver could follow, how it stands to a scenario's run; or makes a scenario of it.
     Capture(capture::Arguments),
+    /// Cuts the power of stand-alone controllers in as many cycles as there are, and counts where the position is known
+    /// afterwards, known to be lost, or silently wrong; finds the hold-up that is just enough, and the memory's life.
+    Powercut(powercut::Arguments),
     /// Steps a millimetre by least squares, from measured lengths and the steps that made them.
     Calibrate(calibrate::Arguments),
     /// Looks for the segments that make a sine with least distortion.
@@ -145,6 +150,7 @@ fn main() -> ExitCode {
         Command::Limits(arguments) => limits::limits(&arguments),
         Command::Resonance(arguments) => limits::resonance(&arguments),
         Command::Capture(arguments) => capture::capture(&arguments),
+        Command::Powercut(arguments) => powercut::powercut(&arguments),
         Command::Calibrate(arguments) => calibrate::calibrate(&arguments),
         Command::Sine(command) => sine::sine(&command),
         Command::Points(arguments) => points::points(&arguments),

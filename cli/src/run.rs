@@ -6,6 +6,7 @@ use crate::{
     json::Tables,
     line,
     output::{Out, Outputs, STANDARD},
+    panel,
     progress::Progress,
     scenarios, status, timing,
 };
@@ -16,6 +17,7 @@ use std::{
     path::{Path, PathBuf},
 };
 use stepscope_core::{
+    controller::Checked,
     inspect::{fingerprint::Fingerprinter, run_fingerprint::RunFingerprint, vcd::Timescale},
     peripheral::config::Config,
     scenario::{Scenario, link},
@@ -58,6 +60,10 @@ pub(crate) struct Arguments {
     /// Write a table of the packets, with what the controller did with each (CSV as in RFC 4180).
     #[arg(long, value_name = "FILE")]
     packets: Option<PathBuf>,
+    /// Write what the panels of stand-alone controllers show, controller after controller: cycle, state, alarm, trust,
+    /// outputs, group, loop, position and display, a row for each change (CSV).
+    #[arg(long, value_name = "FILE")]
+    panel: Option<PathBuf>,
     /// Write the scenario with what was done to the line as its source: every byte and the cycle it is
     /// sent in, and every forced level, those of noise among them; or, where segments run it, as their
     /// lists. Run in its turn, it gives the same traces.
@@ -85,7 +91,7 @@ fn timescale(text: &str) -> Result<Timescale, String> {
 impl Arguments {
     /// Where the files go.
     fn outputs(&self) -> impl Iterator<Item = &Path> {
-        [&self.trace, &self.vcd, &self.csv, &self.packets, &self.line, &self.timing.violations]
+        [&self.trace, &self.vcd, &self.csv, &self.packets, &self.panel, &self.line, &self.timing.violations]
             .into_iter()
             .flatten()
             .map(PathBuf::as_path)
@@ -97,6 +103,7 @@ impl Arguments {
             || self.vcd.is_some()
             || self.csv.is_some()
             || self.packets.is_some()
+            || self.panel.is_some()
             || self.line.is_some()
             || self.link
             || self.timing.asked()
@@ -117,7 +124,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut stations: Vec<Station> = (0..controllers).map(|_| Station::default()).collect();
     if let Some(station) = stations.get_mut(chosen) {
         station.timing = arguments.timing.check(path, &scenario)?;
-        station.files = open(arguments, &mut outputs, chosen, config)?;
+        station.files = open(arguments, &mut outputs, chosen, config, experiment.stand_alone())?;
     }
     if arguments.link {
         stations.iter_mut().for_each(|station| station.fingerprint = Some(Fingerprinter::default()));
@@ -202,6 +209,7 @@ fn open(
     outputs: &mut Outputs,
     controller: usize,
     config: &Config,
+    panels: Option<&Checked>,
 ) -> Result<Files, Failure> {
     let (clock_hz, channels) = (config.clock_hz(), config.channels());
     let timescale = arguments.vcd_timescale;
@@ -216,8 +224,18 @@ fn open(
         Ok(())
     };
     add(&arguments.trace, &|out| Ok(files::trace(out)))?;
-    add(&arguments.vcd, &|out| files::vcd(out, timescale, clock_hz, channels))?;
-    add(&arguments.csv, &|out| files::csv(out, clock_hz, channels))?;
+    add(&arguments.vcd, &|out| match panels {
+        Some(panels) => panel::vcd(out, timescale, (clock_hz, channels), panels),
+        None => files::vcd(out, timescale, clock_hz, channels),
+    })?;
+    add(&arguments.csv, &|out| match panels {
+        Some(panels) => panel::csv(out, (clock_hz, channels), panels),
+        None => files::csv(out, clock_hz, channels),
+    })?;
+    if arguments.panel.is_some() && panels.is_none() {
+        return Err(Failure::NoPanel(arguments.scenario.clone()));
+    }
+    add(&arguments.panel, &|out| Ok(panel::records(out)))?;
     add(&arguments.packets, &|out| Ok(files::packets(out, controller)))?;
     Ok(opened)
 }

@@ -3,7 +3,10 @@
 use crate::json::Tables;
 use serde_json::{Value, json};
 use std::io::{self, Write};
-use stepscope_core::sim::{ControllerSummary, Summary};
+use stepscope_core::{
+    controller::TRUST,
+    sim::{ControllerSummary, Summary},
+};
 
 /// One digest a line.
 pub(crate) fn digests(summary: &Summary) -> io::Result<()> {
@@ -47,6 +50,28 @@ pub(crate) fn tables(tables: Tables, summary: &Summary, first: usize) -> Tables 
             "crashes": host.crashes,
         })
     });
+    let panels = summary.panels.iter().enumerate().map(|(index, panel)| {
+        json!({
+            "controller": index,
+            "state": panel.state.name(),
+            "alarm": panel.alarm.name(),
+            "trust": TRUST.get(usize::from(panel.trust)),
+            "position": panel.position,
+            "axis_error": panel.axis_error,
+            "records": panel.records,
+            "most_writes": panel.most_writes,
+            "presses_without_meaning": panel.ignored,
+        })
+    });
+    let tables = match summary.panel_digest {
+        Some(digest) => {
+            let ended = summary.work.map(|work| work.to_string());
+            tables
+                .with("panels", panels)
+                .with("panel_digest", [json!({ "digest": format!("{digest:016x}"), "ended": ended })])
+        }
+        None => tables,
+    };
     tables
         .with("run", [run])
         .with("controllers", numbered().map(|(index, controller)| row(index, controller)))

@@ -1,0 +1,167 @@
+//! What stand-alone controllers show and are given, as files of a run: the panel's records, and tables and dumps in which
+//! states and inputs stand beside the signals of the bus.
+
+use crate::{files::Output, output::Out};
+use std::io::{self, Write};
+use stepscope_core::{
+    controller::Checked,
+    inspect::{
+        panel::{PANEL_HEAD, PanelSignals, write_panel_row},
+        tables::{write_edges_head, write_edges_row},
+        vcd::{Timescale, VcdWriter},
+    },
+    peripheral::{
+        signal::{Event, Levels, Record, Sink},
+        units::Instant,
+    },
+    sim::{Experiment, Run},
+};
+
+/// The panel's records, controller after controller.
+pub(crate) fn records(out: Out) -> Box<dyn Output> {
+    Box::new(Records(out))
+}
+
+/// They are written at the end, from the run.
+struct Records(Out);
+
+impl Sink for Records {
+    fn record(&mut self, _: Record) {}
+}
+
+impl Output for Records {
+    fn finish(mut self: Box<Self>, experiment: &Experiment, run: &Run) -> io::Result<()> {
+        self.0.write_all(PANEL_HEAD.as_bytes())?;
+        let clock_hz = experiment.config().clock_hz();
+        let mut text = String::new();
+        for (index, panel) in run.stand_alone().iter().flat_map(|machine| machine.panels()).enumerate() {
+            for record in panel {
+                text.clear();
+                write_panel_row(&mut text, index, *record, clock_hz).map_err(io::Error::other)?;
+                self.0.write_all(text.as_bytes())?;
+            }
+        }
+        self.0.flush()
+    }
+}
+
+/// The table of edges with states and inputs, a row for each cycle in which anything changes.
+pub(crate) fn csv(
+    mut out: Out,
+    (clock_hz, channels): (u32, u8),
+    panels: &Checked,
+) -> io::Result<Box<dyn Output>> {
+    let signals = PanelSignals::new(panels);
+    let mut text = String::new();
+    write_edges_head(&mut text, channels).map_err(io::Error::other)?;
+    let names = signals.signals().iter().map(|signal| format!(",{}", signal.name));
+    text = text.trim_end().to_owned() + &names.collect::<String>() + "\n";
+    out.write_all(text.as_bytes())?;
+    let row = Row { cycle: None, levels: Levels::RESET };
+    Ok(Box::new(Table { out, clock_hz, channels, signals, row, result: Ok(()) }))
+}
+
+/// A row that may still change: everything of a cycle stands in one.
+struct Row {
+    cycle: Option<Instant>,
+    levels: Levels,
+}
+
+struct Table {
+    out: Out,
+    clock_hz: u32,
+    channels: u8,
+    signals: PanelSignals,
+    row: Row,
+    result: io::Result<()>,
+}
+
+impl Table {
+    /// What follows is of this cycle: the row of the one before is whole.
+    fn at(&mut self, cycle: Instant) {
+        if self.row.cycle != Some(cycle) {
+            self.end_row();
+            self.row.cycle = Some(cycle);
+        }
+    }
+
+    fn end_row(&mut self) {
+        let Some(cycle) = self.row.cycle.take() else { return };
+        if self.result.is_ok() {
+            self.result = self.write(Record { cycle, levels: self.row.levels });
+        }
+    }
+
+    fn write(&mut self, record: Record) -> io::Result<()> {
+        let mut text = String::new();
+        write_edges_row(&mut text, record, self.clock_hz, self.channels).map_err(io::Error::other)?;
+        let values = self.signals.signals().iter().map(|signal| format!(",{}", signal.text()));
+        self.out.write_all((text.trim_end().to_owned() + &values.collect::<String>() + "\n").as_bytes())
+    }
+}
+
+impl Sink for Table {
+    fn record(&mut self, record: Record) {
+        self.at(record.cycle);
+        self.row.levels = record.levels;
+    }
+
+    fn event(&mut self, at: Instant, event: Event) {
+        if matches!(event, Event::Panel { .. } | Event::Input { .. }) {
+            self.at(at);
+            self.signals.take(event);
+        }
+    }
+}
+
+impl Output for Table {
+    fn has_failed(&self) -> bool {
+        self.result.is_err()
+    }
+
+    fn finish(mut self: Box<Self>, _: &Experiment, _: &Run) -> io::Result<()> {
+        self.end_row();
+        self.result.and_then(|()| self.out.flush())
+    }
+}
+
+/// A value change dump with states and inputs.
+pub(crate) fn vcd(
+    out: Out,
+    timescale: Timescale,
+    (clock_hz, channels): (u32, u8),
+    panels: &Checked,
+) -> io::Result<Box<dyn Output>> {
+    let signals = PanelSignals::new(panels);
+    let words = signals.signals().iter().map(|signal| (signal.name.as_str(), signal.bits));
+    let mut writer = VcdWriter::with_words(out, timescale, clock_hz, channels, words)?;
+    writer.words(0, signals.signals().iter().map(|signal| signal.value));
+    Ok(Box::new(Dump { writer, signals }))
+}
+
+struct Dump {
+    writer: VcdWriter<Out>,
+    signals: PanelSignals,
+}
+
+impl Sink for Dump {
+    fn record(&mut self, record: Record) {
+        self.writer.record(record);
+    }
+
+    fn event(&mut self, at: Instant, event: Event) {
+        if self.signals.take(event) {
+            self.writer.words(at.0, self.signals.signals().iter().map(|signal| signal.value));
+        }
+    }
+}
+
+impl Output for Dump {
+    fn has_failed(&self) -> bool {
+        self.writer.has_failed()
+    }
+
+    fn finish(self: Box<Self>, _: &Experiment, run: &Run) -> io::Result<()> {
+        self.writer.finish(run.cycles().0)
+    }
+}

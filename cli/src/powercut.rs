@@ -1,0 +1,216 @@
+//! `stepscope powercut`: what a stand-alone controller knows of its position after the power went away, cut by cut.
+
+use crate::{failure::Failure, json::Tables, parallel, progress::Progress, scenarios};
+use clap::Args;
+use serde_json::{Value, json};
+use std::{
+    io::{self, Write},
+    num::NonZero,
+    path::PathBuf,
+};
+use stepscope_core::{
+    controller::{
+        Checked,
+        parameters::{Parameters, Policy, Setup},
+    },
+    sim::power_cut::{PowerCuts, Tally, Wear, least_hold_up, tally, wear, with_memory},
+};
+
+/// Parts that the cuts are divided into: each begins its run anew.
+const PARTS: usize = 16;
+/// Byte times that a record takes where another byte is under way.
+const BYTE_TIMES: u64 = 17;
+
+/// What `stepscope powercut` takes.
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// The scenario, whose source is `standalone`: a JSON file, or a preset's name; `-` reads standard input.
+    scenario: PathBuf,
+    /// How many cycles to cut the power in: every one of a run that is no longer, else seeded ones, half of them while a
+    /// record is written.
+    #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    cuts: u32,
+    /// Where the seeded cycles begin.
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    seed: u64,
+    /// Writes that a cell of the memory bears.
+    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u32).range(1..))]
+    endurance: u32,
+    /// Threads that make the cuts; without it one for each processor. The result is the same.
+    #[arg(long, value_name = "N")]
+    threads: Option<NonZero<usize>>,
+    /// Print the counts as JSON: one object of tables (docs/command.md).
+    #[arg(long)]
+    json: bool,
+    /// Show the progress also where standard error is no terminal.
+    #[arg(long)]
+    progress: bool,
+}
+
+/// One memory and what its cuts came to.
+struct Row {
+    policy: Policy,
+    hold_up_cycles: u64,
+    /// What this hold-up is.
+    what: &'static str,
+    tally: Tally,
+}
+
+/// Cuts the power and prints what is known then; what is silently wrong is a failure.
+pub(crate) fn powercut(arguments: &Arguments) -> Result<(), Failure> {
+    let (_, experiment) = scenarios::judged(&arguments.scenario)?;
+    let checked =
+        experiment.stand_alone().ok_or_else(|| Failure::NoStandAlone(arguments.scenario.clone()))?;
+    let mut rows = Vec::new();
+    for (policy, hold_up_cycles, what) in memories(checked) {
+        let one = with_memory(checked, policy, hold_up_cycles);
+        let cuts = PowerCuts::of(&one, arguments.cuts as usize, arguments.seed);
+        let progress = Progress::new(name(policy), arguments.progress);
+        let tally = counted(&cuts, arguments.threads, progress)?;
+        rows.push(Row { policy, hold_up_cycles, what, tally });
+    }
+    let enough = least(checked, arguments)?;
+    let controllers = checked.controllers().len();
+    let worn: Vec<(Policy, usize, Wear)> = [Policy::PowerLoss, Policy::WriteAhead]
+        .into_iter()
+        .flat_map(|policy| (0..controllers).map(move |index| (policy, index)))
+        .map(|(policy, index)| {
+            let one = &checked.controllers()[index].memory;
+            let of_policy = with_memory(checked, policy, enough);
+            (policy, index, wear(&of_policy, index, 2 * one.slots, arguments.endurance))
+        })
+        .collect();
+    if arguments.json {
+        tables(&rows, enough, &worn).print()?;
+    } else {
+        print(&rows, enough, &worn, checked).map_err(Failure::output)?;
+    }
+    match rows.iter().map(|row| row.tally.wrong).sum() {
+        0 => Ok(()),
+        wrong => Err(Failure::SilentlyWrong(wrong)),
+    }
+}
+
+/// The memories that are compared: both policies, without a buffer, with one that is a cycle too short, just enough, and the
+/// scenario's own.
+fn memories(checked: &Checked) -> Vec<(Policy, u64, &'static str)> {
+    let of = |one: &std::rc::Rc<Parameters>| BYTE_TIMES * u64::from(one.memory.byte_write_cycles) - 1;
+    let enough = checked.controllers().iter().map(of).max().unwrap_or(0);
+    let own = checked.controllers().first().map_or(0, |first| first.memory.hold_up_cycles);
+    let mut all = vec![
+        (Policy::PowerLoss, 0, "none"),
+        (Policy::PowerLoss, enough.saturating_sub(1), "17 byte times less two cycles"),
+        (Policy::PowerLoss, enough, "17 byte times less one cycle"),
+        (Policy::WriteAhead, 0, "none"),
+    ];
+    if all.iter().all(|&(_, hold_up, _)| hold_up != own) {
+        all.push((Policy::PowerLoss, own, "the scenario's"));
+        all.push((Policy::WriteAhead, own, "the scenario's"));
+    }
+    all
+}
+
+/// All cuts, a part on each thread.
+fn counted(cuts: &PowerCuts, threads: Option<NonZero<usize>>, progress: Progress) -> Result<Tally, Failure> {
+    let cycles = cuts.cycles();
+    let part = cycles.len().div_ceil(PARTS).max(1);
+    let parts: Vec<&[u64]> = cycles.chunks(part).collect();
+    // What a thread takes with it.
+    let setup: Setup = cuts.checked().setup();
+    let each = |index: u64| {
+        let checked = setup.clone().check();
+        checked.map_or_else(|_| Tally::default(), |checked| tally(&checked, parts[index as usize]))
+    };
+    let tallies = parallel::each(parts.len() as u64, threads, progress, each).map_err(Failure::threads)?;
+    let mut whole = Tally::default();
+    tallies.iter().for_each(|tally| whole.join(tally));
+    Ok(whole)
+}
+
+/// The hold-up that is just enough for the policy `power_loss`, up to 18 byte times.
+fn least(checked: &Checked, arguments: &Arguments) -> Result<u64, Failure> {
+    let longest = checked.controllers().iter().map(|one| one.memory.byte_write_cycles).max().unwrap_or(1);
+    let mut failed = None;
+    let losses = |one: &Checked| {
+        let cuts = PowerCuts::of(one, arguments.cuts as usize, arguments.seed);
+        match counted(&cuts, arguments.threads, Progress::new("hold-up", arguments.progress)) {
+            Ok(tally) => tally.lost,
+            Err(failure) => {
+                failed = Some(failure);
+                0
+            }
+        }
+    };
+    let enough = least_hold_up(checked, (BYTE_TIMES + 1) * u64::from(longest), losses);
+    failed.map_or(Ok(enough), Err)
+}
+
+const fn name(policy: Policy) -> &'static str {
+    match policy {
+        Policy::PowerLoss => "power_loss",
+        Policy::WriteAhead => "write_ahead",
+    }
+}
+
+fn print(rows: &[Row], enough: u64, worn: &[(Policy, usize, Wear)], checked: &Checked) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    writeln!(
+        out,
+        "{:<12} {:>14} {:>9} {:>9} {:>9} {:>12} {:>9} {:>15}",
+        "policy", "hold-up", "cuts", "known", "lost", "never known", "old zero", "silently wrong"
+    )?;
+    for Row { policy, hold_up_cycles, what, tally } in rows {
+        writeln!(
+            out,
+            "{:<12} {hold_up_cycles:>14} {:>9} {:>9} {:>9} {:>12} {:>9} {:>15}  {what}",
+            name(*policy),
+            tally.cuts,
+            tally.known,
+            tally.lost,
+            tally.never_known,
+            tally.old_zero,
+            tally.wrong
+        )?;
+    }
+    let w = checked.controllers().first().map_or(1, |first| u64::from(first.memory.byte_write_cycles));
+    let bytes = (enough + 1) as f64 / w as f64;
+    writeln!(out, "least hold-up {enough} cycles, {bytes} byte times less one cycle (power_loss)")?;
+    for (policy, index, wear) in worn {
+        write!(
+            out,
+            "controller {index} {}: most worn cell {} writes a power cycle",
+            name(*policy),
+            wear.writes_a_cycle
+        )?;
+        wear.life_power_cycles.map_or(Ok(()), |life| write!(out, ", lasts {life} power cycles"))?;
+        writeln!(out)?;
+    }
+    Ok(())
+}
+
+fn tables(rows: &[Row], enough: u64, worn: &[(Policy, usize, Wear)]) -> Tables {
+    let cuts = rows.iter().map(|row| {
+        json!({
+            "policy": name(row.policy),
+            "hold_up_cycles": row.hold_up_cycles,
+            "cuts": row.tally.cuts,
+            "known": row.tally.known,
+            "lost": row.tally.lost,
+            "never_known": row.tally.never_known,
+            "old_zero": row.tally.old_zero,
+            "silently_wrong": row.tally.wrong,
+            "first_lost_cycle": row.tally.first_lost.map(|at| at.0),
+            "first_wrong_cycle": row.tally.first_wrong.map(|at| at.0),
+        })
+    });
+    let wear = worn.iter().map(|(policy, index, wear)| {
+        json!({
+            "policy": name(*policy),
+            "controller": index,
+            "writes_a_power_cycle": wear.writes_a_cycle,
+            "life_power_cycles": wear.life_power_cycles,
+        })
+    });
+    let least: Vec<Value> = vec![json!({ "policy": "power_loss", "least_hold_up_cycles": enough })];
+    Tables::of("powercut").with("cuts", cuts).with("hold_up", least).with("wear", wear)
+}
