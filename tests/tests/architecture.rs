@@ -19,7 +19,7 @@ use syn::{
 
 /// The core's rooms in the way of the data: each may use those before it.
 const ROOMS: &[&str] =
-    &["registers", "peripheral", "motion", "plant", "capture", "scenario", "sim", "inspect"];
+    &["registers", "peripheral", "motion", "plant", "controller", "capture", "scenario", "sim", "inspect"];
 
 /// Functions whose bits depend on the platform's mathematics library; `mul_add` is DESIGN A1's fused multiply-add.
 const INEXACT: &[&str] = &[

@@ -13,11 +13,12 @@ use std::{
 use syn::{Attribute, Expr, Item, Lit, Meta, Visibility};
 
 /// The library crates and their folders.
-const LIBRARIES: [(&str, &str); 9] = [
+const LIBRARIES: [(&str, &str); 10] = [
     ("stepscope-registers", "core/registers"),
     ("stepscope-peripheral", "core/peripheral"),
     ("stepscope-motion", "core/motion"),
     ("stepscope-plant", "core/plant"),
+    ("stepscope-controller", "core/controller"),
     ("stepscope-capture", "core/capture"),
     ("stepscope-scenario", "core/scenario"),
     ("stepscope-sim", "core/sim"),
@@ -82,6 +83,9 @@ fn who_takes_the_peripheral_gets_a_handful_of_crates() {
     let plant: Vec<String> =
         tree("stepscope-plant").difference(&tree("stepscope-peripheral")).cloned().collect();
     assert_eq!(plant, ["stepscope-plant"], "not even libm");
+    let controller: Vec<String> =
+        tree("stepscope-controller").difference(&tree("stepscope-peripheral")).cloned().collect();
+    assert_eq!(controller, ["stepscope-controller"], "whole numbers need no library");
 }
 
 #[test]
