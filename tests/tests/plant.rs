@@ -444,6 +444,22 @@ fn each_preset_shows_what_its_note_says() {
 }
 
 #[test]
+fn a_held_position_can_be_wrong_by_whole_periods_after_a_load_has_turned_the_rotor() {
+    let json =
+        PLANT_PRESETS.iter().find(|preset| preset.id == "controller-held-and-wrong").expect("a preset").json;
+    let run = run(json, ());
+    let machine = run.stand_alone().expect("a controller");
+    // Where the power went away: the controller has the very step.
+    assert_eq!((machine.position(0), machine.trust(0)), (Some(1619), Some(1)));
+    let off = run.results()[0].motors[0].following_error;
+    let plant = run.plant(0).expect("a motor");
+    let commanded = 1619.0 / 16.0;
+    let wrong = plant.state(0).expect("a motor").x - commanded;
+    near(wrong, -8.0, 0.3);
+    assert!(off.0.abs() > 8.0, "{off:?}");
+}
+
+#[test]
 fn presets_give_the_same_plant_on_every_machine() {
     let expected = [
         ("patent-2019-figure-1", "15dad058bd518a09"),
@@ -453,6 +469,7 @@ fn presets_give_the_same_plant_on_every_machine() {
         ("song-2021-direct-start", "004aeb28b036d394"),
         ("song-2021-stall", "0172c242b93b8014"),
         ("resonance-full-steps", "e6788f170368dfb1"),
+        ("controller-held-and-wrong", "2d624bcbf36c6f67"),
     ];
     let found: Vec<(&str, String)> = PLANT_PRESETS
         .iter()

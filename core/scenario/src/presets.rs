@@ -98,6 +98,7 @@ presets! {
     SONG => "song-2021-direct-start";
     SONG => "song-2021-stall";
     PROFILES => "resonance-full-steps";
+    ALONE => "controller-held-and-wrong";
 }
 
 #[cfg(test)]
