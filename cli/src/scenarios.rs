@@ -12,7 +12,7 @@ use stepscope_core::{
     capture::samples::sample,
     scenario::{
         MAX_TEXT_BYTES, Problem, Scenario, link,
-        presets::{PLANT_PRESETS, PRESETS, Preset},
+        presets::{CONTROLLER_PLANT_PRESETS, CONTROLLER_PRESETS, PLANT_PRESETS, PRESETS, Preset},
     },
     sim::{Experiment, Judged},
 };
@@ -65,7 +65,7 @@ pub(crate) fn text(path: &Path) -> Result<String, Failure> {
 
 /// Those of the page, and those with a plant.
 fn all_presets() -> impl Iterator<Item = &'static Preset> {
-    PRESETS.iter().chain(PLANT_PRESETS)
+    PRESETS.iter().chain(PLANT_PRESETS).chain(CONTROLLER_PRESETS).chain(CONTROLLER_PLANT_PRESETS)
 }
 
 fn preset(id: &str) -> Option<&'static Preset> {

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use std::io::{self, Write};
 use stepscope_core::{
     controller::TRUST,
-    sim::{ControllerSummary, Summary},
+    sim::{ControllerSummary, StandAloneSummary, Summary},
 };
 
 /// One digest a line.
@@ -50,7 +50,8 @@ pub(crate) fn tables(tables: Tables, summary: &Summary, first: usize) -> Tables 
             "crashes": host.crashes,
         })
     });
-    let panels = summary.panels.iter().enumerate().map(|(index, panel)| {
+    let all = summary.stand_alone.iter().flat_map(|all| &all.panels).enumerate();
+    let panels = all.map(|(index, panel)| {
         json!({
             "controller": index,
             "state": panel.state.name(),
@@ -63,9 +64,9 @@ pub(crate) fn tables(tables: Tables, summary: &Summary, first: usize) -> Tables 
             "presses_without_meaning": panel.ignored,
         })
     });
-    let tables = match summary.panel_digest {
-        Some(digest) => {
-            let ended = summary.work.map(|work| work.to_string());
+    let tables = match &summary.stand_alone {
+        Some(StandAloneSummary { digest, work, .. }) => {
+            let ended = work.map(|work| work.to_string());
             tables
                 .with("panels", panels)
                 .with("panel_digest", [json!({ "digest": format!("{digest:016x}"), "ended": ended })])

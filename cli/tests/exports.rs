@@ -2,7 +2,9 @@
 #![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
 use std::{fs, path::PathBuf, process::Command};
-use stepscope_core::scenario::presets::{PLANT_PRESETS, PRESETS};
+use stepscope_core::scenario::presets::{
+    CONTROLLER_PLANT_PRESETS, CONTROLLER_PRESETS, PLANT_PRESETS, PRESETS,
+};
 
 fn stepscope(arguments: &[&str]) -> (Option<i32>, String) {
     let output =
@@ -119,6 +121,7 @@ fn a_value_change_dump_has_the_signals_of_the_channels_in_use() {
 #[test]
 fn every_preset_is_listed_and_unknown_ones_are_refused() {
     let (code, list) = stepscope(&["presets"]);
-    assert_eq!((code, list.lines().count()), (Some(0), PRESETS.len() + PLANT_PRESETS.len()));
+    let all = [PRESETS, PLANT_PRESETS, CONTROLLER_PRESETS, CONTROLLER_PLANT_PRESETS];
+    assert_eq!((code, list.lines().count()), (Some(0), all.iter().map(|list| list.len()).sum()));
     assert_eq!(stepscope(&["presets", "no-such"]), (Some(2), String::new()));
 }

@@ -14,7 +14,7 @@ use crate::golden::CASES;
 use std::{collections::BTreeSet, fs, io, path::PathBuf};
 use stepscope_core::scenario::{
     Scenario,
-    presets::{PLANT_PRESETS, PRESETS},
+    presets::{CONTROLLER_PRESETS, PLANT_PRESETS, PRESETS},
 };
 
 /// A fuzz target.
@@ -95,7 +95,7 @@ fn text(data: &[u8]) -> String {
 /// JSON of the presets and the golden cases.
 fn scenarios() -> impl Iterator<Item = &'static str> {
     let golden = CASES.iter().filter_map(|case| case.file("scenario.json"));
-    PRESETS.iter().chain(PLANT_PRESETS).map(|preset| preset.json).chain(golden)
+    PRESETS.iter().chain(PLANT_PRESETS).chain(CONTROLLER_PRESETS).map(|preset| preset.json).chain(golden)
 }
 
 /// The links that were published.

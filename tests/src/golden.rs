@@ -23,7 +23,7 @@ use stepscope_core::{
         signal::{self, Record, Sink},
         trace::{Digest, parse_line, write_record},
     },
-    scenario::presets::PRESETS,
+    scenario::presets::{CONTROLLER_PRESETS, PRESETS},
     sim::{Experiment, Run, Summary},
 };
 
@@ -71,7 +71,7 @@ impl Case {
         match (self.file("scenario.json"), self.file("preset").map(str::trim)) {
             (Some(json), None) => Ok(json),
             (None, Some(id)) => {
-                let preset = PRESETS.iter().find(|preset| preset.id == id);
+                let preset = PRESETS.iter().chain(CONTROLLER_PRESETS).find(|preset| preset.id == id);
                 preset
                     .map(|preset| preset.json)
                     .ok_or_else(|| format!("{}: no preset is called {id}", self.name))

@@ -3,7 +3,7 @@
 #![cfg(not(target_arch = "wasm32"))]
 
 use std::{env, fs, io, path::Path};
-use stepscope_core::scenario::presets::PRESETS;
+use stepscope_core::scenario::presets::{CONTROLLER_PRESETS, PRESETS};
 use stepscope_tests::golden::{CASES, Case, Outcome};
 
 fn bless(case: &Case, outcome: &Outcome) -> io::Result<()> {
@@ -43,7 +43,7 @@ fn every_case_says_why_and_every_preset_is_one() {
         }
         assert!(case.file("why").is_some(), "{}/why is missing", case.name);
     }
-    for preset in PRESETS {
+    for preset in PRESETS.iter().chain(CONTROLLER_PRESETS) {
         let is_a_case = |case: &&Case| case.file("preset").map(str::trim) == Some(preset.id);
         assert_eq!(
             CASES.iter().filter(is_a_case).count(),

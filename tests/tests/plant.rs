@@ -15,7 +15,7 @@ use stepscope_core::{
         Observer, Plant,
         settling::{Deviation, SensorLog, StepResponse},
     },
-    scenario::presets::PLANT_PRESETS,
+    scenario::presets::{CONTROLLER_PLANT_PRESETS, PLANT_PRESETS},
     sim::{Experiment, plant_run::PlantRun},
 };
 
@@ -445,8 +445,7 @@ fn each_preset_shows_what_its_note_says() {
 
 #[test]
 fn a_held_position_can_be_wrong_by_whole_periods_after_a_load_has_turned_the_rotor() {
-    let json =
-        PLANT_PRESETS.iter().find(|preset| preset.id == "controller-held-and-wrong").expect("a preset").json;
+    let json = CONTROLLER_PLANT_PRESETS[0].json;
     let run = run(json, ());
     let machine = run.stand_alone().expect("a controller");
     // Where the power went away: the controller has the very step.
@@ -473,6 +472,7 @@ fn presets_give_the_same_plant_on_every_machine() {
     ];
     let found: Vec<(&str, String)> = PLANT_PRESETS
         .iter()
+        .chain(CONTROLLER_PLANT_PRESETS)
         .map(|preset| (preset.id, format!("{:016x}", run(preset.json, ()).results()[0].digest)))
         .collect();
     let expected: Vec<(&str, String)> = expected.map(|(id, digest)| (id, digest.to_owned())).into();

@@ -47,6 +47,7 @@ pub mod model_agreement;
 #[cfg(feature = "plant")]
 pub mod motors;
 pub mod packet_table;
+#[cfg(feature = "controller")]
 pub mod panel;
 #[cfg(feature = "plant")]
 pub mod plant;

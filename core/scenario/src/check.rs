@@ -44,6 +44,7 @@ pub struct Checked {
     /// What the segment engine runs, where the source is segments.
     pub segments: Option<CheckedSegments>,
     /// The stand-alone controllers, where the source is such.
+    #[cfg(feature = "controller")]
     pub stand_alone: Option<stepscope_controller::Checked>,
     /// Length of the run, if it is given.
     pub run: Option<Cycles>,
@@ -85,6 +86,7 @@ impl Scenario {
         }
         if runs_alone && !self.controllers.is_empty() {
             let detail = match self.source {
+                #[cfg(feature = "controller")]
                 Source::Standalone(_) => {
                     "stand-alone controllers are on no line; give all of them in source.standalone"
                 }
@@ -95,7 +97,9 @@ impl Scenario {
         let additional = self.additional(config.as_ref(), &mut validator);
         self.host(&mut validator);
         let forced = self.glitches(&mut validator);
-        let (mut segments, mut stand_alone) = (None, None);
+        let mut segments = None;
+        #[cfg(feature = "controller")]
+        let mut stand_alone = None;
         match &self.source {
             Source::Motion(motion) => {
                 let most = usize::from(self.bus.channels).clamp(1, MAX_CHANNELS);
@@ -112,6 +116,7 @@ impl Scenario {
             }
             Source::Line(script) => self.script(script, &mut validator),
             Source::Segments(lists) => segments = validator.take(lists.check(&self.bus)),
+            #[cfg(feature = "controller")]
             Source::Standalone(controllers) => stand_alone = self.stand_alone(controllers, &mut validator),
         }
         let axes = match &self.source {
@@ -133,6 +138,7 @@ impl Scenario {
             forced,
             source: self.source.clone(),
             segments,
+            #[cfg(feature = "controller")]
             stand_alone,
             run: self.run_cycles.map(Cycles),
             #[cfg(feature = "plant")]

@@ -54,6 +54,7 @@ mod points;
 
 mod segments;
 
+#[cfg(feature = "controller")]
 mod standalone;
 
 mod check;
@@ -86,6 +87,7 @@ pub use schema::{
 };
 #[cfg(feature = "plant")]
 pub use schema::{CurrentSensor, Encoder, PlantMotor, PlantSettings, Protection};
+#[cfg(feature = "controller")]
 pub use schema::{
     Eeprom, HomeGroup, Homing, Jog, JumpGroup, MoveGroup, MoveToGroup, PanelInput, ProfileGroup,
     ProgramGroup, RepeatGroup, ReturnToZero, Sensor, SetGroup, SoftLimits, StandAlone, Switch, Until,

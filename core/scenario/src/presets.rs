@@ -33,6 +33,7 @@ const SONG: &str = "Song, Han, Lu 2021: exact S-curve";
 const SONOBE: &str = "Sonobe 2011: acceleration table";
 const PATENT: &str = "RU 2704486, 2019: tick packets";
 const ZHANG: &str = "Zhang 2012: fixed-length controller";
+#[cfg(feature = "controller")]
 const ALONE: &str = "Beyond the document: a stand-alone controller";
 const FRAMED: &str = "The framed protocol: checked, answered, repeated";
 const PROFILES: &str = "Further profiles: exact sine, jerk-limited, points";
@@ -60,14 +61,6 @@ presets! {
     SONOBE => "sonobe-2011-segments";
     ZHANG => "zhang-2012-fixed-length";
     ZHANG => "zhang-2012-staircase";
-    ZHANG => "zhang-2012-controller";
-    ZHANG => "zhang-2012-program";
-    ZHANG => "zhang-2012-zero-by-jog";
-    ALONE => "controller-homing";
-    ALONE => "controller-limit";
-    ALONE => "controller-emergency-stop";
-    ALONE => "controller-power-cut";
-    ALONE => "controller-power-cut-lost";
     SINE => "sine-2022-d00054";
     SINE => "sine-2022-d0006";
     PROFILES => "exact-sine";
@@ -98,6 +91,26 @@ presets! {
     SONG => "song-2021-direct-start";
     SONG => "song-2021-stall";
     PROFILES => "resonance-full-steps";
+}
+
+#[cfg(feature = "controller")]
+presets! {
+    /// Presets of stand-alone controllers.
+    CONTROLLER_PRESETS:
+    ZHANG => "zhang-2012-controller";
+    ZHANG => "zhang-2012-program";
+    ZHANG => "zhang-2012-zero-by-jog";
+    ALONE => "controller-homing";
+    ALONE => "controller-limit";
+    ALONE => "controller-emergency-stop";
+    ALONE => "controller-power-cut";
+    ALONE => "controller-power-cut-lost";
+}
+
+#[cfg(all(feature = "controller", feature = "plant"))]
+presets! {
+    /// Presets of stand-alone controllers with a plant.
+    CONTROLLER_PLANT_PRESETS:
     ALONE => "controller-held-and-wrong";
 }
 
@@ -111,6 +124,14 @@ mod tests {
     const PLANTS: &[Preset] = PLANT_PRESETS;
     #[cfg(not(feature = "plant"))]
     const PLANTS: &[Preset] = &[];
+    #[cfg(feature = "controller")]
+    const CONTROLLERS: &[Preset] = CONTROLLER_PRESETS;
+    #[cfg(not(feature = "controller"))]
+    const CONTROLLERS: &[Preset] = &[];
+    #[cfg(all(feature = "controller", feature = "plant"))]
+    const WITH_PLANT: &[Preset] = CONTROLLER_PLANT_PRESETS;
+    #[cfg(not(all(feature = "controller", feature = "plant")))]
+    const WITH_PLANT: &[Preset] = &[];
 
     #[test]
     fn every_kind_of_move_has_a_preset() {
@@ -122,7 +143,7 @@ mod tests {
 
     #[test]
     fn every_preset_reads_and_holds() {
-        let all: Vec<&Preset> = PRESETS.iter().chain(PLANTS).collect();
+        let all: Vec<&Preset> = PRESETS.iter().chain(PLANTS).chain(CONTROLLERS).chain(WITH_PLANT).collect();
         for (index, preset) in all.iter().enumerate() {
             let scenario =
                 Scenario::from_json(preset.json).unwrap_or_else(|p| panic!("{}: {p:?}", preset.id));

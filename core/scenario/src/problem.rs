@@ -104,8 +104,10 @@ pub enum Cause {
         first_cycles: u64,
     },
     /// A stand-alone controller that is refused (CONTROLLER.md).
+    #[cfg(feature = "controller")]
     StandAlone(stepscope_controller::Refusal),
     /// A program without an end (CONTROLLER.md G5).
+    #[cfg(feature = "controller")]
     Work(stepscope_controller::Work),
     /// A plant that cannot be made of these numbers (F3, F5).
     #[cfg(feature = "plant")]
@@ -214,7 +216,9 @@ impl fmt::Display for Cause {
                 f,
                 "{channels} channels beside {first_channels} on the first controller; a raw packet has a byte a channel and no end mark, so all controllers of a raw line need as many: change one of them, or choose the framed protocol"
             ),
+            #[cfg(feature = "controller")]
             Self::StandAlone(refusal) => refusal.fmt(f),
+            #[cfg(feature = "controller")]
             Self::Work(work) => work.fmt(f),
             #[cfg(feature = "plant")]
             Self::Plant(refused) => refused.fmt(f),

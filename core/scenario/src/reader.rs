@@ -232,6 +232,12 @@ impl Reader {
             Some((Ok(kind), content)) if count == 1 => return Some((kind, content)),
             Some((Err(name), _)) if count == 1 => {
                 let kinds: Vec<&str> = group.fields.iter().map(|kind| kind.name).collect();
+                if cfg!(not(feature = "controller")) && name == "standalone" {
+                    // As the page is built.
+                    let detail = "stand-alone controllers are not shown here yet; give the file to the command: stepscope run";
+                    self.wrong(detail.to_owned());
+                    return None;
+                }
                 self.note(format!(
                     "\u{201c}{name}\u{201d} is no choice here; give one of {}",
                     kinds.join(", ")

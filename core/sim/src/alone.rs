@@ -1,6 +1,7 @@
 //! What runs a scenario by itself, in place of a line: lists of segments, or stand-alone controllers.
 
 use alloc::boxed::Box;
+#[cfg(feature = "controller")]
 use stepscope_controller::StandAlone;
 use stepscope_peripheral::{
     device::{Faults, SegmentEngine},
@@ -14,14 +15,31 @@ pub(crate) enum Alone {
     /// Lists of segments (DESIGN A8).
     Segments(Box<SegmentEngine>),
     /// Controllers with a panel each (CONTROLLER.md).
+    #[cfg(feature = "controller")]
     Panels(StandAlone),
 }
 
 impl Alone {
+    /// Controllers before cycle 0.
+    #[cfg(feature = "controller")]
+    pub(crate) fn panels(checked: &stepscope_controller::Checked) -> Self {
+        Self::Panels(StandAlone::new(checked))
+    }
+
+    /// The controllers, if they are such.
+    #[cfg(feature = "controller")]
+    pub(crate) const fn stand_alone(&self) -> Option<&StandAlone> {
+        match self {
+            Self::Segments(_) => None,
+            Self::Panels(machine) => Some(machine),
+        }
+    }
+
     /// The first cycle that has not been run.
     pub(crate) fn now(&self) -> Instant {
         match self {
             Self::Segments(engine) => engine.now(),
+            #[cfg(feature = "controller")]
             Self::Panels(machine) => machine.now(),
         }
     }
@@ -30,6 +48,7 @@ impl Alone {
     pub(crate) fn at_rest(&self) -> bool {
         match self {
             Self::Segments(engine) => engine.at_rest(),
+            #[cfg(feature = "controller")]
             Self::Panels(machine) => machine.at_rest(),
         }
     }
@@ -37,6 +56,7 @@ impl Alone {
     pub(crate) fn positions(&self) -> [i32; MAX_CHANNELS] {
         match self {
             Self::Segments(engine) => engine.positions(),
+            #[cfg(feature = "controller")]
             Self::Panels(machine) => machine.positions(),
         }
     }
@@ -44,6 +64,7 @@ impl Alone {
     pub(crate) fn faults(&self) -> Faults {
         match self {
             Self::Segments(engine) => engine.faults(),
+            #[cfg(feature = "controller")]
             Self::Panels(_) => Faults::from_bits(0),
         }
     }
@@ -52,6 +73,7 @@ impl Alone {
     pub(crate) fn run(&mut self, until: Instant, sink: &mut impl Sink) {
         match self {
             Self::Segments(engine) => engine.run(until, sink),
+            #[cfg(feature = "controller")]
             Self::Panels(machine) => machine.run(until, sink),
         }
     }
@@ -62,6 +84,7 @@ impl Alone {
             Self::Segments(engine) => {
                 engine.clock(sink);
             }
+            #[cfg(feature = "controller")]
             Self::Panels(machine) => {
                 machine.clock(sink);
             }
@@ -73,6 +96,7 @@ impl Alone {
     pub(crate) fn overload(&mut self) {
         match self {
             Self::Segments(engine) => engine.overload(),
+            #[cfg(feature = "controller")]
             Self::Panels(_) => {}
         }
     }

@@ -144,7 +144,7 @@ fn ticks_of(
             let address = usize::from(config.packet_address().is_some());
             packets.iter().flat_map(|packet| packet.0.iter().copied().skip(address)).collect()
         }
-        Source::Line(_) | Source::Segments(_) | Source::Standalone(_) => Vec::new(),
+        _ => Vec::new(),
     })
 }
 

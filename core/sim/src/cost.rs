@@ -7,12 +7,10 @@
 //! level can begin one of its own.
 
 use crate::controller_plan::{ControllerPlan, job, pulses};
-use stepscope_controller::{StandAlone, Work};
 use stepscope_peripheral::{
     config::{Config, DirLine, Protocol, PulsePhasing},
     segment::CheckedSegments,
-    signal::{Record, Sink},
-    units::{Cycles, Instant},
+    units::Cycles,
     wire::{
         BitTimes, Schedule,
         bit_times::BYTE_BITS,
@@ -116,37 +114,6 @@ impl Cost {
     pub(super) fn of_segments(segments: &CheckedSegments, run: Option<Cycles>) -> Self {
         let end_cycle = run.map_or(segments.end().0 + 1, |Cycles(run)| run);
         Self { records: segments.max_records().min(end_cycle), sends: 0, bytes: 0, end_cycle, motor_steps: 0 }
-    }
-}
-
-impl Cost {
-    /// What a run of stand-alone controllers costs: tried, as far as what runs without asking goes. Beyond that it is more.
-    ///
-    /// # Errors
-    /// Where too many groups begin (CONTROLLER.md G5).
-    pub(super) fn of_stand_alone(
-        controllers: &stepscope_controller::Checked,
-        run: Option<Cycles>,
-    ) -> Result<Self, Work> {
-        let mut tried = StandAlone::new(controllers);
-        let mut counted = Counted(0);
-        tried.run(run.map_or(Instant::NEVER, |Cycles(run)| Instant(run)), &mut counted);
-        let end_cycle = run.map_or(tried.now().0, |Cycles(run)| run);
-        let cost = Self { records: counted.0, sends: 0, bytes: 0, end_cycle, motor_steps: 0 };
-        tried.work().map_or(Ok(cost), Err)
-    }
-}
-
-/// Counts records, and pauses where there are more than run without asking.
-struct Counted(u64);
-
-impl Sink for Counted {
-    fn record(&mut self, _: Record) {
-        self.0 += 1;
-    }
-
-    fn paused(&self) -> bool {
-        self.0 > BUDGET_RECORDS
     }
 }
 

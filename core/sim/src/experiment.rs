@@ -10,9 +10,8 @@ use crate::{
     controllers::Controllers,
     framed_host::{FramedHost, Progress},
 };
-use alloc::{boxed::Box, format, rc::Rc, vec::Vec};
+use alloc::{boxed::Box, rc::Rc, vec::Vec};
 use core::slice;
-use stepscope_controller::StandAlone;
 use stepscope_motion::AxisPlan;
 use stepscope_peripheral::{
     config::Config,
@@ -24,7 +23,7 @@ use stepscope_peripheral::{
 };
 #[cfg(feature = "plant")]
 use stepscope_plant::{Observer, Plant, measures::PlantResult};
-use stepscope_scenario::{Cause, Checked, END_OF_TIME, Problem, Scenario, ValueError};
+use stepscope_scenario::{Checked, END_OF_TIME, Problem, Scenario, ValueError};
 
 /// Most bytes that a host may have to send: as many as the most ticks of 16 channels take on an addressed
 /// raw line.
@@ -45,8 +44,6 @@ pub struct Experiment {
     schedule: Rc<Schedule>,
     /// What the segment engine runs, where segments run the scenario; then nothing is sent.
     segments: Option<Rc<CheckedSegments>>,
-    /// The stand-alone controllers that run the scenario; then nothing is sent, too.
-    stand_alone: Option<stepscope_controller::Checked>,
     line_load: Option<f64>,
     cost: Cost,
 }
@@ -78,14 +75,14 @@ impl Experiment {
         let (schedule, forced) = controller_plan::schedule(&checked, &controllers);
         checked.forced.extend(forced);
         let segments = controller_plan::segments(&checked, &controllers)?.map(Rc::new);
-        let stand_alone = checked.stand_alone.clone();
-        let cost = match (&segments, &stand_alone) {
-            (Some(segments), _) => Cost::of_segments(segments, checked.run),
-            (None, Some(stand_alone)) => Cost::of_stand_alone(stand_alone, checked.run).map_err(|work| {
-                let path = format!("source.standalone[{}].groups", work.controller);
-                alloc::vec![Problem::new(path, Cause::Work(work))]
-            })?,
-            (None, None) => Cost::of(&checked, &controllers, &schedule),
+        let cost = match &segments {
+            Some(segments) => Cost::of_segments(segments, checked.run),
+            None => Cost::of(&checked, &controllers, &schedule),
+        };
+        #[cfg(feature = "controller")]
+        let cost = match &checked.stand_alone {
+            Some(stand_alone) => Cost::of_stand_alone(stand_alone, checked.run)?,
+            None => cost,
         };
         if cost.bytes > MAX_LINE_BYTES {
             let (given, most) = (cost.bytes as f64, MAX_LINE_BYTES as f64);
@@ -105,7 +102,7 @@ impl Experiment {
             return Err(alloc::vec![Problem::new("source", cause)]);
         }
         let line_load = line_load.flatten().filter(|_| controllers.iter().any(ControllerPlan::has_ticks));
-        Ok(Self { checked, controllers, schedule: Rc::new(schedule), segments, stand_alone, line_load, cost })
+        Ok(Self { checked, controllers, schedule: Rc::new(schedule), segments, line_load, cost })
     }
 
     /// Reads, judges and prepares a scenario.
@@ -215,16 +212,19 @@ impl Experiment {
     }
 
     /// The stand-alone controllers; `None` where a line or segments run the scenario.
+    #[cfg(feature = "controller")]
     #[must_use]
     pub const fn stand_alone(&self) -> Option<&stepscope_controller::Checked> {
-        self.stand_alone.as_ref()
+        self.checked.stand_alone.as_ref()
     }
 
     /// What runs it by itself.
     fn alone(&self) -> Option<Alone> {
         let segments =
             self.segments.clone().map(|lists| Alone::Segments(Box::new(SegmentEngine::new(lists))));
-        segments.or_else(|| Some(Alone::Panels(StandAlone::new(self.stand_alone.as_ref()?))))
+        #[cfg(feature = "controller")]
+        let segments = segments.or_else(|| Some(Alone::panels(self.checked.stand_alone.as_ref()?)));
+        segments
     }
 
     /// What the run will cost.
@@ -359,12 +359,10 @@ impl Run {
     }
 
     /// The stand-alone controllers as they are now; `None` where a line or segments run the scenario.
+    #[cfg(feature = "controller")]
     #[must_use]
-    pub fn stand_alone(&self) -> Option<&StandAlone> {
-        match &self.controllers.alone {
-            Some(Alone::Panels(machine)) => Some(machine),
-            _ => None,
-        }
+    pub fn stand_alone(&self) -> Option<&stepscope_controller::StandAlone> {
+        self.controllers.alone.as_ref()?.stand_alone()
     }
 
     /// Faults of the first controller so far, or of the segment engine.

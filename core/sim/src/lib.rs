@@ -54,9 +54,13 @@ mod plants;
 #[cfg(feature = "plant")]
 pub mod plant_run;
 
+#[cfg(feature = "controller")]
 pub mod power_cut;
 
 mod script;
+
+#[cfg(feature = "controller")]
+mod stand_alone;
 
 mod summary;
 
@@ -66,4 +70,6 @@ pub use cost::{BUDGET_MOTOR_STEPS, BUDGET_RECORDS, Cost};
 pub use experiment::{Experiment, Run};
 pub use judged::{Judged, SelectedAxis, axes_of};
 pub use script::{replayed, scripted};
+#[cfg(feature = "controller")]
+pub use stand_alone::{PanelSummary, StandAloneSummary};
 pub use summary::{ControllerSummary, JobSummary, Summary};

@@ -22,7 +22,6 @@ use crate::{
 };
 use alloc::vec::Vec;
 use core::fmt;
-use stepscope_controller::{Alarm, StandAlone, State, TRUST, Work};
 use stepscope_peripheral::{
     config::{Config, Protocol},
     device::{Device, Faults},
@@ -46,33 +45,9 @@ pub struct Summary {
     pub host: Option<Counts>,
     /// In the order of the scenario.
     pub controllers: Vec<ControllerSummary>,
-    /// Of each stand-alone controller; none where a line or segments run the scenario.
-    pub panels: Vec<PanelSummary>,
-    /// Digest of the panels' records (CONTROLLER.md G8); `None` without stand-alone controllers.
-    pub panel_digest: Option<u64>,
-    /// Why stand-alone controllers came to no end.
-    pub work: Option<Work>,
-}
-
-/// A stand-alone controller.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PanelSummary {
-    /// What it is doing.
-    pub state: State,
-    /// Its alarm.
-    pub alarm: Alarm,
-    /// Trust: 0 LOST, 1 HELD, 2 SURE.
-    pub trust: u8,
-    /// Where it believes to be, in steps.
-    pub position: i32,
-    /// By how many steps its axis is elsewhere.
-    pub axis_error: i64,
-    /// Records of its panel.
-    pub records: usize,
-    /// Writes of the most worn cell of its memory.
-    pub most_writes: u32,
-    /// Presses that did nothing.
-    pub ignored: usize,
+    /// The stand-alone controllers; `None` where a line or segments run the scenario.
+    #[cfg(feature = "controller")]
+    pub stand_alone: Option<crate::StandAloneSummary>,
 }
 
 /// One controller.
@@ -129,9 +104,8 @@ impl Summary {
             line_load: experiment.line_load(),
             host: run.host().map(|host| host.counts()),
             controllers: controllers.collect(),
-            panels: run.stand_alone().map(PanelSummary::all).unwrap_or_default(),
-            panel_digest: run.stand_alone().map(StandAlone::panel_digest),
-            work: run.stand_alone().and_then(StandAlone::work),
+            #[cfg(feature = "controller")]
+            stand_alone: run.stand_alone().map(crate::StandAloneSummary::of),
         }
     }
 
@@ -172,37 +146,6 @@ impl ControllerSummary {
     }
 }
 
-impl PanelSummary {
-    fn all(machine: &StandAlone) -> Vec<Self> {
-        let one = |index| {
-            Some(Self {
-                state: machine.state(index)?,
-                alarm: machine.alarm(index)?,
-                trust: machine.trust(index)?,
-                position: machine.position(index)?,
-                axis_error: machine.axis_error(index)?,
-                records: machine.panel(index).len(),
-                most_writes: machine.writes(index).iter().copied().max().unwrap_or(0),
-                ignored: machine.ignored(index).len(),
-            })
-        };
-        (0..).map_while(one).collect()
-    }
-}
-
-impl fmt::Display for PanelSummary {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { state, alarm, trust, position, axis_error, records, most_writes, ignored } = self;
-        f.write_str(state.name())?;
-        if *alarm != Alarm::None {
-            write!(f, " {}", alarm.name())?;
-        }
-        let trust = TRUST.get(usize::from(*trust)).copied().unwrap_or_default();
-        write!(f, " trust {trust} position {position} axis_error {axis_error} records {records}")?;
-        write!(f, " most_writes {most_writes} presses_without_meaning {ignored}")
-    }
-}
-
 impl fmt::Display for Summary {
     /// All but the digests.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -218,11 +161,9 @@ impl fmt::Display for Summary {
             writeln!(f, "rejected {rejected} refused {refused} crashes {crashes}")?;
         }
         self.line_load.map_or(Ok(()), |load| writeln!(f, "line_load {:.1} %", 100.0 * load))?;
-        for (index, panel) in self.panels.iter().enumerate() {
-            writeln!(f, "panel {index} {panel}")?;
-        }
-        self.panel_digest.map_or(Ok(()), |digest| writeln!(f, "panels {digest:016x}"))?;
-        self.work.map_or(Ok(()), |work| writeln!(f, "ended controller {}: {work}", work.controller))
+        #[cfg(feature = "controller")]
+        self.stand_alone.as_ref().map_or(Ok(()), |panels| panels.fmt(f))?;
+        Ok(())
     }
 }
 

@@ -383,7 +383,7 @@ fn entries(scenario: &Scenario) -> usize {
         Source::Segments(lists) => lists.channels.iter().map(|list| list.segments.len()).sum(),
         // A form has some fields for each.
         Source::Line(script) => script.sends.len() * 8,
-        Source::Motion(_) | Source::Packets(_) | Source::Standalone(_) => 0,
+        _ => 0,
     }
 }
 

@@ -45,6 +45,7 @@ mod moves;
 mod plant;
 mod segments;
 mod source;
+#[cfg(feature = "controller")]
 mod standalone;
 mod types;
 
@@ -58,6 +59,7 @@ pub use markdown::markdown;
 pub use plant::{CurrentSensor, Encoder, PlantMotor, PlantSettings, Protection};
 pub use segments::{ChannelSegments, DwellSegment, Segment, SegmentLists, StepSegment};
 pub use source::{LineScript, Motion, MotionEngine, Packets, ScriptedSend, Source};
+#[cfg(feature = "controller")]
 pub use standalone::{
     Eeprom, HomeGroup, Homing, Jog, JumpGroup, MoveGroup, MoveToGroup, PanelInput, ProfileGroup,
     ProgramGroup, RepeatGroup, ReturnToZero, Sensor, SetGroup, SoftLimits, StandAlone, Switch, Until,

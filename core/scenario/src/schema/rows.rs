@@ -99,16 +99,16 @@ macro_rules! rows {
 /// Declares an enum of the scenario: one of several kinds, a row each.
 macro_rules! choices {
     ($(#[doc = $doc:literal])* pub enum $name:ident {
-        $($(#[doc = $kind_doc:literal])* $variant:ident($ty:ty) = $key:literal => $row:expr,)*
+        $($(#[doc = $kind_doc:literal])* $(#[cfg($cfg:meta)])? $variant:ident($ty:ty) = $key:literal => $row:expr,)*
     }) => {
         $(#[doc = $doc])*
         #[derive(Clone, Debug, PartialEq)]
         pub enum $name {
-            $($(#[doc = $kind_doc])* $variant($ty),)*
+            $($(#[doc = $kind_doc])* $(#[cfg($cfg)])? $variant($ty),)*
         }
 
         $crate::schema::rows::kinds! { $(#[doc = $doc])* $name {
-            $($(#[doc = $kind_doc])* $variant($ty) = $key => $row,)*
+            $($(#[doc = $kind_doc])* $(#[cfg($cfg)])? $variant($ty) = $key => $row,)*
         } }
     };
 }
@@ -116,15 +116,15 @@ macro_rules! choices {
 /// Names the kinds of an enum; JSON has a map of one key.
 macro_rules! kinds {
     ($($(#[doc = $doc:literal])* $name:ident {
-        $($(#[doc = $kind_doc:literal])* $variant:ident($ty:ty) = $key:literal => $row:expr,)*
+        $($(#[doc = $kind_doc:literal])* $(#[cfg($cfg:meta)])? $variant:ident($ty:ty) = $key:literal => $row:expr,)*
     })*) => {$(
         impl $crate::Kinds for $name {
-            const KINDS: &'static [&'static str] = &[$($key),*];
+            const KINDS: &'static [&'static str] = &[$($(#[cfg($cfg)])? $key),*];
         }
 
         impl $crate::schema::Typed for $name {
             const TYPE: $crate::schema::Type = {
-                const KINDS: &[$crate::schema::Field] = &[$($crate::schema::Field {
+                const KINDS: &[$crate::schema::Field] = &[$($(#[cfg($cfg)])? $crate::schema::Field {
                     name: $key,
                     doc: concat!($($kind_doc),*),
                     ty: <$ty as $crate::schema::Typed>::TYPE,
@@ -145,7 +145,7 @@ macro_rules! kinds {
         impl $crate::schema::ToParts for $name {
             fn parts(&self) -> $crate::schema::Parts<'_> {
                 match self {
-                    $(Self::$variant(inner) => $crate::schema::Parts::Kind($key, inner),)*
+                    $($(#[cfg($cfg)])? Self::$variant(inner) => $crate::schema::Parts::Kind($key, inner),)*
                 }
             }
         }
@@ -155,7 +155,7 @@ macro_rules! kinds {
                 let kinds = $crate::schema::rows::group::<Self>();
                 let Some((kind, content)) = reader.choice(value, kinds) else { return false };
                 match kind.name {
-                    $($key => {
+                    $($(#[cfg($cfg)])? $key => {
                         let mut inner = <$ty as $crate::Read>::blank();
                         let taken = reader.below(Some(kind), kind.name, content, &mut inner);
                         if taken {

@@ -1,12 +1,14 @@
 //! What the host sends, or what the peripheral runs by itself (DESIGN Part B, A8, A9).
 
 use crate::{
-    END_OF_TIME, Hex, SegmentLists, StandAlone,
+    END_OF_TIME, Hex, SegmentLists,
     schema::{
-        OWN, PATENT, SONOBE, ZHANG, label,
+        OWN, PATENT, SONOBE, label,
         rows::{choices, settings, words},
     },
 };
+#[cfg(feature = "controller")]
+use crate::{StandAlone, schema::ZHANG};
 use alloc::{vec, vec::Vec};
 use stepscope_motion::moves::Axis;
 use stepscope_peripheral::{
@@ -23,10 +25,11 @@ choices! {
         Packets(Packets) = "packets" => label("Packets in hex").from(PATENT),
         /// Bytes at cycles: what was recorded of a real line can be replayed.
         Line(LineScript) = "line" => label("Line script").from(OWN),
+        /// Controllers with buttons, a program and a memory; nothing is sent.
+        #[cfg(feature = "controller")]
+        Standalone(Vec<StandAlone>) = "standalone" => label("Stand-alone controller").from(ZHANG),
         /// Tables that a controller runs by itself; nothing is sent.
         Segments(SegmentLists) = "segments" => label("Lists of segments").from(SONOBE),
-        /// Controllers with buttons, a program and a memory; nothing is sent.
-        Standalone(Vec<StandAlone>) = "standalone" => label("Stand-alone controller").from(ZHANG),
     }
 }
 
@@ -130,7 +133,11 @@ impl Source {
     /// Whether nothing is sent: segments run it, or controllers of their own.
     #[must_use]
     pub const fn runs_alone(&self) -> bool {
-        self.runs_segments() || matches!(self, Self::Standalone(_))
+        #[cfg(feature = "controller")]
+        if let Self::Standalone(_) = self {
+            return true;
+        }
+        self.runs_segments()
     }
 }
 

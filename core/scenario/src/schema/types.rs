@@ -229,6 +229,7 @@ impl Field {
     }
 
     /// A whole number of a range that may be below 0.
+    #[cfg(feature = "controller")]
     pub(crate) const fn signed(self, range: RangeInclusive<i64>) -> Self {
         Self { limit: Limit::Signed(*range.start(), *range.end()), ..self }
     }

@@ -1,0 +1,115 @@
+//! What runs of stand-alone controllers cost, and what they came to (CONTROLLER.md).
+
+use crate::{BUDGET_RECORDS, Cost};
+use alloc::{format, vec, vec::Vec};
+use core::fmt;
+use stepscope_controller::{Alarm, Checked, StandAlone, State, TRUST, Work};
+use stepscope_peripheral::{
+    signal::{Record, Sink},
+    units::{Cycles, Instant},
+};
+use stepscope_scenario::{Cause, Problem};
+
+impl Cost {
+    /// What a run costs: tried, as far as what runs without asking goes. Beyond that it is more.
+    ///
+    /// # Errors
+    /// Where too many groups begin (CONTROLLER.md G5).
+    pub(crate) fn of_stand_alone(controllers: &Checked, run: Option<Cycles>) -> Result<Self, Vec<Problem>> {
+        let mut tried = StandAlone::new(controllers);
+        let mut counted = Counted(0);
+        tried.run(run.map_or(Instant::NEVER, |Cycles(run)| Instant(run)), &mut counted);
+        if let Some(work) = tried.work() {
+            let path = format!("source.standalone[{}].groups", work.controller);
+            return Err(vec![Problem::new(path, Cause::Work(work))]);
+        }
+        let end_cycle = run.map_or(tried.now().0, |Cycles(run)| run);
+        Ok(Self { records: counted.0, sends: 0, bytes: 0, end_cycle, motor_steps: 0 })
+    }
+}
+
+/// Counts records, and pauses where there are more than run without asking.
+struct Counted(u64);
+
+impl Sink for Counted {
+    fn record(&mut self, _: Record) {
+        self.0 += 1;
+    }
+
+    fn paused(&self) -> bool {
+        self.0 > BUDGET_RECORDS
+    }
+}
+
+/// All stand-alone controllers of a run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StandAloneSummary {
+    /// Each of them.
+    pub panels: Vec<PanelSummary>,
+    /// Digest of their panels' records (CONTROLLER.md G8).
+    pub digest: u64,
+    /// Why they came to no end.
+    pub work: Option<Work>,
+}
+
+/// A stand-alone controller.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PanelSummary {
+    /// What it is doing.
+    pub state: State,
+    /// Its alarm.
+    pub alarm: Alarm,
+    /// Trust: 0 LOST, 1 HELD, 2 SURE.
+    pub trust: u8,
+    /// Where it believes to be, in steps.
+    pub position: i32,
+    /// By how many steps its axis is elsewhere.
+    pub axis_error: i64,
+    /// Records of its panel.
+    pub records: usize,
+    /// Writes of the most worn cell of its memory.
+    pub most_writes: u32,
+    /// Presses that did nothing.
+    pub ignored: usize,
+}
+
+impl StandAloneSummary {
+    pub(crate) fn of(machine: &StandAlone) -> Self {
+        let one = |index| {
+            Some(PanelSummary {
+                state: machine.state(index)?,
+                alarm: machine.alarm(index)?,
+                trust: machine.trust(index)?,
+                position: machine.position(index)?,
+                axis_error: machine.axis_error(index)?,
+                records: machine.panel(index).len(),
+                most_writes: machine.writes(index).iter().copied().max().unwrap_or(0),
+                ignored: machine.ignored(index).len(),
+            })
+        };
+        Self { panels: (0..).map_while(one).collect(), digest: machine.panel_digest(), work: machine.work() }
+    }
+}
+
+impl fmt::Display for PanelSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { state, alarm, trust, position, axis_error, records, most_writes, ignored } = self;
+        f.write_str(state.name())?;
+        if *alarm != Alarm::None {
+            write!(f, " {}", alarm.name())?;
+        }
+        let trust = TRUST.get(usize::from(*trust)).copied().unwrap_or_default();
+        write!(f, " trust {trust} position {position} axis_error {axis_error} records {records}")?;
+        write!(f, " most_writes {most_writes} presses_without_meaning {ignored}")
+    }
+}
+
+impl fmt::Display for StandAloneSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, panel) in self.panels.iter().enumerate() {
+            writeln!(f, "panel {index} {panel}")?;
+        }
+        writeln!(f, "panels {:016x}", self.digest)?;
+        self.work.map_or(Ok(()), |work| writeln!(f, "ended controller {}: {work}", work.controller))
+    }
+}
