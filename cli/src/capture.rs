@@ -15,6 +15,7 @@ use crate::{
     output::{Outputs, STANDARD},
     progress::Progress,
     scenarios, timing,
+    torque::{self, Driven},
 };
 pub(crate) use arguments::Arguments;
 use beside::Beside;
@@ -28,9 +29,9 @@ use stepscope_core::{
         read::{self, Limits, Reading},
         samples::sample,
     },
-    inspect::recording::opened::Opened,
+    inspect::{recording::opened::Opened, torque::Machine},
     peripheral::signal::Sink,
-    scenario::Scenario,
+    scenario::{Scenario, SegmentLists, Source},
 };
 
 /// Most bytes that are read of standard input, which cannot be read twice.
@@ -54,6 +55,7 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(check) = &mut check {
         recording.records.iter().for_each(|record| check.record(*record));
     }
+    let driven = driven(arguments, &recording, base.as_ref());
     files::write(arguments, &mut outputs, &recording, beside.as_ref(), base.as_ref())?;
     if let (Some(path), Some(check)) = (&arguments.timing.violations, &check) {
         let written = timing::write_violations(outputs.create(path)?, check, recording.clock_hz);
@@ -67,11 +69,16 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
         if let Some(check) = &check {
             tables = timing::tables(tables, check, recording.clock_hz);
         }
+        if !driven.is_empty() {
+            let shortages = torque::tables::shortages(&driven);
+            tables = tables.with("torque", torque::tables::axes(&driven)).with("shortages", shortages);
+        }
         tables.print()?;
     } else {
         // What goes to standard output stands there alone.
         if arguments.outputs().all(|path| path != Path::new(STANDARD)) {
-            text::print(&recording, arguments.map.is_none(), beside.as_ref()).map_err(Failure::output)?;
+            text::print(&recording, arguments.map.is_none(), beside.as_ref(), &driven)
+                .map_err(Failure::output)?;
         }
         if let Some(check) = &check {
             arguments.timing.report(check, recording.clock_hz)?;
@@ -84,6 +91,17 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::NotTheModel(text::difference(&beside)));
     }
     check.map_or(Ok(()), |check| arguments.timing.verdict(&check))
+}
+
+/// What the steps ask of their motors, where these are known: the one that is named, or those of the scenario beside.
+fn driven(arguments: &Arguments, recording: &Opened, base: Option<&Scenario>) -> Vec<Driven> {
+    let none = Scenario { source: Source::Segments(SegmentLists::default()), ..Scenario::default() };
+    let named = arguments.named.named(base.unwrap_or(&none));
+    let channel = |number: u8| {
+        let machine = Machine::of_channel(&named, 0, number.into())?;
+        Some(Driven::of_steps(number, machine, &recording.steps_of(number), recording.clock_hz))
+    };
+    recording.report.channels.iter().filter_map(|found| channel(found.channel)).collect()
 }
 
 /// Reads the file, as far as it can be read.

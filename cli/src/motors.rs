@@ -4,6 +4,7 @@ use crate::{failure::Failure, json::Tables, scenarios};
 use clap::Args;
 use serde_json::json;
 use std::{
+    borrow::Cow,
     io::{self, Write},
     path::Path,
     rc::Rc,
@@ -23,6 +24,41 @@ pub(crate) struct Replacing {
     /// Give every motor this driver; `stepscope plant --motors` lists them.
     #[arg(long, value_name = "DRIVER", value_parser = drive)]
     drive: Option<&'static DriveSheet>,
+}
+
+/// The motor that torque is judged for.
+#[derive(Args)]
+pub(crate) struct Named {
+    /// Judge for this motor at its rated current, in the place of the scenario's; `stepscope plant --motors` lists them.
+    /// Supply and load stay: 24 V and none where the scenario has no motor.
+    #[arg(long, value_name = "MOTOR", value_parser = motor)]
+    pub(crate) motor: Option<&'static MotorSheet>,
+    /// Microsteps in a full step of that motor, where no axis tells; without it 16.
+    #[arg(long, value_name = "N", requires = "motor", value_parser = clap::value_parser!(u16).range(1..=512))]
+    pub(crate) microsteps: Option<u16>,
+}
+
+impl Named {
+    /// Puts it in the place of every motor of a scenario.
+    pub(crate) fn put_into(&self, scenario: &mut Scenario) {
+        let Some(motor) = self.motor else { return };
+        motor.put_into(scenario);
+        let motors = scenario.plant.iter_mut().flat_map(|plant| &mut plant.motors);
+        motors.for_each(|entry| entry.microsteps = self.microsteps.unwrap_or(entry.microsteps));
+    }
+
+    /// The scenario with it, from which the motor of each channel can be told ([`Machine::of_channel`]).
+    ///
+    /// [`Machine::of_channel`]: stepscope_core::inspect::torque::Machine::of_channel
+    pub(crate) fn named<'a>(&self, scenario: &'a Scenario) -> Cow<'a, Scenario> {
+        if self.motor.is_none() {
+            return Cow::Borrowed(scenario);
+        }
+        let mut scenario = scenario.clone();
+        scenario.plant.get_or_insert_default();
+        self.put_into(&mut scenario);
+        Cow::Owned(scenario)
+    }
 }
 
 fn motor(id: &str) -> Result<&'static MotorSheet, String> {

@@ -409,3 +409,26 @@ fn the_late_packets_recording_has_the_gap_of_its_readme() {
     assert!(replayed.contains("positions 1600"), "{replayed}");
     assert!((23_000..31_000).contains(&(cycles(&replayed) - cycles(&planned))), "{planned}{replayed}");
 }
+
+#[test]
+fn the_steps_of_a_recording_are_held_against_a_motor_where_one_is_known() {
+    let told = |options: &[&str]| {
+        let (_, out, err) = stepscope(&[&["capture", "recorded-step-table"], options].concat(), "");
+        assert!(!err.contains("error"), "{err}");
+        out
+    };
+    assert!(!told(&[]).contains("torque"));
+    let named = told(&["--motor", "nema-8"]);
+    assert!(
+        named.contains("\ntorque\nchannel 0: no plan is known") && named.contains("enough torque"),
+        "{named}"
+    );
+    // What it stands beside has a motor, at the microsteps of its own mechanics.
+    let model = r#"{"source":{"motion":{"axes":[{"motor":{"load_torque_mn_m":1000},"mechanics":{"rotary":{"microsteps":1}}}]}}}"#;
+    let model = file(&folder("torque"), "model.json", model);
+    let beside = told(&["--against", &model, "--json"]);
+    let beside: Value = serde_json::from_str(&beside).expect("JSON");
+    let row = &beside["tables"]["torque"][0];
+    assert!(row["axis"] == 0 && row["enough"] == false && row["load_mn_m"] == 1000.0, "{row}");
+    assert_eq!(beside["tables"]["shortages"][0]["axis"], 0);
+}

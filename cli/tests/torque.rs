@@ -183,3 +183,66 @@ fn a_table_without_a_line_is_refused() {
         assert!(err.contains(expected), "{err}");
     }
 }
+
+/// A turn of 3200 steps as segments, on two channels.
+fn lists(plant: &str) -> String {
+    let motion = r#"{"bus":{"channels":2},"source":{"motion":{"engine":"segments","axes":[{},{}]}}}"#;
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("torque_lists.csv");
+    let table = path.to_str().expect("a name");
+    assert_eq!(stepscope(&["run", "-", "--csv", table], motion).0, Some(0));
+    let (code, out, err) = stepscope(&["capture", table, "--sample-rate", "16000000", "--scenario", "-"], "");
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    out.trim_end().strip_suffix('}').expect("an object").to_owned() + plant + "}"
+}
+
+#[test]
+fn steps_without_a_motion_are_held_against_the_plants_motor_or_the_one_that_is_named() {
+    let (code, _, err) = stepscope(&["torque", "-"], &lists(""));
+    assert!(code == Some(2) && err.contains("plant: no motor; give one, such as \"plant\": {}"), "{err}");
+    let heavy = r#","plant":{"motors":[{},{"motor":{"load_inertia_g_cm2":9955,"load_torque_mn_m":100}}]}"#;
+    let (code, out, err) = stepscope(&["torque", "-"], &lists(heavy));
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    let (light, heavy_lines) = out.split_once("channel 1: ").expect("both channels");
+    assert!(light.starts_with("channel 0: no plan is known, so the steps themselves are judged, over the rotor's natural period of 3.544 ms\n"), "{out}");
+    for line in ["  enough torque throughout\n", "  plant            follows; both models agree\n"] {
+        assert!(light.contains(line), "{line}{out}");
+    }
+    assert!(heavy_lines.contains("  warning: too little torque in 1 interval"), "{out}");
+    assert!(heavy_lines.contains("  plant            loses "), "{out}");
+    assert!(heavy_lines.contains("both models agree"), "{out}");
+
+    // One by its name, at other microsteps, without a plant; and only one channel.
+    let named = ["torque", "-", "--motor", "nema-8", "--microsteps", "2", "--axis", "1"];
+    let (code, out, err) = stepscope(&named, &lists(""));
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    assert!(out.starts_with("channel 1: ") && !out.contains("channel 0") && !out.contains("plant"), "{out}");
+    assert!(out.contains("  full torque      12.7 mN*m, up to "), "{out}");
+    let (_, json, _) = stepscope(&[&named[..], &["--json"]].concat(), &lists(""));
+    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    let row = &json["tables"]["axes"][0];
+    assert!(row["axis"] == 1 && row["window_s"].as_f64().is_some_and(|window_s| window_s < 0.01), "{row}");
+    let (_, csv, _) = stepscope(&["torque", "-", "--motor", "nema-8", "--format", "csv"], &lists(""));
+    assert!(csv.starts_with("rate_hz,available_mn_m\n0.000,12.7"), "{csv}");
+
+    let rows: [(&[&str], &str, &str); 4] = [
+        (&["--axis", "2"], "", "there is no axis 2"),
+        (&["--motor", "nema-99"], "", "no such motor; `stepscope plant --motors` lists them"),
+        (&["--microsteps", "4"], "", "--motor"),
+        (
+            &["--axis", "1", "--motor", "nema-8"],
+            r#","bus":{"channels":2},"source":{"line":{}}"#,
+            "source: no channel",
+        ),
+    ];
+    for (options, scenario, expected) in rows {
+        let scenario = if scenario.is_empty() { lists("") } else { format!("{{{}}}", &scenario[1..]) };
+        let (code, _, err) = stepscope(&[&["torque", "-"], options].concat(), &scenario);
+        assert!(code == Some(2) && err.contains(expected), "{options:?}: {err}");
+    }
+    let (code, _, err) =
+        stepscope(&["torque", "-", "--motor", "nema-8", "--microsteps", "4"], &axes(r#"{"motor":{}},{}"#));
+    assert!(code == Some(2) && err.contains("an axis has its own in its mechanics"), "{err}");
+    // Of a motion the named motor takes the place of its axes'.
+    let (_, out, _) = stepscope(&["torque", "-", "--motor", "nema-8"], &axes("{},{}"));
+    assert_eq!(out.matches("  full torque      12.7 mN*m").count(), 2, "{out}");
+}

@@ -1,6 +1,6 @@
 //! What `stepscope capture` is asked for.
 
-use crate::{failure::Failure, timing};
+use crate::{failure::Failure, motors::Named, timing};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use stepscope_core::inspect::{recording::opened::Ask, vcd::Timescale};
@@ -75,6 +75,8 @@ pub(crate) struct Arguments {
     /// Show the progress also where standard error is no terminal.
     #[arg(long)]
     pub(super) progress: bool,
+    #[command(flatten)]
+    pub(super) named: Named,
     #[command(flatten)]
     pub(super) timing: timing::Options,
 }

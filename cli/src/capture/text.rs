@@ -1,13 +1,21 @@
 //! What `stepscope capture` prints.
 
 use super::beside::Beside;
-use crate::json::Tables;
+use crate::{
+    json::Tables,
+    torque::{self, Driven},
+};
 use serde_json::{Value, json};
 use std::io::{self, Write};
 use stepscope_core::inspect::recording::{alignment::Off, opened::Opened, report::ChannelReport};
 
 /// For the eye.
-pub(super) fn print(recording: &Opened, is_proposed: bool, beside: Option<&Beside>) -> io::Result<()> {
+pub(super) fn print(
+    recording: &Opened,
+    is_proposed: bool,
+    beside: Option<&Beside>,
+    driven: &[Driven],
+) -> io::Result<()> {
     let mut out = io::stdout().lock();
     let Opened { format, count, what, end_s, .. } = recording;
     writeln!(out, "file      {format}, {count} {what} in {end_s} s")?;
@@ -30,6 +38,10 @@ pub(super) fn print(recording: &Opened, is_proposed: bool, beside: Option<&Besid
     }
     if recording.report.channels.is_empty() && recording.report.lines.is_empty() {
         writeln!(out, "no channel steps and nothing is heard on a line")?;
+    }
+    if !driven.is_empty() {
+        writeln!(out, "torque")?;
+        driven.iter().try_for_each(|driven| torque::text::report(driven, &mut out))?;
     }
     beside.map_or(Ok(()), |beside| comparison(&mut out, beside))
 }

@@ -29,7 +29,8 @@
 //! Needed is (rotor + load inertia)*acceleration plus the load's torque, which opposes the motion, so that
 //! it helps when slowing down. Braking is compared with the same curve, though the motor's losses help it there:
 //! the verdict is on the safe side. Where the speed jumps (a start above rate 0) no torque is finite and the model
-//! says nothing: [`Demand::jump`] tells how far.
+//! says nothing: [`Demand::jump`] tells how far. Of steps without a plan the acceleration is taken over the rotor's natural
+//! period (`of_steps.rs`).
 //!
 //! ```
 //! use stepscope_inspect::torque::{Demand, Machine};
@@ -48,11 +49,13 @@
 
 mod machine;
 mod moment;
+mod of_steps;
 mod ramps;
 mod report;
 
 pub use machine::Machine;
 pub use moment::Moment;
+pub use of_steps::steps_needed_over_rate;
 pub use ramps::Ramps;
 pub use report::{MoveRamps, TorqueCurve, TorqueReport};
 
@@ -80,7 +83,7 @@ pub struct Shortage {
     pub worst: Moment,
 }
 
-/// What a plan asks of a motor.
+/// What a plan, or a list of steps, asks of a motor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Demand {
     /// Where there is too little torque, in order; the first 1024.
@@ -89,7 +92,9 @@ pub struct Demand {
     pub total: u64,
     /// The moment with the least margin, the first of several; `None` where the plan takes no time.
     pub least: Option<Moment>,
-    /// The greatest rate in steps/s, if it is above the motor's stated working rate.
+    /// The greatest rate in steps/s.
+    pub greatest_rate: f64,
+    /// That rate, if it is above the motor's stated working rate.
     pub over_working_rate: Option<f64>,
     /// The greatest jump of speed in steps/s, which the motor has to follow at once.
     pub jump: f64,
@@ -105,6 +110,7 @@ impl Demand {
             shortages: Vec::new(),
             total: 0,
             least: None,
+            greatest_rate: peaks.speed,
             over_working_rate: over.map(|_| peaks.speed),
             jump: peaks.jump,
         };

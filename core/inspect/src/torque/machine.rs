@@ -2,12 +2,20 @@
 
 use crate::torque::moment::Moment;
 use core::f64::consts::{PI, SQRT_2};
+#[cfg(feature = "plant")]
+use stepscope_motion::mechanics::{Mechanics, Rotary};
 use stepscope_motion::{AxisPlan, MAX_SPEED, bisection::border, moves::Axis};
+#[cfg(feature = "plant")]
+use stepscope_scenario::{PlantMotor, PlantSettings, Scenario};
+#[cfg(feature = "plant")]
+use stepscope_sim::axes_of;
 
 /// mN*m in a N*m.
 const MILLI: f64 = 1000.0;
 /// kg*m^2 in a g*cm^2.
 const GRAM_CM2: f64 = 1e-7;
+/// Shortest natural period in s.
+const LEAST_PERIOD_S: f64 = 1e-6;
 
 /// An axis' motor, its driver and its load.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,6 +73,37 @@ impl Machine {
         }
     }
 
+    /// Of a channel: of its axis, where that has a motor, else what the scenario's plant has there (F9); `None` where it has
+    /// neither.
+    #[cfg(feature = "plant")]
+    #[must_use]
+    pub fn of_channel(scenario: &Scenario, controller: usize, channel: usize) -> Option<Self> {
+        let axis = axes_of(scenario, controller).get(channel);
+        if let Some(machine) = axis.and_then(Self::of) {
+            return Some(machine);
+        }
+        let PlantSettings { motors, .. } = scenario.plant.as_ref()?;
+        let PlantMotor { full_step_deg, microsteps, motor } =
+            motors.get(channel).or(motors.last()).cloned().unwrap_or_default();
+        let mechanics = axis.map(|axis| axis.mechanics.clone()).filter(|_| motors.is_empty());
+        let rotary = || Mechanics::Rotary(Rotary { full_step_deg, microsteps });
+        let mechanics = mechanics.filter(|m| m.full_step_deg().is_some()).unwrap_or_else(rotary);
+        Self::of(&Axis { mechanics, motor: Some(motor), ..Axis::default() })
+    }
+
+    /// How long the rotor with its load takes to swing to and fro once, in s, held by the regulated peak of its currents:
+    /// 2*pi*sqrt(J/(p*k*I)); 1 us where there is hardly any inertia.
+    #[must_use]
+    pub fn natural_period_s(&self) -> f64 {
+        let stiffness = self.pole_pairs * self.constant * self.current_a;
+        libm::fmax(2.0 * PI * libm::sqrt(self.inertia_kg_m2 / stiffness), LEAST_PERIOD_S)
+    }
+
+    /// Microsteps of half a full step, at least 1.
+    pub(super) fn microsteps_of_half_a_step(&self) -> usize {
+        libm::fmax(1.0, libm::round(PI / (4.0 * self.pole_pairs * self.step_rad))) as usize
+    }
+
     /// The stated highest rate in steps/s, if there is one.
     #[must_use]
     pub fn working_rate(&self) -> Option<f64> {
@@ -107,7 +146,11 @@ impl Machine {
 
     /// Both at `at_s` of a plan.
     pub(super) fn at(&self, plan: &AxisPlan, at_s: f64) -> Moment {
-        let (speed, acceleration) = (plan.speed(at_s), plan.acceleration(at_s));
+        self.moment(at_s, plan.speed(at_s), plan.acceleration(at_s))
+    }
+
+    /// Both at a speed in steps/s and an acceleration in steps/s^2.
+    pub(super) fn moment(&self, at_s: f64, speed: f64, acceleration: f64) -> Moment {
         Moment {
             at_s,
             rate: libm::fabs(speed),

@@ -1,9 +1,10 @@
 //! All that the study shows of an axis' motor and of what its plan asks of it.
 
-use super::{Demand, Machine, Moment, Ramps, Shortage, needed_over_rate};
+use super::{Demand, Machine, Moment, Ramps, Shortage, needed_over_rate, steps_needed_over_rate};
 use alloc::vec::Vec;
 use serde::Serialize;
 use stepscope_motion::{AxisPlan, Curve, moves::Axis};
+use stepscope_peripheral::trace::Step;
 
 /// Points of the curves.
 const POINTS: u32 = 241;
@@ -33,6 +34,8 @@ pub struct TorqueReport {
     pub total: u64,
     /// The first of them.
     pub shortages: Vec<Shortage>,
+    /// Of steps without a plan: what their acceleration is taken over, [`Machine::natural_period_s`].
+    pub window_s: Option<f64>,
     /// Of each move whose ramps have a shape.
     pub ramps: Vec<MoveRamps>,
     /// Torque over rate.
@@ -73,7 +76,22 @@ impl TorqueReport {
             let ramps = Ramps::of(&machine, &planned.profile)?;
             Some(MoveRamps { index, duration_s: planned.profile.duration_s(), ramps })
         });
-        Some(Self {
+        let found = Self::with(&machine, demand, TorqueCurve::of(&machine, plan));
+        Some(Self { ramps: ramps.collect(), ..found })
+    }
+
+    /// Of steps without a plan, in cycles of `clock_hz`.
+    #[must_use]
+    pub fn of_steps(machine: &Machine, steps: &[Step], clock_hz: u32) -> Self {
+        let demand = Demand::of_steps(machine, steps, clock_hz);
+        let most = machine.shown_rate(demand.greatest_rate);
+        let needed = |most, bins| steps_needed_over_rate(machine, steps, clock_hz, most, bins);
+        let curve = TorqueCurve::with(machine, most, needed);
+        Self { window_s: Some(machine.natural_period_s()), ..Self::with(machine, demand, curve) }
+    }
+
+    fn with(machine: &Machine, demand: Demand, curve: TorqueCurve) -> Self {
+        Self {
             standing_mn_m: machine.available_mn_m(0.0),
             load_mn_m: machine.load_mn_m(),
             corner_rate: machine.corner_rate(),
@@ -83,10 +101,11 @@ impl TorqueReport {
             jump: demand.jump,
             least: demand.least,
             total: demand.total,
-            ramps: ramps.collect(),
+            window_s: None,
+            ramps: Vec::new(),
             shortages: demand.shortages.into_iter().take(MAX_SHORTAGES).collect(),
-            curve: TorqueCurve::of(&machine, plan),
-        })
+            curve,
+        }
     }
 }
 
@@ -98,12 +117,15 @@ impl TorqueCurve {
     /// Up to a rate in steps/s, above 0; what a plan needs of it where there is one.
     #[must_use]
     pub fn up_to(machine: &Machine, plan: Option<&AxisPlan>, most: f64) -> Self {
+        Self::with(machine, most, |most, bins| {
+            plan.map_or_else(Vec::new, |plan| needed_over_rate(machine, plan, most, bins))
+        })
+    }
+
+    /// Up to a rate; `needed` is asked for so many bins up to so many steps/s, one around each rate of the curve.
+    fn with(machine: &Machine, most: f64, needed: impl FnOnce(f64, usize) -> Vec<f64>) -> Self {
         let (rate, available) = machine.curve(most, POINTS).unzip();
-        // A bin around each rate of the curve.
         let width = most / f64::from(POINTS - 1);
-        let needed = plan.map_or_else(Vec::new, |plan| {
-            needed_over_rate(machine, plan, width * f64::from(POINTS), POINTS as usize)
-        });
-        Self { rate, available, needed }
+        Self { rate, available, needed: needed(width * f64::from(POINTS), POINTS as usize) }
     }
 }

@@ -334,3 +334,134 @@ fn a_move_that_is_short_of_torque_is_warned_of_and_its_neighbours_are_not() {
         )
     );
 }
+
+/// Steps of a plan in cycles of 16 MHz.
+fn steps_of(motor: &str, moves: &str) -> (Machine, Vec<stepscope_peripheral::trace::Step>) {
+    let json = format!(
+        r#"{{"source":{{"motion":{{"engine":"segments","axes":[{{"motor":{motor},"moves":[{moves}]}}]}}}}}}"#
+    );
+    let experiment = stepscope_sim::Experiment::from_json(&json).unwrap();
+    let mut recording = stepscope_peripheral::trace::Recording::default();
+    experiment.run(&mut recording);
+    (machine(motor), stepscope_peripheral::trace::steps(&recording.trace, 0))
+}
+
+#[test]
+fn the_steps_of_a_plan_ask_for_what_the_plan_asks_for() {
+    let rows = [
+        // The bare rotor, a load of inertia, one of friction as well, and there and back with a rest between.
+        ("{}", TURN, 0.02),
+        (r#"{"load_inertia_g_cm2":4955}"#, TURN, 0.02),
+        (r#"{"load_inertia_g_cm2":955,"load_torque_mn_m":100}"#, r#"{"cosine":{"ramp_s":0.05}}"#, 0.02),
+        ("{}", r#"{"cosine":{}},{"dwell":{"duration_s":0.1}},{"cosine":{"distance":{"steps":-3200}}}"#, 0.02),
+    ];
+    for (motor, moves, within) in rows {
+        let (machine, steps) = steps_of(motor, moves);
+        let (plan, found) = (demand(motor, moves), Demand::of_steps(&machine, &steps, 16_000_000));
+        assert!(plan.is_met() && found.is_met(), "{motor} {moves} {found:?}");
+        let [by_plan, by_steps] = [&plan, &found].map(|asked| asked.least.unwrap().needed_mn_m.abs());
+        // In parts of what the motor has.
+        assert!((by_plan - by_steps).abs() < within * 282.8, "{motor}: {by_plan} {by_steps}");
+        close(found.greatest_rate, plan.greatest_rate, 0.02);
+    }
+}
+
+#[test]
+fn a_shortage_of_steps_is_where_that_of_their_plan_is() {
+    let motor = r#"{"load_inertia_g_cm2":9955,"load_torque_mn_m":100}"#;
+    let (machine, steps) = steps_of(motor, TURN);
+    let (plan, found) = (demand(motor, TURN), Demand::of_steps(&machine, &steps, 16_000_000));
+    assert_eq!((plan.total, found.total), (1, 1));
+    let start_s = steps[0].cycle as f64 / 16e6;
+    let [by_plan, by_steps] = [&plan, &found].map(|asked| asked.shortages[0]);
+    for (planned, stepped) in [(by_plan.from_s, by_steps.from_s), (by_plan.to_s, by_steps.to_s)] {
+        // The first step is due a little after the plan's start.
+        assert!((stepped - start_s - planned).abs() < 0.02, "{planned} {stepped}");
+    }
+    close(by_steps.worst.needed_mn_m, by_plan.worst.needed_mn_m, 0.02);
+    let report = TorqueReport::of_steps(&machine, &steps, 16_000_000);
+    assert_eq!((report.total, report.ramps.len()), (1, 0));
+    close(report.window_s.unwrap(), machine.natural_period_s(), 1e-12);
+    let most = report.curve.needed.iter().copied().fold(0.0, f64::max);
+    close(most, by_steps.worst.needed_mn_m, 0.01);
+}
+
+#[test]
+fn jitter_of_a_step_asks_for_little_and_a_start_at_once_is_told() {
+    let machine = machine("{}");
+    let steps = |interval: u64, off: fn(u64) -> u64| -> Vec<_> {
+        let at = |k: i32| u64::from(k.unsigned_abs()) * interval + off(u64::from(k.unsigned_abs()));
+        (1..2000).map(|k| stepscope_peripheral::trace::Step { cycle: at(k), position: k }).collect()
+    };
+    // 16 000 steps/s whose every second step comes half an interval late.
+    let even = Demand::of_steps(&machine, &steps(1000, |_| 0), 16_000_000);
+    let uneven = Demand::of_steps(&machine, &steps(1000, |k| k % 2 * 500), 16_000_000);
+    let [even, uneven_mn_m] = [&even, &uneven].map(|asked| asked.least.unwrap().needed_mn_m.abs());
+    assert!((uneven_mn_m - even).abs() < 0.04 * 282.8, "{even} {uneven_mn_m}");
+    assert_eq!(Demand::of_steps(&machine, &steps(1000, |_| 0), 16_000_000).jump, 16_000.0);
+    // Of steps that are each one by itself none takes up more than its own rate.
+    assert_eq!(Demand::of_steps(&machine, &steps(160_000, |_| 0), 16_000_000).jump, 100.0);
+    // A pause in which 16 steps would have come, shorter than the rotor swings, and one late step, which is none.
+    let paused =
+        Demand::of_steps(&machine, &steps(1000, |k| if k > 1000 { 16_000 } else { 0 })[10..1900], 16_000_000);
+    assert_eq!(paused.jump, 16_000.0);
+    let ramp: fn(u64) -> u64 = |k| libm::sqrt(k as f64 * 2e9) as u64;
+    let [smooth, late] = [ramp, |k| libm::sqrt(k as f64 * 2e9) as u64 + if k == 1500 { 300 } else { 0 }]
+        .map(|off| Demand::of_steps(&machine, &steps(0, off)[..1990], 16_000_000).jump);
+    assert_eq!(smooth, late);
+    // It ends at once.
+    close(smooth, 16e6 / (libm::sqrt(1990.0 * 2e9) - libm::sqrt(1989.0 * 2e9)), 0.01);
+    // A few steps in a burst, every 2 ms, are no start at the burst's rate.
+    let bursts = Demand::of_steps(&machine, &steps(200, |k| k / 4 * 31_200), 16_000_000);
+    assert!((1900.0..6000.0).contains(&bursts.jump), "{}", bursts.jump);
+    for few in [0, 1] {
+        let few = Demand::of_steps(&machine, &steps(1000, |_| 0)[..few], 16_000_000);
+        assert!(few.is_met() && few.jump == 0.0 && few.greatest_rate == 0.0, "{few:?}");
+    }
+}
+
+#[test]
+fn a_stated_rate_and_steps_in_one_cycle_are_judged_too() {
+    let machine = machine(r#"{"working_rate_hz":1000}"#);
+    let all: Vec<_> = (1..50)
+        .map(|k: i32| stepscope_peripheral::trace::Step {
+            cycle: u64::from(k.unsigned_abs() / 2) * 8000,
+            position: k,
+        })
+        .collect();
+    let found = Demand::of_steps(&machine, &all, 16_000_000);
+    assert!(found.over_working_rate.is_some_and(|rate| (3000.0..5000.0).contains(&rate)), "{found:?}");
+    assert!(found.least.is_some_and(|least| least.needed_mn_m.is_finite()));
+    // Without any inertia only the load is left.
+    let (light, steps) = steps_of(r#"{"rotor_inertia_g_cm2":0,"load_torque_mn_m":10}"#, TURN);
+    let found = Demand::of_steps(&light, &steps, 16_000_000);
+    assert!(found.is_met());
+    assert_eq!(found.least.map(|least| least.needed_mn_m), Some(10.0));
+}
+
+#[cfg(feature = "plant")]
+#[test]
+fn the_natural_period_is_the_plants_and_a_channel_has_the_plants_motor() {
+    use stepscope_plant::{parameters::Motor, stability::Natural};
+    let scenario = |text: &str| stepscope_scenario::Scenario::from_json(text).unwrap();
+    let listed = scenario(
+        r#"{"bus":{"channels":3},"source":{"segments":{}},"plant":{"motors":[{"motor":{"working_rate_hz":500}},{"microsteps":4}]}}"#,
+    );
+    let of = |channel| Machine::of_channel(&listed, 0, channel).unwrap();
+    close(1.0 / of(1).natural_period_s(), Natural::of(&Motor::default()).frequency_hz, 1e-9);
+    assert_eq!((of(0).working_rate(), of(1).working_rate()), (Some(500.0), None));
+    // The last entry holds for the rest; four microsteps reach a rate that sixteen need four times of.
+    assert_eq!(of(1), of(2));
+    close(of(0).corner_rate().unwrap(), 4.0 * of(1).corner_rate().unwrap(), 1e-9);
+    assert_eq!(Machine::of_channel(&scenario(r#"{"source":{"segments":{}}}"#), 0, 0), None);
+    let default = scenario(r#"{"source":{"segments":{}},"plant":{}}"#);
+    assert_eq!(Machine::of_channel(&default, 0, 0), Some(machine("{}")));
+    // An axis without a motor of its own has its mechanics with the default motor.
+    let turned =
+        scenario(r#"{"plant":{},"source":{"motion":{"axes":[{"mechanics":{"rotary":{"microsteps":4}}}]}}}"#);
+    close(
+        Machine::of_channel(&turned, 0, 0).unwrap().corner_rate().unwrap(),
+        of(1).corner_rate().unwrap(),
+        1e-9,
+    );
+}

@@ -1,0 +1,80 @@
+//! What `stepscope torque` says, as tables.
+
+use super::driven::{Asked, Driven};
+use crate::json::Tables;
+use serde_json::{Value, json};
+use stepscope_core::{
+    inspect::torque::{Moment, Ramps},
+    motion::Curve,
+};
+
+/// A row an axis, or channel.
+pub(crate) fn axes(driven: &[Driven]) -> impl Iterator<Item = Value> + '_ {
+    driven.iter().map(|Driven { axis, machine, asked, demand, agreement }| {
+        let least = demand.least.as_ref();
+        json!({
+            "axis": axis,
+            "standing_torque_mn_m": machine.available_mn_m(0.0),
+            "full_torque_up_to_steps_s": machine.corner_rate(),
+            "greatest_rate_steps_s": machine.torque_rate(),
+            "load_mn_m": machine.load_mn_m(),
+            "working_rate_steps_s": machine.working_rate(),
+            "least_margin_mn_m": least.map(Moment::margin_mn_m),
+            "least_margin_at_s": least.map(|least| least.at_s),
+            "speed_jump_steps_s": demand.jump,
+            "over_working_rate_steps_s": demand.over_working_rate,
+            "shortages": demand.total,
+            "enough": demand.is_met(),
+            "plant": agreement.as_ref().map(|found| &found.plant),
+            "models_agree": agreement.as_ref().and_then(|found| found.agrees),
+            "models_differ_because": agreement.as_ref().and_then(|found| found.why.as_ref()),
+            "window_s": matches!(asked, Asked::Steps).then(|| machine.natural_period_s()),
+        })
+    })
+}
+
+/// A row an interval with too little torque.
+pub(crate) fn shortages(driven: &[Driven]) -> impl Iterator<Item = Value> + '_ {
+    driven.iter().flat_map(|driven| {
+        driven.demand.shortages.iter().map(|found| {
+            json!({
+                "axis": driven.axis,
+                "from_s": found.from_s,
+                "to_s": found.to_s,
+                "times": found.times,
+                "short_mn_m": -found.worst.margin_mn_m(),
+                "worst_at_s": found.worst.at_s,
+                "worst_rate_steps_s": found.worst.rate,
+                "needed_mn_m": found.worst.needed_mn_m,
+                "available_mn_m": found.worst.available_mn_m,
+            })
+        })
+    })
+}
+
+/// All of it.
+pub(super) fn tables(driven: &[Driven]) -> Tables {
+    let ramps = driven.iter().flat_map(|Driven { axis, machine, asked, .. }| {
+        let moves = match asked {
+            Asked::Plan(plan) => plan.moves(),
+            Asked::Steps => &[],
+        };
+        moves.iter().enumerate().filter_map(move |(index, planned)| {
+            let found = Ramps::of(machine, &planned.profile)?;
+            Some(json!({
+                "axis": axis,
+                "move": index,
+                "steps": planned.profile.steps(),
+                "duration_s": planned.profile.duration_s(),
+                "greatest_rate_steps_s": found.greatest_rate,
+                "longest_ramp_s": found.longest_s,
+                "longest_possible_ramp_s": found.room_s,
+                "enough_torque_from_ramp_s": found.enough_s.map(|(shortest, _)| shortest),
+                "enough_torque_to_ramp_s": found.enough_s.map(|(_, longest)| longest),
+                "enough_torque_without_ramps": found.without_ramps,
+            }))
+        })
+    });
+    let all = Tables::of("torque").with("axes", axes(driven)).with("shortages", shortages(driven));
+    all.with("ramps", ramps)
+}

@@ -1,0 +1,172 @@
+//! What `stepscope torque` says for the eye.
+
+use super::driven::{Asked, Driven};
+use std::io::{self, Write};
+use stepscope_core::{
+    inspect::{
+        model_agreement::Agreement,
+        torque::{Demand, Machine, Moment, Ramps},
+    },
+    motion::{Curve, PlannedMove},
+};
+
+/// Shortages that the screen shows of an axis.
+const MAX_SHOWN: usize = 20;
+/// The most time in s that a move may have (docs/scenario.md).
+const MAX_DURATION_S: f64 = 86_400.0;
+
+/// Of one axis, or channel.
+pub(crate) fn report(driven: &Driven, out: &mut impl Write) -> io::Result<()> {
+    let Driven { axis, machine, asked, demand, agreement } = driven;
+    match asked {
+        Asked::Plan(_) => writeln!(out, "axis {axis}")?,
+        Asked::Steps => {
+            let period_ms = machine.natural_period_s() * 1e3;
+            writeln!(
+                out,
+                "channel {axis}: no plan is known, so the steps themselves are judged, over the rotor's natural period of {period_ms:.3} ms"
+            )?;
+        }
+    }
+    let standing = machine.available_mn_m(0.0);
+    match machine.corner_rate() {
+        Some(0.0) => writeln!(
+            out,
+            "  standing torque  {standing:.1} mN*m; the supply is too low for the whole current at any rate"
+        )?,
+        corner => writeln!(out, "  full torque      {standing:.1} mN*m, up to {}", rate(corner))?,
+    }
+    writeln!(
+        out,
+        "  greatest rate    {} with a load of {:.1} mN*m",
+        rate(machine.torque_rate()),
+        machine.load_mn_m()
+    )?;
+    if let Some(stated) = machine.working_rate() {
+        writeln!(out, "  working rate     {stated:.0} steps/s, as stated")?;
+    }
+    if let Some(least) = &demand.least {
+        let margin = least.margin_mn_m();
+        writeln!(out, "  least margin     {margin:.1} mN*m: {}", moment(least))?;
+    }
+    if demand.jump > 0.0 {
+        let jump = demand.jump;
+        let higher = "the motor's start-stop rate has to be higher";
+        match asked {
+            Asked::Plan(_) => writeln!(out, "  jump of speed    {jump:.0} steps/s at once; {higher}")?,
+            Asked::Steps => {
+                writeln!(out, "  jump of speed    {jump:.0} steps/s beside a rest or a turn; {higher}")?;
+            }
+        }
+    }
+    shortages(demand, machine, out)?;
+    if let Some(Agreement { plant, agrees, why }) = agreement {
+        let agrees = match agrees {
+            Some(true) => "; both models agree",
+            Some(false) => "; the models differ",
+            None => "",
+        };
+        writeln!(out, "  plant            {plant}{agrees}")?;
+        if let Some(why) = why {
+            writeln!(out, "    {why}")?;
+        }
+    }
+    let Asked::Plan(plan) = asked else { return Ok(()) };
+    for (index, planned) in plan.moves().iter().enumerate() {
+        if let Some(found) = Ramps::of(machine, &planned.profile) {
+            ramps(index, planned, &found, out)?;
+        }
+    }
+    Ok(())
+}
+
+fn rate(found: Option<f64>) -> String {
+    match found {
+        None => "any rate".to_owned(),
+        Some(0.0) => "none".to_owned(),
+        Some(rate) => format!("{rate:.0} steps/s"),
+    }
+}
+
+fn moment(moment: &Moment) -> String {
+    format!(
+        "at {:.6} s, {:.0} steps/s, {:.1} needed of {:.1} mN*m",
+        moment.at_s, moment.rate, moment.needed_mn_m, moment.available_mn_m
+    )
+}
+
+fn shortages(demand: &Demand, machine: &Machine, out: &mut impl Write) -> io::Result<()> {
+    if demand.is_met() {
+        return writeln!(out, "  enough torque throughout");
+    }
+    if let (Some(given), Some(most)) = (demand.over_working_rate, machine.working_rate()) {
+        writeln!(
+            out,
+            "  warning: {given:.0} steps/s are above the working rate of {most:.0} steps/s; give more time, or shorter ramps"
+        )?;
+    }
+    if demand.total == 0 {
+        return Ok(());
+    }
+    writeln!(
+        out,
+        "  warning: too little torque in {} interval{}; give more time, gentler ramps, less load, or a higher supply voltage",
+        demand.total,
+        if demand.total == 1 { "" } else { "s" }
+    )?;
+    for found in demand.shortages.iter().take(MAX_SHOWN) {
+        let (from, to, short) = (found.from_s, found.to_s, -found.worst.margin_mn_m());
+        write!(out, "    {from:.6} to {to:.6} s: {short:.1} mN*m short {}", moment(&found.worst))?;
+        match found.times {
+            times if times > 1.0 => writeln!(out, "; so in {times:.0} periods")?,
+            _ => writeln!(out)?,
+        }
+    }
+    match demand.total.saturating_sub(MAX_SHOWN as u64) {
+        0 => Ok(()),
+        more => writeln!(out, "    and {more} more"),
+    }
+}
+
+fn ramps(index: usize, planned: &PlannedMove, found: &Ramps, out: &mut impl Write) -> io::Result<()> {
+    let (steps, duration_s) = (planned.profile.steps(), planned.profile.duration_s());
+    writeln!(out, "  move {index:<11} {} steps in {duration_s} s", steps.unsigned_abs())?;
+    if found.greatest_rate == Some(0.0) {
+        return writeln!(
+            out,
+            "    the load needs more torque than the motor has at any rate; give less load"
+        );
+    }
+    if let Some(greatest) = found.greatest_rate {
+        write!(out, "    under {greatest:.0} steps/s  ")?;
+        match found.longest_s {
+            Some(longest_s) if longest_s > found.room_s => {
+                let room_s = found.room_s;
+                writeln!(out, "a ramp of at most {longest_s:.4} s; the longest possible is {room_s:.4} s")?;
+            }
+            Some(longest_s) => writeln!(out, "a ramp of at most {longest_s:.4} s")?,
+            None => {
+                write!(out, "even without ramps the move is faster; ")?;
+                match steps.unsigned_abs() as f64 / greatest {
+                    least_s if least_s <= MAX_DURATION_S => writeln!(out, "give at least {least_s:.4} s")?,
+                    _ => {
+                        writeln!(out, "give less distance or less load: no move may take the time it needs")?
+                    }
+                }
+            }
+        }
+    }
+    if let Some((shortest, longest)) = found.enough_s {
+        return writeln!(out, "    enough torque with ramps of {shortest:.4} to {longest:.4} s");
+    }
+    if found.without_ramps {
+        writeln!(out, "    enough torque without ramps, if the motor starts and stops at that rate")?;
+    }
+    match found.too_fast_s {
+        Some((shortest, longest)) => writeln!(
+            out,
+            "    the torque would suffice for ramps of {shortest:.4} to {longest:.4} s, but they are above the working rate; give more time"
+        ),
+        None => writeln!(out, "    no ramp leaves enough torque; give more time or less load"),
+    }
+}
