@@ -3,7 +3,7 @@
 #[cfg(any(feature = "run", feature = "study"))]
 use js_sys::{Float64Array, Object, Reflect};
 use serde::Serialize;
-#[cfg(any(feature = "run", feature = "capture"))]
+#[cfg(any(feature = "run", feature = "capture", feature = "study"))]
 use stepscope_core::peripheral::{
     signal::{Levels, Record},
     units::Instant,
@@ -36,7 +36,7 @@ pub(crate) fn words(object: &Object, name: &str, values: &[u64]) {
 }
 
 /// Records as they go from one worker to another: 16 bytes each, cycle and levels, little-endian.
-#[cfg(any(feature = "run", feature = "capture"))]
+#[cfg(any(feature = "run", feature = "capture", feature = "study"))]
 pub(crate) fn records(bytes: &[u8]) -> impl Iterator<Item = Record> {
     let word = |bytes: &[u8]| bytes.try_into().map_or(0, u64::from_le_bytes);
     let record = move |record: &[u8]| Record {

@@ -66,6 +66,8 @@ pub use judged::Judged;
 #[cfg(feature = "run")]
 pub use link::{decode_link, link_part, link_with};
 #[cfg(feature = "study")]
+pub use measures::step_figures;
+#[cfg(feature = "study")]
 pub use motors::{sheets, with_motor};
 #[cfg(feature = "study")]
 pub use replay::replay;

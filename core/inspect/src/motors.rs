@@ -17,9 +17,10 @@
 //! assert_eq!(experiment.plants().expect("it has one").setups[0].motors[0].rotor_inertia_g_cm2, 54.0);
 //! ```
 
+use crate::torque::Machine;
 use alloc::vec::Vec;
 use stepscope_motion::{
-    mechanics::Mechanics,
+    mechanics::{Mechanics, Rotary},
     motor::{Decay, Drive, Motor, Regulator},
     moves::Axis,
 };
@@ -299,6 +300,14 @@ impl MotorSheet {
             detent_torque_mn_m: self.detent_torque_mn_m,
             ..place.clone()
         }
+    }
+
+    /// The motor by itself, for its torque: at its rated current, with the default motor's supply and microsteps, and no load.
+    #[must_use]
+    pub fn machine(&self) -> Option<Machine> {
+        let full = Rotary { full_step_deg: self.full_step_deg, ..Rotary::default() };
+        let motor = Some(self.in_place_of(&Motor::default()));
+        Machine::of(&Axis { mechanics: Mechanics::Rotary(full), motor, ..Axis::default() })
     }
 
     /// Puts it in the place of every motor of a scenario, with its full step.

@@ -7,6 +7,7 @@ use stepscope_core::{
     inspect::{
         actual_motion::Pulses,
         measures::Measures,
+        recording::figures::StepFigures,
         spectrum::{AnalysisWindow, Spectrum},
     },
     peripheral::trace::steps,
@@ -114,6 +115,54 @@ fn measures_stand_side_by_side_as_the_core_has_them() -> Result<()> {
         page.until("document.getElementById('study-measures').textContent.includes('Axis 1 has no motion')")
             .await?;
         ensure!(!page.visible("table[aria-label='Duration']").await?);
+        Ok(())
+    })
+}
+
+#[test]
+fn steps_without_a_motion_are_measured_by_themselves_as_the_core_has_them() -> Result<()> {
+    in_browser(|page| async move {
+        // To and fro four times, and a channel that stands.
+        let list = r#"{"bus":{"channels":2},"source":{"segments":{"channels":[{"segments":[
+            {"steps":{"count":100,"interval_q16":524288000,"dir":1}},{"steps":{"count":100,"interval_q16":262144000,"dir":0}},
+            {"steps":{"count":100,"interval_q16":524288000,"dir":1}},{"steps":{"count":100,"interval_q16":262144000,"dir":0}},
+            {"steps":{"count":100,"interval_q16":524288000,"dir":1}},{"steps":{"count":100,"interval_q16":262144000,"dir":0}},
+            {"steps":{"count":100,"interval_q16":524288000,"dir":1}}]}]}}}"#;
+        let known = Known::of(list)?;
+        let clock_hz = known.experiment.config().clock_hz();
+        let figures = StepFigures::of(steps(&known.recording.trace, 0), clock_hz).expect("it steps");
+        page.open(&format!("#{}&v=tstudy.ymeasures", known.link)).await?;
+        page.until_digest(&known.digest).await?;
+        page.until("document.querySelector(\"table[aria-label='Steps'] tbody tr\") !== null").await?;
+        let one = async |name: &str| {
+            let cells = cells(&page, "Steps", name, 0).await?;
+            ensure!(cells.len() == 2 && cells[1].len() > 8, "{name}: {cells:?}");
+            anyhow::Ok(cells[0].clone())
+        };
+        for (name, wanted) in [
+            ("steps", figures.steps),
+            ("of them right", figures.right),
+            ("of them left", figures.left),
+            ("turns", figures.turns),
+            ("position", figures.position.unsigned_abs().into()),
+        ] {
+            assert_eq!(one(name).await?, wanted.to_string(), "{name}");
+        }
+        close(&one("shortest interval").await?, figures.shortest_interval_s.expect("steps"))?;
+        close(&one("longest interval").await?, figures.longest_interval_s.expect("steps"))?;
+        let rate = one("greatest rate").await?;
+        assert_eq!(rate, format!("{} steps/s", figures.greatest_rate_steps_s.expect("steps")));
+        // They go to and fro evenly, so what is distorted is known of the pulses alone.
+        let distortion = cells(&page, "Distortion", "speed", 0).await?;
+        ensure!(distortion[0] == "–" && distortion[1].ends_with('%'), "{distortion:?}");
+        for table in ["Steps and ticks", "Duration", "Peaks of the ideal curve"] {
+            ensure!(!page.visible(&format!("table[aria-label='{table}']")).await?, "{table}");
+        }
+        page.picture("measures-of-steps").await?;
+        page.choose("#study-axis", "1").await?;
+        page.until("document.getElementById('study-measures').textContent.includes('Axis 1 has no motion')")
+            .await?;
+        ensure!(!page.visible("table[aria-label='Steps']").await?);
         Ok(())
     })
 }

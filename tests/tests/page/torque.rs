@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 use stepscope_core::{
     inspect::torque::{Demand, Machine},
     motion::moves::Axis,
+    peripheral::trace::steps,
     scenario::{Scenario, Source},
 };
 
@@ -94,6 +95,63 @@ fn the_tab_torque_has_the_cores_numbers_and_its_curves() -> Result<()> {
             "document.querySelector(\"table[aria-label='Ramps'] tbody\").textContent.includes('0.2333 s')",
         )
         .await?;
+        Ok(())
+    })
+}
+
+/// 4000 steps at 50 000 steps/s at once, as a list of segments.
+const LIST: &str = r#"{"title":"At once","bus":{"channels":2},"source":{"segments":{"channels":[{"segments":[
+    {"steps":{"count":4000,"interval_q16":20971520,"dir":1}}]}]}}}"#;
+
+#[test]
+fn steps_without_a_motion_are_held_against_a_motor_that_is_chosen_or_the_plants() -> Result<()> {
+    in_browser(|page| async move {
+        let known = Known::of(LIST)?;
+        page.open(&format!("#{}&v=tstudy.ytorque", known.link)).await?;
+        page.until_digest(&known.digest).await?;
+        let says = async |text: &str| {
+            page.until(&format!(
+                "document.getElementById('study-torque').innerText.includes({})",
+                json!(text)
+            ))
+            .await
+        };
+        says("No motor is driven here: choose one").await?;
+        page.until("document.querySelectorAll('#study-torque select option').length > 5").await?;
+        page.choose("#study-torque select", "song-2021").await?;
+        // A driver's choice is a change, and no input as a visitor's is.
+        page.until("document.getElementById('torque-verdict').textContent !== ''").await?;
+        let machine =
+            Machine::of(&Axis { motor: Some(Default::default()), ..Axis::default() }).expect("a motor");
+        let steps = steps(&known.recording.trace, 0);
+        let demand = Demand::of_steps(&machine, &steps, known.experiment.config().clock_hz());
+        let shown = async || {
+            let facts = cells(&page, "The motor").await?;
+            let of = |name: &str| facts.iter().find(|row| row[0] == name).map(|row| row[1].clone());
+            anyhow::Ok((of("Least margin"), of("Greatest jump of speed")))
+        };
+        let least = demand.least.expect("it moves").margin_mn_m();
+        let expected = (Some(least), demand.jump);
+        let (margin, jump) = shown().await?;
+        let margin =
+            margin.and_then(|text| text.replace('\u{2212}', "-").split(' ').next()?.parse::<f64>().ok());
+        ensure!(
+            margin.zip(expected.0).is_some_and(|(found, known)| (found - known).abs() < 0.06),
+            "{margin:?} {expected:?}"
+        );
+        assert_eq!(jump, Some("50000 steps/s".to_owned()), "{expected:?}");
+        let outcome: String = page.eval("document.getElementById('torque-verdict').textContent").await?;
+        assert_eq!(outcome.contains("Too little torque"), demand.total > 0, "{outcome}");
+        says("The acceleration of steps is taken over the rotor's natural period, 3.54").await?;
+        page.picture("torque-of-steps").await?;
+        // The other channel has no list.
+        page.choose("#study-axis", "1").await?;
+        says("Channel 1 makes no step, so nothing is asked of its motor.").await?;
+        // A plant has a motor of its own, and nothing is left to choose.
+        page.choose("#study-axis", "0").await?;
+        page.click("[data-path='plant#kind']").await?;
+        says("Channel 0: what its motor has, and what the steps need; no plan is known.").await?;
+        ensure!(!page.visible("#study-torque select").await?);
         Ok(())
     })
 }

@@ -1,6 +1,7 @@
 /**
  * The tab Measures of the study: how good the selected axis is, in numbers. The ideal curve, the steps that are made of it and
- * the pulses as they come are held against each other. What a tab is, says study.js.
+ * the pulses as they come are held against each other; where no plan is known, the steps are measured by themselves. What a
+ * tab is, says study.js.
  */
 import { element, fill, say } from "../../dom.js";
 import { Dropped } from "../../engine/engine.js";
@@ -20,12 +21,19 @@ import { table } from "./parts.js";
  *   sine: {segments: number, euclidean: number, quarter: Comparison} | null}} Measures
  */
 
+/** The core's `StepFigures`. @typedef {{steps: number, right: number, left: number, turns: number, position: number, least_position: number,
+ *   greatest_position: number, first_s: number, last_s: number, shortest_interval_s: number | null, shortest_at_s: number | null,
+ *   longest_interval_s: number | null, greatest_rate_steps_s: number | null, mean_rate_steps_s: number | null,
+ *   greatest_acceleration_steps_s2: number | null, greatest_interval_change: number | null}} Figures */
+
 /** @param {number | null} value */
 const digits = (value) => (value === null ? "–" : short(value, 4));
 /** @param {number | null} value */
 const seconds = (value) => (value === null ? "–" : si(value, "s"));
 /** @param {number | null} value */
 const percent = (value) => (value === null ? "–" : `${short(100 * value, 5)} %`);
+/** @param {number | null} value @param {string} name */
+const unit = (value, name) => (value === null ? "–" : plain(value, name));
 
 /** The sine document's list. @type {[string, (of: Comparison) => string, string][]} */
 const COMPARED = [
@@ -94,6 +102,33 @@ const PEAKS = [
     "The greatest rate that is taken up from rest, or left for rest, at once; a turn is both.",
   ],
 ];
+/** What steps come to by themselves. @type {[string, (of: Figures) => string, string][]} */
+const FIGURES = [
+  ["steps", (of) => count(of.steps), "Pulses on STEP."],
+  ["of them right", (of) => count(of.right), "With DIR high."],
+  ["of them left", (of) => count(of.left), "With DIR low."],
+  ["turns", (of) => count(of.turns), "Steps in another direction than the one before."],
+  ["position", (of) => count(of.position), "After the last step, from 0 before the first."],
+  ["least position", (of) => count(of.least_position), "Farthest to the left."],
+  ["greatest position", (of) => count(of.greatest_position), "Farthest to the right."],
+  ["first step", (of) => time(of.first_s), "When it comes."],
+  ["last step", (of) => time(of.last_s), "When it comes."],
+  ["shortest interval", (of) => seconds(of.shortest_interval_s), "From one step to the next."],
+  ["at", (of) => (of.shortest_at_s === null ? "–" : si(of.shortest_at_s, "s", 5)), "When it ends."],
+  ["longest interval", (of) => seconds(of.longest_interval_s), "A rest is one, too."],
+  ["greatest rate", (of) => unit(of.greatest_rate_steps_s, "steps/s"), "1 by the shortest interval."],
+  ["mean rate", (of) => unit(of.mean_rate_steps_s, "steps/s"), "From the first step to the last, rests among them."],
+  [
+    "greatest acceleration",
+    (of) => unit(of.greatest_acceleration_steps_s2, "steps/s²"),
+    "From each eight steps in one direction to the next eight: from step to step the rounding alone would make it.",
+  ],
+  [
+    "greatest change of interval",
+    (of) => percent(of.greatest_interval_change),
+    "Between neighbours in one direction: what a timer's jitter makes, and a start.",
+  ],
+];
 /** @type {[string, string, string][]} */
 const DURATION = [
   ["requested", "requested_s", "Sum of the times that the moves name; moves that name none count as planned."],
@@ -126,6 +161,11 @@ export function createMeasures({ engine, panel }) {
   const peaks = group("Peaks of the ideal curve", "", ["value"]);
   const thd = group("Distortion", "", ["ideal", "pulses"]);
   const sine = group("Sine by segments", "", ["sine → segments"]);
+  const own = group(
+    "Steps",
+    "No plan is known here, so the steps that the views show are measured by themselves: those of the run, or as they were recorded.",
+    ["value"],
+  );
   fill(panel, about, rest);
 
   /** @param {Measures} found */
@@ -170,30 +210,32 @@ export function createMeasures({ engine, panel }) {
   /** @param {Spectra | null} spectra @param {number} axis */
   function distortion(spectra, axis) {
     const { ideal = null, pulses = null } = spectra?.axis === axis ? spectra : {};
-    thd.root.hidden = !ideal?.periodic || !pulses;
-    if (!ideal || !pulses) return;
-    say(thd.note, `To harmonic ${ideal.order} of ${si(ideal.fundamental_hz, "Hz", 5)}, in whole periods.`);
+    thd.root.hidden = !(ideal ?? pulses)?.periodic || !pulses;
+    if (!pulses) return;
+    // Without a plan only the pulses are known.
+    const { order, fundamental_hz } = ideal ?? pulses;
+    say(thd.note, `To harmonic ${order} of ${si(fundamental_hz, "Hz", 5)}, in whole periods.`);
+    const both = (
+      /** @type {"thd_position" | "thd_speed" | "thd_acceleration" | "thd_acceleration_filtered"} */ name,
+    ) => [percent(ideal?.[name] ?? null), percent(pulses[name])];
     thd.show([
       [
         "position",
-        percent(ideal.thd_position),
-        percent(pulses.thd_position),
+        ...both("thd_position"),
         "Root of the sum of squares of all harmonics but the first, over the first.",
       ],
-      ["speed", percent(ideal.thd_speed), percent(pulses.thd_speed), "Harmonic k counts k times."],
+      ["speed", ...both("thd_speed"), "Harmonic k counts k times."],
       [
         "acceleration",
-        percent(ideal.thd_acceleration),
-        percent(pulses.thd_acceleration),
+        ...both("thd_acceleration"),
         "Harmonic k counts k² times: of segments of fixed rate it grows with the order.",
       ],
-      ...(ideal.thd_acceleration_filtered === null
+      ...(pulses.thd_acceleration_filtered === null
         ? []
         : [
             [
               "acceleration filtered",
-              percent(ideal.thd_acceleration_filtered),
-              percent(pulses.thd_acceleration_filtered),
+              ...both("thd_acceleration_filtered"),
               "Behind the sensor's low pass, which the form sets.",
             ],
           ]),
@@ -203,27 +245,37 @@ export function createMeasures({ engine, panel }) {
   /** @param {State} state */
   async function refresh({ result, axis }) {
     if (!result) return;
-    const [found, spectra] = await Promise.all([
-      engine.considerRun("measures", "measures", result.controller, axis),
+    const { controller, summary } = result;
+    const [found, spectra, steps] = await Promise.all([
+      engine.considerRun("measures", "measures", controller, axis),
       engine.latest("measures-thd", "spectrum"),
-    ]).catch((error) => {
-      if (!(error instanceof Dropped)) {
-        // Too many steps to be measured, say.
-        rest.hidden = true;
-        say(about, error instanceof Error ? error.message : String(error));
-      }
-      return [];
-    });
+      engine.latest("measures-steps", "records_of", axis),
+    ])
+      .then(async ([found, spectra, run]) => {
+        // The slot is the measures' own: a newer question ends this one.
+        const figures =
+          found === null && (await engine.consider("measures", "step_figures", run, axis, summary.clock_hz));
+        return [found, spectra, /** @type {Figures | null} */ (figures || null)];
+      })
+      .catch((error) => {
+        if (!(error instanceof Dropped)) {
+          // Too many steps to be measured, say.
+          rest.hidden = true;
+          say(about, error instanceof Error ? error.message : String(error));
+        }
+        return [];
+      });
     if (found === undefined) return;
-    rest.hidden = !found;
-    say(
-      about,
-      found
-        ? `Axis ${axis} of the run that the views show.`
-        : `Axis ${axis} has no motion, so there is no curve to measure the pulses by.`,
-    );
-    if (!found) return;
-    show(found);
+    rest.hidden = !found && !steps;
+    own.root.hidden = !steps;
+    for (const { root } of [compared, duration, peaks, sine]) root.hidden = !found;
+    if (steps) {
+      say(about, `Channel ${axis}, as the views show it.`);
+      own.show(FIGURES.map(([name, of, text]) => [name, of(steps), text]));
+    } else if (found) {
+      say(about, `Axis ${axis} of the run that the views show.`);
+      show(found);
+    } else say(about, `Axis ${axis} has no motion, so there is no curve to measure the pulses by.`);
     distortion(spectra, axis);
   }
 

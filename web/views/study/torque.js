@@ -1,6 +1,6 @@
 /**
  * The tab Torque of the study: the torque that the selected axis' motor has at each rate, what the plan needs of it, where that is
- * too much, and which ramps leave enough. What a tab is, says study.js.
+ * too much, and which ramps leave enough; where no plan is known, what the steps need. What a tab is, says study.js.
  */
 import { button, element, fill, say } from "../../dom.js";
 import { count, plain, short, si } from "../../state/number.js";
@@ -8,6 +8,7 @@ import { get } from "../../state/state.js";
 import { color, draw, watch } from "../../time/plot.js";
 import { createJob, table } from "./parts.js";
 import { isAnother, selectedAxis } from "./selected_axis.js";
+import { motorChoice, selectedSteps } from "./selected_steps.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{at_s: number, rate: number, needed_mn_m: number, available_mn_m: number}} Moment */
@@ -15,7 +16,7 @@ import { isAnother, selectedAxis } from "./selected_axis.js";
  *   too_fast_s: [number, number] | null, without_ramps: boolean}} Ramps */
 /**
  * @typedef {{standing_mn_m: number, load_mn_m: number, corner_rate: number | null, torque_rate: number | null, working_rate: number | null,
- *   over_working_rate: number | null, jump: number, least: Moment | null, total: number,
+ *   over_working_rate: number | null, jump: number, least: Moment | null, total: number, window_s: number | null,
  *   shortages: {from_s: number, to_s: number, times: number, worst: Moment}[], ramps: Ramps[]}} Report
  * @typedef {{report: Report, rate: Float64Array, available: Float64Array, needed: Float64Array}} Torque
  */
@@ -78,7 +79,8 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
     element("div", { class: "study-column" }, chart, verdict, lacks.root),
     element("div", { class: "study-column study-side" }, facts.root, ramped, ramps.root, note),
   );
-  fill(panel, element("div", { class: "study-bar" }, about, job.root), body);
+  const motor = motorChoice(engine, () => refresh(now()));
+  fill(panel, element("div", { class: "study-bar" }, about, motor.root, job.root), body);
   body.hidden = true;
   /** @type {Torque | null} */
   let torque = null;
@@ -181,7 +183,7 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
     );
     say(
       note,
-      `${report.ramps.length ? "Enough torque: ramps with which it suffices throughout. Longest ramp for the rate limit: T − n/f_s (for ramps of area 1/2), with the motor's greatest rate for its load as f_s; the longest ramp possible is T/2. " : ""}${jump > 0 ? "A motor follows a jump of speed up to its start-stop rate, which these data do not tell. " : ""}The model: fundamental waves only, no saturation, no losses of iron and friction in the motor, no resonance.`,
+      `${report.window_s === null ? "" : `The acceleration of steps is taken over the rotor's natural period, ${si(report.window_s, "s")}: what comes and goes faster moves it little. `}${report.ramps.length ? "Enough torque: ramps with which it suffices throughout. Longest ramp for the rate limit: T − n/f_s (for ramps of area 1/2), with the motor's greatest rate for its load as f_s; the longest ramp possible is T/2. " : ""}${jump > 0 ? "A motor follows a jump of speed up to its start-stop rate, which these data do not tell. " : ""}The model: fundamental waves only, no saturation, no losses of iron and friction in the motor, no resonance.`,
     );
   }
 
@@ -199,6 +201,9 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
     const of = selectedAxis(state);
     panel.classList.toggle("stale", of === "");
     if (!of) return;
+    const listed = typeof of === "string" && !state.scenario.source?.motion;
+    motor.show(listed && !state.scenario.plant);
+    if (listed) return ofSteps(state);
     if (typeof of === "string") {
       asked = "";
       body.hidden = true;
@@ -219,6 +224,43 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
             add(),
           );
         say(about, `Axis ${of.axis}: what its motor has, and what its plan needs. Its data are in the form.`);
+        show(torque.report);
+        paint();
+      },
+    );
+  }
+
+  /** Of a channel without a plan: what its steps ask for. @param {State} state */
+  function ofSteps(state) {
+    const of = selectedSteps(state);
+    panel.classList.toggle("stale", of === null);
+    if (!of) return;
+    const { json, revision, controller, channel } = of;
+    const named = motor.value();
+    const next = JSON.stringify([revision, controller, channel, named]);
+    if (next === asked) return;
+    asked = next;
+    if (!state.scenario.plant && named === "") {
+      body.hidden = true;
+      say(about, "No motor is driven here: choose one to judge the steps for, or drive one in the view Motor.");
+      return;
+    }
+    const which = named === "" ? "its motor" : "this motor at 16 microsteps, on 24 V without a load,";
+    job.run(
+      async () => {
+        const run = await engine.ask("records_of", channel);
+        return engine.consider("torque", "torque_of_steps", json, controller, channel, run, named);
+      },
+      (/** @type {Torque | undefined} */ answer) => {
+        torque = answer ?? null;
+        body.hidden = torque === null;
+        if (!torque) return;
+        say(
+          about,
+          torque.report.least
+            ? `Channel ${channel}: what ${which} has, and what the steps need; no plan is known.`
+            : `Channel ${channel} makes no step, so nothing is asked of its motor.`,
+        );
         show(torque.report);
         paint();
       },

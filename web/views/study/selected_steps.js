@@ -1,0 +1,39 @@
+/** What the study is about where no plan is known: the steps of a channel, as the views show them. */
+import { element, fill } from "../../dom.js";
+import { isStale } from "../../state/state.js";
+
+/** @typedef {import("../../state/types.js").State} State */
+/** @typedef {import("../../engine/engine.js").Engine} Engine */
+/** @typedef {{json: string, revision: number, controller: number, channel: number, clock_hz: number}} SelectedSteps  Scenario as text, and a channel of one of its controllers. */
+
+/** The channel that the study is about; null where the source is a motion, or until the run of the scenario has come. @param {State} state @returns {SelectedSteps | null} */
+export function selectedSteps(state) {
+  const { judgement, judged, revision, scenario, result, axis: channel } = state;
+  if (!judgement || judged !== revision || scenario.source?.motion || !result || isStale(state)) return null;
+  const { controller, summary } = result;
+  return { json: judgement.scenario, revision, controller, channel, clock_hz: summary.clock_hz };
+}
+
+/** A choice out of the list of motors, which is asked for once. @param {Engine} engine @param {() => void} change */
+export function motorChoice(engine, change) {
+  const select = element("select", {});
+  const root = element("label", {}, "Motor ", select);
+  let loaded = false;
+  root.hidden = true;
+  select.addEventListener("change", change);
+  /** @param {boolean} wanted */
+  async function show(wanted) {
+    root.hidden = !wanted;
+    if (!wanted || loaded) return;
+    loaded = true;
+    const answer = await engine.consider("motors", "sheets").catch(() => null);
+    // Asked again with the next change of what is shown.
+    loaded = answer !== null;
+    if (!answer) return;
+    /** @type {{id: string, name: string}[]} */
+    const motors = answer.motors;
+    const listed = motors.map(({ id, name }) => element("option", { value: id }, name));
+    fill(select, element("option", { value: "" }, "none"), ...listed);
+  }
+  return { root, show, value: () => (root.hidden ? "" : select.value) };
+}
