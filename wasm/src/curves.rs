@@ -60,7 +60,7 @@ impl Readings {
 #[wasm_bindgen]
 impl Simulation {
     /// Position, speed and acceleration of an axis over a stretch of time: least and greatest values of each column,
-    /// and the points of the ideal curve's line.
+    /// and the points of the ideal curve's line. The pulses have an acceleration where no plan is known.
     #[must_use]
     pub fn motion(&mut self, axis: u8, t0_s: f64, t1_s: f64, columns: u32) -> Object {
         let window = window(t0_s, t1_s, columns);
@@ -68,6 +68,7 @@ impl Simulation {
         let centres: Vec<f64> = (0..window.columns).map(|column| window.centre_s(column)).collect();
         numbers(&result, "x", &centres);
         let plan = self.plan(axis);
+        let plan_is_none = plan.is_none();
         field(&result, "has_ideal", &plan.is_some().into());
         if let Some(plan) = plan {
             let ideal = curves::ideal(plan, self.zero_s(), window);
@@ -88,8 +89,16 @@ impl Simulation {
             }
         }
         self.count_steps(axis);
-        let actual = curves::actual(&self.pulses_of(axis), window);
-        for (name, band) in [("actual_position", actual.position), ("actual_speed", actual.speed)] {
+        let pulses = self.pulses_of(axis);
+        let curves::Actual { position, speed } = curves::actual(&pulses, window);
+        // Where a plan is known its acceleration is shown.
+        let acceleration = plan_is_none.then(|| curves::actual_acceleration(&pulses, window));
+        let bands = [
+            ("actual_position", Some(position)),
+            ("actual_speed", Some(speed)),
+            ("actual_acceleration", acceleration),
+        ];
+        for (name, band) in bands.into_iter().filter_map(|(name, band)| Some((name, band?))) {
             numbers(&result, &format!("{name}_min"), &band.min);
             numbers(&result, &format!("{name}_max"), &band.max);
         }

@@ -28,7 +28,7 @@
  *   position_min: Float64Array, position_max: Float64Array, speed_min: Float64Array, speed_max: Float64Array,
  *   acceleration_min: Float64Array, acceleration_max: Float64Array,
  *   actual_position_min: Float64Array, actual_position_max: Float64Array,
- *   actual_speed_min: Float64Array, actual_speed_max: Float64Array,
+ *   actual_speed_min: Float64Array, actual_speed_max: Float64Array, actual_acceleration_min?: Float64Array, actual_acceleration_max?: Float64Array,
  *   line_time_s: Float64Array, line_position: Float64Array, line_speed: Float64Array, line_acceleration: Float64Array}} MotionColumns
  * @typedef {{high: Uint32Array, low: Uint32Array, last: Uint32Array}} PulseColumns
  * @typedef {{start: number, end: number, texts: string[], bad: boolean, packet: number | null, sample: number | null}} LineSpan

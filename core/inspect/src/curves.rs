@@ -11,7 +11,7 @@
 //! assert_eq!(top, 16_000.0); // no column leaves a peak out
 //! ```
 
-use crate::actual_motion::Pulses;
+use crate::{actual_motion::Pulses, step_acceleration};
 use alloc::{vec, vec::Vec};
 use stepscope_motion::{AxisPlan, Breakpoints, Interval};
 use stepscope_peripheral::trace::Step;
@@ -275,6 +275,26 @@ pub fn actual(pulses: &Pulses<'_>, window: Window) -> Actual {
     });
     bands.speed.still(window, moved_to, window.end_s);
     bands
+}
+
+/// The acceleration of steps that no plan is known of ([`step_acceleration`]): each from its step to the next; nothing where
+/// it is not known.
+#[must_use]
+pub fn actual_acceleration(pulses: &Pulses<'_>, window: Window) -> Band {
+    let mut band = Band::new(window.columns);
+    let hz = pulses.hz();
+    let seconds = |index: usize| pulses.steps.get(index).map(|step| step.cycle as f64 / hz);
+    let first = pulses.steps.partition_point(|step| (step.cycle as f64 / hz) < window.start_s);
+    for index in first.saturating_sub(1)..pulses.steps.len() {
+        let (Some(from_s), Some(to_s)) = (seconds(index), seconds(index + 1)) else { break };
+        if from_s > window.end_s {
+            break;
+        }
+        if let Some(value) = step_acceleration::of(pulses.steps, index, hz) {
+            window.columns(from_s, to_s).for_each(|column| band.take(column, value));
+        }
+    }
+    band
 }
 
 #[cfg(test)]

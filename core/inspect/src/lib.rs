@@ -67,6 +67,7 @@ pub mod source_code;
 pub mod spectra;
 #[cfg(feature = "std")]
 pub mod spectrum;
+pub mod step_acceleration;
 pub mod step_tables;
 pub mod tables;
 pub mod timing;

@@ -234,6 +234,19 @@ fn the_recorded_pulses_are_judged_and_a_map_is_kept_for_the_next_file() -> Resul
         let opened = natively(&text, &ask, None)?;
         page.until_digest(&digest(&opened)).await?;
         ensure!(!page.eval::<bool>("document.body.innerText.includes('Against the baseline')").await?);
+        // Its acceleration is drawn: as great as its figures have it.
+        let greatest = opened.report.channels[0].figures.greatest_acceleration_steps_s2.context("steps")?;
+        let label = "document.getElementById('chart-acceleration').getAttribute('aria-label').replace(/\\u202f/g, '')";
+        page.until("document.getElementById('no-acceleration').hidden").await?;
+        let look = async || {
+            let said: String = page.eval(label).await?;
+            let numbers = said.split_once("from ").and_then(|(_, rest)| rest.split_once(" to "));
+            let (low, high) = numbers.context("a range")?;
+            let [low, high] = [low, high.split(' ').next().unwrap_or("")]
+                .map(|text| text.replace('\u{2212}', "-").parse::<f64>().unwrap_or(0.0));
+            anyhow::Ok(Some(low.abs().max(high)).filter(|most| (most / greatest - 1.0).abs() < 0.01))
+        };
+        page.eventually("the acceleration's range", look).await?;
 
         let rules = drivers::rules(&DriverTiming::Preset(DriverModel::A4988));
         let mut check = TimingCheck::new(&rules, opened.clock_hz, 1000);

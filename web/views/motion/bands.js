@@ -66,7 +66,8 @@ function curves(columns, quantity, scale) {
   const line = () => ({ x: columns.line_time_s, y: scaled(columns[`line_${quantity}`], scale) });
   return {
     ideal: columns.has_ideal ? { ...of(quantity), line: line() } : null,
-    actual: quantity === "acceleration" ? null : of(`actual_${quantity}`),
+    // An acceleration only where no motion is planned.
+    actual: columns.has_ideal && quantity === "acceleration" ? null : of(`actual_${quantity}`),
   };
 }
 
@@ -134,8 +135,18 @@ export function chartOf(state, seen, quantity) {
 }
 
 /** Why the chart of the acceleration looks empty, if so. @param {MotionColumns} columns */
-export function withoutAcceleration({ has_ideal, acceleration_min, acceleration_max, speed_min, speed_max }) {
-  if (!has_ideal) return "No motion is planned for this channel, so it has no ideal curve and no acceleration.";
+export function withoutAcceleration({
+  has_ideal,
+  actual_acceleration_min: own,
+  acceleration_min,
+  acceleration_max,
+  speed_min,
+  speed_max,
+}) {
+  if (!has_ideal)
+    return own?.some(Number.isFinite)
+      ? ""
+      : "No motion is planned for this channel, and no acceleration can be told of these steps.";
   const still = (/** @type {number} */ value) => !(Math.abs(value) > 0);
   if (!acceleration_min.every(still) || !acceleration_max.every(still)) return "";
   const [low, high] = [Math.min(...speed_min), Math.max(...speed_max)];

@@ -195,3 +195,32 @@ fn a_line_through_more_periods_than_columns_visits_its_extremes() {
         assert!((pair[0] + 20.0).abs() < 1e-6 && pair[1].abs() < 1e-6, "{pair:?}");
     }
 }
+
+#[test]
+fn the_acceleration_of_steps_is_that_of_their_figures_and_near_their_plans() {
+    use crate::recording::figures::StepFigures;
+    let json = r#"{"source":{"motion":{"engine":"segments","axes":[{"moves":[{"cosine":{}},
+        {"cosine":{"distance":{"steps":-3200}}}]}]}}}"#;
+    let experiment = stepscope_sim::Experiment::from_json(json).expect("no problems");
+    let mut recording = stepscope_peripheral::trace::Recording::default();
+    experiment.run(&mut recording);
+    let made = stepscope_peripheral::trace::steps(&recording.trace, 0);
+    let pulses = Pulses::recorded(0, &made, 16_000_000);
+    let end_s = made.last().expect("steps").cycle as f64 / 16e6;
+    let band = actual_acceleration(&pulses, Window { start_s: 0.0, end_s, columns: 97 });
+    let greatest = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+    let figures = StepFigures::of(made.iter().copied(), 16_000_000).expect("steps");
+    let most = greatest(&band.max).max(greatest(&band.min));
+    assert_eq!(Some(most), figures.greatest_acceleration_steps_s2);
+    // 2 pi n/T^2 of a cosine, up to the right, down to the left; nothing is told around the turn.
+    let peak = 2.0 * std::f64::consts::PI * 3200.0 / 0.16;
+    assert!((most / peak - 1.0).abs() < 0.01, "{most} {peak}");
+    assert!(band.max[12] > 0.9 * peak && band.min[36] < -0.9 * peak && band.min[60] < -0.9 * peak);
+    assert!(band.max.iter().any(|value| value.is_nan()));
+    // What a narrower look shows is a part of it.
+    let part = actual_acceleration(&pulses, Window { start_s: 0.2, end_s: 0.2001, columns: 3 });
+    assert!(part.max.iter().all(|value| value.abs() < 0.1 * peak), "{part:?}");
+    let few = Pulses::recorded(0, &made[..16], 16_000_000);
+    let none = actual_acceleration(&few, Window { start_s: 0.0, end_s, columns: 97 });
+    assert!(none.max.iter().all(|value| value.is_nan()));
+}

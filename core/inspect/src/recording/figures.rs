@@ -11,12 +11,10 @@
 //! assert_eq!(figures.greatest_rate_steps_s, Some(100.0));
 //! ```
 
+use crate::step_acceleration::{self, HALF};
 use alloc::collections::VecDeque;
 use serde::Serialize;
 use stepscope_peripheral::trace::Step;
-
-/// Steps that an acceleration is taken over: from step to step the rounding to cycles alone would make it.
-const BLOCK: usize = 8;
 
 /// The steps of a channel in numbers. Rates are 1 by the interval from step to step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -49,7 +47,7 @@ pub struct StepFigures {
     pub greatest_rate_steps_s: Option<f64>,
     /// Steps by the time from the first to the last, in steps/s.
     pub mean_rate_steps_s: Option<f64>,
-    /// Greatest magnitude of the acceleration, from each eight steps in one direction to the next eight, in steps/s^2.
+    /// Greatest magnitude of the acceleration ([`step_acceleration`]), in steps/s^2.
     pub greatest_acceleration_steps_s2: Option<f64>,
     /// Greatest part by which an interval differs from the one before it, in one direction: 0.1 for a tenth.
     pub greatest_interval_change: Option<f64>,
@@ -83,7 +81,7 @@ impl StepFigures {
         };
         let (mut shortest, mut longest) = (None::<(u64, u64)>, None::<u64>);
         let mut acceleration =
-            Acceleration { hz, steps: VecDeque::with_capacity(2 * BLOCK + 1), greatest: None };
+            Acceleration { hz, steps: VecDeque::with_capacity(2 * HALF + 1), greatest: None };
         // The step before, its direction, and the interval before it where that was in this direction.
         let (mut last, mut way, mut length) = (first, 0, None::<u64>);
         for step in core::iter::once(first).chain(steps) {
@@ -124,31 +122,22 @@ impl StepFigures {
     }
 }
 
-/// The greatest change of rate, from each block of steps to the next, by the time between their middles.
+/// The greatest acceleration.
 struct Acceleration {
     hz: f64,
-    /// The last ones: two blocks, and the step that the first begins at.
+    /// The last ones, as many as one is taken of.
     steps: VecDeque<Step>,
     greatest: Option<f64>,
 }
 
 impl Acceleration {
     fn take(&mut self, to: Step) {
+        if self.steps.len() > 2 * HALF {
+            self.steps.pop_front();
+        }
         self.steps.push_back(to);
-        if self.steps.len() <= 2 * BLOCK {
-            return;
-        }
-        let middle = self.steps.get(BLOCK).copied();
-        let Some((from, middle)) = self.steps.pop_front().zip(middle) else { return };
-        // In one direction all the way.
-        let way = to.position.wrapping_sub(from.position).unsigned_abs() as usize;
-        if way != 2 * BLOCK || from.cycle == middle.cycle || middle.cycle == to.cycle {
-            return;
-        }
-        let [first, second] =
-            [(from, middle), (middle, to)].map(|(a, b)| (b.cycle - a.cycle) as f64 / self.hz);
-        let change = BLOCK as f64 / second - BLOCK as f64 / first;
-        let found = libm::fabs(change) / ((first + second) / 2.0);
+        let Some(found) = step_acceleration::of(self.steps.make_contiguous(), HALF, self.hz) else { return };
+        let found = libm::fabs(found);
         self.greatest = Some(self.greatest.map_or(found, |most| libm::fmax(most, found)));
     }
 }
