@@ -102,10 +102,12 @@ struct Asked {
     clock_hz: Option<u32>,
     sample_rate_hz: Option<u64>,
     baud: Option<u32>,
-    /// When its first step, or byte, is to come, in s.
-    first_s: Option<f64>,
+    /// When one of its steps, or bytes, is to come, in s.
+    at_s: Option<f64>,
     /// Of this channel.
     channel: Option<u8>,
+    /// Which of them, from 0.
+    aligned: Option<usize>,
 }
 
 /// What it comes to.
@@ -161,19 +163,19 @@ impl CaptureFile {
         })
     }
 
-    /// Looks at it by what is said of it, `{map, clock_hz, sample_rate_hz, baud, first_s, channel}`, each of which may be left
-    /// out: `{map, clock_hz, rounding, end_s, records, notes, steps, lines}`.
+    /// Looks at it by what is said of it, `{map, clock_hz, sample_rate_hz, baud, at_s, channel, aligned}`, each of which
+    /// may be left out: `{map, clock_hz, rounding, end_s, records, notes, steps, lines}`.
     ///
     /// # Errors
     /// With what is missing, or wrong.
     pub fn look(&mut self, asked: JsValue) -> Result<JsValue, JsError> {
-        let Asked { map, clock_hz, sample_rate_hz, baud, first_s, channel } =
+        let Asked { map, clock_hz, sample_rate_hz, baud, at_s, channel, aligned } =
             serde_wasm_bindgen::from_value(asked).map_err(JsError::from)?;
         self.opened = None;
         let ask = Ask { map, clock_hz, sample_rate_hz, baud };
         let mut opened = Opened::new(self.capture.clone(), &ask)?;
-        if let Some(first_s) = first_s {
-            opened.begin_at(channel.unwrap_or(0), first_s);
+        if let Some(at_s) = at_s {
+            opened.align(channel.unwrap_or(0), aligned.unwrap_or(0), at_s)?;
         }
         let opened = self.opened.insert(opened);
         object(&Looked {
@@ -195,25 +197,32 @@ impl CaptureFile {
         Some(self.opened.as_ref()?.shown_scenario(file, steps).to_json())
     }
 
-    /// When the first step of a channel, or, where it has none, the first byte of RX comes in a run, in s: its records, as the
-    /// run gives them, in cycles of `clock_hz`. None where there is neither.
+    /// When step `aligned` of a channel, from 0, or, where this steps nowhere, that byte of RX comes in a run, in s: its
+    /// records, as the run gives them, in cycles of `clock_hz`. None where there is no such step or byte.
     #[must_use]
-    pub fn first_of(&self, run: &[u8], clock_hz: u32, channel: u8, baud: u32) -> Option<f64> {
+    pub fn time_of(&self, run: &[u8], clock_hz: u32, channel: u8, baud: u32, aligned: usize) -> Option<f64> {
         let kind = self.opened.as_ref()?.events(channel).kind;
-        Events::of_records(&records(run).collect::<Vec<_>>(), clock_hz, kind, channel, baud).first_s()
+        Events::of_records(&records(run).collect::<Vec<_>>(), clock_hz, kind, channel, baud).at_s(aligned)
     }
 
-    /// How it stands to such a run, the first steps, or bytes, of both taken for the same instant: the core's `Beside`; null
+    /// How it stands to such a run, step, or byte, `aligned` of both taken for the same instant: the core's `Beside`; null
     /// where one of both has none.
     ///
     /// # Errors
     /// Never in practice.
-    pub fn beside(&self, run: &[u8], clock_hz: u32, channel: u8, baud: u32) -> Result<JsValue, JsError> {
+    pub fn beside(
+        &self,
+        run: &[u8],
+        clock_hz: u32,
+        channel: u8,
+        baud: u32,
+        aligned: usize,
+    ) -> Result<JsValue, JsError> {
         let found = self.opened.as_ref().and_then(|opened| {
             let own = opened.events(channel);
             let model =
                 Events::of_records(&records(run).collect::<Vec<_>>(), clock_hz, own.kind, channel, baud);
-            own.beside(&model, 0, 1.0 / f64::from(own.clock_hz.min(model.clock_hz)))
+            own.beside(&model, aligned, 1.0 / f64::from(own.clock_hz.min(model.clock_hz)))
         });
         object(&found)
     }

@@ -10,8 +10,8 @@ import { compiled } from "./wasm.js";
  *   mean_rate_steps_s: number | null, greatest_acceleration_steps_s2: number | null}}} ChannelSteps
  * @typedef {{map: string, clock_hz: number, rounding: string, end_s: number, records: number, notes: string[],
  *   steps: ChannelSteps[], lines: string[]}} Looked
- * @typedef {{map?: string, clock_hz?: number, sample_rate_hz?: bigint, baud?: number, first_s?: number, channel?: number}} Asked
- * @typedef {{records: Uint8Array, clock_hz: number, channel: number, baud: number}} Model  What a run has of a channel and of RX.
+ * @typedef {{map?: string, clock_hz?: number, sample_rate_hz?: bigint, baud?: number, at_s?: number, channel?: number, aligned?: number}} Asked
+ * @typedef {{records: Uint8Array, clock_hz: number, channel: number, baud: number, aligned: number}} Model  What a run has of a channel and of RX, and the step, or byte, that both have at one time.
  */
 
 /** Most changes that a page keeps; in the worker and in the run they take 48 bytes each. */
@@ -62,10 +62,11 @@ export function openCapture(file, onProgress) {
     look: (by) => ask("look", by),
     /** The scenario that it is shown with. @param {boolean} ofSteps @returns {Promise<string>} */
     scenario: (ofSteps) => ask("scenario", sample?.file ?? /** @type {File} */ (file).name, ofSteps),
-    /** When the first step, or byte, of a run comes, in s. @param {Model} of @returns {Promise<number | undefined>} */
-    firstOf: ({ records, clock_hz, channel, baud }) => ask("first_of", records, clock_hz, channel, baud),
+    /** When the step, or byte, of a run comes, in s. @param {Model} of @returns {Promise<number | undefined>} */
+    timeOf: ({ records, clock_hz, channel, baud, aligned }) =>
+      ask("time_of", records, clock_hz, channel, baud, aligned),
     /** How it stands to a run. @param {Model} of @returns {Promise<any>} */
-    beside: ({ records, clock_hz, channel, baud }) => ask("beside", records, clock_hz, channel, baud),
+    beside: ({ records, clock_hz, channel, baud, aligned }) => ask("beside", records, clock_hz, channel, baud, aligned),
     /** All of its records, in pieces. @param {number} count @returns {Promise<Uint8Array[]>} */
     async records(count) {
       const pieces = [];

@@ -101,8 +101,13 @@ function show(page, file, capture, facts, { body, foot, close }) {
   const result = element("div", { class: "recorded", "aria-live": "polite" });
   const plan = planOf();
   const besides = element("input", { id: "recording-beside", type: "checkbox", ...(plan ? { checked: "" } : {}) });
-  const beside = element("label", { class: "check" }, besides, ` beside this experiment, from the first step on`);
+  const beside = element("label", { class: "check" }, besides, ` beside this experiment`);
+  const align = numberField("Aligned by step", "", "0, the first", 0);
   beside.hidden = plan === null;
+  const showAlign = () => {
+    align.label.hidden = plan === null || !besides.checked;
+  };
+  showAlign();
   const take = button(
     "Show it",
     "Show it: look at the recording with all views",
@@ -124,11 +129,13 @@ function show(page, file, capture, facts, { body, foot, close }) {
     ...(facts.has_levels ? [table(rows)] : []),
     element("div", { class: "fields" }, ...fields.map(({ label }) => label)),
     beside,
+    align.label,
     result,
   );
   put(facts.has_levels ? (keptMap(channels) ?? facts.map) : "");
   body.addEventListener("input", () => {
     clearTimeout(timer);
+    showAlign();
     // What was looked at is no longer what is asked.
     asking += 1;
     take.disabled = true;
@@ -183,7 +190,7 @@ function show(page, file, capture, facts, { body, foot, close }) {
   async function look(more = {}) {
     const own = ++asking;
     take.disabled = true;
-    if (fields.some((field) => field.isWrong())) return;
+    if ([...fields, ...(besides.checked ? [align] : [])].some((field) => field.isWrong())) return;
     try {
       if (facts.has_levels && map() === "") throw new Error("choose which channel is STEP, DIR, RX or TX");
       const found = await capture.look(asked(more));
@@ -235,14 +242,19 @@ function show(page, file, capture, facts, { body, foot, close }) {
     if (looked && looked.lines.length > 0 && !clock.value()) clock.set(base.clock_hz);
     const model = besides.checked ? planOf() : null;
     const channel = now().axis;
+    const aligned = align.value();
+    const one = looked?.steps.length === 0 ? "byte" : "step";
     const beside = model && {
+      aligned,
       records: await engine.ask("records_of", channel),
       clock_hz: model.summary.clock_hz,
       channel,
       baud: base.line.baud,
     };
-    const first_s = beside && (await capture.firstOf(beside));
-    await look(typeof first_s === "number" ? { first_s, channel } : {});
+    const at_s = beside && (await capture.timeOf(beside));
+    if (beside && aligned > 0 && typeof at_s !== "number")
+      throw new Error(`the experiment has no ${one} ${count(aligned)}, from 0; align by one that both have`);
+    await look(typeof at_s === "number" ? { at_s, channel, aligned } : {});
     if (!looked) return;
     const found = beside && (await capture.beside(beside));
     if (facts.has_levels) keepMap(channels, map());
@@ -282,7 +294,7 @@ function show(page, file, capture, facts, { body, foot, close }) {
     if (!shown) return;
     const cycle = Math.round(found.largest.recorded_s * shown.summary.clock_hz);
     const place = around(cycle, cycle, shown.summary.end_cycle, shown.controller);
-    dispatch({ type: "notice", notice: { kind: "info", text: `${compared(found)} ${text}`, place } });
+    dispatch({ type: "notice", notice: { kind: "info", text: `${compared(found, aligned)} ${text}`, place } });
   }
 
   /** @param {boolean} isBeside @param {boolean} isRecorded */
@@ -294,9 +306,13 @@ function show(page, file, capture, facts, { body, foot, close }) {
   }
 }
 
-/** Each step, or byte, beside the baseline's, in one sentence. @param {any} found */
-function compared({ kind, recorded, model, differing, largest, rms_s, drift_ppm, rms_jitter_s, other_values }) {
+/** Each step, or byte, beside the baseline's, in one sentence. @param {any} found @param {number} aligned */
+function compared(
+  { kind, recorded, model, differing, largest, rms_s, drift_ppm, rms_jitter_s, other_values },
+  aligned,
+) {
   const one = kind.slice(0, -1);
+  const by = aligned > 0 ? `, aligned by ${one} ${count(aligned)}` : "";
   const all =
     recorded === model
       ? `all ${count(recorded)} ${kind}`
@@ -309,7 +325,7 @@ function compared({ kind, recorded, model, differing, largest, rms_s, drift_ppm,
     Math.abs(drift_ppm) > MAX_DRIFT_PPM
       ? ""
       : ` Drift ${drift_ppm.toFixed(1).replace(/^-(0\.0)$/, "$1")} ppm, jitter without it ${time(rms_jitter_s)} RMS.`;
-  return `Beside the baseline: ${all} compared, ${count(differing)} are off by more than a cycle; ${late}${values}; RMS ${time(rms_s)}.${drift}`;
+  return `Beside the baseline${by}: ${all} compared, ${count(differing)} are off by more than a cycle; ${late}${values}; RMS ${time(rms_s)}.${drift}`;
 }
 
 /** Bytes go to the controllers of the experiment before, where these have the same clock. @param {string} made @param {any} base */
@@ -349,9 +365,9 @@ function table(rows) {
   );
 }
 
-/** A whole number that may be left empty; what is wrong with it stands under it. @param {string} name @param {string} unit @param {string} empty */
-function numberField(name, unit, empty) {
-  const id = `recording-${name.toLowerCase().replace(" ", "-")}`;
+/** A whole number that may be left empty; what is wrong with it stands under it. @param {string} name @param {string} unit @param {string} empty @param {number} [least] */
+function numberField(name, unit, empty, least = 1) {
+  const id = `recording-${name.toLowerCase().replaceAll(" ", "-")}`;
   const input = element("input", {
     id,
     type: "text",
@@ -363,8 +379,8 @@ function numberField(name, unit, empty) {
   const read = () => {
     if (input.value.trim() === "") return { value: 0 };
     const read = parseNumber(input.value, unit, { integer: true });
-    const fits = "message" in read || (read.value > 0 && read.value <= GREATEST);
-    return fits ? read : { message: `Give 1 to ${GREATEST} ${unit}.` };
+    const fits = "message" in read || (read.value >= least && read.value <= GREATEST);
+    return fits ? read : { message: `Give ${least} to ${GREATEST}${unit && " "}${unit}.` };
   };
   input.addEventListener("input", () => {
     const found = read();
@@ -372,7 +388,7 @@ function numberField(name, unit, empty) {
     input.setAttribute("aria-invalid", String("message" in found));
   });
   return {
-    label: element("div", {}, element("label", { for: id }, `${name}, ${unit} `), input, error),
+    label: element("div", {}, element("label", { for: id }, `${name}${unit && ", "}${unit} `), input, error),
     isWrong: () => "message" in read(),
     value: () => {
       const found = read();

@@ -211,10 +211,13 @@ fn open(capture: Capture, ask: &Ask) {
         Err(error) => return assert!(!error.to_string().is_empty()),
     };
     look_at(&opened);
-    opened.begin_at(0, 0.001);
-    look_at(&opened);
-    opened.begin_at(0, 0.0);
-    look_at(&opened);
+    for (aligned, at_s) in [(0, 0.001), (3, 1.0), (1, 0.0), (0, 0.0)] {
+        let before = opened.clone();
+        match opened.align(0, aligned, at_s) {
+            Ok(()) => look_at(&opened),
+            Err(error) => assert!(!error.to_string().is_empty() && opened == before),
+        }
+    }
 }
 
 fn look_at(opened: &Opened) {

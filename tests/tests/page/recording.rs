@@ -77,7 +77,7 @@ fn saleae(trace: &[Record], clock_hz: u32, signals: &[(&str, u64)]) -> String {
 fn natively(text: &str, ask: &Ask, first_step_s: Option<f64>) -> Result<Opened> {
     let reading = read(Cursor::new(text.as_bytes()), &Limits::default(), &mut |_| true);
     let mut opened = Opened::new(reading.capture, ask)?;
-    first_step_s.into_iter().for_each(|at| opened.begin_at(0, at));
+    first_step_s.into_iter().try_for_each(|at| opened.align(0, 0, at))?;
     Ok(opened)
 }
 
@@ -213,6 +213,50 @@ fn a_recording_is_mapped_and_stands_beside_the_model_until_it_is_undone() -> Res
         *start = json!(801);
         page.fill("source.segments.channels[0].start_cycle", "801").await?;
         page.until_digest(&Known::of(&scenario.to_string())?.digest).await
+    })
+}
+
+#[test]
+fn a_recording_is_aligned_by_the_step_that_is_chosen_and_by_none_that_one_of_both_lacks() -> Result<()> {
+    in_browser(|page| async move {
+        let (own, text) = (Known::of(&with_distance(800.0))?, cosine());
+        page.open("").await?;
+        page.fill(DISTANCE, "800").await?;
+        page.until_digest(&own.digest).await?;
+        choose_file(&page, "mine.csv", &text).await?;
+        says(&page, "200 steps, 200 right and 0 left").await?;
+        // Alone there is nothing to align by.
+        let aligned = "#recording-aligned-by-step";
+        page.click("#recording-beside").await?;
+        ensure!(!page.visible(aligned).await?);
+        page.click("#recording-beside").await?;
+        ensure!(page.visible(aligned).await?);
+        type_into(&page, "Aligned by step", "-1").await?;
+        page.until(
+            "document.getElementById('recording-aligned-by-step-error').innerText.includes('Give 0 to')",
+        )
+        .await?;
+        for (step, why) in [
+            ("900", "The experiment has no step 900, from 0; align by one that both have"),
+            ("250", "There is no step 250: 200 steps were recorded, from 0; align by one that both have"),
+        ] {
+            type_into(&page, "Aligned by step", step).await?;
+            page.until(READY).await?;
+            page.click(SHOW).await?;
+            says(&page, why).await?;
+            ensure!(!page.eval::<bool>(CLOSED).await?);
+        }
+        type_into(&page, "Aligned by step", "50").await?;
+        page.until(READY).await?;
+        page.click(SHOW).await?;
+        let mut opened = natively(&text, &Ask::default(), None)?;
+        let model = steps(&own.recording.trace, 0);
+        opened.align(0, 50, own.seconds(model.get(50).context("it steps")?.cycle))?;
+        page.until_digest(&digest(&opened)).await?;
+        page.until(&format!(
+            "{MESSAGE}.startsWith('Beside the baseline, aligned by step 50: 200 steps, the baseline has 800')"
+        ))
+        .await
     })
 }
 

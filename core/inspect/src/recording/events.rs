@@ -118,10 +118,10 @@ impl Events {
         }
     }
 
-    /// When the first comes, in s.
+    /// When number `index` comes, from 0, in s.
     #[must_use]
-    pub fn first_s(&self) -> Option<f64> {
-        self.steps.first().map(|step| step.cycle as f64 / f64::from(self.clock_hz))
+    pub fn at_s(&self, index: usize) -> Option<f64> {
+        self.steps.get(index).map(|step| step.cycle as f64 / f64::from(self.clock_hz))
     }
 
     /// How many there are.

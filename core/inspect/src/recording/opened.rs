@@ -13,7 +13,7 @@
 //! ```
 
 use super::{
-    events::Events,
+    events::{Events, Kind},
     figures::StepFigures,
     report::{ChannelReport, LineReport, Report},
     scenario::{self, Bytes, Made, Refused, Steps},
@@ -122,6 +122,49 @@ impl fmt::Display for OpenError {
 }
 
 impl core::error::Error for OpenError {}
+
+/// Why a capture cannot be laid beside a model by a step, or a byte.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Misaligned {
+    /// It has none of that number.
+    None {
+        /// What it has.
+        kind: Kind,
+        /// The number, from 0.
+        aligned: usize,
+        /// How many it has.
+        count: usize,
+    },
+    /// The first one would come before the model begins, or with it.
+    Early {
+        /// What it has.
+        kind: Kind,
+        /// The number of the one that both have at one time.
+        aligned: usize,
+        /// When the first one would come, in s.
+        first_s: f64,
+    },
+}
+
+impl fmt::Display for Misaligned {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::None { kind, aligned, count } => write!(
+                f,
+                "there is no {} {aligned}: {count} {} were recorded, from 0; align by one that both have",
+                kind.singular(),
+                kind.plural()
+            ),
+            Self::Early { kind, aligned, first_s } => write!(
+                f,
+                "aligned by {0} {aligned} the first {0} would come at {first_s:.6} s, before the experiment begins; align by another one",
+                kind.singular()
+            ),
+        }
+    }
+}
+
+impl core::error::Error for Misaligned {}
 
 /// A capture in cycles.
 #[derive(Clone, Debug, PartialEq)]
@@ -264,12 +307,23 @@ impl Opened {
         Ok(())
     }
 
-    /// Puts all of it so much later, or earlier, that the first step of a channel, or, where nothing steps, the first byte,
-    /// comes at a time, in s. What would come before cycle 0 is what stands at it.
-    pub fn begin_at(&mut self, channel: u8, at_s: f64) {
+    /// Puts all of it so much later, or earlier, that step `aligned` of a channel, from 0, or, where nothing steps, that byte,
+    /// comes at a time, in s. Levels that would stand before cycle 0 stand at it. Where nothing comes, nothing is moved.
+    ///
+    /// # Errors
+    /// [`Misaligned`]: where something comes, but none of that number, or the first one would come before cycle 0.
+    pub fn align(&mut self, channel: u8, aligned: usize, at_s: f64) -> Result<(), Misaligned> {
         let hz = f64::from(self.clock_hz);
-        let Some(first_s) = self.events(channel).first_s() else { return };
-        let by = libm::round((at_s - first_s) * hz) as i64;
+        let events = self.events(channel);
+        let Some(first_s) = events.at_s(0) else { return Ok(()) };
+        let (kind, count) = (events.kind, events.len());
+        let now_s = events.at_s(aligned).ok_or(Misaligned::None { kind, aligned, count })?;
+        let first_s = first_s + (at_s - now_s);
+        // One that rises in cycle 0 is none: nothing is before it.
+        if libm::round(first_s * hz) < 1.0 {
+            return Err(Misaligned::Early { kind, aligned, first_s });
+        }
+        let by = libm::round((at_s - now_s) * hz) as i64;
         let moved = |cycle: u64| cycle.saturating_add_signed(by);
         for record in &mut self.records {
             record.cycle = Instant(moved(record.cycle.0));
@@ -293,6 +347,7 @@ impl Opened {
             Some(ChannelReport { channel, figures })
         };
         self.report.channels = channels.filter_map(figures).collect();
+        Ok(())
     }
 
     /// The scenario that it is shown with: [`Self::scenario`], or, where there is none, one that has its clock and its
@@ -441,4 +496,52 @@ fn likely_baud(heard: &Heard, clock_hz: u32) -> u32 {
     }
     let needed = libm::round(needed) as u32;
     if shared || needed == 0 { needed.max(USUAL_BAUD) } else { needed }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stepscope_capture::read::{Limits, read};
+
+    /// Steps at 1, 2, 3 and 5 ms, as Saleae Logic saves them.
+    fn opened() -> Opened {
+        let text = "Time [s],STEP,DIR\n0.0,0,1\n0.001,1,1\n0.0011,0,1\n0.002,1,1\n0.0021,0,1\n0.003,1,1\n0.0031,0,1\n0.005,1,1\n0.0051,0,1\n";
+        let reading = read(std::io::Cursor::new(text), &Limits::default(), &mut |_| true);
+        Opened::new(reading.capture, &Ask { clock_hz: Some(1_000_000), ..Ask::default() }).expect("it opens")
+    }
+
+    #[test]
+    fn any_step_can_be_put_to_a_time_as_long_as_none_comes_before_cycle_0() {
+        for (aligned, at_s, expected) in [
+            (0, 0.01, Ok([10_000, 11_000, 12_000, 14_000])),
+            (3, 0.01, Ok([6000, 7000, 8000, 10_000])),
+            (2, 0.002_001, Ok([1, 1001, 2001, 4001])),
+            (
+                2,
+                0.001,
+                Err(
+                    "aligned by step 2 the first step would come at -0.001000 s, before the experiment begins; align by another one",
+                ),
+            ),
+            (4, 0.01, Err("there is no step 4: 4 steps were recorded, from 0; align by one that both have")),
+        ] {
+            let mut found = opened();
+            let before = found.clone();
+            let aligned = found.align(0, aligned, at_s);
+            match expected {
+                Ok(expected) => {
+                    aligned.expect("it can be");
+                    let cycles: Vec<u64> = found.steps_of(0).iter().map(|step| step.cycle).collect();
+                    assert_eq!(cycles, expected);
+                }
+                Err(expected) => {
+                    assert_eq!(aligned.expect_err("it cannot be").to_string(), expected);
+                    assert_eq!(found, before);
+                }
+            }
+        }
+        // A channel on which nothing comes moves nothing.
+        let mut found = opened();
+        assert_eq!((found.align(1, 7, 0.01), &found), (Ok(()), &opened()));
+    }
 }
