@@ -17,7 +17,7 @@ use std::{
 use stepscope_core::{
     inspect::{
         source_code::{Language, Source, headline, is_name},
-        step_tables::tolerance_cycles,
+        step_tables::{scheduled, tolerance_cycles},
     },
     motion::{
         AxisPlan, Cause, ScheduledStep, plan_lists,
@@ -30,7 +30,7 @@ use stepscope_core::{
     peripheral::{
         config::Config,
         segment::PulseTimes,
-        trace::{Recording, Step, steps},
+        trace::{Recording, steps},
     },
     scenario::{Motion, Problem, Scenario, Source as ScenarioSource, ValueError, of_config, of_motion},
     sim::Experiment,
@@ -266,14 +266,7 @@ fn made(scenario: &Scenario) -> Result<Vec<Vec<ScheduledStep>>, Vec<Problem>> {
     let experiment = Experiment::new(scenario)?;
     let mut recording = Recording::default();
     experiment.run(&mut recording);
-    let of = |channel| -> Vec<ScheduledStep> {
-        let steps = steps(&recording.trace, channel);
-        let scheduled = |(index, step): (usize, &Step)| ScheduledStep {
-            cycle: step.cycle - 1,
-            right: Step::direction(&steps, index) > 0,
-        };
-        steps.iter().enumerate().map(scheduled).collect()
-    };
+    let of = |channel| scheduled(&steps(&recording.trace, channel));
     let mut all: Vec<_> = (0..experiment.config().channels()).map(of).collect();
     while all.last().is_some_and(Vec::is_empty) {
         all.pop();

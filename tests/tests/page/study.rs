@@ -8,12 +8,13 @@ use stepscope_core::{
         sine_optimum::{Freedom, optimum},
         sine_polyline::{Distinct, Row, best, sweep},
         source_code::{Language, Source, headline},
+        step_tables::scheduled,
     },
     motion::{
         motor::Motor,
-        quantise::{EntryFormat, Form, Stored, Tolerance, stored_quickly},
+        quantise::{EntryFormat, Form, Stored, Tolerance, stored_quickly, stored_steps_quickly},
     },
-    peripheral::{segment::PulseTimes, units::Cycles},
+    peripheral::{segment::PulseTimes, trace::steps, units::Cycles},
     scenario::{Scenario, link::decode},
     sim::Experiment,
 };
@@ -301,9 +302,12 @@ fn native(known: &Known, form: &str, format: EntryFormat, error_us: u64) -> Resu
         "document" => Form::Document,
         _ => Form::Compressed(Tolerance::of(Cycles(error_us * u64::from(config.clock_hz()) / 1_000_000))),
     };
-    let plan = known.experiment.plans().first().context("no axis")?;
-    stored_quickly(plan, form, format, PulseTimes::from(config), config.clock_hz())
-        .map_err(|cause| anyhow!("{cause}"))
+    let pulse = PulseTimes::from(config);
+    let stored = match known.experiment.plans().first() {
+        Some(plan) => stored_quickly(plan, form, format, pulse, config.clock_hz()),
+        None => stored_steps_quickly(&scheduled(&steps(&known.recording.trace, 0)), form, format, pulse),
+    };
+    stored.map_err(|cause| anyhow!("{cause}"))
 }
 
 async fn tables_are_the_cores(page: &Session, known: &Known, error_us: u64) -> Result<()> {
@@ -377,7 +381,7 @@ fn the_tables_numbers_and_files_are_the_cores() -> Result<()> {
         page.until("document.querySelector('#export-list [data-file]') !== null").await?;
         page.until("document.querySelector('[data-file=\"a-sine-axis-0-document-q8-avr.c\"]')").await?;
 
-        // A motion without a table of its own says why; a source without axes has nothing to keep.
+        // A motion without a table of its own says why; of a source without axes the steps of its run are kept.
         let cosine = Known::of("{}")?;
         page.open(&format!("#{}&v=tstudy.ytables", cosine.link)).await?;
         page.until(made).await?;
@@ -385,9 +389,11 @@ fn the_tables_numbers_and_files_are_the_cores() -> Result<()> {
         let packets = Known::of(r#"{"source":{"packets":{"packets":["8a"]}}}"#)?;
         page.open(&format!("#{}&v=tstudy.ytables", packets.link)).await?;
         page.until(
-            "document.querySelector('#study-tables .study-note').textContent.startsWith('There is no axis')",
+            "document.querySelector('#study-tables .study-note').textContent.replace(/\\u202f/g, '').startsWith('Channel 0: 10 steps, as the views show them')",
         )
-        .await
+        .await?;
+        page.until(made).await?;
+        tables_are_the_cores(&page, &packets, 25).await
     })
 }
 

@@ -1,10 +1,11 @@
-/** The step tables of an axis as files for a firmware: in the study's tab Tables and in the export panel. */
+/** The step tables of an axis, or of what the views show, as files for a firmware: in the study's tab Tables and in the export panel. */
 import { baseName } from "../../shell/offers.js";
 import { selectedAxis } from "./selected_axis.js";
+import { selectedSteps } from "./selected_steps.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../engine/engine.js").Engine} Engine */
-/** @typedef {import("./selected_axis.js").SelectedAxis} SelectedAxis */
+/** @typedef {{json: string, controller: number, axis: number, run: number | null}} Tabled  An axis, or, where no plan is known, a channel and the revision that it is shown of. */
 /** @typedef {{form: string, widths: string, us: number}} Choice */
 
 /** @type {{[form: string]: string}} */
@@ -19,14 +20,32 @@ export const LANGUAGES = {
 /** The table that is chosen in the tab, which the export panel offers, too. @type {Choice} */
 export const chosen = { form: "compressed", widths: "q16", us: 25 };
 
+/** Whose steps are kept. @param {State} state @returns {Tabled | string | null}  As `selectedAxis`. */
+export function tabled(state) {
+  const of = selectedAxis(state);
+  if (of && typeof of !== "string") return { ...of, run: null };
+  if (of !== null && of !== "" && !state.scenario.source?.motion) {
+    const steps = selectedSteps(state);
+    return steps && { json: steps.json, controller: steps.controller, axis: steps.channel, run: steps.revision };
+  }
+  return /** @type {string | null} */ (of);
+}
+
+/** A question about tables, and how its arguments begin. @param {Engine} engine @param {"step_table" | "step_source"} name @param {Tabled} of @returns {Promise<[string, any[]]>} */
+export async function question(engine, name, { json, controller, axis, run }) {
+  const begin = [json, controller, axis];
+  return run === null ? [name, begin] : [`${name}_of_run`, [...begin, await engine.ask("records_of", axis)]];
+}
+
 /** Files of the table that is chosen, for the export panel. @param {State} state @param {Engine} engine @returns {import("../../shell/offers.js").Offer[]} */
 export function tableFiles(state, engine) {
-  const of = selectedAxis(state);
+  const of = tabled(state);
   return of && typeof of !== "string" ? files(state, engine, of) : [];
 }
 
-/** @param {State} state @param {Engine} engine @param {SelectedAxis} of */
-export function files(state, engine, { json, controller, axis }) {
+/** @param {State} state @param {Engine} engine @param {Tabled} of */
+export function files(state, engine, of) {
+  const { controller, axis } = of;
   const { form, widths, us } = chosen;
   const part = controller > 0 ? `-controller-${controller + 1}` : "";
   return Object.entries(LANGUAGES).map(([language, [label, ending, type]]) => ({
@@ -34,11 +53,10 @@ export function files(state, engine, { json, controller, axis }) {
     type,
     label: `${label}: axis ${axis}, ${form}, ${widths}`,
     language,
-    make: () =>
-      engine.distribute(
-        "step_source",
-        [[json, controller, axis, form, widths, us, language]],
-        new AbortController().signal,
-      ),
+    make: async () => {
+      const [method, begin] = await question(engine, "step_source", of);
+      const pieces = [[...begin, form, widths, us, language]];
+      return engine.distribute(method, pieces, new AbortController().signal);
+    },
   }));
 }

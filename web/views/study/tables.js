@@ -1,13 +1,13 @@
 /**
- * The tab Tables of the study: how the step times of the selected axis can be stored, what each form costs, how good it is,
- * and each as a file for a firmware. What a tab is, says study.js.
+ * The tab Tables of the study: how the step times of the selected axis, or, where no plan is known, those that the views show
+ * can be stored, what each form costs, how good it is, and each as a file for a firmware. What a tab is, says study.js.
  */
 import { element, fill, say } from "../../dom.js";
 import { save } from "../../shell/save.js";
 import { count, counted, plain, pretty, short, si } from "../../state/number.js";
 import { createJob, field, table } from "./parts.js";
-import { isAnother, selectedAxis } from "./selected_axis.js";
-import { chosen, FORMS, files, LANGUAGES } from "./table_files.js";
+import { isAnother } from "./selected_axis.js";
+import { chosen, FORMS, files, LANGUAGES, question, tabled } from "./table_files.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{steps: number, entries: number, bytes: number, document_bytes: number | null, largest_s: number, rms_s: number, why: string | null}} Form */
@@ -56,7 +56,7 @@ export function createTables({ engine, now, panel }) {
       pick.checked = pick.value === `${chosen.form}-${chosen.widths}`;
       pick.closest("tr")?.classList.toggle("chosen", pick.checked);
     }
-    const of = selectedAxis(now());
+    const of = tabled(now());
     if (!of || typeof of === "string") return fill(saves);
     const none =
       forms[ROWS.findIndex(({ form, widths }) => form === chosen.form && widths === chosen.widths)]?.why !== null;
@@ -144,7 +144,7 @@ export function createTables({ engine, now, panel }) {
 
   /** @param {State} state */
   function refresh(state) {
-    const of = selectedAxis(state);
+    const of = tabled(state);
     if (of === null) return;
     panel.classList.toggle("stale", of === "");
     if (of === "") return;
@@ -155,15 +155,16 @@ export function createTables({ engine, now, panel }) {
       return;
     }
     chosen.us = error.value();
-    const next = JSON.stringify([of.json, of.controller, of.axis, chosen.us]);
+    const next = JSON.stringify([of.json, of.controller, of.axis, of.run, chosen.us]);
     if (next === key) return mark();
     key = next;
     job.run(
       async (signal, tell) => {
         let done = 0;
         tell(0, `0 of ${ROWS.length} tables`);
-        const pieces = ROWS.map(({ form, widths }) => [of.json, of.controller, of.axis, form, widths, chosen.us]);
-        return engine.distribute("step_table", pieces, signal, () =>
+        const [method, begin] = await question(engine, "step_table", of);
+        const pieces = ROWS.map(({ form, widths }) => [...begin, form, widths, chosen.us]);
+        return engine.distribute(method, pieces, signal, () =>
           tell(++done / pieces.length, `${done} of ${pieces.length} tables`),
         );
       },
@@ -173,7 +174,7 @@ export function createTables({ engine, now, panel }) {
         const derived = now().derived?.controllers[of.controller]?.axes[of.axis];
         say(
           about,
-          `Axis ${of.axis}: ${counted(made[0].steps, "step")}${derived ? ` in ${si(derived.duration_s, "s")}, up to ${plain(derived.peak_speed_steps_s, "steps/s")}` : ""}.`,
+          `${of.run === null ? "Axis" : "Channel"} ${of.axis}: ${counted(made[0].steps, "step")}${of.run === null ? "" : ", as the views show them; no plan is known"}${derived ? ` in ${si(derived.duration_s, "s")}, up to ${plain(derived.peak_speed_steps_s, "steps/s")}` : ""}.`,
         );
         show();
       },
