@@ -4,7 +4,8 @@ use js_sys::JSON;
 use stepscope_core::scenario::schema::describe;
 use wasm_bindgen::prelude::*;
 
-/// The schema as a plain object: `{root, documents, groups}`, as `scenario::schema::describe` writes it.
+/// The schema as a plain object: `{root, documents, groups}`, as `scenario::schema::describe` writes it. What terms mean
+/// stands in `web/help/explained.js`, which loads with the first card.
 ///
 /// # Errors
 /// Never in practice: what the core writes is JSON.

@@ -11,7 +11,7 @@
 /** @typedef {{name: string, label: string, text: string}} Word */
 /**
  * @typedef {{name: string, label: string, text: string, type: Type, range: string, most?: number, unit?: string, empty?: string,
- *   term?: string, explained?: string, from?: string, when?: Field["when"]}} Row  A field of a group, or a kind of a choice.
+ *   term?: string, from?: string, when?: Field["when"]}} Row  A field of a group, or a kind of a choice.
  * @typedef {{doc: string, choice: boolean, default: any, fields: Row[]}} Group
  * @typedef {{documents: {[id: string]: {short: string, title: string}}, groups: {[name: string]: Group}}} Schema
  */
@@ -19,9 +19,17 @@
 /** @type {Schema} */
 let schema = { documents: {}, groups: {} };
 
+/** What terms mean, by group and name, once it is loaded. @type {{[id: string]: string}} */
+let explanations = {};
+
 /** Takes what the core says; nothing is built before. @param {Schema} described */
 export function takeSchema(described) {
   schema = described;
+}
+
+/** Takes what terms mean. @param {{[id: string]: string}} all */
+export function takeExplanations(all) {
+  explanations = all;
 }
 
 /** Where terms come from. */
@@ -81,8 +89,8 @@ export function termOf(id) {
   const [group, name] = id.split(".");
   const found = schema.groups[group]?.fields.find((each) => each.name === name);
   if (!found) return undefined;
-  const { label, text, term, explained, from } = found;
-  return { name: term ?? label, text: plain(explained ?? text), from };
+  const { label, text, term, from } = found;
+  return { name: term ?? label, text: plain(explanations[id] ?? text), from };
 }
 
 /** All terms of groups or of all but those, by their ids. @returns {{[id: string]: Term}} */

@@ -3,7 +3,7 @@
  * all of them; a click elsewhere and Escape close it.
  */
 import { byId, element, fill } from "../dom.js";
-import { documents, termOf } from "../form/schema.js";
+import { documents, takeExplanations, termOf } from "../form/schema.js";
 import { CARD, termButton } from "../form/term_button.js";
 import { VIEWS } from "../state/views.js";
 
@@ -53,6 +53,12 @@ export function createCard() {
 /** The word whose card is on show, or was last. @type {HTMLElement | null} */
 let opener = null;
 
+/** Loads what the terms of fields mean; where that fails their fields' own text stands for it, and the next card asks again. */
+async function explained() {
+  const found = await import("./explained.js").catch(() => null);
+  if (found) takeExplanations(found.EXPLAINED);
+}
+
 /** What the cards say of no field. @type {Promise<typeof import("./texts.js")> | null} */
 let loading = null;
 
@@ -72,6 +78,7 @@ async function show(word) {
   if (opener !== word) opener?.setAttribute("aria-expanded", "false");
   opener = word;
   const name = word.dataset.term ?? "";
+  if (termOf(name)) await explained();
   const own = termOf(name);
   const texts = own ? null : await load();
   // Another word was asked for meanwhile.

@@ -1,15 +1,17 @@
 /** The help page: its lists are those that the page itself uses. */
 import { byId, element, fill } from "../dom.js";
 import { compiled } from "../engine/wasm.js";
-import { documents, labels, takeSchema, termOf, terms } from "../form/schema.js";
+import { documents, labels, takeExplanations, takeSchema, termOf, terms } from "../form/schema.js";
 import init, { schema } from "../pkg/stepscope_wasm.js";
 import { meaning } from "./card.js";
+import { EXPLAINED } from "./explained.js";
 import { CARDS, DERIVED } from "./texts.js";
 
 /** @typedef {import("../form/field.js").Term} Term */
 
 await init({ module_or_path: await compiled() });
 takeSchema(schema());
+takeExplanations(EXPLAINED);
 
 /** The kinds of a choice, each with what it is. @param {string} group */
 const kinds = (group) =>

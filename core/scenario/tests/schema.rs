@@ -51,6 +51,32 @@ fn every_row_says_what_it_is_and_what_it_is_called() {
 }
 
 #[test]
+fn the_pages_explanations_are_what_the_schema_says() {
+    let mut said = std::collections::BTreeMap::new();
+    each(&Scenario::TYPE, "", &mut Vec::new(), &mut |_, group, field| {
+        if !field.explained.is_empty() {
+            said.insert(format!("{}.{}", group.name, field.name), field.explained);
+        }
+    });
+    let mut text = String::from("/** What the terms of a scenario's fields mean: written from the schema by its test, STEPSCOPE_BLESS=1. */\n");
+    text += "/** @type {{[id: string]: string}} */\nexport const EXPLAINED = {\n";
+    for (id, explained) in said {
+        let value = serde_json::to_string(explained).expect("a text");
+        let line = format!("  \"{id}\": {value},");
+        // As the formatter breaks it.
+        let broken = format!("  \"{id}\":\n    {value},");
+        text += if line.chars().count() <= 120 { &line } else { &broken };
+        text += "\n";
+    }
+    text += "};\n";
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../web/help/explained.js");
+    if std::env::var_os("STEPSCOPE_BLESS").is_some() {
+        fs::write(file, &text).expect("the file can be written");
+    }
+    assert_eq!(fs::read_to_string(file).unwrap_or_default(), text, "STEPSCOPE_BLESS=1 writes web/help/explained.js");
+}
+
+#[test]
 fn what_the_form_asks_is_explained() {
     // Segments are typed as lines, and the version is no one's to give.
     let asked = |group: &Group, field: &Field| {

@@ -254,9 +254,9 @@ impl Field {
         Self { empty, ..self }
     }
 
-    /// The help's card: its head and its text.
+    /// The help's card: its head and its text, which a build without the feature `explanations` leaves out.
     pub(crate) const fn term(self, term: &'static str, explained: &'static str) -> Self {
-        Self { term, explained, ..self }
+        Self { term, explained: if cfg!(feature = "explanations") { explained } else { "" }, ..self }
     }
 
     /// Which document it comes from.
