@@ -36,25 +36,22 @@ struct Writing {
     byte: u8,
     /// The cycle in which it was begun.
     begun: u64,
+    /// It is not there before this cycle, however long it takes by w.
+    not_before: u64,
 }
 
 impl Eeprom {
     pub(crate) fn new(len: usize, byte_write_cycles: u32, initial: &Initial, factory: &[u8]) -> Self {
-        let mut bytes = vec![ERASED; len];
         let given: &[u8] = match initial {
             Initial::Blank => &[],
             Initial::Factory => factory,
             Initial::Bytes(given) => given,
         };
-        for (byte, given) in bytes.iter_mut().zip(given) {
-            *byte = *given;
-        }
-        Self {
-            bytes,
-            writes: vec![0; len],
-            byte_write_cycles: u64::from(byte_write_cycles).max(1),
-            writing: None,
-        }
+        let byte_write_cycles = u64::from(byte_write_cycles).max(1);
+        let mut eeprom =
+            Self { bytes: vec![ERASED; len], writes: vec![0; len], byte_write_cycles, writing: None };
+        eeprom.load(given);
+        eeprom
     }
 
     pub(crate) fn bytes(&self) -> &[u8] {
@@ -76,15 +73,35 @@ impl Eeprom {
 
     /// When the byte under way is there.
     pub(crate) fn due(&self) -> u64 {
-        let due = |writing: &Writing| writing.begun.saturating_add(self.byte_write_cycles);
+        let due =
+            |writing: &Writing| writing.begun.saturating_add(self.byte_write_cycles).max(writing.not_before);
         self.writing.as_ref().map_or(u64::MAX, due)
+    }
+
+    /// When the byte under way was begun, its address, and the byte; `None` where none is.
+    pub(crate) fn under_way(&self) -> Option<(u64, usize, u8)> {
+        self.writing.as_ref().map(|writing| (writing.begun, writing.address, writing.byte))
+    }
+
+    /// The byte under way is not there before `cycle`: the cell of a chip takes longer.
+    pub(crate) const fn postpone(&mut self, cycle: u64) {
+        if let Some(writing) = &mut self.writing {
+            writing.not_before = cycle;
+        }
+    }
+
+    /// What it holds from address 0 on; the rest stays.
+    pub(crate) fn load(&mut self, memory: &[u8]) {
+        for (byte, given) in self.bytes.iter_mut().zip(memory) {
+            *byte = *given;
+        }
     }
 
     /// Begins to write a record; one at a time.
     pub(crate) fn begin(&mut self, now: u64, address: usize, record: Vec<u8>) {
         debug_assert!(self.writing.is_none(), "a record is under way");
         let mut left = record.into_iter();
-        self.writing = left.next().map(|byte| Writing { address, left, byte, begun: now });
+        self.writing = left.next().map(|byte| Writing { address, left, byte, begun: now, not_before: 0 });
     }
 
     /// A byte is complete in cycle `now`: whether it was the last of its record.
@@ -97,8 +114,8 @@ impl Eeprom {
         let next = writing.left.next();
         let is_last = next.is_none();
         if let Some(byte) = next {
-            (writing.address, writing.byte, writing.begun) = (writing.address + 1, byte, now);
-            self.writing = Some(writing);
+            let Writing { address, left, .. } = writing;
+            self.writing = Some(Writing { address: address + 1, left, byte, begun: now, not_before: 0 });
         }
         is_last
     }
@@ -148,6 +165,18 @@ mod tests {
         assert_eq!((eeprom.bytes(), eeprom.due()), (&[0x55, 1, 0x55, 0x55][..], 120));
         assert!(eeprom.complete(120) && eeprom.is_idle());
         assert_eq!((eeprom.bytes(), eeprom.writes()), (&[0x55, 1, 2, 0x55][..], &[0, 1, 1, 0][..]));
+    }
+
+    #[test]
+    fn a_byte_that_is_postponed_is_there_later_and_the_next_takes_its_own_time() {
+        let mut eeprom = eeprom();
+        eeprom.begin(100, 1, vec![1, 2]);
+        eeprom.postpone(115);
+        assert!(!eeprom.complete(114) && eeprom.under_way() == Some((100, 1, 1)));
+        assert!(!eeprom.complete(115) && eeprom.under_way() == Some((115, 2, 2)));
+        assert_eq!((eeprom.bytes()[1], eeprom.due()), (1, 125));
+        eeprom.postpone(90);
+        assert_eq!(eeprom.due(), 125, "no byte takes less than w");
     }
 
     #[test]

@@ -68,13 +68,18 @@ impl StandAlone {
         if own.script.has(input) {
             return Err(NotEntered::Refused(Refusal::Twice { name: change.name(), cycle: at }));
         }
-        let hears = |index| index == controller || script::is_shared(change);
+        self.insert(controller, input);
+        Ok(())
+    }
+
+    /// Puts an entry that is allowed into the scripts of all that hear it.
+    pub(crate) fn insert(&mut self, controller: usize, input: Input) {
+        let hears = |index| index == controller || script::is_shared(input.change);
         for (index, (other, due)) in self.controllers.iter_mut().zip(&mut self.due).enumerate() {
             if hears(index) {
                 other.script.enter(input);
-                *due = (*due).min(at.0);
+                *due = (*due).min(input.cycle.0);
             }
         }
-        Ok(())
     }
 }

@@ -7,7 +7,7 @@
 //! ```text
 //! limits, input, parameters -> refusal, check, checked -> table, motion, pins, debounce, axis, numbers, eeprom, journal,
 //! script, panel -> controller (state, one cycle) -> pulses, store, power, buttons, moves, homing, program (what it does)
-//! -> machine (all of them on a bus), enter, report
+//! -> machine (all of them on a bus), enter, report -> powered_up, chip (what hardware offers), runner (the machine on it)
 //! ```
 //!
 //! ```
@@ -39,6 +39,7 @@ extern crate alloc;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+pub mod chip;
 pub mod input;
 pub mod limits;
 pub mod panel;
@@ -60,11 +61,13 @@ mod moves;
 mod numbers;
 mod pins;
 mod power;
+mod powered_up;
 mod program;
 mod pulses;
 mod reactions;
 mod refusal;
 mod report;
+mod runner;
 mod script;
 mod state;
 mod store;
@@ -76,5 +79,6 @@ pub use controller::Press;
 pub use enter::NotEntered;
 pub use machine::StandAlone;
 pub use refusal::{Refusal, Refused, Warned, Warning};
+pub use runner::{Lateness, NotRunnable, Runner};
 pub use state::{Alarm, State, TRUST};
 pub use work::Work;

@@ -46,7 +46,7 @@ pub struct StandAlone {
     pub(crate) now: u64,
     levels: Levels,
     /// Groups that have begun, of all controllers.
-    begun: u64,
+    pub(crate) begun: u64,
     work: Option<Work>,
 }
 

@@ -47,6 +47,11 @@ impl Pins {
         }
     }
 
+    /// Before cycle 0, where the driver is not to be powered at all.
+    pub(crate) const fn stay_off(&mut self) {
+        (self.en, self.next_en) = (false, false);
+    }
+
     /// What the cycle before ordered.
     pub(crate) fn take_orders(&mut self, now: u64) {
         if self.ordered > now {
