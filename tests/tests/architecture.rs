@@ -347,7 +347,9 @@ fn sources() -> impl Iterator<Item = String> {
 
 #[test]
 fn no_file_waits_in_a_circle_for_another() {
-    for source in sources().chain(["cli/src", "wasm/src", "firmware/src"].map(str::to_owned)) {
+    for source in
+        sources().chain(["cli/src", "wasm/src", "firmware/src", "firmware/controller/src"].map(str::to_owned))
+    {
         let modules = modules(&source);
         if let Some(way) = circle(&uses(&modules)) {
             let files: Vec<&str> = way.iter().map(|&at| modules[at].file.as_str()).collect();
@@ -462,9 +464,11 @@ fn dependencies(package: &str) -> Vec<String> {
 }
 
 #[test]
-fn firmware_knows_the_registers_alone_and_they_know_nothing() {
+fn firmware_knows_the_registers_or_the_controller_alone_and_they_know_nothing_of_it() {
     assert_eq!(dependencies("core/registers"), Vec::<String>::new());
     assert_eq!(dependencies("firmware"), ["stepscope-registers.workspace = true"]);
+    let controller = ["stepscope-controller.workspace = true", "stepscope-peripheral.workspace = true"];
+    assert_eq!(dependencies("firmware/controller"), controller, "no scenario, no simulation");
     for package in ["core/registers", "firmware"] {
         let text = fs::read_to_string(root().join(package).join("src/lib.rs")).unwrap();
         assert!(text.contains("#![no_std]") && !text.contains("extern crate"), "{package} needs nothing");

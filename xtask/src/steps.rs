@@ -72,7 +72,8 @@ impl Step {
                 }
                 clippy(&format!("--package stepscope-bench --lib --target {WASM}")).await?;
                 let packages = format!(
-                    "--package stepscope-core --package stepscope-firmware --package {}",
+                    "--package stepscope-core --package stepscope-firmware --package stepscope-controller-firmware \
+                     --package {}",
                     bare_metal::PACKAGE
                 );
                 clippy(&format!("{packages} --no-default-features --target {BARE_METAL}")).await

@@ -60,6 +60,7 @@ pub trait Chip {
 
     /// The panel shows something else: state, alarm, trust, outputs, group or loop, or what is edited. While it moves the
     /// position changes with each step and this is not called; [`Runner::face`](crate::Runner::face) tells it at any time.
+    /// An edge may be due in the very tick, so a slow display is written elsewhere.
     fn show(&mut self, face: Face);
 
     /// A byte of the EEPROM, while none is being written.

@@ -1,0 +1,79 @@
+//! A timer of few bits, counted on: a tick of it is a cycle of the machine.
+//!
+//! ```text
+//! counter  0 … 0xff_ffff 0 … 0xff_ffff 0 …     24 bits of SysTick, counted up (its register counts down)
+//! tick     0 … 0xff_ffff 0x100_0000 …          never back, never around
+//! ```
+//!
+//! It has to be read at least once while the counter goes round, so whoever sleeps longer wakes between:
+//! [`Clock::nap`].
+//!
+//! ```
+//! use stepscope_controller_firmware::clock::Clock;
+//! use stepscope_peripheral::units::Instant;
+//!
+//! let mut clock = Clock::new(24);
+//! assert_eq!(clock.tick(0xff_fff0), Instant(0xff_fff0));
+//! assert_eq!(clock.tick(5), Instant(0x100_0005));
+//! ```
+
+use stepscope_peripheral::units::{Cycles, Instant};
+
+/// Counts a timer on.
+#[derive(Clone, Copy, Debug)]
+pub struct Clock {
+    mask: u32,
+    tick: u64,
+}
+
+impl Clock {
+    /// Of a timer of 1 to 32 bits that begins near 0.
+    #[must_use]
+    pub const fn new(bits: u32) -> Self {
+        let mask = if bits >= u32::BITS { u32::MAX } else { (1 << bits) - 1 };
+        Self { mask, tick: 0 }
+    }
+
+    /// The tick, where the timer's counter, counted up, is this. It has gone round at most once since the call before.
+    pub fn tick(&mut self, counter: u32) -> Instant {
+        let passed = counter.wrapping_sub(self.tick as u32) & self.mask;
+        self.tick += u64::from(passed);
+        Instant(self.tick)
+    }
+
+    /// For how long it may be slept until `wake`, and half a round of the counter at most.
+    #[must_use]
+    pub fn nap(&self, wake: Option<Instant>) -> Cycles {
+        let most = u64::from(self.mask / 2);
+        Cycles(wake.map_or(most, |wake| wake.0.saturating_sub(self.tick).min(most)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_timer_of_any_width_is_counted_on_over_many_rounds() {
+        for bits in [8, 16, 24, 32] {
+            let (mut clock, mut tick) = (Clock::new(bits), 0_u64);
+            let round = 1_u64 << bits;
+            for step in [0, 1, round - 1, round / 2, round / 3, round - 1, 7] {
+                tick += step;
+                assert_eq!(clock.tick((tick % round) as u32), Instant(tick), "{bits} bits, {step}");
+            }
+        }
+    }
+
+    #[test]
+    fn nobody_sleeps_through_a_round_of_the_counter() {
+        let mut clock = Clock::new(24);
+        let now = clock.tick(1000).0;
+        for (wake, expected) in
+            [(Some(now + 50), 50), (Some(now), 0), (Some(3), 0), (Some(now + (1 << 30)), 0x7f_ffff)]
+        {
+            assert_eq!(clock.nap(wake.map(Instant)), Cycles(expected));
+        }
+        assert_eq!(clock.nap(None), Cycles(0x7f_ffff));
+    }
+}

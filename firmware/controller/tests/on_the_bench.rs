@@ -1,0 +1,321 @@
+//! The machine on a chip without hardware gives the simulation's edges and panel; late interrupts make edges late and
+//! nothing else; and what the EEPROM says after any power cut is true.
+#![allow(clippy::expect_used, reason = "what is refused fails the test")]
+
+use core::ops::ControlFlow;
+use stepscope_controller::{
+    Alarm, Checked, NotRunnable, Runner, State,
+    chip::Chip,
+    input::{Change, Input, Signal},
+    panel,
+    parameters::{Axis, Group, Jump, Memory, Move, Parameters, Policy, Setup},
+};
+use stepscope_controller_firmware::{bench::Bench, run};
+use stepscope_core::{
+    peripheral::{
+        signal::{Levels, Record},
+        trace::Digest,
+        units::Instant,
+    },
+    sim::Experiment,
+};
+
+/// A golden case: its scenario, digest and status.
+macro_rules! case {
+    ($scenario:expr, $folder:expr) => {
+        (
+            include_str!($scenario),
+            include_str!(concat!("../../../tests/golden/", $folder, "/digest")),
+            include_str!(concat!("../../../tests/golden/", $folder, "/status")),
+        )
+    };
+}
+macro_rules! preset {
+    ($id:literal) => {
+        case!(concat!("../../../core/scenario/presets/", $id, ".json"), concat!("preset-", $id))
+    };
+}
+type Case = (&'static str, &'static str, &'static str);
+
+const POWER_CUT: Case = preset!("controller-power-cut");
+const PROGRAM: Case = preset!("zhang-2012-program");
+
+fn cases() -> [Case; 8] {
+    [
+        preset!("zhang-2012-controller"),
+        PROGRAM,
+        preset!("zhang-2012-zero-by-jog"),
+        preset!("controller-emergency-stop"),
+        POWER_CUT,
+        preset!("controller-power-cut-lost"),
+        case!("../../../tests/golden/controller-cut-in-a-byte/scenario.json", "controller-cut-in-a-byte"),
+        case!("../../../tests/golden/controller-tap-of-a-jog/scenario.json", "controller-tap-of-a-jog"),
+    ]
+}
+
+/// The controller of a scenario without axis and script, and the script: the chip's own are real.
+fn split(json: &str) -> (Checked, Vec<Input>) {
+    let experiment = Experiment::from_json(json).expect("it has no problems");
+    let mut setup = experiment.stand_alone().expect("it has controllers").setup();
+    let inputs = std::mem::take(&mut setup.controllers[0].inputs);
+    setup.controllers[0].axis = None;
+    (setup.check().expect("it holds"), inputs)
+}
+
+fn checked(parameters: Parameters) -> Checked {
+    Setup { controllers: vec![parameters], ..Setup::default() }.check().expect("it holds")
+}
+
+fn level(cycle: u64, signal: Signal, level: bool) -> Input {
+    Input { cycle: Instant(cycle), change: Change::Level(signal, level) }
+}
+
+/// Start is pressed at tick 3 200 000 for 0.1 s, after the self-test.
+fn start() -> [Input; 2] {
+    [level(3_200_000, Signal::Start, true), level(4_800_000, Signal::Start, false)]
+}
+
+/// Numbers below a limit, the same in each run (xorshift64).
+struct Dice(u64);
+
+impl Dice {
+    fn below(&mut self, limit: u64) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0 % limit.max(1)
+    }
+}
+
+#[test]
+fn the_pins_and_the_panel_of_a_chip_are_those_of_the_simulation() {
+    for (json, digest, status) in cases() {
+        let (checked, inputs) = split(json);
+        let mut chip = Bench::new(&checked, inputs, Digest::default());
+        let runner = run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, 0)).expect("it runs");
+        assert_eq!(format!("{:016x}", chip.sink.value()), digest.trim(), "{json}");
+        let panels = format!("panels {:016x}", panel::digest([chip.shown.as_slice()]));
+        assert!(status.lines().any(|line| line == panels), "{panels} is not that of {json}");
+        assert_eq!(runner.lateness().total.0, 0);
+    }
+}
+
+#[test]
+fn a_chip_that_dies_and_starts_anew_has_the_same_edges() {
+    let (checked, inputs) = split(POWER_CUT.0);
+    let (dies, back) = (Instant(11_200_000 + 3_200_000), Instant(27_200_000));
+    let mut chip = Bench::new(&checked, inputs, Digest::default());
+    run(
+        &mut chip,
+        &checked,
+        |chip, _, wake| {
+            if chip.now() == dies { ControlFlow::Break(()) } else { chip.sleep(wake, 0) }
+        },
+    )
+    .expect("it runs");
+    chip.power_off();
+    // It wakes in the cycle after the power is there again, as a machine without power does.
+    while chip.now() <= back {
+        let _ = chip.sleep(Some(Instant(back.0 + 1)), 0);
+        chip.inputs();
+    }
+    let runner = run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, 0)).expect("it runs");
+    assert_eq!(format!("{:016x}", chip.sink.value()), POWER_CUT.1.trim());
+    assert_eq!(runner.machine().position(0).map(i64::from), Some(chip.place));
+}
+
+#[test]
+fn late_interrupts_make_edges_late_and_no_edge_is_lost_or_too_close() {
+    let (checked, inputs) = split(PROGRAM.0);
+    let mut in_time = Bench::new(&checked, inputs.clone(), Vec::<Record>::new());
+    run(&mut in_time, &checked, |chip, _, wake| chip.sleep(wake, 0)).expect("it runs");
+    // From less than a pulse to more than the time between two steps.
+    for most in [30, 500, 20_000] {
+        let mut dice = Dice(most);
+        let mut chip = Bench::new(&checked, inputs.clone(), Vec::<Record>::new());
+        let mut totals = Vec::new();
+        let runner = run(&mut chip, &checked, |chip, runner, wake| {
+            totals.resize(chip.sink.len(), runner.lateness().total.0);
+            chip.sleep(wake, dice.below(most + 1))
+        })
+        .expect("it runs");
+        assert_eq!(chip.sink.len(), in_time.sink.len(), "{most}");
+        assert_eq!((chip.place, runner.machine().position(0)), (in_time.place, Some(0)));
+        let lateness = runner.lateness();
+        assert!(lateness.worst.0 <= most && lateness.total >= lateness.worst && lateness.total.0 > 0);
+
+        // Of the machine's own time each edge has the same as ever, from the press on, whenever that was heard.
+        let cycle = |index: usize| (chip.sink[index].cycle.0 - totals[index]).cast_signed();
+        let press = cycle(1) - in_time.sink[1].cycle.0.cast_signed();
+        for (index, (edge, expected)) in chip.sink.iter().zip(&in_time.sink).enumerate().skip(1) {
+            assert_eq!(edge.levels, expected.levels, "{index}");
+            assert_eq!(cycle(index), expected.cycle.0.cast_signed() + press, "{index}");
+        }
+        for (late, exact) in chip.sink.windows(2).zip(in_time.sink.windows(2)).skip(1) {
+            assert!(late[1].cycle.0 - late[0].cycle.0 >= exact[1].cycle.0 - exact[0].cycle.0);
+        }
+    }
+}
+
+#[test]
+fn what_the_eeprom_says_after_a_cut_in_any_tick_is_true() {
+    let mut dice = Dice(2012);
+    let (mut known, mut lost) = (0, 0);
+    for policy in [Policy::PowerLoss, Policy::WriteAhead] {
+        for round in 0..400 {
+            // A byte takes 1000 ticks by the data sheet; here also twice as many.
+            let memory =
+                Memory { policy, byte_write_cycles: 1000, hold_up_cycles: 18_000, ..Memory::default() };
+            let long = Move { length: 5, speed_hz: 1000, delay_ms: 3, ..Move::default() };
+            let back = Move { length: 2, direction: 0, ..long.clone() };
+            let groups = vec![Group::Move(long), Group::Move(back)];
+            let checked = checked(Parameters {
+                groups,
+                memory,
+                debounce_cycles: 10,
+                loops: 2,
+                ..Parameters::default()
+            });
+            // Start at tick 30 000; the program ends about 2.4 million later. The cut is announced or not.
+            let (cut, is_announced) = (20_000 + dice.below(4_000_000), round % 2 == 0);
+            let mut inputs = vec![level(30_000, Signal::Start, true), level(40_000, Signal::Start, false)];
+            if is_announced {
+                inputs.push(level(cut, Signal::Power, false));
+            }
+            let mut chip = Bench::new(&checked, inputs, Digest::default());
+            chip.byte_write_ticks = 500 + dice.below(1500);
+            let dies = cut + if is_announced { dice.below(36_000) } else { 0 };
+            let most = [1, 30, 2000][round % 3];
+            run(&mut chip, &checked, |chip, _, wake| {
+                let wake = wake.map_or(dies, |wake| wake.0.min(dies));
+                let slept = chip.sleep(Some(Instant(wake)), dice.below(most));
+                if chip.now().0 >= dies { ControlFlow::Break(()) } else { slept }
+            })
+            .expect("it runs");
+            chip.power_off();
+            let runner = Runner::power_up(chip.now(), &checked, &mut chip).expect("it runs");
+            match runner.machine().believed_after_power_up(0) {
+                Some((position, 1..)) => {
+                    assert_eq!(i64::from(position), chip.place, "{policy:?} {round}: cut in {cut}");
+                    known += 1;
+                }
+                _ => lost += 1,
+            }
+        }
+    }
+    assert!(known > 100 && lost > 100, "both are to be seen: {known} known, {lost} lost");
+}
+
+#[test]
+fn no_step_rises_before_a_slow_eeprom_has_the_opening_record() {
+    for policy in [Policy::PowerLoss, Policy::WriteAhead] {
+        let memory = Memory { policy, byte_write_cycles: 1000, ..Memory::default() };
+        let group = Group::Move(Move { length: 1, ..Move::default() });
+        let checked = checked(Parameters { groups: vec![group], memory, ..Parameters::default() });
+        let inputs = [level(10_000, Signal::Start, true), level(400_000, Signal::Start, false)];
+        let mut chip = Bench::new(&checked, inputs, Vec::<Record>::new());
+        chip.byte_write_ticks = 50_000;
+        run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, 0)).expect("it runs");
+        let first = chip.sink.iter().find(|edge| edge.levels.step() != 0).map(|edge| edge.cycle.0);
+        // With `power_loss` the record is written in the self-test, and the press falls into that.
+        let expected = (policy == Policy::WriteAhead).then_some(10_000 + 16 * 50_000);
+        assert_eq!(first.is_some(), expected.is_some(), "{policy:?}");
+        assert!(first >= expected, "{first:?}");
+        assert_eq!(chip.place, if expected.is_some() { 10 } else { 0 });
+    }
+}
+
+#[test]
+fn what_is_held_at_power_up_is_no_press_and_an_emergency_stop_keeps_the_driver_off() {
+    let rows = [(Signal::Start, State::Ready, true), (Signal::Estop, State::Alarm, false)];
+    for (signal, expected, is_on) in rows {
+        let checked = checked(Parameters::default());
+        let mut chip = Bench::new(&checked, [level(0, signal, true)], Vec::<Record>::new());
+        let runner = run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, 0)).expect("it runs");
+        assert_eq!(runner.machine().state(0), Some(expected), "{signal:?}");
+        assert!(chip.sink.iter().all(|edge| edge.levels.has(Levels::EN) == is_on && edge.levels.step() == 0));
+    }
+}
+
+#[test]
+fn a_limit_switch_that_is_closed_at_power_up_counts() {
+    let checked = checked(Parameters::default());
+    let closed = level(0, Signal::LimitMax, true);
+    let mut chip = Bench::new(&checked, start().into_iter().chain([closed]), Digest::default());
+    let runner = run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, 0)).expect("it runs");
+    assert_eq!((runner.machine().alarm(0), chip.place), (Some(Alarm::Limit), 0));
+}
+
+#[test]
+fn an_emergency_stop_is_heard_at_once_however_late_the_chip_is() {
+    let checked = checked(Parameters::default());
+    for most in [0, 7, 3000, 100_000] {
+        let pressed = 12_345_678;
+        let inputs = start().into_iter().chain([level(pressed, Signal::Estop, true)]);
+        let (mut chip, mut dice) = (Bench::new(&checked, inputs, Vec::<Record>::new()), Dice(7));
+        run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, dice.below(most + 1))).expect("it runs");
+        let off = chip.sink.iter().find(|edge| !edge.levels.has(Levels::EN)).expect("it stops");
+        assert!((pressed + 1..=pressed + 1 + 2 * most).contains(&off.cycle.0), "{most}: {}", off.cycle.0);
+        assert_eq!((off.levels.step(), chip.sink.last()), (0, Some(off)));
+    }
+}
+
+#[test]
+fn homing_to_a_real_switch_finds_the_place_of_it() {
+    let json = include_str!("../../../core/scenario/presets/controller-homing.json");
+    for most in [0, 40, 5000] {
+        let (checked, inputs) = split(json);
+        let (mut chip, mut dice) = (Bench::new(&checked, inputs, Digest::default()), Dice(9));
+        (chip.place, chip.home_switch) = (800, Some((-30, 0)));
+        let runner = run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, dice.below(most + 1)))
+            .expect("it runs");
+        let machine = runner.machine();
+        assert_eq!((machine.position(0), machine.trust(0), chip.place), (Some(0), Some(2), 0), "{most}");
+    }
+}
+
+#[test]
+fn a_program_that_goes_round_for_ever_does_not_stop_a_chip_and_fills_no_memory() {
+    let groups = vec![Group::Jump(Jump::default())];
+    let checked = checked(Parameters { groups, debounce_cycles: 0, ..Parameters::default() });
+    let (mut chip, mut polls) = (Bench::new(&checked, start(), Digest::default()), 0);
+    let runner = run(&mut chip, &checked, |chip, _, wake| {
+        polls += 1;
+        if polls > 1_100_000 { ControlFlow::Break(()) } else { chip.sleep(wake, 0) }
+    })
+    .expect("it runs");
+    let machine = runner.machine();
+    assert_eq!((machine.state(0), machine.work(), machine.panel(0).len()), (Some(State::Running), None, 0));
+}
+
+#[test]
+fn a_chip_has_one_controller_and_real_switches() {
+    let two = Setup { channels: 2, controllers: vec![Parameters::default(); 2], ..Setup::default() };
+    let axis = Parameters { axis: Some(Axis::default()), ..Parameters::default() };
+    for (checked, expected, text) in [
+        (
+            two.check().expect("it holds"),
+            NotRunnable::Controllers(2),
+            "2 controllers; a chip runs one: give it its own",
+        ),
+        (checked(axis), NotRunnable::Axis, "axis: on a chip the switches are real; leave the axis out"),
+    ] {
+        let mut chip = Bench::new(&checked, [], Digest::default());
+        let refused = Runner::power_up(Instant(0), &checked, &mut chip).map(|_| ());
+        assert_eq!(refused, Err(expected));
+        assert_eq!(expected.to_string(), text);
+    }
+}
+
+#[test]
+fn a_poll_too_early_or_twice_in_a_tick_changes_nothing() {
+    let (checked, inputs) = split(POWER_CUT.0);
+    let mut chip = Bench::new(&checked, inputs, Digest::default());
+    let mut dice = Dice(3);
+    run(&mut chip, &checked, |chip, _, wake| {
+        let early = wake.map(|wake| Instant(wake.0 - dice.below(wake.0 - chip.now().0 + 1)));
+        chip.sleep(early, 0)
+    })
+    .expect("it runs");
+    assert_eq!(format!("{:016x}", chip.sink.value()), POWER_CUT.1.trim());
+}
