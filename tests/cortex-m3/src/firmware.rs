@@ -1,8 +1,9 @@
-//! The program: runs every case and the example driver and ends with success or failure, all through semihosting.
+//! The program: runs every case, the example driver and the example controller, and ends with success or failure, all through semihosting.
 
 extern crate alloc;
 
-use alloc::vec::Vec;
+use crate::chip;
+use alloc::{string::String, vec::Vec};
 use cortex_m_rt::{ExceptionFrame, entry, exception};
 use cortex_m_semihosting::{
     debug::{self, EXIT_FAILURE, EXIT_SUCCESS, ExitStatus},
@@ -58,7 +59,21 @@ fn main() -> ! {
             hprintln!("failed: the driver on the model gave {ended:?}, not the positions [150, -75]");
         }
     }
-    hprintln!("{} cases and the driver, {failed} failed", CASES.len());
+    match chip::on_the_bench() {
+        Ok(()) => hprintln!("the controller on the bench: as everywhere"),
+        Err(message) => {
+            failed += 1;
+            hprintln!("failed: the controller on the bench: {message}");
+        }
+    }
+    match on_the_board() {
+        Ok(message) => hprintln!("the controller on this board: {message}"),
+        Err(message) => {
+            failed += 1;
+            hprintln!("failed: the controller on this board: {message}");
+        }
+    }
+    hprintln!("{} cases, the driver and the controller, {failed} failed", CASES.len());
     end(if failed == 0 { EXIT_SUCCESS } else { EXIT_FAILURE })
 }
 
@@ -75,6 +90,12 @@ fn drive() -> Result<[i32; 2], Error> {
         driver.fill(&mut ticks)?;
     }
     Ok([driver.position(0), driver.position(1)])
+}
+
+/// The example controller, with the board's own timer.
+fn on_the_board() -> Result<String, String> {
+    let peripherals = cortex_m::Peripherals::take().ok_or("the peripherals are taken")?;
+    chip::on_the_board(peripherals.SYST)
 }
 
 /// A crash would otherwise be silence until the time is up.
