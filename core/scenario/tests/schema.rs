@@ -58,7 +58,9 @@ fn the_pages_explanations_are_what_the_schema_says() {
             said.insert(format!("{}.{}", group.name, field.name), field.explained);
         }
     });
-    let mut text = String::from("/** What the terms of a scenario's fields mean: written from the schema by its test, STEPSCOPE_BLESS=1. */\n");
+    let mut text = String::from(
+        "/** What the terms of a scenario's fields mean: written from the schema by its test, STEPSCOPE_BLESS=1. */\n",
+    );
     text += "/** @type {{[id: string]: string}} */\nexport const EXPLAINED = {\n";
     for (id, explained) in said {
         let value = serde_json::to_string(explained).expect("a text");
@@ -73,7 +75,11 @@ fn the_pages_explanations_are_what_the_schema_says() {
     if std::env::var_os("STEPSCOPE_BLESS").is_some() {
         fs::write(file, &text).expect("the file can be written");
     }
-    assert_eq!(fs::read_to_string(file).unwrap_or_default(), text, "STEPSCOPE_BLESS=1 writes web/help/explained.js");
+    assert_eq!(
+        fs::read_to_string(file).unwrap_or_default(),
+        text,
+        "STEPSCOPE_BLESS=1 writes web/help/explained.js"
+    );
 }
 
 #[test]
