@@ -60,8 +60,8 @@ pub(crate) struct Arguments {
     /// Write a table of the packets, with what the controller did with each (CSV as in RFC 4180).
     #[arg(long, value_name = "FILE")]
     packets: Option<PathBuf>,
-    /// Write what the panels of stand-alone controllers show, controller after controller: cycle, state, alarm, trust,
-    /// outputs, group, loop, position and display, a row for each change (CSV).
+    /// Write what the panels of stand-alone controllers show, controller after controller: cycle, word, position and
+    /// display of each record (CONTROLLER.md G8), and what the word says: state, alarm, trust, outputs, group, loop (CSV).
     #[arg(long, value_name = "FILE")]
     panel: Option<PathBuf>,
     /// Write the scenario with what was done to the line as its source: every byte and the cycle it is

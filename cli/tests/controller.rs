@@ -29,11 +29,11 @@ fn a_panels_records_are_written_as_a_table() {
     let (code, out, _) = stepscope(&["run", "zhang-2012-zero-by-jog", "--panel", "-"], "");
     assert_eq!(code, Some(0));
     let rows: Vec<&str> = out.lines().collect();
-    assert_eq!(rows[0], "controller,cycle,time_s,state,alarm,trust,outputs,group,loop,position,display");
-    assert_eq!(rows[1], "0,0,0,SELF_TEST,,LOST,0,0,0,0,0");
+    assert_eq!(rows[0], "controller,cycle,time_s,word,position,display,state,alarm,trust,outputs,group,loop");
+    assert_eq!(rows[1], "0,0,0,1,0,0,SELF_TEST,,LOST,0,0,0");
     // Five steps in half a second at 10 Hz, then ok.
-    assert!(rows.contains(&"0,25760001,1.6100000625,DEBUG,,HELD,0,0,0,515,9"), "{out}");
-    assert_eq!(rows.last(), Some(&"0,30560001,1.9100000625,READY,,SURE,0,0,0,0,0"));
+    assert!(rows.contains(&"0,25760001,1.6100000625,267,515,9,DEBUG,,HELD,0,0,0"), "{out}");
+    assert_eq!(rows.last(), Some(&"0,30560001,1.9100000625,514,0,0,READY,,SURE,0,0,0"));
     let (code, _, err) = stepscope(&["run", "-", "--panel", "-"], "{}");
     assert!(code == Some(2) && err.contains("give a source standalone"), "{err}");
 }

@@ -11,7 +11,7 @@
 //! let record = PanelRecord { cycle: Instant(1600), word: Word(2 | 2 << 8), position: 565, display: 10 };
 //! let mut row = String::new();
 //! write_panel_row(&mut row, 0, record, 16_000_000).expect("a string takes it");
-//! assert_eq!(row, "0,1600,0.0001,READY,,SURE,0,0,0,565,10\n");
+//! assert_eq!(row, "0,1600,0.0001,514,565,10,READY,,SURE,0,0,0\n");
 //! ```
 
 use alloc::{format, string::String, vec::Vec};
@@ -25,10 +25,10 @@ use stepscope_peripheral::signal::Event;
 
 /// Names of the columns of [`write_panel_row`].
 pub const PANEL_HEAD: &str =
-    "controller,cycle,time_s,state,alarm,trust,outputs,group,loop,position,display\n";
+    "controller,cycle,time_s,word,position,display,state,alarm,trust,outputs,group,loop\n";
 
-/// What the panel of controller `index` shows from a cycle on, as a row; no alarm is an empty field, the display is in
-/// digits, without its point.
+/// What the panel of controller `index` shows from a cycle on, as a row: the record (cycle, word, position, display in digits,
+/// without its point), and what its word says; no alarm is an empty field.
 ///
 /// # Errors
 /// Those of the writer.
@@ -39,9 +39,10 @@ pub fn write_panel_row(
     clock_hz: u32,
 ) -> fmt::Result {
     let PanelRecord { cycle, word, position, display } = record;
-    write!(out, "{index},{},{},{},", cycle.0, cycle.seconds(clock_hz), word.state().name())?;
-    write!(out, "{},{},{},", word.alarm().name(), TRUST[usize::from(word.trust() & 3)], word.outputs())?;
-    writeln!(out, "{},{},{position},{display}", word.group(), word.loop_())
+    write!(out, "{index},{},{},{},{position},{display},", cycle.0, cycle.seconds(clock_hz), word.0)?;
+    let trust = TRUST[usize::from(word.trust() & 3)];
+    write!(out, "{},{},{trust},{},", word.state().name(), word.alarm().name(), word.outputs())?;
+    writeln!(out, "{},{}", word.group(), word.loop_())
 }
 
 /// What stands in a column.
