@@ -81,7 +81,7 @@ impl Simulation {
     /// bits of the signals that change at all) and violations (null without a driver). The host is null
     /// where nobody waits for replies, else `{frames, repeated, replies, rejected, crashes, jobs}`, with a job
     /// `{controller, ticks, acknowledged, progress, why}` for each controller that has something to do;
-    /// progress is `opening`, `filling`, `confirming`, `done` or `given_up`.
+    /// progress is a name of [`Progress`]: `opening`, `filling`, `done`, `given_up` and others.
     ///
     /// # Errors
     /// Never in practice.

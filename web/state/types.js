@@ -19,7 +19,8 @@
  *   faults: {bits: number, names: string[]}, ticks_done: number, state: string | null, changing: number[],
  *   violations: number | null}} ControllerSummary
  * @typedef {{controller: number, ticks: number, acknowledged: number, why: string | null,
- *   progress: "opening" | "filling" | "confirming" | "done" | "given_up"}} Job
+ *   progress: "opening" | "locating" | "filling" | "confirming" | "verifying" | "done" |
+ *   "counted" | "stopping" | "given_up"}} Job
  * @typedef {{frames: number, repeated: number, replies: number, rejected: number, refused: number, crashes: number, jobs: Job[]}} Host
  * @typedef {{recorded: boolean, framed: boolean, end_cycle: number, end_s: number, clock_hz: number, line_load: number | null,
  *   host: Host | null, controllers: ControllerSummary[]}} Summary

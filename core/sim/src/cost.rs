@@ -136,7 +136,7 @@ impl Sends {
         Self { count: schedule.len() as u64, bytes, reply_bytes: replies * longest, end_cycle: 0 }
     }
 
-    /// Frames of a host that waits for replies, and asks for no positions. On a line that goes wrong each may be sent as often as
+    /// Frames of a host that waits for replies: ticks, and STATUS and POSITIONS before and after them. On a line that goes wrong each may be sent as often as
     /// the host tries, and a host that crashes asks every controller again: no bound, but a fair warning.
     fn framed(checked: &Checked, controllers: &[ControllerPlan]) -> Self {
         let wrong = checked.noise != Noise::default() || !checked.forced.is_empty();
@@ -145,10 +145,11 @@ impl Sends {
         let mut sends = Self { count: 0, bytes: 0, reply_bytes: 0, end_cycle: 0 };
         for plan in controllers.iter().filter(|plan| plan.has_ticks()) {
             let job = job(plan.config(), &plan.shared_ticks());
-            let frames = u64::from(job.ticks()).div_ceil(job.ticks_per_frame(&checked.host).into()) + 2;
+            let frames = u64::from(job.ticks()).div_ceil(job.ticks_per_frame(&checked.host).into()) + 4;
+            let positions = longest_reply(plan.config());
             sends.count += repeats * frames;
             sends.bytes += repeats * (plan.ticks().len() as u64 + FRAME_OVERHEAD * frames);
-            sends.reply_bytes += repeats * NAK_LEN as u64 * frames;
+            sends.reply_bytes += repeats * (NAK_LEN as u64 * (frames - 2) + 2 * positions);
             let ticks = u64::from(job.ticks()) * job.tick.0;
             sends.end_cycle = sends.end_cycle.max(plan.config().boot().0 + ticks);
         }
@@ -162,7 +163,7 @@ impl Sends {
     }
 }
 
-/// Bytes of the longest reply to a frame of a script: of its kinds POSITIONS.
+/// Bytes of the longest reply to a frame: that to POSITIONS.
 const fn longest_reply(config: &Config) -> u64 {
     reply_len(Kind::Positions, config.channels()) as u64
 }
@@ -253,8 +254,8 @@ fn last_cycle(schedule: &Schedule, checked: &Checked, controllers: &[ControllerP
             let ticks = most_ticks(checked, config, schedule).min(u64::from(config.queue_depth()) + 1);
             sent + late + ticks * config.tick().0
         };
-        let is_scripted = config.protocol() == Protocol::Framed && !checked.waits_for_replies();
-        let reply = if is_scripted { longest_reply(config) } else { NAK_LEN as u64 };
+        let is_framed = config.protocol() == Protocol::Framed;
+        let reply = if is_framed { longest_reply(config) } else { NAK_LEN as u64 };
         let reply = line_time(reply, clock_hz, config.reply_baud());
         ticks_end.max(sent + late + LONGEST_REST_BITS * config.bit().0 + reply)
     };

@@ -76,7 +76,7 @@ settings! {
             .from(OWN)
             .when_at("line.protocol", "framed"),
         /// How long a reply is waited for, from the end of the frame to the end of the reply; ten bit times later the
-        /// frame is sent again.
+        /// frame is sent again. The reply to POSITIONS, which is longer, has ten bit times more for each further byte.
         pub reply_timeout_cycles: Option<u32> = None => label("Reply time-out")
             .unit("cycles")
             .whole(1..=u32::MAX as u64)

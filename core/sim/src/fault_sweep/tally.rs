@@ -88,9 +88,7 @@ impl Tally {
                 self.given_up += 1;
                 self.given_up_in_reach += u64::from(in_reach);
             }
-            GivenUp::Stopped | GivenUp::Refused(_) | GivenUp::TicksMissing | GivenUp::OutOfTime => {
-                self.stuck += 1
-            }
+            _ => self.stuck += 1,
         }
     }
 

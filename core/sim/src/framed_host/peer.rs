@@ -1,8 +1,10 @@
 //! A controller as the host of a framed line knows it: its job, how far it is, and what follows from
 //! its replies.
 
-use alloc::rc::Rc;
+use super::tick_sums::TickSums;
+use alloc::{rc::Rc, vec::Vec};
 use core::fmt;
+use stepscope_peripheral::signal::Positions;
 use stepscope_peripheral::units::{Cycles, Instant};
 use stepscope_peripheral::wire::frame::{self, Kind, Reason, State, Status};
 use stepscope_scenario::Host as Settings;
@@ -41,12 +43,20 @@ impl Job {
 pub enum Progress {
     /// It asks what the controller expects.
     Opening,
+    /// It asks where the controller's motors stand before the next tick.
+    Locating,
     /// It sends ticks.
     Filling,
     /// All ticks are acknowledged; it asks whether they were done.
     Confirming,
-    /// Every tick was done.
+    /// They were; it asks whether the positions are the sums of them.
+    Verifying,
+    /// Every tick was done, and the positions say so, too.
     Done,
+    /// Every tick was done by the controller's own count. It does not know POSITIONS, so nothing says how far its motors went.
+    Counted,
+    /// It was told to stop: STOP until that is acknowledged, then STATUS and POSITIONS.
+    Stopping,
     /// No more is sent, and why.
     GivenUp(GivenUp),
 }
@@ -62,19 +72,51 @@ pub enum GivenUp {
     Refused(Reason),
     /// It rests and has done fewer ticks than it acknowledged.
     TicksMissing,
+    /// Its positions are not the sums of its ticks.
+    Displaced {
+        /// The first channel that differs.
+        channel: u8,
+        /// How many ticks of the job it had done by then.
+        ticks: u32,
+        /// Where these ticks lead to.
+        expected: i32,
+        /// Where it says it is.
+        told: i32,
+    },
+    /// It has done more ticks since it was opened than were ordered: it was reset, or another host drives it.
+    OtherTicks {
+        /// Its count since it was opened, wrapping.
+        done: u32,
+        /// Ticks of the job.
+        ordered: u32,
+    },
+    /// It has another number of channels than its ticks are made for.
+    OtherChannels {
+        /// Those of the ticks.
+        expected: u8,
+        /// Those that it tells positions of.
+        told: u8,
+    },
+    /// The host was told to stop, and the controller has acknowledged STOP.
+    Interrupted,
     /// The longest time that a run can be is over.
     OutOfTime,
 }
 
 impl Progress {
-    /// Its name: `opening`, `filling`, `confirming`, `done` or `given_up`.
+    /// Its name: `opening`, `locating`, `filling`, `confirming`, `verifying`, `done`, `counted`, `stopping` or
+    /// `given_up`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Opening => "opening",
+            Self::Locating => "locating",
             Self::Filling => "filling",
             Self::Confirming => "confirming",
+            Self::Verifying => "verifying",
             Self::Done => "done",
+            Self::Counted => "counted",
+            Self::Stopping => "stopping",
             Self::GivenUp(_) => "given_up",
         }
     }
@@ -88,6 +130,23 @@ impl fmt::Display for GivenUp {
             Self::Stopped => f.write_str("it is stopped"),
             Self::Refused(reason) => write!(f, "it refused a frame: {}", reason.name()),
             Self::TicksMissing => f.write_str("it did fewer ticks than it acknowledged"),
+            Self::Displaced { channel, ticks, expected, told } => {
+                let s = if *ticks == 1 { "" } else { "s" };
+                write!(
+                    f,
+                    "after {ticks} tick{s} channel {channel} stands at {told}, and its ticks lead to {expected}"
+                )
+            }
+            Self::OtherTicks { done, ordered } => {
+                write!(
+                    f,
+                    "it counts {done} ticks since it was opened, and {ordered} were ordered: it was reset, or another host drives it"
+                )
+            }
+            Self::OtherChannels { expected, told } => {
+                write!(f, "it tells positions of {told} channels, and its ticks are for {expected}")
+            }
+            Self::Interrupted => f.write_str("its host was told to stop"),
             Self::OutOfTime => f.write_str("the longest time of a run is over"),
         }
     }
@@ -98,8 +157,34 @@ impl fmt::Display for Progress {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::GivenUp(why) => write!(f, "given up: {why}"),
+            Self::Counted => f.write_str("done by its count of ticks; it does not tell its positions"),
             progress => f.write_str(progress.name()),
         }
+    }
+}
+
+/// What the host knows of a controller, all of it told by the controller.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Known {
+    /// Its status when it was opened, at rest before the first tick.
+    pub opened: Option<Status>,
+    /// Its status in the last reply.
+    pub last: Option<Status>,
+    /// Its positions when it was opened.
+    pub opened_at: Option<Positions>,
+    /// Its positions when they were told last.
+    pub positions: Option<Positions>,
+    /// Whether it has refused POSITIONS as a kind that it does not know.
+    pub hides_positions: bool,
+    /// Whether it has acknowledged STOP.
+    pub stop_acknowledged: bool,
+}
+
+impl Known {
+    /// Ticks that ended since it was opened, as far as it has told.
+    #[must_use]
+    pub fn ticks_done(&self) -> Option<u32> {
+        Some(self.last?.ticks_done.wrapping_sub(self.opened?.ticks_done))
     }
 }
 
@@ -107,10 +192,12 @@ impl fmt::Display for Progress {
 #[derive(Clone, Debug)]
 pub(super) struct Peer {
     pub(super) job: Job,
+    sums: TickSums,
     pub(super) most: u32,
     pub(super) progress: Progress,
-    /// Ticks that the controller had done before the first was sent.
-    pub(super) base: Option<u32>,
+    /// While it is stopped: the frame that is due.
+    stop_stage: Kind,
+    pub(super) known: Known,
     /// Invariant: at most the ticks of the job.
     pub(super) acknowledged: u32,
     pub(super) seq: u8,
@@ -130,8 +217,10 @@ impl Peer {
     pub(super) fn new(job: Job, settings: &Settings, start: Instant) -> Self {
         Self {
             most: job.ticks_per_frame(settings).into(),
+            sums: TickSums::new(Rc::clone(&job.commands), job.channels),
             progress: Progress::Opening,
-            base: None,
+            stop_stage: Kind::Stop,
+            known: Known::default(),
             acknowledged: 0,
             seq: 0,
             free: 0,
@@ -147,17 +236,27 @@ impl Peer {
     /// Whether nothing came of so many frames that nothing will: `attempts` for each place of its
     /// queue, which may have to run empty before it goes on, and for the exchanges around it.
     pub(super) fn stalls(&self, attempts: u8) -> bool {
-        self.since_progress > u32::from(attempts) * (u32::from(self.job.queue_depth) + 3)
+        self.since_progress > u32::from(attempts) * (u32::from(self.job.queue_depth) + 5)
     }
 
     /// Whether there is more to say to it.
     pub(super) const fn is_open(&self) -> bool {
-        !matches!(self.progress, Progress::Done | Progress::GivenUp(_))
+        !matches!(self.progress, Progress::Done | Progress::Counted | Progress::GivenUp(_))
     }
 
     /// Ticks that are not acknowledged.
     pub(super) fn left(&self) -> u32 {
         self.job.ticks() - self.acknowledged
+    }
+
+    /// The frame that is due: its kind, and how many ticks it has.
+    pub(super) fn due(&self) -> (Kind, u32) {
+        match self.progress {
+            Progress::Filling => (Kind::Ticks, self.most.min(self.free).min(self.left()).max(1)),
+            Progress::Locating | Progress::Verifying => (Kind::Positions, 0),
+            Progress::Stopping => (self.stop_stage, 0),
+            _ => (Kind::Status, 0),
+        }
     }
 
     /// The next so many ticks' commands.
@@ -178,37 +277,150 @@ impl Peer {
         kind != Kind::Ticks || status.expected_seq == self.seq.wrapping_add(1)
     }
 
+    /// The host is told to stop, in cycle `now`: STOP is due, whatever was.
+    pub(super) fn stop(&mut self, now: Instant) {
+        (self.progress, self.stop_stage) = (Progress::Stopping, Kind::Stop);
+        (self.attempts, self.since_progress, self.ready_at) = (0, 0, now);
+    }
+
+    /// A host that crashed knows nothing but its ticks and where it began.
+    pub(super) fn restart(&mut self, now: Instant, until: Instant) {
+        self.progress = Progress::Opening;
+        (self.ready_at, self.dry_at, self.flush) = (until, now, true);
+    }
+
     /// Takes a reply to a frame that was taken; gives the time until the next one is due.
-    pub(super) fn acknowledge(&mut self, kind: Kind, ticks: u32, status: Status, now: Instant) -> Cycles {
+    pub(super) fn acknowledge(
+        &mut self,
+        (kind, ticks): (Kind, u32),
+        (status, positions): (Status, Option<Positions>),
+        now: Instant,
+    ) -> Cycles {
+        self.known.last = Some(status);
+        self.known.positions = positions.or(self.known.positions);
         if kind == Kind::Ticks {
             self.acknowledged += ticks;
             debug_assert!(self.acknowledged <= self.job.ticks(), "more ticks are acknowledged than sent");
             self.since_progress = 0;
             self.seq = self.seq.wrapping_add(1);
-        } else if status.state == State::Stopped {
+        }
+        if self.progress == Progress::Stopping {
+            self.after_stop(kind);
+            return Cycles(0);
+        }
+        if status.state == State::Stopped {
             self.progress = Progress::GivenUp(GivenUp::Stopped);
-        } else if self.progress == Progress::Opening {
-            if status.state != State::Ready {
+        }
+        let ready = status.state == State::Ready;
+        match self.progress {
+            Progress::Opening if ready => self.open(status),
+            Progress::Locating if ready && self.is_where_it_was(status) => {
+                self.progress = self.located(positions).map_or(Progress::Filling, Progress::GivenUp);
+            }
+            Progress::Confirming if self.done() == self.job.ticks() => {
+                let verified = !self.known.hides_positions;
+                self.progress = if verified { Progress::Verifying } else { Progress::Counted };
+            }
+            Progress::Confirming if ready => {
+                let (done, ordered) = (self.done(), self.job.ticks());
+                let other = GivenUp::OtherTicks { done, ordered };
+                self.progress = Progress::GivenUp(if done < ordered { GivenUp::TicksMissing } else { other });
+            }
+            Progress::Verifying if ready && self.is_where_it_was(status) => {
+                self.progress = self.located(positions).map_or(Progress::Done, Progress::GivenUp);
+            }
+            // Somebody else moves it: it is opened, or confirmed, once more when it rests.
+            Progress::Locating => {
+                self.progress = Progress::Opening;
+                if self.known.opened_at.is_none() {
+                    // None of those ticks was of the job.
+                    (self.known.opened, self.acknowledged) = (None, 0);
+                }
                 return self.job.tick;
             }
-            let base = *self.base.get_or_insert(status.ticks_done);
-            let known = self.acknowledged;
-            self.acknowledged = status.ticks_done.wrapping_sub(base).min(self.job.ticks());
-            if self.acknowledged > known {
-                self.since_progress = 0;
+            Progress::Verifying => {
+                self.progress = Progress::Confirming;
+                return self.job.tick;
             }
-            self.seq = status.expected_seq;
-            self.progress = Progress::Filling;
-        } else {
-            let done = status.ticks_done.wrapping_sub(self.base.unwrap_or(0));
-            self.progress = match status.state {
-                _ if done == self.job.ticks() => Progress::Done,
-                State::Ready => Progress::GivenUp(GivenUp::TicksMissing),
-                _ => return self.job.tick,
-            };
+            Progress::Opening | Progress::Confirming => return self.job.tick,
+            _ => {}
         }
         self.free = status.free.into();
         self.dry_at = now + self.queued(self.free);
+        self.next_due()
+    }
+
+    /// At rest: what it expects, and which tick is the first that is not done.
+    fn open(&mut self, status: Status) {
+        let base = self.known.opened.get_or_insert(status).ticks_done;
+        let (known, ordered) = (self.acknowledged, self.job.ticks());
+        let done = status.ticks_done.wrapping_sub(base);
+        self.acknowledged = done.min(ordered);
+        if self.acknowledged > known {
+            self.since_progress = 0;
+        }
+        self.seq = status.expected_seq;
+        self.progress = match self.known.hides_positions {
+            _ if done > ordered => Progress::GivenUp(GivenUp::OtherTicks { done, ordered }),
+            true => Progress::Filling,
+            false => Progress::Locating,
+        };
+    }
+
+    /// Ticks of the job that are done.
+    fn done(&self) -> u32 {
+        self.known.ticks_done().unwrap_or(0)
+    }
+
+    /// Whether as many ticks are done as are acknowledged, and none else was taken.
+    fn is_where_it_was(&self, status: Status) -> bool {
+        self.done() == self.acknowledged && status.expected_seq == self.seq
+    }
+
+    /// At rest with all acknowledged ticks done: why its positions cannot be, if so. The first ones are where it begins.
+    fn located(&mut self, told: Option<Positions>) -> Option<GivenUp> {
+        // The ACK of POSITIONS has them.
+        let told = told?;
+        let (expected, told_channels) = (self.job.channels, told.as_slice().len() as u8);
+        if told_channels != expected {
+            return Some(GivenUp::OtherChannels { expected, told: told_channels });
+        }
+        self.known.opened_at.get_or_insert(told);
+        let ticks = self.acknowledged;
+        let expected = self.expected(ticks)?;
+        let mut channels = (0..).zip(told.as_slice().iter().zip(expected));
+        channels
+            .find(|(_, (told, expected))| **told != *expected)
+            .map(|(channel, (&told, expected))| GivenUp::Displaced { channel, ticks, expected, told })
+    }
+
+    /// Where its first ticks lead to, from where it began.
+    pub(super) fn expected(&mut self, ticks: u32) -> Option<Vec<i32>> {
+        let began = self.known.opened_at?;
+        let sums = self.sums.after(ticks).iter();
+        Some(began.as_slice().iter().zip(sums).map(|(began, sum)| began.wrapping_add(*sum)).collect())
+    }
+
+    /// STOP was acknowledged, or what is asked after it was answered.
+    fn after_stop(&mut self, kind: Kind) {
+        match kind {
+            Kind::Stop => {
+                self.known.stop_acknowledged = true;
+                self.stop_stage = Kind::Status;
+            }
+            Kind::Status if self.stop_stage == Kind::Status && !self.known.hides_positions => {
+                self.stop_stage = Kind::Positions;
+            }
+            Kind::Status | Kind::Positions if self.stop_stage == kind => {
+                self.progress = Progress::GivenUp(GivenUp::Interrupted);
+            }
+            // The answer to what was asked before the host was told to stop: that is not asked again.
+            _ => {}
+        }
+    }
+
+    /// The time until the next frame is due.
+    fn next_due(&mut self) -> Cycles {
         if self.progress != Progress::Filling {
             return Cycles(0);
         }
@@ -224,12 +436,24 @@ impl Peer {
         Cycles(u64::from(missing) * self.job.tick.0)
     }
 
-    /// Takes a refusal; gives the time until the frame is sent again.
-    pub(super) fn refused(&mut self, reason: Reason) -> Cycles {
-        match reason {
-            Reason::QueueFull | Reason::Busy => {}
-            Reason::Stopped => self.progress = Progress::GivenUp(GivenUp::Stopped),
-            other => self.progress = Progress::GivenUp(GivenUp::Refused(other)),
+    /// Takes a refusal of a frame of `kind`; gives the time until the frame is sent again, or the next one.
+    pub(super) fn refused(&mut self, kind: Kind, reason: Reason, status: Status) -> Cycles {
+        self.known.last = Some(status);
+        let unknown = kind == Kind::Positions && reason == Reason::UnknownKind;
+        self.known.hides_positions |= unknown;
+        match (self.progress, reason) {
+            (Progress::Locating, _) if unknown => {
+                self.progress = Progress::Filling;
+                return self.next_due();
+            }
+            (Progress::Verifying, _) if unknown => self.progress = Progress::Counted,
+            (Progress::Stopping, _) if unknown || kind != self.stop_stage => {
+                self.after_stop(kind);
+                return Cycles(0);
+            }
+            (_, Reason::QueueFull | Reason::Busy) => {}
+            (_, Reason::Stopped) => self.progress = Progress::GivenUp(GivenUp::Stopped),
+            (_, other) => self.progress = Progress::GivenUp(GivenUp::Refused(other)),
         }
         self.job.tick
     }

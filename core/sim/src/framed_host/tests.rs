@@ -1,14 +1,14 @@
 //! A host and a controller with someone between them: every fault of one frame, one after the other.
 
 use super::*;
-use alloc::rc::Rc;
+use alloc::{rc::Rc, string::ToString};
 use stepscope_peripheral::{
     config::{Bus, Config, Protocol},
     device::Device,
-    signal::{Event, MAX_CHANNELS, Record, Sink},
+    signal::{Event, MAX_CHANNELS, Positions, Record, Sink},
     wire::{
         Schedule,
-        frame::{State, Status},
+        frame::{Deframed, Deframer, Frame, Kind, Reason, Reply, State, Status, Ticks},
     },
 };
 use stepscope_scenario::Line as LineSettings;
@@ -21,9 +21,9 @@ const ORDERS: &[u8] = &[0x81, 2, 0x83, 4, 0x82, 1, 0x80, 0];
 
 /// The ticks that begin.
 #[derive(Default)]
-struct Ticks(Vec<[u8; MAX_CHANNELS]>);
+struct Executed(Vec<[u8; MAX_CHANNELS]>);
 
-impl Sink for Ticks {
+impl Sink for Executed {
     fn record(&mut self, _: Record) {}
 
     fn event(&mut self, _: Instant, event: Event) {
@@ -49,7 +49,7 @@ fn run(mut spoil: impl FnMut(usize, &[u8]) -> CorruptedSend) -> (Vec<u8>, Progre
         FramedHost::new(alloc::vec![job], &settings, (CLOCK_HZ, BAUD, config.bit()), Instant(6), None);
     let quiet = || Line::new(Rc::new(Schedule::default()), &[], CLOCK_HZ, BAUD);
     let (mut meant, mut line) = (quiet(), quiet());
-    let (mut device, mut ticks, mut frames) = (Device::new(&config), Ticks::default(), Vec::new());
+    let (mut device, mut ticks, mut frames) = (Device::new(&config), Executed::default(), Vec::new());
     for now in 0..1_000_000 {
         let now = Instant(now);
         if host.is_over() && device.at_rest() {
@@ -67,7 +67,7 @@ fn run(mut spoil: impl FnMut(usize, &[u8]) -> CorruptedSend) -> (Vec<u8>, Progre
             let (bytes, crashed) = spoil(frames.len(), sent.bytes);
             line.send(sent.start, &bytes);
             frames.push(sent.bytes.to_vec());
-            if let Phase::Sending { end, crashes, .. } = &mut host.phase {
+            if let Some(Sending { end, crashes }) = &mut host.sending {
                 *end = sent.start + Cycles(line_time(bytes.len() as u64, CLOCK_HZ, BAUD));
                 *crashes = crashed;
             }
@@ -84,11 +84,11 @@ fn check(what: &str, spoil: impl FnMut(usize, &[u8]) -> CorruptedSend) -> Counts
     counts
 }
 
-/// The frames of a run without faults: STATUS, TICKS, TICKS, STATUS.
+/// The frames of a run without faults: STATUS, POSITIONS, TICKS, TICKS, STATUS, POSITIONS.
 fn frames() -> Vec<Vec<u8>> {
     let (executed, progress, counts, frames) = run(|_, bytes| (bytes.to_vec(), false));
     assert_eq!((executed.as_slice(), progress), (ORDERS, Progress::Done));
-    assert_eq!((counts.frames, counts.repeated, counts.replies, frames.len()), (4, 0, 4, 4));
+    assert_eq!((counts.frames, counts.repeated, counts.replies, frames.len()), (6, 0, 6, 6));
     frames
 }
 
@@ -183,12 +183,13 @@ fn a_late_answer_to_the_frame_before_acknowledges_nothing() {
     for (expected_seq, acknowledged) in [(7, 0), (8, 2)] {
         let job =
             Job { address: 0, channels: 2, tick: Cycles(400), queue_depth: 16, commands: ORDERS.into() };
-        let wire = (CLOCK_HZ, BAUD, Cycles(11));
-        let mut host = FramedHost::new(alloc::vec![job], &Settings::default(), wire, Instant(1), None);
-        (host.peers[0].progress, host.peers[0].seq) = (Progress::Filling, 7);
+        let mut host = Conversation::new(alloc::vec![job], &Settings::default(), Cycles(11), Instant(1));
+        (host.peers[0].progress, host.peers[0].seq, host.peers[0].free) = (Progress::Filling, 7, 2);
+        let _ = host.poll(Instant(1)).expect("TICKS are due");
+        host.sent(Instant(8));
         let status = Status { state: State::Moving, free: 14, expected_seq, faults: 0, ticks_done: 0 };
         for byte in (Reply { address: 0, answer: Ok(Kind::Ticks), status }).emit(None) {
-            host.hear(byte, Instant(9), (0, Kind::Ticks, 2));
+            host.hear(byte, Instant(9));
         }
         assert_eq!(host.acknowledged().next(), Some(acknowledged), "seq {expected_seq}");
         assert_eq!(host.counts().replies, u64::from(acknowledged > 0));
@@ -197,12 +198,160 @@ fn a_late_answer_to_the_frame_before_acknowledges_nothing() {
 
 #[test]
 fn a_controller_that_never_answers_is_given_up_and_has_done_what_it_heard() {
-    for silent_from in 0..4 {
+    for silent_from in 0..6 {
         let heard =
             |index: usize, bytes: &[u8]| if index < silent_from { bytes.to_vec() } else { Vec::new() };
         let (executed, progress, counts, _) = run(|index, bytes| (heard(index, bytes), false));
         assert_eq!(progress, Progress::GivenUp(GivenUp::NoReply));
         assert_eq!((counts.frames, counts.repeated), (silent_from as u64 + 10, 9));
-        assert_eq!(executed, ORDERS[..4 * silent_from.saturating_sub(1).min(2)], "{silent_from}");
+        assert_eq!(executed, ORDERS[..4 * silent_from.saturating_sub(2).min(2)], "{silent_from}");
+    }
+}
+
+/// A controller of two channels that does at once what it is told.
+struct Told {
+    seq: u8,
+    ticks_done: u32,
+    positions: Vec<i32>,
+    state: State,
+}
+
+/// Runs the job with a controller that answers at once, but for what `falsify` makes of it: its answer, or silence. Gives
+/// the kinds that were asked, and where the host ended.
+fn converse(
+    mut falsify: impl FnMut(&mut Conversation, usize, Kind, &mut Told) -> Option<Result<Kind, Reason>>,
+) -> (Vec<Kind>, Progress, Known) {
+    let job = Job { address: 0, channels: 2, tick: Cycles(400), queue_depth: 16, commands: ORDERS.into() };
+    let mut host = Conversation::new(alloc::vec![job], &Settings::default(), Cycles(11), Instant(6));
+    let mut told =
+        Told { seq: 7, ticks_done: 1000, positions: alloc::vec![-3, i32::MAX], state: State::Ready };
+    let (mut asked, mut now) = (Vec::new(), Instant(6));
+    while !host.is_over() {
+        now = now.max(host.deadline());
+        let Some(frame) = host.poll(now) else { continue };
+        host.sent(now);
+        let mut deframer = Deframer::default();
+        let kind = frame.iter().find_map(|&byte| match deframer.byte(byte) {
+            Some(Deframed::Frame(Frame { kind, body, .. })) => {
+                let kind = Kind::parse(kind).expect("it is one of the contract's");
+                if let Some(ticks) = Ticks::parse(body, 2).filter(|_| kind == Kind::Ticks) {
+                    told.seq = told.seq.wrapping_add(1);
+                    told.ticks_done += ticks.count() as u32;
+                    let orders = ticks.orders().chunks(2).flat_map(|tick| tick.iter().zip(0..));
+                    for (&byte, channel) in orders {
+                        let steps = i32::from(byte & 0x7f) * if byte & 0x80 == 0 { -1 } else { 1 };
+                        told.positions[channel] = told.positions[channel].wrapping_add(steps);
+                    }
+                }
+                if kind == Kind::Stop {
+                    told.state = State::Stopped;
+                }
+                Some(kind)
+            }
+            _ => None,
+        });
+        let kind = kind.expect("a frame");
+        asked.push(kind);
+        let Some(answer) = falsify(&mut host, asked.len() - 1, kind, &mut told) else { continue };
+        let Told { seq: expected_seq, ticks_done, state, .. } = told;
+        let status = Status { state, free: 16, expected_seq, faults: 0, ticks_done };
+        let positions =
+            (answer == Ok(Kind::Positions)).then(|| Positions::new(&told.positions).expect("some"));
+        now += Cycles(100);
+        (Reply { address: 0, answer, status })
+            .emit(positions.as_ref())
+            .iter()
+            .for_each(|&byte| host.hear(byte, now));
+    }
+    let known = *host.known().next().expect("one job").1;
+    (asked, host.progress().next().expect("one job"), known)
+}
+
+#[test]
+fn positions_are_held_against_the_sums_of_the_ticks_from_where_the_controller_began() {
+    use Kind::{Positions, Status, Stop, Ticks};
+    let whole = [Status, Positions, Ticks, Status, Positions];
+    let (asked, progress, known) = converse(|_, _, kind, _| Some(Ok(kind)));
+    assert_eq!((asked.as_slice(), progress), (&whole[..], Progress::Done));
+    // 1 + 3 + 2 to the right; 2, 4 and 1 to the left, through the end of 32 bits.
+    assert_eq!(known.positions.expect("told").as_slice(), [3, i32::MAX - 7]);
+    assert_eq!(
+        (known.opened_at.expect("told").as_slice(), known.ticks_done()),
+        (&[-3, i32::MAX][..], Some(4))
+    );
+
+    // One step more on the second channel, at the end.
+    let (_, progress, _) = converse(|_, index, kind, told| {
+        told.positions[1] += i32::from(index == 4);
+        Some(Ok(kind))
+    });
+    let (channel, ticks, told) = (1, 4, i32::MAX - 6);
+    let displaced = GivenUp::Displaced { channel, ticks, expected: told - 1, told };
+    assert_eq!(progress, Progress::GivenUp(displaced));
+    assert_eq!(
+        displaced.to_string(),
+        "after 4 ticks channel 1 stands at 2147483641, and its ticks lead to 2147483640"
+    );
+
+    // Another device than the ticks are for gets none.
+    let (asked, progress, _) = converse(|_, _, kind, told| {
+        told.positions = alloc::vec![0; 3];
+        Some(Ok(kind))
+    });
+    let other = GivenUp::OtherChannels { expected: 2, told: 3 };
+    assert_eq!((asked.as_slice(), progress), (&[Status, Positions][..], Progress::GivenUp(other)));
+
+    // One that does not know POSITIONS is asked once, and counted.
+    let (asked, progress, known) =
+        converse(|_, _, kind, _| Some(if kind == Positions { Err(Reason::UnknownKind) } else { Ok(kind) }));
+    assert_eq!((asked.as_slice(), progress), (&[Status, Positions, Ticks, Status][..], Progress::Counted));
+    assert!(known.hides_positions && known.positions.is_none());
+
+    // One that was reset, or is driven by another host too.
+    let (_, progress, _) = converse(|_, index, kind, told| {
+        told.ticks_done += u32::from(index == 3);
+        Some(Ok(kind))
+    });
+    assert_eq!(progress, Progress::GivenUp(GivenUp::OtherTicks { done: 5, ordered: 4 }));
+
+    // Somebody moves it while it is looked at: it is opened once more.
+    let (asked, progress, _) = converse(|_, index, kind, told| {
+        told.state = if index == 1 { State::Moving } else { State::Ready };
+        told.ticks_done += u32::from(index == 2);
+        Some(Ok(kind))
+    });
+    assert_eq!(asked, [[Status, Positions].as_slice(), &whole].concat());
+    assert_eq!(progress, Progress::Done);
+
+    // Told to stop while a reply is due: STOP comes next, is repeated, and what follows is asked.
+    let (asked, progress, known) = converse(|host, index, kind, _| {
+        if index == 1 {
+            host.stop(Instant(6));
+        }
+        (index != 2).then_some(Ok(kind))
+    });
+    assert_eq!(asked, [Status, Positions, Stop, Stop, Status, Positions]);
+    assert_eq!(progress, Progress::GivenUp(GivenUp::Interrupted));
+    assert!(known.stop_acknowledged && known.last.is_some_and(|last| last.state == State::Stopped));
+}
+
+#[test]
+fn the_time_for_a_reply_is_that_of_its_longest_form() {
+    // Kind, channels, bit times from the frame's end.
+    for (kind, channels, bits) in [
+        (Kind::Status, 16, 256),
+        (Kind::Ticks, 1, 256),
+        (Kind::Positions, 1, 256 + 10 * 3),
+        (Kind::Positions, 16, 256 + 10 * 63),
+    ] {
+        let host = Conversation::new(Vec::new(), &Settings::default(), Cycles(11), Instant(6));
+        assert_eq!(host.timeout_of(kind, channels), Cycles(11 * bits), "{kind:?} of {channels}");
+        let settings = Settings { reply_timeout_cycles: Some(5000), ..Settings::default() };
+        let own = Conversation::new(Vec::new(), &settings, Cycles(11), Instant(6)).with_slack(Cycles(7));
+        assert_eq!(
+            own.timeout_of(kind, channels),
+            Cycles(5007 + 11 * (bits - 256)),
+            "{kind:?} of {channels}"
+        );
     }
 }
