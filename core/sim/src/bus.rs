@@ -96,6 +96,29 @@ impl Bus {
         self.devices().map(Device::now).max().unwrap_or(Instant::RESET)
     }
 
+    /// Every line of the controllers: raw ones have one each, with the same on it.
+    fn each_line(&mut self, mut change: impl FnMut(&mut Line)) {
+        match self {
+            Self::Raw(receivers) => receivers.iter_mut().for_each(|receiver| change(receiver.line_mut())),
+            Self::Framed(line) => change(line.line_mut()),
+        }
+    }
+
+    /// Adds a send, from a cycle on that nobody has run.
+    pub(super) fn send(&mut self, start: Instant, bytes: &[u8]) {
+        self.each_line(|line| line.send(start, bytes));
+    }
+
+    /// Adds bytes to the last send; the first of them begins in a cycle that nobody has run.
+    pub(super) fn extend(&mut self, bytes: &[u8]) {
+        self.each_line(|line| line.extend(bytes));
+    }
+
+    /// Forgets what has been sent, if nothing is left to be.
+    pub(super) fn forget_sent(&mut self) {
+        self.each_line(Line::forget_sent);
+    }
+
     /// Runs to cycle `end`, or with [`Instant::NEVER`] until nothing can change any more, or until a
     /// sink asks for a pause.
     pub(super) fn run(&mut self, end: Instant, sinks: &mut [impl Sink]) {

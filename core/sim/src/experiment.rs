@@ -415,6 +415,31 @@ impl Run {
         self.is_done()
     }
 
+    /// Leaves the end open: it goes on as far as it is asked to, also where nothing can change any more.
+    pub(crate) const fn without_end(&mut self) {
+        self.controllers.end = Some(Instant(END_OF_TIME));
+    }
+
+    /// Goes on to cycle `end`, the first that is not run, with a sink for each controller.
+    pub(crate) fn run_to(&mut self, end: Instant, sinks: &mut [impl Sink]) {
+        #[cfg(feature = "plant")]
+        if self.plants.is_some() {
+            self.advance_observed::<_, ()>((end, u64::MAX), sinks, &mut []);
+            return;
+        }
+        self.controllers.run_to(end, sinks);
+    }
+
+    /// All controllers of the line, and what is done to it.
+    pub(crate) const fn bus_mut(&mut self) -> &mut Bus {
+        &mut self.controllers.bus
+    }
+
+    /// Whether nothing changes any more unless something is sent.
+    pub(crate) fn is_at_rest(&self) -> bool {
+        self.controllers.bus.is_over()
+    }
+
     /// Goes on to a cycle, or until a controller has made so many records more, with a sink and an observer of its plant for
     /// each; true at the end. A run without plants stands still.
     #[cfg(feature = "plant")]

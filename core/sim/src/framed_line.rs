@@ -62,6 +62,10 @@ impl FramedLine {
         &self.line
     }
 
+    pub(super) const fn line_mut(&mut self) -> &mut Line {
+        &mut self.line
+    }
+
     pub(super) const fn host(&self) -> Option<&FramedHost> {
         self.host.as_ref()
     }

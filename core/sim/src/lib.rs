@@ -66,6 +66,8 @@ mod summary;
 
 pub mod fault_sweep;
 
+pub mod session;
+
 pub use cost::{BUDGET_MOTOR_STEPS, BUDGET_RECORDS, Cost};
 pub use experiment::{Experiment, Run};
 pub use judged::{Judged, SelectedAxis, axes_of};

@@ -23,6 +23,10 @@ impl RawReceiver {
         &self.line
     }
 
+    pub(super) const fn line_mut(&mut self) -> &mut Line {
+        &mut self.line
+    }
+
     pub(super) const fn device(&self) -> &Device {
         &self.device
     }

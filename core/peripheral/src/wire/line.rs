@@ -94,6 +94,18 @@ impl Line {
         self.find_heard();
     }
 
+    /// Adds bytes to the last send, back to back with its own. The first of them must not begin before the next cycle.
+    pub fn extend(&mut self, bytes: &[u8]) {
+        self.sender.extend(bytes);
+        self.look_ahead();
+        self.find_heard();
+    }
+
+    /// Forgets what has been sent, if nothing is left to be: a line without an end grows no more.
+    pub fn forget_sent(&mut self) {
+        self.sender.forget_sent();
+    }
+
     /// Forces a level in cycles that are still to come; where another one is forced too, this one wins.
     pub fn force(&mut self, new: ForcedLevel) {
         let forced = Rc::make_mut(&mut self.forced);

@@ -61,6 +61,15 @@ impl Schedule {
         self.sends.push((start, self.bytes.len()));
     }
 
+    /// Adds bytes to the last send, back to back with its own; a schedule without sends stays as it is.
+    pub fn extend(&mut self, bytes: &[u8]) {
+        debug_assert!(!self.sends.is_empty(), "there is no send to extend");
+        if let Some((_, end)) = self.sends.last_mut() {
+            self.bytes.extend_from_slice(bytes);
+            *end = self.bytes.len();
+        }
+    }
+
     /// How many sends there are.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -120,6 +129,17 @@ mod tests {
         assert_eq!((schedule.len(), schedule.total_bytes(), schedule.is_empty()), (4, 6, false));
         assert_eq!((schedule.get(4), Schedule::default().get(0)), (None, None));
         assert!(Schedule::default().is_empty());
+    }
+
+    #[test]
+    fn bytes_join_the_last_send() {
+        let mut schedule = Schedule::default();
+        schedule.push(Instant(5), &[1]);
+        schedule.push(Instant(90), &[2]);
+        schedule.extend(&[3, 4]);
+        schedule.push(Instant(200), &[5]);
+        let sent: Vec<(u64, &[u8])> = schedule.iter().map(|sent| (sent.start.0, sent.bytes)).collect();
+        assert_eq!(sent, [(5, &[1][..]), (90, &[2, 3, 4]), (200, &[5])]);
     }
 
     #[test]

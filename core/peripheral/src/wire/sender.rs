@@ -83,6 +83,27 @@ impl Sender {
         }
     }
 
+    /// Adds bytes to the last send. The first of them must not begin before the next cycle.
+    pub fn extend(&mut self, bytes: &[u8]) {
+        if self.edges == 0
+            && let Some(last) = self.schedule.len().checked_sub(1)
+        {
+            (self.send, self.byte) = (last, self.schedule.get(last).map_or(0, |send| send.bytes.len()));
+        }
+        Rc::make_mut(&mut self.schedule).extend(bytes);
+        if self.edges == 0 {
+            self.load();
+        }
+    }
+
+    /// Forgets what has been sent, if nothing is left to be.
+    pub fn forget_sent(&mut self) {
+        if self.edges == 0 {
+            self.schedule = Rc::default();
+            (self.send, self.byte) = (0, 0);
+        }
+    }
+
     /// What is sent now.
     #[must_use]
     pub const fn level(&self) -> bool {

@@ -1,0 +1,339 @@
+//! A session: the controllers of a scenario on a line on which somebody else speaks, as they come (LIVE H1, H5).
+//!
+//! ```text
+//! bytes, as they are read ── receive ──┐
+//! the clock's cycle       ── advance ──┼── the model ── take_replies: bytes, each with the cycle in which it has left
+//!                                      └── recording: a scenario that gives the same traces again
+//! ```
+//!
+//! There is no port here and no clock: time comes in as a cycle, so the same bytes in the same cycles are the same session, on
+//! every machine. A byte that is read when the model stands behind cycle N joins the last send if its place there, start +
+//! floor(10*j*clock_hz/baud), is beyond N; else it begins a send at N + 1. So input never comes into the past, order is kept, and
+//! a burst from the system is spread at the line's rate.
+//!
+//! Levels that the scenario forces on the line are heard by the controllers; replies leave as they were sent.
+//!
+//! ```
+//! use stepscope_peripheral::{signal::Record, units::Instant, wire::frame};
+//! use stepscope_scenario::Scenario;
+//! use stepscope_sim::session::Session;
+//!
+//! let scenario = Scenario::from_json(r#"{ "line": { "protocol": "framed" } }"#).expect("reads");
+//! let mut session = Session::new(&scenario).expect("it has no problems");
+//! let nobody: &mut [Vec<Record>] = &mut [];
+//! session.advance(Instant(5000), nobody);
+//! session.receive(&frame::emit(0, 4, &[])); // STATUS, read while the model stands behind cycle 5000
+//! session.advance(Instant(50_000), nobody);
+//! let reply: Vec<u8> = session.take_replies().map(|reply| reply.byte).collect();
+//! assert_eq!(reply.len(), 17);
+//! session.recording().verify().expect("run again it has the same digest");
+//! ```
+
+mod clock;
+#[cfg(test)]
+mod tests;
+
+pub use clock::{Pace, SessionClock, Stretches};
+
+use crate::{Experiment, Run, replayed};
+use alloc::{collections::VecDeque, rc::Rc, vec, vec::Vec};
+use core::fmt;
+use stepscope_peripheral::{
+    signal::{Event, Record, Sink},
+    trace::Digest,
+    units::Instant,
+    wire::{BitTimes, bit_times::BYTE_BITS},
+};
+use stepscope_scenario::{Hex, Host, LineScript, Problem, Scenario, ScriptedSend, ValueError};
+
+/// Most bytes that are recorded: as many as a line script may have.
+pub const MAX_RECORDED_BYTES: u64 = 4 << 20;
+/// Most sends that are recorded: their scenario has to be one that can be read, of up to 64 MiB of text.
+pub const MAX_RECORDED_SENDS: u64 = 400_000;
+
+/// A byte of a controller's reply.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ReplyByte {
+    /// The controller, in the order of the scenario.
+    pub controller: usize,
+    /// First cycle after its stop bit: in this cycle, and not before, it has been sent.
+    pub end: Instant,
+    /// The byte.
+    pub byte: u8,
+}
+
+/// Controllers that somebody else's host talks to.
+#[derive(Clone)]
+pub struct Session {
+    /// What a recording is, but for its sends and its length.
+    blank: Scenario,
+    experiment: Rc<Experiment>,
+    run: Run,
+    times: BitTimes,
+    /// Replies go out at their controllers' own rates.
+    reply_times: Vec<BitTimes>,
+    /// Where the last send begins, and how many bytes it has.
+    last_send: Option<(Instant, u64)>,
+    heard: u64,
+    replies: VecDeque<ReplyByte>,
+    digests: Vec<Digest>,
+    /// What was recorded until there was no more room.
+    cut: Option<Rc<Recording>>,
+}
+
+impl Session {
+    /// The controllers of a scenario behind cycle 0. What the scenario sends and how long it runs is left out, so are its host
+    /// and its noise.
+    ///
+    /// # Errors
+    /// Every problem of the scenario, and that segments have no line.
+    pub fn new(scenario: &Scenario) -> Result<Self, Vec<Problem>> {
+        if scenario.source.runs_segments() {
+            let detail = "segments run a controller by itself, and nothing is on the line; choose ticks, packets or a line script";
+            return Err(vec![Problem::new("source", ValueError::Conflict { detail })]);
+        }
+        let mut blank = replayed(scenario.clone(), LineScript::default());
+        blank.line.host = Host::default();
+        blank.run_cycles = Some(1);
+        let experiment = Experiment::new(&blank)?;
+        let clock_hz = experiment.config().clock_hz();
+        let mut run = experiment.start();
+        run.without_end();
+        let mut session = Self {
+            blank,
+            run,
+            times: BitTimes::new(clock_hz, experiment.baud()),
+            reply_times: experiment
+                .configs()
+                .map(|config| BitTimes::new(clock_hz, config.reply_baud()))
+                .collect(),
+            last_send: None,
+            heard: 0,
+            replies: VecDeque::new(),
+            digests: vec![Digest::default(); experiment.controllers()],
+            experiment: Rc::new(experiment),
+            cut: None,
+        };
+        session.advance::<Digest>(Instant::RESET, &mut []);
+        Ok(session)
+    }
+
+    /// What is served: controllers and line, without sends.
+    #[must_use]
+    pub fn experiment(&self) -> &Experiment {
+        &self.experiment
+    }
+
+    /// The controllers as they are now.
+    #[must_use]
+    pub const fn run(&self) -> &Run {
+        &self.run
+    }
+
+    /// The last cycle that was run: the model stands behind it.
+    #[must_use]
+    pub fn now(&self) -> Instant {
+        Instant(self.run.cycles().0.saturating_sub(1))
+    }
+
+    /// Bytes that were received.
+    #[must_use]
+    pub const fn heard(&self) -> u64 {
+        self.heard
+    }
+
+    /// The digest of each controller's trace so far.
+    #[must_use]
+    pub fn digests(&self) -> &[Digest] {
+        &self.digests
+    }
+
+    /// Whether nothing changes any more unless something is received, and no reply waits to be taken.
+    #[must_use]
+    pub fn is_at_rest(&self) -> bool {
+        self.run.is_at_rest() && self.replies.is_empty()
+    }
+
+    /// Whether bytes are on the line, or a reply is to come or under way.
+    #[must_use]
+    pub fn is_busy(&self) -> bool {
+        self.deadline() != Instant::NEVER
+    }
+
+    /// The cycle to which it is worth going: the next byte of a reply has left, or all that was received has been heard and may
+    /// be answered; [`Instant::NEVER`] where nothing is on the line.
+    #[must_use]
+    pub fn deadline(&self) -> Instant {
+        let now = self.now();
+        let reply = self.replies.front().map_or(Instant::NEVER, |reply| reply.end.max(now.next()));
+        let heard = self.last_send.map(|(start, bytes)| start + self.times.byte(bytes) + self.times.bit(1));
+        heard.filter(|&heard| heard > now).map_or(reply, |heard| heard.min(reply))
+    }
+
+    /// Bytes that are read while the model stands behind [`Self::now`].
+    pub fn receive(&mut self, bytes: &[u8]) {
+        let count = bytes.len() as u64;
+        if count == 0 {
+            return;
+        }
+        let next = self.now().next();
+        let joins = self.last_send.filter(|&(start, sent)| start + self.times.byte(sent) >= next);
+        if self.cut.is_none() {
+            let sends = self.run.schedule().len() as u64 + u64::from(joins.is_none());
+            if self.heard + count > MAX_RECORDED_BYTES || sends > MAX_RECORDED_SENDS {
+                self.cut = Some(Rc::new(self.recording_to_now()));
+            }
+        }
+        self.heard += count;
+        let bus = self.run.bus_mut();
+        if let Some((start, sent)) = joins {
+            bus.extend(bytes);
+            self.last_send = Some((start, sent + count));
+        } else {
+            if self.cut.is_some() {
+                bus.forget_sent();
+            }
+            bus.send(next, bytes);
+            self.last_send = Some((next, count));
+        }
+    }
+
+    /// Runs the model up to and with cycle `to`, with a sink for each controller; what is past stays as it is.
+    pub fn advance<S: Sink>(&mut self, to: Instant, sinks: &mut [S]) {
+        let Self { run, digests, replies, reply_times, .. } = self;
+        let mut sinks = sinks.iter_mut();
+        let mut answers: Vec<Vec<ReplyByte>> = vec![Vec::new(); digests.len()];
+        let taps = digests.iter_mut().zip(reply_times.iter()).zip(&mut answers).enumerate();
+        let mut taps: Vec<Tap<'_, S>> = taps
+            .map(|(controller, ((digest, times), replies))| Tap {
+                controller,
+                digest,
+                times: *times,
+                replies,
+                sink: sinks.next(),
+            })
+            .collect();
+        run.run_to(to.next(), &mut taps);
+        answers.sort_by_key(|replies| replies.first().map(|reply| reply.end));
+        replies.extend(answers.into_iter().flatten());
+    }
+
+    /// The bytes of replies that have left by [`Self::now`], in their order. Each is given once.
+    pub fn take_replies(&mut self) -> impl Iterator<Item = ReplyByte> {
+        let now = self.now();
+        let gone = self.replies.iter().take_while(|reply| reply.end <= now).count();
+        self.replies.drain(..gone)
+    }
+
+    /// Whether all that was received is recorded, or only what came before there was no more room.
+    #[must_use]
+    pub const fn records_all(&self) -> bool {
+        self.cut.is_none()
+    }
+
+    /// The session so far as a scenario, or as much of it as could be recorded.
+    #[must_use]
+    pub fn recording(&self) -> Recording {
+        self.cut.as_ref().map_or_else(|| self.recording_to_now(), |cut| Recording::clone(cut))
+    }
+
+    fn recording_to_now(&self) -> Recording {
+        let sends = self.run.schedule().iter();
+        let sends = sends.map(|send| ScriptedSend {
+            start_cycle: send.start.0,
+            bytes: Hex(send.bytes.to_vec()),
+            frame: None,
+        });
+        let mut scenario = replayed(self.blank.clone(), LineScript { sends: sends.collect() });
+        scenario.run_cycles = Some(self.run.cycles().0);
+        Recording { scenario, digests: self.digests.iter().map(Digest::value).collect() }
+    }
+}
+
+/// Takes what one controller does.
+struct Tap<'a, S> {
+    controller: usize,
+    digest: &'a mut Digest,
+    times: BitTimes,
+    replies: &'a mut Vec<ReplyByte>,
+    sink: Option<&'a mut S>,
+}
+
+impl<S: Sink> Sink for Tap<'_, S> {
+    fn record(&mut self, record: Record) {
+        self.digest.record(record);
+        self.sink.record(record);
+    }
+
+    fn event(&mut self, at: Instant, event: Event) {
+        if let Event::Reply { start, reply, positions, .. } = &event {
+            let bytes = (0..).zip(reply.emit(positions.as_ref()));
+            let (controller, times) = (self.controller, self.times);
+            self.replies.extend(bytes.map(|(index, byte)| ReplyByte {
+                controller,
+                end: *start + times.byte(index) + times.bit(BYTE_BITS),
+                byte,
+            }));
+        }
+        self.sink.event(at, event);
+    }
+}
+
+/// A session, or its beginning, as a scenario.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    /// The same controllers and line, with what was received as the source.
+    pub scenario: Scenario,
+    /// The digest of each controller's trace.
+    pub digests: Vec<u64>,
+}
+
+/// Why a recording is not the session.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NotTheSession {
+    /// It cannot be run.
+    Refused(Vec<Problem>),
+    /// A controller does something else.
+    Differs {
+        /// Which, in the order of the scenario.
+        controller: usize,
+        /// The digest in the session.
+        session: u64,
+        /// The digest of the replay.
+        replay: u64,
+    },
+}
+
+impl fmt::Display for NotTheSession {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Refused(problems) => {
+                f.write_str("the recording cannot be run")?;
+                problems.iter().try_for_each(|problem| write!(f, "; {problem}"))
+            }
+            Self::Differs { controller, session, replay } => write!(
+                f,
+                "controller {controller} had the digest {session:016x} in the session, and {replay:016x} when the recording was run"
+            ),
+        }
+    }
+}
+
+impl Recording {
+    /// Runs it, and holds it against the session.
+    ///
+    /// # Errors
+    /// What differs.
+    pub fn verify(&self) -> Result<(), NotTheSession> {
+        let experiment = Experiment::new(&self.scenario).map_err(NotTheSession::Refused)?;
+        let mut replay = vec![Digest::default(); experiment.controllers()];
+        experiment.run_each(&mut replay);
+        let pairs = self.digests.iter().zip(replay.iter().map(Digest::value)).enumerate();
+        for (controller, (&session, replay)) in pairs {
+            if session != replay {
+                return Err(NotTheSession::Differs { controller, session, replay });
+            }
+        }
+        Ok(())
+    }
+}

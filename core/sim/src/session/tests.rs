@@ -1,0 +1,284 @@
+//! Sessions recorded and run again; the host's conversation with one, over a wire that somebody cuts and bends.
+
+use super::*;
+use crate::{
+    framed_host::{Conversation, GivenUp, Job, Progress},
+    noise::Random,
+};
+use alloc::{format, string::String};
+use stepscope_peripheral::{device::Faults, signal::MAX_CHANNELS, units::Cycles, wire::frame};
+use stepscope_scenario::Source;
+
+fn session(json: &str) -> Session {
+    Session::new(&Scenario::from_json(json).expect("reads")).expect("no problems")
+}
+
+fn sends(session: &Session) -> Vec<(u64, usize)> {
+    session.run().schedule().iter().map(|send| (send.start.0, send.bytes.len())).collect()
+}
+
+/// 10 cycles a bit and a bit more: a byte's place is floor(10*j*1050/100).
+const SLOW: &str = r#"{ "clock_hz": 1155, "line": { "baud": 100 }, "bus": { "boot_cycles": 0 } }"#;
+
+#[test]
+fn a_byte_joins_the_last_send_while_its_place_there_is_to_come() {
+    // Model's cycle, bytes received, sends afterwards. A byte takes 115.5 cycles.
+    type Row = (u64, usize, &'static [(u64, usize)]);
+    let rows: [Row; 6] = [
+        (0, 1, &[(1, 1)]),
+        (115, 1, &[(1, 2)]),
+        // The place of the third one is 1 + 231.
+        (231, 1, &[(1, 3)]),
+        (347, 2, &[(1, 3), (348, 2)]),
+        (348, 3, &[(1, 3), (348, 5)]),
+        (5000, 1, &[(1, 3), (348, 5), (5001, 1)]),
+    ];
+    let mut session = session(SLOW);
+    for (now, bytes, expected) in rows {
+        session.advance::<Digest>(Instant(now), &mut []);
+        session.receive(&vec![0x55; bytes]);
+        assert_eq!(sends(&session), expected, "{bytes} in {now}");
+    }
+    session.advance::<Digest>(Instant(6000), &mut []);
+    session.recording().verify().expect("the same");
+}
+
+#[test]
+fn what_the_scenario_sends_how_long_and_how_badly_is_left_out_and_segments_have_no_line() {
+    let json = r#"{ "line": { "protocol": "framed", "noise": { "lost_bytes_ppm": 1000000 }, "host": { "attempts": 3 },
+        "glitches": [ { "start_cycle": 9, "length_cycles": 2, "level": 0 } ] }, "run_cycles": 70 }"#;
+    let mut session = session(json);
+    assert_eq!((session.now(), session.deadline(), session.heard()), (Instant(0), Instant::NEVER, 0));
+    session.advance::<Digest>(Instant(999), &mut []);
+    let Recording { scenario, .. } = session.recording();
+    let plain = Scenario::from_json(json).expect("reads");
+    assert_eq!((scenario.run_cycles, scenario.source), (Some(1000), Source::Line(LineScript::default())));
+    assert_eq!((scenario.line.noise, scenario.line.host), (Default::default(), Host::default()));
+    assert_eq!(scenario.line.glitches, plain.line.glitches);
+    let segments =
+        Scenario::from_json(r#"{ "source": { "motion": { "engine": "segments" } } }"#).expect("reads");
+    assert_eq!(Session::new(&segments).err().expect("no line")[0].path, "source");
+}
+
+#[test]
+fn a_reply_leaves_with_its_stop_bit_and_not_before() {
+    let mut session = session(
+        r#"{ "clock_hz": 1600, "line": { "baud": 100, "protocol": "framed" } , "bus": { "boot_cycles": 0 } }"#,
+    );
+    session.receive(&frame::emit(0, 4, &[]));
+    let (mut ends, mut rounds) = (Vec::new(), 0);
+    while session.is_busy() {
+        session.advance::<Digest>(session.deadline(), &mut []);
+        let now = session.now();
+        ends.extend(session.take_replies().map(|reply| {
+            assert_eq!(reply.end, now, "in the first cycle that has all of it");
+            reply.end.0
+        }));
+        rounds += 1;
+    }
+    // The frame ends with the sample of its last stop bit, 16*9 + 8 after the start; 11 bits later the reply begins.
+    let last = 1 + 160 * 7 + 8 + 144;
+    assert_eq!(ends.first(), Some(&(last + 11 * 16 + 160)));
+    assert_eq!((ends.len(), ends[16] - ends[0], rounds), (17, 16 * 160, 18));
+}
+
+/// Random scenarios: protocols, rates, controllers.
+fn random_scenario(random: &mut Random) -> String {
+    let framed = random.below(2) == 0;
+    let protocol = if framed { "framed" } else { "raw" };
+    let baud = [100, 137, 240][random.below(3) as usize];
+    let receiver = baud - 3 + random.below(6);
+    let several = random.below(3) == 0;
+    let controllers = if several {
+        r#", "controllers": [ { "address": 9, "bus": { "channels": 1 } }, { "address": 3 } ]"#
+    } else {
+        ""
+    };
+    let address = if several { r#", "address": 1"# } else { "" };
+    let glitch = random.below(9000);
+    format!(
+        r#"{{ "clock_hz": 4000, "bus": {{ "channels": 2, "slots": 5, "step_period_cycles": 90, "boot_cycles": 20, "queue_depth": 3 }},
+            "line": {{ "protocol": "{protocol}", "baud": {baud}, "receiver_baud": {receiver}{address},
+                "glitches": [ {{ "start_cycle": {}, "length_cycles": 30, "level": 0 }} ] }}{controllers} }}"#,
+        1 + glitch
+    )
+}
+
+/// Something that may be a packet, a frame, or neither.
+fn random_chunk(random: &mut Random) -> Vec<u8> {
+    let bytes = |random: &mut Random, most| {
+        (0..random.below(most)).map(|_| random.below(256) as u8).collect::<Vec<u8>>()
+    };
+    match random.below(4) {
+        0 => bytes(random, 20),
+        1 => vec![0x80 | random.below(6) as u8; random.below(5) as usize],
+        2 => {
+            frame::emit([0, 1, 3, 9, 255][random.below(5) as usize], random.below(9) as u8, &bytes(random, 3))
+        }
+        _ => frame::emit(
+            [0, 1, 3, 9][random.below(4) as usize],
+            1,
+            &frame::Ticks::emit(random.below(4) as u8, 2, &[0x83, 0x02, 0x80, 0]),
+        ),
+    }
+}
+
+#[test]
+fn random_bytes_in_random_cycles_are_the_same_run_again_whatever_rounds_they_came_in() {
+    let (mut replies, mut faults) = (0, Faults::default().bits());
+    for seed in 0..400 {
+        let mut random = Random::new(seed);
+        let json = random_scenario(&mut random);
+        let mut session = session(&json);
+        for _ in 0..random.below(40) {
+            let chunk = random_chunk(&mut random);
+            // Some chunks are read in two parts.
+            let (one, two) = chunk.split_at(random.below(chunk.len() as u64 + 1) as usize);
+            session.receive(one);
+            session.receive(two);
+            let pause = [0, 1, 7, 300, 5000][random.below(5) as usize];
+            let to = Instant(session.now().0 + random.below(pause + 1));
+            session.advance::<Digest>(to, &mut []);
+            replies += session.take_replies().count();
+        }
+        let recording = session.recording();
+        assert_eq!(recording.verify(), Ok(()), "seed {seed}: {json}");
+        let text = recording.scenario.to_json();
+        assert_eq!(Scenario::from_json(&text).as_ref(), Ok(&recording.scenario), "seed {seed}");
+        faults |= session.run().devices().fold(0, |all, device| all | device.faults().bits());
+    }
+    assert!(replies > 500 && faults.count_ones() >= 5, "{replies} {faults:#x}");
+}
+
+#[test]
+fn beyond_its_limit_a_session_goes_on_and_the_recording_ends_before_it() {
+    let mut session = session(r#"{ "clock_hz": 1000000, "line": { "baud": 90000 } }"#);
+    let chunk = vec![0x81; 1 << 16];
+    for _ in 0..64 {
+        session.receive(&chunk);
+    }
+    let whole = session.deadline();
+    session.advance::<Digest>(whole, &mut []);
+    assert!(session.records_all());
+    let at = session.now();
+    session.receive(&[0x81]);
+    assert!(!session.records_all());
+    session.advance::<Digest>(whole + Cycles(1_000_000), &mut []);
+    session.receive(&[0x81]);
+    assert_eq!(sends(&session).len(), 1, "what has been sent is forgotten");
+    session.advance::<Digest>(whole + Cycles(2_000_000), &mut []);
+    let recording = session.recording();
+    assert_eq!(recording.scenario.run_cycles, Some(at.0 + 1));
+    recording.verify().expect("the same");
+    assert_eq!(session.heard(), (4 << 20) + 2);
+}
+
+/// Ticks that a controller begins.
+#[derive(Default)]
+struct Executed(Vec<[u8; MAX_CHANNELS]>);
+
+impl Sink for Executed {
+    fn record(&mut self, _: Record) {}
+
+    fn event(&mut self, _: Instant, event: Event) {
+        if let Event::TickStart { orders } = event {
+            self.0.push(orders);
+        }
+    }
+}
+
+/// A host and a soft device with a system between them that keeps bytes back, hands them over in pieces, bends some, and
+/// stops one of the two for a while. Gives where the host ended, what was ordered, and what was executed.
+fn over_a_bad_wire(seed: u64, stop: bool) -> (Progress, Vec<u8>, Vec<u8>, u32) {
+    let mut random = Random::new(seed);
+    let json = r#"{ "clock_hz": 100000, "bus": { "channels": 2, "slots": 5, "step_period_cycles": 90, "queue_depth": 6, "boot_cycles": 20 },
+        "line": { "protocol": "framed", "baud": 9000 } }"#;
+    let mut device = session(json);
+    let ticks = 1 + random.below(30);
+    let mut orders: Vec<u8> =
+        (0..2 * ticks).map(|_| (random.below(6) | random.below(2) << 7) as u8).collect();
+    orders.extend([0x80, 0]);
+    let job =
+        Job { address: 0, channels: 2, tick: Cycles(450), queue_depth: 6, commands: orders.clone().into() };
+    let settings = Host { ticks_per_frame: 1 + random.below(8) as u8, ..Host::default() };
+    let mut host = Conversation::new(vec![job], &settings, Cycles(11), Instant(30)).with_slack(Cycles(5000));
+    let bad = [0, 2_000, 30_000][random.below(3) as usize];
+    let stop_at = stop.then(|| 30 + random.below(40_000));
+    // Bytes on their way: when they are read.
+    let (mut to_device, mut to_host) = (VecDeque::<(u64, u8)>::new(), VecDeque::<(u64, u8)>::new());
+    let mut executed = [Executed::default()];
+    let wire = |random: &mut Random, now: u64, bytes: &[u8], queue: &mut VecDeque<(u64, u8)>| {
+        for &byte in bytes {
+            let late = [0, 0, 0, 40, 900][random.below(5) as usize];
+            let at = queue.back().map_or(0, |&(at, _)| at).max(now + random.below(late + 1));
+            match random.below(1_000_000) {
+                lost if lost < bad => {}
+                bent if bent < 2 * bad => queue.push_back((at, byte ^ 1 << random.below(8))),
+                doubled if doubled < 3 * bad => queue.extend([(at, byte), (at, byte)]),
+                _ => queue.push_back((at, byte)),
+            }
+        }
+    };
+    let (mut now, mut stopped) = (30_u64, false);
+    while !host.is_over() {
+        if stop_at.is_some_and(|at| at <= now) && !stopped {
+            host.stop(Instant(now));
+            stopped = true;
+        }
+        while to_host.front().is_some_and(|&(at, _)| at <= now) {
+            to_host.pop_front().into_iter().for_each(|(_, byte)| host.hear(byte, Instant(now)));
+        }
+        while host.deadline() <= Instant(now) {
+            if let Some(bytes) = host.poll(Instant(now)) {
+                host.sent(Instant(now + 111 * bytes.len() as u64));
+                wire(&mut random, now, &bytes, &mut to_device);
+            }
+        }
+        while to_device.front().is_some_and(|&(at, _)| at <= now) {
+            to_device.pop_front().into_iter().for_each(|(_, byte)| device.receive(&[byte]));
+        }
+        device.advance(Instant(now), &mut executed);
+        let replies: Vec<u8> = device.take_replies().map(|reply| reply.byte).collect();
+        wire(&mut random, now, &replies, &mut to_host);
+        // Rounds of up to a millisecond; now and then somebody is stopped.
+        now += 1 + random.below(100) + if random.below(2000) == 0 { random.below(30_000) } else { 0 };
+        assert!(now < 100_000_000, "seed {seed}: the host never ends");
+    }
+    device.recording().verify().unwrap_or_else(|why| panic!("seed {seed}: {why}"));
+    let executed: Vec<u8> = executed[0].0.iter().flat_map(|tick| tick[..2].to_vec()).collect();
+    (host.progress().next().expect("one job"), orders, executed, host.acknowledged().next().expect("one job"))
+}
+
+/// How many seeds: `STEPSCOPE_SEEDS=100000` for the long form.
+fn seeds() -> u64 {
+    std::env::var("STEPSCOPE_SEEDS").ok().and_then(|seeds| seeds.parse().ok()).unwrap_or(400)
+}
+
+#[test]
+fn over_a_bad_wire_no_tick_is_wrong_doubled_or_lost_or_it_is_said() {
+    let mut done = 0;
+    for seed in 0..seeds() {
+        let (progress, ordered, executed, acknowledged) = over_a_bad_wire(seed, false);
+        // Whatever became of it: what was executed is the beginning of what was ordered.
+        assert!(ordered.starts_with(&executed), "seed {seed}: {progress}");
+        assert!(executed.len() >= 2 * acknowledged as usize, "seed {seed}: {progress}");
+        match progress {
+            Progress::Done => assert_eq!(executed, ordered, "seed {seed}"),
+            // Where hardly a frame comes through.
+            other => assert_eq!(other, Progress::GivenUp(GivenUp::NoReply), "seed {seed}"),
+        }
+        done += u64::from(progress == Progress::Done);
+    }
+    assert!((seeds() / 2..seeds()).contains(&done), "{done} of {}", seeds());
+}
+
+#[test]
+fn a_stop_over_a_bad_wire_is_acknowledged_and_what_was_executed_is_a_beginning() {
+    for seed in 0..seeds() / 4 {
+        let (progress, ordered, executed, _) = over_a_bad_wire(seed, true);
+        assert!(ordered.starts_with(&executed), "seed {seed}: {progress}");
+        let ended =
+            matches!(progress, Progress::Done | Progress::GivenUp(GivenUp::Interrupted | GivenUp::NoReply));
+        assert!(ended, "seed {seed}: {progress}");
+    }
+}
