@@ -50,6 +50,20 @@ pub(crate) enum Failure {
     NotTheModel(String),
     /// The timing check found this many violations, and none was to be.
     Violations(u64),
+    /// A port cannot be used, and why.
+    Port(String, String),
+    /// An option cannot be as it is, and why.
+    Option(String),
+    /// The port went while it was used.
+    LostPort(String),
+    /// A session was not in real time: how often its clock was set back, and by how many ms.
+    NotRealTime(u64, f64),
+    /// A recording does not give the session again.
+    NotRecorded(PathBuf, String),
+    /// What was sent is not known to be done.
+    NotVerified(String),
+    /// Ctrl-C ended it, after its report.
+    Interrupted,
     /// So many seeds of a fault sweep with the framed protocol went wrong, and none was to.
     WrongSteps(u64),
     /// So many power cuts left a position that is trusted and wrong, and none was to.
@@ -77,7 +91,9 @@ impl Failure {
         match self {
             // What a shell says of a command that its closed pipe has ended.
             _ if self.is_closed_pipe() => ExitCode::from(141),
-            Self::File(..) | Self::PartOnly(..) => ExitCode::from(1),
+            Self::File(..) | Self::PartOnly(..) | Self::Port(..) => ExitCode::from(1),
+            Self::LostPort(_) => ExitCode::from(4),
+            Self::Interrupted => ExitCode::from(130),
             Self::Output(..)
             | Self::Timescale(_)
             | Self::TooLong(..)
@@ -93,10 +109,14 @@ impl Failure {
             | Self::Controller(..)
             | Self::Axis(..)
             | Self::Table(..)
+            | Self::Option(_)
             | Self::Recording(..) => ExitCode::from(2),
             Self::OtherRun(_)
             | Self::NotTheModel(_)
             | Self::Violations(_)
+            | Self::NotRealTime(..)
+            | Self::NotRecorded(..)
+            | Self::NotVerified(_)
             | Self::WrongSteps(_)
             | Self::SilentlyWrong(_) => ExitCode::from(3),
         }
@@ -170,7 +190,18 @@ impl fmt::Display for Failure {
             Self::PartOnly(path, why) => {
                 write!(f, "{}: not read to its end: {why}; what stands above is of what could be read", path.display())
             }
-            Self::NotTheModel(how) => f.write_str(how),
+            Self::NotTheModel(how) | Self::Option(how) | Self::NotVerified(how) => f.write_str(how),
+            Self::Port(name, why) => write!(f, "{name}: {why}"),
+            Self::LostPort(why) => write!(f, "the port is lost: {why}"),
+            Self::NotRealTime(count, ms) => {
+                let times = if *count == 1 { "once" } else { "several times" };
+                write!(
+                    f,
+                    "this machine did not keep up: the session's clock was set back {times} ({count}), by {ms:.0} ms in all. The run is exact for what it was given, but was not in real time; give a longer --lag or a lower --pace"
+                )
+            }
+            Self::NotRecorded(path, why) => write!(f, "{}: written, but it is not the session: {why}", path.display()),
+            Self::Interrupted => f.write_str("ended by Ctrl-C"),
             Self::Violations(count) => {
                 let s = if *count == 1 { "" } else { "s" };
                 write!(f, "{count} violation{s} of the driver's timing")

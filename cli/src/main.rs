@@ -10,6 +10,7 @@ mod files;
 mod json;
 mod limits;
 mod line;
+mod live;
 mod manual;
 mod measures;
 mod motors;
@@ -40,10 +41,12 @@ use std::{
 const EXIT_CODES: &str = "\
 Exit codes:
   0    done
-  1    a file could not be read or written, or a recording not to its end
+  1    a file could not be read or written, or a recording not to its end; a port could not be opened
   2    the scenario, the link, the recording or the command line is wrong
   3    something was to hold and does not: --strict found violations, faults found wrong steps on a framed line,
-       powercut found a position that is trusted and wrong, open --verify found another run than the link's, capture --against another than the model's
+       powercut found a position that is trusted and wrong, open --verify found another run than the link's,
+       capture --against another than the model's, send could not confirm what it sent, serve was not in real time
+  4    send, serve: the port was lost; what is known was told
   130  ended by Ctrl-C; no file was changed
   141  standard output was closed, as behind | head";
 
@@ -59,6 +62,11 @@ struct Arguments {
 enum Command {
     /// Runs a scenario: digest, status, trace and other files.
     Run(run::Arguments),
+    /// Serves a scenario's controllers against the wall clock: other programs talk to them through a pseudo-terminal, a socket or
+    /// a real port, and the session can be recorded.
+    Serve(live::serve::Arguments),
+    /// Sends a scenario's ticks to real controllers and has them confirmed, tick by tick and position by position.
+    Send(live::send::Arguments),
     /// Sends the same orders over a line that goes wrong in as many ways as there are seeds, and counts
     /// what was executed wrong, twice or not at all, with and without the framed protocol.
     Faults(faults::Arguments),
@@ -141,6 +149,8 @@ fn main() -> ExitCode {
     let arguments = Arguments::from_arg_matches(&command_line().get_matches());
     let result = match arguments.unwrap_or_else(|error| error.exit()).command {
         Command::Run(arguments) => run::run(&arguments),
+        Command::Serve(arguments) => live::serve::serve(&arguments),
+        Command::Send(arguments) => live::send::send(&arguments),
         Command::Faults(arguments) => faults::faults(&arguments),
         Command::Tables(arguments) => tables::tables(&arguments),
         Command::Measures(arguments) => measures::measures(&arguments),

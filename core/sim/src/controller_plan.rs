@@ -246,14 +246,19 @@ impl<'a> Packets<'a> {
     }
 }
 
+/// What the host of a framed line has to do: a job for each controller that has ticks.
+pub(super) fn jobs(controllers: &[ControllerPlan]) -> Vec<Job> {
+    let busy = controllers.iter().filter(|plan| plan.has_ticks());
+    busy.map(|plan| job(&plan.config, &plan.ticks)).collect()
+}
+
 /// The host of a framed line.
 pub(super) fn framed_host(checked: &Checked, controllers: &[ControllerPlan]) -> FramedHost {
-    let jobs = controllers.iter().filter(|plan| plan.has_ticks()).map(|plan| job(&plan.config, &plan.ticks));
     let (clock_hz, baud) = (controllers.first().map_or(1, |first| first.config.clock_hz()), checked.baud);
     let noise = Noise::new(&checked.noise, clock_hz, baud);
     let start = start(checked);
     FramedHost::new(
-        jobs.collect(),
+        jobs(controllers),
         &checked.host,
         (clock_hz, baud, Config::bit_of(clock_hz, baud)),
         start,

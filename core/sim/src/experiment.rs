@@ -8,7 +8,7 @@ use crate::{
     bus::Bus,
     controller_plan::{self, ControllerPlan},
     controllers::Controllers,
-    framed_host::{FramedHost, Progress},
+    framed_host::{Conversation, FramedHost, Progress},
 };
 use alloc::{boxed::Box, rc::Rc, vec::Vec};
 use core::slice;
@@ -187,8 +187,19 @@ impl Experiment {
         run.host()?.acknowledged().nth(self.job(index)?)
     }
 
+    /// What a host says on a real line to have the ticks done (LIVE H3), from cycle `start` of its own clock on; `None` where
+    /// nobody waits for replies.
+    #[must_use]
+    pub fn conversation(&self, start: Instant) -> Option<Conversation> {
+        let bit = Config::bit_of(self.config().clock_hz(), self.baud());
+        let jobs = || controller_plan::jobs(&self.controllers);
+        let waits = self.checked.waits_for_replies();
+        waits.then(|| Conversation::new(jobs(), &self.checked.host, bit, start))
+    }
+
     /// Which of the host's jobs controller `index` is: it has one for each that has ticks.
-    fn job(&self, index: usize) -> Option<usize> {
+    #[must_use]
+    pub fn job(&self, index: usize) -> Option<usize> {
         self.controllers.get(index).filter(|plan| plan.has_ticks())?;
         Some(self.controllers.iter().take(index).filter(|plan| plan.has_ticks()).count())
     }

@@ -155,6 +155,11 @@ impl Conversation {
         self.peers.get_mut(job)?.expected(ticks)
     }
 
+    /// Steps of each channel in the first so many ticks of a job, to the right positive.
+    pub fn sums(&mut self, job: usize, ticks: u32) -> Vec<i32> {
+        self.peers.get_mut(job).map_or_else(Vec::new, |peer| peer.sums(ticks))
+    }
+
     /// What it has counted.
     #[must_use]
     pub const fn counts(&self) -> Counts {

@@ -394,6 +394,11 @@ impl Peer {
             .map(|(channel, (&told, expected))| GivenUp::Displaced { channel, ticks, expected, told })
     }
 
+    /// Steps of each channel in its first ticks.
+    pub(super) fn sums(&mut self, ticks: u32) -> Vec<i32> {
+        self.sums.after(ticks).to_vec()
+    }
+
     /// Where its first ticks lead to, from where it began.
     pub(super) fn expected(&mut self, ticks: u32) -> Option<Vec<i32>> {
         let began = self.known.opened_at?;

@@ -94,6 +94,12 @@ impl SessionClock {
         u64::try_from(ns).unwrap_or(u64::MAX)
     }
 
+    /// How long after its cycle something is at a time since the session's beginning.
+    #[must_use]
+    pub fn late_ns(&self, elapsed_ns: u64, cycle: Instant) -> u64 {
+        elapsed_ns.saturating_sub(self.nanos(Cycles(cycle.0 + self.stretches.cycles.0)))
+    }
+
     /// The cycle up to which the model may run at a time since the session's beginning, while it stands behind `reached`. Where
     /// it is later than the lag allows the clock is set back.
     pub fn target(&mut self, elapsed_ns: u64, reached: Instant) -> Instant {

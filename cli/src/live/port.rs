@@ -1,0 +1,447 @@
+//! Ports: a real one, a pseudo-terminal's side for others, a socket. Each reads for a while and writes what it can.
+
+use crate::failure::Failure;
+use serial2::{CharSize, FlowControl, Parity, SerialPort, Settings, StopBits};
+use std::{
+    io::{self, ErrorKind, Read, Write},
+    net::{Shutdown, SocketAddr, TcpListener, TcpStream},
+    path::{Path, PathBuf},
+    thread,
+    time::{Duration, Instant},
+};
+
+/// A system does not wait for less.
+const LEAST_WAIT: Duration = Duration::from_millis(1);
+/// How long a write waits for room before it is tried again later.
+const WRITE_WAIT: Duration = Duration::from_millis(1);
+
+/// What came of reading.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Heard {
+    /// Nothing in that time.
+    Nothing,
+    /// So many bytes.
+    Bytes(usize),
+    /// Who was at the other end has gone.
+    Gone,
+}
+
+/// One end of a line.
+pub(crate) trait Port {
+    /// Reads what is there, or comes within `wait`.
+    fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<Heard>;
+
+    /// Writes as much as there is room for, now.
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize>;
+
+    /// Waits until all that was written has left, where the system tells.
+    fn drain(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+
+    /// Raises or drops RTS.
+    fn set_rts(&mut self, _on: bool) -> io::Result<()> {
+        Err(ErrorKind::Unsupported.into())
+    }
+
+    /// Looks after what is no data, a few times a second; what is to be told.
+    fn look(&mut self) -> Option<String> {
+        None
+    }
+
+    /// Whether somebody is at the other end.
+    fn is_connected(&self) -> bool {
+        true
+    }
+}
+
+/// Writes all, at the latest by `within`.
+pub(crate) fn write_all(port: &mut dyn Port, mut bytes: &[u8], within: Duration) -> io::Result<()> {
+    let begin = Instant::now();
+    while !bytes.is_empty() {
+        let written = port.write(bytes)?;
+        bytes = bytes.get(written..).unwrap_or_default();
+        if written == 0 {
+            if begin.elapsed() > within {
+                return Err(io::Error::new(ErrorKind::TimedOut, "it takes no bytes"));
+            }
+            thread::sleep(LEAST_WAIT);
+        }
+    }
+    Ok(())
+}
+
+/// What a read of the system comes to.
+fn heard(result: io::Result<usize>) -> io::Result<Heard> {
+    match result {
+        Ok(0) => Ok(Heard::Gone),
+        Ok(count) => Ok(Heard::Bytes(count)),
+        Err(error) => match error.kind() {
+            ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted => Ok(Heard::Nothing),
+            _ => Err(error),
+        },
+    }
+}
+
+/// What a write of the system comes to.
+fn written(result: io::Result<usize>) -> io::Result<usize> {
+    match result {
+        Err(error)
+            if matches!(
+                error.kind(),
+                ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted
+            ) =>
+        {
+            Ok(0)
+        }
+        other => other,
+    }
+}
+
+/// How an RS-485 transceiver is turned.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Rs485 {
+    /// The adapter turns by itself.
+    #[default]
+    Auto,
+    /// The kernel does (TIOCSRS485).
+    Kernel,
+    /// This command does: RTS up, write, drain, RTS down. Up to 9600 baud.
+    Rts,
+}
+
+/// A real port, or somebody's pseudo-terminal.
+pub(crate) struct Serial(SerialPort);
+
+impl Serial {
+    /// Opens a port at 8N1 without flow control, for nobody else, and reads back whether it is.
+    pub(crate) fn open(path: &Path, baud: u32, rs485: Rs485) -> Result<Self, Failure> {
+        let name = || path.display().to_string();
+        let failed = |error: io::Error| Failure::Port(name(), error.to_string());
+        let set = |mut settings: Settings| -> io::Result<Settings> {
+            settings.set_raw();
+            settings.set_char_size(CharSize::Bits8);
+            settings.set_stop_bits(StopBits::One);
+            settings.set_parity(Parity::None);
+            settings.set_flow_control(FlowControl::None);
+            settings.set_baud_rate(baud)?;
+            Ok(settings)
+        };
+        let mut port = SerialPort::open(path, |settings: Settings| Ok(settings)).map_err(failed)?;
+        #[cfg(unix)]
+        rustix::termios::ioctl_tiocexcl(&port).map_err(|error| failed(error.into()))?;
+        let wanted = port.get_configuration().and_then(set).map_err(failed)?;
+        let refused =
+            |why: &str| Failure::Port(name(), format!("it does not take {baud} baud, 8N1, raw: {why}"));
+        port.set_configuration(&wanted).map_err(|error| refused(&error.to_string()))?;
+        let told = port.get_configuration().map_err(failed)?;
+        let has = told.get_baud_rate().unwrap_or(0);
+        // A divider has its steps; A4's receivers bear some per cent.
+        if u64::from(has.abs_diff(baud)) * 50 > u64::from(baud) {
+            return Err(refused(&format!("it says {has} baud")));
+        }
+        let frame = (told.get_char_size().ok(), told.get_stop_bits().ok(), told.get_parity().ok());
+        if frame != (Some(CharSize::Bits8), Some(StopBits::One), Some(Parity::None)) {
+            return Err(refused(&format!("it says {frame:?}")));
+        }
+        port.set_write_timeout(WRITE_WAIT).map_err(failed)?;
+        if rs485 == Rs485::Kernel {
+            kernel_turns(&port).map_err(|error| {
+                Failure::Port(
+                    name(),
+                    format!("this port cannot turn an RS-485 transceiver: {error}; give --rs485 auto or rts"),
+                )
+            })?;
+        }
+        if rs485 == Rs485::Rts {
+            port.set_rts(false).map_err(failed)?;
+        }
+        // What was sent before this port was opened is no answer.
+        port.discard_buffers().map_err(failed)?;
+        Ok(Self(port))
+    }
+}
+
+#[cfg(target_os = "linux")]
+fn kernel_turns(port: &SerialPort) -> io::Result<()> {
+    port.set_rs4xx_mode(serial2::rs4xx::Rs485Config::new())
+}
+
+#[cfg(not(target_os = "linux"))]
+fn kernel_turns(_port: &SerialPort) -> io::Result<()> {
+    Err(ErrorKind::Unsupported.into())
+}
+
+/// Waits for bytes, or for the end of them, to the nanosecond: timeouts of ports and sockets are those of the system's tick.
+#[cfg(unix)]
+fn has_bytes(port: &impl std::os::fd::AsFd, wait: Duration) -> io::Result<bool> {
+    use rustix::event::{PollFd, PollFlags, Timespec, poll};
+    let mut fds = [PollFd::new(port, PollFlags::IN)];
+    let timeout = Timespec { tv_sec: wait.as_secs().cast_signed(), tv_nsec: wait.subsec_nanos().into() };
+    match poll(&mut fds, Some(&timeout)) {
+        Ok(found) => Ok(found > 0),
+        Err(rustix::io::Errno::INTR) => Ok(false),
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// The timeout that follows is that of the system.
+#[cfg(not(unix))]
+fn has_bytes<T>(_port: &T, _wait: Duration) -> io::Result<bool> {
+    Ok(true)
+}
+
+impl Port for Serial {
+    fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<Heard> {
+        if !has_bytes(&self.0, wait)? {
+            return Ok(Heard::Nothing);
+        }
+        let wait = if wait.is_zero() { wait } else { wait.max(LEAST_WAIT) };
+        self.0.set_read_timeout(wait)?;
+        heard(self.0.read(buffer))
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        written(self.0.write(bytes))
+    }
+
+    fn drain(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
+
+    fn set_rts(&mut self, on: bool) -> io::Result<()> {
+        self.0.set_rts(on)
+    }
+}
+
+/// A socket to a program that speaks the bytes as they are.
+pub(crate) struct Socket(TcpStream);
+
+impl Socket {
+    pub(crate) fn new(stream: TcpStream) -> io::Result<Self> {
+        stream.set_nodelay(true)?;
+        stream.set_nonblocking(false)?;
+        stream.set_write_timeout(Some(WRITE_WAIT))?;
+        Ok(Self(stream))
+    }
+
+    /// Connects to an address of another program.
+    pub(crate) fn connect(address: &str) -> Result<Self, Failure> {
+        let failed = |error: io::Error| Failure::Port(format!("tcp:{address}"), error.to_string());
+        TcpStream::connect(address).and_then(Self::new).map_err(failed)
+    }
+}
+
+impl Port for Socket {
+    fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<Heard> {
+        if !has_bytes(&self.0, wait)? {
+            return Ok(Heard::Nothing);
+        }
+        self.0.set_read_timeout(Some(wait.max(LEAST_WAIT)))?;
+        heard(self.0.read(buffer))
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        written(self.0.write(bytes))
+    }
+}
+
+/// A socket that waits for one client at a time.
+pub(crate) struct Listener {
+    listener: TcpListener,
+    client: Option<Socket>,
+}
+
+impl Listener {
+    /// Listens on an address; on one that others than this machine reach only where that is asked for.
+    pub(crate) fn open(address: SocketAddr, open: bool) -> Result<(Self, SocketAddr), Failure> {
+        if !address.ip().is_loopback() && !open {
+            return Err(Failure::Option(format!(
+                "--tcp {address}: whoever reaches this address could move the model; give 127.0.0.1, or --open to let them"
+            )));
+        }
+        let failed = |error: io::Error| Failure::Port(format!("tcp:{address}"), error.to_string());
+        let listener = TcpListener::bind(address).map_err(failed)?;
+        listener.set_nonblocking(true).map_err(failed)?;
+        let address = listener.local_addr().map_err(failed)?;
+        Ok((Self { listener, client: None }, address))
+    }
+
+    /// Takes a client that waits; one more than there may be is told and sent away.
+    fn accept(&mut self) -> Option<String> {
+        let (stream, from) = self.listener.accept().ok()?;
+        if self.client.is_some() {
+            // It may speak another protocol: what it reads here it can show.
+            let _ = (&stream).write_all(b"stepscope serve: another client is connected; one at a time\n");
+            let _ = stream.shutdown(Shutdown::Both);
+            return Some(format!("{from} was sent away: another client is connected"));
+        }
+        self.client = Socket::new(stream).ok();
+        Some(format!("{from} is connected"))
+    }
+}
+
+impl Port for Listener {
+    fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<Heard> {
+        let Some(client) = &mut self.client else {
+            thread::sleep(wait.min(LEAST_WAIT));
+            return Ok(Heard::Nothing);
+        };
+        match client.read(buffer, wait) {
+            Ok(Heard::Gone) | Err(_) => {
+                self.client = None;
+                Ok(Heard::Gone)
+            }
+            heard => heard,
+        }
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        // A reply that nobody hears is gone, as on a wire. A broken connection shows when it is read.
+        self.client.as_mut().map_or(Ok(bytes.len()), |client| client.write(bytes).or(Ok(bytes.len())))
+    }
+
+    fn look(&mut self) -> Option<String> {
+        self.accept()
+    }
+
+    fn is_connected(&self) -> bool {
+        self.client.is_some()
+    }
+}
+
+#[cfg(unix)]
+pub(crate) use pty::Pty;
+
+#[cfg(unix)]
+mod pty {
+    use super::*;
+    use rustix::{
+        event::{PollFd, PollFlags, Timespec, poll},
+        fs::{OFlags, fcntl_setfl},
+        pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt},
+        termios::{OptionalActions, tcgetattr, tcsetattr},
+    };
+    use std::{fs, os::fd::OwnedFd, os::unix::ffi::OsStringExt};
+
+    /// A pseudo-terminal whose other end is a port to somebody.
+    pub(crate) struct Pty {
+        master: OwnedFd,
+        /// Of the other end.
+        pub(crate) path: PathBuf,
+        link: Option<PathBuf>,
+        baud: u32,
+        connected: bool,
+        /// The rate that was warned of last.
+        warned: u32,
+    }
+
+    impl Pty {
+        /// Makes one, raw and at `baud`, with a symbolic link to it.
+        pub(crate) fn open(link: Option<&Path>, baud: u32) -> Result<Self, Failure> {
+            let failed = |error: io::Error| Failure::Port("pty".to_owned(), error.to_string());
+            let made = || -> io::Result<(OwnedFd, PathBuf)> {
+                let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
+                grantpt(&master)?;
+                unlockpt(&master)?;
+                fcntl_setfl(&master, OFlags::NONBLOCK)?;
+                // A master's settings are those of the other end.
+                let mut settings = tcgetattr(&master)?;
+                settings.make_raw();
+                // A rate that the system has no word for shows as another one: then nobody is warned.
+                let _ = settings.set_speed(baud);
+                tcsetattr(&master, OptionalActions::Now, &settings)?;
+                let path = ptsname(&master, Vec::new())?;
+                Ok((master, PathBuf::from(std::ffi::OsString::from_vec(path.into_bytes()))))
+            };
+            let (master, path) = made().map_err(failed)?;
+            let mut pty = Self { master, path, link: None, baud, connected: false, warned: baud };
+            if let Some(link) = link {
+                pty.link_to(link).map_err(|error| Failure::File(link.to_owned(), error))?;
+            }
+            Ok(pty)
+        }
+
+        /// Makes the link. One that a session left behind, and leads to no pseudo-terminal any more or to another one, is
+        /// replaced; nothing else is.
+        fn link_to(&mut self, link: &Path) -> io::Result<()> {
+            if fs::read_link(link).is_ok_and(|target| target.starts_with("/dev/pts")) {
+                fs::remove_file(link)?;
+            }
+            std::os::unix::fs::symlink(&self.path, link)?;
+            self.link = Some(link.to_owned());
+            Ok(())
+        }
+    }
+
+    impl Drop for Pty {
+        fn drop(&mut self) {
+            if let Some(link) = &self.link
+                && fs::read_link(link).is_ok_and(|target| target == self.path)
+            {
+                let _ = fs::remove_file(link);
+            }
+        }
+    }
+
+    impl Port for Pty {
+        fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<Heard> {
+            let mut fds = [PollFd::new(&self.master, PollFlags::IN)];
+            let timeout =
+                Timespec { tv_sec: wait.as_secs().cast_signed(), tv_nsec: wait.subsec_nanos().into() };
+            match poll(&mut fds, Some(&timeout)) {
+                Ok(_) => {}
+                Err(rustix::io::Errno::INTR) => return Ok(Heard::Nothing),
+                Err(error) => return Err(error.into()),
+            }
+            let [fd] = &fds;
+            let events = fd.revents();
+            if events.contains(PollFlags::IN) {
+                self.connected = true;
+                return match rustix::io::read(&self.master, buffer) {
+                    Ok(count) => heard(Ok(count)),
+                    // The other end was closed meanwhile.
+                    Err(rustix::io::Errno::IO) => Ok(Heard::Nothing),
+                    Err(error) => heard(Err(error.into())),
+                };
+            }
+            if events.contains(PollFlags::HUP) {
+                let gone = std::mem::replace(&mut self.connected, false);
+                if gone {
+                    return Ok(Heard::Gone);
+                }
+                // Nobody has the other end open, which the system tells at once, again and again.
+                thread::sleep(wait.min(LEAST_WAIT));
+            } else {
+                self.connected = true;
+            }
+            Ok(Heard::Nothing)
+        }
+
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            if !self.connected {
+                return Ok(bytes.len());
+            }
+            written(rustix::io::write(&self.master, bytes).map_err(Into::into))
+        }
+
+        fn look(&mut self) -> Option<String> {
+            if !self.connected {
+                return None;
+            }
+            let has = tcgetattr(&self.master).ok()?.output_speed();
+            if has == self.warned {
+                return None;
+            }
+            self.warned = has;
+            let line = self.baud;
+            (has != line).then(|| {
+                format!("warning: the host set the port to {has} baud, and the line has {line}: a real one would not understand it")
+            })
+        }
+
+        fn is_connected(&self) -> bool {
+            self.connected
+        }
+    }
+}

@@ -1,0 +1,362 @@
+//! `stepscope serve` and `stepscope send` as they are used: against each other, against devices of our own making, and with
+//! what goes wrong in between.
+#![cfg(unix)]
+#![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
+
+use rustix::process::{Pid, Signal, kill_process};
+use serde_json::Value;
+use std::{
+    fs,
+    io::{BufRead, BufReader, Read, Write},
+    net::{Shutdown, TcpListener, TcpStream},
+    path::{Path, PathBuf},
+    process::{Child, ChildStdout, Command, Output, Stdio},
+    thread,
+    time::Duration,
+};
+use stepscope_core::peripheral::{
+    protocol::{Kind, Reason, Reply, State, Status},
+    wire::frame::{Deframed, Deframer, Ticks},
+};
+
+/// Four ticks of two channels, the last one without steps; ticks of 2 ms.
+const FEW: &str = r#"{ "bus": { "channels": 2 }, "line": { "protocol": "framed", "host": { "ticks_per_frame": 2 } },
+    "source": { "packets": { "packets": [ "8102", "8304", "8201" ] } } }"#;
+/// Four seconds.
+const LONG: &str = r#"{ "line": { "protocol": "framed" }, "source": { "motion": { "axes": [
+    { "moves": [ { "constant": { "speed": { "steps_s": 2000 }, "distance": { "steps": 8000 } } } ] } ] } } }"#;
+const RAW: &str = r#"{ "bus": { "channels": 2, "queue_depth": 100 }, "line": { "address": 7 },
+    "source": { "packets": { "packets": [ "078102", "078304", "078201", "078000" ] } } }"#;
+
+fn file(name: &str, text: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("live-{name}"));
+    fs::write(&path, text).expect("a file");
+    path
+}
+
+fn command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stepscope"));
+    command.args(arguments).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("text")
+}
+
+/// A server, and where it said that it is.
+struct Server {
+    child: Child,
+    out: BufReader<ChildStdout>,
+    place: String,
+}
+
+impl Server {
+    fn start(arguments: &[&str]) -> Self {
+        let mut child = command(&[&["serve"], arguments].concat()).spawn().expect("it starts");
+        let mut out = BufReader::new(child.stdout.take().expect("piped"));
+        let mut place = String::new();
+        out.read_line(&mut place).expect("it says where it is");
+        Self { child, out, place: place.trim().to_owned() }
+    }
+
+    fn signal(&self, signal: Signal) {
+        signal_to(&self.child, signal);
+    }
+
+    /// Ends it; its exit code, standard output and standard error.
+    fn end(mut self) -> (Option<i32>, String, String) {
+        self.signal(Signal::TERM);
+        self.wait()
+    }
+
+    fn wait(&mut self) -> (Option<i32>, String, String) {
+        let (mut out, mut err) = (String::new(), String::new());
+        self.out.read_to_string(&mut out).expect("text");
+        self.child.stderr.take().expect("piped").read_to_string(&mut err).expect("text");
+        (self.child.wait().expect("it ends").code(), out, err)
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+fn signal_to(child: &Child, signal: Signal) {
+    let _ = kill_process(Pid::from_child(child), signal);
+}
+
+fn ended(output: Output) -> (Option<i32>, String, String) {
+    let text = |bytes| String::from_utf8(bytes).expect("text");
+    (output.status.code(), text(output.stdout), text(output.stderr))
+}
+
+fn send(scenario: &Path, port: &str, more: &[&str]) -> (Option<i32>, String, String) {
+    let arguments = [&["send", text(scenario), "--port", port], more].concat();
+    ended(command(&arguments).output().expect("it runs"))
+}
+
+fn run_digest(scenario: &Path) -> String {
+    ended(command(&["run", text(scenario), "--digest"]).output().expect("it runs")).1.trim().to_owned()
+}
+
+#[test]
+fn what_is_sent_to_a_served_scenario_is_done_and_the_recording_is_the_session() {
+    let scenario = file("done.json", FEW);
+    let record = scenario.with_file_name("live-done-recording.json");
+    let link = scenario.with_file_name("live-done-port");
+    for place in [&["--pty", text(&link)][..], &["--tcp", "127.0.0.1:0"]] {
+        for pace in ["1", "max"] {
+            let more = ["--record", text(&record), "--once", "--pace", pace];
+            let mut server = Server::start(&[&[text(&scenario)], place, &more].concat());
+            let port =
+                if place[0] == "--pty" { format!("pty:{}", text(&link)) } else { server.place.clone() };
+            // A pseudo-terminal has no end that a host could wait for.
+            let (code, out, err) = send(&scenario, &port, &["--slack", "500"]);
+            assert_eq!((code, err.as_str()), (Some(0), ""), "{place:?} {pace}: {out}");
+            assert!(out.contains("controller 0 address 0: done\n  ticks 4 of 4 done"), "{out}");
+            let told = "positions 6 -7: the sums of the ticks\n  state READY, new faults none";
+            assert!(out.contains(told), "{out}");
+            let (code, out, err) = server.wait();
+            // A loaded machine may not keep up, which is said.
+            assert!(code == Some(0) || code == Some(3) && err.contains("did not keep up"), "{code:?} {err}");
+            assert!(err.contains("recorded") && out.contains("positions 6 -7\n"), "{out}{err}");
+            let digest = out.lines().find_map(|line| line.strip_prefix("digest ")).expect("a digest");
+            assert_eq!(run_digest(&record), digest, "{place:?} {pace}");
+            let beside = fs::read_to_string(record.with_file_name("live-done-recording.session.json"));
+            let beside: Value = serde_json::from_str(&beside.expect("it is there")).expect("it is JSON");
+            assert_eq!((&beside["digests"][0], &beside["pace"]), (&Value::from(digest), &Value::from(pace)));
+            assert!(beside["replies"].as_array().is_some_and(|replies| replies.len() >= 6));
+            assert!(!link.exists(), "the link goes with the session");
+        }
+    }
+}
+
+#[test]
+fn raw_packets_are_sent_and_never_said_to_be_done() {
+    let scenario = file("raw.json", RAW);
+    let server = Server::start(&[text(&scenario), "--tcp", "127.0.0.1:0"]);
+    let (code, out, _) = send(&scenario, &server.place, &["--lead", "3"]);
+    assert_eq!(code, Some(0), "{out}");
+    assert!(out.contains("sent 4 of 4 packets; not verified") && !out.contains("done"), "{out}");
+    thread::sleep(Duration::from_millis(100));
+    let (code, out, err) = send(&scenario, &server.place, &["--json"]);
+    let report: Value = serde_json::from_str(&out).unwrap_or_else(|_| panic!("{code:?} {out} {err}"));
+    let row = &report["tables"]["send"][0];
+    assert_eq!((&row["outcome"], &row["packets_sent"]), (&Value::from("not verified"), &Value::from(4)));
+    thread::sleep(Duration::from_millis(300));
+    let (_, out, _) = server.end();
+    assert!(out.contains("positions 12 -14\n"), "{out}");
+}
+
+#[test]
+fn ctrl_c_stops_the_motor_and_the_report_says_where() {
+    let scenario = file("stopped.json", LONG);
+    let server = Server::start(&[text(&scenario), "--tcp", "127.0.0.1:0", "--lag", "2000"]);
+    let arguments = ["send", text(&scenario), "--port", &server.place, "--json", "--slack", "1000"];
+    let sender = command(&arguments).spawn().expect("it starts");
+    // The motion is under way.
+    thread::sleep(Duration::from_millis(1000));
+    signal_to(&sender, Signal::INT);
+    let (code, out, err) = ended(sender.wait_with_output().expect("it ends"));
+    assert_eq!(code, Some(130), "{out}{err}");
+    let report: Value = serde_json::from_str(&out).expect("it is JSON");
+    let row = &report["tables"]["controllers"][0];
+    let stopped = (&Value::from("STOPPED"), &Value::from(true));
+    assert_eq!((&row["state"], &row["stop_acknowledged"]), stopped, "{out}");
+    assert_ne!(report["tables"]["send"][0]["outcome"], "done");
+    let position = |column: &str| report["tables"]["positions"][0][column].as_i64().expect("a number");
+    let bounds = position("steps_of_done_ticks")..=position("steps_with_the_next_tick");
+    let told = position("told");
+    assert!(bounds.contains(&told), "{out}");
+    let (_, out, _) = server.end();
+    assert!(out.contains(&format!("positions {told}\n")) && out.contains("state STOPPED"), "{told} {out}");
+}
+
+#[test]
+fn a_port_that_is_lost_ends_with_4_and_what_is_known() {
+    let scenario = file("lost.json", LONG);
+    let link = scenario.with_file_name("live-lost-port");
+    for place in [&["--pty", text(&link)][..], &["--tcp", "127.0.0.1:0"], &["--pty", text(&link)]] {
+        // A session replaces the link that one before it left behind.
+        let server = Server::start(&[&[text(&scenario)], place].concat());
+        let port = if place[0] == "--pty" { format!("pty:{}", text(&link)) } else { server.place.clone() };
+        let arguments = ["send", text(&scenario), "--port", &port, "--slack", "500"];
+        let sender = command(&arguments).spawn().expect("it starts");
+        thread::sleep(Duration::from_millis(700));
+        server.signal(Signal::KILL);
+        let (code, out, err) = ended(sender.wait_with_output().expect("it ends"));
+        assert_eq!(code, Some(4), "{place:?} {out}{err}");
+        assert!(out.contains("is the first not known to be done"), "{out}{err}");
+        assert!(err.contains("the port is lost"), "{err}");
+    }
+    let _ = fs::remove_file(&link);
+}
+
+#[test]
+fn a_server_that_stood_still_says_so_and_the_run_is_exact_all_the_same() {
+    let scenario = file("still.json", FEW);
+    let record = scenario.with_file_name("live-still-recording.json");
+    let server = Server::start(&[text(&scenario), "--tcp", "127.0.0.1:0", "--record", text(&record)]);
+    thread::sleep(Duration::from_millis(100));
+    server.signal(Signal::STOP);
+    thread::sleep(Duration::from_secs(2));
+    server.signal(Signal::CONT);
+    let (code, out, _) = send(&scenario, &server.place, &["--slack", "1000"]);
+    assert_eq!(code, Some(0), "{out}");
+    let (code, out, err) = server.end();
+    assert_eq!(code, Some(3), "{out}{err}");
+    assert!(out.contains("\nstretches ") && err.contains("recorded"), "{out}{err}");
+    assert!(err.contains("did not keep up"), "{err}");
+    assert!(out.contains(&format!("digest {}\n", run_digest(&record))), "{out}");
+}
+
+#[test]
+fn one_client_is_served_and_a_second_one_is_told() {
+    let scenario = file("one.json", FEW);
+    let server = Server::start(&[text(&scenario), "--tcp", "127.0.0.1:0"]);
+    let address = server.place.strip_prefix("tcp:").expect("an address");
+    let first = TcpStream::connect(address).expect("the first");
+    thread::sleep(Duration::from_millis(200));
+    let mut told = String::new();
+    TcpStream::connect(address).expect("a second").read_to_string(&mut told).expect("text");
+    assert!(told.contains("another client is connected"), "{told}");
+    drop(first);
+    let (_, _, err) = server.end();
+    assert!(err.contains("was sent away"), "{err}");
+}
+
+/// A device that does at once what it is told, but for POSITIONS, which it does not know.
+fn old_device(listener: &TcpListener) {
+    let (mut stream, _) = listener.accept().expect("a host");
+    let (mut deframer, mut buffer) = (Deframer::default(), [0; 256]);
+    let (mut seq, mut ticks_done, mut state) = (0_u8, 0_u32, State::Ready);
+    while let Ok(count @ 1..) = stream.read(&mut buffer) {
+        for &byte in &buffer[..count] {
+            let Some(Deframed::Frame(frame)) = deframer.byte(byte) else { continue };
+            let kind = Kind::parse(frame.kind).expect("a kind");
+            if let Some(ticks) = Ticks::parse(frame.body, 2).filter(|_| kind == Kind::Ticks) {
+                (seq, ticks_done) = (seq.wrapping_add(1), ticks_done + ticks.count() as u32);
+            }
+            if kind == Kind::Stop {
+                state = State::Stopped;
+            }
+            let answer = if kind == Kind::Positions { Err(Reason::UnknownKind) } else { Ok(kind) };
+            let status = Status { state, free: 16, expected_seq: seq, faults: 0, ticks_done };
+            let _ = stream.write_all(&(Reply { address: frame.address, answer, status }).emit(None));
+        }
+    }
+}
+
+#[test]
+fn a_device_that_does_not_tell_its_positions_is_counted_and_not_said_to_be_done() {
+    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let port = format!("tcp:{}", listener.local_addr().expect("an address"));
+    let device = thread::spawn(move || old_device(&listener));
+    let (code, out, err) = send(&file("old.json", FEW), &port, &[]);
+    assert_eq!(code, Some(3), "{out}");
+    assert!(out.contains("done by its count of ticks; it does not tell its positions"), "{out}");
+    assert!(out.contains("ticks 4 of 4 done") && err.contains("does not tell its positions"), "{out}{err}");
+    device.join().expect("it ends");
+}
+
+#[test]
+fn a_device_that_is_silent_or_says_nonsense_is_given_up() {
+    for nonsense in [&b""[..], b"hello\n", &[0; 40], &[0xff; 700]] {
+        let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+        let port = format!("tcp:{}", listener.local_addr().expect("an address"));
+        let device = thread::spawn(move || {
+            let (mut stream, _) = listener.accept().expect("a host");
+            let mut buffer = [0; 256];
+            while let Ok(1..) = stream.read(&mut buffer) {
+                let _ = stream.write_all(nonsense);
+            }
+        });
+        let (code, out, err) = send(&file("silent.json", FEW), &port, &["--slack", "5"]);
+        assert_eq!(code, Some(3), "{out}{err}");
+        assert!(out.contains("given up: no reply") && out.contains("it was never opened"), "{out}");
+        device.join().expect("it ends");
+    }
+}
+
+/// Passes bytes on until so many went one way, and then cuts the connection.
+fn cut_after(server: &str, to_device: usize, to_host: usize) -> String {
+    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let port = format!("tcp:{}", listener.local_addr().expect("an address"));
+    let device = TcpStream::connect(server.strip_prefix("tcp:").expect("an address")).expect("it serves");
+    thread::spawn(move || {
+        let (host, _) = listener.accept().expect("a host");
+        let pass = |mut from: TcpStream, mut to: TcpStream, most: usize| {
+            move || {
+                let mut byte = [0];
+                for _ in 0..most {
+                    if !matches!(from.read(&mut byte), Ok(1)) || to.write_all(&byte).is_err() {
+                        break;
+                    }
+                }
+                let _ = (from.shutdown(Shutdown::Both), to.shutdown(Shutdown::Both));
+            }
+        };
+        let copy = |stream: &TcpStream| stream.try_clone().expect("a copy");
+        let there = thread::spawn(pass(copy(&host), copy(&device), to_device));
+        let back = thread::spawn(pass(device, host, to_host));
+        let _ = (there.join(), back.join());
+    });
+    port
+}
+
+#[test]
+fn a_connection_that_is_cut_is_told_and_nothing_is_said_to_be_done_that_is_not() {
+    // The host sends 6 frames of 8 to 14 bytes, and hears 17 or 25. Each byte: the unit tests of sessions.
+    let scenario = file("cut.json", FEW);
+    let server = Server::start(&[text(&scenario), "--tcp", "127.0.0.1:0", "--pace", "max"]);
+    for (to_device, to_host) in [
+        (0, usize::MAX),
+        (8, usize::MAX),
+        (19, usize::MAX),
+        (30, usize::MAX),
+        (45, usize::MAX),
+        (usize::MAX, 0),
+        (usize::MAX, 17),
+        (usize::MAX, 50),
+        (usize::MAX, 100),
+        (usize::MAX, 114),
+    ] {
+        let port = cut_after(&server.place, to_device, to_host);
+        let (code, out, err) = send(&scenario, &port, &["--slack", "500"]);
+        assert_eq!(code, Some(4), "{to_device} {to_host}: {out}{err}");
+        assert!(!out.contains(": done"), "{to_device} {to_host}: {out}");
+        // The server sees that the client has gone before the next one comes.
+        thread::sleep(Duration::from_millis(100));
+    }
+    let (code, out, err) = send(&scenario, &server.place, &[]);
+    assert_eq!(code, Some(0), "whoever comes after it goes on: {out}{err}");
+}
+
+#[test]
+fn what_cannot_be_is_refused_before_anything_is_sent() {
+    let (framed, raw) = (file("refused.json", FEW), file("refused-raw.json", RAW));
+    let segments = file("refused-segments.json", r#"{ "source": { "motion": { "engine": "segments" } } }"#);
+    let (framed, raw) = (text(&framed), text(&raw));
+    let link = file("refused-link", "not a link");
+    let cases: [(&[&str], i32, &str); 11] = [
+        (&["serve", framed], 2, "--pty"),
+        (&["serve", framed, "--tcp", "0.0.0.0:0"], 2, "--open"),
+        (&["serve", framed, "--tcp", "127.0.0.1:0", "--pace", "0"], 2, "0.001 to 100"),
+        (&["serve", framed, "--port", "/dev/no-such-port"], 1, "No such file"),
+        (&["serve", framed, "--pty", text(&link)], 1, "exists"),
+        (&["serve", text(&segments), "--tcp", "127.0.0.1:0"], 2, "nothing is on the line"),
+        (&["serve", framed, "--tcp", "127.0.0.1:0", "--record", framed], 2, "would be overwritten"),
+        (&["send", framed, "--port", "/dev/null"], 1, "/dev/null"),
+        (&["send", framed, "--port", "tcp:127.0.0.1:1"], 1, "refused"),
+        (&["send", framed, "--port", "pty:/dev/null", "--rs485", "rts"], 2, "9600"),
+        (&["send", raw, "--port", "tcp:127.0.0.1:1", "--lead", "100"], 2, "100 places"),
+    ];
+    for (arguments, code, why) in cases {
+        let (ended, out, err) = ended(command(arguments).output().expect("it runs"));
+        assert!(ended == Some(code) && err.contains(why), "{arguments:?}: {ended:?} {out} {err}");
+    }
+}
