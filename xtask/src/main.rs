@@ -26,6 +26,7 @@ mod dump_readers;
 mod engines;
 mod fuzz;
 mod headers;
+mod judges;
 mod mutants;
 mod npm;
 mod package;

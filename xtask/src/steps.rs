@@ -11,7 +11,7 @@ use crate::browser::{self, Browser};
 use crate::engines::{self, Firefox, WebKit};
 use crate::toolchain::{self, BARE_METAL, WASM};
 use crate::tools::{Optimise, WasmTools};
-use crate::{avr, bare_metal, dist, dump_readers, npm, package, page, root, run, sources};
+use crate::{avr, bare_metal, dist, dump_readers, judges, npm, package, page, root, run, sources};
 
 /// Both workspaces: the fuzz targets are one of their own.
 const RUSTFMT: [&str; 2] = ["fmt --all", "fmt --manifest-path fuzz/Cargo.toml"];
@@ -31,6 +31,8 @@ pub(crate) enum Step {
     Vcd,
     /// The recordings of firmware, made again in simavr
     Avr,
+    /// The live commands, with a host and a device in Python and with socat
+    Live,
     /// The golden cases on a Cortex-M3 without an operating system, in QEMU
     BareMetal,
     /// The wasm crate's own tests, in Chromium and Firefox
@@ -86,6 +88,7 @@ impl Step {
             Self::Native => cargo("test --workspace --locked").await,
             Self::Vcd => dump_readers::test().await,
             Self::Avr => avr::test().await,
+            Self::Live => judges::test().await,
             Self::BareMetal => bare_metal::test().await,
             Self::Wasm => wasm().await,
             Self::Types => {

@@ -44,7 +44,7 @@ use stepscope_peripheral::{
     units::Instant,
     wire::{BitTimes, bit_times::BYTE_BITS},
 };
-use stepscope_scenario::{Hex, Host, LineScript, Problem, Scenario, ScriptedSend, ValueError};
+use stepscope_scenario::{END_OF_TIME, Hex, Host, LineScript, Problem, Scenario, ScriptedSend, ValueError};
 
 /// Most bytes that are recorded: as many as a line script may have.
 pub const MAX_RECORDED_BYTES: u64 = 4 << 20;
@@ -198,7 +198,8 @@ impl Session {
         }
     }
 
-    /// Runs the model up to and with cycle `to`, with a sink for each controller; what is past stays as it is.
+    /// Runs the model up to and with cycle `to`, with a sink for each controller; what is past stays as it is, and nothing comes
+    /// after the end of time.
     pub fn advance<S: Sink>(&mut self, to: Instant, sinks: &mut [S]) {
         let Self { run, digests, replies, reply_times, .. } = self;
         let mut sinks = sinks.iter_mut();
@@ -213,7 +214,7 @@ impl Session {
                 sink: sinks.next(),
             })
             .collect();
-        run.run_to(to.next(), &mut taps);
+        run.run_to(to.min(Instant(END_OF_TIME - 1)).next(), &mut taps);
         answers.sort_by_key(|replies| replies.first().map(|reply| reply.end));
         replies.extend(answers.into_iter().flatten());
     }

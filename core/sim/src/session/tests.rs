@@ -282,3 +282,57 @@ fn a_stop_over_a_bad_wire_is_acknowledged_and_what_was_executed_is_a_beginning()
         assert!(ended, "seed {seed}: {progress}");
     }
 }
+
+/// A host and a soft device whose connection ends after so many bytes in either direction. Gives how far the host was, ticks
+/// that it knows to be done, and what was ordered and executed.
+fn cut_after(to_device: usize, to_host: usize) -> (Progress, u32, Vec<u8>, Vec<u8>, bool) {
+    let json = r#"{ "clock_hz": 100000, "bus": { "channels": 2, "slots": 5, "step_period_cycles": 90, "queue_depth": 6, "boot_cycles": 20 },
+        "line": { "protocol": "framed", "baud": 9000 } }"#;
+    let mut device = session(json);
+    let orders: Vec<u8> = vec![0x81, 2, 0x83, 4, 0x82, 1, 0x80, 0];
+    let job =
+        Job { address: 0, channels: 2, tick: Cycles(450), queue_depth: 6, commands: orders.clone().into() };
+    let settings = Host { ticks_per_frame: 2, ..Host::default() };
+    let mut host = Conversation::new(vec![job], &settings, Cycles(11), Instant(30));
+    let mut executed = [Executed::default()];
+    let (mut there, mut back, mut now, mut cut) = (to_device, to_host, Instant(30), false);
+    while !host.is_over() && !cut {
+        if let Some(bytes) = host.poll(now) {
+            let passed = there.min(bytes.len());
+            device.receive(&bytes[..passed]);
+            host.sent(now + Cycles(111 * bytes.len() as u64));
+            cut = passed < bytes.len();
+            there -= passed;
+        }
+        now = host.deadline().min(device.deadline().max(now.next())).min(now + Cycles(1000));
+        device.advance(now, &mut executed);
+        let replies: Vec<u8> = device.take_replies().map(|reply| reply.byte).collect();
+        let passed = back.min(replies.len());
+        replies[..passed].iter().for_each(|&byte| host.hear(byte, now));
+        cut |= passed < replies.len();
+        back -= passed;
+    }
+    // Whatever is queued runs on.
+    device.advance(now + Cycles(10_000), &mut executed);
+    let progress = host.progress().next().expect("one job");
+    let done = host.known().next().and_then(|(_, known)| known.ticks_done()).unwrap_or(0);
+    let executed = executed[0].0.iter().flat_map(|tick| tick[..2].to_vec()).collect();
+    (progress, done, orders, executed, cut)
+}
+
+#[test]
+fn a_connection_that_is_cut_at_any_byte_leaves_a_beginning_and_no_word_of_more() {
+    let mut cuts = 0;
+    for bytes in 0..200 {
+        for (to_device, to_host) in [(bytes, usize::MAX), (usize::MAX, bytes)] {
+            let (progress, done, ordered, executed, cut) = cut_after(to_device, to_host);
+            assert!(ordered.starts_with(&executed), "{to_device} {to_host}");
+            assert!(2 * done as usize <= executed.len(), "{to_device} {to_host}");
+            assert_eq!(progress == Progress::Done, !cut, "{to_device} {to_host}: {progress}");
+            assert!(cut || executed == ordered, "{to_device} {to_host}");
+            cuts += u32::from(cut);
+        }
+    }
+    // 2 * 8 + 2 * 8 + 2 * 13 bytes there, 4 * 17 + 2 * 25 back.
+    assert!(cuts > 150, "{cuts}");
+}

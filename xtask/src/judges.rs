@@ -1,0 +1,54 @@
+//! The live commands before judges that others wrote: Python's packages for serial ports, COBS and CRC-32C, and socat. A test
+//! of `cli` calls them.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use tokio::process::Command;
+
+use crate::tools::cache;
+use crate::{apt, run, toolchain};
+
+/// The packages of Python's registry, in these versions.
+const PACKAGES: [&str; 3] = ["pyserial==3.5", "cobs==1.2.2", "google-crc32c==1.9.0"];
+/// In this folder, which is of these versions.
+const HOME: &str = "live-judges-1";
+/// Imports what was installed.
+const PROBE: &str = "import serial, cobs.cobs, google_crc32c";
+
+/// Installs what is missing and runs the tests.
+pub(crate) async fn test() -> Result<()> {
+    let python = python().await?;
+    if which::which("socat").is_err() {
+        apt::install(&["socat"]).await.context("the live commands' tests need socat on PATH: install it")?;
+    }
+    let mut command = toolchain::cargo();
+    // The whole workspace, so that its packages keep the features, and with them the builds, of the native step.
+    command.args(["test", "--workspace", "--features", "stepscope-cli/judges", "--test", "live_judges"]);
+    command.arg("--locked").env("STEPSCOPE_PYTHON", python);
+    run::to_end(command, run::LIMIT).await
+}
+
+/// A Python with the packages, in an environment of its own in the tools' cache.
+async fn python() -> Result<PathBuf> {
+    let home = cache()?.join("tools").join(HOME);
+    let python = home.join("bin").join("python");
+    if python.exists() && works(&python).await {
+        return Ok(python);
+    }
+    println!("installing {} (once)", PACKAGES.join(" and "));
+    let remedy = "the live commands' tests need Python 3.9 or newer with venv and pip (Debian: `apt-get install python3-venv` as root)";
+    let mut command = Command::new(which::which("python3").context(remedy)?);
+    command.args(["-m", "venv", "--clear"]).arg(&home);
+    run::to_end(command, run::LIMIT).await.context(remedy)?;
+    let mut command = Command::new(&python);
+    command.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]).args(PACKAGES);
+    run::to_end(command, run::LIMIT).await.context(remedy)?;
+    Ok(python)
+}
+
+async fn works(python: &Path) -> bool {
+    let mut command = Command::new(python);
+    command.args(["-c", PROBE]);
+    run::output(command).await.is_some()
+}
