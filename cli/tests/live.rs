@@ -19,8 +19,8 @@ use stepscope_core::peripheral::{
     wire::frame::{Deframed, Deframer, Ticks},
 };
 
-/// Four ticks of two channels, the last one without steps; ticks of 2 ms.
-const FEW: &str = r#"{ "bus": { "channels": 2 }, "line": { "protocol": "framed", "host": { "ticks_per_frame": 2 } },
+/// Four ticks of two channels, the last one without steps, in one frame: no machine is too slow for them.
+const FEW: &str = r#"{ "bus": { "channels": 2 }, "line": { "protocol": "framed" },
     "source": { "packets": { "packets": [ "8102", "8304", "8201" ] } } }"#;
 /// Four seconds.
 const LONG: &str = r#"{ "line": { "protocol": "framed" }, "source": { "motion": { "axes": [
@@ -129,7 +129,7 @@ fn what_is_sent_to_a_served_scenario_is_done_and_the_recording_is_the_session() 
             let beside = fs::read_to_string(record.with_file_name("live-done-recording.session.json"));
             let beside: Value = serde_json::from_str(&beside.expect("it is there")).expect("it is JSON");
             assert_eq!((&beside["digests"][0], &beside["pace"]), (&Value::from(digest), &Value::from(pace)));
-            assert!(beside["replies"].as_array().is_some_and(|replies| replies.len() >= 6));
+            assert!(beside["replies"].as_array().is_some_and(|replies| replies.len() >= 5));
             assert!(!link.exists(), "the link goes with the session");
         }
     }
@@ -310,7 +310,7 @@ fn cut_after(server: &str, to_device: usize, to_host: usize) -> String {
 
 #[test]
 fn a_connection_that_is_cut_is_told_and_nothing_is_said_to_be_done_that_is_not() {
-    // The host sends 6 frames of 8 to 14 bytes, and hears 17 or 25. Each byte: the unit tests of sessions.
+    // The host sends 5 frames of 8 or 18 bytes, and hears 17 or 25. Each byte: the unit tests of sessions.
     let scenario = file("cut.json", FEW);
     let server = Server::start(&[text(&scenario), "--tcp", "127.0.0.1:0", "--pace", "max"]);
     for (to_device, to_host) in [
@@ -322,8 +322,8 @@ fn a_connection_that_is_cut_is_told_and_nothing_is_said_to_be_done_that_is_not()
         (usize::MAX, 0),
         (usize::MAX, 17),
         (usize::MAX, 50),
-        (usize::MAX, 100),
-        (usize::MAX, 114),
+        (usize::MAX, 80),
+        (usize::MAX, 95),
     ] {
         let port = cut_after(&server.place, to_device, to_host);
         let (code, out, err) = send(&scenario, &port, &["--slack", "500"]);

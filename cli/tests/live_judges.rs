@@ -16,8 +16,8 @@ use std::{
 };
 
 const DEVICE: &str = r#"{ "bus": { "channels": 2 }, "line": { "protocol": "framed" } }"#;
-/// 2 s of two motors, for the device of `device.py`.
-const MOTION: &str = r#"{ "bus": { "channels": 2 }, "line": { "protocol": "framed", "address": 3, "host": { "attempts": 40 } },
+/// 1.5 s of two motors, for the device of `device.py`; the queue bears that a loaded machine is late by 0.2 s.
+const MOTION: &str = r#"{ "bus": { "channels": 2, "queue_depth": 200 }, "line": { "protocol": "framed", "address": 3, "host": { "attempts": 40 } },
     "source": { "motion": { "axes": [
         { "moves": [ { "constant": { "speed": { "steps_s": 1000 }, "distance": { "steps": 1500 } } } ] },
         { "moves": [ { "constant": { "speed": { "steps_s": 700 }, "distance": { "steps": -900 } } } ] } ] } } }"#;

@@ -348,11 +348,24 @@ impl Server {
         let recording = self.session.recording();
         let whole = self.session.records_all();
         let verified = recording.verify();
-        let write = |out: &mut Out, text: &str| out.write_all(text.as_bytes()).and_then(|()| out.flush());
-        let text = format!("{}\n", recording.scenario.to_json());
-        write(&mut out, &text).map_err(|error| rescued(&record, &text, error))?;
-        let text = self.sidecar.json(&self.clock, &recording, whole);
-        write(&mut times, &text).map_err(|error| Failure::File(beside, error))?;
+        let mut rescue = Vec::new();
+        let texts = [
+            (&record, &mut out, format!("{}\n", recording.scenario.to_json())),
+            (&beside, &mut times, self.sidecar.json(&self.clock, &recording, whole)),
+        ];
+        let mut failed = None;
+        for (path, out, text) in texts {
+            let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+            if let Err(error) = &written
+                && failed.is_none()
+            {
+                failed = Some((path.clone(), error.to_string()));
+            }
+            rescue.push((path.clone(), text));
+        }
+        if let Some((path, error)) = failed {
+            return Err(rescued(&path, &error, &rescue));
+        }
         if !whole {
             let Recording { scenario, .. } = &recording;
             let cycles = scenario.run_cycles.unwrap_or(0);
@@ -366,11 +379,16 @@ impl Server {
 type Named = (PathBuf, Out);
 
 /// A recording that its disk does not take is written where there may be room.
-fn rescued(record: &Path, text: &str, error: io::Error) -> Failure {
-    let elsewhere = std::env::temp_dir().join(record.file_name().unwrap_or_default());
-    let fits = elsewhere != record && !elsewhere.exists() && std::fs::write(&elsewhere, text).is_ok();
-    let also = if fits { format!("; the recording is in {}", elsewhere.display()) } else { String::new() };
-    Failure::Port(record.display().to_string(), format!("{error}{also}"))
+fn rescued(path: &Path, error: &str, texts: &[(PathBuf, String)]) -> Failure {
+    let mut places = Vec::new();
+    for (path, text) in texts {
+        let elsewhere = std::env::temp_dir().join(path.file_name().unwrap_or_default());
+        if !elsewhere.exists() && std::fs::write(&elsewhere, text).is_ok() {
+            places.push(elsewhere.display().to_string());
+        }
+    }
+    let also = if places.is_empty() { "nothing could be written elsewhere" } else { "written instead:" };
+    Failure::Port(path.display().to_string(), format!("{error}; {also} {}", places.join(" ")))
 }
 
 fn lost(error: io::Error) -> Failure {

@@ -1,4 +1,4 @@
-"""An independent controller of two channels, 5 ms a tick, on a socket: what it was told, and a few replies that go lost.
+"""An independent controller of two channels, 2 ms a tick, on a socket: what it was told, and a few replies that go lost.
 
 device.py SEED    prints its port; with the end of the connection ticks and positions
 """
@@ -11,7 +11,7 @@ import time
 from frames import *
 
 chance = random.Random(int(sys.argv[1]))
-DEPTH, TICK_S = 16, 0.002
+DEPTH, TICK_S = 200, 0.002
 listener = socket.create_server(("127.0.0.1", 0))
 print(listener.getsockname()[1], flush=True)
 stream, _ = listener.accept()
