@@ -180,7 +180,7 @@ fn framed_bytes_of_a_recording_make_the_very_run_again() {
     let digest = |out: &str| out.lines().next().map(str::to_owned);
     let (code, out, err) = stepscope(&["capture", &dump, "--scenario", &made], "");
     assert_eq!((code, err.as_str()), (Some(0), ""));
-    assert!(out.contains("\nRX: 115200 baud (115201 measured), 466 bytes, 27 frames for address 3 of 1 channels, 0 broken\n"), "{out}");
+    assert!(out.contains("\nRX: 115200 baud (115201 measured), 482 bytes, 29 frames for address 3 of 1 channels, 0 broken\n"), "{out}");
     assert_eq!(digest(&run(&made, &[])), digest(&original));
     let (code, _, err) = stepscope(&["capture", &dump, "--scenario", &based, "--against", &framed], "");
     assert_eq!((code, err.as_str()), (Some(0), ""));
