@@ -32,6 +32,8 @@ pub(crate) enum Failure {
     Preset(String),
     /// Records of a panel, where there is none.
     NoPanel(PathBuf),
+    /// Power cuts of a run that is too long, or has no end.
+    LongRun(PathBuf),
     /// Power cuts of a scenario without a stand-alone controller.
     NoStandAlone(PathBuf),
     /// A timing check without a driver.
@@ -105,6 +107,7 @@ impl Failure {
             | Self::Preset(_)
             | Self::NoPanel(_)
             | Self::NoStandAlone(_)
+            | Self::LongRun(_)
             | Self::NoDriver(_)
             | Self::Controller(..)
             | Self::Axis(..)
@@ -155,6 +158,11 @@ impl fmt::Display for Failure {
             Self::NoPanel(path) => write!(
                 f,
                 "{}: --panel writes what stand-alone controllers show, and there is none; take it out, or give a source standalone",
+                path.display()
+            ),
+            Self::LongRun(path) => write!(
+                f,
+                "{}: the run makes more than 4 000 000 edges, or comes to no end; give run_cycles or a shorter program",
                 path.display()
             ),
             Self::NoStandAlone(path) => write!(

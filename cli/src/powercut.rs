@@ -13,6 +13,7 @@ use stepscope_core::{
         Checked,
         parameters::{Parameters, Policy, Setup},
     },
+    peripheral::units::Instant,
     sim::power_cut::{PowerCuts, Tally, Wear, least_hold_up, tally, wear, with_memory},
 };
 
@@ -61,15 +62,20 @@ pub(crate) fn powercut(arguments: &Arguments) -> Result<(), Failure> {
     let (_, experiment) = scenarios::judged(&arguments.scenario)?;
     let checked =
         experiment.stand_alone().ok_or_else(|| Failure::NoStandAlone(arguments.scenario.clone()))?;
+    let cost = experiment.cost();
+    if cost.is_over_budget() {
+        return Err(Failure::LongRun(arguments.scenario.clone()));
+    }
+    let end = Instant(cost.end_cycle);
     let mut rows = Vec::new();
     for (policy, hold_up_cycles, what) in memories(checked) {
         let one = with_memory(checked, policy, hold_up_cycles);
-        let cuts = PowerCuts::of(&one, arguments.cuts as usize, arguments.seed);
+        let cuts = PowerCuts::of(&one, end, arguments.cuts as usize, arguments.seed);
         let progress = Progress::new(name(policy), arguments.progress);
         let tally = counted(&cuts, arguments.threads, progress)?;
         rows.push(Row { policy, hold_up_cycles, what, tally });
     }
-    let enough = least(checked, arguments)?;
+    let enough = least(checked, end, arguments)?;
     let controllers = checked.controllers().len();
     let worn: Vec<(Policy, usize, Wear)> = [Policy::PowerLoss, Policy::WriteAhead]
         .into_iter()
@@ -77,7 +83,7 @@ pub(crate) fn powercut(arguments: &Arguments) -> Result<(), Failure> {
         .map(|(policy, index)| {
             let one = &checked.controllers()[index].memory;
             let of_policy = with_memory(checked, policy, enough);
-            (policy, index, wear(&of_policy, index, 2 * one.slots, arguments.endurance))
+            (policy, index, wear(&of_policy, end, index, 2 * one.slots, arguments.endurance))
         })
         .collect();
     if arguments.json {
@@ -91,8 +97,8 @@ pub(crate) fn powercut(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// The memories that are compared: both policies, without a buffer, with one that is a cycle too short, just enough, and the
-/// scenario's own.
+/// The memories that are compared: both policies, without a buffer, with one that is a cycle too short, just enough, and that of
+/// the first controller.
 fn memories(checked: &Checked) -> Vec<(Policy, u64, &'static str)> {
     let of = |one: &std::rc::Rc<Parameters>| BYTE_TIMES * u64::from(one.memory.byte_write_cycles) - 1;
     let enough = checked.controllers().iter().map(of).max().unwrap_or(0);
@@ -104,8 +110,8 @@ fn memories(checked: &Checked) -> Vec<(Policy, u64, &'static str)> {
         (Policy::WriteAhead, 0, "none"),
     ];
     if all.iter().all(|&(_, hold_up, _)| hold_up != own) {
-        all.push((Policy::PowerLoss, own, "the scenario's"));
-        all.push((Policy::WriteAhead, own, "the scenario's"));
+        all.push((Policy::PowerLoss, own, "of controller 0"));
+        all.push((Policy::WriteAhead, own, "of controller 0"));
     }
     all
 }
@@ -128,11 +134,11 @@ fn counted(cuts: &PowerCuts, threads: Option<NonZero<usize>>, progress: Progress
 }
 
 /// The hold-up that is just enough for the policy `power_loss`, up to 18 byte times.
-fn least(checked: &Checked, arguments: &Arguments) -> Result<u64, Failure> {
+fn least(checked: &Checked, end: Instant, arguments: &Arguments) -> Result<u64, Failure> {
     let longest = checked.controllers().iter().map(|one| one.memory.byte_write_cycles).max().unwrap_or(1);
     let mut failed = None;
     let losses = |one: &Checked| {
-        let cuts = PowerCuts::of(one, arguments.cuts as usize, arguments.seed);
+        let cuts = PowerCuts::of(one, end, arguments.cuts as usize, arguments.seed);
         match counted(&cuts, arguments.threads, Progress::new("hold-up", arguments.progress)) {
             Ok(tally) => tally.lost,
             Err(failure) => {

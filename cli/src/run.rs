@@ -17,10 +17,10 @@ use std::{
     path::{Path, PathBuf},
 };
 use stepscope_core::{
-    controller::Checked,
+    controller::{Checked, StandAlone},
     inspect::{fingerprint::Fingerprinter, run_fingerprint::RunFingerprint, vcd::Timescale},
     peripheral::config::Config,
-    scenario::{Scenario, link},
+    scenario::{Cause, Problem, Scenario, link},
     sim::{Experiment, Run, Summary},
 };
 
@@ -131,7 +131,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let mut create = |path: &Option<PathBuf>| path.as_ref().map(|path| outputs.create(path)).transpose();
     let (line, violations) = (create(&arguments.line)?, create(&arguments.timing.violations)?);
+    for warned in experiment.stand_alone().iter().flat_map(|controllers| controllers.warnings()) {
+        // Who has closed standard error hears no warnings.
+        let _ = writeln!(io::stderr(), "warning: {warned}");
+    }
     let finished = go(&experiment, &mut stations, arguments.progress);
+    if let Some(work) = finished.stand_alone().and_then(StandAlone::work) {
+        let at = format!("source.standalone[{}].groups", work.controller);
+        return Err(Failure::Scenario(path.clone(), vec![Problem::new(at, Cause::Work(work))]));
+    }
     let mut timing = None;
     for station in &mut stations {
         timing = timing.or(station.timing.take());

@@ -92,6 +92,7 @@ pub fn check(scenario: &Scenario, experiment: &Experiment, ways: Ways<'_>) {
     if let [fast] = fast.as_slice()
         && experiment.config().protocol() == Protocol::Raw
         && experiment.segments().is_none()
+        && experiment.stand_alone().is_none()
         && scenario.line.noise == Noise::default()
     {
         let (left, device) = by_hand(experiment.config(), line(scenario, experiment), cycles, ways.hurry);

@@ -459,6 +459,23 @@ fn a_held_position_can_be_wrong_by_whole_periods_after_a_load_has_turned_the_rot
 }
 
 #[test]
+fn a_controller_that_waits_after_its_last_edge_ends_at_both_speeds_in_the_same_cycle() {
+    let panel = r#"{"debounce_cycles":0,"max_speed_hz":1000,"memory":{"byte_write_cycles":1},
+        "groups":[{"move":{"length":1,"speed_hz":1000}},{"wait":{"timeout_ms":60}}],"inputs":[{"cycle":4000,"input":"start"}]}"#;
+    for (panel, least) in [(panel, 10_000), ("{\"memory\":{\"byte_write_cycles\":1}}", 1600)] {
+        let json = format!(
+            r#"{{"clock_hz":100000,"bus":{{"pulse_width_cycles":2,"dir_setup_cycles":1}},
+                "source":{{"standalone":[{panel}]}},"plant":{{"tail_s":0.001}}}}"#
+        );
+        let experiment = Experiment::from_json(&json).expect("no problems");
+        let fast = experiment.run(&mut Vec::<Record>::new());
+        let clocked = experiment.run_clock_by_clock(&mut Vec::<Record>::new());
+        assert_eq!(fast.cycles(), clocked.cycles(), "{panel}");
+        assert!(fast.cycles().0 > least, "{:?}", fast.cycles());
+    }
+}
+
+#[test]
 fn presets_give_the_same_plant_on_every_machine() {
     let expected = [
         ("patent-2019-figure-1", "15dad058bd518a09"),

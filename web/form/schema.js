@@ -11,7 +11,7 @@
 /** @typedef {{name: string, label: string, text: string}} Word */
 /**
  * @typedef {{name: string, label: string, text: string, type: Type, range: string, most?: number, unit?: string, empty?: string,
- *   term?: string, from?: string, when?: Field["when"]}} Row  A field of a group, or a kind of a choice.
+ *   from?: string, when?: Field["when"]}} Row  A field of a group, or a kind of a choice.
  * @typedef {{doc: string, choice: boolean, default: any, fields: Row[]}} Group
  * @typedef {{documents: {[id: string]: {short: string, title: string}}, groups: {[name: string]: Group}}} Schema
  */
@@ -19,7 +19,7 @@
 /** @type {Schema} */
 let schema = { documents: {}, groups: {} };
 
-/** What terms mean, by group and name, once it is loaded. @type {{[id: string]: string}} */
+/** Heads and texts of the terms' cards, by group and name, once they are loaded. @type {{[id: string]: [string, string]}} */
 let explanations = {};
 
 /** Takes what the core says; nothing is built before. @param {Schema} described */
@@ -27,7 +27,7 @@ export function takeSchema(described) {
   schema = described;
 }
 
-/** Takes what terms mean. @param {{[id: string]: string}} all */
+/** Takes what terms mean. @param {typeof explanations} all */
 export function takeExplanations(all) {
   explanations = all;
 }
@@ -89,8 +89,9 @@ export function termOf(id) {
   const [group, name] = id.split(".");
   const found = schema.groups[group]?.fields.find((each) => each.name === name);
   if (!found) return undefined;
-  const { label, text, term, from } = found;
-  return { name: term ?? label, text: plain(explanations[id] ?? text), from };
+  const { label, text, from } = found;
+  const [head, said] = explanations[id] ?? [label, text];
+  return { name: head, text: plain(said), from };
 }
 
 /** All terms of groups or of all but those, by their ids. @returns {{[id: string]: Term}} */
@@ -98,7 +99,7 @@ export function terms() {
   return Object.fromEntries(
     Object.entries(schema.groups).flatMap(([group, { fields, choice }]) =>
       fields
-        .filter(({ term, from }) => term || (choice && from))
+        .filter(({ name, from }) => explanations[`${group}.${name}`] || (choice && from))
         .map(({ name }) => [`${group}.${name}`, /** @type {Term} */ (termOf(`${group}.${name}`))]),
     ),
   );

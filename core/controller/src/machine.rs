@@ -44,6 +44,8 @@ pub struct StandAlone {
     pub(crate) due: Vec<u64>,
     /// The cycle that the next call of `clock` is.
     pub(crate) now: u64,
+    /// The last cycle in which something could change.
+    acted: u64,
     levels: Levels,
     /// Groups that have begun, of all controllers.
     pub(crate) begun: u64,
@@ -69,6 +71,7 @@ impl StandAlone {
             due: controllers.iter().map(|_| 0).collect(),
             controllers,
             now: 0,
+            acted: 0,
             levels: Levels::RESET,
             begun: 0,
             work: None,
@@ -91,14 +94,15 @@ impl StandAlone {
     /// Runs the next cycle, in the controllers for which something is due.
     fn cycle(&mut self, sink: &mut impl Sink) {
         let now = self.now;
-        self.now = now.saturating_add(1);
+        (self.now, self.acted) = (now.saturating_add(1), now);
         if self.work.is_none() {
             for (index, (controller, due)) in self.controllers.iter_mut().zip(&mut self.due).enumerate() {
                 if *due > now {
                     continue;
                 }
-                let (begun, heard, shown) =
-                    (controller.begun.count, controller.inputs.all_raw(), controller.panel.len());
+                // What the axis holds closed at reset is told in cycle 0.
+                let heard = if now == 0 { 1 << Signal::Power as u32 } else { controller.inputs.all_raw() };
+                let (begun, shown) = (controller.begun.count, controller.panel.len());
                 controller.cycle(now);
                 *due = controller.due().max(self.now);
                 self.begun += controller.begun.count - begun;
@@ -171,17 +175,32 @@ impl StandAlone {
     /// change any more: then the last cycle run is the last in which something could. Stops early where the sink asks for
     /// a pause, and where too many groups have begun ([`Self::work`]).
     pub fn run(&mut self, until: Instant, sink: &mut impl Sink) {
-        while !sink.paused() {
+        self.run_events(until, u64::MAX, sink);
+    }
+
+    /// The same for no more than so many cycles in which something can change; false where there were more.
+    pub fn run_events(&mut self, until: Instant, events: u64, sink: &mut impl Sink) -> bool {
+        for _ in 0..events {
+            if sink.paused() {
+                return true;
+            }
             let deadline = self.deadline();
             if deadline >= until.0 {
                 if until != Instant::NEVER {
                     self.now = self.now.max(until.0);
                 }
-                return;
+                return true;
             }
             self.now = deadline;
             self.cycle(sink);
         }
+        false
+    }
+
+    /// The first cycle after the last in which something could change, once nothing can any more.
+    #[must_use]
+    pub const fn rests_from(&self) -> Instant {
+        Instant(self.acted.saturating_add(1))
     }
 
     /// Whether nothing can change any more: no input left, no move, timer or write under way. A memory that writes the

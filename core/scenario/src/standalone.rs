@@ -29,7 +29,7 @@ impl Scenario {
     ) -> Option<stepscope_controller::Checked> {
         let outside = validator.enter("source.standalone");
         let most = usize::from(self.bus.channels).clamp(1, MAX_CHANNELS);
-        validator.length("", controllers.len(), 1..=most, "controllers");
+        validator.length("", controllers.len(), 1..=most, "controllers, each on a channel of `bus.channels`");
         let before = validator.count();
         let pulse = PulseTimes::from(&self.bus);
         let mut steps_left = MAX_PROFILE_STEPS;

@@ -55,20 +55,19 @@ fn the_pages_explanations_are_what_the_schema_says() {
     let mut said = std::collections::BTreeMap::new();
     each(&Scenario::TYPE, "", &mut Vec::new(), &mut |_, group, field| {
         if !field.explained.is_empty() {
-            said.insert(format!("{}.{}", group.name, field.name), field.explained);
+            said.insert(format!("{}.{}", group.name, field.name), [field.term, field.explained]);
         }
     });
     let mut text = String::from(
         "/** What the terms of a scenario's fields mean: written from the schema by its test, STEPSCOPE_BLESS=1. */\n",
     );
-    text += "/** @type {{[id: string]: string}} */\nexport const EXPLAINED = {\n";
-    for (id, explained) in said {
-        let value = serde_json::to_string(explained).expect("a text");
-        let line = format!("  \"{id}\": {value},");
+    text += "/** @type {{[id: string]: [string, string]}}  The card's head and its text. */\nexport const EXPLAINED = {\n";
+    for (id, [term, explained]) in said {
+        let [term, explained] = [term, explained].map(|text| serde_json::to_string(text).expect("a text"));
+        let line = format!("  \"{id}\": [{term}, {explained}],\n");
         // As the formatter breaks it.
-        let broken = format!("  \"{id}\":\n    {value},");
-        text += if line.chars().count() <= 120 { &line } else { &broken };
-        text += "\n";
+        let broken = format!("  \"{id}\": [\n    {term},\n    {explained},\n  ],\n");
+        text += if line.trim_end().chars().count() <= 120 { &line } else { &broken };
     }
     text += "};\n";
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../web/help/explained.js");

@@ -16,8 +16,11 @@ fn every_refusal_names_its_field_and_the_numbers() {
     let rows: &[(&str, &[&str])] = &[
         ("[{}]", &[]),
         ("[{},{}]", &[]),
-        ("[]", &["source.standalone: 0 controllers; give 1 to 2"]),
-        ("[{},{},{}]", &["source.standalone: 3 controllers; give 1 to 2"]),
+        ("[]", &["source.standalone: 0 controllers, each on a channel of `bus.channels`; give 1 to 2"]),
+        (
+            "[{},{},{}]",
+            &["source.standalone: 3 controllers, each on a channel of `bus.channels`; give 1 to 2"],
+        ),
         (
             r#"[{"max_speed_hz":300000}]"#,
             &[

@@ -53,6 +53,16 @@ impl Alone {
         }
     }
 
+    /// Where nothing can change any more, from which cycle on. The segment engine does not know its last change: it is `last`.
+    #[cfg(feature = "plant")]
+    pub(crate) fn rests_from(&self, last: Instant) -> Instant {
+        match self {
+            Self::Segments(_) => last.next(),
+            #[cfg(feature = "controller")]
+            Self::Panels(machine) => machine.rests_from(),
+        }
+    }
+
     pub(crate) fn positions(&self) -> [i32; MAX_CHANNELS] {
         match self {
             Self::Segments(engine) => engine.positions(),

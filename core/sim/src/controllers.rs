@@ -57,11 +57,10 @@ impl Controllers {
 
 #[cfg(feature = "plant")]
 impl Controllers {
-    /// Where nothing can change any more, the cycle after the last change. The segment engine does not know that one: it is
-    /// `last`.
+    /// Where nothing can change any more, the cycle after the last change; the last edge was in `last`.
     pub(crate) fn rests_from(&self, last: Instant) -> Option<Instant> {
         match &self.alone {
-            Some(alone) => alone.at_rest().then(|| last.next()),
+            Some(alone) => alone.at_rest().then(|| alone.rests_from(last)),
             None => self.bus.is_over().then(|| self.bus.rests_from()),
         }
     }

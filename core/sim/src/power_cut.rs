@@ -10,13 +10,15 @@
 //! not what came before.
 //!
 //! ```
+//! use stepscope_peripheral::units::Instant;
 //! use stepscope_sim::{Experiment, power_cut::{PowerCuts, tally}};
 //!
 //! let json = r#"{ "clock_hz": 1000000, "source": { "standalone": [ { "memory": { "byte_write_cycles": 100,
 //!     "hold_up_cycles": 1699 }, "debounce_cycles": 0, "max_speed_hz": 5000, "groups": [ { "move": { "length": 100 } } ],
 //!     "inputs": [ { "cycle": 5000, "input": "start" } ] } ] } }"#;
 //! let experiment = Experiment::from_json(json).expect("no problems");
-//! let cuts = PowerCuts::of(experiment.stand_alone().expect("a controller"), 2000, 1);
+//! let end = Instant(experiment.cost().end_cycle);
+//! let cuts = PowerCuts::of(experiment.stand_alone().expect("a controller"), end, 2000, 1);
 //! let found = tally(cuts.checked(), cuts.cycles());
 //! assert_eq!((found.cuts, found.lost, found.wrong), (cuts.cycles().len() as u64, 0, 0));
 //! ```
@@ -110,11 +112,11 @@ pub struct PowerCuts {
 }
 
 impl PowerCuts {
-    /// At most `count` cycles: all of the run if it is no longer; else seeded ones, half of them anywhere in the run, half
+    /// At most `count` cycles of a run that ends before `end`: all of it if it is no longer; else seeded ones, half of them anywhere in the run, half
     /// while a record is written, with the cycles around each byte's begin.
     #[must_use]
-    pub fn of(checked: &Checked, count: usize, seed: u64) -> Self {
-        let (length, writes) = writes(checked);
+    pub fn of(checked: &Checked, end: Instant, count: usize, seed: u64) -> Self {
+        let (length, writes) = writes(checked, end);
         let count = count as u64;
         let cycles = if length <= count {
             (1..length.max(2)).collect()
@@ -196,13 +198,16 @@ pub fn tally(checked: &Checked, cycles: &[u64]) -> Tally {
     found
 }
 
+/// Byte times after which a zero that was set is in memory: a record that is under way, and its own.
+const OLD_ZERO_BYTES: u64 = 34;
+
 /// What is true of a controller's position.
 #[derive(Clone, Copy, Debug)]
 struct Truth {
     /// Where the bus's counter of steps stands when the position is 0.
     zero: i32,
-    /// Where it stood before zero was set last.
-    before: i32,
+    /// Where it stood before zero was set last, and when that was.
+    before: (i32, u64),
     /// Whether the controller trusted its position when it had one last.
     known: bool,
 }
@@ -212,6 +217,8 @@ struct Truth {
 struct Watched {
     run: StandAlone,
     truth: Vec<Truth>,
+    /// Which of them had no position in the cycle before.
+    down: Vec<bool>,
 }
 
 impl Watched {
@@ -220,10 +227,11 @@ impl Watched {
         // Before it has read its memory what stands in it is the truth.
         let truth = (0..run.controllers()).map(|index| {
             let (position, trust) = run.believed_after_power_up(index).unwrap_or((0, 0));
-            Truth { zero: position.wrapping_neg(), before: position.wrapping_neg(), known: trust > 0 }
+            Truth { zero: position.wrapping_neg(), before: (position.wrapping_neg(), 0), known: trust > 0 }
         });
-        let truth = truth.collect();
-        Self { run, truth }
+        let truth: Vec<Truth> = truth.collect();
+        let down = truth.iter().map(|_| true).collect();
+        Self { run, truth, down }
     }
 
     /// Runs all cycles before `end`.
@@ -236,25 +244,32 @@ impl Watched {
         }
     }
 
-    /// A controller that is up has a position; without power, and until it has read its memory, it has none.
+    /// A controller that is up has a position; without power, and until it has read its memory, it has none. What it reads is
+    /// taken for true only where it was: a wrong position stays wrong.
     fn watch(&mut self) {
-        let steps = self.run.positions();
-        for (index, truth) in self.truth.iter_mut().enumerate() {
-            let is_up = !is_down(self.run.state(index));
-            if let (true, Some(position), Some(steps)) = (is_up, self.run.position(index), steps.get(index)) {
-                let zero = steps.wrapping_sub(position);
-                if zero != truth.zero {
-                    (truth.before, truth.zero) = (truth.zero, zero);
-                }
-                truth.known = self.run.trust(index) > Some(0);
+        let (steps, now) = (self.run.positions(), self.run.now().0);
+        for (index, (truth, was_down)) in self.truth.iter_mut().zip(&mut self.down).enumerate() {
+            let is_down = is_down(self.run.state(index));
+            let came_up = core::mem::replace(was_down, is_down) && !is_down;
+            let (Some(position), Some(steps)) = (self.run.position(index), steps.get(index)) else {
+                continue;
+            };
+            if is_down {
+                continue;
             }
+            let (zero, known) = (steps.wrapping_sub(position), self.run.trust(index) > Some(0));
+            // Read from memory, and trusted.
+            if !(came_up && known) && zero != truth.zero {
+                (truth.before, truth.zero) = ((truth.zero, now), zero);
+            }
+            truth.known = known;
         }
     }
 
     /// Cuts the power in the cycle that comes next, lets it come back when all is dark, and looks at what each controller
     /// reads from its memory. Nothing else is heard.
     fn cut(mut self) -> Vec<Outcome> {
-        let Self { run, truth } = &mut self;
+        let Self { run, truth, .. } = &mut self;
         run.drop_inputs();
         let at = run.now();
         let power = |level| Change::Level(Signal::Power, level);
@@ -272,11 +287,17 @@ impl Watched {
         }
         let outcome = |((index, truth), steps): ((usize, &Truth), i32)| {
             let is = |zero| run.position(index) == Some(steps.wrapping_sub(zero));
+            let (before, set) = truth.before;
+            let byte = run.checked().controllers().get(index).map_or(0, |one| one.memory.byte_write_cycles);
+            // A record that is under way, and the one that has the new zero.
+            let may_be_old = at.0 <= set.saturating_add(OLD_ZERO_BYTES * u64::from(byte));
             match run.trust(index) {
                 None | Some(0) if truth.known => Outcome::Lost,
                 None | Some(0) => Outcome::NeverKnown,
+                // Nothing makes a position known that was not.
+                _ if !truth.known => Outcome::Wrong,
                 _ if is(truth.zero) => Outcome::Known,
-                _ if is(truth.before) => Outcome::OldZero,
+                _ if is(before) && may_be_old => Outcome::OldZero,
                 _ => Outcome::Wrong,
             }
         };
@@ -290,10 +311,10 @@ const fn is_down(state: Option<State>) -> bool {
 }
 
 /// How long the run is, and when bytes are written: begin and end of each.
-fn writes(checked: &Checked) -> (u64, Vec<(u64, u64)>) {
+fn writes(checked: &Checked, end: Instant) -> (u64, Vec<(u64, u64)>) {
     let mut run = StandAlone::new(checked);
     let mut found = BTreeSet::new();
-    while let Some(cycles) = run.cycles_until_event() {
+    while let Some(cycles) = run.cycles_until_event().filter(|cycles| run.now() + *cycles < end) {
         run.run(Instant(run.now().0 + cycles.0 + 1), &mut Ignored);
         drop_panels(&mut run);
         for (index, one) in checked.controllers().iter().enumerate() {
@@ -332,16 +353,16 @@ pub struct Wear {
     pub life_power_cycles: Option<u64>,
 }
 
-/// The wear of controller `index`: its run, with a cut at its end, made `cycles` times one after another, each with the
+/// The wear of controller `index`: its run up to `end`, with a cut there, made `cycles` times one after another, each with the
 /// memory that the one before has left. A cell bears `endurance` writes.
 #[must_use]
-pub fn wear(checked: &Checked, index: usize, cycles: u32, endurance: u32) -> Wear {
+pub fn wear(checked: &Checked, end: Instant, index: usize, cycles: u32, endurance: u32) -> Wear {
     let mut setup = checked.setup();
     let mut totals: Vec<u64> = Vec::new();
     for _ in 0..cycles {
         let Ok(checked) = setup.clone().check() else { break };
         let mut run = StandAlone::new(&checked);
-        run.run(Instant::NEVER, &mut Ignored);
+        run.run(end, &mut Ignored);
         let at = run.now();
         // Without power already nothing is left to cut.
         let _ = run.enter(at, 0, Change::Level(Signal::Power, false));

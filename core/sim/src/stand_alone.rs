@@ -8,7 +8,7 @@ use stepscope_peripheral::{
     signal::{Record, Sink},
     units::{Cycles, Instant},
 };
-use stepscope_scenario::{Cause, Problem};
+use stepscope_scenario::{Cause, END_OF_TIME, Problem};
 
 impl Cost {
     /// What a run costs: tried, as far as what runs without asking goes. Beyond that it is more.
@@ -18,15 +18,25 @@ impl Cost {
     pub(crate) fn of_stand_alone(controllers: &Checked, run: Option<Cycles>) -> Result<Self, Vec<Problem>> {
         let mut tried = StandAlone::new(controllers);
         let mut counted = Counted(0);
-        tried.run(run.map_or(Instant::NEVER, |Cycles(run)| Instant(run)), &mut counted);
+        let until = run.map_or(Instant::NEVER, |Cycles(run)| Instant(run));
+        let is_short = tried.run_events(until, MAX_TRIED_EVENTS, &mut counted) && !counted.paused();
         if let Some(work) = tried.work() {
             let path = format!("source.standalone[{}].groups", work.controller);
             return Err(vec![Problem::new(path, Cause::Work(work))]);
         }
-        let end_cycle = run.map_or(tried.now().0, |Cycles(run)| run);
-        Ok(Self { records: counted.0, sends: 0, bytes: 0, end_cycle, motor_steps: 0 })
+        // Where the trial was given up it is not known when the run ends, if it does.
+        let records = if is_short { counted.0 } else { counted.0.max(BUDGET_RECORDS + 1) };
+        let end_cycle = match run {
+            Some(Cycles(run)) => run,
+            None if is_short => tried.now().0,
+            None => END_OF_TIME,
+        };
+        Ok(Self { records, sends: 0, bytes: 0, end_cycle, motor_steps: 0 })
     }
 }
+
+/// Cycles in which something can change that a trial goes through.
+const MAX_TRIED_EVENTS: u64 = 10_000_000;
 
 /// Counts records, and pauses where there are more than run without asking.
 struct Counted(u64);

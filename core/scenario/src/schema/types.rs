@@ -256,7 +256,7 @@ impl Field {
 
     /// The help's card: its head and its text, which a build without the feature `explanations` leaves out.
     pub(crate) const fn term(self, term: &'static str, explained: &'static str) -> Self {
-        Self { term, explained: if cfg!(feature = "explanations") { explained } else { "" }, ..self }
+        if cfg!(feature = "explanations") { Self { term, explained, ..self } } else { self }
     }
 
     /// Which document it comes from.
