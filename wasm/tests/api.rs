@@ -319,24 +319,25 @@ fn frames_and_replies_are_told_in_words_and_the_host_says_how_it_ended() {
     assert_eq!(told(0), ["frame", "to 1: STATUS", "STATUS done", "good"]);
     let reply = "from 1: ACK STATUS: READY, 16 free, seq 0, faults 0x00, 0 ticks done";
     assert_eq!(told(1), ["reply", reply, "acknowledged", "good"]);
-    let [kind, fields, outcome, mark] = told(2);
+    assert_eq!(told(2), ["frame", "to 1: POSITIONS", "POSITIONS done", "good"]);
+    let [kind, fields, outcome, mark] = told(4);
     assert!(fields.starts_with("to 1: TICKS seq 0, 8 ticks, ch0 +"), "{fields}");
     assert_eq!((kind.as_str(), outcome.as_str(), mark.as_str()), ("frame", "8 ticks queued", "good"));
 
     // The frame's eight ticks, one after another, from its first to its last.
-    let (start, end) = (number(&rows[2], "tick_start_cycle"), number(&rows[2], "tick_end_cycle"));
+    let (start, end) = (number(&rows[4], "tick_start_cycle"), number(&rows[4], "tick_end_cycle"));
     let ticks = list(&sure(simulation.ticks_in(start, end - 1.0, 100)), "rows");
     assert_eq!(ticks.len(), 8);
-    assert!(ticks.iter().all(|tick| number(tick, "row") == 2.0));
+    assert!(ticks.iter().all(|tick| number(tick, "row") == 4.0));
     assert_eq!(number(&ticks[0], "start_cycle"), start);
     assert_eq!(number(&ticks[7], "end_cycle"), end);
     assert!(get(&sure(simulation.ticks_in(start, end - 1.0, 7)), "more").is_truthy());
     // The reply is on the line while the first of these ticks runs.
-    let (start, end) = (number(&rows[3], "start_cycle"), number(&rows[3], "end_cycle"));
-    assert!(start > number(&rows[2], "tick_start_cycle"));
+    let (start, end) = (number(&rows[5], "start_cycle"), number(&rows[5], "end_cycle"));
+    assert!(start > number(&rows[4], "tick_start_cycle"));
     let touching = list(&sure(simulation.packets_in(start, end, 9)), "rows");
     let indices: Vec<f64> = touching.iter().map(|row| number(row, "index")).collect();
-    assert_eq!(indices, [3.0]);
+    assert_eq!(indices, [5.0]);
     assert!(list(&sure(simulation.packets_in(0.0, end, 2)), "rows").is_empty(), "more than two");
 
     // The reply's bytes one after another, and what they mean.
@@ -345,7 +346,7 @@ fn frames_and_replies_are_told_in_words_and_the_host_says_how_it_ended() {
     let bytes = list(&tx, "bytes");
     let spoken: Vec<String> =
         bytes.iter().filter_map(|span| list(span, "texts").first().and_then(JsValue::as_string)).collect();
-    assert_eq!(spoken.join(" "), text(&rows[3], "hex"));
+    assert_eq!(spoken.join(" "), text(&rows[5], "hex"));
     assert_eq!((number(&bytes[0], "start"), list(&tx, "bits").len()), (start, 10 * bytes.len()));
     let fields: Vec<String> = list(&tx, "fields")
         .iter()
