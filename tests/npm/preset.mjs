@@ -40,10 +40,14 @@ function digests(scenario) {
 
 const scenarios = new Map(presets().map(({ id, scenario }) => [id, scenario]));
 const cases = (await readdir(golden)).filter((name) => name.startsWith("preset-"));
-assert.ok(cases.length > 20, `${golden} has only ${cases.length} presets`);
+let found = 0;
 for (const name of cases) {
   const text = async (file) => (await readFile(join(golden, name, file), "utf8")).trim();
   const id = await text("preset");
+  // Stand-alone controllers are not in the package, as they are not in the page.
+  if (!scenarios.has(id)) continue;
   assert.deepEqual(digests(scenarios.get(id)), (await text("digest")).split("\n"), id);
+  found += 1;
 }
-console.log(`${cases.length} presets gave their golden digests in Node ${process.version}`);
+assert.ok(found > 20, `${golden} has only ${found} presets of the package`);
+console.log(`${found} presets gave their golden digests in Node ${process.version}`);

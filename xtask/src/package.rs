@@ -12,8 +12,18 @@ use tokio::process::Command;
 use crate::{apt, page, root, run, toolchain};
 
 /// What others may use, each after what it needs.
-const LIBRARIES: [&str; 10] =
-    ["registers", "peripheral", "motion", "plant", "controller", "capture", "scenario", "sim", "inspect", "core"];
+const LIBRARIES: [&str; 10] = [
+    "registers",
+    "peripheral",
+    "motion",
+    "plant",
+    "controller",
+    "capture",
+    "scenario",
+    "sim",
+    "inspect",
+    "core",
+];
 /// What the npm package has beside what wasm-pack lists: whose types its own are, and under which terms it comes.
 const BESIDE: [&str; 4] = ["stepscope_wasm_bg.wasm.d.ts", "README.md", "LICENSE-MIT", "LICENSE-APACHE"];
 /// The oldest Node that the test's program is written for.
