@@ -45,6 +45,13 @@ fn a_framed_line_shows_frames_with_their_ticks_and_replies() -> Result<()> {
         };
         let rows = framed.recording.packets.rows();
         let (index, row) = rows.iter().enumerate().find(|(_, row)| first(row)).expect("it queues ticks");
+        // It may stand below what is on show.
+        page.eval::<bool>(&format!(
+            "(() => {{ const height = document.querySelector('#packets tbody tr').offsetHeight;
+             document.getElementById('packets-scroll').scrollTop = {index} * height; return true; }})()"
+        ))
+        .await?;
+        page.until(&format!("document.getElementById('packet-{}') !== null", index + 1)).await?;
         let said = page.text(&format!("#packet-{index} td:nth-child(4)")).await?;
         ensure!(said.starts_with("\u{2192} to 0: TICKS seq 0, 8 ticks"), "{said}");
         let answer = page.text(&format!("#packet-{} td:nth-child(4)", index + 1)).await?;
