@@ -50,7 +50,7 @@ fn a_move_without_torque_enough_is_warned_of_and_more_torque_takes_the_warning_a
         page.click(&format!("[data-path='{AXIS}.motor#kind']")).await?;
         page.until(&format!("!document.querySelector(`[data-path='{AXIS}.motor.supply_v']`)")).await?;
         page.click(&format!("[data-path='{AXIS}.motor#kind']")).await?;
-        page.until(&format!("document.querySelector(`[data-path='{AXIS}.motor.supply_v']`).value === '24'"))
+        page.until(&format!("document.querySelector(`[data-path='{AXIS}.motor.supply_v']`)?.value === '24'"))
             .await?;
         page.fill(&format!("{AXIS}.motor.supply_v"), "0").await?;
         page.until("document.getElementById('problems').hidden === false").await?;
