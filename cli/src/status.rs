@@ -4,7 +4,7 @@ use crate::json::Tables;
 use serde_json::{Value, json};
 use std::io::{self, Write};
 use stepscope_core::{
-    controller::TRUST,
+    controller::trust_name,
     sim::{ControllerSummary, StandAloneSummary, Summary},
 };
 
@@ -56,12 +56,23 @@ pub(crate) fn tables(tables: Tables, summary: &Summary, first: usize) -> Tables 
             "controller": index,
             "state": panel.state.name(),
             "alarm": panel.alarm.name(),
-            "trust": TRUST.get(usize::from(panel.trust)),
+            "trust": trust_name(panel.trust),
             "position": panel.position,
             "axis_error": panel.axis_error,
             "records": panel.records,
             "most_writes": panel.most_writes,
-            "presses_without_meaning": panel.ignored,
+            "presses_without_meaning": panel.ignored.len(),
+        })
+    });
+    let all = summary.stand_alone.iter().flat_map(|all| &all.panels).enumerate();
+    let ignored = all.flat_map(|(index, panel)| {
+        panel.ignored.iter().map(move |press| {
+            json!({
+                "controller": index,
+                "cycle": press.cycle.0,
+                "button": press.button.name(),
+                "state": press.state.name(),
+            })
         })
     });
     let tables = match &summary.stand_alone {
@@ -69,6 +80,7 @@ pub(crate) fn tables(tables: Tables, summary: &Summary, first: usize) -> Tables 
             let ended = work.map(|work| work.to_string());
             tables
                 .with("panels", panels)
+                .with("presses_without_meaning", ignored)
                 .with("panel_digest", [json!({ "digest": format!("{digest:016x}"), "ended": ended })])
         }
         None => tables,

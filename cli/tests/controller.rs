@@ -101,3 +101,20 @@ fn a_program_without_end_is_refused_with_the_groups_that_repeat() {
     let message = "source.standalone[0].groups: groups 1 to 3 repeat without end; give one of them a move, a wait or a way out";
     assert!(err.contains(message), "{err}");
 }
+
+#[test]
+fn a_press_that_means_nothing_is_told_with_its_cycle_and_the_state() {
+    let scenario = r#"{"source":{"standalone":[{"debounce_cycles":0,"memory":{"byte_write_cycles":1},
+        "inputs":[{"cycle":3000,"input":"pause"},{"cycle":4000,"input":"key_7"}]}]}}"#;
+    let (code, out, _) = stepscope(&["run", "-"], scenario);
+    assert_eq!(code, Some(0));
+    for line in [
+        "press 0 pause in cycle 3000 did nothing in READY",
+        "press 0 key_7 in cycle 4000 did nothing in READY",
+    ] {
+        assert!(out.lines().any(|found| found == line), "{line}\n{out}");
+    }
+    let (_, out, _) = stepscope(&["run", "-", "--json"], scenario);
+    let tables = serde_json::from_str::<Value>(&out).expect("JSON")["tables"].clone();
+    assert_eq!(tables["presses_without_meaning"][1]["button"], "key_7");
+}

@@ -16,7 +16,7 @@
 mod arithmetic;
 mod axis;
 mod buttons;
-mod digest;
+mod crc32c;
 mod eeprom;
 mod engine;
 mod format;

@@ -16,6 +16,10 @@ pub mod oracle;
 #[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 pub mod plant_oracle;
 
+/// The digest that both slow models reckon by themselves.
+#[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
+mod xxh64;
+
 /// The slow model of the stand-alone controller that the core's is compared with.
 #[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 pub mod controller_oracle;

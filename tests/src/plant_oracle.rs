@@ -12,7 +12,6 @@
 //!
 //! Where the contract leaves room, the reading taken is written at the line that takes it ("Reading:").
 
-mod digest;
 mod driver;
 mod ledger;
 mod motor;

@@ -75,6 +75,13 @@ impl Judgement {
         }
     }
 
+    fn speed(&mut self, path: impl Into<String>, given_hz: u32, parameters: &Parameters) {
+        let max_speed_hz = parameters.max_speed_hz;
+        if given_hz < 10 || given_hz > max_speed_hz {
+            self.refuse(path, Refusal::Speed { given_hz, max_speed_hz });
+        }
+    }
+
     fn bus(&mut self, setup: &Setup) {
         self.range("clock_hz", setup.clock_hz, &limits::CLOCK_HZ);
         self.range("bus.channels", setup.channels, &limits::CHANNELS);
@@ -86,13 +93,12 @@ impl Judgement {
     }
 
     fn parameters(&mut self, setup: &Setup, parameters: &Parameters) {
-        let fastest = 10..=i128::from(parameters.max_speed_hz);
         self.range("self_test_cycles", parameters.self_test_cycles, &limits::SELF_TEST_CYCLES);
         self.range("debounce_cycles", parameters.debounce_cycles, &limits::DEBOUNCE_CYCLES);
         self.range("sensor_debounce_cycles", parameters.sensor_debounce_cycles, &limits::DEBOUNCE_CYCLES);
         self.range("pulses_per_unit", parameters.pulses_per_unit, &limits::PULSES_PER_UNIT);
         self.range("decimals", parameters.decimals, &limits::DECIMALS);
-        self.range("start_speed_hz", parameters.start_speed_hz, &fastest);
+        self.speed("start_speed_hz", parameters.start_speed_hz, parameters);
         self.max_speed(setup, parameters.max_speed_hz);
         self.range("level_hz_s", parameters.level_hz_s, &limits::LEVEL_HZ_S);
         self.range("least_trust", parameters.least_trust, &limits::TRUST);
@@ -101,10 +107,10 @@ impl Judgement {
         for (index, group) in parameters.groups.iter().enumerate() {
             self.group(setup, parameters, index, group);
         }
-        self.range("jog.speed_hz", parameters.jog.speed_hz, &fastest);
-        self.range("jog.fine_hz", parameters.jog.fine_hz, &fastest);
+        self.speed("jog.speed_hz", parameters.jog.speed_hz, parameters);
+        self.speed("jog.fine_hz", parameters.jog.fine_hz, parameters);
         self.range("jog.level", parameters.jog.level, &limits::LEVEL);
-        self.range("return.speed_hz", parameters.return_.speed_hz, &fastest);
+        self.speed("return.speed_hz", parameters.return_.speed_hz, parameters);
         self.range("return.level", parameters.return_.level, &limits::LEVEL);
         if let Some(home) = &parameters.home {
             self.home(parameters, home);
@@ -136,12 +142,11 @@ impl Judgement {
 
     fn group(&mut self, setup: &Setup, parameters: &Parameters, index: usize, group: &Group) {
         let path = |field: &str| format!("groups[{index}].{field}");
-        let fastest = 10..=i128::from(parameters.max_speed_hz);
         match group {
             Group::Move(group) => {
                 self.range(path("move.length"), group.length, &limits::LENGTH);
                 self.range(path("move.direction"), group.direction, &limits::DIRECTION);
-                self.range(path("move.speed_hz"), group.speed_hz, &fastest);
+                self.speed(path("move.speed_hz"), group.speed_hz, parameters);
                 self.range(path("move.level"), group.level, &limits::LEVEL);
                 self.range(path("move.delay_ms"), group.delay_ms, &limits::DELAY_MS);
                 if let Some(until) = &group.until {
@@ -150,7 +155,7 @@ impl Judgement {
             }
             Group::MoveTo(group) => {
                 self.range(path("move_to.length"), group.length, &limits::PLACE);
-                self.range(path("move_to.speed_hz"), group.speed_hz, &fastest);
+                self.speed(path("move_to.speed_hz"), group.speed_hz, parameters);
                 self.range(path("move_to.level"), group.level, &limits::LEVEL);
                 self.range(path("move_to.delay_ms"), group.delay_ms, &limits::DELAY_MS);
             }

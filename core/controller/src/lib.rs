@@ -80,5 +80,5 @@ pub use enter::NotEntered;
 pub use machine::StandAlone;
 pub use refusal::{Refusal, Refused, Warned, Warning};
 pub use runner::{Lateness, NotRunnable, Runner};
-pub use state::{Alarm, State, TRUST};
+pub use state::{Alarm, State, trust_name};
 pub use work::Work;

@@ -28,6 +28,13 @@ pub enum Refusal {
         /// The fastest that is allowed in Hz.
         max_hz: u64,
     },
+    /// A speed is above the fastest that may be asked for, or below 10 Hz.
+    Speed {
+        /// The speed in Hz.
+        given_hz: u32,
+        /// `max_speed_hz`.
+        max_speed_hz: u32,
+    },
     /// An interval of a `profile` is shorter than a pulse allows.
     ShortInterval {
         /// The interval in 1/65536 cycle.
@@ -116,12 +123,17 @@ impl fmt::Display for Refusal {
             Self::Range { given, least, greatest } => {
                 write!(f, "{given} is out of range; give {least} to {greatest}")
             }
-            Self::TooFast { given_hz, step, pulse, max_hz } => write!(
-                f,
-                "{given_hz} Hz is a step every {} cycles at this clock; W + max(H + D, 1) is {} cycles, so at most \
-                 {max_hz} Hz",
-                step.0, pulse.0
-            ),
+            Self::TooFast { given_hz, step, pulse, max_hz } => {
+                write!(
+                    f,
+                    "{given_hz} Hz is a step every {} cycles at this clock; W + max(H + D, 1) is {} cycles, so ",
+                    step.0, pulse.0
+                )?;
+                if max_hz < 10 {
+                    return f.write_str("no speed is slow enough: give shorter times of the pulse");
+                }
+                write!(f, "at most {max_hz} Hz")
+            }
             Self::ShortInterval { given, least } => write!(
                 f,
                 "{given}/65536 cycle is shorter than a pulse allows; W + max(H + D, 1) is {least}/65536 cycle, so give at \
@@ -132,6 +144,15 @@ impl fmt::Display for Refusal {
                 "{given_hz} Hz is above start_speed_hz {start_speed_hz}: homing stops at once and must stay in the \
                  start-stop range"
             ),
+            Self::Speed { given_hz, max_speed_hz } => {
+                write!(f, "{given_hz} Hz is out of range; give 10 Hz to max_speed_hz, {max_speed_hz} Hz")
+            }
+            Self::NotBefore { given, group: 1 } => {
+                write!(
+                    f,
+                    "{given} is not before this group, which is the first; give another group before it"
+                )
+            }
             Self::NotBefore { given, group } => {
                 write!(f, "{given} is not before this group ({group}); give a group before it")
             }

@@ -83,8 +83,16 @@ numbered! {
     }
 }
 
-/// Names of the degrees of trust, 0 to 2 (G2).
-pub const TRUST: [&str; 3] = ["LOST", "HELD", "SURE"];
+/// Name of a degree of trust (G2): 0 LOST, 1 HELD, 2 SURE; empty for any other.
+#[must_use]
+pub const fn trust_name(trust: u8) -> &'static str {
+    match trust {
+        0 => "LOST",
+        1 => "HELD",
+        2 => "SURE",
+        _ => "",
+    }
+}
 
 impl State {
     /// Whether a controller with `write_ahead` closes its journal here (G7).

@@ -17,9 +17,10 @@
 use alloc::{format, string::String, vec::Vec};
 use core::fmt::{self, Write};
 use stepscope_controller::{
-    Checked, State, TRUST,
+    Checked, State,
     input::Signal,
     panel::{PanelRecord, Word},
+    trust_name,
 };
 use stepscope_peripheral::signal::Event;
 
@@ -40,7 +41,7 @@ pub fn write_panel_row(
 ) -> fmt::Result {
     let PanelRecord { cycle, word, position, display } = record;
     write!(out, "{index},{},{},{},{position},{display},", cycle.0, cycle.seconds(clock_hz), word.0)?;
-    let trust = TRUST[usize::from(word.trust() & 3)];
+    let trust = trust_name(word.trust());
     write!(out, "{},{},{trust},{},", word.state().name(), word.alarm().name(), word.outputs())?;
     writeln!(out, "{},{}", word.group(), word.loop_())
 }
@@ -156,7 +157,7 @@ impl PanelSignal {
         match self.what {
             What::State => word(0).state().name().into(),
             What::Alarm => word(4).alarm().name().into(),
-            What::Trust => TRUST[self.value as usize & 3].into(),
+            What::Trust => trust_name(word(8).trust()).into(),
             _ => format!("{}", self.value),
         }
     }

@@ -3,7 +3,7 @@
 use crate::{BUDGET_RECORDS, Cost};
 use alloc::{format, vec, vec::Vec};
 use core::fmt;
-use stepscope_controller::{Alarm, Checked, StandAlone, State, TRUST, Work};
+use stepscope_controller::{Alarm, Checked, Press, StandAlone, State, Work, trust_name};
 use stepscope_peripheral::{
     signal::{Record, Sink},
     units::{Cycles, Instant},
@@ -62,8 +62,11 @@ pub struct StandAloneSummary {
     pub work: Option<Work>,
 }
 
+/// Presses without meaning that are told one by one.
+const MAX_TOLD: usize = 20;
+
 /// A stand-alone controller.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PanelSummary {
     /// What it is doing.
     pub state: State,
@@ -79,8 +82,8 @@ pub struct PanelSummary {
     pub records: usize,
     /// Writes of the most worn cell of its memory.
     pub most_writes: u32,
-    /// Presses that did nothing.
-    pub ignored: usize,
+    /// Presses that did nothing, in order.
+    pub ignored: Vec<Press>,
 }
 
 impl StandAloneSummary {
@@ -94,7 +97,7 @@ impl StandAloneSummary {
                 axis_error: machine.axis_error(index)?,
                 records: machine.panel(index).len(),
                 most_writes: machine.writes(index).iter().copied().max().unwrap_or(0),
-                ignored: machine.ignored(index).len(),
+                ignored: machine.ignored(index).to_vec(),
             })
         };
         Self { panels: (0..).map_while(one).collect(), digest: machine.panel_digest(), work: machine.work() }
@@ -108,9 +111,12 @@ impl fmt::Display for PanelSummary {
         if *alarm != Alarm::None {
             write!(f, " {}", alarm.name())?;
         }
-        let trust = TRUST.get(usize::from(*trust)).copied().unwrap_or_default();
-        write!(f, " trust {trust} position {position} axis_error {axis_error} records {records}")?;
-        write!(f, " most_writes {most_writes} presses_without_meaning {ignored}")
+        write!(
+            f,
+            " trust {} position {position} axis_error {axis_error} records {records}",
+            trust_name(*trust)
+        )?;
+        write!(f, " most_writes {most_writes} presses_without_meaning {}", ignored.len())
     }
 }
 
@@ -118,6 +124,15 @@ impl fmt::Display for StandAloneSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, panel) in self.panels.iter().enumerate() {
             writeln!(f, "panel {index} {panel}")?;
+            for Press { cycle, button, state } in panel.ignored.iter().take(MAX_TOLD) {
+                writeln!(
+                    f,
+                    "press {index} {} in cycle {} did nothing in {}",
+                    button.name(),
+                    cycle.0,
+                    state.name()
+                )?;
+            }
         }
         writeln!(f, "panels {:016x}", self.digest)?;
         self.work.map_or(Ok(()), |work| writeln!(f, "ended controller {}: {work}", work.controller))

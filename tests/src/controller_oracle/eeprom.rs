@@ -1,6 +1,6 @@
 //! G7: the cells, the byte under way, the records and banks as bytes.
 
-use super::digest::crc32c;
+use super::crc32c::crc32c;
 use super::numbers;
 use super::parameters::{Controller, Initial};
 

@@ -2,12 +2,12 @@
 
 use std::fmt::Write;
 
-use super::digest::xxh64;
 use super::parameters::{
     Axis, Case, Controller, Entry, Group, Home, Initial, Input, Memory, Move, Policy, Release, ShortMove,
     Until, What,
 };
 use super::random::SplitMix64;
+use crate::xxh64::xxh64;
 
 /// The scenario's JSON.
 pub fn to_json(case: &Case) -> String {

@@ -1,10 +1,10 @@
 //! A run: all controllers clock by clock, the bus, the records and the digests.
 
 use super::arithmetic::Table;
-use super::digest::xxh64;
 use super::panel::PanelRecord;
 use super::parameters::{Case, Controller, Entry, What};
 use super::room::{Alarm, Plan, Room, State};
+use crate::xxh64::xxh64;
 
 /// Groups that may begin in a run.
 const MOST_GROUPS: u64 = 1_000_000;

@@ -4,7 +4,6 @@
 //! point n: sensors, lost steps, digest | chopper decides | changes in cycle n*N act | sub-steps | V, i_load of point n + 1
 //! ```
 
-use super::digest::xxh64;
 use super::edges::{Change, changes, enable_rises, starts_enabled};
 use super::ledger::Ledger;
 use super::motor::MotorState;
@@ -13,6 +12,7 @@ use super::parameters::{Case, CurrentSensor, Motor, grid_step};
 use super::refusals::is_refused;
 use super::sensors::{EncoderState, Sensor, Watch};
 use super::supply::Supply;
+use crate::xxh64::xxh64;
 
 /// A motor at a grid point.
 #[derive(Debug, Clone, Copy, PartialEq)]

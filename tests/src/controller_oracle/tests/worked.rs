@@ -1,8 +1,9 @@
 //! Numbers of the text, each through a whole run where it says something about one.
 
 use super::super::arithmetic::{Table, display_of_position, interval, steps_of_length};
-use super::super::digest::{crc32c, xxh64};
+use super::super::crc32c::crc32c;
 use super::super::*;
+use crate::xxh64::xxh64;
 
 /// A bus of one controller with the document's clock.
 fn alone(controller: Controller) -> Case {

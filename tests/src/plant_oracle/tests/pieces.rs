@@ -1,7 +1,7 @@
 //! The pieces that stand alone: XXH64, SplitMix64, sine, exponential, segments, refusals.
 
 use super::*;
-use crate::plant_oracle::{digest::xxh64, numbers::exp_of_minus};
+use crate::{plant_oracle::numbers::exp_of_minus, xxh64::xxh64};
 
 #[test]
 fn xxh64_gives_its_published_values() {
