@@ -8,7 +8,9 @@ use stepscope_core::{
     peripheral::signal::Record,
     sim::{Experiment, Run},
 };
-use stepscope_tests::controller_oracle::{self as oracle, Case, Outcome, random_case, refused, to_json};
+use stepscope_tests::controller_oracle::{
+    self as oracle, Case, Content, Outcome, random_case, refused, to_json,
+};
 
 /// Random cases; `PROPTEST_CASES` sets another number.
 const CASES: u64 = 400;
@@ -91,4 +93,48 @@ fn a_refused_case_is_refused_at_the_same_paths() {
     let problems = Experiment::from_json(&to_json(&case)).expect_err("too fast");
     let found: Vec<&str> = problems.iter().map(|problem| problem.path.as_str()).collect();
     assert_eq!(found, expected);
+}
+
+/// A memory whose newest record has the greatest number there is (G7): what is written after it never becomes the newest, so it
+/// is written again and again.
+#[test]
+fn a_memory_that_writes_again_and_again_keeps_no_run_from_its_end_and_wears_alike_at_both_speeds() {
+    let open = Content { position: 5, trust: 1, open: true, group: 0, of_loop: 0 };
+    let newest = oracle::journal_record(u32::MAX, open);
+    let initial: String = newest.iter().map(|byte| format!("{byte:02x}")).collect();
+    let scenario = |run: &str, fields: &str, byte: u64| {
+        format!(
+            r#"{{"clock_hz":100000,{run}"bus":{{"pulse_width_cycles":2}},"source":{{"standalone":[{{
+                "self_test_cycles":10,"debounce_cycles":0,"max_speed_hz":1000,"groups":[{{"move":{{"length":1,"speed_hz":1000}}}}],
+                "memory":{{"policy":"write_ahead","byte_write_cycles":{byte},"initial":"{initial}"}},{fields}}}]}}}}"#
+        )
+    };
+    let rows = [
+        // It rests.
+        (scenario(r#""run_cycles":5000,"#, r#""inputs":[]"#, 3), 5000 / 48),
+        // Presses on the way, and a cut.
+        (
+            scenario(
+                r#""run_cycles":9001,"#,
+                r#""inputs":[{"cycle":1234,"input":"start"},{"cycle":3001,"input":"power","level":0},{"cycle":7000,"input":"power"}]"#,
+                7,
+            ),
+            20,
+        ),
+    ];
+    for (json, least) in rows {
+        let experiment = Experiment::from_json(&json).expect("no problems");
+        let (mut fast, mut clocked): (Vec<Record>, Vec<Record>) = (Vec::new(), Vec::new());
+        let (run, clock) = (experiment.run(&mut fast), experiment.run_clock_by_clock(&mut clocked));
+        let (run, clock) = (run.stand_alone().expect("one"), clock.stand_alone().expect("one"));
+        assert_eq!((fast, run.panel(0)), (clocked, clock.panel(0)), "{json}");
+        assert_eq!((run.memory(0), run.writes(0)), (clock.memory(0), clock.writes(0)), "{json}");
+        let most = run.writes(0).iter().copied().max().expect("cells");
+        assert!(most >= least, "{most} writes\n{json}");
+    }
+    // Something happens in 3000 years.
+    let far = scenario("", r#""inputs":[{"cycle":9000000000000000,"input":"in_0"}]"#, 1);
+    let experiment = Experiment::from_json(&far).expect("no problems");
+    let run = experiment.run(&mut Vec::<Record>::new());
+    assert_eq!(run.stand_alone().expect("one").writes(0).iter().max(), Some(&u32::MAX));
 }

@@ -220,6 +220,7 @@ impl Controller {
 
     /// One cycle.
     pub(crate) fn cycle(&mut self, now: u64) {
+        self.eeprom.settle(now);
         self.pins.take_orders(now);
         self.show(now);
         self.engine(now);
@@ -232,17 +233,8 @@ impl Controller {
 
     /// The next cycle in which something can change; what has to be done by `now` is due in `now`.
     pub(crate) fn due(&self) -> u64 {
-        self.due_without_memory().min(self.eeprom.due())
-    }
-
-    /// As [`Self::due`], but for a memory that writes the same again and again.
-    pub(crate) fn due_before_rest(&self) -> u64 {
-        if self.is_stuck { self.due_without_memory() } else { self.due() }
-    }
-
-    fn due_without_memory(&self) -> u64 {
         let motion = self.motion.as_ref().map_or(NEVER, Motion::rise);
-        let waits = self.pins.due().min(self.timer).min(self.reads).min(self.dies);
+        let waits = self.pins.due().min(self.timer).min(self.reads).min(self.dies).min(self.eeprom.due());
         motion.min(waits).min(self.shows).min(self.inputs.due()).min(self.script.due())
     }
 

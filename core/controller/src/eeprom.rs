@@ -38,6 +38,9 @@ struct Writing {
     begun: u64,
     /// It is not there before this cycle, however long it takes by w.
     not_before: u64,
+    /// The record stands there already, and is written again and again: nothing changes but the wear, so nothing is due until
+    /// something else is.
+    repeats: bool,
 }
 
 impl Eeprom {
@@ -73,8 +76,12 @@ impl Eeprom {
 
     /// When the byte under way is there.
     pub(crate) fn due(&self) -> u64 {
-        let due =
-            |writing: &Writing| writing.begun.saturating_add(self.byte_write_cycles).max(writing.not_before);
+        let due = |writing: &Writing| match writing {
+            Writing { repeats: true, .. } => u64::MAX,
+            Writing { begun, not_before, .. } => {
+                begun.saturating_add(self.byte_write_cycles).max(*not_before)
+            }
+        };
         self.writing.as_ref().map_or(u64::MAX, due)
     }
 
@@ -86,7 +93,7 @@ impl Eeprom {
     /// The byte under way is not there before `cycle`: the cell of a chip takes longer.
     pub(crate) const fn postpone(&mut self, cycle: u64) {
         if let Some(writing) = &mut self.writing {
-            writing.not_before = cycle;
+            (writing.not_before, writing.repeats) = (cycle, false);
         }
     }
 
@@ -97,11 +104,35 @@ impl Eeprom {
         }
     }
 
-    /// Begins to write a record; one at a time.
-    pub(crate) fn begin(&mut self, now: u64, address: usize, record: Vec<u8>) {
+    /// Begins to write a record; one at a time. One that would be wanted again when it is there `repeats`, where its bytes
+    /// stand there already.
+    pub(crate) fn begin(&mut self, now: u64, address: usize, record: Vec<u8>, repeats: bool) {
         debug_assert!(self.writing.is_none(), "a record is under way");
+        let there = self.bytes.get(address..address.saturating_add(record.len()));
+        let repeats = repeats && there == Some(record.as_slice());
         let mut left = record.into_iter();
-        self.writing = left.next().map(|byte| Writing { address, left, byte, begun: now, not_before: 0 });
+        let first = left.next();
+        self.writing = first.map(|byte| Writing { address, left, byte, begun: now, not_before: 0, repeats });
+    }
+
+    /// What a record that repeats has come to by the end of the cycle before `now`: from here on it is one like any other.
+    pub(crate) fn settle(&mut self, now: u64) {
+        let Some(writing) = self.writing.as_mut().filter(|writing| writing.repeats) else { return };
+        writing.repeats = false;
+        let bytes = 1 + writing.left.len() as u64;
+        let written = now.saturating_sub(1).saturating_sub(writing.begun) / self.byte_write_cycles;
+        let (records, part) = (written / bytes, written % bytes);
+        let cells = self.writes.iter_mut().skip(writing.address).zip(0..bytes);
+        for (writes, place) in cells {
+            let more = u32::try_from(records + u64::from(place < part)).unwrap_or(u32::MAX);
+            *writes = writes.saturating_add(more);
+        }
+        writing.begun += written * self.byte_write_cycles;
+        for _ in 0..part {
+            if let Some(byte) = writing.left.next() {
+                (writing.byte, writing.address) = (byte, writing.address + 1);
+            }
+        }
     }
 
     /// A byte is complete in cycle `now`: whether it was the last of its record.
@@ -115,7 +146,8 @@ impl Eeprom {
         let is_last = next.is_none();
         if let Some(byte) = next {
             let Writing { address, left, .. } = writing;
-            self.writing = Some(Writing { address: address + 1, left, byte, begun: now, not_before: 0 });
+            self.writing =
+                Some(Writing { address: address + 1, left, byte, begun: now, not_before: 0, repeats: false });
         }
         is_last
     }
@@ -158,7 +190,7 @@ mod tests {
     #[test]
     fn a_byte_is_there_after_its_time_and_the_next_begins() {
         let mut eeprom = eeprom();
-        eeprom.begin(100, 1, vec![1, 2]);
+        eeprom.begin(100, 1, vec![1, 2], false);
         assert!(!eeprom.complete(109));
         assert_eq!(eeprom.bytes(), [0x55; 4]);
         assert!(!eeprom.complete(110));
@@ -170,7 +202,7 @@ mod tests {
     #[test]
     fn a_byte_that_is_postponed_is_there_later_and_the_next_takes_its_own_time() {
         let mut eeprom = eeprom();
-        eeprom.begin(100, 1, vec![1, 2]);
+        eeprom.begin(100, 1, vec![1, 2], false);
         eeprom.postpone(115);
         assert!(!eeprom.complete(114) && eeprom.under_way() == Some((100, 1, 1)));
         assert!(!eeprom.complete(115) && eeprom.under_way() == Some((115, 2, 2)));
@@ -186,7 +218,7 @@ mod tests {
             [(100, 0x55, 0), (101, 0xff, 1), (104, 0xff, 1), (105, 0x2f, 1), (109, 0x2f, 1)]
         {
             let mut eeprom = eeprom();
-            eeprom.begin(100, 0, vec![0x20, 0x21]);
+            eeprom.begin(100, 0, vec![0x20, 0x21], false);
             eeprom.die(now);
             assert_eq!((eeprom.bytes()[0], eeprom.writes()[0]), (expected, writes), "{now}");
             assert!(eeprom.is_idle());
@@ -198,12 +230,34 @@ mod tests {
         // Cycle of the fall, whether a byte goes on.
         for (now, goes_on) in [(100, false), (101, true)] {
             let mut eeprom = eeprom();
-            eeprom.begin(100, 0, vec![1, 2, 3]);
+            eeprom.begin(100, 0, vec![1, 2, 3], false);
             eeprom.drop_rest(now);
             assert_eq!(!eeprom.is_idle(), goes_on);
             assert_eq!(eeprom.complete(110), goes_on);
             assert!(eeprom.is_idle());
             assert_eq!(eeprom.bytes()[..2], if goes_on { [1, 0x55] } else { [0x55; 2] });
+        }
+    }
+
+    #[test]
+    fn a_record_that_repeats_comes_to_what_it_would_byte_by_byte() {
+        for now in 100..200 {
+            let mut plain = eeprom();
+            plain.load(&[0x55, 1, 2, 3]);
+            let mut repeated = plain.clone();
+            plain.begin(100, 1, vec![1, 2, 3], true);
+            repeated.begin(100, 1, vec![1, 2, 3], true);
+            assert_eq!(repeated.due(), u64::MAX);
+            // Byte by byte, begun again in the cycle in which it is there.
+            plain.settle(100);
+            for cycle in 101..now {
+                if plain.complete(cycle) {
+                    plain.begin(cycle, 1, vec![1, 2, 3], false);
+                }
+            }
+            repeated.settle(now);
+            assert_eq!(repeated.writes(), plain.writes(), "{now}");
+            assert_eq!(repeated.under_way(), plain.under_way(), "{now}");
         }
     }
 }

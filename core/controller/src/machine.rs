@@ -148,9 +148,7 @@ impl StandAlone {
         if self.now == 0 {
             return 0;
         }
-        if self.work.is_some()
-            || self.controllers.iter().any(|controller| controller.is_stuck) && self.at_rest()
-        {
+        if self.work.is_some() {
             return NEVER;
         }
         self.due.iter().copied().min().map_or(NEVER, |due| if due == NEVER { due } else { due.max(self.now) })
@@ -188,6 +186,7 @@ impl StandAlone {
             if deadline >= until.0 {
                 if until != Instant::NEVER {
                     self.now = self.now.max(until.0);
+                    self.settle();
                 }
                 return true;
             }
@@ -195,6 +194,14 @@ impl StandAlone {
             self.cycle(sink);
         }
         false
+    }
+
+    /// Memories that write the same again and again have come so far.
+    fn settle(&mut self) {
+        for (controller, due) in self.controllers.iter_mut().zip(&mut self.due) {
+            controller.eeprom.settle(self.now);
+            *due = (*due).min(controller.eeprom.due());
+        }
     }
 
     /// The first cycle after the last in which something could change, once nothing can any more.
@@ -208,8 +215,7 @@ impl StandAlone {
     #[must_use]
     pub fn at_rest(&self) -> bool {
         self.now > 0
-            && (self.work.is_some()
-                || self.controllers.iter().all(|controller| controller.due_before_rest() == NEVER))
+            && (self.work.is_some() || self.controllers.iter().all(|controller| controller.due() == NEVER))
     }
 
     /// Too many groups have begun: the run has ended there.

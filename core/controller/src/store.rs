@@ -1,7 +1,7 @@
 //! What is written into memory, when, and what is read from it (G7).
 
 use crate::{
-    controller::{Controller, NEVER},
+    controller::Controller,
     journal::{self, Entry, Valid},
     numbers::Numbers,
     parameters::Policy,
@@ -99,15 +99,15 @@ impl Controller {
                 loop_: loop_ as u16,
             };
             let (address, record) = journal::next(self.newest, self.slots(), entry);
-            self.eeprom.begin(now, address, record);
+            self.eeprom.begin(now, address, record, self.is_stuck);
             self.writes_journal = true;
             self.wants_opening = false;
         } else if self.wants_save && !matches!(self.state, State::Off | State::SelfTest | State::PowerLoss) {
             let (address, bank) = journal::save(self.eeprom.bytes(), self.slots(), self.numbers.all());
-            self.eeprom.begin(now, address, bank);
+            self.eeprom.begin(now, address, bank, false);
             (self.wants_save, self.is_stuck) = (false, false);
         }
-        if self.eeprom.due() == NEVER {
+        if self.eeprom.is_idle() {
             self.is_stuck = false;
         }
     }

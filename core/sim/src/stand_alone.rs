@@ -28,7 +28,8 @@ impl Cost {
         let records = if is_short { counted.0 } else { counted.0.max(BUDGET_RECORDS + 1) };
         let end_cycle = match run {
             Some(Cycles(run)) => run,
-            None if is_short => tried.now().0,
+            // The last entry of a script may stand in the last cycle of all.
+            None if is_short => tried.now().0.min(END_OF_TIME),
             None => END_OF_TIME,
         };
         Ok(Self { records, sends: 0, bytes: 0, end_cycle, motor_steps: 0 })
