@@ -5,7 +5,7 @@
  * The folders stand in one line, too. Each imports, and names types of, what stands to its left alone; a test holds
  * this:
  *
- *     pkg -> pkg-study -> pkg-capture -> state -> dom.js -> engine -> shell -> time -> form -> help -> views -> main.js
+ *     pkg -> pkg-study -> pkg-capture -> pkg-panel -> state -> dom.js -> engine -> shell -> time -> form -> help -> views -> main.js
  */
 import { byId } from "./dom.js";
 import { Dropped, Engine, unlessDropped } from "./engine/engine.js";
@@ -41,6 +41,7 @@ import { load as loadCharts } from "./time/plot.js";
 import { createMotion } from "./views/motion/motion.js";
 import { createMotorPane } from "./views/motor/pane.js";
 import { createPackets } from "./views/packets/packets.js";
+import { createPanelPane } from "./views/panel/pane.js";
 import { createPulses } from "./views/pulses/pulses.js";
 import { createSpectrum } from "./views/spectrum/pane.js";
 import { createStudy } from "./views/study/study.js";
@@ -268,6 +269,10 @@ async function start() {
   ]);
   takeSchema(schema);
   const made = samples();
+  const extend = async () => {
+    takeSchema(await engine.ask("panel_schema"));
+    Object.assign(made, samples());
+  };
   const { left, good } = await own(fallback);
   state = left;
   const page = { engine, dispatch, now: () => state };
@@ -291,13 +296,14 @@ async function start() {
     motor: createMotorPane(page),
     pulses,
     packets: createPackets(page),
+    panel: createPanelPane(page),
     spectrum,
     timing: createTiming({ drivers, speak: pulses.speak, ...page }),
     study: createStudy({ samples: made, ...page }),
   };
   views = [
     createHeader({ presets, cancel, retry, ...page }),
-    createForm({ root: byId("fields"), samples: made, drivers, dispatch, remedies }),
+    createForm({ root: byId("fields"), samples: made, drivers, dispatch, remedies, extend }),
     createTabs(page),
     createPanes(page),
     ...NAMES.map((name) => all[/** @type {import("./state/views.js").ViewName} */ (name)]),

@@ -99,42 +99,68 @@ fn zhang_2012_ends_after_the_ramps_and_the_plateau_of_its_formulas() {
     within_a_tick(&made, made.time_s(&all[17_232 - 4_000]), t_r + t_m);
 }
 
-/// Zhang 2012's four cases at the STEP line: t_r = (f_s - f_1)/a, t_m = (L - (f_1 + f_s)*t_r)/f_s, f_1 = 1000, a = 3000;
-/// alone at one rate f the move takes L/f. A row holds the rate of its start, so ramps are a little late.
+/// Zhang 2012's four cases (its table 3): L, f_s, the rule; the rate that the formulas have for f_s, None for the whole move
+/// at the last number; f_1 = 1000, a = 3000.
+const FOUR_CASES: [(u32, u32, &str, Option<f64>, f64); 7] = [
+    // f_s <= f_1
+    (5000, 800, "document", None, 800.0),
+    (5000, 1000, "turn_round", None, 1000.0),
+    // L > 2*S
+    (17_233, 5000, "document", Some(5000.0), 0.0),
+    (17_233, 5000, "turn_round", Some(5000.0), 0.0),
+    // L = 2*S: 36 rows from 1000 have 4200 steps before the row of sqrt(f_1^2 + 2*a*4200) = 5119 steps/s.
+    (8400, 5119, "document", Some(5119.0), 0.0),
+    // L < 2*S: at f_1, or to the rate after the 2430 steps of the 26 rows that fit twice.
+    (5000, 5000, "document", None, 1000.0),
+    (5000, 5000, "turn_round", Some(3947.0), 0.0),
+];
+
+/// A move's last step comes when the formulas say: t_r = (f_s - f_1)/a, t_m = (L - (f_1 + f_s)*t_r)/f_s; alone at one rate f
+/// the move takes L/f. A row holds the rate of its start, so ramps are a little late.
+#[track_caller]
+fn takes(last_s: f64, (steps, top, rule, reached, alone): (u32, u32, &str, Option<f64>, f64)) {
+    let length = f64::from(steps);
+    match reached {
+        None => close(last_s, length / alone, 1e-6),
+        Some(f_s) => {
+            let t_r = (f_s - 1000.0) / 3000.0;
+            let t_m = (length - (1000.0 + f_s) * t_r) / f_s;
+            let late = last_s / (2.0 * t_r + t_m) - 1.0;
+            assert!((0.0..0.03).contains(&late), "{steps} steps at {top}, {rule}: {late} late");
+        }
+    }
+}
+
 #[test]
 fn zhang_2012s_four_cases_take_the_times_of_its_formulas() {
-    // L, f_s, the rule; the rate that the formulas have for f_s, None for the whole move at the last number
-    let rows: [(u32, u32, &str, Option<f64>, f64); 7] = [
-        // f_s <= f_1
-        (5000, 800, "document", None, 800.0),
-        (5000, 1000, "turn_round", None, 1000.0),
-        // L > 2*S
-        (17_233, 5000, "document", Some(5000.0), 0.0),
-        (17_233, 5000, "turn_round", Some(5000.0), 0.0),
-        // L = 2*S: 36 rows from 1000 have 4200 steps before the row of sqrt(f_1^2 + 2*a*4200) = 5119 steps/s.
-        (8400, 5119, "document", Some(5119.0), 0.0),
-        // L < 2*S: at f_1, or to the rate after the 2430 steps of the 26 rows that fit twice.
-        (5000, 5000, "document", None, 1000.0),
-        (5000, 5000, "turn_round", Some(3947.0), 0.0),
-    ];
-    for (steps, top, rule, reached, alone) in rows {
+    for case in FOUR_CASES {
+        let (steps, top, rule, ..) = case;
         let json = format!(
             r#"{{"source":{{"motion":{{"engine":"segments","axes":[{{"moves":[{{"staircase":{{"distance":{{"steps":{steps}}},"top_speed":{{"steps_s":{top}}},"short_move":"{rule}"}}}}]}}]}}}}}}"#
         );
         let made = Made::of(Scenario::from_json(&json).expect("it reads"));
         let all = made.steps(0);
         assert_eq!(all.len(), steps as usize);
-        let last_s = (all[all.len() - 1].cycle - 1) as f64 / 16e6;
-        let length = f64::from(steps);
-        match reached {
-            None => close(last_s, length / alone, 1e-6),
-            Some(f_s) => {
-                let t_r = (f_s - 1000.0) / 3000.0;
-                let t_m = (length - (1000.0 + f_s) * t_r) / f_s;
-                let late = last_s / (2.0 * t_r + t_m) - 1.0;
-                assert!((0.0..0.03).contains(&late), "{steps} steps at {top}, {rule}: {late} late");
-            }
-        }
+        takes((all[all.len() - 1].cycle - 1) as f64 / 16e6, case);
+    }
+}
+
+/// The same on the document's own device: a press of start, and a program of one group.
+#[test]
+fn zhang_2012s_controller_takes_the_times_of_its_table_3() {
+    for case in FOUR_CASES {
+        let (steps, top, rule, ..) = case;
+        let json = format!(
+            r#"{{"source":{{"standalone":[{{"pulses_per_unit":1,"decimals":0,
+                "groups":[{{"move":{{"length":{steps},"speed_hz":{top},"level":3}}}}],"short_move":"{rule}",
+                "inputs":[{{"cycle":3200000,"input":"start"}},{{"cycle":4800000,"input":"start","level":0}}]}}]}}}}"#
+        );
+        let made = Made::of(Scenario::from_json(&json).expect("it reads"));
+        let all = made.steps(0);
+        assert_eq!(all.len(), steps as usize);
+        // The first step comes a period after the move begins.
+        let first_s = 1.0 / f64::from(top.min(1000));
+        takes((all[all.len() - 1].cycle - all[0].cycle) as f64 / 16e6 + first_s, case);
     }
 }
 

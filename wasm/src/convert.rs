@@ -1,6 +1,6 @@
 //! Results as JavaScript values.
 
-#[cfg(any(feature = "run", feature = "study"))]
+#[cfg(any(feature = "run", feature = "study", feature = "panel"))]
 use js_sys::{Float64Array, Object, Reflect};
 use serde::Serialize;
 #[cfg(any(feature = "run", feature = "capture", feature = "study"))]
@@ -16,14 +16,14 @@ pub(crate) fn object(value: &impl Serialize) -> Result<JsValue, JsError> {
 }
 
 /// Adds a field to an object.
-#[cfg(any(feature = "run", feature = "study"))]
+#[cfg(any(feature = "run", feature = "study", feature = "panel"))]
 pub(crate) fn field(object: &Object, name: &str, value: &JsValue) {
     // Setting a field of a fresh plain object cannot fail.
     let _ = Reflect::set(object, &name.into(), value);
 }
 
 /// Adds an array of numbers to an object.
-#[cfg(any(feature = "run", feature = "study"))]
+#[cfg(any(feature = "run", feature = "study", feature = "panel"))]
 pub(crate) fn numbers(object: &Object, name: &str, values: &[f64]) {
     field(object, name, &Float64Array::from(values));
 }

@@ -2,11 +2,9 @@
 
 #[cfg(feature = "study")]
 use stepscope_core::sim::SelectedAxis;
-use stepscope_core::{
-    peripheral::config::Config,
-    scenario::Problem,
-    sim::{self, Experiment},
-};
+#[cfg(any(feature = "run", feature = "study"))]
+use stepscope_core::{peripheral::config::Config, sim::Experiment};
+use stepscope_core::{scenario::Problem, sim};
 use wasm_bindgen::prelude::*;
 
 /// A scenario that was read, judged and planned, once. A run, a link and the study's questions are made of it.
@@ -42,6 +40,7 @@ pub(crate) fn listed(problems: &[Problem]) -> JsError {
 }
 
 /// The configuration of controller `index`.
+#[cfg(any(feature = "run", feature = "study"))]
 pub(crate) fn config(experiment: &Experiment, index: usize) -> &Config {
     experiment.configs().nth(index).unwrap_or_else(|| experiment.config())
 }

@@ -5,8 +5,11 @@
 //! | `run` | scenarios judged and run ([`Simulation`]), links read and written | in a worker |
 //! | `charts` | charts as pictures | in the same module, on the main thread |
 //! | `capture` | files of logic analysers, read and mapped | in a module of its own, with the first such file, in a worker |
+//! | `panel` | stand-alone controllers judged and run, for the first to look at what they made | in a module of its own, with the first such scenario, in the same worker |
 //! | `study` | long questions: the study, what a motor can do, a file held against a run | in a module of its own, later, in further workers |
 
+#[cfg(any(feature = "run", feature = "panel"))]
+mod advance;
 #[cfg(feature = "capture")]
 mod capture;
 #[cfg(feature = "charts")]
@@ -18,9 +21,9 @@ mod convert;
 mod curves;
 #[cfg(feature = "run")]
 mod files;
-#[cfg(any(feature = "run", feature = "study"))]
+#[cfg(any(feature = "run", feature = "study", feature = "panel"))]
 mod judged;
-#[cfg(feature = "run")]
+#[cfg(any(feature = "run", feature = "panel"))]
 mod link;
 #[cfg(feature = "study")]
 mod measures;
@@ -28,17 +31,21 @@ mod measures;
 mod motors;
 #[cfg(feature = "run")]
 mod packets;
-#[cfg(feature = "run")]
+#[cfg(feature = "panel")]
+mod panel;
+#[cfg(any(feature = "run", feature = "panel"))]
 mod plant;
+#[cfg(feature = "run")]
+mod presets;
 #[cfg(feature = "run")]
 mod pulses;
 #[cfg(feature = "study")]
 mod remedies;
 #[cfg(feature = "study")]
 mod replay;
-#[cfg(feature = "run")]
+#[cfg(any(feature = "run", feature = "panel"))]
 mod scenarios;
-#[cfg(feature = "run")]
+#[cfg(any(feature = "run", feature = "panel"))]
 mod schema;
 #[cfg(feature = "run")]
 mod simulation;
@@ -61,19 +68,25 @@ mod verify;
 
 #[cfg(feature = "capture")]
 pub use capture::{CaptureFile, sample_facts};
-#[cfg(any(feature = "run", feature = "study"))]
+#[cfg(any(feature = "run", feature = "study", feature = "panel"))]
 pub use judged::Judged;
+#[cfg(any(feature = "run", feature = "panel"))]
+pub use link::open_link;
 #[cfg(feature = "run")]
-pub use link::{decode_link, link_part, link_with};
+pub use link::{link_part, link_with, pack_link, unpack_link};
 #[cfg(feature = "study")]
 pub use measures::step_figures;
 #[cfg(feature = "study")]
 pub use motors::{sheets, with_motor};
+#[cfg(feature = "panel")]
+pub use panel::{PanelRun, panel_preset};
+#[cfg(feature = "run")]
+pub use presets::presets;
 #[cfg(feature = "study")]
 pub use replay::replay;
-#[cfg(feature = "run")]
-pub use scenarios::{default_scenario, presets, version};
-#[cfg(feature = "run")]
+#[cfg(any(feature = "run", feature = "panel"))]
+pub use scenarios::{default_scenario, version};
+#[cfg(any(feature = "run", feature = "panel"))]
 pub use schema::schema;
 #[cfg(feature = "run")]
 pub use simulation::Simulation;

@@ -1,8 +1,11 @@
 //! A run in the worker: made in slices, kept for the views' questions. The views look at one
 //! controller at a time.
 
-use crate::convert::{object, records};
-use serde::Serialize;
+use crate::{
+    advance::{advance, progress},
+    convert::records,
+    judged::{Judged, listed},
+};
 use std::{mem::take, rc::Rc};
 use stepscope_core::{
     inspect::{
@@ -11,17 +14,13 @@ use stepscope_core::{
     },
     peripheral::{
         config::Config,
-        signal::{Record, Sink},
+        signal::{Levels, Record, Sink},
         trace::{Digest, Recording, Step, steps},
-        units::Instant,
     },
     scenario::Scenario,
     sim::{Experiment, Run},
 };
 use wasm_bindgen::prelude::*;
-
-/// Most records that a page keeps of all controllers together; 16 bytes each.
-const MAX_RECORDS: u64 = 40_000_000;
 
 /// Violations of the driver's timing that the page gets in full.
 const MAX_KEPT: usize = 1000;
@@ -40,6 +39,8 @@ pub struct Simulation {
     pub(crate) filter: Filter,
     /// What was recorded, to be looked at in place of what the first controller makes; empty once that is done.
     pub(crate) recorded: Option<Vec<Record>>,
+    /// And that was this scenario's run.
+    pub(crate) is_own: bool,
 }
 
 /// What is kept of one controller.
@@ -65,6 +66,23 @@ impl ControllerRecording {
         }
     }
 
+    /// Where its motors stand at the end, by their steps in the trace.
+    pub(crate) fn positions(&self) -> Vec<i32> {
+        let mut positions = vec![0_i32; self.steps.len()];
+        let mut before = Levels(0);
+        for record in &self.recording.trace {
+            let rises = record.levels.0 & !before.0;
+            for (channel, position) in
+                positions.iter_mut().enumerate().filter(|(channel, _)| rises >> channel & 1 == 1)
+            {
+                let is_right = record.levels.has(1 << channel << Levels::DIR_SHIFT);
+                *position = position.wrapping_add(if is_right { 1 } else { -1 });
+            }
+            before = record.levels;
+        }
+        positions
+    }
+
     /// Shows what was recorded in place of what was made.
     fn show(&mut self, recorded: Vec<Record>, mut timing: Option<TimingCheck>) {
         (self.recording.trace, self.recording.digest) = (recorded, Digest::default());
@@ -82,12 +100,16 @@ impl ControllerRecording {
     }
 }
 
-#[derive(Serialize)]
-struct Progress {
-    done: bool,
-    cycle: u64,
-    end_cycle: u64,
-    records: u64,
+#[wasm_bindgen]
+impl Judged {
+    /// A run before its first cycle.
+    ///
+    /// # Errors
+    /// If the scenario has problems; `check` lists them.
+    pub fn run(&self) -> Result<Simulation, JsError> {
+        let experiment = self.0.experiment().map_err(listed)?;
+        Ok(Simulation::of(self.0.scenario(), experiment))
+    }
 }
 
 #[wasm_bindgen]
@@ -103,17 +125,8 @@ impl Simulation {
             timing: one.timing.take(),
         };
         let mut watched: Vec<RunSink> = self.recordings.iter_mut().map(watched).collect();
-        let records = u64::from(max_records.max(1));
-        let done = match self.experiment.plants() {
-            None => self.run.advance_each(records, &mut watched),
-            Some(plants) => {
-                let step =
-                    plants.setups.iter().map(|setup| u64::from(setup.grid_cycles())).min().unwrap_or(1);
-                let target = Instant(self.run.cycles().0.saturating_add(records * step));
-                let mut logs: Vec<_> = self.recordings.iter_mut().map(|one| one.plant.as_mut()).collect();
-                self.run.advance_observed((target, records), &mut watched, &mut logs)
-            }
-        };
+        let mut logs: Vec<_> = self.recordings.iter_mut().map(|one| one.plant.as_mut()).collect();
+        let done = advance(&self.experiment, &mut self.run, max_records, &mut watched, &mut logs);
         for (one, RunSink { recording, timing }) in self.recordings.iter_mut().zip(watched) {
             one.changes.extend(&recording.trace);
             (one.recording, one.timing) = (recording, timing);
@@ -123,31 +136,26 @@ impl Simulation {
                 log.keep(plant, one.recording.trace.len());
             }
         }
-        let records: u64 = self.recordings.iter().map(|one| one.recording.digest.records()).sum();
-        if records > MAX_RECORDS {
-            return Err(JsError::new(&format!(
-                "the run makes more than {MAX_RECORDS} edges, which is more than a page can keep; shorten the motion, or run it with the stepscope command"
-            )));
-        }
         if done && let (Some(recorded), Some(first)) = (&mut self.recorded, self.recordings.first_mut()) {
             first.show(take(recorded), drivers::check(&self.scenario, MAX_KEPT));
         }
         if done {
             self.recordings.iter_mut().for_each(|one| one.recording.packets.finish());
         }
-        let cycle = self.run.cycles().0;
-        object(&Progress {
-            done,
-            cycle,
-            end_cycle: if done { cycle } else { self.experiment.cost().end_cycle.max(cycle) },
-            records,
-        })
+        let records = self.recordings.iter().map(|one| one.recording.digest.records()).sum();
+        progress(&self.experiment, &self.run, done, records)
     }
 
     /// Records of a recording, which are looked at in place of what the run makes: 16 bytes each, cycle and levels,
     /// little-endian; piece after piece, before the run.
     pub fn record(&mut self, bytes: &[u8]) {
         self.recorded.get_or_insert_default().extend(records(bytes));
+    }
+
+    /// Records of a run that another module made, looked at in the same way: they are this scenario's own, and no recording.
+    pub fn made(&mut self, bytes: &[u8]) {
+        self.record(bytes);
+        self.is_own = true;
     }
 
     /// The views look at this controller from now on, 0 the first; one that there is not leaves it as it
@@ -180,6 +188,7 @@ impl Simulation {
             selected: 0,
             filter: Filter::default(),
             recorded: None,
+            is_own: false,
         }
     }
 

@@ -88,15 +88,23 @@ impl Simulation {
     pub fn summary(&self) -> Result<JsValue, JsError> {
         let digests = self.recordings.iter().map(|recorded| &recorded.recording.digest);
         let run = RunSummary::new(&self.experiment, &self.run, digests);
+        let host = run.host.map(|counts| host(counts, &run.controllers));
+        let mut controllers: Vec<Controller> =
+            run.controllers.into_iter().zip(&self.recordings).map(controller).collect();
+        if let (Some(_), Some(first), Some(shown)) =
+            (&self.recorded, controllers.first_mut(), self.recordings.first())
+        {
+            first.positions = shown.positions();
+        }
         object(&Summary {
-            recorded: self.recorded.is_some(),
+            recorded: self.recorded.is_some() && !self.is_own,
             framed: run.framed,
             end_cycle: run.cycles.0,
             end_s: run.cycles.0 as f64 / f64::from(run.clock_hz),
             clock_hz: run.clock_hz,
             line_load: run.line_load,
-            host: run.host.map(|counts| host(counts, &run.controllers)),
-            controllers: run.controllers.into_iter().zip(&self.recordings).map(controller).collect(),
+            host,
+            controllers,
         })
     }
 }

@@ -6,7 +6,8 @@ mod js;
 use js::{get, list, number, text};
 use js_sys::{Float64Array, Uint32Array};
 use stepscope_wasm::{
-    Judged, Simulation, decode_link, default_scenario, drivers, presets, sheets, version, with_motor,
+    Judged, PanelRun, Simulation, default_scenario, drivers, open_link, pack_link, panel_preset, presets,
+    sheets, unpack_link, version, with_motor,
 };
 use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_test::{wasm_bindgen_test, wasm_bindgen_test_configure};
@@ -29,7 +30,22 @@ fn check(json: &str) -> Result<JsValue, wasm_bindgen::JsError> {
 }
 
 fn encode_link(json: &str) -> Result<String, wasm_bindgen::JsError> {
-    Judged::new(json).encode_link()
+    pack_link(&Judged::new(json).link_json()?)
+}
+
+/// What a fragment comes to, in both steps.
+fn decode_link(fragment: &str) -> Result<JsValue, wasm_bindgen::JsError> {
+    let packed = unpack_link(fragment)?;
+    if get(&packed, "error").is_string() {
+        return Ok(packed);
+    }
+    open_link(&text(&packed, "json"), number(&packed, "version") as u32)
+}
+
+/// The scenario of a preset of the menu, from whichever part of the module has it.
+fn scenario_of(preset: &JsValue) -> String {
+    let own = get(preset, "scenario").as_string();
+    own.unwrap_or_else(|| there(panel_preset(&text(preset, "id"))))
 }
 
 /// A finished run.
@@ -112,7 +128,7 @@ fn links_go_there_and_back_and_bad_ones_say_why() {
     let all = sure(presets()).unchecked_into::<js_sys::Array>().to_vec();
     assert!(!all.is_empty());
     for preset in &all {
-        let scenario = text(preset, "scenario");
+        let scenario = scenario_of(preset);
         let link = sure(encode_link(&scenario));
         let opened = sure(decode_link(&format!("#{link}&v=views")));
         assert_eq!(text(&opened, "scenario"), scenario, "{}", text(preset, "id"));
@@ -134,6 +150,48 @@ fn links_go_there_and_back_and_bad_ones_say_why() {
     assert!(encode_link("{").is_err());
     let long = format!(r#"{{"source":{{"packets":{{"packets":[{}"00"]}}}}}}"#, r#""00","#.repeat(20_000));
     assert!(encode_link(&long).is_err(), "more than a link carries");
+}
+
+/// The finished run of stand-alone controllers.
+fn panels(json: &str) -> PanelRun {
+    let mut run = there(sure(Judged::new(json).panels()));
+    while !get(&sure(run.advance(1000)), "done").is_truthy() {}
+    run
+}
+
+#[wasm_bindgen_test]
+fn what_stand_alone_controllers_made_is_looked_at_as_their_run() {
+    let all = sure(presets()).unchecked_into::<js_sys::Array>().to_vec();
+    let elsewhere: Vec<&JsValue> = all.iter().filter(|preset| get(preset, "scenario").is_null()).collect();
+    assert!(elsewhere.len() > 5);
+    for preset in elsewhere {
+        let (id, scenario) = (text(preset, "id"), scenario_of(preset));
+        assert!(!text(preset, "title").is_empty() && scenario.contains(&text(preset, "title")), "{id}");
+        // The module with all features runs them by itself, too.
+        let whole = sure(finished(&scenario).summary());
+        let run = panels(&scenario);
+        let mut shown = sure(Judged::new(&run.frame()).run());
+        let mut from = 0;
+        loop {
+            let piece = run.records(from, 100);
+            shown.made(&piece);
+            from += 100;
+            if piece.is_empty() {
+                break;
+            }
+        }
+        while !get(&sure(shown.advance(100_000)), "done").is_truthy() {}
+        let shown = sure(shown.summary());
+        assert!(!get(&shown, "recorded").is_truthy(), "{id}");
+        assert_eq!(number(&shown, "end_cycle"), number(&whole, "end_cycle"), "{id}");
+        let ([own], [seen]) = (&list(&whole, "controllers")[..], &list(&shown, "controllers")[..]) else {
+            unreachable!("there is one bus")
+        };
+        assert_eq!(text(own, "digest"), text(seen, "digest"), "{id}");
+        assert_eq!(positions(own), positions(seen), "{id}");
+        assert_eq!(number(own, "edges"), number(seen, "edges"), "{id}");
+    }
+    assert!(sure(Judged::new("{}").panels()).is_none());
 }
 
 #[wasm_bindgen_test]

@@ -36,9 +36,39 @@ function answer(method, args) {
     return held[ask](...rest);
   }
   const calls = /** @type {any} */ (core);
+  if (method === "with_motor") {
+    const [json, ...rest] = args;
+    const { known, source } = withoutPanels(json);
+    const made = calls.with_motor(known, ...rest);
+    return source ? JSON.stringify({ ...JSON.parse(made), source }) : made;
+  }
   if (!(method in core.Judged.prototype)) return calls[method](...args);
   const [json, ...rest] = args;
-  return /** @type {any} */ (judge(String(json)))[method](...rest);
+  return /** @type {any} */ (judge(withoutPanels(String(json)).known))[method](...rest);
+}
+
+/**
+ * A scenario as the study knows it: stand-alone controllers are in another part of the core, so nothing runs theirs here, and
+ * what they made comes as records.
+ * @param {string} json @returns {{known: string, source: any}}  And what was left out, if it was.
+ */
+function withoutPanels(json) {
+  if (json.includes('"standalone"')) {
+    const scenario = readable(json);
+    const { source } = scenario ?? {};
+    if (source?.standalone)
+      return { known: JSON.stringify({ ...scenario, source: { segments: { channels: [] } } }), source };
+  }
+  return { known: json, source: null };
+}
+
+/** @param {string} json @returns {any}  null where it is none: the core says why. */
+function readable(json) {
+  try {
+    return JSON.parse(json);
+  } catch {
+    return null;
+  }
 }
 
 self.onmessage = async ({ data }) => {

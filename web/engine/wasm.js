@@ -1,10 +1,10 @@
 /**
- * The core's code: fetched and compiled once, for the charts on the page and for every worker; and that of the study, and
- * of files of logic analysers, once something is asked of it. The page says where they lie, because what is built has other names.
+ * The core's code: fetched and compiled once, for the charts on the page and for every worker; and that of the study, of
+ * files of logic analysers and of stand-alone controllers, once something is asked of it. The page says where they lie, because what is built has other names.
  */
 import { byId } from "../dom.js";
 
-/** @typedef {"core" | "study" | "capture"} Part */
+/** @typedef {"core" | "study" | "capture" | "panel"} Part */
 
 /** @type {{[part in Part]?: Promise<WebAssembly.Module>}} */
 const modules = {};
@@ -12,7 +12,7 @@ const modules = {};
 /** @param {Part} which @returns {Promise<WebAssembly.Module>} */
 export function compiled(which = "core") {
   // The help page has the core alone, and no scripts to name the others.
-  const named = () => byId("main").dataset[which === "study" ? "studyCore" : "captureCore"] ?? "";
+  const named = () => byId("main").dataset[`${which}Core`] ?? "";
   const address = () => (which === "core" ? /** @type {HTMLLinkElement} */ (byId("core")).href : named());
   const made = modules[which] ?? compile(address());
   modules[which] = made;

@@ -2,7 +2,10 @@
  * The worker: holds the wasm core, judges a scenario once, runs it in slices, answers the views' questions about the
  * last finished run. Between two slices it reads its messages, so a newer scenario ends an older run.
  *
- * In: first of all {module}, the compiled core; {id, method, args} for an answer {id, value} or {id, error};
+ * Stand-alone controllers are run by a part of the core of their own, which loads with the first of them; what they made is
+ * then looked at by the core as a run of its own.
+ *
+ * In: first of all {module}, the compiled core; {part}, that of stand-alone controllers, once it was asked for by {wants}; {id, method, args} for an answer {id, value} or {id, error};
  * {recordings}, scenarios and the records that are looked at in place of what their runs make; {run, json} for events {event, run, …}, without a word of it if `quiet`, and then looking at controller `select`;
  * {cancel} for {event: "cancelled"} once that run is no longer under way.
  */
@@ -13,6 +16,10 @@ import { createJudging, fatal, text } from "./judging.js";
 const SLICE_MS = 15;
 /** Least time between two reports of progress, in ms. */
 const REPORT_MS = 60;
+/** Records that are handed on at a time. */
+const PIECE = 1 << 19;
+/** What is told where the code of a part could not be fetched. */
+const MISSING = "this part of the page could not be loaded; try again when the network is there";
 
 /** @type {any} The simulation that the views ask about. */
 let finished = null;
@@ -20,7 +27,13 @@ let finished = null;
 let baseline = null;
 /** Controller that the views look at. */
 let selected = 0;
-const judging = createJudging((json) => new core.Judged(json));
+const judging = createJudging((json) => new (isAlone(json) ? panels : core).Judged(json));
+/** The part of the core for stand-alone controllers, once it is there. @type {any} */
+let panels = null;
+/** @type {Promise<void> | null} */
+let coming = null;
+/** Takes its code, or that there is none. @type {(module: WebAssembly.Module | null) => void} */
+let providePart = () => {};
 /** How often a scenario was run; a test reads it. */
 let runs = 0;
 /** No run has this number. */
@@ -49,9 +62,42 @@ function yieldToMessages() {
   });
 }
 
+/** Whether stand-alone controllers run it; what cannot be read is the core's to refuse. @param {string} json */
+function isAlone(json) {
+  try {
+    return json.includes('"standalone"') && JSON.parse(json).source.standalone !== undefined;
+  } catch {
+    return false;
+  }
+}
+
+/** Loads what stand-alone controllers need. */
+function withPanels() {
+  coming ??= (async () => {
+    postMessage({ wants: "panel" });
+    const code = new Promise((resolve) => {
+      providePart = resolve;
+    });
+    const [part, module] = await Promise.all([import("../pkg-panel/stepscope_wasm.js"), code]);
+    if (module === null) throw new Error("fetch");
+    await part.default({ module_or_path: module });
+    panels = part;
+  })();
+  return coming.catch(() => {
+    coming = null;
+    throw new Error(MISSING);
+  });
+}
+
+/** A scenario, judged by the part of the core that knows what runs it. @param {string} json */
+async function judged(json) {
+  if (isAlone(json)) await withPanels();
+  return /** @type {any} */ (judging.judge(json));
+}
+
 /** Asks of a scenario. @param {string} method @param {any[]} args  Its text first. */
-function ofScenario(method, [json, ...args]) {
-  const value = /** @type {any} */ (judging.judge(String(json)))[method](...args);
+async function ofScenario(method, [json, ...args]) {
+  const value = (await judged(String(json)))[method](...args);
   // What could not be read stands at its default in the text that comes back: that is another scenario.
   if (method === "check" && value.problems.length === 0) judging.alias(value.scenario);
   return value;
@@ -63,20 +109,19 @@ function recordable(json) {
   return JSON.stringify([source, clock_hz, bus.channels, run_cycles, plant]);
 }
 
-/** @param {{run: number, json: string, quiet?: boolean, select?: number}} order */
-async function simulate({ run, json, quiet = false, select = 0 }) {
-  const begin = performance.now();
-  const simulation = judging.judge(json).run();
-  runs += 1;
-  const recording = recordings.findLast(({ scenario }) => recordable(scenario) === recordable(json));
-  for (const piece of recording?.pieces ?? []) simulation.record(piece);
+/**
+ * Makes a run in slices.
+ * @param {any} simulation @param {{run: number, quiet?: boolean}} order
+ * @returns {Promise<boolean>}  Whether it came to its end: a newer one frees it.
+ */
+async function made(simulation, { run, quiet = false }) {
   let records = 4096;
-  let reported = begin;
+  let reported = performance.now();
   for (;;) {
     const before = performance.now();
     const progress = simulation.advance(records);
     const now = performance.now();
-    if (progress.done) break;
+    if (progress.done) return true;
     records = Math.min(4_000_000, Math.max(256, Math.round((records * SLICE_MS) / Math.max(0.5, now - before))));
     if (now - reported > REPORT_MS && !quiet) {
       reported = now;
@@ -85,10 +130,37 @@ async function simulate({ run, json, quiet = false, select = 0 }) {
     await yieldToMessages();
     if (run !== newest) {
       simulation.free();
-      return;
+      return false;
     }
   }
-  if (finished !== baseline) finished?.free();
+}
+
+/** What stand-alone controllers made, as a run that the core looks at; undefined if a newer one came. @param {any} alone @param {{run: number, quiet?: boolean}} order */
+async function lookedAt(alone, order) {
+  if (!(await made(alone, order))) return undefined;
+  const frame = new core.Judged(alone.frame());
+  const simulation = /** @type {any} */ (frame.run());
+  frame.free();
+  for (let from = 0, piece = null; piece === null || piece.length > 0; from += PIECE) {
+    piece = alone.records(from, PIECE);
+    simulation.made(piece);
+  }
+  simulation.alone = alone;
+  return simulation;
+}
+
+/** @param {{run: number, json: string, quiet?: boolean, select?: number}} order */
+async function simulate(order) {
+  const { run, json, quiet = false, select = 0 } = order;
+  const begin = performance.now();
+  const scenario = await judged(json);
+  runs += 1;
+  const simulation = isAlone(json) ? await lookedAt(scenario.panels(), order) : scenario.run();
+  if (!simulation) return;
+  const recording = recordings.findLast(({ scenario }) => recordable(scenario) === recordable(json));
+  for (const piece of recording?.pieces ?? []) simulation.record(piece);
+  if (!(await made(simulation, order))) return;
+  if (finished !== baseline) letGo(finished);
   finished = simulation;
   selected = 0;
   if (quiet) {
@@ -99,9 +171,15 @@ async function simulate({ run, json, quiet = false, select = 0 }) {
   postMessage({ event: "done", run, summary: simulation.summary(), ms: performance.now() - begin });
 }
 
+/** Frees a run. @param {any} simulation */
+function letGo(simulation) {
+  simulation?.alone?.free();
+  simulation?.free();
+}
+
 /** Makes the finished run the one that later ones are compared with, or lets that one go. @param {boolean} on */
 function setBaseline(on) {
-  if (baseline !== finished) baseline?.free();
+  if (baseline !== finished) letGo(baseline);
   baseline = on ? finished : null;
   return baseline !== null;
 }
@@ -141,21 +219,39 @@ async function search(args) {
   }
 }
 
+/** The scenario of a link. @param {string} fragment */
+async function openLink(fragment) {
+  const { json, version, error } = core.unpack_link(fragment);
+  if (error !== undefined) return { error };
+  if (!isAlone(json)) return core.open_link(json, version);
+  await withPanels();
+  return panels.open_link(json, version);
+}
+
 /** @param {string} method @param {any[]} args */
-function answer(method, args) {
+async function answer(method, args) {
   if (method === "baseline") return setBaseline(args[0]);
   if (method.startsWith("baseline_")) return ofBaseline(method.slice(9), args);
   if (method === "counts") return { judged: judging.count(), runs };
+  if (method === "encode_link") return core.pack_link(await ofScenario("link_json", args));
+  if (method === "decode_link") return openLink(args[0]);
+  if (method === "panel_schema") return withPanels().then(() => panels.schema());
+  if (method === "panel_preset") return withPanels().then(() => panels.panel_preset(args[0]));
   if (method in core.Judged.prototype) return ofScenario(method, args);
   if (method === "select") selected = args[0];
   if (method === "filter") return search(args);
   const calls = /** @type {any} */ (core);
   if (typeof calls[method] === "function") return calls[method](...args);
-  return finished ? finished[method](...args) : null;
+  if (!finished) return null;
+  // What is behind the drivers, and before them, those have who made the run.
+  const { alone } = finished;
+  if (method.startsWith("panel") || (alone && method.startsWith("plant"))) return alone?.[method](...args);
+  return finished[method](...args);
 }
 
 self.onmessage = async ({ data }) => {
   if ("module" in data) return provide(data.module);
+  if ("part" in data) return providePart(data.part);
   if ("recordings" in data) {
     recordings = data.recordings;
     return;

@@ -45,7 +45,7 @@ export function control(path, field, { dispatch, now }) {
     "data-path": path,
   };
   const long =
-    field.kind === "lines" || field.kind === "segments" || field.kind === "points" || field.rows !== undefined;
+    ["lines", "wholes", "segments"].includes(field.kind) || field.kind === "points" || field.rows !== undefined;
   const wide = long || field.kind === "text" || isHex(field);
   const input =
     field.kind === "choice"
@@ -191,6 +191,7 @@ function print(value, field) {
   if (value === null || value === undefined) return "";
   if (field.kind === "quantity") return String(Object.values(value)[0]);
   if (field.kind === "lines") return value.map(spaced).join("\n");
+  if (field.kind === "wholes") return value.join("\n");
   if (field.kind === "segments") return printSegments(value);
   if (field.kind === "points") return printPoints(value);
   return isHex(field) ? spaced(value) : String(value);
@@ -219,6 +220,7 @@ function read(text, field, state, before) {
   const unit = field.unit ?? "";
   switch (field.kind) {
     case "choice":
+      if (text === "") return { value: null };
       if (text === "true" || text === "false") return { value: text === "true" };
       return { value: /^\d+$/.test(text) ? Number(text) : text };
     case "text":
@@ -238,6 +240,8 @@ function read(text, field, state, before) {
           .map(bare)
           .filter((line) => line !== ""),
       };
+    case "wholes":
+      return readWholes(text);
     case "optional-number":
       if (text.trim() === "") return { value: null };
       return parseNumber(text, unit);
@@ -252,6 +256,16 @@ function read(text, field, state, before) {
     default:
       return parseNumber(text, unit, { integer: true, clockHz });
   }
+}
+
+/** One whole number a line. @param {string} text @returns {{value: number[]} | {message: string}} */
+function readWholes(text) {
+  const read = text
+    .split("\n")
+    .filter((line) => line.trim() !== "")
+    .map((line) => parseNumber(line, "", { integer: true }));
+  const wrong = read.find((each) => "message" in each);
+  return wrong ?? { value: read.map((each) => ("value" in each ? each.value : 0)) };
 }
 
 /** `250 mm` also chooses the unit. @param {string} text @param {Field} field @param {any} before @returns {{value: any} | {message: string}} */
@@ -291,6 +305,7 @@ function stepsIn(unit, path, state) {
 
 /** The same number in another light: cycles as a time. @param {any} value @param {Field} field @param {State} state */
 function meaning(value, field, state) {
+  if (field.also) return field.also(value, state);
   const clock = get(state.scenario, "clock_hz");
   if (field.kind.endsWith("cycles") && Number.isFinite(value) && value !== null && clock > 0)
     return `= ${si(value / clock, "s")}`;

@@ -20,9 +20,10 @@ import { replacedBySource, runsAlone, SOURCES, withSource } from "./sources.js";
 /**
  * @param {{root: HTMLElement, samples: import("./kit.js").Samples, drivers: import("../state/types.js").DriverSheet[],
  *   dispatch: (message: import("../state/state.js").Message) => void,
- *   remedies: Parameters<typeof import("./remedies.js").showOffers>[0]}} given
+ *   remedies: Parameters<typeof import("./remedies.js").showOffers>[0],
+ *   extend: () => Promise<void>}} given  `extend` brings the fields and samples of what the page begins without.
  */
-export function createForm({ root, samples, drivers, dispatch, remedies }) {
+export function createForm({ root, samples, drivers, dispatch, remedies, extend }) {
   let shape = "";
   /** @type {State} */
   let state;
@@ -32,14 +33,19 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
   keepFocusInSight(scroller);
   /** The state that the form shows. @type {State | undefined} */
   let drawn;
-  const kit = createKit({ samples, now: () => state, dispatch });
+  const kit = createKit({ samples, now: () => state, dispatch, anew, extend });
 
   /** @param {Scenario} scenario @returns {Node[]} */
   function source(scenario) {
     const kind = Object.keys(scenario.source)[0];
-    const select = kit.kindSelect(labelOf("Scenario", "source"), "source", kind, labels("Source"), (chosen) =>
-      kit.change("", (now) => withSource(now, chosen, samples), replacedBySource(scenario)),
-    );
+    // The last of them is in a part of the core that may not be there yet.
+    const kinds = { standalone: "Stand-alone controller", ...labels("Source") };
+    const select = kit.kindSelect(labelOf("Scenario", "source"), "source", kind, kinds, (chosen) => {
+      const change = () => kit.change("", (now) => withSource(now, chosen, samples), replacedBySource(scenario));
+      const { load } = SOURCES[chosen];
+      if (load) load(kit).then(change, refused);
+      else change();
+    });
     return [
       kit.errorOf("source"),
       element("div", { class: "item-head" }, select),
@@ -122,6 +128,18 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
   function render(next) {
     state = next;
     if (!hand.holds()) draw(next);
+  }
+
+  /** Another kind of source could not be loaded. @param {Error} error */
+  function refused({ message }) {
+    dispatch({ type: "notice", notice: { kind: "error", text: `The source stays as it is: ${message}`, place: null } });
+    anew();
+  }
+
+  /** A part of the form that had to be loaded is there. */
+  function anew() {
+    [shape, drawn] = ["", undefined];
+    draw(state);
   }
 
   /** @param {State} next */
@@ -247,9 +265,19 @@ function shapeOf({ source, controllers, driver_timing: driver, line, plant }) {
     kinds(source.motion?.axes ?? []),
     source.line?.sends?.length,
     source.segments?.channels?.length,
+    source.standalone?.map(panelShape),
     line.glitches.length,
     controllers.map((/** @type {any} */ { axes }) => kinds(axes)),
     driver && (driver.preset ?? "rules"),
     plant && [Boolean(plant.protection), plant.motors?.length],
   ]);
 }
+
+/** @param {any} panel */
+function panelShape({ groups, home, soft_limits, axis, inputs }) {
+  const of = (/** @type {any} */ group) => [group, group.move?.until, group.profile?.motion].map(kindOf);
+  return [groups?.map(of), Boolean(home), Boolean(soft_limits), Boolean(axis), inputs?.length];
+}
+
+/** @param {any} part */
+const kindOf = (part) => part && Object.keys(part)[0];

@@ -11,12 +11,14 @@ import { termButton } from "./term_button.js";
 /**
  * @typedef {{moves: {[kind: string]: any}, mechanics: {[kind: string]: any}, sources: {[kind: string]: any},
  *   glitch: any, send: any, controller: any, rules: any, motor: any,
- *   plant: any, protection: any, plant_motor: any}} Samples  One of everything, with the core's defaults.
+ *   plant: any, protection: any, plant_motor: any,
+ *   groups: {[kind: string]: any}, until: any, homing: any, soft_limits: any, axis: any, input: any}} Samples  One of everything, with the core's defaults.
  */
 /** @typedef {ReturnType<typeof createKit>} Kit */
 
-/** @param {{samples: Samples, now: () => State, dispatch: (message: import("../state/state.js").Message) => void}} given */
-export function createKit({ samples, now, dispatch }) {
+/** @param {{samples: Samples, now: () => State, dispatch: (message: import("../state/state.js").Message) => void,
+ *   anew: () => void, extend: () => Promise<void>}} given  `anew` builds the form once more, `extend` brings more fields and samples. */
+export function createKit({ samples, now, dispatch, anew, extend }) {
   /** @type {Map<string, Control>} */
   const controls = new Map();
   /** @type {Map<string, HTMLElement>} Errors of whole axes, moves and controllers. */
@@ -76,6 +78,16 @@ export function createKit({ samples, now, dispatch }) {
     return select;
   }
 
+  /** A part of the scenario that there may be or not. @param {string} path @param {string} label @param {boolean} on @param {any} sample */
+  function toggle(path, label, on, sample) {
+    const check = element("input", { type: "checkbox", "data-path": `${path}#kind` });
+    check.checked = on;
+    check.addEventListener("change", () =>
+      structure.change(path, () => (check.checked ? structuredClone(sample) : null), [[path, null]]),
+    );
+    return element("label", { class: "check" }, check, label);
+  }
+
   /** A list of equal rows. @param {string} path @param {any[]} values @param {Field[]} fields @param {string} name @param {(last: any) => any} fresh  The row after another, or the first. @param {string} term */
   function rows(path, values, fields, name, fresh, term) {
     const items = values.map((_, index) =>
@@ -101,5 +113,22 @@ export function createKit({ samples, now, dispatch }) {
     groups.clear();
   }
 
-  return { samples, now, ...structure, row, block, errorOf, part, item, kindSelect, rows, clear, controls, groups };
+  return {
+    samples,
+    now,
+    ...structure,
+    row,
+    block,
+    errorOf,
+    part,
+    item,
+    kindSelect,
+    toggle,
+    rows,
+    clear,
+    anew,
+    extend,
+    controls,
+    groups,
+  };
 }

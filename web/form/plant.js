@@ -1,5 +1,5 @@
 /** What the edges drive, in the form: supply, sensors, protection, and the motors of channels that no axis gives one. */
-import { button, element } from "../dom.js";
+import { button } from "../dom.js";
 import { motorFields } from "./motor.js";
 import { fields, labelOf, mostOf } from "./schema.js";
 
@@ -7,7 +7,7 @@ import { fields, labelOf, mostOf } from "./schema.js";
 
 /** @param {Kit} kit @param {import("../state/types.js").Scenario} scenario @returns {Node[]} */
 export function plantItems(kit, { plant }) {
-  const on = toggle(kit, "plant", "Drive motors with the pulses", Boolean(plant), kit.samples.plant);
+  const on = kit.toggle("plant", "Drive motors with the pulses", Boolean(plant), kit.samples.plant);
   const head = [kit.errorOf("plant"), on];
   if (!plant) return head;
   const group = (/** @type {string} */ name, /** @type {string} */ of) =>
@@ -16,7 +16,7 @@ export function plantItems(kit, { plant }) {
   return [
     ...head,
     ...kit.block("plant", fields("PlantSettings")),
-    toggle(kit, "plant.protection", "Protection: stop at an overload", guard !== null, kit.samples.protection),
+    kit.toggle("plant.protection", "Protection: stop at an overload", guard !== null, kit.samples.protection),
     ...(guard ? kit.block("plant.protection", fields("Protection")) : []),
     group("current_sensor", "CurrentSensor"),
     group("encoder", "Encoder"),
@@ -48,14 +48,4 @@ function motors(kit, list) {
       list.length >= mostOf("PlantSettings", "motors"),
     ),
   ];
-}
-
-/** A part of the scenario that there may be or not. @param {Kit} kit @param {string} path @param {string} label @param {boolean} on @param {any} sample */
-function toggle(kit, path, label, on, sample) {
-  const check = element("input", { type: "checkbox", "data-path": `${path}#kind` });
-  check.checked = on;
-  check.addEventListener("change", () =>
-    kit.change(path, () => (check.checked ? structuredClone(sample) : null), [[path, null]]),
-  );
-  return element("label", { class: "check" }, check, label);
 }

@@ -51,7 +51,8 @@ export const mostOf = (group, name) => row(group, name).most ?? Number.POSITIVE_
 /** A field of a group as the form takes it. @param {string} group @param {string} name @returns {Field} */
 export function field(group, name) {
   const { label, type, unit, when, ...given } = row(group, name);
-  const words = wordsOf(type);
+  // None of them is one more to choose.
+  const words = [...(isOptional(type) ? [{ name: "", label: given.empty ?? "none" }] : []), ...wordsOf(type)];
   const units = quantity(type);
   return {
     key: name,
@@ -60,7 +61,7 @@ export function field(group, name) {
     hint: hintOf({ type, unit, ...given }),
     term: `${group}.${name}`,
     ...(unit && !units ? { unit } : {}),
-    ...(words.length > 0 ? { choices: Object.fromEntries(words.map(({ name, label }) => [name, label])) } : {}),
+    ...(wordsOf(type).length > 0 ? { choices: Object.fromEntries(words.map(({ name, label }) => [name, label])) } : {}),
     ...(units ? { units } : {}),
     ...(when ? { when } : {}),
     initial: schema.groups[group].default?.[name],
@@ -107,9 +108,15 @@ export function terms() {
 
 /** One of everything that can be added, with the core's own defaults. @returns {Samples} */
 export function samples() {
-  const one = (/** @type {string} */ group) => structuredClone(schema.groups[group].default);
+  // Of stand-alone controllers nothing is known before their part of the core is there.
+  const one = (/** @type {string} */ group) => structuredClone(schema.groups[group]?.default);
   const each = (/** @type {string} */ group) =>
-    Object.fromEntries(schema.groups[group].fields.map(({ name, type }) => [name, one(groupIn(type) ?? "")]));
+    Object.fromEntries(
+      (schema.groups[group]?.fields ?? []).map(({ name, type }) => {
+        const isList = typeof type === "object" && "list" in type;
+        return [name, isList ? [one(groupIn(type.list) ?? "")] : one(groupIn(type) ?? "")];
+      }),
+    );
   return {
     moves: each("Move"),
     mechanics: each("Mechanics"),
@@ -122,6 +129,12 @@ export function samples() {
     plant: one("PlantSettings"),
     protection: one("Protection"),
     plant_motor: one("PlantMotor"),
+    groups: each("ProgramGroup"),
+    until: one("Until"),
+    homing: one("Homing"),
+    soft_limits: one("SoftLimits"),
+    axis: one("VirtualAxis"),
+    input: one("PanelInput"),
   };
 }
 
@@ -149,7 +162,13 @@ function wordsOf(type) {
       ["false", "no"],
       ["true", "yes"],
     ].map(([name, label]) => ({ name, label, text: label }));
+  if (isOptional(type)) return wordsOf(type.optional);
   return typeof type === "object" && "words" in type ? type.words : [];
+}
+
+/** @param {Type} type @returns {type is {optional: Type}} */
+function isOptional(type) {
+  return typeof type === "object" && "optional" in type;
 }
 
 /** How a value is typed; null where it is no single one. @param {Type} type @param {string} [unit] @returns {any} */
@@ -161,16 +180,18 @@ function kindOf(type, unit) {
   if ("group" in type) return quantity(type) ? "quantity" : null;
   if ("optional" in type) {
     const inner = kindOf(type.optional, unit);
+    if (inner === "choice") return inner;
     return inner && (inner === "integer" ? "optional" : `optional-${inner}`);
   }
   if (type.list === "hex") return "lines";
+  if (type.list === "whole") return "wholes";
   if (type.list === "point") return "points";
   return groupIn(type.list) === "Segment" ? "segments" : null;
 }
 
 /** What a field is, which values it takes and what none of them means, in sentences. @param {Pick<Row, "text" | "type" | "range" | "empty" | "unit">} row */
 function hintOf({ text, type, range, empty, unit }) {
-  const words = typeof type === "object" && "words" in type ? type.words : [];
+  const words = type === "bool" ? [] : wordsOf(type);
   const said = words.filter(({ label, text }) => text !== label);
   const parts = [
     text,

@@ -1,4 +1,5 @@
 /** What the host can send: a row a kind, with its part of the form and what it begins with. */
+import { element, say } from "../dom.js";
 import { axisItems } from "./axes.js";
 import { packetLines, segmentFields } from "./fields.js";
 import { field, fields } from "./schema.js";
@@ -8,6 +9,7 @@ import { field, fields } from "./schema.js";
 /** @typedef {import("./kit.js").Samples} Samples */
 /**
  * @typedef {object} SourceKind
+ * @property {(kit: Kit) => Promise<void>} [load]  Loads what the page begins without.
  * @property {(scenario: Scenario, samples: Samples) => any} fresh  What stands in the source when it is chosen.
  * @property {(kit: Kit, scenario: Scenario) => Node[]} form
  * @property {(scenario: Scenario, samples: Samples, controller: any) => {axes?: any[], packets?: string[]}} order  What an additional controller is to do when it is chosen.
@@ -66,11 +68,29 @@ export const SOURCES = {
     order: () => ({}),
     orderForm: () => [],
   },
+  standalone: {
+    fresh: (_, samples) => structuredClone(samples.sources.standalone),
+    load: async (kit) => {
+      [standAlone] = await Promise.all([import("./standalone.js"), kit.extend()]);
+    },
+    form: (kit, scenario) => {
+      if (standAlone) return standAlone.standAloneItems(kit, scenario);
+      const note = element("p", { class: "item-note" }, "Its fields are being loaded.");
+      const missing = () => say(note, "Its fields could not be loaded; choose it again when the network is there.");
+      SOURCES.standalone.load?.(kit).then(kit.anew, missing);
+      return [note];
+    },
+    order: () => ({}),
+    orderForm: () => [],
+  },
 };
 
-/** Whether segments run it: then nothing is on the line, and there are no ticks. @param {Scenario} scenario */
+/** The form of stand-alone controllers, once it is needed. @type {typeof import("./standalone.js") | null} */
+let standAlone = null;
+
+/** Whether segments or panels run it: then nothing is on the line, and there are no ticks. @param {Scenario} scenario */
 export function runsAlone({ source }) {
-  return "segments" in source || source.motion?.engine === "segments";
+  return "segments" in source || "standalone" in source || source.motion?.engine === "segments";
 }
 
 /** Faster to the right, a pause, and evenly back: something to see and to change. */

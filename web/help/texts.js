@@ -37,7 +37,7 @@ export const DERIVED = {
   },
   on_the_line: {
     name: "On the line",
-    text: "Segments are run by the controller itself: nothing is sent.",
+    text: "A controller that runs segments, or a program of its own, needs nobody: nothing is sent.",
     from: "sonobe",
   },
 };
@@ -55,6 +55,38 @@ const TERMS = {
       name: "Jerk",
       text: "How fast acceleration changes. A jump of it shakes the machine; S-curves have none.",
       from: "song",
+    },
+  },
+  panel: {
+    display: {
+      name: "Display",
+      text: "The position in units of length, six digits; dashes where they do not hold it. While numbers are changed it shows the entry, or the value.",
+      from: "zhang",
+    },
+    led: {
+      name: "LED",
+      text: "It is on where the controller rests and is sure of its place, blinks quickly in an alarm, and slowly else.",
+      from: "zhang",
+    },
+    hold: {
+      name: "Hold",
+      text: "How long a press at the cursor lasts. It has to stand through the debouncing, or it is not seen.",
+      from: "own",
+    },
+    live: {
+      name: "Live",
+      text: "The cursor goes on with the clock, or ten or a hundred times slower, and a button is pressed as long as it is held. Each press is kept with its cycle: the run is the same whenever it is made again.",
+      from: "own",
+    },
+    believed: {
+      name: "Believed place",
+      text: "The mark over the nut: where the controller takes it to be since zero was set. Apart from the nut, steps were lost at an end, or a hand moved the axis.",
+      from: "own",
+    },
+    ignored: {
+      name: "Presses that meant nothing",
+      text: "A button that has no meaning in a state does nothing there. The cross on its row says where.",
+      from: "own",
     },
   },
   pulses: {

@@ -37,7 +37,7 @@ export function createHeader({ presets, cancel, retry, ...page }) {
   preset.addEventListener("change", () => {
     if (RECORDED.some(([id]) => id === preset.value)) openSample(preset.value);
     const chosen = presets.find(({ id }) => id === preset.value);
-    if (chosen) dispatch({ type: "replace", scenario: readJson(chosen.scenario), origin: `preset:${chosen.id}` });
+    if (chosen) openPreset(chosen);
   });
   controller.addEventListener("change", () => dispatch({ type: "controller", controller: Number(controller.value) }));
   undo.addEventListener("click", () => dispatch({ type: "undo" }));
@@ -54,15 +54,31 @@ export function createHeader({ presets, cancel, retry, ...page }) {
     },
   ]);
 
+  /** @param {Preset} chosen */
+  async function openPreset({ id, scenario }) {
+    try {
+      // Those of stand-alone controllers are where these are.
+      const json = scenario ?? (await page.engine.ask("panel_preset", id));
+      dispatch({ type: "replace", scenario: readJson(json), origin: `preset:${id}` });
+    } catch (error) {
+      refuse("The preset", error);
+    }
+  }
+
   /** @param {string} id */
   async function openSample(id) {
     preset.value = "";
     try {
       await (await import("./recording.js")).openRecording(page, id);
     } catch (error) {
-      const text = `The recording cannot be opened: ${error instanceof Error ? error.message : error}`;
-      dispatch({ type: "notice", notice: { kind: "error", text, place: null } });
+      refuse("The recording", error);
     }
+  }
+
+  /** @param {string} what @param {unknown} error */
+  function refuse(what, error) {
+    const text = `${what} cannot be opened: ${error instanceof Error ? error.message : error}`;
+    dispatch({ type: "notice", notice: { kind: "error", text, place: null } });
   }
 
   /** @param {State} state @param {State | undefined} before */
@@ -142,10 +158,10 @@ function messages(state) {
 function groups(presets) {
   /** @type {Map<string, HTMLOptGroupElement>} */
   const made = new Map();
-  for (const { id, document: name, scenario } of presets) {
+  for (const { id, document: name, title } of presets) {
     const group = made.get(name) ?? element("optgroup", { label: name || "Examples" });
     made.set(name, group);
-    group.append(element("option", { value: id }, JSON.parse(scenario).title || id));
+    group.append(element("option", { value: id }, title));
   }
   return made.values();
 }

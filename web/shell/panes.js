@@ -5,7 +5,7 @@
  */
 import { button, byId, element } from "../dom.js";
 import { keptRows } from "../state/row_choices.js";
-import { inPlace, isOffered, PLACED, SHARED, VIEWS } from "../state/views.js";
+import { hasPanel, inPlace, isOffered, PLACED, SHARED, VIEWS } from "../state/views.js";
 import { listen } from "./commands.js";
 import { bandsOf, GAP_PX, template } from "./grid.js";
 import { loadPanes, savePanes } from "./storage.js";
@@ -308,6 +308,7 @@ export function createPanes({ dispatch, now }) {
       before?.result !== state.result ||
       before?.sides !== state.sides ||
       before?.scenario.plant !== state.scenario.plant ||
+      hasPanel(before) !== hasPanel(state) ||
       before?.view !== state.view;
     if (!changed) return;
     apply(state);

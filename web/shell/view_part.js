@@ -11,7 +11,7 @@
  * | `a300`, `b900` | cursors, in cycles |
  * | `tpackets` | tab on a narrow screen |
  * | `stiming` | which of spectrum and driver timing is open |
- * | `omotor` | which of motion and motor is open |
+ * | `omotor` | which of motion, panel and motor is open |
  * | `umm` | unit of the motion view |
  * | `ysine` | tab of the study |
  *

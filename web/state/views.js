@@ -27,12 +27,25 @@ import { selected } from "./state.js";
  * @property {number} least_px  Least height that an edge can be moved to.
  */
 
+/** Whether stand-alone controllers run it. @param {State} state */
+export function hasPanel({ scenario }) {
+  return Boolean(scenario.source?.standalone);
+}
+
 const ROWS = /** @type {const} */ ([
   {
     name: "motion",
     title: "Motion",
     about: "Position, speed and acceleration of one axis.",
     place: { area: "motion", band: 0, height: "1fr", part: 0.47, least_px: 120 },
+  },
+  {
+    name: "panel",
+    title: "Panel",
+    about: "The front panel of a stand-alone controller: its display, and every press, switch and power cut over time.",
+    place: { area: "motion", band: 0, part: 0.47, least_px: 120 },
+    offered: hasPanel,
+    leads: hasPanel,
   },
   {
     name: "motor",

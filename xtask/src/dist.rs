@@ -93,12 +93,15 @@ fn names_others(file: &str) -> bool {
 /// Where a page or the manifest names a file that loads with it.
 const AT_ONCE: [&str; 4] = ["href=\"", "src=\"", "data-worker=\"", "\"src\": \""];
 /// Where a page names a file that its scripts ask for later; those of one row load together.
-const LATER: [[&str; 2]; 2] =
-    [["data-study-worker=\"", "data-study-core=\""], ["data-capture-worker=\"", "data-capture-core=\""]];
+const LATER: [&[&str]; 3] = [
+    &["data-study-worker=\"", "data-study-core=\"", "data-study-style=\""],
+    &["data-capture-worker=\"", "data-capture-core=\""],
+    &["data-panel-core=\"", "data-panel-style=\""],
+];
 
 /// Every file of this site that a page or the manifest names, in its order.
 fn named(text: &str) -> impl Iterator<Item = &str> {
-    files_at(text, &AT_ONCE).chain(files_at(text, LATER.as_flattened()))
+    files_at(text, &AT_ONCE).chain(LATER.iter().flat_map(move |places| files_at(text, places)))
 }
 
 /// Those that stand behind one of these; the page's own address, `./`, is none.
@@ -204,7 +207,7 @@ impl Site {
         opening.extend([PAGE.to_owned(), SERVICE_WORKER.to_owned()]);
         let mut later = BTreeMap::new();
         let page = self.texts.get(PAGE).map_or("", String::as_str);
-        for places in &LATER {
+        for places in LATER {
             if let Some(first) = files_at(page, places).next() {
                 later.insert(first.to_owned(), with(self.wanted(PAGE, places, bundles)));
             }

@@ -17,12 +17,8 @@
 //! assert_eq!(link::decode(&text[..text.len() - 1]), Err(link::LinkError::Damaged));
 //! ```
 
-use crate::{Compact, Problem, Scenario, VERSION};
-use alloc::{
-    format,
-    string::{String, ToString},
-    vec::Vec,
-};
+use crate::{Problem, Scenario, VERSION};
+use alloc::{format, string::String, vec::Vec};
 use base64ct::{Base64UrlUnpadded, Encoding};
 use core::fmt;
 use crc::{CRC_32_ISO_HDLC, Crc};
@@ -116,7 +112,14 @@ impl core::error::Error for LinkError {}
 /// # Errors
 /// [`LinkError::TooLong`] if the scenario's JSON or the link is longer than [`decode`] reads.
 pub fn encode(scenario: &Scenario) -> Result<String, LinkError> {
-    let json = scenario.compact().to_string();
+    pack(&scenario.to_compact_json())
+}
+
+/// The link text of a scenario's compact JSON ([`Scenario::to_compact_json`]).
+///
+/// # Errors
+/// As [`encode`].
+pub fn pack(json: &str) -> Result<String, LinkError> {
     if json.len() > MAX_JSON_BYTES {
         return Err(LinkError::TooLong { given: json.len(), most: MAX_JSON_BYTES });
     }
@@ -146,6 +149,24 @@ pub fn with_part(link: String, name: &str, text: &str) -> String {
 /// # Errors
 /// The first that [`LinkError`] lists.
 pub fn decode(fragment: &str) -> Result<Scenario, LinkError> {
+    let Packed { json, version } = unpack(fragment)?;
+    Scenario::from_json_of(&json, version).map_err(LinkError::Scenario)
+}
+
+/// What a link holds, before it is read as a scenario.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Packed {
+    /// The scenario's JSON, as the link's writer had it.
+    pub json: String,
+    /// The link's version, which is that of its names ([`Scenario::from_json_of`]).
+    pub version: u64,
+}
+
+/// The text that a link's fragment holds.
+///
+/// # Errors
+/// As [`decode`], but those of reading the scenario.
+pub fn unpack(fragment: &str) -> Result<Packed, LinkError> {
     if fragment.len() > MAX_FRAGMENT_BYTES {
         return Err(LinkError::TooLong { given: fragment.len(), most: MAX_FRAGMENT_BYTES });
     }
@@ -173,7 +194,7 @@ pub fn decode(fragment: &str) -> Result<Scenario, LinkError> {
         _ => return Err(LinkError::Damaged),
     };
     let json = String::from_utf8(json).map_err(|_| bad)?;
-    Scenario::from_json_of(&json, version).map_err(LinkError::Scenario)
+    Ok(Packed { json, version })
 }
 
 /// Part `name` of a fragment, without what a chat program put behind it. Some programs
@@ -200,6 +221,7 @@ fn is_blank(letter: char) -> bool {
 mod tests {
     use super::*;
     use crate::{Motion, Source};
+    use alloc::string::ToString;
     use stepscope_motion::{
         mechanics::Distance,
         moves::{Axis, Cosine, Move},

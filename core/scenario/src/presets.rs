@@ -33,7 +33,6 @@ const SONG: &str = "Song, Han, Lu 2021: exact S-curve";
 const SONOBE: &str = "Sonobe 2011: acceleration table";
 const PATENT: &str = "RU 2704486, 2019: tick packets";
 const ZHANG: &str = "Zhang 2012: fixed-length controller";
-#[cfg(feature = "controller")]
 const ALONE: &str = "Beyond the document: a stand-alone controller";
 const FRAMED: &str = "The framed protocol: checked, answered, repeated";
 const PROFILES: &str = "Further profiles: exact sine, jerk-limited, points";
@@ -93,25 +92,45 @@ presets! {
     PROFILES => "resonance-full-steps";
 }
 
-#[cfg(feature = "controller")]
-presets! {
-    /// Presets of stand-alone controllers.
-    CONTROLLER_PRESETS:
-    ZHANG => "zhang-2012-controller";
-    ZHANG => "zhang-2012-program";
-    ZHANG => "zhang-2012-zero-by-jog";
-    ALONE => "controller-homing";
-    ALONE => "controller-limit";
-    ALONE => "controller-emergency-stop";
-    ALONE => "controller-power-cut";
-    ALONE => "controller-power-cut-lost";
+/// A preset by its name in a menu.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Named {
+    /// Its name in files and on the command line.
+    pub id: &'static str,
+    /// The document that it comes from.
+    pub document: &'static str,
+    /// Its scenario's title.
+    pub title: &'static str,
 }
 
-#[cfg(all(feature = "controller", feature = "plant"))]
-presets! {
+macro_rules! named_presets {
+    ($(#[$meta:meta])* $titles:ident, $list:ident: $($document:expr => $id:literal, $title:literal;)*) => {
+        /// Their titles, in the order of the menu, also where the list itself is left out.
+        pub const $titles: &[Named] = &[$(Named { id: $id, document: $document, title: $title }),*];
+
+        presets! { $(#[$meta])* $list: $($document => $id;)* }
+    };
+}
+
+named_presets! {
+    /// Presets of stand-alone controllers.
+    #[cfg(feature = "controller")]
+    CONTROLLER_TITLES, CONTROLLER_PRESETS:
+    ZHANG => "zhang-2012-controller", "The fixed-length controller: 30.5 cm by a press of start";
+    ZHANG => "zhang-2012-program", "Four cuts, three times: a program with delays and loops";
+    ZHANG => "zhang-2012-zero-by-jog", "Zero by hand: coarse jog, fine jog, ok";
+    ALONE => "controller-homing", "Homing to a switch: seek, off, fine";
+    ALONE => "controller-limit", "A limit switch in mid-move";
+    ALONE => "controller-emergency-stop", "The emergency stop in a pulse";
+    ALONE => "controller-power-cut", "A power cut with hold-up: the position is held";
+    ALONE => "controller-power-cut-lost", "A power cut without hold-up: known to be lost";
+}
+
+named_presets! {
     /// Presets of stand-alone controllers with a plant.
-    CONTROLLER_PLANT_PRESETS:
-    ALONE => "controller-held-and-wrong";
+    #[cfg(all(feature = "controller", feature = "plant"))]
+    CONTROLLER_PLANT_TITLES, CONTROLLER_PLANT_PRESETS:
+    ALONE => "controller-held-and-wrong", "Held, and wrong: what turned while the power was off";
 }
 
 #[cfg(test)]
@@ -150,6 +169,18 @@ mod tests {
             assert!(!scenario.title.is_empty() && !scenario.note.is_empty(), "{}", preset.id);
             scenario.check().unwrap_or_else(|p| panic!("{}: {p:?}", preset.id));
             assert!(all[..index].iter().all(|other| other.id != preset.id), "{} twice", preset.id);
+        }
+    }
+    #[test]
+    fn titles_of_presets_that_may_be_left_out_are_those_of_their_scenarios() {
+        let titles = CONTROLLER_TITLES.iter().chain(CONTROLLER_PLANT_TITLES);
+        let all: Vec<&Preset> = CONTROLLERS.iter().chain(WITH_PLANT).collect();
+        for preset in &all {
+            let named = titles.clone().find(|named| named.id == preset.id).expect("it is named");
+            assert_eq!((named.document, named.title), (preset.document, preset.scenario().title.as_str()));
+        }
+        if cfg!(all(feature = "controller", feature = "plant")) {
+            assert_eq!(titles.count(), all.len());
         }
     }
 }

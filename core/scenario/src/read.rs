@@ -1,7 +1,10 @@
 //! Reads a scenario from JSON text, of any version, and writes it.
 
-use crate::{Cause, Json, Problem, Read, Scenario, ToParts, VERSION, compact, reader::read_into};
-use alloc::{string::String, vec::Vec};
+use crate::{Cause, Compact, Json, Problem, Read, Scenario, ToParts, VERSION, compact, reader::read_into};
+use alloc::{
+    string::{String, ToString},
+    vec::Vec,
+};
 use stepscope_motion::problem::MAX_PROBLEMS;
 
 impl Scenario {
@@ -32,6 +35,12 @@ impl Scenario {
     #[must_use]
     pub fn to_json(&self) -> String {
         to_json(self)
+    }
+
+    /// The same without what is at its default, in fixed order: as a link has it.
+    #[must_use]
+    pub fn to_compact_json(&self) -> String {
+        self.compact().to_string()
     }
 }
 

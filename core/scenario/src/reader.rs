@@ -233,8 +233,8 @@ impl Reader {
             Some((Err(name), _)) if count == 1 => {
                 let kinds: Vec<&str> = group.fields.iter().map(|kind| kind.name).collect();
                 if cfg!(not(feature = "controller")) && name == "standalone" {
-                    // As the page is built.
-                    let detail = "stand-alone controllers are not shown here yet; give the file to the command: stepscope run";
+                    // The page has them in a module of their own.
+                    let detail = "stand-alone controllers are left out of this part; give the file to the command: stepscope run";
                     self.wrong(detail.to_owned());
                     return None;
                 }

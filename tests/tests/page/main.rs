@@ -54,6 +54,7 @@ mod motor;
 mod native;
 mod offline;
 mod packets;
+mod panel;
 mod pixels;
 mod pool;
 mod presets;

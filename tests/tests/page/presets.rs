@@ -7,7 +7,7 @@ use stepscope_core::{
     inspect::spectrum::Spectrum,
     scenario::{
         Source,
-        presets::{PLANT_PRESETS, PRESETS, Preset},
+        presets::{CONTROLLER_PLANT_PRESETS, CONTROLLER_PRESETS, PLANT_PRESETS, PRESETS, Preset},
     },
 };
 
@@ -20,8 +20,9 @@ fn every_preset_opens_and_its_digest_link_and_distortion_are_the_cores() -> Resu
         let offered: Vec<String> = page
             .eval("[...document.querySelectorAll('#preset option')].map((o) => o.value).filter(Boolean)")
             .await?;
-        // Document by document; those with a plant are looked at in `motor`.
-        let all: Vec<&Preset> = PRESETS.iter().chain(PLANT_PRESETS).collect();
+        // Document by document; those with a plant are looked at in `motor`, those with a panel in `panel`.
+        let panels = CONTROLLER_PRESETS.iter().chain(CONTROLLER_PLANT_PRESETS);
+        let all: Vec<&Preset> = PRESETS.iter().chain(PLANT_PRESETS).chain(panels).collect();
         let mut documents: Vec<&str> = Vec::new();
         for preset in &all {
             if !documents.contains(&preset.document) {

@@ -1,10 +1,6 @@
 /** Two runs on one axis: a run is kept as the baseline, and every later one is drawn and measured beside it. */
-import { button, byId, element, fill, say } from "../../dom.js";
+import { button, byId } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
-import { count, plain, short, si, time } from "../../state/number.js";
-import { selected } from "../../state/state.js";
-import { unitPair } from "./ask.js";
-import { baselineAxis, unitOf } from "./bands.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 
@@ -45,65 +41,10 @@ export function createCompare({ engine, dispatch, now }) {
 
   /** @param {State} state */
   async function tell(state) {
-    const { baseline, result } = state;
-    place.hidden = !baseline;
-    if (!baseline || !result) return;
-    const controller = selected(state);
-    const other = baselineAxis(state);
-    const own = state.derived?.controllers[result.controller]?.axes[state.axis];
-    const { unit, scale, baseline: baselineScale } = unitOf(state);
-    const same = baseline.revision === result.revision;
-    const apart = same
-      ? null
-      : /** @type {import("../../state/types.js").Apart | null} */ (
-          await engine
-            .latest("apart", "baseline_apart", baseline.controller, state.axis, other.index, unitPair(state))
-            .catch(unlessDropped)
-        );
-    const rows = [
-      row("duration", own?.duration_s, other.derived?.duration_s, (value) => time(value)),
-      row(
-        "peak speed",
-        own && own.peak_speed_steps_s * scale,
-        other.derived && other.derived.peak_speed_steps_s * baselineScale,
-        (value) => plain(value, `${unit}/s`),
-      ),
-      row(
-        "peak acceleration",
-        own && own.peak_acceleration_steps_s2 * scale,
-        other.derived && other.derived.peak_acceleration_steps_s2 * baselineScale,
-        (value) => plain(value, `${unit}/s²`),
-      ),
-      row("edges", controller?.edges, baseline.summary.controllers[baseline.controller].edges, count),
-    ];
-    const far = apart
-      ? [
-          [
-            "position",
-            `differs by ${short(apart.largest)} ${unit} at most, at ${time(apart.at_s)}; RMS ${short(apart.rms)} ${unit} over the common ${si(apart.common_s, "s")}`,
-          ],
-        ]
-      : [];
-    say(
-      byId("compared-title"),
-      same
-        ? `Baseline: ${baseline.title}. Change the experiment or choose a preset; the baseline stays as dashed curves.`
-        : `Against the baseline: ${baseline.title}`,
-    );
-    fill(
-      byId("compared-facts"),
-      ...(same ? [] : [...rows, ...far]).map(([name, text]) => element("span", {}, element("b", {}, name), ` ${text}`)),
-    );
-  }
-
-  /** @param {string} name @param {number | undefined} own @param {number | undefined} baseline @param {(value: number) => string} print */
-  function row(name, own, baseline, print) {
-    if (own === undefined || baseline === undefined) return [name, "–"];
-    const by = own - baseline;
-    return [
-      name,
-      `${print(own)}, baseline ${print(baseline)}, ${by === 0 ? "the same" : `${by > 0 ? "+" : "−"}${print(Math.abs(by))}`}`,
-    ];
+    place.hidden = !state.baseline;
+    if (!state.baseline || !state.result) return;
+    const { tellCompared } = await import("./compared.js");
+    await tellCompared(engine, state);
   }
 
   /** @param {State} state @param {State | undefined} before */
@@ -122,7 +63,7 @@ export function createCompare({ engine, dispatch, now }) {
       (baseline &&
         (before?.result !== result || before?.axis !== axis || before?.unit !== unit || before?.derived !== derived))
     )
-      void tell(state);
+      void tell(state).catch(unlessDropped);
   }
   return { render };
 }

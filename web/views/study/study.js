@@ -6,7 +6,7 @@
  *     page     the engine, the state's `now` and `dispatch`, `samples` of all moves, and `panel`, the element that the tab fills
  *     render   (state, before) as any view's; `before` is the state that this tab was last drawn of, none at first
  */
-import { byId, element, fill, options } from "../../dom.js";
+import { byId, element, fill, options, style } from "../../dom.js";
 import { listen } from "../../shell/commands.js";
 import { arrows, choose } from "../../shell/tabs.js";
 import { STUDIES } from "../../shell/view_part.js";
@@ -86,7 +86,7 @@ export function createStudy(page) {
   let loading = null;
   /** Loads the tabs once, and draws the open one. @param {HTMLElement} panel */
   async function load(panel) {
-    loading ??= import("./tabs.js").then(({ TABS }) => {
+    loading ??= Promise.all([import("./tabs.js"), style("study")]).then(([{ TABS }]) => {
       tabs = TABS;
     });
     try {

@@ -229,7 +229,11 @@ const LENGTH: Field = label("Length").unit("digits")
     .term("Length", "As the display shows it, without its point: with one decimal 305 is 30.5 units. Steps follow by pulses a unit, rounded once from the program's start, so nothing adds up over loops.")
     .from(ZHANG);
 /// A plateau's rate.
-const SPEED: Field = label("Speed").unit("Hz").follows("10 to `max_speed_hz`").from(ZHANG);
+const SPEED: Field = speed("Speed");
+/// The same by another name.
+const fn speed(name: &'static str) -> Field {
+    label(name).unit("Hz").follows("10 to `max_speed_hz`").from(ZHANG)
+}
 /// One of five accelerations.
 const LEVEL: Field = label("Acceleration level").whole(whole(&limits::LEVEL)).from(ZHANG);
 /// The pause after a group.
@@ -376,7 +380,7 @@ settings! {
         /// Coarse, from READY.
         pub speed_hz: u32 = 1000 => SPEED,
         /// Fine, from DEBUG.
-        pub fine_hz: u32 = 10 => SPEED,
+        pub fine_hz: u32 = 10 => speed("Fine speed"),
         /// Acceleration, where a jog ends by a ramp.
         pub level: u8 = 3 => LEVEL,
         /// How it ends.
@@ -425,25 +429,27 @@ settings! {
 }
 
 /// A place on the virtual axis.
-const PLACE: Field = label("Place").unit("steps").signed(signed(&limits::STEPS)).from(OWN);
+const fn place(name: &'static str) -> Field {
+    label(name).unit("steps").signed(signed(&limits::STEPS)).from(OWN)
+}
 
 settings! {
     /// A nut that follows the steps while the windings are powered, between hard ends, with switches along its way.
     pub struct VirtualAxis {
         /// Where it stands at first.
-        pub start_steps: i64 = 0 => PLACE,
+        pub start_steps: i64 = 0 => place("Start"),
         /// limit_min is 1 from here to the left.
-        pub min_switch_at: Option<i64> = None => PLACE.empty("limit_min is an input"),
+        pub min_switch_at: Option<i64> = None => place("Left switch, up to").empty("limit_min is an input"),
         /// limit_max is 1 from here to the right.
-        pub max_switch_at: Option<i64> = None => PLACE.empty("limit_max is an input"),
+        pub max_switch_at: Option<i64> = None => place("Right switch, from").empty("limit_max is an input"),
         /// home_switch is 1 from here …
-        pub home_from: Option<i64> = None => PLACE.empty("home_switch is an input"),
+        pub home_from: Option<i64> = None => place("Home switch, from").empty("home_switch is an input"),
         /// … to here; both or neither.
-        pub home_to: Option<i64> = None => PLACE.empty("home_switch is an input"),
+        pub home_to: Option<i64> = None => place("Home switch, to").empty("home_switch is an input"),
         /// It cannot go further to the left: steps are lost there.
-        pub hard_min: Option<i64> = None => PLACE.empty("there is no end"),
+        pub hard_min: Option<i64> = None => place("Left end").empty("there is no end"),
         /// It cannot go further to the right.
-        pub hard_max: Option<i64> = None => PLACE.empty("there is no end"),
+        pub hard_max: Option<i64> = None => place("Right end").empty("there is no end"),
     }
 }
 

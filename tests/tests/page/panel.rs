@@ -1,0 +1,271 @@
+//! The view Panel and the form of stand-alone controllers against what the core makes of the same presses.
+#![allow(clippy::expect_used, reason = "what is missing fails the test")]
+
+use anyhow::{Result, ensure};
+use fantoccini::actions::{InputSource as _, KeyAction, KeyActions};
+use serde_json::json;
+use stepscope_core::{
+    controller::{StandAlone, State, panel, trust_name},
+    peripheral::units::Instant,
+    scenario::presets::{CONTROLLER_PLANT_PRESETS, CONTROLLER_PRESETS},
+};
+
+use crate::{
+    axe,
+    bench::in_browser,
+    native::Known,
+    session::{ENTER, Session},
+};
+
+/// What the display shows.
+const LCD: &str = "document.querySelector('.lcd')?.textContent";
+/// What the panel says in words.
+const WORDS: &str = "document.querySelector('.panel-words')?.textContent";
+/// What became of the last press.
+const SAID: &str = "document.getElementById('panel-said').textContent";
+/// A release so far behind its press: debouncing, and 10 ms.
+const SHORTEST: u64 = 320_000;
+
+/// A controller with these inputs, looked at for a second.
+fn with_inputs(inputs: &str) -> Result<Known> {
+    Known::of(&format!(
+        r#"{{"run_cycles":16000000,"source":{{"standalone":[{{"pulses_per_unit":565,"axis":{{"max_switch_at":1000}},"inputs":[{inputs}]}}]}}}}"#
+    ))
+}
+
+fn press(input: &str, from: u64, until: u64) -> String {
+    format!(
+        r#"{{"cycle":{from},"input":"{input}","level":1}},{{"cycle":{until},"input":"{input}","level":0}}"#
+    )
+}
+
+/// Waits until the page runs this, and its address is the scenario's.
+async fn until_run(page: &Session, known: &Known) -> Result<()> {
+    page.until_digest(&known.digest).await?;
+    page.until(&format!("location.hash.startsWith('#{}')", known.link)).await
+}
+
+/// Opens the page with cursor A at a cycle.
+async fn open(page: &Session, known: &Known, cycle: u64) -> Result<()> {
+    page.open(&format!("#{}&v=a{cycle}", known.link)).await?;
+    page.until(&format!("{LCD} !== undefined && {LCD} !== ''")).await
+}
+
+/// The machine as it is at the beginning of a cycle.
+fn at(known: &Known, cycle: u64) -> StandAlone {
+    let mut machine = StandAlone::new(known.experiment.stand_alone().expect("a controller"));
+    machine.run(Instant(cycle), &mut Vec::new());
+    machine
+}
+
+/// Waits until display and words are those of a machine.
+async fn until_shown(page: &Session, machine: &StandAlone) -> Result<()> {
+    let decimals = machine.numbers(0)[1] as u8;
+    let word = machine.word(0).expect("a panel");
+    let is_off = word.state() == State::Off;
+    let lcd = if is_off { String::new() } else { panel::lcd(machine.display(0).expect("a panel"), decimals) };
+    page.until_equal(LCD, &json!(lcd)).await?;
+    let alarm = word.alarm().name();
+    let state = format!("{}{}{alarm}", word.state().name(), if alarm.is_empty() { "" } else { " " });
+    let words = format!("'{state} · trust {}'", trust_name(word.trust()));
+    page.until(&format!("{WORDS}.startsWith({words})")).await
+}
+
+#[test]
+fn every_preset_with_a_panel_shows_what_the_core_says_at_any_cycle() -> Result<()> {
+    in_browser(|page| async move {
+        let mut shown = 0;
+        for preset in CONTROLLER_PRESETS.iter().chain(CONTROLLER_PLANT_PRESETS) {
+            let known = Known::preset(preset)?;
+            let Some(checked) = known.experiment.stand_alone() else { continue };
+            let mut whole = StandAlone::new(checked);
+            whole.run(Instant(known.experiment.cost().end_cycle), &mut Vec::new());
+            page.open(&format!("#{}", known.link)).await?;
+            page.until_digest(&known.digest).await?;
+            until_shown(&page, &whole).await?;
+            let end = whole.now().0;
+            for cycle in [0, 1, end / 3, end / 2 + 1, end - 1] {
+                page.load(&format!("#{}&v=a{cycle}", known.link)).await?;
+                page.until_digest(&known.digest).await?;
+                let machine = at(&known, cycle);
+                until_shown(&page, &machine).await?;
+                let place = machine.axis_place(0).expect("a panel");
+                let told = "document.querySelector('.axis-words').textContent.replace(/[\\u202f ]/g, '').replaceAll('−', '-')";
+                page.until(&format!("{told}.startsWith('Nutat{place}step')")).await?;
+            }
+            shown += 1;
+        }
+        ensure!(shown >= 8, "{shown} presets have a panel");
+        Ok(())
+    })
+}
+
+#[test]
+fn a_press_at_the_cursor_is_a_change_that_is_linked_and_undone() -> Result<()> {
+    in_browser(|page| async move {
+        let none = with_inputs("")?;
+        open(&page, &none, 4_000_000).await?;
+        page.click("[data-input='jog_plus']").await?;
+        let pressed = with_inputs(&press("jog_plus", 4_000_000, 4_000_000 + SHORTEST))?;
+        ensure!(pressed.digest != none.digest, "a jog makes steps");
+        until_run(&page, &pressed).await?;
+        page.until(&format!("{SAID}.includes('jog_plus is pressed at 250')")).await?;
+        page.click("#undo").await?;
+        until_run(&page, &none).await?;
+        page.until(&format!("{SAID} === ''")).await?;
+        // As long as it is to be held: 0.2 s at 1000 Hz.
+        page.js::<bool>("const hold = document.querySelector('#view-panel .head input'); hold.value = '0.2'; hold.dispatchEvent(new Event('change')); return true;", vec![]).await?;
+        page.click("[data-input='jog_plus']").await?;
+        until_run(&page, &with_inputs(&press("jog_plus", 4_000_000, 7_200_000))?).await
+    })
+}
+
+#[test]
+fn the_power_is_cut_at_the_cursor_and_comes_back() -> Result<()> {
+    in_browser(|page| async move {
+        let jog = press("jog_plus", 4_000_000, 8_000_000);
+        open(&page, &with_inputs(&jog)?, 6_000_000).await?;
+        page.click("[data-input='power'][data-level='0']").await?;
+        let cut = r#"{"cycle":6000000,"input":"power","level":0}"#;
+        let known = with_inputs(&jog.replacen("},{", &format!("}},{cut},{{"), 1))?;
+        until_run(&page, &known).await?;
+        page.until("document.querySelector(`[data-input='power'][data-level='0']`).disabled").await?;
+        page.devtools("Emulation.setEmulatedMedia", json!({ "features": [] })).await?;
+        // Its own last word.
+        page.press(".strip canvas", "\u{e00c}").await?;
+        until_shown(&page, &at(&known, 16_000_000)).await?;
+        page.click("[data-input='estop'][data-level='1']").await?;
+        page.until(&format!("{SAID}.startsWith('estop is 1')")).await
+    })
+}
+
+#[test]
+fn what_cannot_be_is_told_and_changes_nothing() -> Result<()> {
+    in_browser(|page| async move {
+        let jog = press("jog_plus", 4_000_000, 8_000_000);
+        let known = with_inputs(&jog)?;
+        open(&page, &known, 4_000_000).await?;
+        page.click("[data-input='jog_plus']").await?;
+        page.until(&format!("{SAID}.includes('jog_plus has a level at cycle 4000000 already')")).await?;
+        page.click("[data-input='limit_max']").await?;
+        page.until(&format!("{SAID}.includes('limit_max is driven by the axis (axis.max_switch_at)')"))
+            .await?;
+        page.ready().await?;
+        until_run(&page, &known).await?;
+        // A press that means nothing is told, and where.
+        page.click("[data-input='ok']").await?;
+        page.until("document.querySelector('.ignored').textContent.includes('1 press meant nothing')")
+            .await?;
+        page.until("document.querySelector('.ignored').textContent.includes('ok at 260 ms in JOG')").await
+    })
+}
+
+#[test]
+fn an_input_is_chosen_moved_and_removed_by_keys_and_by_its_field() -> Result<()> {
+    in_browser(|page| async move {
+        let jog = press("jog_plus", 4_000_000, 8_000_000);
+        open(&page, &with_inputs(&jog)?, 0).await?;
+        let chosen = "document.querySelector('.entry-line input').value";
+        page.press(".strip canvas", "nn").await?;
+        page.until(&format!("{chosen} === '8000000'")).await?;
+        page.press(".strip canvas", ">").await?;
+        page.until(&format!("{chosen} > 8000000")).await?;
+        let there: String = page.eval(chosen).await?;
+        until_run(&page, &with_inputs(&press("jog_plus", 4_000_000, there.parse()?))?).await?;
+        // A time is taken, too; onto another entry of the input it does not go.
+        let fill = |text: &str| {
+            format!(
+                "const field = document.querySelector('.entry-line input'); field.value = '{text}'; field.dispatchEvent(new Event('change')); return true;"
+            )
+        };
+        page.js::<bool>(&fill("0.45 s"), vec![]).await?;
+        until_run(&page, &with_inputs(&press("jog_plus", 4_000_000, 7_200_000))?).await?;
+        page.js::<bool>(&fill("4000000"), vec![]).await?;
+        page.until(&format!("{SAID}.includes('two levels at cycle 4000000')")).await?;
+        page.press(".strip canvas", "\u{e017}").await?;
+        until_run(&page, &with_inputs(r#"{"cycle":4000000,"input":"jog_plus","level":1}"#)?).await
+    })
+}
+
+#[test]
+fn a_program_is_started_paused_and_cut_by_keys_alone() -> Result<()> {
+    in_browser(|page| async move {
+        open(&page, &with_inputs("")?, 3_200_000).await?;
+        page.press("[data-input='start']", &ENTER.to_string()).await?;
+        let start = press("start", 3_200_000, 3_200_000 + SHORTEST);
+        until_run(&page, &with_inputs(&start)?).await?;
+        // By one key live: it goes into the script as it is held, and is one step of the history.
+        page.press("#view-panel .head [aria-label='Live'] button", &ENTER.to_string()).await?;
+        page.until("document.querySelector('.panel-at').textContent.startsWith('live')").await?;
+        page.js::<bool>("document.querySelector(`[data-input='pause']`).focus(); return true;", vec![])
+            .await?;
+        let hold = KeyActions::new("keys".to_owned())
+            .then(KeyAction::Down { value: ' ' })
+            .pause(std::time::Duration::from_millis(120))
+            .then(KeyAction::Up { value: ' ' });
+        page.actions(hold).await?;
+        page.press("#view-panel .head [aria-label='Live'] button", &ENTER.to_string()).await?;
+        page.until(&format!("{WORDS}.startsWith('PAUS')")).await?;
+        page.click("#undo").await?;
+        until_run(&page, &with_inputs(&start)?).await
+    })
+}
+
+#[test]
+fn the_program_is_a_table_of_groups_in_units_of_length() -> Result<()> {
+    in_browser(|page| async move {
+        let preset =
+            CONTROLLER_PRESETS.iter().find(|preset| preset.id == "zhang-2012-controller").expect("a preset");
+        let known = Known::preset(preset)?;
+        page.open(&format!("#{}", known.link)).await?;
+        page.until_digest(&known.digest).await?;
+        let group = "source.standalone[0].groups";
+        let beside = format!(
+            "document.querySelector(`[data-path='{group}[0].move.length']`).closest('.field').querySelector('.also').textContent.replace(/\\u202f/g, '')"
+        );
+        page.until(&format!("{beside} === '= 30.5 units, 17233 steps'")).await?;
+        page.click("button[title='Add group to controller 0']").await?;
+        page.choose(&format!("[data-path='{group}[1]#kind']"), "wait").await?;
+        page.until(&format!("document.querySelector(`[data-path='{group}[1].wait.input']`)")).await?;
+        for kind in ["move_to", "set", "repeat", "jump", "home", "profile", "move"] {
+            page.choose(&format!("[data-path='{group}[1]#kind']"), kind).await?;
+            page.ready().await?;
+        }
+        page.click("button[title='Remove group 2']").await?;
+        page.until_digest(&known.digest).await?;
+        // Homing that there may be or not, and another controller with its channel.
+        page.js::<bool>("for (const part of document.querySelectorAll('#fields details')) part.open = true; document.querySelector(`[data-path='source.standalone[0].home#kind']`).click(); return true;", vec![]).await?;
+        page.until("document.querySelector(`[data-path='source.standalone[0].home.coarse_hz']`)").await?;
+        page.click("button[title='Add controller']").await?;
+        page.until("document.querySelector(`[data-path='bus.channels']`).value === '2'").await?;
+        page.until("document.querySelectorAll('#view-panel .head select')[0].options.length === 2").await
+    })
+}
+
+#[test]
+fn axe_finds_nothing_in_the_panel() -> Result<()> {
+    in_browser(|page| async move {
+        let mut wrong = Vec::new();
+        for (width, height) in [(1366, 768), (390, 844)] {
+            page.screen(width, height).await?;
+            page.open("").await?;
+            page.choose("#preset", "controller-limit").await?;
+            page.ready().await?;
+            if width < 900 {
+                page.click("#tab-panel").await?;
+            }
+            page.until(&format!("{LCD} !== undefined && {LCD} !== ''")).await?;
+            page.press(".strip canvas", "n").await?;
+            page.click("[data-input='zero']").await?;
+            page.click("[data-input='system']").await?;
+            page.ready().await?;
+            for theme in ["light", "dark"] {
+                let media = json!({ "features": [{ "name": "prefers-color-scheme", "value": theme }] });
+                page.devtools("Emulation.setEmulatedMedia", media).await?;
+                axe::look(&page, &format!("{theme} at {width}"), &mut wrong).await?;
+                page.picture(&format!("panel-{width}-{theme}")).await?;
+            }
+        }
+        axe::none(&wrong)
+    })
+}

@@ -1,0 +1,61 @@
+//! Runs made in slices, as a worker makes them: between two of them it reads its messages.
+
+use crate::convert::object;
+use serde::Serialize;
+use stepscope_core::{
+    inspect::plant_log::PlantLog,
+    peripheral::{signal::Sink, units::Instant},
+    sim::{Experiment, Run},
+};
+use wasm_bindgen::prelude::*;
+
+/// Most records that a page keeps of all controllers together; 16 bytes each.
+const MAX_RECORDS: u64 = 40_000_000;
+
+#[derive(Serialize)]
+struct Progress {
+    done: bool,
+    cycle: u64,
+    end_cycle: u64,
+    records: u64,
+}
+
+/// Runs on until one controller has made about `max_records` more records, or its plant as many steps of its grid; true at
+/// the end. There are a sink and a log of its plant for each controller.
+pub(crate) fn advance<S: Sink>(
+    experiment: &Experiment,
+    run: &mut Run,
+    max_records: u32,
+    sinks: &mut [S],
+    logs: &mut [Option<&mut PlantLog>],
+) -> bool {
+    let records = u64::from(max_records.max(1));
+    match experiment.plants() {
+        None => run.advance_each(records, sinks),
+        Some(plants) => {
+            let step = plants.setups.iter().map(|setup| u64::from(setup.grid_cycles())).min().unwrap_or(1);
+            let target = Instant(run.cycles().0.saturating_add(records * step));
+            run.advance_observed((target, records), sinks, logs)
+        }
+    }
+}
+
+/// How far a run is: `{done, cycle, end_cycle, records}`, the records those of all controllers.
+///
+/// # Errors
+/// If these are more than a page can keep.
+pub(crate) fn progress(
+    experiment: &Experiment,
+    run: &Run,
+    done: bool,
+    records: u64,
+) -> Result<JsValue, JsError> {
+    if records > MAX_RECORDS {
+        return Err(JsError::new(&format!(
+            "the run makes more than {MAX_RECORDS} edges, which is more than a page can keep; shorten the motion, or run it with the stepscope command"
+        )));
+    }
+    let cycle = run.cycles().0;
+    let end_cycle = if done { cycle } else { experiment.cost().end_cycle.max(cycle) };
+    object(&Progress { done, cycle, end_cycle, records })
+}

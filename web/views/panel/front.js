@@ -1,0 +1,147 @@
+/** The front of a panel: display, LED, buttons, keys, emergency stop, power, switches; how they stand at one moment. */
+import { element, fill, say } from "../../dom.js";
+import { driven } from "./script.js";
+import { lcd, led, SWITCHES, sentence } from "./words.js";
+
+/** @typedef {import("./words.js").Word} Word */
+/** @typedef {{word: Word, position: number, display: number, place: number, error: number, perUnit: number, decimals: number, powered: boolean}} Moment */
+/** @typedef {{down: (input: string) => void, up: (input: string) => void, click: (input: string) => void, set: (input: string, level: number) => void}} Hand */
+
+/** Buttons of the panel, a row each. */
+const BUTTONS = [
+  ["start", "pause", "clear"],
+  ["jog_minus", "jog_plus", "zero", "home"],
+  ["debug", "system", "ok", "back"],
+];
+/** @type {{[input: string]: string}} */
+const FACES = { jog_minus: "◀ jog", jog_plus: "jog ▶" };
+/** What each does. @type {{[input: string]: string}} */
+const ABOUT = {
+  start: "starts the program, or goes on after a pause",
+  pause: "pauses a move, a delay or a wait",
+  clear: "clears an alarm, gives up after a pause, empties the entry",
+  jog_minus: "jogs to the left while it is held",
+  jog_plus: "jogs to the right while it is held",
+  zero: "returns to zero",
+  home: "looks for the switch",
+  debug: "fine jog and setting the zero, and back",
+  system: "the numbers, one after another",
+  ok: "takes the entry; in DEBUG makes this place the zero",
+  back: "leaves the numbers",
+};
+const LEDS = { quick: "blinks quickly", on: "is on", slow: "blinks slowly" };
+
+/** @param {HTMLElement} place @param {Hand} hand */
+export function createFront(place, hand) {
+  const display = element("output", { class: "lcd", "aria-label": "Display" });
+  const lamp = element("span", { class: "led", "aria-hidden": "true" });
+  const lampText = element("span", { class: "led-text" });
+  const words = element("p", { class: "panel-words" });
+  const outputs = element("span", { class: "outputs" });
+  /** @type {Map<string, HTMLButtonElement>} */
+  const buttons = new Map();
+
+  /** @param {string} input @param {string} face @param {string} about */
+  function momentary(input, face, about) {
+    const made = element("button", { type: "button", "data-input": input, title: `${input}: ${about}` }, face);
+    if (face !== input) made.setAttribute("aria-label", input);
+    made.addEventListener("pointerdown", (event) => {
+      if (event.button !== 0) return;
+      made.setPointerCapture(event.pointerId);
+      hand.down(input);
+    });
+    for (const end of ["pointerup", "pointercancel", "blur"]) made.addEventListener(end, () => hand.up(input));
+    made.addEventListener("keydown", ({ key, repeat }) => {
+      if ((key === " " || key === "Enter") && !repeat) hand.down(input);
+    });
+    made.addEventListener("keyup", ({ key }) => {
+      if (key === " " || key === "Enter") hand.up(input);
+    });
+    made.addEventListener("click", () => hand.click(input));
+    buttons.set(input, made);
+    return made;
+  }
+
+  /** Puts a level. @param {string} input @param {number} level @param {string} face @param {string} about */
+  function lever(input, level, face, about) {
+    const made = element(
+      "button",
+      { type: "button", "data-input": input, "data-level": String(level), title: about },
+      face,
+    );
+    made.addEventListener("click", () => hand.set(input, level));
+    return made;
+  }
+
+  const estop = lever("estop", 1, "E-STOP", "Presses the emergency stop at the cursor: motors off at once");
+  estop.classList.add("estop");
+  const release = lever(
+    "estop",
+    0,
+    "Release",
+    "Releases the emergency stop at the cursor; clear brings the panel back",
+  );
+  const cut = lever("power", 0, "Cut power here", "The power goes away at the cursor");
+  const back = lever("power", 1, "Power back", "The power is back at the cursor");
+  const switches = SWITCHES.map((input) => {
+    const made = element(
+      "button",
+      { type: "button", class: "switch", "data-input": input, "aria-pressed": "false" },
+      input,
+    );
+    made.addEventListener("click", () => hand.set(input, made.getAttribute("aria-pressed") === "true" ? 0 : 1));
+    return made;
+  });
+  fill(
+    place,
+    element("div", { class: "glass" }, display, element("span", { class: "lamp" }, lamp, lampText), outputs),
+    words,
+    ...BUTTONS.map((row) =>
+      element("div", { class: "pad" }, ...row.map((input) => momentary(input, FACES[input] ?? input, ABOUT[input]))),
+    ),
+    element(
+      "div",
+      { class: "pad digits", role: "group", "aria-label": "Digits" },
+      ...[1, 2, 3, 4, 5, 6, 7, 8, 9, 0].map((digit) =>
+        momentary(`key_${digit}`, String(digit), "a digit of the entry"),
+      ),
+    ),
+    element(
+      "div",
+      { class: "pad power", role: "group", "aria-label": "Emergency stop and power" },
+      estop,
+      release,
+      cut,
+      back,
+    ),
+    element("div", { class: "pad switches", role: "group", "aria-label": "Switches and inputs" }, ...switches),
+  );
+
+  /**
+   * @param {Moment | null} moment @param {(input: string) => boolean} level  Of an input at that moment. @param {any} parameters
+   */
+  function show(moment, level, parameters) {
+    if (!moment) return;
+    const { word, decimals } = moment;
+    say(display, word.state === "OFF" ? "" : lcd(moment.display, decimals));
+    const light = word.state === "OFF" ? null : led(word);
+    lamp.dataset.led = light ?? "off";
+    say(lampText, light ? `LED ${LEDS[light]}` : "LED is off");
+    say(words, sentence(word, parameters));
+    words.classList.toggle("alarm", word.state === "ALARM");
+    say(outputs, word.outputs ? `out ${[0, 1, 2, 3].filter((output) => (word.outputs >> output) & 1).join(" ")}` : "");
+    for (const [input, made] of buttons) made.classList.toggle("down", level(input));
+    estop.classList.toggle("down", level("estop"));
+    release.disabled = !level("estop");
+    cut.disabled = !level("power");
+    back.disabled = level("power");
+    const by = driven(parameters?.axis);
+    for (const made of switches) {
+      const input = /** @type {string} */ (made.dataset.input);
+      made.setAttribute("aria-pressed", String(level(input)));
+      made.classList.toggle("driven", input in by);
+      made.title = by[input] ? `${input}: driven by ${by[input]}` : `${input}: switches it over at the cursor`;
+    }
+  }
+  return { show };
+}

@@ -1,0 +1,64 @@
+/**
+ * The script of a panel's inputs, as a person changes it: presses are put, moved, removed. Nothing is drawn or dispatched
+ * here; what cannot be is told in a sentence, and the script stays as it is.
+ */
+import { SHARED } from "./words.js";
+
+/** @typedef {{cycle: number, input: string | null, level: number, push_steps: number | null}} Entry */
+/** @typedef {{inputs: Entry[]} | {refused: string}} Changed */
+
+/** Inputs that a script may have. */
+const MOST = 100_000;
+
+/** What a controller's axis drives, and by which field. @param {any} axis @returns {{[input: string]: string}} */
+export function driven(axis) {
+  const given = (/** @type {any} */ value) => value !== null && value !== undefined;
+  return {
+    ...(given(axis?.min_switch_at) ? { limit_min: "axis.min_switch_at" } : {}),
+    ...(given(axis?.max_switch_at) ? { limit_max: "axis.max_switch_at" } : {}),
+    ...(given(axis?.home_from) && given(axis?.home_to) ? { home_switch: "axis.home_from" } : {}),
+  };
+}
+
+/** The controller whose script has an input. @param {number} controller @param {string | null} input */
+export const ownerOf = (controller, input) => (input !== null && SHARED.includes(input) ? 0 : controller);
+
+/** One more entry, in the order of time. @param {Entry[]} inputs @param {Omit<Entry, "push_steps"> & {push_steps?: number}} entry @param {any} axis @returns {Changed} */
+export function put(inputs, { cycle, input, level, push_steps }, axis) {
+  const by = input && driven(axis)[input];
+  if (by)
+    return { refused: `${input} is driven by the axis (${by}); take that away in the form to switch it by hand.` };
+  if (inputs.length >= MOST) return { refused: `There are ${MOST} inputs already; no more fit.` };
+  const at = Math.max(1, Math.round(cycle));
+  if (
+    inputs.some(
+      (each) => each.cycle === at && each.input === input && (input !== null || push_steps === each.push_steps),
+    )
+  )
+    return { refused: `${input ?? "The push"} has a level at cycle ${at} already; move the cursor, or that entry.` };
+  const behind = inputs.findLastIndex((each) => each.cycle <= at) + 1;
+  return { inputs: inputs.toSpliced(behind, 0, { cycle: at, input, level, push_steps: push_steps ?? null }) };
+}
+
+/** A button that is pressed and let go. @param {Entry[]} inputs @param {string} input @param {number} from @param {number} until @param {any} axis @returns {Changed} */
+export function press(inputs, input, from, until, axis) {
+  const down = put(inputs, { cycle: from, input, level: 1 }, axis);
+  return "refused" in down ? down : put(down.inputs, { cycle: until, input, level: 0 }, axis);
+}
+
+/** An entry in another cycle. @param {Entry[]} inputs @param {number} index @param {number} cycle @returns {Changed & {index?: number}} */
+export function moved(inputs, index, cycle) {
+  const entry = inputs[index];
+  const at = Math.max(1, Math.round(cycle));
+  if (at === entry.cycle) return { inputs, index };
+  const others = inputs.toSpliced(index, 1);
+  if (others.some((each) => each.cycle === at && each.input === entry.input))
+    return { refused: `${entry.input ?? "A push"} would have two levels at cycle ${at}; it stays where it is.` };
+  const behind = others.findLastIndex((each) => each.cycle <= at) + 1;
+  return { inputs: others.toSpliced(behind, 0, { ...entry, cycle: at }), index: behind };
+}
+
+/** How it is called. @param {Entry} entry */
+export function nameOf({ input, level, push_steps }) {
+  return input === null ? `push by ${push_steps}` : `${input} ${level ? "1" : "0"}`;
+}

@@ -1,0 +1,281 @@
+/**
+ * The rows of a panel over the time axis that all views share: bands of state, group, loop and trust, the levels of its inputs,
+ * and the entries of its script, which a pointer drags and keys move.
+ */
+import { element } from "../../dom.js";
+import { unlessDropped } from "../../engine/engine.js";
+import { listen } from "../../shell/commands.js";
+import { shown } from "../../state/state.js";
+import { drawCursors } from "../../time/cursors.js";
+import { createHandles } from "../../time/handles.js";
+import { cleared, fit, font, GUTTER, MARGIN, watch } from "../../time/plot.js";
+import { cycleAt, onTimeAxis, reveal } from "../../time/timeline.js";
+import {
+  BANDS,
+  paintBand,
+  paintCurve,
+  paintEntry,
+  paintIgnored,
+  paintLevel,
+  paintName,
+  paintTime,
+  ROW_PX,
+  TIME_PX,
+  xOf,
+} from "./paint.js";
+import { INPUTS } from "./words.js";
+
+/** @typedef {import("../../state/types.js").State} State */
+/** @typedef {import("./script.js").Entry} Entry */
+/** @typedef {{owner: number, index: number, entry: Entry}} Placed  An entry and whose script it is in. */
+/**
+ * @typedef {object} Script  What the strip asks and does.
+ * @property {() => Placed[]} entries  All that this panel hears, in the order of time.
+ * @property {(placed: Placed, cycle: number, joins: boolean) => Placed | null} move  Where it is then; null where it could not go.
+ * @property {(placed: Placed) => void} remove
+ */
+
+/** Room of the position's curve above the bands, in CSS pixels. */
+const [LEAST_PX, MOST_PX] = [58, 190];
+/** An entry is taken within so many CSS pixels. */
+const REACH_PX = 8;
+/** What a fast key moves an entry by, in columns of pixels. */
+const FAST = 10;
+const PUSH = "push";
+
+/** @param {HTMLElement} place @param {Script & import("./pane.js").Page & {chosen: (placed: Placed | null) => void, print: (steps: number) => string, room: () => number, channel: () => number}} page  `print` says a position, `room` how tall it all may be. */
+export function createStrip(place, page) {
+  const { engine, dispatch, now } = page;
+  const canvas = element("canvas", {
+    tabindex: "0",
+    role: "application",
+    "aria-roledescription": "rows of the panel",
+    "aria-describedby": "panel-keys time-keys",
+  });
+  const overlay = element("canvas", { class: "overlay", "aria-hidden": "true" });
+  const strip = element("div", { class: "handles" });
+  const stack = element("div", { class: "panel-rows" }, canvas, overlay);
+  place.append(strip, stack);
+  let plot = { left: GUTTER, right: GUTTER + 1 };
+  const handles = createHandles(strip, () => plot, { dispatch, now });
+  /** @type {import("./paint.js").Story | null} */
+  let story = null;
+  /** @type {import("./paint.js").Curve | null} */
+  let curve = null;
+  /** @type {string[]} */
+  let rows = [];
+  /** Height of the position's curve. */
+  let curvePx = LEAST_PX;
+  /** @type {Placed | null} */
+  let chosen = null;
+  /** What is dragged, and how far the pointer was from it. @type {{placed: Placed, by: number, moved: boolean} | null} */
+  let drag = null;
+
+  onTimeAxis(stack, () => plot, { dispatch, now });
+  watch(/** @type {Element} */ (place.closest(".panel-body")), () => {
+    paint();
+    void curveOf(now());
+  });
+
+  const xIn = (/** @type {MouseEvent} */ event) => event.clientX - canvas.getBoundingClientRect().left;
+  const rowOf = (/** @type {Entry} */ { input }) => BANDS.length + rows.indexOf(input ?? PUSH);
+
+  /** @param {Placed | null} placed */
+  function choose(placed) {
+    chosen = placed;
+    page.chosen(placed);
+    paint();
+  }
+
+  /** The entry under a pointer. @param {MouseEvent} event */
+  function entryAt(event) {
+    const row = Math.floor((event.clientY - canvas.getBoundingClientRect().top - curvePx) / ROW_PX);
+    const ground = groundOf(now());
+    if (!ground) return null;
+    const near = page
+      .entries()
+      .filter(({ entry }) => rowOf(entry) === row)
+      .map((placed) => ({ placed, away: Math.abs(xOf(ground, placed.entry.cycle) - xIn(event)) }))
+      .filter(({ away }) => away <= REACH_PX)
+      .sort((a, b) => a.away - b.away);
+    return near[0]?.placed ?? null;
+  }
+
+  canvas.addEventListener("pointerdown", (event) => {
+    const placed = event.button === 0 ? entryAt(event) : null;
+    if (!placed) return;
+    // The time axis under it stays.
+    event.stopPropagation();
+    event.preventDefault();
+    canvas.focus();
+    canvas.setPointerCapture(event.pointerId);
+    const ground = groundOf(now());
+    drag = { placed, by: ground ? xIn(event) - xOf(ground, placed.entry.cycle) : 0, moved: false };
+    choose(placed);
+  });
+  canvas.addEventListener("pointermove", (event) => {
+    if (!drag) {
+      canvas.classList.toggle("over", entryAt(event) !== null);
+      return;
+    }
+    event.stopPropagation();
+    const cycle = cycleAt(now(), plot, Math.min(plot.right, Math.max(plot.left, xIn(event) - drag.by)));
+    const to = page.move(drag.placed, cycle, drag.moved);
+    if (!to) return;
+    drag = { ...drag, placed: to, moved: true };
+    choose(to);
+  });
+  for (const end of ["pointerup", "pointercancel"])
+    canvas.addEventListener(end, (event) => {
+      if (!drag) return;
+      event.stopPropagation();
+      drag = null;
+      dispatch({ type: "committed" });
+    });
+
+  /** Another entry: of the chosen one's row, or of the row of this number. @param {number} by */
+  function step(by) {
+    const all = page.entries();
+    const at = chosen ? all.findIndex(({ owner, index }) => owner === chosen?.owner && index === chosen.index) : -1;
+    const to = all[at < 0 ? (by > 0 ? 0 : all.length - 1) : at + by];
+    if (!to) return;
+    choose(to);
+    reveal(page, to.entry.cycle);
+  }
+
+  /** @param {number} by */
+  function row(by) {
+    const all = page.entries();
+    const from = chosen ? rowOf(chosen.entry) : BANDS.length - (by > 0 ? 1 : 0);
+    for (let at = from + by; at >= BANDS.length && at < BANDS.length + rows.length; at += by) {
+      const [first] = all.filter(({ entry }) => rowOf(entry) === at).sort((a, b) => away(a) - away(b));
+      if (first) return choose(first);
+    }
+    return undefined;
+  }
+  const away = (/** @type {Placed} */ { entry }) => Math.abs(entry.cycle - (chosen?.entry.cycle ?? 0));
+
+  /** @param {number} columns */
+  function nudge(columns) {
+    if (!chosen) return;
+    const { start, end } = shown(now());
+    const column = Math.max(1, Math.round((end - start) / Math.max(1, plot.right - plot.left)));
+    const to = page.move(chosen, chosen.entry.cycle + columns * column, true);
+    if (to) choose(to);
+  }
+
+  listen(canvas, "Rows of the panel", [
+    { keys: ["n"], text: "next input", run: () => step(1) },
+    { keys: ["p"], text: "previous input", run: () => step(-1) },
+    { keys: ["ArrowDown"], text: "an input of the row below", run: () => row(1) },
+    { keys: ["ArrowUp"], text: "an input of the row above", run: () => row(-1) },
+    { keys: [","], text: "the chosen input earlier", run: () => nudge(-1) },
+    { keys: ["."], text: "the chosen input later", run: () => nudge(1) },
+    { keys: ["<"], text: "much earlier", run: () => nudge(-FAST) },
+    { keys: [">"], text: "much later", run: () => nudge(FAST) },
+    {
+      keys: ["Enter"],
+      text: "cursor A to the chosen input",
+      run: () => (chosen ? dispatch({ type: "cursor", which: "a", cycle: chosen.entry.cycle }) : false),
+    },
+    { keys: ["Delete"], text: "remove the chosen input", run: () => (chosen ? page.remove(chosen) : false) },
+  ]);
+
+  /** @param {State} state @returns {import("./paint.js").Ground | null} */
+  function groundOf(state) {
+    const context = canvas.getContext("2d");
+    if (!context || !state.result) return null;
+    return { context, plot, ...shown(state), last: state.result.summary.end_cycle };
+  }
+
+  function paint() {
+    const state = now();
+    if (!story || stack.clientWidth < 60) return;
+    plot = { left: GUTTER, right: Math.max(GUTTER + 1, stack.clientWidth - MARGIN) };
+    const used = new Set([...story.inputs.keys(), ...page.entries().map(({ entry }) => entry.input ?? PUSH)]);
+    rows = [...INPUTS, PUSH].filter((input) => used.has(input));
+    const low = (BANDS.length + rows.length) * ROW_PX;
+    curvePx = Math.min(MOST_PX, Math.max(LEAST_PX, Math.floor(page.room() - low - TIME_PX)));
+    const tall = curvePx + low;
+    stack.style.height = `${tall + TIME_PX}px`;
+    const { ratio } = fit(canvas);
+    const ground = groundOf(state);
+    if (!ground) return;
+    const { context } = ground;
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.textBaseline = "middle";
+    context.font = `11px ${font()}`;
+    paintTime(ground, state.result?.summary.clock_hz ?? 1, 0, tall);
+    if (curve) paintCurve(ground, curve, curvePx, page.print);
+    const topOf = (/** @type {number} */ row) => curvePx + row * ROW_PX;
+    for (const [at, band] of BANDS.entries()) {
+      paintName(context, band, plot.left, topOf(at), false);
+      paintBand(ground, story.records, band, topOf(at));
+    }
+    const own = chosen && rowOf(chosen.entry);
+    for (const [at, input] of rows.entries()) {
+      const top = topOf(BANDS.length + at);
+      paintName(context, input, plot.left, top, BANDS.length + at === own);
+      if (input !== PUSH) paintLevel(ground, story.inputs.get(input), input === "power" ? 1 : 0, top);
+      for (const press of story.ignored)
+        if (press.input === input && inSight(ground, press.cycle)) paintIgnored(context, xOf(ground, press.cycle), top);
+    }
+    let last = -Infinity;
+    for (const { entry, owner, index } of page.entries()) {
+      if (!inSight(ground, entry.cycle)) continue;
+      const isChosen = owner === chosen?.owner && index === chosen.index;
+      const x = xOf(ground, entry.cycle);
+      // A hundred thousand of them on one pixel are one.
+      if (!isChosen && Math.abs(x - last) < 0.05) continue;
+      last = x;
+      paintEntry(context, x, topOf(rowOf(entry)), isChosen);
+    }
+    fit(overlay);
+    paintCursor(state);
+  }
+
+  /** Asks for the position over what is shown. @param {State} state */
+  async function curveOf(state) {
+    const { result } = state;
+    if (!result || stack.clientWidth < 60) return;
+    const { start, end } = shown(state);
+    const clock = result.summary.clock_hz;
+    const columns = Math.max(16, stack.clientWidth - GUTTER - MARGIN);
+    const answer = await engine
+      .latest("panel curve", "motion", page.channel(), start / clock, end / clock, columns)
+      .catch(unlessDropped);
+    if (!answer || now().result !== result) return;
+    curve = { start, end, min: answer.actual_position_min, max: answer.actual_position_max };
+    paint();
+  }
+
+  /** @param {import("./paint.js").Ground} ground @param {number} cycle */
+  const inSight = ({ start, end }, cycle) => cycle >= start && cycle <= end;
+
+  /** @param {State} state */
+  function paintCursor(state) {
+    const layer = cleared(overlay);
+    if (!layer) return;
+    drawCursors(layer.context, state, plot, layer.height - TIME_PX);
+    handles.render(state);
+  }
+
+  return {
+    paint,
+    paintCursor,
+    /** The entry that a person has chosen; another one after the script has changed. @param {Placed | null} placed */
+    choose,
+    /** @param {import("./paint.js").Story} next @param {string} about */
+    show(next, about) {
+      story = next;
+      canvas.setAttribute("aria-label", about);
+      paint();
+      return curveOf(now());
+    },
+    /** What is shown is another time. */
+    window() {
+      paint();
+      return curveOf(now());
+    },
+  };
+}
