@@ -36,7 +36,7 @@ fn encode_link(json: &str) -> Result<String, wasm_bindgen::JsError> {
 /// What a fragment comes to, in both steps.
 fn decode_link(fragment: &str) -> Result<JsValue, wasm_bindgen::JsError> {
     let packed = unpack_link(fragment)?;
-    if get(&packed, "error").is_string() {
+    if sure(js_sys::Reflect::has(&packed, &"error".into())) {
         return Ok(packed);
     }
     open_link(&text(&packed, "json"), number(&packed, "version") as u32)
