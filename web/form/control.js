@@ -305,7 +305,8 @@ function stepsIn(unit, path, state) {
 
 /** The same number in another light: cycles as a time. @param {any} value @param {Field} field @param {State} state */
 function meaning(value, field, state) {
-  if (field.also) return field.also(value, state);
+  const also = field.also?.(value, state);
+  if (also) return also;
   const clock = get(state.scenario, "clock_hz");
   if (field.kind.endsWith("cycles") && Number.isFinite(value) && value !== null && clock > 0)
     return `= ${si(value / clock, "s")}`;

@@ -15,7 +15,7 @@ import { removed } from "./structure.js";
 
 const LIST = "source.standalone";
 /** What every user sets; the rest is folded away. */
-const FIRST = ["pulses_per_unit", "decimals", "start_speed_hz", "max_speed_hz", "level_hz_s", "loops"];
+const FIRST = ["pulses_per_unit", "decimals", "start_speed_hz", "max_speed_hz", "level_hz_s", "short_move", "loops"];
 /** Inputs that the form lists; the view Panel has all of them. */
 const MOST_INPUTS = 40;
 /** What can be chosen where the schema has 0 and 1. */
@@ -55,8 +55,9 @@ function panelItem(kit, all, index) {
   const panel = all[index];
   const name = `stand-alone controller ${index}`;
   const whose = all.length > 1 ? ` of controller ${index}` : "";
-  const own = fields("StandAlone").filter(({ key }) => FIRST.includes(key));
-  const rest = fields("StandAlone").filter(({ key }) => !FIRST.includes(key));
+  const every = heeded(at, fields("StandAlone"));
+  const own = every.filter(({ key }) => FIRST.includes(key));
+  const rest = every.filter(({ key }) => !FIRST.includes(key));
   /** What power, emergency stop and clear are, the first one's inputs say for all. @param {any[]} now */
   const copy = (now) => ({ ...now[index], inputs: [] });
   const head = element(
@@ -204,11 +205,23 @@ function profile(kit, path, given) {
   ];
 }
 
+/** Fields that tell what holds, but may not be meant. @param {string} path @param {Field[]} given @returns {Field[]} */
+function heeded(path, given) {
+  return given.map((each) => ({
+    ...each,
+    also: (value, state) => {
+      const at = `${path}.${each.key}`;
+      const warning = state.judgement?.warnings.find((/** @type {{path: string}} */ one) => one.path === at);
+      return warning?.message ?? each.also?.(value, state) ?? "";
+    },
+  }));
+}
+
 /** Fields of which those that are 0 or 1 are chosen. @param {Kit} kit @param {string} path @param {Field[]} given @param {string[]} [keys]  Which those are; of jog, return and moves the level is an acceleration. */
 function chosen(kit, path, given, keys = /jog$|return$/.test(path) ? ["direction"] : ["direction", "level"]) {
   return kit.block(
     path,
-    given.map((each) =>
+    heeded(path, given).map((each) =>
       keys.includes(each.key) && each.key in CHOICES
         ? { ...each, kind: "choice", choices: CHOICES[/** @type {keyof typeof CHOICES} */ (each.key)] }
         : each,

@@ -176,10 +176,6 @@ export const EXPLAINED = {
     "Length",
     "As the display shows it, without its point: with one decimal 305 is 30.5 units. Steps follow by pulses a unit, rounded once from the program's start, so nothing adds up over loops.",
   ],
-  "MoveToGroup.length": [
-    "Length",
-    "As the display shows it, without its point: with one decimal 305 is 30.5 units. Steps follow by pulses a unit, rounded once from the program's start, so nothing adds up over loops.",
-  ],
   "Noise.duplicated_bytes_ppm": [
     "Bytes duplicated",
     "A byte that arrives twice, as after a clumsy repetition in a converter.",

@@ -11,7 +11,7 @@
  * @typedef {{ticks: number, sends: number, line_load: number | null, duration_s: number,
  *   controllers: DerivedController[]}} Derived  Controllers in the order of the scenario, the first one at 0.
  * @typedef {{edges: number, packets: number, bytes: number, over_budget: boolean, message: string}} Cost
- * @typedef {{problems: Problem[], scenario: string, derived: Derived | null, cost: Cost | null}} Judgement
+ * @typedef {{problems: Problem[], warnings: {path: string, message: string}[], scenario: string, derived: Derived | null, cost: Cost | null}} Judgement
  * @typedef {{id: string, document: string, title: string, scenario: string | null}} Preset
  * @typedef {{id: string, name: string, source: string, rules: {[rule: string]: number}}} DriverSheet
  *

@@ -4,8 +4,10 @@ use crate::{
     checked::Checked,
     input::{Change, Input, Signal},
     limits,
-    parameters::{Axis, Group, Home, Initial, Parameters, Policy, Release, Setup, Until},
+    numbers::Numbers,
+    parameters::{Axis, Group, Home, Initial, Parameters, Policy, Release, Setup, ShortMove, Until},
     refusal::{Refusal, Refused, Warned, Warning},
+    table::Table,
 };
 use alloc::{
     format,
@@ -34,12 +36,13 @@ impl Setup {
         Ok(Checked::new(self, warned))
     }
 
-    /// What holds, but may not be meant.
-    #[must_use]
-    pub fn warnings(&self) -> Vec<Warned> {
+    /// What holds, but may not be meant; of controllers whose numbers are in range.
+    fn warnings(&self) -> Vec<Warned> {
         let mut warned = Vec::new();
         for (controller, parameters) in self.controllers.iter().enumerate() {
-            let mut warn = |path, warning| warned.push(Warned { controller, path, warning });
+            let mut warn = |path: &str, warning| {
+                warned.push(Warned { controller, path: path.to_string(), warning });
+            };
             if parameters.debounce_cycles == 0 {
                 warn("debounce_cycles", Warning::NoDebounce);
             }
@@ -53,8 +56,28 @@ impl Setup {
                 let given = memory.hold_up_cycles;
                 warn("memory.hold_up_cycles", Warning::ShortHoldUp { given, enough });
             }
+            for (index, group) in parameters.groups.iter().enumerate() {
+                if let Group::Move(own) = group
+                    && let Some(warning) =
+                        parameters.short_move_of(own.length, own.speed_hz, own.level.into())
+                {
+                    warn(&format!("groups[{index}].move.speed_hz"), warning);
+                }
+            }
         }
         warned
+    }
+}
+
+impl Parameters {
+    /// Whether a move by a length never comes to its speed, and goes at the start-stop rate all the way (G3).
+    fn short_move_of(&self, length: u32, given_hz: u32, level: u32) -> Option<Warning> {
+        let steps = Numbers::new(self).steps(length.into());
+        let (start_speed_hz, acceleration_hz_s) =
+            (self.start_speed_hz, self.level_hz_s.saturating_mul(level));
+        let needed = Table { start_speed_hz, acceleration_hz_s }.climb(given_hz).saturating_mul(2);
+        let is_short = self.short_move == ShortMove::Document && i128::from(needed) > steps;
+        is_short.then_some(Warning::ShortMove { steps, needed, given_hz, start_speed_hz })
     }
 }
 

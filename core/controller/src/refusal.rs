@@ -212,6 +212,17 @@ pub enum Warning {
         /// `start_speed_hz`.
         start_speed_hz: u32,
     },
+    /// A move of the program is too short for its speed, and goes at the start-stop rate all the way.
+    ShortMove {
+        /// Of the move.
+        steps: i128,
+        /// Up to its speed and down again.
+        needed: u64,
+        /// Its `speed_hz`.
+        given_hz: u32,
+        /// `start_speed_hz`.
+        start_speed_hz: u32,
+    },
 }
 
 /// A warning and where it stands.
@@ -220,24 +231,34 @@ pub struct Warned {
     /// Which controller.
     pub controller: usize,
     /// The field within it, as a scenario names it.
-    pub path: &'static str,
+    pub path: String,
     /// What it is.
     pub warning: Warning,
 }
 
 impl fmt::Display for Warned {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "controller {}: {}: ", self.controller, self.path)?;
-        match self.warning {
-            Warning::ShortHoldUp { given, enough } => write!(
+        write!(f, "controller {}: {}: {}", self.controller, self.path, self.warning)
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::ShortHoldUp { given, enough } => write!(
                 f,
                 "{given} cycles are less than the {enough} that a record needs for sure (17*w - 1): a cut can leave the \
                  position unknown"
             ),
-            Warning::NoDebounce => f.write_str("0 cycles: a button that bounces is pressed several times"),
-            Warning::JogCostsTrust { given_hz, start_speed_hz } => write!(
+            Self::NoDebounce => f.write_str("0 cycles: a button that bounces is pressed several times"),
+            Self::JogCostsTrust { given_hz, start_speed_hz } => write!(
                 f,
                 "{given_hz} Hz is above start_speed_hz {start_speed_hz}: with `at_once` every jog costs trust"
+            ),
+            Self::ShortMove { steps, needed, given_hz, start_speed_hz } => write!(
+                f,
+                "{steps} steps are too short for {given_hz} Hz, which takes {needed} up and down: the whole move goes at \
+                 {start_speed_hz} Hz; a higher level needs fewer, and short_move \"turn_round\" goes up as far as they allow"
             ),
         }
     }

@@ -31,6 +31,8 @@ pub struct Judgement {
     pub problems: Vec<ProblemText>,
     /// The scenario as JSON, as far as it could be read, every field written.
     pub scenario: String,
+    /// What holds, but may not be meant.
+    pub warnings: Vec<ProblemText>,
     /// What follows from it; nothing where it has problems.
     pub derived: Option<Derived>,
     /// What a run costs.
@@ -135,10 +137,27 @@ impl Judgement {
         Self {
             problems: judged.problems().iter().map(text).collect(),
             scenario: judged.scenario().to_json(),
+            warnings: experiment.map_or_else(Vec::new, |experiment| warnings(experiment)),
             derived: experiment.map(|experiment| Derived::of(judged.scenario(), experiment)),
             cost: experiment.map(|experiment| RunCost::of(experiment.cost())),
         }
     }
+}
+
+/// Of stand-alone controllers; the others have theirs where they belong, such as [`DerivedMove::warning`].
+#[cfg(feature = "controller")]
+fn warnings(experiment: &Experiment) -> Vec<ProblemText> {
+    let all = experiment.stand_alone().into_iter().flat_map(|controllers| controllers.warnings());
+    all.map(|warned| ProblemText {
+        path: format!("source.standalone[{}].{}", warned.controller, warned.path),
+        message: warned.warning.to_string(),
+    })
+    .collect()
+}
+
+#[cfg(not(feature = "controller"))]
+const fn warnings(_: &Experiment) -> Vec<ProblemText> {
+    Vec::new()
 }
 
 impl RunCost {

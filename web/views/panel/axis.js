@@ -84,7 +84,7 @@ export function createAxis(place, push) {
     say(
       text,
       `Nut at ${count(at)} steps (${units(at)} units); position ${count(position)}${
-        error === 0 ? ", as it is" : `: ${count(Math.abs(error))} ${Math.abs(error) === 1 ? "step" : "steps"} off`
+        error === 0 ? ", which agrees" : `: ${count(Math.abs(error))} ${Math.abs(error) === 1 ? "step" : "steps"} off`
       }`,
     );
     text.classList.toggle("error", error !== 0);

@@ -1,7 +1,7 @@
 /** The front of a panel: display, LED, buttons, keys, emergency stop, power, switches; how they stand at one moment. */
 import { element, fill, say } from "../../dom.js";
 import { driven } from "./script.js";
-import { lcd, led, SWITCHES, sentence } from "./words.js";
+import { advice, lcd, led, SWITCHES, sentence } from "./words.js";
 
 /** @typedef {import("./words.js").Word} Word */
 /** @typedef {{word: Word, position: number, display: number, place: number, error: number, perUnit: number, decimals: number, powered: boolean}} Moment */
@@ -37,6 +37,7 @@ export function createFront(place, hand) {
   const lamp = element("span", { class: "led", "aria-hidden": "true" });
   const lampText = element("span", { class: "led-text" });
   const words = element("p", { class: "panel-words" });
+  const next = element("p", { class: "panel-advice" });
   const outputs = element("span", { class: "outputs" });
   /** @type {Map<string, HTMLButtonElement>} */
   const buttons = new Map();
@@ -96,6 +97,7 @@ export function createFront(place, hand) {
     place,
     element("div", { class: "glass" }, display, element("span", { class: "lamp" }, lamp, lampText), outputs),
     words,
+    element("div", { class: "panel-told" }, next),
     ...BUTTONS.map((row) =>
       element("div", { class: "pad" }, ...row.map((input) => momentary(input, FACES[input] ?? input, ABOUT[input]))),
     ),
@@ -129,6 +131,10 @@ export function createFront(place, hand) {
     say(lampText, light ? `LED ${LEDS[light]}` : "LED is off");
     say(words, sentence(word, parameters));
     words.classList.toggle("alarm", word.state === "ALARM");
+    say(next, advice(word));
+    const home = buttons.get("home");
+    if (home)
+      home.title = `home: ${ABOUT.home}${parameters?.home ? "" : "; nothing here, for homing is not set up in the form"}`;
     say(outputs, word.outputs ? `out ${[0, 1, 2, 3].filter((output) => (word.outputs >> output) & 1).join(" ")}` : "");
     for (const [input, made] of buttons) made.classList.toggle("down", level(input));
     estop.classList.toggle("down", level("estop"));

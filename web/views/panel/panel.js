@@ -62,6 +62,17 @@ export async function createPanel({ engine, dispatch, now }) {
     element("span", { class: "group", role: "group", "aria-label": "Live" }, play, speed),
     at,
   );
+  const end = element(
+    "button",
+    {
+      type: "button",
+      hidden: "",
+      title: "Lets cursor A go: the panel is as it is at the end, and presses come after it",
+    },
+    "To the end",
+  );
+  end.addEventListener("click", () => dispatch({ type: "cursor", which: "a", cycle: null }));
+  at.after(end);
   const front = element("div", { class: "front", role: "group", "aria-label": "Front panel" });
   const said = element("p", { id: "panel-said", class: "panel-said", role: "status" });
   const axisPlace = element("div", { class: "axis", role: "group", "aria-label": "Virtual axis" });
@@ -77,7 +88,14 @@ export async function createPanel({ engine, dispatch, now }) {
   const idle = element(
     "p",
     { class: "entry-line quiet" },
-    "Diamonds are inputs: drag one, or choose it with N and P, move it with , and .",
+    "Diamonds are inputs: drag one, or choose it with ",
+    element("kbd", {}, "N"),
+    " and ",
+    element("kbd", {}, "P"),
+    " and move it with ",
+    element("kbd", {}, ","),
+    " and ",
+    element("kbd", {}, "."),
   );
   const ignored = element("details", { class: "ignored", hidden: "" }, element("summary", {}), element("ul", {}));
   const wear = element("p", { class: "wear" });
@@ -159,24 +177,31 @@ export async function createPanel({ engine, dispatch, now }) {
     const owner = ownerOf(index(), input);
     const from = target();
     const until = from + (held ?? shortest());
-    if (take(owner, press(inputsOf(owner), input, from, until, parameters()?.axis)))
-      tell(`${input} is pressed at ${timeOf(from)}, for ${si((until - from) / clock(), "s")}.`);
+    if (take(owner, press(inputsOf(owner), input, from, until, parameters()?.axis, timeOf)))
+      behind(until, `${input} is pressed at ${timeOf(from)}, for ${si((until - from) / clock(), "s")}.`);
+  }
+
+  /** What was put stands; the cursor goes behind it, so that the next press comes after and what became of it is shown. @param {number} cycle @param {string} text */
+  function behind(cycle, text) {
+    if (now().cursors.a !== null) dispatch({ type: "cursor", which: "a", cycle: cycle + shortest() });
+    tell(text);
   }
 
   /** A level at the cursor. @param {string} input @param {number} level */
   function set(input, level) {
     const owner = ownerOf(index(), input);
     const cycle = target();
-    if (take(owner, put(inputsOf(owner), { cycle, input, level }, parameters()?.axis)))
-      tell(`${input} is ${level} from ${timeOf(cycle)} on.`);
+    if (take(owner, put(inputsOf(owner), { cycle, input, level }, parameters()?.axis, timeOf)))
+      behind(cycle, `${input} is ${level} from ${timeOf(cycle)} on.`);
   }
 
   /** @param {number} steps */
   function push(steps) {
     const cycle = target();
     if (steps === 0) return tell("A push of 0 steps moves nothing.", true);
-    if (take(index(), put(inputsOf(index()), { cycle, input: null, level: 1, push_steps: steps }, null)))
-      tell(
+    if (take(index(), put(inputsOf(index()), { cycle, input: null, level: 1, push_steps: steps }, null, timeOf)))
+      behind(
+        cycle,
         `The axis is pushed by ${count(steps)} steps at ${timeOf(cycle)}; it moves if its windings are without current.`,
       );
     return undefined;
@@ -194,10 +219,10 @@ export async function createPanel({ engine, dispatch, now }) {
     press: (input, from, until, before) => {
       const owner = ownerOf(index(), input);
       const inputs = inputsOf(owner);
-      if (before === null) return take(owner, press(inputs, input, from, until, parameters()?.axis), true);
+      if (before === null) return take(owner, press(inputs, input, from, until, parameters()?.axis, timeOf), true);
       const place = inputs.findIndex((each) => each.input === input && each.level === 0 && each.cycle === before);
       if (place < 0) return false;
-      return take(owner, moved(inputs, place, until), true);
+      return take(owner, moved(inputs, place, until, timeOf), true);
     },
   });
   play.addEventListener("click", () => {
@@ -224,8 +249,8 @@ export async function createPanel({ engine, dispatch, now }) {
     click,
     set,
   });
-  // Over the buttons, where it is seen whatever is pressed.
-  front.querySelector(".panel-words")?.after(said);
+  // Over the buttons, where it is seen whatever is pressed; in the place of what there is to do.
+  front.querySelector(".panel-told")?.prepend(said);
   const axis = createAxis(axisPlace, push);
   const strip = createStrip(stripPlace, {
     engine,
@@ -262,7 +287,7 @@ export async function createPanel({ engine, dispatch, now }) {
 
   /** @param {Placed} placed @param {number} cycle @param {boolean} joins @returns {Placed | null} */
   function move({ owner, index: from }, cycle, joins) {
-    const to = moved(inputsOf(owner), from, cycle);
+    const to = moved(inputsOf(owner), from, cycle, timeOf);
     if (!take(owner, to, joins) || "refused" in to) return null;
     const place = to.index ?? from;
     return { owner, index: place, entry: to.inputs[place] };
@@ -354,7 +379,11 @@ export async function createPanel({ engine, dispatch, now }) {
       `${count(all.length)} ${all.length === 1 ? "press" : "presses"} meant nothing`,
     );
     const items = all.slice(0, MOST_TOLD).map(({ cycle, input, state }) => {
-      const go = element("button", { type: "button" }, `${input} at ${timeOf(cycle)} in ${state}`);
+      const go = element(
+        "button",
+        { type: "button" },
+        `${input} at ${timeOf(cycle)} in ${state}${input === "home" && !parameters()?.home ? ": homing is not set up" : ""}`,
+      );
       go.addEventListener("click", () => {
         dispatch({ type: "cursor", which: "a", cycle });
         reveal({ dispatch, now }, cycle);
@@ -370,6 +399,7 @@ export async function createPanel({ engine, dispatch, now }) {
     strip.paintCursor(state);
     const { cycle, name } = momentOf(state);
     say(at, `${name}: ${timeOf(cycle)}`);
+    end.hidden = live.isOn() || state.cursors.a === null;
     const inside = Math.min(cycle, endOf(state));
     const answer = await engine.latest("panel at", "panel_at", index(), inside).catch(unlessDropped);
     if (!answer || about?.result !== now().result) return;

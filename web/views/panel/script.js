@@ -23,8 +23,12 @@ export function driven(axis) {
 /** The controller whose script has an input. @param {number} controller @param {string | null} input */
 export const ownerOf = (controller, input) => (input !== null && SHARED.includes(input) ? 0 : controller);
 
-/** One more entry, in the order of time. @param {Entry[]} inputs @param {Omit<Entry, "push_steps"> & {push_steps?: number}} entry @param {any} axis @returns {Changed} */
-export function put(inputs, { cycle, input, level, push_steps }, axis) {
+/**
+ * One more entry, in the order of time.
+ * @param {Entry[]} inputs @param {Omit<Entry, "push_steps"> & {push_steps?: number}} entry @param {any} axis
+ * @param {(cycle: number) => string} timeOf  As the page prints it. @returns {Changed}
+ */
+export function put(inputs, { cycle, input, level, push_steps }, axis, timeOf) {
   const by = input && driven(axis)[input];
   if (by)
     return { refused: `${input} is driven by the axis (${by}); take that away in the form to switch it by hand.` };
@@ -35,25 +39,27 @@ export function put(inputs, { cycle, input, level, push_steps }, axis) {
       (each) => each.cycle === at && each.input === input && (input !== null || push_steps === each.push_steps),
     )
   )
-    return { refused: `${input ?? "The push"} has a level at cycle ${at} already; move the cursor, or that entry.` };
+    return {
+      refused: `${input ?? "A push"} is changed at ${timeOf(at)} already; set the cursor to another time, or drag that diamond away.`,
+    };
   const behind = inputs.findLastIndex((each) => each.cycle <= at) + 1;
   return { inputs: inputs.toSpliced(behind, 0, { cycle: at, input, level, push_steps: push_steps ?? null }) };
 }
 
-/** A button that is pressed and let go. @param {Entry[]} inputs @param {string} input @param {number} from @param {number} until @param {any} axis @returns {Changed} */
-export function press(inputs, input, from, until, axis) {
-  const down = put(inputs, { cycle: from, input, level: 1 }, axis);
-  return "refused" in down ? down : put(down.inputs, { cycle: until, input, level: 0 }, axis);
+/** A button that is pressed and let go. @param {Entry[]} inputs @param {string} input @param {number} from @param {number} until @param {any} axis @param {(cycle: number) => string} timeOf @returns {Changed} */
+export function press(inputs, input, from, until, axis, timeOf) {
+  const down = put(inputs, { cycle: from, input, level: 1 }, axis, timeOf);
+  return "refused" in down ? down : put(down.inputs, { cycle: until, input, level: 0 }, axis, timeOf);
 }
 
-/** An entry in another cycle. @param {Entry[]} inputs @param {number} index @param {number} cycle @returns {Changed & {index?: number}} */
-export function moved(inputs, index, cycle) {
+/** An entry in another cycle. @param {Entry[]} inputs @param {number} index @param {number} cycle @param {(cycle: number) => string} timeOf @returns {Changed & {index?: number}} */
+export function moved(inputs, index, cycle, timeOf) {
   const entry = inputs[index];
   const at = Math.max(1, Math.round(cycle));
   if (at === entry.cycle) return { inputs, index };
   const others = inputs.toSpliced(index, 1);
   if (others.some((each) => each.cycle === at && each.input === entry.input))
-    return { refused: `${entry.input ?? "A push"} would have two levels at cycle ${at}; it stays where it is.` };
+    return { refused: `${entry.input ?? "A push"} would be changed twice at ${timeOf(at)}; it stays where it is.` };
   const behind = others.findLastIndex((each) => each.cycle <= at) + 1;
   return { inputs: others.toSpliced(behind, 0, { ...entry, cycle: at }), index: behind };
 }

@@ -94,6 +94,24 @@ export function numberName(number) {
   return `${OF_MOVE[at % OF_MOVE.length]} of move ${Math.floor(at / OF_MOVE.length) + 1}`;
 }
 
+/** What each alarm asks for, and a trust that is not sure. @type {{[of: string]: string}} */
+const ADVICE = {
+  ESTOP: "Release the emergency stop, then clear.",
+  LIMIT: "Clear, then jog off the switch.",
+  SOFT_LIMIT: "Clear; the move would have left the soft limits.",
+  HOMING: "Clear; the switch was not found where homing looks.",
+  TRUST: "Clear. The place is not known: home, or jog to a known place, then debug, ok.",
+  TIMEOUT: "Clear; the input did not come in time.",
+  MEMORY: "Clear. Nothing is remembered: home, or jog to a known place, then debug, ok.",
+  LOST: "The place is not known: home, or jog to a known place, then debug, ok.",
+  HELD: "The place that was kept. Debug, ok makes where it stands the zero, and sure.",
+};
+
+/** What to do next, where something is to be done. @param {Word} word */
+export function advice({ state, alarm, trust }) {
+  return state === "OFF" ? "" : (ADVICE[alarm] ?? ADVICE[trust] ?? "");
+}
+
 /** What a panel says, in words. @param {Word} word @param {any} parameters  Of the controller. */
 export function sentence({ state, alarm, trust, group, loop }, { groups = [], loops = 1 } = {}) {
   const where =
@@ -101,6 +119,6 @@ export function sentence({ state, alarm, trust, group, loop }, { groups = [], lo
       ? `number ${group}: ${numberName(group)}`
       : group > 0
         ? `group ${group}/${groups.length}, loop ${loop}/${loops}`
-        : "no program";
+        : "no program runs";
   return `${state}${alarm ? ` ${alarm}` : ""} · trust ${trust} · ${where}`;
 }

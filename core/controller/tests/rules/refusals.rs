@@ -7,7 +7,7 @@ use stepscope_controller::{
     limits,
     parameters::{
         Axis, Group, Home, Initial, Jog, Jump, Memory, Move, Parameters, Profile, Release, Repeat, Setup,
-        SoftLimits, Until, Wait,
+        ShortMove, SoftLimits, Until, Wait,
     },
 };
 use stepscope_peripheral::units::Instant;
@@ -157,12 +157,32 @@ fn warnings_tell_of_what_may_not_be_meant() {
     let risky =
         Parameters { debounce_cycles: 0, jog: jog.clone(), memory: memory.clone(), ..Parameters::default() };
     let setup = |parameters| Setup { controllers: vec![parameters], ..Setup::default() };
-    let warned: Vec<&str> = setup(risky).warnings().iter().map(|warned| warned.path).collect();
+    let checked = setup(risky).check().unwrap();
+    let warned: Vec<&str> = checked.warnings().iter().map(|warned| warned.path.as_str()).collect();
     assert_eq!(warned, ["debounce_cycles", "jog.speed_hz", "memory.hold_up_cycles"]);
     let memory = Memory { hold_up_cycles: 169, ..memory };
     let jog = Jog { release: Release::Ramp, ..jog };
     let fine = setup(Parameters { jog, memory, ..Parameters::default() });
     assert!(fine.check().unwrap().warnings().is_empty());
+}
+
+/// G3: 36 rows from 1000 at 3000 Hz/s, 4200 steps, come to 5119 Hz.
+#[test]
+fn a_move_that_never_comes_to_its_speed_is_told() {
+    let warned = |length, short_move| {
+        let own = Move { length, speed_hz: 5000, level: 3, ..Move::default() };
+        let groups = vec![Group::Home, Group::Move(own)];
+        let home = Some(Home::default());
+        let numbers =
+            Parameters { pulses_per_unit: 1, decimals: 0, groups, home, short_move, ..Parameters::default() };
+        let checked = Setup { controllers: vec![numbers], ..Setup::default() }.check().unwrap();
+        checked.warnings().first().map(ToString::to_string)
+    };
+    let told = "controller 0: groups[1].move.speed_hz: 8399 steps are too short for 5000 Hz, which takes 8400 up and down: the \
+                whole move goes at 1000 Hz; a higher level needs fewer, and short_move \"turn_round\" goes up as far as they allow";
+    assert_eq!(warned(8399, ShortMove::Document).as_deref(), Some(told));
+    assert_eq!(warned(8400, ShortMove::Document), None);
+    assert_eq!(warned(8399, ShortMove::TurnRound), None);
 }
 
 #[test]

@@ -228,6 +228,8 @@ words! {
 const LENGTH: Field = label("Length").unit("digits")
     .term("Length", "As the display shows it, without its point: with one decimal 305 is 30.5 units. Steps follow by pulses a unit, rounded once from the program's start, so nothing adds up over loops.")
     .from(ZHANG);
+/// A place, by the digits of the display; the zero is 0.
+const PLACE_OF_GROUP: Field = label("Place").unit("digits").from(ZHANG);
 /// A plateau's rate.
 const SPEED: Field = speed("Speed");
 /// The same by another name.
@@ -297,7 +299,7 @@ settings! {
     /// A move to a place.
     pub struct MoveToGroup {
         /// Place in digits of the display.
-        pub length: i64 = 0 => LENGTH.signed(signed(&limits::PLACE)),
+        pub length: i64 = 0 => PLACE_OF_GROUP.signed(signed(&limits::PLACE)),
         /// Rate of the plateau.
         pub speed_hz: u32 = 5000 => SPEED,
         /// Level times `level_hz_s`.
