@@ -5,6 +5,7 @@ mod buttons;
 pub(crate) mod histogram;
 pub(crate) mod interrupt;
 mod keyboard;
+mod line_errors;
 mod panel;
 pub(crate) mod port;
 pub(crate) mod raw;

@@ -126,6 +126,9 @@ fn what_is_sent_to_a_served_scenario_is_done_and_the_recording_is_the_session() 
             assert!(err.contains("recorded") && out.contains("positions 6 -7\n"), "{out}{err}");
             let digest = out.lines().find_map(|line| line.strip_prefix("digest ")).expect("a digest");
             assert_eq!(run_digest(&record), digest, "{place:?} {pace}");
+            let shared = out.lines().find(|line| line.starts_with("#c=")).expect("a link");
+            let (code, _, err) = ended(command(&["open", shared, "--verify"]).output().expect("it runs"));
+            assert_eq!(code, Some(0), "{err}");
             let beside = fs::read_to_string(record.with_file_name("live-done-recording.session.json"));
             let beside: Value = serde_json::from_str(&beside.expect("it is there")).expect("it is JSON");
             assert_eq!((&beside["digests"][0], &beside["pace"]), (&Value::from(digest), &Value::from(pace)));

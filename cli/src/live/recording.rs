@@ -6,7 +6,14 @@ use std::{
     io::{self, Write},
     path::{Path, PathBuf},
 };
-use stepscope_core::sim::session::{NotTheSession, Session, SessionClock};
+use stepscope_core::{
+    inspect::{fingerprint::Fingerprinter, run_fingerprint::RunFingerprint},
+    scenario::{Scenario, link},
+    sim::{
+        Experiment,
+        session::{NotTheSession, Session, SessionClock},
+    },
+};
 
 /// A file, and where it will be.
 pub(crate) type Named = (PathBuf, Out);
@@ -43,6 +50,16 @@ pub(crate) fn write(
         let _ = writeln!(io::stderr(), "recorded are the first {cycles} cycles: then there was no more room");
     }
     Ok(verified)
+}
+
+/// The share link of a recording, with the digests of its run; `None` where it does not fit in one.
+pub(crate) fn link(scenario: &Scenario) -> Option<String> {
+    let link = link::encode(scenario).ok()?;
+    let experiment = Experiment::new(scenario).ok()?;
+    let mut seen = vec![Fingerprinter::default(); experiment.controllers()];
+    experiment.run_each(&mut seen);
+    let proof = RunFingerprint::of(seen.into_iter().map(Fingerprinter::finish).collect());
+    Some(link::with_part(link, "d", &proof.emit()))
 }
 
 /// A recording that its disk does not take is written where there may be room.

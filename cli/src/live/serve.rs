@@ -78,7 +78,8 @@ pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
     };
     let port = open(arguments, &session)?;
     let Arguments { pace, lag, once, progress, .. } = *arguments;
-    let mut server = Server::new(&Settings { pacing: pace, lag, once, progress }, session, port);
+    let records = arguments.record.is_some();
+    let mut server = Server::new(&Settings { pacing: pace, lag, records, once, progress }, session, port);
     let ended = server.run();
     server.print_end().map_err(Failure::output)?;
     if let Some(files) = files {
@@ -87,6 +88,9 @@ pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
         outputs.commit()?;
         verified.map_err(|why| Failure::NotRecorded(record, why.to_string()))?;
         server.line.note("recorded");
+        if let Some(link) = recording::link(&server.session.recording().scenario) {
+            writeln!(io::stdout(), "#{link}").map_err(Failure::output)?;
+        }
     }
     ended?;
     let stretches = server.clock.stretches();

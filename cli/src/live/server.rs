@@ -14,7 +14,7 @@ use super::{
     port::{Heard, Port},
     sidecar::Sidecar,
     status_line::StatusLine,
-    stop_watch::StopWatch,
+    stop_watch::{StopWatch, wake_on_time},
 };
 use crate::failure::Failure;
 use std::{
@@ -54,6 +54,8 @@ pub(super) struct Settings {
     pub(super) pacing: Pacing,
     /// How late the model may be, in ms.
     pub(super) lag: u64,
+    /// Whether it is recorded.
+    pub(super) records: bool,
     /// Whether it ends with the client.
     pub(super) once: bool,
     /// Whether the status line is shown whatever standard error is.
@@ -73,6 +75,10 @@ pub(super) struct Server {
     waiting: VecDeque<u8>,
     missed: u64,
     late: Histogram,
+    /// How long was to be waited after the last round.
+    waited: Duration,
+    /// How far the model was behind the clock at most, beyond that, since it was told.
+    behind: Duration,
     pub(super) sidecar: Sidecar,
     pub(super) line: StatusLine,
 }
@@ -95,13 +101,16 @@ impl Server {
             waiting: VecDeque::new(),
             missed: 0,
             late: Histogram::default(),
-            sidecar: Sidecar::new(name, settings.lag),
+            waited: Duration::ZERO,
+            behind: Duration::ZERO,
+            sidecar: Sidecar::new(name, settings.lag, settings.records),
             line: StatusLine::new(settings.progress),
         }
     }
 
     /// Round after round, until Ctrl-C, or until the client goes where that is the end.
     pub(super) fn run(&mut self) -> Result<(), Failure> {
+        wake_on_time();
         let mut buffer = [0; 4096];
         let (mut looked, mut silent_since) = (Duration::ZERO, self.watch.elapsed());
         let mut has_ended = false;
@@ -130,8 +139,12 @@ impl Server {
                     self.line.note(&text);
                 }
             }
-            let Self { line, session, clock, late, .. } = self;
-            line.tell(|| status(session, clock, late));
+            let Self { line, session, clock, late, behind, port, .. } = self;
+            line.tell(|| {
+                let text = status(session, (clock, std::mem::take(behind)), late);
+                let errors = port.line_errors().filter(|errors| !errors.is_none());
+                errors.map_or_else(|| text.clone(), |errors| format!("{text}  line errors: {errors}"))
+            });
         }
         Ok(())
     }
@@ -186,6 +199,8 @@ impl Server {
         let (to, wait) = match self.pacing {
             Pacing::Real(_) => {
                 let target = self.clock.target(self.watch.nanos(), now);
+                let behind = self.clock.nanos(Cycles(target.0.saturating_sub(now.0)));
+                self.behind = self.behind.max(Duration::from_nanos(behind).saturating_sub(self.waited));
                 let waits = self.panel.as_ref().and_then(|panel| panel.waits).unwrap_or(Instant::NEVER);
                 let to = target.min(Instant(now.0 + step)).min(waits);
                 (to, if to < target { Duration::ZERO } else { IDLE_WAIT })
@@ -200,13 +215,14 @@ impl Server {
         if to > now {
             self.session.advance::<Digest>(to, &mut []);
         }
-        match (self.pacing, self.deadline()) {
+        self.waited = match (self.pacing, self.deadline()) {
             (Pacing::Real(_), due) if due != Instant::NEVER && wait > Duration::ZERO => {
                 let cycles = Cycles(due.0.saturating_sub(self.session.now().0));
                 wait.min(Duration::from_nanos(self.clock.nanos(cycles).max(1)))
             }
             _ => wait,
-        }
+        };
+        self.waited
     }
 
     /// Writes the replies that have left the model.
@@ -256,6 +272,9 @@ impl Server {
         if self.late.count() > 0 {
             writeln!(out, "replies {} late{}", self.late.count(), self.late)?;
         }
+        if let Some(errors) = self.port.line_errors() {
+            writeln!(out, "line_errors {errors}")?;
+        }
         let stretches = self.clock.stretches();
         if stretches.count > 0 {
             writeln!(out, "stretches {} cycles {}", stretches.count, stretches.cycles.0)?;
@@ -272,10 +291,10 @@ fn lost(error: io::Error) -> Failure {
 }
 
 /// How things stand, in a line.
-fn status(session: &Session, clock: &SessionClock, late: &Histogram) -> String {
+fn status(session: &Session, (clock, behind): (&SessionClock, Duration), late: &Histogram) -> String {
     let config = session.experiment().config();
     let seconds = session.now().0 as f64 / f64::from(config.clock_hz().max(1));
-    let mut text = format!("{seconds:8.1} s");
+    let mut text = format!("{seconds:8.1} s  lag {:.1} ms", 1e3 * behind.as_secs_f64());
     if let Some(machine) = session.run().stand_alone() {
         text += &panel::status(machine);
         return text + &not_real_time(clock);
