@@ -63,16 +63,17 @@ fn scenario(controllers: usize, (baud, slot, ticks): (u32, u32, u32), seconds: u
         r#"[ {{ "moves": [ {{ "constant": {{ "speed": {{ "steps_s": 2000 }}, "distance": {{ "steps": {} }} }} }} ] }} ]"#,
         2000 * seconds
     );
-    let others: Vec<String> =
-        (1..controllers).map(|address| format!(r#"{{ "address": {address}, "axes": {axes} }}"#)).collect();
+    // The queue bears that the machine stands still for more than a second.
+    let bus = format!(r#"{{ "step_period_cycles": {slot}, "queue_depth": 200, "boot_cycles": 0 }}"#);
+    let other = |address| format!(r#"{{ "address": {address}, "bus": {bus}, "axes": {axes} }}"#);
+    let others: Vec<String> = (1..controllers).map(other).collect();
     let others = if others.is_empty() {
         String::new()
     } else {
         format!(r#""controllers": [ {} ],"#, others.join(", "))
     };
-    // The queue bears that the machine stands still for more than a second.
     format!(
-        r#"{{ "bus": {{ "step_period_cycles": {slot}, "queue_depth": 200, "boot_cycles": 0 }}, {others}
+        r#"{{ "bus": {bus}, {others}
             "line": {{ "protocol": "framed", "address": 0, "baud": {baud},
                 "host": {{ "ticks_per_frame": {ticks}, "attempts": 40 }} }},
             "source": {{ "motion": {{ "axes": {axes} }} }} }}"#

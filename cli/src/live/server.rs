@@ -188,14 +188,21 @@ impl Server {
     /// The cycle to which it is worth going, and behind which no round goes: something is to be written or pressed then.
     fn deadline(&self) -> Instant {
         let typed = self.panel.as_ref().and_then(|panel| panel.waits);
-        typed.map_or_else(|| self.session.deadline(), |typed| typed.min(self.session.deadline()))
+        // Who waits for each byte is often told to wait its turn: a system with other work is later then.
+        let due = self.session.deadline_of_round(Cycles(self.round_cycles()));
+        typed.map_or(due, |typed| typed.min(due))
+    }
+
+    /// Cycles of a round: a millisecond.
+    fn round_cycles(&self) -> u64 {
+        let clock_hz = u64::from(self.session.experiment().config().clock_hz());
+        (clock_hz / 1000).clamp(1, MAX_ROUND)
     }
 
     /// Runs the model on, a round at most; how long may be waited for bytes then.
     fn round(&mut self, silent_since: Duration) -> Duration {
         let now = self.session.now();
-        let clock_hz = u64::from(self.session.experiment().config().clock_hz());
-        let step = (clock_hz / 1000).clamp(1, MAX_ROUND);
+        let step = self.round_cycles();
         let (to, wait) = match self.pacing {
             Pacing::Real(_) => {
                 let target = self.clock.target(self.watch.nanos(), now);

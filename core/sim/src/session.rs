@@ -49,12 +49,10 @@ use stepscope_controller::{
     NotEntered,
     input::{Change, Signal},
 };
-#[cfg(feature = "controller")]
-use stepscope_peripheral::units::Cycles;
 use stepscope_peripheral::{
     signal::{Event, Record, Sink},
     trace::Digest,
-    units::Instant,
+    units::{Cycles, Instant},
     wire::{BitTimes, bit_times::BYTE_BITS},
 };
 use stepscope_scenario::{
@@ -203,8 +201,17 @@ impl Session {
     /// be answered; [`Instant::NEVER`] where nothing is on the line.
     #[must_use]
     pub fn deadline(&self) -> Instant {
+        self.deadline_of_round(Cycles(0))
+    }
+
+    /// The same where bytes of replies need not be taken one by one: the cycle in which the last one has left of those that
+    /// leave within `round` after the next one. So a reply's end is as punctual, with fewer rounds before it.
+    #[must_use]
+    pub fn deadline_of_round(&self, round: Cycles) -> Instant {
         let now = self.now();
-        let reply = self.replies.front().map_or(Instant::NEVER, |reply| reply.end.max(now.next()));
+        let ends = || self.replies.iter().map(|reply| reply.end);
+        let together = |first: Instant| ends().take_while(|&end| end <= first + round).last();
+        let reply = ends().next().and_then(together).map_or(Instant::NEVER, |end| end.max(now.next()));
         let heard = self.last_send.map(|(start, bytes)| start + self.times.byte(bytes) + self.times.bit(1));
         heard.filter(|&heard| heard > now).map_or(reply, |heard| heard.min(reply))
     }
