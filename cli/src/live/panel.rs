@@ -79,7 +79,6 @@ impl Panel {
 
     fn does(&mut self, line: Line, session: &mut Session, told: &mut StatusLine) {
         let clock_hz = session.experiment().config().clock_hz();
-        let whole = session.records_all();
         let entered = match line {
             Line::Nothing => return,
             Line::Help => return told.note(&help()),
@@ -94,9 +93,6 @@ impl Panel {
         };
         if let Err(why) = entered {
             told.note(&why.to_string());
-        }
-        if whole && !session.records_all() {
-            told.note("more inputs than a recording may have: the session goes on unrecorded");
         }
     }
 

@@ -113,7 +113,7 @@ impl Server {
         wake_on_time();
         let mut buffer = [0; 4096];
         let (mut looked, mut silent_since) = (Duration::ZERO, self.watch.elapsed());
-        let mut has_ended = false;
+        let (mut has_ended, mut was_recorded) = (false, true);
         while interrupt::count() == 0 && !(has_ended && self.is_over()) {
             let wait = self.round(silent_since);
             self.write_replies().map_err(lost)?;
@@ -132,6 +132,10 @@ impl Server {
             }
             if let Some(panel) = &mut self.panel {
                 panel.obey(&mut self.session, &mut self.line);
+            }
+            if was_recorded && !self.session.records_all() {
+                was_recorded = false;
+                self.line.note("more than a recording may have: the session goes on unrecorded");
             }
             if self.watch.elapsed().saturating_sub(looked) > Duration::from_millis(20) {
                 looked = self.watch.elapsed();
@@ -164,11 +168,7 @@ impl Server {
             panel.type_in(bytes);
             return;
         }
-        let recorded = self.session.records_all();
         self.session.receive(bytes);
-        if recorded && !self.session.records_all() {
-            self.line.note("more bytes than a recording may have: the session goes on unrecorded");
-        }
     }
 
     /// Nobody is at the other end any more.

@@ -296,6 +296,10 @@ impl Session {
             }
         }
         self.run_on(to, sinks);
+        #[cfg(feature = "controller")]
+        if self.cut.is_none() && self.run.stand_alone().is_some_and(panel::begins_many) {
+            self.cut_recording();
+        }
     }
 
     fn run_on<S: Sink>(&mut self, to: Instant, sinks: &mut [S]) {

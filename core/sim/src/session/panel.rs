@@ -17,6 +17,11 @@ use stepscope_scenario::PanelInput;
 /// Most inputs that are recorded: as many as a script may have.
 pub const MAX_RECORDED_INPUTS: usize = *limits::INPUTS.end() as usize;
 
+/// Whether so many groups have begun that a recording had better end here: with twice as many it could not be run.
+pub(super) fn begins_many(machine: &StandAlone) -> bool {
+    machine.work().is_none() && machine.groups_begun() > limits::MAX_GROUPS_BEGUN / 2
+}
+
 /// An input of a controller.
 type OfController = (usize, Input);
 
@@ -265,6 +270,25 @@ mod tests {
         let recording = more.recording();
         assert_eq!(recording.scenario.run_cycles, Some(MAX_RECORDED_INPUTS as u64 + 1));
         recording.verify().expect("the same");
+    }
+
+    #[test]
+    fn a_program_without_end_is_recorded_as_far_as_a_run_may_go() {
+        let json = QUICK.replace(
+            r#"[ { "move": { "length": 10, "speed_hz": 1000 } } ]"#,
+            r#"[ { "set": {} }, { "set": { "level": 0 } }, { "jump": {} } ]"#,
+        );
+        let mut session = session(&json);
+        to(&mut session, 99);
+        session.enter(0, Change::Level(Signal::Start, true)).expect("it is to come");
+        for round in 1..=55 {
+            to(&mut session, round * 10_000);
+        }
+        assert!(!session.records_all());
+        session.recording().verify().expect("the same");
+        to(&mut session, 1_200_000);
+        assert!(session.run().stand_alone().expect("it is").work().is_some());
+        session.recording().verify().expect("the same");
     }
 
     #[test]
