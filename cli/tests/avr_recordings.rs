@@ -5,17 +5,17 @@
 //! `STEPSCOPE_BLESS=1` writes the recordings; the numbers in their README are then to be measured anew.
 #![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
 
+mod avr;
+
+use avr::{call, compile, folder, in_the_repository};
 use serde_json::Value as Json;
 use std::{
     collections::BTreeMap,
     env,
     ffi::OsStr,
     fmt::Write,
-    fs::{self, File},
+    fs,
     path::{Path, PathBuf},
-    process::{Command, Stdio},
-    thread,
-    time::{Duration, Instant},
 };
 use vcd::{Command as Entry, IdCode, Parser, ScopeItem, TimescaleUnit, Value};
 
@@ -25,81 +25,17 @@ const COMPILER: &str = "5.4.0";
 /// How far such an edge may be from the recording's.
 const OTHER_COMPILER_NS: u64 = 20_000;
 
-/// Where simavr's header with the pins to record lies: Debian's place, and that of a build by hand.
-const SIMAVR: [&str; 2] = ["-I/usr/include/simavr/avr", "-I/usr/local/include/simavr/avr"];
-
 /// A recording in a logic analyser's session is sampled: every 10th unit of simavr's 10 ns, at 10 MHz.
 const SAMPLED: &str = "vcd:downsample=10";
-
-/// Longest time that a program may take.
-const LIMIT: Duration = Duration::from_secs(60);
-
-fn in_the_repository(place: &str, name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(place).join(name)
-}
 
 fn recording(name: &str) -> PathBuf {
     in_the_repository("core/capture/recordings", name)
 }
 
-/// A folder of its own for what is built and recorded.
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("avr").join(name);
-    fs::create_dir_all(&folder).expect("a folder");
-    folder
-}
-
-/// Calls a program in a folder; what it says is kept there. One that does not end is ended.
-fn call<S: AsRef<OsStr>>(folder: &Path, program: &str, arguments: &[S]) -> String {
-    let path = if program == "stepscope" {
-        PathBuf::from(env!("CARGO_BIN_EXE_stepscope"))
-    } else {
-        which::which(program)
-            .unwrap_or_else(|_| panic!("{program} is not on PATH; `cargo xtask test --only avr` installs it"))
-    };
-    let log = folder.join(format!("{program}.log"));
-    let said = File::create(&log).expect("a file");
-    let mut child = Command::new(path)
-        .args(arguments)
-        .current_dir(folder)
-        .stdin(Stdio::null())
-        .stdout(said.try_clone().expect("the same file"))
-        .stderr(said)
-        .spawn()
-        .expect("the program starts");
-    let begun = Instant::now();
-    let status = loop {
-        if let Some(status) = child.try_wait().expect("it is our own") {
-            break status;
-        }
-        if begun.elapsed() > LIMIT {
-            child.kill().expect("it is our own");
-            panic!("{program} has not ended after {LIMIT:?}");
-        }
-        thread::sleep(Duration::from_millis(10));
-    };
-    let said = String::from_utf8_lossy(&fs::read(&log).expect("what it said")).into_owned();
-    assert!(status.success(), "{program}: {status}\n{said}");
-    said
-}
-
 /// Builds a program of `firmware/avr` with the header that lies in the folder, and runs it: what simavr has recorded.
 fn simulated(folder: &Path, program: &str) -> PathBuf {
     let elf = format!("{program}.elf");
-    let sources = [format!("{program}.c"), format!("{program}_pins.c")];
-    let sources = sources.map(|name| in_the_repository("firmware/avr", &name).into_os_string());
-    // The section with the pins is no part of the chip's memory: it has a place that nothing else has.
-    let options = "-mmcu=atmega328p -DF_CPU=16000000ul -std=gnu99 -Os -Wall -Wextra -Werror -I. \
-        -Wl,--section-start=.mmcu=0x910000 -o";
-    let options = options.split_whitespace().map(OsStr::new);
-    let includes = SIMAVR.map(OsStr::new);
-    let line: Vec<&OsStr> = includes
-        .into_iter()
-        .chain(options)
-        .chain([OsStr::new(&elf)])
-        .chain(sources.iter().map(|s| &**s))
-        .collect();
-    call(folder, "avr-gcc", &line);
+    compile(folder, &elf, &[&format!("{program}.c"), &format!("{program}_pins.c")]);
     call(folder, "simavr", &[&elf]);
     folder.join(format!("{program}.vcd"))
 }

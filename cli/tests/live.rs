@@ -126,6 +126,9 @@ fn what_is_sent_to_a_served_scenario_is_done_and_the_recording_is_the_session() 
             assert!(err.contains("recorded") && out.contains("positions 6 -7\n"), "{out}{err}");
             let digest = out.lines().find_map(|line| line.strip_prefix("digest ")).expect("a digest");
             assert_eq!(run_digest(&record), digest, "{place:?} {pace}");
+            let shared = out.lines().find(|line| line.starts_with("#c=")).expect("a link");
+            let (code, _, err) = ended(command(&["open", shared, "--verify"]).output().expect("it runs"));
+            assert_eq!(code, Some(0), "{err}");
             let beside = fs::read_to_string(record.with_file_name("live-done-recording.session.json"));
             let beside: Value = serde_json::from_str(&beside.expect("it is there")).expect("it is JSON");
             assert_eq!((&beside["digests"][0], &beside["pace"]), (&Value::from(digest), &Value::from(pace)));
@@ -359,4 +362,62 @@ fn what_cannot_be_is_refused_before_anything_is_sent() {
         let (ended, out, err) = ended(command(arguments).output().expect("it runs"));
         assert!(ended == Some(code) && err.contains(why), "{arguments:?}: {ended:?} {out} {err}");
     }
+}
+
+/// A stand-alone controller that is ready after 1 ms, and goes 100 steps at 1000 Hz from its zero.
+const PANEL: &str = r#"{ "source": { "standalone": [ { "debounce_cycles": 1000, "groups": [ { "move": { "length": 10, "speed_hz": 1000 } } ],
+    "memory": { "byte_write_cycles": 10, "hold_up_cycles": 1000 }, "inputs": [ { "cycle": 400, "input": "estop" } ] } ] } }"#;
+
+/// Serves a panel, types on it, and ends; exit code, standard output and standard error.
+fn typed(arguments: &[&str], lines: &str) -> (Option<i32>, String, String) {
+    let mut child =
+        command(&[&["serve"], arguments].concat()).stdin(Stdio::piped()).spawn().expect("it starts");
+    child.stdin.take().expect("piped").write_all(lines.as_bytes()).expect("it reads");
+    ended(child.wait_with_output().expect("it ends"))
+}
+
+#[test]
+fn buttons_are_lines_on_standard_input_and_the_recording_is_the_session() {
+    let scenario = file("panel.json", PANEL);
+    let record = scenario.with_file_name("live-panel-recording.json");
+    let lines = "wait 5ms\npress start 20ms\ndance\npress start 20ms\nwait 200ms\nlimit_max 1\npress 7\nwait 1ms\nhelp\npress start 5ms\npower 0 1ms";
+    for pace in ["max", "1"] {
+        let more = ["--record", text(&record), "--once", "--pace", pace, "--lag", "5000"];
+        let (code, out, err) = typed(&[&[text(&scenario)], &more[..]].concat(), lines);
+        assert_eq!(code, Some(0), "{pace}: {out}{err}");
+        assert!(out.starts_with("stdin\n") && err.contains("recorded"), "{out}{err}");
+        for told in ["dance: no such word or input", "7: no such input", "release NAME", "limit_max"] {
+            assert!(err.contains(told), "{told}: {err}");
+        }
+        assert!(out.contains("\npositions 100\n"), "{out}");
+        // Power was cut and came back: it was READY, with its zero from memory, so it is HELD.
+        assert!(out.contains("panel 0 READY trust HELD position 100 "), "{out}");
+        let line = |start: &str| out.lines().find(|line| line.starts_with(start)).expect(start).to_owned();
+        assert_eq!(line("digest "), format!("digest {}", run_digest(&record)), "{pace}");
+        let (_, replay, _) = ended(command(&["run", text(&record)]).output().expect("it runs"));
+        assert!(replay.contains(&line("panels ")) && replay.contains(&line("panel 0 ")), "{replay}{out}");
+        let recorded: Value =
+            serde_json::from_str(&fs::read_to_string(&record).expect("it is there")).expect("JSON");
+        let inputs = recorded["source"]["standalone"][0]["inputs"].as_array().expect("inputs");
+        // What the scenario itself presses is left out; the second press, while the first one stands, changes nothing but
+        // its release.
+        assert_eq!(inputs.len(), 8, "{inputs:?}");
+        let cycle = |index: usize| inputs[index]["cycle"].as_u64().expect("a cycle");
+        assert_eq!(cycle(2) - cycle(1), 16 * 20_000, "20 ms");
+    }
+}
+
+#[test]
+fn what_a_press_does_not_do_is_told_and_a_panel_has_no_line() {
+    let scenario = file("panel-idle.json", PANEL);
+    let lines = "wait 5ms\npress pause 20ms\nwait 50ms\nestop 1\nestop 0\n1: press start\n";
+    let (code, _, err) = typed(&[text(&scenario), "--once", "--pace", "max"], lines);
+    assert_eq!(code, Some(0), "{err}");
+    assert!(
+        err.contains("pause did nothing in READY") && err.contains("there is no such controller"),
+        "{err}"
+    );
+    let arguments = ["serve", text(&scenario), "--tcp", "127.0.0.1:0"];
+    let (code, _, err) = ended(command(&arguments).output().expect("it runs"));
+    assert!(code == Some(2) && err.contains("has no line") && err.contains("leave out"), "{err}");
 }

@@ -1,16 +1,16 @@
-//! The recordings in `core/capture/recordings`, made again: a test of `cli` builds the programs in `firmware/avr` and runs
-//! them in simavr.
+//! The programs in `firmware/avr`: tests of `cli` build them and run them in simavr. The recordings in `core/capture/recordings`
+//! are made again, and a controller does what `stepscope send` has it do.
 
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 
-use crate::{apt, run, toolchain};
+use crate::{apt, judges, run, toolchain};
 
 /// The packages in Debian, the programs of them that the test calls, and headers that these read.
-const PACKAGES: [&str; 5] = ["gcc-avr", "avr-libc", "simavr", "libsimavr-dev", "sigrok-cli"];
-const PROGRAMS: [&str; 3] = ["avr-gcc", "simavr", "sigrok-cli"];
-const HEADER: &str = "simavr/avr/avr_mcu_section.h";
+const PACKAGES: [&str; 6] = ["gcc-avr", "avr-libc", "simavr", "libsimavr-dev", "sigrok-cli", "gcc"];
+const PROGRAMS: [&str; 4] = ["avr-gcc", "simavr", "sigrok-cli", "cc"];
+const HEADERS: [&str; 2] = ["simavr/avr/avr_mcu_section.h", "simavr/sim_avr.h"];
 const INCLUDES: [&str; 2] = ["/usr/include", "/usr/local/include"];
 
 /// Installs what is missing and runs the test.
@@ -21,9 +21,10 @@ pub(crate) async fn test() -> Result<()> {
     }
     let mut command = toolchain::cargo();
     // The whole workspace, so that its packages keep the features, and with them the builds, of the native step.
-    let line =
-        ["test", "--workspace", "--features", "stepscope-cli/avr", "--test", "avr_recordings", "--locked"];
-    command.args(line);
+    command.args(["test", "--workspace", "--features", "stepscope-cli/avr", "--locked"]);
+    command
+        .args(["--test", "avr_recordings", "--test", "avr_live"])
+        .env("STEPSCOPE_PYTHON", judges::python().await?);
     run::to_end(command, run::LIMIT).await
 }
 
@@ -31,15 +32,17 @@ fn found() -> Result<()> {
     for program in PROGRAMS {
         which::which(program).with_context(|| program)?;
     }
-    if !INCLUDES.iter().any(|folder| Path::new(folder).join(HEADER).exists()) {
-        bail!("no {HEADER} in {}", INCLUDES.join(", "));
+    for header in HEADERS {
+        if !INCLUDES.iter().any(|folder| Path::new(folder).join(header).exists()) {
+            bail!("no {header} in {}", INCLUDES.join(", "));
+        }
     }
     Ok(())
 }
 
 fn remedy() -> String {
     format!(
-        "the recordings' test needs {} on PATH, avr-libc, and simavr's headers: install them (Debian: `apt-get install {}` as root)",
+        "the tests of firmware need {} on PATH, avr-libc, and simavr's headers: install them (Debian: `apt-get install {}` as root)",
         PROGRAMS.join(", "),
         PACKAGES.join(" ")
     )

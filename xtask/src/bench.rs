@@ -222,6 +222,13 @@ pub(crate) async fn page(results: Option<&Path>) -> Result<()> {
     run::to_end(command, run::LIMIT).await
 }
 
+/// Measures the command's server. Its times are of this machine and this moment.
+pub(crate) async fn live() -> Result<()> {
+    let mut command = toolchain::cargo();
+    command.args(["bench", "--package", "stepscope-cli", "--bench", "live", "--locked"]);
+    run::to_end(command, run::LIMIT).await
+}
+
 /// Criterion's benchmarks, each kernel by itself; their results lie under `home` then.
 async fn criterion(home: &Path, effort: [&str; 6]) -> Result<()> {
     // What an earlier run left would only be compared with.

@@ -30,7 +30,7 @@ pub(crate) async fn test() -> Result<()> {
 }
 
 /// A Python with the packages, in an environment of its own in the tools' cache.
-async fn python() -> Result<PathBuf> {
+pub(crate) async fn python() -> Result<PathBuf> {
     let home = cache()?.join("tools").join(HOME);
     let python = home.join("bin").join("python");
     if python.exists() && works(&python).await {

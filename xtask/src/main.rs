@@ -110,6 +110,9 @@ enum Task {
         /// Measure the page in Chromium alone: its frames, its loading, its answers to keys
         #[arg(long, conflicts_with_all = ["quick", "against"])]
         page: bool,
+        /// Measure `stepscope serve` alone: how late its replies are, its load, its memory over a day of session
+        #[arg(long, conflicts_with_all = ["quick", "against", "page"])]
+        live: bool,
         /// Measure the kernels of this commit in the same blocks, and print what they have become
         #[arg(long, value_name = "REV")]
         against: Option<String>,
@@ -199,6 +202,7 @@ async fn perform(task: Task) -> Result<()> {
         }
         Task::Test { only, list: false } => steps::run(&only).await,
         Task::Bench { page: true, .. } => bench::page(None).await,
+        Task::Bench { live: true, .. } => bench::live().await,
         Task::Bench { quick, against: Some(rev), .. } => bench::against(quick, &rev).await,
         Task::Bench { quick, .. } => bench::run(quick).await,
         Task::Attend { words } => attend::attend(&words).await,

@@ -29,7 +29,7 @@ pub(crate) enum Step {
     Native,
     /// Value change dumps, read by GTKWave's and sigrok's programs
     Vcd,
-    /// The recordings of firmware, made again in simavr
+    /// The recordings of firmware, made again in simavr, and a firmware at the other end of the live commands
     Avr,
     /// The live commands, with a host and a device in Python and with socat
     Live,

@@ -1,5 +1,6 @@
 //! Ports: a real one, a pseudo-terminal's side for others, a socket. Each reads for a while and writes what it can.
 
+use super::line_errors::{self, LineErrors};
 use crate::failure::Failure;
 use serial2::{CharSize, FlowControl, Parity, SerialPort, Settings, StopBits};
 use std::{
@@ -46,6 +47,11 @@ pub(crate) trait Port {
 
     /// Looks after what is no data, a few times a second; what is to be told.
     fn look(&mut self) -> Option<String> {
+        None
+    }
+
+    /// Errors that the line had since it was opened, where the system counts them.
+    fn line_errors(&self) -> Option<LineErrors> {
         None
     }
 
@@ -111,7 +117,11 @@ pub(crate) enum Rs485 {
 }
 
 /// A real port, or somebody's pseudo-terminal.
-pub(crate) struct Serial(SerialPort);
+pub(crate) struct Serial {
+    port: SerialPort,
+    /// Errors that were counted before.
+    errors_before: Option<LineErrors>,
+}
 
 impl Serial {
     /// Opens a port at 8N1 without flow control, for nobody else, and reads back whether it is.
@@ -158,7 +168,8 @@ impl Serial {
         }
         // What was sent before this port was opened is no answer.
         port.discard_buffers().map_err(failed)?;
-        Ok(Self(port))
+        let errors_before = line_errors::counted(&port);
+        Ok(Self { port, errors_before })
     }
 }
 
@@ -193,24 +204,28 @@ fn has_bytes<T>(_port: &T, _wait: Duration) -> io::Result<bool> {
 
 impl Port for Serial {
     fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<Heard> {
-        if !has_bytes(&self.0, wait)? {
+        if !has_bytes(&self.port, wait)? {
             return Ok(Heard::Nothing);
         }
         let wait = if wait.is_zero() { wait } else { wait.max(LEAST_WAIT) };
-        self.0.set_read_timeout(wait)?;
-        heard(self.0.read(buffer))
+        self.port.set_read_timeout(wait)?;
+        heard(self.port.read(buffer))
     }
 
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        written(self.0.write(bytes))
+        written(self.port.write(bytes))
     }
 
     fn drain(&mut self) -> io::Result<()> {
-        self.0.flush()
+        self.port.flush()
     }
 
     fn set_rts(&mut self, on: bool) -> io::Result<()> {
-        self.0.set_rts(on)
+        self.port.set_rts(on)
+    }
+
+    fn line_errors(&self) -> Option<LineErrors> {
+        Some(line_errors::counted(&self.port)?.since(self.errors_before?))
     }
 }
 

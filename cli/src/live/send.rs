@@ -6,7 +6,7 @@ use super::{
     port::{Heard, Port, Rs485, Serial, Socket},
     raw,
     status_line::StatusLine,
-    stop_watch::StopWatch,
+    stop_watch::{StopWatch, wake_on_time},
     wire::Wire,
 };
 use crate::{failure::Failure, json::Tables, scenarios};
@@ -92,6 +92,7 @@ pub(crate) fn send(arguments: &Arguments) -> Result<(), Failure> {
     }
     raw::judge_lead(&experiment, arguments.lead)?;
     interrupt::watch()?;
+    wake_on_time();
     let port = open(&arguments.port, baud, arguments.rs485)?;
     let wire = &mut Wire::new(port, arguments.rs485 == Rs485::Rts, arguments.echo);
     if is_raw {
@@ -327,6 +328,9 @@ fn report(
             "frames {} repeated {} replies {} rejected {} refused {}",
             counts.frames, counts.repeated, counts.replies, counts.rejected, counts.refused
         )?;
+        if let Some(errors) = wire.port.line_errors().filter(|errors| !errors.is_none()) {
+            writeln!(out, "line_errors {errors}: is the other end at {} baud?", sender.baud)?;
+        }
         if wire.collisions() > 0 {
             writeln!(out, "collisions {}: own bytes came back changed", wire.collisions())?;
         }
@@ -387,6 +391,7 @@ fn tables(rows: &[Row], sender: &Sender, wire: &Wire, lost: Option<&str>) -> Tab
         "outcome": if verified { "done" } else { "not verified" },
         "why": lost.map(str::to_owned).or_else(|| rows.iter().find_map(Row::doubt)),
         "collisions": wire.collisions(),
+        "line_errors": wire.port.line_errors().map(|errors| errors.to_string()),
     });
     let controllers = rows.iter().map(|row| {
         json!({

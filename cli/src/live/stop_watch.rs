@@ -19,3 +19,13 @@ impl StopWatch {
         self.0.elapsed()
     }
 }
+
+/// From now on a wait ends when its time is over, and not up to 50 us later, which the system may otherwise add to join
+/// wake-ups.
+pub(crate) fn wake_on_time() {
+    #[cfg(target_os = "linux")]
+    {
+        // A system that does not have it wakes later.
+        let _ = rustix::thread::set_current_timer_slack(std::num::NonZeroU64::new(1));
+    }
+}

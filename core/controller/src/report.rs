@@ -35,6 +35,12 @@ impl StandAlone {
         self.controllers.len()
     }
 
+    /// Groups that have begun, of all controllers: with more than [`crate::limits::MAX_GROUPS_BEGUN`] the run ends.
+    #[must_use]
+    pub const fn groups_begun(&self) -> u64 {
+        self.begun
+    }
+
     /// The panels' records that are kept, controller after controller.
     pub fn panels(&self) -> impl Iterator<Item = &[PanelRecord]> {
         self.controllers.iter().map(|controller| controller.panel.as_slice())

@@ -35,6 +35,15 @@ impl Alone {
         }
     }
 
+    /// The same, to be pressed.
+    #[cfg(feature = "controller")]
+    pub(crate) const fn stand_alone_mut(&mut self) -> Option<&mut StandAlone> {
+        match self {
+            Self::Segments(_) => None,
+            Self::Panels(machine) => Some(machine),
+        }
+    }
+
     /// The first cycle that has not been run.
     pub(crate) fn now(&self) -> Instant {
         match self {

@@ -376,6 +376,12 @@ impl Run {
         self.controllers.alone.as_ref()?.stand_alone()
     }
 
+    /// The same, to be pressed.
+    #[cfg(feature = "controller")]
+    pub(crate) fn stand_alone_mut(&mut self) -> Option<&mut stepscope_controller::StandAlone> {
+        self.controllers.alone.as_mut()?.stand_alone_mut()
+    }
+
     /// Faults of the first controller so far, or of the segment engine.
     #[must_use]
     pub fn faults(&self) -> Faults {
@@ -446,9 +452,9 @@ impl Run {
         &mut self.controllers.bus
     }
 
-    /// Whether nothing changes any more unless something is sent.
+    /// Whether nothing changes any more unless something is sent or pressed.
     pub(crate) fn is_at_rest(&self) -> bool {
-        self.controllers.bus.is_over()
+        self.controllers.alone.as_ref().map_or_else(|| self.controllers.bus.is_over(), Alone::at_rest)
     }
 
     /// Goes on to a cycle, or until a controller has made so many records more, with a sink and an observer of its plant for

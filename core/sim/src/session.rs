@@ -13,6 +13,8 @@
 //!
 //! Levels that the scenario forces on the line are heard by the controllers; replies leave as they were sent.
 //!
+//! Stand-alone controllers have no line: their buttons come in ([`Session::enter`]), and nothing goes out.
+//!
 //! ```
 //! use stepscope_peripheral::{signal::Record, units::Instant, wire::frame};
 //! use stepscope_scenario::Scenario;
@@ -30,21 +32,32 @@
 //! ```
 
 mod clock;
+#[cfg(feature = "controller")]
+mod panel;
 #[cfg(test)]
 mod tests;
 
 pub use clock::{Pace, SessionClock, Stretches};
+#[cfg(feature = "controller")]
+pub use panel::MAX_RECORDED_INPUTS;
 
 use crate::{Experiment, Run, replayed};
 use alloc::{collections::VecDeque, rc::Rc, vec, vec::Vec};
 use core::fmt;
+#[cfg(feature = "controller")]
+use stepscope_controller::{
+    NotEntered,
+    input::{Change, Signal},
+};
 use stepscope_peripheral::{
     signal::{Event, Record, Sink},
     trace::Digest,
-    units::Instant,
+    units::{Cycles, Instant},
     wire::{BitTimes, bit_times::BYTE_BITS},
 };
-use stepscope_scenario::{END_OF_TIME, Hex, Host, LineScript, Problem, Scenario, ScriptedSend, ValueError};
+use stepscope_scenario::{
+    END_OF_TIME, Hex, Host, LineScript, Noise, Problem, Scenario, ScriptedSend, Source, ValueError,
+};
 
 /// Most bytes that are recorded: as many as a line script may have.
 pub const MAX_RECORDED_BYTES: u64 = 4 << 20;
@@ -79,11 +92,31 @@ pub struct Session {
     digests: Vec<Digest>,
     /// What was recorded until there was no more room.
     cut: Option<Rc<Recording>>,
+    /// Of stand-alone controllers.
+    #[cfg(feature = "controller")]
+    presses: panel::Presses,
+}
+
+/// What a session of a scenario begins with: nothing is sent, nothing is pressed.
+fn blank(scenario: &Scenario) -> Scenario {
+    let mut blank = match &scenario.source {
+        #[cfg(feature = "controller")]
+        Source::Standalone(_) => scenario.clone(),
+        _ => replayed(scenario.clone(), LineScript::default()),
+    };
+    #[cfg(feature = "controller")]
+    if let Source::Standalone(controllers) = &mut blank.source {
+        controllers.iter_mut().for_each(|controller| controller.inputs = Vec::new());
+    }
+    blank.line.host = Host::default();
+    blank.line.noise = Noise::default();
+    blank.run_cycles = Some(1);
+    blank
 }
 
 impl Session {
-    /// The controllers of a scenario behind cycle 0. What the scenario sends and how long it runs is left out, so are its host
-    /// and its noise.
+    /// The controllers of a scenario behind cycle 0. What the scenario sends or presses and how long it runs is left out, so are
+    /// its host and its noise.
     ///
     /// # Errors
     /// Every problem of the scenario, and that segments have no line.
@@ -92,9 +125,7 @@ impl Session {
             let detail = "segments run a controller by itself, and nothing is on the line; choose ticks, packets or a line script";
             return Err(vec![Problem::new("source", ValueError::Conflict { detail })]);
         }
-        let mut blank = replayed(scenario.clone(), LineScript::default());
-        blank.line.host = Host::default();
-        blank.run_cycles = Some(1);
+        let blank = blank(scenario);
         let experiment = Experiment::new(&blank)?;
         let clock_hz = experiment.config().clock_hz();
         let mut run = experiment.start();
@@ -113,6 +144,8 @@ impl Session {
             digests: vec![Digest::default(); experiment.controllers()],
             experiment: Rc::new(experiment),
             cut: None,
+            #[cfg(feature = "controller")]
+            presses: panel::Presses::default(),
         };
         session.advance::<Digest>(Instant::RESET, &mut []);
         Ok(session)
@@ -148,9 +181,13 @@ impl Session {
         &self.digests
     }
 
-    /// Whether nothing changes any more unless something is received, and no reply waits to be taken.
+    /// Whether nothing changes any more unless something is received or pressed, and no reply waits to be taken.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
+        #[cfg(feature = "controller")]
+        if !self.presses.are_done() {
+            return false;
+        }
         self.run.is_at_rest() && self.replies.is_empty()
     }
 
@@ -164,16 +201,25 @@ impl Session {
     /// be answered; [`Instant::NEVER`] where nothing is on the line.
     #[must_use]
     pub fn deadline(&self) -> Instant {
+        self.deadline_of_round(Cycles(0))
+    }
+
+    /// The same where bytes of replies need not be taken one by one: the cycle in which the last one has left of those that
+    /// leave within `round` after the next one. So a reply's end is as punctual, with fewer rounds before it.
+    #[must_use]
+    pub fn deadline_of_round(&self, round: Cycles) -> Instant {
         let now = self.now();
-        let reply = self.replies.front().map_or(Instant::NEVER, |reply| reply.end.max(now.next()));
+        let ends = || self.replies.iter().map(|reply| reply.end);
+        let together = |first: Instant| ends().take_while(|&end| end <= first + round).last();
+        let reply = ends().next().and_then(together).map_or(Instant::NEVER, |end| end.max(now.next()));
         let heard = self.last_send.map(|(start, bytes)| start + self.times.byte(bytes) + self.times.bit(1));
         heard.filter(|&heard| heard > now).map_or(reply, |heard| heard.min(reply))
     }
 
-    /// Bytes that are read while the model stands behind [`Self::now`].
+    /// Bytes that are read while the model stands behind [`Self::now`]; none where there is no line.
     pub fn receive(&mut self, bytes: &[u8]) {
         let count = bytes.len() as u64;
-        if count == 0 {
+        if count == 0 || !matches!(self.blank.source, Source::Line(_)) {
             return;
         }
         let next = self.now().next();
@@ -181,7 +227,7 @@ impl Session {
         if self.cut.is_none() {
             let sends = self.run.schedule().len() as u64 + u64::from(joins.is_none());
             if self.heard + count > MAX_RECORDED_BYTES || sends > MAX_RECORDED_SENDS {
-                self.cut = Some(Rc::new(self.recording_to_now()));
+                self.cut_recording();
             }
         }
         self.heard += count;
@@ -198,9 +244,65 @@ impl Session {
         }
     }
 
+    /// A change at the panel of stand-alone controllers that comes while the model stands behind [`Self::now`]; gives its cycle:
+    /// the next one, or where the same input changes there the one after it. A level that was still to come of that input
+    /// does not come any more.
+    ///
+    /// # Errors
+    /// What a script would be refused for, and that a line has no buttons.
+    #[cfg(feature = "controller")]
+    pub fn enter(&mut self, controller: usize, change: Change) -> Result<Instant, NotEntered> {
+        if self.cut.is_none() && !self.presses.has_room() {
+            self.cut_recording();
+        }
+        if self.cut.is_some() {
+            self.presses.forget();
+        }
+        let machine = self.run.stand_alone_mut().ok_or(NotEntered::NoController)?;
+        self.presses.enter(machine, controller, change)
+    }
+
+    /// The same for a level that is there for so long, and then the other one, unless the input changes before.
+    ///
+    /// # Errors
+    /// Those of [`Self::enter`].
+    #[cfg(feature = "controller")]
+    pub fn enter_for(
+        &mut self,
+        controller: usize,
+        (signal, level): (Signal, bool),
+        held: Cycles,
+    ) -> Result<Instant, NotEntered> {
+        let at = self.enter(controller, Change::Level(signal, level))?;
+        let back = Instant(at.0.saturating_add(held.0.max(1)));
+        self.presses.later(controller, back, (signal, !level));
+        Ok(at)
+    }
+
+    /// There is no more room: what is recorded ends here.
+    fn cut_recording(&mut self) {
+        self.cut = Some(Rc::new(self.recording_to_now()));
+    }
+
     /// Runs the model up to and with cycle `to`, with a sink for each controller; what is past stays as it is, and nothing comes
     /// after the end of time.
     pub fn advance<S: Sink>(&mut self, to: Instant, sinks: &mut [S]) {
+        #[cfg(feature = "controller")]
+        while let Some(due) = self.presses.due(to) {
+            self.run_on(Instant(due.0.saturating_sub(1)), sinks);
+            while let Some((controller, change)) = self.presses.take(due) {
+                // The level before it was allowed, and with it this one.
+                let _ = self.enter(controller, change);
+            }
+        }
+        self.run_on(to, sinks);
+        #[cfg(feature = "controller")]
+        if self.cut.is_none() && self.run.stand_alone().is_some_and(panel::begins_many) {
+            self.cut_recording();
+        }
+    }
+
+    fn run_on<S: Sink>(&mut self, to: Instant, sinks: &mut [S]) {
         let Self { run, digests, replies, reply_times, .. } = self;
         let mut sinks = sinks.iter_mut();
         let mut answers: Vec<Vec<ReplyByte>> = vec![Vec::new(); digests.len()];
@@ -239,15 +341,29 @@ impl Session {
     }
 
     fn recording_to_now(&self) -> Recording {
-        let sends = self.run.schedule().iter();
-        let sends = sends.map(|send| ScriptedSend {
+        let mut scenario = self.blank.clone();
+        scenario.source = self.source_to_now();
+        scenario.run_cycles = Some(self.run.cycles().0);
+        let digests = self.digests.iter().map(Digest::value).collect();
+        Recording { scenario, digests, panel_digest: panel_digest(&self.run) }
+    }
+
+    /// What was received or pressed.
+    fn source_to_now(&self) -> Source {
+        #[cfg(feature = "controller")]
+        if let Source::Standalone(controllers) = &self.blank.source {
+            let mut controllers = controllers.clone();
+            for (index, controller) in controllers.iter_mut().enumerate() {
+                controller.inputs = self.presses.script(index, self.now());
+            }
+            return Source::Standalone(controllers);
+        }
+        let sends = self.run.schedule().iter().map(|send| ScriptedSend {
             start_cycle: send.start.0,
             bytes: Hex(send.bytes.to_vec()),
             frame: None,
         });
-        let mut scenario = replayed(self.blank.clone(), LineScript { sends: sends.collect() });
-        scenario.run_cycles = Some(self.run.cycles().0);
-        Recording { scenario, digests: self.digests.iter().map(Digest::value).collect() }
+        Source::Line(LineScript { sends: sends.collect() })
     }
 }
 
@@ -287,6 +403,18 @@ pub struct Recording {
     pub scenario: Scenario,
     /// The digest of each controller's trace.
     pub digests: Vec<u64>,
+    /// Of stand-alone controllers that of their panels' records (CONTROLLER.md G8).
+    pub panel_digest: Option<u64>,
+}
+
+#[cfg(feature = "controller")]
+fn panel_digest(run: &Run) -> Option<u64> {
+    run.stand_alone().map(stepscope_controller::StandAlone::panel_digest)
+}
+
+#[cfg(not(feature = "controller"))]
+const fn panel_digest(_: &Run) -> Option<u64> {
+    None
 }
 
 /// Why a recording is not the session.
@@ -303,6 +431,8 @@ pub enum NotTheSession {
         /// The digest of the replay.
         replay: u64,
     },
+    /// Panels show something else.
+    PanelsDiffer,
 }
 
 impl fmt::Display for NotTheSession {
@@ -316,6 +446,9 @@ impl fmt::Display for NotTheSession {
                 f,
                 "controller {controller} had the digest {session:016x} in the session, and {replay:016x} when the recording was run"
             ),
+            Self::PanelsDiffer => {
+                f.write_str("the panels showed something else in the session than when the recording was run")
+            }
         }
     }
 }
@@ -328,12 +461,15 @@ impl Recording {
     pub fn verify(&self) -> Result<(), NotTheSession> {
         let experiment = Experiment::new(&self.scenario).map_err(NotTheSession::Refused)?;
         let mut replay = vec![Digest::default(); experiment.controllers()];
-        experiment.run_each(&mut replay);
+        let run = experiment.run_each(&mut replay);
         let pairs = self.digests.iter().zip(replay.iter().map(Digest::value)).enumerate();
         for (controller, (&session, replay)) in pairs {
             if session != replay {
                 return Err(NotTheSession::Differs { controller, session, replay });
             }
+        }
+        if panel_digest(&run) != self.panel_digest {
+            return Err(NotTheSession::PanelsDiffer);
         }
         Ok(())
     }

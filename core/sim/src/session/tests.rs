@@ -82,6 +82,26 @@ fn a_reply_leaves_with_its_stop_bit_and_not_before() {
     assert_eq!((ends.len(), ends[16] - ends[0], rounds), (17, 16 * 160, 18));
 }
 
+#[test]
+fn bytes_of_a_reply_that_leave_within_a_round_are_waited_for_together_and_the_last_one_is_punctual() {
+    let json = r#"{ "clock_hz": 1600, "line": { "baud": 100, "protocol": "framed" } , "bus": { "boot_cycles": 0 } }"#;
+    // A byte takes 160 cycles: round, rounds of a reply of 17 bytes.
+    for (round, expected) in [(0, 17), (159, 17), (160, 9), (500, 5), (100_000, 1)] {
+        let mut session = session(json);
+        session.receive(&frame::emit(0, 4, &[]));
+        let heard = session.deadline_of_round(Cycles(round));
+        session.advance::<Digest>(heard, &mut []);
+        let (mut bytes, mut rounds) = (Vec::new(), 0);
+        while session.is_busy() {
+            session.advance::<Digest>(session.deadline_of_round(Cycles(round)), &mut []);
+            bytes.extend(session.take_replies());
+            assert_eq!(bytes.last().map(|byte| byte.end), Some(session.now()), "{round}");
+            rounds += 1;
+        }
+        assert_eq!((bytes.len(), rounds), (17, expected), "{round}");
+    }
+}
+
 /// Random scenarios: protocols, rates, controllers.
 fn random_scenario(random: &mut Random) -> String {
     let framed = random.below(2) == 0;

@@ -1,0 +1,210 @@
+//! Lines of text that are buttons, switches, power and a hand on the axis of a stand-alone controller (LIVE H2).
+//!
+//! ```text
+//! press start 100ms     down, and up after 100 ms of the session's time
+//! power 0 2s            without power for 2 s
+//! 1: limit_max 1        of the second controller
+//! ```
+
+use std::{fmt, str::FromStr};
+use stepscope_core::{
+    controller::input::{Change, Signal},
+    peripheral::units::Cycles,
+};
+
+/// What `help` says.
+pub(crate) const HELP: &str = "\
+press NAME [TIME]     a button, held until `release NAME`, or for a time such as 100ms, 2.5s or 200us
+release NAME
+NAME 0|1 [TIME]       a level of any input, for good or for a time: power 0, estop 1, limit_max 1
+push STEPS            a hand on the axis, such as -20, while its windings are without current
+wait TIME             the lines after it come so much later
+1: LINE               the same of controller 1; without it, of controller 0
+help                  this, and the names of all inputs";
+
+/// Most seconds of a time: a month of session.
+const MAX_SECONDS: f64 = 2_678_400.0;
+
+/// A line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Line {
+    /// Blank, or a comment after `#`.
+    Nothing,
+    Help,
+    /// What follows comes later.
+    Wait(Span),
+    /// An input of a controller changes, for good or for a time.
+    Change(usize, Change, Option<Span>),
+}
+
+/// A time of the session.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Span {
+    seconds: f64,
+}
+
+impl Span {
+    /// The nearest number of cycles.
+    pub(crate) fn cycles(self, clock_hz: u32) -> Cycles {
+        Cycles((self.seconds * f64::from(clock_hz)).round() as u64)
+    }
+}
+
+impl FromStr for Span {
+    type Err = NoLine;
+
+    fn from_str(text: &str) -> Result<Self, NoLine> {
+        let wrong = || NoLine::Time(text.to_owned());
+        let digits = text.trim_end_matches(char::is_alphabetic);
+        let unit = match text.get(digits.len()..) {
+            Some("us") => 1e-6,
+            Some("ms") => 1e-3,
+            Some("s") => 1.0,
+            _ => return Err(wrong()),
+        };
+        let number: f64 = digits.parse().map_err(|_| wrong())?;
+        let seconds = number * unit;
+        (0.0..=MAX_SECONDS).contains(&seconds).then_some(Self { seconds }).ok_or_else(wrong)
+    }
+}
+
+/// Why a line says nothing.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum NoLine {
+    /// It begins with a word that means nothing.
+    Word(String),
+    /// There is no such input.
+    Input(String),
+    Level(String),
+    Time(String),
+    Steps(String),
+    /// The words, and how many are meant.
+    Count(String, &'static str),
+}
+
+impl fmt::Display for NoLine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Word(word) => write!(f, "{word}: no such word or input; `help` says what there is"),
+            Self::Input(name) => write!(f, "{name}: no such input; `help` names them"),
+            Self::Level(text) => write!(f, "{text}: not a level; give 0 or 1"),
+            Self::Time(text) => write!(f, "{text}: not a time; give one such as 100ms, 2.5s or 200us"),
+            Self::Steps(text) => write!(f, "{text}: not a number of steps; give a whole one, such as -20"),
+            Self::Count(word, usage) => write!(f, "{word}: give `{usage}`"),
+        }
+    }
+}
+
+fn signal(name: &str) -> Result<Signal, NoLine> {
+    Signal::by_name(name).ok_or_else(|| NoLine::Input(name.to_owned()))
+}
+
+fn level(text: &str) -> Result<bool, NoLine> {
+    match text {
+        "0" => Ok(false),
+        "1" => Ok(true),
+        _ => Err(NoLine::Level(text.to_owned())),
+    }
+}
+
+fn span(text: Option<&&str>) -> Result<Option<Span>, NoLine> {
+    text.map(|text| text.parse()).transpose()
+}
+
+impl FromStr for Line {
+    type Err = NoLine;
+
+    fn from_str(text: &str) -> Result<Self, NoLine> {
+        let text = text.split('#').next().unwrap_or_default().trim();
+        let (controller, text) = match text.split_once(':') {
+            Some((index, rest)) => match index.trim().parse() {
+                Ok(index) => (index, rest),
+                Err(_) => return Err(NoLine::Word(format!("{}:", index.trim()))),
+            },
+            None => (0, text),
+        };
+        let words: Vec<&str> = text.split_whitespace().collect();
+        let change = |signal, level, held| Self::Change(controller, Change::Level(signal, level), held);
+        let count = |word: &str, usage| NoLine::Count(word.to_owned(), usage);
+        match words.as_slice() {
+            [] => Ok(Self::Nothing),
+            ["help" | "?"] => Ok(Self::Help),
+            ["wait", time] => Ok(Self::Wait(time.parse()?)),
+            ["wait", ..] => Err(count("wait", "wait 2s")),
+            ["press", name, time @ ..] if time.len() < 2 => {
+                Ok(change(signal(name)?, true, span(time.first())?))
+            }
+            ["press", ..] => Err(count("press", "press start 100ms")),
+            ["release", name] => Ok(change(signal(name)?, false, None)),
+            ["release", ..] => Err(count("release", "release start")),
+            ["push", steps] => {
+                let steps = steps.parse().map_err(|_| NoLine::Steps((*steps).to_owned()))?;
+                Ok(Self::Change(controller, Change::Push(steps), None))
+            }
+            ["push", ..] => Err(count("push", "push -20")),
+            [word, rest @ ..] => {
+                let signal = Signal::by_name(word).ok_or_else(|| NoLine::Word((*word).to_owned()))?;
+                match rest {
+                    [to] => Ok(change(signal, level(to)?, None)),
+                    [to, time] => Ok(change(signal, level(to)?, Some(time.parse()?))),
+                    _ => Err(count(word, "power 0` or `power 0 2s")),
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn level_of(controller: usize, signal: Signal, level: bool, seconds: Option<f64>) -> Line {
+        Line::Change(controller, Change::Level(signal, level), seconds.map(|seconds| Span { seconds }))
+    }
+
+    #[test]
+    fn a_line_is_a_change_and_what_is_none_is_told() {
+        let rows = [
+            ("press start 100ms", level_of(0, Signal::Start, true, Some(0.1))),
+            ("press jog_plus", level_of(0, Signal::JogPlus, true, None)),
+            ("release jog_plus", level_of(0, Signal::JogPlus, false, None)),
+            ("power 0", level_of(0, Signal::Power, false, None)),
+            ("  power 0 2.5s # a cut", level_of(0, Signal::Power, false, Some(2.5))),
+            ("3: limit_max 1", level_of(3, Signal::LimitMax, true, None)),
+            ("1:push -20", Line::Change(1, Change::Push(-20), None)),
+            ("wait 250us", Line::Wait(Span { seconds: 250.0 * 1e-6 })),
+            ("?", Line::Help),
+            ("# nothing", Line::Nothing),
+            ("", Line::Nothing),
+        ];
+        for (text, line) in rows {
+            assert_eq!(text.parse(), Ok(line), "{text}");
+        }
+        for (text, why) in [
+            ("dance", "dance: no such word or input; `help`"),
+            ("press dance", "dance: no such input"),
+            ("press", "give `press start 100ms`"),
+            ("press start 1ms 2ms", "give `press start 100ms`"),
+            ("power 2", "2: not a level; give 0 or 1"),
+            ("power", "give `power 0` or `power 0 2s`"),
+            ("press start 100", "100: not a time"),
+            ("press start -1s", "-1s: not a time"),
+            ("press start NaNs", "NaNs: not a time"),
+            ("wait", "give `wait 2s`"),
+            ("push much", "much: not a number of steps"),
+            ("left: push 2", "left:: no such word"),
+        ] {
+            let told = text.parse::<Line>().expect_err(text).to_string();
+            assert!(told.contains(why), "{text}: {told}");
+        }
+    }
+
+    #[test]
+    fn a_time_is_the_nearest_number_of_cycles() {
+        for (text, cycles) in
+            [("100ms", 1_600_000), ("62.5us", 1000), ("0.03us", 0), ("0s", 0), ("2s", 32_000_000)]
+        {
+            assert_eq!(text.parse::<Span>().expect(text).cycles(16_000_000), Cycles(cycles), "{text}");
+        }
+    }
+}

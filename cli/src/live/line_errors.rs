@@ -1,0 +1,87 @@
+//! Errors of a real line, as its driver counts them (LIVE H1): beside a session, not in its recording.
+
+use std::fmt;
+
+/// Counts since the system started, or since a port was opened.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct LineErrors {
+    /// Bytes without their stop bit: the other end has another rate, or the line is bad.
+    framing: u32,
+    /// Bytes that came before there was room.
+    overruns: u32,
+    parity: u32,
+    breaks: u32,
+}
+
+impl LineErrors {
+    /// What was counted after `begin`; the counters go round.
+    pub(crate) const fn since(self, begin: Self) -> Self {
+        Self {
+            framing: self.framing.wrapping_sub(begin.framing),
+            overruns: self.overruns.wrapping_sub(begin.overruns),
+            parity: self.parity.wrapping_sub(begin.parity),
+            breaks: self.breaks.wrapping_sub(begin.breaks),
+        }
+    }
+
+    /// Whether there was none.
+    pub(crate) fn is_none(self) -> bool {
+        self == Self::default()
+    }
+}
+
+impl fmt::Display for LineErrors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { framing, overruns, parity, breaks } = self;
+        write!(f, "framing {framing} overrun {overruns} parity {parity} break {breaks}")
+    }
+}
+
+/// What the driver of a port has counted; `None` where the system does not tell, as of pseudo-terminals.
+#[cfg(all(
+    target_os = "linux",
+    any(target_arch = "x86", target_arch = "x86_64", target_arch = "arm", target_arch = "aarch64")
+))]
+pub(crate) fn counted(port: &impl std::os::fd::AsFd) -> Option<LineErrors> {
+    use rustix::ioctl::{Getter, Opcode, ioctl};
+    /// As these architectures have it.
+    const TIOCGICOUNT: Opcode = 0x545d;
+    /// `struct serial_icounter_struct` of <linux/serial.h>: twenty times `int`.
+    type Counters = [i32; 20];
+    const FRAME: usize = 6;
+    #[allow(unsafe_code, reason = "no crate that is used here has this call")]
+    // SAFETY: TIOCGICOUNT writes a `serial_icounter_struct`, which is as long as `Counters`, of whose ints any value will do.
+    let counters = unsafe { ioctl(port, Getter::<TIOCGICOUNT, Counters>::new()) }.ok()?;
+    let [framing, overruns, parity, breaks, ..] = *counters.get(FRAME..)? else { return None };
+    let [framing, overruns, parity, breaks] = [framing, overruns, parity, breaks].map(i32::cast_unsigned);
+    Some(LineErrors { framing, overruns, parity, breaks })
+}
+
+/// The system does not tell.
+#[cfg(not(all(
+    target_os = "linux",
+    any(target_arch = "x86", target_arch = "x86_64", target_arch = "arm", target_arch = "aarch64")
+)))]
+pub(crate) fn counted<T>(_: &T) -> Option<LineErrors> {
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_those_since_the_port_was_opened_also_where_a_counter_goes_round() {
+        let begin = LineErrors { framing: u32::MAX, overruns: 2, parity: 0, breaks: 5 };
+        let now = LineErrors { framing: 1, overruns: 2, parity: 0, breaks: 6 };
+        assert_eq!(now.since(begin).to_string(), "framing 2 overrun 0 parity 0 break 1");
+        assert!(begin.since(begin).is_none() && !now.since(begin).is_none());
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn what_is_no_line_has_no_errors_to_tell() {
+        let file = std::fs::File::open("/dev/null").expect("it is there");
+        assert_eq!(counted(&file), None);
+    }
+}

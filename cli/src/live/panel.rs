@@ -1,0 +1,183 @@
+//! The panel of stand-alone controllers that are served: lines become presses, each after the cycle behind which the model
+//! stands then (LIVE H1, H2).
+
+use super::{
+    buttons::{HELP, Line},
+    status_line::StatusLine,
+};
+use std::{collections::VecDeque, fmt::Write};
+use stepscope_core::{
+    controller::{
+        Alarm, Press, StandAlone,
+        input::{Change, Signal},
+        trust_name,
+    },
+    peripheral::units::Instant,
+    sim::session::Session,
+};
+
+/// A line that is longer means nothing.
+const MAX_LINE: usize = 200;
+
+/// What was typed and is to be done.
+#[derive(Default)]
+pub(crate) struct Panel {
+    /// The beginning of a line.
+    begun: Vec<u8>,
+    lines: VecDeque<String>,
+    /// The lines that are left come behind this cycle.
+    pub(crate) waits: Option<Instant>,
+    /// Presses without meaning that were told, of each controller.
+    told: Vec<usize>,
+}
+
+impl Panel {
+    /// Bytes of lines.
+    pub(crate) fn type_in(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            match byte {
+                b'\n' | b'\r' => self.end_line(),
+                // One more shows that it is too long.
+                _ if self.begun.len() <= MAX_LINE => self.begun.push(byte),
+                _ => {}
+            }
+        }
+    }
+
+    /// Nothing more is typed: the last line may have no end.
+    pub(crate) fn end_line(&mut self) {
+        let begun = std::mem::take(&mut self.begun);
+        let text = String::from_utf8_lossy(&begun).into_owned();
+        if !text.trim().is_empty() {
+            self.lines.push_back(text);
+        }
+    }
+
+    /// Whether no line is left.
+    pub(crate) fn is_done(&self) -> bool {
+        self.lines.is_empty() && self.waits.is_none()
+    }
+
+    /// Does what is to be done behind the cycle in which the model stands, and tells what means nothing.
+    pub(crate) fn obey(&mut self, session: &mut Session, told: &mut StatusLine) {
+        if self.waits.is_some_and(|until| session.now() >= until) {
+            self.waits = None;
+        }
+        while self.waits.is_none() {
+            let Some(text) = self.lines.pop_front() else { break };
+            if text.len() > MAX_LINE {
+                told.note(&format!("a line of more than {MAX_LINE} bytes; `help` says what there is"));
+                continue;
+            }
+            match text.parse() {
+                Ok(line) => self.does(line, session, told),
+                Err(why) => told.note(&why.to_string()),
+            }
+        }
+        self.tell_ignored(session, told);
+    }
+
+    fn does(&mut self, line: Line, session: &mut Session, told: &mut StatusLine) {
+        let clock_hz = session.experiment().config().clock_hz();
+        let entered = match line {
+            Line::Nothing => return,
+            Line::Help => return told.note(&help()),
+            Line::Wait(span) => {
+                self.waits = Some(session.now() + span.cycles(clock_hz));
+                return;
+            }
+            Line::Change(controller, Change::Level(signal, level), Some(span)) => {
+                session.enter_for(controller, (signal, level), span.cycles(clock_hz))
+            }
+            Line::Change(controller, change, _) => session.enter(controller, change),
+        };
+        if let Err(why) = entered {
+            told.note(&why.to_string());
+        }
+    }
+
+    /// Presses that did nothing since.
+    fn tell_ignored(&mut self, session: &Session, told: &mut StatusLine) {
+        let Some(machine) = session.run().stand_alone() else { return };
+        self.told.resize(machine.controllers(), 0);
+        for (index, count) in self.told.iter_mut().enumerate() {
+            for Press { button, state, .. } in machine.ignored(index).iter().skip(*count) {
+                told.note(&format!("{} did nothing in {}", button.name(), state.name()));
+            }
+            *count = machine.ignored(index).len();
+        }
+    }
+}
+
+fn help() -> String {
+    let names: Vec<&str> = Signal::ALL.iter().map(|signal| signal.name()).collect();
+    format!("{HELP}\nInputs: {}", names.join(" "))
+}
+
+/// How the panels stand, in a line.
+pub(crate) fn status(machine: &StandAlone) -> String {
+    let mut text = String::new();
+    for index in 0..machine.controllers().min(4) {
+        let (Some(state), Some(alarm), Some(trust)) =
+            (machine.state(index), machine.alarm(index), machine.trust(index))
+        else {
+            break;
+        };
+        let _ = write!(text, "  {}", state.name());
+        if alarm != Alarm::None {
+            let _ = write!(text, " {}", alarm.name());
+        }
+        let position = machine.position(index).unwrap_or(0);
+        let _ = write!(text, " position {position} {}", trust_name(trust));
+    }
+    if let Some(work) = machine.work() {
+        let _ = write!(text, "  ended: {work}");
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stepscope_core::{peripheral::trace::Digest, scenario::Scenario};
+
+    /// Ready after 5 cycles of 1 us, without debouncing.
+    fn session() -> Session {
+        let json = r#"{ "clock_hz": 1000000, "source": { "standalone": [ { "self_test_cycles": 5, "debounce_cycles": 0,
+            "max_speed_hz": 1000, "groups": [ { "move": { "speed_hz": 1000 } } ] } ] } }"#;
+        Session::new(&Scenario::from_json(json).expect("reads")).expect("no problems")
+    }
+
+    /// What is recorded after so many cycles, in as many rounds as waits ask for.
+    fn recorded(typed: &[u8], cycles: u64) -> Vec<(u64, String)> {
+        let (mut session, mut panel, mut line) = (session(), Panel::default(), StatusLine::new(false));
+        session.advance::<Digest>(Instant(9), &mut []);
+        panel.type_in(typed);
+        panel.end_line();
+        panel.obey(&mut session, &mut line);
+        while let Some(until) = panel.waits {
+            session.advance::<Digest>(until, &mut []);
+            panel.obey(&mut session, &mut line);
+        }
+        session.advance::<Digest>(Instant(cycles), &mut []);
+        let recording = session.recording();
+        recording.verify().expect("the same");
+        let stepscope_core::scenario::Source::Standalone(controllers) = recording.scenario.source else {
+            panic!("it is")
+        };
+        let name = |signal: Option<Signal>| signal.map_or("push", Signal::name);
+        let inputs = controllers[0].inputs.iter();
+        inputs.map(|input| (input.cycle, format!("{} {}", name(input.input), input.level))).collect()
+    }
+
+    #[test]
+    fn lines_are_pressed_in_their_cycles_and_what_means_nothing_is_left_out() {
+        let typed = b"press start 20us\ndance\r\n\nwait 1ms\npower 0\nwait 0s\npower 1\npush -3";
+        let expected =
+            [(10, "start 1"), (30, "start 0"), (1010, "power 0"), (1011, "power 1"), (1010, "push 1")];
+        let expected: Vec<(u64, String)> = expected.map(|(cycle, text)| (cycle, text.to_owned())).into();
+        assert_eq!(recorded(typed, 2000), expected);
+        let long = [&[b'x'; 5000][..], b"\npower 0"].concat();
+        assert_eq!(recorded(&long, 2000), [(10, "power 0".to_owned())]);
+    }
+}

@@ -1,0 +1,338 @@
+//! A session against the wall clock (LIVE H1, H2).
+//!
+//! ```text
+//! round   the model runs to the clock's cycle, a millisecond at most ── replies that have left are written
+//!         ── bytes are read, and come after that cycle
+//! ```
+//!
+//! Of stand-alone controllers the bytes are lines on standard input, and nothing is written.
+
+use super::{
+    histogram::Histogram,
+    interrupt,
+    panel::{self, Panel},
+    port::{Heard, Port},
+    sidecar::Sidecar,
+    status_line::StatusLine,
+    stop_watch::{StopWatch, wake_on_time},
+};
+use crate::failure::Failure;
+use std::{
+    collections::VecDeque,
+    io::{self, Write},
+    time::Duration,
+};
+use stepscope_core::{
+    peripheral::{
+        trace::Digest,
+        units::{Cycles, Instant},
+    },
+    sim::{
+        Summary,
+        session::{Pace, Session, SessionClock},
+    },
+};
+
+/// Cycles of a round at most: as many records, at the very most.
+const MAX_ROUND: u64 = 1_000_000;
+/// How long is waited for bytes where nothing else is due.
+const IDLE_WAIT: Duration = Duration::from_millis(5);
+/// With `--pace max`: what the host may think before the model goes on without it.
+const THINKING: Duration = Duration::from_millis(10);
+/// Bytes of replies that wait for a host that does not read. Then it misses the oldest, as it would of a real line.
+const MAX_WAITING: usize = 1 << 16;
+
+/// How a session's time goes.
+#[derive(Clone, Copy)]
+pub(super) enum Pacing {
+    Real(Pace),
+    Max,
+}
+
+/// What a session is asked to be.
+pub(super) struct Settings {
+    pub(super) pacing: Pacing,
+    /// How late the model may be, in ms.
+    pub(super) lag: u64,
+    /// Whether it is recorded.
+    pub(super) records: bool,
+    /// Whether it ends with the client.
+    pub(super) once: bool,
+    /// Whether the status line is shown whatever standard error is.
+    pub(super) progress: bool,
+}
+
+pub(super) struct Server {
+    pub(super) session: Session,
+    port: Box<dyn Port>,
+    /// Of stand-alone controllers.
+    panel: Option<Panel>,
+    pacing: Pacing,
+    pub(super) clock: SessionClock,
+    watch: StopWatch,
+    once: bool,
+    /// Bytes of replies that the port has not taken.
+    waiting: VecDeque<u8>,
+    missed: u64,
+    late: Histogram,
+    /// How long was to be waited after the last round.
+    waited: Duration,
+    /// How far the model was behind the clock at most, beyond that, since it was told.
+    behind: Duration,
+    pub(super) sidecar: Sidecar,
+    pub(super) line: StatusLine,
+}
+
+impl Server {
+    pub(super) fn new(settings: &Settings, session: Session, port: Box<dyn Port>) -> Self {
+        let clock_hz = session.experiment().config().clock_hz();
+        let (pace, name) = match settings.pacing {
+            Pacing::Real(pace) => (pace, pace.to_string()),
+            Pacing::Max => (Pace::REAL_TIME, "max".to_owned()),
+        };
+        Self {
+            panel: session.run().stand_alone().map(|_| Panel::default()),
+            session,
+            port,
+            pacing: settings.pacing,
+            clock: SessionClock::new(clock_hz, pace, settings.lag * 1_000_000),
+            watch: StopWatch::start(),
+            once: settings.once,
+            waiting: VecDeque::new(),
+            missed: 0,
+            late: Histogram::default(),
+            waited: Duration::ZERO,
+            behind: Duration::ZERO,
+            sidecar: Sidecar::new(name, settings.lag, settings.records),
+            line: StatusLine::new(settings.progress),
+        }
+    }
+
+    /// Round after round, until Ctrl-C, or until the client goes where that is the end.
+    pub(super) fn run(&mut self) -> Result<(), Failure> {
+        wake_on_time();
+        let mut buffer = [0; 4096];
+        let (mut looked, mut silent_since) = (Duration::ZERO, self.watch.elapsed());
+        let (mut has_ended, mut was_recorded) = (false, true);
+        while interrupt::count() == 0 && !(has_ended && self.is_over()) {
+            let wait = self.round(silent_since);
+            self.write_replies().map_err(lost)?;
+            let heard = self.port.read(&mut buffer, wait).map_err(lost)?;
+            match heard {
+                Heard::Bytes(count) => {
+                    silent_since = self.watch.elapsed();
+                    self.catch_up(silent_since)?;
+                    self.take(buffer.get(..count).unwrap_or_default());
+                }
+                Heard::Gone => {
+                    has_ended = self.once;
+                    self.gone();
+                }
+                Heard::Nothing => {}
+            }
+            if let Some(panel) = &mut self.panel {
+                panel.obey(&mut self.session, &mut self.line);
+            }
+            if was_recorded && !self.session.records_all() {
+                was_recorded = false;
+                self.line.note("more than a recording may have: the session goes on unrecorded");
+            }
+            if self.watch.elapsed().saturating_sub(looked) > Duration::from_millis(20) {
+                looked = self.watch.elapsed();
+                if let Some(text) = self.port.look() {
+                    self.line.note(&text);
+                }
+            }
+            let Self { line, session, clock, late, behind, port, .. } = self;
+            line.tell(|| {
+                let text = status(session, (clock, std::mem::take(behind)), late);
+                let errors = port.line_errors().filter(|errors| !errors.is_none());
+                errors.map_or_else(|| text.clone(), |errors| format!("{text}  line errors: {errors}"))
+            });
+        }
+        Ok(())
+    }
+
+    /// Runs to the clock's cycle, so that what was just read does not come before its time.
+    fn catch_up(&mut self, silent_since: Duration) -> Result<(), Failure> {
+        while matches!(self.pacing, Pacing::Real(_)) && self.round(silent_since).is_zero() {
+            self.write_replies().map_err(lost)?;
+        }
+        Ok(())
+    }
+
+    /// What came, after the cycle that the model stands behind.
+    fn take(&mut self, bytes: &[u8]) {
+        self.sidecar.chunk(self.watch.nanos(), self.session.now().0, bytes.len());
+        if let Some(panel) = &mut self.panel {
+            panel.type_in(bytes);
+            return;
+        }
+        self.session.receive(bytes);
+    }
+
+    /// Nobody is at the other end any more.
+    fn gone(&mut self) {
+        match &mut self.panel {
+            Some(panel) => panel.end_line(),
+            None => self.line.note("the client has gone"),
+        }
+        self.waiting.clear();
+    }
+
+    /// Whether a session that nobody says anything to any more has come to its end: a panel's when all is done that was typed.
+    fn is_over(&self) -> bool {
+        self.panel.as_ref().is_none_or(|panel| panel.is_done() && self.session.is_at_rest())
+    }
+
+    /// The cycle to which it is worth going, and behind which no round goes: something is to be written or pressed then.
+    fn deadline(&self) -> Instant {
+        let typed = self.panel.as_ref().and_then(|panel| panel.waits);
+        // Who waits for each byte is often told to wait its turn: a system with other work is later then.
+        let due = self.session.deadline_of_round(Cycles(self.round_cycles()));
+        typed.map_or(due, |typed| typed.min(due))
+    }
+
+    /// Cycles of a round: a millisecond.
+    fn round_cycles(&self) -> u64 {
+        let clock_hz = u64::from(self.session.experiment().config().clock_hz());
+        (clock_hz / 1000).clamp(1, MAX_ROUND)
+    }
+
+    /// Runs the model on, a round at most; how long may be waited for bytes then.
+    fn round(&mut self, silent_since: Duration) -> Duration {
+        let now = self.session.now();
+        let step = self.round_cycles();
+        let (to, wait) = match self.pacing {
+            Pacing::Real(_) => {
+                let target = self.clock.target(self.watch.nanos(), now);
+                let behind = self.clock.nanos(Cycles(target.0.saturating_sub(now.0)));
+                self.behind = self.behind.max(Duration::from_nanos(behind).saturating_sub(self.waited));
+                let waits = self.panel.as_ref().and_then(|panel| panel.waits).unwrap_or(Instant::NEVER);
+                let to = target.min(Instant(now.0 + step)).min(waits);
+                (to, if to < target { Duration::ZERO } else { IDLE_WAIT })
+            }
+            Pacing::Max if self.deadline() != Instant::NEVER => {
+                (self.deadline().min(Instant(now.0.saturating_add(MAX_ROUND))), Duration::ZERO)
+            }
+            Pacing::Max if self.watch.elapsed().saturating_sub(silent_since) < THINKING => (now, THINKING),
+            Pacing::Max if !self.session.is_at_rest() => (Instant(now.0 + MAX_ROUND), Duration::ZERO),
+            Pacing::Max => (now, IDLE_WAIT),
+        };
+        if to > now {
+            self.session.advance::<Digest>(to, &mut []);
+        }
+        self.waited = match (self.pacing, self.deadline()) {
+            (Pacing::Real(_), due) if due != Instant::NEVER && wait > Duration::ZERO => {
+                let cycles = Cycles(due.0.saturating_sub(self.session.now().0));
+                wait.min(Duration::from_nanos(self.clock.nanos(cycles).max(1)))
+            }
+            _ => wait,
+        };
+        self.waited
+    }
+
+    /// Writes the replies that have left the model.
+    fn write_replies(&mut self) -> io::Result<()> {
+        let now_ns = self.watch.nanos();
+        for reply in self.session.take_replies() {
+            self.waiting.push_back(reply.byte);
+            // A reply ends with its delimiter.
+            if reply.byte == 0 {
+                let late = match self.pacing {
+                    Pacing::Real(_) => self.clock.late_ns(now_ns, reply.end),
+                    Pacing::Max => 0,
+                };
+                self.late.add(late);
+                self.sidecar.reply(reply.controller, reply.end.0, now_ns, late);
+            }
+        }
+        if !self.port.is_connected() {
+            self.waiting.clear();
+        }
+        while !self.waiting.is_empty() {
+            let (bytes, _) = self.waiting.as_slices();
+            let written = self.port.write(bytes)?;
+            if written == 0 {
+                break;
+            }
+            self.waiting.drain(..written);
+        }
+        let too_many = self.waiting.len().saturating_sub(MAX_WAITING);
+        self.waiting.drain(..too_many);
+        self.missed += too_many as u64;
+        Ok(())
+    }
+
+    /// What the session came to.
+    pub(super) fn print_end(&mut self) -> io::Result<()> {
+        let Self { session, .. } = self;
+        let summary = Summary::new(session.experiment(), session.run(), session.digests());
+        let mut out = io::stdout().lock();
+        for controller in &summary.controllers {
+            writeln!(out, "digest {:016x}", controller.digest)?;
+        }
+        write!(out, "{summary}")?;
+        if self.panel.is_none() {
+            writeln!(out, "bytes_heard {}", session.heard())?;
+        }
+        if self.late.count() > 0 {
+            writeln!(out, "replies {} late{}", self.late.count(), self.late)?;
+        }
+        if let Some(errors) = self.port.line_errors() {
+            writeln!(out, "line_errors {errors}")?;
+        }
+        let stretches = self.clock.stretches();
+        if stretches.count > 0 {
+            writeln!(out, "stretches {} cycles {}", stretches.count, stretches.cycles.0)?;
+        }
+        if self.missed > 0 {
+            writeln!(out, "reply_bytes_not_read {}", self.missed)?;
+        }
+        out.flush()
+    }
+}
+
+fn lost(error: io::Error) -> Failure {
+    Failure::LostPort(error.to_string())
+}
+
+/// How things stand, in a line.
+fn status(session: &Session, (clock, behind): (&SessionClock, Duration), late: &Histogram) -> String {
+    let config = session.experiment().config();
+    let seconds = session.now().0 as f64 / f64::from(config.clock_hz().max(1));
+    let mut text = format!("{seconds:8.1} s  lag {:.1} ms", 1e3 * behind.as_secs_f64());
+    if let Some(machine) = session.run().stand_alone() {
+        text += &panel::status(machine);
+        return text + &not_real_time(clock);
+    }
+    let devices = session.run().devices().zip(session.experiment().configs());
+    for (device, config) in devices.take(4) {
+        if let Some(status) = device.status() {
+            let queued = config.queue_depth() - status.free.min(config.queue_depth());
+            text += &format!("  {} queue {queued}/{}", status.state.name(), config.queue_depth());
+        }
+        let positions = device.positions();
+        let channels = usize::from(config.channels()).min(8);
+        let positions: Vec<String> = positions.iter().take(channels).map(ToString::to_string).collect();
+        text += &format!("  positions {}", positions.join(" "));
+        let faults: Vec<String> = device.faults().names().map(|name| name.to_string()).collect();
+        if !faults.is_empty() {
+            text += &format!("  {}", faults.join(" "));
+        }
+    }
+    if late.count() > 0 {
+        text += &format!("  replies {} 99 % within {} ms", late.count(), late.within_ms(99));
+    }
+    text + &not_real_time(clock)
+}
+
+/// Whether the clock was set back, in the status line.
+fn not_real_time(clock: &SessionClock) -> String {
+    let stretches = clock.stretches();
+    if stretches.count == 0 {
+        return String::new();
+    }
+    let ms = clock.nanos(stretches.cycles) / 1_000_000;
+    format!("  NOT REAL TIME: set back {} times, {ms} ms", stretches.count)
+}

@@ -1,0 +1,72 @@
+//! Programs in `firmware/avr`, built by avr-gcc, and what else is called for them.
+
+use std::{
+    ffi::OsStr,
+    fs::{self, File},
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+
+/// Longest time that a program may take.
+pub(crate) const LIMIT: Duration = Duration::from_secs(60);
+
+/// Where simavr's header with the pins to record lies: Debian's place, and that of a build by hand.
+const SIMAVR: [&str; 2] = ["-I/usr/include/simavr/avr", "-I/usr/local/include/simavr/avr"];
+
+pub(crate) fn in_the_repository(place: &str, name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(place).join(name)
+}
+
+/// A folder of its own for what is built and recorded.
+pub(crate) fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("avr").join(name);
+    fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+/// Calls a program in a folder; what it says is kept there. One that does not end is ended.
+pub(crate) fn call<S: AsRef<OsStr>>(folder: &Path, program: &str, arguments: &[S]) -> String {
+    let path = if program == "stepscope" {
+        PathBuf::from(env!("CARGO_BIN_EXE_stepscope"))
+    } else {
+        which::which(program)
+            .unwrap_or_else(|_| panic!("{program} is not on PATH; `cargo xtask test --only avr` installs it"))
+    };
+    let log = folder.join(format!("{program}.log"));
+    let said = File::create(&log).expect("a file");
+    let mut child = Command::new(path)
+        .args(arguments)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .stdout(said.try_clone().expect("the same file"))
+        .stderr(said)
+        .spawn()
+        .expect("the program starts");
+    let begun = Instant::now();
+    let status = loop {
+        if let Some(status) = child.try_wait().expect("it is our own") {
+            break status;
+        }
+        if begun.elapsed() > LIMIT {
+            child.kill().expect("it is our own");
+            panic!("{program} has not ended after {LIMIT:?}");
+        }
+        thread::sleep(Duration::from_millis(10));
+    };
+    let said = String::from_utf8_lossy(&fs::read(&log).expect("what it said")).into_owned();
+    assert!(status.success(), "{program}: {status}\n{said}");
+    said
+}
+
+/// Builds sources of `firmware/avr` for the ATmega328P, with the headers that lie in the folder.
+pub(crate) fn compile(folder: &Path, elf: &str, sources: &[&str]) {
+    // The section with the pins is no part of the chip's memory: it has a place that nothing else has.
+    let options = "-mmcu=atmega328p -DF_CPU=16000000ul -std=gnu99 -Os -Wall -Wextra -Werror -I. \
+        -Wl,--section-start=.mmcu=0x910000 -o";
+    let sources: Vec<PathBuf> = sources.iter().map(|name| in_the_repository("firmware/avr", name)).collect();
+    let line = SIMAVR.map(OsStr::new).into_iter().chain(options.split_whitespace().map(OsStr::new));
+    let line = line.chain([OsStr::new(elf)]).chain(sources.iter().map(|source| source.as_os_str()));
+    call(folder, "avr-gcc", &line.collect::<Vec<_>>());
+}
