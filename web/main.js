@@ -194,7 +194,9 @@ function cancel() {
  * @param {string} fallback @returns {Promise<{left: State, good: string | null}>}  `good` is the last scenario that ran, if this one cannot.
  */
 async function own(fallback) {
-  const read = (/** @type {string} */ saved) => engine.ask("check", saved);
+  // Where a part of the core that it needs cannot be fetched, it stands as it was kept.
+  const read = (/** @type {string} */ saved) =>
+    engine.ask("check", saved).catch(() => ({ scenario: saved, problems: [] }));
   const [saved, previous] = [loadScenario(), loadPrevious()];
   if (saved === null) return { left: initial(readJson(fallback)), good: null };
   const { scenario, problems } = await read(saved);
@@ -333,7 +335,9 @@ async function start() {
 async function offerNewer() {
   const newer = loadNewer();
   if (newer === null) return;
-  const scenario = readJson((await engine.ask("check", newer)).scenario);
+  const judgement = await engine.ask("check", newer).catch(() => null);
+  if (judgement === null) return;
+  const scenario = readJson(judgement.scenario);
   const name = scenario.title ? `, “${scenario.title}”` : "";
   const text = `Another tab has newer work${name}. This tab shows its own.`;
   dispatch({ type: "notice", notice: { kind: "info", text, offer: { label: "Open the newer work", scenario } } });

@@ -17,7 +17,7 @@ use stepscope_core::{
         units::Instant,
     },
     scenario::{
-        Scenario, SegmentLists, Source,
+        END_OF_TIME, Line, Scenario, SegmentLists, Source,
         presets::{CONTROLLER_PLANT_PRESETS, CONTROLLER_PRESETS},
     },
     sim::{Experiment, Run},
@@ -25,7 +25,7 @@ use stepscope_core::{
 use wasm_bindgen::prelude::*;
 
 /// How often the machine is kept on its way at most, so that few questions have to begin at cycle 0.
-const STOPS: u64 = 32;
+const STOPS: usize = 64;
 
 /// A preset of stand-alone controllers as JSON with every field written; undefined where there is none of this name.
 #[wasm_bindgen]
@@ -69,8 +69,11 @@ pub struct PanelRun {
     run: Run,
     watched: Watched,
     plant: Option<PlantLog>,
-    /// The controllers at some cycles on their way.
+    /// The controllers at some cycles on their way, by slices of the run: each is about as much work.
     stops: Vec<StandAlone>,
+    /// Slices from one of them to the next, and those since the last one.
+    apart: usize,
+    since: usize,
 }
 
 #[wasm_bindgen]
@@ -89,6 +92,8 @@ impl Judged {
             run,
             watched: Watched::default(),
             stops: Vec::new(),
+            apart: 1,
+            since: 0,
         }))
     }
 }
@@ -117,7 +122,9 @@ impl PanelRun {
     pub fn frame(&self) -> String {
         let mut frame = Scenario::clone(&self.scenario);
         frame.source = Source::Segments(SegmentLists::default());
-        frame.run_cycles = Some(self.run.cycles().0.max(1));
+        // What comes after the last cycle that a scenario may name, nobody looks at.
+        frame.run_cycles = Some(self.run.cycles().0.clamp(1, END_OF_TIME));
+        frame.line = Line::default();
         frame.plant = None;
         frame.to_json()
     }
@@ -125,8 +132,21 @@ impl PanelRun {
     /// Records from one on, 16 bytes each: cycle and levels, little-endian.
     #[must_use]
     pub fn records(&self, from: usize, count: usize) -> Vec<u8> {
-        let bytes = |record: &Record| [record.cycle.0.to_le_bytes(), record.levels.0.to_le_bytes()].concat();
-        self.watched.records.iter().skip(from).take(count).flat_map(bytes).collect()
+        let records = self.watched.records.get(from..).unwrap_or_default();
+        let records = &records[..records.len().min(count)];
+        let mut bytes = Vec::with_capacity(16 * records.len());
+        for record in records {
+            bytes.extend_from_slice(&record.cycle.0.to_le_bytes());
+            bytes.extend_from_slice(&record.levels.0.to_le_bytes());
+        }
+        bytes
+    }
+
+    /// The records are elsewhere now: here only a plant has further use for them.
+    pub fn records_are_taken(&mut self) {
+        if self.plant.is_none() {
+            self.watched.records = Vec::new();
+        }
     }
 
     /// What became of a panel: `records` (cycle, word, position, display of each), `inputs` (cycle, number, raw level of each
@@ -208,14 +228,25 @@ impl PanelRun {
     /// Keeps the machine as it is now, if it has come far enough since it was kept last.
     fn keep_stop(&mut self) {
         let Some(machine) = self.run.stand_alone() else { return };
-        let apart = self.experiment.cost().end_cycle / STOPS;
-        if self.stops.last().is_none_or(|last| machine.now().0 >= last.now().0 + apart) {
-            let mut stop = machine.clone();
-            // What its panel has shown, the run has.
-            for index in 0..stop.controllers() {
-                stop.take_panel(index);
-            }
-            self.stops.push(stop);
+        self.since += 1;
+        if !self.stops.is_empty() && self.since < self.apart {
+            return;
+        }
+        self.since = 0;
+        let mut stop = machine.clone();
+        // What its panel has shown, the run has.
+        for index in 0..stop.controllers() {
+            stop.take_panel(index);
+        }
+        self.stops.push(stop);
+        if self.stops.len() > STOPS {
+            // Every other one goes, and the next come half as often.
+            let mut index = 0;
+            self.stops.retain(|_| {
+                index += 1;
+                index % 2 == 1
+            });
+            self.apart *= 2;
         }
     }
 }

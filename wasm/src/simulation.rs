@@ -153,7 +153,7 @@ impl Simulation {
     }
 
     /// Records of a run that another module made, looked at in the same way: they are this scenario's own, and no recording.
-    pub fn made(&mut self, bytes: &[u8]) {
+    pub fn take_records(&mut self, bytes: &[u8]) {
         self.record(bytes);
         self.is_own = true;
     }

@@ -174,7 +174,7 @@ fn what_stand_alone_controllers_made_is_looked_at_as_their_run() {
         let mut from = 0;
         loop {
             let piece = run.records(from, 100);
-            shown.made(&piece);
+            shown.take_records(&piece);
             from += 100;
             if piece.is_empty() {
                 break;

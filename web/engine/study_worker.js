@@ -6,6 +6,7 @@
  * `open` and `of` make an object of a scenario and ask it.
  */
 import init, * as core from "../pkg-study/stepscope_wasm.js";
+import { readJson } from "../state/json.js";
 import { createJudging, fatal, text } from "./judging.js";
 
 const { judge } = createJudging((json) => new core.Judged(json));
@@ -40,7 +41,7 @@ function answer(method, args) {
     const [json, ...rest] = args;
     const { known, source } = withoutPanels(json);
     const made = calls.with_motor(known, ...rest);
-    return source ? JSON.stringify({ ...JSON.parse(made), source }) : made;
+    return source ? JSON.stringify({ ...readJson(made), source }) : made;
   }
   if (!(method in core.Judged.prototype)) return calls[method](...args);
   const [json, ...rest] = args;
@@ -65,7 +66,7 @@ function withoutPanels(json) {
 /** @param {string} json @returns {any}  null where it is none: the core says why. */
 function readable(json) {
   try {
-    return JSON.parse(json);
+    return readJson(json);
   } catch {
     return null;
   }

@@ -89,15 +89,12 @@ function withPanels() {
   });
 }
 
-/** A scenario, judged by the part of the core that knows what runs it. @param {string} json */
-async function judged(json) {
-  if (isAlone(json)) await withPanels();
-  return /** @type {any} */ (judging.judge(json));
-}
-
 /** Asks of a scenario. @param {string} method @param {any[]} args  Its text first. */
-async function ofScenario(method, [json, ...args]) {
-  const value = (await judged(String(json)))[method](...args);
+async function ofScenario(method, [text, ...args]) {
+  const json = String(text);
+  if (isAlone(json)) await withPanels();
+  // What is judged next frees it: it is asked at once.
+  const value = /** @type {any} */ (judging.judge(json))[method](...args);
   // What could not be read stands at its default in the text that comes back: that is another scenario.
   if (method === "check" && value.problems.length === 0) judging.alias(value.scenario);
   return value;
@@ -112,9 +109,9 @@ function recordable(json) {
 /**
  * Makes a run in slices.
  * @param {any} simulation @param {{run: number, quiet?: boolean}} order
- * @returns {Promise<boolean>}  Whether it came to its end: a newer one frees it.
+ * @returns {Promise<boolean>}  Whether it came to its end: where a newer one came, it is freed.
  */
-async function made(simulation, { run, quiet = false }) {
+async function runInSlices(simulation, { run, quiet = false }) {
   let records = 4096;
   let reported = performance.now();
   for (;;) {
@@ -129,37 +126,57 @@ async function made(simulation, { run, quiet = false }) {
     }
     await yieldToMessages();
     if (run !== newest) {
-      simulation.free();
+      letGo(simulation);
       return false;
     }
   }
 }
 
-/** What stand-alone controllers made, as a run that the core looks at; undefined if a newer one came. @param {any} alone @param {{run: number, quiet?: boolean}} order */
-async function lookedAt(alone, order) {
-  if (!(await made(alone, order))) return undefined;
-  const frame = new core.Judged(alone.frame());
-  const simulation = /** @type {any} */ (frame.run());
-  frame.free();
-  for (let from = 0, piece = null; piece === null || piece.length > 0; from += PIECE) {
-    piece = alone.records(from, PIECE);
-    simulation.made(piece);
+/** What stand-alone controllers made, as a run that the core looks at; null if a newer one came. @param {any} alone @param {{run: number, quiet?: boolean}} order */
+async function asSimulation(alone, order) {
+  if (!(await runInSlices(alone, order))) return null;
+  const simulation = frameOf(alone);
+  for (let from = 0, isMore = true; isMore; from += PIECE) {
+    const piece = alone.records(from, PIECE);
+    simulation.take_records(piece);
+    isMore = piece.length > 0;
+    await yieldToMessages();
+    if (order.run !== newest) {
+      letGo(simulation);
+      return null;
+    }
   }
-  simulation.alone = alone;
+  alone.records_are_taken();
   return simulation;
+}
+
+/** An empty run of the core, as long as theirs. @param {any} alone */
+function frameOf(alone) {
+  const frame = new core.Judged(alone.frame());
+  try {
+    return Object.assign(/** @type {any} */ (frame.run()), { alone });
+  } catch (error) {
+    alone.free();
+    throw error;
+  } finally {
+    frame.free();
+  }
 }
 
 /** @param {{run: number, json: string, quiet?: boolean, select?: number}} order */
 async function simulate(order) {
   const { run, json, quiet = false, select = 0 } = order;
   const begin = performance.now();
-  const scenario = await judged(json);
+  const alone = isAlone(json);
+  if (alone) await withPanels();
+  if (run !== newest) return;
+  const scenario = /** @type {any} */ (judging.judge(json));
   runs += 1;
-  const simulation = isAlone(json) ? await lookedAt(scenario.panels(), order) : scenario.run();
+  const simulation = alone ? await asSimulation(scenario.panels(), order) : scenario.run();
   if (!simulation) return;
   const recording = recordings.findLast(({ scenario }) => recordable(scenario) === recordable(json));
   for (const piece of recording?.pieces ?? []) simulation.record(piece);
-  if (!(await made(simulation, order))) return;
+  if (!(await runInSlices(simulation, order))) return;
   if (finished !== baseline) letGo(finished);
   finished = simulation;
   selected = 0;
@@ -245,7 +262,7 @@ async function answer(method, args) {
   if (!finished) return null;
   // What is behind the drivers, and before them, those have who made the run.
   const { alone } = finished;
-  if (method.startsWith("panel") || (alone && method.startsWith("plant"))) return alone?.[method](...args);
+  if (method.startsWith("panel") || (alone && method.startsWith("plant"))) return alone ? alone[method](...args) : null;
   return finished[method](...args);
 }
 

@@ -3,6 +3,7 @@
  * as a value, or as a draft while it is no number yet.
  */
 import { button, element, flash, say } from "../dom.js";
+import { WHOLE, whole } from "../state/json.js";
 import { parseNumber, si } from "../state/number.js";
 import { derivedAxis, get } from "../state/state.js";
 import { printPoints, readPoints } from "./points.js";
@@ -258,12 +259,14 @@ function read(text, field, state, before) {
   }
 }
 
-/** One whole number a line. @param {string} text @returns {{value: number[]} | {message: string}} */
+/** One whole number a line, with every digit. @param {string} text @returns {{value: (number | bigint)[]} | {message: string}} */
 function readWholes(text) {
   const read = text
     .split("\n")
     .filter((line) => line.trim() !== "")
-    .map((line) => parseNumber(line, "", { integer: true }));
+    .map((line) =>
+      WHOLE.test(line.trim()) ? { value: whole(line.trim()) } : parseNumber(line, "", { integer: true }),
+    );
   const wrong = read.find((each) => "message" in each);
   return wrong ?? { value: read.map((each) => ("value" in each ? each.value : 0)) };
 }

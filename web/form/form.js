@@ -38,13 +38,15 @@ export function createForm({ root, samples, drivers, dispatch, remedies, extend 
   /** @param {Scenario} scenario @returns {Node[]} */
   function source(scenario) {
     const kind = Object.keys(scenario.source)[0];
-    // The last of them is in a part of the core that may not be there yet.
+    // The first of them is in a part of the core that may not be there yet.
     const kinds = { standalone: "Stand-alone controller", ...labels("Source") };
     const select = kit.kindSelect(labelOf("Scenario", "source"), "source", kind, kinds, (chosen) => {
       const change = () => kit.change("", (now) => withSource(now, chosen, samples), replacedBySource(scenario));
       const { load } = SOURCES[chosen];
-      if (load) load(kit).then(change, refused);
-      else change();
+      if (!load) return change();
+      const { scenario: before } = state;
+      // What was changed while it came is newer.
+      return load(kit).then(() => state.scenario === before && change(), refused);
     });
     return [
       kit.errorOf("source"),

@@ -175,6 +175,8 @@ function offers(state, engine, span) {
   });
   const { source } = scenario;
   const segments = source?.segments || source?.motion?.engine === "segments";
+  // Nothing was sent, and no segments run it.
+  const isPanel = Boolean(source?.standalone);
   return [
     {
       title: "Signals",
@@ -187,9 +189,13 @@ function offers(state, engine, span) {
     {
       title: "Tables, CSV",
       offers: [
-        segments
-          ? file("segments", "-segments.csv", "text/csv", "Segment lists")
-          : file("ticks", "-ticks.csv", "text/csv", "Ticks, steps of each channel"),
+        ...(isPanel
+          ? []
+          : [
+              segments
+                ? file("segments", "-segments.csv", "text/csv", "Segment lists")
+                : file("ticks", "-ticks.csv", "text/csv", "Ticks, steps of each channel"),
+            ]),
         table("-harmonics.csv", "Harmonics", "spectrum", harmonicsTable),
         ...(controller.violations === null
           ? []
@@ -203,12 +209,16 @@ function offers(state, engine, span) {
       title: "Experiment",
       offers: [
         ...settings,
-        {
-          name: `${base}-line.json`,
-          type: "application/json",
-          label: segments ? "Scenario of its segments, JSON" : "Line script of what was sent, JSON",
-          make: async () => [await engine.ask("line_script"), "\n"],
-        },
+        ...(isPanel
+          ? []
+          : [
+              {
+                name: `${base}-line.json`,
+                type: "application/json",
+                label: segments ? "Scenario of its segments, JSON" : "Line script of what was sent, JSON",
+                make: async () => [await engine.ask("line_script"), "\n"],
+              },
+            ]),
       ],
     },
   ];

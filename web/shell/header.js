@@ -59,8 +59,11 @@ export function createHeader({ presets, cancel, retry, ...page }) {
     try {
       // Those of stand-alone controllers are where these are.
       const json = scenario ?? (await page.engine.ask("panel_preset", id));
+      // Another one was chosen while it came.
+      if (preset.value !== id) return;
       dispatch({ type: "replace", scenario: readJson(json), origin: `preset:${id}` });
     } catch (error) {
+      preset.value = "";
       refuse("The preset", error);
     }
   }

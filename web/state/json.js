@@ -4,7 +4,7 @@
  */
 
 /** Whole digits, without point and power. */
-const WHOLE = /^-?\d+$/;
+export const WHOLE = /^-?\d+$/;
 
 // What JSON.stringify asks of a BigInt; a browser without rawJSON writes the nearest number.
 Object.defineProperty(BigInt.prototype, "toJSON", {

@@ -33,7 +33,7 @@ const LEDS = { quick: "blinks quickly", on: "is on", slow: "blinks slowly" };
 
 /** @param {HTMLElement} place @param {Hand} hand */
 export function createFront(place, hand) {
-  const display = element("output", { class: "lcd", "aria-label": "Display" });
+  const display = element("output", { class: "lcd", "aria-label": "Display", "aria-live": "off" });
   const lamp = element("span", { class: "led", "aria-hidden": "true" });
   const lampText = element("span", { class: "led-text" });
   const words = element("p", { class: "panel-words" });
@@ -138,9 +138,17 @@ export function createFront(place, hand) {
     say(outputs, word.outputs ? `out ${[0, 1, 2, 3].filter((output) => (word.outputs >> output) & 1).join(" ")}` : "");
     for (const [input, made] of buttons) made.classList.toggle("down", level(input));
     estop.classList.toggle("down", level("estop"));
-    release.disabled = !level("estop");
-    cut.disabled = !level("power");
-    back.disabled = level("power");
+    estop.setAttribute("aria-pressed", String(level("estop")));
+    for (const [made, off] of /** @type {[HTMLButtonElement, boolean][]} */ ([
+      [release, !level("estop")],
+      [cut, !level("power")],
+      [back, level("power")],
+    ])) {
+      const hadFocus = document.activeElement === made;
+      made.disabled = off;
+      // What has just been pressed leaves the focus to what takes it back.
+      if (off && hadFocus) (made === cut ? back : made === back ? cut : estop).focus();
+    }
     const by = driven(parameters?.axis);
     for (const made of switches) {
       const input = /** @type {string} */ (made.dataset.input);

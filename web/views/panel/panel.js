@@ -22,6 +22,8 @@ import { INPUTS, read, SHARED, STATES } from "./words.js";
 
 /** What a press lasts beyond the debouncing, and how far behind the end one stands, in s. */
 const BEYOND_S = 0.01;
+/** Most steps of a push. */
+const MOST_PUSHED = 1_000_000;
 /** Presses without meaning that are told one by one. */
 const MOST_TOLD = 20;
 /** How slow live goes. */
@@ -38,7 +40,7 @@ export async function createPanel({ engine, dispatch, now }) {
   const head = /** @type {HTMLElement} */ (view.querySelector(".head"));
   const which = element("select", {});
   const whichLabel = element("label", {}, "controller ", which);
-  const at = element("output", { class: "panel-at" });
+  const at = element("output", { class: "panel-at", "aria-live": "off" });
   const hold = element("input", { class: "time", size: "8", spellcheck: "false", "aria-describedby": "panel-said" });
   const play = element(
     "button",
@@ -199,6 +201,8 @@ export async function createPanel({ engine, dispatch, now }) {
   function push(steps) {
     const cycle = target();
     if (steps === 0) return tell("A push of 0 steps moves nothing.", true);
+    if (Math.abs(steps) > MOST_PUSHED)
+      return tell(`A push has at most ${count(MOST_PUSHED)} steps either way; push several times.`, true);
     if (take(index(), put(inputsOf(index()), { cycle, input: null, level: 1, push_steps: steps }, null, timeOf)))
       behind(
         cycle,
@@ -212,6 +216,11 @@ export async function createPanel({ engine, dispatch, now }) {
     speed: () => Number(speed.value),
     shortest,
     at: (cycle) => {
+      // What nobody sees does not go on.
+      if (panels().length === 0 || !view.checkVisibility()) {
+        live.stop();
+        return played();
+      }
       dispatch({ type: "cursor", which: "a", cycle });
       const { window } = now();
       if (window && cycle > window.end && cycle <= endOf(now())) reveal({ dispatch, now }, cycle);
@@ -329,10 +338,11 @@ export async function createPanel({ engine, dispatch, now }) {
     else {
       const given = parseNumber(hold.value, "s");
       if ("message" in given) return tell(given.message, true);
+      if (!(given.value > 0)) return tell("A press lasts longer than 0 s.", true);
       held = Math.max(1, Math.round(given.value * clock()));
       tell(
-        held < shortest() - Math.round(BEYOND_S * clock())
-          ? "Shorter than the debouncing: such a press is not seen."
+        held <= shortest() - Math.round(BEYOND_S * clock())
+          ? "Not longer than the debouncing: such a press is not seen."
           : "",
       );
     }

@@ -34,11 +34,7 @@ export function put(inputs, { cycle, input, level, push_steps }, axis, timeOf) {
     return { refused: `${input} is driven by the axis (${by}); take that away in the form to switch it by hand.` };
   if (inputs.length >= MOST) return { refused: `There are ${MOST} inputs already; no more fit.` };
   const at = Math.max(1, Math.round(cycle));
-  if (
-    inputs.some(
-      (each) => each.cycle === at && each.input === input && (input !== null || push_steps === each.push_steps),
-    )
-  )
+  if (inputs.some((each) => each.cycle === at && each.input === input))
     return {
       refused: `${input ?? "A push"} is changed at ${timeOf(at)} already; set the cursor to another time, or drag that diamond away.`,
     };
@@ -48,6 +44,16 @@ export function put(inputs, { cycle, input, level, push_steps }, axis, timeOf) {
 
 /** A button that is pressed and let go. @param {Entry[]} inputs @param {string} input @param {number} from @param {number} until @param {any} axis @param {(cycle: number) => string} timeOf @returns {Changed} */
 export function press(inputs, input, from, until, axis, timeOf) {
+  const before = inputs.findLast((each) => each.input === input && each.cycle < from);
+  if (before?.level === 1)
+    return {
+      refused: `${input} is pressed at ${timeOf(from)} already, since ${timeOf(before.cycle)}; set the cursor behind that press.`,
+    };
+  const next = inputs.find((each) => each.input === input && each.cycle > from);
+  if (next && next.cycle <= until)
+    return {
+      refused: `${input} is pressed again at ${timeOf(next.cycle)}, before this press would end; set the cursor elsewhere, or a shorter hold.`,
+    };
   const down = put(inputs, { cycle: from, input, level: 1 }, axis, timeOf);
   return "refused" in down ? down : put(down.inputs, { cycle: until, input, level: 0 }, axis, timeOf);
 }

@@ -82,6 +82,8 @@ export function createStrip(place, page) {
 
   /** @param {Placed | null} placed */
   function choose(placed) {
+    // Another one's moves are a change of their own.
+    if (placed?.entry.input !== chosen?.entry.input || placed === null) dispatch({ type: "committed" });
     chosen = placed;
     page.chosen(placed);
     paint();
@@ -120,7 +122,7 @@ export function createStrip(place, page) {
     }
     event.stopPropagation();
     const cycle = cycleAt(now(), plot, Math.min(plot.right, Math.max(plot.left, xIn(event) - drag.by)));
-    const to = page.move(drag.placed, cycle, drag.moved);
+    const to = page.move(drag.placed, cycle, true);
     if (!to) return;
     drag = { ...drag, placed: to, moved: true };
     choose(to);
@@ -220,15 +222,17 @@ export function createStrip(place, page) {
       for (const press of story.ignored)
         if (press.input === input && inSight(ground, press.cycle)) paintIgnored(context, xOf(ground, press.cycle), top);
     }
-    let last = -Infinity;
+    /** Where the last one of each row is. @type {Map<number, number>} */
+    const last = new Map();
     for (const { entry, owner, index } of page.entries()) {
       if (!inSight(ground, entry.cycle)) continue;
       const isChosen = owner === chosen?.owner && index === chosen.index;
       const x = xOf(ground, entry.cycle);
       // A hundred thousand of them on one pixel are one.
-      if (!isChosen && Math.abs(x - last) < 0.05) continue;
-      last = x;
-      paintEntry(context, x, topOf(rowOf(entry)), isChosen);
+      const row = rowOf(entry);
+      if (!isChosen && Math.abs(x - (last.get(row) ?? -Infinity)) < 0.05) continue;
+      last.set(row, x);
+      paintEntry(context, x, topOf(row), isChosen);
     }
     fit(overlay);
     paintCursor(state);

@@ -3,6 +3,7 @@
  * do to the supply (the patent's figures 1 and 2). What a tab is, says study.js.
  */
 import { button, element, fill, say } from "../../dom.js";
+import { runsAlone } from "../../form/sources.js";
 import { readJson } from "../../state/json.js";
 import { plain, short, si } from "../../state/number.js";
 import { get, set } from "../../state/state.js";
@@ -377,8 +378,8 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
     const why =
       motors < 2
         ? "Of one motor nothing can be staggered."
-        : scenario.source.segments || scenario.source.motion?.engine === "segments"
-          ? "Segments run by themselves: their pulses are not staggered."
+        : runsAlone(scenario)
+          ? "What runs by itself has no ticks: its pulses are not staggered."
           : judgement?.cost?.over_budget && approved !== revision
             ? "The run is not made here before it is approved: it is much work."
             : "";
