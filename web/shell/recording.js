@@ -7,6 +7,7 @@ import { openCapture } from "../engine/capture.js";
 import { readJson } from "../state/json.js";
 import { count, counted, parseNumber, plain, si, time } from "../state/number.js";
 import { isStale } from "../state/state.js";
+import { keep } from "./kept.js";
 import { message } from "./link.js";
 import { around } from "./notices.js";
 import { ownIsKept } from "./storage.js";
@@ -287,10 +288,12 @@ function show(page, file, capture, facts, { body, foot, close }) {
     }
     if (pieces.length > 0) engine.record(scenario, pieces);
     dispatch({ type: "replace", scenario: readJson(scenario), origin: "shared" });
-    const text = told(model !== null, pieces.length > 0);
-    dispatch({ type: "notice", notice: { kind: "info", text, place: null } });
     close();
-    const shown = found && (await resultOf(page));
+    const run = resultOf(page);
+    const kept = pieces.length > 0 ? await keep(page, file, scenario, pieces) : "";
+    const text = told(model !== null, pieces.length > 0) + kept;
+    dispatch({ type: "notice", notice: { kind: "info", text, place: null } });
+    const shown = found && (await run);
     if (!shown) return;
     const cycle = Math.round(found.largest.recorded_s * shown.summary.clock_hz);
     const place = around(cycle, cycle, shown.summary.end_cycle, shown.controller);

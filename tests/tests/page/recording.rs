@@ -39,14 +39,14 @@ const DURATION_S: f64 = 0.2;
 const NARROW_EVERY: u32 = 10;
 
 const DIALOG: &str = "document.querySelector('dialog.recording')";
-const CLOSED: &str = "document.querySelector('dialog.recording') === null";
+pub(crate) const CLOSED: &str = "document.querySelector('dialog.recording') === null";
 /// What is said of the recording as it is mapped.
 const RESULT: &str = "(document.querySelector('.recorded')?.innerText ?? '').replace(/\\u202f/g, '')";
-const SHOW: &str = "dialog.recording button.main";
+pub(crate) const SHOW: &str = "dialog.recording button.main";
 /// It can be shown.
-const READY: &str = "document.querySelector('dialog.recording button.main')?.disabled === false";
-const MESSAGE: &str = "document.getElementById('link-message').innerText";
-const DISTANCE: &str = "source.motion.axes[0].moves[0].cosine.distance";
+pub(crate) const READY: &str = "document.querySelector('dialog.recording button.main')?.disabled === false";
+pub(crate) const MESSAGE: &str = "document.getElementById('link-message').innerText";
+pub(crate) const DISTANCE: &str = "source.motion.axes[0].moves[0].cosine.distance";
 
 /// What a firmware made of a cosine of 200 steps, as Saleae Logic saves it: no pulse comes in time.
 fn cosine() -> String {
@@ -74,14 +74,14 @@ fn saleae(trace: &[Record], clock_hz: u32, signals: &[(&str, u64)]) -> String {
 }
 
 /// A text as the core opens it, beside a model with its first step at a time.
-fn natively(text: &str, ask: &Ask, first_step_s: Option<f64>) -> Result<Opened> {
+pub(crate) fn natively(text: &str, ask: &Ask, first_step_s: Option<f64>) -> Result<Opened> {
     let reading = read(Cursor::new(text.as_bytes()), &Limits::default(), &mut |_| true);
     let mut opened = Opened::new(reading.capture, ask)?;
     first_step_s.into_iter().try_for_each(|at| opened.align(0, 0, at))?;
     Ok(opened)
 }
 
-fn digest(opened: &Opened) -> String {
+pub(crate) fn digest(opened: &Opened) -> String {
     let mut digest = Digest::default();
     opened.records.iter().for_each(|record| digest.record(*record));
     format!("{:016x}", digest.value())
@@ -94,7 +94,7 @@ fn first_step_s(known: &Known) -> Result<f64> {
 }
 
 /// Chooses a file by the page's own input.
-async fn choose_file(page: &Session, name: &str, text: &str) -> Result<()> {
+pub(crate) async fn choose_file(page: &Session, name: &str, text: &str) -> Result<()> {
     let script = "const data = new DataTransfer(); data.items.add(new File([arguments[1]], arguments[0]));
         const input = document.getElementById('open-file'); input.files = data.files;
         return input.dispatchEvent(new Event('change'));";
