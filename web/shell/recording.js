@@ -311,7 +311,7 @@ function show(page, file, capture, facts, { body, foot, close }) {
 
 /** Each step, or byte, beside the baseline's, in one sentence. @param {any} found @param {number} aligned */
 function compared(
-  { kind, recorded, model, differing, largest, rms_s, drift_ppm, rms_jitter_s, other_values },
+  { kind, recorded, model, differing, largest, rms_s, drift_ppm, rms_jitter_s, outliers, other_values },
   aligned,
 ) {
   const one = kind.slice(0, -1);
@@ -327,7 +327,7 @@ function compared(
   const drift =
     Math.abs(drift_ppm) > MAX_DRIFT_PPM
       ? ""
-      : ` Drift ${drift_ppm.toFixed(1).replace(/^-(0\.0)$/, "$1")} ppm, jitter without it ${time(rms_jitter_s)} RMS.`;
+      : ` Drift ${drift_ppm.toFixed(1).replace(/^-(0\.0)$/, "$1")} ppm, jitter without it ${time(rms_jitter_s)} RMS${outliers > 0 ? ` of all but ${count(outliers)} that are far off` : ""}.`;
   return `Beside the baseline${by}: ${all} compared, ${count(differing)} are off by more than a cycle; ${late}${values}; RMS ${time(rms_s)}.${drift}`;
 }
 

@@ -5,6 +5,7 @@
 //! records in cycles  ->  figures     steps, rates, turns, pulse widths of each channel
 //!                        serial      bytes of RX and TX, their rate and what they seem to be
 //!                        alignment   each step beside the model's
+//!                        drift       the clocks' line through how late they are
 //!                        scenario    a list of segments, or a line script
 //! ```
 //!
@@ -28,6 +29,7 @@
 //! ```
 
 pub mod alignment;
+pub mod drift;
 pub mod events;
 pub mod figures;
 #[cfg(feature = "capture")]
