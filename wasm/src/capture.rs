@@ -13,6 +13,7 @@ use stepscope_core::{
     inspect::recording::{
         events::Events,
         opened::{Ask, Opened},
+        packets::{LinePacket, Packets},
         report::ChannelReport,
     },
 };
@@ -195,6 +196,30 @@ impl CaptureFile {
     #[must_use]
     pub fn scenario(&self, file: &str, steps: bool) -> Option<String> {
         Some(self.opened.as_ref()?.shown_scenario(file, steps).to_json())
+    }
+
+    /// What its lines say, packet by packet: `{total, replies, rows, csv}`, the first `most` rows, and all of them as a table.
+    /// `addressed` says whether raw packets begin with an address.
+    ///
+    /// # Errors
+    /// Never in practice.
+    pub fn packets(&self, addressed: bool, most: u32) -> Result<JsValue, JsError> {
+        #[derive(Serialize)]
+        struct Told<'a> {
+            total: usize,
+            replies: usize,
+            rows: &'a [LinePacket],
+            csv: String,
+        }
+        let told = self
+            .opened
+            .as_ref()
+            .map(|opened| Packets::of(&opened.report, opened.clock_hz, opened.channels, addressed));
+        let Some(packets) = told else { return Ok(JsValue::NULL) };
+        let mut csv = String::new();
+        packets.write_csv(&mut csv)?;
+        let rows = packets.rows.get(..packets.rows.len().min(most as usize)).unwrap_or_default();
+        object(&Told { total: packets.rows.len(), replies: packets.replies(), rows, csv })
     }
 
     /// When step `aligned` of a channel, from 0, or, where this steps nowhere, that byte of RX comes in a run, in s: its

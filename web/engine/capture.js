@@ -10,6 +10,8 @@ import { compiled } from "./wasm.js";
  *   mean_rate_steps_s: number | null, greatest_acceleration_steps_s2: number | null}}} ChannelSteps
  * @typedef {{map: string, clock_hz: number, rounding: string, end_s: number, records: number, notes: string[],
  *   steps: ChannelSteps[], lines: string[]}} Looked
+ * @typedef {{line: string, kind: string, start_cycle: number, end_cycle: number, bytes: number[], meaning: string, outcome: string}} LinePacket
+ * @typedef {{total: number, replies: number, rows: LinePacket[], csv: string}} LinePackets
  * @typedef {{map?: string, clock_hz?: number, sample_rate_hz?: bigint, baud?: number, at_s?: number, channel?: number, aligned?: number}} Asked
  * @typedef {{records: Uint8Array, clock_hz: number, channel: number, baud: number, aligned: number}} Model  What a run has of a channel and of RX, and the step, or byte, that both have at one time.
  */
@@ -62,6 +64,8 @@ export function openCapture(file, onProgress) {
     look: (by) => ask("look", by),
     /** The scenario that it is shown with. @param {boolean} ofSteps @returns {Promise<string>} */
     scenario: (ofSteps) => ask("scenario", sample?.file ?? /** @type {File} */ (file).name, ofSteps),
+    /** What its lines say: the first `most` packets, and all of them as a table. @param {boolean} addressed @param {number} most @returns {Promise<LinePackets | null>} */
+    packets: (addressed, most) => ask("packets", addressed, most),
     /** When the step, or byte, of a run comes, in s. @param {Model} of @returns {Promise<number | undefined>} */
     timeOf: ({ records, clock_hz, channel, baud, aligned }) =>
       ask("time_of", records, clock_hz, channel, baud, aligned),

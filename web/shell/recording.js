@@ -10,6 +10,7 @@ import { isStale } from "../state/state.js";
 import { keep } from "./kept.js";
 import { message } from "./link.js";
 import { around } from "./notices.js";
+import { save } from "./save.js";
 import { ownIsKept } from "./storage.js";
 
 /** @typedef {import("../engine/capture.js").Facts} Facts */
@@ -26,6 +27,8 @@ const MAX_MAPS = 30;
 const GREATEST = 2 ** 32 - 1;
 /** Rest after a change before it is looked again, in ms. */
 const REST_MS = 200;
+/** Packets that the dialog lists, and bytes that it lists of each; its file has all. */
+const [MAX_LISTED, MAX_LISTED_BYTES] = [100, 32];
 /** Greatest drift that is told of two clocks. */
 const MAX_DRIFT_PPM = 50_000;
 /** How long the experiment before may run, in ms. */
@@ -100,6 +103,11 @@ function show(page, file, capture, facts, { body, foot, close }) {
   // Bytes without times have no samples: how long each lasts, the bit rate says.
   const fields = facts.has_times ? [clock, baud] : isBytes ? [baud, clock] : [rate, clock, baud];
   const result = element("div", { class: "recorded", "aria-live": "polite" });
+  const said = element("details", { class: "packets-said" });
+  said.addEventListener("toggle", () => {
+    if (said.open) void listPackets().catch((error) => refuse(message(error)));
+  });
+  said.hidden = true;
   const plan = planOf();
   const besides = element("input", { id: "recording-beside", type: "checkbox", ...(plan ? { checked: "" } : {}) });
   const beside = element("label", { class: "check" }, besides, ` beside this experiment`);
@@ -132,6 +140,7 @@ function show(page, file, capture, facts, { body, foot, close }) {
     beside,
     align.label,
     result,
+    said,
   );
   put(facts.has_levels ? (keptMap(channels) ?? facts.map) : "");
   body.addEventListener("input", () => {
@@ -205,9 +214,37 @@ function show(page, file, capture, facts, { body, foot, close }) {
     }
   }
 
+  /** What the lines say, as far as there is room for it. */
+  async function listPackets() {
+    const found = looked && (await capture.packets(typeof now().scenario.line.address === "number", MAX_LISTED));
+    if (!found || !said.open) return;
+    const name = `${file.replace(/\.[^.]*$/, "")}-packets.csv`;
+    const all = button("Save all (CSV)", `Save all packets: ${name}`, () => save(name, "text/csv", [found.csv]));
+    const more = found.total > found.rows.length ? `; the first ${count(found.rows.length)} of them:` : ":";
+    const from = looked?.clock_hz ?? 1;
+    const cells = (/** @type {import("../engine/capture.js").LinePacket} */ row) => [
+      `${row.line} ${row.kind}`,
+      time(row.start_cycle / from),
+      hex(row.bytes),
+      [row.meaning, row.outcome].filter((text) => text !== "").join("; "),
+    ];
+    fill(
+      said,
+      element("summary", {}, "Packets"),
+      element(
+        "p",
+        {},
+        `${counted(found.total, "packet")}, ${count(found.replies)} whole frames of the device${more} `,
+        all,
+      ),
+      grid(["Line", "from", "bytes", "what it says"], found.rows.map(cells)),
+    );
+  }
+
   /** @param {string} why */
   function refuse(why) {
     looked = null;
+    said.hidden = true;
     fill(result, element("p", { class: "error" }, `${why[0].toUpperCase()}${why.slice(1)}.`));
   }
 
@@ -233,6 +270,9 @@ function show(page, file, capture, facts, { body, foot, close }) {
       ...lines.map((line) => element("p", {}, line)),
       ...own.map((note) => element("p", { class: "note" }, note)),
     );
+    said.hidden = lines.length === 0;
+    said.open = false;
+    fill(said, element("summary", {}, "Packets"));
   }
 
   async function taken() {
@@ -365,6 +405,24 @@ function table(rows) {
         element("tr", {}, cell(name), cell(signal), cell(element("label", { class: "check" }, inverted))),
       ),
     ),
+  );
+}
+
+/** @param {number[]} bytes */
+function hex(bytes) {
+  const listed = bytes.slice(0, MAX_LISTED_BYTES).map((byte) => byte.toString(16).padStart(2, "0"));
+  return listed.join(" ") + (bytes.length > listed.length ? " …" : "");
+}
+
+/** @param {string[]} head @param {string[][]} rows */
+function grid(head, rows) {
+  const row = (/** @type {string[]} */ cells) => element("tr", {}, ...cells.map((text) => element("td", {}, text)));
+  const names = head.map((text) => element("th", { scope: "col" }, text));
+  return element(
+    "table",
+    { class: "channels" },
+    element("thead", {}, element("tr", {}, ...names)),
+    element("tbody", {}, ...rows.map(row)),
   );
 }
 

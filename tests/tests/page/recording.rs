@@ -422,6 +422,39 @@ fn bytes_and_positions_are_dropped_and_pasted_and_come_to_packets_and_steps() ->
 }
 
 #[test]
+fn the_packets_of_both_lines_are_listed_with_the_replies_that_were_recorded() -> Result<()> {
+    in_browser(|page| async move {
+        let framed = Known::of(r#"{"line":{"protocol":"framed"}}"#)?;
+        page.open("").await?;
+        page.ready().await?;
+        let clock_hz = framed.experiment.config().clock_hz();
+        let signals = [("RX", Levels::RX), ("TX", Levels::TX)];
+        choose_file(&page, "link.csv", &saleae(&framed.recording.trace, clock_hz, &signals)).await?;
+        page.until(READY).await?;
+        let said = "document.querySelector('.packets-said').textContent.replace(/\\u202f/g, '')";
+        page.click(".packets-said summary").await?;
+        let log = &framed.recording.packets;
+        let all = log.rows().len();
+        page.until(&format!("{said}.includes('{all} packets, {} whole frames of the device')", all / 2))
+            .await?;
+        let cells = "[...document.querySelectorAll('.packets-said tbody tr')].slice(0, 2).map((row) => [...row.cells].map((cell) => cell.textContent))";
+        let rows: Vec<Vec<String>> = page.eval(cells).await?;
+        for (index, (row, line)) in rows.iter().zip(["RX frame", "TX reply"]).enumerate() {
+            let bytes: Vec<String> = log.bytes(index).iter().map(|byte| format!("{byte:02x}")).collect();
+            assert_eq!((row[0].as_str(), row[2].as_str()), (line, bytes.join(" ").as_str()), "{rows:?}");
+        }
+        ensure!(rows[1][3].starts_with("from 0: ") && rows[1][3].ends_with("check holds"), "{rows:?}");
+        let mut wrong = Vec::new();
+        axe::look(&page, "light", &mut wrong).await?;
+        axe::none(&wrong)?;
+        // Another map has other packets: the list is closed.
+        choose_signal(&page, "TX", "DE").await?;
+        page.until("!document.querySelector('.packets-said').open").await?;
+        cancel(&page).await
+    })
+}
+
+#[test]
 fn the_dialog_is_used_by_keys_alone_fits_a_narrow_screen_and_axe_finds_nothing_in_it() -> Result<()> {
     in_browser(|page| async move {
         let own = Known::of("{}")?;

@@ -47,7 +47,7 @@ const MAX_OFF: f64 = 0.3;
 /// Pulses that have to fit, where there are so many.
 const MIN_PULSES: usize = 4;
 /// Bit times after which a gap ends a raw packet (DESIGN A5).
-const GAP_BITS: u64 = 45;
+pub(super) const GAP_BITS: u64 = 45;
 
 /// The bit rate that pulses have.
 #[derive(Clone, Copy, Debug, PartialEq)]
