@@ -29,6 +29,8 @@ const GREATEST = 2 ** 32 - 1;
 const REST_MS = 200;
 /** Packets that the dialog lists, and bytes that it lists of each; its file has all. */
 const [MAX_LISTED, MAX_LISTED_BYTES] = [100, 32];
+/** From so many changes on looking at them takes a moment. */
+const MANY = 2_000_000;
 /** Greatest drift that is told of two clocks. */
 const MAX_DRIFT_PPM = 50_000;
 /** How long the experiment before may run, in ms. */
@@ -112,11 +114,15 @@ function show(page, file, capture, facts, { body, foot, close }) {
   const besides = element("input", { id: "recording-beside", type: "checkbox", ...(plan ? { checked: "" } : {}) });
   const beside = element("label", { class: "check" }, besides, ` beside this experiment`);
   const align = numberField("Aligned by step", "", "0, the first", 0);
-  beside.hidden = plan === null;
-  const showAlign = () => {
-    align.label.hidden = plan === null || !besides.checked;
+  const from = timeField("Show from", "its beginning");
+  const to = timeField("Show up to", "as far as there is room");
+  /** What depends on what was looked at: a part is not laid beside anything. @param {Looked["kept"]} kept */
+  const showFields = (kept = looked?.kept ?? null) => {
+    const isPart = kept !== null || from.value() !== null || to.value() !== null;
+    for (const { label } of [from, to]) label.hidden = !isPart;
+    beside.hidden = plan === null || isPart;
+    align.label.hidden = beside.hidden || !besides.checked;
   };
-  showAlign();
   const take = button(
     "Show it",
     "Show it: look at the recording with all views",
@@ -128,6 +134,7 @@ function show(page, file, capture, facts, { body, foot, close }) {
   let looked = null;
   let timer = 0;
   let asking = 0;
+  showFields();
 
   const notes = [...(facts.error ? [`Not read to its end: ${facts.error}.`] : []), ...facts.notes];
   fill(
@@ -137,6 +144,8 @@ function show(page, file, capture, facts, { body, foot, close }) {
     ...notes.map((note) => element("p", { class: "note" }, note)),
     ...(facts.has_levels ? [table(rows)] : []),
     element("div", { class: "fields" }, ...fields.map(({ label }) => label)),
+    from.label,
+    to.label,
     beside,
     align.label,
     result,
@@ -145,7 +154,7 @@ function show(page, file, capture, facts, { body, foot, close }) {
   put(facts.has_levels ? (keptMap(channels) ?? facts.map) : "");
   body.addEventListener("input", () => {
     clearTimeout(timer);
-    showAlign();
+    showFields();
     // What was looked at is no longer what is asked.
     asking += 1;
     take.disabled = true;
@@ -193,6 +202,9 @@ function show(page, file, capture, facts, { body, foot, close }) {
     if (clock.value()) said.clock_hz = clock.value();
     if (rate.value()) said.sample_rate_hz = BigInt(rate.value());
     if (baud.value()) said.baud = baud.value();
+    const [from_s, to_s] = [from.value(), to.value()];
+    if (from_s !== null) said.from_s = from_s;
+    if (to_s !== null) said.to_s = to_s;
     return said;
   }
 
@@ -200,7 +212,8 @@ function show(page, file, capture, facts, { body, foot, close }) {
   async function look(more = {}) {
     const own = ++asking;
     take.disabled = true;
-    if ([...fields, ...(besides.checked ? [align] : [])].some((field) => field.isWrong())) return;
+    if ([...fields, from, to, ...(besides.checked ? [align] : [])].some((field) => field.isWrong())) return;
+    if (facts.count > MANY) fill(result, element("p", {}, `Looking at ${counted(facts.count, "change")}…`));
     try {
       if (facts.has_levels && map() === "") throw new Error("choose which channel is STEP, DIR, RX or TX");
       const found = await capture.look(asked(more));
@@ -249,7 +262,8 @@ function show(page, file, capture, facts, { body, foot, close }) {
   }
 
   /** @param {Looked} found */
-  function tell({ clock_hz, rounding, end_s, steps, lines, notes }) {
+  function tell({ clock_hz, rounding, end_s, kept, steps, lines, notes }) {
+    showFields(kept);
     const own = notes.filter((note) => !facts.notes.includes(note));
     const rows = steps.map(({ channel, figures: of }) =>
       element(
@@ -265,9 +279,18 @@ function show(page, file, capture, facts, { body, foot, close }) {
     );
     fill(
       result,
-      element("p", {}, `${time(end_s)} at ${si(clock_hz, "Hz", 6)}: ${rounding}.`),
+      element("p", {}, `${time(kept?.end_s ?? end_s)} at ${si(clock_hz, "Hz", 6)}: ${rounding}.`),
       ...rows,
       ...lines.map((line) => element("p", {}, line)),
+      ...(kept
+        ? [
+            element(
+              "p",
+              { class: "note" },
+              `${part(kept)}; the figures are of all of it. A part is not laid beside the experiment.`,
+            ),
+          ]
+        : []),
       ...own.map((note) => element("p", { class: "note" }, note)),
     );
     said.hidden = lines.length === 0;
@@ -280,8 +303,9 @@ function show(page, file, capture, facts, { body, foot, close }) {
     take.disabled = true;
     const base = now().scenario;
     // Bytes go to the controllers of the experiment before, by its clock.
-    if (looked && looked.lines.length > 0 && !clock.value()) clock.set(base.clock_hz);
-    const model = besides.checked ? planOf() : null;
+    const isReclocked = looked !== null && looked.lines.length > 0 && !clock.value();
+    if (isReclocked) clock.set(base.clock_hz);
+    const model = align.label.hidden ? null : planOf();
     const channel = now().axis;
     const aligned = align.value();
     const one = looked?.steps.length === 0 ? "byte" : "step";
@@ -295,7 +319,8 @@ function show(page, file, capture, facts, { body, foot, close }) {
     const at_s = beside && (await capture.timeOf(beside));
     if (beside && aligned > 0 && typeof at_s !== "number")
       throw new Error(`the experiment has no ${one} ${count(aligned)}, from 0; align by one that both have`);
-    await look(typeof at_s === "number" ? { at_s, channel, aligned } : {});
+    // Of very many changes a look takes a moment.
+    if (isReclocked || beside) await look(typeof at_s === "number" ? { at_s, channel, aligned } : {});
     if (!looked) return;
     const found = beside && (await capture.beside(beside));
     if (facts.has_levels) keepMap(channels, map());
@@ -345,8 +370,14 @@ function show(page, file, capture, facts, { body, foot, close }) {
     const on = isRecorded
       ? "The views show what was recorded; change the source, the clock, the channels or the plant, and they show what the model makes of it."
       : "The views show what the model makes of it.";
-    return `Opened ${file}. ${on}${isBeside ? " The experiment before stands beside it as the baseline." : ""}${ownIsKept()}`;
+    const shown = isRecorded && looked?.kept ? ` ${part(looked.kept)}; its position begins with 0 there.` : "";
+    return `Opened ${file}. ${on}${shown}${isBeside ? " The experiment before stands beside it as the baseline." : ""}${ownIsKept()}`;
   }
+}
+
+/** @param {NonNullable<Looked["kept"]>} kept */
+function part({ from_s, to_s, end_s, records, of }) {
+  return `Shown: ${time(from_s)} to ${time(to_s)} of ${time(end_s)}, ${count(records)} of ${counted(of, "change")}`;
 }
 
 /** Each step, or byte, beside the baseline's, in one sentence. @param {any} found @param {number} aligned */
@@ -457,6 +488,32 @@ function numberField(name, unit, empty, least = 1) {
     },
     set: (/** @type {number} */ value) => {
       input.value = String(value);
+    },
+  };
+}
+
+/** A time that may be left empty. @param {string} name @param {string} empty */
+function timeField(name, empty) {
+  const id = `recording-${name.toLowerCase().replaceAll(" ", "-")}`;
+  const about = { "aria-describedby": `${id}-error` };
+  const input = element("input", { id, type: "text", placeholder: empty, size: "16", ...about });
+  const error = element("span", { class: "error", id: `${id}-error` });
+  const read = () => {
+    if (input.value.trim() === "") return { value: null };
+    const read = parseNumber(input.value, "s");
+    return "message" in read || read.value >= 0 ? read : { message: "Give a time from 0 s on." };
+  };
+  input.addEventListener("input", () => {
+    const found = read();
+    error.textContent = "message" in found ? found.message : "";
+    input.setAttribute("aria-invalid", String("message" in found));
+  });
+  return {
+    label: element("div", {}, element("label", { for: id }, `${name}, s `), input, error),
+    isWrong: () => "message" in read(),
+    value: () => {
+      const found = read();
+      return "value" in found ? found.value : null;
     },
   };
 }

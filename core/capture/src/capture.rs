@@ -10,7 +10,7 @@
 //! assert_eq!(steps.iter().map(|step| (step.cycle, step.position)).collect::<Vec<_>>(), [(500, 1), (1000, 2)]);
 //! ```
 
-use crate::timebase::Timebase;
+use crate::{changes::Changes, timebase::Timebase};
 use core::fmt;
 use stepscope_peripheral::trace::Step;
 
@@ -109,7 +109,7 @@ pub struct Capture {
     pub channels: Vec<Channel>,
     /// What the levels were, in the order of time: ticks rise, and each row differs from the one before. The first stands
     /// for all the time before the second.
-    pub changes: Vec<Change>,
+    pub changes: Changes,
     /// Bytes, in the order of time.
     pub bytes: Vec<TimedByte>,
     /// Positions, in the order of time.
@@ -128,7 +128,7 @@ impl Capture {
             format,
             timebase: None,
             channels: Vec::new(),
-            changes: Vec::new(),
+            changes: Changes::new(),
             bytes: Vec::new(),
             positions: Vec::new(),
             end: 0,

@@ -17,7 +17,7 @@ use stepscope_core::{
     inspect::{
         recording::{
             alignment::{Comparison, Side},
-            opened::{Ask, Opened},
+            opened::{Ask, Opened, Part},
             scenario::{Made, Steps, of_step_times, of_steps},
         },
         tables::{write_edges_head, write_edges_row},
@@ -181,8 +181,8 @@ fn whole(file: &[u8]) -> Capture {
 fn in_order(capture: &Capture, most: usize) {
     let Capture { channels, changes, bytes, positions, end, .. } = capture;
     assert!(channels.len() <= MAX_CHANNELS && capture.len() <= most);
-    for pair in changes.windows(2) {
-        assert!(pair[0].tick < pair[1].tick && pair[0].levels != pair[1].levels, "{pair:?}");
+    for (one, next) in changes.iter().zip(changes.iter().skip(1)) {
+        assert!(one.tick < next.tick && one.levels != next.levels, "{one:?} {next:?}");
     }
     assert!(bytes.windows(2).all(|pair| pair[0].tick <= pair[1].tick), "{bytes:?}");
     assert!(positions.windows(2).all(|pair| pair[0].tick <= pair[1].tick), "{positions:?}");
@@ -206,7 +206,15 @@ fn open(capture: Capture, ask: &Ask) {
     if (MAX_STEPS..=10_000_000).contains(&steps) {
         return;
     }
-    let mut opened = match Opened::new(capture, ask) {
+    // Looked at where it lies it is the same; of a part the figures are.
+    let [whole, few] =
+        [usize::MAX, 3].map(|most| Opened::of_part(&capture, ask, &Part { most, from_s: None, to_s: None }));
+    let opened = Opened::new(capture, ask);
+    assert_eq!(whole, opened);
+    if let (Ok(few), Ok(opened)) = (few, &opened) {
+        assert!(few.records.len() <= 3 && few.report == opened.report, "{few:?}");
+    }
+    let mut opened = match opened {
         Ok(opened) => opened,
         Err(error) => return assert!(!error.to_string().is_empty()),
     };

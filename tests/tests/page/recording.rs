@@ -10,7 +10,7 @@ use stepscope_core::{
     capture::read::{Limits, read},
     inspect::{
         drivers,
-        recording::opened::{Ask, Opened},
+        recording::opened::{Ask, Opened, Part},
         timing::TimingCheck,
     },
     peripheral::{
@@ -418,6 +418,43 @@ fn bytes_and_positions_are_dropped_and_pasted_and_come_to_packets_and_steps() ->
         page.until_digest(&shown.digest).await?;
         page.click("#undo").await?;
         page.until_digest(&digest(&opened)).await
+    })
+}
+
+#[test]
+fn of_a_part_that_is_chosen_the_views_show_the_pulses_and_the_figures_are_of_all() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        page.ready().await?;
+        let text = cosine();
+        choose_file(&page, "mine.csv", &text).await?;
+        says(&page, "200 steps").await?;
+        // The fields stand there where a recording is too long; here they are filled all the same.
+        assert_eq!(
+            page.eval::<bool>("document.getElementById('recording-show-from').checkVisibility()").await?,
+            false
+        );
+        type_into(&page, "Show from", "0.1").await?;
+        type_into(&page, "Show up to", "150 ms").await?;
+        says(&page, "Shown: 100 ms to 150 ms of 210").await?;
+        says(&page, "200 steps, 200 right and 0 left").await?;
+        ensure!(!page.visible("#recording-beside").await?, "a part is not laid beside anything");
+        type_into(&page, "Show up to", "x").await?;
+        page.until(
+            "document.getElementById('recording-show-up-to-error').innerText.includes('not a number')",
+        )
+        .await?;
+        ensure!(!page.eval::<bool>(READY).await?, "nothing is shown up to a time that is none");
+        type_into(&page, "Show up to", "150 ms").await?;
+        page.until(READY).await?;
+        page.click(SHOW).await?;
+        page.until(CLOSED).await?;
+        let capture = read(Cursor::new(text.as_bytes()), &Limits::default(), &mut |_| true).capture;
+        let part = Part { most: 20_000_000, from_s: Some(0.1), to_s: Some(0.15) };
+        let shown = Opened::of_part(&capture, &Ask::default(), &part)?;
+        ensure!((20..390).contains(&shown.records.len()), "{}", shown.records.len());
+        page.until_digest(&digest(&shown)).await?;
+        page.until(&format!("{MESSAGE}.includes('Shown: 100 ms to 150 ms of 210')")).await
     })
 }
 
