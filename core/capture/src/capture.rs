@@ -10,6 +10,8 @@
 //! assert_eq!(steps.iter().map(|step| (step.cycle, step.position)).collect::<Vec<_>>(), [(500, 1), (1000, 2)]);
 //! ```
 
+pub use crate::changes::Change;
+
 use crate::{changes::Changes, timebase::Timebase};
 use core::fmt;
 use stepscope_peripheral::trace::Step;
@@ -65,15 +67,6 @@ impl fmt::Display for Format {
 pub struct Channel {
     /// As the file has it; what it stands in comes before it, with points between (`top.motor.STEP`).
     pub name: String,
-}
-
-/// The levels of all channels from a tick on, until the next change.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Change {
-    /// When, in ticks of the file.
-    pub tick: u64,
-    /// Channel i in bit i. A channel that is not yet known, or neither high nor low, is 0.
-    pub levels: u64,
 }
 
 /// A byte of a line that was decoded already.

@@ -11,7 +11,7 @@
 //! Blocks begin with a whole change, so that a time is found without reading what is before its block.
 //!
 //! ```
-//! use stepscope_capture::{capture::Change, changes::Changes};
+//! use stepscope_capture::changes::{Change, Changes};
 //!
 //! let steps = (0..1000).map(|k| Change { tick: 700 * k, levels: k % 2 });
 //! let changes: Changes = steps.clone().collect();
@@ -19,11 +19,19 @@
 //! assert!(changes.iter_from(350_000).eq(steps.skip(500)));
 //! ```
 
-use crate::capture::Change;
 use std::{collections::TryReserveError, slice, vec};
 
-/// Bytes of a block.
-const BLOCK: usize = 1 << 16;
+/// The levels of all channels from a tick on, until the next change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Change {
+    /// When, in ticks of the file.
+    pub tick: u64,
+    /// Channel i in bit i. A channel that is not yet known, or neither high nor low, is 0.
+    pub levels: u64,
+}
+
+/// Bytes of a block: so many that the C library asks the system for each, and gives it back.
+const BLOCK: usize = 1 << 17;
 /// Most bytes of a change: ten of its time, nine of what changes.
 const MAX_ROW: usize = 19;
 /// Bits of the time in the first byte of a change, and in each further one.
@@ -302,7 +310,7 @@ mod tests {
         // Times of one to ten bytes; one channel, another, several, none.
         let mut all = Vec::new();
         let mut now = Change { tick: 0, levels: 5 };
-        for k in 0..60_000_u64 {
+        for k in 0..100_000_u64 {
             all.push(now);
             let noise = k.wrapping_mul(0x9e37_79b9_7f4a_7c15);
             now.tick += noise >> (24 + (k % 40)) | u64::from(k % 7 != 0);
@@ -318,7 +326,7 @@ mod tests {
         let packed: Changes = all.iter().copied().collect();
         assert!(packed.blocks.len() > 2 && packed.iter().eq(all.iter().copied()));
         assert_eq!((packed.first(), packed.last()), (all.first().copied(), all.last().copied()));
-        for at in [0, 1, 2, 9_000, 20_000, 59_999, 60_000] {
+        for at in [0, 1, 2, 9_000, 20_000, 99_999, 100_000] {
             let tick = all[at].tick;
             let first = all.partition_point(|change| change.tick <= tick) - 1;
             assert!(packed.iter_from(tick).eq(all[first..].iter().copied()), "{at}");

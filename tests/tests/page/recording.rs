@@ -436,7 +436,7 @@ fn of_a_part_that_is_chosen_the_views_show_the_pulses_and_the_figures_are_of_all
         );
         type_into(&page, "Show from", "0.1").await?;
         type_into(&page, "Show up to", "150 ms").await?;
-        says(&page, "Shown: 100 ms to 150 ms of 210").await?;
+        says(&page, "Shown: 100 ms to 150 ms of 203").await?;
         says(&page, "200 steps, 200 right and 0 left").await?;
         ensure!(!page.visible("#recording-beside").await?, "a part is not laid beside anything");
         type_into(&page, "Show up to", "x").await?;
@@ -454,7 +454,7 @@ fn of_a_part_that_is_chosen_the_views_show_the_pulses_and_the_figures_are_of_all
         let shown = Opened::of_part(&capture, &Ask::default(), &part)?;
         ensure!((20..390).contains(&shown.records.len()), "{}", shown.records.len());
         page.until_digest(&digest(&shown)).await?;
-        page.until(&format!("{MESSAGE}.includes('Shown: 100 ms to 150 ms of 210')")).await
+        page.until(&format!("{MESSAGE}.includes('Shown: 100 ms to 150 ms of 203')")).await
     })
 }
 
