@@ -7,7 +7,7 @@
 
 use arbitrary::{Result, Unstructured};
 use crc::{CRC_32_ISO_HDLC, Crc};
-use std::{io::Cursor, slice};
+use std::{collections::BTreeSet, io::Cursor, slice};
 use stepscope_core::{
     capture::{
         Capture, ChannelMap,
@@ -175,6 +175,34 @@ fn whole(file: &[u8]) -> Capture {
     let proposed = ChannelMap::proposed(&capture);
     assert_eq!(ChannelMap::parse(&proposed.to_text(&capture), &capture), Ok(proposed));
     capture
+}
+
+/// What tells the kinds of files apart, and what stands in them.
+#[must_use]
+pub fn words() -> BTreeSet<String> {
+    let dump = "$timescale $scope $upscope $var $enddefinitions $dumpvars $dumpoff $dumpon $dumpall $comment $end module wire reg integer \
+        real string 1ns 10us 1ps 100fs #0 #10 b0 b1x r0.5 [7:0]";
+    let tables = "Time[s] Time,STEP t_us t_ms time_s cycle bytes hex data position name,type,start_time,duration,data \
+        async_serial 0x55 framing_error Samplerate: Unitsize: Channels logic samplerate time \u{b5}s";
+    let session = "PK\u{3}\u{4} PK\u{1}\u{2} PK\u{5}\u{6} metadata version logic-1-1 [device capturefile= unitsize= total probes= \
+        samplerate=1 MHz kHz";
+    let numbers = "e-9 1e309 -1 18446744073709551615 9000000000000000 0.000000001 1,5 2026-01-31T23:59:59.5Z";
+    let together = [
+        "Time [s]",
+        "$var wire 1 ! STEP $end",
+        "\r\n",
+        "\t",
+        ";",
+        ",,",
+        "\"\"",
+        "#!",
+        "1!",
+        "0!",
+        "x!",
+        "z!",
+    ];
+    let split = [dump, tables, session, numbers].into_iter().flat_map(str::split_whitespace);
+    split.chain(together).map(str::to_owned).collect()
 }
 
 /// What a capture promises.
