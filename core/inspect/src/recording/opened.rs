@@ -260,11 +260,13 @@ impl Opened {
         let (mut opened, map, base) = Self::before(capture, ask)?;
         let Some(base) = base else { return opened.back_to_back(capture, ask).map(|()| opened) };
         let clock_hz = opened.clock_hz;
-        if let Some(report) = opened.without_levels(capture, base, ask)? {
+        let report = opened.without_levels(capture, base, ask)?;
+        // Without levels there is one record, that of reset.
+        if capture.changes.is_empty() {
             let none = Capture { end: capture.end, ..Capture::new(capture.format) };
             let recorded = Recorded::new(none, &map, base, clock_hz).map_err(OpenError::TooLate)?;
             (opened.rounding, opened.records) = (recorded.rounding.to_string(), recorded.records);
-            opened.told(report, &map);
+            opened.told(report.unwrap_or_else(|| Report { channels: Vec::new(), lines: Vec::new() }), &map);
             return Ok(opened);
         }
         let all = Records::of(capture, &map, base, clock_hz).map_err(OpenError::TooLate)?;
