@@ -28,6 +28,7 @@ import {
   loadNewer,
   loadPrevious,
   loadScenario,
+  recordingsKept,
   saveGood,
   saveHistory,
   saveScenario,
@@ -322,6 +323,8 @@ async function start() {
   ];
   createKeys(spectrum.load);
   createGuide(page);
+  // Its code and its storage are looked at only where there is something.
+  if (recordingsKept()) await import("./shell/kept.js").then(({ restore }) => restore(page)).catch(() => {});
   await link.start(loadScenario() !== null);
   if (state.revision === 0) {
     follow(undefined);

@@ -307,6 +307,38 @@ fn files_of_a_recording_are_read_again() {
 }
 
 #[test]
+fn the_packets_of_a_recording_are_those_of_the_run_with_the_devices_replies() {
+    let folder = folder("packets");
+    let (dump, logged) = (text(&folder.join("own.vcd")), text(&folder.join("logged.csv")));
+    let scenario = file(&folder, "framed.json", FRAMED);
+    run(&scenario, &["--vcd", &dump, "--packets", &logged]);
+    let (code, out, err) = stepscope(&["capture", &dump, "--packets", "-"], "");
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    let columns = |table: &str, names: &[&str]| -> Vec<Vec<String>> {
+        let head: Vec<&str> = table.lines().next().expect("a head").split(',').collect();
+        let places = names.iter().map(|name| head.iter().position(|each| each == name).expect("a column"));
+        let places: Vec<usize> = places.collect();
+        let row = |row: &str| {
+            let cells: Vec<&str> = row.split(',').collect();
+            places.iter().map(|place| cells[*place].to_owned()).collect()
+        };
+        table.lines().skip(1).map(row).collect()
+    };
+    let logged = fs::read_to_string(logged).expect("the run's table");
+    assert_eq!(columns(&out, &["bytes"]), columns(&logged, &["bytes"]));
+    let lines = columns(&out, &["kind", "line", "outcome"]);
+    assert!(
+        lines.iter().all(|row| {
+            ["reply TX check holds", "frame RX check holds"].contains(&row.join(" ").as_str())
+        }),
+        "{lines:?}"
+    );
+    let replies = lines.iter().filter(|row| row[0] == "reply").count();
+    assert!(replies > 5 && replies * 2 == lines.len(), "{replies} of {}", lines.len());
+    assert!(out.contains("from 3: "), "{out}");
+}
+
+#[test]
 fn pulses_are_held_against_a_driver() {
     // A DRV8825 asks for 1.9 us of each level; the pulse at 40 us is 1 us long.
     let short = DUMP.replace("#20 1!", "#20 1! #21 0!");

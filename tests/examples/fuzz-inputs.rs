@@ -29,9 +29,16 @@ fn write(target: &Target, folder: &Path) -> io::Result<()> {
         fs::write(inputs.join(format!("{index:04}")), bytes)?;
     }
     let mut dictionary = String::new();
-    for word in target.dictionary() {
-        let quoted = word.replace('\\', "\\\\").replace('"', "\\\"");
-        let _ = writeln!(dictionary, "\"{quoted}\"");
+    for word in (target.words)() {
+        dictionary.push('"');
+        for byte in word.bytes() {
+            let _ = match byte {
+                b'\\' | b'"' => write!(dictionary, "\\{}", char::from(byte)),
+                b' '..=b'~' => write!(dictionary, "{}", char::from(byte)),
+                _ => write!(dictionary, "\\x{byte:02x}"),
+            };
+        }
+        dictionary.push_str("\"\n");
     }
     if dictionary.is_empty() { Ok(()) } else { fs::write(folder.join("dictionary"), dictionary) }
 }

@@ -28,22 +28,23 @@ pub struct Target {
     pub told: fn(&[u8]) -> String,
     /// What fuzzing begins with, made from files of the repository; never empty.
     pub seeds: fn() -> Vec<Vec<u8>>,
-    /// Whether its inputs hold JSON, so that a dictionary of a scenario's words helps.
-    pub is_json: bool,
+    /// The words that its inputs are made of, such as `"channels"` with its quotation marks: libFuzzer's dictionary; empty
+    /// where it has none.
+    pub words: fn() -> BTreeSet<String>,
 }
 
 /// All fuzz targets.
 pub const TARGETS: &[Target] = &[
-    Target { name: "line", check: line::check, told: line::told, seeds: line::seeds, is_json: false },
-    Target { name: "frames", check: frames::check, told: bytes, seeds: frames::seeds, is_json: false },
-    Target { name: "scenario", check: scenario::check, told: text, seeds: scenario::seeds, is_json: true },
-    Target { name: "link", check: link::check, told: text, seeds: link::seeds, is_json: true },
+    Target { name: "line", check: line::check, told: line::told, seeds: line::seeds, words: BTreeSet::new },
+    Target { name: "frames", check: frames::check, told: bytes, seeds: frames::seeds, words: BTreeSet::new },
+    Target { name: "scenario", check: scenario::check, told: text, seeds: scenario::seeds, words },
+    Target { name: "link", check: link::check, told: text, seeds: link::seeds, words },
     Target {
         name: "capture",
         check: capture::check,
         told: capture::told,
         seeds: capture::seeds,
-        is_json: false,
+        words: capture::words,
     },
 ];
 
@@ -66,20 +67,16 @@ impl Target {
         files.sort();
         Ok(files)
     }
+}
 
-    /// The words that its inputs are made of, such as `"channels"` with its quotation marks; empty where it has none.
-    #[must_use]
-    pub fn dictionary(&self) -> BTreeSet<String> {
-        if !self.is_json {
-            return BTreeSet::new();
-        }
-        // Quoted words, the texts for people left out: they are long.
-        let words = |text: &str| -> Vec<String> {
-            let quoted = text.split('"').skip(1).step_by(2);
-            quoted.filter(|word| word.len() < 24).map(|word| format!("\"{word}\"")).collect()
-        };
-        scenarios().flat_map(words).chain(words(&Scenario::default().to_json())).collect()
-    }
+/// The words of a scenario.
+fn words() -> BTreeSet<String> {
+    // Quoted words, the texts for people left out: they are long.
+    let words = |text: &str| -> Vec<String> {
+        let quoted = text.split('"').skip(1).step_by(2);
+        quoted.filter(|word| word.len() < 24).map(|word| format!("\"{word}\"")).collect()
+    };
+    scenarios().flat_map(words).chain(words(&Scenario::default().to_json())).collect()
 }
 
 /// An input that is a stream of bytes.

@@ -31,7 +31,16 @@ fn every_seed_passes_and_there_are_some() {
         assert!(seeds.len() > 5, "{} has {} seeds", target.name, seeds.len());
         let named = seeds.into_iter().enumerate().map(|(index, bytes)| (index.to_string(), bytes));
         assert_eq!(broken(target, named), [""; 0], "seeds of {}", target.name);
-        assert_eq!(target.is_json, target.dictionary().contains("\"channels\""), "{}", target.name);
+        let words = (target.words)();
+        assert_eq!(
+            ["scenario", "link"].contains(&target.name),
+            words.contains("\"channels\""),
+            "{}",
+            target.name
+        );
+        assert_eq!(target.name == "capture", words.contains("$timescale"), "{}", target.name);
+        // libFuzzer takes words of up to 64 bytes.
+        assert!(words.iter().all(|word| (1..=64).contains(&word.len())), "{words:?}");
     }
 }
 

@@ -12,7 +12,8 @@ use stepscope_core::{
     },
     inspect::recording::{
         events::Events,
-        opened::{Ask, Opened},
+        opened::{Ask, Kept, Opened, Part},
+        packets::{LinePacket, Packets},
         report::ChannelReport,
     },
 };
@@ -108,6 +109,11 @@ struct Asked {
     channel: Option<u8>,
     /// Which of them, from 0.
     aligned: Option<usize>,
+    /// Most records that the views take.
+    most: Option<usize>,
+    /// The part of it that they show, in s.
+    from_s: Option<f64>,
+    to_s: Option<f64>,
 }
 
 /// What it comes to.
@@ -118,6 +124,8 @@ struct Looked<'a> {
     rounding: &'a str,
     end_s: f64,
     records: usize,
+    /// The part that is shown; null where it is all.
+    kept: Option<Kept>,
     notes: &'a [String],
     steps: &'a [ChannelReport],
     lines: Vec<String>,
@@ -163,17 +171,18 @@ impl CaptureFile {
         })
     }
 
-    /// Looks at it by what is said of it, `{map, clock_hz, sample_rate_hz, baud, at_s, channel, aligned}`, each of which
-    /// may be left out: `{map, clock_hz, rounding, end_s, records, notes, steps, lines}`.
+    /// Looks at it by what is said of it, `{map, clock_hz, sample_rate_hz, baud, at_s, channel, aligned, most, from_s, to_s}`,
+    /// each of which may be left out: `{map, clock_hz, rounding, end_s, records, kept, notes, steps, lines}`.
     ///
     /// # Errors
     /// With what is missing, or wrong.
     pub fn look(&mut self, asked: JsValue) -> Result<JsValue, JsError> {
-        let Asked { map, clock_hz, sample_rate_hz, baud, at_s, channel, aligned } =
+        let Asked { map, clock_hz, sample_rate_hz, baud, at_s, channel, aligned, most, from_s, to_s } =
             serde_wasm_bindgen::from_value(asked).map_err(JsError::from)?;
         self.opened = None;
         let ask = Ask { map, clock_hz, sample_rate_hz, baud };
-        let mut opened = Opened::new(self.capture.clone(), &ask)?;
+        let part = Part { most: most.unwrap_or(usize::MAX), from_s, to_s };
+        let mut opened = Opened::of_part(&self.capture, &ask, &part)?;
         if let Some(at_s) = at_s {
             opened.align(channel.unwrap_or(0), aligned.unwrap_or(0), at_s)?;
         }
@@ -184,6 +193,7 @@ impl CaptureFile {
             rounding: &opened.rounding,
             end_s: opened.end_s,
             records: opened.records.len(),
+            kept: opened.kept,
             notes: &opened.notes,
             steps: &opened.report.channels,
             lines: opened.report.lines.iter().map(|line| line.to_text()).collect(),
@@ -195,6 +205,30 @@ impl CaptureFile {
     #[must_use]
     pub fn scenario(&self, file: &str, steps: bool) -> Option<String> {
         Some(self.opened.as_ref()?.shown_scenario(file, steps).to_json())
+    }
+
+    /// What its lines say, packet by packet: `{total, replies, rows, csv}`, the first `most` rows, and all of them as a table.
+    /// `addressed` says whether raw packets begin with an address.
+    ///
+    /// # Errors
+    /// Never in practice.
+    pub fn packets(&self, addressed: bool, most: u32) -> Result<JsValue, JsError> {
+        #[derive(Serialize)]
+        struct Told<'a> {
+            total: usize,
+            replies: usize,
+            rows: &'a [LinePacket],
+            csv: String,
+        }
+        let told = self
+            .opened
+            .as_ref()
+            .map(|opened| Packets::of(&opened.report, opened.clock_hz, opened.channels, addressed));
+        let Some(packets) = told else { return Ok(JsValue::NULL) };
+        let mut csv = String::new();
+        packets.write_csv(&mut csv)?;
+        let rows = packets.rows.get(..packets.rows.len().min(most as usize)).unwrap_or_default();
+        object(&Told { total: packets.rows.len(), replies: packets.replies(), rows, csv })
     }
 
     /// When step `aligned` of a channel, from 0, or, where this steps nowhere, that byte of RX comes in a run, in s: its

@@ -8,14 +8,19 @@ import { compiled } from "./wasm.js";
  * @typedef {{channel: number, figures: {steps: number, right: number, left: number, turns: number, position: number,
  *   first_s: number, last_s: number, shortest_interval_s: number | null, shortest_at_s: number | null, greatest_rate_steps_s: number | null,
  *   mean_rate_steps_s: number | null, greatest_acceleration_steps_s2: number | null}}} ChannelSteps
- * @typedef {{map: string, clock_hz: number, rounding: string, end_s: number, records: number, notes: string[],
+ * @typedef {{from_s: number, to_s: number, end_s: number, records: number, of: number}} Kept  The part that the views show, where that is not all.
+ * @typedef {{map: string, clock_hz: number, rounding: string, end_s: number, records: number, kept: Kept | null, notes: string[],
  *   steps: ChannelSteps[], lines: string[]}} Looked
- * @typedef {{map?: string, clock_hz?: number, sample_rate_hz?: bigint, baud?: number, at_s?: number, channel?: number, aligned?: number}} Asked
+ * @typedef {{line: string, kind: string, start_cycle: number, end_cycle: number, bytes: number[], meaning: string, outcome: string}} LinePacket
+ * @typedef {{total: number, replies: number, rows: LinePacket[], csv: string}} LinePackets
+ * @typedef {{map?: string, clock_hz?: number, sample_rate_hz?: bigint, baud?: number, at_s?: number, channel?: number, aligned?: number, from_s?: number, to_s?: number}} Asked
  * @typedef {{records: Uint8Array, clock_hz: number, channel: number, baud: number, aligned: number}} Model  What a run has of a channel and of RX, and the step, or byte, that both have at one time.
  */
 
-/** Most changes that a page keeps; in the worker and in the run they take 48 bytes each. */
-const MOST = 20_000_000;
+/** Most changes, bytes or positions that are read; in the worker a change takes two to four bytes, the others 16. */
+const MOST_READ = 120_000_000;
+/** Most changes that the views take; in the worker and in the run they take 64 bytes each. */
+const MOST_SHOWN = 20_000_000;
 /** Records that are handed on at a time. */
 const PIECE = 1 << 19;
 
@@ -44,7 +49,7 @@ export function openCapture(file, onProgress) {
     };
     compiled("capture").then((module) => {
       worker.postMessage({ module });
-      worker.postMessage(typeof file === "string" ? { sample: file } : { file, most: MOST });
+      worker.postMessage(typeof file === "string" ? { sample: file } : { file, most: MOST_READ });
     }, reject);
   });
 
@@ -59,9 +64,11 @@ export function openCapture(file, onProgress) {
     facts,
     sample: () => sample,
     /** @param {Asked} by @returns {Promise<Looked>} */
-    look: (by) => ask("look", by),
+    look: (by) => ask("look", { most: MOST_SHOWN, ...by }),
     /** The scenario that it is shown with. @param {boolean} ofSteps @returns {Promise<string>} */
     scenario: (ofSteps) => ask("scenario", sample?.file ?? /** @type {File} */ (file).name, ofSteps),
+    /** What its lines say: the first `most` packets, and all of them as a table. @param {boolean} addressed @param {number} most @returns {Promise<LinePackets | null>} */
+    packets: (addressed, most) => ask("packets", addressed, most),
     /** When the step, or byte, of a run comes, in s. @param {Model} of @returns {Promise<number | undefined>} */
     timeOf: ({ records, clock_hz, channel, baud, aligned }) =>
       ask("time_of", records, clock_hz, channel, baud, aligned),

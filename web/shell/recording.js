@@ -7,8 +7,10 @@ import { openCapture } from "../engine/capture.js";
 import { readJson } from "../state/json.js";
 import { count, counted, parseNumber, plain, si, time } from "../state/number.js";
 import { isStale } from "../state/state.js";
+import { keep } from "./kept.js";
 import { message } from "./link.js";
 import { around } from "./notices.js";
+import { save } from "./save.js";
 import { ownIsKept } from "./storage.js";
 
 /** @typedef {import("../engine/capture.js").Facts} Facts */
@@ -25,6 +27,10 @@ const MAX_MAPS = 30;
 const GREATEST = 2 ** 32 - 1;
 /** Rest after a change before it is looked again, in ms. */
 const REST_MS = 200;
+/** Packets that the dialog lists, and bytes that it lists of each; its file has all. */
+const [MAX_LISTED, MAX_LISTED_BYTES] = [100, 32];
+/** From so many changes on looking at them takes a moment. */
+const MANY = 2_000_000;
 /** Greatest drift that is told of two clocks. */
 const MAX_DRIFT_PPM = 50_000;
 /** How long the experiment before may run, in ms. */
@@ -99,15 +105,24 @@ function show(page, file, capture, facts, { body, foot, close }) {
   // Bytes without times have no samples: how long each lasts, the bit rate says.
   const fields = facts.has_times ? [clock, baud] : isBytes ? [baud, clock] : [rate, clock, baud];
   const result = element("div", { class: "recorded", "aria-live": "polite" });
+  const said = element("details", { class: "packets-said" });
+  said.addEventListener("toggle", () => {
+    if (said.open) void listPackets().catch((error) => refuse(message(error)));
+  });
+  said.hidden = true;
   const plan = planOf();
   const besides = element("input", { id: "recording-beside", type: "checkbox", ...(plan ? { checked: "" } : {}) });
   const beside = element("label", { class: "check" }, besides, ` beside this experiment`);
   const align = numberField("Aligned by step", "", "0, the first", 0);
-  beside.hidden = plan === null;
-  const showAlign = () => {
-    align.label.hidden = plan === null || !besides.checked;
+  const from = timeField("Show from", "its beginning");
+  const to = timeField("Show up to", "as far as there is room");
+  /** What depends on what was looked at: a part is not laid beside anything. @param {Looked["kept"]} kept */
+  const showFields = (kept = looked?.kept ?? null) => {
+    const isPart = kept !== null || from.value() !== null || to.value() !== null;
+    for (const { label } of [from, to]) label.hidden = !isPart;
+    beside.hidden = plan === null || isPart;
+    align.label.hidden = beside.hidden || !besides.checked;
   };
-  showAlign();
   const take = button(
     "Show it",
     "Show it: look at the recording with all views",
@@ -119,6 +134,7 @@ function show(page, file, capture, facts, { body, foot, close }) {
   let looked = null;
   let timer = 0;
   let asking = 0;
+  showFields();
 
   const notes = [...(facts.error ? [`Not read to its end: ${facts.error}.`] : []), ...facts.notes];
   fill(
@@ -128,14 +144,17 @@ function show(page, file, capture, facts, { body, foot, close }) {
     ...notes.map((note) => element("p", { class: "note" }, note)),
     ...(facts.has_levels ? [table(rows)] : []),
     element("div", { class: "fields" }, ...fields.map(({ label }) => label)),
+    from.label,
+    to.label,
     beside,
     align.label,
     result,
+    said,
   );
   put(facts.has_levels ? (keptMap(channels) ?? facts.map) : "");
   body.addEventListener("input", () => {
     clearTimeout(timer);
-    showAlign();
+    showFields();
     // What was looked at is no longer what is asked.
     asking += 1;
     take.disabled = true;
@@ -183,6 +202,9 @@ function show(page, file, capture, facts, { body, foot, close }) {
     if (clock.value()) said.clock_hz = clock.value();
     if (rate.value()) said.sample_rate_hz = BigInt(rate.value());
     if (baud.value()) said.baud = baud.value();
+    const [from_s, to_s] = [from.value(), to.value()];
+    if (from_s !== null) said.from_s = from_s;
+    if (to_s !== null) said.to_s = to_s;
     return said;
   }
 
@@ -190,7 +212,8 @@ function show(page, file, capture, facts, { body, foot, close }) {
   async function look(more = {}) {
     const own = ++asking;
     take.disabled = true;
-    if ([...fields, ...(besides.checked ? [align] : [])].some((field) => field.isWrong())) return;
+    if ([...fields, from, to, ...(besides.checked ? [align] : [])].some((field) => field.isWrong())) return;
+    if (facts.count > MANY) fill(result, element("p", {}, `Looking at ${counted(facts.count, "change")}…`));
     try {
       if (facts.has_levels && map() === "") throw new Error("choose which channel is STEP, DIR, RX or TX");
       const found = await capture.look(asked(more));
@@ -204,14 +227,43 @@ function show(page, file, capture, facts, { body, foot, close }) {
     }
   }
 
+  /** What the lines say, as far as there is room for it. */
+  async function listPackets() {
+    const found = looked && (await capture.packets(typeof now().scenario.line.address === "number", MAX_LISTED));
+    if (!found || !said.open) return;
+    const name = `${file.replace(/\.[^.]*$/, "")}-packets.csv`;
+    const all = button("Save all (CSV)", `Save all packets: ${name}`, () => save(name, "text/csv", [found.csv]));
+    const more = found.total > found.rows.length ? `; the first ${count(found.rows.length)} of them:` : ":";
+    const from = looked?.clock_hz ?? 1;
+    const cells = (/** @type {import("../engine/capture.js").LinePacket} */ row) => [
+      `${row.line} ${row.kind}`,
+      time(row.start_cycle / from),
+      hex(row.bytes),
+      [row.meaning, row.outcome].filter((text) => text !== "").join("; "),
+    ];
+    fill(
+      said,
+      element("summary", {}, "Packets"),
+      element(
+        "p",
+        {},
+        `${counted(found.total, "packet")}, ${count(found.replies)} whole frames of the device${more} `,
+        all,
+      ),
+      grid(["Line", "from", "bytes", "what it says"], found.rows.map(cells)),
+    );
+  }
+
   /** @param {string} why */
   function refuse(why) {
     looked = null;
+    said.hidden = true;
     fill(result, element("p", { class: "error" }, `${why[0].toUpperCase()}${why.slice(1)}.`));
   }
 
   /** @param {Looked} found */
-  function tell({ clock_hz, rounding, end_s, steps, lines, notes }) {
+  function tell({ clock_hz, rounding, end_s, kept, steps, lines, notes }) {
+    showFields(kept);
     const own = notes.filter((note) => !facts.notes.includes(note));
     const rows = steps.map(({ channel, figures: of }) =>
       element(
@@ -227,11 +279,23 @@ function show(page, file, capture, facts, { body, foot, close }) {
     );
     fill(
       result,
-      element("p", {}, `${time(end_s)} at ${si(clock_hz, "Hz", 6)}: ${rounding}.`),
+      element("p", {}, `${time(kept?.end_s ?? end_s)} at ${si(clock_hz, "Hz", 6)}: ${rounding}.`),
       ...rows,
       ...lines.map((line) => element("p", {}, line)),
+      ...(kept
+        ? [
+            element(
+              "p",
+              { class: "note" },
+              `${part(kept)}; the figures are of all of it. A part is not laid beside the experiment.`,
+            ),
+          ]
+        : []),
       ...own.map((note) => element("p", { class: "note" }, note)),
     );
+    said.hidden = lines.length === 0;
+    said.open = false;
+    fill(said, element("summary", {}, "Packets"));
   }
 
   async function taken() {
@@ -239,8 +303,9 @@ function show(page, file, capture, facts, { body, foot, close }) {
     take.disabled = true;
     const base = now().scenario;
     // Bytes go to the controllers of the experiment before, by its clock.
-    if (looked && looked.lines.length > 0 && !clock.value()) clock.set(base.clock_hz);
-    const model = besides.checked ? planOf() : null;
+    const isReclocked = looked !== null && looked.lines.length > 0 && !clock.value();
+    if (isReclocked) clock.set(base.clock_hz);
+    const model = align.label.hidden ? null : planOf();
     const channel = now().axis;
     const aligned = align.value();
     const one = looked?.steps.length === 0 ? "byte" : "step";
@@ -254,7 +319,8 @@ function show(page, file, capture, facts, { body, foot, close }) {
     const at_s = beside && (await capture.timeOf(beside));
     if (beside && aligned > 0 && typeof at_s !== "number")
       throw new Error(`the experiment has no ${one} ${count(aligned)}, from 0; align by one that both have`);
-    await look(typeof at_s === "number" ? { at_s, channel, aligned } : {});
+    // Of very many changes a look takes a moment.
+    if (isReclocked || beside) await look(typeof at_s === "number" ? { at_s, channel, aligned } : {});
     if (!looked) return;
     const found = beside && (await capture.beside(beside));
     if (facts.has_levels) keepMap(channels, map());
@@ -287,10 +353,12 @@ function show(page, file, capture, facts, { body, foot, close }) {
     }
     if (pieces.length > 0) engine.record(scenario, pieces);
     dispatch({ type: "replace", scenario: readJson(scenario), origin: "shared" });
-    const text = told(model !== null, pieces.length > 0);
-    dispatch({ type: "notice", notice: { kind: "info", text, place: null } });
     close();
-    const shown = found && (await resultOf(page));
+    const run = resultOf(page);
+    const kept = pieces.length > 0 ? await keep(page, file, scenario, pieces) : "";
+    const text = told(model !== null, pieces.length > 0) + kept;
+    dispatch({ type: "notice", notice: { kind: "info", text, place: null } });
+    const shown = found && (await run);
     if (!shown) return;
     const cycle = Math.round(found.largest.recorded_s * shown.summary.clock_hz);
     const place = around(cycle, cycle, shown.summary.end_cycle, shown.controller);
@@ -302,13 +370,19 @@ function show(page, file, capture, facts, { body, foot, close }) {
     const on = isRecorded
       ? "The views show what was recorded; change the source, the clock, the channels or the plant, and they show what the model makes of it."
       : "The views show what the model makes of it.";
-    return `Opened ${file}. ${on}${isBeside ? " The experiment before stands beside it as the baseline." : ""}${ownIsKept()}`;
+    const shown = isRecorded && looked?.kept ? ` ${part(looked.kept)}; its position begins with 0 there.` : "";
+    return `Opened ${file}. ${on}${shown}${isBeside ? " The experiment before stands beside it as the baseline." : ""}${ownIsKept()}`;
   }
+}
+
+/** @param {NonNullable<Looked["kept"]>} kept */
+function part({ from_s, to_s, end_s, records, of }) {
+  return `Shown: ${time(from_s)} to ${time(to_s)} of ${time(end_s)}, ${count(records)} of ${counted(of, "change")}`;
 }
 
 /** Each step, or byte, beside the baseline's, in one sentence. @param {any} found @param {number} aligned */
 function compared(
-  { kind, recorded, model, differing, largest, rms_s, drift_ppm, rms_jitter_s, other_values },
+  { kind, recorded, model, differing, largest, rms_s, drift_ppm, rms_jitter_s, outliers, other_values },
   aligned,
 ) {
   const one = kind.slice(0, -1);
@@ -324,7 +398,7 @@ function compared(
   const drift =
     Math.abs(drift_ppm) > MAX_DRIFT_PPM
       ? ""
-      : ` Drift ${drift_ppm.toFixed(1).replace(/^-(0\.0)$/, "$1")} ppm, jitter without it ${time(rms_jitter_s)} RMS.`;
+      : ` Drift ${drift_ppm.toFixed(1).replace(/^-(0\.0)$/, "$1")} ppm, jitter without it ${time(rms_jitter_s)} RMS${outliers > 0 ? ` of all but ${count(outliers)} that are far off` : ""}.`;
   return `Beside the baseline${by}: ${all} compared, ${count(differing)} are off by more than a cycle; ${late}${values}; RMS ${time(rms_s)}.${drift}`;
 }
 
@@ -365,6 +439,24 @@ function table(rows) {
   );
 }
 
+/** @param {number[]} bytes */
+function hex(bytes) {
+  const listed = bytes.slice(0, MAX_LISTED_BYTES).map((byte) => byte.toString(16).padStart(2, "0"));
+  return listed.join(" ") + (bytes.length > listed.length ? " …" : "");
+}
+
+/** @param {string[]} head @param {string[][]} rows */
+function grid(head, rows) {
+  const row = (/** @type {string[]} */ cells) => element("tr", {}, ...cells.map((text) => element("td", {}, text)));
+  const names = head.map((text) => element("th", { scope: "col" }, text));
+  return element(
+    "table",
+    { class: "channels" },
+    element("thead", {}, element("tr", {}, ...names)),
+    element("tbody", {}, ...rows.map(row)),
+  );
+}
+
 /** A whole number that may be left empty; what is wrong with it stands under it. @param {string} name @param {string} unit @param {string} empty @param {number} [least] */
 function numberField(name, unit, empty, least = 1) {
   const id = `recording-${name.toLowerCase().replaceAll(" ", "-")}`;
@@ -396,6 +488,32 @@ function numberField(name, unit, empty, least = 1) {
     },
     set: (/** @type {number} */ value) => {
       input.value = String(value);
+    },
+  };
+}
+
+/** A time that may be left empty. @param {string} name @param {string} empty */
+function timeField(name, empty) {
+  const id = `recording-${name.toLowerCase().replaceAll(" ", "-")}`;
+  const about = { "aria-describedby": `${id}-error` };
+  const input = element("input", { id, type: "text", placeholder: empty, size: "16", ...about });
+  const error = element("span", { class: "error", id: `${id}-error` });
+  const read = () => {
+    if (input.value.trim() === "") return { value: null };
+    const read = parseNumber(input.value, "s");
+    return "message" in read || read.value >= 0 ? read : { message: "Give a time from 0 s on." };
+  };
+  input.addEventListener("input", () => {
+    const found = read();
+    error.textContent = "message" in found ? found.message : "";
+    input.setAttribute("aria-invalid", String("message" in found));
+  });
+  return {
+    label: element("div", {}, element("label", { for: id }, `${name}, s `), input, error),
+    isWrong: () => "message" in read(),
+    value: () => {
+      const found = read();
+      return "value" in found ? found.value : null;
     },
   };
 }

@@ -15,6 +15,7 @@ const GUIDED = "stepscope.guide";
 const PANES = "stepscope.panes";
 const EXPERIMENTS = "stepscope.experiments";
 const HISTORY = "stepscope.history";
+const RECORDINGS = "stepscope.recordings";
 /** Characters of the history that a tab keeps: half of what a browser allows. */
 const MAX_HISTORY = 1 << 21;
 
@@ -133,3 +134,7 @@ export const saveGuided = () => save(GUIDED, "seen");
 export const loadPanes = () => load(PANES);
 /** @param {string} json */
 export const savePanes = (json) => save(PANES, json);
+/** Which recordings are kept beside (kept.js), as JSON; null where none ever was. */
+export const recordingsKept = () => load(RECORDINGS);
+/** Whether the list is kept. @param {string} json */
+export const listRecordings = (json) => save(RECORDINGS, json);

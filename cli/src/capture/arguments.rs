@@ -57,6 +57,10 @@ pub(crate) struct Arguments {
     /// Write the bytes of RX as a table: time, byte.
     #[arg(long, value_name = "FILE")]
     pub(super) bytes: Option<PathBuf>,
+    /// Write what RX and TX say, packet by packet: frames with their check and meaning, replies of the device among them; a
+    /// table that can be opened and sent again.
+    #[arg(long, value_name = "FILE")]
+    pub(super) packets: Option<PathBuf>,
     /// Write the trace: one record a line, cycle and levels in hexadecimal.
     #[arg(long, value_name = "FILE")]
     pub(super) trace: Option<PathBuf>,
@@ -93,6 +97,7 @@ impl Arguments {
             &self.scenario,
             &self.steps,
             &self.bytes,
+            &self.packets,
             &self.trace,
             &self.vcd,
             &self.csv,

@@ -11,7 +11,7 @@ use std::{
 };
 use stepscope_core::{
     inspect::{
-        recording::opened::Opened,
+        recording::{opened::Opened, packets::Packets},
         tables::{write_edges_head, write_edges_row},
         vcd::VcdWriter,
     },
@@ -46,6 +46,13 @@ pub(super) fn write(
     file(&arguments.late, &|out| beside.map_or(Ok(()), |beside| late(out, arguments.align, beside)))?;
     file(&arguments.steps, &|out| steps(out, &recording.steps_of(arguments.channel)))?;
     file(&arguments.bytes, &|out| bytes(out, recording))?;
+    file(&arguments.packets, &|out| {
+        let addressed = base.is_some_and(|base| base.line.address.is_some());
+        let packets = Packets::of(&recording.report, recording.clock_hz, recording.channels, addressed);
+        let mut text = String::new();
+        packets.write_csv(&mut text).map_err(io::Error::other)?;
+        out.write_all(text.as_bytes())
+    })?;
     file(&arguments.trace, &|out| {
         let mut text = String::new();
         recording.records.iter().try_for_each(|record| {

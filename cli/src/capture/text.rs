@@ -102,10 +102,15 @@ fn comparison(out: &mut impl Write, beside: &Beside) -> io::Result<()> {
     )?;
     writeln!(
         out,
-        "  drift {:.2} ppm; without it {:.3} us at most, {:.3} us r.m.s.",
+        "  drift {:.2} ppm; without it {:.3} us at most, {:.3} us r.m.s.{}",
         found.drift_ppm,
         us(found.largest_jitter_s),
-        us(found.rms_jitter_s)
+        us(found.rms_jitter_s),
+        if found.outliers > 0 {
+            format!(" of all but {}, too far off to count for the clock", found.outliers)
+        } else {
+            String::new()
+        }
     )?;
     if beside.found.other_values > 0 {
         writeln!(out, "  {} {what} have another value", beside.found.other_values)?;
@@ -199,6 +204,7 @@ pub(super) fn tables(
             "drift_ppm": found.drift_ppm,
             "largest_jitter_s": found.largest_jitter_s,
             "rms_jitter_s": found.rms_jitter_s,
+            "outliers": found.outliers,
             "first_difference_index": found.first_difference.map(|first| first.step),
             "first_difference_s": found.first_difference.map(|first| first.recorded_s),
         })

@@ -10,7 +10,9 @@
 //! assert_eq!(steps.iter().map(|step| (step.cycle, step.position)).collect::<Vec<_>>(), [(500, 1), (1000, 2)]);
 //! ```
 
-use crate::timebase::Timebase;
+pub use crate::changes::Change;
+
+use crate::{changes::Changes, timebase::Timebase};
 use core::fmt;
 use stepscope_peripheral::trace::Step;
 
@@ -67,15 +69,6 @@ pub struct Channel {
     pub name: String,
 }
 
-/// The levels of all channels from a tick on, until the next change.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Change {
-    /// When, in ticks of the file.
-    pub tick: u64,
-    /// Channel i in bit i. A channel that is not yet known, or neither high nor low, is 0.
-    pub levels: u64,
-}
-
 /// A byte of a line that was decoded already.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TimedByte {
@@ -109,7 +102,7 @@ pub struct Capture {
     pub channels: Vec<Channel>,
     /// What the levels were, in the order of time: ticks rise, and each row differs from the one before. The first stands
     /// for all the time before the second.
-    pub changes: Vec<Change>,
+    pub changes: Changes,
     /// Bytes, in the order of time.
     pub bytes: Vec<TimedByte>,
     /// Positions, in the order of time.
@@ -128,7 +121,7 @@ impl Capture {
             format,
             timebase: None,
             channels: Vec::new(),
-            changes: Vec::new(),
+            changes: Changes::new(),
             bytes: Vec::new(),
             positions: Vec::new(),
             end: 0,

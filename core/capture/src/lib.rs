@@ -10,7 +10,7 @@
 //!
 //! let dump = "$timescale 1 us $end $var wire 1 ! STEP $end $enddefinitions $end #0 0! #10 1! #12 0!";
 //! let reading = read(std::io::Cursor::new(dump), &Limits::default(), &mut |_| true);
-//! assert_eq!(reading.capture.changes[1].tick, 10);
+//! assert_eq!(reading.capture.changes.iter().nth(1).map(|change| change.tick), Some(10));
 //! ```
 
 #[cfg(doctest)]
@@ -20,6 +20,8 @@ struct Readme;
 pub mod timebase;
 
 pub mod capture;
+
+pub mod changes;
 
 pub mod read;
 

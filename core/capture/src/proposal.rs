@@ -209,11 +209,11 @@ fn by_behaviour(capture: &Capture, entries: &mut Vec<Entry>) {
     let free: Vec<usize> = (0..capture.channels.len())
         .filter(|channel| entries.iter().all(|entry| entry.channel != *channel))
         .collect();
-    let looked_at = capture.changes.get(..capture.changes.len().min(MAX_LOOKED_AT)).unwrap_or_default();
+    let looked_at: Vec<Change> = capture.changes.iter().take(MAX_LOOKED_AT).collect();
     if free.is_empty() || looked_at.is_empty() {
         return;
     }
-    let behaviour = behaviours(looked_at, capture.channels.len());
+    let behaviour = behaviours(&looked_at, capture.channels.len());
     let mut free: Vec<(usize, Behaviour)> = free
         .into_iter()
         .filter_map(|channel| Some((channel, *behaviour.get(channel)?)))

@@ -16,6 +16,7 @@
 
 use crate::{
     capture::{Capture, Change},
+    changes,
     channel_map::{ChannelMap, Entry},
     timebase::Timebase,
 };
@@ -91,6 +92,11 @@ impl fmt::Display for TooLate {
 
 impl core::error::Error for TooLate {}
 
+/// The cycle of a time, if there is one.
+fn cycle(timebase: Timebase, tick: u64, clock_hz: u32) -> Result<u64, TooLate> {
+    timebase.cycle(tick, clock_hz).filter(|cycle| *cycle <= LAST_CYCLE).ok_or(TooLate { tick })
+}
+
 impl Recorded {
     /// The levels of a capture by a map, in cycles of `clock_hz`; a tick is as long as `timebase` says. Takes the capture's
     /// memory over.
@@ -103,40 +109,120 @@ impl Recorded {
         timebase: Timebase,
         clock_hz: u32,
     ) -> Result<Self, TooLate> {
-        let cycle = |tick: u64| {
-            timebase.cycle(tick, clock_hz).filter(|cycle| *cycle <= LAST_CYCLE).ok_or(TooLate { tick })
-        };
-        let end = Instant(cycle(capture.end)?);
+        let end = Instant(cycle(timebase, capture.end, clock_hz)?);
         if let Some(last) = capture.changes.last() {
-            cycle(last.tick)?;
+            cycle(timebase, last.tick, clock_hz)?;
         }
         let signals = Signals::new(map);
-        let mut rounding = Rounding { exact: timebase.is_exact(clock_hz), ..Rounding::default() };
-        let (mut before, mut last) = (None::<Record>, None::<Levels>);
-        // A record takes the place of its change. The first is that of cycle 0, whenever the file begins.
-        let record = |Change { tick, levels }| {
-            let at = if before.is_some() { cycle(tick).unwrap_or(LAST_CYCLE) } else { 0 };
-            let now = Record { cycle: Instant(at), levels: signals.levels(levels) };
-            let shown = before.replace(now)?;
-            if shown.cycle == now.cycle {
-                let since = last.unwrap_or(Levels::RESET).0;
-                rounding.met += u64::from(shown.levels != now.levels);
-                rounding.lost += u64::from(((since ^ shown.levels.0) & !(since ^ now.levels.0)).count_ones());
-                return None;
-            }
-            (last.replace(shown.levels) != Some(shown.levels)).then_some(shown)
-        };
-        let mut records: Vec<Record> = capture.changes.into_iter().filter_map(record).collect();
-        records.extend(before.filter(|shown| last != Some(shown.levels)));
-        if records.is_empty() {
-            records.push(Record { cycle: Instant(0), levels: signals.levels(0) });
+        let count = capture.changes.len();
+        let mut records = Records::new(capture.changes.into_iter(), signals, timebase, clock_hz);
+        // At once, since a doubled vector may not fit beside the old one.
+        let mut all: Vec<Record> = Vec::with_capacity(count);
+        all.extend(records.by_ref());
+        if all.is_empty() {
+            all.push(Record { cycle: Instant(0), levels: records.signals.levels(0) });
         }
-        let end = end.max(records.last().map_or(Instant(0), |record| record.cycle));
-        Ok(Self { clock_hz, channels: map.bus_channels(), records, end, rounding })
+        let end = end.max(all.last().map_or(Instant(0), |record| record.cycle));
+        Ok(Self { clock_hz, channels: map.bus_channels(), records: all, end, rounding: records.rounding })
+    }
+}
+
+/// Changes as records, one after the other: none of them is kept.
+#[derive(Clone, Debug)]
+pub struct Records<'m, I> {
+    changes: I,
+    signals: Signals<'m>,
+    timebase: Timebase,
+    clock_hz: u32,
+    /// Cycles of a tick, where they are a whole number: no division is needed then.
+    cycles: Option<u64>,
+    /// The latest, which a change of the same cycle may still alter.
+    before: Option<Record>,
+    /// Levels of the last one that was given.
+    last: Option<Levels>,
+    /// What the clock does to the times, as far as they are read.
+    pub rounding: Rounding,
+}
+
+impl<'m> Records<'m, changes::Iter<'m>> {
+    /// Those of a capture, as [`Recorded::new`] has them.
+    ///
+    /// # Errors
+    /// [`TooLate`] if a time has no cycle.
+    pub fn of(
+        capture: &'m Capture,
+        map: &'m ChannelMap,
+        timebase: Timebase,
+        clock_hz: u32,
+    ) -> Result<Self, TooLate> {
+        Self::from(capture, map, timebase, clock_hz, 0)
+    }
+
+    /// Those from a tick on: first, at cycle 0, the levels that stand at that time.
+    ///
+    /// # Errors
+    /// [`TooLate`] if a time has no cycle.
+    pub fn from(
+        capture: &'m Capture,
+        map: &'m ChannelMap,
+        timebase: Timebase,
+        clock_hz: u32,
+        tick: u64,
+    ) -> Result<Self, TooLate> {
+        let last = capture.changes.last().map_or(0, |change| change.tick);
+        cycle(timebase, last, clock_hz)?;
+        Ok(Self::new(capture.changes.iter_from(tick), Signals::new(map), timebase, clock_hz))
+    }
+}
+
+impl<'m, I: Iterator<Item = Change>> Records<'m, I> {
+    fn new(changes: I, signals: Signals<'m>, timebase: Timebase, clock_hz: u32) -> Self {
+        let rounding = Rounding { exact: timebase.is_exact(clock_hz), ..Rounding::default() };
+        let cycles = timebase.cycles(clock_hz);
+        Self { changes, signals, timebase, clock_hz, cycles, before: None, last: None, rounding }
+    }
+
+    /// The one before, if this change is of another cycle and the levels are others.
+    fn take(&mut self, Change { tick, levels }: Change) -> Option<Record> {
+        // The first is that of cycle 0, whenever the file begins.
+        let at = match self.before {
+            Some(_) => match self.cycles {
+                Some(cycles) => tick.checked_mul(cycles),
+                None => self.timebase.cycle(tick, self.clock_hz),
+            }
+            .unwrap_or(LAST_CYCLE),
+            None => 0,
+        };
+        let now = Record { cycle: Instant(at), levels: self.signals.levels(levels) };
+        let shown = self.before.replace(now)?;
+        if shown.cycle == now.cycle {
+            let since = self.last.unwrap_or(Levels::RESET).0;
+            self.rounding.met += u64::from(shown.levels != now.levels);
+            self.rounding.lost +=
+                u64::from(((since ^ shown.levels.0) & !(since ^ now.levels.0)).count_ones());
+            return None;
+        }
+        (self.last.replace(shown.levels) != Some(shown.levels)).then_some(shown)
+    }
+}
+
+impl<I: Iterator<Item = Change>> Iterator for Records<'_, I> {
+    type Item = Record;
+
+    #[inline]
+    fn next(&mut self) -> Option<Record> {
+        while let Some(change) = self.changes.next() {
+            if let Some(record) = self.take(change) {
+                return Some(record);
+            }
+        }
+        let last = self.before.take()?;
+        (self.last != Some(last.levels)).then_some(last)
     }
 }
 
 /// A map as masks.
+#[derive(Clone, Debug)]
 struct Signals<'m> {
     entries: &'m [Entry],
     /// Levels of the signals that have no channel.
@@ -167,7 +253,8 @@ mod tests {
 
     fn capture(changes: &[(u64, u64)]) -> Capture {
         let channels = ["STEP", "DIR", "nEN"].map(|name| Channel { name: name.into() }).into();
-        let changes: Vec<Change> = changes.iter().map(|&(tick, levels)| Change { tick, levels }).collect();
+        let changes: crate::changes::Changes =
+            changes.iter().map(|&(tick, levels)| Change { tick, levels }).collect();
         let end = changes.last().map_or(0, |change| change.tick) + 10;
         Capture { channels, changes, end, ..Capture::new(Format::Vcd) }
     }

@@ -57,6 +57,14 @@ impl Timebase {
         u64::try_from((whole.checked_mul(2)?.checked_add(denominator)?) / (2 * denominator)).ok()
     }
 
+    /// Cycles of a tick by that clock, where they are a whole number.
+    #[must_use]
+    pub fn cycles(self, clock_hz: u32) -> Option<u64> {
+        let scaled = u128::from(self.numerator) * u128::from(clock_hz);
+        let exact = self.is_exact(clock_hz).then(|| scaled / u128::from(self.denominator))?;
+        u64::try_from(exact).ok()
+    }
+
     /// Whether every tick falls on a cycle of that clock, so that nothing is rounded.
     #[must_use]
     pub fn is_exact(self, clock_hz: u32) -> bool {
@@ -81,6 +89,12 @@ mod tests {
         ] {
             let base = Timebase::new(numerator, denominator).expect("it has a length");
             assert_eq!(base.cycle(tick, clock_hz), cycle, "{base:?} {clock_hz} {tick}");
+            let cycles = base.cycles(clock_hz);
+            assert_eq!(cycles.is_some(), base.is_exact(clock_hz));
+            assert!(
+                cycles.is_none_or(|cycles| tick.checked_mul(cycles) == cycle),
+                "{base:?} {clock_hz} {tick}"
+            );
         }
         assert_eq!(Timebase::new(0, 1), None);
         assert_eq!(Timebase::new(1, 0), None);

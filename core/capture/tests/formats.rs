@@ -421,7 +421,7 @@ fn channels_beyond_the_first_64_are_named_and_counted() {
     assert_eq!(reading.error, None);
     assert_eq!(reading.capture.channels.len(), 64);
     assert_eq!(reading.capture.channels[63].name, "W3");
-    assert_eq!(reading.capture.changes[0].levels, 1 << 63);
+    assert_eq!(reading.capture.changes.first().expect("a row").levels, 1 << 63);
     assert_eq!(
         reading.capture.left_out,
         ["more than 64 channels: W4, W5, W6, W7, W8, W9 and 100 000 more left out"]
@@ -429,7 +429,7 @@ fn channels_beyond_the_first_64_are_named_and_counted() {
     let table = format!("Time [s]{}\n0{}\n", ",A".repeat(70), ",1".repeat(70));
     let reading = read_bytes(table);
     assert_eq!(reading.error, None);
-    assert_eq!(reading.capture.changes[0].levels, u64::MAX);
+    assert_eq!(reading.capture.changes.first().expect("a row").levels, u64::MAX);
     assert_eq!(reading.capture.left_out, ["more than 64 channels: A, A, A, A, A, A left out"]);
 }
 

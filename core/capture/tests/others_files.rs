@@ -95,7 +95,7 @@ fn same(capture: &Capture, format: Format) {
             .all(|change| base.cycle(change.tick, 1_000_000_000).is_some_and(|ns| ns % 1000 == 0))
     );
     let found: Vec<Change> =
-        capture.changes.iter().map(|change| Change { tick: micros(change.tick), ..*change }).collect();
+        capture.changes.iter().map(|change| Change { tick: micros(change.tick), ..change }).collect();
     assert_eq!(found, recording());
     assert!(capture.left_out.is_empty(), "{:?}", capture.left_out);
 }

@@ -29,6 +29,7 @@ mod filter;
 mod format;
 mod places;
 
+pub(crate) use csv::write_fields;
 pub use detail::{Detail, FieldRow};
 pub use faults::FaultPlace;
 pub use filter::{Filter, Request};

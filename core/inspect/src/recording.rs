@@ -4,7 +4,9 @@
 //! ```text
 //! records in cycles  ->  figures     steps, rates, turns, pulse widths of each channel
 //!                        serial      bytes of RX and TX, their rate and what they seem to be
+//!                        packets     what RX and TX say, packet by packet
 //!                        alignment   each step beside the model's
+//!                        drift       the clocks' line through how late they are
 //!                        scenario    a list of segments, or a line script
 //! ```
 //!
@@ -28,10 +30,12 @@
 //! ```
 
 pub mod alignment;
+pub mod drift;
 pub mod events;
 pub mod figures;
 #[cfg(feature = "capture")]
 pub mod opened;
+pub mod packets;
 pub mod report;
 pub mod scenario;
 pub mod serial;

@@ -7,7 +7,7 @@
 
 use arbitrary::{Result, Unstructured};
 use crc::{CRC_32_ISO_HDLC, Crc};
-use std::{io::Cursor, slice};
+use std::{collections::BTreeSet, io::Cursor, slice};
 use stepscope_core::{
     capture::{
         Capture, ChannelMap,
@@ -17,7 +17,7 @@ use stepscope_core::{
     inspect::{
         recording::{
             alignment::{Comparison, Side},
-            opened::{Ask, Opened},
+            opened::{Ask, Opened, Part},
             scenario::{Made, Steps, of_step_times, of_steps},
         },
         tables::{write_edges_head, write_edges_row},
@@ -177,12 +177,40 @@ fn whole(file: &[u8]) -> Capture {
     capture
 }
 
+/// What tells the kinds of files apart, and what stands in them.
+#[must_use]
+pub fn words() -> BTreeSet<String> {
+    let dump = "$timescale $scope $upscope $var $enddefinitions $dumpvars $dumpoff $dumpon $dumpall $comment $end module wire reg integer \
+        real string 1ns 10us 1ps 100fs #0 #10 b0 b1x r0.5 [7:0]";
+    let tables = "Time[s] Time,STEP t_us t_ms time_s cycle bytes hex data position name,type,start_time,duration,data \
+        async_serial 0x55 framing_error Samplerate: Unitsize: Channels logic samplerate time \u{b5}s";
+    let session = "PK\u{3}\u{4} PK\u{1}\u{2} PK\u{5}\u{6} metadata version logic-1-1 [device capturefile= unitsize= total probes= \
+        samplerate=1 MHz kHz";
+    let numbers = "e-9 1e309 -1 18446744073709551615 9000000000000000 0.000000001 1,5 2026-01-31T23:59:59.5Z";
+    let together = [
+        "Time [s]",
+        "$var wire 1 ! STEP $end",
+        "\r\n",
+        "\t",
+        ";",
+        ",,",
+        "\"\"",
+        "#!",
+        "1!",
+        "0!",
+        "x!",
+        "z!",
+    ];
+    let split = [dump, tables, session, numbers].into_iter().flat_map(str::split_whitespace);
+    split.chain(together).map(str::to_owned).collect()
+}
+
 /// What a capture promises.
 fn in_order(capture: &Capture, most: usize) {
     let Capture { channels, changes, bytes, positions, end, .. } = capture;
     assert!(channels.len() <= MAX_CHANNELS && capture.len() <= most);
-    for pair in changes.windows(2) {
-        assert!(pair[0].tick < pair[1].tick && pair[0].levels != pair[1].levels, "{pair:?}");
+    for (one, next) in changes.iter().zip(changes.iter().skip(1)) {
+        assert!(one.tick < next.tick && one.levels != next.levels, "{one:?} {next:?}");
     }
     assert!(bytes.windows(2).all(|pair| pair[0].tick <= pair[1].tick), "{bytes:?}");
     assert!(positions.windows(2).all(|pair| pair[0].tick <= pair[1].tick), "{positions:?}");
@@ -206,7 +234,15 @@ fn open(capture: Capture, ask: &Ask) {
     if (MAX_STEPS..=10_000_000).contains(&steps) {
         return;
     }
-    let mut opened = match Opened::new(capture, ask) {
+    // Looked at where it lies it is the same; of a part the figures are.
+    let [whole, few] =
+        [usize::MAX, 3].map(|most| Opened::of_part(&capture, ask, &Part { most, from_s: None, to_s: None }));
+    let opened = Opened::new(capture, ask);
+    assert_eq!(whole, opened);
+    if let (Ok(few), Ok(opened)) = (few, &opened) {
+        assert!(few.records.len() <= 3 && few.report == opened.report, "{few:?}");
+    }
+    let mut opened = match opened {
         Ok(opened) => opened,
         Err(error) => return assert!(!error.to_string().is_empty()),
     };

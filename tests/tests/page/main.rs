@@ -60,6 +60,7 @@ mod pool;
 mod presets;
 mod programs;
 mod recording;
+mod recording_kept;
 mod reflow;
 mod rows;
 mod screens;

@@ -10,7 +10,7 @@ use stepscope_core::{
     capture::read::{Limits, read},
     inspect::{
         drivers,
-        recording::opened::{Ask, Opened},
+        recording::opened::{Ask, Opened, Part},
         timing::TimingCheck,
     },
     peripheral::{
@@ -39,14 +39,14 @@ const DURATION_S: f64 = 0.2;
 const NARROW_EVERY: u32 = 10;
 
 const DIALOG: &str = "document.querySelector('dialog.recording')";
-const CLOSED: &str = "document.querySelector('dialog.recording') === null";
+pub(crate) const CLOSED: &str = "document.querySelector('dialog.recording') === null";
 /// What is said of the recording as it is mapped.
 const RESULT: &str = "(document.querySelector('.recorded')?.innerText ?? '').replace(/\\u202f/g, '')";
-const SHOW: &str = "dialog.recording button.main";
+pub(crate) const SHOW: &str = "dialog.recording button.main";
 /// It can be shown.
-const READY: &str = "document.querySelector('dialog.recording button.main')?.disabled === false";
-const MESSAGE: &str = "document.getElementById('link-message').innerText";
-const DISTANCE: &str = "source.motion.axes[0].moves[0].cosine.distance";
+pub(crate) const READY: &str = "document.querySelector('dialog.recording button.main')?.disabled === false";
+pub(crate) const MESSAGE: &str = "document.getElementById('link-message').innerText";
+pub(crate) const DISTANCE: &str = "source.motion.axes[0].moves[0].cosine.distance";
 
 /// What a firmware made of a cosine of 200 steps, as Saleae Logic saves it: no pulse comes in time.
 fn cosine() -> String {
@@ -74,14 +74,14 @@ fn saleae(trace: &[Record], clock_hz: u32, signals: &[(&str, u64)]) -> String {
 }
 
 /// A text as the core opens it, beside a model with its first step at a time.
-fn natively(text: &str, ask: &Ask, first_step_s: Option<f64>) -> Result<Opened> {
+pub(crate) fn natively(text: &str, ask: &Ask, first_step_s: Option<f64>) -> Result<Opened> {
     let reading = read(Cursor::new(text.as_bytes()), &Limits::default(), &mut |_| true);
     let mut opened = Opened::new(reading.capture, ask)?;
     first_step_s.into_iter().try_for_each(|at| opened.align(0, 0, at))?;
     Ok(opened)
 }
 
-fn digest(opened: &Opened) -> String {
+pub(crate) fn digest(opened: &Opened) -> String {
     let mut digest = Digest::default();
     opened.records.iter().for_each(|record| digest.record(*record));
     format!("{:016x}", digest.value())
@@ -94,7 +94,7 @@ fn first_step_s(known: &Known) -> Result<f64> {
 }
 
 /// Chooses a file by the page's own input.
-async fn choose_file(page: &Session, name: &str, text: &str) -> Result<()> {
+pub(crate) async fn choose_file(page: &Session, name: &str, text: &str) -> Result<()> {
     let script = "const data = new DataTransfer(); data.items.add(new File([arguments[1]], arguments[0]));
         const input = document.getElementById('open-file'); input.files = data.files;
         return input.dispatchEvent(new Event('change'));";
@@ -418,6 +418,74 @@ fn bytes_and_positions_are_dropped_and_pasted_and_come_to_packets_and_steps() ->
         page.until_digest(&shown.digest).await?;
         page.click("#undo").await?;
         page.until_digest(&digest(&opened)).await
+    })
+}
+
+#[test]
+fn of_a_part_that_is_chosen_the_views_show_the_pulses_and_the_figures_are_of_all() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        page.ready().await?;
+        let text = cosine();
+        choose_file(&page, "mine.csv", &text).await?;
+        says(&page, "200 steps").await?;
+        // The fields stand there where a recording is too long; here they are filled all the same.
+        let is_there = "document.getElementById('recording-show-from').checkVisibility()";
+        ensure!(!page.eval::<bool>(is_there).await?, "all of it is shown");
+        type_into(&page, "Show from", "0.1").await?;
+        type_into(&page, "Show up to", "150 ms").await?;
+        says(&page, "Shown: 100 ms to 150 ms of 203").await?;
+        says(&page, "200 steps, 200 right and 0 left").await?;
+        ensure!(!page.visible("#recording-beside").await?, "a part is not laid beside anything");
+        type_into(&page, "Show up to", "x").await?;
+        page.until(
+            "document.getElementById('recording-show-up-to-error').innerText.includes('not a number')",
+        )
+        .await?;
+        ensure!(!page.eval::<bool>(READY).await?, "nothing is shown up to a time that is none");
+        type_into(&page, "Show up to", "150 ms").await?;
+        page.until(READY).await?;
+        page.click(SHOW).await?;
+        page.until(CLOSED).await?;
+        let capture = read(Cursor::new(text.as_bytes()), &Limits::default(), &mut |_| true).capture;
+        let part = Part { most: 20_000_000, from_s: Some(0.1), to_s: Some(0.15) };
+        let shown = Opened::of_part(&capture, &Ask::default(), &part)?;
+        ensure!((20..390).contains(&shown.records.len()), "{}", shown.records.len());
+        page.until_digest(&digest(&shown)).await?;
+        page.until(&format!("{MESSAGE}.includes('Shown: 100 ms to 150 ms of 203')")).await
+    })
+}
+
+#[test]
+fn the_packets_of_both_lines_are_listed_with_the_replies_that_were_recorded() -> Result<()> {
+    in_browser(|page| async move {
+        let framed = Known::of(r#"{"line":{"protocol":"framed"}}"#)?;
+        page.open("").await?;
+        page.ready().await?;
+        let clock_hz = framed.experiment.config().clock_hz();
+        let signals = [("RX", Levels::RX), ("TX", Levels::TX)];
+        choose_file(&page, "link.csv", &saleae(&framed.recording.trace, clock_hz, &signals)).await?;
+        page.until(READY).await?;
+        let said = "document.querySelector('.packets-said').textContent.replace(/\\u202f/g, '')";
+        page.click(".packets-said summary").await?;
+        let log = &framed.recording.packets;
+        let all = log.rows().len();
+        page.until(&format!("{said}.includes('{all} packets, {} whole frames of the device')", all / 2))
+            .await?;
+        let cells = "[...document.querySelectorAll('.packets-said tbody tr')].slice(0, 2).map((row) => [...row.cells].map((cell) => cell.textContent))";
+        let rows: Vec<Vec<String>> = page.eval(cells).await?;
+        for (index, (row, line)) in rows.iter().zip(["RX frame", "TX reply"]).enumerate() {
+            let bytes: Vec<String> = log.bytes(index).iter().map(|byte| format!("{byte:02x}")).collect();
+            assert_eq!((row[0].as_str(), row[2].as_str()), (line, bytes.join(" ").as_str()), "{rows:?}");
+        }
+        ensure!(rows[1][3].starts_with("from 0: ") && rows[1][3].ends_with("check holds"), "{rows:?}");
+        let mut wrong = Vec::new();
+        axe::look(&page, "light", &mut wrong).await?;
+        axe::none(&wrong)?;
+        // Another map has other packets: the list is closed.
+        choose_signal(&page, "TX", "DE").await?;
+        page.until("!document.querySelector('.packets-said').open").await?;
+        cancel(&page).await
     })
 }
 

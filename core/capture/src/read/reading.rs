@@ -6,13 +6,13 @@ use core::fmt;
 /// How much is read of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Most changes, bytes or positions; 16 bytes each.
+    /// Most changes, bytes or positions: of bytes and positions 16 bytes each, of changes mostly two to four.
     pub most: usize,
 }
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { most: 100_000_000 }
+        Self { most: 120_000_000 }
     }
 }
 

@@ -1,5 +1,7 @@
 //! What every reader writes into: rows of levels in the order of time, without those that change nothing.
 
+use core::mem;
+
 use crate::capture::{Capture, Change, Channel, Format, MAX_CHANNELS, TimedByte, TimedPosition};
 
 /// Most sentences of [`Capture::left_out`].
@@ -57,7 +59,9 @@ impl Recorder {
             }
             _ => {
                 self.settle();
-                room(&mut self.capture.changes, self.most, "changes")?;
+                let changes = &mut self.capture.changes;
+                fits(changes.len(), self.most, "changes")?;
+                changes.reserve().map_err(|_| no_memory(changes.len(), "changes"))?;
                 self.latest = Some(Change { tick, levels });
                 Ok(())
             }
@@ -95,7 +99,9 @@ impl Recorder {
         map(self.capture.end)?;
         let set = |tick: &mut u64| *tick = map(*tick).unwrap_or(*tick);
         let capture = &mut self.capture;
-        capture.changes.iter_mut().chain(&mut self.latest).for_each(|change| set(&mut change.tick));
+        let timed = |change: Change| Change { tick: map(change.tick).unwrap_or(change.tick), ..change };
+        capture.changes = mem::take(&mut capture.changes).into_iter().map(timed).collect();
+        self.latest = self.latest.map(timed);
         capture.bytes.iter_mut().for_each(|byte| set(&mut byte.tick));
         capture.positions.iter_mut().for_each(|position| set(&mut position.tick));
         set(&mut capture.end);
@@ -133,19 +139,26 @@ impl Recorder {
 
 /// Makes room for one more, where one more is allowed.
 fn room<T>(rows: &mut Vec<T>, most: usize, what: &str) -> Result<(), String> {
-    if rows.len() >= most {
-        let most = grouped(most as u64);
-        return Err(format!("more than {most} {what}; record a shorter time, or fewer channels"));
-    }
+    fits(rows.len(), most, what)?;
     if rows.len() == rows.capacity() {
         // By half, since a doubled vector may not fit beside the old one.
         let more = (rows.len() / 2).max(1024);
-        let count = rows.len() as u64;
-        rows.try_reserve_exact(more).map_err(|_| {
-            format!("no memory for more than {} {what}; record a shorter time", grouped(count))
-        })?;
+        let count = rows.len();
+        rows.try_reserve_exact(more).map_err(|_| no_memory(count, what))?;
     }
     Ok(())
+}
+
+/// One more is allowed.
+fn fits(count: usize, most: usize, what: &str) -> Result<(), String> {
+    if count < most {
+        return Ok(());
+    }
+    Err(format!("more than {} {what}; record a shorter time, or fewer channels", grouped(most as u64)))
+}
+
+fn no_memory(count: usize, what: &str) -> String {
+    format!("no memory for more than {} {what}; record a shorter time", grouped(count as u64))
 }
 
 /// Names of what is left out: the first few, and how many there are.

@@ -65,6 +65,11 @@ impl fmt::Display for Quoted<'_> {
     }
 }
 
+/// Adds texts as fields of a table, each after a comma.
+pub(crate) fn write_fields(out: &mut impl Write, texts: &[&str]) -> fmt::Result {
+    texts.iter().try_for_each(|text| write!(out, ",{}", Quoted(text)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

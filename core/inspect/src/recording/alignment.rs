@@ -2,12 +2,12 @@
 //!
 //! ```text
 //! recorded     |   |  | | |        late = time since the aligned step, recorded less model's
-//! model        |   | |  | |        drift: the straight line through all of late over time
+//! model        |   | |  | |        drift: the straight line through most of late over time
 //!              ^ aligned           jitter: what is left of late without it
 //! ```
 //!
 //! Two clocks never agree: a crystal is off by some tens of ppm, which grows to milliseconds in a minute. So the drift is
-//! told by itself, and the jitter without it.
+//! told by itself, and the jitter without it; a few steps that are far off tilt neither ([`super::drift`]), and are counted.
 //!
 //! ```
 //! use stepscope_inspect::recording::alignment::{Comparison, Side};
@@ -26,6 +26,7 @@
 //! assert!((found.largest.late_s - 3e-6).abs() < 1e-12);
 //! ```
 
+use super::drift::Drift;
 use serde::Serialize;
 use stepscope_peripheral::trace::Step;
 
@@ -83,8 +84,10 @@ pub struct Comparison {
     pub drift_ppm: f64,
     /// Greatest magnitude of what is left without drift and offset, in s.
     pub largest_jitter_s: f64,
-    /// Root of its mean square, in s.
+    /// Root of its mean square, in s, of all but the outliers.
     pub rms_jitter_s: f64,
+    /// Steps that are so far off that they do not count for drift and jitter.
+    pub outliers: usize,
     /// The first step that is off by more than was allowed, or goes the other way.
     pub first_difference: Option<Off>,
     /// Steps that are off by more, or go the other way.
@@ -113,15 +116,15 @@ impl Comparison {
             drift_ppm: 0.0,
             largest_jitter_s: 0.0,
             rms_jitter_s: 0.0,
+            outliers: 0,
             first_difference: None,
             differing: 0,
         };
         let n = compared as f64;
-        let (mut sum, mut square, mut times) = (0.0, 0.0, 0.0);
+        let (mut sum, mut square) = (0.0, 0.0);
         for off in (0..compared).filter_map(|index| late.off(index)) {
             sum += off.late_s;
             square += off.late_s * off.late_s;
-            times += late.model_s(off.step);
             if libm::fabs(off.late_s) > libm::fabs(found.largest.late_s) {
                 found.largest = off;
             }
@@ -131,23 +134,21 @@ impl Comparison {
             }
         }
         (found.mean_s, found.rms_s) = (sum / n, libm::sqrt(square / n));
-        // Least squares about the means.
-        let mean_time = times / n;
-        let (mut both, mut spread) = (0.0, 0.0);
-        for off in (0..compared).filter_map(|index| late.off(index)) {
-            let time = late.model_s(off.step) - mean_time;
-            both += time * (off.late_s - found.mean_s);
-            spread += time * time;
-        }
-        let slope = if spread > 0.0 { both / spread } else { 0.0 };
-        found.drift_ppm = slope * 1e6;
-        let mut square = 0.0;
-        for off in (0..compared).filter_map(|index| late.off(index)) {
-            let left = off.late_s - found.mean_s - slope * (late.model_s(off.step) - mean_time);
-            square += left * left;
+        let cycle_s = 1.0 / f64::from(recorded.clock_hz.min(model.clock_hz).max(1));
+        let event = |index| late.off(index).map(|off| (late.model_s(index), off.late_s));
+        let drift = Drift::of(compared, cycle_s, event);
+        found.drift_ppm = drift.slope * 1e6;
+        let (mut square, mut counted) = (0.0, 0.0);
+        for (time_s, late_s) in (0..compared).filter_map(event) {
+            let left = drift.left(time_s, late_s);
             found.largest_jitter_s = libm::fmax(found.largest_jitter_s, libm::fabs(left));
+            if drift.is_outlier(left) {
+                found.outliers += 1;
+            } else {
+                (square, counted) = (square + left * left, counted + 1.0);
+            }
         }
-        found.rms_jitter_s = libm::sqrt(square / n);
+        found.rms_jitter_s = libm::sqrt(square / libm::fmax(counted, 1.0));
         Some(found)
     }
 
@@ -216,8 +217,29 @@ mod tests {
         )
         .expect("both have steps");
         assert!((found.drift_ppm - 50.0).abs() < 0.2, "{found:?}");
-        assert!((found.largest_jitter_s - 1.8e-6).abs() < 1e-8, "{found:?}");
+        assert!((found.largest_jitter_s - 2e-6).abs() < 2e-8 && found.outliers == 1000, "{found:?}");
+        assert!(found.rms_jitter_s < 1e-8, "{found:?}");
         assert!((found.offset_s - 7e-3).abs() < 1e-9 && !found.is_same());
+    }
+
+    #[test]
+    fn one_late_step_among_a_thousand_is_neither_drift_nor_jitter() {
+        let model = steps((0..1000).map(|k| 16_000 * k));
+        for at in [1, 250, 999] {
+            // 50 ppm slow, up to 1.5 us late, and one step by 10 ms, with those behind it in their times.
+            let late = |k: u64| if k == at { 10_000_000 } else { 500 * (k * 7 % 4) };
+            let recorded = steps((0..1000).map(|k| 1_000_050 * k + late(k)));
+            let found = Comparison::of(
+                Side { steps: &recorded, clock_hz: 1_000_000_000 },
+                Side { steps: &model, clock_hz: 16_000_000 },
+                0,
+                1e-6,
+            )
+            .expect("both have steps");
+            assert!((found.drift_ppm - 50.0).abs() < 0.1, "{found:?}");
+            assert!(found.rms_jitter_s < 0.6e-6 && found.outliers == 1, "{found:?}");
+            assert_eq!((found.largest.step as u64, found.largest_jitter_s > 9.9e-3), (at, true));
+        }
     }
 
     #[test]

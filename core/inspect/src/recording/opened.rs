@@ -15,7 +15,7 @@
 use super::{
     events::{Events, Kind},
     figures::StepFigures,
-    report::{ChannelReport, LineReport, Report},
+    report::{ChannelReport, LineReport, Report, Survey},
     scenario::{self, Bytes, Made, Refused, Steps},
     serial::{Heard, HeardByte},
 };
@@ -25,9 +25,13 @@ use alloc::{
     string::{String, ToString},
     vec::Vec,
 };
-use core::{fmt, mem};
+use core::fmt;
+use serde::Serialize;
 use stepscope_capture::{
-    Capture, ChannelMap, Recorded, capture::TimedByte, channel_map::MapError, recorded::TooLate,
+    Capture, ChannelMap, Recorded,
+    capture::TimedByte,
+    channel_map::MapError,
+    recorded::{Records, TooLate},
     timebase::Timebase,
 };
 use stepscope_peripheral::{
@@ -126,6 +130,8 @@ impl core::error::Error for OpenError {}
 /// Why a capture cannot be laid beside a model by a step, or a byte.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Misaligned {
+    /// Only a part of it is kept, whose first step is not that of the recording.
+    Part,
     /// It has none of that number.
     None {
         /// What it has.
@@ -149,6 +155,9 @@ pub enum Misaligned {
 impl fmt::Display for Misaligned {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Part => f.write_str(
+                "only a part of the recording is shown, and a part is not laid beside an experiment; record a shorter time",
+            ),
             Self::None { kind, aligned, count } => write!(
                 f,
                 "there is no {} {aligned}: {count} {} were recorded, from 0; align by one that both have",
@@ -165,6 +174,32 @@ impl fmt::Display for Misaligned {
 }
 
 impl core::error::Error for Misaligned {}
+
+/// Which records are kept of a recording that has too many of them; what it comes to is always told of all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Part {
+    /// Most records that are kept.
+    pub most: usize,
+    /// From this time on, in s; from the beginning without it.
+    pub from_s: Option<f64>,
+    /// Up to this time, in s; as many as there is room for without it.
+    pub to_s: Option<f64>,
+}
+
+/// What is kept, where that is not all.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Kept {
+    /// From this time on, in s.
+    pub from_s: f64,
+    /// Up to this time.
+    pub to_s: f64,
+    /// When the recording ends, in s.
+    pub end_s: f64,
+    /// Records that are kept.
+    pub records: usize,
+    /// Records that there are.
+    pub of: usize,
+}
 
 /// A capture in cycles.
 #[derive(Clone, Debug, PartialEq)]
@@ -189,6 +224,8 @@ pub struct Opened {
     pub channels: u8,
     /// Its levels; of positions and bytes that of reset alone.
     pub records: Vec<Record>,
+    /// Which part of them `records` is; `None` where it is all.
+    pub kept: Option<Kept>,
     /// The last time of the file, in s.
     pub end_s: f64,
     /// What it comes to.
@@ -202,13 +239,82 @@ impl Opened {
     ///
     /// # Errors
     /// [`OpenError`].
-    pub fn new(mut capture: Capture, ask: &Ask) -> Result<Self, OpenError> {
+    pub fn new(capture: Capture, ask: &Ask) -> Result<Self, OpenError> {
+        let (mut opened, map, base) = Self::before(&capture, ask)?;
+        let Some(base) = base else { return opened.back_to_back(&capture, ask).map(|()| opened) };
+        let report = opened.without_levels(&capture, base, ask)?;
+        let recorded = Recorded::new(capture, &map, base, opened.clock_hz).map_err(OpenError::TooLate)?;
+        opened.rounding = recorded.rounding.to_string();
+        opened.records = recorded.records;
+        let (clock_hz, channels) = (opened.clock_hz, opened.channels);
+        let report = report.unwrap_or_else(|| Report::of(&opened.records, clock_hz, channels, ask.baud));
+        opened.told(report, &map);
+        Ok(opened)
+    }
+
+    /// Opens a capture that stays: of its levels no more are kept than `part` says, whatever their number.
+    ///
+    /// # Errors
+    /// [`OpenError`].
+    pub fn of_part(capture: &Capture, ask: &Ask, part: &Part) -> Result<Self, OpenError> {
+        let (mut opened, map, base) = Self::before(capture, ask)?;
+        let Some(base) = base else { return opened.back_to_back(capture, ask).map(|()| opened) };
+        let clock_hz = opened.clock_hz;
+        let report = opened.without_levels(capture, base, ask)?;
+        // Without levels there is one record, that of reset.
+        if capture.changes.is_empty() {
+            let none = Capture { end: capture.end, ..Capture::new(capture.format) };
+            let recorded = Recorded::new(none, &map, base, clock_hz).map_err(OpenError::TooLate)?;
+            (opened.rounding, opened.records) = (recorded.rounding.to_string(), recorded.records);
+            opened.told(report.unwrap_or_else(|| Report { channels: Vec::new(), lines: Vec::new() }), &map);
+            return Ok(opened);
+        }
+        let all = Records::of(capture, &map, base, clock_hz).map_err(OpenError::TooLate)?;
+        let mut passed = all.clone();
+        let survey = Survey::of(passed.by_ref());
+        opened.rounding = passed.rounding.to_string();
+        let report = Report::of_all(all.clone(), survey.changing, clock_hz, opened.channels, ask.baud);
+        if survey.count <= part.most && part.from_s.is_none() && part.to_s.is_none() {
+            opened.records.reserve_exact(survey.count);
+            opened.records.extend(all);
+        } else {
+            let tick_s = base.seconds();
+            let from_s = part.from_s.unwrap_or(0.0).clamp(0.0, opened.end_s);
+            let rest = Records::from(capture, &map, base, clock_hz, (from_s / tick_s) as u64);
+            opened.keep(rest.map_err(OpenError::TooLate)?, survey.count, from_s, part);
+        }
+        opened.told(report, &map);
+        Ok(opened)
+    }
+
+    /// Keeps a part of all records: the `rest` from a time on.
+    fn keep(&mut self, mut rest: impl Iterator<Item = Record>, of: usize, from_s: f64, part: &Part) {
+        let hz = f64::from(self.clock_hz);
+        let to_s = part.to_s.unwrap_or(self.end_s).clamp(from_s, self.end_s);
+        let to = (to_s * hz) as u64;
+        self.records.reserve_exact(part.most.min(of));
+        let mut next = None;
+        for record in rest.by_ref() {
+            if record.cycle.0 > to || self.records.len() >= part.most.max(1) {
+                next = Some(record.cycle.0);
+                break;
+            }
+            self.records.push(record);
+        }
+        // What is full ends before the first one that has no room.
+        let to_s = next.filter(|next| *next <= to).map_or(to_s, |next| next as f64 / hz);
+        self.kept = Some(Kept { from_s, to_s, end_s: self.end_s, records: self.records.len(), of });
+        self.end_s = to_s;
+    }
+
+    /// What is known of it before its times are cycles: itself, its map, and how long its ticks are.
+    fn before(capture: &Capture, ask: &Ask) -> Result<(Self, ChannelMap, Option<Timebase>), OpenError> {
         if ask.baud == Some(0) {
             return Err(OpenError::Baud);
         }
         let map = match &ask.map {
-            Some(text) => ChannelMap::parse(text, &capture).map_err(OpenError::Map)?,
-            None => ChannelMap::proposed(&capture),
+            Some(text) => ChannelMap::parse(text, capture).map_err(OpenError::Map)?,
+            None => ChannelMap::proposed(capture),
         };
         let names: Vec<String> = capture.channels.iter().map(|channel| channel.name.clone()).collect();
         if !capture.changes.is_empty() && map.entries().is_empty() {
@@ -224,37 +330,35 @@ impl Opened {
             what,
             count: capture.len(),
             names,
-            notes: mem::take(&mut capture.left_out),
-            map: map.to_text(&capture),
+            notes: capture.left_out.clone(),
+            map: map.to_text(capture),
             clock_hz: USUAL_CLOCK_HZ,
             rounding: String::new(),
             channels: map.bus_channels(),
             records: Vec::new(),
+            kept: None,
             end_s: 0.0,
             report: Report { channels: Vec::new(), lines: Vec::new() },
             made_steps: None,
         };
         let told =
             ask.sample_rate_hz.map(|rate| Timebase::new(1, rate).ok_or(OpenError::SampleRate)).transpose()?;
-        let Some(base) = capture.timebase.or(told) else {
-            opened.back_to_back(&capture, ask)?;
-            return Ok(opened);
-        };
-        opened.clock_hz = clock(ask, base, !capture.positions.is_empty())?;
-        let (numerator, denominator) = base.parts();
-        opened.end_s = capture.end as f64 * numerator as f64 / denominator as f64;
-        opened.in_cycles(capture, &map, base, ask)?;
-        Ok(opened)
+        let base = capture.timebase.or(told);
+        if let Some(base) = base {
+            opened.clock_hz = clock(ask, base, !capture.positions.is_empty())?;
+            let (numerator, denominator) = base.parts();
+            opened.end_s = capture.end as f64 * numerator as f64 / denominator as f64;
+        }
+        Ok((opened, map, base))
     }
 
-    /// Puts the times into cycles, and looks at what comes of it.
-    fn in_cycles(
+    /// What bytes or positions come to; `None` of levels.
+    fn without_levels(
         &mut self,
-        capture: Capture,
-        map: &ChannelMap,
+        capture: &Capture,
         base: Timebase,
         ask: &Ask,
-    ) -> Result<(), OpenError> {
+    ) -> Result<Option<Report>, OpenError> {
         let clock_hz = self.clock_hz;
         let cycle = |tick: u64| base.cycle(tick, clock_hz).unwrap_or(u64::MAX);
         let mut report = None;
@@ -274,10 +378,12 @@ impl Opened {
             report = Some(Report::of_steps(&steps, clock_hz));
             self.made_steps = Some(steps);
         }
-        let recorded = Recorded::new(capture, map, base, clock_hz).map_err(OpenError::TooLate)?;
-        self.rounding = recorded.rounding.to_string();
-        self.records = recorded.records;
-        self.report = report.unwrap_or_else(|| Report::of(&self.records, clock_hz, self.channels, ask.baud));
+        Ok(report)
+    }
+
+    /// Tells what it comes to.
+    fn told(&mut self, report: Report, map: &ChannelMap) {
+        self.report = report;
         for channel in &self.report.channels {
             if self.has_levels() && !map.has(16 + u32::from(channel.channel)) {
                 let number = channel.channel;
@@ -286,7 +392,6 @@ impl Opened {
                 ));
             }
         }
-        Ok(())
     }
 
     /// Bytes without times are taken for sent back to back; levels without times cannot be used.
@@ -313,6 +418,9 @@ impl Opened {
     /// # Errors
     /// [`Misaligned`]: where something comes, but none of that number, or the first one would come before cycle 0.
     pub fn align(&mut self, channel: u8, aligned: usize, at_s: f64) -> Result<(), Misaligned> {
+        if self.kept.is_some() {
+            return Err(Misaligned::Part);
+        }
         let hz = f64::from(self.clock_hz);
         let events = self.events(channel);
         let Some(first_s) = events.at_s(0) else { return Ok(()) };
@@ -354,7 +462,7 @@ impl Opened {
     /// channels and does nothing. Its run is as long as the recording.
     #[must_use]
     pub fn shown_scenario(&self, file: &str, steps: bool) -> Scenario {
-        let made = self.scenario(file, steps, 0.0, None).ok();
+        let made = if self.kept.is_none() { self.scenario(file, steps, 0.0, None).ok() } else { None };
         let made = made.filter(|made| made.clock_hz == self.clock_hz && entries(made) <= MAX_SHOWN);
         let mut scenario = made.unwrap_or_else(|| {
             let mut scenario = Scenario { clock_hz: self.clock_hz, ..Scenario::default() };
@@ -369,7 +477,7 @@ impl Opened {
         let last = self.records.last().map_or(0, |record| record.cycle.0);
         let end = libm::ceil(self.end_s * f64::from(self.clock_hz)) as u64;
         // The last byte of a line is not over where the line changes last.
-        let heard = self.report.rx().and_then(|line| {
+        let heard = self.report.rx().filter(|_| self.kept.is_none()).and_then(|line| {
             let bit_cycles = BitTimes::new(self.clock_hz, line.baud).bit(1).0;
             Some(scenario::end_of(&line.heard, bit_cycles)?.0 + bit_cycles)
         });
@@ -503,11 +611,56 @@ mod tests {
     use super::*;
     use stepscope_capture::read::{Limits, read};
 
+    fn capture() -> Capture {
+        let text = "Time [s],STEP,DIR\n0.0,0,1\n0.001,1,1\n0.0011,0,1\n0.002,1,1\n0.0021,0,1\n0.003,1,1\n0.0031,0,1\n0.005,1,1\n0.0051,0,1\n";
+        read(std::io::Cursor::new(text), &Limits::default(), &mut |_| true).capture
+    }
+
     /// Steps at 1, 2, 3 and 5 ms, as Saleae Logic saves them.
     fn opened() -> Opened {
-        let text = "Time [s],STEP,DIR\n0.0,0,1\n0.001,1,1\n0.0011,0,1\n0.002,1,1\n0.0021,0,1\n0.003,1,1\n0.0031,0,1\n0.005,1,1\n0.0051,0,1\n";
-        let reading = read(std::io::Cursor::new(text), &Limits::default(), &mut |_| true);
-        Opened::new(reading.capture, &Ask { clock_hz: Some(1_000_000), ..Ask::default() }).expect("it opens")
+        Opened::new(capture(), &asked()).expect("it opens")
+    }
+
+    fn asked() -> Ask {
+        Ask { clock_hz: Some(1_000_000), ..Ask::default() }
+    }
+
+    #[test]
+    fn of_a_part_the_records_are_kept_and_the_figures_are_of_all() {
+        let whole = opened();
+        let part = |most, from_s, to_s| {
+            Opened::of_part(&capture(), &asked(), &Part { most, from_s, to_s }).expect("it opens")
+        };
+        assert_eq!(part(9, None, None), whole);
+        let records = |of: &Opened| -> Vec<(u64, u64)> {
+            of.records.iter().map(|record| (record.cycle.0, record.levels.0 & 1)).collect()
+        };
+        for (most, from_s, to_s, expected, span) in [
+            // Up to the one that has no room.
+            (4, None, None, &[(0, 0), (1000, 1), (1100, 0), (2000, 1)][..], (0.0, 0.0021)),
+            // What stands when it begins is at cycle 0.
+            (
+                9,
+                Some(0.002_05),
+                None,
+                &[(0, 1), (2100, 0), (3000, 1), (3100, 0), (5000, 1), (5100, 0)],
+                (0.002_05, 0.0051),
+            ),
+            (9, Some(0.0015), Some(0.003), &[(0, 0), (2000, 1), (2100, 0), (3000, 1)], (0.0015, 0.003)),
+            (2, Some(0.0015), Some(0.003), &[(0, 0), (2000, 1)], (0.0015, 0.0021)),
+            (9, Some(7.0), Some(1.0), &[(0, 0)], (0.0051, 0.0051)),
+            (0, None, Some(0.5), &[(0, 0)], (0.0, 0.001)),
+        ] {
+            let found = part(most, from_s, to_s);
+            assert_eq!(records(&found), expected, "{most} {from_s:?} {to_s:?}");
+            let kept = found.kept.expect("a part");
+            assert_eq!((kept.from_s, kept.to_s, kept.records, kept.of), (span.0, span.1, expected.len(), 9));
+            assert_eq!((kept.end_s, found.end_s), (whole.end_s, kept.to_s));
+            assert_eq!((&found.report, found.rounding.as_str()), (&whole.report, whole.rounding.as_str()));
+            assert_eq!(found.clone().align(0, 0, 0.01), Err(Misaligned::Part));
+            let run = found.shown_scenario("own.csv", true).run_cycles.expect("it ends");
+            assert!(run > records(&found).last().expect("one").0 && run <= 5101, "{run}");
+        }
     }
 
     #[test]

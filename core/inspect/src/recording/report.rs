@@ -14,13 +14,13 @@
 
 use super::{
     figures::StepFigures,
-    serial::{Guess, Heard, Measured, guess, hear, line_name, measured_baud},
+    serial::{Guess, Heard, Measured, guess, hear_among, line_name, measured_baud_among},
 };
 use alloc::{format, string::String, vec::Vec};
 use serde::Serialize;
 use stepscope_peripheral::{
     signal::{Levels, Record},
-    trace::{Step, steps_in},
+    trace::Step,
 };
 
 /// What a recording comes to.
@@ -56,19 +56,56 @@ pub struct LineReport {
     pub guess: Guess,
 }
 
+/// What there is of records, in one pass.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Survey {
+    /// How many.
+    pub count: usize,
+    /// A bit for each signal that is not at one level throughout.
+    pub changing: u64,
+}
+
+impl Survey {
+    /// Of all of them.
+    pub fn of(records: impl IntoIterator<Item = Record>) -> Self {
+        let mut records = records.into_iter();
+        let Some(first) = records.next() else { return Self::default() };
+        let found = Self { count: 1, changing: 0 };
+        records.fold(found, |Self { count, changing }, record| Self {
+            count: count + 1,
+            changing: changing | (record.levels.0 ^ first.levels.0),
+        })
+    }
+}
+
 impl Report {
     /// Of records in cycles of `clock_hz`, of a bus of so many channels. Lines are heard at `baud`, or at the rate that
     /// their pulses have.
     #[must_use]
     pub fn of(records: &[Record], clock_hz: u32, channels: u8, baud: Option<u32>) -> Self {
+        let all = records.iter().copied();
+        Self::of_all(all.clone(), Survey::of(all).changing, clock_hz, channels, baud)
+    }
+
+    /// The same of records that are gone through as often as it takes, and kept nowhere; `changing` has a bit for each
+    /// signal that changes ([`Survey`]).
+    #[must_use]
+    pub fn of_all(
+        records: impl Iterator<Item = Record> + Clone,
+        changing: u64,
+        clock_hz: u32,
+        channels: u8,
+        baud: Option<u32>,
+    ) -> Self {
         let of = |channel| {
-            let figures = StepFigures::of(steps_in(records, channel), clock_hz)?;
+            let figures = StepFigures::of(steps(records.clone(), channel), clock_hz)?;
             Some(ChannelReport { channel, figures })
         };
-        let line = |mask| LineReport::of(records, mask, clock_hz, baud);
+        let line = |mask| LineReport::of(records.clone(), mask, clock_hz, baud);
+        let lines = [Levels::RX, Levels::TX].into_iter().filter(|mask| changing & mask != 0);
         Self {
-            channels: (0..channels).filter_map(of).collect(),
-            lines: [Levels::RX, Levels::TX].into_iter().filter_map(line).collect(),
+            channels: (0..channels).filter(|channel| changing >> channel & 1 != 0).filter_map(of).collect(),
+            lines: lines.filter_map(line).collect(),
         }
     }
 
@@ -89,15 +126,34 @@ impl Report {
     }
 }
 
-impl LineReport {
-    fn of(records: &[Record], mask: u64, clock_hz: u32, baud: Option<u32>) -> Option<Self> {
-        let first = records.first()?.levels.has(mask);
-        if records.iter().all(|record| record.levels.has(mask) == first) {
+/// The steps of a channel, one after the other, as [`stepscope_peripheral::trace::steps_in`] has them of records that
+/// lie together.
+fn steps(records: impl Iterator<Item = Record>, channel: u8) -> impl Iterator<Item = Step> {
+    let mask = 1_u16 << (channel & 15);
+    // A level that is there from the first record on has not risen.
+    let (mut before, mut position) = (u16::MAX, 0_i32);
+    records.filter_map(move |record| {
+        let rises = record.levels.step() & !before & mask != 0;
+        before = record.levels.step();
+        if !rises {
             return None;
         }
-        let measured = measured_baud(records, mask, clock_hz);
+        position = position.wrapping_add(if record.levels.dir() & mask != 0 { 1 } else { -1 });
+        Some(Step { cycle: record.cycle.0, position })
+    })
+}
+
+impl LineReport {
+    /// Of a line that changes.
+    fn of(
+        records: impl Iterator<Item = Record> + Clone,
+        mask: u64,
+        clock_hz: u32,
+        baud: Option<u32>,
+    ) -> Option<Self> {
+        let measured = measured_baud_among(records.clone(), mask, clock_hz);
         let baud = baud.or(measured.map(Measured::rounded))?;
-        let heard = hear(records, mask, clock_hz, baud);
+        let heard = hear_among(records, mask, clock_hz, baud);
         let guess = guess(&heard.bytes, u64::from(clock_hz / baud.max(1)));
         Some(Self { name: line_name(mask), measured, baud, heard, guess })
     }

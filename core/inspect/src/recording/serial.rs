@@ -47,7 +47,7 @@ const MAX_OFF: f64 = 0.3;
 /// Pulses that have to fit, where there are so many.
 const MIN_PULSES: usize = 4;
 /// Bit times after which a gap ends a raw packet (DESIGN A5).
-const GAP_BITS: u64 = 45;
+pub(super) const GAP_BITS: u64 = 45;
 
 /// The bit rate that pulses have.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,10 +70,20 @@ impl Measured {
 /// multiples; single shorter ones are glitches. `None` where no rate fits nineteen of twenty pulses.
 #[must_use]
 pub fn measured_baud(records: &[Record], mask: u64, clock_hz: u32) -> Option<Measured> {
+    measured_baud_among(records.iter().copied(), mask, clock_hz)
+}
+
+/// The same of records that are nowhere together.
+pub(super) fn measured_baud_among(
+    records: impl Iterator<Item = Record>,
+    mask: u64,
+    clock_hz: u32,
+) -> Option<Measured> {
     let mut lengths = Vec::new();
-    let mut since = None;
-    for (before, now) in records.iter().zip(records.iter().skip(1)) {
-        if before.levels.has(mask) == now.levels.has(mask) {
+    let (mut since, mut before) = (None, None);
+    for now in records {
+        let high = now.levels.has(mask);
+        if before.replace(high).is_none_or(|before| before == high) {
             continue;
         }
         if let Some(since) = since.replace(now.cycle.0) {
@@ -157,6 +167,16 @@ pub struct Heard {
 /// The bytes of the line of `mask` at a rate, as DESIGN A4's receiver hears them.
 #[must_use]
 pub fn hear(records: &[Record], mask: u64, clock_hz: u32, baud: u32) -> Heard {
+    hear_among(records.iter().copied(), mask, clock_hz, baud)
+}
+
+/// The same of records that are nowhere together.
+pub(super) fn hear_among(
+    records: impl Iterator<Item = Record>,
+    mask: u64,
+    clock_hz: u32,
+    baud: u32,
+) -> Heard {
     let bit = ((2 * u64::from(clock_hz) + u64::from(baud)) / (2 * u64::from(baud.max(1)))).max(2);
     let mut receiver = Receiver::new(Cycles(bit));
     let mut heard = Heard::default();
@@ -167,7 +187,7 @@ pub fn hear(records: &[Record], mask: u64, clock_hz: u32, baud: u32) -> Heard {
     };
     let (mut now, mut high) = (Instant(0), true);
     let ends = [(Instant::NEVER, true)];
-    for (at, level) in records.iter().map(|record| (record.cycle, record.levels.has(mask))).chain(ends) {
+    for (at, level) in records.map(|record| (record.cycle, record.levels.has(mask))).chain(ends) {
         // What the receiver does by itself until the next change.
         loop {
             let due = receiver.deadline(now, high);

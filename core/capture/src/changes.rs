@@ -1,0 +1,347 @@
+//! Levels in the order of time, packed: a change takes the bytes of the time since the one before, two or three in most
+//! recordings, where it stood in 16.
+//!
+//! ```text
+//! block   the first change, whole;  then of each:
+//!         | more | time, 6 bits | other |  ...  | channel, or 0x80 and the 64 bits that change |
+//!           time goes on in further bytes,        only if `other`: else what changed last
+//!           7 bits each, the lowest first         changes again, as STEP does
+//! ```
+//!
+//! Blocks begin with a whole change, so that a time is found without reading what is before its block.
+//!
+//! ```
+//! use stepscope_capture::changes::{Change, Changes};
+//!
+//! let steps = (0..1000).map(|k| Change { tick: 700 * k, levels: k % 2 });
+//! let changes: Changes = steps.clone().collect();
+//! assert!(changes.iter().eq(steps.clone()) && changes.bytes() < 2 * 1000 + 100);
+//! assert!(changes.iter_from(350_000).eq(steps.skip(500)));
+//! ```
+
+use std::{collections::TryReserveError, slice, vec};
+
+/// The levels of all channels from a tick on, until the next change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Change {
+    /// When, in ticks of the file.
+    pub tick: u64,
+    /// Channel i in bit i. A channel that is not yet known, or neither high nor low, is 0.
+    pub levels: u64,
+}
+
+/// Bytes of a block: so many that the C library asks the system for each, and gives it back.
+const BLOCK: usize = 1 << 17;
+/// Most bytes of a change: ten of its time, nine of what changes.
+const MAX_ROW: usize = 19;
+/// Bits of the time in the first byte of a change, and in each further one.
+const FIRST_BITS: u32 = 6;
+const MORE_BITS: u32 = 7;
+/// Another byte of the time follows.
+const MORE: u8 = 0x80;
+/// What changes is another channel than the last time, and stands behind the time.
+const OTHER: u8 = 1;
+/// Not one channel changes, but those of the next eight bytes.
+const SEVERAL: u8 = 0x80;
+
+/// Changes in the order of time, each of other levels than the one before.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Changes {
+    blocks: Vec<Block>,
+    len: usize,
+    last: Option<Change>,
+    /// What changed last in the last block.
+    mask: u64,
+}
+
+/// Some of them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Block {
+    first: Change,
+    /// The others.
+    rows: Vec<u8>,
+}
+
+impl Changes {
+    /// None.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { blocks: Vec::new(), len: 0, last: None, mask: 0 }
+    }
+
+    /// How many.
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// The first.
+    #[must_use]
+    pub fn first(&self) -> Option<Change> {
+        self.blocks.first().map(|block| block.first)
+    }
+
+    /// The last.
+    #[must_use]
+    pub const fn last(&self) -> Option<Change> {
+        self.last
+    }
+
+    /// Bytes that they are packed in.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.blocks.iter().map(|block| size_of::<Block>() + block.rows.len()).sum()
+    }
+
+    /// Makes room for one more, so that [`Self::push`] needs no memory.
+    ///
+    /// # Errors
+    /// If there is no memory.
+    pub fn reserve(&mut self) -> Result<(), TryReserveError> {
+        if self.blocks.len() == self.blocks.capacity() {
+            self.blocks.try_reserve((self.blocks.len() / 2).max(16))?;
+        }
+        if let Some(block) = self.blocks.last_mut()
+            && block.rows.capacity() == 0
+        {
+            block.rows.try_reserve_exact(BLOCK)?;
+        }
+        Ok(())
+    }
+
+    /// Adds one, which is not before the last.
+    pub fn push(&mut self, change: Change) {
+        let last = self.last.replace(change);
+        self.len += 1;
+        let (Some(block), Some(last)) = (self.blocks.last_mut(), last) else {
+            return self.begin(change);
+        };
+        if block.rows.len() + MAX_ROW > BLOCK {
+            return self.begin(change);
+        }
+        let (mut time, changed) = (change.tick.saturating_sub(last.tick), change.levels ^ last.levels);
+        let other = if changed == self.mask { 0 } else { OTHER };
+        let low = (time & ((1 << FIRST_BITS) - 1)) as u8;
+        time >>= FIRST_BITS;
+        block.rows.push(low << 1 | other | if time > 0 { MORE } else { 0 });
+        while time > 0 {
+            let low = (time & ((1 << MORE_BITS) - 1)) as u8;
+            time >>= MORE_BITS;
+            block.rows.push(low | if time > 0 { MORE } else { 0 });
+        }
+        if other != 0 {
+            if changed.is_power_of_two() {
+                block.rows.push(changed.trailing_zeros() as u8);
+            } else {
+                block.rows.push(SEVERAL);
+                block.rows.extend(changed.to_le_bytes());
+            }
+            self.mask = changed;
+        }
+    }
+
+    fn begin(&mut self, first: Change) {
+        self.mask = 0;
+        // The blocks after the first have as many rows again, most likely.
+        let rows = Vec::new();
+        self.blocks.push(Block { first, rows });
+    }
+
+    /// All of them.
+    #[must_use]
+    pub fn iter(&self) -> Iter<'_> {
+        Iter { blocks: self.blocks.iter(), row: Row::default(), rows: &[] }
+    }
+
+    /// From the last one on that is at a time or before it; all of them where none is.
+    #[must_use]
+    pub fn iter_from(&self, tick: u64) -> Iter<'_> {
+        let block = self.blocks.partition_point(|block| block.first.tick <= tick).saturating_sub(1);
+        let mut from = Iter {
+            blocks: self.blocks.get(block..).unwrap_or_default().iter(),
+            row: Row::default(),
+            rows: &[],
+        };
+        loop {
+            let mut next = from.clone();
+            // The one after the next one is still not after it.
+            let is_before = next.next().is_some() && next.next().is_some_and(|after| after.tick <= tick);
+            if !is_before {
+                return from;
+            }
+            from.next();
+        }
+    }
+}
+
+/// The last change that was read of a block, and what changed.
+#[derive(Clone, Copy, Debug, Default)]
+struct Row {
+    tick: u64,
+    levels: u64,
+    mask: u64,
+}
+
+impl Row {
+    const fn of(first: Change) -> Self {
+        Self { tick: first.tick, levels: first.levels, mask: 0 }
+    }
+
+    const fn change(self) -> Change {
+        Change { tick: self.tick, levels: self.levels }
+    }
+
+    /// Reads the next one of a block; how many bytes it has.
+    fn read(&mut self, rows: &[u8]) -> Option<usize> {
+        let mut byte = *rows.first()?;
+        let (mut at, is_other) = (1, byte & OTHER != 0);
+        let mut time = u64::from(byte & !MORE) >> 1;
+        let mut shift = FIRST_BITS;
+        while byte & MORE != 0 {
+            byte = *rows.get(at)?;
+            at += 1;
+            time |= u64::from(byte & !MORE).checked_shl(shift)?;
+            shift += MORE_BITS;
+        }
+        if is_other {
+            let which = *rows.get(at)?;
+            at += 1;
+            if which == SEVERAL {
+                let bits = rows.get(at..at + 8)?;
+                self.mask = u64::from_le_bytes(bits.try_into().ok()?);
+                at += 8;
+            } else {
+                self.mask = 1_u64.checked_shl(which.into())?;
+            }
+        }
+        self.tick = self.tick.wrapping_add(time);
+        self.levels ^= self.mask;
+        Some(at)
+    }
+}
+
+/// Changes, one after the other.
+#[derive(Clone, Debug)]
+pub struct Iter<'a> {
+    blocks: slice::Iter<'a, Block>,
+    row: Row,
+    /// What is left of the block.
+    rows: &'a [u8],
+}
+
+impl Iterator for Iter<'_> {
+    type Item = Change;
+
+    #[inline]
+    fn next(&mut self) -> Option<Change> {
+        if let Some(read) = self.row.read(self.rows) {
+            self.rows = self.rows.get(read..).unwrap_or_default();
+            return Some(self.row.change());
+        }
+        let block = self.blocks.next()?;
+        (self.row, self.rows) = (Row::of(block.first), &block.rows);
+        Some(block.first)
+    }
+}
+
+/// Changes, one after the other; the memory of each block is free after its last.
+#[derive(Debug)]
+pub struct IntoIter {
+    blocks: vec::IntoIter<Block>,
+    row: Row,
+    rows: Vec<u8>,
+    /// Bytes of the block that are read.
+    at: usize,
+}
+
+impl Iterator for IntoIter {
+    type Item = Change;
+
+    #[inline]
+    fn next(&mut self) -> Option<Change> {
+        if let Some(read) = self.row.read(self.rows.get(self.at..).unwrap_or_default()) {
+            self.at += read;
+            return Some(self.row.change());
+        }
+        let Block { first, rows } = self.blocks.next()?;
+        (self.row, self.rows, self.at) = (Row::of(first), rows, 0);
+        Some(first)
+    }
+}
+
+impl IntoIterator for Changes {
+    type Item = Change;
+    type IntoIter = IntoIter;
+
+    fn into_iter(self) -> IntoIter {
+        IntoIter { blocks: self.blocks.into_iter(), row: Row::default(), rows: Vec::new(), at: 0 }
+    }
+}
+
+impl<'a> IntoIterator for &'a Changes {
+    type Item = Change;
+    type IntoIter = Iter<'a>;
+
+    fn into_iter(self) -> Iter<'a> {
+        self.iter()
+    }
+}
+
+impl FromIterator<Change> for Changes {
+    fn from_iter<T: IntoIterator<Item = Change>>(changes: T) -> Self {
+        let mut packed = Self::new();
+        changes.into_iter().for_each(|change| packed.push(change));
+        packed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_packed_is_read_again_from_any_time_on() {
+        // Times of one to ten bytes; one channel, another, several, none.
+        let mut all = Vec::new();
+        let mut now = Change { tick: 0, levels: 5 };
+        for k in 0..100_000_u64 {
+            all.push(now);
+            let noise = k.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            now.tick += noise >> (24 + (k % 40)) | u64::from(k % 7 != 0);
+            now.levels ^= match k % 11 {
+                0 => noise,
+                1 => 1 << 63,
+                2 => 0,
+                k if k < 6 => 1,
+                k => 1 << (k % 3),
+            };
+        }
+        all.push(Change { tick: u64::MAX, levels: 0 });
+        let packed: Changes = all.iter().copied().collect();
+        assert!(packed.blocks.len() > 2 && packed.iter().eq(all.iter().copied()));
+        assert_eq!((packed.first(), packed.last()), (all.first().copied(), all.last().copied()));
+        for at in [0, 1, 2, 9_000, 20_000, 99_999, 100_000] {
+            let tick = all[at].tick;
+            let first = all.partition_point(|change| change.tick <= tick) - 1;
+            assert!(packed.iter_from(tick).eq(all[first..].iter().copied()), "{at}");
+            let before = tick.saturating_sub(1);
+            let first = all.partition_point(|change| change.tick <= before).saturating_sub(1);
+            assert!(packed.iter_from(before).eq(all[first..].iter().copied()), "before {at}");
+        }
+        assert!(packed.into_iter().eq(all));
+        assert_eq!(Changes::new().iter_from(3).next(), None);
+    }
+
+    #[test]
+    fn a_line_of_steps_takes_two_bytes_a_change() {
+        let packed: Changes =
+            (0..1_000_000).map(|k| Change { tick: 400 * k + k % 5, levels: k & 1 }).collect();
+        assert!(packed.bytes() <= 2 * packed.len() + packed.len() / 100, "{}", packed.bytes());
+    }
+}

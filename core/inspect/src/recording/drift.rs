@@ -1,0 +1,164 @@
+//! How fast two clocks drift apart: a straight line through how late events are over time, which single late ones do not
+//! tilt.
+//!
+//! ```text
+//!  late               .  left out        1. slope: the median of those from each event to the one a quarter of all later
+//!   |                    . - '           2. left out: what is further from its line, moved to the median, than
+//!   |          . - ' . '                    6 median deviations and a cycle
+//!   |  . - ' .                           3. the least squares' line through the others
+//!   +------------------------> time
+//! ```
+//!
+//! The medians bear that half of the slopes are wrong, whatever they are (a Theil-Sen estimate of fewer pairs): an event
+//! that is late by itself is in two of them, and a pause in a quarter of all. The least squares' line does what a
+//! median cannot: it sees a drift that is less than a cycle of the clocks. All is in the order of the events, so the same
+//! events have the same drift everywhere.
+//!
+//! ```
+//! use stepscope_inspect::recording::drift::Drift;
+//!
+//! // 20 ppm, and event 7 is late by 10 ms.
+//! let late = |k: usize| (k as f64, 20e-6 * k as f64 + if k == 7 { 0.01 } else { 0.0 });
+//! let drift = Drift::of(1000, 1e-6, |k| Some(late(k)));
+//! assert!((drift.slope - 20e-6).abs() < 1e-12);
+//! assert!(drift.is_outlier(drift.left(7.0, late(7).1)) && !drift.is_outlier(drift.left(8.0, late(8).1)));
+//! ```
+
+use alloc::vec::Vec;
+
+/// Events that the medians are taken of; of more every second, third, ... is.
+const MAX_SAMPLED: usize = 1 << 20;
+/// Pairs are so great a part of all events apart.
+const PART: usize = 4;
+/// Median deviations, about four standard ones, within which an event counts.
+const DEVIATIONS: f64 = 6.0;
+
+/// A line through most events.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Drift {
+    /// Seconds of lateness a second.
+    pub slope: f64,
+    /// How late the line is at time 0, in s.
+    pub late_s: f64,
+    /// How far from the line an event may be that counts, in s.
+    pub within_s: f64,
+}
+
+impl Drift {
+    /// Of `count` events in the order of time, each with its time and how late it is, in s; a cycle of the clocks, by which
+    /// these are rounded, lasts `cycle_s`.
+    #[must_use]
+    pub fn of(count: usize, cycle_s: f64, event: impl Fn(usize) -> Option<(f64, f64)>) -> Self {
+        let sampled: Vec<(f64, f64)> =
+            (0..count).step_by(count.div_ceil(MAX_SAMPLED).max(1)).filter_map(&event).collect();
+        let later = sampled.iter().skip((sampled.len() / PART).max(1));
+        let slopes = sampled.iter().zip(later).filter(|(one, other)| other.0 > one.0);
+        let slope = median(slopes.map(|(one, other)| (other.1 - one.1) / (other.0 - one.0)).collect());
+        let left = |(time, late): (f64, f64)| late - slope * time;
+        let middle = median(sampled.iter().copied().map(left).collect());
+        let off = |event: (f64, f64)| libm::fabs(left(event) - middle);
+        let within_s = DEVIATIONS * median(sampled.iter().copied().map(off).collect()) + cycle_s;
+        // Least squares about the means, of what the first slope leaves.
+        let counting = || (0..count).filter_map(&event).filter(|event| off(*event) <= within_s);
+        let (mut n, mut times, mut sum) = (0.0, 0.0, 0.0);
+        for event in counting() {
+            (n, times, sum) = (n + 1.0, times + event.0, sum + left(event));
+        }
+        if n == 0.0 {
+            return Self { slope, late_s: middle, within_s };
+        }
+        let (mean_time, mean) = (times / n, sum / n);
+        let (mut both, mut spread) = (0.0, 0.0);
+        for event in counting() {
+            let time = event.0 - mean_time;
+            both += time * (left(event) - mean);
+            spread += time * time;
+        }
+        let more = if spread > 0.0 { both / spread } else { 0.0 };
+        Self { slope: slope + more, late_s: mean - more * mean_time, within_s }
+    }
+
+    /// What is left of how late an event is, without the line, in s.
+    #[must_use]
+    pub fn left(&self, time_s: f64, late_s: f64) -> f64 {
+        late_s - self.late_s - self.slope * time_s
+    }
+
+    /// Whether what is left is too much for an event that counts.
+    #[must_use]
+    pub fn is_outlier(&self, left_s: f64) -> bool {
+        libm::fabs(left_s) > self.within_s
+    }
+}
+
+/// The middle one, or the mean of the two in the middle; 0 of none.
+fn median(mut of: Vec<f64>) -> f64 {
+    let (half, is_odd) = (of.len() / 2, of.len() % 2 == 1);
+    if of.is_empty() {
+        return 0.0;
+    }
+    let (below, middle, _) = of.select_nth_unstable_by(half, f64::total_cmp);
+    let middle = *middle;
+    if is_odd {
+        return middle;
+    }
+    let below = below.iter().copied().fold(f64::NEG_INFINITY, libm::fmax);
+    (below + middle) / 2.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Noise in 0..1 that is the same everywhere.
+    fn noise(k: usize) -> f64 {
+        ((k as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    #[track_caller]
+    fn check(count: usize, apart_s: f64, cycle_s: f64, ppm: f64, off_ppm: f64, late: impl Fn(usize) -> f64) {
+        let event = |k: usize| {
+            let time = apart_s * k as f64;
+            (time, libm::floor((ppm * 1e-6 * time + late(k)) / cycle_s + 0.5) * cycle_s)
+        };
+        let found = Drift::of(count, cycle_s, |k| Some(event(k))).slope * 1e6;
+        assert!((found - ppm).abs() <= off_ppm, "{found} ppm, not {ppm}");
+    }
+
+    #[test]
+    fn single_late_events_and_a_pause_leave_the_drift() {
+        let jitter = |k| 2e-6 * noise(k);
+        for ppm in [-300.0, 0.0, 50.0] {
+            // One of a thousand is late by 10 ms: anywhere, also the first and the last.
+            for at in [0, 1, 250, 500, 998, 999] {
+                check(1000, 1e-3, 1e-7, ppm, 0.2, |k| jitter(k) + if k == at { 0.01 } else { 0.0 });
+            }
+            // One in five is late by up to 5 ms.
+            check(1000, 1e-3, 1e-7, ppm, 0.5, |k| {
+                jitter(k) + if k % 5 == 2 { 5e-3 * noise(k + 7) } else { 0.0 }
+            });
+            // All after a pause of 10 ms.
+            for at in [100, 300, 450, 550, 700, 900] {
+                check(1000, 1e-3, 1e-7, ppm, 0.5, |k| jitter(k) + if k >= at { 0.01 } else { 0.0 });
+            }
+        }
+    }
+
+    #[test]
+    fn a_drift_of_less_than_a_cycle_is_seen_through_coarse_samples() {
+        // 100 ms in samples of 1 us: 15 ppm come to a sample and a half.
+        check(200, 5e-4, 1e-6, 15.0, 4.0, |k| 1e-6 * noise(k));
+        check(200, 5e-4, 1e-6, 0.0, 4.0, |k| 1e-6 * noise(k));
+    }
+
+    #[test]
+    fn more_events_than_are_sampled_and_too_few_have_a_drift() {
+        check(3 * MAX_SAMPLED + 5, 1e-5, 1e-7, 33.0, 0.01, |k| if k % 1000 == 0 { 0.01 } else { 0.0 });
+        let of = |events: &[(f64, f64)]| Drift::of(events.len(), 1e-6, |k| events.get(k).copied());
+        assert_eq!(of(&[]).slope, 0.0);
+        assert_eq!((of(&[(3.0, 1.0)]).slope, of(&[(3.0, 1.0)]).late_s), (0.0, 1.0));
+        assert!((of(&[(0.0, 0.0), (1.0, 1e-4)]).slope - 1e-4).abs() < 1e-15);
+        // All at one time.
+        assert_eq!(of(&[(1.0, 0.0), (1.0, 1.0), (1.0, 2.0)]).slope, 0.0);
+    }
+}

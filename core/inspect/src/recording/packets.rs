@@ -1,0 +1,314 @@
+//! What recorded lines say, packet by packet: what the host sent on RX, and what the device answered on TX, in the order of time.
+//! Bytes that are frames (DESIGN A6) end at their end mark and are checked; others end at a gap (A5).
+//!
+//! ```
+//! use stepscope_inspect::recording::{packets::Packets, report::Report};
+//! use stepscope_peripheral::trace::Recording;
+//! use stepscope_sim::Experiment;
+//!
+//! // A framed link, as a logic analyser would have seen it: each frame of the host is answered.
+//! let mut recording = Recording::default();
+//! Experiment::from_json(r#"{"line":{"protocol":"framed"}}"#).expect("the default motion, framed").run(&mut recording);
+//! let report = Report::of(&recording.trace, 16_000_000, 1, None);
+//! let packets = Packets::of(&report, 16_000_000, 1, false);
+//! let told = |index: usize| packets.rows.get(index).map(|row| (row.line, row.kind, row.meaning.as_str()));
+//! assert_eq!(told(0), Some(("RX", "frame", "to 0: STATUS")));
+//! assert!(told(1).is_some_and(|(line, kind, meaning)| (line, kind) == ("TX", "reply") && meaning.starts_with("from 0: ")));
+//! ```
+
+use super::{
+    report::{LineReport, Report},
+    serial::{GAP_BITS, Guess, line_name},
+};
+use crate::{
+    dissector::{Head, Reading},
+    packet_table::write_fields,
+};
+use alloc::{
+    borrow::ToOwned,
+    string::{String, ToString},
+    vec::Vec,
+};
+use core::fmt::{self, Write};
+use serde::Serialize;
+use stepscope_peripheral::{
+    config::Protocol,
+    protocol::FrameOutcome,
+    signal::{Levels, PacketOutcome},
+    trace::RowOutcome,
+    units::Instant,
+    wire::{
+        bit_times::BYTE_BITS,
+        frame::{DELIMITER, Deframed, Deframer},
+    },
+};
+
+/// A packet on a recorded line.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct LinePacket {
+    /// `RX` or `TX`.
+    pub line: &'static str,
+    /// `packet`, `frame`, `reply`, or `byte` of one whose stop bit was low.
+    pub kind: &'static str,
+    /// Where its first start bit was seen.
+    pub start_cycle: u64,
+    /// First cycle after its last byte.
+    pub end_cycle: u64,
+    /// Its bytes; none of one whose stop bit was low.
+    pub bytes: Vec<u8>,
+    /// What its bytes mean; empty where that is not known.
+    pub meaning: String,
+    /// Whether it is whole: its check, or what is wrong with it; empty where there is none.
+    pub outcome: String,
+}
+
+/// All of them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Packets {
+    /// In the order of their beginnings.
+    pub rows: Vec<LinePacket>,
+    clock_hz: u32,
+}
+
+impl Packets {
+    /// Of the lines of a recording, whose device has so many channels; `addressed` says whether raw packets begin with an
+    /// address.
+    #[must_use]
+    pub fn of(report: &Report, clock_hz: u32, channels: u8, addressed: bool) -> Self {
+        let mut rows = Vec::new();
+        for line in &report.lines {
+            Line::new(line, clock_hz, channels, addressed).rows(&mut rows);
+        }
+        rows.sort_by_key(|row| row.start_cycle);
+        Self { rows, clock_hz }
+    }
+
+    /// How many frames were answered: those of TX with a right check.
+    #[must_use]
+    pub fn replies(&self) -> usize {
+        let tx = line_name(Levels::TX);
+        self.rows.iter().filter(|row| row.line == tx && row.outcome == HOLDS).count()
+    }
+
+    /// As a table; the columns that `stepscope run --packets` has, too, have the same names, so that it can be opened and
+    /// sent again.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write_csv(&self, out: &mut impl Write) -> fmt::Result {
+        out.write_str("start_cycle,end_cycle,bytes,outcome,kind,line,number,start_s,end_s,gap_s,meaning\n")?;
+        let seconds = |cycle: u64| Instant(cycle).seconds(self.clock_hz);
+        let mut last = None::<u64>;
+        for (number, row) in self.rows.iter().enumerate() {
+            let LinePacket { line, kind, start_cycle, end_cycle, bytes, meaning, outcome } = row;
+            write!(out, "{start_cycle},{end_cycle},")?;
+            bytes.iter().try_for_each(|byte| write!(out, "{byte:02x}"))?;
+            write_fields(out, &[outcome])?;
+            write!(out, ",{kind},{line},{number},{},{},", seconds(*start_cycle), seconds(*end_cycle))?;
+            // Since whatever was on either line before.
+            if let Some(last) = last {
+                write!(out, "{}", seconds(start_cycle.saturating_sub(last)))?;
+            }
+            last = last.max(Some(*end_cycle));
+            write_fields(out, &[meaning])?;
+            out.write_char('\n')?;
+        }
+        Ok(())
+    }
+}
+
+/// What is said of a frame whose check holds.
+const HOLDS: &str = "check holds";
+
+/// A line whose packets are found.
+struct Line<'a> {
+    line: &'a LineReport,
+    is_framed: bool,
+    channels: u8,
+    addressed: bool,
+    /// Cycles of a byte.
+    byte: u64,
+    /// Cycles from one byte to the next that end a raw packet.
+    gap: u64,
+}
+
+impl<'a> Line<'a> {
+    fn new(line: &'a LineReport, clock_hz: u32, channels: u8, addressed: bool) -> Self {
+        let bit = u64::from(clock_hz) / u64::from(line.baud.max(1));
+        let told = if let Guess::Framed { channels, .. } = line.guess { channels } else { None };
+        Self {
+            line,
+            is_framed: matches!(line.guess, Guess::Framed { .. }),
+            channels: told.unwrap_or(channels),
+            addressed,
+            byte: BYTE_BITS * bit,
+            gap: (GAP_BITS + BYTE_BITS) * bit,
+        }
+    }
+
+    fn rows(&self, rows: &mut Vec<LinePacket>) {
+        let (mut deframer, mut outcome) = (Deframer::default(), None);
+        let (mut bytes, mut start, mut last) = (Vec::new(), 0, None::<u64>);
+        for heard in &self.line.heard.bytes {
+            let at = heard.start.0;
+            if !self.is_framed && last.is_some_and(|last| at.saturating_sub(last) > self.gap) {
+                rows.push(self.packet(start, last, core::mem::take(&mut bytes), None));
+            }
+            if bytes.is_empty() {
+                start = at;
+            }
+            bytes.push(heard.byte);
+            last = Some(at);
+            if !self.is_framed {
+                continue;
+            }
+            outcome = match deframer.byte(heard.byte) {
+                // It is what it is for, whatever became of it.
+                Some(Deframed::Frame(_)) => Some(FrameOutcome::OtherAddress),
+                Some(Deframed::Short) => Some(FrameOutcome::Short),
+                Some(Deframed::BadCrc { found, expected }) => Some(FrameOutcome::BadCrc { found, expected }),
+                Some(Deframed::Overlong) => Some(FrameOutcome::Overlong),
+                None => outcome,
+            };
+            // End marks that end nothing stand before the next frame.
+            if heard.byte == DELIMITER && outcome.is_some() {
+                rows.push(self.packet(start, last, core::mem::take(&mut bytes), outcome.take()));
+            }
+        }
+        if !bytes.is_empty() {
+            rows.push(self.packet(start, last, bytes, None));
+        }
+        rows.extend(self.line.heard.framing_errors.iter().map(|seen| LinePacket {
+            line: self.line.name,
+            kind: "byte",
+            start_cycle: seen.0,
+            end_cycle: seen.0 + self.byte,
+            bytes: Vec::new(),
+            meaning: String::new(),
+            outcome: RowOutcome::Framing.to_string(),
+        }));
+    }
+
+    fn packet(
+        &self,
+        start_cycle: u64,
+        last: Option<u64>,
+        bytes: Vec<u8>,
+        outcome: Option<FrameOutcome>,
+    ) -> LinePacket {
+        let is_tx = self.line.name == line_name(Levels::TX);
+        let is_known = self.is_framed || matches!(self.line.guess, Guess::Raw { .. }) && !is_tx;
+        let row = match outcome {
+            Some(outcome) => RowOutcome::Frame(outcome),
+            None if self.is_framed => RowOutcome::Open,
+            None => RowOutcome::Packet(PacketOutcome::Queued),
+        };
+        let protocol = if self.is_framed { Protocol::Framed } else { Protocol::Raw };
+        let reading = Reading { protocol, addressed: self.addressed, channels: &|_| self.channels };
+        let mut meaning = String::new();
+        if is_known {
+            reading.summary(&bytes, row, &mut meaning);
+        }
+        let is_reply = is_tx || self.is_framed && Head::of(&bytes, row).is_some_and(Head::is_reply);
+        LinePacket {
+            line: self.line.name,
+            kind: if is_reply {
+                "reply"
+            } else if self.is_framed {
+                "frame"
+            } else {
+                "packet"
+            },
+            start_cycle,
+            end_cycle: last.unwrap_or(start_cycle) + self.byte,
+            bytes,
+            meaning,
+            outcome: match outcome {
+                Some(FrameOutcome::OtherAddress) => HOLDS.to_owned(),
+                None if !self.is_framed => String::new(),
+                _ => row.to_string(),
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recording::serial::{Heard, HeardByte};
+    use stepscope_peripheral::trace::Recording;
+    use stepscope_sim::Experiment;
+
+    fn run(json: &str) -> (Recording, u8) {
+        let experiment = Experiment::from_json(json).expect("no problems");
+        let mut recording = Recording::default();
+        experiment.run(&mut recording);
+        recording.packets.finish();
+        (recording, experiment.config().channels())
+    }
+
+    #[test]
+    fn the_lines_of_a_framed_run_are_the_rows_that_its_controller_logged() {
+        for json in [
+            r#"{"line":{"protocol":"framed"}}"#,
+            r#"{"bus":{"channels":3},"line":{"protocol":"framed","baud":250000},"source":{"motion":{"axes":[{},{},{}]}}}"#,
+        ] {
+            let (recording, channels) = run(json);
+            let report = Report::of(&recording.trace, 16_000_000, channels, None);
+            let packets = Packets::of(&report, 16_000_000, channels, false);
+            let log = &recording.packets;
+            assert_eq!(packets.rows.len(), log.rows().len(), "{json}");
+            assert!(packets.replies() > 5 && packets.replies() * 2 == packets.rows.len(), "{json}");
+            for (index, (found, logged)) in packets.rows.iter().zip(log.rows()).enumerate() {
+                let is_reply = matches!(logged.outcome, RowOutcome::Reply(_));
+                let (line, kind) = if is_reply { ("TX", "reply") } else { ("RX", "frame") };
+                assert_eq!((found.line, found.kind), (line, kind), "{index}");
+                assert_eq!(found.bytes, log.bytes(index), "{index}");
+                assert_eq!(found.outcome, HOLDS);
+                assert!(found.start_cycle.abs_diff(logged.start.0) <= 139, "{found:?} {logged:?}");
+                assert!(found.end_cycle.abs_diff(logged.end.0) <= 2 * 139, "{found:?} {logged:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn raw_packets_end_at_a_gap_and_a_reply_that_is_broken_says_so() {
+        let (recording, channels) = run(
+            r#"{"bus":{"channels":2},"line":{"address":7},"source":{"packets":{"packets":["078a05","070203"]}}}"#,
+        );
+        let report = Report::of(&recording.trace, 16_000_000, channels, None);
+        let packets = Packets::of(&report, 16_000_000, channels, true);
+        let rows: Vec<_> =
+            packets.rows.iter().map(|row| (row.kind, row.bytes.as_slice(), row.meaning.as_str())).collect();
+        assert_eq!(rows[0], ("packet", [7, 0x8a, 5].as_slice(), "to 7, ch0 +10, ch1 \u{2212}5"));
+        assert_eq!(rows[1].1, [7, 2, 3]);
+
+        // Of the replies of a framed run one is spoiled, one is cut off, and a stop bit is low.
+        let (recording, _) = run(r#"{"line":{"protocol":"framed"}}"#);
+        let mut report = Report::of(&recording.trace, 16_000_000, 1, None);
+        let tx = report.lines.iter_mut().find(|line| line.name == "TX").expect("it answers");
+        tx.heard.bytes[3].byte ^= 0x40;
+        tx.heard.bytes.pop();
+        tx.heard.framing_errors.push(Instant(5));
+        let packets = Packets::of(&report, 16_000_000, 1, false);
+        let tx: Vec<_> = packets.rows.iter().filter(|row| row.line == "TX").collect();
+        assert_eq!((tx[0].kind, tx[0].start_cycle, tx[0].bytes.len()), ("byte", 5, 0));
+        assert!(tx[1].outcome.contains("CRC") && tx[1].meaning.is_empty(), "{:?}", tx[1]);
+        assert_eq!(tx.last().map(|row| (row.kind, row.outcome.as_str())), Some(("reply", "not complete")));
+        let mut table = String::new();
+        packets.write_csv(&mut table).expect("a string takes it");
+        assert_eq!(table.lines().count(), packets.rows.len() + 1);
+        assert!(table.lines().all(|row| row.split(',').count() >= 11), "{table}");
+    }
+
+    #[test]
+    fn bytes_of_no_known_protocol_are_split_at_gaps_alone() {
+        let bytes = (0..40).map(|k| HeardByte { start: Instant(1 + 10 * k + 500 * (k / 30)), byte: k as u8 });
+        let heard = Heard { bytes: bytes.collect(), framing_errors: Vec::new() };
+        let report =
+            Report { channels: Vec::new(), lines: Vec::from([LineReport::of_heard(heard, 1000, 1000)]) };
+        let rows = Packets::of(&report, 1000, 1, false).rows;
+        assert_eq!(rows.iter().map(|row| row.bytes.len()).collect::<Vec<_>>(), [30, 10], "{rows:?}");
+        assert!(rows.iter().all(|row| row.meaning.is_empty() && row.outcome.is_empty()), "{rows:?}");
+    }
+}

@@ -1,0 +1,195 @@
+//! A recording is there after a reload, with a link and without; what storage lost, damaged or refused is said.
+
+use std::{fmt::Write as _, time::Duration};
+
+use anyhow::{Context, Result, ensure};
+use serde_json::json;
+use stepscope_core::inspect::recording::opened::{Ask, Opened};
+use tokio::time::sleep;
+
+use crate::{
+    bench::in_browser,
+    native::{Known, with_distance},
+    recording::{CLOSED, DISTANCE, MESSAGE, READY, SHOW, choose_file, digest, natively},
+    session::Session,
+};
+
+/// Steps that wander, as Saleae Logic saves them; of many there is no link.
+fn wandering(steps: u32) -> String {
+    let mut table = "Time [s],STEP,DIR\n0.000000000,0,1\n".to_owned();
+    let mut at_ns = 10_000_000;
+    for step in 0..steps {
+        at_ns += 1_000_000 + 16 * (u64::from(step).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 48);
+        let _ = write!(table, "{:.9},1,1\n{:.9},0,1\n", at_ns as f64 * 1e-9, (at_ns + 2000) as f64 * 1e-9);
+    }
+    table
+}
+
+/// Opens a file, not beside the experiment, and waits until the views show it.
+async fn open(page: &Session, name: &str, text: &str) -> Result<Opened> {
+    choose_file(page, name, text).await?;
+    page.until(READY).await?;
+    page.click("#recording-beside").await?;
+    page.until(READY).await?;
+    page.click(SHOW).await?;
+    page.until(CLOSED).await?;
+    let opened = natively(text, &Ask::default(), None)?;
+    page.until_digest(&digest(&opened)).await?;
+    page.until(&format!("{MESSAGE}.startsWith('Opened {name}')")).await?;
+    Ok(opened)
+}
+
+/// Waits until the address has the experiment.
+async fn linked(page: &Session) -> Result<()> {
+    page.until("history.state?.own === false").await
+}
+
+async fn reload(page: &Session) -> Result<()> {
+    page.client.refresh().await?;
+    page.listen().await?;
+    page.ready().await
+}
+
+/// The digest of what the model makes of it.
+fn model(opened: &Opened, name: &str) -> Result<String> {
+    Ok(Known::of(&opened.shown_scenario(name, false).to_json())?.digest)
+}
+
+/// Works on the database of recordings, in the page.
+async fn database(page: &Session, work: &str) -> Result<()> {
+    let script = format!(
+        "return new Promise((resolve, reject) => {{
+            const opening = indexedDB.open('stepscope', 1);
+            opening.onerror = () => reject(opening.error);
+            opening.onsuccess = () => {{
+                const base = opening.result;
+                const stores = base.transaction(['recordings', 'pieces'], 'readwrite');
+                const pieces = stores.objectStore('pieces'), facts = stores.objectStore('recordings');
+                stores.oncomplete = () => {{ base.close(); resolve(true); }};
+                {work}
+            }};
+        }});"
+    );
+    page.js::<bool>(&script, Vec::new()).await.map(drop)
+}
+
+#[test]
+fn a_recording_is_there_after_a_reload_with_a_link_and_without() -> Result<()> {
+    in_browser(|page| async move {
+        let own = Known::of(&with_distance(800.0))?;
+        page.open("").await?;
+        page.fill(DISTANCE, "800").await?;
+        page.until_digest(&own.digest).await?;
+        // Short enough for a link: the address has its scenario.
+        let short = open(&page, "short.csv", &wandering(40)).await?;
+        linked(&page).await?;
+        reload(&page).await?;
+        page.until_digest(&digest(&short)).await?;
+        let long = open(&page, "long.csv", &wandering(4000)).await?;
+        reload(&page).await?;
+        page.until_digest(&digest(&long)).await?;
+        assert_eq!(page.field("title").await?.value, "recorded: long.csv");
+        assert_eq!(page.text("#link-message").await?, "", "nothing is to be said");
+        page.until(
+            "document.getElementById('status').textContent.replace(/\\u202f/g, '').startsWith('8000 edges')",
+        )
+        .await?;
+        page.click("#undo").await?;
+        page.until_digest(&own.digest).await
+    })
+}
+
+#[test]
+fn an_edited_experiment_keeps_its_recording_over_reloads_and_in_a_new_tab() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        // A pulse of other width than the others: the model's, whose width is one, differs.
+        let text = wandering(100).replacen(",0,1\n0.0", ",0,1\n0.009000000,1,1\n0.009500000,0,1\n0.0", 1);
+        let opened = open(&page, "mine.csv", &text).await?;
+        let (recorded, made) = (digest(&opened), model(&opened, "mine.csv")?);
+        ensure!(recorded != made, "what is shown tells which it is");
+        reload(&page).await?;
+        page.until_digest(&recorded).await?;
+        page.fill("title", "mine.csv!").await?;
+        page.until("localStorage.getItem('stepscope.scenario')?.includes('mine.csv!')").await?;
+        page.until_digest(&recorded).await?;
+        reload(&page).await?;
+        page.until_digest(&recorded).await?;
+        // A new visit begins with the own work.
+        page.open("").await?;
+        page.until_digest(&recorded).await?;
+        // Another experiment has none of it.
+        page.open(&format!("#{}", Known::of("{}")?.link)).await?;
+        page.until_digest(&Known::of("{}")?.digest).await?;
+        page.click("#undo").await?;
+        page.until_digest(&recorded).await
+    })
+}
+
+#[test]
+fn what_storage_lost_damaged_or_refused_is_said_once_and_the_model_is_shown() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        let text = wandering(100).replacen(",0,1\n0.0", ",0,1\n0.009000000,1,1\n0.009500000,0,1\n0.0", 1);
+        let spoilt = [
+            // A byte that is no level's, a piece too short, times that go back, no piece, no recording, a scenario that is none.
+            (
+                "pieces.openCursor().onsuccess = ({ target: { result } }) => { if (!result) return; result.value[23] = 0xff; result.update(result.value); result.continue(); };",
+                "damaged",
+            ),
+            (
+                "pieces.openCursor().onsuccess = ({ target: { result } }) => { if (!result) return; result.update(result.value.slice(16)); result.continue(); };",
+                "damaged",
+            ),
+            (
+                "pieces.openCursor().onsuccess = ({ target: { result } }) => { if (!result) return; result.value.copyWithin(16, 32, 40); result.value[32] = 0; result.value[33] = 0; result.value[34] = 0; result.update(result.value); result.continue(); };",
+                "damaged",
+            ),
+            ("pieces.clear();", "damaged"),
+            ("pieces.clear(); facts.clear();", "gone"),
+            (
+                "facts.openCursor().onsuccess = ({ target: { result } }) => { if (!result) return; result.value.scenario = '{'; result.update(result.value); result.continue(); };",
+                "damaged",
+            ),
+            (
+                "facts.openCursor().onsuccess = ({ target: { result } }) => { if (!result) return; result.value.sizes = null; result.update(result.value); result.continue(); };",
+                "damaged",
+            ),
+        ];
+        for (work, what) in spoilt {
+            let opened = open(&page, "mine.csv", &text).await?;
+            linked(&page).await?;
+            database(&page, work).await?;
+            reload(&page).await?;
+            page.until_digest(&model(&opened, "mine.csv")?).await?;
+            let gone = "The recording mine.csv is not there any more";
+            page.until(&format!("{MESSAGE}.startsWith('{gone}') && {MESSAGE}.includes('{what}')"))
+                .await
+                .with_context(|| work.to_owned())?;
+            reload(&page).await?;
+            page.until_digest(&model(&opened, "mine.csv")?).await?;
+            sleep(Duration::from_millis(300)).await;
+            assert_eq!(page.text("#link-message").await?, "", "{work}: it is said once");
+        }
+        // Storage that refuses from the start.
+        page.eval::<bool>("(indexedDB.constructor.prototype.open = () => { throw new DOMException('no room', 'QuotaExceededError'); }, true)").await?;
+        let opened = open(&page, "mine.csv", &text).await?;
+        ensure!(
+            page.text("#link-message")
+                .await?
+                .contains("until this page is left: this browser does not keep it (no room)")
+        );
+        linked(&page).await?;
+        reload(&page).await?;
+        page.until_digest(&model(&opened, "mine.csv")?).await?;
+        page.until(&format!("{MESSAGE}.includes('not there any more: this browser does not keep it')"))
+            .await?;
+        // And lists of it that are none.
+        for text in ["{", "7", "null", "[null,5]", "[]"] {
+            page.js::<bool>("return (localStorage.setItem('stepscope.recordings', arguments[0]), sessionStorage.setItem('stepscope.recording', arguments[0]), true)", vec![json!(text)]).await?;
+            reload(&page).await?;
+            page.until_digest(&model(&opened, "mine.csv")?).await?;
+        }
+        Ok(())
+    })
+}
