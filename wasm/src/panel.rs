@@ -179,7 +179,7 @@ impl PanelRun {
     }
 
     /// How a controller stands at the beginning of a cycle: word, position, display, place and error
-    /// of its axis, pulses a unit, decimals, and whether its windings are powered.
+    /// of its axis, pulses a unit, decimals, whether its windings are powered, loops and groups of its program.
     #[must_use]
     pub fn panel_at(&self, controller: usize, cycle: f64) -> Option<Vec<f64>> {
         let cycle = Instant(cycle.max(0.0) as u64);
@@ -195,6 +195,8 @@ impl PanelRun {
             f64::from(*numbers.first()?),
             f64::from(*numbers.get(1)?),
             f64::from(u8::from(machine.enabled(controller)?)),
+            f64::from(*numbers.get(6)?),
+            f64::from(*numbers.get(7)?),
         ])
     }
 

@@ -76,7 +76,8 @@ export const SOURCES = {
     form: (kit, scenario) => {
       if (standAlone) return standAlone.standAloneItems(kit, scenario);
       const note = element("p", { class: "item-note" }, "Its fields are being loaded.");
-      const missing = () => say(note, "Its fields could not be loaded; choose it again when the network is there.");
+      const missing = () =>
+        say(note, "Its fields could not be loaded; undo, or reload the page when the network is there.");
       SOURCES.standalone.load?.(kit).then(kit.anew, missing);
       return [note];
     },

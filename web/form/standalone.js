@@ -17,7 +17,7 @@ const LIST = "source.standalone";
 /** What every user sets; the rest is folded away. */
 const FIRST = ["pulses_per_unit", "decimals", "start_speed_hz", "max_speed_hz", "level_hz_s", "short_move", "loops"];
 /** Inputs that the form lists; the view Panel has all of them. */
-const MOST_INPUTS = 40;
+const MAX_INPUT_ROWS = 40;
 /** What can be chosen where the schema has 0 and 1. */
 const CHOICES = {
   direction: { 1: "1 (right)", 0: "0 (left)" },
@@ -89,7 +89,7 @@ function panelItem(kit, all, index) {
       head,
       ...kit.block(at, own),
       kit.part(`Self-test, debouncing, trust${whose}`, false, kit.block(at, rest)),
-      ...program(kit, at, panel.groups ?? []),
+      ...program(kit, at, panel.groups ?? [], whose),
       part("jog", "Jog"),
       part("return", "ReturnToZero"),
       optional("home", "Homing", kit.samples.homing),
@@ -102,12 +102,12 @@ function panelItem(kit, all, index) {
   );
 }
 
-/** @param {Kit} kit @param {string} at  The controller's path. @param {any[]} groups @returns {Node[]} */
-function program(kit, at, groups) {
+/** @param {Kit} kit @param {string} at  The controller's path. @param {any[]} groups @param {string} whose  Where there are several. @returns {Node[]} */
+function program(kit, at, groups, whose) {
   const list = `${at}.groups`;
   return [
     kit.errorOf(list),
-    ...groups.map((_, index) => groupItem(kit, at, groups, index)),
+    ...groups.map((_, index) => groupItem(kit, at, groups, index, whose)),
     button(
       "Add group",
       `Add group to ${at.slice(LIST.length)}`.replace(/\[(\d+)\]/, "controller $1"),
@@ -117,19 +117,55 @@ function program(kit, at, groups) {
   ];
 }
 
-/** @param {Kit} kit @param {string} at @param {any[]} groups @param {number} index */
-function groupItem(kit, at, groups, index) {
+/** Groups that a group names, by its kind. @type {{[kind: string]: string}} */
+const NAMED = { repeat: "first", wait: "then", jump: "to" };
+
+/** Groups whose numbers have changed: those that name them still mean the same ones. @param {any[]} groups @param {(number: number) => number} to  New numbers, from 1. */
+function renumbered(groups, to) {
+  return groups.map((group) => {
+    const [kind] = Object.keys(group);
+    const key = NAMED[kind];
+    const number = key && group[kind][key];
+    return Number.isInteger(number) ? { [kind]: { ...group[kind], [key]: to(number) } } : group;
+  });
+}
+
+/** @param {Kit} kit @param {string} list @param {number} index */
+function removeGroup(kit, list, index) {
+  // What named the one that goes names the one that follows it, or the last one.
+  const to = (/** @type {number} */ number) => Math.max(1, number > index + 1 ? number - 1 : number);
+  kit.change(
+    list,
+    (groups) => {
+      const left = renumbered(groups.toSpliced(index, 1), to);
+      return renumbered(left, (number) => Math.min(number, left.length));
+    },
+    removed(list, index, kit.now()),
+  );
+}
+
+/** @param {Kit} kit @param {string} list @param {number} index */
+function raiseGroup(kit, list, index) {
+  const to = (/** @type {number} */ number) => (number === index + 1 ? index : number === index ? index + 1 : number);
+  kit.change(list, (groups) => renumbered(groups.toSpliced(index - 1, 2, groups[index], groups[index - 1]), to), [
+    [`${list}[${index}]`, `${list}[${index - 1}]`],
+    [`${list}[${index - 1}]`, `${list}[${index}]`],
+  ]);
+}
+
+/** @param {Kit} kit @param {string} at @param {any[]} groups @param {number} index @param {string} whose */
+function groupItem(kit, at, groups, index, whose) {
   const list = `${at}.groups`;
   const path = `${list}[${index}]`;
   const kind = Object.keys(groups[index])[0];
   const head = element(
     "div",
     { class: "item-head" },
-    kit.kindSelect(`Kind of group ${index + 1}`, path, kind, labels("ProgramGroup"), (to) =>
+    kit.kindSelect(`Kind of group ${index + 1}${whose}`, path, kind, labels("ProgramGroup"), (to) =>
       kit.become(path, "ProgramGroup", to, kit.samples.groups[to]),
     ),
-    button("↑", `Group ${index + 1} earlier`, () => kit.raise(list, index), index === 0),
-    button("✕", `Remove group ${index + 1}`, () => kit.remove(list, index), groups.length === 1),
+    button("↑", `Group ${index + 1}${whose} earlier`, () => raiseGroup(kit, list, index), index === 0),
+    button("✕", `Remove group ${index + 1}${whose}`, () => removeGroup(kit, list, index), groups.length === 1),
   );
   const given = fieldsOfKind("ProgramGroup", kind).map((each) => (each.key === "length" ? inUnits(each, at) : each));
   // Of moves the level is an acceleration.
@@ -231,7 +267,7 @@ function chosen(kit, path, given, keys = /jog$|return$/.test(path) ? ["direction
 
 /** @param {Kit} kit @param {string} path @param {any[]} list @returns {Node[]} */
 function inputs(kit, path, list) {
-  const more = list.length - MOST_INPUTS;
+  const more = list.length - MAX_INPUT_ROWS;
   const given = fields("PanelInput").map((each) =>
     each.key === "level" ? { ...each, kind: /** @type {const} */ ("choice"), choices: CHOICES.level } : each,
   );
@@ -239,7 +275,7 @@ function inputs(kit, path, list) {
     last
       ? { ...last, cycle: last.cycle + Math.round(kit.now().scenario.clock_hz / 10), level: 1 - last.level }
       : { ...kit.samples.input, input: "start" };
-  const rows = kit.rows(path, list.slice(0, MOST_INPUTS), given, "Input", fresh, "StandAlone.inputs");
+  const rows = kit.rows(path, list.slice(0, MAX_INPUT_ROWS), given, "Input", fresh, "StandAlone.inputs");
   return [
     kit.errorOf(path),
     element("p", { class: "item-note" }, "The view Panel puts presses here, and moves them."),

@@ -234,7 +234,7 @@ impl Reader {
                 let kinds: Vec<&str> = group.fields.iter().map(|kind| kind.name).collect();
                 if cfg!(not(feature = "controller")) && name == "standalone" {
                     // The page has them in a module of their own.
-                    let detail = "stand-alone controllers are left out of this part; give the file to the command: stepscope run";
+                    let detail = "stand-alone controllers are left out of this part; the command has them: stepscope run SCENARIO, stepscope capture FILE --against SCENARIO";
                     self.wrong(detail.to_owned());
                     return None;
                 }

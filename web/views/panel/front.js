@@ -4,7 +4,7 @@ import { driven } from "./script.js";
 import { advice, lcd, led, SWITCHES, sentence } from "./words.js";
 
 /** @typedef {import("./words.js").Word} Word */
-/** @typedef {{word: Word, position: number, display: number, place: number, error: number, perUnit: number, decimals: number, powered: boolean}} Moment */
+/** @typedef {{word: Word, position: number, display: number, place: number, error: number, perUnit: number, decimals: number, powered: boolean, loops: number, groups: number}} Moment */
 /** @typedef {{down: (input: string) => void, up: (input: string) => void, click: (input: string) => void, set: (input: string, level: number) => void}} Hand */
 
 /** Buttons of the panel, a row each. */
@@ -129,7 +129,7 @@ export function createFront(place, hand) {
     const light = word.state === "OFF" ? null : led(word);
     lamp.dataset.led = light ?? "off";
     say(lampText, light ? `LED ${LEDS[light]}` : "LED is off");
-    say(words, sentence(word, parameters));
+    say(words, sentence(word, moment));
     words.classList.toggle("alarm", word.state === "ALARM");
     say(next, advice(word));
     const home = buttons.get("home");

@@ -49,7 +49,7 @@ export function lastUpTo(list, value, stride = 1) {
 }
 
 /** What a band says in a record, and in which ink. @param {typeof BANDS[number]} band @param {number} word @returns {[string, string]} */
-function told(band, word) {
+function wordOf(band, word) {
   const { state, alarm, trust, group, loop } = read(word);
   if (band === "state") return [alarm ? `${state} ${alarm}` : state, INKS[STATES.indexOf(state)]];
   if (band === "trust") return [state === "OFF" ? "" : trust, TRUST_INKS[TRUST.indexOf(trust)]];
@@ -64,9 +64,9 @@ export function paintBand(ground, records, band, top) {
   let at = Math.max(0, lastUpTo(records, start, 4));
   let drawn = plot.left;
   while (at < count && records[4 * at] < end) {
-    const [text, ink] = told(band, records[4 * at + 1]);
+    const [text, ink] = wordOf(band, records[4 * at + 1]);
     let next = at + 1;
-    while (next < count && told(band, records[4 * next + 1])[0] === text) next += 1;
+    while (next < count && wordOf(band, records[4 * next + 1])[0] === text) next += 1;
     const until = next < count ? records[4 * next] : last;
     const left = Math.max(drawn, xOf(ground, records[4 * at]));
     const right = Math.min(plot.right, xOf(ground, until));

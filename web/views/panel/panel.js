@@ -23,9 +23,9 @@ import { INPUTS, read, SHARED, STATES } from "./words.js";
 /** What a press lasts beyond the debouncing, and how far behind the end one stands, in s. */
 const BEYOND_S = 0.01;
 /** Most steps of a push. */
-const MOST_PUSHED = 1_000_000;
+const MAX_PUSH = 1_000_000;
 /** Presses without meaning that are told one by one. */
-const MOST_TOLD = 20;
+const MAX_LISTED = 20;
 /** How slow live goes. */
 const SPEEDS = [
   ["1", "real time"],
@@ -201,8 +201,8 @@ export async function createPanel({ engine, dispatch, now }) {
   function push(steps) {
     const cycle = target();
     if (steps === 0) return tell("A push of 0 steps moves nothing.", true);
-    if (Math.abs(steps) > MOST_PUSHED)
-      return tell(`A push has at most ${count(MOST_PUSHED)} steps either way; push several times.`, true);
+    if (Math.abs(steps) > MAX_PUSH)
+      return tell(`A push has at most ${count(MAX_PUSH)} steps either way; push several times.`, true);
     if (take(index(), put(inputsOf(index()), { cycle, input: null, level: 1, push_steps: steps }, null, timeOf)))
       behind(
         cycle,
@@ -366,7 +366,7 @@ export async function createPanel({ engine, dispatch, now }) {
     const answer = await engine.latest("panel", "panel", of.index).catch(unlessDropped);
     if (answer === undefined || now().result !== of.result) return;
     about = of;
-    story = answer && told(answer);
+    story = answer && storyFrom(answer);
     const none = story === null;
     body.hidden = none;
     say(byId("panel-note"), none && state.result ? "No stand-alone controller runs this." : "");
@@ -388,7 +388,7 @@ export async function createPanel({ engine, dispatch, now }) {
       /** @type {Element} */ (ignored.firstElementChild),
       `${count(all.length)} ${all.length === 1 ? "press" : "presses"} meant nothing`,
     );
-    const items = all.slice(0, MOST_TOLD).map(({ cycle, input, state }) => {
+    const items = all.slice(0, MAX_LISTED).map(({ cycle, input, state }) => {
       const go = element(
         "button",
         { type: "button" },
@@ -400,7 +400,7 @@ export async function createPanel({ engine, dispatch, now }) {
       });
       return element("li", {}, go);
     });
-    if (all.length > MOST_TOLD) items.push(element("li", {}, `and ${count(all.length - MOST_TOLD)} more`));
+    if (all.length > MAX_LISTED) items.push(element("li", {}, `and ${count(all.length - MAX_LISTED)} more`));
     fill(/** @type {Element} */ (ignored.lastElementChild), ...items);
   }
 
@@ -413,8 +413,11 @@ export async function createPanel({ engine, dispatch, now }) {
     const inside = Math.min(cycle, endOf(state));
     const answer = await engine.latest("panel at", "panel_at", index(), inside).catch(unlessDropped);
     if (!answer || about?.result !== now().result) return;
-    const [word, position, display, place, error, perUnit, decimals, powered] = answer;
-    const moment = { word: read(word), position, display, place, error, perUnit, decimals, powered: powered === 1 };
+    const [word, position, display, place, error, perUnit, decimals, powered, loops, groups] = answer;
+    const moment = {
+      ...{ word: read(word), position, display, place, error, perUnit, decimals, loops, groups },
+      powered: powered === 1,
+    };
     faces.show(moment, (input) => level(input, cycle), parameters());
     axis.show(moment, parameters()?.axis, story?.records ?? new Float64Array());
   }
@@ -449,7 +452,7 @@ export async function createPanel({ engine, dispatch, now }) {
 }
 
 /** What the core tells of a panel. @param {{records: Float64Array, inputs: Float64Array, ignored: Float64Array, writes: Float64Array}} answer @returns {import("./paint.js").Story} */
-function told({ records, inputs, ignored, writes }) {
+function storyFrom({ records, inputs, ignored, writes }) {
   /** @type {import("./paint.js").Story["inputs"]} */
   const changes = new Map();
   for (let i = 0; i < inputs.length; i += 3) {

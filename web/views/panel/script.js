@@ -8,7 +8,7 @@ import { SHARED } from "./words.js";
 /** @typedef {{inputs: Entry[]} | {refused: string}} Changed */
 
 /** Inputs that a script may have. */
-const MOST = 100_000;
+const MAX_INPUTS = 100_000;
 
 /** What a controller's axis drives, and by which field. @param {any} axis @returns {{[input: string]: string}} */
 export function driven(axis) {
@@ -32,7 +32,7 @@ export function put(inputs, { cycle, input, level, push_steps }, axis, timeOf) {
   const by = input && driven(axis)[input];
   if (by)
     return { refused: `${input} is driven by the axis (${by}); take that away in the form to switch it by hand.` };
-  if (inputs.length >= MOST) return { refused: `There are ${MOST} inputs already; no more fit.` };
+  if (inputs.length >= MAX_INPUTS) return { refused: `There are ${MAX_INPUTS} inputs already; no more fit.` };
   const at = Math.max(1, Math.round(cycle));
   if (inputs.some((each) => each.cycle === at && each.input === input))
     return {

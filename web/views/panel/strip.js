@@ -36,7 +36,7 @@ import { INPUTS } from "./words.js";
  */
 
 /** Room of the position's curve above the bands, in CSS pixels. */
-const [LEAST_PX, MOST_PX] = [58, 190];
+const [MIN_PX, MAX_PX] = [58, 190];
 /** An entry is taken within so many CSS pixels. */
 const REACH_PX = 8;
 /** What a fast key moves an entry by, in columns of pixels. */
@@ -65,7 +65,7 @@ export function createStrip(place, page) {
   /** @type {string[]} */
   let rows = [];
   /** Height of the position's curve. */
-  let curvePx = LEAST_PX;
+  let curvePx = MIN_PX;
   /** @type {Placed | null} */
   let chosen = null;
   /** What is dragged, and how far the pointer was from it. @type {{placed: Placed, by: number, moved: boolean} | null} */
@@ -197,7 +197,7 @@ export function createStrip(place, page) {
     const used = new Set([...story.inputs.keys(), ...page.entries().map(({ entry }) => entry.input ?? PUSH)]);
     rows = [...INPUTS, PUSH].filter((input) => used.has(input));
     const low = (BANDS.length + rows.length) * ROW_PX;
-    curvePx = Math.min(MOST_PX, Math.max(LEAST_PX, Math.floor(page.room() - low - TIME_PX)));
+    curvePx = Math.min(MAX_PX, Math.max(MIN_PX, Math.floor(page.room() - low - TIME_PX)));
     const tall = curvePx + low;
     stack.style.height = `${tall + TIME_PX}px`;
     const { ratio } = fit(canvas);

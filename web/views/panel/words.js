@@ -112,13 +112,13 @@ export function advice({ state, alarm, trust }) {
   return state === "OFF" ? "" : (ADVICE[alarm] ?? ADVICE[trust] ?? "");
 }
 
-/** What a panel says, in words. @param {Word} word @param {any} parameters  Of the controller. */
-export function sentence({ state, alarm, trust, group, loop }, { groups = [], loops = 1 } = {}) {
+/** What a panel says, in words. @param {Word} word @param {{groups: number, loops: number}} program  As its numbers rule it. */
+export function sentence({ state, alarm, trust, group, loop }, { groups, loops }) {
   const where =
     state === "EDIT"
       ? `number ${group}: ${numberName(group)}`
       : group > 0
-        ? `group ${group}/${groups.length}, loop ${loop}/${loops}`
+        ? `group ${group}/${groups}, loop ${loop}/${loops}`
         : "no program runs";
   return `${state}${alarm ? ` ${alarm}` : ""} · trust ${trust} · ${where}`;
 }
