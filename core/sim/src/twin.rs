@@ -241,3 +241,114 @@ fn renumbered(bytes: &[u8], offset: u8, channels: u8) -> Vec<u8> {
     }
     made.unwrap_or_else(|| bytes.to_vec())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Experiment, framed_host::Conversation};
+
+    const FRAMED: &str = r#"{ "line": { "protocol": "framed" } }"#;
+
+    /// Streams the default motion to a device that another session is, whose replies `spoil` changes, and gives the differences to
+    /// its twin. `before` is streamed to it so often before.
+    fn differences(before: usize, mut spoil: impl FnMut(usize, &mut Reply)) -> Vec<String> {
+        let scenario = Scenario::from_json(FRAMED).expect("reads");
+        let experiment = Experiment::new(&scenario).expect("no problems");
+        let mut device = Session::new(&scenario).expect("no problems");
+        rest(&mut device);
+        let mut found = Vec::new();
+        for stream in 0..=before {
+            let mut host = experiment.conversation(device.now()).expect("it is confirmed");
+            let mut twin = Twin::new(&scenario).expect("no problems");
+            let (mut number, mut deframer) = (0, Deframer::default());
+            while !host.is_over() {
+                let now = host.deadline();
+                device.advance::<Digest>(now, &mut []);
+                let Some(bytes) = host.poll(now) else { continue };
+                let channels = experiment.config().channels();
+                let known = *host.known().next().expect("one job").1;
+                twin.send(&bytes, now, (channels, &known));
+                device.receive(&bytes);
+                let takes = line_time(bytes.len() as u64, experiment.config().clock_hz(), experiment.baud());
+                host.sent(now + Cycles(takes));
+                hear(&mut host, &mut device, &mut deframer, |host, mut told| {
+                    let model = twin.answer().expect("the model answers");
+                    if stream == before {
+                        spoil(number, &mut told.reply);
+                        number += 1;
+                        let known = *host.known().next().expect("one job").1;
+                        assert_eq!(model.delay, told.delay, "reply {number}");
+                        found.extend(twin.difference(0, (&told, &known), &model));
+                    }
+                });
+            }
+            assert_eq!(host.progress().next(), Some(crate::framed_host::Progress::Done));
+            let (status, done, went) = twin.end(0).expect("there is one");
+            assert_eq!((status.state, done, went), (State::Ready, 200, vec![3200]));
+        }
+        found
+    }
+
+    /// Hears the reply of a device to the frame that it was sent.
+    fn hear(
+        host: &mut Conversation,
+        device: &mut Session,
+        deframer: &mut Deframer,
+        mut told: impl FnMut(&Conversation, Answer),
+    ) {
+        let sent_end = device.now().next();
+        while device.is_busy() {
+            device.advance::<Digest>(device.deadline(), &mut []);
+            let replies: Vec<ReplyByte> = device.take_replies().collect();
+            for ReplyByte { end, byte, .. } in replies {
+                host.hear(byte, end);
+                if let Some(Deframed::Frame(frame)) = deframer.byte(byte) {
+                    let reply = Reply::parse(frame).expect("a reply");
+                    let frame_bytes =
+                        device.run().schedule().iter().last().map_or(0, |send| send.bytes.len());
+                    let experiment = device.experiment();
+                    let clock_hz = experiment.config().clock_hz();
+                    let takes = line_time(frame_bytes as u64, clock_hz, experiment.baud());
+                    let delay = Cycles(end.0 - sent_end.0 - takes);
+                    told(host, Answer { reply, positions: frame.positions(), delay });
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_device_that_is_the_model_differs_in_nothing_also_where_it_ran_before() {
+        for before in [0, 1, 2] {
+            assert_eq!(differences(before, |_, _| {}), Vec::<String>::new(), "{before}");
+        }
+    }
+
+    #[test]
+    fn what_differs_has_a_name() {
+        type Spoil = fn(&mut Reply);
+        let rows: [(usize, Spoil, &str); 5] = [
+            (
+                3,
+                |reply| reply.answer = Err(stepscope_peripheral::protocol::Reason::Busy),
+                "NAK BUSY, the model ACK TICKS",
+            ),
+            (4, |reply| reply.status.state = State::Stopped, "it is STOPPED, the model MOVING"),
+            (5, |reply| reply.status.expected_seq = 9, "it has taken 9 frames of ticks"),
+            (6, |reply| reply.status.faults |= 1, "its new faults are"),
+            (
+                27,
+                |reply| reply.status.ticks_done -= 1,
+                "it has done 199 ticks since it was opened, the model 200",
+            ),
+        ];
+        for (at, change, expected) in rows {
+            let found = differences(0, |number, reply| {
+                if number == at {
+                    change(reply);
+                }
+            });
+            assert_eq!(found.len(), 1, "{expected}: {found:?}");
+            assert!(found[0].contains(expected), "{found:?}");
+        }
+    }
+}
