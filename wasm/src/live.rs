@@ -17,10 +17,10 @@ use stepscope_core::{
             schedule::line_time,
         },
     },
-    scenario::{Problem, Scenario},
+    scenario::{Host, Problem, Scenario},
     sim::{
         Experiment,
-        framed_host::{Conversation, Known, Progress, Report, Standing, for_real_line},
+        framed_host::{Conversation, Job, Known, Progress, Report, Standing, for_real_line},
         session::{Pace, Session, SessionClock},
         twin::{Answer, Twin},
     },
@@ -121,6 +121,7 @@ struct UnderWay {
 pub struct LiveHost {
     experiment: Experiment,
     host: Conversation,
+    settings: Host,
     clock: SessionClock,
     twin: Twin,
     deframer: Deframer,
@@ -162,6 +163,7 @@ impl LiveHost {
         let twin = Twin::new(&scenario).map_err(|problems| listed(&problems))?;
         Ok(Self {
             host: host.with_slack(slack),
+            settings: scenario.line.host,
             experiment,
             clock,
             twin,
@@ -178,6 +180,17 @@ impl LiveHost {
     #[must_use]
     pub fn baud(&self) -> u32 {
         self.experiment.baud()
+    }
+
+    /// How late the host may be before a queue that was filled runs dry, in ms: a frame's ticks are sent as soon as they find a
+    /// place.
+    #[must_use]
+    pub fn margin_ms(&self) -> f64 {
+        let margin = |job: &Job| {
+            let left = job.queue_depth.saturating_sub(job.ticks_per_frame(&self.settings));
+            self.millis(Cycles(u64::from(left) * job.tick.0))
+        };
+        self.host.known().map(|(job, _)| margin(job)).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether it has nothing more to say.

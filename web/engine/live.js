@@ -3,7 +3,7 @@ import { byId } from "../dom.js";
 import { compiled } from "./wasm.js";
 
 /**
- * @typedef {{why: string, baud: number, state: any}} Role  What one would be; why not, where it cannot be.
+ * @typedef {{why: string, baud: number, margin_ms: number, state: any}} Role  What one would be; why not, where it cannot be. The margin: how late the page may be before the device's queue runs dry.
  * @typedef {{stream: Role, serve: Role}} Facts
  * @typedef {{at_ms: number, controller: number, kind: string, reply: string | null, state: string | null, ticks_done: number | null,
  *   delay_ms: number | null, model_ms: number | null, difference: string | null}} Exchange

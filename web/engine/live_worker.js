@@ -10,8 +10,9 @@
 import init, * as core from "../pkg-live/stepscope_wasm.js";
 import { text } from "./judging.js";
 
-/** How much later than on the line a reply may come: what the system and the adapter add, in ms. */
-const SLACK_MS = 50;
+/** How much later than on the line a reply may come, in ms: what the system and the adapter add, and the page's window, through which
+ * its port's streams go. */
+const SLACK_MS = 100;
 /** How late the model may be before its clock is set back, in ms. */
 const LAG_MS = 50;
 /** How long a port may take no bytes, beyond the line's own time, in ms. */
@@ -193,15 +194,15 @@ async function serve({ serve: json, ...streams }) {
 
 /** What a host, and a device, of a scenario would be; or why there is none. @param {string} json */
 function facts(json) {
-  /** @param {() => {baud: () => number, free: () => void, state: () => any}} make */
+  /** @param {() => {baud: () => number, margin_ms?: () => number, free: () => void, state: () => any}} make */
   const look = (make) => {
     try {
       const made = make();
-      const found = { why: "", baud: made.baud(), state: made.state() };
+      const found = { why: "", baud: made.baud(), margin_ms: made.margin_ms?.() ?? 0, state: made.state() };
       made.free();
       return found;
     } catch (error) {
-      return { why: text(error), baud: 0, state: null };
+      return { why: text(error), baud: 0, margin_ms: 0, state: null };
     }
   };
   return {

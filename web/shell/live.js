@@ -20,6 +20,9 @@ const MOST_ROWS = 300;
 const PATIENCE_MS = 60_000;
 const LOOK_MS = 100;
 
+/** A page on a busy desktop is sometimes so late, in ms. */
+const LATE_MS = 50;
+
 /** @type {{[role in Role]: {label: string, about: string, start: string}}} */
 const ROLES = {
   stream: {
@@ -44,6 +47,16 @@ function whyNoPort() {
   if (!serial())
     return "This browser has no Web Serial: take Chrome or Edge 89 or newer, or Firefox 151 or newer, on a desktop; or the command, stepscope send.";
   return "";
+}
+
+/** What a role comes to. @param {Role} name @param {import("../engine/live.js").Role} found */
+function aboutOf(name, { baud, margin_ms, state }) {
+  if (name === "serve") return `${ROLES.serve.about} ${baud} baud.`;
+  const tight =
+    margin_ms < LATE_MS
+      ? ` The queue gives the page ${margin_ms.toFixed(0)} ms: a busy desktop is later at times, and then it runs dry (UNDERRUN); longer ticks give more.`
+      : "";
+  return `${ROLES.stream.about} ${counted(state.ticks, "tick")}, ${baud} baud.${tight}`;
 }
 
 /** @param {import("./opened.js").Given} page */
@@ -164,11 +177,7 @@ export async function openDevice(page) {
     const name = role();
     const found = facts?.[name];
     const why = noPort || (facts === null ? "Loading…" : found?.why ? `Not with this experiment: ${found.why}.` : "");
-    const ticks = facts?.stream.state?.ticks;
-    say(
-      about,
-      why || `${ROLES[name].about}${name === "stream" ? ` ${counted(ticks, "tick")},` : ""} ${found?.baud} baud.`,
-    );
+    say(about, why || aboutOf(name, /** @type {import("../engine/live.js").Role} */ (found)));
     about.classList.toggle("error", why !== "" && facts !== null);
     say(choose, port ? "Choose another port…" : "Choose a port…");
     say(start, ROLES[name].start);
@@ -227,7 +236,7 @@ export async function openDevice(page) {
     try {
       await (name === "serve" ? live.serve(port, baud, json) : live.stream(port, baud, json, stopping));
     } catch (error) {
-      failed(`The port cannot be opened: ${message(error)}. Is it taken by another program?`);
+      failed(`The port cannot be opened: ${message(error)} Is it taken by another program?`);
     }
   }
 

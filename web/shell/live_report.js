@@ -8,7 +8,7 @@ import { count, counted, time } from "../state/number.js";
 /** @typedef {import("../engine/live.js").Served} Served */
 /** @typedef {import("../engine/live.js").End} End */
 
-const COLUMNS = ["time", "to", "frame", "reply", "state", "done", "delay", "model's", ""];
+const COLUMNS = ["time", "to", "frame", "reply", "state", "done", "delay", "model's", "differs"];
 const NUMBERS = [0, 1, 5, 6, 7];
 
 const ms = (/** @type {number | null} */ value) => (value === null ? "–" : `${value.toFixed(2)} ms`);
@@ -65,11 +65,14 @@ export function outcome({ verified, why, stop_acknowledged, stopped, lost }) {
     const confirmed = stop_acknowledged
       ? "STOP is confirmed: the device has acknowledged it."
       : "STOP is not confirmed: nobody knows whether the device has stopped. Cut its power if it must not move.";
-    return { said: lost ? `${confirmed} The port is lost: ${lost}.` : confirmed, good: stop_acknowledged };
+    return {
+      said: lost ? `${confirmed} The port is lost: ${lost.replace(/\.$/, "")}.` : confirmed,
+      good: stop_acknowledged,
+    };
   }
   if (verified)
     return { said: "Verified: READY, every tick is done, the positions are their sums, and no new fault.", good: true };
-  return { said: `Not verified: ${why}.`, good: false };
+  return { said: `Not verified: ${why?.replace(/\.$/, "")}.`, good: false };
 }
 
 /** Of all delays. @param {number[]} delays */
