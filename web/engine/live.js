@@ -38,7 +38,9 @@ export function openLive(told) {
   let gone = Promise.resolve();
   worker.onerror = (event) => told({ error: event.message || "this part of the page could not be loaded" });
   worker.onmessage = async ({ data }) => {
-    if (data.closed) await closed();
+    // Where the core failed nobody reads the port any more.
+    if (data.error) worker.terminate();
+    if (data.closed || data.error) await closed();
     if (data.closed) left();
     told(data);
   };

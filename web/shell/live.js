@@ -253,6 +253,11 @@ export async function openDevice(page) {
     show();
   }
 
+  /** Tells it on the page, where the dialog is gone. @param {"info" | "error"} kind @param {string} text */
+  function notify(kind, text) {
+    dispatch({ type: "notice", notice: { kind, text, place: null } });
+  }
+
   /** What the worker tells. @param {Told} told */
   function hear(told) {
     if (told.error) return failed(told.error);
@@ -272,6 +277,8 @@ export async function openDevice(page) {
     if (told.reported) {
       const { said: text, good } = outcome(told.reported);
       tell(text, !good);
+      if (!dialog.open)
+        notify(good ? "info" : "error", `The dialog of devices was closed while it was sending. ${text}`);
       fill(twin, ...twinOf(told.reported));
       report.value = reportText(scenario.title, began, told.reported, delays);
       reported.hidden = false;
@@ -305,8 +312,7 @@ export async function openDevice(page) {
       : found
         ? `The session had the digest ${digests[0]}, and as a scenario it has ${found}.`
         : `Recorded with the digest ${digests[0]}.`;
-    const notice = `${verdict}${part}${paced}${gone}${ownIsKept()}`;
-    dispatch({ type: "notice", notice: { kind: same ? "info" : "error", text: notice, place: null } });
+    notify(same ? "info" : "error", `${verdict}${part}${paced}${gone}${ownIsKept()}`);
   }
 
   /** Of a revision, once it has run; empty where it has not. @param {number} revision */

@@ -150,6 +150,9 @@ fn stop_in_the_middle_is_confirmed_and_reported() -> Result<()> {
         start(&page).await?;
         page.until(&format!("Number({STANDING}.match(/(\\d+) ticks accepted/)?.[1] ?? 0) > 20")).await?;
         ensure!(page.eval::<bool>("document.getElementById('live-close').disabled").await?);
+        // Who leaves the page is asked.
+        let asks = "!dispatchEvent(new Event('beforeunload', { cancelable: true }))";
+        ensure!(page.eval::<bool>(asks).await?);
         page.click("#live-stop").await?;
         page.until(ENDED).await?;
         page.until(&format!("{SAID}.startsWith('STOP is confirmed')")).await?;
@@ -160,8 +163,30 @@ fn stop_in_the_middle_is_confirmed_and_reported() -> Result<()> {
         // Also where nothing is sent: to a device that somebody else may have left moving.
         page.click("#live-stop").await?;
         page.until("peer.closed === 2").await?;
-        page.until(&format!("{SAID}.startsWith('STOP is confirmed')")).await
+        page.until(&format!("{SAID}.startsWith('STOP is confirmed')")).await?;
+        ensure!(!page.eval::<bool>(asks).await?);
+        Ok(())
     })
+}
+
+#[test]
+fn escape_is_stop_and_a_dialog_that_goes_stops_first() -> Result<()> {
+    for leave in ["escape", "document.querySelector('dialog.live').close() ?? null"] {
+        in_browser(|page| async move {
+            open(&page, LONG, "serve").await?;
+            start(&page).await?;
+            page.until(&format!("Number({STANDING}.match(/(\\d+) ticks accepted/)?.[1] ?? 0) > 20")).await?;
+            if leave == "escape" {
+                page.press("#live-stop", "\u{e00c}").await?;
+                page.until(&format!("{SAID}.startsWith('STOP is confirmed')")).await?;
+                page.until(ENDED).await
+            } else {
+                page.eval::<Value>(leave).await?;
+                page.until(&format!("peer.closed === 1 && {MESSAGE}.includes('STOP is confirmed')")).await
+            }
+        })?;
+    }
+    Ok(())
 }
 
 #[test]
