@@ -291,7 +291,7 @@ export async function openDevice(page) {
   /** @param {any} state */
   function stand(state) {
     if (running === "serve") return say(standing, servedText(state));
-    say(standing, state.text);
+    say(standing, state.text.replaceAll("_", " "));
     progress.value = state.ticks > 0 ? state.done / state.ticks : 0;
   }
 

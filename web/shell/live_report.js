@@ -111,7 +111,7 @@ export function twinOf({ beside, difference, stopped, verified }) {
       const [own, its] = [endTexts(device)[index], endTexts(model)[index]];
       return element(
         "tr",
-        own === its || device === null ? {} : { class: "differs" },
+        own === its || device === null || (stopped && index > 0) ? {} : { class: "differs" },
         element("th", { scope: "row" }, beside.length > 1 ? `controller ${controller}, ${name}` : name),
         element("td", {}, own),
         element("td", {}, its),
