@@ -60,7 +60,7 @@ export function options(select, options, value) {
   if (select.value !== value) select.value = value;
 }
 
-/** Loads the style of a part that the page begins without; where it does not come, the part can be used all the same. @param {"study" | "panel"} part @returns {Promise<void>} */
+/** Loads the style of a part that the page begins without; where it does not come, the part can be used all the same. @param {"study" | "panel" | "live"} part @returns {Promise<void>} */
 export function style(part) {
   const link = element("link", { rel: "stylesheet", href: byId("main").dataset[`${part}Style`] ?? "" });
   return new Promise((resolve) => {

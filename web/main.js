@@ -5,7 +5,7 @@
  * The folders stand in one line, too. Each imports, and names types of, what stands to its left alone; a test holds
  * this:
  *
- *     pkg -> pkg-study -> pkg-capture -> pkg-panel -> state -> dom.js -> engine -> shell -> time -> form -> help -> views -> main.js
+ *     pkg -> pkg-study -> pkg-capture -> pkg-panel -> pkg-live -> state -> dom.js -> engine -> shell -> time -> form -> help -> views -> main.js
  */
 import { byId } from "./dom.js";
 import { Dropped, Engine, unlessDropped } from "./engine/engine.js";

@@ -5,6 +5,7 @@
 //! | `run` | scenarios judged and run ([`Simulation`]), links read and written | in a worker |
 //! | `charts` | charts as pictures | in the same module, on the main thread |
 //! | `capture` | files of logic analysers, read and mapped | in a module of its own, with the first such file, in a worker |
+//! | `live` | the host of a real device, and the device of a real host | in a module of its own, with the first of them, in a worker |
 //! | `panel` | stand-alone controllers judged and run, for the first to look at what they made | in a module of its own, with the first such scenario, in the same worker |
 //! | `study` | long questions: the study, what a motor can do, a file held against a run | in a module of its own, later, in further workers |
 
@@ -25,6 +26,8 @@ mod files;
 mod judged;
 #[cfg(any(feature = "run", feature = "panel"))]
 mod link;
+#[cfg(feature = "live")]
+mod live;
 #[cfg(feature = "study")]
 mod measures;
 #[cfg(feature = "study")]
@@ -74,6 +77,8 @@ pub use judged::Judged;
 pub use link::open_link;
 #[cfg(feature = "run")]
 pub use link::{link_part, link_with, pack_link, unpack_link};
+#[cfg(feature = "live")]
+pub use live::{LiveDevice, LiveHost};
 #[cfg(feature = "study")]
 pub use measures::step_figures;
 #[cfg(feature = "study")]

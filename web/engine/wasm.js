@@ -4,7 +4,7 @@
  */
 import { byId } from "../dom.js";
 
-/** @typedef {"core" | "study" | "capture" | "panel"} Part */
+/** @typedef {"core" | "study" | "capture" | "panel" | "live"} Part */
 
 /** @type {{[part in Part]?: Promise<WebAssembly.Module>}} */
 const modules = {};

@@ -1,4 +1,5 @@
-/** Files that the visitor chooses, drops on the page, or pastes; what becomes of them loads with the first (opened.js). */
+/** What comes from outside: files that the visitor chooses, drops on the page, or pastes, and devices; what becomes of them loads
+ * with the first (opened.js, live.js). */
 import { byId } from "../dom.js";
 
 /** @param {import("./opened.js").Given} page */
@@ -6,6 +7,7 @@ export function createImports(page) {
   const chooser = /** @type {HTMLInputElement} */ (byId("open-file"));
   const hint = byId("drop-hint");
   byId("open").addEventListener("click", () => chooser.click());
+  byId("device").addEventListener("click", () => attempt(async () => (await import("./live.js")).openDevice(page)));
   chooser.addEventListener("change", () => {
     const [file] = chooser.files ?? [];
     chooser.value = "";
@@ -56,9 +58,12 @@ export function createImports(page) {
   });
 
   /** @param {File[]} files */
-  async function open(files) {
+  const open = (files) => attempt(async () => (await import("./opened.js")).openFiles(page, files));
+
+  /** @param {() => Promise<void>} work */
+  async function attempt(work) {
     try {
-      await (await import("./opened.js")).openFiles(page, files);
+      await work();
     } catch {
       page.dispatch({
         type: "notice",

@@ -33,9 +33,15 @@ pub(crate) async fn shipped(optimise: Optimise) -> Result<Parts> {
 
 /// The wasm modules of the page: the folder of each in `web`, and the features of the crate that it has. What opening the
 /// page loads runs scenarios and draws; the study's questions, and files of logic analysers, go to workers with
-/// modules of their own; that of stand-alone controllers joins the first one where they are asked for.
-pub(crate) const MODULES: [(&str, &str); 4] =
-    [("pkg", "run,charts"), ("pkg-study", "study"), ("pkg-capture", "capture"), ("pkg-panel", "panel")];
+/// modules of their own, and so does what speaks with a real port; that of stand-alone controllers joins the first one where they
+/// are asked for.
+pub(crate) const MODULES: [(&str, &str); 5] = [
+    ("pkg", "run,charts"),
+    ("pkg-study", "study"),
+    ("pkg-capture", "capture"),
+    ("pkg-panel", "panel"),
+    ("pkg-live", "live"),
+];
 
 /// Builds the wasm crate into the packages that the page loads, installing the tools first if they are missing.
 pub(crate) async fn build(optimise: Optimise) -> Result<()> {

@@ -20,15 +20,13 @@ use std::{
 use stepscope_core::{
     peripheral::{
         config::Protocol,
-        device::Faults,
-        protocol::{Kind, State},
+        protocol::Kind,
         units::{Cycles, Instant},
         wire::{frame, schedule::line_time},
     },
-    scenario::{Noise, Scenario},
     sim::{
         Experiment,
-        framed_host::{Conversation, Known, Progress},
+        framed_host::{Conversation, Report, Standing, for_real_line},
         session::{Pace, SessionClock},
     },
 };
@@ -72,8 +70,7 @@ pub(crate) struct Arguments {
 /// Sends the ticks, and says what is known of them.
 pub(crate) fn send(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
-    let scenario = Scenario { run_cycles: None, ..scenarios::read(path)? };
-    let experiment = Experiment::new(&plain(scenario));
+    let experiment = Experiment::new(&for_real_line(scenarios::read(path)?));
     let experiment = experiment.map_err(|problems| Failure::Scenario(path.clone(), problems))?;
     if experiment.segments().is_some() {
         let why = "segments run a controller by itself: there is nothing to send; choose ticks";
@@ -115,24 +112,17 @@ pub(crate) fn send(arguments: &Arguments) -> Result<(), Failure> {
     };
     let ended = sender.run(wire);
     drop(std::mem::replace(&mut sender.line, StatusLine::new(false)));
-    let rows = sender.rows(&experiment);
-    report(&rows, &sender, wire, (arguments.json, ended.as_ref().err()))?;
     let interrupted = sender.interrupts > 0;
+    let report = Report::new(&experiment, &mut sender.host, interrupted);
+    print(&report, wire, baud, (arguments.json, ended.as_ref().err()))?;
     ended?;
     if interrupted {
         return Err(Failure::Interrupted);
     }
-    match rows.iter().find_map(|row| row.doubt()) {
+    match report.doubt() {
         None => Ok(()),
         Some(why) => Err(Failure::NotVerified(why)),
     }
-}
-
-/// Without what only a simulated line has.
-fn plain(mut scenario: Scenario) -> Scenario {
-    scenario.line.noise = Noise::default();
-    scenario.line.glitches.clear();
-    scenario
 }
 
 fn open(name: &str, baud: u32, rs485: Rs485) -> Result<Box<dyn Port>, Failure> {
@@ -186,7 +176,7 @@ impl Sender {
                 Heard::Nothing => {}
             }
             let Self { line, host, .. } = self;
-            line.tell(|| progress(host));
+            line.tell(|| Standing::new(host).to_string());
         }
         Ok(())
     }
@@ -211,125 +201,23 @@ impl Sender {
         }
         Ok(())
     }
-
-    /// What is known of each controller that had something to do.
-    fn rows(&mut self, experiment: &Experiment) -> Vec<Row> {
-        let mut rows = Vec::new();
-        for controller in 0..experiment.controllers() {
-            let Some(job) = experiment.job(controller) else { continue };
-            let told = self.host.known().nth(job).map(|(told, known)| (told.address, told.ticks(), *known));
-            let ends = self.host.progress().nth(job).zip(self.host.acknowledged().nth(job));
-            let (Some((address, ticks, known)), Some((progress, acknowledged))) = (told, ends) else {
-                continue;
-            };
-            let done = known.ticks_done().map(|done| done.min(ticks));
-            let expected = done.and_then(|done| self.host.expected(job, done));
-            let bounds = done.map(|done| {
-                let next = (done + 1).min(ticks);
-                (self.host.sums(job, done), self.host.sums(job, next))
-            });
-            rows.push(Row {
-                controller,
-                address,
-                ticks,
-                acknowledged,
-                progress,
-                expected,
-                bounds,
-                done,
-                known,
-            });
-        }
-        rows
-    }
 }
 
-/// How far it is, in a line.
-fn progress(host: &Conversation) -> String {
-    let (mut done, mut all) = (0, 0);
-    for (job, known) in host.known() {
-        done += u64::from(known.ticks_done().unwrap_or(0).min(job.ticks()));
-        all += u64::from(job.ticks());
-    }
-    let accepted: u64 = host.acknowledged().map(u64::from).sum();
-    let counts = host.counts();
-    let words: Vec<&str> = host.progress().map(Progress::name).collect();
-    format!(
-        "{}: {accepted} ticks accepted, {done} done, {} left, {} repeats, {} NAKs",
-        words.join(" "),
-        all - accepted,
-        counts.repeated,
-        counts.refused
-    )
-}
-
-/// What is known of one controller at the end.
-struct Row {
-    controller: usize,
-    address: u8,
-    ticks: u32,
-    acknowledged: u32,
-    progress: Progress,
-    /// Ticks that it says are done.
-    done: Option<u32>,
-    /// Where these lead to.
-    expected: Option<Vec<i32>>,
-    /// How far they go, and how far with the next one, of which STOP may have left any part.
-    bounds: Option<(Vec<i32>, Vec<i32>)>,
-    known: Known,
-}
-
-impl Row {
-    /// Fault flags that it did not have when it was opened.
-    fn new_faults(&self) -> Vec<String> {
-        let bits = |status: Option<frame::Status>| status.map_or(0, |status| status.faults);
-        let new = bits(self.known.last) & !bits(self.known.opened);
-        Faults::from_bits(new).names().map(|name| name.to_string()).collect()
-    }
-
-    fn is_ready(&self) -> bool {
-        self.known.last.is_some_and(|last| last.state == State::Ready)
-    }
-
-    /// Why it is not known that all was done as it was ordered; `None` where it is.
-    fn doubt(&self) -> Option<String> {
-        let faults = self.new_faults();
-        let controller = self.controller;
-        match self.progress {
-            Progress::Done if self.is_ready() && faults.is_empty() => None,
-            Progress::Done if faults.is_empty() => Some(format!("controller {controller} is not READY")),
-            Progress::Done => Some(format!(
-                "controller {controller}: all ticks are done, but with faults: {}",
-                faults.join(" ")
-            )),
-            progress => Some(format!("controller {controller}: {progress}")),
-        }
-    }
-}
-
-fn report(
-    rows: &[Row],
-    sender: &Sender,
+fn print(
+    report: &Report,
     wire: &Wire,
+    baud: u32,
     (as_json, failure): (bool, Option<&Failure>),
 ) -> Result<(), Failure> {
     let lost = failure.map(ToString::to_string);
     if as_json {
-        return tables(rows, sender, wire, lost.as_deref()).print();
+        return tables(report, wire, lost.as_deref()).print();
     }
     let mut out = io::stdout().lock();
     let mut write = || -> io::Result<()> {
-        for row in rows {
-            write_row(&mut out, row, sender.interrupts > 0)?;
-        }
-        let counts = sender.host.counts();
-        writeln!(
-            out,
-            "frames {} repeated {} replies {} rejected {} refused {}",
-            counts.frames, counts.repeated, counts.replies, counts.rejected, counts.refused
-        )?;
+        write!(out, "{report}")?;
         if let Some(errors) = wire.port.line_errors().filter(|errors| !errors.is_none()) {
-            writeln!(out, "line_errors {errors}: is the other end at {} baud?", sender.baud)?;
+            writeln!(out, "line_errors {errors}: is the other end at {baud} baud?")?;
         }
         if wire.collisions() > 0 {
             writeln!(out, "collisions {}: own bytes came back changed", wire.collisions())?;
@@ -339,57 +227,13 @@ fn report(
     write().map_err(Failure::output)
 }
 
-fn write_row(out: &mut impl Write, row: &Row, stopped: bool) -> io::Result<()> {
-    let Row { controller, address, ticks, acknowledged, progress, done, known, .. } = row;
-    writeln!(out, "controller {controller} address {address}: {progress}")?;
-    match done {
-        Some(done) => write!(out, "  ticks {done} of {ticks} done, {acknowledged} acknowledged")?,
-        None => write!(out, "  ticks {ticks}, none sent: it was never opened")?,
-    }
-    if *progress != Progress::Done && *progress != Progress::Counted && done.is_none_or(|done| done < *ticks)
-    {
-        write!(out, "; tick {} is the first not known to be done", done.unwrap_or(0))?;
-    }
-    writeln!(out)?;
-    let list = |positions: &[i32]| positions.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
-    match (&known.positions, &row.expected) {
-        (Some(told), _) if *progress == Progress::Done => {
-            writeln!(out, "  positions {}: the sums of the ticks", list(told.as_slice()))?;
-        }
-        (Some(told), Some(expected)) if known.stop_acknowledged => {
-            let (told, expected) = (list(told.as_slice()), list(expected));
-            writeln!(out, "  positions {told}; the ticks that are done lead to {expected}")?;
-        }
-        (Some(told), _) => writeln!(out, "  positions {} when they were told last", list(told.as_slice()))?,
-        (None, _) if known.hides_positions => {
-            writeln!(out, "  it does not know POSITIONS: how far its motors went is not told")?;
-            if let Some((least, most)) = row.bounds.as_ref().filter(|_| known.stop_acknowledged) {
-                let (least, most) = (list(least), list(most));
-                let cut = "with all of the one that STOP cut short";
-                writeln!(out, "  by the ticks that are done they went {least}, {cut} {most}")?;
-            }
-        }
-        _ => {}
-    }
-    if known.stop_acknowledged {
-        writeln!(out, "  STOP is acknowledged")?;
-    } else if stopped && !matches!(progress, Progress::Done | Progress::Counted) {
-        writeln!(out, "  STOP is not acknowledged")?;
-    }
-    if let Some(last) = known.last {
-        let faults = row.new_faults();
-        let faults = if faults.is_empty() { "none".to_owned() } else { faults.join(" ") };
-        writeln!(out, "  state {}, new faults {faults}", last.state.name())?;
-    }
-    Ok(())
-}
-
-fn tables(rows: &[Row], sender: &Sender, wire: &Wire, lost: Option<&str>) -> Tables {
-    let verified = lost.is_none() && rows.iter().all(|row| row.doubt().is_none());
+fn tables(report: &Report, wire: &Wire, lost: Option<&str>) -> Tables {
+    let Report { rows, counts } = report;
+    let verified = lost.is_none() && report.doubt().is_none();
     let summary = json!({
         "protocol": "framed",
         "outcome": if verified { "done" } else { "not verified" },
-        "why": lost.map(str::to_owned).or_else(|| rows.iter().find_map(Row::doubt)),
+        "why": lost.map(str::to_owned).or_else(|| report.doubt()),
         "collisions": wire.collisions(),
         "line_errors": wire.port.line_errors().map(|errors| errors.to_string()),
     });
@@ -423,7 +267,6 @@ fn tables(rows: &[Row], sender: &Sender, wire: &Wire, lost: Option<&str>) -> Tab
             })
         })
     });
-    let counts = sender.host.counts();
     let host = json!({
         "frames": counts.frames,
         "repeated": counts.repeated,

@@ -37,12 +37,14 @@
 
 mod conversation;
 mod peer;
+mod report;
 #[cfg(test)]
 mod tests;
 mod tick_sums;
 
 pub use conversation::{Conversation, Counts};
 pub use peer::{GivenUp, Job, Known, Progress};
+pub use report::{Report, ReportRow, Standing, for_real_line};
 
 use crate::noise::Noise;
 use alloc::{vec, vec::Vec};

@@ -68,6 +68,8 @@ pub mod fault_sweep;
 
 pub mod session;
 
+pub mod twin;
+
 pub use cost::{BUDGET_MOTOR_STEPS, BUDGET_RECORDS, Cost};
 pub use experiment::{Experiment, Run};
 pub use judged::{Judged, SelectedAxis, axes_of};

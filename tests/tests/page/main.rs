@@ -47,6 +47,7 @@ mod isolation;
 mod keeping;
 mod keyboard;
 mod links;
+mod live;
 mod loading;
 mod logic;
 mod measures;

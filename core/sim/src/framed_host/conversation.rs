@@ -178,6 +178,17 @@ impl Conversation {
         matches!(self.phase, Phase::Waiting { .. })
     }
 
+    /// The job whose frame is on its way or waits for its reply, and what that frame orders.
+    #[must_use]
+    pub const fn under_way(&self) -> Option<(usize, Kind)> {
+        match self.phase {
+            Phase::Sending(exchange) | Phase::Waiting { exchange, .. } => {
+                Some((exchange.peer, exchange.kind))
+            }
+            Phase::Pausing { .. } | Phase::Over => None,
+        }
+    }
+
     /// The cycle in which it wants to be polled, if it hears nothing before; [`Instant::NEVER`] while a frame leaves and when it
     /// is over.
     #[must_use]

@@ -1,0 +1,168 @@
+//! The device of a real host (LIVE H1, H4): a session against the wall clock.
+
+use super::{listed, nanos, read};
+use crate::convert::object;
+use serde::Serialize;
+use stepscope_core::{
+    peripheral::{
+        trace::Digest,
+        units::{Cycles, Instant},
+    },
+    sim::session::{Pace, Session, SessionClock},
+};
+use wasm_bindgen::prelude::*;
+
+/// Cycles of a round at most: as many records, at the very most.
+const MAX_ROUND: u64 = 1_000_000;
+
+/// A controller of a session as it is now.
+#[derive(Serialize)]
+struct ControllerState {
+    state: Option<&'static str>,
+    queued: Option<u8>,
+    queue_depth: u8,
+    positions: Vec<i32>,
+    faults: Vec<String>,
+    ticks_done: u32,
+}
+
+/// A session as it is now.
+#[derive(Serialize)]
+struct SessionState {
+    seconds: f64,
+    heard: u64,
+    replies: u64,
+    /// Most that a reply was written after its cycle.
+    latest_ms: f64,
+    set_backs: u64,
+    set_back_ms: f64,
+    records_all: bool,
+    controllers: Vec<ControllerState>,
+}
+
+/// A session as a scenario.
+#[derive(Serialize)]
+struct Recorded {
+    scenario: String,
+    digests: Vec<String>,
+    /// Why it is not the session; null where it was run again with the same digests.
+    why: Option<String>,
+    whole: bool,
+}
+
+/// The device of a real host.
+#[wasm_bindgen]
+pub struct LiveDevice {
+    session: Session,
+    clock: SessionClock,
+    replies: u64,
+    latest_ns: u64,
+}
+
+#[wasm_bindgen]
+impl LiveDevice {
+    /// The controllers of a scenario, whose model may be so late before its clock is set back.
+    ///
+    /// # Errors
+    /// If the scenario has problems, or its controllers have no line: with what to change.
+    #[wasm_bindgen(constructor)]
+    pub fn new(json: &str, lag_ms: f64) -> Result<LiveDevice, JsError> {
+        let session = Session::new(&read(json)?).map_err(|problems| listed(&problems))?;
+        let clock_hz = session.experiment().config().clock_hz();
+        let clock = SessionClock::new(clock_hz, Pace::REAL_TIME, nanos(lag_ms));
+        Ok(Self { session, clock, replies: 0, latest_ns: 0 })
+    }
+
+    /// The line's rate.
+    #[must_use]
+    pub fn baud(&self) -> u32 {
+        self.session.experiment().baud()
+    }
+
+    /// Runs the model on towards now, for a ms of it at most. Whether there is more to run.
+    pub fn round(&mut self, ms: f64) -> bool {
+        let now = self.session.now();
+        let clock_hz = u64::from(self.session.experiment().config().clock_hz());
+        let target = self.clock.target(nanos(ms), now);
+        let to = target.min(Instant(now.0 + (clock_hz / 1000).clamp(1, MAX_ROUND)));
+        if to > now {
+            self.session.advance::<Digest>(to, &mut []);
+        }
+        to < target
+    }
+
+    /// Bytes of replies that have left the model by now.
+    pub fn replies(&mut self, ms: f64) -> Vec<u8> {
+        let Self { session, clock, replies, latest_ns } = self;
+        let mut bytes = Vec::new();
+        for reply in session.take_replies() {
+            bytes.push(reply.byte);
+            // A reply ends with its delimiter.
+            if reply.byte == 0 {
+                *replies += 1;
+                *latest_ns = (*latest_ns).max(clock.late_ns(nanos(ms), reply.end));
+            }
+        }
+        bytes
+    }
+
+    /// Bytes that were read while the model stands where it stands.
+    pub fn receive(&mut self, bytes: &[u8]) {
+        self.session.receive(bytes);
+    }
+
+    /// How long nothing is due, in ms, if nothing is heard; infinite where nothing is on the line.
+    #[must_use]
+    pub fn wait(&self) -> f64 {
+        let due = self.session.deadline();
+        let cycles = Cycles(due.0.saturating_sub(self.session.now().0));
+        if due == Instant::NEVER { f64::INFINITY } else { self.clock.nanos(cycles) as f64 / 1e6 }
+    }
+
+    /// How it stands: `{seconds, heard, replies, latest_ms, set_backs, set_back_ms, records_all, controllers}`.
+    ///
+    /// # Errors
+    /// Never in practice.
+    pub fn state(&self) -> Result<JsValue, JsError> {
+        let Self { session, clock, replies, latest_ns } = self;
+        let experiment = session.experiment();
+        let devices = session.run().devices().zip(experiment.configs());
+        let controllers = devices.map(|(device, config)| {
+            let status = device.status();
+            let queued = |free: u8| config.queue_depth() - free.min(config.queue_depth());
+            ControllerState {
+                state: status.map(|status| status.state.name()),
+                queued: status.map(|status| queued(status.free)),
+                queue_depth: config.queue_depth(),
+                positions: device.positions().iter().take(config.channels().into()).copied().collect(),
+                faults: device.faults().names().map(|name| name.to_string()).collect(),
+                ticks_done: device.ticks_done(),
+            }
+        });
+        let stretches = clock.stretches();
+        object(&SessionState {
+            seconds: session.now().0 as f64 / f64::from(experiment.config().clock_hz().max(1)),
+            heard: session.heard(),
+            replies: *replies,
+            latest_ms: *latest_ns as f64 / 1e6,
+            set_backs: stretches.count,
+            set_back_ms: clock.nanos(stretches.cycles) as f64 / 1e6,
+            records_all: session.records_all(),
+            controllers: controllers.collect(),
+        })
+    }
+
+    /// The session as a scenario, run again and compared: `{scenario, digests, why, whole}`.
+    ///
+    /// # Errors
+    /// Never in practice.
+    pub fn recording(&self) -> Result<JsValue, JsError> {
+        let recording = self.session.recording();
+        object(&Recorded {
+            why: recording.verify().err().map(|why| why.to_string()),
+            scenario: recording.scenario.to_json(),
+            digests: recording.digests.iter().map(|digest| format!("{digest:016x}")).collect(),
+            whole: self.session.records_all(),
+        })
+    }
+}

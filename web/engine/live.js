@@ -1,0 +1,94 @@
+/** Talks to the worker that has a real port (live_worker.js): opens the port that the visitor chose, and gives it away. */
+import { byId } from "../dom.js";
+import { compiled } from "./wasm.js";
+
+/**
+ * @typedef {{why: string, baud: number, margin_ms: number, state: any}} Role  What one would be; why not, where it cannot be. The margin: how late the page may be before the device's queue runs dry.
+ * @typedef {{stream: Role, serve: Role}} Facts
+ * @typedef {{at_ms: number, controller: number, kind: string, reply: string | null, state: string | null, ticks_done: number | null,
+ *   delay_ms: number | null, model_ms: number | null, difference: string | null}} Exchange
+ * @typedef {{text: string, accepted: number, done: number, ticks: number, repeats: number, naks: number}} Standing
+ * @typedef {{state: string, ticks_done: number | null, went: number[] | null}} End
+ * @typedef {{controller: number, address: number, ticks: number, device: End | null, model: End | null}} Beside
+ * @typedef {{text: string, verified: boolean, why: string | null, stop_acknowledged: boolean, beside: Beside[], difference: string | null,
+ *   lost: string, stopped: boolean, ms: number}} Reported
+ * @typedef {{seconds: number, heard: number, replies: number, latest_ms: number, set_backs: number, set_back_ms: number, records_all: boolean,
+ *   missed: number, controllers: {state: string | null, queued: number | null, queue_depth: number, positions: number[], faults: string[],
+ *   ticks_done: number}[]}} Served
+ * @typedef {Served & {scenario: string, digests: string[], why: string | null, whole: boolean, lost: string}} Recorded
+ * @typedef {{state?: any, rows?: Exchange[], reported?: Reported, recorded?: Recorded, closed?: true, error?: string, facts?: Facts}} Told
+ */
+
+/** How long what has the port may take to give it back, in ms: STOP is sent until it is confirmed. */
+const PATIENCE_MS = 3000;
+/** Bytes that the system keeps for the page. */
+const BUFFER = 1 << 16;
+
+/** Web Serial, where this browser has it and gives it to this page. @returns {any} */
+export const serial = () => /** @type {any} */ (navigator).serial;
+
+/** @param {(told: Told) => void} told */
+export function openLive(told) {
+  const worker = new Worker(/** @type {string} */ (byId("main").dataset.liveWorker), { type: "module" });
+  /** The port that the worker has. @type {any} */
+  let open = null;
+  /** Ends the wait for what has the port. */
+  let left = () => {};
+  /** @type {Promise<void>} */
+  let gone = Promise.resolve();
+  worker.onerror = (event) => told({ error: event.message || "this part of the page could not be loaded" });
+  worker.onmessage = async ({ data }) => {
+    // Where the core failed nobody reads the port any more.
+    if (data.error) worker.terminate();
+    if (data.closed || data.error) await closed();
+    if (data.closed) left();
+    told(data);
+  };
+  compiled("live").then(
+    (module) => worker.postMessage({ module }),
+    (error) => told({ error: `this part of the page could not be loaded: ${error.message}` }),
+  );
+
+  async function closed() {
+    const port = open;
+    open = null;
+    // One that is lost is closed already.
+    await port?.close().catch(() => {});
+  }
+
+  /** Opens the port and hands its streams to the worker. @param {any} port @param {number} baudRate @param {object} order */
+  async function give(port, baudRate, order) {
+    await port.open({ baudRate, bufferSize: BUFFER });
+    open = port;
+    gone = new Promise((resolve) => {
+      left = resolve;
+    });
+    const { readable, writable } = port;
+    try {
+      worker.postMessage({ ...order, readable, writable }, [readable, writable]);
+    } catch (error) {
+      await closed();
+      throw error;
+    }
+  }
+
+  return {
+    /** What can be done with a scenario. @param {string} json */
+    judge: (json) => worker.postMessage({ judge: json }),
+    /** @param {any} port @param {number} baud @param {string} json @param {boolean} stop  Whether STOP is all that is sent. */
+    stream: (port, baud, json, stop) => give(port, baud, { stream: json, stop }),
+    /** @param {any} port @param {number} baud @param {string} json */
+    serve: (port, baud, json) => give(port, baud, { serve: json }),
+    stop: () => worker.postMessage({ stop: true }),
+    end: () => worker.postMessage({ end: true }),
+    /** What has the port stops, gives it back, and ends. */
+    async close() {
+      if (open) {
+        worker.postMessage({ stop: true, end: true });
+        await Promise.race([gone, new Promise((late) => setTimeout(late, PATIENCE_MS))]);
+      }
+      worker.terminate();
+      await closed();
+    },
+  };
+}
