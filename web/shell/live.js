@@ -66,6 +66,9 @@ export async function openDevice(page) {
   const { scenario } = now();
   const json = JSON.stringify(scenario);
   const noPort = whyNoPort();
+  const notHere = scenario.source?.standalone
+    ? "Not with this experiment: a stand-alone controller has no line; its buttons are in the view Panel, or served by the command, stepscope serve."
+    : "";
   /** @type {Facts | null} */
   let facts = null;
   /** @type {any} */
@@ -176,7 +179,8 @@ export async function openDevice(page) {
   function show() {
     const name = role();
     const found = facts?.[name];
-    const why = noPort || (facts === null ? "Loading…" : found?.why ? `Not with this experiment: ${found.why}.` : "");
+    const why =
+      noPort || notHere || (facts === null ? "Loading…" : found?.why ? `Not with this experiment: ${found.why}.` : "");
     say(about, why || aboutOf(name, /** @type {import("../engine/live.js").Role} */ (found)));
     about.classList.toggle("error", why !== "" && facts !== null);
     say(choose, port ? "Choose another port…" : "Choose a port…");

@@ -8,6 +8,23 @@
 //! The device may have run before: sequence numbers, counts of ticks, positions and faults are compared from where it was opened.
 //! What depends on when a frame was heard to the cycle is not compared: how many ticks are done while one moves. The model
 //! is without the scenario's plant.
+//!
+//! ```
+//! use stepscope_peripheral::units::Instant;
+//! use stepscope_scenario::Scenario;
+//! use stepscope_sim::{Experiment, twin::Twin};
+//!
+//! let scenario = Scenario::from_json(r#"{ "line": { "protocol": "framed" } }"#).expect("reads");
+//! let experiment = Experiment::new(&scenario).expect("it has no problems");
+//! let mut host = experiment.conversation(Instant::RESET).expect("a framed host waits for replies");
+//! let mut twin = Twin::new(&scenario).expect("it has no problems");
+//!
+//! let now = host.deadline();
+//! let opening = host.poll(now).expect("it asks how the device is");
+//! let known = *host.known().next().expect("there is one controller").1;
+//! twin.send(&opening, now, (experiment.config().channels(), &known));
+//! assert!(twin.answer().is_some_and(|answer| answer.reply.answer.is_ok()));
+//! ```
 
 use crate::{
     framed_host::Known,
