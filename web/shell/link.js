@@ -36,6 +36,7 @@ export function createLink({ engine, dispatch, now }) {
 
   async function write() {
     const { revision } = now();
+    const before = location.hash;
     if (held(now()) === "problems") return;
     if (held(now()) === "unjudged") {
       timer = window.setTimeout(write, SETTLE_MS);
@@ -44,7 +45,8 @@ export function createLink({ engine, dispatch, now }) {
     try {
       // What its sender saw goes with a link as long as it stands.
       const full = await address(now().seen?.text);
-      if (now().revision !== revision) return;
+      // An address that came meanwhile is read, not written over.
+      if (now().revision !== revision || location.hash !== before) return;
       // The mark tells a reload that the address only repeats the visitor's own work.
       history.replaceState({ own: now().origin === "own" }, "", full);
       written = location.hash;

@@ -141,8 +141,9 @@ export function createPackets(page) {
 
 /** Why nothing went over the line. @param {State} state */
 function whyNone({ scenario: { source } }) {
-  if ("segments" in source || "standalone" in source || source.motion?.engine === "segments")
-    return "The controller runs it by itself: nothing is on the line.";
+  if ("segments" in source || source.motion?.engine === "segments")
+    return "Segments come from the controller itself: nothing is on the line.";
+  if ("standalone" in source) return "A stand-alone controller has no line.";
   if ("line" in source) return "The line script sends nothing that this controller hears.";
   return "Nothing was sent: there is nothing to do.";
 }
