@@ -77,6 +77,8 @@ fn a_finger_places_drags_and_removes_both_cursors() -> Result<()> {
             page.open("").await?;
             page.click(&format!("#tab-{tab}")).await?;
             page.until(&format!("document.querySelector('{strip} .handle').checkVisibility()")).await?;
+            // It says how it stands once there is a result.
+            page.until(&format!("document.querySelector('{strip} .handle').ariaValueText !== null")).await?;
             page.js::<()>(
                 "document.querySelector(arguments[0]).scrollIntoView({ block: 'center' });",
                 vec![json!(strip)],
