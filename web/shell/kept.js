@@ -179,7 +179,8 @@ async function restored(page, database, before, shown) {
   const { scenario, past, future } = now();
   const wanted = new Set([scenario, ...[...past, ...future].map((moment) => moment.scenario)].map(stands));
   const linked = await engine.ask("decode_link", location.hash.slice(1)).catch(() => null);
-  if (linked?.scenario) wanted.add(stands(readJson(linked.scenario)));
+  const addressed = linked?.scenario ? stands(readJson(linked.scenario)) : null;
+  if (addressed !== null) wanted.add(addressed);
   /** @type {Kept[]} */
   const all = await answered(database.transaction(FACTS).objectStore(FACTS).getAll());
   const there = new Set(all.map(({ id }) => id));
@@ -199,8 +200,8 @@ async function restored(page, database, before, shown) {
     }
     engine.record(own.scenario, pieces);
     known.push({ id, file, scenario: own.scenario, lost: "" });
-    if (isShown && !shown.isOwn && !(await hasLink(page, own.scenario))) {
-      // The address is that of what was shown before.
+    if (isShown && !shown.isOwn && stands(read) !== addressed) {
+      // The address is that of what was shown before: there is no link of it, or the page was left before it stood there.
       history.replaceState(null, "", location.pathname + location.search);
       dispatch({ type: "replace", scenario: read, origin: "shared" });
     }
@@ -216,13 +217,6 @@ function removed(database, id) {
   transaction.objectStore(PIECES).delete(piecesOf(id));
   return ended(transaction);
 }
-
-/** Whether a link can hold it. @param {Page} page @param {string} scenario */
-const hasLink = ({ engine }, scenario) =>
-  engine.ask("encode_link", scenario).then(
-    () => true,
-    () => false,
-  );
 
 /** Its records; null where they are not those of a recording. @param {IDBDatabase} database @param {string} id @param {number[]} sizes */
 async function load(database, id, sizes) {

@@ -103,11 +103,14 @@ fn a_recording_is_there_after_a_reload_with_a_link_and_without() -> Result<()> {
 fn an_edited_experiment_keeps_its_recording_over_reloads_and_in_a_new_tab() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
+        page.js::<bool>("history.replaceState = () => {}; return true;", Vec::new()).await?;
         // A pulse of other width than the others: the model's, whose width is one, differs.
         let text = wandering(100).replacen(",0,1\n0.0", ",0,1\n0.009000000,1,1\n0.009500000,0,1\n0.0", 1);
         let opened = open(&page, "mine.csv", &text).await?;
         let (recorded, made) = (digest(&opened), model(&opened, "mine.csv")?);
         ensure!(recorded != made, "what is shown tells which it is");
+        // Left before its link stood in the address.
+        assert_eq!(page.eval::<String>("location.hash").await?, "");
         reload(&page).await?;
         page.until_digest(&recorded).await?;
         page.fill("title", "mine.csv!").await?;
