@@ -131,7 +131,7 @@ export function createFront(place, hand) {
     say(lampText, light ? `LED ${LEDS[light]}` : "LED is off");
     say(words, sentence(word, moment));
     words.classList.toggle("alarm", word.state === "ALARM");
-    say(next, advice(word));
+    say(next, advice(word, Boolean(parameters?.home)));
     const home = buttons.get("home");
     if (home)
       home.title = `home: ${ABOUT.home}${parameters?.home ? "" : "; nothing here, for homing is not set up in the form"}`;

@@ -180,7 +180,8 @@ export function paintCurve(ground, curve, tall, print) {
   for (const value of curve.min) low = Math.min(low, value);
   for (const value of curve.max) high = Math.max(high, value);
   if (low > high) return;
-  const [top, bottom] = [8, tall - 8];
+  // Over it stands what it is.
+  const [top, bottom] = [18, tall - 8];
   const y = (/** @type {number} */ value) =>
     high > low ? bottom - ((value - low) / (high - low)) * (bottom - top) : bottom;
   const column = (curve.end - curve.start) / curve.min.length;

@@ -94,22 +94,23 @@ export function numberName(number) {
   return `${OF_MOVE[at % OF_MOVE.length]} of move ${Math.floor(at / OF_MOVE.length) + 1}`;
 }
 
-/** What each alarm asks for, and a trust that is not sure. @type {{[of: string]: string}} */
+/** What each alarm asks for, and a trust that is not sure; @ is how the place becomes known. @type {{[of: string]: string}} */
 const ADVICE = {
   ESTOP: "Release the emergency stop, then clear.",
   LIMIT: "Clear, then jog off the switch.",
   SOFT_LIMIT: "Clear; the move would have left the soft limits.",
   HOMING: "Clear; the switch was not found where homing looks.",
-  TRUST: "Clear. The place is not known: home, or jog to a known place, then debug, ok.",
+  TRUST: "Clear. The place is not known: @.",
   TIMEOUT: "Clear; the input did not come in time.",
-  MEMORY: "Clear. Nothing is remembered: home, or jog to a known place, then debug, ok.",
-  LOST: "The place is not known: home, or jog to a known place, then debug, ok.",
+  MEMORY: "Clear. Nothing is remembered: @.",
+  LOST: "The place is not known: @.",
   HELD: "The place that was kept. Debug, ok makes where it stands the zero, and sure.",
 };
 
-/** What to do next, where something is to be done. @param {Word} word */
-export function advice({ state, alarm, trust }) {
-  return state === "OFF" ? "" : (ADVICE[alarm] ?? ADVICE[trust] ?? "");
+/** What to do next, where something is to be done. @param {Word} word @param {boolean} hasHome  Whether homing is set up. */
+export function advice({ state, alarm, trust }, hasHome) {
+  const known = `${hasHome ? "home, or " : ""}jog to a known place, then debug, ok`;
+  return state === "OFF" ? "" : (ADVICE[alarm] ?? ADVICE[trust] ?? "").replace("@", known);
 }
 
 /** What a panel says, in words. @param {Word} word @param {{groups: number, loops: number}} program  As its numbers rule it. */
@@ -119,6 +120,6 @@ export function sentence({ state, alarm, trust, group, loop }, { groups, loops }
       ? `number ${group}: ${numberName(group)}`
       : group > 0
         ? `group ${group}/${groups}, loop ${loop}/${loops}`
-        : "no program runs";
+        : "not running";
   return `${state}${alarm ? ` ${alarm}` : ""} · trust ${trust} · ${where}`;
 }

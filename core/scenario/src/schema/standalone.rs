@@ -120,7 +120,7 @@ pub enum Sensor {
 words! {
     ShortMove {
         /// the whole of it at the start-stop rate
-        Document = "document", "at the start-stop rate";
+        Document = "document", "start-stop rate";
         /// up and down as far as it goes
         TurnRound = "turn_round", "up and down";
     }
