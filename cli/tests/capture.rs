@@ -1,11 +1,7 @@
 //! `stepscope capture`, as a script sees it: what a recording is told to be, beside a model and as a scenario, and what is
 //! asked for where a file leaves something open.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
-mod program;
-
-use program::stepscope;
+use crate::program::stepscope;
 use serde_json::Value;
 use std::{
     fs,

@@ -1,10 +1,6 @@
 //! Stand-alone controllers, as a script sees them: their status, their panels, tables and dumps, and power cuts.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
-mod program;
-
-use program::stepscope;
+use crate::program::stepscope;
 use serde_json::Value;
 use vcd::{Command, Parser};
 

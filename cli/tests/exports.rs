@@ -1,5 +1,4 @@
 //! The files that `stepscope run` writes, and the ways to a scenario: links and presets.
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
 use std::{fs, path::PathBuf, process::Command};
 use stepscope_core::scenario::presets::{

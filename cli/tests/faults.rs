@@ -1,5 +1,4 @@
 //! `stepscope faults`: its table, its exit code, and the scenarios that its seeds stand for.
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
 use std::{fs, path::PathBuf, process::Command};
 

@@ -1,10 +1,6 @@
 //! What a command reads: bounded, and told by what is allowed.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
-mod program;
-
-use program::stepscope;
+use crate::program::stepscope;
 use std::{
     fs::{self, File},
     io::{BufWriter, Write},

@@ -1,6 +1,5 @@
 //! Lines with several controllers, replies and noise: what is printed of each controller, the table of
 //! packets, and the line that is written out.
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
 use std::{fs, path::PathBuf, process::Command};
 

@@ -1,7 +1,5 @@
 //! `stepscope serve` and `stepscope send` as they are used: against each other, against devices of our own making, and with
 //! what goes wrong in between.
-#![cfg(unix)]
-#![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
 
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;

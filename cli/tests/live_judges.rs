@@ -1,7 +1,7 @@
 //! `serve` and `send` before judges that others wrote: pyserial with the Python packages for COBS and CRC-32C as an
 //! independent host, the same as an independent device, and socat's pairs of ports in between.
 //!
-//! `cargo xtask test --only live` runs it, and installs all of them first; without the feature `judges` there is no such test.
+//! `cargo xtask test --only live` installs all of them first, and runs it.
 #![cfg(unix)]
 #![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
 
@@ -103,6 +103,7 @@ fn served(place: &[&str], pace: &str, seed: u64) {
 }
 
 #[test]
+#[ignore = "asks Python and socat: cargo xtask test --only live"]
 fn a_host_on_pyserial_is_served_through_a_pseudo_terminal_and_a_socket() {
     served(&["--pty"], "1", 1);
     served(&["--tcp", "127.0.0.1:0"], "1", 2);
@@ -111,6 +112,7 @@ fn a_host_on_pyserial_is_served_through_a_pseudo_terminal_and_a_socket() {
 }
 
 #[test]
+#[ignore = "asks Python and socat: cargo xtask test --only live"]
 fn ticks_are_done_by_a_device_on_python_though_replies_go_lost() {
     let scenario = file("motion.json", MOTION);
     for seed in ["1", "2", "3"] {
@@ -133,6 +135,7 @@ fn ticks_are_done_by_a_device_on_python_though_replies_go_lost() {
 }
 
 #[test]
+#[ignore = "asks Python and socat: cargo xtask test --only live"]
 fn a_pair_of_ports_that_socat_made_is_two_real_ports() {
     let scenario = file("socat.json", MOTION);
     let ends = ["a", "b"].map(|end| scenario.with_file_name(format!("judges-socat-{end}")));
@@ -156,6 +159,7 @@ fn a_pair_of_ports_that_socat_made_is_two_real_ports() {
 }
 
 #[test]
+#[ignore = "asks Python and socat: cargo xtask test --only live"]
 fn a_host_that_stands_still_for_two_seconds_repeats_and_no_tick_is_wrong() {
     let scenario = file("host-stopped.json", MOTION);
     let server =
@@ -177,6 +181,7 @@ fn a_host_that_stands_still_for_two_seconds_repeats_and_no_tick_is_wrong() {
 }
 
 #[test]
+#[ignore = "asks Python and socat: cargo xtask test --only live"]
 fn the_ten_lines_of_the_readme_run() {
     let readme =
         fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md")).expect("it is there");

@@ -1,10 +1,6 @@
 //! `stepscope measures`, as a script sees it.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
-mod program;
-
-use program::stepscope;
+use crate::program::stepscope;
 
 const MOTION: &str = r#"{ "bus": { "channels": 2 }, "source": { "motion": { "axes": [
     { "moves": [ { "constant": { "distance": { "steps": 100 }, "speed": { "steps_s": 1000 } } } ] },

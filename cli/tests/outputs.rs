@@ -1,10 +1,6 @@
 //! What a command writes: nothing is destroyed by a mistake, by Ctrl-C, by a full disk or by a pipe that is closed.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
-mod program;
-
-use program::stepscope;
+use crate::program::stepscope;
 use std::{
     fs,
     io::Read,

@@ -1,10 +1,6 @@
 //! `stepscope plant`, `settling`, `limits` and `resonance`, as a script sees them.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
-mod program;
-
-use program::stepscope;
+use crate::program::stepscope;
 use serde_json::Value;
 use std::fs;
 use vcd::{Command, Parser};

@@ -1,10 +1,6 @@
 //! The command as scripts and shells use it: tables as JSON, completions, manual pages, exit codes.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
 
-mod program;
-
-use program::stepscope;
+use crate::program::stepscope;
 use serde_json::{Map, Value};
 use std::{fs, path::PathBuf};
 

@@ -1,10 +1,6 @@
 //! `stepscope tables` and `stepscope sine`, as a script sees them.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
-mod program;
-
-use program::stepscope;
+use crate::program::stepscope;
 
 const MOTION: &str = r#"{ "title": "A table", "bus": { "channels": 2 }, "source": { "motion": { "axes": [
     { "moves": [ { "trapezoid": { "distance": { "steps": 20000 }, "start_speed": { "steps_s": 250 },

@@ -1,10 +1,6 @@
 //! `stepscope torque` and `stepscope calibrate`, as a script sees them.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
-mod program;
-
-use program::stepscope;
+use crate::program::stepscope;
 
 fn axes(axes: &str) -> String {
     format!(r#"{{"bus":{{"channels":2}},"source":{{"motion":{{"axes":[{axes}]}}}}}}"#)

@@ -1,5 +1,4 @@
 //! What a run exports, taken in again.
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
 use stepscope_core::{
     inspect::{

@@ -1,6 +1,5 @@
 //! Issue "Faults", in its short form: seeds of faults with and without the framed protocol. The long
 //! form is `stepscope faults --seeds 100000`.
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
 use stepscope_core::{
     peripheral::config::Protocol,

@@ -1,10 +1,6 @@
 //! What holds for every motion, its ticks and its segments (DESIGN B1, B7, B8), over random axes.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::panic, reason = "a test fails by panicking")]
 
-mod moves;
-
-use moves::{CLOCK_HZ, plan, ramp_shape, sane_move, short_move};
+use crate::moves::{CLOCK_HZ, plan, ramp_shape, sane_move, short_move};
 use proptest::prelude::*;
 use std::rc::Rc;
 use stepscope_core::{

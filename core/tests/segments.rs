@@ -1,6 +1,5 @@
 //! The segment engine against DESIGN A8 written down as plainly as it goes: every edge of every
 //! channel into one list, sorted. And all ways through the engine against each other (DESIGN A2).
-#![cfg(not(target_arch = "wasm32"))]
 
 use proptest::prelude::*;
 use std::{collections::BTreeMap, rc::Rc};

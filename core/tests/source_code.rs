@@ -1,12 +1,8 @@
 //! Step tables as source code: compiled and run they give the steps that the table has (DESIGN Part D).
 //!
 //! A C compiler is looked for as `cc`, or as `STEPSCOPE_CC` names it; Rust's own linker is one on most systems.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::panic, clippy::expect_used, clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod moves;
-
-use moves::{CLOCK_HZ, plan};
+use crate::moves::{CLOCK_HZ, plan};
 use std::{env, fmt::Write, fs, path::PathBuf, process::Command};
 use stepscope_core::{
     inspect::source_code::{Language, Source},

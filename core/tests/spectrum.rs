@@ -1,6 +1,4 @@
 //! Spectra of whole scenarios, from their pulses at the STEP lines (DESIGN B5, Part D).
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use stepscope_core::{
     inspect::{

@@ -1,10 +1,6 @@
 //! What holds for every stored form of a motion's step times (DESIGN B8), through the segment engine (A8).
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::panic, reason = "a test fails by panicking")]
 
-mod moves;
-
-use moves::{CLOCK_HZ, plan, sane_move};
+use crate::moves::{CLOCK_HZ, plan, sane_move};
 use proptest::prelude::*;
 use std::{num::NonZeroU32, rc::Rc};
 use stepscope_core::{

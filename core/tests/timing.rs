@@ -1,7 +1,5 @@
 //! The timing check against brute force: every time looked for cycle by cycle in random traces, and
 //! held against its rule in exact arithmetic.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
 use proptest::prelude::*;
 use stepscope_core::{

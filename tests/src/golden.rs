@@ -9,7 +9,7 @@
 //! | `status` | what `stepscope run --status` prints below the digests |
 //! | `expect.trace` | the first controller's trace, where it is short: a record a line, cycle and levels in hexadecimal |
 //!
-//! The last three are written by `STEPSCOPE_BLESS=1 cargo test -p stepscope-tests --test golden`
+//! The last three are written by `STEPSCOPE_BLESS=1 cargo test -p stepscope-tests golden::`
 //! and by nothing else.
 
 use alloc::{

@@ -3,8 +3,6 @@
 //!
 //! The source is parsed, without what is compiled for unit tests; paths are looked at wherever they stand, in `use` lines,
 //! in expressions and types, and in macros, and followed through what a module re-exports to the file that declares.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::unwrap_used, reason = "what cannot be read fails the test")]
 
 use std::{
     collections::{BTreeMap, BTreeSet},

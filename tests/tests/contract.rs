@@ -1,7 +1,6 @@
 //! DESIGN Part A, held edge by edge: for random configurations and line activity the core gives, at every
 //! one of its speeds, the trace, positions, faults and tick count of the independent model in
 //! [`stepscope_tests::oracle`], in every mode of the driver bus.
-#![cfg(not(target_arch = "wasm32"))]
 
 use std::rc::Rc;
 

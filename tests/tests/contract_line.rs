@@ -1,7 +1,6 @@
 //! DESIGN Part A, held edge by edge on shared lines and without a line: for random conversations with framed
 //! controllers, several raw controllers, and lists of segments the core gives, at every one of its speeds, what the
 //! independent model in [`stepscope_tests::oracle`] gives.
-#![cfg(not(target_arch = "wasm32"))]
 
 use proptest::prelude::*;
 use stepscope_core::{

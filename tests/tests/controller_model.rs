@@ -1,9 +1,6 @@
 //! Stand-alone controllers against an independent model (CONTROLLER.md G1 to G8): random setups, programs, presses, switches
 //! and power cuts, of which every edge, panel record, byte of memory and digest is the same, at both speeds.
 
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
-
 use stepscope_core::{
     peripheral::signal::Record,
     sim::{Experiment, Run},

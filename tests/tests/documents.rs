@@ -2,8 +2,6 @@
 //!
 //! What a curve or a table says by itself (B2's rates, B4's top speed, B5's breakpoints and distortion) is pinned beside
 //! it in the core; here is what comes out at the STEP lines.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
 
 use std::{f64::consts::PI, fs, path::Path};
 use stepscope_core::{

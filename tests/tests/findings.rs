@@ -1,6 +1,5 @@
 //! What fuzzing found stays found: every input of `tests/findings/` goes through the check that it once broke, and with
 //! them the seeds and some inputs of chance, so that a check that breaks is seen without fuzzing.
-#![cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 
 use proptest::prelude::*;
 use std::{fs, panic::catch_unwind, path::Path};

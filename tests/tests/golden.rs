@@ -1,6 +1,5 @@
 //! The golden cases, natively: at both speeds of DESIGN A2. `STEPSCOPE_BLESS=1` writes what the core
 //! gives into the cases' files; look at the difference before you commit it.
-#![cfg(not(target_arch = "wasm32"))]
 
 use std::{env, fs, io, path::Path};
 use stepscope_core::scenario::presets::{CONTROLLER_PRESETS, PRESETS};

@@ -2,7 +2,6 @@
 //! that was bounded before (PAGE "Share link").
 //!
 //! Time is not measured here. A reading is bounded because its text is; a run because its cost is known and limited.
-#![cfg(not(target_arch = "wasm32"))]
 
 use miniz_oxide::deflate::compress_to_vec;
 use proptest::{prelude::*, sample::Index};

@@ -91,7 +91,7 @@ fn the_runs_that_senders_saw_are_still_made_and_another_run_is_told() {
 }
 
 /// Prints the lines of today's presets, to add them to the file of their version:
-/// `STEPSCOPE_BLESS=1 cargo test -p stepscope-tests --test links -- --nocapture`.
+/// `STEPSCOPE_BLESS=1 cargo test -p stepscope-tests links:: -- --nocapture`.
 #[test]
 fn lines_for_the_presets_can_be_printed() {
     let mut lines = String::new();

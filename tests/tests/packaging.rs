@@ -1,7 +1,5 @@
 //! What others get who take the library crates: their metadata, what they bring with them, and that whoever reads their
 //! documentation finds an example on every module. `cargo xtask test --only package` packs and builds them.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::panic, clippy::unwrap_used, reason = "what cannot be read fails the test")]
 
 use serde_json::Value;
 use std::{

@@ -1,7 +1,5 @@
 //! Runs that drive a plant: the rows of the contract's F10 that need a motion or the way back (F7), equal speeds, slices, and
 //! sources of all kinds.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::expect_used, clippy::panic, reason = "what cannot be run fails the test")]
 
 use stepscope_core::{
     inspect::plant::verdict,

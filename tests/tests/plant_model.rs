@@ -1,9 +1,6 @@
 //! The plant against an independent model (PLANT.md F1 to F8): random motors, drives, supplies, sensors and edges, of which
 //! every point, code, slip and digest is the same to the bit, in whatever portions a run is told.
 
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
-
 use stepscope_core::{
     peripheral::{
         signal::{Levels, Record},

@@ -1,6 +1,5 @@
 //! What holds for every scenario, over random ones of all sources: all speeds give the same run (DESIGN A2), a run
 //! costs no more than was said before it, and a scenario survives its way through JSON and links (PAGE "Share link").
-#![cfg(not(target_arch = "wasm32"))]
 
 use proptest::prelude::*;
 use stepscope_core::{

@@ -1,7 +1,5 @@
 //! The registers: accesses at any cycles leave both speeds of DESIGN A2 the same, and a command by register does what
 //! the frame of DESIGN A6 does that ends in the same cycle.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::expect_used, reason = "what does not hold fails the test")]
 
 use proptest::prelude::*;
 use std::rc::Rc;

@@ -1,6 +1,5 @@
 //! Several controllers on one line, raw and framed, with noise: every speed gives each of them the same run, what was
 //! sent can be sent again, and on a framed line no tick is wrong, duplicated or out of order.
-#![cfg(not(target_arch = "wasm32"))]
 
 use proptest::prelude::*;
 use stepscope_core::{

@@ -1,7 +1,4 @@
 //! Contrasts of the page's colours (WCAG 1.4.3 and 1.4.11), computed from `web/style/theme.css`.
-#![cfg(not(any(target_arch = "wasm32", target_os = "none")))]
-// A file without its rules is a test that fails.
-#![allow(clippy::expect_used, clippy::panic)]
 
 use std::{collections::BTreeMap, fs, path::Path};
 

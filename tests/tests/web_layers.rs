@@ -2,8 +2,6 @@
 //!
 //! Types count as well, though nothing loads for them: who names another's type can't be read, or changed, without it.
 //! Cycles between the files of one folder are the linter's (`web/biome.jsonc`).
-#![cfg(not(any(target_arch = "wasm32", target_os = "none")))]
-#![allow(clippy::unwrap_used, reason = "what cannot be read fails the test")]
 
 use std::{
     fs, io,

@@ -16,21 +16,7 @@ pub(crate) async fn test() -> Result<()> {
         apt::install(&PACKAGES).await.with_context(remedy)?;
         found().with_context(remedy)?;
     }
-    let mut command = toolchain::cargo();
-    // The whole workspace, so that its packages keep the features, and with them the builds, of the native step.
-    let line = [
-        "test",
-        "--workspace",
-        "--features",
-        "stepscope-cli/dump-readers,stepscope-capture/others-files",
-        "--test",
-        "second_reader",
-        "--test",
-        "others_files",
-        "--locked",
-    ];
-    command.args(line);
-    run::to_end(command, run::LIMIT).await
+    run::to_end(toolchain::ignored_tests(&["second_reader", "others_files"]), run::LIMIT).await
 }
 
 fn remedy() -> String {

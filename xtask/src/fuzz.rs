@@ -159,7 +159,7 @@ fn advice(target: &str, input: &Path, program: &Path) -> String {
          reproduce:  {program} {input}\n\
          shorten:    {program} -minimize_crash=1 -max_total_time=60 {input}\n\
          keep:       mkdir -p tests/findings/{target} && cp {input} tests/findings/{target}/what-is-wrong\n\
-         as a test:  cargo test -p stepscope-tests --test findings"
+         as a test:  cargo test -p stepscope-tests findings::"
     )
 }
 

@@ -20,6 +20,15 @@ pub(crate) fn cargo() -> Command {
     command
 }
 
+/// Cargo's call of tests that ask programs of others, which all other calls leave out. The whole workspace, so that its packages
+/// keep the features, and with them the builds, of the native step.
+pub(crate) fn ignored_tests(names: &[&str]) -> Command {
+    let mut command = cargo();
+    command.args(["test", "--workspace", "--locked"]);
+    command.args(names.iter().flat_map(|name| ["--test", name])).args(["--", "--ignored"]);
+    command
+}
+
 /// The target of this machine, such as `x86_64-unknown-linux-gnu`.
 pub(crate) async fn host() -> Result<String> {
     let mut command = Command::new("rustc");

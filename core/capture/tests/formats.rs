@@ -1,9 +1,6 @@
 //! Small files of each kind, and what is read of them.
-#![allow(clippy::expect_used, clippy::panic, reason = "these are tests")]
 
-mod common;
-
-use common::{check, read_bytes, told};
+use crate::common::{check, read_bytes, told};
 use stepscope_capture::read::{Limits, read};
 
 #[test]

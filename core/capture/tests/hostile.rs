@@ -1,18 +1,13 @@
 //! Files that are cut off, changed or made up: an error at most, and what was read is in order.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::expect_used, reason = "these are tests")]
 
-mod common;
-mod writers;
-
-use common::read_bytes;
+use crate::common::read_bytes;
+use crate::writers::{self, Levels};
 use proptest::prelude::*;
 use std::io::{BufReader, Cursor};
 use stepscope_capture::{
     capture::{Capture, Change, MAX_CHANNELS},
     read::{Limits, read},
 };
-use writers::Levels;
 
 /// A small file of each kind.
 fn files() -> Vec<Vec<u8>> {

@@ -1,17 +1,12 @@
 //! Random recordings, written as each kind of file and read back equal.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::expect_used, clippy::unwrap_used, reason = "these are tests")]
 
-mod common;
-mod writers;
-
-use common::read_bytes;
+use crate::common::read_bytes;
+use crate::writers::{self, Levels};
 use proptest::prelude::*;
 use stepscope_capture::{
     capture::{Change, Format, TimedByte, TimedPosition},
     timebase::Timebase,
 };
-use writers::Levels;
 
 /// Rows that rise in time and of which each differs from the one before, the first at tick 0.
 fn changes(channels: usize, most: u64) -> impl Strategy<Value = Vec<Change>> {

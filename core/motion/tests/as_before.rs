@@ -4,9 +4,7 @@
 //! The other tests say what is right; this one says what has changed, so that a change of a search or of a guess that was
 //! meant to keep every result does, and so that a change of a result is a line in a commit. Where a checksum differs, the
 //! texts behind it are written, and two commits' texts can be compared by `diff`. `STEPSCOPE_BLESS=1 cargo test -p
-//! stepscope-motion --test as_before` writes the checksums anew.
-
-#![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
+//! stepscope-motion as_before::` writes the checksums anew.
 
 use crc::{CRC_64_XZ, Crc};
 use rand_xoshiro::{

@@ -1,8 +1,6 @@
 //! Distances and points are what their decimals make of them (DESIGN B1): held against whole numbers of 128 bits, written
 //! without the planner's arithmetic.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "what cannot be planned fails the test")]
-
 use rand_xoshiro::{
     Xoshiro256PlusPlus,
     rand_core::{Rng, SeedableRng},

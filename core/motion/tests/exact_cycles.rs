@@ -1,6 +1,5 @@
 //! Steps that whole numbers tell have the cycle that these give (DESIGN B1): of a timer's table, of one rate, and of moves
 //! in a row; held against whole numbers of 128 bits.
-#![allow(clippy::panic, reason = "what cannot be planned fails the test")]
 
 use rand_xoshiro::{
     Xoshiro256PlusPlus,

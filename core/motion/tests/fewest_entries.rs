@@ -1,8 +1,6 @@
 //! A compressed table has the fewest entries that the widths of its entries allow (DESIGN B8): as few as trying every entry
 //! from every time gives.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "what cannot be kept fails the test")]
-
 use proptest::prelude::*;
 use std::{collections::BTreeSet, num::NonZeroU32};
 use stepscope_motion::{

@@ -5,8 +5,6 @@
 //! before it, and never late; an entry is interval (32 bits), count (16) and add (16, signed) in whole cycles. Its own
 //! program looks at some of the adds only; where its counts are known they stand beside.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "what cannot be kept fails the test")]
-
 use std::num::NonZeroU32;
 use stepscope_motion::{
     ScheduledStep,

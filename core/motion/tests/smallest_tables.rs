@@ -1,8 +1,6 @@
 //! An exact table is the smallest (DESIGN B8): of whole cycles as small as trying every way to part the steps makes it, and
 //! with parts of a cycle no larger than that.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "what cannot be kept fails the test")]
-
 use rand_xoshiro::{
     Xoshiro256PlusPlus,
     rand_core::{Rng, SeedableRng},

@@ -1,8 +1,6 @@
 //! Steps that are due in the very instant in which a tick ends (DESIGN B7): one to the right belongs to that tick, one to
 //! the left to the next, for every kind of motion.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "what cannot be planned fails the test")]
-
 use stepscope_motion::{
     Profile,
     mechanics::{Acceleration, Distance, Speed},

@@ -6,7 +6,6 @@
 //!
 //! For each two neighbours a frame for which both hold, which gets the first one's answer; then the same with the first
 //! put right, which shows that the second did hold.
-#![allow(clippy::expect_used, reason = "a configuration that does not hold fails the test")]
 
 use std::rc::Rc;
 use stepscope_peripheral::{

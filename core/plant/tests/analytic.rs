@@ -1,10 +1,7 @@
 //! The plant beside what mathematics says of its equations: over random motors, and the rows of F10 that are formulas.
 #![expect(clippy::disallowed_methods, reason = "a second opinion by the platform's mathematics")]
-#![allow(clippy::expect_used, clippy::panic, reason = "what cannot be run fails the test")]
 
-mod common;
-
-use common::{Each, frictionless, full_steps, near, near_part, one, records, run};
+use crate::common::{Each, frictionless, full_steps, near, near_part, one, records, run};
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, SQRT_2, TAU};
 use stepscope_peripheral::{

@@ -1,5 +1,4 @@
 //! The contract's three digests (F10), from edges that the segment engine makes.
-#![allow(clippy::expect_used, clippy::panic, reason = "what cannot be run fails the test")]
 
 use stepscope_peripheral::{
     device::SegmentEngine,

@@ -1,9 +1,6 @@
 //! What makes no plant, with the numbers and the remedy.
-#![allow(clippy::expect_used, reason = "what is not refused fails the test")]
 
-mod common;
-
-use common::one;
+use crate::common::one;
 use stepscope_plant::{
     Plant,
     parameters::{Decay, Drive, Motor, Setup, Supply},

@@ -1,9 +1,6 @@
 //! The supply with its buffer, and a driver that is switched off (F4, F5).
-#![allow(clippy::expect_used, reason = "what cannot be run fails the test")]
 
-mod common;
-
-use common::{Each, near, one, run};
+use crate::common::{Each, near, one, run};
 use stepscope_peripheral::{
     signal::{Levels, Record},
     units::Instant,

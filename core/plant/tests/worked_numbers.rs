@@ -1,9 +1,6 @@
 //! The rows of F10 that edges alone tell; those of motions and scenarios are in `tests/tests/plant.rs`.
-#![allow(clippy::expect_used, clippy::panic, reason = "what cannot be run fails the test")]
 
-mod common;
-
-use common::{
+use crate::common::{
     Each, T_STEP, frictionless, full_steps, near, near_part, one, patent_plant, records, run, with_sensor,
 };
 use stepscope_plant::{

@@ -1,6 +1,5 @@
 //! What follows from the schema is what stands in the project: `docs/scenario.md`, which `STEPSCOPE_BLESS=1 cargo test -p
 //! stepscope-scenario` writes, and the description that the page takes.
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
 use std::{env, fs, path::Path};
 use stepscope_scenario::{

@@ -1,5 +1,4 @@
 //! Stand-alone controllers as a scenario has them: every refusal at its path (CONTROLLER.md, "The format").
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
 use stepscope_scenario::{Compact, Scenario};
 

@@ -1,7 +1,7 @@
 //! Where a motion ideally is, from the design's own formulas (DESIGN B2, B4, B6) in 32 digits, and nothing of
 //! the planners' ways to get there.
 
-use crate::wide::{PI, Wide};
+use super::wide::{PI, Wide};
 use stepscope_core::motion::moves::{Interpolation, Point};
 
 /// The way of a move at a time in s, both from its start; to the right, and within the move.

@@ -1,6 +1,5 @@
 //! Recordings as the programs of others write them.
 #![allow(dead_code, reason = "each test uses its part of it")]
-#![allow(clippy::expect_used, reason = "these are tests")]
 
 use flate2::{Compression, write::DeflateEncoder};
 use rawzip::{CompressionMethod, ZipArchiveWriter};

@@ -7,8 +7,6 @@
 //!
 //! Motions whose document gives the times of their steps (tables, staircases, slices, segments) are held to
 //! their own curve: R(s) just before and just after each step.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
 mod ideal;
 mod wide;

@@ -1,6 +1,4 @@
 //! Plans of axes as scenarios write them: every problem with its path, and what holds for every kind of move.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::expect_used, reason = "what cannot be read or planned fails the test")]
 
 mod axis;
 mod breakpoints;

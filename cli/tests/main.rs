@@ -1,0 +1,21 @@
+//! The command as scripts and people call it: one program of all these tests, so that it is linked once.
+//! Those that need programs of others are programs of their own: `second_reader`, `avr_recordings`, `avr_live`, `live_judges`.
+#![cfg(not(any(target_arch = "wasm32", target_os = "none")))]
+#![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod capture;
+mod command;
+mod controller;
+mod exports;
+mod faults;
+mod inputs;
+mod lines;
+#[cfg(unix)]
+mod live;
+mod measures;
+mod outputs;
+mod plant;
+mod program;
+mod scripts;
+mod tables;
+mod torque;

@@ -1,0 +1,14 @@
+//! What the rooms come to together: one program of all these tests, so that it is linked once.
+#![cfg(not(any(target_arch = "wasm32", target_os = "none")))]
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod exchange;
+mod fault_sweep;
+mod motion;
+mod moves;
+mod plans;
+mod segments;
+mod source_code;
+mod spectrum;
+mod tables;
+mod timing;

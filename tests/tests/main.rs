@@ -1,0 +1,23 @@
+//! The house as a whole, natively: golden cases, the contract beside its oracles, the documents' numbers, properties, links, the
+//! order of the house. One program of all these tests, so that it is linked once; `page` is another.
+#![cfg(not(any(target_arch = "wasm32", target_os = "none")))]
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod architecture;
+mod contract;
+mod contract_line;
+mod controller_model;
+mod documents;
+mod exactness;
+mod findings;
+mod golden;
+mod hostile;
+mod links;
+mod packaging;
+mod plant;
+mod plant_model;
+mod properties;
+mod registers;
+mod shared_line;
+mod theme;
+mod web_layers;
