@@ -27,6 +27,17 @@ const BUFFER = 1 << 16;
 /** Web Serial, where this browser has it and gives it to this page. @returns {any} */
 export const serial = () => /** @type {any} */ (navigator).serial;
 
+/** Whether this browser moves streams to a worker, as a port's are here. */
+export function movesStreams() {
+  const { readable, writable } = new TransformStream();
+  try {
+    structuredClone([readable, writable], { transfer: [readable, writable] });
+    return true;
+  } catch {
+    return false;
+  }
+}
+
 /** @param {(told: Told) => void} told */
 export function openLive(told) {
   const worker = new Worker(/** @type {string} */ (byId("main").dataset.liveWorker), { type: "module" });
