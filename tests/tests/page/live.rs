@@ -86,9 +86,12 @@ fn a_port_that_was_allowed_before_is_taken_without_the_chooser_and_opened_by_a_p
             &json!(["Port allowed before (USB 2341:0043)"]),
         )
         .await?;
+        let mut wrong = Vec::new();
+        axe::look(&page, "the dialog with a port", &mut wrong).await?;
         start_by(&page, "#live-allowed button").await?;
         page.until(ENDED).await?;
-        verified(&page, &known).await.map(drop)
+        verified(&page, &known).await?;
+        axe::none(&wrong)
     })
 }
 
