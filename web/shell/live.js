@@ -233,7 +233,11 @@ export async function openDevice(page) {
   /** Ports that the visitor, or who manages the browser, allowed before need no chooser. None is opened. */
   async function offerAllowed() {
     /** @type {any[]} */
-    const ports = noPort ? [] : await serial().getPorts().catch(() => []);
+    const ports = noPort
+      ? []
+      : await serial()
+          .getPorts()
+          .catch(() => []);
     const offers = ports.map((each, index) => {
       const name = `${ports.length > 1 ? `Port ${index + 1}` : "Port"} allowed before${usbOf(each)}`;
       const offer = element("button", { type: "button", title: "Take it without the browser's list of ports" }, name);
