@@ -6,11 +6,11 @@ use serde_json::json;
 
 use crate::{browser::Browser, native::Known, session::Session};
 
-/// As [`FRAMED`], with a queue of seconds and a host that tries again and again, for machines and browsers of any speed.
+/// As [`FRAMED`], with a host that tries again and again, for browsers of any speed.
 pub(crate) const PATIENT: &str = r#"{"line":{"protocol":"framed","host":{"attempts":40}},"bus":{"step_period_cycles":3200,"queue_depth":200},
     "source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":400},"duration_s":1}}]}]}}}"#;
-/// A tick of 20 ms: a queue that a busy machine does not let run dry.
-pub(crate) const FRAMED: &str = r#"{"line":{"protocol":"framed"},"bus":{"step_period_cycles":3200},
+/// Ticks of 20 ms: a queue of seconds, which a busy machine does not let run dry.
+pub(crate) const FRAMED: &str = r#"{"line":{"protocol":"framed"},"bus":{"step_period_cycles":3200,"queue_depth":200},
     "source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":400},"duration_s":1}}]}]}}}"#;
 
 pub(crate) const ABOUT: &str = "(document.getElementById('live-about')?.textContent ?? '')";
@@ -52,7 +52,10 @@ const MOCK: &str = "(role, json) => {
             const order = { [role === 'stream' ? 'stream' : 'serve']: json, readable: back.readable, writable: wire.writable };
             worker.postMessage(order, [back.readable, wire.writable]);
         },
-        async close() { peer.closed += 1; },
+        async close() {
+            if (port.readable?.locked || port.writable?.locked) throw new TypeError('Cannot abort a locked stream');
+            peer.closed += 1;
+        },
     };
     const serial = {
         getPorts: async () => (role === 'allowed' ? [port] : []),

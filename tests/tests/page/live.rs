@@ -19,9 +19,9 @@ use crate::{
 const LONG: &str = r#"{"line":{"protocol":"framed"},"bus":{"step_period_cycles":3200},
     "source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":9000},"duration_s":20}}]}]}}}"#;
 /// Two controllers, the first of two channels.
-const TWO: &str = r#"{"line":{"protocol":"framed"},"bus":{"channels":2,"step_period_cycles":3200},
+const TWO: &str = r#"{"line":{"protocol":"framed"},"bus":{"channels":2,"step_period_cycles":3200,"queue_depth":200},
     "source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":200},"duration_s":1}}]},{"moves":[{"cosine":{"distance":{"steps":-300},"duration_s":1}}]}]}},
-    "controllers":[{"address":1,"bus":{"channels":1,"step_period_cycles":3200},"axes":[{"moves":[{"cosine":{"distance":{"steps":100},"duration_s":1}}]}]}]}"#;
+    "controllers":[{"address":1,"bus":{"channels":1,"step_period_cycles":3200,"queue_depth":200},"axes":[{"moves":[{"cosine":{"distance":{"steps":100},"duration_s":1}}]}]}]}"#;
 
 /// The cells of the table that has device and model side by side, after its head.
 #[derive(Debug, Deserialize, PartialEq)]
