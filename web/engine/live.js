@@ -21,11 +21,35 @@ import { compiled } from "./wasm.js";
 
 /** How long what has the port may take to give it back, in ms: STOP is sent until it is confirmed. */
 const PATIENCE_MS = 3000;
+/** How often it is looked whether a port's streams have come back from the worker, in ms. */
+const LOOK_MS = 2;
 /** Bytes that the system keeps for the page. */
 const BUFFER = 1 << 16;
 
 /** Web Serial, where this browser has it and gives it to this page. @returns {any} */
 export const serial = () => /** @type {any} */ (navigator).serial;
+
+/** Whether this browser moves streams to a worker, as a port's are here. */
+export function movesStreams() {
+  const { readable, writable } = new TransformStream();
+  try {
+    structuredClone([readable, writable], { transfer: [readable, writable] });
+    return true;
+  } catch {
+    return false;
+  }
+}
+
+/** Closes a port that the worker has done with. What the worker has closed is in use here for a moment more, and a port in use does
+ * not close. @param {any} port */
+async function closePort(port) {
+  for (let waited = 0; waited < PATIENCE_MS; waited += LOOK_MS) {
+    if (!port.readable?.locked && !port.writable?.locked) break;
+    await new Promise((rested) => setTimeout(rested, LOOK_MS));
+  }
+  // One that is lost is closed already.
+  await port.close().catch(() => {});
+}
 
 /** @param {(told: Told) => void} told */
 export function openLive(told) {
@@ -52,8 +76,7 @@ export function openLive(told) {
   async function closed() {
     const port = open;
     open = null;
-    // One that is lost is closed already.
-    await port?.close().catch(() => {});
+    if (port) await closePort(port);
   }
 
   /** Opens the port and hands its streams to the worker. @param {any} port @param {number} baudRate @param {object} order */

@@ -3,7 +3,7 @@
  * host. Nothing opens without a press; STOP comes first of all. It loads when it is first opened.
  */
 import { button, element, fill, say, style } from "../dom.js";
-import { openLive, serial } from "../engine/live.js";
+import { movesStreams, openLive, serial } from "../engine/live.js";
 import { readJson } from "../state/json.js";
 import { counted } from "../state/number.js";
 import { message } from "./link.js";
@@ -40,13 +40,24 @@ const ROLES = {
 /** @type {Role[]} */
 const NAMES = ["stream", "serve"];
 
+const OTHERS =
+  "take Chrome or Edge 89 or newer, or Firefox 151 or newer, on a desktop; or the command, stepscope send.";
+
 /** Why this page gets no port; empty where it may. */
 function whyNoPort() {
   if (!globalThis.isSecureContext)
     return "The browser gives ports to secure pages alone: open this page by https, or from http://localhost.";
-  if (!serial())
-    return "This browser has no Web Serial: take Chrome or Edge 89 or newer, or Firefox 151 or newer, on a desktop; or the command, stepscope send.";
+  if (!serial()) return `This browser has no Web Serial: ${OTHERS}`;
+  if (!movesStreams())
+    return `This browser cannot hand a port's streams to a worker, where this page uses them: ${OTHERS}`;
   return "";
+}
+
+/** What a port tells of itself; empty where it is none of USB. @param {any} port */
+function usbOf(port) {
+  const { usbVendorId, usbProductId } = port.getInfo?.() ?? {};
+  const hex = (/** @type {number} */ id) => id.toString(16).padStart(4, "0");
+  return usbVendorId === undefined ? "" : ` (USB ${hex(usbVendorId)}:${hex(usbProductId ?? 0)})`;
 }
 
 /** What a role comes to. @param {Role} name @param {import("../engine/live.js").Role} found */
@@ -89,6 +100,7 @@ export async function openDevice(page) {
   const role = () => radios.find(({ input }) => input.checked)?.name ?? "stream";
   const about = element("p", { id: "live-about" });
   const choose = element("button", { type: "button", id: "live-choose", "aria-describedby": "live-about" });
+  const allowed = element("span", { id: "live-allowed", class: "live-allowed" });
   const start = element("button", { type: "button", id: "live-start", class: "main" });
   const end = element("button", { type: "button", id: "live-end" }, "End and open the recording");
   const stop = element(
@@ -131,7 +143,7 @@ export async function openDevice(page) {
       element("h2", { id: "live-title" }, "Device"),
       element("fieldset", {}, element("legend", {}, "This page is to"), ...radios.map(({ label }) => label)),
       about,
-      element("div", { class: "live-actions" }, choose, start, end, stop),
+      element("div", { class: "live-actions" }, choose, allowed, start, end, stop),
       said,
       progress,
       standing,
@@ -174,6 +186,7 @@ export async function openDevice(page) {
   live.judge(json);
   show();
   dialog.showModal();
+  void offerAllowed();
 
   /** Buttons and texts as things stand. */
   function show() {
@@ -192,6 +205,7 @@ export async function openDevice(page) {
     start.title = why || (port ? "" : "Choose a port first");
     start.hidden = running !== null;
     choose.hidden = running !== null;
+    allowed.hidden = why !== "" || running !== null;
     end.hidden = running !== "serve";
     stop.hidden = name === "serve";
     stop.disabled = why !== "" || port === null;
@@ -207,18 +221,38 @@ export async function openDevice(page) {
 
   async function choosePort() {
     try {
-      port = await serial().requestPort();
-      const { usbVendorId, usbProductId } = port.getInfo?.() ?? {};
-      const hex = (/** @type {number} */ id) => id.toString(16).padStart(4, "0");
-      const name = usbVendorId === undefined ? "" : ` (USB ${hex(usbVendorId)}:${hex(usbProductId ?? 0)})`;
-      tell(`A port is chosen${name}. It is not open yet.`);
+      take(await serial().requestPort());
     } catch (error) {
       // No port was chosen, or this page may have none.
       const chosen = error instanceof DOMException && error.name === "NotFoundError";
       tell(chosen ? "No port was chosen." : `No port: ${message(error)}.`, !chosen);
+      if (port) start.focus();
     }
+  }
+
+  /** Ports that the visitor, or who manages the browser, allowed before need no chooser. None is opened. */
+  async function offerAllowed() {
+    /** @type {any[]} */
+    const ports = noPort
+      ? []
+      : await serial()
+          .getPorts()
+          .catch(() => []);
+    const offers = ports.map((each, index) => {
+      const name = `${ports.length > 1 ? `Port ${index + 1}` : "Port"} allowed before${usbOf(each)}`;
+      const offer = element("button", { type: "button", title: "Take it without the browser's list of ports" }, name);
+      offer.addEventListener("click", () => take(each));
+      return offer;
+    });
+    fill(allowed, ...offers);
+  }
+
+  /** @param {any} chosen */
+  function take(chosen) {
+    port = chosen;
+    tell(`A port is chosen${usbOf(chosen)}. It is not open yet.`);
     show();
-    if (port) start.focus();
+    start.focus();
   }
 
   /** @param {boolean} stopping  Whether STOP is all that is sent. */

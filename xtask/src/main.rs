@@ -7,7 +7,7 @@
 //! | `sources` | form, lints and types of the page's sources |
 //! | `dist` | the page as hosts serve it: names with hashes, lists, licences |
 //! | `headers`, `serve` | the local server, whose headers are `web/_headers`' |
-//! | `steps`, `browser`, `engines`, `bare_metal`, `dump_readers`, `avr` | `cargo xtask test`, step by step |
+//! | `steps`, `browser`, `engines`, `serial_port`, `bare_metal`, `dump_readers`, `avr` | `cargo xtask test`, step by step |
 //! | `bench` | `cargo xtask bench` |
 //! | `fuzz` | `cargo xtask fuzz` |
 //! | `mutants` | `cargo xtask mutants` |
@@ -32,6 +32,7 @@ mod npm;
 mod package;
 mod page;
 mod run;
+mod serial_port;
 mod serve;
 mod sources;
 mod steps;

@@ -11,7 +11,9 @@ use crate::browser::{self, Browser};
 use crate::engines::{self, Firefox, WebKit};
 use crate::toolchain::{self, BARE_METAL, WASM};
 use crate::tools::{Optimise, WasmTools};
-use crate::{avr, bare_metal, dist, dump_readers, judges, npm, package, page, root, run, sources};
+use crate::{
+    avr, bare_metal, dist, dump_readers, judges, npm, package, page, root, run, serial_port, sources,
+};
 
 /// Both workspaces: the fuzz targets are one of their own.
 const RUSTFMT: [&str; 2] = ["fmt --all", "fmt --manifest-path fuzz/Cargo.toml"];
@@ -43,7 +45,7 @@ pub(crate) enum Step {
     Package,
     /// The page as it is shipped: its weight, and its use in Chromium
     Page,
-    /// The page's main job and the golden digests, in Chromium, Firefox and WebKit
+    /// The page's main job, the golden digests and the dialog of devices, in Chromium, Firefox and WebKit; a port of the system
     Engines,
 }
 
@@ -159,7 +161,7 @@ async fn page() -> Result<()> {
     let weights = page::weigh(&dist::folder(), page::built().await?)?;
     print!("{weights}");
     weights.within_budget()?;
-    command.args(["--skip", "engines::"]).env("STEPSCOPE_AXE", npm::axe().await?);
+    command.args(["--skip", "engines::", "--skip", "live_port::"]).env("STEPSCOPE_AXE", npm::axe().await?);
     run::to_end(command, run::LIMIT).await
 }
 
@@ -174,6 +176,14 @@ async fn engines() -> Result<()> {
         .env(engines::GECKODRIVER, geckodriver)
         .env(engines::WEBKITDRIVER, &webkit.driver)
         .env("DISPLAY", &webkit.display);
+    match serial_port::possible().await {
+        Ok(()) => {
+            command.arg("live_port::").env(serial_port::COMMAND, serial_port::command().await?);
+        }
+        Err(why) => {
+            println!("skipped: the page on a port of the system, which this machine cannot have: {why:#}")
+        }
+    }
     run::to_end(command, run::LIMIT).await
 }
 

@@ -31,7 +31,7 @@ pub(crate) struct Bench {
     pub(crate) browser: Browser,
     /// Address of the page, such as `http://127.0.0.1:40000/`, of which every visitor has a name of its own.
     page: String,
-    /// Of an engine whose browsers are not shared.
+    /// Of an engine whose browsers are not shared, or of a Chromium that is the test's own.
     driver: Option<Program>,
     /// For further visitors of such a browser.
     servers: Mutex<Vec<Program>>,
@@ -85,17 +85,34 @@ where
     in_engine_at(pool::served(&web()?)?, browser, test)
 }
 
+/// As [`in_browser_at`], in a Chromium of this driver, which is the test's own.
+pub(crate) fn in_chromium_of<T, F>(driver: Program, address: String, test: T) -> Result<()>
+where
+    T: FnOnce(Session) -> F,
+    F: Future<Output = Result<()>> + 'static,
+{
+    at_work(address, Browser::Chromium, Some(driver), test)
+}
+
 fn in_engine_at<T, F>(page: String, browser: Browser, test: T) -> Result<()>
+where
+    T: FnOnce(Session) -> F,
+    F: Future<Output = Result<()>> + 'static,
+{
+    let driver = match browser {
+        Browser::Chromium => None,
+        Browser::Firefox | Browser::WebKit => Some(Program::driver(browser)?),
+    };
+    at_work(page, browser, driver, test)
+}
+
+fn at_work<T, F>(page: String, browser: Browser, driver: Option<Program>, test: T) -> Result<()>
 where
     T: FnOnce(Session) -> F,
     F: Future<Output = Result<()>> + 'static,
 {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     LocalSet::new().block_on(&runtime, async {
-        let driver = match browser {
-            Browser::Chromium => None,
-            Browser::Firefox | Browser::WebKit => Some(Program::driver(browser)?),
-        };
         let bench =
             Arc::new(Bench { browser, page, driver, servers: Mutex::default(), visitors: Mutex::default() });
         let outcome = match bench.visitor(None).await {

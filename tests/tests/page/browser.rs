@@ -38,6 +38,8 @@ pub(crate) enum Browser {
 pub(crate) enum Says {
     /// In the line that holds this; the address or the port stands behind it.
     Line(&'static str),
+    /// In the line that holds this; behind it stands no address, but a path.
+    Path(&'static str),
     /// Nothing: it was given this port.
     Nothing(u16),
 }

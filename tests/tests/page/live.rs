@@ -1,60 +1,27 @@
-//! The dialog Device with a mock of `navigator.serial` (LIVE H6): a port whose streams lead to a second worker of the page's own,
-//! which is the device of a host or the host of a device. What a real port adds is not tested here.
+//! The dialog Device in Chromium, with a mock of `navigator.serial` (`device`).
 
 use anyhow::{Result, ensure};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::{axe, bench::in_browser, native::Known, session::Session};
+use crate::{
+    axe,
+    bench::in_browser,
+    device::{
+        ABOUT, ENDED, FRAMED, MESSAGE, REPORT, SAID, STANDING, answers_a_host, open, open_with, positions,
+        start, start_by, verified,
+    },
+    native::Known,
+    session::Session,
+};
 
-/// A tick of 20 ms: a queue that a busy machine does not let run dry.
-const FRAMED: &str = r#"{"line":{"protocol":"framed"},"bus":{"step_period_cycles":3200},
-    "source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":400},"duration_s":1}}]}]}}}"#;
 /// Long enough to be stopped on the way, on any machine.
 const LONG: &str = r#"{"line":{"protocol":"framed"},"bus":{"step_period_cycles":3200},
     "source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":9000},"duration_s":20}}]}]}}}"#;
 /// Two controllers, the first of two channels.
-const TWO: &str = r#"{"line":{"protocol":"framed"},"bus":{"channels":2,"step_period_cycles":3200},
+const TWO: &str = r#"{"line":{"protocol":"framed"},"bus":{"channels":2,"step_period_cycles":3200,"queue_depth":200},
     "source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":200},"duration_s":1}}]},{"moves":[{"cosine":{"distance":{"steps":-300},"duration_s":1}}]}]}},
-    "controllers":[{"address":1,"bus":{"channels":1,"step_period_cycles":3200},"axes":[{"moves":[{"cosine":{"distance":{"steps":100},"duration_s":1}}]}]}]}"#;
-
-/// A port of which the other end is: a controller of a scenario (`serve`), its host (`stream`), or nobody (`silent`); one that
-/// cannot be opened (`taken`).
-const MOCK: &str = "
-    const [role, json] = arguments;
-    const main = document.getElementById('main').dataset;
-    const worker = new Worker(main.liveWorker, { type: 'module' });
-    const peer = (window.peer = { told: [], opened: [], closed: 0, lose() {}, end: () => worker.postMessage({ end: true }) });
-    worker.onmessage = ({ data }) => peer.told.push(data);
-    const compiled = fetch(main.liveCore).then((response) => response.arrayBuffer()).then(WebAssembly.compile);
-    const ready = compiled.then((module) => worker.postMessage({ module }));
-    const port = {
-        getInfo: () => ({ usbVendorId: 0x2341, usbProductId: 0x43 }),
-        async open(options) {
-            if (role === 'taken') throw new DOMException('Failed to open serial port.', 'NetworkError');
-            await ready;
-            peer.opened.push(options.baudRate);
-            const there = new TransformStream({ start(end) { peer.lose = () => end.error(new Error('The device has been lost.')); } });
-            const back = new TransformStream();
-            Object.assign(port, { readable: there.readable, writable: back.writable });
-            if (role === 'silent') return void back.readable.pipeTo(new WritableStream());
-            // Who is at the other end and goes does not close the port.
-            const wire = new TransformStream();
-            wire.readable.pipeTo(there.writable, { preventClose: true }).catch(() => {});
-            worker.postMessage({ [role]: json, readable: back.readable, writable: wire.writable }, [back.readable, wire.writable]);
-        },
-        async close() { peer.closed += 1; },
-    };
-    Object.defineProperty(navigator, 'serial', { configurable: true, value: { requestPort: async () => port } });
-    return true;";
-
-const ABOUT: &str = "(document.getElementById('live-about')?.textContent ?? '')";
-const SAID: &str = "(document.getElementById('live-said')?.textContent ?? '')";
-const REPORT: &str = "document.getElementById('live-report').value";
-const STANDING: &str = "document.getElementById('live-standing').textContent";
-const MESSAGE: &str = "document.getElementById('link-message').innerText";
-/// What had the port has given it back.
-const ENDED: &str = "!document.getElementById('live-close').disabled && peer.closed > 0";
+    "controllers":[{"address":1,"bus":{"channels":1,"step_period_cycles":3200,"queue_depth":200},"axes":[{"moves":[{"cosine":{"distance":{"steps":100},"duration_s":1}}]}]}]}"#;
 
 /// The cells of the table that has device and model side by side, after its head.
 #[derive(Debug, Deserialize, PartialEq)]
@@ -62,32 +29,6 @@ struct Beside(Vec<[String; 3]>);
 
 async fn beside(page: &Session) -> Result<Beside> {
     page.eval("[...document.querySelectorAll('#live-twin tbody tr')].map((row) => [...row.cells].map((cell) => cell.textContent.replaceAll('\\u202f', '')))").await
-}
-
-/// Opens the page with a scenario and the dialog on it, with a port whose other end has this role.
-async fn open(page: &Session, json: &str, role: &str) -> Result<Known> {
-    let known = Known::of(json)?;
-    page.open(&format!("#{}", known.link)).await?;
-    page.js::<bool>(MOCK, vec![json!(role), json!(json)]).await?;
-    page.click("#device").await?;
-    page.until(&format!("{ABOUT}.includes(' baud')")).await?;
-    Ok(known)
-}
-
-/// Chooses the port, and starts.
-async fn start(page: &Session) -> Result<()> {
-    ensure!(page.eval::<Vec<u32>>("peer.opened").await?.is_empty(), "a port is open before a press");
-    page.click("#live-choose").await?;
-    page.until("!document.getElementById('live-start').disabled").await?;
-    ensure!(page.eval::<Vec<u32>>("peer.opened").await?.is_empty(), "a port is open before its press");
-    page.click("#live-start").await
-}
-
-/// Where the model's motors stand at the end.
-fn positions(known: &Known) -> Vec<String> {
-    let run = known.experiment.run(&mut Vec::new());
-    let channels = usize::from(known.experiment.config().channels());
-    run.positions().iter().take(channels).map(ToString::to_string).collect()
 }
 
 #[test]
@@ -98,15 +39,9 @@ fn a_stream_is_confirmed_to_its_end_with_the_models_positions() -> Result<()> {
         axe::look(&page, "the dialog", &mut wrong).await?;
         start(&page).await?;
         page.until(ENDED).await?;
-        let report: String = page.eval(REPORT).await?;
-        page.until(&format!("{SAID}.startsWith('Verified: READY')")).await?;
+        let report = verified(&page, &known).await?;
         let ticks = known.experiment.ticks_of(0).len().to_string();
         let steps = positions(&known).join("  ");
-        for part in
-            [format!("ticks {ticks} of {ticks} done"), format!("positions {steps}: the sums of the ticks")]
-        {
-            ensure!(report.contains(&part), "{part} is not in\n{report}");
-        }
         let both = |name: &str, value: &str| [name.to_owned(), value.to_owned(), value.to_owned()];
         let expected =
             Beside(vec![both("state", "READY"), both("ticks done", &ticks), both("steps gone", &steps)]);
@@ -124,6 +59,38 @@ fn a_stream_is_confirmed_to_its_end_with_the_models_positions() -> Result<()> {
 
         page.click("#live-close").await?;
         page.until("document.querySelector('dialog.live') === null").await?;
+        axe::none(&wrong)
+    })
+}
+
+#[test]
+fn the_page_looks_for_ports_with_the_dialog_alone() -> Result<()> {
+    in_browser(|page| async move {
+        let known = Known::of(FRAMED)?;
+        open_with(&page, &format!("#{}", known.link), "serve", FRAMED).await?;
+        page.until_digest(&known.digest).await?;
+        ensure!(page.eval::<u32>("peer.sought").await? == 0, "ports are looked for before anybody asks");
+        page.click("#device").await?;
+        page.until("peer.sought > 0").await?;
+        page.until(&format!("{ABOUT}.includes(' baud')")).await?;
+        Ok(())
+    })
+}
+
+#[test]
+fn a_port_that_was_allowed_before_is_taken_without_the_chooser_and_opened_by_a_press() -> Result<()> {
+    in_browser(|page| async move {
+        let known = open(&page, FRAMED, "allowed").await?;
+        page.until_equal(
+            "[...document.querySelectorAll('#live-allowed button')].map((button) => button.textContent)",
+            &json!(["Port allowed before (USB 2341:0043)"]),
+        )
+        .await?;
+        let mut wrong = Vec::new();
+        axe::look(&page, "the dialog with a port", &mut wrong).await?;
+        start_by(&page, "#live-allowed button").await?;
+        page.until(ENDED).await?;
+        verified(&page, &known).await?;
         axe::none(&wrong)
     })
 }
@@ -221,23 +188,30 @@ fn a_lost_port_ends_the_stream_and_is_told_with_what_is_known() -> Result<()> {
 }
 
 #[test]
-fn without_web_serial_or_with_nothing_to_confirm_the_buttons_are_off_and_say_why() -> Result<()> {
+fn without_ports_streams_or_anything_to_confirm_the_buttons_are_off_and_say_why() -> Result<()> {
     in_browser(|page| async move {
-        page.open(&format!("#{}", Known::of(FRAMED)?.link)).await?;
-        page.js::<bool>(
-            "Object.defineProperty(navigator, 'serial', { configurable: true, value: undefined }); return true;",
-            vec![],
-        )
-        .await?;
-        page.click("#device").await?;
-        page.until(&format!("{ABOUT}.startsWith('This browser has no Web Serial')")).await?;
-        for button in ["live-choose", "live-start"] {
-            let (off, title): (bool, String) = page
-                .eval(&format!(
-                    "(({{ disabled, title }}) => [disabled, title])(document.getElementById('{button}'))"
-                ))
-                .await?;
-            ensure!(off && title.starts_with("This browser has no Web Serial"), "{button}: {title}");
+        for (lack, why) in [
+            (
+                "Object.defineProperty(navigator, 'serial', { configurable: true, value: undefined })",
+                "This browser has no Web Serial",
+            ),
+            (
+                "window.structuredClone = () => { throw new DOMException('It can not be cloned.', 'DataCloneError'); }",
+                "This browser cannot hand a port's streams to a worker",
+            ),
+        ] {
+            open_with(&page, &format!("#{}", Known::of(FRAMED)?.link), "serve", FRAMED).await?;
+            page.js::<bool>(&format!("{lack}; return true;"), vec![]).await?;
+            page.click("#device").await?;
+            page.until(&format!("{ABOUT}.startsWith({})", json!(why))).await?;
+            for button in ["live-choose", "live-start"] {
+                let (off, title): (bool, String) = page
+                    .eval(&format!(
+                        "(({{ disabled, title }}) => [disabled, title])(document.getElementById('{button}'))"
+                    ))
+                    .await?;
+                ensure!(off && title.starts_with(why), "{button}: {title}");
+            }
         }
 
         // What is not answered cannot be confirmed; but its controllers can answer a host.
@@ -248,8 +222,7 @@ fn without_web_serial_or_with_nothing_to_confirm_the_buttons_are_off_and_say_why
                 "choose a motion",
             ),
         ] {
-            page.open(&format!("#{}", Known::of(json)?.link)).await?;
-            page.js::<bool>(MOCK, vec![json!("serve"), json!(FRAMED)]).await?;
+            open_with(&page, &format!("#{}", Known::of(json)?.link), "serve", FRAMED).await?;
             page.click("#device").await?;
             page.until(&format!("{ABOUT} !== '' && {ABOUT} !== 'Loading…'")).await?;
             ensure!(
@@ -282,19 +255,6 @@ fn a_port_that_is_taken_is_told_and_nothing_runs() -> Result<()> {
 fn the_page_answers_a_host_and_the_session_opens_with_its_digest() -> Result<()> {
     in_browser(|page| async move {
         let known = open(&page, FRAMED, "stream").await?;
-        page.click("[name=live-role][value=serve]").await?;
-        start(&page).await?;
-        // The host is the page's own, and its stream is confirmed to the end.
-        page.until("peer.told.some(({ reported }) => reported?.verified)").await?;
-        let steps = positions(&known).join(" ");
-        page.until(&format!("{STANDING}.includes('READY, queue 0/16, positions {steps}')")).await?;
-        page.click("#live-end").await?;
-        page.until("document.querySelector('dialog.live') === null && peer.closed === 1").await?;
-        page.until(&format!("{MESSAGE}.includes('Recorded: run again, the session has the digest')")).await?;
-        page.ready().await?;
-        let digest = page.shown().await?.digest;
-        page.until(&format!("{MESSAGE}.includes('{digest}')")).await?;
-        ensure!(page.eval::<bool>("location.hash.length > 10").await?, "it has no link");
-        Ok(())
+        answers_a_host(&page, &known).await
     })
 }

@@ -8,6 +8,7 @@
 //! | `STEPSCOPE_CHROMIUM`, `STEPSCOPE_CHROMEDRIVER` | the browser and its driver |
 //! | `STEPSCOPE_FIREFOX`, `STEPSCOPE_GECKODRIVER` | the same of Firefox |
 //! | `STEPSCOPE_WEBKITDRIVER`, `DISPLAY` | the driver of WebKit, which knows its browser, and a display for it |
+//! | `STEPSCOPE_COMMAND` | the command `stepscope`, for a port of the system; needed by the tests of `live_port` alone |
 //! | `STEPSCOPE_XTASK` | the program whose `serve --port 0` serves the page |
 //! | `STEPSCOPE_WEB` | the folder with the page's sources and its wasm: single modules can be tested there |
 //! | `STEPSCOPE_DIST` | the folder with the page as it is shipped |
@@ -22,6 +23,7 @@
 //! | `session` | one browser with the page in it: what a visitor does and sees |
 //! | `devtools` | what is asked of a browser beyond WebDriver |
 //! | `pixels` | what is drawn on a canvas |
+//! | `device` | the dialog Device, and a mock of `navigator.serial` |
 //! | `native` | what the core says of the same scenario |
 //! | the others | the tests |
 #![cfg(not(target_arch = "wasm32"))]
@@ -32,6 +34,7 @@ mod browser;
 mod charts;
 mod controllers;
 mod cursors;
+mod device;
 mod devtools;
 mod drawing;
 mod editing;
@@ -48,6 +51,8 @@ mod keeping;
 mod keyboard;
 mod links;
 mod live;
+mod live_engines;
+mod live_port;
 mod loading;
 mod logic;
 mod measures;

@@ -29,7 +29,7 @@ type RxEvent = Arc<Mutex<Vec<String>>>;
 
 /// A program that listens. It ends, with all that it started, when this is dropped, and when this process ends.
 pub(crate) struct Program {
-    /// Address of what it serves, with a slash at the end.
+    /// Address of what it serves, with a slash at the end; or the path where it does.
     pub(crate) address: String,
     child: Child,
     heard: RxEvent,
@@ -58,7 +58,7 @@ impl Program {
     }
 
     /// Starts a program, attended, and waits until it listens.
-    fn start(program: &Command, says: Says) -> Result<Self> {
+    pub(crate) fn start(program: &Command, says: Says) -> Result<Self> {
         let mut attended = Command::new(named("STEPSCOPE_XTASK")?);
         attended.args(["attend", "--"]).arg(program.get_program()).args(program.get_args());
         attended.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -91,21 +91,13 @@ impl Program {
     fn place(&mut self, says: Says, lines: &mpsc::Receiver<String>) -> Result<String> {
         let end = Instant::now() + START_LIMIT;
         match says {
-            Says::Line(before) => loop {
-                match lines.recv_timeout(end.saturating_duration_since(Instant::now())) {
-                    Ok(line) => {
-                        if let Some((_, place)) = line.split_once(before) {
-                            let place = place.trim_end_matches(['.', '/']);
-                            let port = place.rsplit_once(':').map_or(place, |(_, port)| port);
-                            return Ok(format!("http://127.0.0.1:{port}/"));
-                        }
-                    }
-                    Err(mpsc::RecvTimeoutError::Disconnected) => {
-                        bail!("ended without a word on where it listens: {}", self.heard().join("\n"))
-                    }
-                    Err(mpsc::RecvTimeoutError::Timeout) => bail!("says nothing on where it listens"),
-                }
-            },
+            Says::Line(before) => {
+                let line = self.line(before, lines, end)?;
+                let place = line.trim_end_matches(['.', '/']);
+                let port = place.rsplit_once(':').map_or(place, |(_, port)| port);
+                Ok(format!("http://127.0.0.1:{port}/"))
+            }
+            Says::Path(before) => self.line(before, lines, end),
             Says::Nothing(port) => {
                 while TcpStream::connect(("127.0.0.1", port)).is_err() {
                     ensure!(self.child.try_wait()?.is_none(), "ended before it listened");
@@ -113,6 +105,23 @@ impl Program {
                     thread::sleep(LOOK_AGAIN);
                 }
                 Ok(format!("http://127.0.0.1:{port}/"))
+            }
+        }
+    }
+
+    /// What stands behind this in the first line that holds it.
+    fn line(&self, before: &str, lines: &mpsc::Receiver<String>, end: Instant) -> Result<String> {
+        loop {
+            match lines.recv_timeout(end.saturating_duration_since(Instant::now())) {
+                Ok(line) => {
+                    if let Some((_, place)) = line.split_once(before) {
+                        return Ok(place.to_owned());
+                    }
+                }
+                Err(mpsc::RecvTimeoutError::Disconnected) => {
+                    bail!("ended without a word on where it listens: {}", self.heard().join("\n"))
+                }
+                Err(mpsc::RecvTimeoutError::Timeout) => bail!("says nothing on where it listens"),
             }
         }
     }

@@ -1,0 +1,142 @@
+//! What tests of the dialog Device share: the dialog, and a mock of `navigator.serial` (LIVE H6), a port whose streams lead to a
+//! second worker of the page's own, which is the device of a host or the host of a device. What a real port adds: `live_port`.
+
+use anyhow::{Result, ensure};
+use serde_json::json;
+
+use crate::{browser::Browser, native::Known, session::Session};
+
+/// As [`FRAMED`], with a host that tries again and again, for browsers of any speed.
+pub(crate) const PATIENT: &str = r#"{"line":{"protocol":"framed","host":{"attempts":40}},"bus":{"step_period_cycles":3200,"queue_depth":200},
+    "source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":400},"duration_s":1}}]}]}}}"#;
+/// Ticks of 20 ms: a queue of seconds, which a busy machine does not let run dry.
+pub(crate) const FRAMED: &str = r#"{"line":{"protocol":"framed"},"bus":{"step_period_cycles":3200,"queue_depth":200},
+    "source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":400},"duration_s":1}}]}]}}}"#;
+
+pub(crate) const ABOUT: &str = "(document.getElementById('live-about')?.textContent ?? '')";
+pub(crate) const SAID: &str = "(document.getElementById('live-said')?.textContent ?? '')";
+pub(crate) const REPORT: &str = "document.getElementById('live-report').value";
+pub(crate) const STANDING: &str = "document.getElementById('live-standing').textContent";
+pub(crate) const MESSAGE: &str = "document.getElementById('link-message').innerText";
+/// What had the port has given it back.
+pub(crate) const ENDED: &str = "!document.getElementById('live-close').disabled && peer.closed > 0";
+
+/// A port of which the other end is: a controller of a scenario (`serve`), its host (`stream`), or nobody (`silent`); one that
+/// cannot be opened (`taken`); one with a controller that was allowed before, so that nobody is asked for it (`allowed`).
+/// The other end begins when the port is opened.
+const MOCK: &str = "(role, json) => {
+    const peer = (window.peer = { sought: 0, told: [], opened: [], closed: 0, lose() {}, end() {} });
+    const begin = () => new Promise((begun, fail) => {
+        const main = document.getElementById('main').dataset;
+        const worker = new Worker(main.liveWorker, { type: 'module' });
+        worker.onerror = fail;
+        worker.onmessage = ({ data }) => { peer.told.push(data); begun(worker); };
+        peer.end = () => worker.postMessage({ end: true });
+        const compiled = fetch(main.liveCore).then((response) => response.arrayBuffer()).then(WebAssembly.compile);
+        compiled.then((module) => { worker.postMessage({ module }); worker.postMessage({ judge: json }); }, fail);
+    });
+    let other;
+    const port = {
+        getInfo: () => ({ usbVendorId: 0x2341, usbProductId: 0x43 }),
+        async open(options) {
+            if (role === 'taken') throw new DOMException('Failed to open serial port.', 'NetworkError');
+            const worker = await (other ??= begin());
+            peer.opened.push(options.baudRate);
+            const there = new TransformStream({ start(end) { peer.lose = () => end.error(new Error('The device has been lost.')); } });
+            const back = new TransformStream();
+            Object.assign(port, { readable: there.readable, writable: back.writable });
+            if (role === 'silent') return void back.readable.pipeTo(new WritableStream());
+            // Who is at the other end and goes does not close the port.
+            const wire = new TransformStream();
+            wire.readable.pipeTo(there.writable, { preventClose: true }).catch(() => {});
+            const order = { [role === 'stream' ? 'stream' : 'serve']: json, readable: back.readable, writable: wire.writable };
+            worker.postMessage(order, [back.readable, wire.writable]);
+        },
+        async close() {
+            if (port.readable?.locked || port.writable?.locked) throw new TypeError('Cannot abort a locked stream');
+            peer.closed += 1;
+        },
+    };
+    const serial = {
+        getPorts: async () => (role === 'allowed' ? [port] : []),
+        async requestPort() {
+            if (role === 'allowed') throw new Error('nobody was to be asked');
+            return port;
+        },
+    };
+    Object.defineProperty(navigator, 'serial', { configurable: true, get() { peer.sought += 1; return serial; } });
+}";
+
+/// Opens the page with the mock: there before the page's scripts, or, where a driver has no means for that, after them and
+/// before the dialog, which is the first to look for ports (`the_page_looks_for_ports_with_the_dialog_alone`).
+pub(crate) async fn open_with(page: &Session, fragment: &str, role: &str, json: &str) -> Result<()> {
+    let mock = format!("({MOCK})({}, {});", json!(role), json!(json));
+    if page.bench.browser == Browser::Chromium {
+        page.before_scripts(&mock).await?;
+        return page.open(fragment).await;
+    }
+    page.open(fragment).await?;
+    page.js::<bool>(&format!("{mock} return true;"), vec![]).await.map(drop)
+}
+
+/// Opens the page with a scenario and the dialog on it, with a port whose other end has this role.
+pub(crate) async fn open(page: &Session, json: &str, role: &str) -> Result<Known> {
+    let known = Known::of(json)?;
+    open_with(page, &format!("#{}", known.link), role, json).await?;
+    page.click("#device").await?;
+    page.until(&format!("{ABOUT}.includes(' baud')")).await?;
+    Ok(known)
+}
+
+/// Chooses the port, and starts.
+pub(crate) async fn start(page: &Session) -> Result<()> {
+    start_by(page, "#live-choose").await
+}
+
+/// Takes the port that this button gives, and starts.
+pub(crate) async fn start_by(page: &Session, button: &str) -> Result<()> {
+    ensure!(page.eval::<Vec<u32>>("peer.opened").await?.is_empty(), "a port is open before a press");
+    page.click(button).await?;
+    page.until("!document.getElementById('live-start').disabled").await?;
+    ensure!(page.eval::<Vec<u32>>("peer.opened").await?.is_empty(), "a port is open before its press");
+    page.click("#live-start").await
+}
+
+/// Where the model's motors stand at the end.
+pub(crate) fn positions(known: &Known) -> Vec<String> {
+    let run = known.experiment.run(&mut Vec::new());
+    let channels = usize::from(known.experiment.config().channels());
+    run.positions().iter().take(channels).map(ToString::to_string).collect()
+}
+
+/// The stream that has ended is verified, by a report with the model's ticks and positions, which is given.
+pub(crate) async fn verified(page: &Session, known: &Known) -> Result<String> {
+    let report: String = page.eval(REPORT).await?;
+    let said: String = page.eval(SAID).await?;
+    ensure!(said.starts_with("Verified: READY"), "{said}\n{report}");
+    let (ticks, steps) = (known.experiment.ticks_of(0).len(), positions(known).join("  "));
+    for part in
+        [format!("ticks {ticks} of {ticks} done"), format!("positions {steps}: the sums of the ticks")]
+    {
+        ensure!(report.contains(&part), "{part} is not in\n{report}");
+    }
+    Ok(report)
+}
+
+/// As a soft device the page answers the host at the port, and the session opens with its digest.
+pub(crate) async fn answers_a_host(page: &Session, known: &Known) -> Result<()> {
+    page.click("[name=live-role][value=serve]").await?;
+    start(page).await?;
+    // The host is the page's own, and its stream is confirmed to the end.
+    page.until("peer.told.some(({ reported }) => reported?.verified)").await?;
+    let (depth, steps) = (known.experiment.config().queue_depth(), positions(known).join(" "));
+    page.until(&format!("{STANDING}.includes('READY, queue 0/{depth}, positions {steps}')")).await?;
+    page.click("#live-end").await?;
+    page.until("document.querySelector('dialog.live') === null && peer.closed === 1").await?;
+    page.until(&format!("{MESSAGE}.includes('Recorded: run again, the session has the digest')")).await?;
+    page.ready().await?;
+    let digest = page.shown().await?.digest;
+    page.until(&format!("{MESSAGE}.includes('{digest}')")).await?;
+    ensure!(page.eval::<bool>("location.hash.length > 10").await?, "it has no link");
+    Ok(())
+}

@@ -1,0 +1,78 @@
+//! The dialog Device in Chromium on a port of the system, with no mock (LIVE H6): `stepscope serve` has one end of a
+//! pseudo-terminal, and the other lies in the place of `/dev/ttyS0`, in a mount namespace that only this Chromium and its driver
+//! are in. There a policy allows its ports to the page, so that the dialog offers the port without the browser's chooser,
+//! which no program can answer. `cargo xtask test --only engines` runs it where the machine can do that, and says so where not.
+
+use std::{fs, process::Command};
+
+use anyhow::{Context, Result, ensure};
+use serde_json::json;
+
+use crate::{
+    bench::{dist, in_chromium_of},
+    browser::{Says, named},
+    device::{ABOUT, PATIENT, SAID, positions, verified},
+    native::Known,
+    pool,
+    programs::{Folder, Program},
+};
+
+/// In a mount namespace of its own: the pseudo-terminal's path, the policy and the driver are given. The last program that is in
+/// it takes all of it along.
+const NAMESPACE: &str = r#"
+    mount --bind "$1" /dev/ttyS0 &&
+    mount -t tmpfs none /etc/chromium &&
+    mkdir -p /etc/chromium/policies/managed &&
+    printf %s "$2" > /etc/chromium/policies/managed/stepscope.json &&
+    exec "$3" --port=0"#;
+
+/// Whether the port is closed, as far as the page's own ports tell.
+const CLOSED: &str =
+    "return navigator.serial.getPorts().then((ports) => ports.every(({ readable }) => readable === null));";
+
+/// A device of the scenario, until the host at its pseudo-terminal goes.
+fn device(folder: &Folder, json: &str) -> Result<Program> {
+    let scenario = folder.0.join("scenario.json");
+    fs::write(&scenario, json)?;
+    let mut serve = Command::new(named("STEPSCOPE_COMMAND")?);
+    serve.arg("serve").arg(&scenario).args(["--pty", "--once", "--lag", "5000"]);
+    Program::start(&serve, Says::Path("pty:")).context("the device")
+}
+
+/// Chromium's driver in a namespace where the page at this address may have the port.
+fn driver(terminal: &str, page: &str) -> Result<Program> {
+    let policy = json!({ "SerialAllowAllPortsForUrls": [page.trim_end_matches('/')] });
+    let mut driver = Command::new("unshare");
+    driver.args(["--mount", "--propagation", "private", "sh", "-c", NAMESPACE, "sh", terminal]);
+    driver.arg(policy.to_string()).arg(named("STEPSCOPE_CHROMEDRIVER")?);
+    Program::start(&driver, Says::Line("started successfully on port ")).context("Chromium's driver")
+}
+
+#[test]
+fn a_stream_over_a_port_of_the_system_is_verified_and_the_device_says_the_same() -> Result<()> {
+    let known = Known::of(PATIENT)?;
+    let folder = Folder::temporary()?;
+    let device = device(&folder, PATIENT)?;
+    let page = pool::served(&dist()?)?;
+    let driver = driver(&device.address, &page)?;
+    in_chromium_of(driver, page, |page| async move {
+        page.open(&format!("#{}", known.link)).await?;
+        page.click("#device").await?;
+        page.until(&format!("{ABOUT}.includes(' baud')")).await?;
+        let offered =
+            "[...document.querySelectorAll('#live-allowed button')].map((button) => button.textContent)";
+        page.until_equal(offered, &json!(["Port allowed before"])).await?;
+        page.click("#live-allowed button").await?;
+        page.until(&format!("{SAID}.startsWith('A port is chosen')")).await?;
+        ensure!(page.js::<bool>(CLOSED, vec![]).await?, "the port is open before its press");
+        page.click("#live-start").await?;
+        page.until("!document.getElementById('live-close').disabled").await?;
+        verified(&page, &known).await?;
+        ensure!(page.js::<bool>(CLOSED, vec![]).await?, "the port is not given back");
+        // The device ends as its host goes, and says where it stands.
+        let said = async || Ok(device.heard().into_iter().find(|line| line.starts_with("positions ")));
+        let end = page.eventually("the device's end", said).await?;
+        assert_eq!(end, format!("positions {}", positions(&known).join(" ")));
+        Ok(())
+    })
+}
