@@ -150,8 +150,10 @@ impl Reading<'_> {
                 let ignored = (!bytes.is_empty()).then(|| field("ignored", 0..bytes.len(), "until a gap"));
                 Meaning { fields: ignored.into_iter().collect(), check: Check::None }
             }
+            // On a raw line a reply was recorded, of a device that answers.
+            (Protocol::Framed, _) | (_, RowOutcome::Reply(_)) => self.framed(bytes),
+            (_, RowOutcome::Recorded) => Meaning { fields: Vec::new(), check: Check::None },
             (Protocol::Raw, _) => Meaning { fields: raw(bytes, self.addressed), check: Check::None },
-            (Protocol::Framed, _) => self.framed(bytes),
         }
     }
 

@@ -5,6 +5,7 @@
 //! records in cycles  ->  figures     steps, rates, turns, pulse widths of each channel
 //!                        serial      bytes of RX and TX, their rate and what they seem to be
 //!                        packets     what RX and TX say, packet by packet
+//!                        replies     what TX says, for the table of packets
 //!                        alignment   each step beside the model's
 //!                        drift       the clocks' line through how late they are
 //!                        scenario    a list of segments, or a line script
@@ -36,6 +37,7 @@ pub mod figures;
 #[cfg(feature = "capture")]
 pub mod opened;
 pub mod packets;
+pub mod replies;
 pub mod report;
 pub mod scenario;
 pub mod serial;
