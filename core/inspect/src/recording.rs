@@ -4,6 +4,7 @@
 //! ```text
 //! records in cycles  ->  figures     steps, rates, turns, pulse widths of each channel
 //!                        serial      bytes of RX and TX, their rate and what they seem to be
+//!                        overview    all of it at a glance, a column a pixel
 //!                        packets     what RX and TX say, packet by packet
 //!                        replies     what TX says, for the table of packets
 //!                        alignment   each step beside the model's
@@ -36,6 +37,7 @@ pub mod events;
 pub mod figures;
 #[cfg(feature = "capture")]
 pub mod opened;
+pub mod overview;
 pub mod packets;
 pub mod replies;
 pub mod report;
