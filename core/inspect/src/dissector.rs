@@ -181,6 +181,14 @@ impl Reading<'_> {
     }
 }
 
+/// The reply that the frame of a row is, if its check holds.
+pub(crate) fn reply(bytes: &[u8]) -> Option<Reply> {
+    let content = Content::of(bytes, last_frame(bytes));
+    let check @ Check::Compared { found, expected } = content.check() else { return None };
+    let [address, kind, body @ ..] = content.without(check) else { return None };
+    if found == expected { Reply::parse(Frame { address: *address, kind: *kind, body }) } else { None }
+}
+
 /// What the frame of a row carries, and whether it is whole COBS.
 pub(crate) fn decoded(bytes: &[u8]) -> (Vec<u8>, bool) {
     let Content { decoded, whole, .. } = Content::of(bytes, last_frame(bytes));

@@ -17,15 +17,10 @@
 //! ```
 
 use super::{packets::Packets, serial::line_name};
+use crate::dissector::reply;
 use alloc::vec::Vec;
 use core::ops::Range;
-use stepscope_peripheral::{
-    protocol::Reply,
-    signal::Levels,
-    trace::RecordedReply,
-    units::Instant,
-    wire::frame::{Deframed, Deframer},
-};
+use stepscope_peripheral::{signal::Levels, trace::RecordedReply, units::Instant};
 
 /// What TX said within some cycles.
 #[must_use]
@@ -44,6 +39,7 @@ pub fn to_bytes(packets: &Packets, cycles: Range<u64>) -> Vec<u8> {
 
 /// What was handed on, as far as it is whole and in the order of time; of frames, what they say.
 #[must_use]
+#[inline(never)]
 pub fn of(mut bytes: &[u8]) -> Vec<RecordedReply> {
     let mut replies = Vec::new();
     let mut last = 0;
@@ -57,7 +53,7 @@ pub fn of(mut bytes: &[u8]) -> Vec<RecordedReply> {
         }
         (bytes, last) = (rest, start);
         let (start, end) = (Instant(start), Instant(end));
-        replies.push(RecordedReply { start, end, bytes: own.into(), reply: reply_of(own) });
+        replies.push(RecordedReply { start, end, bytes: own.into(), reply: reply(own) });
     }
     replies
 }
@@ -68,15 +64,6 @@ fn head(bytes: &[u8]) -> Option<([u64; 3], &[u8])> {
     let (words, _) = numbers.as_chunks::<8>();
     let &[start, end, length] = words else { return None };
     Some(([start, end, length].map(u64::from_le_bytes), rest))
-}
-
-/// The reply that bytes are.
-fn reply_of(bytes: &[u8]) -> Option<Reply> {
-    let mut deframer = Deframer::default();
-    bytes.iter().find_map(|byte| match deframer.byte(*byte) {
-        Some(Deframed::Frame(frame)) => Some(Reply::parse(frame)),
-        _ => None,
-    })?
 }
 
 #[cfg(test)]
@@ -100,7 +87,7 @@ mod tests {
         tx.heard.bytes.iter_mut().for_each(|byte| byte.start = Instant(byte.start.0 + 500));
         tx.heard.bytes[3].byte ^= 0x40;
         let bytes = to_bytes(&Packets::of(&report, 16_000_000, 1, false), 0..u64::MAX);
-        recording.packets.answer(of(&bytes));
+        recording.packets.answer(&of(&bytes));
 
         let own = PacketTable::new(&experiment, &run, 0, &made);
         let table = PacketTable::new(&experiment, &run, 0, &recording.packets);

@@ -178,8 +178,9 @@ impl PacketLog {
 
     /// Puts replies that were recorded, in the order of their starts, in the place of those that the controller made. The log
     /// is finished.
-    pub fn answer(&mut self, recorded: impl IntoIterator<Item = RecordedReply>) {
-        let mut recorded = recorded.into_iter().peekable();
+    #[inline(never)]
+    pub fn answer(&mut self, recorded: &[RecordedReply]) {
+        let mut recorded = recorded.iter().peekable();
         let made = core::mem::take(&mut self.rows);
         let mut place = alloc::vec![None; made.len()];
         for (row, place) in made.into_iter().zip(&mut place) {
@@ -187,12 +188,12 @@ impl PacketLog {
                 continue;
             }
             while let Some(reply) = recorded.next_if(|reply| reply.start < row.start) {
-                self.push_recorded(&reply);
+                self.push_recorded(reply);
             }
             *place = Some(self.rows.len());
             self.rows.push(row);
         }
-        recorded.for_each(|reply| self.push_recorded(&reply));
+        recorded.for_each(|reply| self.push_recorded(reply));
         for tick in &mut self.ticks {
             tick.row = tick.row.and_then(|row| place.get(row).copied().flatten());
         }
@@ -200,6 +201,7 @@ impl PacketLog {
         self.finish();
     }
 
+    #[inline(never)]
     fn push_recorded(&mut self, RecordedReply { start, end, bytes, reply }: &RecordedReply) {
         let bytes_start = self.bytes.len();
         self.bytes.extend_from_slice(bytes);
@@ -224,6 +226,7 @@ impl PacketLog {
     }
 
     /// The run is over: what is still open becomes a row, and the rows stand in the order of their starts.
+    #[inline(never)]
     pub fn finish(&mut self) {
         debug_assert!(self.broken.is_sorted(), "framing errors go back in time");
         if self.open.is_some() {
@@ -416,7 +419,7 @@ mod tests {
             bytes: alloc::vec![start as u8; 2],
             reply,
         };
-        log.answer([recorded(5, None), recorded(70, Some(reply)), recorded(900, None)]);
+        log.answer(&[recorded(5, None), recorded(70, Some(reply)), recorded(900, None)]);
         let rows: Vec<_> = log
             .rows()
             .iter()
