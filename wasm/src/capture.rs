@@ -10,15 +10,21 @@ use stepscope_core::{
         read::{Limits, Reading, read},
         samples,
     },
-    inspect::recording::{
-        events::Events,
-        opened::{Ask, Kept, Opened, Part},
-        packets::{LinePacket, Packets},
-        report::ChannelReport,
+    inspect::{
+        curves::Actual,
+        recording::{
+            events::Events,
+            opened::{Ask, Kept, Opened, Part},
+            packets::{LinePacket, Packets},
+            replies,
+            report::ChannelReport,
+        },
     },
 };
 use wasm_bindgen::prelude::*;
 
+/// Most columns of an overview.
+const MAX_COLUMNS: u32 = 10_000;
 /// Bytes that are asked for at a time.
 const PIECE: usize = 1 << 20;
 
@@ -64,6 +70,8 @@ pub struct CaptureFile {
     capture: Capture,
     error: Option<String>,
     opened: Option<Opened>,
+    /// What was said of it, where it stands where it was recorded.
+    asked: Option<Ask>,
 }
 
 /// The file's name of a sample, and the scenario that it was to follow: `{file, scenario}`.
@@ -142,7 +150,7 @@ impl CaptureFile {
         let mut tell = |bytes: u64| watch.call1(&JsValue::NULL, &(bytes as f64).into()).is_ok();
         let limits = Limits { most: most as usize };
         let Reading { capture, error } = read(BufReader::with_capacity(PIECE, pieces), &limits, &mut tell);
-        Self { capture, error: error.map(|error| error.to_string()), opened: None }
+        Self { capture, error: error.map(|error| error.to_string()), opened: None, asked: None }
     }
 
     /// One of the samples; none of another name.
@@ -150,7 +158,7 @@ impl CaptureFile {
     pub fn sample(id: &str) -> Option<Self> {
         let bytes = samples::sample(id)?.bytes;
         let Reading { capture, error } = read(io::Cursor::new(bytes), &Limits::default(), &mut |_| true);
-        Some(Self { capture, error: error.map(|error| error.to_string()), opened: None })
+        Some(Self { capture, error: error.map(|error| error.to_string()), opened: None, asked: None })
     }
 
     /// What it holds: `{format, channels, count, map, has_levels, has_times, notes, error}`.
@@ -179,12 +187,16 @@ impl CaptureFile {
     pub fn look(&mut self, asked: JsValue) -> Result<JsValue, JsError> {
         let Asked { map, clock_hz, sample_rate_hz, baud, at_s, channel, aligned, most, from_s, to_s } =
             serde_wasm_bindgen::from_value(asked).map_err(JsError::from)?;
-        self.opened = None;
         let ask = Ask { map, clock_hz, sample_rate_hz, baud };
         let part = Part { most: most.unwrap_or(usize::MAX), from_s, to_s };
-        let mut opened = Opened::of_part(&self.capture, &ask, &part)?;
-        if let Some(at_s) = at_s {
-            opened.align(channel.unwrap_or(0), aligned.unwrap_or(0), at_s)?;
+        let known = self.opened.take().filter(|_| self.asked.take().as_ref() == Some(&ask));
+        let mut opened = match known {
+            Some(known) => known.with_part(&self.capture, &ask, &part)?,
+            None => Opened::of_part(&self.capture, &ask, &part)?,
+        };
+        match at_s {
+            Some(at_s) => opened.align(channel.unwrap_or(0), aligned.unwrap_or(0), at_s)?,
+            None => self.asked = Some(ask),
         }
         let opened = self.opened.insert(opened);
         object(&Looked {
@@ -198,6 +210,29 @@ impl CaptureFile {
             steps: &opened.report.channels,
             lines: opened.report.lines.iter().map(|line| line.to_text()).collect(),
         })
+    }
+
+    /// All of a channel at a glance: `{position_min, position_max, speed_min, speed_max}` of each column, in steps and steps/s; null
+    /// before it was looked at where it was recorded, and where no levels were.
+    ///
+    /// # Errors
+    /// As of `look`.
+    pub fn overview(&self, channel: u8, columns: u32) -> Result<JsValue, JsError> {
+        #[derive(Serialize)]
+        struct Columns {
+            position_min: Vec<f64>,
+            position_max: Vec<f64>,
+            speed_min: Vec<f64>,
+            speed_max: Vec<f64>,
+        }
+        let Some(ask) = &self.asked else { return Ok(JsValue::NULL) };
+        let found = Opened::overview(&self.capture, ask, channel, columns.min(MAX_COLUMNS) as usize)?;
+        object(&found.map(|Actual { position, speed }| Columns {
+            position_min: position.min,
+            position_max: position.max,
+            speed_min: speed.min,
+            speed_max: speed.max,
+        }))
     }
 
     /// The scenario that it is shown with, as JSON: the one that gives it again, or, where that is too long, one that has
@@ -229,6 +264,15 @@ impl CaptureFile {
         packets.write_csv(&mut csv)?;
         let rows = packets.rows.get(..packets.rows.len().min(most as usize)).unwrap_or_default();
         object(&Told { total: packets.rows.len(), replies: packets.replies(), rows, csv })
+    }
+
+    /// What TX says in the part that is shown, for the page's table of packets ([`replies::of`]); nothing where TX says nothing.
+    #[must_use]
+    pub fn replies(&self) -> Vec<u8> {
+        let Some(opened) = &self.opened else { return Vec::new() };
+        let cycle = |at_s: f64| (at_s * f64::from(opened.clock_hz)) as u64;
+        let shown = opened.kept.map_or(0..u64::MAX, |kept| cycle(kept.from_s)..cycle(kept.to_s));
+        replies::to_bytes(&Packets::of(&opened.report, opened.clock_hz, opened.channels, false), shown)
     }
 
     /// When step `aligned` of a channel, from 0, or, where this steps nowhere, that byte of RX comes in a run, in s: its
@@ -269,10 +313,12 @@ impl CaptureFile {
             return Vec::new();
         };
         let rest = opened.records.get(from as usize..).unwrap_or_default();
-        let bytes = rest.iter().take(most as usize).flat_map(|record| {
-            let [cycle, levels] = [record.cycle.0, record.levels.0].map(u64::to_le_bytes);
-            cycle.into_iter().chain(levels)
-        });
-        bytes.collect()
+        let taken = rest.get(..rest.len().min(most as usize)).unwrap_or_default();
+        let mut bytes = Vec::with_capacity(16 * taken.len());
+        for record in taken {
+            bytes.extend_from_slice(&record.cycle.0.to_le_bytes());
+            bytes.extend_from_slice(&record.levels.0.to_le_bytes());
+        }
+        bytes
     }
 }

@@ -45,8 +45,9 @@ struct Compared {
 }
 
 impl Readings {
-    fn new(at: [Vec<f64>; 2], CursorStats { position, speed, acceleration }: CursorStats) -> Self {
+    fn new(mut at: [Vec<f64>; 2], CursorStats { position, speed, acceleration }: CursorStats) -> Self {
         let moments = [Some(position), Some(speed), acceleration];
+        at.iter_mut().for_each(|at| at.truncate(moments.iter().flatten().count()));
         let [at_a, at_b] = at;
         Self {
             at_a,
@@ -124,7 +125,7 @@ impl Simulation {
 
     /// What is read at two cursors, given in cycles, and the mean and root mean square between them:
     /// `{ideal: {at_a, at_b, mean, rms} | null, actual: {…}}`, each of position, speed and acceleration in
-    /// steps and s. The pulses have no acceleration.
+    /// steps and s. The pulses have an acceleration where no plan is known, NaN at a cursor where it is not known.
     ///
     /// # Errors
     /// Never in practice.
@@ -142,8 +143,16 @@ impl Simulation {
         });
         self.count_steps(axis);
         let pulses = self.pulses_of(axis);
-        let read = |t: f64| Vec::from([f64::from(pulses.position_at(t)), pulses.speed_at(t)]);
-        let actual = Readings::new(at.map(read), cursor_stats::actual(&pulses, from, to));
+        let read = |t: f64| {
+            let acceleration = pulses.acceleration_at(t).unwrap_or(f64::NAN);
+            Vec::from([f64::from(pulses.position_at(t)), pulses.speed_at(t), acceleration])
+        };
+        let mut stats = cursor_stats::actual(&pulses, from, to);
+        // Where a plan is known its acceleration is told.
+        if ideal.is_none() {
+            stats.acceleration = cursor_stats::actual_acceleration(&pulses, from, to);
+        }
+        let actual = Readings::new(at.map(read), stats);
         object(&BothReadings { ideal, actual })
     }
 

@@ -9,8 +9,8 @@ use crate::{
 use std::{mem::take, rc::Rc};
 use stepscope_core::{
     inspect::{
-        changes::Changes, drivers, packet_table::Filter, plant_log::PlantLog, run_sink::RunSink,
-        timing::TimingCheck,
+        changes::Changes, drivers, packet_table::Filter, plant_log::PlantLog, recording::replies,
+        run_sink::RunSink, timing::TimingCheck,
     },
     peripheral::{
         config::Config,
@@ -39,8 +39,14 @@ pub struct Simulation {
     pub(crate) filter: Filter,
     /// What was recorded, to be looked at in place of what the first controller makes; empty once that is done.
     pub(crate) recorded: Option<Vec<Record>>,
+    /// How many records of it are taken in.
+    taken_in: usize,
     /// And that was this scenario's run.
     pub(crate) is_own: bool,
+    /// Replies that were recorded, as [`replies::of`] takes them.
+    replies: Vec<u8>,
+    /// The run is at its end; what was recorded is taken in, or has been.
+    is_made: bool,
 }
 
 /// What is kept of one controller.
@@ -71,27 +77,34 @@ impl ControllerRecording {
         let mut positions = vec![0_i32; self.steps.len()];
         let mut before = Levels(0);
         for record in &self.recording.trace {
-            let rises = record.levels.0 & !before.0;
-            for (channel, position) in
-                positions.iter_mut().enumerate().filter(|(channel, _)| rises >> channel & 1 == 1)
-            {
-                let is_right = record.levels.has(1 << channel << Levels::DIR_SHIFT);
-                *position = position.wrapping_add(if is_right { 1 } else { -1 });
+            let mut rises = record.levels.step() & !before.step();
+            while rises != 0 {
+                let channel = rises.trailing_zeros();
+                rises &= rises - 1;
+                if let Some(position) = positions.get_mut(channel as usize) {
+                    let is_right = record.levels.dir() >> channel & 1 == 1;
+                    *position = position.wrapping_add(if is_right { 1 } else { -1 });
+                }
             }
             before = record.levels;
         }
         positions
     }
 
-    /// Shows what was recorded in place of what was made.
-    fn show(&mut self, recorded: Vec<Record>, mut timing: Option<TimingCheck>) {
+    /// Shows what was recorded in place of what was made, once it is taken in.
+    fn show(&mut self, recorded: Vec<Record>, timing: Option<TimingCheck>) {
         (self.recording.trace, self.recording.digest) = (recorded, Digest::default());
-        for record in &self.recording.trace {
-            self.recording.digest.record(*record);
-            timing.record(*record);
-        }
         (self.timing, self.changes) = (timing, Changes::default());
-        self.changes.extend(&self.recording.trace);
+    }
+
+    /// Takes in the records from one place to another of what is shown.
+    fn take_in(&mut self, from: usize, to: usize) {
+        let Some(known) = self.recording.trace.get(..to) else { return };
+        for record in known.iter().skip(from) {
+            self.recording.digest.record(*record);
+            self.timing.record(*record);
+        }
+        self.changes.extend(known);
     }
 
     /// Steps of a channel, once they are counted.
@@ -114,33 +127,20 @@ impl Judged {
 
 #[wasm_bindgen]
 impl Simulation {
-    /// Runs on until one controller has made about `max_records` more records, or its plant as many steps of its grid:
-    /// `{done, cycle, end_cycle, records}`, the records those of all controllers.
+    /// Runs on until one controller has made about `max_records` more records, or its plant as many steps of its grid; then takes
+    /// in as many of what was recorded: `{done, cycle, end_cycle, records}`, the records those of all controllers.
     ///
     /// # Errors
     /// If the run makes more records than a page can keep.
     pub fn advance(&mut self, max_records: u32) -> Result<JsValue, JsError> {
-        let watched = |one: &mut ControllerRecording| RunSink {
-            recording: take(&mut one.recording),
-            timing: one.timing.take(),
-        };
-        let mut watched: Vec<RunSink> = self.recordings.iter_mut().map(watched).collect();
-        let mut logs: Vec<_> = self.recordings.iter_mut().map(|one| one.plant.as_mut()).collect();
-        let done = advance(&self.experiment, &mut self.run, max_records, &mut watched, &mut logs);
-        for (one, RunSink { recording, timing }) in self.recordings.iter_mut().zip(watched) {
-            one.changes.extend(&recording.trace);
-            (one.recording, one.timing) = (recording, timing);
+        if self.is_made {
+            self.take_in(max_records as usize);
+        } else {
+            self.make(max_records);
         }
-        for (index, one) in self.recordings.iter_mut().enumerate() {
-            if let (Some(log), Some(plant)) = (&mut one.plant, self.run.plant(index)) {
-                log.keep(plant, one.recording.trace.len());
-            }
-        }
-        if done && let (Some(recorded), Some(first)) = (&mut self.recorded, self.recordings.first_mut()) {
-            first.show(take(recorded), drivers::check(&self.scenario, MAX_KEPT));
-        }
+        let done = self.is_made && self.taken_in == self.to_take_in();
         if done {
-            self.recordings.iter_mut().for_each(|one| one.recording.packets.finish());
+            self.finish();
         }
         let records = self.recordings.iter().map(|one| one.recording.digest.records()).sum();
         progress(&self.experiment, &self.run, done, records)
@@ -150,6 +150,11 @@ impl Simulation {
     /// little-endian; piece after piece, before the run.
     pub fn record(&mut self, bytes: &[u8]) {
         self.recorded.get_or_insert_default().extend(records(bytes));
+    }
+
+    /// Replies that were recorded, in the place of those that the first controller makes ([`replies::of`]); before the run.
+    pub fn answer(&mut self, bytes: Vec<u8>) {
+        self.replies = bytes;
     }
 
     /// Records of a run that another module made, looked at in the same way: they are this scenario's own, and no recording.
@@ -169,6 +174,54 @@ impl Simulation {
 }
 
 impl Simulation {
+    /// Runs on.
+    fn make(&mut self, max_records: u32) {
+        let watched = |one: &mut ControllerRecording| RunSink {
+            recording: take(&mut one.recording),
+            timing: one.timing.take(),
+        };
+        let mut watched: Vec<RunSink> = self.recordings.iter_mut().map(watched).collect();
+        let mut logs: Vec<_> = self.recordings.iter_mut().map(|one| one.plant.as_mut()).collect();
+        let done = advance(&self.experiment, &mut self.run, max_records, &mut watched, &mut logs);
+        for (one, RunSink { recording, timing }) in self.recordings.iter_mut().zip(watched) {
+            one.changes.extend(&recording.trace);
+            (one.recording, one.timing) = (recording, timing);
+        }
+        for (index, one) in self.recordings.iter_mut().enumerate() {
+            if let (Some(log), Some(plant)) = (&mut one.plant, self.run.plant(index)) {
+                log.keep(plant, one.recording.trace.len());
+            }
+        }
+        if done && let (Some(recorded), Some(first)) = (&mut self.recorded, self.recordings.first_mut()) {
+            first.show(take(recorded), drivers::check(&self.scenario, MAX_KEPT));
+        }
+        self.is_made = done;
+    }
+
+    /// How many records were recorded.
+    fn to_take_in(&self) -> usize {
+        let first = self.recordings.first().filter(|_| self.recorded.is_some());
+        first.map_or(0, |first| first.recording.trace.len())
+    }
+
+    /// Takes in so many more of what was recorded.
+    fn take_in(&mut self, count: usize) {
+        let (from, until) = (self.taken_in, self.taken_in.saturating_add(count).min(self.to_take_in()));
+        if let Some(first) = self.recordings.first_mut() {
+            first.take_in(from, until);
+        }
+        self.taken_in = until;
+    }
+
+    /// Everything is there: packets are in their order, and the replies are those that were recorded.
+    fn finish(&mut self) {
+        self.recordings.iter_mut().for_each(|one| one.recording.packets.finish());
+        let answers = replies::of(&take(&mut self.replies));
+        if let Some(first) = self.recordings.first_mut().filter(|_| !answers.is_empty()) {
+            first.recording.packets.answer(&answers);
+        }
+    }
+
     /// A run of what was judged, before its first cycle.
     pub(crate) fn of(scenario: &Rc<Scenario>, experiment: &Rc<Experiment>) -> Self {
         let run = experiment.start();
@@ -188,7 +241,10 @@ impl Simulation {
             selected: 0,
             filter: Filter::default(),
             recorded: None,
+            taken_in: 0,
             is_own: false,
+            replies: Vec::new(),
+            is_made: false,
         }
     }
 

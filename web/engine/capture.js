@@ -12,6 +12,7 @@ import { compiled } from "./wasm.js";
  * @typedef {{map: string, clock_hz: number, rounding: string, end_s: number, records: number, kept: Kept | null, notes: string[],
  *   steps: ChannelSteps[], lines: string[]}} Looked
  * @typedef {{line: string, kind: string, start_cycle: number, end_cycle: number, bytes: number[], meaning: string, outcome: string}} LinePacket
+ * @typedef {{position_min: number[], position_max: number[], speed_min: number[], speed_max: number[]}} Columns  In steps and steps/s.
  * @typedef {{total: number, replies: number, rows: LinePacket[], csv: string}} LinePackets
  * @typedef {{map?: string, clock_hz?: number, sample_rate_hz?: bigint, baud?: number, at_s?: number, channel?: number, aligned?: number, from_s?: number, to_s?: number}} Asked
  * @typedef {{records: Uint8Array, clock_hz: number, channel: number, baud: number, aligned: number}} Model  What a run has of a channel and of RX, and the step, or byte, that both have at one time.
@@ -65,10 +66,14 @@ export function openCapture(file, onProgress) {
     sample: () => sample,
     /** @param {Asked} by @returns {Promise<Looked>} */
     look: (by) => ask("look", { most: MOST_SHOWN, ...by }),
+    /** All of a channel at a glance. @param {number} channel @param {number} columns @returns {Promise<Columns | null>} */
+    overview: (channel, columns) => ask("overview", channel, columns),
     /** The scenario that it is shown with. @param {boolean} ofSteps @returns {Promise<string>} */
     scenario: (ofSteps) => ask("scenario", sample?.file ?? /** @type {File} */ (file).name, ofSteps),
     /** What its lines say: the first `most` packets, and all of them as a table. @param {boolean} addressed @param {number} most @returns {Promise<LinePackets | null>} */
     packets: (addressed, most) => ask("packets", addressed, most),
+    /** What TX says, for the table of packets. @returns {Promise<Uint8Array>} */
+    replies: () => ask("replies"),
     /** When the step, or byte, of a run comes, in s. @param {Model} of @returns {Promise<number | undefined>} */
     timeOf: ({ records, clock_hz, channel, baud, aligned }) =>
       ask("time_of", records, clock_hz, channel, baud, aligned),

@@ -42,7 +42,11 @@ self.onmessage = async ({ data }) => {
     else if ("sample" in data) {
       opened = core.CaptureFile.sample(data.sample);
       postMessage({ facts: opened.facts(), sample: core.sample_facts(data.sample) });
-    } else postMessage({ id: data.id, value: opened[data.method](...data.args) });
+    } else {
+      const value = opened[data.method](...data.args);
+      // What is large goes over, and is not copied.
+      postMessage({ id: data.id, value }, value instanceof Uint8Array ? [value.buffer] : []);
+    }
   } catch (error) {
     const message = fatal(error) ? "the file needs more memory than this browser gives" : text(error);
     postMessage(data.id === undefined ? { error: message } : { id: data.id, error: message });

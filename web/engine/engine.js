@@ -20,6 +20,8 @@ import { compiled } from "./wasm.js";
  * @property {() => void} stopped  The worker did not hear a cancel; a new one is there, and open questions are dropped.
  */
 
+/** @typedef {{id: number, scenario: string, pieces: Uint8Array[], replies?: Uint8Array}} Held  A recording. */
+
 /** How long a cancel may go unanswered, in ms: one long call hears nothing. */
 const PATIENCE_MS = 1000;
 
@@ -48,7 +50,7 @@ export class Engine {
   #good = null;
   /** @type {{run: number, json: string} | null} */
   #restoring = null;
-  /** What is looked at in place of what these scenarios' runs make, the newest last. @type {{scenario: string, pieces: Uint8Array[]}[]} */
+  /** What is looked at in place of what these scenarios' runs make, the newest last. @type {Held[]} */
   #recordings = [];
   /** The controller that the worker was told to look at. */
   #selected = 0;
@@ -127,11 +129,26 @@ export class Engine {
 
   /**
    * From now on a run of this scenario shows what was recorded, as long as its source, clock, channels and plant are the same.
-   * @param {string} scenario @param {Uint8Array[]} pieces  Its records.
+   * @param {string} scenario @param {Uint8Array[]} pieces  Its records; none where what the run makes is looked at.
+   * @param {Uint8Array} [replies]  What was recorded on TX, in the place of the run's replies.
    */
-  record(scenario, pieces) {
-    this.#recordings = [...this.#recordings, { scenario, pieces }].slice(-MAX_RECORDINGS);
-    this.#worker.postMessage({ recordings: this.#recordings });
+  record(scenario, pieces, replies) {
+    this.#recordings = [...this.#recordings, { id: this.#next++, scenario, pieces, replies }].slice(-MAX_RECORDINGS);
+    void this.#give(this.#recordings.slice(-1));
+  }
+
+  /** Gives recordings to the worker, a piece at a time: a copy of all would hold the page. @param {Held[]} recordings */
+  async #give(recordings) {
+    const worker = this.#worker;
+    for (const { id, scenario, pieces, replies } of recordings)
+      worker.postMessage({ recording: id, scenario, count: pieces.length, replies });
+    for (const { id, pieces } of recordings) {
+      for (const piece of pieces) {
+        await new Promise((rested) => setTimeout(rested));
+        if (worker !== this.#worker) return;
+        worker.postMessage({ piece, of: id });
+      }
+    }
   }
 
   /** Ends a run that is not done yet. @param {number} revision */
@@ -299,7 +316,7 @@ export class Engine {
   #renew(why) {
     this.#drop(why);
     this.#worker = this.#start();
-    this.#worker.postMessage({ recordings: this.#recordings });
+    void this.#give(this.#recordings);
     // Should it end this worker, too, it is not made again.
     [this.#restoring, this.#good] = [this.#good, null];
     if (this.#restoring) this.#worker.postMessage({ ...this.#restoring, quiet: true, select: this.#selected });

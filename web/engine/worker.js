@@ -6,7 +6,7 @@
  * then looked at by the core as a run of its own.
  *
  * In: first of all {module}, the compiled core; {part}, that of stand-alone controllers, once it was asked for by {wants}; {id, method, args} for an answer {id, value} or {id, error};
- * {recordings}, scenarios and the records that are looked at in place of what their runs make; {run, json} for events {event, run, …}, without a word of it if `quiet`, and then looking at controller `select`;
+ * {recording}, the number of a scenario whose run is looked at as it was recorded, and how many {piece} of it come; {run, json} for events {event, run, …}, without a word of it if `quiet`, and then looking at controller `select`;
  * {cancel} for {event: "cancelled"} once that run is no longer under way.
  */
 import init, * as core from "../pkg/stepscope_wasm.js";
@@ -46,8 +46,10 @@ let provide = () => {};
 const ready = new Promise((resolve) => {
   provide = (module) => resolve(init({ module_or_path: module }));
 });
-/** @type {{scenario: string, pieces: Uint8Array[]}[]} */
+/** The newest last; their pieces may still come. @type {{recording: number, scenario: string, count: number, replies?: Uint8Array, pieces: Uint8Array[]}[]} */
 let recordings = [];
+/** As many as the page has. */
+const MAX_RECORDINGS = 3;
 const between = new MessageChannel();
 
 /** Who waits for messages to be let in: a run, a search. @type {((event: MessageEvent) => void)[]} */
@@ -175,7 +177,16 @@ async function simulate(order) {
   const simulation = alone ? await asSimulation(scenario.panels(), order) : scenario.run();
   if (!simulation) return;
   const recording = recordings.findLast(({ scenario }) => recordable(scenario) === recordable(json));
-  for (const piece of recording?.pieces ?? []) simulation.record(piece);
+  if (recording?.replies) simulation.answer(recording.replies);
+  for (let at = 0; recording && at < recording.count; ) {
+    const piece = recording.pieces[at];
+    if (piece) {
+      simulation.record(piece);
+      at += 1;
+    }
+    await yieldToMessages();
+    if (run !== newest) return letGo(simulation);
+  }
   if (!(await runInSlices(simulation, order))) return;
   if (finished !== baseline) letGo(finished);
   finished = simulation;
@@ -269,8 +280,12 @@ async function answer(method, args) {
 self.onmessage = async ({ data }) => {
   if ("module" in data) return provide(data.module);
   if ("part" in data) return providePart(data.part);
-  if ("recordings" in data) {
-    recordings = data.recordings;
+  if ("recording" in data) {
+    recordings = [...recordings, { ...data, pieces: [] }].slice(-MAX_RECORDINGS);
+    return;
+  }
+  if ("piece" in data) {
+    recordings.find(({ recording }) => recording === data.of)?.pieces.push(data.piece);
     return;
   }
   if ("cancel" in data) {

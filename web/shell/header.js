@@ -103,6 +103,7 @@ export function createHeader({ presets, cancel, retry, ...page }) {
       byId("computed"),
       state.result && !long && held(state) !== "problems" ? `computed in ${si(state.result.ms / 1000, "s", 2)}` : "",
     );
+    byId("on-show").hidden = !state.result?.summary.recorded;
     health.render(state);
     chooser(state);
     say(byId("digest"), selected(state)?.digest ?? "–");

@@ -11,7 +11,7 @@ import { listRecordings, recordingsKept } from "./storage.js";
 
 /**
  * @typedef {{engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} Page
- * @typedef {{id: string, file: string, scenario: string, sizes: number[]}} Kept  Its pieces have so many bytes.
+ * @typedef {{id: string, file: string, scenario: string, sizes: number[], replies?: Uint8Array}} Kept  Its pieces have so many bytes.
  * @typedef {{id: string, file: string, scenario: string, lost: string}} Known  A recording that this tab has, and why it is not kept; "" where it is.
  * @typedef {{file: string, id: string, lost: string, isOwn: boolean}} Shown  The one that was on show when the page was left.
  */
@@ -72,7 +72,7 @@ async function withDatabase(work) {
 const piecesOf = (id) => IDBKeyRange.bound([id], [id, []]);
 
 /** @param {Kept} kept */
-const sizeOf = ({ sizes }) => sizes.reduce((sum, size) => sum + size, 0);
+const sizeOf = ({ sizes, replies }) => sizes.reduce((sum, size) => sum + size, replies?.byteLength ?? 0);
 
 /** @returns {string[]} */
 function listed() {
@@ -87,11 +87,12 @@ function listed() {
 /**
  * Keeps a recording in the place of the oldest ones, if there is room for it.
  * @param {Page} page @param {string} file  Its name. @param {string} scenario  What it stands for. @param {Uint8Array[]} pieces
+ * @param {Uint8Array} replies  What was recorded on TX.
  * @returns {Promise<string>}  What there is to say of it.
  */
-export async function keep(page, file, scenario, pieces) {
+export async function keep(page, file, scenario, pieces, replies) {
   const id = `${Date.now()}.${Math.random()}`;
-  const kept = { id, file, scenario, sizes: pieces.map((piece) => piece.byteLength) };
+  const kept = { id, file, scenario, sizes: pieces.map((piece) => piece.byteLength), replies };
   const lost = sizeOf(kept) > MAX_BYTES ? tooLarge(kept) : await stored(kept, pieces);
   // After a reload it is told that it is gone.
   if (lost) listRecordings(JSON.stringify(listed()));
@@ -127,7 +128,8 @@ async function stored(kept, pieces) {
         }
       }
       facts.put(kept);
-      pieces.forEach((piece, place) => void stores.put(piece, [kept.id, place]));
+      // One at a time: copies of all would hold the page.
+      for (const [place, piece] of pieces.entries()) await answered(stores.put(piece, [kept.id, place]));
       await done;
       return [...staying, kept.id];
     });
@@ -185,7 +187,7 @@ async function restored(page, database, before, shown) {
   const all = await answered(database.transaction(FACTS).objectStore(FACTS).getAll());
   const there = new Set(all.map(({ id }) => id));
   let lost = before.some((id) => !there.has(id)) ? "what was kept of it is gone" : "";
-  for (const { id, file, scenario, sizes } of all) {
+  for (const { id, file, scenario, sizes, replies } of all) {
     const isShown = shown?.id === id;
     // Kept by an earlier version, perhaps: the core reads it.
     const own = await engine.ask("check", String(scenario));
@@ -198,7 +200,7 @@ async function restored(page, database, before, shown) {
       there.delete(id);
       continue;
     }
-    engine.record(own.scenario, pieces);
+    engine.record(own.scenario, pieces, replies instanceof Uint8Array ? replies : undefined);
     known.push({ id, file, scenario: own.scenario, lost: "" });
     if (isShown && !shown.isOwn && stands(read) !== addressed) {
       // The address is that of what was shown before: there is no link of it, or the page was left before it stood there.

@@ -7,8 +7,8 @@ import { readJson } from "../state/json.js";
 import { count, si, time } from "../state/number.js";
 import { isStale } from "../state/state.js";
 import { message } from "./link.js";
-import { around } from "./notices.js";
 import { ownIsKept } from "./storage.js";
+import { around } from "./verdict.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {{engine: import("../engine/engine.js").Engine, openLink: (fragment: string) => Promise<void>} & import("../state/types.js").Page} Given */

@@ -2,21 +2,23 @@
  * A recording that is opened: what its file holds, which channel is which signal, and what comes of it; then it takes the
  * place of the experiment, and all views look at it. What the file does not tell is asked, never guessed.
  */
-import { button, element, fill } from "../dom.js";
+import { button, byId, element, fill } from "../dom.js";
 import { openCapture } from "../engine/capture.js";
 import { readJson } from "../state/json.js";
 import { count, counted, parseNumber, plain, si, time } from "../state/number.js";
 import { isStale } from "../state/state.js";
 import { keep } from "./kept.js";
 import { message } from "./link.js";
-import { around } from "./notices.js";
 import { save } from "./save.js";
 import { ownIsKept } from "./storage.js";
+import { around } from "./verdict.js";
+import { createWhole } from "./whole.js";
 
 /** @typedef {import("../engine/capture.js").Facts} Facts */
 /** @typedef {import("../engine/capture.js").Looked} Looked */
 /** @typedef {import("../engine/capture.js").Asked} Asked */
 /** @typedef {{engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} Page */
+/** @typedef {{numbers: number[], from_s: number | null, to_s: number | null}} Said  What was said of a file: clock, sample rate, bit rate; and its part. */
 
 /** Channels of one bus. */
 const CHANNELS = 16;
@@ -25,6 +27,8 @@ const MAPS = "stepscope.maps";
 const MAX_MAPS = 30;
 /** Greatest number that a field takes: what the core has room for. */
 const GREATEST = 2 ** 32 - 1;
+/** Where a message is as short as it can be. */
+const PHONE = "(max-width: 599px)";
 /** Rest after a change before it is looked again, in ms. */
 const REST_MS = 200;
 /** Packets that the dialog lists, and bytes that it lists of each; its file has all. */
@@ -46,24 +50,11 @@ export async function openRecording(page, source) {
     bar.value = part;
     percent.textContent = `${Math.floor(100 * part)} %`;
   });
-  const close = () => {
-    capture.close();
-    dialog.close();
-    dialog.remove();
-  };
-  const body = element("div", {}, about, bar, percent);
-  const foot = element(
-    "p",
-    { class: "named" },
-    button("Cancel", "Cancel: leave the file; the experiment stays", close),
-  );
-  const dialog = element("dialog", { class: "recording", "aria-label": "Recording" }, body, foot);
-  dialog.addEventListener("cancel", close);
-  document.body.append(dialog);
-  dialog.showModal();
+  const dialog = dialogOf(() => capture.close());
+  dialog.body.append(about, bar, percent);
   try {
     const facts = await capture.facts;
-    if (!dialog.open) return;
+    if (!dialog.isOpen()) return;
     if (facts.count === 0) throw new Error(facts.error ?? "it holds nothing that was recorded");
     const sample = capture.sample();
     if (sample) {
@@ -71,12 +62,53 @@ export async function openRecording(page, source) {
       page.dispatch({ type: "replace", scenario: readJson(scenario), origin: "shared" });
       await resultOf(page);
     }
-    if (dialog.open)
-      show(page, sample?.file ?? /** @type {File} */ (source).name, capture, facts, { body, foot, close });
+    if (dialog.isOpen()) show(page, sample?.file ?? /** @type {File} */ (source).name, capture, facts, dialog);
   } catch (error) {
-    close();
+    dialog.close();
     throw error;
   }
+}
+
+/** A dialog with what it says and its buttons. @param {() => void} leave  It is closed, and what it is of is no longer needed. */
+function dialogOf(leave) {
+  const close = (isNeeded = false) => {
+    if (!isNeeded) leave();
+    dialog.close();
+    dialog.remove();
+  };
+  const body = element("div", {});
+  const cancel = button("Cancel", "Cancel: leave the file; the experiment stays", () => close());
+  const foot = element("p", { class: "named" }, cancel);
+  const dialog = element("dialog", { class: "recording", "aria-label": "Recording" }, body, foot);
+  dialog.addEventListener("cancel", () => close());
+  document.body.append(dialog);
+  dialog.showModal();
+  return { body, foot, close, isOpen: () => dialog.open };
+}
+
+/** The file whose part is on show, and the button that chooses another part. @type {{leave: () => void, again: HTMLElement} | null} */
+let held = null;
+
+/** Leaves the file whose part was on show. */
+function leaveHeld() {
+  held?.again.remove();
+  held?.leave();
+  held = null;
+}
+
+/**
+ * Of a file a part is on show: another one can be chosen, and nothing is read again.
+ * @param {Page} page @param {string} file @param {ReturnType<typeof openCapture>} capture @param {Facts} facts @param {Said} said
+ */
+function holdFor(page, file, capture, facts, said) {
+  held?.again.remove();
+  const leave = () => capture.close();
+  const again = button("Another part…", `Show another part of ${file}`, () => {
+    const dialog = dialogOf(() => {});
+    show(page, file, capture, facts, dialog, said);
+  });
+  byId("on-show").append(" ", again);
+  held = { leave, again };
 }
 
 /** The result of the experiment as it stands, once it has run; null where that does not come. @param {Page} page */
@@ -92,9 +124,9 @@ async function resultOf({ now }) {
 
 /**
  * @param {Page} page @param {string} file  Its name. @param {ReturnType<typeof openCapture>} capture @param {Facts} facts
- * @param {{body: HTMLElement, foot: HTMLElement, close: () => void}} parts
+ * @param {ReturnType<typeof dialogOf>} dialog @param {Said | null} [earlier]  What was said of it before.
  */
-function show(page, file, capture, facts, { body, foot, close }) {
+function show(page, file, capture, facts, { body, foot, close }, earlier = null) {
   const { engine, dispatch, now } = page;
   const { format, channels } = facts;
   const rows = channels.map((name) => channelRow(name));
@@ -116,10 +148,22 @@ function show(page, file, capture, facts, { body, foot, close }) {
   const align = numberField("Aligned by step", "", "0, the first", 0);
   const from = timeField("Show from", "its beginning");
   const to = timeField("Show up to", "as far as there is room");
+  const whole = createWhole(capture, (part) => {
+    from.set(part?.from_s ?? null);
+    to.set(part?.to_s ?? null);
+    body.dispatchEvent(new Event("input"));
+  });
+  let isChoosing = false;
+  const byTimes = button("Show a part…", "Show a part of it: by its times", () => {
+    isChoosing = true;
+    showFields();
+    from.label.querySelector("input")?.focus();
+  });
   /** What depends on what was looked at: a part is not laid beside anything. @param {Looked["kept"]} kept */
   const showFields = (kept = looked?.kept ?? null) => {
     const isPart = kept !== null || from.value() !== null || to.value() !== null;
-    for (const { label } of [from, to]) label.hidden = !isPart;
+    for (const { label } of [from, to]) label.hidden = !isPart && !isChoosing;
+    byTimes.hidden = whole.node.hidden || isPart || isChoosing;
     beside.hidden = plan === null || isPart;
     align.label.hidden = beside.hidden || !besides.checked;
   };
@@ -144,6 +188,8 @@ function show(page, file, capture, facts, { body, foot, close }) {
     ...notes.map((note) => element("p", { class: "note" }, note)),
     ...(facts.has_levels ? [table(rows)] : []),
     element("div", { class: "fields" }, ...fields.map(({ label }) => label)),
+    whole.node,
+    byTimes,
     from.label,
     to.label,
     beside,
@@ -152,6 +198,12 @@ function show(page, file, capture, facts, { body, foot, close }) {
     said,
   );
   put(facts.has_levels ? (keptMap(channels) ?? facts.map) : "");
+  if (earlier) {
+    for (const [place, field] of [clock, rate, baud].entries())
+      if (earlier.numbers[place]) field.set(earlier.numbers[place]);
+    from.set(earlier.from_s);
+    to.set(earlier.to_s);
+  }
   body.addEventListener("input", () => {
     clearTimeout(timer);
     showFields();
@@ -257,12 +309,16 @@ function show(page, file, capture, facts, { body, foot, close }) {
   /** @param {string} why */
   function refuse(why) {
     looked = null;
+    whole.render(null);
+    showFields();
     said.hidden = true;
     fill(result, element("p", { class: "error" }, `${why[0].toUpperCase()}${why.slice(1)}.`));
   }
 
   /** @param {Looked} found */
-  function tell({ clock_hz, rounding, end_s, kept, steps, lines, notes }) {
+  function tell(found) {
+    const { clock_hz, rounding, end_s, kept, steps, lines, notes } = found;
+    whole.render(facts.has_levels ? found : null);
     showFields(kept);
     const own = notes.filter((note) => !facts.notes.includes(note));
     const rows = steps.map(({ channel, figures: of }) =>
@@ -327,6 +383,7 @@ function show(page, file, capture, facts, { body, foot, close }) {
     const made = await capture.scenario(false);
     // Where no channel steps, there is more to see of what the model makes of the bytes.
     const pieces = looked.steps.length > 0 ? await capture.records(looked.records) : [];
+    const replies = await capture.replies();
     const { problems, scenario } = await engine.ask("check", withControllers(made, base));
     if (problems.length > 0) {
       fill(
@@ -351,12 +408,17 @@ function show(page, file, capture, facts, { body, foot, close }) {
         baseline: { title: plan.title || "the experiment", revision, summary, controller, derived: own },
       });
     }
-    if (pieces.length > 0) engine.record(scenario, pieces);
+    const isKept = pieces.length > 0 || replies.length > 0;
+    if (isKept) engine.record(scenario, pieces, replies);
     dispatch({ type: "replace", scenario: readJson(scenario), origin: "shared" });
-    close();
+    const isPart = pieces.length > 0 && looked.kept !== null;
+    close(isPart);
+    if (!isPart || !earlier) leaveHeld();
+    const numbers = [clock.value(), rate.value(), baud.value()];
+    if (isPart) holdFor(page, file, capture, facts, { numbers, from_s: from.value(), to_s: to.value() });
     const run = resultOf(page);
-    const kept = pieces.length > 0 ? await keep(page, file, scenario, pieces) : "";
-    const text = told(model !== null, pieces.length > 0) + kept;
+    const kept = isKept ? await keep(page, file, scenario, pieces, replies) : "";
+    const text = told(model !== null, pieces.length > 0, replies.length > 0) + kept;
     dispatch({ type: "notice", notice: { kind: "info", text, place: null } });
     const shown = found && (await run);
     if (!shown) return;
@@ -365,13 +427,13 @@ function show(page, file, capture, facts, { body, foot, close }) {
     dispatch({ type: "notice", notice: { kind: "info", text: `${compared(found, aligned)} ${text}`, place } });
   }
 
-  /** @param {boolean} isBeside @param {boolean} isRecorded */
-  function told(isBeside, isRecorded) {
-    const on = isRecorded
-      ? "The views show what was recorded; change the source, the clock, the channels or the plant, and they show what the model makes of it."
-      : "The views show what the model makes of it.";
+  /** @param {boolean} isBeside @param {boolean} isRecorded @param {boolean} hasReplies */
+  function told(isBeside, isRecorded, hasReplies) {
+    const on = isRecorded ? "The views show what was recorded." : "The views show what the model makes of it.";
     const shown = isRecorded && looked?.kept ? ` ${part(looked.kept)}; its position begins with 0 there.` : "";
-    return `Opened ${file}. ${on}${shown}${isBeside ? " The experiment before stands beside it as the baseline." : ""}${ownIsKept()}`;
+    if (window.matchMedia(PHONE).matches) return `Opened ${file}.${shown}${ownIsKept()}`;
+    const replies = hasReplies ? " The table of packets has the replies as they were recorded." : "";
+    return `Opened ${file}. ${on}${shown}${replies}${isBeside ? " The experiment before stands beside it as the baseline." : ""}${ownIsKept()}`;
   }
 }
 
@@ -514,6 +576,10 @@ function timeField(name, empty) {
     value: () => {
       const found = read();
       return "value" in found ? found.value : null;
+    },
+    set: (/** @type {number | null} */ value) => {
+      input.value = value === null ? "" : `${value}`;
+      input.dispatchEvent(new Event("input"));
     },
   };
 }

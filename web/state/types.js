@@ -56,7 +56,7 @@
  *   thd_position: number | null, thd_speed: number | null, thd_acceleration: number | null, thd_acceleration_filtered: number | null}} Spectrum
  * @typedef {{axis: number, ideal: Spectrum | null, pulses: Spectrum | null, note: string}} Spectra
  *
- * @typedef {{at_a: number[], at_b: number[], mean: number[], rms: number[]}} Readings  Position, speed, acceleration; of pulses the first two.
+ * @typedef {{at_a: number[], at_b: number[], mean: number[], rms: number[]}} Readings  Position, speed, acceleration; the last of pulses only where no plan is known, NaN at a cursor where it is not.
  * @typedef {{ideal: Readings | null, actual: Readings}} Between
  * @typedef {{common_s: number, largest: number, at_s: number, rms: number}} Apart
  * @typedef {{title: string, revision: number, summary: Summary, controller: number, derived: DerivedController | null}} Baseline

@@ -2,11 +2,11 @@
  * The timing check: could the driver have followed the pulses? A row a rule with what was measured, what is
  * required and the slack, and the violations one by one. It takes the spectrum's place where there is a driver.
  */
-import { byId, element, fill, say } from "../dom.js";
+import { byId, say } from "../dom.js";
 import { unlessDropped } from "../engine/engine.js";
 import { ruleName } from "../form/schema.js";
 import { listen } from "../shell/commands.js";
-import { count, si, time } from "../state/number.js";
+import { si, time } from "../state/number.js";
 import { endOf, selected, shown } from "../state/state.js";
 
 /** @typedef {import("../state/types.js").State} State */
@@ -23,6 +23,8 @@ export function createTiming({ engine, drivers, speak, dispatch, now }) {
   /** @type {Timing | null} */
   let timing = null;
   let current = -1;
+  /** It loads with the first driver. @type {typeof import("./timing_table.js").paintTiming | null} */
+  let paint = null;
 
   for (const where of ["", "pulses-"]) {
     byId(`${where}violation-previous`).addEventListener("click", () => next(false));
@@ -120,84 +122,14 @@ export function createTiming({ engine, drivers, speak, dispatch, now }) {
       selected(state)?.violations === null ? null : await engine.latest("timing", "timing").catch(unlessDropped);
     if (answer === undefined) return;
     timing = answer;
-    paint(now());
-  }
-
-  /** @param {State} state */
-  function paint(state) {
-    const clock = state.result?.summary.clock_hz ?? 1;
-    const at = (/** @type {number} */ cycles) => si(cycles / clock, "s");
-    const sheet = drivers.find(({ id }) => id === timing?.driver);
-    const total = timing?.total ?? 0;
-    const kept = timing?.violations.length ?? 0;
-    say(byId("timing-driver"), sheet?.name ?? "rules of your own");
-    byId("timing-driver").title = sheet?.source ?? "";
-    const few = total > kept ? `; the first ${count(kept)} are listed` : "";
-    say(
-      byId("timing-total"),
-      total === 0
-        ? "The pulses meet the data sheet’s timing: no violation."
-        : `${count(total)} ${total === 1 ? "violation" : "violations"}${few}.`,
-    );
-    byId("timing-total").classList.toggle("error", total > 0);
-    for (const id of ["violation-previous", "violation-next", "pulses-violation-previous", "pulses-violation-next"]) {
-      /** @type {HTMLButtonElement} */ (byId(id)).disabled = total === 0;
+    // Without a driver there is nothing to paint, and nowhere.
+    if (!timing && !paint) return;
+    try {
+      paint ??= (await import("./timing_table.js")).paintTiming;
+      paint(timing, { state: now(), drivers, toRule, required });
+    } catch {
+      tell("This part of the page could not be loaded; try again when the network is there.");
     }
-    byId("pulses-violations").hidden = timing === null;
-    say(
-      byId("pulses-violations-count"),
-      total === 0 ? "timing met" : `${count(total)} ${total === 1 ? "violation" : "violations"}`,
-    );
-    byId("pulses-violations-count").classList.toggle("error", total > 0);
-    const example = timing?.rules
-      .filter(({ required_ns }) => required_ns > 0)
-      .sort((one, other) => rounding(other, clock) - rounding(one, clock))[0];
-    say(
-      byId("timing-rounding"),
-      example
-        ? `Slack counts whole cycles of ${at(1)}: what a rule asks for is rounded up to them, as ${si(example.required_ns * 1e-9, "s")} to ${count(example.required_cycles)} cycles = ${at(example.required_cycles)}.`
-        : "",
-    );
-    byId("violations").hidden = total === 0;
-    const rows = (timing?.rules ?? []).map(({ rule, required_cycles, required_ns, least, violations }) => {
-      const slack = least === null ? null : least.measured_cycles - required_cycles;
-      const bad = violations > 0;
-      return element(
-        "tr",
-        bad ? { class: "bad" } : {},
-        element("th", { scope: "row" }, ruleButton(rule, bad)),
-        ...[
-          least ? at(least.measured_cycles) : "–",
-          required_ns === 0 ? "–" : si(required_ns * 1e-9, "s"),
-          slack === null || required_ns === 0 ? "–" : `${slack < 0 ? "" : "+"}${at(slack)}`,
-          bad ? count(violations) : required_ns === 0 ? "–" : "0",
-        ].map((text) => element("td", { class: "number" }, text)),
-      );
-    });
-    fill(/** @type {Element} */ (byId("margins").querySelector("tbody")), ...rows);
-    fill(
-      body,
-      ...(timing?.violations ?? []).map(({ cycle, channel, rule, measured_cycles }, index) =>
-        element(
-          "tr",
-          { "data-index": String(index) },
-          ...[String(channel), ruleName(rule), time(cycle / clock), at(measured_cycles), required(timing, rule)].map(
-            (text, column) => element("td", column === 1 ? {} : { class: "number" }, text),
-          ),
-        ),
-      ),
-    );
-  }
-
-  /** @param {string} rule @param {boolean} bad */
-  function ruleButton(rule, bad) {
-    const made = element(
-      "button",
-      { type: "button", title: bad ? "Show its first violation" : "Show its least margin" },
-      ruleName(rule),
-    );
-    made.addEventListener("click", () => toRule(rule));
-    return made;
   }
 
   /** @param {State} state @param {State | undefined} before */
@@ -206,11 +138,6 @@ export function createTiming({ engine, drivers, speak, dispatch, now }) {
     return undefined;
   }
   return { render };
-}
-
-/** How much longer than required the whole cycles of a rule are, in s. @param {import("../state/types.js").RuleResult} rule @param {number} clock */
-function rounding({ required_ns, required_cycles }, clock) {
-  return required_cycles / clock - required_ns * 1e-9;
 }
 
 /** The least time that a rule asks for; in cycles it is rounded up. @param {Timing | null} timing @param {string} rule */

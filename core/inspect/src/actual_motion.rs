@@ -28,6 +28,7 @@
 //! assert_eq!(pulses.position_at(start_s + 0.5), 3200);
 //! ```
 
+use crate::step_acceleration;
 use stepscope_peripheral::{
     config::Config,
     segment::{FRACTION_BITS, Segment, SegmentList},
@@ -149,6 +150,29 @@ impl<'a> Pulses<'a> {
             }
         });
         speed
+    }
+
+    /// The acceleration of steps that no plan is known of ([`step_acceleration`]), from each step to the next, where that touches
+    /// `from_s..=to_s`: both their times in s, and it; nothing where it is not known.
+    pub fn accelerations(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(f64, f64, f64)) {
+        let hz = self.hz();
+        let seconds = |index: usize| self.steps.get(index).map(|step| step.cycle as f64 / hz);
+        let first = self.steps.partition_point(|step| (step.cycle as f64 / hz) < from_s);
+        for index in first.saturating_sub(1)..self.steps.len() {
+            let (Some(step_s), Some(next_s)) = (seconds(index), seconds(index + 1)) else { return };
+            if step_s > to_s {
+                return;
+            }
+            if let Some(value) = step_acceleration::of(self.steps, index, hz) {
+                each(step_s, next_s, value);
+            }
+        }
+    }
+
+    /// The same at a time; `None` where it is not known.
+    #[must_use]
+    pub fn acceleration_at(&self, time_s: f64) -> Option<f64> {
+        step_acceleration::of(self.steps, self.steps_until(time_s).checked_sub(1)?, self.hz())
     }
 
     /// Every stretch of one speed that touches `from_s..=to_s`, in order; between them nothing moves.

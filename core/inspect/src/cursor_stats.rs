@@ -9,6 +9,9 @@
 //!          A                 made   from step to step and from tick to tick, sums of rectangles
 //! ```
 //!
+//! Of steps that no plan is known of there is an acceleration, too ([`crate::step_acceleration`]); its means are those of the
+//! time between the cursors in which it is known.
+//!
 //! ```
 //! use stepscope_inspect::cursor_stats::ideal;
 //! use stepscope_motion::{moves::Axis, plan_axis};
@@ -39,7 +42,8 @@ pub struct CursorStats {
     pub position: Moments,
     /// Speed.
     pub speed: Moments,
-    /// Acceleration where the speed has no jump; `None` of pulses, whose speed only jumps.
+    /// Acceleration where the speed has no jump; `None` of pulses, whose speed only jumps ([`actual_acceleration`] has what can be
+    /// told of it).
     pub acceleration: Option<Moments>,
 }
 
@@ -105,6 +109,19 @@ pub fn actual(pulses: &Pulses<'_>, from_s: f64, to_s: f64) -> CursorStats {
     });
     let [position, speed] = [position, speed].map(|sums| sums.over(to_s - from_s));
     CursorStats { position, speed, acceleration: None }
+}
+
+/// Acceleration of steps that no plan is known of ([`Pulses::accelerations`]), from one time to a later one, in s, over the time in
+/// which it is known; `None` where it is nowhere.
+#[must_use]
+pub fn actual_acceleration(pulses: &Pulses<'_>, from_s: f64, to_s: f64) -> Option<Moments> {
+    let (mut sums, mut known_s) = (Sums::default(), 0.0);
+    pulses.accelerations(from_s, to_s, &mut |step_s, next_s, value| {
+        let seconds = libm::fmax(0.0, libm::fmin(next_s, to_s) - libm::fmax(step_s, from_s));
+        sums.add(value, seconds);
+        known_s += seconds;
+    });
+    (known_s > 0.0).then(|| sums.over(known_s))
 }
 
 #[cfg(test)]
@@ -194,6 +211,49 @@ mod tests {
         // The mean of the square: a third of 100^2 over the first half, 100^2 over the second.
         check(found.position.rms, (10_000.0 * 2.0 / 3.0_f64).sqrt());
         assert_eq!(found.acceleration, Some(Moments::default()));
+    }
+
+    #[test]
+    fn steps_of_no_plan_have_the_acceleration_of_their_ramps_where_it_is_known() {
+        // A second from rest at 2000 steps/s^2, and half a second at the speed that it comes to: 2000 steps/s.
+        let ramp = (1..=1000).map(|k| libm::sqrt(f64::from(k) / 1000.0));
+        let steps: Vec<Step> = ramp
+            .chain((1..=1000).map(|k| 1.0 + f64::from(k) / 2000.0))
+            .zip(1..)
+            .map(|(at_s, position)| Step { cycle: (at_s * 16e6) as u64, position })
+            .collect();
+        let pulses = Pulses::recorded(0, &steps, 16_000_000);
+        let found = |from_s: f64, to_s: f64| actual_acceleration(&pulses, from_s, to_s);
+        let ramp = found(0.2, 0.9).expect("it is known there");
+        near(ramp, Moments { mean: 2000.0, rms: 2000.0 }, 200_000.0, "in the ramp");
+        let even = found(1.1, 1.4).expect("it is known there");
+        assert!(even.rms < 20.0, "rounding to cycles alone: {even:?}");
+        // Of both, each for its time.
+        let both = found(0.5, 1.4).expect("it is known there");
+        assert!((both.mean - 2000.0 * 0.5 / 0.9).abs() < 10.0, "{both:?}");
+        assert!((both.rms - 2000.0 * (0.5_f64 / 0.9).sqrt()).abs() < 10.0, "{both:?}");
+        // Within eight steps of an end nothing is known, and beyond it nothing is there.
+        let (eighth_s, last_s) = (libm::sqrt(0.008), 1.5);
+        for (from_s, to_s) in [(0.0, eighth_s - 1e-6), (last_s - 6.9 / 2000.0, last_s + 1.0), (2.0, 3.0)] {
+            assert_eq!(found(from_s, to_s), None, "{from_s} to {to_s}");
+        }
+        for (time_s, expected) in
+            [(0.5, Some(2000.0)), (1.3, Some(0.0)), (0.05, None), (1.499, None), (7.0, None)]
+        {
+            let found = pulses.acceleration_at(time_s);
+            assert_eq!(found.is_some(), expected.is_some(), "{time_s}: {found:?}");
+            assert!((found.unwrap_or(0.0) - expected.unwrap_or(0.0)).abs() < 20.0, "{time_s}: {found:?}");
+        }
+        // Where the direction turns it is not known.
+        let turned: Vec<Step> =
+            (0..40).map(|k: i32| Step { cycle: 100 * k as u64, position: 20 - (k - 20).abs() }).collect();
+        let pulses = Pulses::recorded(0, &turned, 1_000_000);
+        assert_eq!(
+            pulses.acceleration_at(0.002),
+            None,
+            "eight steps before and after step 20 do not go one way"
+        );
+        assert_eq!(pulses.acceleration_at(0.001), Some(0.0));
     }
 
     #[test]

@@ -11,7 +11,7 @@
 //! assert_eq!(top, 16_000.0); // no column leaves a peak out
 //! ```
 
-use crate::{actual_motion::Pulses, step_acceleration};
+use crate::actual_motion::Pulses;
 use alloc::{vec, vec::Vec};
 use stepscope_motion::{AxisPlan, Breakpoints, Interval};
 use stepscope_peripheral::trace::Step;
@@ -48,7 +48,7 @@ impl Band {
 
 impl Band {
     /// Nothing moves from one time to another.
-    fn still(&mut self, window: Window, from_s: f64, to_s: f64) {
+    pub(super) fn still(&mut self, window: Window, from_s: f64, to_s: f64) {
         if to_s > from_s {
             window.columns(from_s, to_s).for_each(|column| self.take(column, 0.0));
         }
@@ -78,7 +78,7 @@ impl Window {
     }
 
     /// The column of a time, which may lie outside.
-    fn column(&self, time_s: f64) -> i64 {
+    pub(super) fn column(&self, time_s: f64) -> i64 {
         libm::floor((time_s - self.start_s) / self.width_s()) as i64
     }
 
@@ -89,7 +89,7 @@ impl Window {
 
     /// The columns that a stretch of time has a part in. One of no length has one, unless it lies
     /// outside.
-    fn columns(&self, from_s: f64, to_s: f64) -> core::ops::Range<usize> {
+    pub(super) fn columns(&self, from_s: f64, to_s: f64) -> core::ops::Range<usize> {
         let inside = |column: i64| column.clamp(0, self.columns as i64) as usize;
         let after = libm::ceil((to_s - self.start_s) / self.width_s()) as i64;
         inside(self.column(from_s))..inside(after.max(self.column(from_s).saturating_add(1)))
@@ -277,23 +277,13 @@ pub fn actual(pulses: &Pulses<'_>, window: Window) -> Actual {
     bands
 }
 
-/// The acceleration of steps that no plan is known of ([`step_acceleration`]): each from its step to the next; nothing where
-/// it is not known.
+/// The acceleration of steps that no plan is known of ([`Pulses::accelerations`]); nothing where it is not known.
 #[must_use]
 pub fn actual_acceleration(pulses: &Pulses<'_>, window: Window) -> Band {
     let mut band = Band::new(window.columns);
-    let hz = pulses.hz();
-    let seconds = |index: usize| pulses.steps.get(index).map(|step| step.cycle as f64 / hz);
-    let first = pulses.steps.partition_point(|step| (step.cycle as f64 / hz) < window.start_s);
-    for index in first.saturating_sub(1)..pulses.steps.len() {
-        let (Some(from_s), Some(to_s)) = (seconds(index), seconds(index + 1)) else { break };
-        if from_s > window.end_s {
-            break;
-        }
-        if let Some(value) = step_acceleration::of(pulses.steps, index, hz) {
-            window.columns(from_s, to_s).for_each(|column| band.take(column, value));
-        }
-    }
+    pulses.accelerations(window.start_s, window.end_s, &mut |from_s, to_s, value| {
+        window.columns(from_s, to_s).for_each(|column| band.take(column, value));
+    });
     band
 }
 

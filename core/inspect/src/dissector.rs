@@ -150,8 +150,10 @@ impl Reading<'_> {
                 let ignored = (!bytes.is_empty()).then(|| field("ignored", 0..bytes.len(), "until a gap"));
                 Meaning { fields: ignored.into_iter().collect(), check: Check::None }
             }
+            // On a raw line a reply was recorded, of a device that answers.
+            (Protocol::Framed, _) | (_, RowOutcome::Reply(_)) => self.framed(bytes),
+            (_, RowOutcome::Recorded) => Meaning { fields: Vec::new(), check: Check::None },
             (Protocol::Raw, _) => Meaning { fields: raw(bytes, self.addressed), check: Check::None },
-            (Protocol::Framed, _) => self.framed(bytes),
         }
     }
 
@@ -177,6 +179,14 @@ impl Reading<'_> {
         }
         Meaning { fields, check }
     }
+}
+
+/// The reply that the frame of a row is, if its check holds.
+pub(crate) fn reply(bytes: &[u8]) -> Option<Reply> {
+    let content = Content::of(bytes, last_frame(bytes));
+    let check @ Check::Compared { found, expected } = content.check() else { return None };
+    let [address, kind, body @ ..] = content.without(check) else { return None };
+    if found == expected { Reply::parse(Frame { address: *address, kind: *kind, body }) } else { None }
 }
 
 /// What the frame of a row carries, and whether it is whole COBS.

@@ -179,7 +179,7 @@ impl<'a> PacketTable<'a> {
         let row = self.logged(index)?;
         Some(match row.outcome {
             RowOutcome::Collision => RowKind::Collision,
-            RowOutcome::Reply(_) => RowKind::Reply,
+            RowOutcome::Reply(_) | RowOutcome::Recorded => RowKind::Reply,
             _ if self.own.protocol() == Protocol::Raw => RowKind::Packet,
             _ if self.is_of_another_controller(index, row) => RowKind::Reply,
             _ => RowKind::Frame,

@@ -4,7 +4,9 @@
 //! ```text
 //! records in cycles  ->  figures     steps, rates, turns, pulse widths of each channel
 //!                        serial      bytes of RX and TX, their rate and what they seem to be
+//!                        overview    all of it at a glance, a column a pixel
 //!                        packets     what RX and TX say, packet by packet
+//!                        replies     what TX says, for the table of packets
 //!                        alignment   each step beside the model's
 //!                        drift       the clocks' line through how late they are
 //!                        scenario    a list of segments, or a line script
@@ -35,7 +37,9 @@ pub mod events;
 pub mod figures;
 #[cfg(feature = "capture")]
 pub mod opened;
+pub mod overview;
 pub mod packets;
+pub mod replies;
 pub mod report;
 pub mod scenario;
 pub mod serial;

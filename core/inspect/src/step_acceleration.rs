@@ -27,6 +27,7 @@ pub(crate) const HALF: usize = 8;
 /// At a step, in steps/s^2, with sign; `None` where there are no eight steps in one direction on either side, or where all of
 /// a half share a cycle.
 #[must_use]
+#[inline(never)]
 pub fn of(steps: &[Step], middle: usize, hz: f64) -> Option<f64> {
     let [from, at, to] =
         [middle.checked_sub(HALF)?, middle, middle.checked_add(HALF)?].map(|index| steps.get(index));

@@ -15,6 +15,8 @@ use stepscope_core::{
         read::{Limits, Reading, read},
     },
     inspect::{
+        actual_motion::Pulses,
+        curves::{Window, actual},
         recording::{
             alignment::{Comparison, Side},
             opened::{Ask, Opened, Part},
@@ -36,6 +38,8 @@ use stepscope_core::{
 const TAIL: usize = 16;
 /// Most changes, bytes or positions that are read.
 const MOST: usize = 2_000;
+/// Columns that all of it is looked at in.
+const COLUMNS: usize = 7;
 /// Positions may stand for so many steps; tables of more are left alone, since only their number makes the work.
 const MAX_STEPS: u64 = 20_000;
 /// Runs that cost no more records and bytes than these are made.
@@ -237,8 +241,23 @@ fn open(capture: Capture, ask: &Ask) {
     // Looked at where it lies it is the same; of a part the figures are.
     let [whole, few] =
         [usize::MAX, 3].map(|most| Opened::of_part(&capture, ask, &Part { most, from_s: None, to_s: None }));
+    // From one part to another it is as if that were opened at once.
+    let part = Part { most: 3, from_s: None, to_s: None };
+    let again = whole.clone().and_then(|whole| whole.with_part(&capture, ask, &part));
+    assert_eq!(again, few);
+    let glance = Opened::overview(&capture, ask, 0, COLUMNS);
     let opened = Opened::new(capture, ask);
     assert_eq!(whole, opened);
+    match (&opened, glance) {
+        (Ok(opened), Ok(Some(glance))) => {
+            let steps = opened.steps_of(0);
+            let pulses = Pulses::recorded(0, &steps, opened.clock_hz);
+            let window = Window { start_s: 0.0, end_s: opened.end_s, columns: COLUMNS };
+            assert_eq!(format!("{glance:?}"), format!("{:?}", actual(&pulses, window)));
+        }
+        (Ok(_), glance) => assert_eq!(glance, Ok(None)),
+        (Err(_), _) => {}
+    }
     if let (Ok(few), Ok(opened)) = (few, &opened) {
         assert!(few.records.len() <= 3 && few.report == opened.report, "{few:?}");
     }

@@ -67,6 +67,7 @@ mod presets;
 mod programs;
 mod recording;
 mod recording_kept;
+mod recording_views;
 mod reflow;
 mod rows;
 mod screens;

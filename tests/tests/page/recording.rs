@@ -49,7 +49,7 @@ pub(crate) const MESSAGE: &str = "document.getElementById('link-message').innerT
 pub(crate) const DISTANCE: &str = "source.motion.axes[0].moves[0].cosine.distance";
 
 /// What a firmware made of a cosine of 200 steps, as Saleae Logic saves it: no pulse comes in time.
-fn cosine() -> String {
+pub(crate) fn cosine() -> String {
     let mut table = "Time [s],X_STEP,X_DIR\n0.000000000,0,0\n0.010000000,0,1\n".to_owned();
     for step in 0..STEPS {
         let part = (f64::from(step) + 0.5) / f64::from(STEPS);
@@ -62,7 +62,7 @@ fn cosine() -> String {
 }
 
 /// Some signals of a run, as Saleae Logic saves them.
-fn saleae(trace: &[Record], clock_hz: u32, signals: &[(&str, u64)]) -> String {
+pub(crate) fn saleae(trace: &[Record], clock_hz: u32, signals: &[(&str, u64)]) -> String {
     let head: Vec<&str> = signals.iter().map(|(name, _)| *name).collect();
     let mut table = format!("Time [s],{}\n", head.join(","));
     for record in trace {
@@ -102,7 +102,7 @@ pub(crate) async fn choose_file(page: &Session, name: &str, text: &str) -> Resul
 }
 
 /// Waits until the dialog says so of the recording.
-async fn says(page: &Session, text: &str) -> Result<()> {
+pub(crate) async fn says(page: &Session, text: &str) -> Result<()> {
     page.until(&format!("{RESULT}.includes({})", json!(text))).await
 }
 
@@ -112,7 +112,7 @@ fn named(name: &str) -> String {
 }
 
 /// Types into a field of the dialog, in place of what stands there.
-async fn type_into(page: &Session, label: &str, text: &str) -> Result<()> {
+pub(crate) async fn type_into(page: &Session, label: &str, text: &str) -> Result<()> {
     let script = "const label = [...document.querySelectorAll('dialog.recording label')].find((label) => label.textContent.startsWith(arguments[0]));
         const input = label.control; input.value = arguments[1];
         return input.dispatchEvent(new Event('input', { bubbles: true }));";

@@ -6,6 +6,10 @@ import { QUANTITIES, unitFor, unitOf } from "./bands.js";
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").Readings} Readings */
 
+/** What the acceleration of steps is that no plan is known of (step_acceleration.rs). */
+const OF_STEPS =
+  "Acceleration of the pulses: the rate of the eight steps from here less that of the eight before, by the time between their middles. Where there are no eight in one direction it is not known; mean and RMS are those of the rest.";
+
 /** @param {{engine: import("../../engine/engine.js").Engine}} page */
 export function createBetween({ engine }) {
   const place = byId("between");
@@ -32,7 +36,9 @@ export function createBetween({ engine }) {
         ["ideal", answer.ideal],
         ["from pulses", answer.actual],
       ].flatMap(([name, readings]) =>
-        readings ? [table(state, /** @type {string} */ (name), /** @type {Readings} */ (readings))] : [],
+        readings
+          ? [table(state, /** @type {string} */ (name), /** @type {Readings} */ (readings), answer.ideal !== null)]
+          : [],
       ),
     );
     const mean = QUANTITIES.flatMap((quantity, index) => {
@@ -41,6 +47,7 @@ export function createBetween({ engine }) {
         ? []
         : [`${quantity} ${short(from.mean[index] * unitOf(state).scale)} ${unitFor(state, quantity)}`];
     });
+    byId("between-tables").append(...(answer.ideal ? [] : [element("p", { class: "note" }, OF_STEPS)]));
     said = `Between the cursors: ${span}; means of ${answer.ideal ? "the ideal curve" : "the pulses"}: ${mean.join(", ")}.`;
     place.hidden = false;
   }
@@ -48,17 +55,18 @@ export function createBetween({ engine }) {
   return { render, sentence: () => said };
 }
 
-/** @param {State} state @param {string} name @param {Readings} readings */
-function table(state, name, { at_a, at_b, mean, rms }) {
+/** @param {State} state @param {string} name @param {Readings} readings @param {boolean} hasPlan */
+function table(state, name, { at_a, at_b, mean, rms }, hasPlan) {
   const { scale } = unitOf(state);
   const head = [name, "A", "B", "B−A", "mean", "RMS"].map((text, index) =>
     element("th", { scope: "col", class: index ? "number" : "" }, text),
   );
   const rows = QUANTITIES.map((quantity, index) => {
     const values =
-      at_a[index] === undefined ? [] : [at_a[index], at_b[index], at_b[index] - at_a[index], mean[index], rms[index]];
+      mean[index] === undefined ? [] : [at_a[index], at_b[index], at_b[index] - at_a[index], mean[index], rms[index]];
     const cells = values.map((value) => element("td", { class: "number" }, short(value * scale, 6)));
-    const none = element("td", { class: "none", colspan: "5" }, "– speed is stepwise, acceleration undefined");
+    const why = hasPlan ? "speed is stepwise, acceleration undefined" : "no eight steps before and after";
+    const none = element("td", { class: "none", colspan: "5" }, `– ${why}`);
     return element("tr", {}, element("th", { scope: "row" }, quantity), ...(cells.length ? cells : [none]));
   });
   return element(

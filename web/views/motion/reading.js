@@ -102,7 +102,7 @@ export function createReading({ engine, now }) {
         const values = [
           ["ideal", readingOf(answer.ideal, index)],
           ["from pulses", readingOf(answer.actual, index)],
-        ].flatMap(([name, value]) => (value === undefined ? [] : [`${name} ${exact(Number(value) * scale)}`]));
+        ].flatMap(([name, value]) => (Number.isFinite(value) ? [`${name} ${exact(Number(value) * scale)}`] : []));
         return values.length ? [`${quantity}: ${values.join(", ")} ${unitFor(state, quantity)}.`] : [];
       });
       say(

@@ -219,7 +219,7 @@ function facts(row, said) {
       : [
           [
             "turnaround",
-            `${said(row.turnaround_cycles)} after the end of #${count(row.answers ?? 0)}; DE rises after ${said(row.drive_cycles ?? 0)}`,
+            `${said(row.turnaround_cycles)} after the end of #${count(row.answers ?? 0)}${row.drive_cycles === null ? "" : `; DE rises after ${said(row.drive_cycles)}`}`,
           ],
         ];
   const all = [

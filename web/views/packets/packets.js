@@ -7,7 +7,6 @@ import { unlessDropped } from "../../engine/engine.js";
 import { listen } from "../../shell/commands.js";
 import { count } from "../../state/number.js";
 import { shown } from "../../state/state.js";
-import { copyAll, copyHex } from "./copy.js";
 import { createInspector } from "./inspector.js";
 import { createSearch } from "./search.js";
 import { createTable } from "./table.js";
@@ -69,10 +68,15 @@ export function createPackets(page) {
     if (row) choose(row, true);
   });
   byId("packet-copy").addEventListener("click", () => copyRow(inspector.row()));
-  byId("packets-copy-all").addEventListener("click", () => copyAll(engine));
+  /** @param {(loaded: typeof import("./copy.js")) => any} work */
+  const copy = (work) =>
+    import("./copy.js").then(work, () =>
+      say(byId("packets-note"), "This part of the page could not be loaded; try again when the network is there."),
+    );
+  byId("packets-copy-all").addEventListener("click", () => copy(({ copyAll }) => copyAll(engine)));
   /** @param {PacketRow | null} row */
   async function copyRow(row) {
-    if (row) await copyHex(row.hex, `Row ${row.index}`);
+    if (row) await copy(({ copyHex }) => copyHex(row.hex, `Row ${row.index}`));
   }
 
   listen(byId("packets"), "Packets", [

@@ -4,7 +4,7 @@ use super::{Mark, PacketTable, Row};
 use crate::dissector::Check;
 use alloc::{format, string::String, vec::Vec};
 use serde::Serialize;
-use stepscope_peripheral::{trace::RowOutcome, units::Cycles};
+use stepscope_peripheral::units::Cycles;
 
 /// Bit times from the cycle in which a frame is taken to the reply's first start bit (DESIGN A6), and
 /// from there back to the rise of DE.
@@ -33,7 +33,7 @@ pub struct Detail {
     pub byte_length: u64,
     /// Cycles since the end of what was on the line before.
     pub gap_cycles: Option<u64>,
-    /// From the end of the frame that is answered to the rise of DE.
+    /// From the end of the frame that is answered to the rise of DE; not of a recorded reply.
     pub drive_cycles: Option<u64>,
     /// From there to the first start bit.
     pub turnaround_cycles: Option<u64>,
@@ -84,20 +84,28 @@ impl PacketTable<'_> {
             byte_cycles: bytes.iter().map(|byte| byte.start).collect(),
             byte_length: bytes.first().map_or(0, |byte| byte.end - byte.start),
             gap_cycles: self.gap(index),
-            drive_cycles: turnaround.map(|cycles| cycles.saturating_sub((REPLY_BITS - DE_BITS) * bit)),
+            drive_cycles: turnaround
+                .filter(|_| !self.log.is_answered())
+                .map(|cycles| cycles.saturating_sub((REPLY_BITS - DE_BITS) * bit)),
             turnaround_cycles: turnaround,
             answers,
             row,
         })
     }
 
-    /// The row that a reply of this controller answers.
+    /// The row that a reply of this controller answers: the frame whose end it waited for; of a recorded one, which comes when
+    /// the device was ready, the last frame before it.
     pub(super) fn answered(&self, index: usize) -> Option<usize> {
-        let reply = self.logged(index).filter(|row| matches!(row.outcome, RowOutcome::Reply(_)))?;
+        let reply = self.logged(index).filter(|_| self.is_own_reply(index))?;
         let wait = Cycles(REPLY_BITS * self.own.bit().0);
         let is_frame = |at: &usize| {
             self.logged(*at).is_some_and(|row| {
-                row.end + wait == reply.start && Mark::of(row.outcome) != Mark::OtherAddress
+                let is_before = if self.log.is_answered() {
+                    !self.is_own_reply(*at) && row.end <= reply.start
+                } else {
+                    row.end + wait == reply.start
+                };
+                is_before && Mark::of(row.outcome) != Mark::OtherAddress
             })
         };
         (index.saturating_sub(NEAR)..index).rev().find(is_frame)

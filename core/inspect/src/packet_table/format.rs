@@ -71,6 +71,7 @@ pub(super) fn short(row: RowOutcome) -> String {
         RowOutcome::Ignored => "\u{2715} ignored".to_owned(),
         RowOutcome::Collision => "\u{2715} collision".to_owned(),
         RowOutcome::Open => "\u{2715} not complete".to_owned(),
+        RowOutcome::Recorded => "\u{2715} unknown".to_owned(),
         row => {
             let full = outcome(row);
             match full.strip_prefix("dropped: ").or_else(|| full.strip_prefix("refused: ")) {

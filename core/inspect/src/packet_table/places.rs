@@ -24,7 +24,8 @@ pub struct PlacedByte {
 impl PacketTable<'_> {
     /// Whether this controller sent a row.
     pub(crate) fn is_own_reply(&self, index: usize) -> bool {
-        self.logged(index).is_some_and(|row| matches!(row.outcome, RowOutcome::Reply(_)))
+        self.logged(index)
+            .is_some_and(|row| matches!(row.outcome, RowOutcome::Reply(_) | RowOutcome::Recorded))
     }
 
     /// The bytes of a row with their places.
@@ -55,7 +56,7 @@ impl PacketTable<'_> {
     pub fn line_end(&self, index: usize) -> u64 {
         let Some(row) = self.logged(index) else { return 0 };
         match row.outcome {
-            RowOutcome::Reply(_) | RowOutcome::Collision => row.end.0,
+            RowOutcome::Reply(_) | RowOutcome::Recorded | RowOutcome::Collision => row.end.0,
             // Complete with the look at a stop bit, half a bit and nine after the start bit was seen.
             RowOutcome::Packet(_) | RowOutcome::Frame(_) | RowOutcome::Framing => {
                 let (Cycles(bit), Cycles(byte)) = (self.own.bit(), self.host_times().byte(1));

@@ -15,10 +15,12 @@
 use super::{
     events::{Events, Kind},
     figures::StepFigures,
-    report::{ChannelReport, LineReport, Report, Survey},
+    overview::Overview,
+    report::{ChannelReport, LineReport, Report, Survey, steps},
     scenario::{self, Bytes, Made, Refused, Steps},
     serial::{Heard, HeardByte},
 };
+use crate::curves::{Actual, Window};
 use alloc::{
     borrow::ToOwned,
     format,
@@ -273,18 +275,63 @@ impl Opened {
         let mut passed = all.clone();
         let survey = Survey::of(passed.by_ref());
         opened.rounding = passed.rounding.to_string();
-        let report = Report::of_all(all.clone(), survey.changing, clock_hz, opened.channels, ask.baud);
-        if survey.count <= part.most && part.from_s.is_none() && part.to_s.is_none() {
-            opened.records.reserve_exact(survey.count);
-            opened.records.extend(all);
-        } else {
-            let tick_s = base.seconds();
-            let from_s = part.from_s.unwrap_or(0.0).clamp(0.0, opened.end_s);
-            let rest = Records::from(capture, &map, base, clock_hz, (from_s / tick_s) as u64);
-            opened.keep(rest.map_err(OpenError::TooLate)?, survey.count, from_s, part);
-        }
+        let report = Report::of_all(all, survey.changing, clock_hz, opened.channels, ask.baud);
+        opened.take_part(capture, &map, base, part, survey.count)?;
         opened.told(report, &map);
         Ok(opened)
+    }
+
+    /// The same recording, of which another part is kept: what it comes to is known. `ask` is as it was, and it is where it was
+    /// recorded ([`Self::align`]).
+    ///
+    /// # Errors
+    /// [`OpenError`].
+    pub fn with_part(mut self, capture: &Capture, ask: &Ask, part: &Part) -> Result<Self, OpenError> {
+        let (Self { end_s, .. }, map, base) = Self::before(capture, ask)?;
+        let Some(base) = base.filter(|_| !capture.changes.is_empty()) else { return Ok(self) };
+        let count = self.kept.take().map_or(self.records.len(), |kept| kept.of);
+        self.end_s = end_s;
+        // Its memory is there for the others.
+        self.records = Vec::new();
+        self.take_part(capture, &map, base, part, count)?;
+        Ok(self)
+    }
+
+    /// Takes the records of a part, of so many.
+    fn take_part(
+        &mut self,
+        capture: &Capture,
+        map: &ChannelMap,
+        base: Timebase,
+        part: &Part,
+        count: usize,
+    ) -> Result<(), OpenError> {
+        if count <= part.most && part.from_s.is_none() && part.to_s.is_none() {
+            self.records.reserve_exact(count);
+            self.records.extend(Records::of(capture, map, base, self.clock_hz).map_err(OpenError::TooLate)?);
+        } else {
+            let from_s = part.from_s.unwrap_or(0.0).clamp(0.0, self.end_s);
+            let rest = Records::from(capture, map, base, self.clock_hz, (from_s / base.seconds()) as u64);
+            self.keep(rest.map_err(OpenError::TooLate)?, count, from_s, part);
+        }
+        Ok(())
+    }
+
+    /// All of a channel at a glance, in so many columns; `None` where no levels were recorded.
+    ///
+    /// # Errors
+    /// [`OpenError`].
+    pub fn overview(
+        capture: &Capture,
+        ask: &Ask,
+        channel: u8,
+        columns: usize,
+    ) -> Result<Option<Actual>, OpenError> {
+        let (Self { end_s, clock_hz, .. }, map, base) = Self::before(capture, ask)?;
+        let Some(base) = base.filter(|_| !capture.changes.is_empty() && columns > 0) else { return Ok(None) };
+        let records = Records::of(capture, &map, base, clock_hz).map_err(OpenError::TooLate)?;
+        let window = Window { start_s: 0.0, end_s, columns };
+        Ok(Some(Overview::of(steps(records, channel), f64::from(clock_hz), window)))
     }
 
     /// Keeps a part of all records: the `rest` from a time on.
@@ -632,6 +679,28 @@ mod tests {
             Opened::of_part(&capture(), &asked(), &Part { most, from_s, to_s }).expect("it opens")
         };
         assert_eq!(part(9, None, None), whole);
+        // From one part to another it is as if it were opened with that at once.
+        let parts = [
+            (4, None, None),
+            (9, None, None),
+            (9, Some(0.0015), Some(0.0025)),
+            (1, None, None),
+            (9, Some(9.0), None),
+        ];
+        for (most, from_s, to_s) in parts {
+            for (after, from, to) in parts {
+                let again = part(most, from_s, to_s).with_part(
+                    &capture(),
+                    &asked(),
+                    &Part { most: after, from_s: from, to_s: to },
+                );
+                assert_eq!(
+                    again,
+                    Ok(part(after, from, to)),
+                    "{most} {from_s:?} {to_s:?}, then {after} {from:?} {to:?}"
+                );
+            }
+        }
         let records = |of: &Opened| -> Vec<(u64, u64)> {
             of.records.iter().map(|record| (record.cycle.0, record.levels.0 & 1)).collect()
         };
@@ -661,6 +730,20 @@ mod tests {
             let run = found.shown_scenario("own.csv", true).run_cycles.expect("it ends");
             assert!(run > records(&found).last().expect("one").0 && run <= 5101, "{run}");
         }
+    }
+
+    #[test]
+    fn the_overview_is_of_all_and_there_is_one_of_levels_alone() {
+        let found = Opened::overview(&capture(), &asked(), 0, 5).expect("it opens").expect("levels");
+        // 5.1 ms in five columns, a step in each of the first three and in the last.
+        assert_eq!(found.position.max, [1.0, 2.0, 3.0, 3.0, 4.0]);
+        assert_eq!((found.speed.max[1].round(), found.speed.max[4].round()), (1000.0, 500.0));
+        let still = Opened::overview(&capture(), &asked(), 1, 2).expect("it opens").expect("levels");
+        assert_eq!(still.position.max, [0.0, 0.0]);
+        assert_eq!(Opened::overview(&capture(), &asked(), 0, 0), Ok(None));
+        let bytes = "0.1: 55\n0.2: AA\n";
+        let bytes = read(std::io::Cursor::new(bytes), &Limits::default(), &mut |_| true).capture;
+        assert_eq!(Opened::overview(&bytes, &Ask::default(), 0, 5), Ok(None));
     }
 
     #[test]

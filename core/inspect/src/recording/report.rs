@@ -128,7 +128,7 @@ impl Report {
 
 /// The steps of a channel, one after the other, as [`stepscope_peripheral::trace::steps_in`] has them of records that
 /// lie together.
-fn steps(records: impl Iterator<Item = Record>, channel: u8) -> impl Iterator<Item = Step> {
+pub(super) fn steps(records: impl Iterator<Item = Record>, channel: u8) -> impl Iterator<Item = Step> {
     let mask = 1_u16 << (channel & 15);
     // A level that is there from the first record on has not risen.
     let (mut before, mut position) = (u16::MAX, 0_i32);

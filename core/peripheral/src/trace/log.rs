@@ -24,6 +24,8 @@ pub enum RowOutcome {
     Frame(FrameOutcome),
     /// What the controller answered to the frame before.
     Reply(Reply),
+    /// What was recorded of the controller's own line, and is no reply that is known.
+    Recorded,
     /// The controller drove the line while another did.
     Collision,
     /// The run ended within it.
@@ -45,6 +47,7 @@ impl fmt::Display for RowOutcome {
             Self::Ignored => "ignored until a gap",
             Self::Frame(frame) => return frame.fmt(f),
             Self::Reply(reply) => return reply.fmt(f),
+            Self::Recorded => "recorded: no known reply",
             Self::Collision => "collision: the controller and another drive the line",
             Self::Open => "not complete",
         })
@@ -69,6 +72,19 @@ pub struct LoggedPacket {
     bytes_end: usize,
     /// The latest end of all rows to here, once the log is finished: a long row may end after later ones.
     latest: Instant,
+}
+
+/// A reply that was recorded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RecordedReply {
+    /// Where its first start bit falls.
+    pub start: Instant,
+    /// First cycle after its last byte.
+    pub end: Instant,
+    /// Its bytes.
+    pub bytes: Vec<u8>,
+    /// What they say, if that is known.
+    pub reply: Option<Reply>,
 }
 
 /// A tick that has begun.
@@ -102,6 +118,8 @@ pub struct PacketLog {
     stops: Vec<Instant>,
     /// When a tick with steps ended and none was there to follow.
     underruns: Vec<Instant>,
+    /// Its replies were recorded: they come when they came.
+    is_answered: bool,
 }
 
 impl PacketLog {
@@ -152,6 +170,54 @@ impl PacketLog {
         &self.underruns
     }
 
+    /// Whether its replies were recorded, and are not those that the controller made.
+    #[must_use]
+    pub const fn is_answered(&self) -> bool {
+        self.is_answered
+    }
+
+    /// Puts replies that were recorded, in the order of their starts, in the place of those that the controller made. The log
+    /// is finished.
+    #[inline(never)]
+    pub fn answer(&mut self, recorded: &[RecordedReply]) {
+        let mut recorded = recorded.iter().peekable();
+        let made = core::mem::take(&mut self.rows);
+        let mut place = alloc::vec![None; made.len()];
+        for (row, place) in made.into_iter().zip(&mut place) {
+            if matches!(row.outcome, RowOutcome::Reply(_)) {
+                continue;
+            }
+            while let Some(reply) = recorded.next_if(|reply| reply.start < row.start) {
+                self.push_recorded(reply);
+            }
+            *place = Some(self.rows.len());
+            self.rows.push(row);
+        }
+        recorded.for_each(|reply| self.push_recorded(reply));
+        for tick in &mut self.ticks {
+            tick.row = tick.row.and_then(|row| place.get(row).copied().flatten());
+        }
+        self.is_answered = true;
+        self.finish();
+    }
+
+    #[inline(never)]
+    fn push_recorded(&mut self, RecordedReply { start, end, bytes, reply }: &RecordedReply) {
+        let bytes_start = self.bytes.len();
+        self.bytes.extend_from_slice(bytes);
+        self.seen.resize(self.bytes.len(), *start);
+        self.rows.push(LoggedPacket {
+            start: *start,
+            end: *end,
+            outcome: reply.map_or(RowOutcome::Recorded, RowOutcome::Reply),
+            tick_start: None,
+            tick_end: None,
+            bytes_start,
+            bytes_end: self.bytes.len(),
+            latest: *end,
+        });
+    }
+
     /// Indices of the rows of a finished log whose time on the line touches the cycles `start..=end`, rising.
     pub fn touching(&self, start: Instant, end: Instant) -> impl Iterator<Item = usize> {
         let first = self.rows.partition_point(|row| row.latest < start);
@@ -160,6 +226,7 @@ impl PacketLog {
     }
 
     /// The run is over: what is still open becomes a row, and the rows stand in the order of their starts.
+    #[inline(never)]
     pub fn finish(&mut self) {
         debug_assert!(self.broken.is_sorted(), "framing errors go back in time");
         if self.open.is_some() {
@@ -324,6 +391,56 @@ mod tests {
         assert_eq!(log.rows()[1].tick_start, None);
         let ends = [0, 1].map(|tick| log.tick_end(&log.ticks()[tick], Cycles(2)).0);
         assert_eq!(ends, [107, 107], "the first by itself, the second by the stop");
+    }
+
+    #[test]
+    fn recorded_replies_take_the_place_of_those_that_were_made_and_ticks_keep_their_rows() {
+        let status = crate::protocol::Status {
+            state: crate::protocol::State::Ready,
+            free: 1,
+            expected_seq: 2,
+            faults: 0,
+            ticks_done: 3,
+        };
+        let reply = Reply { address: 1, answer: Ok(Kind::Ticks), status };
+        let mut log = PacketLog::default();
+        for seen in [10, 200] {
+            log.event(Instant(seen + 5), Event::Byte { seen: Instant(seen), byte: seen as u8 });
+            log.event(Instant(seen + 6), Event::Frame(FrameOutcome::Queued(1)));
+            let (start, end) = (Instant(seen + 50), Instant(seen + 90));
+            log.event(Instant(seen + 6), Event::Reply { start, end, reply, positions: None });
+            log.event(Instant(seen + 7), Event::TickStart { orders: [0; 16] });
+        }
+        log.finish();
+        assert_eq!(log.rows().len(), 4);
+        let recorded = |start, reply| RecordedReply {
+            start: Instant(start),
+            end: Instant(start + 30),
+            bytes: alloc::vec![start as u8; 2],
+            reply,
+        };
+        log.answer(&[recorded(5, None), recorded(70, Some(reply)), recorded(900, None)]);
+        let rows: Vec<_> = log
+            .rows()
+            .iter()
+            .enumerate()
+            .map(|(row, told)| (told.start.0, told.outcome, log.bytes(row)))
+            .collect();
+        let queued = RowOutcome::Frame(FrameOutcome::Queued(1));
+        assert_eq!(
+            rows,
+            [
+                (5, RowOutcome::Recorded, [5, 5].as_slice()),
+                (10, queued, &[10]),
+                (70, RowOutcome::Reply(reply), &[70, 70]),
+                (200, queued, &[200]),
+                (900, RowOutcome::Recorded, &[132, 132]),
+            ]
+        );
+        assert_eq!(log.seen(2), [Instant(70), Instant(70)]);
+        assert_eq!(log.ticks().iter().map(|tick| tick.row).collect::<Vec<_>>(), [Some(1), Some(3)]);
+        assert_eq!(log.touching(Instant(20), Instant(80)).collect::<Vec<_>>(), [0, 2]);
+        assert!(log.is_answered() && !PacketLog::default().is_answered());
     }
 
     #[test]

@@ -26,7 +26,7 @@ mod steps;
 mod text;
 
 pub use digest::Digest;
-pub use log::{LoggedPacket, LoggedTick, PacketLog, RowOutcome};
+pub use log::{LoggedPacket, LoggedTick, PacketLog, RecordedReply, RowOutcome};
 pub use recording::{Recording, levels_at};
 pub use steps::{Step, steps, steps_in};
 pub use text::{ParseError, parse_line, write_record};

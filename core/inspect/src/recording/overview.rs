@@ -1,0 +1,155 @@
+//! All of a recording at a glance: least and greatest position and speed of a channel in each pixel column, made in one pass over
+//! steps that come one after the other and are kept nowhere. It is what [`crate::curves::actual`] makes of steps that lie together.
+//!
+//! ```text
+//! changes, 2 to 4 bytes each  ->  steps, one at a time  ->  columns, 32 bytes each
+//! ```
+//!
+//! ```
+//! use stepscope_inspect::{curves::Window, recording::overview::Overview};
+//! use stepscope_peripheral::trace::Step;
+//!
+//! // A step every 10 ms in the second of two halves.
+//! let steps = (1..=10).map(|k| Step { cycle: 100 + 10 * k, position: k as i32 });
+//! let found = Overview::of(steps, 1000.0, Window { start_s: 0.0, end_s: 0.21, columns: 2 });
+//! assert_eq!((found.position.max, found.speed.max), (vec![0.0, 10.0], vec![0.0, 100.0]));
+//! ```
+
+use crate::curves::{Actual, Band, Window};
+use stepscope_peripheral::trace::Step;
+
+/// The columns as far as the steps have come.
+#[derive(Clone, Debug)]
+pub struct Overview {
+    window: Window,
+    hz: f64,
+    position: Band,
+    speed: Band,
+    /// The first column that no step has come to yet.
+    next: usize,
+    /// Position and cycle of the step before.
+    place: i32,
+    last: Option<u64>,
+    /// Where the last speed ends that is known.
+    moved_to_s: f64,
+}
+
+impl Overview {
+    /// Of steps one after the other, in cycles of `hz`.
+    #[must_use]
+    pub fn of(steps: impl IntoIterator<Item = Step>, hz: f64, window: Window) -> Actual {
+        let mut overview = Self {
+            window,
+            hz,
+            position: Band::new(window.columns),
+            speed: Band::new(window.columns),
+            next: 0,
+            place: 0,
+            last: None,
+            moved_to_s: window.start_s,
+        };
+        for step in steps {
+            overview.take(step);
+            // Its speed reaches past the end: nothing of what follows is within.
+            if step.cycle as f64 / hz > window.end_s {
+                break;
+            }
+        }
+        overview.reach(window.columns);
+        overview.speed.still(window, overview.moved_to_s, window.end_s);
+        Actual { position: overview.position, speed: overview.speed }
+    }
+
+    fn take(&mut self, step: Step) {
+        let step_s = step.cycle as f64 / self.hz;
+        if let Some(last) = self.last.replace(step.cycle).filter(|_| step_s > self.window.start_s) {
+            let way = f64::from(step.position.wrapping_sub(self.place));
+            self.rate(last as f64 / self.hz, step_s, self.hz / (step.cycle - last) as f64 * way);
+        }
+        if step_s >= self.window.start_s {
+            let column = self.window.column(step_s).max(0) as usize;
+            self.reach(column.saturating_add(1).min(self.window.columns));
+            self.position.take(column, f64::from(step.position));
+        }
+        self.place = step.position;
+    }
+
+    /// The columns before this one begin with the position that there is.
+    fn reach(&mut self, column: usize) {
+        for column in self.next..column {
+            self.position.take(column, f64::from(self.place));
+        }
+        self.next = self.next.max(column);
+    }
+
+    fn rate(&mut self, from_s: f64, to_s: f64, speed: f64) {
+        if from_s >= self.window.end_s {
+            return;
+        }
+        self.speed.still(self.window, self.moved_to_s, from_s);
+        for column in self.window.columns(from_s, to_s) {
+            self.speed.take(column, speed);
+        }
+        self.moved_to_s = to_s;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{actual_motion::Pulses, curves::actual};
+    use alloc::vec::Vec;
+
+    /// Steps there and back, with a rest between, in cycles of 1 us.
+    fn steps() -> Vec<Step> {
+        let (mut cycle, mut position) = (20_000, 0);
+        let there = (0..300_u64).map(|k| (1, 2000 - 6 * k));
+        let back = (0..250_u64).map(|k| (-1, if k == 0 { 90_000 } else { 400 + 3 * k }));
+        let step = |(way, interval)| {
+            cycle += interval;
+            position += way;
+            Step { cycle, position }
+        };
+        there.chain(back).map(step).collect()
+    }
+
+    #[test]
+    fn one_pass_over_steps_makes_the_columns_that_are_made_of_steps_that_lie_together() {
+        let steps = steps();
+        let pulses = Pulses::recorded(0, &steps, 1_000_000);
+        let end_s = steps.last().expect("steps").cycle as f64 / 1e6;
+        for (start_s, end_s, columns) in [
+            (0.0, end_s, 100),
+            (0.0, end_s * 1.3, 37),
+            (0.1, 0.3, 7),
+            (0.02, 0.023, 50),
+            (0.4, 0.45, 1),
+            (2.0 * end_s, 3.0 * end_s, 4),
+        ] {
+            let window = Window { start_s, end_s, columns };
+            let (found, expected) =
+                (Overview::of(steps.iter().copied(), 1e6, window), actual(&pulses, window));
+            let close = |found: &[f64], expected: &[f64], what: &str| {
+                assert_eq!(found.len(), expected.len());
+                for (column, (found, expected)) in found.iter().zip(expected).enumerate() {
+                    assert!(
+                        (found - expected).abs() <= 1e-9 * expected.abs()
+                            || found.is_nan() && expected.is_nan(),
+                        "{what} of column {column} of {window:?}: {found} {expected}"
+                    );
+                }
+            };
+            close(&found.position.min, &expected.position.min, "least position");
+            close(&found.position.max, &expected.position.max, "greatest position");
+            close(&found.speed.min, &expected.speed.min, "least speed");
+            close(&found.speed.max, &expected.speed.max, "greatest speed");
+        }
+    }
+
+    #[test]
+    fn of_no_steps_nothing_moves() {
+        let window = Window { start_s: 0.0, end_s: 1.0, columns: 3 };
+        let none = Overview::of([], 1e6, window);
+        assert_eq!((none.position.max, none.speed.min), (Vec::from([0.0; 3]), Vec::from([0.0; 3])));
+    }
+}

@@ -1,0 +1,94 @@
+/** What the timing check found, as tables: a row a rule with what was measured, what is required and the slack; and the violations. */
+import { byId, element, fill, say } from "../dom.js";
+import { ruleName } from "../form/schema.js";
+import { count, si, time } from "../state/number.js";
+
+/** @typedef {import("../state/types.js").State} State */
+/** @typedef {import("../state/types.js").Timing} Timing */
+
+/**
+ * @param {Timing | null} timing  None without a driver.
+ * @param {{state: State, drivers: import("../state/types.js").DriverSheet[], toRule: (rule: string) => void,
+ *   required: (timing: Timing | null, rule: string) => string}} page
+ */
+export function paintTiming(timing, { state, drivers, toRule, required }) {
+  const body = /** @type {Element} */ (byId("violations").querySelector("tbody"));
+  const clock = state.result?.summary.clock_hz ?? 1;
+  const at = (/** @type {number} */ cycles) => si(cycles / clock, "s");
+  const sheet = drivers.find(({ id }) => id === timing?.driver);
+  const total = timing?.total ?? 0;
+  const kept = timing?.violations.length ?? 0;
+  say(byId("timing-driver"), sheet?.name ?? "rules of your own");
+  byId("timing-driver").title = sheet?.source ?? "";
+  const few = total > kept ? `; the first ${count(kept)} are listed` : "";
+  say(
+    byId("timing-total"),
+    total === 0
+      ? "The pulses meet the data sheet’s timing: no violation."
+      : `${count(total)} ${total === 1 ? "violation" : "violations"}${few}.`,
+  );
+  byId("timing-total").classList.toggle("error", total > 0);
+  for (const id of ["violation-previous", "violation-next", "pulses-violation-previous", "pulses-violation-next"]) {
+    /** @type {HTMLButtonElement} */ (byId(id)).disabled = total === 0;
+  }
+  byId("pulses-violations").hidden = timing === null;
+  say(
+    byId("pulses-violations-count"),
+    total === 0 ? "timing met" : `${count(total)} ${total === 1 ? "violation" : "violations"}`,
+  );
+  byId("pulses-violations-count").classList.toggle("error", total > 0);
+  const example = timing?.rules
+    .filter(({ required_ns }) => required_ns > 0)
+    .sort((one, other) => rounding(other, clock) - rounding(one, clock))[0];
+  say(
+    byId("timing-rounding"),
+    example
+      ? `Slack counts whole cycles of ${at(1)}: what a rule asks for is rounded up to them, as ${si(example.required_ns * 1e-9, "s")} to ${count(example.required_cycles)} cycles = ${at(example.required_cycles)}.`
+      : "",
+  );
+  byId("violations").hidden = total === 0;
+  const rows = (timing?.rules ?? []).map(({ rule, required_cycles, required_ns, least, violations }) => {
+    const slack = least === null ? null : least.measured_cycles - required_cycles;
+    const bad = violations > 0;
+    return element(
+      "tr",
+      bad ? { class: "bad" } : {},
+      element("th", { scope: "row" }, ruleButton(rule, bad, toRule)),
+      ...[
+        least ? at(least.measured_cycles) : "–",
+        required_ns === 0 ? "–" : si(required_ns * 1e-9, "s"),
+        slack === null || required_ns === 0 ? "–" : `${slack < 0 ? "" : "+"}${at(slack)}`,
+        bad ? count(violations) : required_ns === 0 ? "–" : "0",
+      ].map((text) => element("td", { class: "number" }, text)),
+    );
+  });
+  fill(/** @type {Element} */ (byId("margins").querySelector("tbody")), ...rows);
+  fill(
+    body,
+    ...(timing?.violations ?? []).map(({ cycle, channel, rule, measured_cycles }, index) =>
+      element(
+        "tr",
+        { "data-index": String(index) },
+        ...[String(channel), ruleName(rule), time(cycle / clock), at(measured_cycles), required(timing, rule)].map(
+          (text, column) => element("td", column === 1 ? {} : { class: "number" }, text),
+        ),
+      ),
+    ),
+  );
+}
+
+/** @param {string} rule @param {boolean} bad @param {(rule: string) => void} toRule */
+function ruleButton(rule, bad, toRule) {
+  const made = element(
+    "button",
+    { type: "button", title: bad ? "Show its first violation" : "Show its least margin" },
+    ruleName(rule),
+  );
+  made.addEventListener("click", () => toRule(rule));
+  return made;
+}
+
+/** How much longer than required the whole cycles of a rule are, in s. @param {import("../state/types.js").RuleResult} rule @param {number} clock */
+function rounding({ required_ns, required_cycles }, clock) {
+  return required_cycles / clock - required_ns * 1e-9;
+}
