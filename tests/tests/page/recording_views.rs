@@ -1,7 +1,7 @@
 //! A recording in the views: its acceleration at the cursors, its replies in the table of packets, which of both is on show, and a
 //! part of it that is picked from the whole.
 
-use std::{fmt::Write as _, io::Cursor};
+use std::io::Cursor;
 
 use anyhow::{Context, Result, ensure};
 use serde_json::json;
@@ -90,7 +90,7 @@ fn a_recordings_acceleration_is_read_at_the_cursors_and_between_them_and_said_wh
         page.until(&format!("{cells}.length === 5")).await?;
         let found: Vec<String> = page.eval(cells).await?;
         for (found, expected) in found.iter().zip(expected) {
-            let found: f64 = found.parse().with_context(|| format!("{found}"))?;
+            let found: f64 = found.parse().with_context(|| found.clone())?;
             ensure!((found - expected).abs() <= 1e-5 * expected.abs(), "{found}, wanted {expected}");
         }
         let said = page.text("#between-tables").await?;
