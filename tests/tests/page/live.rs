@@ -8,10 +8,10 @@ use serde_json::{Value, json};
 use crate::{axe, bench::in_browser, native::Known, session::Session};
 
 /// A tick of 20 ms: a queue that a busy machine does not let run dry.
-const FRAMED: &str = r#"{"line":{"protocol":"framed"},"bus":{"step_period_cycles":3200},
+pub(crate) const FRAMED: &str = r#"{"line":{"protocol":"framed"},"bus":{"step_period_cycles":3200},
     "source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":400},"duration_s":1}}]}]}}}"#;
 /// Long enough to be stopped on the way, on any machine.
-const LONG: &str = r#"{"line":{"protocol":"framed"},"bus":{"step_period_cycles":3200},
+pub(crate) const LONG: &str = r#"{"line":{"protocol":"framed"},"bus":{"step_period_cycles":3200},
     "source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":9000},"duration_s":20}}]}]}}}"#;
 /// Two controllers, the first of two channels.
 const TWO: &str = r#"{"line":{"protocol":"framed"},"bus":{"channels":2,"step_period_cycles":3200},
@@ -19,9 +19,9 @@ const TWO: &str = r#"{"line":{"protocol":"framed"},"bus":{"channels":2,"step_per
     "controllers":[{"address":1,"bus":{"channels":1,"step_period_cycles":3200},"axes":[{"moves":[{"cosine":{"distance":{"steps":100},"duration_s":1}}]}]}]}"#;
 
 /// A port of which the other end is: a controller of a scenario (`serve`), its host (`stream`), or nobody (`silent`); one that
-/// cannot be opened (`taken`).
+/// cannot be opened (`taken`). Who is there may stay when the port is closed, as a device does.
 const MOCK: &str = "
-    const [role, json] = arguments;
+    const [role, json, stays] = arguments;
     const main = document.getElementById('main').dataset;
     const worker = new Worker(main.liveWorker, { type: 'module' });
     const peer = (window.peer = { told: [], opened: [], closed: 0, lose() {}, end: () => worker.postMessage({ end: true }) });
@@ -33,6 +33,7 @@ const MOCK: &str = "
         async open(options) {
             if (role === 'taken') throw new DOMException('Failed to open serial port.', 'NetworkError');
             await ready;
+            await window.held;
             peer.opened.push(options.baudRate);
             const there = new TransformStream({ start(end) { peer.lose = () => end.error(new Error('The device has been lost.')); } });
             const back = new TransformStream();
@@ -41,20 +42,22 @@ const MOCK: &str = "
             // Who is at the other end and goes does not close the port.
             const wire = new TransformStream();
             wire.readable.pipeTo(there.writable, { preventClose: true }).catch(() => {});
-            worker.postMessage({ [role]: json, readable: back.readable, writable: wire.writable }, [back.readable, wire.writable]);
+            const own = new TransformStream();
+            back.readable.pipeTo(own.writable, { preventClose: stays }).catch(() => {});
+            worker.postMessage({ [role]: json, readable: own.readable, writable: wire.writable }, [own.readable, wire.writable]);
         },
         async close() { peer.closed += 1; },
     };
     Object.defineProperty(navigator, 'serial', { configurable: true, value: { requestPort: async () => port } });
     return true;";
 
-const ABOUT: &str = "(document.getElementById('live-about')?.textContent ?? '')";
-const SAID: &str = "(document.getElementById('live-said')?.textContent ?? '')";
-const REPORT: &str = "document.getElementById('live-report').value";
-const STANDING: &str = "document.getElementById('live-standing').textContent";
-const MESSAGE: &str = "document.getElementById('link-message').innerText";
+pub(crate) const ABOUT: &str = "(document.getElementById('live-about')?.textContent ?? '')";
+pub(crate) const SAID: &str = "(document.getElementById('live-said')?.textContent ?? '')";
+pub(crate) const REPORT: &str = "document.getElementById('live-report').value";
+pub(crate) const STANDING: &str = "document.getElementById('live-standing').textContent";
+pub(crate) const MESSAGE: &str = "document.getElementById('link-message').innerText";
 /// What had the port has given it back.
-const ENDED: &str = "!document.getElementById('live-close').disabled && peer.closed > 0";
+pub(crate) const ENDED: &str = "!document.getElementById('live-close').disabled && peer.closed > 0";
 
 /// The cells of the table that has device and model side by side, after its head.
 #[derive(Debug, Deserialize, PartialEq)]
@@ -65,17 +68,27 @@ async fn beside(page: &Session) -> Result<Beside> {
 }
 
 /// Opens the page with a scenario and the dialog on it, with a port whose other end has this role.
-async fn open(page: &Session, json: &str, role: &str) -> Result<Known> {
+pub(crate) async fn open(page: &Session, json: &str, role: &str) -> Result<Known> {
+    open_beside(page, (json, role, false)).await
+}
+
+/// The same with a device that stays when the port is closed.
+pub(crate) async fn open_beside(page: &Session, (json, role, stays): (&str, &str, bool)) -> Result<Known> {
     let known = Known::of(json)?;
     page.open(&format!("#{}", known.link)).await?;
-    page.js::<bool>(MOCK, vec![json!(role), json!(json)]).await?;
+    page.js::<bool>(MOCK, vec![json!(role), json!(json), json!(stays)]).await?;
+    // On a narrow screen the view is a tab.
+    page.eval::<Value>(
+        "[document.getElementById('tab-packets')].find((tab) => tab.checkVisibility())?.click() ?? null",
+    )
+    .await?;
     page.click("#device").await?;
     page.until(&format!("{ABOUT}.includes(' baud')")).await?;
     Ok(known)
 }
 
 /// Chooses the port, and starts.
-async fn start(page: &Session) -> Result<()> {
+pub(crate) async fn start(page: &Session) -> Result<()> {
     ensure!(page.eval::<Vec<u32>>("peer.opened").await?.is_empty(), "a port is open before a press");
     page.click("#live-choose").await?;
     page.until("!document.getElementById('live-start').disabled").await?;
@@ -84,7 +97,7 @@ async fn start(page: &Session) -> Result<()> {
 }
 
 /// Where the model's motors stand at the end.
-fn positions(known: &Known) -> Vec<String> {
+pub(crate) fn positions(known: &Known) -> Vec<String> {
     let run = known.experiment.run(&mut Vec::new());
     let channels = usize::from(known.experiment.config().channels());
     run.positions().iter().take(channels).map(ToString::to_string).collect()
@@ -249,7 +262,7 @@ fn without_web_serial_or_with_nothing_to_confirm_the_buttons_are_off_and_say_why
             ),
         ] {
             page.open(&format!("#{}", Known::of(json)?.link)).await?;
-            page.js::<bool>(MOCK, vec![json!("serve"), json!(FRAMED)]).await?;
+            page.js::<bool>(MOCK, vec![json!("serve"), json!(FRAMED), json!(false)]).await?;
             page.click("#device").await?;
             page.until(&format!("{ABOUT} !== '' && {ABOUT} !== 'Loading…'")).await?;
             ensure!(

@@ -48,6 +48,8 @@ mod keeping;
 mod keyboard;
 mod links;
 mod live;
+mod live_aside;
+mod live_raw;
 mod loading;
 mod logic;
 mod measures;
