@@ -3,7 +3,7 @@
  * without a press. While it sends it stands aside: the replies come in the packets view, and STOP, first of all, stays in
  * sight. It loads when it is first opened.
  */
-import { button, element, fill, say, style } from "../dom.js";
+import { button, byId, element, fill, say, style } from "../dom.js";
 import { openLive, serial } from "../engine/live.js";
 import { readJson } from "../state/json.js";
 import { counted } from "../state/number.js";
@@ -272,9 +272,9 @@ export async function openDevice(page) {
     show();
   }
 
-  /** Tells it on the page, where the dialog is gone. @param {"info" | "error"} kind @param {string} text @param {NonNullable<import("../state/types.js").State["notice"]>["offer"]} [offer] */
-  function notify(kind, text, offer) {
-    dispatch({ type: "notice", notice: { kind, text, place: null, offer } });
+  /** Tells it on the page, where the dialog is gone. @param {"info" | "error"} kind @param {string} text */
+  function notify(kind, text) {
+    dispatch({ type: "notice", notice: { kind, text, place: null } });
   }
 
   /** What the worker tells. @param {Told} told */
@@ -322,7 +322,7 @@ export async function openDevice(page) {
     const gone = lost ? ` The port is lost: ${lost}.` : "";
     if (heard === 0) return tell(`Nothing was heard: there is nothing to record.${gone}`, lost !== "");
     if (why !== null) {
-      times.onclick = () => save(`${baseName(now())}.session.json`, clock.type, [clock]);
+      times.onclick = () => saveTimes(clock);
       times.hidden = false;
       return tell(`Not recorded: ${why}.${gone}`, true);
     }
@@ -338,11 +338,16 @@ export async function openDevice(page) {
       : found
         ? `The session had the digest ${digests[0]}, and as a scenario it has ${found}.`
         : `Recorded with the digest ${digests[0]}.`;
-    const file = { name: `${baseName(now())}.session.json`, blob: clock };
-    notify(same ? "info" : "error", `${verdict}${part}${paced}${gone}${ownIsKept()}`, {
-      label: "Save its wall-clock times",
-      file,
-    });
+    notify(same ? "info" : "error", `${verdict}${part}${paced}${gone}${ownIsKept()}`);
+    // The notice's line stands by now, and has the button until another one comes.
+    byId("link-message")
+      .querySelector(".close")
+      ?.before(button("Save its wall-clock times", "Save its wall-clock times", () => saveTimes(clock)));
+  }
+
+  /** Beside the scenario, which the export has. @param {Blob} clock */
+  function saveTimes(clock) {
+    save(`${baseName(now())}.session.json`, clock.type, [clock]);
   }
 
   /** Of a revision, once it has run; empty where it has not. @param {number} revision */

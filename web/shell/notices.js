@@ -32,13 +32,8 @@ export function createNotices(page) {
     fill(line, element("span", {}, text));
     if (place) line.append(button("Show the place", "Show the place", () => show(place)));
     if (offer) {
-      const { label, scenario, file } = offer;
-      line.append(
-        button(label, label, async () => {
-          if (file) (await import("./save.js")).save(file.name, file.blob.type, [file.blob]);
-          if (scenario) dispatch({ type: "replace", scenario, origin: "own" });
-        }),
-      );
+      const { label, scenario } = offer;
+      line.append(button(label, label, () => dispatch({ type: "replace", scenario, origin: "own" })));
     }
     const close = button("", "Close this message", () => {
       line.hidden = true;

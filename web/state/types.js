@@ -124,7 +124,7 @@
  * @property {Panes} panes          What this device keeps of how the views stand.
  * @property {string[]} bare        Views that have nothing to show of this run but a line.
  * @property {{[area: string]: string}} sides  Which of the views that share a place on a wide screen is on show, where one was chosen.
- * @property {{text: string, kind: "info" | "error", place?: Place | null, offer?: {label: string, scenario?: Scenario, file?: {name: string, blob: Blob}}} | null} notice  About links, files and the engine; it may offer a scenario to open, or a file to save.
+ * @property {{text: string, kind: "info" | "error", place?: Place | null, offer?: {label: string, scenario: Scenario}} | null} notice  About links, files and the engine.
  *
  * @typedef {{dispatch: (message: import("./state.js").Message) => void, now: () => State}} Page  What each part of the page is given.
  */
