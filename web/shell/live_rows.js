@@ -60,6 +60,7 @@ function create() {
     begin() {
       fill(body);
       show(true);
+      view.scrollIntoView({ block: "nearest" });
     },
     /** @param {Exchange[]} exchanges */
     add(exchanges) {
