@@ -2,7 +2,6 @@
 //! a line, and in which cycle, the core decides.
 
 mod buttons;
-pub(crate) mod histogram;
 pub(crate) mod interrupt;
 mod keyboard;
 mod line_errors;
@@ -13,7 +12,6 @@ mod recording;
 pub(crate) mod send;
 pub(crate) mod serve;
 mod server;
-pub(crate) mod sidecar;
 pub(crate) mod status_line;
 pub(crate) mod stop_watch;
 pub(crate) mod wire;

@@ -78,7 +78,7 @@ pub use link::open_link;
 #[cfg(feature = "run")]
 pub use link::{link_part, link_with, pack_link, unpack_link};
 #[cfg(feature = "live")]
-pub use live::{LiveDevice, LiveHost};
+pub use live::{LiveDevice, LiveHost, LiveRawHost, live_is_raw};
 #[cfg(feature = "study")]
 pub use measures::step_figures;
 #[cfg(feature = "study")]

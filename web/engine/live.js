@@ -10,12 +10,15 @@ import { compiled } from "./wasm.js";
  * @typedef {{text: string, accepted: number, done: number, ticks: number, repeats: number, naks: number}} Standing
  * @typedef {{state: string, ticks_done: number | null, went: number[] | null}} End
  * @typedef {{controller: number, address: number, ticks: number, device: End | null, model: End | null}} Beside
+ * @typedef {{text: string, sent: number, packets: number, stood: number, left_ms: number}} RawReport  Of packets that nobody answers: before how many ticks the motor must have stood, and how long the device still has ticks to do.
+ * @typedef {{lost: string, stopped: boolean, ms: number}} Ended
  * @typedef {{text: string, verified: boolean, why: string | null, stop_acknowledged: boolean, beside: Beside[], difference: string | null,
- *   lost: string, stopped: boolean, ms: number}} Reported
- * @typedef {{seconds: number, heard: number, replies: number, latest_ms: number, set_backs: number, set_back_ms: number, records_all: boolean,
- *   missed: number, controllers: {state: string | null, queued: number | null, queue_depth: number, positions: number[], faults: string[],
- *   ticks_done: number}[]}} Served
- * @typedef {Served & {scenario: string, digests: string[], why: string | null, whole: boolean, lost: string}} Recorded
+ *   raw?: undefined} & Ended} ReportedFramed
+ * @typedef {ReportedFramed | ({raw: RawReport} & Ended)} Reported
+ * @typedef {{seconds: number, curves_from: number, heard: number, replies: number, latest_ms: number, set_backs: number, set_back_ms: number,
+ *   records_all: boolean, missed: number, controllers: {state: string | null, queued: number | null, queue_depth: number, positions: number[],
+ *   faults: string[], ticks_done: number, curves: number[][]}[]}} Served
+ * @typedef {Served & {scenario: string, digests: string[], why: string | null, whole: boolean, lost: string, times: Blob}} Recorded
  * @typedef {{state?: any, rows?: Exchange[], reported?: Reported, recorded?: Recorded, closed?: true, error?: string, facts?: Facts}} Told
  */
 
@@ -79,7 +82,10 @@ export function openLive(told) {
     if (port) await closePort(port);
   }
 
-  /** Opens the port and hands its streams to the worker. @param {any} port @param {number} baudRate @param {object} order */
+  /** Whether STOP was pressed since the stream began: also while its port is opened. */
+  let stopped = false;
+
+  /** Opens the port and hands its streams to the worker. @param {any} port @param {number} baudRate @param {() => object} order */
   async function give(port, baudRate, order) {
     await port.open({ baudRate, bufferSize: BUFFER });
     open = port;
@@ -88,7 +94,7 @@ export function openLive(told) {
     });
     const { readable, writable } = port;
     try {
-      worker.postMessage({ ...order, readable, writable }, [readable, writable]);
+      worker.postMessage({ ...order(), readable, writable }, [readable, writable]);
     } catch (error) {
       await closed();
       throw error;
@@ -99,10 +105,16 @@ export function openLive(told) {
     /** What can be done with a scenario. @param {string} json */
     judge: (json) => worker.postMessage({ judge: json }),
     /** @param {any} port @param {number} baud @param {string} json @param {boolean} stop  Whether STOP is all that is sent. */
-    stream: (port, baud, json, stop) => give(port, baud, { stream: json, stop }),
+    stream(port, baud, json, stop) {
+      stopped = stop;
+      return give(port, baud, () => ({ stream: json, stop: stopped }));
+    },
     /** @param {any} port @param {number} baud @param {string} json */
-    serve: (port, baud, json) => give(port, baud, { serve: json }),
-    stop: () => worker.postMessage({ stop: true }),
+    serve: (port, baud, json) => give(port, baud, () => ({ serve: json })),
+    stop() {
+      stopped = true;
+      worker.postMessage({ stop: true });
+    },
     end: () => worker.postMessage({ end: true }),
     /** What has the port stops, gives it back, and ends. */
     async close() {

@@ -3,7 +3,8 @@
  * when, the core decides (LIVE H1, H3, H4). STOP comes first of all.
  *
  * In: first of all {module}, the compiled code; {judge}, a scenario, for {facts}; {stream, readable, writable, stop} to send its
- * ticks, or STOP alone; {serve, readable, writable} to be its controllers; {stop}; {end}.
+ * ticks, or STOP alone; {serve, readable, writable} to be its controllers; {stop}; {end}. Raw packets go without replies, and
+ * their stop is that no more are sent.
  * Out: {facts}; while it has the port {state} and {rows}; {reported} or {recorded} at the end; {closed} when both streams are;
  * {error} where nothing began.
  */
@@ -128,6 +129,7 @@ function everySoOften(report) {
 
 /** The host of a device. @param {{stream: string, readable: ReadableStream, writable: WritableStream, stop: boolean}} order */
 async function stream({ stream: json, stop, ...streams }) {
+  if (core.live_is_raw(json)) return streamRaw(json, stop, streams);
   const host = new core.LiveHost(json, SLACK_MS);
   const began = performance.now();
   const now = () => performance.now() - began;
@@ -158,14 +160,43 @@ async function stream({ stream: json, stop, ...streams }) {
   await port.close();
 }
 
-/** The device of a host. @param {{serve: string, readable: ReadableStream, writable: WritableStream}} order */
-async function serve({ serve: json, ...streams }) {
-  const device = new core.LiveDevice(json, LAG_MS);
+/** The host of a raw line. @param {string} json @param {boolean} stop @param {{readable: ReadableStream, writable: WritableStream}} streams */
+async function streamRaw(json, stop, streams) {
+  const host = new core.LiveRawHost(json);
   const began = performance.now();
   const now = () => performance.now() - began;
-  /** @type {Uint8Array[]} */
+  // What is heard answers nothing.
+  const port = openPort(streams, () => {});
+  const baud = host.baud();
+  asked = { stop, end: false };
+  const report = () => postMessage({ state: host.state() });
+  const tell = everySoOften(report);
+  while (port.lost === "" && !asked.stop && !host.is_over()) {
+    const at = now();
+    const bytes = host.packet(at);
+    if (bytes) {
+      // What was given to the port counts as written; one that is lost takes nothing.
+      await port.send(bytes, baud);
+      if (port.lost === "") host.written(at);
+    } else await rest(host.wait(at));
+    tell();
+  }
+  report();
+  const { lost } = port;
+  const stopped = asked.stop && !host.is_over();
+  postMessage({ reported: { raw: host.report(stopped, now()), lost, stopped, ms: now() } });
+  host.free();
+  await port.close();
+}
+
+/** The device of a host. @param {{serve: string, readable: ReadableStream, writable: WritableStream}} order */
+async function serve({ serve: json, ...streams }) {
+  const device = new core.LiveDevice(json, LAG_MS, Date.now());
+  const began = performance.now();
+  const now = () => performance.now() - began;
+  /** @type {{bytes: Uint8Array, at: number}[]} */
   const heard = [];
-  const port = openPort(streams, (bytes) => heard.push(bytes));
+  const port = openPort(streams, (bytes) => heard.push({ bytes, at: now() }));
   let missed = 0;
   asked = { stop: false, end: false };
   const report = () => postMessage({ state: { ...device.state(), missed } });
@@ -182,12 +213,13 @@ async function serve({ serve: json, ...streams }) {
     let behind = turnRound();
     while (behind && now() - since < TURN_MS) behind = turnRound();
     // What was read does not come before its time.
-    if (!behind) for (const bytes of heard.splice(0)) device.receive(bytes);
+    if (!behind) for (const { bytes, at } of heard.splice(0)) device.receive(bytes, at);
     tell();
     await rest(behind ? 0 : Math.min(IDLE_MS, device.wait()));
   }
   report();
-  postMessage({ recorded: { ...device.recording(), ...device.state(), missed, lost: port.lost } });
+  const times = new Blob([device.times()], { type: "application/json" });
+  postMessage({ recorded: { ...device.recording(), ...device.state(), times, missed, lost: port.lost } });
   device.free();
   await port.close();
 }
@@ -206,8 +238,8 @@ function facts(json) {
     }
   };
   return {
-    stream: look(() => new core.LiveHost(json, SLACK_MS)),
-    serve: look(() => new core.LiveDevice(json, LAG_MS)),
+    stream: look(() => (core.live_is_raw(json) ? new core.LiveRawHost(json) : new core.LiveHost(json, SLACK_MS))),
+    serve: look(() => new core.LiveDevice(json, LAG_MS, Date.now())),
   };
 }
 

@@ -171,6 +171,16 @@ const TERMS = {
       text: "The queue was empty although the last tick had steps: the motors stood still in the middle of a motion.",
       from: "own",
     },
+    device: {
+      name: "Device",
+      text: "The experiment goes to a real controller on a serial port, or the page is one for a host. Its replies stand here as they come, each with its delay beside the model's; “Model” shows the run's packets again.",
+      from: "own",
+    },
+    lead: {
+      name: "Lead",
+      text: "Packets that nobody answers are sent 200 ms ahead, for a page is late at times: the queue keeps them. After a stop the controller still does what is in it.",
+      from: "own",
+    },
   },
   spectrum: {
     harmonic: {

@@ -1,85 +1,41 @@
 /**
- * The dialog of devices (LIVE H4): the experiment's ticks go to a real one, confirmed to the end, or the page is one for a real
- * host. Nothing opens without a press; STOP comes first of all. It loads when it is first opened.
+ * The dialog of devices (LIVE H4): the experiment's ticks go to a real one, or the page is one for a real host. Nothing opens
+ * without a press. While it sends it stands aside: the replies come in the packets view, and STOP, first of all, stays in
+ * sight. It loads when it is first opened.
  */
-import { button, element, fill, say, style } from "../dom.js";
-import { movesStreams, openLive, serial } from "../engine/live.js";
+import { button, byId, element, fill, say, style } from "../dom.js";
+import { openLive, serial } from "../engine/live.js";
 import { readJson } from "../state/json.js";
 import { counted } from "../state/number.js";
 import { message } from "./link.js";
-import { exchangeTable, outcome, reportText, servedText, twinOf } from "./live_report.js";
+import { positionCurves } from "./live_curves.js";
+import { outcome, reportText, servedText, twinOf } from "./live_report.js";
+import { about as aboutOf, NAMES, ROLES, stopTitle, usbOf, whyNone, whyNoPort } from "./live_roles.js";
+import { deviceRows } from "./live_rows.js";
+import { baseName } from "./offers.js";
+import { save } from "./save.js";
 import { ownIsKept } from "./storage.js";
 
 /** @typedef {import("../engine/live.js").Facts} Facts */
 /** @typedef {import("../engine/live.js").Told} Told */
-/** @typedef {"stream" | "serve"} Role */
+/** @typedef {import("./live_roles.js").Role} Role */
 
-/** Rows of replies that stay on show. */
-const MOST_ROWS = 300;
 /** How long a recorded session may run before it is said that it has not, in ms, and how often that is looked at. */
 const PATIENCE_MS = 60_000;
 const LOOK_MS = 100;
 
-/** A page on a busy desktop is sometimes so late, in ms. */
-const LATE_MS = 50;
-
-/** @type {{[role in Role]: {label: string, about: string, start: string}}} */
-const ROLES = {
-  stream: {
-    label: "Stream to a device",
-    about: "Sends the ticks of this experiment, each frame confirmed, and verifies the end. The motors move.",
-    start: "Start: the motors move",
-  },
-  serve: {
-    label: "Be a soft device",
-    about:
-      "Answers a host on the port as the controllers of this experiment would, in real time. At the end the session opens as a scenario.",
-    start: "Start answering",
-  },
-};
-/** @type {Role[]} */
-const NAMES = ["stream", "serve"];
-
-const OTHERS =
-  "take Chrome or Edge 89 or newer, or Firefox 151 or newer, on a desktop; or the command, stepscope send.";
-
-/** Why this page gets no port; empty where it may. */
-function whyNoPort() {
-  if (!globalThis.isSecureContext)
-    return "The browser gives ports to secure pages alone: open this page by https, or from http://localhost.";
-  if (!serial()) return `This browser has no Web Serial: ${OTHERS}`;
-  if (!movesStreams())
-    return `This browser cannot hand a port's streams to a worker, where this page uses them: ${OTHERS}`;
-  return "";
-}
-
-/** What a port tells of itself; empty where it is none of USB. @param {any} port */
-function usbOf(port) {
-  const { usbVendorId, usbProductId } = port.getInfo?.() ?? {};
-  const hex = (/** @type {number} */ id) => id.toString(16).padStart(4, "0");
-  return usbVendorId === undefined ? "" : ` (USB ${hex(usbVendorId)}:${hex(usbProductId ?? 0)})`;
-}
-
-/** What a role comes to. @param {Role} name @param {import("../engine/live.js").Role} found */
-function aboutOf(name, { baud, margin_ms, state }) {
-  if (name === "serve") return `${ROLES.serve.about} ${baud} baud.`;
-  const tight =
-    margin_ms < LATE_MS
-      ? ` The queue gives the page ${margin_ms.toFixed(0)} ms: a busy desktop is later at times, and then it runs dry (UNDERRUN); longer ticks give more.`
-      : "";
-  return `${ROLES.stream.about} ${counted(state.ticks, "tick")}, ${baud} baud.${tight}`;
-}
+/** Brings the dialog that there is in front. @type {(() => void) | null} */
+let bring = null;
 
 /** @param {import("./opened.js").Given} page */
 export async function openDevice(page) {
+  if (bring) return bring();
+  bring = () => {};
   const { dispatch, now } = page;
   await style("live");
-  const { scenario } = now();
-  const json = JSON.stringify(scenario);
+  let { scenario } = now();
+  let json = "";
   const noPort = whyNoPort();
-  const notHere = scenario.source?.standalone
-    ? "Not with this experiment: a stand-alone controller has no line; its buttons are in the view Panel, or served by the command, stepscope serve."
-    : "";
   /** @type {Facts | null} */
   let facts = null;
   /** @type {any} */
@@ -103,25 +59,13 @@ export async function openDevice(page) {
   const allowed = element("span", { id: "live-allowed", class: "live-allowed" });
   const start = element("button", { type: "button", id: "live-start", class: "main" });
   const end = element("button", { type: "button", id: "live-end" }, "End and open the recording");
-  const stop = element(
-    "button",
-    {
-      type: "button",
-      id: "live-stop",
-      class: "live-stop",
-      title: "STOP: no further ticks, the device stops at once (Esc)",
-    },
-    "STOP",
-  );
+  const aside = element("button", { type: "button", id: "live-aside" });
+  const stop = element("button", { type: "button", id: "live-stop", class: "live-stop" }, "STOP");
   const said = element("p", { id: "live-said", class: "live-said", role: "status" });
   const standing = element("p", { id: "live-standing", class: "live-standing" });
-  const progress = element("progress", { max: "1", value: "0", "aria-label": "Ticks done" });
-  const exchanges = exchangeTable(MOST_ROWS);
-  const replies = element(
-    "div",
-    { class: "live-replies", tabindex: "0", role: "group", "aria-label": "Replies" },
-    exchanges.table,
-  );
+  const progress = element("progress", { max: "1", value: "0" });
+  const rows = deviceRows();
+  const curves = positionCurves();
   const twin = element("div", { id: "live-twin" });
   const report = element("textarea", {
     id: "live-report",
@@ -132,7 +76,9 @@ export async function openDevice(page) {
   });
   const copy = button("Copy the report", "Copy the report as text", toClipboard);
   const reported = element("div", { id: "live-reported" }, report, copy);
-  for (const part of [progress, replies, reported]) part.hidden = true;
+  /** Of a session that could not be recorded. */
+  const times = element("button", { type: "button", id: "live-times" }, "Save its wall-clock times");
+  for (const part of [progress, curves.node, reported, times]) part.hidden = true;
   const close = element("button", { type: "button", id: "live-close" }, "Close");
   const dialog = element(
     "dialog",
@@ -143,17 +89,18 @@ export async function openDevice(page) {
       element("h2", { id: "live-title" }, "Device"),
       element("fieldset", {}, element("legend", {}, "This page is to"), ...radios.map(({ label }) => label)),
       about,
-      element("div", { class: "live-actions" }, choose, allowed, start, end, stop),
+      element("div", { class: "live-actions" }, choose, allowed, start, end, aside, stop),
       said,
+      times,
       progress,
       standing,
-      replies,
+      curves.node,
       twin,
       reported,
       element(
         "p",
         { class: "note" },
-        "Leaving the page, or losing the port, ends the sending: the device does what is in its queue, and then it runs dry (UNDERRUN). Raw packets go by the command: stepscope send.",
+        "Leaving the page, or losing the port, ends the sending: the device does what is in its queue, and then it runs dry (UNDERRUN).",
       ),
       element("p", { class: "named" }, close),
     ),
@@ -164,7 +111,14 @@ export async function openDevice(page) {
   stop.addEventListener("click", stopAll);
   end.addEventListener("click", () => live.end());
   close.addEventListener("click", () => dialog.close());
-  // Escape stops what moves before it closes anything.
+  aside.addEventListener("click", () => lay(!inFront()));
+  // Escape stops what moves before it closes anything, wherever it is pressed.
+  const stopByKey = (/** @type {KeyboardEvent} */ event) => {
+    if (event.key !== "Escape" || running !== "stream") return;
+    event.preventDefault();
+    event.stopImmediatePropagation();
+    stopAll();
+  };
   dialog.addEventListener("cancel", (event) => {
     if (running === null) return;
     event.preventDefault();
@@ -176,24 +130,56 @@ export async function openDevice(page) {
   const hide = () => running === "stream" && live.stop();
   window.addEventListener("beforeunload", leave);
   window.addEventListener("pagehide", hide);
+  window.addEventListener("keydown", stopByKey, { capture: true });
   dialog.addEventListener("close", () => {
+    // It changed its place.
+    if (dialog.open) return;
+    bring = null;
+    window.removeEventListener("keydown", stopByKey, { capture: true });
     window.removeEventListener("beforeunload", leave);
     window.removeEventListener("pagehide", hide);
     void live.close();
     dialog.remove();
   });
   document.body.append(dialog);
-  live.judge(json);
-  show();
-  dialog.showModal();
+  bring = () => {
+    lay(true);
+    if (running === null) judge();
+  };
+  bring();
   void offerAllowed();
+
+  function inFront() {
+    return dialog.matches(":modal");
+  }
+
+  /** In front of the page, or aside, where the page can be worked with. @param {boolean} front */
+  function lay(front) {
+    dialog.close();
+    dialog.classList.toggle("aside", !front);
+    if (front) dialog.showModal();
+    else dialog.show();
+    show();
+  }
+
+  /** Asks what can be done with the experiment as it is now. */
+  function judge() {
+    ({ scenario } = now());
+    const next = JSON.stringify(scenario);
+    if (next === json) return;
+    json = next;
+    facts = null;
+    live.judge(json);
+    show();
+  }
 
   /** Buttons and texts as things stand. */
   function show() {
     const name = role();
     const found = facts?.[name];
-    const why =
-      noPort || notHere || (facts === null ? "Loading…" : found?.why ? `Not with this experiment: ${found.why}.` : "");
+    const front = inFront();
+    const raw = isRaw();
+    const why = noPort || whyNone(scenario, found);
     say(about, why || aboutOf(name, /** @type {import("../engine/live.js").Role} */ (found)));
     about.classList.toggle("error", why !== "" && facts !== null);
     say(choose, port ? "Choose another port…" : "Choose a port…");
@@ -203,12 +189,14 @@ export async function openDevice(page) {
     choose.title = why;
     start.disabled = why !== "" || running !== null || port === null;
     start.title = why || (port ? "" : "Choose a port first");
-    start.hidden = running !== null;
-    choose.hidden = running !== null;
-    allowed.hidden = why !== "" || running !== null;
+    start.hidden = choose.hidden = running !== null || !front;
+    allowed.hidden = why !== "" || choose.hidden;
     end.hidden = running !== "serve";
+    aside.hidden = front && running === null;
+    say(aside, front ? "Put aside" : "Bring to front");
     stop.hidden = name === "serve";
-    stop.disabled = why !== "" || port === null;
+    stop.disabled = why !== "" || port === null || (raw && running === null);
+    stop.title = stopTitle(raw);
     close.disabled = running !== null;
     close.title = running === null ? "" : "First STOP, or end";
   }
@@ -262,12 +250,17 @@ export async function openDevice(page) {
     running = name;
     began = new Date().toISOString();
     delays = { own: [], model: [] };
-    exchanges.clear();
     fill(twin);
     say(standing, "");
     progress.value = 0;
-    progress.hidden = replies.hidden = name === "serve";
-    reported.hidden = true;
+    progress.hidden = name === "serve";
+    progress.ariaLabel = isRaw() ? "Packets sent" : "Ticks done";
+    reported.hidden = curves.node.hidden = times.hidden = true;
+    if (name === "stream" && !isRaw()) rows.begin();
+    if (name === "stream" && !stopping) {
+      lay(false);
+      dispatch({ type: "view", view: "packets" });
+    }
     tell(stopping ? "STOP is sent…" : name === "serve" ? "Answering…" : "Sending…");
     show();
     if (name === "stream") stop.focus();
@@ -275,13 +268,24 @@ export async function openDevice(page) {
       await (name === "serve" ? live.serve(port, baud, json) : live.stream(port, baud, json, stopping));
     } catch (error) {
       failed(`The port cannot be opened: ${message(error)} Is it taken by another program?`);
+      if (!inFront()) lay(true);
     }
+  }
+
+  /** Whether what would be sent are packets that nobody answers. */
+  function isRaw() {
+    return facts?.stream.state?.lead !== undefined;
   }
 
   function stopAll() {
     if (running === null) return void begin(true);
-    tell("STOP: no further ticks. It is sent until the device confirms it…", true);
     live.stop();
+    tell(
+      isRaw()
+        ? "Nothing more is sent; the device does what is in its queue…"
+        : "STOP: no further ticks. It is sent until the device confirms it…",
+      true,
+    );
   }
 
   /** @param {string} text */
@@ -310,14 +314,14 @@ export async function openDevice(page) {
         if (delay_ms !== null) delays.own.push(delay_ms);
         if (model_ms !== null) delays.model.push(model_ms);
       }
-      exchanges.add(told.rows);
+      rows.add(told.rows);
     }
     if (told.reported) {
       const { said: text, good } = outcome(told.reported);
       tell(text, !good);
       if (!dialog.open)
         notify(good ? "info" : "error", `The dialog of devices was closed while it was sending. ${text}`);
-      fill(twin, ...twinOf(told.reported));
+      fill(twin, ...(told.reported.raw ? [] : twinOf(told.reported)));
       report.value = reportText(scenario.title, began, told.reported, delays);
       reported.hidden = false;
     }
@@ -328,16 +332,23 @@ export async function openDevice(page) {
 
   /** @param {any} state */
   function stand(state) {
-    if (running === "serve") return say(standing, servedText(state));
+    if (running === "serve") {
+      curves.draw(state);
+      return say(standing, servedText(state));
+    }
     say(standing, state.text.replaceAll("_", " "));
     progress.value = state.ticks > 0 ? state.done / state.ticks : 0;
   }
 
   /** The session opens as a scenario, if it is the session. @param {import("../engine/live.js").Recorded} session */
-  async function recorded({ scenario: text, digests, why, whole, lost, set_backs, heard }) {
+  async function recorded({ scenario: text, digests, why, whole, lost, set_backs, heard, times: clock }) {
     const gone = lost ? ` The port is lost: ${lost}.` : "";
     if (heard === 0) return tell(`Nothing was heard: there is nothing to record.${gone}`, lost !== "");
-    if (why !== null) return tell(`Not recorded: ${why}.${gone}`, true);
+    if (why !== null) {
+      times.onclick = () => saveTimes(clock);
+      times.hidden = false;
+      return tell(`Not recorded: ${why}.${gone}`, true);
+    }
     dialog.close();
     dispatch({ type: "replace", scenario: readJson(text), origin: "shared" });
     const { revision } = now();
@@ -351,6 +362,15 @@ export async function openDevice(page) {
         ? `The session had the digest ${digests[0]}, and as a scenario it has ${found}.`
         : `Recorded with the digest ${digests[0]}.`;
     notify(same ? "info" : "error", `${verdict}${part}${paced}${gone}${ownIsKept()}`);
+    // The notice's line stands by now, and has the button until another one comes.
+    byId("link-message")
+      .querySelector(".close")
+      ?.before(button("Save its wall-clock times", "Save its wall-clock times", () => saveTimes(clock)));
+  }
+
+  /** Beside the scenario, which the export has. @param {Blob} clock */
+  function saveTimes(clock) {
+    save(`${baseName(now())}.session.json`, clock.type, [clock]);
   }
 
   /** Of a revision, once it has run; empty where it has not. @param {number} revision */

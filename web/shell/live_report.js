@@ -1,66 +1,21 @@
 /** What became of a stream to a device, or of a session with a host, in words. Nothing is said to be done that is not known. */
-import { element, fill } from "../dom.js";
+import { element } from "../dom.js";
 import { count, counted, time } from "../state/number.js";
 
-/** @typedef {import("../engine/live.js").Exchange} Exchange */
 /** @typedef {import("../engine/live.js").Reported} Reported */
+/** @typedef {import("../engine/live.js").ReportedFramed} ReportedFramed */
+/** @typedef {import("../engine/live.js").RawReport} RawReport */
+/** @typedef {import("../engine/live.js").Ended} Ended */
 /** @typedef {import("../engine/live.js").Recorded} Recorded */
 /** @typedef {import("../engine/live.js").Served} Served */
 /** @typedef {import("../engine/live.js").End} End */
 
-const COLUMNS = ["time", "to", "frame", "reply", "state", "done", "delay", "model's", "differs"];
-const NUMBERS = [0, 1, 5, 6, 7];
-
 const ms = (/** @type {number | null} */ value) => (value === null ? "–" : `${value.toFixed(2)} ms`);
 
-/** A table that shows the newest exchanges first. @param {number} most  Rows that it keeps. */
-export function exchangeTable(most) {
-  const head = COLUMNS.map((name, index) =>
-    element("th", { scope: "col", ...(NUMBERS.includes(index) ? { class: "number" } : {}) }, name),
-  );
-  const body = element("tbody");
-  const table = element(
-    "table",
-    { "aria-label": "Replies, the newest first" },
-    element("thead", {}, element("tr", {}, ...head)),
-    body,
-  );
-  return {
-    table,
-    clear: () => fill(body),
-    /** @param {Exchange[]} rows */
-    add(rows) {
-      body.prepend(...rows.slice(-most).reverse().map(rowOf));
-      while (body.rows.length > most) body.lastElementChild?.remove();
-    },
-  };
-}
-
-/** @param {Exchange} exchange */
-function rowOf({ at_ms, controller, kind, reply, state, ticks_done, delay_ms, model_ms, difference }) {
-  const texts = [
-    `${(at_ms / 1000).toFixed(3)} s`,
-    String(controller),
-    kind,
-    reply?.split(":")[0] ?? "no reply",
-    state ?? "–",
-    ticks_done === null ? "–" : count(ticks_done),
-    ms(delay_ms),
-    ms(model_ms),
-    difference ?? "",
-  ];
-  const cells = texts.map((text, index) =>
-    element(
-      "td",
-      NUMBERS.includes(index) ? { class: "number" } : index === texts.length - 1 ? { class: "differs-by" } : {},
-      text,
-    ),
-  );
-  return element("tr", difference || reply === null ? { class: "differs" } : {}, ...cells);
-}
-
 /** What is known, in a sentence, and whether it is good. @param {Reported} reported @returns {{said: string, good: boolean}} */
-export function outcome({ verified, why, stop_acknowledged, stopped, lost }) {
+export function outcome(reported) {
+  if (reported.raw) return outcomeOfRaw(reported.raw, reported);
+  const { verified, why, stop_acknowledged, stopped, lost } = reported;
   if (stopped) {
     const confirmed = stop_acknowledged
       ? "STOP is confirmed: the device has acknowledged it."
@@ -75,6 +30,22 @@ export function outcome({ verified, why, stop_acknowledged, stopped, lost }) {
   return { said: `Not verified: ${why?.replace(/\.$/, "")}.`, good: false };
 }
 
+/** Of packets that nobody answers. @param {RawReport} raw @param {Ended} ended @returns {{said: string, good: boolean}} */
+function outcomeOfRaw({ sent, packets, stood, left_ms }, { stopped, lost }) {
+  const queued = `the device does what is in its queue, about ${left_ms.toFixed(0)} ms more`;
+  if (lost) return { said: `Not verified: the port is lost: ${lost.replace(/\.$/, "")}; ${queued}.`, good: false };
+  if (stopped)
+    return {
+      said: `Stopped sending after ${count(sent)} of ${counted(packets, "packet")}: a raw line has no STOP, and ${queued}. Cut its power if it must not move.`,
+      good: false,
+    };
+  const dry = stood > 0 ? ` The motor must have stood before ${counted(stood, "tick")}.` : "";
+  return {
+    said: `Not verified: raw packets are not answered. All ${counted(packets, "packet")} are sent.${dry}`,
+    good: stood === 0,
+  };
+}
+
 /** Of all delays. @param {number[]} delays */
 function median(delays) {
   const sorted = delays.toSorted((a, b) => a - b);
@@ -83,13 +54,16 @@ function median(delays) {
 
 /** The report as a text to copy. @param {string} title @param {string} began @param {Reported} reported @param {{own: number[], model: number[]}} delays */
 export function reportText(title, began, reported, { own, model }) {
-  const { text, ms: took, difference } = reported;
   const lines = [
-    `Stepscope: ${title || "an experiment"} to a device, ${began}, ${time(took / 1000)}`,
+    `Stepscope: ${title || "an experiment"} to a device, ${began}, ${time(reported.ms / 1000)}`,
     outcome(reported).said,
+  ];
+  if (reported.raw) return `${[...lines, reported.raw.text].join("\n")}`;
+  const { text, difference } = reported;
+  lines.push(
     text.trimEnd(),
     difference ? `first difference to the model: ${difference}` : "no reply differs from the model's",
-  ];
+  );
   if (own.length > 0)
     lines.push(
       `delay of ${counted(own.length, "reply").replace("replys", "replies")}: median ${ms(median(own))}, longest ${ms(Math.max(...own))}; the model's median ${ms(median(model))}`,
@@ -104,7 +78,7 @@ const endTexts = (end) => [
   end?.went?.map((steps) => count(steps)).join("  ") ?? "not told",
 ];
 
-/** The device's end beside the model's. @param {Reported} reported @returns {Node[]} */
+/** The device's end beside the model's. @param {ReportedFramed} reported @returns {Node[]} */
 export function twinOf({ beside, difference, stopped, verified }) {
   const rows = beside.flatMap(({ controller, device, model }) =>
     ["state", "ticks done", "steps gone"].map((name, index) => {

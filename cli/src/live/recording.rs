@@ -1,6 +1,5 @@
 //! What a session leaves: the scenario that gives it again, and its wall-clock times beside it (LIVE H5).
 
-use super::sidecar::Sidecar;
 use crate::{failure::Failure, output::Out};
 use std::{
     io::{self, Write},
@@ -12,17 +11,25 @@ use stepscope_core::{
     sim::{
         Experiment,
         session::{NotTheSession, Session, SessionClock},
+        session_times::SessionTimes,
     },
 };
 
 /// A file, and where it will be.
 pub(crate) type Named = (PathBuf, Out);
 
+/// The path of `NAME.session.json` beside a recording's.
+pub(crate) fn beside(record: &Path) -> PathBuf {
+    let mut name = record.file_stem().unwrap_or_default().to_os_string();
+    name.push(".session.json");
+    record.with_file_name(name)
+}
+
 /// Writes the recording, and what was of the wall clock; gives whether it is the same run again.
 pub(crate) fn write(
     session: &Session,
-    (clock, sidecar): (&SessionClock, &Sidecar),
-    ((record, mut out), (beside, mut times)): (Named, Named),
+    (clock, times): (&SessionClock, &SessionTimes),
+    ((record, mut out), (beside, mut out_beside)): (Named, Named),
 ) -> Result<Result<(), NotTheSession>, Failure> {
     let recording = session.recording();
     let whole = session.records_all();
@@ -30,7 +37,7 @@ pub(crate) fn write(
     let mut rescue = Vec::new();
     let texts = [
         (&record, &mut out, format!("{}\n", recording.scenario.to_json())),
-        (&beside, &mut times, sidecar.json(clock, &recording, whole)),
+        (&beside, &mut out_beside, times.to_json(clock, &recording, whole)),
     ];
     let mut failed = None;
     for (path, out, text) in texts {

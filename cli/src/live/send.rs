@@ -87,13 +87,13 @@ pub(crate) fn send(arguments: &Arguments) -> Result<(), Failure> {
         let why = "a framed line is answered, and keeps the queue filled by itself";
         return Err(Failure::Option(format!("--lead: {why}")));
     }
-    raw::judge_lead(&experiment, arguments.lead)?;
+    let raw = is_raw.then(|| raw::host(&experiment, arguments.lead)).transpose()?;
     interrupt::watch()?;
     wake_on_time();
     let port = open(&arguments.port, baud, arguments.rs485)?;
     let wire = &mut Wire::new(port, arguments.rs485 == Rs485::Rts, arguments.echo);
-    if is_raw {
-        return raw::send(&experiment, wire, (arguments.lead, arguments.json, arguments.progress));
+    if let Some(host) = raw {
+        return raw::send(host, wire, (arguments.json, arguments.progress));
     }
     let clock_hz = experiment.config().clock_hz();
     let slack = Cycles(u64::from(clock_hz) * arguments.slack / 1000);

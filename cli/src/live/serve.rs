@@ -5,9 +5,8 @@ use super::{
     interrupt,
     keyboard::Keyboard,
     port::{Listener, Port, Rs485, Serial},
-    recording,
+    recording::{self, beside},
     server::{Pacing, Server, Settings},
-    sidecar::beside,
 };
 use crate::{failure::Failure, output::Outputs, scenarios};
 use clap::Args;
@@ -84,7 +83,7 @@ pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
     server.print_end().map_err(Failure::output)?;
     if let Some(files) = files {
         let record = files.0.0.clone();
-        let verified = recording::write(&server.session, (&server.clock, &server.sidecar), files)?;
+        let verified = recording::write(&server.session, (&server.clock, &server.times), files)?;
         outputs.commit()?;
         verified.map_err(|why| Failure::NotRecorded(record, why.to_string()))?;
         server.line.note("recorded");

@@ -8,11 +8,9 @@
 //! Of stand-alone controllers the bytes are lines on standard input, and nothing is written.
 
 use super::{
-    histogram::Histogram,
     interrupt,
     panel::{self, Panel},
     port::{Heard, Port},
-    sidecar::Sidecar,
     status_line::StatusLine,
     stop_watch::{StopWatch, wake_on_time},
 };
@@ -20,7 +18,7 @@ use crate::failure::Failure;
 use std::{
     collections::VecDeque,
     io::{self, Write},
-    time::Duration,
+    time::{Duration, SystemTime, UNIX_EPOCH},
 };
 use stepscope_core::{
     peripheral::{
@@ -29,7 +27,9 @@ use stepscope_core::{
     },
     sim::{
         Summary,
+        lateness::Lateness,
         session::{Pace, Session, SessionClock},
+        session_times::SessionTimes,
     },
 };
 
@@ -74,12 +74,12 @@ pub(super) struct Server {
     /// Bytes of replies that the port has not taken.
     waiting: VecDeque<u8>,
     missed: u64,
-    late: Histogram,
+    late: Lateness,
     /// How long was to be waited after the last round.
     waited: Duration,
     /// How far the model was behind the clock at most, beyond that, since it was told.
     behind: Duration,
-    pub(super) sidecar: Sidecar,
+    pub(super) times: SessionTimes,
     pub(super) line: StatusLine,
 }
 
@@ -100,10 +100,10 @@ impl Server {
             once: settings.once,
             waiting: VecDeque::new(),
             missed: 0,
-            late: Histogram::default(),
+            late: Lateness::default(),
             waited: Duration::ZERO,
             behind: Duration::ZERO,
-            sidecar: Sidecar::new(name, settings.lag, settings.records),
+            times: SessionTimes::new(unix_ms(), name, settings.lag, settings.records),
             line: StatusLine::new(settings.progress),
         }
     }
@@ -163,7 +163,7 @@ impl Server {
 
     /// What came, after the cycle that the model stands behind.
     fn take(&mut self, bytes: &[u8]) {
-        self.sidecar.chunk(self.watch.nanos(), self.session.now().0, bytes.len());
+        self.times.chunk(self.watch.nanos(), self.session.now(), bytes.len());
         if let Some(panel) = &mut self.panel {
             panel.type_in(bytes);
             return;
@@ -244,7 +244,7 @@ impl Server {
                     Pacing::Max => 0,
                 };
                 self.late.add(late);
-                self.sidecar.reply(reply.controller, reply.end.0, now_ns, late);
+                self.times.reply(&reply, now_ns, late);
             }
         }
         if !self.port.is_connected() {
@@ -293,12 +293,18 @@ impl Server {
     }
 }
 
+/// What the wall clock says, in ms after 1970.
+fn unix_ms() -> u64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    u64::try_from(since.as_millis()).unwrap_or(u64::MAX)
+}
+
 fn lost(error: io::Error) -> Failure {
     Failure::LostPort(error.to_string())
 }
 
 /// How things stand, in a line.
-fn status(session: &Session, (clock, behind): (&SessionClock, Duration), late: &Histogram) -> String {
+fn status(session: &Session, (clock, behind): (&SessionClock, Duration), late: &Lateness) -> String {
     let config = session.experiment().config();
     let seconds = session.now().0 as f64 / f64::from(config.clock_hz().max(1));
     let mut text = format!("{seconds:8.1} s  lag {:.1} ms", 1e3 * behind.as_secs_f64());

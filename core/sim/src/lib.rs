@@ -66,7 +66,15 @@ mod summary;
 
 pub mod fault_sweep;
 
+pub mod lateness;
+
+pub mod live_trace;
+
+pub mod raw_host;
+
 pub mod session;
+
+pub mod session_times;
 
 pub mod twin;
 

@@ -2,7 +2,7 @@
 //! second worker of the page's own, which is the device of a host or the host of a device. What a real port adds: `live_port`.
 
 use anyhow::{Result, ensure};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::{browser::Browser, native::Known, session::Session};
 
@@ -23,8 +23,9 @@ pub(crate) const ENDED: &str = "!document.getElementById('live-close').disabled 
 
 /// A port of which the other end is: a controller of a scenario (`serve`), its host (`stream`), or nobody (`silent`); one that
 /// cannot be opened (`taken`); one with a controller that was allowed before, so that nobody is asked for it (`allowed`).
-/// The other end begins when the port is opened.
-const MOCK: &str = "(role, json) => {
+/// The other end begins when the port is opened, once `window.held` is there, if a test has put that; it may stay (`stays`) when the
+/// port is closed, as a device does.
+const MOCK: &str = "(role, json, stays) => {
     const peer = (window.peer = { sought: 0, told: [], opened: [], closed: 0, lose() {}, end() {} });
     const begin = () => new Promise((begun, fail) => {
         const main = document.getElementById('main').dataset;
@@ -41,6 +42,7 @@ const MOCK: &str = "(role, json) => {
         async open(options) {
             if (role === 'taken') throw new DOMException('Failed to open serial port.', 'NetworkError');
             const worker = await (other ??= begin());
+            await window.held;
             peer.opened.push(options.baudRate);
             const there = new TransformStream({ start(end) { peer.lose = () => end.error(new Error('The device has been lost.')); } });
             const back = new TransformStream();
@@ -49,8 +51,10 @@ const MOCK: &str = "(role, json) => {
             // Who is at the other end and goes does not close the port.
             const wire = new TransformStream();
             wire.readable.pipeTo(there.writable, { preventClose: true }).catch(() => {});
-            const order = { [role === 'stream' ? 'stream' : 'serve']: json, readable: back.readable, writable: wire.writable };
-            worker.postMessage(order, [back.readable, wire.writable]);
+            const own = new TransformStream();
+            back.readable.pipeTo(own.writable, { preventClose: stays }).catch(() => {});
+            const order = { [role === 'stream' ? 'stream' : 'serve']: json, readable: own.readable, writable: wire.writable };
+            worker.postMessage(order, [own.readable, wire.writable]);
         },
         async close() {
             if (port.readable?.locked || port.writable?.locked) throw new TypeError('Cannot abort a locked stream');
@@ -70,7 +74,11 @@ const MOCK: &str = "(role, json) => {
 /// Opens the page with the mock: there before the page's scripts, or, where a driver has no means for that, after them and
 /// before the dialog, which is the first to look for ports (`the_page_looks_for_ports_with_the_dialog_alone`).
 pub(crate) async fn open_with(page: &Session, fragment: &str, role: &str, json: &str) -> Result<()> {
-    let mock = format!("({MOCK})({}, {});", json!(role), json!(json));
+    open_at(page, fragment, (json, role, false)).await
+}
+
+async fn open_at(page: &Session, fragment: &str, (json, role, stays): (&str, &str, bool)) -> Result<()> {
+    let mock = format!("({MOCK})({}, {}, {stays});", json!(role), json!(json));
     if page.bench.browser == Browser::Chromium {
         page.before_scripts(&mock).await?;
         return page.open(fragment).await;
@@ -81,8 +89,17 @@ pub(crate) async fn open_with(page: &Session, fragment: &str, role: &str, json: 
 
 /// Opens the page with a scenario and the dialog on it, with a port whose other end has this role.
 pub(crate) async fn open(page: &Session, json: &str, role: &str) -> Result<Known> {
-    let known = Known::of(json)?;
-    open_with(page, &format!("#{}", known.link), role, json).await?;
+    open_beside(page, (json, role, false)).await
+}
+
+/// The same; `true` with a device that stays when the port is closed.
+pub(crate) async fn open_beside(page: &Session, there: (&str, &str, bool)) -> Result<Known> {
+    let known = Known::of(there.0)?;
+    open_at(page, &format!("#{}", known.link), there).await?;
+    // On a narrow screen the view is a tab.
+    let tab =
+        "[document.getElementById('tab-packets')].find((tab) => tab.checkVisibility())?.click() ?? null";
+    page.eval::<Value>(tab).await?;
     page.click("#device").await?;
     page.until(&format!("{ABOUT}.includes(' baud')")).await?;
     Ok(known)

@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// Long enough to be stopped on the way, on any machine.
-const LONG: &str = r#"{"line":{"protocol":"framed"},"bus":{"step_period_cycles":3200},
+pub(crate) const LONG: &str = r#"{"line":{"protocol":"framed"},"bus":{"step_period_cycles":3200},
     "source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":9000},"duration_s":20}}]}]}}}"#;
 /// Two controllers, the first of two channels.
 const TWO: &str = r#"{"line":{"protocol":"framed"},"bus":{"channels":2,"step_period_cycles":3200,"queue_depth":200},

@@ -1,19 +1,26 @@
-//! The device of a real host (LIVE H1, H4): a session against the wall clock.
+//! The device of a real host (LIVE H1, H4, H5): a session against the wall clock, its recording, and what was of the clock beside it.
 
 use super::{listed, nanos, read};
 use crate::convert::object;
 use serde::Serialize;
 use stepscope_core::{
-    peripheral::{
-        trace::Digest,
-        units::{Cycles, Instant},
+    peripheral::units::{Cycles, Instant},
+    sim::{
+        live_trace::LiveTrace,
+        session::{Pace, Session, SessionClock},
+        session_times::SessionTimes,
     },
-    sim::session::{Pace, Session, SessionClock},
 };
 use wasm_bindgen::prelude::*;
 
 /// Cycles of a round at most: as many records, at the very most.
 const MAX_ROUND: u64 = 1_000_000;
+/// Records of the live trace, of all controllers together.
+const MAX_RECORDS: usize = 1_000_000;
+/// What is told of the live trace: positions of so many seconds, at so many times, of so many controllers.
+const CURVE_SECONDS: u64 = 10;
+const CURVE_POINTS: usize = 120;
+const CURVES: usize = 4;
 
 /// A controller of a session as it is now.
 #[derive(Serialize)]
@@ -24,12 +31,16 @@ struct ControllerState {
     positions: Vec<i32>,
     faults: Vec<String>,
     ticks_done: u32,
+    /// How the positions of each channel went; empty where there are many controllers.
+    curves: Vec<Vec<i32>>,
 }
 
 /// A session as it is now.
 #[derive(Serialize)]
 struct SessionState {
     seconds: f64,
+    /// Where the curves begin; they end now.
+    curves_from: f64,
     heard: u64,
     replies: u64,
     /// Most that a reply was written after its cycle.
@@ -55,22 +66,35 @@ struct Recorded {
 pub struct LiveDevice {
     session: Session,
     clock: SessionClock,
+    /// The last records of each controller.
+    traces: Vec<LiveTrace>,
+    times: SessionTimes,
     replies: u64,
     latest_ns: u64,
 }
 
 #[wasm_bindgen]
 impl LiveDevice {
-    /// The controllers of a scenario, whose model may be so late before its clock is set back.
+    /// The controllers of a scenario, whose model may be so late before its clock is set back, in a session that begins so
+    /// many ms after 1970.
     ///
     /// # Errors
     /// If the scenario has problems, or its controllers have no line: with what to change.
     #[wasm_bindgen(constructor)]
-    pub fn new(json: &str, lag_ms: f64) -> Result<LiveDevice, JsError> {
+    pub fn new(json: &str, lag_ms: u32, unix_ms: f64) -> Result<LiveDevice, JsError> {
         let session = Session::new(&read(json)?).map_err(|problems| listed(&problems))?;
         let clock_hz = session.experiment().config().clock_hz();
-        let clock = SessionClock::new(clock_hz, Pace::REAL_TIME, nanos(lag_ms));
-        Ok(Self { session, clock, replies: 0, latest_ns: 0 })
+        let pace = Pace::REAL_TIME;
+        let clock = SessionClock::new(clock_hz, pace, nanos(lag_ms.into()));
+        let controllers = session.experiment().controllers();
+        Ok(Self {
+            traces: vec![LiveTrace::new(MAX_RECORDS / controllers.max(1)); controllers],
+            times: SessionTimes::new(unix_ms as u64, pace.to_string(), lag_ms.into(), true),
+            session,
+            clock,
+            replies: 0,
+            latest_ns: 0,
+        })
     }
 
     /// The line's rate.
@@ -86,28 +110,31 @@ impl LiveDevice {
         let target = self.clock.target(nanos(ms), now);
         let to = target.min(Instant(now.0 + (clock_hz / 1000).clamp(1, MAX_ROUND)));
         if to > now {
-            self.session.advance::<Digest>(to, &mut []);
+            self.session.advance(to, &mut self.traces);
         }
         to < target
     }
 
     /// Bytes of replies that have left the model by now.
     pub fn replies(&mut self, ms: f64) -> Vec<u8> {
-        let Self { session, clock, replies, latest_ns } = self;
+        let Self { session, clock, times, replies, latest_ns, .. } = self;
         let mut bytes = Vec::new();
         for reply in session.take_replies() {
             bytes.push(reply.byte);
             // A reply ends with its delimiter.
             if reply.byte == 0 {
                 *replies += 1;
-                *latest_ns = (*latest_ns).max(clock.late_ns(nanos(ms), reply.end));
+                let late = clock.late_ns(nanos(ms), reply.end);
+                *latest_ns = (*latest_ns).max(late);
+                times.reply(&reply, nanos(ms), late);
             }
         }
         bytes
     }
 
-    /// Bytes that were read while the model stands where it stands.
-    pub fn receive(&mut self, bytes: &[u8]) {
+    /// Bytes that were read at a time, while the model stands where it stands.
+    pub fn receive(&mut self, bytes: &[u8], ms: f64) {
+        self.times.chunk(nanos(ms), self.session.now(), bytes.len());
         self.session.receive(bytes);
     }
 
@@ -119,29 +146,42 @@ impl LiveDevice {
         if due == Instant::NEVER { f64::INFINITY } else { self.clock.nanos(cycles) as f64 / 1e6 }
     }
 
-    /// How it stands: `{seconds, heard, replies, latest_ms, set_backs, set_back_ms, records_all, controllers}`.
+    /// How it stands: `{seconds, curves_from, heard, replies, latest_ms, set_backs, set_back_ms, records_all, controllers}`.
     ///
     /// # Errors
     /// Never in practice.
     pub fn state(&self) -> Result<JsValue, JsError> {
-        let Self { session, clock, replies, latest_ns } = self;
+        let Self { session, clock, traces, replies, latest_ns, .. } = self;
         let experiment = session.experiment();
-        let devices = session.run().devices().zip(experiment.configs());
-        let controllers = devices.map(|(device, config)| {
+        let clock_hz = experiment.config().clock_hz().max(1);
+        let to = session.now();
+        let mut from = Instant(to.0.saturating_sub(CURVE_SECONDS * u64::from(clock_hz)));
+        let told = Some(&traces[..]).filter(|all| all.len() <= CURVES).unwrap_or_default();
+        // All curves begin where the last one does.
+        for trace in told {
+            from = from.max(trace.positions(&[], (from, to), 0).from);
+        }
+        let devices = session.run().devices().zip(experiment.configs()).enumerate();
+        let controllers = devices.map(|(index, (device, config))| {
             let status = device.status();
+            let positions: Vec<i32> =
+                device.positions().iter().take(config.channels().into()).copied().collect();
+            let curve = |trace: &LiveTrace| trace.positions(&positions, (from, to), CURVE_POINTS).channels;
             let queued = |free: u8| config.queue_depth() - free.min(config.queue_depth());
             ControllerState {
                 state: status.map(|status| status.state.name()),
                 queued: status.map(|status| queued(status.free)),
                 queue_depth: config.queue_depth(),
-                positions: device.positions().iter().take(config.channels().into()).copied().collect(),
+                curves: told.get(index).map(curve).unwrap_or_default(),
+                positions,
                 faults: device.faults().names().map(|name| name.to_string()).collect(),
                 ticks_done: device.ticks_done(),
             }
         });
         let stretches = clock.stretches();
         object(&SessionState {
-            seconds: session.now().0 as f64 / f64::from(experiment.config().clock_hz().max(1)),
+            seconds: to.0 as f64 / f64::from(clock_hz),
+            curves_from: from.0 as f64 / f64::from(clock_hz),
             heard: session.heard(),
             replies: *replies,
             latest_ms: *latest_ns as f64 / 1e6,
@@ -150,6 +190,13 @@ impl LiveDevice {
             records_all: session.records_all(),
             controllers: controllers.collect(),
         })
+    }
+
+    /// `NAME.session.json`, beside the recording.
+    #[must_use]
+    pub fn times(&self) -> String {
+        let Self { session, clock, times, .. } = self;
+        times.to_json(clock, &session.recording(), session.records_all())
     }
 
     /// The session as a scenario, run again and compared: `{scenario, digests, why, whole}`.

@@ -1,12 +1,11 @@
 //! The host of a real device (LIVE H3, H4): a conversation against the wall clock, with the model beside it.
 
-use super::{listed, nanos, read};
+use super::{SCRIPT, SEGMENTS, listed, nanos, read};
 use crate::convert::object;
 use serde::Serialize;
 use std::mem::take;
 use stepscope_core::{
     peripheral::{
-        config::Protocol,
         protocol::{Kind, Status},
         units::{Cycles, Instant},
         wire::{
@@ -123,21 +122,12 @@ impl LiveHost {
         let scenario = for_real_line(read(json)?);
         let experiment = Experiment::new(&scenario).map_err(|problems| listed(&problems))?;
         if experiment.segments().is_some() {
-            return Err(JsError::new(
-                "segments run a controller by itself: there is nothing to send; in the form choose ticks as the engine of the motion",
-            ));
-        }
-        if experiment.config().protocol() == Protocol::Raw {
-            return Err(JsError::new(
-                "raw packets are not answered, so nothing could be confirmed; choose the framed protocol in the form, or send raw packets with the command: stepscope send",
-            ));
+            return Err(JsError::new(SEGMENTS));
         }
         let clock_hz = experiment.config().clock_hz();
         let clock = SessionClock::new(clock_hz, Pace::REAL_TIME, u64::MAX);
         let Some(host) = experiment.conversation(Instant(1)) else {
-            return Err(JsError::new(
-                "a line script is sent as it stands, and nobody knows what is to be answered; in the form choose a motion or packets as the source",
-            ));
+            return Err(JsError::new(SCRIPT));
         };
         let slack = Cycles((slack_ms.max(0.0) / 1000.0 * f64::from(clock_hz)) as u64);
         let twin = Twin::new(&scenario).map_err(|problems| listed(&problems))?;

@@ -1,19 +1,28 @@
-//! How late something was, as a histogram with few bars.
+//! How late something was against the wall clock (LIVE H2, H3), as a histogram with few bars.
+//!
+//! ```
+//! use stepscope_sim::lateness::Lateness;
+//!
+//! let mut late = Lateness::default();
+//! [80_000, 120_000, 7_300_000].into_iter().for_each(|ns| late.add(ns));
+//! assert_eq!((late.within_ms(50), late.within_ms(99), late.worst_ms()), (0.25, 10.0, 7.3));
+//! ```
 
-use std::fmt;
+use core::fmt;
 
 /// Upper ends of the bars, in microseconds; what is later is in the last.
 const BARS_US: [u64; 9] = [100, 250, 500, 1000, 2000, 5000, 10_000, 20_000, 50_000];
 
 /// Latenesses, counted.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct Histogram {
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Lateness {
     bars: [u64; BARS_US.len() + 1],
     worst_ns: u64,
 }
 
-impl Histogram {
-    pub(crate) fn add(&mut self, late_ns: u64) {
+impl Lateness {
+    /// One more, in nanoseconds.
+    pub fn add(&mut self, late_ns: u64) {
         let bar = BARS_US.iter().position(|&end| late_ns <= 1000 * end).unwrap_or(BARS_US.len());
         if let Some(count) = self.bars.get_mut(bar) {
             *count += 1;
@@ -21,16 +30,21 @@ impl Histogram {
         self.worst_ns = self.worst_ns.max(late_ns);
     }
 
-    pub(crate) fn count(&self) -> u64 {
+    /// How many were counted.
+    #[must_use]
+    pub fn count(&self) -> u64 {
         self.bars.iter().sum()
     }
 
-    pub(crate) const fn worst_ms(&self) -> f64 {
+    /// The worst, in ms.
+    #[must_use]
+    pub const fn worst_ms(&self) -> f64 {
         self.worst_ns as f64 / 1e6
     }
 
     /// The end of the bar, in ms, in which so many per cent of all are, or the worst.
-    pub(crate) fn within_ms(&self, percent: u64) -> f64 {
+    #[must_use]
+    pub fn within_ms(&self, percent: u64) -> f64 {
         let wanted = (self.count() * percent).div_ceil(100);
         let mut sum = 0;
         for (bar, end) in self.bars.iter().zip(BARS_US) {
@@ -43,13 +57,13 @@ impl Histogram {
     }
 
     /// Each bar's end in ms (`None`: later than all) and its count.
-    pub(crate) fn bars(&self) -> impl Iterator<Item = (Option<f64>, u64)> {
+    pub fn bars(&self) -> impl Iterator<Item = (Option<f64>, u64)> {
         let ends = BARS_US.iter().map(|&end| Some(end as f64 / 1e3)).chain([None]);
         ends.zip(self.bars)
     }
 }
 
-impl fmt::Display for Histogram {
+impl fmt::Display for Lateness {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (end, count) in self.bars().filter(|(_, count)| *count > 0) {
             match end {
@@ -64,10 +78,11 @@ impl fmt::Display for Histogram {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use alloc::string::ToString as _;
 
     #[test]
     fn a_lateness_is_in_the_first_bar_that_reaches_it() {
-        let mut late = Histogram::default();
+        let mut late = Lateness::default();
         for us in [0, 100, 101, 1500, 60_000] {
             late.add(us * 1000);
         }

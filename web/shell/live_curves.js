@@ -1,0 +1,48 @@
+/** How the positions of a soft device went in the last seconds, from its live trace (LIVE H4): a line a channel. */
+import { element, fill, say } from "../dom.js";
+import { count } from "../state/number.js";
+
+/** @typedef {import("../engine/live.js").Served} Served */
+
+const SVG = "http://www.w3.org/2000/svg";
+const [WIDTH, HEIGHT] = [1000, 100];
+/** Lines that have a colour of their own; further ones begin again. */
+const COLOURS = 4;
+
+/** @param {string} tag @param {{[name: string]: string}} attributes */
+function drawn(tag, attributes) {
+  const made = document.createElementNS(SVG, tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  return made;
+}
+
+export function positionCurves() {
+  const svg = drawn("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, preserveAspectRatio: "none", "aria-hidden": "true" });
+  const about = element("figcaption");
+  const node = element("figure", { id: "live-curves", class: "live-curves" }, about);
+  node.prepend(svg);
+  return {
+    node,
+    /** @param {Served} served */
+    draw({ seconds, curves_from, controllers }) {
+      const lines = controllers.flatMap(({ curves }) => curves);
+      node.hidden = lines.length === 0;
+      const all = lines.flat();
+      const [least, most] = all.reduce(
+        ([low, high], value) => [Math.min(low, value), Math.max(high, value)],
+        [Number.POSITIVE_INFINITY, Number.NEGATIVE_INFINITY],
+      );
+      const span = Math.max(1, most - least);
+      const shapes = lines.map((line, index) => {
+        const at = (/** @type {number} */ value, /** @type {number} */ point) =>
+          `${((point * WIDTH) / (line.length - 1)).toFixed(1)},${(HEIGHT - ((value - least) * HEIGHT) / span).toFixed(1)}`;
+        return drawn("polyline", { points: line.map(at).join(" "), class: `line-${index % COLOURS}` });
+      });
+      fill(svg, ...shapes);
+      say(
+        about,
+        `Positions of the last ${(seconds - curves_from).toFixed(0)} s, from ${count(least)} to ${count(most)} steps.`,
+      );
+    },
+  };
+}
