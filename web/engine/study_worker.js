@@ -5,11 +5,23 @@
  * In: first of all {module}, the compiled code; {id, method, args} for an answer {id, value} or {id, error}. The methods
  * `open` and `of` make an object of a scenario and ask it.
  */
-import init, * as core from "../pkg-study/stepscope_wasm.js";
+import init, {
+  Judged,
+  replay,
+  sheets,
+  sine_best,
+  sine_rows,
+  sine_vertices,
+  step_figures,
+  with_motor,
+} from "../pkg-study/stepscope_wasm.js";
 import { readJson } from "../state/json.js";
 import { createJudging, fatal, text } from "./judging.js";
 
-const { judge } = createJudging((json) => new core.Judged(json));
+/** Questions that are about no scenario. @type {{[method: string]: (...args: any[]) => any}} */
+const CALLS = { replay, sheets, sine_best, sine_rows, sine_vertices, step_figures };
+
+const { judge } = createJudging((json) => new Judged(json));
 
 /** @type {(module: WebAssembly.Module) => void} */
 let provide = () => {};
@@ -36,14 +48,14 @@ function answer(method, args) {
     if (ask === "end") opened = null;
     return held[ask](...rest);
   }
-  const calls = /** @type {any} */ (core);
   if (method === "with_motor") {
-    const [json, ...rest] = args;
+    const [json, motor, drive] = args;
     const { known, source } = withoutPanels(json);
-    const made = calls.with_motor(known, ...rest);
+    const made = with_motor(known, motor, drive);
     return source ? JSON.stringify({ ...readJson(made), source }) : made;
   }
-  if (!(method in core.Judged.prototype)) return calls[method](...args);
+  const call = CALLS[method];
+  if (call) return call(...args);
   const [json, ...rest] = args;
   return /** @type {any} */ (judge(withoutPanels(String(json)).known))[method](...rest);
 }

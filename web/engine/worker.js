@@ -9,7 +9,18 @@
  * {recording}, the number of a scenario whose run is looked at as it was recorded, and how many {piece} of it come; {run, json} for events {event, run, …}, without a word of it if `quiet`, and then looking at controller `select`;
  * {cancel} for {event: "cancelled"} once that run is no longer under way.
  */
-import init, * as core from "../pkg/stepscope_wasm.js";
+import init, {
+  default_scenario,
+  drivers,
+  Judged,
+  link_part,
+  link_with,
+  open_link,
+  pack_link,
+  presets,
+  schema,
+  unpack_link,
+} from "../pkg/stepscope_wasm.js";
 import { createJudging, fatal, text } from "./judging.js";
 
 /** How long a slice should take, in ms: short enough to be cancelled within a tenth of a second. */
@@ -27,7 +38,9 @@ let finished = null;
 let baseline = null;
 /** Controller that the views look at. */
 let selected = 0;
-const judging = createJudging((json) => new (isAlone(json) ? panels : core).Judged(json));
+const judging = createJudging((json) => new (isAlone(json) ? panels.Judged : Judged)(json));
+/** Questions about no run. @type {{[method: string]: (...args: any[]) => any}} */
+const CALLS = { default_scenario, drivers, link_part, link_with, presets, schema };
 /** The part of the core for stand-alone controllers, once it is there. @type {any} */
 let panels = null;
 /** @type {Promise<void> | null} */
@@ -154,7 +167,7 @@ async function asSimulation(alone, order) {
 
 /** An empty run of the core, as long as theirs. @param {any} alone */
 function frameOf(alone) {
-  const frame = new core.Judged(alone.frame());
+  const frame = new Judged(alone.frame());
   try {
     return Object.assign(/** @type {any} */ (frame.run()), { alone });
   } catch (error) {
@@ -249,9 +262,9 @@ async function search(args) {
 
 /** The scenario of a link. @param {string} fragment */
 async function openLink(fragment) {
-  const { json, version, error } = core.unpack_link(fragment);
+  const { json, version, error } = unpack_link(fragment);
   if (error !== undefined) return { error };
-  if (!isAlone(json)) return core.open_link(json, version);
+  if (!isAlone(json)) return open_link(json, version);
   await withPanels();
   return panels.open_link(json, version);
 }
@@ -261,15 +274,15 @@ async function answer(method, args) {
   if (method === "baseline") return setBaseline(args[0]);
   if (method.startsWith("baseline_")) return ofBaseline(method.slice(9), args);
   if (method === "counts") return { judged: judging.count(), runs };
-  if (method === "encode_link") return core.pack_link(await ofScenario("link_json", args));
+  if (method === "encode_link") return pack_link(await ofScenario("link_json", args));
   if (method === "decode_link") return openLink(args[0]);
   if (method === "panel_schema") return withPanels().then(() => panels.schema());
   if (method === "panel_preset") return withPanels().then(() => panels.panel_preset(args[0]));
-  if (method in core.Judged.prototype) return ofScenario(method, args);
+  if (method in Judged.prototype) return ofScenario(method, args);
   if (method === "select") selected = args[0];
   if (method === "filter") return search(args);
-  const calls = /** @type {any} */ (core);
-  if (typeof calls[method] === "function") return calls[method](...args);
+  const call = CALLS[method];
+  if (call) return call(...args);
   if (!finished) return null;
   // What is behind the drivers, and before them, those have who made the run.
   const { alone } = finished;
