@@ -134,13 +134,13 @@ fn a_lost_port_ends_raw_packets_and_is_told() -> Result<()> {
 #[test]
 fn a_queue_that_does_not_hold_the_lead_is_refused_with_its_numbers() -> Result<()> {
     in_browser(|page| async move {
-        for json in ["{}", r#"{"bus":{"step_period_cycles":1600,"queue_depth":20}}"#] {
+        for json in ["{}", r#"{"bus":{"step_period_cycles":1000,"queue_depth":20}}"#] {
             let known = Known::of(json)?;
             let refused =
                 RawHost::with_slack(&known.experiment, LEAD_NS).err().context("the queue is too short")?;
             page.open(&format!("#{}", known.link)).await?;
             page.js::<bool>(
-                "Object.defineProperty(navigator, 'serial', { configurable: true, value: {} }); return true;",
+                "Object.defineProperty(navigator, 'serial', { configurable: true, value: { getPorts: async () => [] } }); return true;",
                 vec![],
             )
             .await?;
