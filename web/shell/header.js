@@ -101,7 +101,9 @@ export function createHeader({ presets, cancel, retry, ...page }) {
     if (byId("status").title !== said) byId("status").title = said;
     say(
       byId("computed"),
-      state.result && !long && held(state) !== "problems" ? `computed in ${si(state.result.ms / 1000, "s", 2)}` : "",
+      state.result && !state.result.summary.recorded && !long && held(state) !== "problems"
+        ? `computed in ${si(state.result.ms / 1000, "s", 2)}`
+        : "",
     );
     byId("on-show").hidden = !state.result?.summary.recorded;
     health.render(state);

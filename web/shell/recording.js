@@ -423,7 +423,14 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
     const shown = found && (await run);
     if (!shown) return;
     const cycle = Math.round(found.largest.recorded_s * shown.summary.clock_hz);
-    const place = around(cycle, cycle, shown.summary.end_cycle, shown.controller);
+    // So wide that where it should be is in sight, and some of its neighbours.
+    const air = Math.round(
+      Math.max(
+        4 * Math.abs(found.largest.late_s) * shown.summary.clock_hz,
+        (4 * shown.summary.end_cycle) / found.recorded,
+      ),
+    );
+    const place = { ...around(cycle - air, cycle + air, shown.summary.end_cycle, shown.controller), cycle };
     dispatch({ type: "notice", notice: { kind: "info", text: `${compared(found, aligned)} ${text}`, place } });
   }
 
@@ -444,7 +451,19 @@ function part({ from_s, to_s, end_s, records, of }) {
 
 /** Each step, or byte, beside the baseline's, in one sentence. @param {any} found @param {number} aligned */
 function compared(
-  { kind, recorded, model, differing, largest, rms_s, drift_ppm, rms_jitter_s, outliers, other_values },
+  {
+    kind,
+    recorded,
+    model,
+    differing,
+    largest,
+    rms_s,
+    drift_ppm,
+    largest_jitter_s,
+    rms_jitter_s,
+    outliers,
+    other_values,
+  },
   aligned,
 ) {
   const one = kind.slice(0, -1);
@@ -453,15 +472,18 @@ function compared(
     recorded === model
       ? `all ${count(recorded)} ${kind}`
       : `${count(recorded)} ${kind}, the baseline has ${count(model)};`;
+  const { step, late_s } = largest;
   const late =
-    largest.late_s === 0 ? "none is off" : `${one} ${count(largest.step)} is off most, by ${time(largest.late_s)}`;
+    late_s === 0
+      ? "none is off"
+      : `${one} ${count(step)} (the first is 0) is off most, ${time(Math.abs(late_s))} ${late_s > 0 ? "late" : "early"}`;
   const values = other_values > 0 ? `, ${count(other_values)} have another value` : "";
   // Further apart it is another motion, not another clock.
   const drift =
     Math.abs(drift_ppm) > MAX_DRIFT_PPM
       ? ""
-      : ` Drift ${drift_ppm.toFixed(1).replace(/^-(0\.0)$/, "$1")} ppm, jitter without it ${time(rms_jitter_s)} RMS${outliers > 0 ? ` of all but ${count(outliers)} that are far off` : ""}.`;
-  return `Beside the baseline${by}: ${all} compared, ${count(differing)} are off by more than a cycle; ${late}${values}; RMS ${time(rms_s)}.${drift}`;
+      : ` Drift ${drift_ppm.toFixed(1).replace(/^-(0\.0)$/, "$1")} ppm; without it ${time(largest_jitter_s)} at most, jitter ${time(rms_jitter_s)} RMS${outliers > 0 ? `, ${counted(outliers, one)} far off left out` : ""}.`;
+  return `Beside the baseline${by}: ${all} compared, ${count(differing)} off by more than a cycle of the clock; ${late}${values}; RMS ${time(rms_s)}.${drift}`;
 }
 
 /** Bytes go to the controllers of the experiment before, where these have the same clock. @param {string} made @param {any} base */

@@ -30,10 +30,7 @@ export function createShare({ shared, now }, { isOpen }) {
       if (mine !== asked) return;
       text.value = full;
       copy.disabled = false;
-      say(
-        about,
-        `${count(full.length)} characters: ${contents(now(), digests)}. It holds everything; nothing is stored on a server.`,
-      );
+      say(about, `${count(full.length)} characters: ${contents(now(), digests)}. Nothing is stored on a server.`);
     } catch (error) {
       if (mine === asked) say(about, `No link: ${message(error)}`);
     }
@@ -73,7 +70,11 @@ function contents(state, digests) {
   const seen = digests
     ? `the digest of this run (${count(edges)} edges), so that whoever opens it is told whether theirs is the same`
     : "";
-  const why = digests ? "" : isStale(state) ? "no digest, for it was not run" : "no digest, for it would be too long";
+  const why = isStale(state)
+    ? "no digest, for it was not run"
+    : state.result?.summary.recorded
+      ? "no digest, for it is a recording: whoever opens it sees what the model makes of its steps or bytes"
+      : "no digest, for it would be too long";
   const parts = ["the whole experiment", viewOf(state) ? "what is on show" : "", seen || why].filter(Boolean);
   return parts.length > 1 ? `${parts.slice(0, -1).join(", ")} and ${parts[parts.length - 1]}` : parts[0];
 }

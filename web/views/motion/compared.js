@@ -44,7 +44,7 @@ export async function tellCompared(engine, state) {
     ? [
         [
           "position",
-          `differs by ${short(apart.largest)} ${unit} at most, at ${time(apart.at_s)}; RMS ${short(apart.rms)} ${unit} over the common ${si(apart.common_s, "s")}`,
+          `differs by ${short(apart.largest)} ${apart.largest === 1 ? unit.replace(/s$/, "") : unit} at most, at ${time(apart.at_s)}; RMS ${short(apart.rms)} ${unit} over the common ${si(apart.common_s, "s")}`,
         ],
       ]
     : [];
