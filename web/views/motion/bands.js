@@ -121,7 +121,7 @@ export function chartOf(state, seen, quantity) {
     caption:
       quantity === "position" && seen.apart
         ? "position less the baseline’s, by the pulses"
-        : quantity + (seen.columns.has_ideal || quantity !== "acceleration" ? "" : ", each 8 steps to the next 8"),
+        : quantity + (seen.columns.has_ideal || quantity !== "acceleration" ? "" : ", over 8 steps"),
     chart: {
       x: { min: start / clock, max: end / clock, unit: "s", prefix: true, label_px },
       y: { min: range.min, max: range.max, unit: "", prefix: true, label_px: GUTTER },
