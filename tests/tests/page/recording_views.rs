@@ -61,7 +61,8 @@ fn a_recordings_acceleration_is_read_at_the_cursors_and_between_them_and_said_wh
         show(&page).await?;
         let opened = natively(&text, &Ask::default(), None)?;
         page.until_digest(&digest(&opened)).await?;
-        page.until("document.getElementById('caption-acceleration').textContent.includes('over 8 steps')").await?;
+        page.until("document.getElementById('caption-acceleration').textContent.includes('over 8 steps')")
+            .await?;
         let mut cycles = Vec::new();
         for which in ["a", "b"] {
             let css = format!("#charts-handles .handle.{which}");
