@@ -111,7 +111,7 @@ export async function openDevice(page) {
   stop.addEventListener("click", stopAll);
   end.addEventListener("click", () => live.end());
   close.addEventListener("click", () => dialog.close());
-  aside.addEventListener("click", () => lay(!inFront()));
+  aside.addEventListener("click", () => (inFront() ? lay(false) : bring?.()));
   // Escape stops what moves before it closes anything, wherever it is pressed.
   const stopByKey = (/** @type {KeyboardEvent} */ event) => {
     if (event.key !== "Escape" || running !== "stream") return;

@@ -66,7 +66,7 @@ export function reportText(title, began, reported, { own, model }) {
   );
   if (own.length > 0)
     lines.push(
-      `delay of ${counted(own.length, "reply").replace("replys", "replies")}: median ${ms(median(own))}, longest ${ms(Math.max(...own))}; the model's median ${ms(median(model))}`,
+      `delay of ${counted(own.length, "reply").replace("replys", "replies")}: median ${ms(median(own))}, longest ${ms(own.reduce((most, each) => Math.max(most, each), 0))}; the model's median ${ms(median(model))}`,
     );
   return `${lines.join("\n")}\n`;
 }

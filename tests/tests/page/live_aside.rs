@@ -108,7 +108,13 @@ fn the_dialog_that_comes_in_front_again_is_about_the_experiment_as_it_is_then() 
         page.click("#live-start").await?;
         page.until("peer.opened.length === 2").await?;
         assert_eq!(page.eval::<Vec<u32>>("peer.opened").await?, [115_200, 57_600]);
-        page.until("peer.closed === 2").await
+        page.until("peer.closed === 2").await?;
+        // Nor is it about what was sent last where its own button brings it back.
+        page.click("#packets-of-model").await?;
+        page.fill("line.baud", "38400").await?;
+        page.ready().await?;
+        page.click("#live-aside").await?;
+        page.until("document.getElementById('live-about').textContent.includes('38400 baud')").await
     })
 }
 
