@@ -19,7 +19,7 @@ import { compiled } from "./wasm.js";
  *   records_all: boolean, missed: number, controllers: {state: string | null, queued: number | null, queue_depth: number, positions: number[],
  *   faults: string[], ticks_done: number, curves: number[][]}[]}} Served
  * @typedef {Served & {scenario: string, digests: string[], why: string | null, whole: boolean, lost: string, times: Blob}} Recorded
- * @typedef {{state?: any, rows?: Exchange[], reported?: Reported, recorded?: Recorded, closed?: true, error?: string, facts?: Facts}} Told
+ * @typedef {{state?: any, rows?: Exchange[], reported?: Reported, recorded?: Recorded, closed?: true, error?: string, stuck?: boolean, facts?: Facts}} Told  Stuck: the port stays open.
  */
 
 /** How long what has the port may take to give it back, in ms: STOP is sent until it is confirmed. */
@@ -43,43 +43,67 @@ export function movesStreams() {
   }
 }
 
-/** Closes a port that the worker has done with. What the worker has closed is in use here for a moment more, and a port in use does
- * not close. @param {any} port */
+/** Closes a port that the worker has done with, and tells whether it could. What the worker has closed is in use here for a moment
+ * more, and a port in use does not close. @param {any} port */
 async function closePort(port) {
-  for (let waited = 0; waited < PATIENCE_MS; waited += LOOK_MS) {
-    if (!port.readable?.locked && !port.writable?.locked) break;
+  for (let waited = 0; port.readable?.locked || port.writable?.locked; waited += LOOK_MS) {
+    if (waited >= PATIENCE_MS) return false;
     await new Promise((rested) => setTimeout(rested, LOOK_MS));
   }
   // One that is lost is closed already.
   await port.close().catch(() => {});
+  return true;
 }
 
 /** @param {(told: Told) => void} told */
 export function openLive(told) {
-  const worker = new Worker(/** @type {string} */ (byId("main").dataset.liveWorker), { type: "module" });
+  /** One that failed is replaced when it is needed next. @type {Worker | null} */
+  let worker = null;
   /** The port that the worker has. @type {any} */
   let open = null;
   /** Ends the wait for what has the port. */
   let left = () => {};
   /** @type {Promise<void>} */
   let gone = Promise.resolve();
-  worker.onerror = (event) => told({ error: event.message || "this part of the page could not be loaded" });
-  worker.onmessage = async ({ data }) => {
-    // Where the core failed nobody reads the port any more.
-    if (data.error) worker.terminate();
-    if (data.closed || data.error) await closed();
-    if (data.closed) left();
-    told(data);
-  };
-  compiled("live").then(
-    (module) => worker.postMessage({ module }),
-    (error) => told({ error: `this part of the page could not be loaded: ${error.message}` }),
-  );
 
+  function begin() {
+    const begun = new Worker(/** @type {string} */ (byId("main").dataset.liveWorker), { type: "module" });
+    /** Nobody is behind it any more. @param {string} error */
+    const fail = async (error) => {
+      if (worker !== begun) return;
+      worker = null;
+      begun.terminate();
+      const stuck = !(await closed());
+      left();
+      told({ error, stuck });
+    };
+    begun.onerror = (event) => fail(event.message || "this part of the page could not be loaded");
+    begun.onmessage = async ({ data }) => {
+      if (data.error) return fail(data.error);
+      if (data.closed) {
+        data.stuck = !(await closed());
+        left();
+      }
+      told(data);
+    };
+    compiled("live").then(
+      (module) => begun.postMessage({ module }),
+      (error) => fail(`this part of the page could not be loaded: ${error.message}`),
+    );
+    return begun;
+  }
+
+  /** @param {object} order @param {Transferable[]} [given] */
+  function post(order, given = []) {
+    worker ??= begin();
+    worker.postMessage(order, given);
+  }
+
+  /** Closes the port, if one is open; whether none is left open. */
   async function closed() {
     const port = open;
     open = null;
-    if (port) await closePort(port);
+    return port === null || (await closePort(port));
   }
 
   /** Whether STOP was pressed since the stream began: also while its port is opened. */
@@ -94,7 +118,7 @@ export function openLive(told) {
     });
     const { readable, writable } = port;
     try {
-      worker.postMessage({ ...order(), readable, writable }, [readable, writable]);
+      post({ ...order(), readable, writable }, [readable, writable]);
     } catch (error) {
       await closed();
       throw error;
@@ -103,7 +127,7 @@ export function openLive(told) {
 
   return {
     /** What can be done with a scenario. @param {string} json */
-    judge: (json) => worker.postMessage({ judge: json }),
+    judge: (json) => post({ judge: json }),
     /** @param {any} port @param {number} baud @param {string} json @param {boolean} stop  Whether STOP is all that is sent. */
     stream(port, baud, json, stop) {
       stopped = stop;
@@ -113,17 +137,18 @@ export function openLive(told) {
     serve: (port, baud, json) => give(port, baud, () => ({ serve: json })),
     stop() {
       stopped = true;
-      worker.postMessage({ stop: true });
+      worker?.postMessage({ stop: true });
     },
-    end: () => worker.postMessage({ end: true }),
-    /** What has the port stops, gives it back, and ends. */
+    end: () => worker?.postMessage({ end: true }),
+    /** What has the port stops, gives it back, and ends; whether no port is left open. */
     async close() {
       if (open) {
-        worker.postMessage({ stop: true, end: true });
+        worker?.postMessage({ stop: true, end: true });
         await Promise.race([gone, new Promise((late) => setTimeout(late, PATIENCE_MS))]);
       }
-      worker.terminate();
-      await closed();
+      worker?.terminate();
+      worker = null;
+      return closed();
     },
   };
 }

@@ -6,10 +6,10 @@
  * ticks, or STOP alone; {serve, readable, writable} to be its controllers; {stop}; {end}. Raw packets go without replies, and
  * their stop is that no more are sent.
  * Out: {facts}; while it has the port {state} and {rows}; {reported} or {recorded} at the end; {closed} when both streams are;
- * {error} where nothing began.
+ * {error} where nothing began, or the core failed: what had the port has given it back, and this worker is of no use any more.
  */
 import init, * as core from "../pkg-live/stepscope_wasm.js";
-import { text } from "./judging.js";
+import { fatal, text } from "./judging.js";
 
 /** How much later than on the line a reply may come, in ms: what the system and the adapter add, and the page's window, through which
  * its port's streams go. */
@@ -98,11 +98,18 @@ function openPort({ readable, writable }, hear) {
       await Promise.race([port.write(bytes), late]).catch(port.lose);
       clearTimeout(timer);
     },
+    /** Gives the port back, whatever becomes of the work with it. @param {() => Promise<void>} work */
+    async use(work) {
+      try {
+        await work();
+      } finally {
+        await port.close();
+      }
+    },
     async close() {
       const closing = port.lost ? writer.abort() : writer.close();
       const late = new Promise((resolve) => setTimeout(resolve, WRITE_MS));
       await Promise.race([Promise.allSettled([reader.cancel(), closing]), late]);
-      postMessage({ closed: true });
     },
   };
   const read = async () => {
@@ -139,25 +146,26 @@ async function stream({ stream: json, stop, ...streams }) {
   asked = { stop, end: false };
   const report = () => postMessage({ state: host.state(), rows: host.rows() });
   const tell = everySoOften(report);
-  while (port.lost === "" && !host.is_over()) {
-    if (asked.stop && !stopped) {
-      stopped = true;
-      host.stop(now());
+  await port.use(async () => {
+    while (port.lost === "" && !host.is_over()) {
+      if (asked.stop && !stopped) {
+        stopped = true;
+        host.stop(now());
+      }
+      const bytes = host.poll(now());
+      if (bytes) {
+        await port.send(bytes, baud);
+        host.sent(now());
+      }
+      tell();
+      // What was asked while it was written is not slept over.
+      if (!bytes && port.lost === "" && !host.is_over()) await rest(host.wait(now()));
     }
-    const bytes = host.poll(now());
-    if (bytes) {
-      await port.send(bytes, baud);
-      host.sent(now());
-    }
-    tell();
-    // What was asked while it was written is not slept over.
-    if (!bytes && port.lost === "" && !host.is_over()) await rest(host.wait(now()));
-  }
-  report();
-  const reported = host.report(port.lost === "" ? undefined : `the port is lost: ${port.lost}`);
-  postMessage({ reported: { ...reported, lost: port.lost, stopped, ms: now() } });
-  host.free();
-  await port.close();
+    report();
+    const reported = host.report(port.lost === "" ? undefined : `the port is lost: ${port.lost}`);
+    postMessage({ reported: { ...reported, lost: port.lost, stopped, ms: now() } });
+    host.free();
+  });
 }
 
 /** The host of a raw line. @param {string} json @param {boolean} stop @param {{readable: ReadableStream, writable: WritableStream}} streams */
@@ -171,22 +179,23 @@ async function streamRaw(json, stop, streams) {
   asked = { stop, end: false };
   const report = () => postMessage({ state: host.state() });
   const tell = everySoOften(report);
-  while (port.lost === "" && !asked.stop && !host.is_over()) {
-    const at = now();
-    const bytes = host.packet(at);
-    if (bytes) {
-      // What was given to the port counts as written; one that is lost takes nothing.
-      await port.send(bytes, baud);
-      if (port.lost === "") host.written(at);
-    } else await rest(host.wait(at));
-    tell();
-  }
-  report();
-  const { lost } = port;
-  const stopped = asked.stop && !host.is_over();
-  postMessage({ reported: { raw: host.report(stopped, now()), lost, stopped, ms: now() } });
-  host.free();
-  await port.close();
+  await port.use(async () => {
+    while (port.lost === "" && !asked.stop && !host.is_over()) {
+      const at = now();
+      const bytes = host.packet(at);
+      if (bytes) {
+        // What was given to the port counts as written; one that is lost takes nothing.
+        await port.send(bytes, baud);
+        if (port.lost === "") host.written(at);
+      } else await rest(host.wait(at));
+      tell();
+    }
+    report();
+    const { lost } = port;
+    const stopped = asked.stop && !host.is_over();
+    postMessage({ reported: { raw: host.report(stopped, now()), lost, stopped, ms: now() } });
+    host.free();
+  });
 }
 
 /** The device of a host. @param {{serve: string, readable: ReadableStream, writable: WritableStream}} order */
@@ -208,20 +217,21 @@ async function serve({ serve: json, ...streams }) {
     else if (replies.length > 0) port.write(replies);
     return behind;
   };
-  while (port.lost === "" && !asked.end) {
-    const since = now();
-    let behind = turnRound();
-    while (behind && now() - since < TURN_MS) behind = turnRound();
-    // What was read does not come before its time.
-    if (!behind) for (const { bytes, at } of heard.splice(0)) device.receive(bytes, at);
-    tell();
-    await rest(behind ? 0 : Math.min(IDLE_MS, device.wait()));
-  }
-  report();
-  const times = new Blob([device.times()], { type: "application/json" });
-  postMessage({ recorded: { ...device.recording(), ...device.state(), times, missed, lost: port.lost } });
-  device.free();
-  await port.close();
+  await port.use(async () => {
+    while (port.lost === "" && !asked.end) {
+      const since = now();
+      let behind = turnRound();
+      while (behind && now() - since < TURN_MS) behind = turnRound();
+      // What was read does not come before its time.
+      if (!behind) for (const { bytes, at } of heard.splice(0)) device.receive(bytes, at);
+      tell();
+      await rest(behind ? 0 : Math.min(IDLE_MS, device.wait()));
+    }
+    report();
+    const times = new Blob([device.times()], { type: "application/json" });
+    postMessage({ recorded: { ...device.recording(), ...device.state(), times, missed, lost: port.lost } });
+    device.free();
+  });
 }
 
 /** What a host, and a device, of a scenario would be; or why there is none. @param {string} json */
@@ -234,6 +244,7 @@ function facts(json) {
       made.free();
       return found;
     } catch (error) {
+      if (fatal(error)) throw error;
       return { why: text(error), baud: 0, margin_ms: 0, state: null };
     }
   };
@@ -251,9 +262,12 @@ self.onmessage = async ({ data }) => {
   }
   try {
     await ready;
-    if ("judge" in data) postMessage({ facts: facts(data.judge) });
-    else await ("stream" in data ? stream(data) : serve(data));
+    if ("judge" in data) return postMessage({ facts: facts(data.judge) });
+    await ("stream" in data ? stream(data) : serve(data));
+    postMessage({ closed: true });
   } catch (error) {
+    // Where nothing began nobody has them yet.
+    await Promise.allSettled([data.readable?.cancel(), data.writable?.abort()]);
     postMessage({ error: text(error) });
   }
 };

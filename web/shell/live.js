@@ -8,6 +8,7 @@ import { openLive, serial } from "../engine/live.js";
 import { readJson } from "../state/json.js";
 import { counted } from "../state/number.js";
 import { message } from "./link.js";
+import { carryInto } from "./live_carry.js";
 import { positionCurves } from "./live_curves.js";
 import { outcome, reportText, servedText, twinOf } from "./live_report.js";
 import { about as aboutOf, NAMES, ROLES, stopTitle, usbOf, whyNone, whyNoPort } from "./live_roles.js";
@@ -23,6 +24,8 @@ import { ownIsKept } from "./storage.js";
 /** How long a recorded session may run before it is said that it has not, in ms, and how often that is looked at. */
 const PATIENCE_MS = 60_000;
 const LOOK_MS = 100;
+/** Of a port that the browser does not give back. */
+const STUCK = "The port could not be closed: load this page again before it is used by anyone.";
 
 /** Brings the dialog that there is in front. @type {(() => void) | null} */
 let bring = null;
@@ -42,6 +45,12 @@ export async function openDevice(page) {
   let port = null;
   /** What has the port. @type {Role | null} */
   let running = null;
+  /** What was sent on the port and is not known to have ended: STOP goes as it went. @type {{json: string, baud: number, raw: boolean} | null} */
+  let loose = null;
+  /** Whether it was told once what can be done. */
+  let judged = false;
+  /** Why nothing can be asked at all. */
+  let broken = "";
   let began = "";
   /** Delays in ms. @type {{own: number[], model: number[]}} */
   let delays = { own: [], model: [] };
@@ -61,6 +70,7 @@ export async function openDevice(page) {
   const end = element("button", { type: "button", id: "live-end" }, "End and open the recording");
   const aside = element("button", { type: "button", id: "live-aside" });
   const stop = element("button", { type: "button", id: "live-stop", class: "live-stop" }, "STOP");
+  const actions = element("div", { class: "live-actions" }, choose, allowed, start, end, aside, stop);
   const said = element("p", { id: "live-said", class: "live-said", role: "status" });
   const standing = element("p", { id: "live-standing", class: "live-standing" });
   const progress = element("progress", { max: "1", value: "0" });
@@ -89,7 +99,7 @@ export async function openDevice(page) {
       element("h2", { id: "live-title" }, "Device"),
       element("fieldset", {}, element("legend", {}, "This page is to"), ...radios.map(({ label }) => label)),
       about,
-      element("div", { class: "live-actions" }, choose, allowed, start, end, aside, stop),
+      actions,
       said,
       times,
       progress,
@@ -138,10 +148,16 @@ export async function openDevice(page) {
     window.removeEventListener("keydown", stopByKey, { capture: true });
     window.removeEventListener("beforeunload", leave);
     window.removeEventListener("pagehide", hide);
-    void live.close();
+    carrier.end();
+    live.close().then((free) => free || notify("error", STUCK));
     dialog.remove();
   });
   document.body.append(dialog);
+  const carrier = carryInto(
+    () => running === "stream",
+    stop,
+    () => actions.append(stop),
+  );
   bring = () => {
     lay(true);
     if (running === null) judge();
@@ -169,6 +185,7 @@ export async function openDevice(page) {
     if (next === json) return;
     json = next;
     facts = null;
+    broken = "";
     live.judge(json);
     show();
   }
@@ -178,10 +195,9 @@ export async function openDevice(page) {
     const name = role();
     const found = facts?.[name];
     const front = inFront();
-    const raw = isRaw();
-    const why = noPort || whyNone(scenario, found);
+    const why = noPort || broken || whyNone(scenario, found);
     say(about, why || aboutOf(name, /** @type {import("../engine/live.js").Role} */ (found)));
-    about.classList.toggle("error", why !== "" && facts !== null);
+    about.classList.toggle("error", why !== "" && (facts !== null || broken !== ""));
     say(choose, port ? "Choose another port…" : "Choose a port…");
     say(start, ROLES[name].start);
     for (const { input } of radios) input.disabled = running !== null;
@@ -194,9 +210,11 @@ export async function openDevice(page) {
     end.hidden = running !== "serve";
     aside.hidden = front && running === null;
     say(aside, front ? "Put aside" : "Bring to front");
-    stop.hidden = name === "serve";
-    stop.disabled = why !== "" || port === null || (raw && running === null);
+    const raw = loose?.raw ?? isRaw();
+    stop.hidden = name === "serve" && loose === null;
+    stop.disabled = port === null || (loose === null && why !== "") || (raw && running === null);
     stop.title = stopTitle(raw);
+    carrier.look();
     close.disabled = running !== null;
     close.title = running === null ? "" : "First STOP, or end";
   }
@@ -238,6 +256,7 @@ export async function openDevice(page) {
   /** @param {any} chosen */
   function take(chosen) {
     port = chosen;
+    loose = null;
     tell(`A port is chosen${usbOf(chosen)}. It is not open yet.`);
     show();
     start.focus();
@@ -245,8 +264,9 @@ export async function openDevice(page) {
 
   /** @param {boolean} stopping  Whether STOP is all that is sent. */
   async function begin(stopping) {
-    const name = role();
-    const baud = facts?.[name].baud ?? 0;
+    const name = stopping ? "stream" : role();
+    const sent = (stopping && loose) || { json, baud: facts?.[name].baud ?? 0, raw: isRaw() };
+    if (name === "stream") loose = sent;
     running = name;
     began = new Date().toISOString();
     delays = { own: [], model: [] };
@@ -254,9 +274,9 @@ export async function openDevice(page) {
     say(standing, "");
     progress.value = 0;
     progress.hidden = name === "serve";
-    progress.ariaLabel = isRaw() ? "Packets sent" : "Ticks done";
+    progress.ariaLabel = sent.raw ? "Packets sent" : "Ticks done";
     reported.hidden = curves.node.hidden = times.hidden = true;
-    if (name === "stream" && !isRaw()) rows.begin();
+    if (name === "stream") rows.begin(sent.raw);
     if (name === "stream" && !stopping) {
       lay(false);
       dispatch({ type: "view", view: "packets" });
@@ -265,7 +285,9 @@ export async function openDevice(page) {
     show();
     if (name === "stream") stop.focus();
     try {
-      await (name === "serve" ? live.serve(port, baud, json) : live.stream(port, baud, json, stopping));
+      await (name === "serve"
+        ? live.serve(port, sent.baud, sent.json)
+        : live.stream(port, sent.baud, sent.json, stopping));
     } catch (error) {
       failed(`The port cannot be opened: ${message(error)} Is it taken by another program?`);
       if (!inFront()) lay(true);
@@ -281,7 +303,7 @@ export async function openDevice(page) {
     if (running === null) return void begin(true);
     live.stop();
     tell(
-      isRaw()
+      loose?.raw
         ? "Nothing more is sent; the device does what is in its queue…"
         : "STOP: no further ticks. It is sent until the device confirms it…",
       true,
@@ -295,6 +317,20 @@ export async function openDevice(page) {
     show();
   }
 
+  /** The part of the page that has the port is gone, and with it what it knew. @param {string} why @param {boolean} [stuck] */
+  function broke(why, stuck) {
+    const had = running;
+    facts = null;
+    json = "";
+    broken = `A part of this page failed: ${why}. Close this dialog and open it again.`;
+    const moves =
+      "The device does what is in its queue, and then it runs dry (UNDERRUN): press STOP, or cut its power.";
+    failed([had && `This failed: ${why}.`, had === "stream" && moves, stuck && STUCK].filter(Boolean).join(" "));
+    if (had === null) return;
+    if (!inFront()) lay(true);
+    judge();
+  }
+
   /** Tells it on the page, where the dialog is gone. @param {"info" | "error"} kind @param {string} text */
   function notify(kind, text) {
     dispatch({ type: "notice", notice: { kind, text, place: null } });
@@ -302,11 +338,17 @@ export async function openDevice(page) {
 
   /** What the worker tells. @param {Told} told */
   function hear(told) {
-    if (told.error) return failed(told.error);
+    if (told.stuck) {
+      port = null;
+      if (!dialog.isConnected) notify("error", STUCK);
+    }
+    if (told.error) return dialog.isConnected && broke(told.error, told.stuck);
     if (told.facts) {
-      facts = told.facts;
       // What cannot be is not offered first.
-      if (facts.stream.why && !facts.serve.why) for (const { name, input } of radios) input.checked = name === "serve";
+      if (!judged && told.facts.stream.why && !told.facts.serve.why)
+        for (const { name, input } of radios) input.checked = name === "serve";
+      facts = told.facts;
+      judged = true;
     }
     if (told.state) stand(told.state);
     if (told.rows) {
@@ -319,6 +361,7 @@ export async function openDevice(page) {
     if (told.reported) {
       const { said: text, good } = outcome(told.reported);
       tell(text, !good);
+      if (good) loose = null;
       if (!dialog.open)
         notify(good ? "info" : "error", `The dialog of devices was closed while it was sending. ${text}`);
       fill(twin, ...(told.reported.raw ? [] : twinOf(told.reported)));
@@ -327,6 +370,7 @@ export async function openDevice(page) {
     }
     if (told.recorded) void recorded(told.recorded);
     if (told.closed) running = null;
+    if (told.stuck) tell(`${said.textContent} ${STUCK}`, true);
     if (!told.state || told.closed) show();
   }
 

@@ -48,6 +48,8 @@ function create() {
   byId("device").after(
     element("span", { class: "group live-sides", role: "group", "aria-label": "Packets of" }, ...sides),
   );
+  const unanswered = element("p", { class: "note" }, "Raw packets were sent, which nobody answers.");
+  rows.append(unanswered);
   view.append(rows);
 
   /** @param {boolean} device  Whether the device's are shown, or the model's. */
@@ -57,9 +59,12 @@ function create() {
   }
 
   return {
-    begin() {
+    /** @param {boolean} raw  Whether nobody answers. */
+    begin(raw) {
       fill(body);
-      show(true);
+      table.hidden = raw;
+      unanswered.hidden = !raw;
+      show(!raw);
       view.scrollIntoView({ block: "nearest" });
     },
     /** @param {Exchange[]} exchanges */

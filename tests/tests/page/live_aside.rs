@@ -16,13 +16,13 @@ use crate::{
 const ROWS: &str = "document.querySelectorAll('#view-packets .live-replies tbody tr').length";
 const MODAL: &str = "document.querySelector('dialog.live').matches(':modal')";
 /// Who is at the centre of STOP gets its press.
-const STOP_IN_SIGHT: &str = "(() => {
+pub(crate) const STOP_IN_SIGHT: &str = "(() => {
     const stop = document.getElementById('live-stop');
     const { left, top, width, height } = stop.getBoundingClientRect();
     return document.elementFromPoint(left + width / 2, top + height / 2) === stop;
 })()";
 
-async fn start_long(page: &Session) -> Result<()> {
+pub(crate) async fn start_long(page: &Session) -> Result<()> {
     open(page, LONG, "serve").await?;
     start(page).await?;
     page.until(&format!("Number({STANDING}.match(/(\\d+) ticks accepted/)?.[1] ?? 0) > 20")).await

@@ -8,9 +8,9 @@ use stepscope_core::sim::raw_host::RawHost;
 use crate::{
     axe,
     bench::in_browser,
-    device::{ABOUT, ENDED, REPORT, SAID, STANDING, open_beside, positions, start},
+    device::{ABOUT, ENDED, FRAMED, REPORT, SAID, STANDING, open_beside, positions, start},
     native::Known,
-    session::Session,
+    session::{Session, field},
 };
 
 /// Ticks of 20 ms, two channels and an address. What the queue holds is longer than a busy machine is late.
@@ -109,6 +109,30 @@ fn stop_ends_the_sending_of_raw_packets_and_the_device_does_what_it_has() -> Res
         let steps = |tick: &u8| i32::from(tick & 0x7f) * if tick & 0x80 == 0 { -1 } else { 1 };
         assert_eq!(peer(&page).await?.positions, [ticks.iter().map(steps).sum::<i32>()]);
         Ok(())
+    })
+}
+
+#[test]
+fn replies_of_an_earlier_stream_are_gone_when_raw_packets_go() -> Result<()> {
+    in_browser(|page| async move {
+        open_beside(&page, (FRAMED, "serve", true)).await?;
+        start(&page).await?;
+        page.until(ENDED).await?;
+        let rows = "document.querySelectorAll('#view-packets .live-replies tbody tr').length";
+        ensure!(page.eval::<u32>(rows).await? > 0);
+        page.choose(&field("line.protocol"), "raw").await?;
+        page.ready().await?;
+        page.click("#live-aside").await?;
+        page.until(&format!("{ABOUT}.includes('ahead')")).await?;
+        page.click("#live-start").await?;
+        page.until("peer.opened.length === 2").await?;
+        assert_eq!(page.eval::<u32>(rows).await?, 0);
+        // The packets of the model are what is sent.
+        ensure!(page.visible("#packets").await? && !page.visible("#view-packets .live-replies").await?);
+        page.until("peer.closed === 2").await?;
+        page.click("#live-close").await?;
+        page.click("#packets-of-device").await?;
+        page.until("document.querySelector('.live-replies').innerText === 'Raw packets were sent, which nobody answers.'").await
     })
 }
 

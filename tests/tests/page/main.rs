@@ -55,6 +55,7 @@ mod live_aside;
 mod live_engines;
 mod live_port;
 mod live_raw;
+mod live_stop;
 mod loading;
 mod logic;
 mod measures;

@@ -1,0 +1,137 @@
+//! STOP first of all (LIVE H4): in reach whatever opens in front, as the stream went whatever becomes of the experiment, and a part of
+//! the page that fails leaves no button without anybody behind it.
+
+use anyhow::{Result, ensure};
+use serde_json::{Value, json};
+
+use crate::{
+    bench::in_browser,
+    device::{ABOUT, ENDED, FRAMED, SAID, open, start, verified},
+    live::LONG,
+    live_aside::{STOP_IN_SIGHT, start_long},
+    session::Session,
+};
+
+const HOME: &str = "document.getElementById('live-stop').parentElement.className === 'live-actions'";
+
+/// Drops a text on the page as a file of this name.
+async fn drop_file(page: &Session, name: &str, text: &str) -> Result<()> {
+    let script = "const data = new DataTransfer(); data.items.add(new File([arguments[1]], arguments[0]));
+        document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true })); return true;";
+    page.js::<bool>(script, vec![json!(name), json!(text)]).await.map(drop)
+}
+
+/// From here on the orders to send come by here: `window.own` is the worker that has the page's port, `window.spoil` what
+/// becomes of its orders.
+const OWN: &str = "(() => {
+    const post = Worker.prototype.postMessage;
+    Worker.prototype.postMessage = function (data, given) {
+        if ('stream' in data) window.own = this;
+        return post.call(this, 'stream' in data && window.spoil ? window.spoil(data) : data, given);
+    };
+    return null;
+})()";
+
+#[test]
+fn stop_is_in_reach_in_front_of_every_other_dialog() -> Result<()> {
+    in_browser(|page| async move {
+        for (width, height) in [(1440, 900), (390, 844)] {
+            page.screen(width, height).await?;
+            start_long(&page).await?;
+            page.press("#packets-of-model", "\u{e031}").await?;
+            page.until("document.getElementById('keys').matches(':modal')").await?;
+            page.until(STOP_IN_SIGHT).await?;
+            page.picture(&format!("device-stop-keys-{width}")).await?;
+            page.click("#keys-close").await?;
+            page.until(HOME).await?;
+            ensure!(page.eval::<bool>(STOP_IN_SIGHT).await?, "STOP did not come back");
+
+            // Of two, the one that was opened last.
+            drop_file(&page, "own.csv", "Time [s],STEP0\n0,0\n0.001,1\n0.002,0\n").await?;
+            page.until("document.querySelector('dialog.recording:not(.live)')?.matches(':modal')").await?;
+            page.until("document.querySelector('dialog.recording:not(.live) #live-stop') !== null").await?;
+            page.press("dialog.recording:not(.live) button", "\u{e031}").await?;
+            page.until("document.querySelector('#keys #live-stop') !== null").await?;
+            page.click("#keys-close").await?;
+            page.until("document.querySelector('dialog.recording:not(.live) #live-stop') !== null").await?;
+            page.until(STOP_IN_SIGHT).await?;
+            page.picture(&format!("device-stop-recording-{width}")).await?;
+            page.click("#live-stop").await?;
+            page.until(&format!("{SAID}.startsWith('STOP is confirmed')")).await?;
+            page.until(&format!("{ENDED} && {HOME}")).await?;
+        }
+        Ok(())
+    })
+}
+
+#[test]
+fn stop_goes_as_the_stream_did_until_it_is_confirmed() -> Result<()> {
+    in_browser(|page| async move {
+        open(&page, FRAMED, "silent").await?;
+        start(&page).await?;
+        page.until(ENDED).await?;
+        page.until(&format!("{SAID}.startsWith('Not verified')")).await?;
+        // An experiment that could not be sent, and could not be stopped.
+        drop_file(
+            &page,
+            "other.json",
+            r#"{"line":{"baud":57600},"source":{"line":{"sends":[{"start_cycle":400,"bytes":"00"}]}},"run_cycles":100000}"#,
+        )
+        .await?;
+        page.ready().await?;
+        page.click("#live-aside").await?;
+        page.until(&format!("{ABOUT}.startsWith('Not with this experiment')")).await?;
+        ensure!(
+            page.eval::<bool>("document.querySelector('[name=live-role][value=stream]').checked").await?,
+            "another role was taken, which has no STOP"
+        );
+        page.click("[name=live-role][value=serve]").await?;
+        page.click("#live-stop").await?;
+        page.until("peer.closed === 2").await?;
+        page.until(&format!("{SAID}.startsWith('STOP is not confirmed')")).await?;
+        assert_eq!(page.eval::<Vec<u32>>("peer.opened").await?, [115_200, 115_200]);
+        ensure!(page.eval::<bool>("!document.getElementById('live-stop').disabled").await?);
+        Ok(())
+    })
+}
+
+#[test]
+fn a_part_of_the_page_that_fails_gives_the_port_back_and_is_replaced() -> Result<()> {
+    in_browser(|page| async move {
+        let known = open(&page, FRAMED, "serve").await?;
+        page.eval::<Value>(OWN).await?;
+        page.eval::<Value>(
+            "(window.spoil = (data) => ({ ...data, stream: 'nothing that is read' })) && null",
+        )
+        .await?;
+        start(&page).await?;
+        page.until(&format!("{SAID}.startsWith('This failed: ')")).await?;
+        ensure!(page.eval::<String>(SAID).await?.contains("press STOP, or cut its power"));
+        page.until("peer.closed === 1").await?;
+        page.until("!document.getElementById('live-start').disabled").await?;
+        page.eval::<Value>("(window.spoil = null)").await?;
+        page.click("#live-start").await?;
+        page.until("peer.closed === 2 && !document.getElementById('live-close').disabled").await?;
+        verified(&page, &known).await.map(drop)
+    })
+}
+
+#[test]
+fn a_port_that_stays_open_is_told_and_no_button_is_left_for_it() -> Result<()> {
+    in_browser(|page| async move {
+        open(&page, LONG, "serve").await?;
+        page.eval::<Value>(OWN).await?;
+        start(&page).await?;
+        page.until("document.querySelectorAll('.live-replies tbody tr').length > 5").await?;
+        // As if the worker's memory were gone: nobody gives the port's streams back.
+        let gone = "(own.terminate(), own.onmessage({ data: { error: 'unreachable' } }), null)";
+        page.eval::<Value>(gone).await?;
+        page.until(&format!("{SAID}.includes('The port could not be closed: load this page again')")).await?;
+        page.until(&format!("{ABOUT}.includes(' baud')")).await?;
+        for button in ["live-start", "live-stop"] {
+            ensure!(page.eval::<bool>(&format!("document.getElementById('{button}').disabled")).await?);
+        }
+        ensure!(!page.eval::<bool>("document.getElementById('live-close').disabled").await?);
+        Ok(())
+    })
+}
