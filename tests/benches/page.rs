@@ -199,8 +199,10 @@ async fn answers(page: &Session) -> Result<Vec<Value>> {
         for key in ["+", "+", "\u{e014}", "\u{e014}", "n", "-", "\u{e011}"] {
             page.press("#pulses", key).await?;
         }
+        // Those with a plant show the motor in their place.
+        let charts = if page.visible("#charts").await? { "#charts" } else { "#pulses" };
         for key in ["\u{e014}", "\u{e012}"] {
-            page.press("#charts", key).await?;
+            page.press(charts, key).await?;
         }
         // Segments that run alone have no queue.
         let queue =

@@ -177,7 +177,7 @@ impl Session {
     pub(crate) async fn press(&self, css: &str, keys: &str) -> Result<()> {
         let element = self.find(css).await?;
         self.js::<Value>("arguments[0].focus();", vec![serde_json::to_value(&element)?]).await?;
-        Ok(element.send_keys(keys).await?)
+        element.send_keys(keys).await.with_context(|| format!("{css} takes no keys"))
     }
 
     /// Replaces the text of the field of a path in the scenario, by keys.
