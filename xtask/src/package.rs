@@ -3,11 +3,13 @@
 
 use std::env;
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use serde_json::{Value, json};
 use tokio::process::Command;
+use walkdir::{DirEntry, WalkDir};
 
 use crate::{apt, page, root, run, toolchain};
 
@@ -40,7 +42,7 @@ async fn crates() -> Result<()> {
     // cargo takes a package of one name and version for one that never changes. Here it changes with the sources, so what
     // was unpacked and built of it before must go.
     let folder = root().join("target").join("packages");
-    clear(&folder)?;
+    clear_own(&folder)?;
     for unpacked in unpacked(&cargo_home()?.join("registry").join("src")) {
         clear(&unpacked)?;
     }
@@ -75,6 +77,29 @@ fn unpacked(sources: &Path) -> Vec<PathBuf> {
 fn clear(folder: &Path) -> Result<()> {
     if folder.exists() {
         fs::remove_dir_all(folder).with_context(|| format!("{} can't be cleared", folder.display()))?;
+    }
+    Ok(())
+}
+
+/// Clears what was made of the library crates; what they need of others stays.
+fn clear_own(folder: &Path) -> Result<()> {
+    let own = |entry: &DirEntry| entry.file_name().to_string_lossy().contains("stepscope");
+    let mut all = WalkDir::new(folder).into_iter();
+    while let Some(entry) = all.next() {
+        let entry = match entry {
+            Err(error) if error.io_error().is_some_and(|error| error.kind() == ErrorKind::NotFound) => break,
+            entry => entry.with_context(|| format!("{} can't be read", folder.display()))?,
+        };
+        if !own(&entry) {
+            continue;
+        }
+        if entry.file_type().is_dir() {
+            all.skip_current_dir();
+            clear(entry.path())?;
+        } else {
+            let problem = || format!("{} can't be removed", entry.path().display());
+            fs::remove_file(entry.path()).with_context(problem)?;
+        }
     }
     Ok(())
 }
