@@ -19,12 +19,18 @@ const PROBE: &str = "import serial, cobs.cobs, google_crc32c";
 /// Installs what is missing and runs the tests.
 pub(crate) async fn test() -> Result<()> {
     let python = python().await?;
-    if which::which("socat").is_err() {
-        apt::install(&["socat"]).await.context("the live commands' tests need socat on PATH: install it")?;
-    }
+    socat().await?;
     let mut command = toolchain::ignored_tests(&["live_judges"]);
     command.env("STEPSCOPE_PYTHON", python);
     run::to_end(command, run::LIMIT).await
+}
+
+/// Installs socat if it is missing.
+pub(crate) async fn socat() -> Result<()> {
+    if which::which("socat").is_err() {
+        apt::install(&["socat"]).await.context("the live tests need socat on PATH: install it")?;
+    }
+    Ok(())
 }
 
 /// A Python with the packages, in an environment of its own in the tools' cache.

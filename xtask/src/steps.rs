@@ -178,6 +178,7 @@ async fn engines() -> Result<()> {
         .env("DISPLAY", &webkit.display);
     match serial_port::possible().await {
         Ok(()) => {
+            judges::socat().await?;
             command.arg("live_port::").env(serial_port::COMMAND, serial_port::command().await?);
         }
         Err(why) => {

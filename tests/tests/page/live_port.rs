@@ -1,5 +1,5 @@
-//! The dialog Device in Chromium on a port of the system, with no mock (LIVE H6): `stepscope serve` has one end of a
-//! pseudo-terminal, and the other lies in the place of `/dev/ttyS0`, in a mount namespace that only this Chromium and its driver
+//! The dialog Device in Chromium on a port of the system, with no mock (LIVE H6): `stepscope serve`, or behind socat `stepscope send`,
+//! has one end of a pseudo-terminal, and the other lies in the place of `/dev/ttyS0`, in a mount namespace that only this Chromium and its driver
 //! are in. There a policy allows its ports to the page, so that the dialog offers the port without the browser's chooser,
 //! which no program can answer. `cargo xtask test --only engines` runs it where the machine can do that, and says so where not.
 
@@ -11,10 +11,11 @@ use serde_json::json;
 use crate::{
     bench::{dist, in_chromium_of},
     browser::{Says, named},
-    device::{ABOUT, PATIENT, SAID, positions, verified},
+    device::{ABOUT, PATIENT, SAID, positions, session_opens, verified},
     native::Known,
     pool,
     programs::{Folder, Program},
+    session::Session,
 };
 
 /// In a mount namespace of its own: the pseudo-terminal's path, the policy and the driver are given. The last program that is in
@@ -39,6 +40,28 @@ fn device(folder: &Folder, json: &str) -> Result<Program> {
     Program::start(&serve, Says::Path("pty:")).context("the device")
 }
 
+/// A pseudo-terminal of two ends, and their paths.
+fn pair() -> Result<(Program, String, String)> {
+    let mut socat = Command::new("socat");
+    socat.args(["-d", "-d", "pty,raw,echo=0", "pty,raw,echo=0"]);
+    // The second is told a moment after the first.
+    let socat = Program::start(&socat, Says::Path("starting data transfer loop")).context("socat")?;
+    let heard = socat.heard();
+    let mut ends = heard.iter().filter_map(|line| Some(line.split_once("PTY is ")?.1.to_owned()));
+    let (one, other) = ends.next().zip(ends.next()).with_context(|| heard.join("\n"))?;
+    Ok((socat, one, other))
+}
+
+/// Sends the scenario's ticks to this end; where the positions are, once all is verified.
+fn sent(folder: &Folder, json: &str, end: &str) -> Result<String> {
+    let scenario = folder.0.join("scenario.json");
+    fs::write(&scenario, json)?;
+    let mut send = Command::new(named("STEPSCOPE_COMMAND")?);
+    send.arg("send").arg(&scenario).args(["--port", end, "--slack", "500"]);
+    let host = Program::start(&send, Says::Path("positions ")).context("the host")?;
+    Ok(host.address.clone())
+}
+
 /// Chromium's driver in a namespace where the page at this address may have the port.
 fn driver(terminal: &str, page: &str) -> Result<Program> {
     let policy = json!({ "SerialAllowAllPortsForUrls": [page.trim_end_matches('/')] });
@@ -46,6 +69,21 @@ fn driver(terminal: &str, page: &str) -> Result<Program> {
     driver.args(["--mount", "--propagation", "private", "sh", "-c", NAMESPACE, "sh", terminal]);
     driver.arg(policy.to_string()).arg(named("STEPSCOPE_CHROMEDRIVER")?);
     Program::start(&driver, Says::Line("started successfully on port ")).context("Chromium's driver")
+}
+
+/// Opens the page with the scenario, takes the port that it may have, and starts.
+async fn start_as(page: &Session, known: &Known, role: &str) -> Result<()> {
+    page.open(&format!("#{}", known.link)).await?;
+    page.click("#device").await?;
+    page.until(&format!("{ABOUT}.includes(' baud')")).await?;
+    page.click(&format!("[name=live-role][value={role}]")).await?;
+    let offered =
+        "[...document.querySelectorAll('#live-allowed button')].map((button) => button.textContent)";
+    page.until_equal(offered, &json!(["Port allowed before"])).await?;
+    page.click("#live-allowed button").await?;
+    page.until(&format!("{SAID}.startsWith('A port is chosen')")).await?;
+    ensure!(page.js::<bool>(CLOSED, vec![]).await?, "the port is open before its press");
+    page.click("#live-start").await
 }
 
 #[test]
@@ -56,16 +94,7 @@ fn a_stream_over_a_port_of_the_system_is_verified_and_the_device_says_the_same()
     let page = pool::served(&dist()?)?;
     let driver = driver(&device.address, &page)?;
     in_chromium_of(driver, page, |page| async move {
-        page.open(&format!("#{}", known.link)).await?;
-        page.click("#device").await?;
-        page.until(&format!("{ABOUT}.includes(' baud')")).await?;
-        let offered =
-            "[...document.querySelectorAll('#live-allowed button')].map((button) => button.textContent)";
-        page.until_equal(offered, &json!(["Port allowed before"])).await?;
-        page.click("#live-allowed button").await?;
-        page.until(&format!("{SAID}.startsWith('A port is chosen')")).await?;
-        ensure!(page.js::<bool>(CLOSED, vec![]).await?, "the port is open before its press");
-        page.click("#live-start").await?;
+        start_as(&page, &known, "stream").await?;
         page.until("!document.getElementById('live-close').disabled").await?;
         verified(&page, &known).await?;
         ensure!(page.js::<bool>(CLOSED, vec![]).await?, "the port is not given back");
@@ -74,5 +103,23 @@ fn a_stream_over_a_port_of_the_system_is_verified_and_the_device_says_the_same()
         let end = page.eventually("the device's end", said).await?;
         assert_eq!(end, format!("positions {}", positions(&known).join(" ")));
         Ok(())
+    })
+}
+
+#[test]
+fn a_host_at_a_port_of_the_system_is_answered_and_its_session_opens_with_its_digest() -> Result<()> {
+    let known = Known::of(PATIENT)?;
+    let folder = Folder::temporary()?;
+    let (_socat, own, other) = pair()?;
+    let page = pool::served(&dist()?)?;
+    let driver = driver(&own, &page)?;
+    in_chromium_of(driver, page, |page| async move {
+        start_as(&page, &known, "serve").await?;
+        page.until(&format!("{SAID} === 'Answering…'")).await?;
+        let steps = positions(&known).join(" ");
+        assert_eq!(sent(&folder, PATIENT, &other)?, format!("{steps}: the sums of the ticks"));
+        session_opens(&page, &known).await?;
+        let closed = async || Ok(page.js::<bool>(CLOSED, vec![]).await?.then_some(()));
+        page.eventually("the port given back", closed).await
     })
 }
