@@ -231,6 +231,8 @@ mod tests {
         // The nearest f64 is 4, and the sum below it.
         let below = CycleTime::of(Double { high: 4.0, low: -1e-20 });
         assert!(below.whole == 3 && below.part == Double { high: 1.0, low: -1e-20 }, "{below:?}");
+        // A hair before 0 by rounding is in no cycle before it.
+        assert_eq!(CycleTime::of(Double { high: 0.0, low: -1e-30 }).whole, 0);
         assert_eq!(CycleTime::exact(&Exact::of(7.0).divided_by(2.0)), CycleTime { whole: 3, part: half });
     }
 
