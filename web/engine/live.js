@@ -19,7 +19,7 @@ import { compiled } from "./wasm.js";
  *   records_all: boolean, missed: number, controllers: {state: string | null, queued: number | null, queue_depth: number, positions: number[],
  *   faults: string[], ticks_done: number, curves: number[][]}[]}} Served
  * @typedef {Served & {scenario: string, digests: string[], why: string | null, whole: boolean, lost: string, times: Blob}} Recorded
- * @typedef {{state?: any, rows?: Exchange[], reported?: Reported, recorded?: Recorded, closed?: true, error?: string, stuck?: boolean, facts?: Facts}} Told  Stuck: the port stays open.
+ * @typedef {{state?: any, rows?: Exchange[], reported?: Reported, recorded?: Recorded, closed?: true, stuck?: boolean, error?: string, facts?: Facts}} Told  Closed: the port is given back, or it is stuck and stays open.
  */
 
 /** How long what has the port may take to give it back, in ms: STOP is sent until it is confirmed. */
@@ -43,16 +43,23 @@ export function movesStreams() {
   }
 }
 
+/** @param {number} ms @returns {Promise<void>} */
+const rest = (ms) => new Promise((rested) => setTimeout(rested, ms));
+
 /** Closes a port that the worker has done with, and tells whether it could. What the worker has closed is in use here for a moment
  * more, and a port in use does not close. @param {any} port */
 async function closePort(port) {
-  for (let waited = 0; port.readable?.locked || port.writable?.locked; waited += LOOK_MS) {
-    if (waited >= PATIENCE_MS) return false;
-    await new Promise((rested) => setTimeout(rested, LOOK_MS));
+  const end = performance.now() + PATIENCE_MS;
+  while (port.readable?.locked || port.writable?.locked) {
+    if (performance.now() > end) return false;
+    await rest(LOOK_MS);
   }
   // One that is lost is closed already.
-  await port.close().catch(() => {});
-  return true;
+  const closed = port.close().then(
+    () => true,
+    () => true,
+  );
+  return Promise.race([closed, rest(PATIENCE_MS).then(() => false)]);
 }
 
 /** @param {(told: Told) => void} told */
@@ -61,6 +68,8 @@ export function openLive(told) {
   let worker = null;
   /** The port that the worker has. @type {any} */
   let open = null;
+  /** Ends of what a port may have been opened for: by a failure, or by who closes all. */
+  let ends = 0;
   /** Ends the wait for what has the port. */
   let left = () => {};
   /** @type {Promise<void>} */
@@ -72,10 +81,13 @@ export function openLive(told) {
     const fail = async (error) => {
       if (worker !== begun) return;
       worker = null;
+      ends += 1;
       begun.terminate();
+      told({ error });
+      if (!open) return;
       const stuck = !(await closed());
       left();
-      told({ error, stuck });
+      told({ closed: true, stuck });
     };
     begun.onerror = (event) => fail(event.message || "this part of the page could not be loaded");
     begun.onmessage = async ({ data }) => {
@@ -111,8 +123,13 @@ export function openLive(told) {
 
   /** Opens the port and hands its streams to the worker. @param {any} port @param {number} baudRate @param {() => object} order */
   async function give(port, baudRate, order) {
+    const since = ends;
     await port.open({ baudRate, bufferSize: BUFFER });
     open = port;
+    if (ends !== since) {
+      await closed();
+      throw new Error("what it was opened for has ended.");
+    }
     gone = new Promise((resolve) => {
       left = resolve;
     });
@@ -140,15 +157,17 @@ export function openLive(told) {
       worker?.postMessage({ stop: true });
     },
     end: () => worker?.postMessage({ end: true }),
-    /** What has the port stops, gives it back, and ends; whether no port is left open. */
+    /** What has the port stops, gives it back, and ends: whether it did in time, and whether no port is left open. */
     async close() {
+      ends += 1;
+      let inTime = true;
       if (open) {
         worker?.postMessage({ stop: true, end: true });
-        await Promise.race([gone, new Promise((late) => setTimeout(late, PATIENCE_MS))]);
+        inTime = await Promise.race([gone.then(() => true), rest(PATIENCE_MS).then(() => false)]);
       }
       worker?.terminate();
       worker = null;
-      return closed();
+      return { inTime, free: await closed() };
     },
   };
 }

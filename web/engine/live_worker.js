@@ -140,8 +140,8 @@ async function stream({ stream: json, stop, ...streams }) {
   const host = new core.LiveHost(json, SLACK_MS);
   const began = performance.now();
   const now = () => performance.now() - began;
-  const port = openPort(streams, (bytes) => host.hear(bytes, now()));
   const baud = host.baud();
+  const port = openPort(streams, (bytes) => host.hear(bytes, now()));
   let stopped = false;
   asked = { stop, end: false };
   const report = () => postMessage({ state: host.state(), rows: host.rows() });
@@ -173,9 +173,9 @@ async function streamRaw(json, stop, streams) {
   const host = new core.LiveRawHost(json);
   const began = performance.now();
   const now = () => performance.now() - began;
+  const baud = host.baud();
   // What is heard answers nothing.
   const port = openPort(streams, () => {});
-  const baud = host.baud();
   asked = { stop, end: false };
   const report = () => postMessage({ state: host.state() });
   const tell = everySoOften(report);

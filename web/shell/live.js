@@ -3,30 +3,34 @@
  * without a press. While it sends it stands aside: the replies come in the packets view, and STOP, first of all, stays in
  * sight. It loads when it is first opened.
  */
-import { button, byId, element, fill, say, style } from "../dom.js";
+import { button, element, fill, say, style } from "../dom.js";
 import { openLive, serial } from "../engine/live.js";
-import { readJson } from "../state/json.js";
-import { counted } from "../state/number.js";
 import { message } from "./link.js";
 import { carryInto } from "./live_carry.js";
 import { positionCurves } from "./live_curves.js";
+import { openRecorded, saveTimes } from "./live_recorded.js";
 import { outcome, reportText, servedText, twinOf } from "./live_report.js";
 import { about as aboutOf, NAMES, ROLES, stopTitle, usbOf, whyNone, whyNoPort } from "./live_roles.js";
 import { deviceRows } from "./live_rows.js";
-import { baseName } from "./offers.js";
-import { save } from "./save.js";
-import { ownIsKept } from "./storage.js";
 
 /** @typedef {import("../engine/live.js").Facts} Facts */
 /** @typedef {import("../engine/live.js").Told} Told */
 /** @typedef {import("./live_roles.js").Role} Role */
 
-/** How long a recorded session may run before it is said that it has not, in ms, and how often that is looked at. */
-const PATIENCE_MS = 60_000;
-const LOOK_MS = 100;
+/** @typedef {{json: string, title: string, baud: number, raw: boolean}} Sent  An experiment as it goes on the line. */
+
 /** Of a port that the browser does not give back. */
 const STUCK = "The port could not be closed: load this page again before it is used by anyone.";
+/** Of a device that nobody sends to any more. */
+const RUNS_DRY =
+  "The device does what is in its queue, and then it runs dry (UNDERRUN). Cut its power if it must not move.";
 
+/** The port that was chosen: it stays when the dialog goes. @type {any} */
+let port = null;
+/** What a device has answered to and is not known to have ended: STOP goes as it went, also from the next dialog. @type {Sent | null} */
+let unsettled = null;
+/** Ports that the browser did not give back. */
+const stuck = new WeakSet();
 /** Brings the dialog that there is in front. @type {(() => void) | null} */
 let bring = null;
 
@@ -41,16 +45,20 @@ export async function openDevice(page) {
   const noPort = whyNoPort();
   /** @type {Facts | null} */
   let facts = null;
-  /** @type {any} */
-  let port = null;
   /** What has the port. @type {Role | null} */
   let running = null;
-  /** What was sent on the port and is not known to have ended: STOP goes as it went. @type {{json: string, baud: number, raw: boolean} | null} */
-  let loose = null;
+  /** Whether it was told how that ended: the port is being given back. */
+  let ended = false;
+  /** Whether STOP was pressed meanwhile. */
+  let again = false;
+  /** What goes on the port. @type {Sent} */
+  let going = { json: "", title: "", baud: 0, raw: false };
   /** Whether it was told once what can be done. */
   let judged = false;
   /** Why nothing can be asked at all. */
   let broken = "";
+  /** What is told on the page of a dialog that is gone. */
+  let noticed = "";
   let began = "";
   /** Delays in ms. @type {{own: number[], model: number[]}} */
   let delays = { own: [], model: [] };
@@ -122,17 +130,17 @@ export async function openDevice(page) {
   end.addEventListener("click", () => live.end());
   close.addEventListener("click", () => dialog.close());
   aside.addEventListener("click", () => (inFront() ? lay(false) : bring?.()));
-  // Escape stops what moves before it closes anything, wherever it is pressed.
+  // Escape stops what moves before it closes anything: while it sends wherever it is pressed.
   const stopByKey = (/** @type {KeyboardEvent} */ event) => {
-    if (event.key !== "Escape" || running !== "stream") return;
+    if (event.key !== "Escape" || !(running === "stream" || (mayMove() && inFront()))) return;
     event.preventDefault();
     event.stopImmediatePropagation();
     stopAll();
   };
   dialog.addEventListener("cancel", (event) => {
-    if (running === null) return;
+    if (running === null && !mayMove()) return;
     event.preventDefault();
-    if (running === "stream") stopAll();
+    if (mayMove()) stopAll();
   });
   const leave = (/** @type {Event} */ event) => {
     if (running !== null) event.preventDefault();
@@ -149,24 +157,34 @@ export async function openDevice(page) {
     window.removeEventListener("beforeunload", leave);
     window.removeEventListener("pagehide", hide);
     carrier.end();
-    live.close().then((free) => free || notify("error", STUCK));
+    live.close().then(({ inTime, free }) => {
+      if (!inTime && unsettled) notify("error", `STOP is not confirmed. ${RUNS_DRY}`);
+      if (!free) notify("error", STUCK);
+    });
     dialog.remove();
   });
   document.body.append(dialog);
-  const carrier = carryInto(
-    () => running === "stream",
-    stop,
-    () => actions.append(stop),
-  );
-  bring = () => {
-    lay(true);
-    if (running === null) judge();
-  };
-  bring();
+  const carrier = carryInto(mayMove, stop, () => actions.append(stop));
+  bring = front;
+  front();
+  if (unsettled)
+    tell(`It is not known whether what was sent has ended: STOP goes as it went, at ${unsettled.baud} baud.`);
   void offerAllowed();
 
   function inFront() {
     return dialog.matches(":modal");
+  }
+
+  /** In front, and about the experiment as it is now. */
+  function front() {
+    if (!dialog.isConnected) return;
+    if (!inFront()) lay(true);
+    if (running === null) judge();
+  }
+
+  /** Whether a device may move by what was sent, and can be told to stop. */
+  function mayMove() {
+    return running === "stream" || (running === null && unsettled !== null && port !== null);
   }
 
   /** In front of the page, or aside, where the page can be worked with. @param {boolean} front */
@@ -194,29 +212,30 @@ export async function openDevice(page) {
   function show() {
     const name = role();
     const found = facts?.[name];
-    const front = inFront();
+    const isInFront = inFront();
     const why = noPort || broken || whyNone(scenario, found);
     say(about, why || aboutOf(name, /** @type {import("../engine/live.js").Role} */ (found)));
     about.classList.toggle("error", why !== "" && (facts !== null || broken !== ""));
     say(choose, port ? "Choose another port…" : "Choose a port…");
     say(start, ROLES[name].start);
     for (const { input } of radios) input.disabled = running !== null;
-    choose.disabled = why !== "" || running !== null;
-    choose.title = why;
+    choose.disabled = (why !== "" && unsettled === null) || running !== null;
+    choose.title = choose.disabled ? why : "";
     start.disabled = why !== "" || running !== null || port === null;
     start.title = why || (port ? "" : "Choose a port first");
-    start.hidden = choose.hidden = running !== null || !front;
-    allowed.hidden = why !== "" || choose.hidden;
+    start.hidden = choose.hidden = running !== null || !isInFront;
+    allowed.hidden = choose.disabled || choose.hidden;
     end.hidden = running !== "serve";
-    aside.hidden = front && running === null;
-    say(aside, front ? "Put aside" : "Bring to front");
-    const raw = loose?.raw ?? isRaw();
-    stop.hidden = name === "serve" && loose === null;
-    stop.disabled = port === null || (loose === null && why !== "") || (raw && running === null);
+    aside.hidden = isInFront && running === null;
+    say(aside, isInFront ? "Put aside" : "Bring to front");
+    // Without a device that answers there is nothing to confirm: packets that nobody answers can only be sent no more.
+    const raw = running === null ? unsettled === null && isRaw() : going.raw;
+    stop.hidden = running === "serve" || (name === "serve" && unsettled === null);
+    stop.disabled = running === null && !mayMove() && (why !== "" || port === null || raw);
     stop.title = stopTitle(raw);
-    carrier.look();
     close.disabled = running !== null;
     close.title = running === null ? "" : "First STOP, or end";
+    carrier.look();
   }
 
   /** @param {string} text @param {boolean} [bad] */
@@ -244,19 +263,21 @@ export async function openDevice(page) {
       : await serial()
           .getPorts()
           .catch(() => []);
-    const offers = ports.map((each, index) => {
-      const name = `${ports.length > 1 ? `Port ${index + 1}` : "Port"} allowed before${usbOf(each)}`;
-      const offer = element("button", { type: "button", title: "Take it without the browser's list of ports" }, name);
-      offer.addEventListener("click", () => take(each));
-      return offer;
-    });
+    const offers = ports
+      .filter((each) => !stuck.has(each))
+      .map((each, index) => {
+        const name = `${ports.length > 1 ? `Port ${index + 1}` : "Port"} allowed before${usbOf(each)}`;
+        const offer = element("button", { type: "button", title: "Take it without the browser's list of ports" }, name);
+        offer.addEventListener("click", () => take(each));
+        return offer;
+      });
     fill(allowed, ...offers);
   }
 
   /** @param {any} chosen */
   function take(chosen) {
+    if (stuck.has(chosen)) return tell(STUCK, true);
     port = chosen;
-    loose = null;
     tell(`A port is chosen${usbOf(chosen)}. It is not open yet.`);
     show();
     start.focus();
@@ -264,19 +285,28 @@ export async function openDevice(page) {
 
   /** @param {boolean} stopping  Whether STOP is all that is sent. */
   async function begin(stopping) {
+    if (!stopping && JSON.stringify(now().scenario) !== json) {
+      judge();
+      return tell("The experiment has changed: this is about the new one now. Start it if it is meant.");
+    }
     const name = stopping ? "stream" : role();
-    const sent = (stopping && loose) || { json, baud: facts?.[name].baud ?? 0, raw: isRaw() };
-    if (name === "stream") loose = sent;
-    running = name;
+    const { title } = scenario;
+    going = (stopping && unsettled) || {
+      json,
+      title,
+      baud: facts?.[name].baud ?? 0,
+      raw: name === "stream" && isRaw(),
+    };
+    [running, ended, again] = [name, false, false];
     began = new Date().toISOString();
     delays = { own: [], model: [] };
     fill(twin);
     say(standing, "");
     progress.value = 0;
     progress.hidden = name === "serve";
-    progress.ariaLabel = sent.raw ? "Packets sent" : "Ticks done";
+    progress.ariaLabel = going.raw ? "Packets sent" : "Ticks done";
     reported.hidden = curves.node.hidden = times.hidden = true;
-    if (name === "stream") rows.begin(sent.raw);
+    if (name === "stream") rows.begin(going.raw);
     if (name === "stream" && !stopping) {
       lay(false);
       dispatch({ type: "view", view: "packets" });
@@ -285,12 +315,15 @@ export async function openDevice(page) {
     show();
     if (name === "stream") stop.focus();
     try {
-      await (name === "serve"
-        ? live.serve(port, sent.baud, sent.json)
-        : live.stream(port, sent.baud, sent.json, stopping));
+      const { json: own, baud } = going;
+      await (name === "serve" ? live.serve(port, baud, own) : live.stream(port, baud, own, stopping));
+      // Until it is confirmed.
+      if (stopping) unsettled ??= going;
     } catch (error) {
-      failed(`The port cannot be opened: ${message(error)} Is it taken by another program?`);
-      if (!inFront()) lay(true);
+      running = null;
+      tell(`The port cannot be opened: ${message(error)} Is it taken by another program?`, true);
+      show();
+      front();
     }
   }
 
@@ -300,49 +333,32 @@ export async function openDevice(page) {
   }
 
   function stopAll() {
+    if (running === "serve") return;
     if (running === null) return void begin(true);
+    if (going.raw) {
+      if (ended) return;
+      live.stop();
+      return tell("Nothing more is sent; the device does what is in its queue…", true);
+    }
+    again = ended;
     live.stop();
     tell(
-      loose?.raw
-        ? "Nothing more is sent; the device does what is in its queue…"
+      ended
+        ? "STOP goes as soon as the port is given back…"
         : "STOP: no further ticks. It is sent until the device confirms it…",
       true,
     );
   }
 
-  /** @param {string} text */
-  function failed(text) {
-    running = null;
-    tell(text, true);
-    show();
-  }
-
-  /** The part of the page that has the port is gone, and with it what it knew. @param {string} why @param {boolean} [stuck] */
-  function broke(why, stuck) {
-    const had = running;
-    facts = null;
-    json = "";
-    broken = `A part of this page failed: ${why}. Close this dialog and open it again.`;
-    const moves =
-      "The device does what is in its queue, and then it runs dry (UNDERRUN): press STOP, or cut its power.";
-    failed([had && `This failed: ${why}.`, had === "stream" && moves, stuck && STUCK].filter(Boolean).join(" "));
-    if (had === null) return;
-    if (!inFront()) lay(true);
-    judge();
-  }
-
   /** Tells it on the page, where the dialog is gone. @param {"info" | "error"} kind @param {string} text */
   function notify(kind, text) {
-    dispatch({ type: "notice", notice: { kind, text, place: null } });
+    noticed = `${noticed} ${text}`.trimStart();
+    dispatch({ type: "notice", notice: { kind, text: noticed, place: null } });
   }
 
   /** What the worker tells. @param {Told} told */
   function hear(told) {
-    if (told.stuck) {
-      port = null;
-      if (!dialog.isConnected) notify("error", STUCK);
-    }
-    if (told.error) return dialog.isConnected && broke(told.error, told.stuck);
+    if (told.error) broke(told.error);
     if (told.facts) {
       // What cannot be is not offered first.
       if (!judged && told.facts.stream.why && !told.facts.serve.why)
@@ -352,26 +368,55 @@ export async function openDevice(page) {
     }
     if (told.state) stand(told.state);
     if (told.rows) {
-      for (const { delay_ms, model_ms } of told.rows) {
+      for (const { delay_ms, model_ms, reply } of told.rows) {
         if (delay_ms !== null) delays.own.push(delay_ms);
         if (model_ms !== null) delays.model.push(model_ms);
+        // No tick goes to who has not answered.
+        if (reply !== null) unsettled = going;
       }
       rows.add(told.rows);
     }
     if (told.reported) {
+      ended = true;
       const { said: text, good } = outcome(told.reported);
+      if (good) unsettled = null;
       tell(text, !good);
-      if (good) loose = null;
       if (!dialog.open)
         notify(good ? "info" : "error", `The dialog of devices was closed while it was sending. ${text}`);
       fill(twin, ...(told.reported.raw ? [] : twinOf(told.reported)));
-      report.value = reportText(scenario.title, began, told.reported, delays);
+      report.value = reportText(going.title, began, told.reported, delays);
       reported.hidden = false;
     }
-    if (told.recorded) void recorded(told.recorded);
-    if (told.closed) running = null;
-    if (told.stuck) tell(`${said.textContent} ${STUCK}`, true);
-    if (!told.state || told.closed) show();
+    if (told.recorded) recorded(told.recorded);
+    if (told.closed) closed(told.stuck ?? false);
+    if (!told.state) show();
+  }
+
+  /** What had the port has given it back, or the browser keeps it. @param {boolean} isStuck */
+  function closed(isStuck) {
+    const hasFailed = facts === null;
+    running = null;
+    if (isStuck) {
+      stuck.add(port);
+      port = null;
+      tell(`${said.textContent} ${STUCK}`, true);
+      if (!dialog.isConnected) notify("error", STUCK);
+      void offerAllowed();
+    }
+    if (again && port && dialog.isConnected) return void begin(true);
+    if (hasFailed || inFront()) front();
+  }
+
+  /** The part of the page that had the port is gone, and with it what it knew. @param {string} why */
+  function broke(why) {
+    facts = null;
+    json = "";
+    if (running === null) {
+      broken = `A part of this page failed: ${why}. Close this dialog and open it again.`;
+      return;
+    }
+    ended = true;
+    tell(`This failed: ${why}.${running === "stream" ? ` ${RUNS_DRY}` : ""}`, true);
   }
 
   /** @param {any} state */
@@ -384,47 +429,19 @@ export async function openDevice(page) {
     progress.value = state.ticks > 0 ? state.done / state.ticks : 0;
   }
 
-  /** The session opens as a scenario, if it is the session. @param {import("../engine/live.js").Recorded} session */
-  async function recorded({ scenario: text, digests, why, whole, lost, set_backs, heard, times: clock }) {
+  /** @param {import("../engine/live.js").Recorded} session */
+  function recorded(session) {
+    const { why, lost, heard, times: clock } = session;
+    ended = true;
     const gone = lost ? ` The port is lost: ${lost}.` : "";
     if (heard === 0) return tell(`Nothing was heard: there is nothing to record.${gone}`, lost !== "");
     if (why !== null) {
-      times.onclick = () => saveTimes(clock);
+      times.onclick = () => saveTimes(now(), clock);
       times.hidden = false;
       return tell(`Not recorded: ${why}.${gone}`, true);
     }
     dialog.close();
-    dispatch({ type: "replace", scenario: readJson(text), origin: "shared" });
-    const { revision } = now();
-    const part = whole ? "" : " It holds as much as a recording may.";
-    const paced = set_backs > 0 ? ` It was not in real time: set back ${counted(set_backs, "time")}.` : "";
-    const found = await digestOf(revision);
-    const same = found === digests[now().result?.controller ?? 0];
-    const verdict = same
-      ? `Recorded: run again, the session has the digest ${found}, as it had live.`
-      : found
-        ? `The session had the digest ${digests[0]}, and as a scenario it has ${found}.`
-        : `Recorded with the digest ${digests[0]}.`;
-    notify(same ? "info" : "error", `${verdict}${part}${paced}${gone}${ownIsKept()}`);
-    // The notice's line stands by now, and has the button until another one comes.
-    byId("link-message")
-      .querySelector(".close")
-      ?.before(button("Save its wall-clock times", "Save its wall-clock times", () => saveTimes(clock)));
-  }
-
-  /** Beside the scenario, which the export has. @param {Blob} clock */
-  function saveTimes(clock) {
-    save(`${baseName(now())}.session.json`, clock.type, [clock]);
-  }
-
-  /** Of a revision, once it has run; empty where it has not. @param {number} revision */
-  async function digestOf(revision) {
-    for (let waited = 0; waited < PATIENCE_MS && now().revision === revision; waited += LOOK_MS) {
-      const { result } = now();
-      if (result?.revision === revision) return result.summary.controllers[result.controller]?.digest ?? "";
-      await new Promise((rested) => setTimeout(rested, LOOK_MS));
-    }
-    return "";
+    void openRecorded(page, session, gone);
   }
 
   async function toClipboard() {

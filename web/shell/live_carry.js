@@ -6,18 +6,23 @@
 /** @param {() => boolean} isNeeded @param {HTMLElement} node @param {() => void} home  Puts it back in its own place. */
 export function carryInto(isNeeded, node, home) {
   const own = node.closest("dialog");
-  /** Modal dialogs of others, as they were opened. @type {HTMLDialogElement[]} */
+  /** Modal dialogs, as they were opened. @type {HTMLDialogElement[]} */
   let open = [];
   let isAway = false;
   function look() {
-    const modal = [...document.querySelectorAll("dialog")].filter((each) => each !== own && each.matches(":modal"));
-    open = [...open.filter((each) => modal.includes(each)), ...modal.filter((each) => !open.includes(each))];
     const top = isNeeded() ? open.at(-1) : undefined;
-    if (top && node.parentElement !== top) top.prepend(node);
-    if (!top && isAway) home();
-    isAway = top !== undefined;
+    const other = top === own ? undefined : top;
+    if (other && node.parentElement !== other) other.prepend(node);
+    if (!other && isAway) home();
+    isAway = other !== undefined;
   }
-  const observer = new MutationObserver(look);
-  observer.observe(document.body, { subtree: true, childList: true, attributeFilter: ["open"] });
+  const observer = new MutationObserver((records) => {
+    const opened = new Set(records.map(({ target }) => target));
+    const modal = [...document.querySelectorAll("dialog")].filter((each) => each.matches(":modal"));
+    const [later, earlier] = [true, false].map((is) => modal.filter((each) => opened.has(each) === is));
+    open = [...open.filter((each) => earlier.includes(each)), ...later];
+    look();
+  });
+  observer.observe(document.body, { subtree: true, attributeFilter: ["open"] });
   return { look, end: () => observer.disconnect() };
 }

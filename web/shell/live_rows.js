@@ -49,6 +49,7 @@ function create() {
     element("span", { class: "group live-sides", role: "group", "aria-label": "Packets of" }, ...sides),
   );
   const unanswered = element("p", { class: "note" }, "Raw packets were sent, which nobody answers.");
+  unanswered.hidden = true;
   rows.append(unanswered);
   view.append(rows);
 

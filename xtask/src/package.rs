@@ -3,7 +3,6 @@
 
 use std::env;
 use std::fs;
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
@@ -83,13 +82,13 @@ fn clear(folder: &Path) -> Result<()> {
 
 /// Clears what was made of the library crates; what they need of others stays.
 fn clear_own(folder: &Path) -> Result<()> {
+    if !folder.exists() {
+        return Ok(());
+    }
     let own = |entry: &DirEntry| entry.file_name().to_string_lossy().contains("stepscope");
     let mut all = WalkDir::new(folder).into_iter();
     while let Some(entry) = all.next() {
-        let entry = match entry {
-            Err(error) if error.io_error().is_some_and(|error| error.kind() == ErrorKind::NotFound) => break,
-            entry => entry.with_context(|| format!("{} can't be read", folder.display()))?,
-        };
+        let entry = entry.with_context(|| format!("{} can't be read", folder.display()))?;
         if !own(&entry) {
             continue;
         }

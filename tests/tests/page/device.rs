@@ -6,11 +6,8 @@ use serde_json::{Value, json};
 
 use crate::{browser::Browser, native::Known, session::Session};
 
-/// As [`FRAMED`], with a host that tries again and again, for browsers of any speed.
-pub(crate) const PATIENT: &str = r#"{"line":{"protocol":"framed","host":{"attempts":40}},"bus":{"step_period_cycles":3200,"queue_depth":200},
-    "source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":400},"duration_s":1}}]}]}}}"#;
-/// Ticks of 20 ms: a queue of seconds, which a busy machine does not let run dry.
-pub(crate) const FRAMED: &str = r#"{"line":{"protocol":"framed"},"bus":{"step_period_cycles":3200,"queue_depth":200},
+/// Ticks of 20 ms: a queue of seconds, which a busy machine does not let run dry; and a host that tries again and again.
+pub(crate) const FRAMED: &str = r#"{"line":{"protocol":"framed","host":{"attempts":40}},"bus":{"step_period_cycles":3200,"queue_depth":200},
     "source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":400},"duration_s":1}}]}]}}}"#;
 
 pub(crate) const ABOUT: &str = "(document.getElementById('live-about')?.textContent ?? '')";

@@ -7,7 +7,7 @@ use serde_json::json;
 use crate::{
     bench::in_engine,
     browser::Browser,
-    device::{ABOUT, ENDED, PATIENT, answers_a_host, open, open_with, start, verified},
+    device::{ABOUT, ENDED, FRAMED, answers_a_host, open, open_with, start, verified},
     native::Known,
     session::Session,
 };
@@ -35,7 +35,7 @@ async fn refused(page: &Session, why: &str) -> Result<()> {
 
 /// The engine's own ports; then the mock's, as both of its ends.
 async fn all(page: Session) -> Result<()> {
-    let (engine, known) = (page.bench.browser, Known::of(PATIENT)?);
+    let (engine, known) = (page.bench.browser, Known::of(FRAMED)?);
     let link = format!("#{}", known.link);
     page.open(&link).await?;
     let has_serial: bool = page.eval("'serial' in navigator").await?;
@@ -49,16 +49,16 @@ async fn all(page: Session) -> Result<()> {
     }
     if !page.js::<bool>(MOVES, vec![]).await? {
         ensure!(engine == Browser::WebKit, "{engine:?} moves no streams");
-        open_with(&page, &link, "serve", PATIENT).await?;
+        open_with(&page, &link, "serve", FRAMED).await?;
         refused(&page, "This browser cannot hand a port's streams to a worker").await?;
         ensure!(page.eval::<Vec<u32>>("peer.opened").await?.is_empty(), "the port was opened");
         return Ok(());
     }
-    open(&page, PATIENT, "serve").await?;
+    open(&page, FRAMED, "serve").await?;
     start(&page).await?;
     page.until(ENDED).await?;
     verified(&page, &known).await?;
-    open(&page, PATIENT, "stream").await?;
+    open(&page, FRAMED, "stream").await?;
     answers_a_host(&page, &known).await
 }
 

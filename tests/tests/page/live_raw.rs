@@ -116,6 +116,7 @@ fn stop_ends_the_sending_of_raw_packets_and_the_device_does_what_it_has() -> Res
 fn replies_of_an_earlier_stream_are_gone_when_raw_packets_go() -> Result<()> {
     in_browser(|page| async move {
         open_beside(&page, (FRAMED, "serve", true)).await?;
+        ensure!(page.eval::<bool>("document.querySelector('.live-replies .note').hidden").await?);
         start(&page).await?;
         page.until(ENDED).await?;
         let rows = "document.querySelectorAll('#view-packets .live-replies tbody tr').length";

@@ -12,6 +12,7 @@ use crate::{
     session::Session,
 };
 
+const ESCAPE: &str = "\u{e00c}";
 const HOME: &str = "document.getElementById('live-stop').parentElement.className === 'live-actions'";
 
 /// Drops a text on the page as a file of this name.
@@ -64,20 +65,17 @@ fn stop_is_in_reach_in_front_of_every_other_dialog() -> Result<()> {
     })
 }
 
+const OTHER: &str = r#"{"line":{"baud":57600},"source":{"line":{"sends":[{"start_cycle":400,"bytes":"00"}]}},"run_cycles":100000}"#;
+
 #[test]
 fn stop_goes_as_the_stream_did_until_it_is_confirmed() -> Result<()> {
     in_browser(|page| async move {
-        open(&page, FRAMED, "silent").await?;
-        start(&page).await?;
+        start_long(&page).await?;
+        page.eval::<Value>("peer.lose() ?? null").await?;
         page.until(ENDED).await?;
-        page.until(&format!("{SAID}.startsWith('Not verified')")).await?;
+        page.until(&format!("{SAID}.startsWith('Not verified: the port is lost')")).await?;
         // An experiment that could not be sent, and could not be stopped.
-        drop_file(
-            &page,
-            "other.json",
-            r#"{"line":{"baud":57600},"source":{"line":{"sends":[{"start_cycle":400,"bytes":"00"}]}},"run_cycles":100000}"#,
-        )
-        .await?;
+        drop_file(&page, "other.json", OTHER).await?;
         page.ready().await?;
         page.click("#live-aside").await?;
         page.until(&format!("{ABOUT}.startsWith('Not with this experiment')")).await?;
@@ -86,11 +84,58 @@ fn stop_goes_as_the_stream_did_until_it_is_confirmed() -> Result<()> {
             "another role was taken, which has no STOP"
         );
         page.click("[name=live-role][value=serve]").await?;
+        ensure!(page.visible("#live-stop").await?);
+        // The dialog that comes next knows it, and Escape is STOP before it closes that.
+        page.click("#live-close").await?;
+        page.until("document.querySelector('dialog.live') === null").await?;
+        page.click("#device").await?;
+        page.until(&format!("{SAID}.endsWith('STOP goes as it went, at 115200 baud.')")).await?;
+        page.press("#live-close", ESCAPE).await?;
+        page.until("peer.closed === 2").await?;
+        page.until(&format!("{SAID}.startsWith('STOP is confirmed')")).await?;
+        assert_eq!(page.eval::<Vec<u32>>("peer.opened").await?, [115_200, 115_200]);
+        // That is all: it is the dialog's own key again.
+        page.until("!document.getElementById('live-close').disabled").await?;
+        page.press("#live-close", ESCAPE).await?;
+        page.until("document.querySelector('dialog.live') === null").await
+    })
+}
+
+#[test]
+fn after_a_verified_end_stop_goes_as_the_experiment_has_it() -> Result<()> {
+    in_browser(|page| async move {
+        open(&page, FRAMED, "serve").await?;
+        start(&page).await?;
+        page.until(ENDED).await?;
+        page.until(&format!("{SAID}.startsWith('Verified')")).await?;
+        page.click("#packets-of-model").await?;
+        page.fill("line.baud", "57600").await?;
+        page.ready().await?;
+        page.click("#live-aside").await?;
+        page.until(&format!("{ABOUT}.includes('57600 baud')")).await?;
         page.click("#live-stop").await?;
         page.until("peer.closed === 2").await?;
-        page.until(&format!("{SAID}.startsWith('STOP is not confirmed')")).await?;
-        assert_eq!(page.eval::<Vec<u32>>("peer.opened").await?, [115_200, 115_200]);
-        ensure!(page.eval::<bool>("!document.getElementById('live-stop').disabled").await?);
+        assert_eq!(page.eval::<Vec<u32>>("peer.opened").await?, [115_200, 57_600]);
+        Ok(())
+    })
+}
+
+#[test]
+fn an_experiment_that_changed_behind_the_dialog_is_not_started_unseen() -> Result<()> {
+    in_browser(|page| async move {
+        open(&page, FRAMED, "serve").await?;
+        page.click("#live-choose").await?;
+        page.until("!document.getElementById('live-start').disabled").await?;
+        let other = FRAMED.replace(r#""protocol":"framed""#, r#""protocol":"framed","baud":57600"#);
+        drop_file(&page, "other.json", &other).await?;
+        page.ready().await?;
+        page.click("#live-start").await?;
+        page.until(&format!("{SAID}.startsWith('The experiment has changed')")).await?;
+        page.until(&format!("{ABOUT}.includes('57600 baud')")).await?;
+        assert_eq!(page.eval::<Vec<u32>>("peer.opened").await?, Vec::<u32>::new());
+        page.click("#live-start").await?;
+        page.until(ENDED).await?;
+        assert_eq!(page.eval::<Vec<u32>>("peer.opened").await?, [57_600]);
         Ok(())
     })
 }
@@ -106,7 +151,7 @@ fn a_part_of_the_page_that_fails_gives_the_port_back_and_is_replaced() -> Result
         .await?;
         start(&page).await?;
         page.until(&format!("{SAID}.startsWith('This failed: ')")).await?;
-        ensure!(page.eval::<String>(SAID).await?.contains("press STOP, or cut its power"));
+        ensure!(page.eval::<String>(SAID).await?.contains("Cut its power if it must not move"));
         page.until("peer.closed === 1").await?;
         page.until("!document.getElementById('live-start').disabled").await?;
         page.eval::<Value>("(window.spoil = null)").await?;
@@ -128,6 +173,12 @@ fn a_port_that_stays_open_is_told_and_no_button_is_left_for_it() -> Result<()> {
         page.eval::<Value>(gone).await?;
         page.until(&format!("{SAID}.includes('The port could not be closed: load this page again')")).await?;
         page.until(&format!("{ABOUT}.includes(' baud')")).await?;
+        // A press on the browser's list, which has it all the same, says so again.
+        page.click("#live-choose").await?;
+        page.until(&format!(
+            "{SAID} === 'The port could not be closed: load this page again before it is used by anyone.'"
+        ))
+        .await?;
         for button in ["live-start", "live-stop"] {
             ensure!(page.eval::<bool>(&format!("document.getElementById('{button}').disabled")).await?);
         }
