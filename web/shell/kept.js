@@ -87,7 +87,7 @@ function listed() {
 /**
  * Keeps a recording in the place of the oldest ones, if there is room for it.
  * @param {Page} page @param {string} file  Its name. @param {string} scenario  What it stands for. @param {Uint8Array[]} pieces
- * @param {Uint8Array} replies  What was recorded on TX.
+ * @param {Uint8Array} [replies]  What was recorded on TX, where that was.
  * @returns {Promise<string>}  What there is to say of it.
  */
 export async function keep(page, file, scenario, pieces, replies) {

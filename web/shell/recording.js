@@ -383,7 +383,6 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
     const made = await capture.scenario(false);
     // Where no channel steps, there is more to see of what the model makes of the bytes.
     const pieces = looked.steps.length > 0 ? await capture.records(looked.records) : [];
-    const replies = await capture.replies();
     const { problems, scenario } = await engine.ask("check", withControllers(made, base));
     if (problems.length > 0) {
       fill(
@@ -396,6 +395,8 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
       );
       return;
     }
+    const { line, controllers } = readJson(scenario);
+    const replies = await capture.replies([line, ...controllers].map(({ address }) => address ?? 0));
     // Cancelled meanwhile.
     if (!body.isConnected) return;
     if (model) {
@@ -408,8 +409,8 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
         baseline: { title: plan.title || "the experiment", revision, summary, controller, derived: own },
       });
     }
-    const isKept = pieces.length > 0 || replies.length > 0;
-    if (isKept) engine.record(scenario, pieces, replies);
+    const isKept = pieces.length > 0 || replies !== undefined;
+    if (isKept) engine.record(scenario, pieces, replies?.bytes);
     dispatch({ type: "replace", scenario: readJson(scenario), origin: "shared" });
     const isPart = pieces.length > 0 && looked.kept !== null;
     close(isPart);
@@ -417,8 +418,8 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
     const numbers = [clock.value(), rate.value(), baud.value()];
     if (isPart) holdFor(page, file, capture, facts, { numbers, from_s: from.value(), to_s: to.value() });
     const run = resultOf(page);
-    const kept = isKept ? await keep(page, file, scenario, pieces, replies) : "";
-    const text = told(model !== null, pieces.length > 0, replies.length > 0) + kept;
+    const kept = isKept ? await keep(page, file, scenario, pieces, replies?.bytes) : "";
+    const text = told(model !== null, pieces.length > 0, replies) + kept;
     dispatch({ type: "notice", notice: { kind: "info", text, place: null } });
     const shown = found && (await run);
     if (!shown) return;
@@ -434,13 +435,20 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
     dispatch({ type: "notice", notice: { kind: "info", text: `${compared(found, aligned)} ${text}`, place } });
   }
 
-  /** @param {boolean} isBeside @param {boolean} isRecorded @param {boolean} hasReplies */
-  function told(isBeside, isRecorded, hasReplies) {
+  /** @param {boolean} isBeside @param {boolean} isRecorded @param {import("../engine/capture.js").Replies | undefined} replies */
+  function told(isBeside, isRecorded, replies) {
     const on = isRecorded ? "The views show what was recorded." : "The views show what the model makes of it.";
     const shown = isRecorded && looked?.kept ? ` ${part(looked.kept)}; its position begins with 0 there.` : "";
-    if (window.matchMedia(PHONE).matches) return `Opened ${file}.${shown}${ownIsKept()}`;
-    const replies = hasReplies ? " The table of packets has the replies as they were recorded." : "";
-    return `Opened ${file}. ${on}${shown}${replies}${isBeside ? " The experiment before stands beside it as the baseline." : ""}${ownIsKept()}`;
+    const unknown = replies?.unknown
+      ? ` Of ${counted(replies.unknown, "packet")} on TX nothing says which controller's: the first one's table has them.`
+      : "";
+    if (window.matchMedia(PHONE).matches) return `Opened ${file}.${shown}${unknown}${ownIsKept()}`;
+    const said =
+      replies &&
+      (replies.bytes.length > 0
+        ? " The table of packets has the replies as they were recorded."
+        : " Nothing came on TX, and the table of packets has no replies.");
+    return `Opened ${file}. ${on}${shown}${said ?? ""}${unknown}${isBeside ? " The experiment before stands beside it as the baseline." : ""}${ownIsKept()}`;
   }
 }
 
