@@ -147,9 +147,12 @@ impl Simulation {
     }
 
     /// Records of a recording, which are looked at in place of what the run makes: 16 bytes each, cycle and levels,
-    /// little-endian; piece after piece, before the run.
-    pub fn record(&mut self, bytes: &[u8]) {
-        self.recorded.get_or_insert_default().extend(records(bytes));
+    /// little-endian; piece after piece, before the run. `room` says how many come at most, these among them: a vector that grows
+    /// by itself takes twice the memory.
+    pub fn record(&mut self, bytes: &[u8], room: u32) {
+        let recorded = self.recorded.get_or_insert_default();
+        recorded.reserve_exact(room as usize);
+        recorded.extend(records(bytes));
     }
 
     /// What was recorded on TX, in the place of what the controllers reply ([`replies::put`]), nothing where they were silent;
@@ -160,7 +163,7 @@ impl Simulation {
 
     /// Records of a run that another module made, looked at in the same way: they are this scenario's own, and no recording.
     pub fn take_records(&mut self, bytes: &[u8]) {
-        self.record(bytes);
+        self.record(bytes, 0);
         self.is_own = true;
     }
 

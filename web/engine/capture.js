@@ -21,7 +21,7 @@ import { compiled } from "./wasm.js";
 
 /** Most changes, bytes or positions that are read; in the worker a change takes two to four bytes, the others 16. */
 const MOST_READ = 120_000_000;
-/** Most changes that the views take; in the worker and in the run they take 64 bytes each. */
+/** Most changes that the views take: 64 bytes each on the way, 16 in this worker, in the page, in the engine's worker and in the run. */
 const MOST_SHOWN = 20_000_000;
 /** Records that are handed on at a time. */
 const PIECE = 1 << 19;
