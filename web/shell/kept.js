@@ -36,7 +36,7 @@ const SHOWN = "stepscope.recording";
 const known = [];
 
 /** What a recording stands for, as the worker has it (worker.js). @param {any} scenario */
-const stands = ({ source, clock_hz, bus, run_cycles, plant }) =>
+export const stands = ({ source, clock_hz, bus, run_cycles, plant }) =>
   JSON.stringify([source, clock_hz, bus?.channels, run_cycles, plant]);
 
 /** @template T @param {IDBRequest<T>} request @returns {Promise<T>} */

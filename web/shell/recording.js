@@ -7,7 +7,7 @@ import { openCapture } from "../engine/capture.js";
 import { readJson } from "../state/json.js";
 import { count, counted, parseNumber, plain, si, time } from "../state/number.js";
 import { isStale } from "../state/state.js";
-import { keep } from "./kept.js";
+import { keep, stands } from "./kept.js";
 import { message } from "./link.js";
 import { save } from "./save.js";
 import { ownIsKept } from "./storage.js";
@@ -86,29 +86,44 @@ function dialogOf(leave) {
   return { body, foot, close, isOpen: () => dialog.open };
 }
 
-/** The file whose part is on show, and the button that chooses another part. @type {{leave: () => void, again: HTMLElement} | null} */
+/** The file whose part is on show. `letGo` takes its button away; `leave` gives the file up, too. @type {{letGo: () => void, leave: () => void} | null} */
 let held = null;
 
 /** Leaves the file whose part was on show. */
 function leaveHeld() {
-  held?.again.remove();
   held?.leave();
   held = null;
 }
 
 /**
- * Of a file a part is on show: another one can be chosen, and nothing is read again.
+ * Of a file a part is on show: another one can be chosen, and nothing is read again, until something else takes its place.
  * @param {Page} page @param {string} file @param {ReturnType<typeof openCapture>} capture @param {Facts} facts @param {Said} said
  */
 function holdFor(page, file, capture, facts, said) {
-  held?.again.remove();
-  const leave = () => capture.close();
+  held?.letGo();
+  let close = () => {};
   const again = button("Another part…", `Show another part of ${file}`, () => {
     const dialog = dialogOf(() => {});
+    close = dialog.close;
     show(page, file, capture, facts, dialog, said);
   });
+  const own = stands(page.now().scenario);
+  // The page says there whenever its experiment is another one.
+  const watch = new MutationObserver(() => {
+    if (stands(page.now().scenario) !== own) leaveHeld();
+  });
+  watch.observe(document.documentElement, { attributeFilter: ["data-state"] });
+  const letGo = () => {
+    watch.disconnect();
+    again.remove();
+  };
+  const leave = () => {
+    letGo();
+    close();
+    capture.close();
+  };
   byId("on-show").append(" ", again);
-  held = { leave, again };
+  held = { letGo, leave };
 }
 
 /** The result of the experiment as it stands, once it has run; null where that does not come. @param {Page} page */

@@ -69,6 +69,7 @@ mod presets;
 mod programs;
 mod recording;
 mod recording_kept;
+mod recording_parts;
 mod recording_replies;
 mod recording_views;
 mod reflow;
