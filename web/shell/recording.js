@@ -37,6 +37,8 @@ const [MAX_LISTED, MAX_LISTED_BYTES] = [100, 32];
 const MANY = 2_000_000;
 /** Greatest drift that is told of two clocks. */
 const MAX_DRIFT_PPM = 50_000;
+/** Characters that a note can have; a longer one would be refused. */
+const MAX_NOTE = 2000;
 /** How long the experiment before may run, in ms. */
 const PATIENCE_MS = 60_000;
 
@@ -398,7 +400,10 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
     const made = await capture.scenario(false);
     // Where no channel steps, there is more to see of what the model makes of the bytes.
     const pieces = looked.steps.length > 0 ? await capture.records(looked.records) : [];
-    const { problems, scenario } = await engine.ask("check", withControllers(made, base));
+    const own = readJson(withControllers(made, base));
+    // Its message may be closed, and the page left: what was compared stays with the experiment.
+    if (found) own.note = [...`${own.note} ${compared(found, aligned)}`].slice(0, MAX_NOTE).join("");
+    const { problems, scenario } = await engine.ask("check", JSON.stringify(own));
     if (problems.length > 0) {
       fill(
         result,
