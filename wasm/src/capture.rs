@@ -1,7 +1,7 @@
 //! Files of logic analysers, for a worker of their own: read as a stream, mapped, looked at, and handed on as records.
 
-use crate::convert::{object, records};
-use js_sys::{Function, Uint8Array};
+use crate::convert::{field, object, records};
+use js_sys::{Function, Object, Uint8Array};
 use serde::{Deserialize, Serialize};
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use stepscope_core::{
@@ -16,10 +16,11 @@ use stepscope_core::{
             events::Events,
             opened::{Ask, Kept, Opened, Part},
             packets::{LinePacket, Packets},
-            replies,
+            replies::{self, Dealt},
             report::ChannelReport,
         },
     },
+    peripheral::signal::Levels,
 };
 use wasm_bindgen::prelude::*;
 
@@ -266,13 +267,22 @@ impl CaptureFile {
         object(&Told { total: packets.rows.len(), replies: packets.replies(), rows, csv })
     }
 
-    /// What TX says in the part that is shown, for the page's table of packets ([`replies::of`]); nothing where TX says nothing.
+    /// What TX says in the part that is shown, dealt to controllers of these addresses, for the page's table of packets:
+    /// [`replies::Dealt`], `{bytes, unknown}`. None where TX was not recorded.
     #[must_use]
-    pub fn replies(&self) -> Vec<u8> {
-        let Some(opened) = &self.opened else { return Vec::new() };
+    pub fn replies(&self, addresses: &[u8]) -> Option<Object> {
+        let opened = self.opened.as_ref()?;
+        let map = ChannelMap::parse(&opened.map, &self.capture).ok()?;
+        if !map.has(Levels::TX.trailing_zeros()) {
+            return None;
+        }
         let cycle = |at_s: f64| (at_s * f64::from(opened.clock_hz)) as u64;
         let shown = opened.kept.map_or(0..u64::MAX, |kept| cycle(kept.from_s)..cycle(kept.to_s));
-        replies::to_bytes(&Packets::of(&opened.report, opened.clock_hz, opened.channels, false), shown)
+        let Dealt { bytes, unknown } = replies::to_bytes(&opened.report, opened.clock_hz, shown, addresses);
+        let dealt = Object::new();
+        field(&dealt, "bytes", &Uint8Array::from(bytes.as_slice()).into());
+        field(&dealt, "unknown", &unknown.into());
+        Some(dealt)
     }
 
     /// When step `aligned` of a channel, from 0, or, where this steps nowhere, that byte of RX comes in a run, in s: its

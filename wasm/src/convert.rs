@@ -1,7 +1,9 @@
 //! Results as JavaScript values.
 
 #[cfg(any(feature = "run", feature = "study", feature = "panel"))]
-use js_sys::{Float64Array, Object, Reflect};
+use js_sys::Float64Array;
+#[cfg(any(feature = "run", feature = "study", feature = "panel", feature = "capture"))]
+use js_sys::{Object, Reflect};
 use serde::Serialize;
 #[cfg(any(feature = "run", feature = "capture", feature = "study"))]
 use stepscope_core::peripheral::{
@@ -16,7 +18,7 @@ pub(crate) fn object(value: &impl Serialize) -> Result<JsValue, JsError> {
 }
 
 /// Adds a field to an object.
-#[cfg(any(feature = "run", feature = "study", feature = "panel"))]
+#[cfg(any(feature = "run", feature = "study", feature = "panel", feature = "capture"))]
 pub(crate) fn field(object: &Object, name: &str, value: &JsValue) {
     // Setting a field of a fresh plain object cannot fail.
     let _ = Reflect::set(object, &name.into(), value);

@@ -43,8 +43,8 @@ pub struct Simulation {
     taken_in: usize,
     /// And that was this scenario's run.
     pub(crate) is_own: bool,
-    /// Replies that were recorded, as [`replies::of`] takes them.
-    replies: Vec<u8>,
+    /// Replies that were recorded, as [`replies::put`] takes them; none of them left once they are in their place.
+    pub(crate) replies: Option<Vec<u8>>,
     /// The run is at its end; what was recorded is taken in, or has been.
     is_made: bool,
 }
@@ -147,19 +147,23 @@ impl Simulation {
     }
 
     /// Records of a recording, which are looked at in place of what the run makes: 16 bytes each, cycle and levels,
-    /// little-endian; piece after piece, before the run.
-    pub fn record(&mut self, bytes: &[u8]) {
-        self.recorded.get_or_insert_default().extend(records(bytes));
+    /// little-endian; piece after piece, before the run. `room` says how many come at most, these among them: a vector that grows
+    /// by itself takes twice the memory.
+    pub fn record(&mut self, bytes: &[u8], room: u32) {
+        let recorded = self.recorded.get_or_insert_default();
+        recorded.reserve_exact(room as usize);
+        recorded.extend(records(bytes));
     }
 
-    /// Replies that were recorded, in the place of those that the first controller makes ([`replies::of`]); before the run.
+    /// What was recorded on TX, in the place of what the controllers reply ([`replies::put`]), nothing where they were silent;
+    /// before the run.
     pub fn answer(&mut self, bytes: Vec<u8>) {
-        self.replies = bytes;
+        self.replies = Some(bytes);
     }
 
     /// Records of a run that another module made, looked at in the same way: they are this scenario's own, and no recording.
     pub fn take_records(&mut self, bytes: &[u8]) {
-        self.record(bytes);
+        self.record(bytes, 0);
         self.is_own = true;
     }
 
@@ -215,10 +219,13 @@ impl Simulation {
 
     /// Everything is there: packets are in their order, and the replies are those that were recorded.
     fn finish(&mut self) {
-        self.recordings.iter_mut().for_each(|one| one.recording.packets.finish());
-        let answers = replies::of(&take(&mut self.replies));
-        if let Some(first) = self.recordings.first_mut().filter(|_| !answers.is_empty()) {
-            first.recording.packets.answer(&answers);
+        let recorded = self.replies.as_mut().map(take);
+        for (index, one) in self.recordings.iter_mut().enumerate() {
+            let packets = &mut one.recording.packets;
+            packets.finish();
+            if let Some(bytes) = &recorded {
+                replies::put(bytes, &self.experiment, &self.run, index, packets);
+            }
         }
     }
 
@@ -243,7 +250,7 @@ impl Simulation {
             recorded: None,
             taken_in: 0,
             is_own: false,
-            replies: Vec::new(),
+            replies: None,
             is_made: false,
         }
     }

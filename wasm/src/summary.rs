@@ -16,7 +16,7 @@ use wasm_bindgen::prelude::*;
 
 #[derive(Serialize)]
 struct Summary {
-    /// What was recorded is on show, not what the run makes.
+    /// What was recorded is on show, be it replies alone, not what the run makes.
     recorded: bool,
     framed: bool,
     end_cycle: u64,
@@ -97,7 +97,7 @@ impl Simulation {
             first.positions = shown.positions();
         }
         object(&Summary {
-            recorded: self.recorded.is_some() && !self.is_own,
+            recorded: (self.recorded.is_some() || self.replies.is_some()) && !self.is_own,
             framed: run.framed,
             end_cycle: run.cycles.0,
             end_s: run.cycles.0 as f64 / f64::from(run.clock_hz),

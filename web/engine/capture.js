@@ -14,13 +14,14 @@ import { compiled } from "./wasm.js";
  * @typedef {{line: string, kind: string, start_cycle: number, end_cycle: number, bytes: number[], meaning: string, outcome: string}} LinePacket
  * @typedef {{position_min: number[], position_max: number[], speed_min: number[], speed_max: number[]}} Columns  In steps and steps/s.
  * @typedef {{total: number, replies: number, rows: LinePacket[], csv: string}} LinePackets
+ * @typedef {{bytes: Uint8Array, unknown: number}} Replies  None in it where the device was silent; of `unknown` packets nothing says which controller's they are.
  * @typedef {{map?: string, clock_hz?: number, sample_rate_hz?: bigint, baud?: number, at_s?: number, channel?: number, aligned?: number, from_s?: number, to_s?: number}} Asked
  * @typedef {{records: Uint8Array, clock_hz: number, channel: number, baud: number, aligned: number}} Model  What a run has of a channel and of RX, and the step, or byte, that both have at one time.
  */
 
 /** Most changes, bytes or positions that are read; in the worker a change takes two to four bytes, the others 16. */
 const MOST_READ = 120_000_000;
-/** Most changes that the views take; in the worker and in the run they take 64 bytes each. */
+/** Most changes that the views take: 64 bytes each on the way, 16 in this worker, in the page, in the engine's worker and in the run. */
 const MOST_SHOWN = 20_000_000;
 /** Records that are handed on at a time. */
 const PIECE = 1 << 19;
@@ -72,8 +73,8 @@ export function openCapture(file, onProgress) {
     scenario: (ofSteps) => ask("scenario", sample?.file ?? /** @type {File} */ (file).name, ofSteps),
     /** What its lines say: the first `most` packets, and all of them as a table. @param {boolean} addressed @param {number} most @returns {Promise<LinePackets | null>} */
     packets: (addressed, most) => ask("packets", addressed, most),
-    /** What TX says, for the table of packets. @returns {Promise<Uint8Array>} */
-    replies: () => ask("replies"),
+    /** What TX says, dealt to controllers of these addresses, for the table of packets. @param {number[]} addresses @returns {Promise<Replies | undefined>} */
+    replies: (addresses) => ask("replies", addresses),
     /** When the step, or byte, of a run comes, in s. @param {Model} of @returns {Promise<number | undefined>} */
     timeOf: ({ records, clock_hz, channel, baud, aligned }) =>
       ask("time_of", records, clock_hz, channel, baud, aligned),

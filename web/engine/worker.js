@@ -63,6 +63,8 @@ const ready = new Promise((resolve) => {
 let recordings = [];
 /** As many as the page has. */
 const MAX_RECORDINGS = 3;
+/** Goes on with a run that waits for a message: a piece of its recording, or a newer run. @type {(heard?: unknown) => void} */
+let goOn = () => {};
 const between = new MessageChannel();
 
 /** Who waits for messages to be let in: a run, a search. @type {((event: MessageEvent) => void)[]} */
@@ -194,10 +196,14 @@ async function simulate(order) {
   for (let at = 0; recording && at < recording.count; ) {
     const piece = recording.pieces[at];
     if (piece) {
-      simulation.record(piece);
+      simulation.record(piece, (recording.count - at) * PIECE);
       at += 1;
     }
-    await yieldToMessages();
+    await (piece
+      ? yieldToMessages()
+      : new Promise((resolve) => {
+          goOn = resolve;
+        }));
     if (run !== newest) return letGo(simulation);
   }
   if (!(await runInSlices(simulation, order))) return;
@@ -291,6 +297,7 @@ async function answer(method, args) {
 }
 
 self.onmessage = async ({ data }) => {
+  goOn();
   if ("module" in data) return provide(data.module);
   if ("part" in data) return providePart(data.part);
   if ("recording" in data) {

@@ -36,7 +36,7 @@ const SHOWN = "stepscope.recording";
 const known = [];
 
 /** What a recording stands for, as the worker has it (worker.js). @param {any} scenario */
-const stands = ({ source, clock_hz, bus, run_cycles, plant }) =>
+export const stands = ({ source, clock_hz, bus, run_cycles, plant }) =>
   JSON.stringify([source, clock_hz, bus?.channels, run_cycles, plant]);
 
 /** @template T @param {IDBRequest<T>} request @returns {Promise<T>} */
@@ -87,7 +87,7 @@ function listed() {
 /**
  * Keeps a recording in the place of the oldest ones, if there is room for it.
  * @param {Page} page @param {string} file  Its name. @param {string} scenario  What it stands for. @param {Uint8Array[]} pieces
- * @param {Uint8Array} replies  What was recorded on TX.
+ * @param {Uint8Array} [replies]  What was recorded on TX, where that was.
  * @returns {Promise<string>}  What there is to say of it.
  */
 export async function keep(page, file, scenario, pieces, replies) {

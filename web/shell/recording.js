@@ -7,7 +7,7 @@ import { openCapture } from "../engine/capture.js";
 import { readJson } from "../state/json.js";
 import { count, counted, parseNumber, plain, si, time } from "../state/number.js";
 import { isStale } from "../state/state.js";
-import { keep } from "./kept.js";
+import { keep, stands } from "./kept.js";
 import { message } from "./link.js";
 import { save } from "./save.js";
 import { ownIsKept } from "./storage.js";
@@ -37,6 +37,8 @@ const [MAX_LISTED, MAX_LISTED_BYTES] = [100, 32];
 const MANY = 2_000_000;
 /** Greatest drift that is told of two clocks. */
 const MAX_DRIFT_PPM = 50_000;
+/** Characters that a note can have; a longer one would be refused. */
+const MAX_NOTE = 2000;
 /** How long the experiment before may run, in ms. */
 const PATIENCE_MS = 60_000;
 
@@ -86,29 +88,44 @@ function dialogOf(leave) {
   return { body, foot, close, isOpen: () => dialog.open };
 }
 
-/** The file whose part is on show, and the button that chooses another part. @type {{leave: () => void, again: HTMLElement} | null} */
+/** The file whose part is on show. `letGo` takes its button away; `leave` gives the file up, too. @type {{letGo: () => void, leave: () => void} | null} */
 let held = null;
 
 /** Leaves the file whose part was on show. */
 function leaveHeld() {
-  held?.again.remove();
   held?.leave();
   held = null;
 }
 
 /**
- * Of a file a part is on show: another one can be chosen, and nothing is read again.
+ * Of a file a part is on show: another one can be chosen, and nothing is read again, until something else takes its place.
  * @param {Page} page @param {string} file @param {ReturnType<typeof openCapture>} capture @param {Facts} facts @param {Said} said
  */
 function holdFor(page, file, capture, facts, said) {
-  held?.again.remove();
-  const leave = () => capture.close();
+  held?.letGo();
+  let close = () => {};
   const again = button("Another part…", `Show another part of ${file}`, () => {
     const dialog = dialogOf(() => {});
+    close = dialog.close;
     show(page, file, capture, facts, dialog, said);
   });
+  const own = stands(page.now().scenario);
+  // The page says there whenever its experiment is another one.
+  const watch = new MutationObserver(() => {
+    if (stands(page.now().scenario) !== own) leaveHeld();
+  });
+  watch.observe(document.documentElement, { attributeFilter: ["data-state"] });
+  const letGo = () => {
+    watch.disconnect();
+    again.remove();
+  };
+  const leave = () => {
+    letGo();
+    close();
+    capture.close();
+  };
   byId("on-show").append(" ", again);
-  held = { leave, again };
+  held = { letGo, leave };
 }
 
 /** The result of the experiment as it stands, once it has run; null where that does not come. @param {Page} page */
@@ -383,8 +400,10 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
     const made = await capture.scenario(false);
     // Where no channel steps, there is more to see of what the model makes of the bytes.
     const pieces = looked.steps.length > 0 ? await capture.records(looked.records) : [];
-    const replies = await capture.replies();
-    const { problems, scenario } = await engine.ask("check", withControllers(made, base));
+    const own = readJson(withControllers(made, base));
+    // Its message may be closed, and the page left: what was compared stays with the experiment.
+    if (found) own.note = [...`${own.note} ${compared(found, aligned)}`].slice(0, MAX_NOTE).join("");
+    const { problems, scenario } = await engine.ask("check", JSON.stringify(own));
     if (problems.length > 0) {
       fill(
         result,
@@ -396,6 +415,8 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
       );
       return;
     }
+    const { line, controllers } = readJson(scenario);
+    const replies = await capture.replies([line, ...controllers].map(({ address }) => address ?? 0));
     // Cancelled meanwhile.
     if (!body.isConnected) return;
     if (model) {
@@ -408,8 +429,8 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
         baseline: { title: plan.title || "the experiment", revision, summary, controller, derived: own },
       });
     }
-    const isKept = pieces.length > 0 || replies.length > 0;
-    if (isKept) engine.record(scenario, pieces, replies);
+    const isKept = pieces.length > 0 || replies !== undefined;
+    if (isKept) engine.record(scenario, pieces, replies?.bytes);
     dispatch({ type: "replace", scenario: readJson(scenario), origin: "shared" });
     const isPart = pieces.length > 0 && looked.kept !== null;
     close(isPart);
@@ -417,8 +438,8 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
     const numbers = [clock.value(), rate.value(), baud.value()];
     if (isPart) holdFor(page, file, capture, facts, { numbers, from_s: from.value(), to_s: to.value() });
     const run = resultOf(page);
-    const kept = isKept ? await keep(page, file, scenario, pieces, replies) : "";
-    const text = told(model !== null, pieces.length > 0, replies.length > 0) + kept;
+    const kept = isKept ? await keep(page, file, scenario, pieces, replies?.bytes) : "";
+    const text = told(model !== null, pieces.length > 0, replies) + kept;
     dispatch({ type: "notice", notice: { kind: "info", text, place: null } });
     const shown = found && (await run);
     if (!shown) return;
@@ -434,13 +455,20 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
     dispatch({ type: "notice", notice: { kind: "info", text: `${compared(found, aligned)} ${text}`, place } });
   }
 
-  /** @param {boolean} isBeside @param {boolean} isRecorded @param {boolean} hasReplies */
-  function told(isBeside, isRecorded, hasReplies) {
+  /** @param {boolean} isBeside @param {boolean} isRecorded @param {import("../engine/capture.js").Replies | undefined} replies */
+  function told(isBeside, isRecorded, replies) {
     const on = isRecorded ? "The views show what was recorded." : "The views show what the model makes of it.";
     const shown = isRecorded && looked?.kept ? ` ${part(looked.kept)}; its position begins with 0 there.` : "";
-    if (window.matchMedia(PHONE).matches) return `Opened ${file}.${shown}${ownIsKept()}`;
-    const replies = hasReplies ? " The table of packets has the replies as they were recorded." : "";
-    return `Opened ${file}. ${on}${shown}${replies}${isBeside ? " The experiment before stands beside it as the baseline." : ""}${ownIsKept()}`;
+    const unknown = replies?.unknown
+      ? ` Of ${counted(replies.unknown, "packet")} on TX nothing says which controller's: the first one's table has them.`
+      : "";
+    if (window.matchMedia(PHONE).matches) return `Opened ${file}.${shown}${unknown}${ownIsKept()}`;
+    const said =
+      replies &&
+      (replies.bytes.length > 0
+        ? " The table of packets has the replies as they were recorded."
+        : " Nothing came on TX, and the table of packets has no replies.");
+    return `Opened ${file}. ${on}${shown}${said ?? ""}${unknown}${isBeside ? " The experiment before stands beside it as the baseline." : ""}${ownIsKept()}`;
   }
 }
 

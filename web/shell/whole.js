@@ -4,6 +4,7 @@
  */
 import { element, fill } from "../dom.js";
 import { plain, time } from "../state/number.js";
+import { message } from "./link.js";
 
 /** @typedef {import("../engine/capture.js").Looked} Looked */
 /** @typedef {import("../engine/capture.js").Columns} Columns */
@@ -14,6 +15,8 @@ const [POSITION_PX, SPEED_PX, BETWEEN_PX] = [64, 40, 6];
 const STILL_PX = 4;
 /** How much of what is left out is seen through. */
 const LEFT_OUT = 0.7;
+/** Rest after a change of the width before other columns are asked for, in ms. */
+const REST_MS = 200;
 
 /**
  * @param {{overview: (channel: number, columns: number) => Promise<Columns | null>}} capture
@@ -27,10 +30,13 @@ export function createWhole(capture, choose) {
   const channel = element("select", { "aria-label": "Channel at a glance" });
   const node = element("div", { class: "whole" }, channel, canvas, said);
   node.hidden = true;
-  /** What was looked at, and what its columns were asked by. */
-  let [looked, asked] = [/** @type {Looked | null} */ (null), ""];
+  /** What was looked at. @type {Looked | null} */
+  let looked = null;
+  /** What the columns are of, and how many were asked for. */
+  let [shown, asked] = ["", 0];
   /** @type {Columns | null} */
   let columns = null;
+  let timer = 0;
   /** Where a drag began and where it is, in s. @type {[number, number] | null} */
   let drag = null;
 
@@ -67,19 +73,43 @@ export function createWhole(capture, choose) {
     event.stopPropagation();
     void refresh();
   });
-  new ResizeObserver(() => void refresh()).observe(canvas);
+  new ResizeObserver(() => {
+    draw();
+    clearTimeout(timer);
+    timer = window.setTimeout(() => void refresh(), REST_MS);
+  }).observe(canvas);
 
   /** Asks for the columns, if these are others. */
   async function refresh() {
-    if (!looked || canvas.clientWidth === 0) return;
-    const own = [looked.map, looked.clock_hz, channel.value, canvas.clientWidth].join();
-    if (own === asked) return draw();
-    asked = own;
-    const found = await capture.overview(Number(channel.value), canvas.clientWidth);
-    if (own !== asked) return;
-    columns = found;
+    const width = canvas.clientWidth;
+    if (!looked || width === 0) return;
+    // The sample rate and the end of the file are in the time of its end.
+    const own = [looked.map, looked.clock_hz, end(), channel.value].join();
+    if (own === shown && width === asked) return draw();
+    // Until they come, those of another width stand for them, but none of anything else.
+    if (own !== shown) [columns, said.textContent] = [null, "…"];
+    [shown, asked] = [own, width];
     draw();
-    tell();
+    const isOwn = () => own === shown && width === asked;
+    try {
+      const found = await capture.overview(Number(channel.value), width);
+      if (!isOwn()) return;
+      columns = found;
+      draw();
+      tell();
+    } catch (error) {
+      if (!isOwn()) return;
+      [columns, shown] = [null, ""];
+      draw();
+      say(`All of channel ${channel.value} cannot be shown: ${message(error)}.`, true);
+    }
+  }
+
+  /** @param {string} what @param {boolean} isWrong */
+  function say(what, isWrong) {
+    canvas.setAttribute("aria-label", what);
+    said.classList.toggle("error", isWrong);
+    said.textContent = isWrong ? what : `${what} Drag over it to show a part.`;
   }
 
   function tell() {
@@ -87,8 +117,7 @@ export function createWhole(capture, choose) {
     const [low, high] = rangeOf([columns.position_min, columns.position_max]);
     const speeds = rangeOf([columns.speed_min, columns.speed_max]).map(Math.abs);
     const what = `All of channel ${channel.value}, ${time(end())}: position ${plain(low, "").trim()} to ${plain(high, "steps")}, at most ${plain(Math.max(...speeds), "steps/s")}.`;
-    canvas.setAttribute("aria-label", what);
-    said.textContent = `${what} Drag over it to show a part.`;
+    say(what, false);
   }
 
   function draw() {

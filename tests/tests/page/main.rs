@@ -70,6 +70,8 @@ mod presets;
 mod programs;
 mod recording;
 mod recording_kept;
+mod recording_parts;
+mod recording_replies;
 mod recording_views;
 mod reflow;
 mod rows;

@@ -185,6 +185,9 @@ fn a_recording_is_mapped_and_stands_beside_the_model_until_it_is_undone() -> Res
             said.contains("mine.csv") && said.contains("Undo") && said.contains("Show the place"),
             "{said}"
         );
+        // The message may be closed: the experiment's note has it.
+        let note = page.field("note").await?.value;
+        ensure!(note.contains("Beside the baseline: 200 steps, the baseline has 800"), "{note}");
         page.until("document.getElementById('chart-position').checkVisibility() && document.body.innerText.includes('Against the baseline: the experiment')").await?;
         // The position at a cursor is that of the file.
         page.press("#charts-handles .handle.a", &ENTER.to_string()).await?;

@@ -120,8 +120,19 @@ impl Packets {
 /// What is said of a frame whose check holds.
 const HOLDS: &str = "check holds";
 
+/// A packet as it stands on a line, before anything is said of it.
+pub(super) struct Found {
+    /// Where its first start bit was seen.
+    pub(super) start_cycle: u64,
+    /// First cycle after its last byte.
+    pub(super) end_cycle: u64,
+    pub(super) bytes: Vec<u8>,
+    /// What is known of a whole frame; none of other bytes.
+    pub(super) outcome: Option<FrameOutcome>,
+}
+
 /// A line whose packets are found.
-struct Line<'a> {
+pub(super) struct Line<'a> {
     line: &'a LineReport,
     is_framed: bool,
     channels: u8,
@@ -133,7 +144,7 @@ struct Line<'a> {
 }
 
 impl<'a> Line<'a> {
-    fn new(line: &'a LineReport, clock_hz: u32, channels: u8, addressed: bool) -> Self {
+    pub(super) fn new(line: &'a LineReport, clock_hz: u32, channels: u8, addressed: bool) -> Self {
         let bit = u64::from(clock_hz) / u64::from(line.baud.max(1));
         let told = if let Guess::Framed { channels, .. } = line.guess { channels } else { None };
         Self {
@@ -147,18 +158,38 @@ impl<'a> Line<'a> {
     }
 
     fn rows(&self, rows: &mut Vec<LinePacket>) {
+        self.each(|found| rows.push(self.packet(found)));
+        rows.extend(self.line.heard.framing_errors.iter().map(|seen| LinePacket {
+            line: self.line.name,
+            kind: "byte",
+            start_cycle: seen.0,
+            end_cycle: seen.0 + self.byte,
+            bytes: Vec::new(),
+            meaning: String::new(),
+            outcome: RowOutcome::Framing.to_string(),
+        }));
+    }
+
+    /// Goes through its packets in the order of time; none is kept.
+    pub(super) fn each(&self, mut take: impl FnMut(Found)) {
         let (mut deframer, mut outcome) = (Deframer::default(), None);
-        let (mut bytes, mut start, mut last) = (Vec::new(), 0, None::<u64>);
+        let (mut bytes, mut start_cycle, mut last) = (Vec::new(), 0, 0);
+        let found = |start_cycle, last: u64, bytes: &mut Vec<u8>, outcome| Found {
+            start_cycle,
+            end_cycle: last + self.byte,
+            bytes: core::mem::take(bytes),
+            outcome,
+        };
         for heard in &self.line.heard.bytes {
             let at = heard.start.0;
-            if !self.is_framed && last.is_some_and(|last| at.saturating_sub(last) > self.gap) {
-                rows.push(self.packet(start, last, core::mem::take(&mut bytes), None));
+            if !self.is_framed && !bytes.is_empty() && at.saturating_sub(last) > self.gap {
+                take(found(start_cycle, last, &mut bytes, None));
             }
             if bytes.is_empty() {
-                start = at;
+                start_cycle = at;
             }
             bytes.push(heard.byte);
-            last = Some(at);
+            last = at;
             if !self.is_framed {
                 continue;
             }
@@ -172,30 +203,15 @@ impl<'a> Line<'a> {
             };
             // End marks that end nothing stand before the next frame.
             if heard.byte == DELIMITER && outcome.is_some() {
-                rows.push(self.packet(start, last, core::mem::take(&mut bytes), outcome.take()));
+                take(found(start_cycle, last, &mut bytes, outcome.take()));
             }
         }
         if !bytes.is_empty() {
-            rows.push(self.packet(start, last, bytes, None));
+            take(found(start_cycle, last, &mut bytes, None));
         }
-        rows.extend(self.line.heard.framing_errors.iter().map(|seen| LinePacket {
-            line: self.line.name,
-            kind: "byte",
-            start_cycle: seen.0,
-            end_cycle: seen.0 + self.byte,
-            bytes: Vec::new(),
-            meaning: String::new(),
-            outcome: RowOutcome::Framing.to_string(),
-        }));
     }
 
-    fn packet(
-        &self,
-        start_cycle: u64,
-        last: Option<u64>,
-        bytes: Vec<u8>,
-        outcome: Option<FrameOutcome>,
-    ) -> LinePacket {
+    fn packet(&self, Found { start_cycle, end_cycle, bytes, outcome }: Found) -> LinePacket {
         let is_tx = self.line.name == line_name(Levels::TX);
         let is_known = self.is_framed || matches!(self.line.guess, Guess::Raw { .. }) && !is_tx;
         let row = match outcome {
@@ -220,7 +236,7 @@ impl<'a> Line<'a> {
                 "packet"
             },
             start_cycle,
-            end_cycle: last.unwrap_or(start_cycle) + self.byte,
+            end_cycle,
             bytes,
             meaning,
             outcome: match outcome {

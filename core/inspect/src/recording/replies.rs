@@ -1,8 +1,8 @@
 //! Replies that were recorded on TX, as one part of the page hands them to another: of each its first cycle and the first one after
-//! it, how many bytes it has, and these.
+//! it, how many bytes it has and which controller's it is, and these bytes.
 //!
 //! ```
-//! use stepscope_inspect::recording::{packets::Packets, replies, report::Report};
+//! use stepscope_inspect::recording::{replies, report::Report};
 //! use stepscope_peripheral::trace::Recording;
 //! use stepscope_sim::Experiment;
 //!
@@ -10,52 +10,105 @@
 //! let mut recording = Recording::default();
 //! Experiment::from_json(r#"{"line":{"protocol":"framed"}}"#).expect("the default motion, framed").run(&mut recording);
 //! let report = Report::of(&recording.trace, 16_000_000, 1, None);
-//! let packets = Packets::of(&report, 16_000_000, 1, false);
-//! let found = replies::of(&replies::to_bytes(&packets, 0..u64::MAX));
-//! assert_eq!(found.len(), packets.replies());
-//! assert!(found.iter().all(|reply| reply.reply.is_some()));
+//! let dealt = replies::to_bytes(&report, 16_000_000, 0..u64::MAX, &[0]);
+//! let found = replies::of(&dealt.bytes, 0);
+//! assert!(!found.is_empty() && found.iter().all(|reply| reply.reply.is_some()));
 //! ```
 
-use super::{packets::Packets, serial::line_name};
-use crate::dissector::reply;
+use super::{
+    packets::{Found, Line},
+    report::Report,
+    serial::line_name,
+};
+use crate::{
+    dissector::{Head, reply},
+    packet_table::{PacketTable, RowKind},
+};
 use alloc::vec::Vec;
 use core::ops::Range;
-use stepscope_peripheral::{signal::Levels, trace::RecordedReply, units::Instant};
+use stepscope_peripheral::{
+    signal::Levels,
+    trace::{PacketLog, RecordedReply, RowOutcome},
+    units::Instant,
+};
+use stepscope_sim::{Experiment, Run};
 
-/// What TX said within some cycles.
-#[must_use]
-pub fn to_bytes(packets: &Packets, cycles: Range<u64>) -> Vec<u8> {
-    let tx = line_name(Levels::TX);
-    let mut bytes = Vec::new();
-    let heard = |row: &&super::packets::LinePacket| row.line == tx && !row.bytes.is_empty();
-    for row in packets.rows.iter().filter(heard).filter(|row| cycles.contains(&row.start_cycle)) {
-        bytes.extend(row.start_cycle.to_le_bytes());
-        bytes.extend(row.end_cycle.to_le_bytes());
-        bytes.extend((row.bytes.len() as u64).to_le_bytes());
-        bytes.extend_from_slice(&row.bytes);
-    }
-    bytes
+/// What TX said, each packet dealt to a controller.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Dealt {
+    /// As [`of`] reads it.
+    pub bytes: Vec<u8>,
+    /// Packets of which nothing says whose they are: the first controller has them.
+    pub unknown: usize,
 }
 
-/// What was handed on, as far as it is whole and in the order of time; of frames, what they say.
+/// What TX said within some cycles, dealt to controllers of these addresses. A frame that names one of them is its reply; other
+/// bytes are of the one that the last frame before them on RX is for.
 #[must_use]
-#[inline(never)]
-pub fn of(mut bytes: &[u8]) -> Vec<RecordedReply> {
+pub fn to_bytes(report: &Report, clock_hz: u32, cycles: Range<u64>, addresses: &[u8]) -> Dealt {
+    let of = |mask| {
+        let line = report.lines.iter().find(|line| line.name == line_name(mask));
+        line.map(|line| Line::new(line, clock_hz, 0, false))
+    };
+    let mut dealt = Dealt::default();
+    let Some(tx) = of(Levels::TX) else { return dealt };
+    let place = |address: u8| addresses.iter().position(|own| *own == address);
+    // Where each frame ends, and which controller it is for. One controller is asked by all of them.
+    let mut asked: Vec<(u64, usize)> = Vec::new();
+    if let Some(rx) = of(Levels::RX).filter(|_| addresses.len() > 1) {
+        rx.each(|Found { end_cycle, bytes, outcome, .. }| {
+            let head = outcome.and_then(|outcome| Head::of(&bytes, RowOutcome::Frame(outcome)));
+            // RX may have heard what other controllers replied, too.
+            let to = head.filter(|head| !head.is_reply()).and_then(|head| place(head.address));
+            asked.extend(to.map(|to| (end_cycle, to)));
+        });
+    }
+    tx.each(|Found { start_cycle, end_cycle, bytes, .. }| {
+        if !cycles.contains(&start_cycle) {
+            return;
+        }
+        let named = reply(&bytes).and_then(|reply| place(reply.address));
+        let last = || asked.get(asked.partition_point(|(end, _)| *end <= start_cycle).checked_sub(1)?);
+        let controller = named.or_else(|| last().map(|(_, place)| *place));
+        dealt.unknown += usize::from(controller.is_none() && addresses.len() > 1);
+        let length = bytes.len() as u64 | (controller.unwrap_or(0) as u64) << CONTROLLER_SHIFT;
+        for word in [start_cycle, end_cycle, length] {
+            dealt.bytes.extend(word.to_le_bytes());
+        }
+        dealt.bytes.extend(bytes);
+    });
+    dealt
+}
+
+/// Where the controller stands in the word of the length.
+const CONTROLLER_SHIFT: u32 = 32;
+
+/// What was handed on of a controller, as far as all is whole and in the order of time; of frames, what they say.
+#[must_use]
+pub fn of(mut bytes: &[u8], controller: usize) -> Vec<RecordedReply<'_>> {
     let mut replies = Vec::new();
     let mut last = 0;
     while let Some(([start, end, length], rest)) = head(bytes) {
-        let Some((own, rest)) = usize::try_from(length).ok().and_then(|length| rest.split_at_checked(length))
-        else {
-            break;
-        };
+        let Some((own, rest)) = rest.split_at_checked(length as u32 as usize) else { break };
         if start < last || end < start {
             break;
         }
         (bytes, last) = (rest, start);
+        if length >> CONTROLLER_SHIFT != controller as u64 {
+            continue;
+        }
         let (start, end) = (Instant(start), Instant(end));
-        replies.push(RecordedReply { start, end, bytes: own.into(), reply: reply(own) });
+        replies.push(RecordedReply { start, end, bytes: own, reply: reply(own) });
     }
     replies
+}
+
+/// Puts what was handed on in the place of what the controllers of a run answered, in the finished log of one of them: of its own
+/// replies, and of those of others that it heard.
+pub fn put(bytes: &[u8], experiment: &Experiment, run: &Run, controller: usize, log: &mut PacketLog) {
+    let table = PacketTable::new(experiment, run, controller, log);
+    let is_made: Vec<bool> = (0..table.len()).map(|row| table.kind(row) == Some(RowKind::Reply)).collect();
+    log.answer(&of(bytes, controller), &is_made);
 }
 
 /// The three numbers before the bytes of each.
@@ -86,8 +139,9 @@ mod tests {
         let tx = report.lines.iter_mut().find(|line| line.name == "TX").expect("it answers");
         tx.heard.bytes.iter_mut().for_each(|byte| byte.start = Instant(byte.start.0 + 500));
         tx.heard.bytes[3].byte ^= 0x40;
-        let bytes = to_bytes(&Packets::of(&report, 16_000_000, 1, false), 0..u64::MAX);
-        recording.packets.answer(&of(&bytes));
+        let Dealt { bytes, unknown } = to_bytes(&report, 16_000_000, 0..u64::MAX, &[0]);
+        assert_eq!(unknown, 0, "there is but one controller");
+        put(&bytes, &experiment, &run, 0, &mut recording.packets);
 
         let own = PacketTable::new(&experiment, &run, 0, &made);
         let table = PacketTable::new(&experiment, &run, 0, &recording.packets);
@@ -118,6 +172,60 @@ mod tests {
     }
 
     #[test]
+    fn replies_go_to_the_controller_that_they_name_or_that_was_asked_last() {
+        let json = r#"{"line":{"protocol":"framed","address":3},"controllers":[{"address":7,"axes":[{"moves":[{"cosine":{"distance":{"steps":200}}}]}]}]}"#;
+        let experiment = Experiment::from_json(json).expect("no problems");
+        let mut recordings = [Recording::default(), Recording::default()];
+        let run = experiment.run_each(&mut recordings);
+        recordings.iter_mut().for_each(|one| one.packets.finish());
+        let made = recordings.each_ref().map(|one| one.packets.clone());
+        // One analyser at the line: TX is low where one of both sends.
+        let mut report = Report::of(&recordings[0].trace, 16_000_000, 1, None);
+        let others = Report::of(&recordings[1].trace, 16_000_000, 1, None).lines;
+        let others = others.into_iter().find(|line| line.name == "TX").expect("it answers");
+        let line = report.lines.iter_mut().find(|line| line.name == "TX").expect("it answers");
+        let first = others.heard.bytes[0].start;
+        line.heard.bytes.extend(others.heard.bytes);
+        line.heard.bytes.sort_by_key(|byte| byte.start);
+        // Of the other one the first reply is spoilt.
+        let spoilt = line.heard.bytes.iter_mut().find(|byte| byte.start == first).expect("it is there");
+        spoilt.byte ^= 0x40;
+        let all = 0..u64::MAX;
+        let Dealt { bytes, unknown } = to_bytes(&report, 16_000_000, all.clone(), &[3, 7]);
+        assert_eq!(unknown, 0);
+        let addresses = [3, 7];
+        for (index, one) in recordings.iter_mut().enumerate() {
+            put(&bytes, &experiment, &run, index, &mut one.packets);
+            let own = PacketTable::new(&experiment, &run, index, &made[index]);
+            let table = PacketTable::new(&experiment, &run, index, &one.packets);
+            let replies = |table: &PacketTable<'_>| -> Vec<_> {
+                (0..table.len())
+                    .filter(|row| table.is_own_reply(*row))
+                    .map(|row| table.bytes(row).to_vec())
+                    .collect()
+            };
+            assert_eq!(replies(&table).len(), replies(&own).len());
+            assert_eq!(replies(&table)[1..], replies(&own)[1..]);
+            // Of the model's replies there is none, not even heard.
+            for row in (0..table.len()).filter(|row| table.kind(*row) == Some(RowKind::Reply)) {
+                assert!(table.is_own_reply(row), "{row}");
+                assert!(table.address(row).is_none_or(|address| address == addresses[index]), "{row}");
+            }
+        }
+        // Nobody was asked: what names no controller is with the first, and that is known.
+        report.lines.retain(|line| line.name == "TX");
+        let alone = to_bytes(&report, 16_000_000, all.clone(), &addresses);
+        assert_eq!((alone.unknown, alone.bytes.len()), (1, bytes.len()));
+        assert_eq!(of(&alone.bytes, 0).len(), of(&bytes, 0).len() + 1);
+        // Of one controller there is nothing to ask; of a part there is what begins in it.
+        assert_eq!(to_bytes(&report, 16_000_000, all, &[3]).unknown, 0);
+        let part = to_bytes(&report, 16_000_000, first.0..first.0 + 1, &addresses);
+        assert_eq!((part.unknown, of(&part.bytes, 0).len()), (1, 1));
+        report.lines.clear();
+        assert_eq!(to_bytes(&report, 16_000_000, 0..u64::MAX, &addresses), Dealt::default());
+    }
+
+    #[test]
     fn what_was_handed_on_is_read_as_far_as_it_is_whole_and_in_order() {
         let row = |start: u64, end: u64, bytes: &[u8]| {
             let mut row: Vec<u8> =
@@ -125,18 +233,22 @@ mod tests {
             row.extend_from_slice(bytes);
             row
         };
+        let mut others = row(7, 8, &[4]);
+        others[20] = 1;
         let two = [row(5, 9, &[1, 2]), row(20, 30, &[3])].concat();
-        let starts = |bytes: &[u8]| of(bytes).iter().map(|reply| reply.start.0).collect::<Vec<_>>();
+        let starts = |bytes: &[u8]| of(bytes, 0).iter().map(|reply| reply.start.0).collect::<Vec<_>>();
         for (bytes, expected) in [
             (two.clone(), [5, 20].as_slice()),
             (two[..two.len() - 1].to_vec(), &[5]),
             ([row(5, 9, &[1]), row(4, 9, &[1])].concat(), &[5]),
             (row(5, 4, &[1]), &[]),
+            // Those of another controller stand between.
+            ([row(5, 9, &[1]), others, row(20, 30, &[3])].concat(), &[5, 20]),
             ([5_u64, 9, u64::MAX].iter().flat_map(|word| word.to_le_bytes()).collect(), &[]),
             (Vec::new(), &[]),
         ] {
             assert_eq!(starts(&bytes), expected, "{bytes:?}");
         }
-        assert!(of(&two).iter().all(|reply| reply.reply.is_none()));
+        assert!(of(&two, 0).iter().all(|reply| reply.reply.is_none()));
     }
 }

@@ -75,14 +75,14 @@ pub struct LoggedPacket {
 }
 
 /// A reply that was recorded.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RecordedReply {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RecordedReply<'a> {
     /// Where its first start bit falls.
     pub start: Instant,
     /// First cycle after its last byte.
     pub end: Instant,
     /// Its bytes.
-    pub bytes: Vec<u8>,
+    pub bytes: &'a [u8],
     /// What they say, if that is known.
     pub reply: Option<Reply>,
 }
@@ -176,15 +176,15 @@ impl PacketLog {
         self.is_answered
     }
 
-    /// Puts replies that were recorded, in the order of their starts, in the place of those that the controller made. The log
-    /// is finished.
+    /// Puts replies that were recorded, in the order of their starts, in the place of those that controllers made: the rows
+    /// that `is_made` has. The log is finished.
     #[inline(never)]
-    pub fn answer(&mut self, recorded: &[RecordedReply]) {
+    pub fn answer(&mut self, recorded: &[RecordedReply<'_>], is_made: &[bool]) {
         let mut recorded = recorded.iter().peekable();
-        let made = core::mem::take(&mut self.rows);
-        let mut place = alloc::vec![None; made.len()];
-        for (row, place) in made.into_iter().zip(&mut place) {
-            if matches!(row.outcome, RowOutcome::Reply(_)) {
+        let rows = core::mem::take(&mut self.rows);
+        let mut place = alloc::vec![None; rows.len()];
+        for ((row, place), is_made) in rows.into_iter().zip(&mut place).zip(is_made) {
+            if *is_made {
                 continue;
             }
             while let Some(reply) = recorded.next_if(|reply| reply.start < row.start) {
@@ -202,7 +202,7 @@ impl PacketLog {
     }
 
     #[inline(never)]
-    fn push_recorded(&mut self, RecordedReply { start, end, bytes, reply }: &RecordedReply) {
+    fn push_recorded(&mut self, RecordedReply { start, end, bytes, reply }: &RecordedReply<'_>) {
         let bytes_start = self.bytes.len();
         self.bytes.extend_from_slice(bytes);
         self.seen.resize(self.bytes.len(), *start);
@@ -413,13 +413,16 @@ mod tests {
         }
         log.finish();
         assert_eq!(log.rows().len(), 4);
-        let recorded = |start, reply| RecordedReply {
+        let recorded = |start, bytes, reply| RecordedReply {
             start: Instant(start),
             end: Instant(start + 30),
-            bytes: alloc::vec![start as u8; 2],
+            bytes,
             reply,
         };
-        log.answer(&[recorded(5, None), recorded(70, Some(reply)), recorded(900, None)]);
+        let is_made = [false, true, false, true];
+        let all =
+            [recorded(5, &[5; 2], None), recorded(70, &[70; 2], Some(reply)), recorded(900, &[132; 2], None)];
+        log.answer(&all, &is_made);
         let rows: Vec<_> = log
             .rows()
             .iter()
