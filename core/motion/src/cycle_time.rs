@@ -148,16 +148,6 @@ impl EvenSteps {
     }
 }
 
-/// ticks*clock_hz/under, and the rest. It is not copied into a loop that seldom needs it.
-#[inline(never)]
-fn divided(ticks: u64, clock_hz: u32, under: u64) -> (u64, u64) {
-    let product = u128::from(ticks) * u128::from(clock_hz);
-    match u64::try_from(product) {
-        Ok(product) => (product / under, product % under),
-        Err(_) => ((product / u128::from(under)) as u64, (product % u128::from(under)) as u64),
-    }
-}
-
 fn common_divisor(mut a: u128, mut b: u128) -> u128 {
     while b > 0 {
         (a, b) = (b, a % b);
@@ -177,11 +167,18 @@ impl TrapezoidTable {
     /// When each step is due in cycles of a clock of `clock_hz`, without a division for each: rows of one reload add the same.
     pub(super) fn step_quotients(&self, clock_hz: u32) -> impl Iterator<Item = Quotient> + '_ {
         let under = u64::from(self.table().timer_hz().max(1));
+        let quotient = move |ticks: u64| {
+            let product = u128::from(ticks) * u128::from(clock_hz);
+            match u64::try_from(product) {
+                Ok(product) => (product / under, product % under),
+                Err(_) => ((product / u128::from(under)) as u64, (product % u128::from(under)) as u64),
+            }
+        };
         let (mut whole, mut rest) = (0_u64, 0);
         let mut last = (0, (0, 0));
         self.reloads().map(move |reload| {
             if reload != last.0 {
-                last = (reload, divided(reload, clock_hz, under));
+                last = (reload, quotient(reload));
             }
             let (_, (add, add_rest)) = last;
             (whole, rest) = (whole.wrapping_add(add), rest + add_rest);
