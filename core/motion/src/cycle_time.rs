@@ -76,6 +76,7 @@ pub(super) struct Quotient {
     pub(super) whole: u64,
     /// Invariant: below `under`.
     pub(super) rest: u64,
+    /// Invariant: below [`MAX_UNDER`].
     pub(super) under: u64,
 }
 
@@ -83,7 +84,8 @@ impl Quotient {
     /// The part of a cycle.
     #[inline]
     pub(super) fn part(self) -> f64 {
-        self.rest as f64 / self.under as f64
+        // As signed numbers, which targets convert in one instruction.
+        self.rest as i64 as f64 / self.under as i64 as f64
     }
 
     /// With all its digits.

@@ -198,11 +198,59 @@ fn scheduled<'p>(
     times: impl Iterator<Item = (f64, bool)> + 'p,
 ) -> Steps<'p> {
     let (rounding, is_due_before) = profile.rounding(start, clock_hz);
-    let start = start.cycles();
-    Box::new((1..).zip(times).map(move |(k, (cycles, right))| {
-        let cycle = rounding.cycle((0, cycles), |since| is_due_before(k, since));
-        (start + cycles, ScheduledStep { cycle, right })
-    }))
+    Box::new(OfTimes { times, cycles: [0.0; BLOCK], ends: Ends { first: 1, start, rounding, is_due_before } })
+}
+
+/// Steps whose times are told one by one.
+struct OfTimes<'p, I> {
+    times: I,
+    /// Of a block's steps, from the move's start on.
+    cycles: [f64; BLOCK],
+    ends: Ends<'p>,
+}
+
+impl<I: Iterator<Item = (f64, bool)>> Form for OfTimes<'_, I> {
+    fn next_block(&mut self, block: &mut [Due; BLOCK]) -> usize {
+        let mut len = 0;
+        let _ = self.times.try_for_each(|(cycles, right)| {
+            self.cycles[len % BLOCK] = cycles;
+            block[len % BLOCK].1.right = right;
+            len += 1;
+            if len < BLOCK { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        });
+        self.ends.round(block, &self.cycles, len);
+        len
+    }
+}
+
+/// What makes cycles of times that are told one by one.
+struct Ends<'p> {
+    /// The next step, from 1.
+    first: u64,
+    start: CycleTime,
+    rounding: Rounding,
+    is_due_before: IsDueBefore<'p>,
+}
+
+impl Ends<'_> {
+    /// Writes the instants and cycles of a block's `len` steps.
+    #[inline(never)]
+    fn round(&mut self, block: &mut [Due; BLOCK], cycles: &[f64; BLOCK], len: usize) {
+        let (start, rounding) = (self.start.cycles(), self.rounding);
+        // All of them without a question, as in `rounded`: a loop that calls nothing keeps its numbers in registers.
+        let mut nearest = 0.0;
+        for ((instant, step), cycles) in block.iter_mut().zip(cycles) {
+            let (cycle, from_middle) = rounding.after_start(0, *cycles);
+            nearest = greater(nearest, from_middle);
+            (*instant, step.cycle) = (start + cycles, cycle);
+        }
+        if !rounding.is_certain(nearest) {
+            for ((k, (_, step)), cycles) in (self.first..).zip(block.iter_mut().take(len)).zip(cycles) {
+                step.cycle = rounding.cycle((0, *cycles), |since| (self.is_due_before)(k, since));
+            }
+        }
+        self.first += len as u64;
+    }
 }
 
 /// The steps of a move that goes one way along a curve with power series.

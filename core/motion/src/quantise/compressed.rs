@@ -45,6 +45,8 @@ pub(super) const MAX_ENTRIES: usize = 2_000_000;
 /// step of the list ten microseconds more.
 const WORK: u64 = 1 << 28;
 const WORK_A_STEP: u64 = 1 << 10;
+/// The last cycle of a list from its start on.
+const LAST: u64 = LAST_CYCLE.0 - START.0;
 
 /// On which side of its due cycle a step may be.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -81,8 +83,14 @@ impl Tolerance {
             (Side::Both, Some(after)) => after.min(before),
             (Side::Early, _) | (Side::Both, None) => before,
         };
-        let part = self.interval_part.map_or(u64::MAX, |part| shorter / u64::from(part.get()));
-        self.cycles.0.min(part)
+        let most = self.cycles.0;
+        match self.interval_part {
+            // Where the part is not the less it is not formed.
+            Some(part) if shorter < most.saturating_mul(part.get().into()) => {
+                quotient(shorter, part).min(most)
+            }
+            _ => most,
+        }
     }
 
     /// The earliest and the latest cycle of a step.
@@ -94,6 +102,11 @@ impl Tolerance {
         };
         (due.saturating_sub(off), due.saturating_add(late))
     }
+}
+
+/// A quotient; of numbers of 32 bits it is quicker, which not every target finds out by itself.
+fn quotient(over: u64, under: NonZeroU32) -> u64 {
+    u32::try_from(over).map_or_else(|_| over / u64::from(under.get()), |over| u64::from(over / under))
 }
 
 /// A compressed list and how good it is.
@@ -161,14 +174,14 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
     /// Stretch after stretch in the fewest entries: the cycle of the last step that was kept, and how many entries there
     /// may be more than the fewest, or None where steps are left, `ready` those of them that were read.
     fn fewest(&mut self, ready: &mut VecDeque<(Window, bool)>) -> Result<(u64, Option<u64>), Cause> {
-        let (format, pulse) = (self.windows.format, self.windows.pulse);
+        let (format, pulse) = (self.windows.ready.format, self.windows.ready.pulse);
         let least = pulse.min_interval().0 << format.fraction_bits;
         let (mut last, mut cuts, mut work) = (0, 0, WORK);
         loop {
-            while let Some(step) = self.windows.next.filter(|_| ready.len() < fewest::MAX_STEPS) {
-                ready.push_back((self.windows.window(step)?, step.right));
+            while let Some(step) = self.windows.next().filter(|_| ready.len() < fewest::MAX_STEPS) {
+                ready.push_back((self.windows.window()?, step.right));
             }
-            let more = self.windows.next.is_some();
+            let more = self.windows.next().is_some();
             let steps = ready.make_contiguous();
             let Some((first, _)) = steps.first() else { return Ok((last, Some(cuts))) };
             if steps.iter().any(|(window, _)| window.high - window.low >= fewest::MAX_WIDTH) {
@@ -214,23 +227,27 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
         before: u64,
         ready: VecDeque<(Window, bool)>,
     ) -> Compression<impl Iterator<Item = ScheduledStep>> {
-        let Windows { steps, tolerance, format, pulse, next, count, .. } = self.windows;
+        let Windows { steps, ready: mut read } = self.windows;
+        read.steps.drain(..read.at);
+        let Ready { tolerance, format, pulse, steps: read, count, .. } = read;
         let count = count - ready.len() as u64;
         let ready = ready.into_iter().map(|(window, right)| ScheduledStep { cycle: window.due, right });
-        let windows = Windows::new(ready.chain(next).chain(steps), tolerance, format, pulse);
-        Compression { windows: Windows { before, count, ..windows }, writer: self.writer }
+        let ready = ready.chain(read).chain(steps);
+        let mut windows = Windows::new(ready, tolerance, format, pulse);
+        (windows.ready.before, windows.ready.count) = (before, count);
+        Compression { windows, writer: self.writer }
     }
 
     /// The rest, one entry after another.
     fn quick(&mut self) -> Result<(), Cause> {
         let Self { windows, writer } = self;
-        let mut ahead = Ahead::new(windows.format, windows.pulse.min_interval().0);
+        let mut ahead = Ahead::new(windows.ready.format, windows.ready.pulse.min_interval().0);
         let mut length = 64;
         while windows.begin(&mut ahead)? {
             while let Some(longest) = ahead.longest(writer.time, length, |ahead| windows.fill(ahead))? {
                 writer.wait(longest.wait);
                 let taken = ahead.taken(longest.count).iter().copied();
-                writer.steps(taken, longest.interval, longest.add, windows.right);
+                writer.steps(taken, longest.interval, longest.add, windows.ready.right);
                 ahead.take(longest.count);
                 length = longest.count;
                 writer.judge()?;
@@ -245,62 +262,148 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
     }
 }
 
+/// Steps that are read at once, and windows that a run is read on by.
+const READ: usize = 256;
+
 /// The windows of the steps, run after run: a run goes one way.
 struct Windows<I> {
     steps: I,
+    ready: Ready,
+}
+
+/// Steps that were read, and what makes windows of them.
+struct Ready {
     tolerance: Tolerance,
     format: EntryFormat,
     pulse: PulseTimes,
-    /// The next step, and the cycle of the one before it.
-    next: Option<ScheduledStep>,
+    /// Those before `at` have their windows.
+    ///
+    /// Invariant: two have none, as long as there are as many.
+    steps: Vec<ScheduledStep>,
+    at: usize,
+    /// Cycle of the step before the next.
     before: u64,
-    /// Steps that were read.
+    /// Steps that have their windows.
     count: u64,
     /// Which way the run goes.
     right: bool,
 }
 
 impl<I: Iterator<Item = ScheduledStep>> Windows<I> {
-    fn new(mut steps: I, tolerance: Tolerance, format: EntryFormat, pulse: PulseTimes) -> Self {
-        let next = steps.next();
-        Self { steps, tolerance, format, pulse, next, before: 0, count: 0, right: false }
+    fn new(steps: I, tolerance: Tolerance, format: EntryFormat, pulse: PulseTimes) -> Self {
+        let none = Vec::new();
+        let ready = Ready { tolerance, format, pulse, steps: none, at: 0, before: 0, count: 0, right: false };
+        let mut windows = Self { steps, ready };
+        windows.read();
+        windows
+    }
+
+    /// Reads on where fewer than two steps have no window.
+    fn read(&mut self) {
+        let Self { steps, ready } = self;
+        if ready.left().len() < 2 {
+            ready.steps.drain(..ready.at);
+            ready.at = 0;
+            ready.steps.extend(steps.by_ref().take(READ));
+        }
+    }
+
+    /// The next step.
+    fn next(&self) -> Option<ScheduledStep> {
+        self.ready.left().first().copied()
     }
 
     /// Begins the next run; false where no step is left.
     fn begin(&mut self, ahead: &mut Ahead) -> Result<bool, Cause> {
-        let Some(next) = self.next else { return Ok(false) };
-        self.right = next.right;
+        let Some(next) = self.next() else { return Ok(false) };
+        self.ready.right = next.right;
         self.fill(ahead)?;
         Ok(true)
     }
 
     /// Reads on, some steps of the run; false at its end.
     fn fill(&mut self, ahead: &mut Ahead) -> Result<bool, Cause> {
-        for _ in 0..256 {
-            let Some(step) = self.next.filter(|step| step.right == self.right) else { return Ok(false) };
-            ahead.push(self.window(step)?);
+        let mut left = READ;
+        while left > 0 {
+            if self.next().is_none_or(|step| step.right != self.ready.right) {
+                return Ok(false);
+            }
+            left -= self.ready.fill(left, ahead.more())?;
+            self.read();
         }
         Ok(true)
     }
 
-    /// The window of the next step; the one after it becomes the next.
-    fn window(&mut self, step: ScheduledStep) -> Result<Window, Cause> {
+    /// The window of the next step.
+    fn window(&mut self) -> Result<Window, Cause> {
+        let window = self.ready.window();
+        self.read();
+        window
+    }
+}
+
+impl Ready {
+    /// Steps without windows.
+    fn left(&self) -> &[ScheduledStep] {
+        self.steps.get(self.at..).unwrap_or_default()
+    }
+
+    /// Makes the windows of the run's next steps, `most` of them at most; says how many.
+    #[inline(never)]
+    fn fill(&mut self, most: usize, windows: &mut Vec<Window>) -> Result<usize, Cause> {
+        let steps = self.left();
+        let [_, afters @ ..] = steps else { return Ok(0) };
+        let run = steps.iter().take(most.min(afters.len()));
+        let run = run.take_while(|step| step.right == self.right).count();
+        if run == 0 {
+            // The last of all.
+            windows.push(self.window()?);
+            return Ok(1);
+        }
+        let (tolerance, format, least) = (self.tolerance, self.format, self.pulse.min_interval().0);
+        let (mut before, mut holds, length) = (self.before, true, windows.len());
+        // First the room for them, so that the loop calls nothing and keeps its numbers in registers.
+        windows.extend(steps.iter().take(run).map(|step| Window { due: step.cycle, low: 0, high: 0 }));
+        for (window, after) in windows.iter_mut().skip(length).zip(afters) {
+            let (due, interval) = (window.due, window.due.saturating_sub(before));
+            let cycles = tolerance.window(due, interval, Some(after.cycle.saturating_sub(due)));
+            if interval < least || cycles.1 > LAST {
+                holds = false;
+                break;
+            }
+            *window = Window::of(due, cycles, format);
+            before = due;
+        }
+        if holds {
+            (self.before, self.count, self.at) = (before, self.count + run as u64, self.at + run);
+        } else {
+            // One after another, to the one that does not hold.
+            windows.truncate(length);
+            for _ in 0..run {
+                windows.push(self.window()?);
+            }
+        }
+        Ok(run)
+    }
+
+    /// The window of the next step.
+    fn window(&mut self) -> Result<Window, Cause> {
+        let (Some(&step), after) = (self.left().first(), self.left().get(1).copied()) else {
+            return Err(Cause::NoSegmentSteps);
+        };
+        self.at += 1;
         self.count += 1;
-        self.next = self.steps.next();
         let before = step.cycle.saturating_sub(self.before);
-        let after = self.next.map(|next| next.cycle.saturating_sub(step.cycle));
+        let after = after.map(|after| after.cycle.saturating_sub(step.cycle));
         if before < self.pulse.min_interval().0 {
             return Err(Cause::StepTooSoon { step: self.count, interval: before, pulse: self.pulse });
         }
         self.before = step.cycle;
         let (earliest, latest) = self.tolerance.window(step.cycle, before, after);
-        let last = LAST_CYCLE.0 - START.0;
-        if latest > last {
-            return Err(ValueError::TooMuch { given: latest as f64, most: last as f64, of: "cycles" }.into());
+        if latest > LAST {
+            return Err(ValueError::TooMuch { given: latest as f64, most: LAST as f64, of: "cycles" }.into());
         }
-        let bits = self.format.fraction_bits;
-        let fraction = (1 << bits) - 1;
-        Ok(Window { due: step.cycle, low: earliest << bits, high: (latest << bits) | fraction })
+        Ok(Window::of(step.cycle, (earliest, latest), self.format))
     }
 }
 
@@ -347,17 +450,16 @@ impl Writer {
     ) {
         let bits = self.format.fraction_bits;
         let count = windows.len() as u32;
-        let mut next = interval;
-        for window in windows {
-            self.time = self.time.wrapping_add(next);
-            next = next.wrapping_add_signed(add);
-            debug_assert!(
-                (window.low..=window.high).contains(&self.time),
-                "{} is not in {window:?}",
-                self.time
-            );
-            self.error.step((self.time >> bits).abs_diff(window.due));
-        }
+        let offs = windows.scan((self.time, interval), |(time, next), window| {
+            *time = time.wrapping_add(*next);
+            *next = next.wrapping_add_signed(add);
+            debug_assert!((window.low..=window.high).contains(time), "{time} is not in {window:?}");
+            Some((*time >> bits).abs_diff(window.due))
+        });
+        self.error.steps(offs);
+        let adds = u64::from(count) * u64::from(count).saturating_sub(1) / 2;
+        let lasts = interval.wrapping_mul(count.into()).wrapping_add_signed(add.wrapping_mul(adds as i64));
+        self.time = self.time.wrapping_add(lasts);
         let shift = self.shift();
         let (interval, add) = (interval << shift, add << shift);
         if !self.goes_on(count, interval, add, right) {

@@ -50,29 +50,24 @@ struct Look {
 }
 
 impl Look {
-    /// Looks at all gates; None if there are none.
-    fn at(gates: &[Gate], add: i64) -> Option<Self> {
-        let first = gates.first()?.shifted(add);
-        let (mut low, mut high) = (first, first);
-        for gate in gates.iter().skip(1) {
-            let gate = gate.shifted(add);
-            if i128::from(gate.low) * i128::from(low.n) > i128::from(low.low) * i128::from(gate.n) {
-                low = gate;
-            }
-            if i128::from(gate.high) * i128::from(high.n) < i128::from(high.high) * i128::from(gate.n) {
-                high = gate;
-            }
-        }
-        let least = low.low.div_euclid(low.n) + i64::from(low.low.rem_euclid(low.n) > 0);
+    /// Looks at all gates; None if there are none. `short`: whether all are at this add ([`is_short`]).
+    fn at(gates: &[Gate], add: i64, short: bool) -> Option<Self> {
+        let (low, high) = if short {
+            tightest(gates, add, |(a, n), (b, m)| a * m > b * n)?
+        } else {
+            let wide = |a: i64, m: i64| i128::from(a) * i128::from(m);
+            tightest(gates, add, |(a, n), (b, m)| wide(a, m) > wide(b, n))?
+        };
+        let least = ceiling(low.low, low.n);
         let most = high.high.div_euclid(high.n);
         let slope = low.n - high.n;
-        // low.low/low.n - high.high/high.n over a common denominator.
-        let short = i128::from(low.low) * i128::from(high.n) - i128::from(high.high) * i128::from(low.n);
+        // low.low/low.n - high.high/high.n over a common denominator, which is what an add changes by the slope.
+        let [low_n, high_n] = [low.n, high.n].map(i128::from);
+        let missing = i128::from(low.low) * high_n - i128::from(high.high) * low_n;
         let mut ahead = 1;
-        if short > 0 && slope != 0 {
-            let each = i128::from(low.n) * i128::from(high.n) * i128::from(slope.abs());
-            let adds = (2 * short).div_euclid(each) + i128::from((2 * short).rem_euclid(each) > 0);
-            ahead = i64::try_from(adds).unwrap_or(i64::MAX).max(1);
+        if missing > 0 && slope != 0 {
+            let each = low_n * high_n * i128::from(slope.abs());
+            ahead = i64::try_from((2 * missing + each - 1) / each).unwrap_or(i64::MAX);
         }
         Some(Self { add, least, most, slope, ahead })
     }
@@ -84,6 +79,39 @@ impl Look {
     fn fit(&self) -> Option<Fit> {
         (self.room() >= 0).then_some(Fit { least: self.least, most: self.most, add: self.add })
     }
+}
+
+/// The gates that leave the least and the greatest interval at an add, both shifted by it; None if there are none. `exceeds`
+/// says whether a quotient of a time and a step is greater than another.
+#[inline]
+fn tightest(
+    gates: &[Gate],
+    add: i64,
+    exceeds: impl Fn((i64, i64), (i64, i64)) -> bool,
+) -> Option<(Gate, Gate)> {
+    let first = gates.first()?.shifted(add);
+    let (mut low, mut high) = (first, first);
+    for gate in gates.iter().skip(1) {
+        let gate = gate.shifted(add);
+        if exceeds((gate.low, gate.n), (low.low, low.n)) {
+            low = gate;
+        }
+        if exceeds((high.high, high.n), (gate.high, gate.n)) {
+            high = gate;
+        }
+    }
+    Some((low, high))
+}
+
+/// Whether what is formed of such times and of steps up to `n` stays in 64 bits: seldom is one longer, and numbers of 128
+/// bits are slow where a target has none.
+pub(super) fn is_short(n: i64, times: [i64; 2]) -> bool {
+    n < 1 << 21 && times.iter().all(|time| time.unsigned_abs() < 1 << 40)
+}
+
+/// A quotient, rounded up.
+const fn ceiling(over: i64, under: i64) -> i64 {
+    over.div_euclid(under) + (over.rem_euclid(under) > 0) as i64
 }
 
 impl Gate {
@@ -108,13 +136,16 @@ pub(super) fn fit(gates: &[Gate], adds: (i64, i64), guess: i64, centre: bool) ->
     let (mut left, mut right) = adds;
     let (mut below, mut above): (Option<Look>, Option<Look>) = (None, None);
     let mut best: Option<Fit> = None;
+    // Times go over adds in straight lines.
+    let is_short_at = |gate: Gate| is_short(gate.n, [gate.low, gate.high]);
+    let short = gates.iter().all(|gate| [left, right].iter().all(|add| is_short_at(gate.shifted(*add))));
     let mut add = guess;
     for _ in 0..MAX_LOOKS {
         if left > right {
             break;
         }
         add = add.clamp(left, right);
-        let look = Look::at(gates, add)?;
+        let look = Look::at(gates, add, short)?;
         if let Some(fit) = look.fit()
             && best.is_none_or(|best| look.room() > best.most - best.least)
         {
@@ -199,7 +230,7 @@ mod tests {
         for _ in 0..20_000 {
             let gate = |n, low| Gate { n, low, high: low + 3 };
             let (first, second) = (gate(draw(1, 9), draw(0, 300)), gate(draw(1, 9), draw(0, 300)));
-            let look = Look::at(&[first, second], 0).expect("there are gates");
+            let look = Look::at(&[first, second], 0, seen % 2 == 0).expect("there are gates");
             // The interval that one asks for at least, less what the other has at most.
             let gap = |low: Gate, high: Gate, add: i64| {
                 let (low, high) = (low.shifted(add), high.shifted(add));

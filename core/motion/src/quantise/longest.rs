@@ -8,7 +8,7 @@
 use crate::problem::Cause;
 use crate::quantise::{
     entry_format::EntryFormat,
-    feasible_window::{self, Fit, Gate},
+    feasible_window::{self, Fit, Gate, is_short},
 };
 use alloc::vec::Vec;
 
@@ -30,6 +30,13 @@ pub(super) struct Window {
 }
 
 impl Window {
+    /// From the cycle `earliest` to the end of `latest`.
+    #[inline]
+    pub(super) fn of(due: u64, (earliest, latest): (u64, u64), format: EntryFormat) -> Self {
+        let bits = format.fraction_bits;
+        Self { due, low: earliest << bits, high: latest << bits | ((1 << bits) - 1) }
+    }
+
     /// An entry of this step alone from a time on, in the middle of its window or as near as the least interval lets it be.
     pub(super) fn first(&self, from: u64, least: u64, format: EntryFormat) -> Longest {
         let middle = self.low + (self.high - self.low) / 2;
@@ -83,9 +90,10 @@ impl Ahead {
         }
     }
 
-    pub(super) fn push(&mut self, window: Window) {
+    /// The windows, for more of them to be put behind the last.
+    pub(super) fn more(&mut self) -> &mut Vec<Window> {
         self.ended = false;
-        self.windows.push(window);
+        &mut self.windows
     }
 
     /// The next `count` windows.
@@ -209,6 +217,10 @@ impl Ahead {
         for (step, window) in (1..).zip(self.taken(n)) {
             time = time.wrapping_add_signed(next);
             next += add;
+            // Most are within.
+            if time.wrapping_sub(window.low) <= window.high - window.low {
+                continue;
+            }
             let before = window.low.wrapping_sub(time) as i64;
             let after = time.wrapping_sub(window.high) as i64;
             if before > early.0 {
@@ -228,7 +240,7 @@ impl Ahead {
         if span > MAX_SPAN {
             return None;
         }
-        self.gather(n);
+        self.gather(n, span as i64);
         let count = n as i64;
         // No interval is negative, so add*n*(n - 1)/2 is at most the whole time.
         let steepest = span as i64 / (count * (count - 1) / 2) + 1;
@@ -241,20 +253,27 @@ impl Ahead {
     fn bend(&self, n: usize) -> i64 {
         let middle = |n: usize| {
             let window = self.window(n)?;
-            Some(i128::from((window.low + (window.high - window.low) / 2).wrapping_sub(self.from) as i64))
+            Some((window.low + (window.high - window.low) / 2).wrapping_sub(self.from) as i64)
         };
         let half = n / 2;
         let (Some(far), Some(near)) = (middle(n), middle(half)) else { return 0 };
-        let (n, half) = (n as i128, half as i128);
+        let (n, half) = (n as i64, half as i64);
+        if is_short(n, [far, near]) {
+            return 2 * (far * half - near * n) / (n * half * (n - half));
+        }
+        let [far, near, n, half] = [far, near, n, half].map(i128::from);
         let add = 2 * (far * half - near * n) / (n * half * (n - half));
         i64::try_from(add).unwrap_or(0)
     }
 
-    /// Gates of an entry of `n` steps, at least 2: of samples and missed steps, and of its shortest and longest interval.
-    fn gather(&mut self, n: usize) {
+    /// Gates of an entry of `n` steps, at least 2, that lasts no longer than `span`: of samples and missed steps, and of its
+    /// shortest and longest interval.
+    fn gather(&mut self, n: usize, span: i64) {
         self.gates.clear();
         let count = n as i64;
         let (least, most) = (self.least as i64, self.format.most_interval().min(MAX_SPAN) as i64);
+        // Twice what the last gate leaves to an interval at the steepest add: a longer one needs no gate, and this one is short.
+        let most = most.min(4 * (span / count + 1) + 2 * count);
         let most = |n: i64| most.saturating_mul(n).min(2 * MAX_SPAN as i64);
         // The last interval, interval + (n - 1)*add, is where the line is at step 2*n - 1.
         let end = 2 * count - 1;

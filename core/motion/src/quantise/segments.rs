@@ -110,7 +110,7 @@ struct Open {
 impl Open {
     /// With one step more, if it is one of this segment's.
     fn with(self, interval: u64, right: bool) -> Option<Self> {
-        let add = i64::try_from(i128::from(interval) - i128::from(self.last)).ok()?;
+        let add = interval.checked_signed_diff(self.last)?;
         let belongs = right == self.right && (self.count == 1 || add == self.add);
         let count = self.count.checked_add(1).filter(|_| belongs)?;
         Some(Self { count, last: interval, add, ..self })

@@ -16,10 +16,27 @@ pub struct TimingError {
 
 impl TimingError {
     /// Takes a step into account that is so many cycles early or late.
-    pub(super) fn step(&mut self, off: u64) {
+    #[inline]
+    fn step(&mut self, off: u64) {
         self.steps += 1;
         self.greatest = self.greatest.max(off);
-        self.squares = self.squares.saturating_add(u128::from(off) * u128::from(off));
+        // By halves: not every target has a product of 128 bits.
+        let (upper, lower) = (off >> 32, off & 0xffff_ffff);
+        let mixed = u128::from(upper * lower) << 33;
+        let square = (u128::from(upper * upper) << 64) + mixed + u128::from(lower * lower);
+        self.squares = self.squares.saturating_add(square);
+    }
+
+    /// Takes steps into account that are so many cycles early or late, each by less than 2^32.
+    #[inline]
+    pub(super) fn steps(&mut self, offs: impl Iterator<Item = u64>) {
+        let (mut steps, mut greatest, mut squares) = (0, 0, 0);
+        for off in offs {
+            (steps, greatest) = (steps + 1, off.max(greatest));
+            squares += u128::from(off.wrapping_mul(off));
+        }
+        (self.steps, self.greatest) = (self.steps + steps, self.greatest.max(greatest));
+        self.squares = self.squares.saturating_add(squares);
     }
 
     /// Root of the mean square in cycles; 0 of no steps.
