@@ -24,6 +24,8 @@ import { compiled } from "./wasm.js";
 
 /** How long what has the port may take to give it back, in ms: STOP is sent until it is confirmed. */
 const PATIENCE_MS = 3000;
+/** How long a port may take to open, in ms. */
+const OPEN_MS = 20_000;
 /** How often it is looked whether a port's streams have come back from the worker, in ms. */
 const LOOK_MS = 2;
 /** Bytes that the system keeps for the page. */
@@ -124,12 +126,20 @@ export function openLive(told) {
   /** Opens the port and hands its streams to the worker. @param {any} port @param {number} baudRate @param {() => object} order */
   async function give(port, baudRate, order) {
     const since = ends;
-    await port.open({ baudRate, bufferSize: BUFFER });
-    open = port;
-    if (ends !== since) {
-      await closed();
+    let isOpen = false;
+    const opening = port.open({ baudRate, bufferSize: BUFFER }).then(async () => {
+      isOpen = true;
+      open = port;
+      if (ends === since) return;
+      if (!(await closed())) told({ closed: true, stuck: true });
       throw new Error("what it was opened for has ended.");
-    }
+    });
+    const late = rest(OPEN_MS).then(() => {
+      if (isOpen) return;
+      ends += 1;
+      throw new Error("it does not open.");
+    });
+    await Promise.race([opening, late]);
     gone = new Promise((resolve) => {
       left = resolve;
     });
@@ -137,7 +147,7 @@ export function openLive(told) {
     try {
       post({ ...order(), readable, writable }, [readable, writable]);
     } catch (error) {
-      await closed();
+      if (!(await closed())) told({ closed: true, stuck: true });
       throw error;
     }
   }

@@ -17,7 +17,7 @@ import { deviceRows } from "./live_rows.js";
 /** @typedef {import("../engine/live.js").Told} Told */
 /** @typedef {import("./live_roles.js").Role} Role */
 
-/** @typedef {{json: string, title: string, baud: number, raw: boolean}} Sent  An experiment as it goes on the line. */
+/** @typedef {{json: string, title: string, baud: number, raw: boolean, port: any}} Sent  An experiment as it goes on a port. */
 
 /** Of a port that the browser does not give back. */
 const STUCK = "The port could not be closed: load this page again before it is used by anyone.";
@@ -52,7 +52,9 @@ export async function openDevice(page) {
   /** Whether STOP was pressed meanwhile. */
   let again = false;
   /** What goes on the port. @type {Sent} */
-  let going = { json: "", title: "", baud: 0, raw: false };
+  let going = { json: "", title: "", baud: 0, raw: false, port };
+  /** Whether it was told that STOP should come before another start. */
+  let warned = false;
   /** Whether it was told once what can be done. */
   let judged = false;
   /** Why nothing can be asked at all. */
@@ -125,7 +127,9 @@ export async function openDevice(page) {
   );
 
   choose.addEventListener("click", choosePort);
-  start.addEventListener("click", () => void begin(false));
+  // One press is one start: not the second of two, and not a key that is held.
+  start.addEventListener("click", ({ detail }) => void (detail < 2 && begin(false)));
+  start.addEventListener("keydown", (event) => event.repeat && event.preventDefault());
   stop.addEventListener("click", stopAll);
   end.addEventListener("click", () => live.end());
   close.addEventListener("click", () => dialog.close());
@@ -159,7 +163,9 @@ export async function openDevice(page) {
     carrier.end();
     live.close().then(({ inTime, free }) => {
       if (!inTime && unsettled) notify("error", `STOP is not confirmed. ${RUNS_DRY}`);
-      if (!free) notify("error", STUCK);
+      if (free) return;
+      keep(going.port);
+      notify("error", STUCK);
     });
     dialog.remove();
   });
@@ -167,8 +173,10 @@ export async function openDevice(page) {
   const carrier = carryInto(mayMove, stop, () => actions.append(stop));
   bring = front;
   front();
-  if (unsettled)
-    tell(`It is not known whether what was sent has ended: STOP goes as it went, at ${unsettled.baud} baud.`);
+  if (unsettled) {
+    const where = port ? "" : "choose its port, then ";
+    tell(`It is not known whether what was sent has ended: ${where}STOP goes as it went, at ${unsettled.baud} baud.`);
+  }
   void offerAllowed();
 
   function inFront() {
@@ -232,7 +240,7 @@ export async function openDevice(page) {
     const raw = running === null ? unsettled === null && isRaw() : going.raw;
     stop.hidden = running === "serve" || (name === "serve" && unsettled === null);
     stop.disabled = running === null && !mayMove() && (why !== "" || port === null || raw);
-    stop.title = stopTitle(raw);
+    stop.title = stopTitle(raw, running === "stream" || (mayMove() && isInFront));
     close.disabled = running !== null;
     close.title = running === null ? "" : "First STOP, or end";
     carrier.look();
@@ -274,6 +282,13 @@ export async function openDevice(page) {
     fill(allowed, ...offers);
   }
 
+  /** A port that the browser keeps is nobody's. @param {any} kept */
+  function keep(kept) {
+    stuck.add(kept);
+    if (port === kept) port = null;
+    void offerAllowed();
+  }
+
   /** @param {any} chosen */
   function take(chosen) {
     if (stuck.has(chosen)) return tell(STUCK, true);
@@ -289,15 +304,15 @@ export async function openDevice(page) {
       judge();
       return tell("The experiment has changed: this is about the new one now. Start it if it is meant.");
     }
+    if (!stopping && unsettled && !warned) {
+      warned = true;
+      return tell("It is not known whether what was sent has ended: press STOP first, or start once more.", true);
+    }
     const name = stopping ? "stream" : role();
     const { title } = scenario;
-    going = (stopping && unsettled) || {
-      json,
-      title,
-      baud: facts?.[name].baud ?? 0,
-      raw: name === "stream" && isRaw(),
-    };
-    [running, ended, again] = [name, false, false];
+    const own = { json, title, baud: facts?.[name].baud ?? 0, raw: name === "stream" && isRaw() };
+    going = { ...((stopping && unsettled) || own), port };
+    [running, ended, again, warned] = [name, false, false, false];
     began = new Date().toISOString();
     delays = { own: [], model: [] };
     fill(twin);
@@ -315,14 +330,13 @@ export async function openDevice(page) {
     show();
     if (name === "stream") stop.focus();
     try {
-      const { json: own, baud } = going;
-      await (name === "serve" ? live.serve(port, baud, own) : live.stream(port, baud, own, stopping));
-      // Until it is confirmed.
-      if (stopping) unsettled ??= going;
+      const { json: sent, baud } = going;
+      await (name === "serve" ? live.serve(port, baud, sent) : live.stream(port, baud, sent, stopping));
     } catch (error) {
       running = null;
-      tell(`The port cannot be opened: ${message(error)} Is it taken by another program?`, true);
+      if (!ended) tell(`The port cannot be opened: ${message(error)} Is it taken by another program?`, true);
       show();
+      if (again && port && dialog.isConnected) return void begin(true);
       front();
     }
   }
@@ -333,14 +347,14 @@ export async function openDevice(page) {
   }
 
   function stopAll() {
-    if (running === "serve") return;
+    if (running === "serve" || port === null) return;
     if (running === null) return void begin(true);
     if (going.raw) {
       if (ended) return;
       live.stop();
       return tell("Nothing more is sent; the device does what is in its queue…", true);
     }
-    again = ended;
+    again = true;
     live.stop();
     tell(
       ended
@@ -377,8 +391,10 @@ export async function openDevice(page) {
       rows.add(told.rows);
     }
     if (told.reported) {
-      ended = true;
       const { said: text, good } = outcome(told.reported);
+      // What was pressed too late for it goes as soon as the port is given back.
+      if (!ended) again &&= !good && !told.reported.stopped;
+      ended = true;
       if (good) unsettled = null;
       tell(text, !good);
       if (!dialog.open)
@@ -396,12 +412,12 @@ export async function openDevice(page) {
   function closed(isStuck) {
     const hasFailed = facts === null;
     running = null;
+    ended = true;
     if (isStuck) {
-      stuck.add(port);
-      port = null;
-      tell(`${said.textContent} ${STUCK}`, true);
+      keep(going.port);
+      const lost = again ? `STOP was not sent. ${RUNS_DRY}` : said.textContent;
+      tell(`${lost} ${STUCK}`, true);
       if (!dialog.isConnected) notify("error", STUCK);
-      void offerAllowed();
     }
     if (again && port && dialog.isConnected) return void begin(true);
     if (hasFailed || inFront()) front();
@@ -416,6 +432,8 @@ export async function openDevice(page) {
       return;
     }
     ended = true;
+    // Its last replies may not have been told.
+    if (running === "stream" && !going.raw) unsettled ??= going;
     tell(`This failed: ${why}.${running === "stream" ? ` ${RUNS_DRY}` : ""}`, true);
   }
 

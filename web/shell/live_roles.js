@@ -67,9 +67,10 @@ export function whyNone({ source }, found) {
   return found.why ? `Not with this experiment: ${found.why}.` : "";
 }
 
-/** @param {boolean} raw */
-export function stopTitle(raw) {
+/** @param {boolean} raw @param {boolean} byKey  Whether Escape does it, too. */
+export function stopTitle(raw, byKey) {
+  const key = byKey ? " (Esc)" : "";
   return raw
-    ? "Sends no more: the device does what is in its queue (Esc); a raw line has no STOP"
-    : "STOP: no further ticks, the device stops at once (Esc)";
+    ? `Sends no more: the device does what is in its queue${key}; a raw line has no STOP`
+    : `STOP: no further ticks, the device stops at once${key}`;
 }

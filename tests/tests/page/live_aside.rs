@@ -13,7 +13,7 @@ use crate::{
     session::Session,
 };
 
-const ROWS: &str = "document.querySelectorAll('#view-packets .live-replies tbody tr').length";
+pub(crate) const ROWS: &str = "document.querySelectorAll('#view-packets .live-replies tbody tr').length";
 const MODAL: &str = "document.querySelector('dialog.live').matches(':modal')";
 /// Who is at the centre of STOP gets its press.
 pub(crate) const STOP_IN_SIGHT: &str = "(() => {

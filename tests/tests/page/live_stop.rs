@@ -8,11 +8,13 @@ use crate::{
     bench::in_browser,
     device::{ABOUT, ENDED, FRAMED, SAID, open, start, verified},
     live::LONG,
-    live_aside::{STOP_IN_SIGHT, start_long},
+    live_aside::{ROWS, STOP_IN_SIGHT, start_long},
     session::Session,
 };
 
 const ESCAPE: &str = "\u{e00c}";
+/// A press that follows another one, but at leisure.
+const PRESS_START: &str = "document.getElementById('live-start').click() ?? null";
 const HOME: &str = "document.getElementById('live-stop').parentElement.className === 'live-actions'";
 
 /// Drops a text on the page as a file of this name.
@@ -102,6 +104,28 @@ fn stop_goes_as_the_stream_did_until_it_is_confirmed() -> Result<()> {
 }
 
 #[test]
+fn stop_that_comes_too_late_for_a_stream_goes_after_it() -> Result<()> {
+    in_browser(|page| async move {
+        open(&page, LONG, "serve").await?;
+        page.eval::<Value>(OWN).await?;
+        start(&page).await?;
+        page.until(&format!("{ROWS} > 5")).await?;
+        // As if the press met a worker that has just given up and hears it no more.
+        let late = "(() => {
+            const post = own.postMessage;
+            own.postMessage = function (data, given) { if (!('stop' in data) || 'stream' in data) return post.call(this, data, given); };
+            document.getElementById('live-stop').click();
+            own.postMessage = post;
+            return null;
+        })()";
+        page.eval::<Value>(late).await?;
+        page.eval::<Value>("peer.lose() ?? null").await?;
+        page.until("peer.closed === 2").await?;
+        page.until(&format!("{SAID}.startsWith('STOP is confirmed')")).await
+    })
+}
+
+#[test]
 fn after_a_verified_end_stop_goes_as_the_experiment_has_it() -> Result<()> {
     in_browser(|page| async move {
         open(&page, FRAMED, "serve").await?;
@@ -133,7 +157,12 @@ fn an_experiment_that_changed_behind_the_dialog_is_not_started_unseen() -> Resul
         page.until(&format!("{SAID}.startsWith('The experiment has changed')")).await?;
         page.until(&format!("{ABOUT}.includes('57600 baud')")).await?;
         assert_eq!(page.eval::<Vec<u32>>("peer.opened").await?, Vec::<u32>::new());
-        page.click("#live-start").await?;
+        // Nor is the second press of two.
+        let twice =
+            "document.getElementById('live-start').dispatchEvent(new MouseEvent('click', { detail: 2 }))";
+        page.eval::<bool>(twice).await?;
+        assert_eq!(page.eval::<Vec<u32>>("peer.opened").await?, Vec::<u32>::new());
+        page.eval::<Value>(PRESS_START).await?;
         page.until(ENDED).await?;
         assert_eq!(page.eval::<Vec<u32>>("peer.opened").await?, [57_600]);
         Ok(())
@@ -155,7 +184,10 @@ fn a_part_of_the_page_that_fails_gives_the_port_back_and_is_replaced() -> Result
         page.until("peer.closed === 1").await?;
         page.until("!document.getElementById('live-start').disabled").await?;
         page.eval::<Value>("(window.spoil = null)").await?;
+        // What was answered before it failed nobody knows.
         page.click("#live-start").await?;
+        page.until(&format!("{SAID}.endsWith('press STOP first, or start once more.')")).await?;
+        page.eval::<Value>(PRESS_START).await?;
         page.until("peer.closed === 2 && !document.getElementById('live-close').disabled").await?;
         verified(&page, &known).await.map(drop)
     })
@@ -167,7 +199,7 @@ fn a_port_that_stays_open_is_told_and_no_button_is_left_for_it() -> Result<()> {
         open(&page, LONG, "serve").await?;
         page.eval::<Value>(OWN).await?;
         start(&page).await?;
-        page.until("document.querySelectorAll('.live-replies tbody tr').length > 5").await?;
+        page.until(&format!("{ROWS} > 5")).await?;
         // As if the worker's memory were gone: nobody gives the port's streams back.
         let gone = "(own.terminate(), own.onmessage({ data: { error: 'unreachable' } }), null)";
         page.eval::<Value>(gone).await?;

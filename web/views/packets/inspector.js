@@ -1,234 +1,70 @@
-/**
- * The inspector: all of one row. Its bytes, its fields with the bytes that they stand in, its check, and the times
- * around it. What is pointed at, or has the focus, is highlighted in all views; what others point at is highlighted here.
- */
-import { byId, element, fill, say } from "../../dom.js";
+/** The inspector of the current row: what it is, in a line. All of it (unfolded.js) loads when it is first unfolded. */
+import { byId, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { listen } from "../../shell/commands.js";
-import { count, time } from "../../state/number.js";
+import { count } from "../../state/number.js";
 import { worded } from "./table.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").PacketDetail} PacketDetail */
 
-/** Signal bits of the line (contract A3). */
-const [RX, TX] = [33, 34];
-/** Bytes whose bits are written out. */
-const MAX_BITS = 4;
-
 /** @param {import("./packets.js").Page} page */
-export function createInspector({ engine, dispatch, now }) {
-  const bytes = byId("packet-bytes");
-  const fields = byId("packet-fields");
+export function createInspector(page) {
+  const details = /** @type {HTMLDetailsElement} */ (byId("packet-inspector"));
+  const [bytes, fields] = [byId("packet-bytes"), byId("packet-fields")];
+  /** @type {ReturnType<typeof import("./unfolded.js").createUnfolded> | null} */
+  let unfolded = null;
   /** @type {PacketDetail | null} */
   let row = null;
   let wanted = -1;
 
   for (const list of [bytes, fields]) {
-    list.addEventListener("pointerover", (event) => {
-      const cell = /** @type {HTMLElement} */ (event.target).closest("[role=option]");
-      if (cell) point(list, [...list.children].indexOf(cell));
-    });
-    list.addEventListener("pointerleave", () => point(list, -1));
-    list.addEventListener("focus", () => {
-      if (list.matches(":focus-visible")) point(list, at(list) ?? 0);
-    });
-    list.addEventListener("blur", () => point(list, -1));
     listen(list, "Bytes and fields of a packet", [
-      { keys: ["ArrowLeft", "ArrowUp"], text: "the one before", run: () => step(list, -1) },
-      { keys: ["ArrowRight", "ArrowDown"], text: "the next one", run: () => step(list, 1) },
-      { keys: ["Home"], text: "the first one", run: () => step(list, -Infinity) },
-      { keys: ["End"], text: "the last one", run: () => step(list, Infinity) },
-      { keys: ["Escape"], text: "point at nothing", run: () => point(list, -1) },
+      { keys: ["ArrowLeft", "ArrowUp"], text: "the one before", run: () => unfolded?.step(list, -1) },
+      { keys: ["ArrowRight", "ArrowDown"], text: "the next one", run: () => unfolded?.step(list, 1) },
+      { keys: ["Home"], text: "the first one", run: () => unfolded?.step(list, -Infinity) },
+      { keys: ["End"], text: "the last one", run: () => unfolded?.step(list, Infinity) },
+      { keys: ["Escape"], text: "point at nothing", run: () => unfolded?.point(list, -1) },
     ]);
   }
+  details.addEventListener("toggle", () => void paint());
 
-  /** Which cell of a list the keys are at. @param {HTMLElement} list */
-  function at(list) {
-    const cell = document.getElementById(list.getAttribute("aria-activedescendant") ?? "");
-    return cell ? [...list.children].indexOf(cell) : null;
-  }
-
-  /** @param {HTMLElement} list @param {number} by */
-  function step(list, by) {
-    point(list, Math.min(list.children.length - 1, Math.max(0, (at(list) ?? 0) + by)));
-  }
-
-  /** Points at a cell, -1 at none. @param {HTMLElement} list @param {number} place */
-  function point(list, place) {
-    const cell = list.children[place];
-    for (const each of list.children) each.setAttribute("aria-selected", String(each === cell));
-    if (!row || !cell) {
-      list.removeAttribute("aria-activedescendant");
-      return dispatch({ type: "light", highlighted: null });
+  /** Shows all of the row, where that is unfolded. */
+  async function paint() {
+    if (!details.open) return;
+    try {
+      const { createUnfolded } = await import("./unfolded.js");
+      unfolded ??= createUnfolded(page, bytes, fields);
+      unfolded.show(row);
+    } catch {
+      say(
+        byId("packet-reading"),
+        "This part of the page could not be loaded; unfold it again when the network is there.",
+      );
     }
-    list.setAttribute("aria-activedescendant", cell.id);
-    if (list.matches(":focus")) cell.scrollIntoView({ block: "nearest" });
-    const { from, until } = list === bytes ? { from: place, until: place + 1 } : row.layout[place];
-    const start = row.byte_cycles[from];
-    const last = row.byte_cycles[until - 1];
-    if (start === undefined || last === undefined) return undefined;
-    const own = row.kind === "reply" && row.mark !== "foreign";
-    dispatch({
-      type: "light",
-      highlighted: { start, end: last + row.byte_length, from: "packets", packet: row.index, bit: own ? TX : RX },
-    });
   }
 
   /** Shows a row. @param {number} index */
   async function show(index) {
     if (index === wanted) return;
     wanted = index;
-    const answer = await engine.latest("packet", "packet", index).catch(unlessDropped);
+    const answer = await page.engine.latest("packet", "packet", index).catch(unlessDropped);
     if (!answer || index !== wanted) return;
     row = /** @type {PacketDetail} */ (answer);
-    byId("packet-inspector").hidden = false;
-    paint(row, now());
-    light(now());
-  }
-
-  /** @param {PacketDetail} row @param {State} state */
-  function paint(row, state) {
-    const clock = state.result?.summary.clock_hz ?? 1;
-    const said = (/** @type {number} */ cycles) => time(cycles / clock);
+    details.hidden = false;
     say(byId("packet-detail"), [`#${count(row.index)}`, worded(row), row.outcome, row.why].filter(Boolean).join(" · "));
-    fill(
-      byId("packet-facts"),
-      ...facts(row, said).map(([name, value, bad]) =>
-        element("div", bad ? { class: "bad" } : {}, element("dt", {}, name), element("dd", {}, value)),
-      ),
-    );
-    const hex = row.hex === "" ? [] : row.hex.split(" ");
-    const named = hex.map(
-      (_, place) => row.layout.find(({ from, until }) => from <= place && place < until)?.name ?? "",
-    );
-    fill(
-      bytes,
-      ...hex.map((byte, place) =>
-        element(
-          "span",
-          {
-            role: "option",
-            id: `byte-${place}`,
-            "aria-selected": "false",
-            "aria-label": `byte ${place}: ${byte}, ${named[place]}`,
-            title: `byte ${place}: ${named[place]}`,
-          },
-          byte,
-        ),
-      ),
-    );
-    fill(
-      fields,
-      ...row.layout.map(({ name, value, from, until }, place) => {
-        const range = until - from > 1 ? `${from}–${until - 1}` : String(from);
-        return element(
-          "span",
-          {
-            role: "option",
-            id: `field-${place}`,
-            "aria-selected": "false",
-            title: until - from > 1 ? `bytes ${range}` : `byte ${range}`,
-            class: name === "check" && row.check === "fails" ? "bad" : "",
-          },
-          element("b", {}, name),
-          " ",
-          value,
-          " ",
-          element("small", {}, `[${range}]`),
-        );
-      }),
-    );
-    bytes.hidden = fields.hidden = hex.length === 0;
-  }
-
-  /** Lights the bytes and fields that something points at. @param {State} state */
-  function light({ highlighted, result }) {
-    const shown = row;
-    const over =
-      highlighted && shown && (highlighted.packet === null || highlighted.packet === shown.index)
-        ? shown.byte_cycles.map((start) => start < highlighted.end && start + shown.byte_length > highlighted.start)
-        : [];
-    // All of a row is said by the row itself.
-    const some = over.includes(false) || over.length === 1 ? over : [];
-    for (const [place, cell] of [...bytes.children].entries())
-      cell.classList.toggle("highlighted", some[place] === true);
-    for (const [place, cell] of [...fields.children].entries()) {
-      const { from, until } = shown?.layout[place] ?? { from: 0, until: 0 };
-      cell.classList.toggle("highlighted", some.slice(from, until).includes(true));
-    }
-    const [first, last] = [some.indexOf(true), some.lastIndexOf(true)];
-    if (shown) say(byId("packet-reading"), reading(shown, first, last, result?.summary.clock_hz ?? 1));
+    await paint();
   }
 
   return {
     show,
-    light,
+    /** Lights the bytes and fields that something points at. @param {State} state */
+    light: (state) => unfolded?.light(state),
     row: () => row,
     reset: () => {
       row = null;
       wanted = -1;
+      unfolded?.show(null);
     },
   };
-}
-
-/** The bytes that are pointed at: hex, bits, and when they are on the line; with none, when all of them are. @param {PacketDetail} row @param {number} first @param {number} last @param {number} clock */
-function reading(row, first, last, clock) {
-  if (first < 0) return `on the line ${time(row.start_cycle / clock)} to ${time(row.line_end_cycle / clock)}`;
-  const hex = row.hex.split(" ").slice(first, last + 1);
-  const bits = hex
-    .map((byte) => Number.parseInt(byte, 16).toString(2).padStart(8, "0"))
-    .map((eight) => `${eight.slice(0, 4)}\u2009${eight.slice(4)}`);
-  const when = `${time(row.byte_cycles[first] / clock)} to ${time((row.byte_cycles[last] + row.byte_length) / clock)}`;
-  return [
-    first === last ? `byte ${first}` : `bytes ${first} to ${last}`,
-    hex.length <= MAX_BITS ? hex.join(" ") : "",
-    hex.length <= MAX_BITS ? `bits ${bits.join(" ")}` : "",
-    when,
-  ]
-    .filter(Boolean)
-    .join(" · ");
-}
-
-/** @param {PacketDetail} row @param {(cycles: number) => string} said @returns {[string, string, boolean?][]} */
-function facts(row, said) {
-  const { check, check_found: found, check_expected: expected } = row;
-  const cobs = row.layout.filter(({ name }) => name === "COBS" || name === "end mark").length;
-  const size = row.byte_cycles.length;
-  /** @type {[string, string, boolean?]} */
-  const checked =
-    check === "holds"
-      ? ["CRC-32/ISCSI", `${found}, holds`]
-      : check === "fails"
-        ? ["CRC-32/ISCSI", `✕ ${found} found, ${expected} expected`, true]
-        : check === "none"
-          ? ["check", "none: raw packets carry none"]
-          : ["check", "none: not a whole frame"];
-  const tick =
-    row.tick_start_cycle === null
-      ? []
-      : [
-          [
-            "tick",
-            `${said(row.tick_start_cycle)}${row.tick_end_cycle === null ? ", not ended" : ` to ${said(row.tick_end_cycle)}`}`,
-          ],
-        ];
-  const turnaround =
-    row.turnaround_cycles === null
-      ? []
-      : [
-          [
-            "turnaround",
-            `${said(row.turnaround_cycles)} after the end of #${count(row.answers ?? 0)}${row.drive_cycles === null ? "" : `; DE rises after ${said(row.drive_cycles)}`}`,
-          ],
-        ];
-  const all = [
-    ["gap before", row.gap_cycles === null ? "–" : said(row.gap_cycles)],
-    ...turnaround,
-    ...tick,
-    ...(row.kind === "collision"
-      ? []
-      : [["size", `${count(size)} ${size === 1 ? "byte" : "bytes"}${cobs ? `, ${cobs} of them COBS` : ""}`], checked]),
-  ];
-  return /** @type {[string, string, boolean?][]} */ (all);
 }
