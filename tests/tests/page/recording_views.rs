@@ -152,6 +152,8 @@ fn recorded_replies_stand_in_the_table_of_packets_with_their_turnaround_also_aft
             ensure!(bytes.join(" ").starts_with(hex.trim_end_matches('\u{2026}').trim()), "{hex}");
             page.click("#packet-1 td").await?;
             page.until("document.getElementById('packet-detail').textContent.startsWith('#1 ')").await?;
+            page.eval::<bool>("(document.getElementById('packet-inspector').open = true)").await?;
+            page.until("document.getElementById('packet-facts').textContent.includes('turnaround')").await?;
             let facts: String = page.eval("document.getElementById('packet-facts').textContent").await?;
             // A reply's start is where its start bit was heard: within a bit of the cycle in which it was sent.
             let said = facts.split_once("turnaround").context("it answers")?.1.trim().to_owned();
