@@ -218,7 +218,7 @@ impl<I: Iterator<Item = (f64, bool)>> Form for OfTimes<'_, I> {
             len += 1;
             if len < BLOCK { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         });
-        self.ends.round(block, &self.cycles, len);
+        self.ends.put(block, &self.cycles, len);
         len
     }
 }
@@ -235,7 +235,7 @@ struct Ends<'p> {
 impl Ends<'_> {
     /// Writes the instants and cycles of a block's `len` steps.
     #[inline(never)]
-    fn round(&mut self, block: &mut [Due; BLOCK], cycles: &[f64; BLOCK], len: usize) {
+    fn put(&mut self, block: &mut [Due; BLOCK], cycles: &[f64; BLOCK], len: usize) {
         let (start, rounding) = (self.start.cycles(), self.rounding);
         // All of them without a question, as in `rounded`: a loop that calls nothing keeps its numbers in registers.
         let mut nearest = 0.0;
