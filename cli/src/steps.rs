@@ -6,15 +6,16 @@ use stepscope_core::motion::ScheduledStep;
 /// Columns that a time may stand in, with those of its units in a second; `cycle` has the clock's.
 const TIMES: [(&str, Option<u32>); 4] =
     [("cycle", None), ("time_s", Some(1)), ("time_ms", Some(1000)), ("time_us", Some(1_000_000))];
-/// The column of the direction.
+/// The column of the direction, and how others call it: one that is passed over would turn no motor round.
 const WAY: &str = "dir";
+const WAY_IN_FULL: &str = "direction";
 /// Digits after the point that a time may have.
 const MAX_DIGITS: usize = 12;
 /// Greatest cycle.
 const MAX_CYCLE: u128 = 1 << 48;
 
 /// The steps of a table: a row each, with its time in cycle, `time_s`, `time_ms` or `time_us`, and its direction, if there is
-/// a column dir: 1 or right, 0 or left. A time is rounded to the nearest cycle, half up, by its decimals.
+/// a column dir, or direction: 1 or right, 0 or left. A time is rounded to the nearest cycle, half up, by its decimals.
 ///
 /// # Errors
 /// What is wrong with the first line that cannot be used.
@@ -30,7 +31,7 @@ pub(crate) fn steps_of_table(text: &str, clock_hz: u32) -> Result<Vec<ScheduledS
             "the first line has the columns \"{given}\"; give one of cycle, time_s, time_ms and time_us, and dir if steps go both ways"
         ));
     };
-    let way_at = column(WAY);
+    let way_at = column(WAY).or_else(|| column(WAY_IN_FULL));
     let mut steps = Vec::new();
     let mut before = 0;
     for (line, row) in iter::zip(2_u64.., reader.records()) {
@@ -103,6 +104,8 @@ mod tests {
     fn a_table_has_a_step_a_row_and_says_what_is_wrong_with_it() {
         let step = |cycle, right| ScheduledStep { cycle, right };
         let found = steps_of_table("# a capture\ntime_us, dir\n10,1\n20.5, left\n", 1_000_000);
+        assert_eq!(found, Ok(vec![step(10, true), step(21, false)]));
+        let found = steps_of_table("cycle,Direction\n10,right\n21,left\n", 1_000_000);
         assert_eq!(found, Ok(vec![step(10, true), step(21, false)]));
         let rows = [
             ("1\n2\n", "the first line has the columns \"1\""),

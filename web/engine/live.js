@@ -129,9 +129,12 @@ export function openLive(told) {
     let isOpen = false;
     const opening = port.open({ baudRate, bufferSize: BUFFER }).then(async () => {
       isOpen = true;
-      open = port;
-      if (ends === since) return;
-      if (!(await closed())) told({ closed: true, stuck: true });
+      if (ends === since) {
+        open = port;
+        return;
+      }
+      // Another port may be in use by now: that one stays.
+      if (!(await closePort(port)) && !open) told({ closed: true, stuck: true });
       throw new Error("what it was opened for has ended.");
     });
     const late = rest(OPEN_MS).then(() => {
