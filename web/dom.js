@@ -44,10 +44,17 @@ export function say(node, text) {
   if (node.textContent !== text) node.textContent = text;
 }
 
-/** Lets a change stand out for a moment. @param {HTMLElement} node */
+/** What stands out now, and the timer that ends it. @type {WeakMap<Element, ReturnType<typeof setTimeout>>} */
+const flashes = new WeakMap();
+
+/** Lets a change stand out for a moment. Fading would draw the whole page anew in every frame. @param {HTMLElement} node */
 export function flash(node) {
-  node.classList.remove("changed");
-  requestAnimationFrame(() => node.classList.add("changed"));
+  node.classList.add("changed");
+  clearTimeout(flashes.get(node));
+  flashes.set(
+    node,
+    setTimeout(() => node.classList.remove("changed"), 900),
+  );
 }
 
 /** Fills a select; keeps its value where that is still there. @param {HTMLSelectElement} select @param {[string, string][]} options @param {string} value */

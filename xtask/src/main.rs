@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | `toolchain`, `tools`, `wasm_opt`, `npm`, `apt` | what a fresh machine lacks, installed once per user |
 //! | `page` | the optimised wasm of the page, and what each file that it loads weighs |
+//! | `made` | whether what was built is still what the same build would make again |
 //! | `sources` | form, lints and types of the page's sources |
 //! | `dist` | the page as hosts serve it: names with hashes, lists, licences |
 //! | `headers`, `serve` | the local server, whose headers are `web/_headers`' |
@@ -27,6 +28,7 @@ mod engines;
 mod fuzz;
 mod headers;
 mod judges;
+mod made;
 mod mutants;
 mod npm;
 mod package;

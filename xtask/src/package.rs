@@ -106,10 +106,11 @@ fn clear_own(folder: &Path) -> Result<()> {
 /// Packs the npm package, installs it where nothing else is, and runs a program that uses it.
 async fn npm() -> Result<()> {
     let npm = program("npm").await?;
-    let folder = root().join("target").join("npm");
-    clear(&folder)?;
-    let made = folder.join("pkg");
+    let home = root().join("target").join("npm");
+    let made = home.join("pkg");
     page::npm(&made).await?;
+    let folder = home.join("trial");
+    clear(&folder)?;
     let user = folder.join("user");
     fs::create_dir_all(&user).with_context(|| format!("{} can't be made", user.display()))?;
 

@@ -1,9 +1,10 @@
 //! The page's wasm, optimised, and what each file of the page weighs on the way to a visitor.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::env;
 use std::fmt;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use flate2::Compression;
@@ -11,6 +12,8 @@ use flate2::write::GzEncoder;
 use walkdir::WalkDir;
 
 use crate::dist::Parts;
+use crate::made::Made;
+use crate::toolchain::{self, WASM};
 use crate::tools::{Optimise, WasmTools};
 use crate::{dist, headers, package, root, run};
 
@@ -18,6 +21,11 @@ use crate::{dist, headers, package, root, run};
 const OPENING_BUDGET: usize = 450_000;
 /// The same for each part that loads later.
 const LATER_BUDGET: usize = 300_000;
+
+/// The crate of the page's wasm, and cargo's profile for it.
+const CRATE: &str = "wasm";
+/// See [`CRATE`].
+const PROFILE: &str = "page";
 
 /// The page as it is shipped, but made once only in this program's life: for steps that use the same page.
 pub(crate) async fn built() -> Result<&'static Parts> {
@@ -48,20 +56,42 @@ pub(crate) async fn build(optimise: Optimise) -> Result<()> {
     let tools = WasmTools::ready(optimise).await?;
     for (folder, features) in MODULES {
         let package = root().join("web").join(folder);
-        wasm(&tools, "wasm", &package, &["--no-default-features", "--features", features]).await?;
+        let options = ["--no-default-features", "--features", features];
+        let made = made(&tools, &package, &options).await?;
+        if !made.stands()? {
+            wasm_by(&tools, tools.wasm_pack()?, CRATE, &package, &options).await?;
+            made.keep()?;
+        }
     }
     Ok(())
 }
 
 /// Builds the wasm crate with all that it has into `package`, a whole npm package.
 pub(crate) async fn npm(package: &Path) -> Result<()> {
-    wasm(&WasmTools::ready(Optimise::Yes).await?, "wasm", package, &[]).await?;
-    package::complete(package)
+    let tools = WasmTools::ready(Optimise::Yes).await?;
+    let made = made(&tools, package, &[]).await?;
+    if !made.stands()? {
+        wasm_by(&tools, tools.wasm_pack()?, CRATE, package, &[]).await?;
+        package::complete(package)?;
+        made.keep()?;
+    }
+    Ok(())
 }
 
-/// Builds the crate in `folder` of the workspace for the browser into `package`, with these options of cargo.
-async fn wasm(tools: &WasmTools, folder: &str, package: &Path, options: &[&str]) -> Result<()> {
-    wasm_by(tools, tools.wasm_pack()?, folder, package, options).await
+/// What `package` is made of, once cargo has built the wasm crate with these options. What wasm-pack does then takes far
+/// longer, and is not done again where nothing is new.
+async fn made(tools: &WasmTools, package: &Path, options: &[&str]) -> Result<Made> {
+    let mut command = toolchain::cargo();
+    command.args(["build", "--lib", "--profile", PROFILE, "--target", WASM, "--locked"]);
+    command.args(["--package", "stepscope-wasm"]).args(options);
+    run::to_end(command, run::LIMIT).await.context("the page was not built")?;
+    let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
+    let built = target.join(WASM).join(PROFILE).join("stepscope_wasm.wasm");
+    let folder = root().join(CRATE);
+    let beside = ["Cargo.toml", "README.md"].map(|name| folder.join(name));
+    let shared = ["Cargo.toml", "Cargo.lock", "LICENSE-MIT", "LICENSE-APACHE"].map(|name| root().join(name));
+    let files: Vec<_> = beside.into_iter().chain(shared).chain([built]).collect();
+    Made::of(package, &files, &[&tools.words(), options].concat())
 }
 
 /// The same by a call of wasm-pack, which may be in another workspace.
@@ -72,7 +102,7 @@ pub(crate) async fn wasm_by(
     package: &Path,
     options: &[&str],
 ) -> Result<()> {
-    command.args(["build", "--profile", "page", "--target", "web"]).args(tools.build_options());
+    command.args(["build", "--profile", PROFILE, "--target", "web"]).args(tools.build_options());
     command.args([folder, "--out-dir"]).arg(package).args(["--", "--locked"]).args(options);
     tools.judge(run::to_end(command, run::LIMIT).await)
 }

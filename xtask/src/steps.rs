@@ -133,7 +133,7 @@ async fn wasm() -> Result<()> {
     run::to_end(command, run::LIMIT).await
 }
 
-/// The page's tests, as yet without the words that choose among them.
+/// The page's tests in the whole Chromium, as yet without the words that choose among them.
 async fn page_tests() -> Result<Command> {
     // The whole workspace, so that its packages keep the features, and with them the builds, of the native step.
     with_page("test --workspace --features stepscope-tests/browser --test page --locked --").await
@@ -162,6 +162,7 @@ async fn page() -> Result<()> {
     print!("{weights}");
     weights.within_budget()?;
     command.args(["--skip", "engines::", "--skip", "live_port::"]).env("STEPSCOPE_AXE", npm::axe().await?);
+    command.env(browser::CHROMIUM, Browser::ready().await?.headless);
     run::to_end(command, run::LIMIT).await
 }
 

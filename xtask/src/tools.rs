@@ -97,6 +97,12 @@ impl WasmTools {
         }
     }
 
+    /// What they do, and where those lie that are not on PATH: their folders' names hold their versions.
+    pub(crate) fn words(&self) -> Vec<&str> {
+        let folders = self.folders.iter().filter_map(|folder| folder.to_str());
+        self.build_options().iter().copied().chain(folders).collect()
+    }
+
     /// Judges a build by more than `done`, how wasm-pack ended: was the wasm optimised, if it was to be?
     pub(crate) fn judge(&self, done: Result<()>) -> Result<()> {
         let done = done.context("the page was not built");

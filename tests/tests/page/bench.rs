@@ -26,9 +26,21 @@ const TEST_LIMIT: Duration = Duration::from_secs(300);
 /// Longest time for a goodbye.
 const END_LIMIT: Duration = Duration::from_secs(10);
 
+/// Takes the means of keeping the page from documents to come, before their own scripts look for it: all files of the page
+/// would be fetched and stored for each visitor.
+const NOT_KEPT: &str = "delete Navigator.prototype.serviceWorker;";
+
+/// Whether the page is kept on the device by its service worker.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Keeping {
+    Kept,
+    NotKept,
+}
+
 /// What one test uses.
 pub(crate) struct Bench {
     pub(crate) browser: Browser,
+    keeping: Keeping,
     /// Address of the page, such as `http://127.0.0.1:40000/`, of which every visitor has a name of its own.
     page: String,
     /// Of an engine whose browsers are not shared, or of a Chromium that is the test's own.
@@ -38,13 +50,23 @@ pub(crate) struct Bench {
     visitors: Mutex<Vec<(Session, Option<Lent>)>>,
 }
 
-/// Runs `test` with the page as it is shipped in a Chromium that other tests use too, as a visitor that it has never seen.
+/// Runs `test` with the page as it is shipped in a Chromium that other tests use too, as a visitor that it has never seen,
+/// on whose device nothing of the page is kept.
 pub(crate) fn in_browser<T, F>(test: T) -> Result<()>
 where
     T: FnOnce(Session) -> F,
     F: Future<Output = Result<()>> + 'static,
 {
-    in_engine_at(pool::served(&dist()?)?, Browser::Chromium, test)
+    at_work(pool::served(&dist()?)?, Browser::Chromium, None, Keeping::NotKept, test)
+}
+
+/// As [`in_browser`], but the page is kept, as it is for everybody.
+pub(crate) fn in_browser_that_keeps<T, F>(test: T) -> Result<()>
+where
+    T: FnOnce(Session) -> F,
+    F: Future<Output = Result<()>> + 'static,
+{
+    in_browser_at(&pool::served(&dist()?)?, test)
 }
 
 /// The folder of the page as it is shipped.
@@ -67,7 +89,7 @@ where
     in_engine(Browser::Chromium, test)
 }
 
-/// As [`in_browser`], with the page at the address of a server of the test's own.
+/// As [`in_browser_that_keeps`], with the page at the address of a server of the test's own.
 pub(crate) fn in_browser_at<T, F>(address: &str, test: T) -> Result<()>
 where
     T: FnOnce(Session) -> F,
@@ -91,7 +113,7 @@ where
     T: FnOnce(Session) -> F,
     F: Future<Output = Result<()>> + 'static,
 {
-    at_work(address, Browser::Chromium, Some(driver), test)
+    at_work(address, Browser::Chromium, Some(driver), Keeping::Kept, test)
 }
 
 fn in_engine_at<T, F>(page: String, browser: Browser, test: T) -> Result<()>
@@ -103,18 +125,24 @@ where
         Browser::Chromium => None,
         Browser::Firefox | Browser::WebKit => Some(Program::driver(browser)?),
     };
-    at_work(page, browser, driver, test)
+    at_work(page, browser, driver, Keeping::Kept, test)
 }
 
-fn at_work<T, F>(page: String, browser: Browser, driver: Option<Program>, test: T) -> Result<()>
+fn at_work<T, F>(
+    page: String,
+    browser: Browser,
+    driver: Option<Program>,
+    keeping: Keeping,
+    test: T,
+) -> Result<()>
 where
     T: FnOnce(Session) -> F,
     F: Future<Output = Result<()>> + 'static,
 {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     LocalSet::new().block_on(&runtime, async {
-        let bench =
-            Arc::new(Bench { browser, page, driver, servers: Mutex::default(), visitors: Mutex::default() });
+        let (servers, visitors) = (Mutex::default(), Mutex::default());
+        let bench = Arc::new(Bench { browser, keeping, page, driver, servers, visitors });
         let outcome = match bench.visitor(None).await {
             Ok(session) => guarded(test(session)).await,
             Err(error) => Err(error),
@@ -150,8 +178,17 @@ impl Bench {
         };
         let session = Session::new(client, self, address);
         self.visitors().push((session.clone(), lent));
-        session.screen(1440, 900).await?;
+        self.prepare(&session).await?;
         Ok(session)
+    }
+
+    /// What every visitor has: a screen of this size, and a device that keeps the page or does not.
+    async fn prepare(&self, session: &Session) -> Result<()> {
+        session.screen(1440, 900).await?;
+        match self.keeping {
+            Keeping::Kept => Ok(()),
+            Keeping::NotKept => session.before_scripts(NOT_KEPT).await,
+        }
     }
 
     /// Lets somebody else into the browser of the test's only visitor, at another address; with what the console said of
@@ -178,7 +215,7 @@ impl Bench {
         };
         let session = Session::new(session.client, self, address);
         self.visitors().push((session.clone(), lent));
-        session.screen(1440, 900).await?;
+        self.prepare(&session).await?;
         Ok((said, session))
     }
 

@@ -7,7 +7,7 @@ use fantoccini::actions::{InputSource as _, KeyAction, KeyActions};
 use serde_json::{Value, json};
 
 use crate::{
-    bench::in_browser,
+    bench::in_browser_that_keeps,
     session::{SHIFT, Session},
 };
 
@@ -141,7 +141,7 @@ async fn leave(page: &Session) -> Result<()> {
 
 #[test]
 fn a_visitor_meets_nothing_that_the_one_before_left_in_the_same_browser() -> Result<()> {
-    in_browser(|page| async move {
+    in_browser_that_keeps(|page| async move {
         let first = found(&page).await?;
         leave(&page).await?;
         page.js::<()>("console.error('left behind'); return null;", vec![]).await?;

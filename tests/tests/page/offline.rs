@@ -5,7 +5,7 @@ use std::{fs, path::Path};
 use anyhow::{Context, Result, ensure};
 
 use crate::{
-    bench::{dist, in_browser, in_browser_at},
+    bench::{dist, in_browser_at, in_browser_that_keeps},
     native::{Known, with_distance},
     programs::{Folder, Program},
     session::Session,
@@ -132,7 +132,7 @@ fn the_sources_are_not_kept_and_clear_away_what_a_build_left() -> Result<()> {
 
 #[test]
 fn the_page_says_which_build_it_is_and_whose_work_is_in_it() -> Result<()> {
-    in_browser(|page| async move {
+    in_browser_that_keeps(|page| async move {
         page.open("").await?;
         let version = page.eval::<String>("document.getElementById('version').textContent").await?;
         let (number, build) = version.split_once(' ').context(version.clone())?;
@@ -148,7 +148,7 @@ fn the_page_says_which_build_it_is_and_whose_work_is_in_it() -> Result<()> {
 
 #[test]
 fn the_page_can_be_installed() -> Result<()> {
-    in_browser(|page| async move {
+    in_browser_that_keeps(|page| async move {
         page.open("").await?;
         until_kept(&page).await?;
         let answer = page.devtools("Page.getInstallabilityErrors", serde_json::json!({})).await?;
