@@ -608,6 +608,16 @@ mod tests {
     use super::*;
 
     #[test]
+    fn problems_whose_paths_are_whole_are_listed_after_those_before_them() {
+        let mut validator = Validator::<Cause>::default();
+        validator.add("a", Cause::NoSegmentSteps);
+        validator.extend([Problem::<Cause>::new("b.c", Cause::NoSegmentSteps)]);
+        assert_eq!(validator.count(), 2);
+        let paths: Vec<_> = validator.problems().into_iter().map(|problem| problem.path).collect();
+        assert_eq!(paths, ["a", "b.c"]);
+    }
+
+    #[test]
     fn what_is_not_listed_any_more_is_wrong_all_the_same() {
         let mut validator = Validator::<Cause>::default();
         for _ in 0..MAX_PROBLEMS {

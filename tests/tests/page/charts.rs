@@ -165,7 +165,7 @@ fn a_baseline_is_drawn_and_measured_beside_a_later_one() -> Result<()> {
         page.until("document.getElementById('compared').textContent.includes('Baseline: S-curve')").await?;
 
         // Another experiment, without loading the page anew.
-        page.js::<Value>("location.hash = arguments[0]; return null;", vec![json!(later.link)]).await?;
+        page.follow(&later.link).await?;
         page.until_digest(&later.digest).await?;
         page.until("document.getElementById('compared').textContent.includes('differs by')").await?;
         for chart in ["chart-position", "chart-speed", "chart-acceleration"] {

@@ -190,8 +190,7 @@ fn a_reading_is_the_value_in_the_cursors_very_cycle() -> Result<()> {
         let cycle = 4_100_456;
         page.click("#keep-run").await?;
         page.until("document.getElementById('compared').textContent.includes('Baseline')").await?;
-        page.js::<()>("location.hash = arguments[0];", vec![json!(format!("{}&v=a{cycle}", later.link))])
-            .await?;
+        page.follow(&format!("{}&v=a{cycle}", later.link)).await?;
         page.until_digest(&later.digest).await?;
         page.click("#show-difference").await?;
         page.until("document.getElementById('read-position').textContent.includes('difference')").await?;

@@ -143,7 +143,7 @@ fn an_engine_that_hears_no_cancel_is_replaced_and_makes_the_last_result_again() 
         page.open(&format!("#{}", known.link)).await?;
         page.until_digest(&known.digest).await?;
         // In the same visit, so that there is a last result.
-        page.js::<()>("location.hash = arguments[0];", vec![link_of(LONG)?.into()]).await?;
+        page.follow(&link_of(LONG)?).await?;
         page.until("!document.getElementById('budget').hidden").await?;
         page.js::<()>("window.deaf = true;", vec![]).await?;
         page.click("#run-anyway").await?;

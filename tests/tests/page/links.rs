@@ -108,7 +108,7 @@ fn a_link_that_is_put_into_the_address_is_heard_and_undo_brings_the_own_work_bac
         page.fill(DISTANCE, "800").await?;
         page.until_digest(&own.digest).await?;
         let form = page.form().await?;
-        page.js::<bool>("location.hash = arguments[0]; return true;", vec![json!(shared.link)]).await?;
+        page.follow(&shared.link).await?;
         page.until_digest(&shared.digest).await?;
         ensure!(
             page.text("#link-message").await?.contains(&shared.scenario.title),

@@ -85,7 +85,7 @@ fn every_preset_with_a_panel_shows_what_the_core_says_at_any_cycle() -> Result<(
             until_shown(&page, &whole).await?;
             let end = whole.now().0;
             for cycle in [0, 1, end / 3, end / 2 + 1, end - 1] {
-                page.load(&format!("#{}&v=a{cycle}", known.link)).await?;
+                page.follow(&format!("#{}&v=a{cycle}", known.link)).await?;
                 page.until_digest(&known.digest).await?;
                 let machine = at(&known, cycle);
                 until_shown(&page, &machine).await?;

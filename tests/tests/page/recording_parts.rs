@@ -71,9 +71,7 @@ fn the_file_of_a_part_is_given_up_once_something_else_is_on_show() -> Result<()>
                 }
                 "preset" => page.choose("#preset", "exact-sine").await?,
                 "source" => page.fill("clock_hz", "8000000").await?,
-                "link" => {
-                    page.js::<()>("location.hash = arguments[0]; return null;", vec![json!(own.link)]).await?
-                }
+                "link" => page.follow(&own.link).await?,
                 // Its dialog goes with it.
                 _ => {
                     page.click("#on-show button").await?;

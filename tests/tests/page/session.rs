@@ -85,6 +85,11 @@ impl Session {
         self.ready().await
     }
 
+    /// Goes to a link as one does that is put into the address of the page that is open: nothing loads anew.
+    pub(crate) async fn follow(&self, fragment: &str) -> Result<()> {
+        self.js::<()>("location.hash = arguments[0]; return null;", vec![json!(fragment)]).await
+    }
+
     /// Runs a script in the page.
     pub(crate) async fn js<T: DeserializeOwned>(&self, script: &str, arguments: Vec<Value>) -> Result<T> {
         let answer = self.client.execute(script, arguments).await.with_context(|| script.to_owned())?;
