@@ -1,6 +1,7 @@
 //! What was made of what: whether a folder of built files is still what the same build would make again.
 //!
-//! Binding and optimising the page's wasm takes minutes, and most changes are not of the core.
+//! Binding and optimising the page's wasm takes minutes, and so does building the library crates from their packages;
+//! most changes are of neither.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,7 +10,10 @@ use anyhow::{Context, Result};
 use twox_hash::XxHash64;
 use walkdir::WalkDir;
 
-use crate::{THIS_PROGRAM, root};
+use crate::{THIS_PROGRAM, root, toolchain};
+
+/// What decides, beside its sources, what becomes of any crate of the workspace.
+const WORKSPACE: [&str; 3] = ["Cargo.toml", "Cargo.lock", ".cargo/config.toml"];
 
 /// A folder, and the hash of all that it is made of.
 pub(crate) struct Made {
@@ -20,15 +24,19 @@ pub(crate) struct Made {
 }
 
 impl Made {
-    /// `folder`, made by this program of these files, by `how`.
-    pub(crate) fn of(folder: &Path, files: &[PathBuf], how: &[&str]) -> Result<Self> {
+    /// `folder`, made by this program and this Rust of what lies in these folders of the workspace, by `how`.
+    pub(crate) async fn of(folder: &Path, sources: &[&str], how: &[&str]) -> Result<Self> {
         let this = THIS_PROGRAM.as_ref().context("this program's own path is unknown")?;
         let mut held = Vec::new();
-        for file in files.iter().chain([this]) {
-            hold(&mut held, &file.to_string_lossy(), &read(file)?);
+        hold_file(&mut held, this)?;
+        for name in WORKSPACE {
+            hold_file(&mut held, &root().join(name))?;
         }
-        for word in how {
-            hold(&mut held, word, &[]);
+        for source in sources {
+            hold_folder(&mut held, &root().join(source))?;
+        }
+        for word in how.iter().copied().chain([toolchain::version().await?.as_str()]) {
+            hold(&mut held, word.as_bytes());
         }
         let name = folder.strip_prefix(root()).unwrap_or(folder).to_string_lossy().replace(['/', '\\'], "-");
         let note = root().join("target").join("made").join(name);
@@ -51,55 +59,63 @@ impl Made {
 
     fn words(&self) -> Result<String> {
         let mut held = Vec::new();
-        for entry in WalkDir::new(&self.folder).sort_by_file_name() {
-            let entry = entry.with_context(|| format!("{} can't be read", self.folder.display()))?;
-            if entry.file_type().is_file() {
-                hold(&mut held, &entry.path().to_string_lossy(), &read(entry.path())?);
-            }
-        }
+        hold_folder(&mut held, &self.folder)?;
         Ok(format!("{:016x} {:016x}\n", self.from, XxHash64::oneshot(0, &held)))
     }
 }
 
-fn read(file: &Path) -> Result<Vec<u8>> {
-    fs::read(file).with_context(|| format!("{} can't be read", file.display()))
+/// Adds all files of a folder, by their names and what they hold.
+fn hold_folder(held: &mut Vec<u8>, folder: &Path) -> Result<()> {
+    for entry in WalkDir::new(folder).sort_by_file_name() {
+        let entry = entry.with_context(|| format!("{} can't be read", folder.display()))?;
+        if entry.file_type().is_file() {
+            hold_file(held, entry.path())?;
+        }
+    }
+    Ok(())
 }
 
-/// Adds something of this name, so that nothing can be moved from one to the next unseen.
-fn hold(held: &mut Vec<u8>, name: &str, bytes: &[u8]) {
-    for part in [name.as_bytes(), bytes] {
-        held.extend_from_slice(&part.len().to_le_bytes());
-        held.extend_from_slice(&XxHash64::oneshot(0, part).to_le_bytes());
-    }
+fn hold_file(held: &mut Vec<u8>, file: &Path) -> Result<()> {
+    hold(held, file.to_string_lossy().as_bytes());
+    hold(held, &fs::read(file).with_context(|| format!("{} can't be read", file.display()))?);
+    Ok(())
+}
+
+/// Adds the length and the hash of a part, so that nothing can move from one to the next unseen.
+fn hold(held: &mut Vec<u8>, part: &[u8]) {
+    held.extend_from_slice(&part.len().to_le_bytes());
+    held.extend_from_slice(&XxHash64::oneshot(0, part).to_le_bytes());
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn a_folder_stands_until_it_what_it_is_made_of_or_how_changes() {
-        let home = root().join("target").join(format!("made-test-{}", std::process::id()));
-        let (folder, source) = (home.join("pkg"), home.join("source"));
+    #[tokio::test]
+    async fn a_folder_stands_until_it_what_it_is_made_of_or_how_changes() {
+        let home = format!("target/made-test-{}", std::process::id());
+        let (folder, sources) = (root().join(&home).join("pkg"), format!("{home}/sources"));
+        let source = root().join(&sources).join("a.rs");
         fs::create_dir_all(&folder).unwrap();
+        fs::create_dir_all(root().join(&sources)).unwrap();
         fs::write(&source, "source").unwrap();
         fs::write(folder.join("a.js"), "made").unwrap();
-        let made = |how: &str| Made::of(&folder, std::slice::from_ref(&source), &[how]).unwrap();
-        assert!(!made("how").stands().unwrap(), "nobody has kept it yet");
-        made("how").keep().unwrap();
-        assert!(made("how").stands().unwrap());
-        assert!(!made("else").stands().unwrap());
+        let made = async |how: &str| Made::of(&folder, &[&sources], &[how]).await.unwrap();
+        assert!(!made("how").await.stands().unwrap(), "nobody has kept it yet");
+        made("how").await.keep().unwrap();
+        assert!(made("how").await.stands().unwrap());
+        assert!(!made("else").await.stands().unwrap());
 
         fs::write(&source, "another").unwrap();
-        assert!(!made("how").stands().unwrap());
+        assert!(!made("how").await.stands().unwrap());
         fs::write(&source, "source").unwrap();
-        assert!(made("how").stands().unwrap());
+        assert!(made("how").await.stands().unwrap());
 
         fs::write(folder.join("b.js"), "more").unwrap();
-        assert!(!made("how").stands().unwrap());
+        assert!(!made("how").await.stands().unwrap());
         fs::remove_dir_all(&folder).unwrap();
-        assert!(!made("how").stands().unwrap());
-        fs::remove_file(&made("how").note).unwrap();
-        fs::remove_dir_all(&home).unwrap();
+        assert!(!made("how").await.stands().unwrap());
+        fs::remove_file(&made("how").await.note).unwrap();
+        fs::remove_dir_all(root().join(&home)).unwrap();
     }
 }

@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 use tokio::process::Command;
 use walkdir::{DirEntry, WalkDir};
 
+use crate::made::Made;
 use crate::{apt, page, root, run, toolchain};
 
 /// What others may use, each after what it needs.
@@ -41,6 +42,11 @@ async fn crates() -> Result<()> {
     // cargo takes a package of one name and version for one that never changes. Here it changes with the sources, so what
     // was unpacked and built of it before must go.
     let folder = root().join("target").join("packages");
+    let made = Made::of(&folder.join("package"), &["core"], &[]).await?;
+    if made.stands()? {
+        println!("the library crates are those that were packed and built last");
+        return Ok(());
+    }
     clear_own(&folder)?;
     for unpacked in unpacked(&cargo_home()?.join("registry").join("src")) {
         clear(&unpacked)?;
@@ -51,7 +57,8 @@ async fn crates() -> Result<()> {
     for library in LIBRARIES {
         command.args(["--package", &format!("stepscope-{library}")]);
     }
-    run::to_end(command, run::LIMIT).await
+    run::to_end(command, run::LIMIT).await?;
+    made.keep()
 }
 
 /// Where cargo keeps what it has unpacked.

@@ -1,10 +1,9 @@
 //! The page's wasm, optimised, and what each file of the page weighs on the way to a visitor.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::env;
 use std::fmt;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 use flate2::Compression;
@@ -13,7 +12,6 @@ use walkdir::WalkDir;
 
 use crate::dist::Parts;
 use crate::made::Made;
-use crate::toolchain::{self, WASM};
 use crate::tools::{Optimise, WasmTools};
 use crate::{dist, headers, package, root, run};
 
@@ -22,10 +20,8 @@ const OPENING_BUDGET: usize = 450_000;
 /// The same for each part that loads later.
 const LATER_BUDGET: usize = 300_000;
 
-/// The crate of the page's wasm, and cargo's profile for it.
+/// The folder of the page's wasm crate.
 const CRATE: &str = "wasm";
-/// See [`CRATE`].
-const PROFILE: &str = "page";
 
 /// The page as it is shipped, but made once only in this program's life: for steps that use the same page.
 pub(crate) async fn built() -> Result<&'static Parts> {
@@ -78,23 +74,14 @@ pub(crate) async fn npm(package: &Path) -> Result<()> {
     Ok(())
 }
 
-/// What `package` is made of, once cargo has built the wasm crate with these options. What wasm-pack does then takes far
-/// longer, and is not done again where nothing is new.
+/// What `package` is made of. What wasm-pack does takes long, and is not done again where nothing is new.
 async fn made(tools: &WasmTools, package: &Path, options: &[&str]) -> Result<Made> {
-    let mut command = toolchain::cargo();
-    command.args(["build", "--lib", "--profile", PROFILE, "--target", WASM, "--locked"]);
-    command.args(["--package", "stepscope-wasm"]).args(options);
-    run::to_end(command, run::LIMIT).await.context("the page was not built")?;
-    let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
-    let built = target.join(WASM).join(PROFILE).join("stepscope_wasm.wasm");
-    let folder = root().join(CRATE);
-    let beside = ["Cargo.toml", "README.md"].map(|name| folder.join(name));
-    let shared = ["Cargo.toml", "Cargo.lock", "LICENSE-MIT", "LICENSE-APACHE"].map(|name| root().join(name));
-    let files: Vec<_> = beside.into_iter().chain(shared).chain([built]).collect();
-    Made::of(package, &files, &[&tools.words(), options].concat())
+    Made::of(package, &["core", CRATE, "LICENSE-MIT", "LICENSE-APACHE"], &[&tools.words(), options].concat())
+        .await
 }
 
-/// The same by a call of wasm-pack, which may be in another workspace.
+/// Builds the crate in `folder` of a workspace for the browser into `package`, by a call of wasm-pack in that workspace and with
+/// these options of cargo.
 pub(crate) async fn wasm_by(
     tools: &WasmTools,
     mut command: tokio::process::Command,
@@ -102,7 +89,7 @@ pub(crate) async fn wasm_by(
     package: &Path,
     options: &[&str],
 ) -> Result<()> {
-    command.args(["build", "--profile", PROFILE, "--target", "web"]).args(tools.build_options());
+    command.args(["build", "--profile", "page", "--target", "web"]).args(tools.build_options());
     command.args([folder, "--out-dir"]).arg(package).args(["--", "--locked"]).args(options);
     tools.judge(run::to_end(command, run::LIMIT).await)
 }

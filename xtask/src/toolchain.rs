@@ -29,11 +29,16 @@ pub(crate) fn ignored_tests(names: &[&str]) -> Command {
     command
 }
 
-/// The target of this machine, such as `x86_64-unknown-linux-gnu`.
-pub(crate) async fn host() -> Result<String> {
+/// What rustc says of itself: version, commit and this machine's target, a line each.
+pub(crate) async fn version() -> Result<String> {
     let mut command = Command::new("rustc");
     command.current_dir(root()).arg("-vV");
-    let answer = run::output(command).await.context("rustc does not answer")?;
+    run::output(command).await.context("rustc does not answer")
+}
+
+/// The target of this machine, such as `x86_64-unknown-linux-gnu`.
+pub(crate) async fn host() -> Result<String> {
+    let answer = version().await?;
     let host = answer.lines().find_map(|line| line.strip_prefix("host: "));
     host.map(str::to_owned).context("rustc does not name its host")
 }
