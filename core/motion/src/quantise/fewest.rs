@@ -533,3 +533,29 @@ fn times(bits: &[u64]) -> impl Iterator<Item = i64> + '_ {
     let words = bits.iter().zip((0..).step_by(64));
     words.flat_map(|(word, at)| (0..64).filter(move |bit| word >> bit & 1 == 1).map(move |bit| at + bit))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ten steps every 100 cycles, five every 300: two entries.
+    fn two_rates() -> Vec<(Window, bool)> {
+        let times = (1..=10).map(|n| 100 * n).chain((1..=5).map(|n| 1000 + 300 * n));
+        times.map(|due| (Window { due, low: due, high: due }, true)).collect()
+    }
+
+    #[test]
+    fn a_stretch_with_more_behind_it_leaves_its_last_entry_to_the_next_stretch() {
+        let windows = two_rates();
+        let stretch = Stretch::new(EntryFormat::TICKS, 1, 0, &windows);
+        let counts = |more| {
+            let pieces = stretch.pieces(more, &mut 1_000_000).unwrap();
+            pieces.iter().map(|piece| piece.count).collect::<Vec<_>>()
+        };
+        assert_eq!(counts(false).iter().sum::<usize>(), 15);
+        assert_eq!(counts(false).len(), 2);
+        let cut = counts(true);
+        assert_eq!(cut.len(), 1);
+        assert!(cut[0] >= 10, "{cut:?}");
+    }
+}
