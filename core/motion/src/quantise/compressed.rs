@@ -351,39 +351,70 @@ impl Ready {
     /// Makes the windows of the run's next steps, `most` of them at most; says how many.
     #[inline(never)]
     fn fill(&mut self, most: usize, windows: &mut Vec<Window>) -> Result<usize, Cause> {
-        let steps = self.left();
-        let [_, afters @ ..] = steps else { return Ok(0) };
-        let run = steps.iter().take(most.min(afters.len()));
-        let run = run.take_while(|step| step.right == self.right).count();
-        if run == 0 {
-            // The last of all.
-            windows.push(self.window()?);
-            return Ok(1);
-        }
-        let (tolerance, format, least) = (self.tolerance, self.format, self.pulse.min_interval().0);
-        let (mut before, mut holds, length) = (self.before, true, windows.len());
-        // First the room for them, so that the loop calls nothing and keeps its numbers in registers.
-        windows.extend(steps.iter().take(run).map(|step| Window { due: step.cycle, low: 0, high: 0 }));
-        for (window, after) in windows.iter_mut().skip(length).zip(afters) {
-            let (due, interval) = (window.due, window.due.saturating_sub(before));
-            let cycles = tolerance.window(due, interval, Some(after.cycle.saturating_sub(due)));
-            if interval < least || cycles.1 > LAST {
-                holds = false;
-                break;
-            }
-            *window = Window::of(due, cycles, format);
-            before = due;
-        }
-        if holds {
-            (self.before, self.count, self.at) = (before, self.count + run as u64, self.at + run);
-        } else {
-            // One after another, to the one that does not hold.
+        let length = windows.len();
+        let mut count = most.min(self.left().len().saturating_sub(1));
+        if !self.make(count, windows) {
             windows.truncate(length);
-            for _ in 0..run {
-                windows.push(self.window()?);
+            let run =
+                self.left().iter().take(count.max(1)).take_while(|step| step.right == self.right).count();
+            let is_shorter = run < count;
+            count = run;
+            if !(is_shorter && self.make(run, windows)) {
+                // One after another: the last of all, or to the one that does not hold.
+                windows.truncate(length);
+                for _ in 0..run {
+                    windows.push(self.window()?);
+                }
+                return Ok(run);
             }
         }
-        Ok(run)
+        if let Some(last) = self.left().get(..count).and_then(<[_]>::last) {
+            (self.before, self.count, self.at) = (last.cycle, self.count + count as u64, self.at + count);
+        }
+        Ok(count)
+    }
+
+    /// Makes the windows of the next `count` steps, which a step follows; false where they may not hold, or not all of them
+    /// go one way.
+    fn make(&self, count: usize, windows: &mut Vec<Window>) -> bool {
+        let Tolerance { cycles: Cycles(most), interval_part, side } = self.tolerance;
+        let late = if side == Side::Both { u64::MAX } else { 0 };
+        match interval_part {
+            None => self.put(count, windows, late, |_, _| most),
+            Some(part) => {
+                let whole = most * u64::from(part.get());
+                self.put(count, windows, late, |before, after| {
+                    let shorter = before.min(after | !late);
+                    if shorter < whole { quotient(shorter, part).min(most) } else { most }
+                })
+            }
+        }
+    }
+
+    /// The same, of a tolerance that is `off` of the intervals before and after a step, and as much to the late side or, where
+    /// `late` has no bits, nothing.
+    #[inline(always)]
+    fn put(&self, count: usize, windows: &mut Vec<Window>, late: u64, off: impl Fn(u64, u64) -> u64) -> bool {
+        let steps = self.left();
+        let last = count.checked_sub(1).and_then(|last| steps.get(last));
+        let (Some(first), Some(last)) = (steps.first(), last) else { return false };
+        let (least, unit) = (self.pulse.min_interval().0, 1 << self.format.fraction_bits);
+        let (mut due, mut before) = (first.cycle, first.cycle.saturating_sub(self.before));
+        let (mut shortest, mut turns) = (before, false);
+        // Nothing is asked of a step and nothing called, so the loop keeps its numbers in registers.
+        let pairs = steps.iter().zip(steps.iter().skip(1)).take(count);
+        windows.extend(pairs.map(|(step, next)| {
+            let after = next.cycle.saturating_sub(due);
+            let off = off(before, after);
+            let (low, high) = (due.saturating_sub(off), due.wrapping_add(off & late));
+            let window =
+                Window { due, low: low.wrapping_mul(unit), high: high.wrapping_mul(unit) + (unit - 1) };
+            (shortest, turns) = (shortest.min(before), turns | (step.right != self.right));
+            (due, before) = (next.cycle, after);
+            window
+        }));
+        // None is due after one that is due later.
+        !turns && shortest >= least && last.cycle <= LAST - MAX_TOLERANCE.0
     }
 
     /// The window of the next step.
