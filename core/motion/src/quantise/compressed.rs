@@ -210,7 +210,7 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
             for Piece { count, interval, add } in pieces {
                 let kept = steps.get(done..done + count).unwrap_or_default();
                 let right = kept.first().is_some_and(|(_, right)| *right);
-                self.writer.steps(kept.iter().map(|(window, _)| *window), interval as u64, add, right);
+                self.writer.steps(kept, |(window, _)| window, (interval as u64, add, right));
                 (done, last) = (done + count, kept.last().map_or(last, |(window, _)| window.due));
             }
             // Of steps that are kept, so that many short pieces of a stretch cannot ask for it again and again.
@@ -246,8 +246,8 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
         while windows.begin(&mut ahead)? {
             while let Some(longest) = ahead.longest(writer.time, length, |ahead| windows.fill(ahead))? {
                 writer.wait(longest.wait);
-                let taken = ahead.taken(longest.count).iter().copied();
-                writer.steps(taken, longest.interval, longest.add, windows.ready.right);
+                let entry = (longest.interval, longest.add, windows.ready.right);
+                writer.steps(ahead.taken(longest.count), |window| window, entry);
                 ahead.take(longest.count);
                 length = longest.count;
                 writer.judge()?;
@@ -261,6 +261,10 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
         Compressed { list, error: self.writer.error, surplus: None }
     }
 }
+
+/// Steps whose errors are summed at once: their squares stay in 64 bits.
+const AT_ONCE: usize = 1 << 12;
+const _: () = assert!(2 * MAX_TOLERANCE.0.ilog2() + AT_ONCE.ilog2() < u64::BITS);
 
 /// Steps that are read at once, and windows that a run is read on by.
 const READ: usize = 256;
@@ -304,7 +308,15 @@ impl<I: Iterator<Item = ScheduledStep>> Windows<I> {
         if ready.left().len() < 2 {
             ready.steps.drain(..ready.at);
             ready.at = 0;
-            ready.steps.extend(steps.by_ref().take(READ));
+            let mut len = ready.steps.len();
+            ready.steps.resize(len + READ, ScheduledStep { cycle: 0, right: false });
+            // From within, and into places that are there: so nothing is asked or called for each but what forms it.
+            steps.by_ref().take(READ).for_each(|step| {
+                if let Some(place) = ready.steps.get_mut(len) {
+                    (*place, len) = (step, len + 1);
+                }
+            });
+            ready.steps.truncate(len);
         }
     }
 
@@ -351,39 +363,73 @@ impl Ready {
     /// Makes the windows of the run's next steps, `most` of them at most; says how many.
     #[inline(never)]
     fn fill(&mut self, most: usize, windows: &mut Vec<Window>) -> Result<usize, Cause> {
-        let steps = self.left();
-        let [_, afters @ ..] = steps else { return Ok(0) };
-        let run = steps.iter().take(most.min(afters.len()));
-        let run = run.take_while(|step| step.right == self.right).count();
-        if run == 0 {
-            // The last of all.
-            windows.push(self.window()?);
-            return Ok(1);
-        }
-        let (tolerance, format, least) = (self.tolerance, self.format, self.pulse.min_interval().0);
-        let (mut before, mut holds, length) = (self.before, true, windows.len());
-        // First the room for them, so that the loop calls nothing and keeps its numbers in registers.
-        windows.extend(steps.iter().take(run).map(|step| Window { due: step.cycle, low: 0, high: 0 }));
-        for (window, after) in windows.iter_mut().skip(length).zip(afters) {
-            let (due, interval) = (window.due, window.due.saturating_sub(before));
-            let cycles = tolerance.window(due, interval, Some(after.cycle.saturating_sub(due)));
-            if interval < least || cycles.1 > LAST {
-                holds = false;
-                break;
-            }
-            *window = Window::of(due, cycles, format);
-            before = due;
-        }
-        if holds {
-            (self.before, self.count, self.at) = (before, self.count + run as u64, self.at + run);
-        } else {
-            // One after another, to the one that does not hold.
+        let length = windows.len();
+        let mut count = most.min(self.left().len().saturating_sub(1));
+        if !self.make(count, windows) {
             windows.truncate(length);
-            for _ in 0..run {
-                windows.push(self.window()?);
+            let run =
+                self.left().iter().take(count.max(1)).take_while(|step| step.right == self.right).count();
+            let is_shorter = run < count;
+            count = run;
+            if !(is_shorter && self.make(run, windows)) {
+                // One after another: the last of all, or to the one that does not hold.
+                windows.truncate(length);
+                for _ in 0..run {
+                    windows.push(self.window()?);
+                }
+                return Ok(run);
             }
         }
-        Ok(run)
+        if let Some(last) = self.left().get(..count).and_then(<[_]>::last) {
+            (self.before, self.count, self.at) = (last.cycle, self.count + count as u64, self.at + count);
+        }
+        Ok(count)
+    }
+
+    /// Makes the windows of the next `count` steps, which a step follows; false where they may not hold, or not all of them
+    /// go one way.
+    fn make(&self, count: usize, windows: &mut Vec<Window>) -> bool {
+        let Tolerance { cycles: Cycles(most), interval_part, side } = self.tolerance;
+        let late = if side == Side::Both { u64::MAX } else { 0 };
+        match interval_part {
+            None => self.put(count, windows, |_, _| (most, most & late)),
+            Some(part) => {
+                let whole = most * u64::from(part.get());
+                self.put(count, windows, |before, after| {
+                    let shorter = before.min(after | !late);
+                    let off = if shorter < whole { quotient(shorter, part).min(most) } else { most };
+                    (off, off & late)
+                })
+            }
+        }
+    }
+
+    /// The same, of a step that may be `off` early and late between two intervals.
+    #[inline(always)]
+    fn put(&self, count: usize, windows: &mut Vec<Window>, off: impl Fn(u64, u64) -> (u64, u64)) -> bool {
+        let (steps, afters) = (self.left(), self.left().get(1..=count).unwrap_or_default());
+        let (Some(first), Some(last), [between @ .., _]) =
+            (steps.first(), steps.get(afters.len().wrapping_sub(1)), afters)
+        else {
+            return false;
+        };
+        let least = self.pulse.min_interval().0;
+        let (mut due, mut before) = (first.cycle, first.cycle.saturating_sub(self.before));
+        let mut shortest = before;
+        // Nothing is asked of a step and nothing called, so the loop keeps its numbers in registers.
+        windows.extend(afters.iter().map(|next| {
+            let after = next.cycle.saturating_sub(due);
+            let (early, late) = off(before, after);
+            let (low, high) = (due.saturating_sub(early), due.wrapping_add(late));
+            let window = Window::of(due, (low, high), self.format);
+            shortest = shortest.min(before);
+            (due, before) = (next.cycle, after);
+            window
+        }));
+        // None is due after one that is due later.
+        shortest >= least
+            && last.cycle <= LAST - MAX_TOLERANCE.0
+            && between.iter().chain([first]).all(|step| step.right == self.right)
     }
 
     /// The window of the next step.
@@ -441,22 +487,27 @@ impl Writer {
         Ok(())
     }
 
-    fn steps(
+    /// Keeps steps, each with its window.
+    fn steps<T>(
         &mut self,
-        windows: impl ExactSizeIterator<Item = Window>,
-        interval: u64,
-        add: i64,
-        right: bool,
+        kept: &[T],
+        window: impl Fn(&T) -> &Window,
+        (interval, add, right): (u64, i64, bool),
     ) {
-        let bits = self.format.fraction_bits;
-        let count = windows.len() as u32;
-        let offs = windows.scan((self.time, interval), |(time, next), window| {
-            *time = time.wrapping_add(*next);
-            *next = next.wrapping_add_signed(add);
-            debug_assert!((window.low..=window.high).contains(time), "{time} is not in {window:?}");
-            Some((*time >> bits).abs_diff(window.due))
-        });
-        self.error.steps(offs);
+        let (bits, count) = (self.format.fraction_bits, kept.len() as u32);
+        let (mut time, mut next) = (self.time, interval);
+        for kept in kept.chunks(AT_ONCE) {
+            let (mut greatest, mut squares) = (0, 0);
+            for window in kept.iter().map(&window) {
+                time = time.wrapping_add(next);
+                next = next.wrapping_add_signed(add);
+                debug_assert!((window.low..=window.high).contains(&time), "{time} is not in {window:?}");
+                let off = ((time >> bits).wrapping_sub(window.due) as i64).unsigned_abs();
+                greatest = off.max(greatest);
+                squares += off.wrapping_mul(off);
+            }
+            self.error.steps(kept.len(), greatest, squares);
+        }
         let adds = u64::from(count) * u64::from(count).saturating_sub(1) / 2;
         let lasts = interval.wrapping_mul(count.into()).wrapping_add_signed(add.wrapping_mul(adds as i64));
         self.time = self.time.wrapping_add(lasts);

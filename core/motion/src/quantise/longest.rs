@@ -16,6 +16,8 @@ use alloc::vec::Vec;
 const MAX_AHEAD: usize = 1 << 20;
 /// Steps of an entry that are tried at first.
 const SAMPLES: usize = 8;
+/// Steps of an entry that are replayed at once.
+const AT_ONCE: usize = 64;
 /// Longest time of an entry in units, so that all sums of [`feasible_window`] stay in 64 bits.
 const MAX_SPAN: u64 = 1 << 56;
 // Gates reach to the double of it, and the steepest add a unit further.
@@ -214,20 +216,30 @@ impl Ahead {
     fn missed(&self, n: usize, interval: i64, add: i64) -> [Option<usize>; 2] {
         let (mut early, mut late) = ((0, None), (0, None));
         let (mut time, mut next) = (self.from, interval);
-        for (step, window) in (1..).zip(self.taken(n)) {
-            time = time.wrapping_add_signed(next);
-            next += add;
-            // Most are within.
-            if time.wrapping_sub(window.low) <= window.high - window.low {
+        for (first, windows) in (1..).step_by(AT_ONCE).zip(self.taken(n).chunks(AT_ONCE)) {
+            let begin = (time, next);
+            // Most are within: one sign tells it of all of them.
+            let mut outside = 0;
+            for window in windows {
+                time = time.wrapping_add_signed(next);
+                next += add;
+                outside |= time.wrapping_sub(window.low) | window.high.wrapping_sub(time);
+            }
+            if outside as i64 >= 0 {
                 continue;
             }
-            let before = window.low.wrapping_sub(time) as i64;
-            let after = time.wrapping_sub(window.high) as i64;
-            if before > early.0 {
-                early = (before, Some(step));
-            }
-            if after > late.0 {
-                late = (after, Some(step));
+            (time, next) = begin;
+            for (step, window) in (first..).zip(windows) {
+                time = time.wrapping_add_signed(next);
+                next += add;
+                let before = window.low.wrapping_sub(time) as i64;
+                let after = time.wrapping_sub(window.high) as i64;
+                if before > early.0 {
+                    early = (before, Some(step));
+                }
+                if after > late.0 {
+                    late = (after, Some(step));
+                }
             }
         }
         [early.1, late.1]

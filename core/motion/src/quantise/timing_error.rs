@@ -27,16 +27,11 @@ impl TimingError {
         self.squares = self.squares.saturating_add(square);
     }
 
-    /// Takes steps into account that are so many cycles early or late, each by less than 2^32.
+    /// Takes so many steps into account, with the greatest of their errors and the sum of their squares.
     #[inline]
-    pub(super) fn steps(&mut self, offs: impl Iterator<Item = u64>) {
-        let (mut steps, mut greatest, mut squares) = (0, 0, 0);
-        for off in offs {
-            (steps, greatest) = (steps + 1, off.max(greatest));
-            squares += u128::from(off.wrapping_mul(off));
-        }
-        (self.steps, self.greatest) = (self.steps + steps, self.greatest.max(greatest));
-        self.squares = self.squares.saturating_add(squares);
+    pub(super) fn steps(&mut self, steps: usize, greatest: u64, squares: u64) {
+        (self.steps, self.greatest) = (self.steps + steps as u64, self.greatest.max(greatest));
+        self.squares = self.squares.saturating_add(squares.into());
     }
 
     /// Root of the mean square in cycles; 0 of no steps.
