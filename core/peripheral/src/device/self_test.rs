@@ -119,3 +119,21 @@ impl Device {
         sink.event(self.last, Event::Stopped);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::SerialLine;
+
+    #[test]
+    fn channels_are_looked_at_one_after_another_and_the_boot_ends_with_the_last() {
+        let bus = Bus { channels: 3, step_period_cycles: 320, ..Bus::default() };
+        let config = Config::new(16_000_000, &bus, &SerialLine::default()).unwrap();
+        for (channel, start) in [(0, 1), (1, 1 + 24 * 320), (2, 1 + 48 * 320)] {
+            let part = SelfTest::of(&config, channel);
+            assert_eq!((part.start, part.step), (Instant(start), Cycles(320)));
+            assert_eq!(part.rise, Instant(start + 3200));
+        }
+        assert_eq!(SelfTest::boot(&config), Cycles(1 + 72 * 320));
+    }
+}
