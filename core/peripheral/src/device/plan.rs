@@ -81,7 +81,7 @@ impl Plan {
 
     fn rebuild(&mut self) {
         let counts = self.commands.map(|byte| ChannelCommand::parse(byte).steps);
-        let right = tops(halves(self.commands));
+        let right = tops(u128::from_le_bytes(self.commands));
         let dir = Lines::from(right) << Levels::DIR_SHIFT & self.all_right;
         self.changes.clear();
         if self.config.dir_line == DirLine::PerChannel {
@@ -185,70 +185,57 @@ fn channels(fires: u16) -> impl Iterator<Item = Lines> {
 /// `spread` fires in slot k if floor(((k+1)*c + h)/M) > floor((k*c + h)/M), h = floor(M/2): each
 /// channel keeps r = (k*c + h) mod M and fires if r >= M - c. `burst` fires if k < c.
 ///
-/// Eight channels go side by side in one number, a byte each. r, c, k and M are at most 127: with bit
+/// All channels go side by side in one number, a byte each. r, c, k and M are at most 127: with bit
 /// 7 set beforehand a subtraction takes nothing from the byte above, and bit 7 is left where it
 /// did not go below 0.
 struct Firing {
     /// c of each channel.
-    counts: Halves,
+    counts: u128,
     /// r of each channel.
-    remainders: Halves,
+    remainders: u128,
     slots: u8,
     distribution: Distribution,
 }
 
-/// A byte a channel: numbers of 128 bits are slow where a target has none.
-type Halves = [u64; 2];
-
 /// A 1 in each byte.
-const ONES: u64 = u64::from_le_bytes([1; 8]);
+const ONES: u128 = u128::from_le_bytes([1; MAX_CHANNELS]);
 /// Bit 7 of each byte.
-const TOPS: u64 = ONES << 7;
+const TOPS: u128 = ONES << 7;
 // A byte of the numbers above has room for a count, and for bit 7.
-const _: () = assert!(MAX_STEPS == 0x7f && TOPS & (ONES * MAX_STEPS as u64) == 0);
-const _: () = assert!(size_of::<Halves>() == MAX_CHANNELS);
+const _: () = assert!(MAX_STEPS == 0x7f && TOPS & (ONES * MAX_STEPS as u128) == 0);
 
 impl Firing {
     fn new(counts: [u8; MAX_CHANNELS], slots: u8, distribution: Distribution) -> Self {
         debug_assert!((1..=MAX_STEPS).contains(&slots), "{slots} slots in a tick");
         debug_assert!(counts.iter().all(|&count| count <= slots), "{counts:?} in {slots} slots");
-        let remainders = [ONES * u64::from(slots / 2); 2];
-        Self { counts: halves(counts), remainders, slots, distribution }
+        let remainders = u128::from_le_bytes([slots / 2; MAX_CHANNELS]);
+        Self { counts: u128::from_le_bytes(counts), remainders, slots, distribution }
     }
 
     /// The channels that fire in slot `slot`; slots are asked for in order.
     fn slot(&mut self, slot: u8) -> u16 {
         match self.distribution {
             // c - (k + 1) >= 0
-            Distribution::Burst => {
-                tops(self.counts.map(|counts| (counts | TOPS) - (u64::from(slot) + 1) * ONES))
-            }
+            Distribution::Burst => tops((self.counts | TOPS) - (u128::from(slot) + 1) * ONES),
             // r - (M - c) >= 0, which then is the next r; that of the others is M more.
             Distribution::Spread => {
-                let slots = u64::from(self.slots);
-                let rests = [0, 1]
-                    .map(|half: usize| (self.remainders[half] | TOPS) - (slots * ONES - self.counts[half]));
-                self.remainders = rests.map(|rest| {
-                    let fires = rest & TOPS;
-                    rest - fires - ((fires ^ TOPS) >> 7) * (128 - slots)
-                });
-                tops(rests)
+                let slots = u128::from(self.slots);
+                let rest = (self.remainders | TOPS) - (slots * ONES - self.counts);
+                let fires = rest & TOPS;
+                self.remainders = rest - fires - ((fires ^ TOPS) >> 7) * (128 - slots);
+                tops(fires)
             }
         }
     }
 }
 
-fn halves(bytes: [u8; MAX_CHANNELS]) -> Halves {
-    let all = u128::from_le_bytes(bytes);
-    [all as u64, (all >> 64) as u64]
-}
-
 /// Bit i of the result is bit 7 of byte i.
 ///
 /// The multiplication moves byte i's bit to bit 56 + i of its half; no two of them meet.
-fn tops(bytes: Halves) -> u16 {
-    let [low, high] = bytes.map(|half| ((half >> 7 & ONES).wrapping_mul(0x0102_0408_1020_4080) >> 56) as u16);
-    low | high << 8
+fn tops(bytes: u128) -> u16 {
+    let bits = bytes >> 7 & ONES;
+    let half = |bits: u64| (bits.wrapping_mul(0x0102_0408_1020_4080) >> 56) as u16;
+    half(bits as u64) | half((bits >> 64) as u64) << 8
 }
 
 #[cfg(test)]
