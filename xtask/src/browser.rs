@@ -1,19 +1,17 @@
 //! Chromium and its driver, for the tests that need a real browser.
 
 use std::env;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
 use crate::apt;
+use crate::tools::version_answer;
 
 /// A browser and the driver that goes with it.
 pub(crate) struct Browser {
     pub(crate) chromium: PathBuf,
     pub(crate) chromedriver: PathBuf,
-    /// The same engine without windows, menus and what they cost: a load of the page takes a third less. Chromium itself
-    /// where there is none.
-    pub(crate) headless: PathBuf,
 }
 
 /// Environment variables that name the two where PATH does not, and by which tests are told of them.
@@ -24,31 +22,30 @@ pub(crate) const CHROMEDRIVER: &str = "STEPSCOPE_CHROMEDRIVER";
 impl Browser {
     /// Finds the two; installs them where that is one command and nobody needs to be asked.
     pub(crate) async fn ready() -> Result<Self> {
-        let found = match Self::find() {
-            Some(found) => found,
-            None => {
-                apt::install(&["chromium", "chromium-driver"]).await.with_context(remedy)?;
-                Self::find().with_context(remedy)?
-            }
-        };
-        Ok(found.with_headless().await)
+        if let Some(found) = Self::find() {
+            return Ok(found);
+        }
+        apt::install(&["chromium", "chromium-driver"]).await.with_context(remedy)?;
+        Self::find().with_context(remedy)
     }
 
-    /// Looks for the engine without windows; installs it beside Debian's own Chromium, whose version it has.
-    async fn with_headless(self) -> Self {
+    /// The same engine without windows, menus and what they cost, of the driver's version: a load of the page takes a third
+    /// less. It is installed beside Debian's own Chromium. Chromium itself where it cannot be had, or another was asked for.
+    pub(crate) async fn headless(&self) -> PathBuf {
         if env::var_os(CHROMIUM).is_some() {
-            return self;
+            return self.chromium.clone();
         }
         let find = || on_path(&["chromium-headless-shell", "chrome-headless-shell"]);
-        let mut headless = find();
-        if headless.is_none() && self.chromium.ends_with("chromium") {
-            // Nothing needs it: without it the tests take longer.
-            if let Err(why) = apt::install(&["chromium-headless-shell"]).await {
-                println!("{} will do without its headless shell: {why:#}", self.chromium.display());
-            }
-            headless = find();
+        if find().is_none()
+            && self.chromium.ends_with("chromium")
+            && let Err(why) = apt::install(&["chromium-headless-shell"]).await
+        {
+            println!("without Chromium's headless shell the tests take longer: {why:#}");
         }
-        Self { headless: headless.unwrap_or_else(|| self.chromium.clone()), ..self }
+        match find() {
+            Some(shell) if fits(&shell, &self.chromedriver).await => shell,
+            _ => self.chromium.clone(),
+        }
     }
 
     fn find() -> Option<Self> {
@@ -57,7 +54,20 @@ impl Browser {
             on_path(&["chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome"])
         })?;
         let chromedriver = named(CHROMEDRIVER).or_else(|| on_path(&["chromedriver"]))?;
-        Some(Self { headless: chromium.clone(), chromium, chromedriver })
+        Some(Self { chromium, chromedriver })
+    }
+}
+
+/// Whether two programs say the same number before the first dot of their versions: `Chromium 156.0.8078.79`.
+async fn fits(shell: &Path, driver: &Path) -> bool {
+    let major = async |program: &Path| {
+        let answer = version_answer(program).await?;
+        let mut numbers = answer.split_whitespace().filter_map(|word| word.split_once('.'));
+        numbers.find_map(|(major, _)| major.parse::<u32>().ok())
+    };
+    match (major(shell).await, major(driver).await) {
+        (Some(shell), Some(driver)) => shell == driver,
+        _ => false,
     }
 }
 

@@ -3,8 +3,9 @@
 //! Binding and optimising the page's wasm takes minutes, and so does building the library crates from their packages;
 //! most changes are of neither.
 
-use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+use std::{env, fs};
 
 use anyhow::{Context, Result};
 use twox_hash::XxHash64;
@@ -15,32 +16,44 @@ use crate::{THIS_PROGRAM, root, toolchain};
 /// What decides, beside its sources, what becomes of any crate of the workspace.
 const WORKSPACE: [&str; 3] = ["Cargo.toml", "Cargo.lock", ".cargo/config.toml"];
 
-/// A folder, and the hash of all that it is made of.
-pub(crate) struct Made {
-    folder: PathBuf,
+/// Beginnings of the names of variables by which cargo and rustc are told what to make.
+const TOLD_BY: [&str; 6] =
+    ["CARGO_PROFILE_", "CARGO_TARGET_", "CARGO_BUILD_", "CARGO_ENCODED_", "RUSTC", "RUSTFLAGS"];
+
+/// The hash of this program, taken when it started: it may be built anew while it runs.
+pub(crate) static PROGRAM: LazyLock<Option<u64>> = LazyLock::new(|| {
+    let program = fs::read(THIS_PROGRAM.as_ref().ok()?).ok()?;
+    Some(XxHash64::oneshot(0, &program))
+});
+
+/// A folder, and all that it is made of.
+pub(crate) struct Made<'a> {
+    folder: &'a Path,
+    sources: &'a [&'a str],
+    /// How it is made, and what else tells cargo.
+    how: Vec<String>,
     /// Where it is kept what the folder was made of last, and what it was then.
     note: PathBuf,
+    /// The hash of what it is made of.
     from: u64,
 }
 
-impl Made {
+impl<'a> Made<'a> {
     /// `folder`, made by this program and this Rust of what lies in these folders of the workspace, by `how`.
-    pub(crate) async fn of(folder: &Path, sources: &[&str], how: &[&str]) -> Result<Self> {
-        let this = THIS_PROGRAM.as_ref().context("this program's own path is unknown")?;
-        let mut held = Vec::new();
-        hold_file(&mut held, this)?;
-        for name in WORKSPACE {
-            hold_file(&mut held, &root().join(name))?;
-        }
-        for source in sources {
-            hold_folder(&mut held, &root().join(source))?;
-        }
-        for word in how.iter().copied().chain([toolchain::version().await?.as_str()]) {
-            hold(&mut held, word.as_bytes());
-        }
+    pub(crate) async fn of(folder: &'a Path, sources: &'a [&'a str], how: &[&str]) -> Result<Self> {
+        let mut how: Vec<_> = how.iter().map(|&word| word.to_owned()).collect();
+        how.push(toolchain::version().await?);
+        let mut told: Vec<_> = env::vars_os()
+            .map(|(name, value)| (name.to_string_lossy().into_owned(), value))
+            .filter(|(name, _)| TOLD_BY.iter().any(|begin| name.starts_with(begin)))
+            .map(|(name, value)| format!("{name}={}", value.to_string_lossy()))
+            .collect();
+        told.sort();
+        how.extend(told);
         let name = folder.strip_prefix(root()).unwrap_or(folder).to_string_lossy().replace(['/', '\\'], "-");
         let note = root().join("target").join("made").join(name);
-        Ok(Self { folder: folder.to_owned(), note, from: XxHash64::oneshot(0, &held) })
+        let from = from(sources, &how)?;
+        Ok(Self { folder, sources, how, note, from })
     }
 
     /// Whether the folder was made of the same and nobody has changed it since.
@@ -49,8 +62,24 @@ impl Made {
         Ok(self.folder.is_dir() && noted == self.words()?)
     }
 
-    /// Keeps that the folder is made.
+    /// Takes away what was made before.
+    pub(crate) fn clear(&self) -> Result<()> {
+        if self.note.exists() {
+            fs::remove_file(&self.note)
+                .with_context(|| format!("{} can't be removed", self.note.display()))?;
+        }
+        if self.folder.exists() {
+            let problem = || format!("{} can't be cleared", self.folder.display());
+            fs::remove_dir_all(self.folder).with_context(problem)?;
+        }
+        Ok(())
+    }
+
+    /// Keeps that the folder is made, unless what it is made of has changed meanwhile.
     pub(crate) fn keep(&self) -> Result<()> {
+        if from(self.sources, &self.how)? != self.from {
+            return Ok(());
+        }
         let at = self.note.parent().context("a note has a folder")?;
         let problem = || format!("{} can't be written", self.note.display());
         fs::create_dir_all(at).with_context(problem)?;
@@ -59,9 +88,24 @@ impl Made {
 
     fn words(&self) -> Result<String> {
         let mut held = Vec::new();
-        hold_folder(&mut held, &self.folder)?;
+        hold_folder(&mut held, self.folder)?;
         Ok(format!("{:016x} {:016x}\n", self.from, XxHash64::oneshot(0, &held)))
     }
+}
+
+/// The hash of all that something is made of.
+fn from(sources: &[&str], how: &[String]) -> Result<u64> {
+    let mut held = PROGRAM.context("this program's own file can't be read")?.to_le_bytes().to_vec();
+    for name in WORKSPACE {
+        hold_file(&mut held, &root().join(name))?;
+    }
+    for source in sources {
+        hold_folder(&mut held, &root().join(source))?;
+    }
+    for word in how {
+        hold(&mut held, word.as_bytes());
+    }
+    Ok(XxHash64::oneshot(0, &held))
 }
 
 /// Adds all files of a folder, by their names and what they hold.
@@ -100,7 +144,8 @@ mod tests {
         fs::create_dir_all(root().join(&sources)).unwrap();
         fs::write(&source, "source").unwrap();
         fs::write(folder.join("a.js"), "made").unwrap();
-        let made = async |how: &str| Made::of(&folder, &[&sources], &[how]).await.unwrap();
+        let parts = [sources.as_str()];
+        let made = async |how: &str| Made::of(&folder, &parts, &[how]).await.unwrap();
         assert!(!made("how").await.stands().unwrap(), "nobody has kept it yet");
         made("how").await.keep().unwrap();
         assert!(made("how").await.stands().unwrap());
@@ -110,6 +155,15 @@ mod tests {
         assert!(!made("how").await.stands().unwrap());
         fs::write(&source, "source").unwrap();
         assert!(made("how").await.stands().unwrap());
+
+        let while_it_changes = made("how").await;
+        while_it_changes.clear().unwrap();
+        fs::create_dir_all(&folder).unwrap();
+        fs::write(&source, "another").unwrap();
+        while_it_changes.keep().unwrap();
+        fs::write(&source, "source").unwrap();
+        assert!(!made("how").await.stands().unwrap(), "nobody knows of which it was made");
+        made("how").await.keep().unwrap();
 
         fs::write(folder.join("b.js"), "more").unwrap();
         assert!(!made("how").await.stands().unwrap());

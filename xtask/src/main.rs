@@ -222,6 +222,7 @@ async fn perform(task: Task) -> Result<()> {
 #[tokio::main(flavor = "current_thread")]
 async fn main() -> ExitCode {
     LazyLock::force(&THIS_PROGRAM);
+    LazyLock::force(&made::PROGRAM);
     let task = Cli::parse().task;
     // Dropping the task's future kills the process group of whatever child it was waiting for.
     let done = tokio::select! {

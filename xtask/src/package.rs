@@ -42,11 +42,13 @@ async fn crates() -> Result<()> {
     // cargo takes a package of one name and version for one that never changes. Here it changes with the sources, so what
     // was unpacked and built of it before must go.
     let folder = root().join("target").join("packages");
-    let made = Made::of(&folder.join("package"), &["core"], &[]).await?;
+    let packages = folder.join("package");
+    let made = Made::of(&packages, &["core", "LICENSE-MIT", "LICENSE-APACHE"], &[]).await?;
     if made.stands()? {
         println!("the library crates are those that were packed and built last");
         return Ok(());
     }
+    made.clear()?;
     clear_own(&folder)?;
     for unpacked in unpacked(&cargo_home()?.join("registry").join("src")) {
         clear(&unpacked)?;

@@ -55,6 +55,7 @@ pub(crate) async fn build(optimise: Optimise) -> Result<()> {
         let options = ["--no-default-features", "--features", features];
         let made = made(&tools, &package, &options).await?;
         if !made.stands()? {
+            made.clear()?;
             wasm_by(&tools, tools.wasm_pack()?, CRATE, &package, &options).await?;
             made.keep()?;
         }
@@ -67,6 +68,7 @@ pub(crate) async fn npm(package: &Path) -> Result<()> {
     let tools = WasmTools::ready(Optimise::Yes).await?;
     let made = made(&tools, package, &[]).await?;
     if !made.stands()? {
+        made.clear()?;
         wasm_by(&tools, tools.wasm_pack()?, CRATE, package, &[]).await?;
         package::complete(package)?;
         made.keep()?;
@@ -74,10 +76,12 @@ pub(crate) async fn npm(package: &Path) -> Result<()> {
     Ok(())
 }
 
+/// What the wasm crate is made of.
+const SOURCES: [&str; 4] = ["core", CRATE, "LICENSE-MIT", "LICENSE-APACHE"];
+
 /// What `package` is made of. What wasm-pack does takes long, and is not done again where nothing is new.
-async fn made(tools: &WasmTools, package: &Path, options: &[&str]) -> Result<Made> {
-    Made::of(package, &["core", CRATE, "LICENSE-MIT", "LICENSE-APACHE"], &[&tools.words(), options].concat())
-        .await
+async fn made<'a>(tools: &WasmTools, package: &'a Path, options: &[&str]) -> Result<Made<'a>> {
+    Made::of(package, &SOURCES, &[&tools.words(), options].concat()).await
 }
 
 /// Builds the crate in `folder` of a workspace for the browser into `package`, by a call of wasm-pack in that workspace and with

@@ -46,6 +46,8 @@ pub(crate) struct WasmTools {
     /// wasm-pack's own cache: it must exist, or wasm-pack fails with a bare "os error 2".
     wasm_pack_cache: PathBuf,
     wasm_opt: WasmOpt,
+    /// What wasm-opt answers when it is asked for its version.
+    wasm_opt_version: String,
 }
 
 impl WasmTools {
@@ -65,10 +67,12 @@ impl WasmTools {
             Tool { package: "wasm-bindgen-cli", program: "wasm-bindgen", version: wasm_bindgen };
         let mut programs = ready(&cache, &[wasm_pack, wasm_bindgen]).await?;
         let wasm_pack = programs[0].clone();
+        let mut wasm_opt_version = String::new();
         let wasm_opt = match optimise {
             Optimise::No => WasmOpt::LeftOut,
             Optimise::Yes => match wasm_opt::ready(&cache).await? {
                 Some(program) => {
+                    wasm_opt_version = version_answer(&program).await.unwrap_or_default();
                     programs.push(program);
                     WasmOpt::Found
                 }
@@ -78,7 +82,7 @@ impl WasmTools {
         // What is on PATH already stays where it is: its folder may hold another cargo, too.
         let own = programs.iter().filter(|program| program.starts_with(&cache));
         let folders = own.filter_map(|program| program.parent()).map(Path::to_owned).collect();
-        Ok(Self { wasm_pack, folders, wasm_pack_cache, wasm_opt })
+        Ok(Self { wasm_pack, folders, wasm_pack_cache, wasm_opt, wasm_opt_version })
     }
 
     /// A wasm-pack call in the workspace's folder, with its helpers first on PATH.
@@ -97,10 +101,10 @@ impl WasmTools {
         }
     }
 
-    /// What they do, and where those lie that are not on PATH: their folders' names hold their versions.
+    /// What they do, and which they are: the names of their own folders hold their versions.
     pub(crate) fn words(&self) -> Vec<&str> {
         let folders = self.folders.iter().filter_map(|folder| folder.to_str());
-        self.build_options().iter().copied().chain(folders).collect()
+        self.build_options().iter().copied().chain(folders).chain([self.wasm_opt_version.as_str()]).collect()
     }
 
     /// Judges a build by more than `done`, how wasm-pack ended: was the wasm optimised, if it was to be?
