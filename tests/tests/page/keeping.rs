@@ -313,6 +313,8 @@ fn own_experiments_are_kept_by_name_and_undo_survives_a_reload() -> Result<()> {
         page.ready().await?;
         page.click("#experiments").await?;
         page.until("document.getElementById('experiment-keep').offsetWidth > 0").await?;
+        // The panel's script comes after the panel; there is nothing to export yet.
+        page.until("document.getElementById('experiments-export').disabled").await?;
         page.press("#experiment-name", &format!("Rig{ENTER}")).await?;
         page.until_equal(NAMES, &serde_json::json!(["Rig"])).await?;
         page.click("#experiment-new").await?;
