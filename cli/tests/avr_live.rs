@@ -120,7 +120,8 @@ fn sent(name: &str, scenario: &Path) -> PathBuf {
         let board = Board::on(name);
         let (code, out, err) = run(&["send", text(scenario), "--port", &board.port, "--slack", "500"]);
         let recording = board.recording();
-        if code == Some(3) && err.contains("UNDERRUN") {
+        // Either the host stood still, or the board did, whose queue then has no place where there should be one.
+        if code == Some(3) && (err.contains("UNDERRUN") || err.contains("QUEUE_OVERFLOW")) {
             continue;
         }
         assert_eq!((code, err.as_str()), (Some(0), ""), "{out}");
